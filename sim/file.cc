@@ -1,0 +1,61 @@
+#include "sim/file.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "error.h"
+
+namespace continuum {
+namespace fs = std::filesystem;
+
+std::string ReadFile(const fs::path& path) {
+  if (fs::is_directory(path)) throw Error::Input(path.string(), "a file", "a folder");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error::Input(path.string(), "a readable file", std::strerror(errno));
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (in.bad()) throw Error::Input(path.string(), "a readable file", std::strerror(errno));
+  return text;
+}
+
+fs::path Aside(const fs::path& path) {
+  fs::path aside = path;
+  aside.replace_filename("." + path.filename().string() + "." + std::to_string(getpid()) + ".tmp" +
+                         path.extension().string());
+  return aside;
+}
+
+void WriteFile(const fs::path& path, std::string_view content) {
+  const fs::path aside = Aside(path);
+  std::ofstream out(aside, std::ios::binary | std::ios::trunc);
+  if (out) out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  std::error_code failed;
+  const std::string reason = out ? "" : std::strerror(errno);
+  if (out) fs::rename(aside, path, failed);
+  if (out && !failed) return;
+  std::error_code ignored;
+  fs::remove(aside, ignored);
+  throw Error::Input(path.string(), "a writable file", out ? failed.message() : reason);
+}
+
+void MakeFolder(const fs::path& path) {
+  std::error_code failed;
+  fs::create_directories(path, failed);
+  if (failed || !fs::is_directory(path)) {
+    throw Error::Input(path.string(), "a folder that can be written", failed.message());
+  }
+}
+
+std::string Decimal(double value) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+}  // namespace continuum

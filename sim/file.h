@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace continuum {
+
+/// The whole file as text. Throws Error when it cannot be read.
+std::string ReadFile(const std::filesystem::path& path);
+
+/// Writes the whole file or nothing: to a temporary file beside it, then renamed over it. Throws
+/// Error when the folder is missing, not writable or full.
+void WriteFile(const std::filesystem::path& path, std::string_view content);
+
+/// Creates the folder (and its parents). Throws Error when that is impossible.
+void MakeFolder(const std::filesystem::path& path);
+
+/// A temporary name beside path, for writers that need a real file; rename it over path when done.
+std::filesystem::path Aside(const std::filesystem::path& path);
+
+/// The shortest decimal text that reads back as exactly this number.
+std::string Decimal(double value);
+
+}  // namespace continuum

@@ -1,0 +1,139 @@
+#include "sim/table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+std::string_view Trim(std::string_view s) {
+  const auto blank = " \t\r";
+  const auto first = s.find_first_not_of(blank);
+  if (first == s.npos) return {};
+  return s.substr(first, s.find_last_not_of(blank) - first + 1);
+}
+
+// One line of CSV; a quoted cell may hold commas and doubled quotes, but no line break.
+std::vector<std::string> Split(std::string_view line, const std::string& where) {
+  std::vector<std::string> cells;
+  std::size_t i = 0;
+  while (true) {
+    while (i < line.size() && (line[i] == ' ' || line[i] == '\t')) ++i;
+    std::string cell;
+    if (i < line.size() && line[i] == '"') {
+      for (++i;; ++i) {
+        if (i == line.size()) throw Error::Input(where, "a closing quote", "the end of the line");
+        if (line[i] != '"') {
+          cell += line[i];
+        } else if (i + 1 < line.size() && line[i + 1] == '"') {
+          cell += line[i++];
+        } else {
+          break;
+        }
+      }
+      const std::size_t comma = std::min(line.find(',', i), line.size());
+      if (!Trim(line.substr(i + 1, comma - i - 1)).empty()) {
+        throw Error::Input(where, "a comma after a quoted cell",
+                           "'" + std::string(Trim(line.substr(i + 1, comma - i - 1))) + "'");
+      }
+      i = comma;
+    } else {
+      const std::size_t comma = std::min(line.find(',', i), line.size());
+      cell = Trim(line.substr(i, comma - i));
+      i = comma;
+    }
+    cells.push_back(std::move(cell));
+    if (i >= line.size()) return cells;
+    ++i;
+  }
+}
+
+}  // namespace
+
+Table Table::Read(const std::filesystem::path& file) { return Parse(ReadFile(file), file.string()); }
+
+Table Table::Parse(std::string_view text, std::string name) {
+  Table t;
+  t.name_ = std::move(name);
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  if (text.find('\0') != text.npos) throw Error::Input(t.name_, "a text file", "a zero byte");
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view row = Trim(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (row.empty()) continue;
+    const std::string where = t.name_ + ":" + std::to_string(line);
+    auto cells = Split(row, where);
+    if (t.columns_.empty()) {
+      t.columns_ = std::move(cells);
+      for (auto c = t.columns_.begin(); c != t.columns_.end(); ++c) {
+        if (c->empty()) throw Error::Input(where, "a name for every column", "an empty one");
+        if (std::find(t.columns_.begin(), c, *c) != c) {
+          throw Error::Input(where, "different column names", "'" + *c + "' twice");
+        }
+      }
+    } else if (cells.size() != t.columns_.size()) {
+      throw Error::Input(where, std::to_string(t.columns_.size()) + " cells as in the header",
+                         std::to_string(cells.size()));
+    } else {
+      t.cells_.push_back(std::move(cells));
+      t.lines_.push_back(line);
+    }
+  }
+  if (t.columns_.empty()) throw Error::Input(t.name_, "a header line", "an empty file");
+  return t;
+}
+
+bool Table::Has(std::string_view column) const {
+  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+}
+
+std::size_t Table::Column(std::string_view column) const {
+  const auto c = std::find(columns_.begin(), columns_.end(), column);
+  if (c != columns_.end()) return static_cast<std::size_t>(c - columns_.begin());
+  std::string all;
+  for (const auto& name : columns_) all += (all.empty() ? "" : ", ") + name;
+  throw Error::Input(name_ + ":1", "a column '" + std::string(column) + "'", all);
+}
+
+std::string Table::Where(std::size_t row) const {
+  return name_ + ":" + std::to_string(lines_.at(row));
+}
+
+const std::string& Table::Text(std::size_t row, std::string_view column) const {
+  return cells_.at(row)[Column(column)];
+}
+
+double Table::NumberOrNan(std::size_t row, std::string_view column) const {
+  const std::string& cell = Text(row, column);
+  if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NAN") {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return Number(row, column);
+}
+
+double Table::Number(std::size_t row, std::string_view column) const {
+  const std::string& cell = Text(row, column);
+  if (cell == "True" || cell == "true") return 1;
+  if (cell == "False" || cell == "false") return 0;
+  const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
+  const char* const end = cell.data() + cell.size();
+  double value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error == std::errc{} && stop == end && std::isfinite(value)) return value;
+  throw Error::Input(Where(row) + ", column '" + std::string(column) + "'", "a finite number",
+                     cell.empty() ? "an empty cell" : "'" + cell + "'");
+}
+
+std::vector<double> Table::Numbers(std::string_view column) const {
+  std::vector<double> values(rows());
+  for (std::size_t i = 0; i < rows(); ++i) values[i] = Number(i, column);
+  return values;
+}
+
+}  // namespace continuum

@@ -1,0 +1,140 @@
+#include "sim/yaml.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum {
+
+Yaml Yaml::Read(const std::filesystem::path& file) { return Parse(ReadFile(file), file.string()); }
+
+Yaml Yaml::Parse(const std::string& text, std::string name) {
+  try {
+    Yaml root(YAML::Load(text), name, "");
+    if (!root.node_.IsMap()) throw Error::Input(name, "a map of keys", root.Found());
+    return root;
+  } catch (const YAML::Exception& e) {
+    throw Error::Input(name + ":" + std::to_string(e.mark.line + 1), e.msg);
+  }
+}
+
+std::string Yaml::Where() const {
+  const auto mark = node_.Mark();
+  std::string where = file_;
+  if (mark.line >= 0) where += ":" + std::to_string(mark.line + 1);
+  return path_.empty() ? where : where + ": " + path_;
+}
+
+std::string Yaml::Found() const {
+  if (!node_.IsDefined() || node_.IsNull()) return "nothing";
+  if (node_.IsMap()) return "a map";
+  if (node_.IsSequence()) return "a list";
+  return "'" + node_.Scalar() + "'";
+}
+
+bool Yaml::Has(const std::string& key) const { return node_.IsMap() && node_[key].IsDefined(); }
+
+Yaml Yaml::At(const std::string& key) const {
+  if (!node_.IsMap()) throw Error::Input(Where(), "a map with '" + key + "'", Found());
+  if (!Has(key)) throw Error::Input(Where(), "the key '" + key + "'", "none");
+  return {node_[key], file_, path_.empty() ? key : path_ + "." + key};
+}
+
+std::optional<Yaml> Yaml::Find(const std::string& key) const {
+  if (!Has(key)) return std::nullopt;
+  return At(key);
+}
+
+std::vector<Yaml> Yaml::Items() const {
+  if (!node_.IsSequence()) throw Error::Input(Where(), "a list", Found());
+  std::vector<Yaml> items;
+  for (std::size_t i = 0; i < node_.size(); ++i) {
+    items.push_back({node_[i], file_, path_ + "[" + std::to_string(i) + "]"});
+  }
+  return items;
+}
+
+std::vector<std::string> Yaml::Keys() const {
+  if (!node_.IsMap()) throw Error::Input(Where(), "a map", Found());
+  std::vector<std::string> keys;
+  std::set<std::string> seen;
+  for (const auto& entry : node_) {
+    if (!entry.first.IsScalar()) throw Error::Input(Where(), "names as keys", "something else");
+    keys.push_back(entry.first.Scalar());
+    if (!seen.insert(keys.back()).second) {
+      throw Error::Input(Where(), "different keys", "'" + keys.back() + "' twice");
+    }
+  }
+  return keys;
+}
+
+void Yaml::Only(std::initializer_list<std::string_view> allowed) const {
+  for (const auto& key : Keys()) {
+    if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
+    std::string all;
+    for (const auto name : allowed) all += (all.empty() ? "" : ", ") + std::string(name);
+    throw Error::Input(At(key).Where(), "one of the keys " + all, "'" + key + "'");
+  }
+}
+
+std::string Yaml::Text() const {
+  if (!node_.IsScalar()) throw Error::Input(Where(), "a text", Found());
+  return node_.Scalar();
+}
+
+double Yaml::Number() const {
+  if (node_.IsScalar()) {
+    const std::string& text = node_.Scalar();
+    const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    double value = 0;
+    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+    if (error == std::errc{} && end == text.data() + text.size() && std::isfinite(value)) {
+      return value;
+    }
+  }
+  throw Error::Input(Where(), "a finite number", Found());
+}
+
+double Yaml::Number(double lower, double upper) const {
+  const double value = Number();
+  if (lower <= value && value <= upper) return value;
+  throw Error::Input(Where(), "a number in [" + Decimal(lower) + ", " + Decimal(upper) + "]",
+                     Decimal(value));
+}
+
+int Yaml::Integer() const {
+  const double value = Number();
+  if (value == std::floor(value) && std::abs(value) <= std::numeric_limits<int>::max()) {
+    return static_cast<int>(value);
+  }
+  throw Error::Input(Where(), "a whole number", Found());
+}
+
+bool Yaml::Bool() const {
+  bool value = false;
+  if (node_.IsScalar() && YAML::convert<bool>::decode(node_, value)) return value;
+  throw Error::Input(Where(), "true or false", Found());
+}
+
+std::vector<double> Yaml::Numbers() const {
+  std::vector<double> values;
+  for (const Yaml& item : Items()) values.push_back(item.Number());
+  return values;
+}
+
+double Yaml::Parameter() const { return node_.IsMap() ? At("value").Number() : Number(); }
+
+double Yaml::Parameter(double lower, double upper) const {
+  return node_.IsMap() ? At("value").Number(lower, upper) : Number(lower, upper);
+}
+
+std::vector<double> Yaml::Parameters() const {
+  return node_.IsMap() ? At("value").Numbers() : Numbers();
+}
+
+}  // namespace continuum

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+namespace continuum {
+
+/// A node of a YAML file that knows where it stands: every error names file, line and key.
+class Yaml {
+ public:
+  static Yaml Read(const std::filesystem::path& file);
+  /// name stands for the file in messages.
+  static Yaml Parse(const std::string& text, std::string name);
+
+  const YAML::Node& node() const { return node_; }
+  const std::string& file() const { return file_; }
+  /// "file:line: a.b[2]"
+  std::string Where() const;
+
+  bool Has(const std::string& key) const;
+  /// Throws Error when this is no map or the key is missing.
+  Yaml At(const std::string& key) const;
+  std::optional<Yaml> Find(const std::string& key) const;
+  /// The items of a list; throws Error when this is none.
+  std::vector<Yaml> Items() const;
+  /// The keys of a map in file order; throws Error when this is none.
+  std::vector<std::string> Keys() const;
+  /// Throws Error, listing what is allowed, when this map has any other key.
+  void Only(std::initializer_list<std::string_view> keys) const;
+
+  bool IsMap() const { return node_.IsMap(); }
+  bool IsList() const { return node_.IsSequence(); }
+  bool IsScalar() const { return node_.IsScalar(); }
+  std::string Text() const;
+  double Number() const;  ///< finite
+  double Number(double lower, double upper) const;
+  int Integer() const;
+  bool Bool() const;
+  std::vector<double> Numbers() const;
+  /// A parameter of a robot's file: a number, or a map {value, unit, uncertainty, source}.
+  double Parameter() const;
+  double Parameter(double lower, double upper) const;
+  std::vector<double> Parameters() const;
+
+ private:
+  Yaml(YAML::Node node, std::string file, std::string path)
+      : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)) {}
+  std::string Found() const;
+
+  YAML::Node node_;
+  std::string file_, path_;
+};
+
+}  // namespace continuum
