@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+#include "binding/config.h"
+
+namespace continuum {
+
+/// When a law is evaluated: before the actuators (kPassive; actuator_force is the previous
+/// evaluation's) or after them (kActuator; actuator_force is current and not yet clamped).
+enum class Stage { kPassive, kActuator };
+
+/// A law bound to places of one model. The engine plugin and the identification both use it.
+///
+/// Parameters are values of the card, in its order; Set changes them while the model runs.
+class Bound {
+ public:
+  explicit Bound(std::vector<double> p) : p_(std::move(p)) {}
+  virtual ~Bound() = default;
+
+  const std::vector<double>& parameters() const { return p_; }
+  void Set(std::vector<double> p) { p_ = std::move(p); }
+
+  /// Whether Evaluate ever writes force, and whether the law is a row of the constraint solver.
+  virtual bool GivesForce() const { return false; }
+  virtual bool IsRow() const { return false; }
+
+  /// Writes what MuJoCo must know before its first step (rows, native damping). Assigns constants
+  /// only, so that repeating it changes nothing. Throws Error when the model contradicts it.
+  virtual void Impose(mjModel&) const {}
+
+  /// Evaluates at d; z: the states, unchanged. Returns true when it wrote force [nv], the
+  /// generalized force that the model feels.
+  virtual bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
+                        std::span<double> force) = 0;
+  /// States after the step that d has just taken.
+  virtual void Advance(const mjModel&, const mjData&, double*) {}
+  /// Value of a sensor of this effect at a site.
+  virtual double Sense(const mjModel&, const mjData&, int /*site*/) const { return 0; }
+  /// Whether Sense knows this site.
+  virtual bool Knows(int /*site*/) const { return false; }
+  virtual void Visualize(const mjModel&, const mjData&, mjvScene&) const {}
+  /// Takes over what was computed (not configured) from another Bound of the same kind.
+  virtual void CopyFrom(const Bound&) {}
+
+ protected:
+  std::vector<double> p_;
+};
+
+}  // namespace continuum

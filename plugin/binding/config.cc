@@ -1,0 +1,93 @@
+#include "binding/config.h"
+
+#include <fnmatch.h>
+
+#include <charconv>
+#include <set>
+#include <sstream>
+
+namespace continuum {
+namespace {
+
+std::string Short(double x) {
+  std::ostringstream out;
+  out << x;
+  return out.str();
+}
+
+}  // namespace
+
+bool GlobMatches(const std::string& glob, const std::string& name) {
+  return fnmatch(glob.c_str(), name.c_str(), 0) == 0;
+}
+
+std::vector<std::string> Words(std::string_view text) {
+  std::istringstream in{std::string(text)};
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+std::string_view Config::Get(std::string_view key) const {
+  const char* value = mj_getPluginConfig(m_, instance_, std::string(key).c_str());
+  return value ? value : "";
+}
+
+std::string Config::Who() const {
+  const mjpPlugin* plugin = mjp_getPluginAtSlot(m_->plugin[instance_]);
+  const char* name = mj_id2name(m_, mjOBJ_PLUGIN, instance_);
+  std::string who = plugin ? plugin->name : "continuum";
+  if (name && *name) who += " '" + std::string(name) + "'";
+  return who;
+}
+
+double Config::Read(const Param& param) const {
+  const std::string_view text = Get(param.name);
+  if (text.empty()) return param.initial;
+  const char* const last = text.data() + text.size();
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  const bool number = error == std::errc{} && end == last;
+  if (number && std::isfinite(value) && param.lower <= value && value <= param.upper) return value;
+  const std::string lower =
+      param.lower == std::numeric_limits<double>::min() ? "]0" : "[" + Short(param.lower);
+  throw Error::Input(
+      Who() + ": " + std::string(param.name),
+      "a finite number in " + lower + ", " + Short(param.upper) + "] " + std::string(param.unit),
+      "'" + std::string(text) + "'");
+}
+
+int Config::Read(const Choice& choice) const {
+  const std::string_view text = Get(choice.name);
+  if (text.empty()) return 0;
+  std::string all;
+  for (std::size_t i = 0; i < choice.options.size(); ++i) {
+    if (text == choice.options[i]) return static_cast<int>(i);
+    all += (i ? " | " : "") + std::string(choice.options[i]);
+  }
+  throw Error::Input(Who() + ": " + std::string(choice.name), all, "'" + std::string(text) + "'");
+}
+
+std::vector<int> Config::Match(std::string_view key, mjtObj type) const {
+  const int count = type == mjOBJ_JOINT      ? static_cast<int>(m_->njnt)
+                    : type == mjOBJ_TENDON   ? static_cast<int>(m_->ntendon)
+                    : type == mjOBJ_ACTUATOR ? static_cast<int>(m_->nu)
+                                             : static_cast<int>(m_->nbody);
+  std::set<int> ids;
+  for (const std::string& word : Words(Get(key))) {
+    const std::size_t before = ids.size();
+    bool known = false;
+    for (int i = 0; i < count; ++i) {
+      const char* name = mj_id2name(m_, type, i);
+      if (name && GlobMatches(word, name)) known = true, ids.insert(i);
+    }
+    if (!known && before == ids.size()) {
+      throw Error::Input(Who() + ": " + std::string(key),
+                         "no " + std::string(key) + " '" + word + "' in the model");
+    }
+  }
+  if (ids.empty()) throw Error::Input(Who(), "the key '" + std::string(key) + "'", "none");
+  return {ids.begin(), ids.end()};
+}
+
+}  // namespace continuum

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+#include "effects/effect.h"
+#include "error.h"
+
+namespace continuum {
+
+/// The configuration of one plugin instance, as the MJCF gives it.
+class Config {
+ public:
+  Config(const mjModel& m, int instance) : m_(&m), instance_(instance) {}
+
+  /// "" when the MJCF does not set the key.
+  std::string_view Get(std::string_view key) const;
+  /// "continuum.stribeck 'friction'", for messages.
+  std::string Who() const;
+
+  /// The number under param.name, or param.initial. Throws Error with value, range and unit.
+  double Read(const Param& param) const;
+  /// The index of the option under choice.name, 0 when absent.
+  int Read(const Choice& choice) const;
+
+  /// Ids of the objects that the names and globs (* ? [..]) under key match, ascending. Throws
+  /// Error when a name or glob matches nothing.
+  std::vector<int> Match(std::string_view key, mjtObj type) const;
+
+ private:
+  const mjModel* m_;
+  int instance_;
+};
+
+/// Whether a glob (* ? [..]) matches the whole name.
+bool GlobMatches(const std::string& glob, const std::string& name);
+
+/// The words of a text.
+std::vector<std::string> Words(std::string_view text);
+
+template <class E>
+std::vector<double> ReadParams(const Config& config) {
+  std::vector<double> p;
+  for (const Param& param : E::kParams) p.push_back(config.Read(param));
+  return p;
+}
+
+template <class E>
+ParamsOf<E, double> AsParams(const std::vector<double>& values) {
+  ParamsOf<E, double> p;
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = values[i];
+  return p;
+}
+
+template <class E>
+constexpr std::span<const Choice> ChoicesOf() {
+  if constexpr (requires { E::kChoices; }) {
+    return E::kChoices;
+  } else {
+    return {};
+  }
+}
+
+}  // namespace continuum

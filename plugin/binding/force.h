@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+
+#include "binding/bound.h"
+
+namespace continuum {
+
+/// A joint of one degree of freedom or a tendon, as a port of a Force law.
+struct Line {
+  bool joint;
+  int id, dof;
+
+  Port<double> At(const mjModel& m, const mjData& d) const {
+    if (!joint) return {d.ten_length[id] - m.tendon_length0[id], d.ten_velocity[id]};
+    const int adr = m.jnt_qposadr[id];
+    return {d.qpos[adr] - m.qpos0[adr], d.qvel[dof]};
+  }
+  void Add(const mjModel& m, const mjData& d, double f, std::span<double> force) const {
+    if (joint) {
+      force[dof] += f;
+      return;
+    }
+    const int adr = m.ten_J_rowadr[id];
+    for (int k = adr; k < adr + m.ten_J_rownnz[id]; ++k) force[m.ten_J_colind[k]] += d.ten_J[k] * f;
+  }
+};
+
+/// The joints (hinge, slide) or tendons named in config. Throws Error for other joints, and when
+/// both or none of the keys are given.
+std::vector<Line> MatchLines(const mjModel& m, const Config& config);
+
+/// A Force law on joints or tendons: −F(x, v, z) along each.
+template <ForceLaw E>
+class BoundForce : public Bound {
+ public:
+  static constexpr int kZ = static_cast<int>(E::kStates.size());
+
+  BoundForce(const mjModel& m, const Config& config)
+      : Bound(ReadParams<E>(config)), lines_(MatchLines(m, config)) {}
+
+  static int StateSize(const mjModel& m, const Config& config) {
+    return kZ * static_cast<int>(MatchLines(m, config).size());
+  }
+
+  bool GivesForce() const override { return true; }
+
+  bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
+                std::span<double> force) override {
+    if (stage != Stage::kPassive) return false;
+    std::fill(force.begin(), force.end(), 0.0);
+    const auto p = AsParams<E>(p_);
+    for (const Line& line : lines_) {
+      line.Add(m, d, -E::template Eval<double>(line.At(m, d), Load(z), p).force, force);
+      z += kZ;
+    }
+    return true;
+  }
+
+  void Advance(const mjModel& m, const mjData& d, double* z) override {
+    const auto p = AsParams<E>(p_);
+    for (const Line& line : lines_) {
+      const auto next = E::template Step<double>(Load(z), line.At(m, d), m.opt.timestep, p);
+      z = std::copy(next.begin(), next.end(), z);
+    }
+  }
+
+ private:
+  static Vec<double, kZ> Load(const double* z) {
+    Vec<double, kZ> state;
+    std::copy_n(z, kZ, state.begin());
+    return state;
+  }
+
+  std::vector<Line> lines_;
+};
+
+}  // namespace continuum

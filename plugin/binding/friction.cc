@@ -1,0 +1,220 @@
+#include "binding/friction.h"
+
+#include <algorithm>
+#include <set>
+
+#include "effects/all.h"
+
+namespace continuum {
+namespace {
+
+// Creates a row without saying how large the friction is: the level is written in every evaluation.
+constexpr double kRowMarker = 1e-12;
+
+bool IsFriction(const char* plugin) {
+  bool friction = false;
+  All::ForEach([&]<class E>() {
+    if (FrictionLaw<E> && plugin == "continuum." + std::string(E::kName)) friction = true;
+  });
+  return friction;
+}
+
+std::vector<Row> MatchRows(const mjModel& m, const Config& config) {
+  const bool joints = !config.Get("joint").empty(), tendons = !config.Get("tendon").empty();
+  if (joints == tendons) {
+    throw Error::Input(config.Who(), "one of the keys 'joint' and 'tendon'",
+                       joints ? "both" : "none");
+  }
+  std::vector<Row> rows;
+  if (tendons) {
+    for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
+      rows.push_back({false, t, t, -1, true});
+    }
+    return rows;
+  }
+  for (const int j : config.Match("joint", mjOBJ_JOINT)) {
+    const int dof = m.jnt_dofadr[j];
+    switch (m.jnt_type[j]) {
+      case mjJNT_HINGE:
+      case mjJNT_SLIDE:
+        rows.push_back({true, j, dof, -1, true});
+        break;
+      case mjJNT_BALL:
+        for (int k = 0; k < 3; ++k) rows.push_back({true, j, dof + k, k, true});
+        break;
+      default:
+        throw Error::Input(config.Who() + ": joint '" + mj_id2name(&m, mjOBJ_JOINT, j) + "'",
+                           "a hinge, slide or ball joint", "a free joint");
+    }
+  }
+  return rows;
+}
+
+std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
+  std::set<std::pair<bool, int>> taken;
+  for (int j = 0; j < instance; ++j) {
+    const mjpPlugin* plugin = mjp_getPluginAtSlot(m.plugin[j]);
+    if (!plugin || !IsFriction(plugin->name)) continue;
+    for (const Row& row : MatchRows(m, Config(m, j))) taken.insert({row.joint, row.index});
+  }
+  return taken;
+}
+
+double Clamped(const mjModel& m, const mjData& d, int actuator) {
+  const double f = d.actuator_force[actuator];
+  if (!m.actuator_forcelimited[actuator]) return f;
+  return std::clamp(f, m.actuator_forcerange[2 * actuator],
+                    m.actuator_forcerange[2 * actuator + 1]);
+}
+
+double ActuatorTorque(const mjModel& m, const mjData& d, int dof) {
+  double torque = 0;
+  for (int i = 0; i < m.nu; ++i) {
+    const int adr = d.moment_rowadr[i];
+    for (int k = adr; k < adr + d.moment_rownnz[i]; ++k) {
+      if (d.moment_colind[k] == dof) torque += d.actuator_moment[k] * Clamped(m, d, i);
+    }
+  }
+  const int j = m.dof_jntid[dof];
+  if (m.jnt_actfrclimited[j]) {
+    torque = std::clamp(torque, m.jnt_actfrcrange[2 * j], m.jnt_actfrcrange[2 * j + 1]);
+  }
+  return torque;
+}
+
+// Gravity on everything beyond the joint, about its axis.
+double GravityTorque(const mjModel& m, const mjData& d, int dof) {
+  if (m.opt.disableflags & mjDSBL_GRAVITY) return 0;
+  const int b = m.dof_bodyid[dof], root = m.body_rootid[b];
+  const double* cdof = d.cdof + 6 * dof;  // rotation, translation at the root's subtree_com
+  double arm[3], velocity[3];
+  mju_sub3(arm, d.subtree_com + 3 * b, d.subtree_com + 3 * root);
+  mju_cross(velocity, cdof, arm);
+  mju_addTo3(velocity, cdof + 3);
+  return m.body_subtreemass[b] * mju_dot3(velocity, m.opt.gravity);
+}
+
+// Forces on bodies (xfrc_applied), about the joint's axis.
+double AppliedTorque(const mjModel& m, const mjData& d, int dof) {
+  double torque = d.qfrc_applied[dof];
+  const double* cdof = d.cdof + 6 * dof;
+  const int first = m.dof_bodyid[dof];
+  for (int b = first; b < m.nbody; ++b) {
+    const double* wrench = d.xfrc_applied + 6 * b;
+    if (std::all_of(wrench, wrench + 6, [](double x) { return x == 0; })) continue;
+    int a = b;
+    while (a > first) a = m.body_parentid[a];
+    if (a != first) continue;
+    double arm[3], velocity[3];
+    mju_sub3(arm, d.xipos + 3 * b, d.subtree_com + 3 * m.body_rootid[b]);
+    mju_cross(velocity, cdof, arm);
+    mju_addTo3(velocity, cdof + 3);
+    torque += mju_dot3(velocity, wrench) + mju_dot3(cdof, wrench + 3);
+  }
+  return torque;
+}
+
+// Under the discrete integrator the anchor does not act. A row as hard as the solver carries then
+// keeps the creep low.
+void Harden(mjModel& m, const Row& row) {
+  double* const solref = (row.joint ? m.dof_solref : m.tendon_solref_fri) + mjNREF * row.index;
+  double* const solimp = (row.joint ? m.dof_solimp : m.tendon_solimp_fri) + mjNIMP * row.index;
+  solref[0] = 2 * m.opt.timestep, solref[1] = 1;
+  solimp[0] = solimp[1] = 0.9999;
+}
+
+// Deflection from the anchor at which the row at rest gives the force that it gives now.
+double Yield(const mjData& d, int r) {
+  const double stiffness = d.efc_KBIP[4 * r] * d.efc_KBIP[4 * r + 2];
+  return stiffness > 0 ? -d.efc_R[r] * d.efc_force[r] / stiffness : 0;
+}
+
+}  // namespace
+
+double GearLoad(const mjModel& m, const mjData& d, int dof, int option) {
+  const double actuator = ActuatorTorque(m, d, dof);
+  if (option == 1) return std::abs(actuator);
+  const double external = d.qfrc_passive[dof] - d.qfrc_damper[dof] + GravityTorque(m, d, dof) +
+                          AppliedTorque(m, d, dof);
+  return 0.5 * std::abs(actuator - external);
+}
+
+Rows::Rows(const mjModel& m, const Config& config, int instance) : rows_(MatchRows(m, config)) {
+  const auto taken = RowsBelow(m, instance);
+  for (Row& row : rows_) row.owner = !taken.contains({row.joint, row.index});
+}
+
+int Rows::StateSize(const mjModel& m, const Config& config) {
+  return 2 * static_cast<int>(MatchRows(m, config).size());
+}
+
+void Rows::Impose(mjModel& m) const {
+  for (const Row& row : rows_) {
+    double& loss = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
+    if (loss == 0) loss = kRowMarker;
+    if (m.opt.integrator == mjINT_DISCRETE) Harden(m, row);
+  }
+}
+
+bool Rows::Find(const mjData& d, const Row& row, int& r) {
+  const int type = row.joint ? mjCNSTR_FRICTION_DOF : mjCNSTR_FRICTION_TENDON;
+  for (int k = r; k < d.ne + d.nf; ++k) {
+    if (d.efc_type[k] == type && d.efc_id[k] == row.index) {
+      r = k;
+      return true;
+    }
+  }
+  return false;
+}
+
+void Rows::WriteRow(const mjModel& m, mjData& d, const double* z, Stage stage, const Row& row,
+                    int r, double level) {
+  if (row.owner) {
+    const double native = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
+    d.efc_frictionloss[r] = level + (native == kRowMarker ? 0 : native);
+  } else {
+    d.efc_frictionloss[r] += level;
+  }
+  if (d.nisland > 0) d.iefc_frictionloss[d.map_efc2iefc[r]] = d.efc_frictionloss[r];
+  if (!row.owner || stage != Stage::kPassive) return;
+
+  const double h = m.opt.timestep;
+  d.efc_KBIP[4 * r] = 1 / (4 * h * h);  // (1)
+  d.efc_KBIP[4 * r + 1] = 1 / h;
+  if (row.axis < 0) {
+    const double q = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.id];
+    d.efc_pos[r] = z[0] != 0 ? q - z[1] : 0;
+  } else {
+    const double* const ball = z - 2 * row.axis;  // the joint's first row
+    double turn[3] = {0, 0, 0};
+    if (ball[0] != 0) mju_subQuat(turn, d.qpos + m.jnt_qposadr[row.id], ball + 1);
+    d.efc_pos[r] = turn[row.axis];
+  }
+}
+
+void Rows::Advance(const mjModel& m, const mjData& d, double* z) const {
+  int r = d.ne;
+  bool turn = false;
+  double yield[3];
+  for (const Row& row : rows_) {
+    double* const state = z;
+    z += 2;
+    if (!Find(d, row, r) || !row.owner) continue;
+    const bool slides = std::abs(d.efc_force[r]) >= d.efc_frictionloss[r] * (1 - 1e-9);
+    const double stretch = slides ? Yield(d, r) : d.efc_pos[r];  // (2)
+    const double* const q = row.joint ? d.qpos + m.jnt_qposadr[row.id] : d.ten_length + row.id;
+    if (row.axis < 0) {
+      if (state[0] == 0 || slides) state[0] = 1, state[1] = *q - (slides ? stretch : 0);
+      continue;
+    }
+    double* const ball = state - 2 * row.axis;
+    turn = (row.axis > 0 && turn) || slides || ball[0] == 0;
+    yield[row.axis] = -stretch;
+    if (row.axis < 2 || !turn) continue;
+    ball[0] = 1;
+    std::copy_n(q, 4, ball + 1);
+    mju_quatIntegrate(ball + 1, yield, 1);
+  }
+}
+
+}  // namespace continuum

@@ -1,0 +1,124 @@
+#pragma once
+
+#include "binding/bound.h"
+
+namespace continuum {
+
+/// One friction row of MuJoCo's constraint solver: a degree of freedom or a tendon.
+struct Row {
+  bool joint;  ///< else a tendon
+  int id;      ///< of the joint or tendon
+  int index;   ///< of the degree of freedom or tendon
+  int axis;    ///< component of a ball joint, or −1
+  bool owner;  ///< the lowest instance on a row assigns the level and the anchor, others add
+};
+
+/// Friction rows that hold.
+///
+/// MuJoCo makes a row where frictionloss > 0. A row of ours gets kRowMarker there (once, in Impose)
+/// and in each evaluation its level; on top the position anchor that stops the solver's creep:
+///
+///   efc_aref = −B v − K (q − anchor),   K = 1/(2h)², B = 1/h                (1)
+///
+/// While |efc_force| has reached the level the anchor moves with q, at the distance at which the row
+/// would hold that force at rest:
+///
+///   anchor = q − x,   x = −R efc_force/(K d)                                (2)
+///
+/// (K, d, R: stiffness, impedance, regularization of the row), so that a joint that comes to rest
+/// under load stays there. Source: MuJoCo's constraint model. The two states of a row are {anchored,
+/// anchor}; a ball joint has six numbers, {anchored, quaternion, 0}.
+class Rows {
+ public:
+  /// Joints (hinge, slide, ball) or tendons named in config.
+  Rows(const mjModel& m, const Config& config, int instance);
+  static int StateSize(const mjModel& m, const Config& config);
+
+  const std::vector<Row>& rows() const { return rows_; }
+  void Impose(mjModel& m) const;
+  /// Calls level(row) → torque for each row that exists at d, and writes it.
+  template <class Level>
+  void Write(const mjModel& m, mjData& d, const double* z, Stage stage, Level&& level) const {
+    int r = d.ne;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (!Find(d, rows_[k], r)) continue;
+      WriteRow(m, d, z + 2 * k, stage, rows_[k], r, level(rows_[k]));
+    }
+  }
+  void Advance(const mjModel& m, const mjData& d, double* z) const;
+
+ private:
+  /// Moves r (ascending over calls) to the row's constraint; false when it has none.
+  static bool Find(const mjData& d, const Row& row, int& r);
+  static void WriteRow(const mjModel& m, mjData& d, const double* z, Stage stage, const Row& row,
+                       int r, double level);
+
+  std::vector<Row> rows_;
+};
+
+/// The load of a joint's gear [N*m] ≥ 0, at the current actuator_force (clamped here).
+/// option: index into kLoadOptions.
+double GearLoad(const mjModel& m, const mjData& d, int dof, int option);
+
+/// A Friction law on joints or tendons, as rows.
+template <FrictionLaw E>
+class BoundFriction : public Bound {
+ public:
+  BoundFriction(const mjModel& m, const Config& config, int instance)
+      : Bound(ReadParams<E>(config)), rows_(m, config, instance) {
+    if constexpr (kLoaded) load_ = config.Read(E::kChoices[0]);
+  }
+  static int StateSize(const mjModel& m, const Config& config) {
+    return Rows::StateSize(m, config);
+  }
+
+  bool IsRow() const override { return true; }
+
+  void Impose(mjModel& m) const override {
+    rows_.Impose(m);
+    if constexpr (requires { E::kDamping; }) {
+      for (const Row& row : rows_.rows()) ImposeDamping(m, row);
+    }
+  }
+
+  bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
+                std::span<double>) override {
+    const auto p = AsParams<E>(p_);
+    rows_.Write(m, d, z, stage, [&](const Row& row) {
+      Rubbing<double> r{0, row.joint ? d.qvel[row.index] : d.ten_velocity[row.index], 0};
+      if (!row.joint) r.q = d.ten_length[row.index];
+      if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
+      if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);
+      return E::template Level<double>(r, p);
+    });
+    return false;
+  }
+
+  void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }
+
+ private:
+  static constexpr bool kLoaded = ChoicesOf<E>().size() > 0;
+
+  void ImposeDamping(mjModel& m, const Row& row) const {
+    if constexpr (requires { E::kDamping; }) {
+      double& native = m.dof_damping[row.index];
+      const double own = p_[E::kDamping];
+      if (native != 0 && native != own && native != imposed_) {
+        throw Error::Input("continuum." + std::string(E::kName) + ": joint '" +
+                               mj_id2name(&m, mjOBJ_JOINT, row.id) + "'",
+                           "native damping 0 or equal to " +
+                               std::string(E::kParams[E::kDamping].name) + " = " +
+                               std::to_string(own),
+                           std::to_string(native));
+      }
+      native = own;
+      imposed_ = own;
+    }
+  }
+
+  Rows rows_;
+  int load_ = 0;
+  mutable double imposed_ = -1;  ///< damping written so far, so that an edited value can follow
+};
+
+}  // namespace continuum

@@ -1,0 +1,156 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "binding/bound.h"
+#include "binding/cable.h"
+
+namespace continuum {
+
+/// How a contact at rest keeps its tension ratio, and how fast it lets go.
+///
+/// The state of a contact is ρ = log(T_i/T_{i−1}), |ρ| ≤ band. In an evaluation at sliding speed v
+///
+///   ρ(v) = clamp(ρ − band (v/v_c + g(v)), ±band)                        (1)
+///   ρ_next = clamp(ρ − β band (v/v_c + g(v)), ±band)                    (2)
+///
+/// (1) is a damper that reaches the band at v_c, (2) a spring behind it, so that a load is held
+/// without creep. g rises to ±2 between 10 and 20 mm/s: beyond that a contact slides fully whatever
+/// its memory. v_c is 5 mm/s, more where the step h could not carry that slope:
+/// v_c = max(5 mm/s, h · compliance · T · band). With h → 0 the contact becomes rigid.
+struct Grip {
+  static constexpr double kSlow = 5e-3, kRampBegin = 0.010, kRampEnd = 0.020, kSpring = 0.2;
+
+  /// The argument of (1) and (2): v/v_c + g(v).
+  static double Travel(double v, double band, double tension, double compliance, double h) {
+    const double v_c = std::max(kSlow, h * compliance * tension * band);
+    const double x = std::clamp((std::abs(v) - kRampBegin) / (kRampEnd - kRampBegin), 0.0, 1.0);
+    return v / v_c + std::copysign(2 * x * x * (3 - 2 * x), v);
+  }
+  static double Held(double rho, double band, double travel) {
+    return std::clamp(rho - band * travel, -band, band);
+  }
+  static double Next(double rho, double band, double travel) {
+    const double all = Held(rho, band, travel);
+    return std::abs(all) < band || std::abs(travel) < 1 ? Held(rho, band, kSpring * travel) : all;
+  }
+};
+
+/// The spatial tendons of an instance, cut into cables.
+std::vector<Cable> MatchCables(const mjModel& m, const Config& config);
+
+/// Draws the cables' segments, coloured by tension: blue 0, red at full.
+void DrawCables(const mjModel& m, const mjData& d, std::span<const Cable> cables,
+                std::span<const double> tension, double full, mjvScene& scene);
+
+/// A Path law on spatial tendons: the tension changes from contact to contact. The native tendon
+/// carries the base tension T_0 all along; this adds −Σ_k (T_k − T_0) dL_k/dq.
+template <PathLaw E>
+class BoundPath : public Bound {
+ public:
+  BoundPath(const mjModel& m, const Config& config)
+      : Bound(ReadParams<E>(config)),
+        cables_(MatchCables(m, config)),
+        geometry_(cables_.size()),
+        wrenches_(m, cables_),
+        law_(config.Read(E::kChoices[0])) {
+    std::size_t segments = 0;
+    for (const Cable& cable : cables_) segments += cable.segments();
+    tension_.assign(segments, 0);
+    travel_.assign(segments, 0);
+    band_.assign(segments, 0);
+  }
+
+  // In nstate the tendons' paths are not known yet: the model's wrap points bound the contacts.
+  static int StateSize(const mjModel& m, const Config&) { return static_cast<int>(m.nwrap); }
+
+  bool GivesForce() const override { return true; }
+
+  bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
+                std::span<double> force) override {
+    if (stage == Stage::kPassive) {
+      for (std::size_t c = 0; c < cables_.size(); ++c) geometry_[c].Update(m, d, cables_[c]);
+    } else if ((m.opt.disableflags & mjDSBL_SPRING) && (m.opt.disableflags & mjDSBL_DAMPER)) {
+      return false;  // MuJoCo applies no passive forces then
+    }
+    const auto p = AsParams<E>(p_);
+    int s = 0;
+    bool changed = stage == Stage::kPassive;
+    for (std::size_t c = 0; c < cables_.size(); ++c) {
+      const double base = std::max(0.0, BaseTension(m, d, cables_[c]));
+      changed |= base != tension_[s];
+      Tensions(m, cables_[c], geometry_[c], base, z + s, s, p);
+      s += cables_[c].segments();
+    }
+    if (!changed) return false;
+    s = 0;
+    for (std::size_t c = 0; c < cables_.size(); ++c) {
+      const double base = tension_[s];
+      for (int k = 0; k < cables_[c].segments(); ++k, ++s) {
+        if (tension_[s] == base) continue;
+        wrenches_.Pull(m, d, cables_[c].sites[k], cables_[c].sites[k + 1],
+                       geometry_[c].direction.data() + 3 * k, tension_[s] - base);
+      }
+    }
+    wrenches_.Collect(m, d, force);
+    return true;
+  }
+
+  void Advance(const mjModel&, const mjData&, double* z) override {
+    for (std::size_t s = 0; s < tension_.size(); ++s) z[s] = Grip::Next(z[s], band_[s], travel_[s]);
+  }
+
+  bool Knows(int site) const override { return Index(site) >= 0; }
+  double Sense(const mjModel&, const mjData&, int site) const override {
+    return tension_[Index(site)];
+  }
+  void Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const override {
+    DrawCables(m, d, cables_, tension_, full_, scene);
+  }
+  void CopyFrom(const Bound& other) override {
+    const auto& from = static_cast<const BoundPath&>(other);
+    geometry_ = from.geometry_;
+    tension_ = from.tension_, travel_ = from.travel_, band_ = from.band_;
+  }
+  /// Tension [N] of every segment, cable after cable, at the last evaluation.
+  const std::vector<double>& tension() const { return tension_; }
+
+ private:
+  // Tensions of one cable from its base on; slack cables carry none.
+  void Tensions(const mjModel& m, const Cable& cable, const CableGeometry& at, double base,
+                const double* z, int s, const ParamsOf<E, double>& p) {
+    tension_[s] = base;
+    travel_[s] = 0;
+    for (int i = 1; i < cable.segments(); ++i) {
+      const double above = tension_[s + i - 1];
+      band_[s + i] = E::template Band<double>(at.theta[i], law_, p);
+      travel_[s + i] =
+          Grip::Travel(at.slip[i], band_[s + i], base, cable.compliance, m.opt.timestep);
+      tension_[s + i] = band_[s + i] > 0
+                            ? above * std::exp(Grip::Held(z[i], band_[s + i], travel_[s + i]))
+                            : above;
+    }
+  }
+
+  // The segment just distal of a site; the last one for the end of a cable.
+  int Index(int site) const {
+    int s = 0;
+    for (const Cable& cable : cables_) {
+      for (int k = 0; k <= cable.segments(); ++k) {
+        if (cable.sites[k] == site) return s + std::min(k, cable.segments() - 1);
+      }
+      s += cable.segments();
+    }
+    return -1;
+  }
+
+  std::vector<Cable> cables_;
+  std::vector<CableGeometry> geometry_;
+  BodyWrenches wrenches_;
+  int law_;
+  double full_ = 20;
+  std::vector<double> tension_, travel_, band_;  ///< per segment; travel and band of its first site
+};
+
+}  // namespace continuum

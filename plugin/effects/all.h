@@ -1,0 +1,35 @@
+#pragma once
+
+#include "effects/armature.h"
+#include "effects/backlash.h"
+#include "effects/capstan.h"
+#include "effects/coulomb.h"
+#include "effects/dahl.h"
+#include "effects/dead_time.h"
+#include "effects/input_gain.h"
+#include "effects/input_offset.h"
+#include "effects/load_friction.h"
+#include "effects/payload.h"
+#include "effects/position_friction.h"
+#include "effects/pt1.h"
+#include "effects/stiffness.h"
+#include "effects/stribeck.h"
+#include "effects/viscous.h"
+
+namespace continuum {
+
+template <Effect... E>
+struct List {
+  template <template <class...> class To>
+  using Into = To<E...>;
+  template <class Fn>
+  static void ForEach(Fn&& fn) {
+    (fn.template operator()<E>(), ...);
+  }
+};
+
+/// Every effect the library knows. Adding one is one line here.
+using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, Backlash, Capstan,
+                 Viscous, Stiffness, Payload, Armature, InputGain, InputOffset, DeadTime, Pt1>;
+
+}  // namespace continuum

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "effects/effect.h"
+
+namespace continuum {
+
+inline constexpr std::array<std::string_view, 2> kCapstanOptions{"exponential", "coulomb"};
+
+/// Capstan friction of a cable along its route. A contact with wrap angle θ that slides in the
+/// direction s = ±1 (+1: pulled toward the actuator) hands on
+///
+///   T_i = T_{i−1} exp(−s μ(θ) θ)                       law="exponential"        (1)
+///   T_i = T_{i−1} (1 − s t)/(1 + s t), t = μ tan(θ/2)  law="coulomb"            (2)
+///   μ(θ) = mu + mu1 θ + mu2 θ²                                                  (3)
+///
+/// and one at rest holds any ratio in between. (2) is Coulomb friction on the normal force of a
+/// sharp bend, (T_{i−1} − T_i) cos(θ/2) = μ (T_{i−1} + T_i) sin(θ/2); it locks at t = 1.
+/// Source: snake_arm, eq. 8 (1); eytelwein1808.
+struct Capstan {
+  static constexpr std::string_view kName = "capstan", kSource = "eytelwein1808",
+                                    kSummary = "friction of a cable along its route";
+  static constexpr std::array kPlaces{Place::kTendon};
+  static constexpr std::array kParams{Magnitude("mu", "1", 0.1), Signed("mu1", "1/rad", 0),
+                                      Signed("mu2", "1/rad^2", 0)};
+  static constexpr std::array kChoices{Choice{"law", kCapstanOptions}};
+
+  /// Largest |log(T_i/T_{i−1})| of a contact; law 0 is (1), law 1 is (2).
+  template <class T>
+  static T Band(const T& theta, int law, const Vec<T, 3>& p) {
+    const auto& [mu, mu1, mu2] = p;
+    const T friction = mu + theta * (mu1 + theta * mu2);  // (3)
+    if (!(friction > 0.0)) return T(0);
+    if (law == 0) return friction * theta;  // (1)
+    const T t = friction * tan(0.5 * theta);
+    const double locked = 0.999999;  // a locked contact carries next to nothing further
+    return t < locked ? T(log((1.0 + t) / (1.0 - t))) : T(std::log((1 + locked) / (1 - locked)));
+  }
+};
+
+}  // namespace continuum

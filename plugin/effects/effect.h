@@ -1,0 +1,158 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <span>
+#include <string_view>
+
+namespace continuum {
+
+// Laws call these unqualified; for dual numbers argument-dependent lookup finds theirs.
+using std::abs, std::cos, std::exp, std::log, std::sin, std::sqrt, std::tan, std::tanh;
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kAsIs = std::numeric_limits<double>::quiet_NaN();
+
+template <class T, std::size_t N>
+using Vec = std::array<T, N>;
+
+/// What an effect acts on. The MJCF key of a binding is the lower-case name: joint="…".
+enum class Place { kJoint, kTendon, kActuator, kBody, kSite, kSensor, kWorld };
+
+/// One parameter of a law. Units are those of a rotation (rad, N*m); on a slide joint or a tendon
+/// read m for rad and N for N*m.
+struct Param {
+  std::string_view name, unit;
+  double lower, upper;  ///< closed bounds; anything else is an error
+  double initial;       ///< value when the MJCF gives none, and where a search starts
+  double null;          ///< value at which the law does nothing; kAsIs: what the model has
+};
+
+/// A text parameter with a few allowed values; the first is the default.
+struct Choice {
+  std::string_view name;
+  std::span<const std::string_view> options;
+};
+
+struct Units {
+  std::string_view x, force;
+};
+struct State {
+  std::string_view name, unit;
+};
+
+constexpr Param Positive(std::string_view name, std::string_view unit, double initial) {
+  return {name, unit, std::numeric_limits<double>::min(), kInfinity, initial, kAsIs};
+}
+/// A magnitude that is zero when the law does nothing.
+constexpr Param Magnitude(std::string_view name, std::string_view unit, double initial) {
+  return {name, unit, 0, kInfinity, initial, 0};
+}
+/// A signed quantity that is zero when the law does nothing.
+constexpr Param Signed(std::string_view name, std::string_view unit, double initial) {
+  return {name, unit, -kInfinity, kInfinity, initial, 0};
+}
+
+/// What every effect says of itself.
+template <class E>
+concept Card = requires {
+  std::string_view{E::kName};
+  std::string_view{E::kSummary};
+  std::string_view{E::kSource};
+  std::span<const Place>{E::kPlaces};
+  std::span<const Param>{E::kParams};
+};
+
+template <class E>
+inline constexpr std::size_t kParamCount = E::kParams.size();
+template <class E, class T>
+using ParamsOf = Vec<T, kParamCount<E>>;
+
+// ---- the kinds of laws -------------------------------------------------------------------------
+
+/// Displacement and flow of a joint or a tendon.
+template <class T>
+struct Port {
+  T x, v;
+};
+
+/// Answer of a Force law. force·v is power *into* the effect, so the model feels −force.
+template <class T, std::size_t N>
+struct Reply {
+  T force;
+  std::array<T, N> zdot;  ///< rates of the law's states
+  T stored;               ///< stored energy [J]
+};
+
+/// Force: Eval(port, z, p) → Reply, Step(z, port, h, p) → z after h at constant v, exactly.
+template <class E>
+concept ForceLaw = Card<E> &&
+    requires(Port<double> q, Vec<double, E::kStates.size()> z, ParamsOf<E, double> p) {
+  Units{E::kPort};
+  std::span<const State>{E::kStates};
+  { E::template Eval<double>(q, z, p) } -> std::same_as<Reply<double, E::kStates.size()>>;
+  { E::template Step<double>(z, q, 0.001, p) } -> std::same_as<Vec<double, E::kStates.size()>>;
+};
+
+/// What the level of a dry friction may depend on: position, velocity, and the load ≥ 0 [N*m].
+template <class T>
+struct Rubbing {
+  T q, v, load;
+};
+
+/// Friction: Level(rubbing, p) ≥ 0, the largest torque that dry friction can take. It becomes a row
+/// of MuJoCo's constraint solver (which holds, and slides at this level).
+template <class E>
+concept FrictionLaw = Card<E> && requires(Rubbing<double> r, ParamsOf<E, double> p) {
+  { E::template Level<double>(r, p) } -> std::same_as<double>;
+};
+
+/// Path: friction of a cable that slides over contacts. Band(theta, choice, p) ≥ 0 is the logarithm
+/// of the largest tension ratio that a contact with wrap angle theta can hold.
+template <class E>
+concept PathLaw = Card<E> && requires(ParamsOf<E, double> p) {
+  { E::template Band<double>(0.1, 0, p) } -> std::same_as<double>;
+};
+
+/// Segment: three coordinates of a soft segment, their rates and three pressures → three forces.
+template <class E>
+concept SegmentLaw = Card<E> && requires(Vec<double, 3> x, ParamsOf<E, double> p) {
+  { E::template Eval<double>(x, x, x, p) } -> std::same_as<Vec<double, 3>>;
+};
+
+/// Where a Signal law is inserted: the input of an actuator, or the error of a position servo.
+enum class Tap { kInput, kServoError };
+
+/// Signal: what an actuator feels instead of u, Eval(u, p) → y.
+template <class E>
+concept SignalLaw = Card<E> && requires(ParamsOf<E, double> p) {
+  Tap{E::kTap};
+  { E::template Eval<double>(0.1, p) } -> std::same_as<double>;
+};
+
+/// Measure: what a sensor reports of y(t) when it was read at the time t, Eval(y, t, p).
+template <class E>
+concept MeasureLaw = Card<E> && requires(ParamsOf<E, double> p) {
+  { E::template Eval<double>(0.1, 0.1, p) } -> std::same_as<double>;
+};
+
+/// Edit: a native attribute of MuJoCo as an effect. Apply(element, p) edits one element of a model
+/// through Element's Get, Set, Add, Scale (names and units of MJCF).
+struct AnyElement {
+  double Get(std::string_view) const;
+  void Set(std::string_view, double);
+  void Add(std::string_view, double);
+  void Scale(std::string_view, double);
+};
+template <class E>
+concept EditLaw = Card<E> && requires(AnyElement& e, ParamsOf<E, double> p) {
+  E::Apply(e, p);
+};
+
+template <class E>
+concept Effect = ForceLaw<E> || FrictionLaw<E> || PathLaw<E> || SegmentLaw<E> || SignalLaw<E> ||
+    MeasureLaw<E> || EditLaw<E>;
+
+}  // namespace continuum

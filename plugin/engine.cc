@@ -1,0 +1,331 @@
+#include "engine.h"
+
+#include <dlfcn.h>
+#include <link.h>
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+#include <type_traits>
+#include <utility>
+
+#include "binding/force.h"
+#include "binding/friction.h"
+#include "binding/path.h"
+#include "binding/signal.h"
+#include "effects/all.h"
+
+namespace continuum {
+namespace {
+
+using Bind = std::unique_ptr<Bound> (*)(const mjModel&, const Config&, int instance);
+
+// What the engine keeps of one instance: its law, the configuration it was read from, the force it
+// last gave. The last instance of a model also keeps the sum over all of them.
+struct Instance {
+  Bind bind;
+  std::string config;
+  std::unique_ptr<Bound> bound;
+  std::vector<double> force;
+  bool changed = false;             ///< force, since the last sum
+  std::vector<int> givers;          ///< in the last instance: all that give forces, itself included
+  std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
+};
+
+Instance* Get(const mjData& d, int i) { return reinterpret_cast<Instance*>(d.plugin_data[i]); }
+
+std::string_view ConfigBytes(const mjModel& m, int i) {
+  const int begin = m.plugin_attradr[i];
+  int end = static_cast<int>(m.npluginattr);
+  for (int j = 0; j < m.nplugin; ++j) {
+    if (m.plugin_attradr[j] > begin) end = std::min(end, m.plugin_attradr[j]);
+  }
+  return {m.plugin_attr + begin, static_cast<std::size_t>(end - begin)};
+}
+
+bool IsOurs(const mjModel& m, int i) {
+  const mjpPlugin* plugin = mjp_getPluginAtSlot(m.plugin[i]);
+  return plugin && std::string_view(plugin->name).starts_with("continuum.");
+}
+
+void Warn(const std::string& text) { mju_warning("%s", text.c_str()); }
+
+// MuJoCo hands out the model as const, but rows and native damping must be in it before the first
+// step. Only constants are assigned, so that every mjData of the model finds the same.
+mjModel& Mutable(const mjModel& m) { return const_cast<mjModel&>(m); }
+
+void WarnOfSilence(const mjModel& m, const Instance& self, const Config& config) {
+  if (self.bound->IsRow() && (m.opt.disableflags & mjDSBL_FRICTIONLOSS)) {
+    Warn(config.Who() + ": <flag frictionloss=\"disable\"> removes all dry friction");
+  }
+  if (self.bound->IsRow() && m.opt.integrator == mjINT_DISCRETE) {
+    Warn(config.Who() +
+         ": under integrator=\"discrete\" a joint at rest creeps by up to 2e-4 rad/s; "
+         "integrator=\"implicitfast\" holds it");
+  }
+  if (self.bound->GivesForce() && (m.opt.disableflags & mjDSBL_SPRING) &&
+      (m.opt.disableflags & mjDSBL_DAMPER)) {
+    Warn(config.Who() + ": with springs and dampers disabled MuJoCo applies no passive forces");
+  }
+}
+
+std::vector<int> Givers(const mjModel& m, const mjData& d, int last, const Instance& self) {
+  std::vector<int> givers;
+  for (int j = 0; j < last; ++j) {
+    if (IsOurs(m, j) && Get(d, j)->bound->GivesForce()) givers.push_back(j);
+  }
+  if (self.bound->GivesForce()) givers.push_back(last);
+  return givers;
+}
+
+void CheckSensors(const mjModel& m, int i, const Instance& self, const Config& config) {
+  for (int s = 0; s < m.nsensor; ++s) {
+    if (m.sensor_type[s] != mjSENS_PLUGIN || m.sensor_plugin[s] != i) continue;
+    const int site = m.sensor_objid[s];
+    if (m.sensor_objtype[s] == mjOBJ_SITE && self.bound->Knows(site)) continue;
+    throw Error::Input(
+        config.Who() + ": its sensor " + std::to_string(s),
+        "objtype=\"site\" and a site of the tendons",
+        m.sensor_objtype[s] == mjOBJ_SITE ? mj_id2name(&m, mjOBJ_SITE, site) : "another object");
+  }
+}
+
+int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
+  try {
+    auto self = std::make_unique<Instance>();
+    const Config config(m, i);
+    self->bind = bind;
+    self->config = ConfigBytes(m, i);
+    self->bound = bind(m, config, i);
+    self->bound->Impose(Mutable(m));
+    self->force.assign(m.nv, 0);
+    bool last = true;
+    for (int j = i + 1; j < m.nplugin; ++j) last &= !IsOurs(m, j);
+    if (last) self->givers = Givers(m, d, i, *self);
+    self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
+    self->sum = self->before;
+    CheckSensors(m, i, *self, config);
+    WarnOfSilence(m, *self, config);
+    d.plugin_data[i] = reinterpret_cast<uintptr_t>(self.release());
+    return 0;
+  } catch (const std::exception& e) {
+    Warn(e.what());
+    return -1;
+  }
+}
+
+// An edited configuration, or a model that d was not made from.
+void Follow(const mjModel& m, Instance& self, int i) {
+  const std::string_view now = ConfigBytes(m, i);
+  if (now == self.config) return;
+  self.config = now;
+  try {
+    auto bound = self.bind(m, Config(m, i), i);
+    bound->CopyFrom(*self.bound);
+    bound->Impose(Mutable(m));
+    self.bound = std::move(bound);
+  } catch (const Error& e) {
+    Warn(std::string(e.what()) + "; the former configuration stays");
+  }
+}
+
+// Adds the forces of all instances to qfrc_passive so that repeating any part of the pipeline never
+// adds twice: mj_forwardSkip and mjd_transitionFD run kActuator again without kPassive, mj_inverse
+// runs kPassive only. The result is exactly before + sum, whatever was added in between, so that a
+// restored state replays bit by bit.
+void Total(const mjModel& m, mjData& d, Instance& last, Stage stage) {
+  bool changed = stage == Stage::kPassive;
+  for (const int j : last.givers) changed |= std::exchange(Get(d, j)->changed, false);
+  if (!changed) return;
+  for (int dof = 0; dof < m.nv; ++dof) {
+    double f = 0;
+    for (const int j : last.givers) f += Get(d, j)->force[dof];
+    double& total = d.qfrc_passive[dof];
+    if (stage == Stage::kPassive) last.before[dof] = total;
+    const bool untouched = stage == Stage::kPassive || total == last.before[dof] + last.sum[dof];
+    total = untouched ? last.before[dof] + f : total + (f - last.sum[dof]);
+    last.sum[dof] = f;
+  }
+}
+
+void Sense(const mjModel& m, mjData& d, int i) {
+  for (int s = 0; s < m.nsensor; ++s) {
+    if (m.sensor_type[s] == mjSENS_PLUGIN && m.sensor_plugin[s] == i) {
+      d.sensordata[m.sensor_adr[s]] = Get(d, i)->bound->Sense(m, d, m.sensor_objid[s]);
+    }
+  }
+}
+
+void Compute(const mjModel& m, mjData& d, int i, int capability) {
+  if (capability == mjPLUGIN_SENSOR) return Sense(m, d, i);
+  const Stage stage = capability == mjPLUGIN_PASSIVE ? Stage::kPassive : Stage::kActuator;
+  Instance& self = *Get(d, i);
+  Follow(m, self, i);
+  const double* const z = d.plugin_state + m.plugin_stateadr[i];
+  self.changed |= self.bound->Evaluate(m, d, z, stage, self.force);
+  if (!self.givers.empty()) Total(m, d, self, stage);
+}
+
+void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
+  const Instance& a = *Get(from, i);
+  Instance& b = *Get(to, i);
+  b.config = a.config;
+  b.bound = a.bind(m, Config(m, i), i);
+  b.bound->Set(a.bound->parameters());
+  b.bound->CopyFrom(*a.bound);
+  b.force = a.force, b.changed = a.changed;
+  b.givers = a.givers, b.before = a.before, b.sum = a.sum;
+}
+
+template <class E>
+constexpr bool kInEngine = ForceLaw<E> || FrictionLaw<E> || PathLaw<E> || SignalLaw<E>;
+
+template <class E>
+auto BoundType() {
+  if constexpr (ForceLaw<E>)
+    return std::type_identity<BoundForce<E>>{};
+  else if constexpr (FrictionLaw<E>)
+    return std::type_identity<BoundFriction<E>>{};
+  else if constexpr (PathLaw<E>)
+    return std::type_identity<BoundPath<E>>{};
+  else
+    return std::type_identity<BoundSignal<E>>{};
+}
+
+template <class E>
+std::unique_ptr<Bound> BindEffect(const mjModel& m, const Config& c, int i) {
+  using B = typename decltype(BoundType<E>())::type;
+  if constexpr (FrictionLaw<E>)
+    return std::make_unique<B>(m, c, i);
+  else
+    return std::make_unique<B>(m, c);
+}
+
+// In nstate an error cannot be reported: the same one stops init right afterwards.
+template <class E>
+int StateSize(const mjModel& m, int i) noexcept {
+  try {
+    return decltype(BoundType<E>())::type::StateSize(m, Config(m, i));
+  } catch (const std::exception&) {
+    return 0;
+  }
+}
+
+constexpr std::string_view KeyOf(Place place) {
+  switch (place) {
+    case Place::kJoint:
+      return "joint";
+    case Place::kTendon:
+      return "tendon";
+    case Place::kActuator:
+      return "actuator";
+    case Place::kBody:
+      return "body";
+    case Place::kSite:
+      return "site";
+    case Place::kSensor:
+      return "sensor";
+    case Place::kWorld:
+      return "world";
+  }
+  return "";
+}
+
+template <class E>
+void Register() {
+  // MuJoCo keeps these pointers for the life of the process.
+  static const std::string name = "continuum." + std::string(E::kName);
+  static const auto keys = [] {
+    std::vector<std::string> all;
+    for (const Place place : E::kPlaces) all.emplace_back(KeyOf(place));
+    for (const Param& param : E::kParams) all.emplace_back(param.name);
+    for (const Choice& choice : ChoicesOf<E>()) all.emplace_back(choice.name);
+    return all;
+  }();
+  static const auto attributes = [] {
+    std::vector<const char*> all;
+    for (const std::string& key : keys) all.push_back(key.c_str());
+    return all;
+  }();
+
+  mjpPlugin plugin;  // noexcept below: nothing may unwind through MuJoCo's C frames
+  mjp_defaultPlugin(&plugin);
+  plugin.name = name.c_str();
+  plugin.capabilityflags = mjPLUGIN_PASSIVE | mjPLUGIN_ACTUATOR;
+  plugin.nattribute = static_cast<int>(attributes.size());
+  plugin.attributes = attributes.data();
+  plugin.nstate = +[](const mjModel* m, int i) noexcept { return StateSize<E>(*m, i); };
+  plugin.init =
+      +[](const mjModel* m, mjData* d, int i) noexcept { return Init(*m, *d, i, &BindEffect<E>); };
+  plugin.destroy = +[](mjData* d, int i) noexcept {
+    delete Get(*d, i);
+    d->plugin_data[i] = 0;
+  };
+  plugin.copy = +[](mjData* to, const mjModel* m, const mjData* from, int i) noexcept {
+    Copy(*to, *m, *from, i);
+  };
+  plugin.reset = +[](const mjModel* m, mjtNum* state, void*, int i) noexcept {
+    std::fill_n(state, m->plugin_statenum[i], 0.0);
+  };
+  plugin.compute = +[](const mjModel* m, mjData* d, int i, int capability) noexcept {
+    Compute(*m, *d, i, capability);
+  };
+  plugin.advance = +[](const mjModel* m, mjData* d, int i) noexcept {
+    Get(*d, i)->bound->Advance(*m, *d, d->plugin_state + m->plugin_stateadr[i]);
+  };
+  if constexpr (PathLaw<E>) {
+    plugin.capabilityflags |= mjPLUGIN_SENSOR;
+    plugin.needstage = mjSTAGE_ACC;
+    plugin.nsensordata = +[](const mjModel*, int, int) noexcept { return 1; };
+    plugin.visualize = +[](const mjModel* m, mjData* d, const mjvOption*, mjvScene* scene,
+                           int i) noexcept { Get(*d, i)->bound->Visualize(*m, *d, *scene); };
+  }
+  mjp_registerPlugin(&plugin);
+}
+
+// Paths of all MuJoCo libraries in the process.
+std::set<std::string> MujocoLibraries() {
+  std::set<std::string> found;
+  dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* out) {
+        const std::string path = info->dlpi_name ? info->dlpi_name : "";
+        if (path.find("libmujoco.so.") != path.npos)
+          static_cast<std::set<std::string>*>(out)->insert(path);
+        return 0;
+      },
+      &found);
+  return found;
+}
+
+}  // namespace
+
+void RegisterEffects() {
+  const auto libraries = MujocoLibraries();
+  if (libraries.size() > 1) {
+    std::string all;
+    for (const auto& path : libraries) all += (all.empty() ? "" : " and ") + path;
+    throw Error::Input("mujoco_continuum", "one MuJoCo in the process", all);
+  }
+  if (mj_version() != mjVERSION_HEADER) {
+    throw Error::Input("mujoco_continuum", "MuJoCo " + std::to_string(mjVERSION_HEADER),
+                       std::to_string(mj_version()));
+  }
+  All::ForEach([]<class E>() {
+    if constexpr (kInEngine<E>) Register<E>();
+  });
+}
+
+Bound& BoundOf(const mjModel& m, const mjData& d, int instance) {
+  if (instance < 0 || instance >= m.nplugin || !IsOurs(m, instance)) {
+    throw Error::Input("plugin instance " + std::to_string(instance), "an effect of ours", "none");
+  }
+  return *Get(d, instance)->bound;
+}
+
+void SetParameters(mjModel& m, mjData& d, int instance, const std::vector<double>& parameters) {
+  Bound& bound = BoundOf(m, d, instance);
+  bound.Set(parameters);
+  bound.Impose(m);
+}
+
+}  // namespace continuum

@@ -1,0 +1,156 @@
+#include <cmath>
+#include <string>
+
+#include "support/engine.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Capstan : public testing::Engine {
+ protected:
+  // A load on a vertical rail hangs on a cable over two fixed corners of 90 degrees; a second
+  // slider is the drum. Pulling the cable toward the drum lifts the load.
+  static std::string Crane(double mu, const std::string& more = "", const std::string& load = "1",
+                           const std::string& config = "") {
+    return "<mujoco><option timestep=\"1e-3\" integrator=\"implicitfast\"/>" +
+           Instance("capstan", Key("tendon", "cable") + Key("mu", std::to_string(mu)) + config) +
+           R"(<worldbody>
+             <site name="s0" pos="0 0 0"/><site name="s1" pos="0 0 1"/><site name="s2" pos="1 0 1"/>
+             <body pos="1 0 0"><joint name="rail" type="slide" axis="0 0 1" damping="2"/>
+               <geom size=".05" mass=")" +
+           load + R"("/><site name="s3"/></body>
+           </worldbody>
+           <tendon><spatial name="cable"><site site="s0"/><site site="s1"/><site site="s2"/>
+             <site site="s3"/></spatial></tendon>
+           <actuator><motor name="pull" tendon="cable" gear="-1"/></actuator>
+           <sensor>
+             <plugin name="t0" plugin="continuum.capstan" instance="i" objtype="site" objname="s0"/>
+             <plugin name="t1" plugin="continuum.capstan" instance="i" objtype="site" objname="s1"/>
+             <plugin name="t2" plugin="continuum.capstan" instance="i" objtype="site" objname="s2"/>
+           </sensor>)" +
+           more + "</mujoco>";
+  }
+  static constexpr double kAngle = M_PI / 2;
+};
+
+TEST_F(Capstan, FullSlidingFollowsTheExponentialWhateverTheMemory) {
+  const auto m = Model(Crane(0.2));
+  for (const double memory : {-0.3, 0.0, 0.3}) {
+    for (const double v : {0.02, -0.02, 0.5}) {
+      const auto d = Data(m);
+      d->ctrl[0] = 12;
+      d->qvel[0] = v;  // the load rises: pulled
+      std::fill_n(d->plugin_state, m->npluginstate, memory);
+      mj_forward(m.get(), d.get());
+      const double s = v > 0 ? 1 : -1;
+      EXPECT_NEAR(d->sensordata[0], 12, 1e-12);
+      EXPECT_NEAR(d->sensordata[1], 12 * std::exp(-s * 0.2 * kAngle), 1e-6);
+      EXPECT_NEAR(d->sensordata[2], 12 * std::exp(-s * 0.4 * kAngle), 1e-6);
+      EXPECT_NEAR(d->qacc[0], d->sensordata[2] - 9.81 - 2 * v, 1e-4);
+    }
+  }
+}
+
+TEST_F(Capstan, CoulombLawTakesTheNormalForceOfTheBend) {
+  const auto m = Model(Crane(0.2, "", "1", Key("law", "coulomb")));
+  const auto d = Data(m);
+  d->ctrl[0] = 12;
+  d->qvel[0] = 0.1;
+  mj_forward(m.get(), d.get());
+  const double t = 0.2 * std::tan(kAngle / 2);
+  EXPECT_NEAR(d->sensordata[1], 12 * (1 - t) / (1 + t), 1e-6);
+}
+
+TEST_F(Capstan, FrictionVariesWithTheAngle) {
+  const auto m = Model(Crane(0.1, "", "1", Key("mu1", "0.05") + Key("mu2", "0.02")));
+  const auto d = Data(m);
+  d->ctrl[0] = 12;
+  d->qvel[0] = 0.1;
+  mj_forward(m.get(), d.get());
+  const double mu = 0.1 + kAngle * (0.05 + kAngle * 0.02);
+  EXPECT_NEAR(d->sensordata[1], 12 * std::exp(-mu * kAngle), 1e-6);
+}
+
+TEST_F(Capstan, HoldsALoadInsideTheBandWithoutCreep) {
+  for (const double h : {1e-3, 2e-3}) {
+    for (const double share : {-0.7, 0.7}) {
+      const auto m = Model(Crane(0.2));
+      m->opt.timestep = h;
+      const auto d = Data(m);
+      d->ctrl[0] = 9.81 * std::exp(share * 0.4 * kAngle);
+      RunUntil(m, d, 2);
+      EXPECT_LT(std::abs(d->qpos[0]), 2e-3) << "h " << h << " share " << share;
+      const double settled = d->qpos[0];
+      RunUntil(m, d, 12);
+      EXPECT_LT(std::abs(d->qpos[0] - settled), 1e-6);
+    }
+  }
+}
+
+TEST_F(Capstan, AStuckContactKeepsItsRatioWhenTheLoadGoes) {
+  const auto m = Model(Crane(0.2));
+  const auto d = Data(m);
+  d->ctrl[0] = 9.81 * std::exp(0.6 * 0.4 * kAngle);
+  RunUntil(m, d, 4);
+  const double ratio = d->sensordata[2] / d->sensordata[0];
+  EXPECT_NEAR(ratio, std::exp(-0.6 * 0.4 * kAngle), 1e-6);
+  RunUntil(m, d, 60);
+  EXPECT_NEAR(d->sensordata[2] / d->sensordata[0], ratio, 1e-9);
+}
+
+TEST_F(Capstan, SlackCableCarriesNothing) {
+  const auto m = Model(Crane(0.2));
+  const auto plain = Model(Crane(0));
+  for (const double pull : {-3.0, 0.0}) {
+    const auto d = Data(m);
+    const auto e = Data(plain);
+    for (const auto& [model, data] : {std::pair{&m, &d}, std::pair{&plain, &e}}) {
+      (*data)->ctrl[0] = pull;
+      (*data)->qvel[0] = 0.3;
+      mj_forward(model->get(), data->get());
+      EXPECT_EQ((*data)->sensordata[1], 0);
+    }
+    EXPECT_EQ(d->qacc[0], e->qacc[0]);
+  }
+}
+
+TEST_F(Capstan, WithoutFrictionIsExactlyTheNativeModel) {
+  const auto m = Model(Crane(0));
+  std::string xml = Crane(0);
+  xml.erase(xml.find("<extension>"), xml.find("</extension>") + 12 - xml.find("<extension>"));
+  xml.erase(xml.find("<sensor>"), xml.find("</sensor>") + 9 - xml.find("<sensor>"));
+  const auto native = Model(xml);
+  const auto d = Data(m), e = Data(native);
+  d->ctrl[0] = e->ctrl[0] = 11;
+  RunUntil(m, d, 1), RunUntil(native, e, 1);
+  EXPECT_EQ(d->qpos[0], e->qpos[0]);
+}
+
+TEST_F(Capstan, NeverCreatesEnergy) {
+  const auto m = Model(Crane(0.3));
+  m->opt.gravity[2] = 0;
+  const auto d = Data(m);
+  d->ctrl[0] = 5;
+  for (int k = 0; k < 200; ++k) {
+    const double v = 0.3 * std::sin(0.7 * k);
+    d->qvel[0] = v;
+    mj_forward(m.get(), d.get());
+    EXPECT_LE((d->sensordata[2] - d->sensordata[0]) * v, 1e-12);  // friction's power on the load
+  }
+}
+
+TEST_F(Capstan, NamesWhatItCannotUse) {
+  std::string xml = Crane(0.2);
+  xml.replace(xml.find("objname=\"s1\""), 12, "objname=\"far\"");
+  xml.insert(xml.find("<site name=\"s0\""), "<site name=\"far\"/>");
+  EXPECT_THAT(Compile(xml).error, HasSubstr("a site of the tendons"));
+  xml = Crane(0.2);
+  xml.replace(xml.find("<site site=\"s1\"/>"), 17, "<site site=\"s1\"/><geom geom=\"g\"/>");
+  xml.insert(xml.find("<site name=\"s0\""), "<geom name=\"g\" size=\".01\" pos=\".5 0 1\"/>");
+  EXPECT_THAT(Compile(xml).error, HasSubstr("spatial tendon through sites only"));
+}
+
+}  // namespace
+}  // namespace continuum

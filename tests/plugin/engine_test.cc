@@ -1,0 +1,222 @@
+// What every law of the engine obeys as a plugin: state, copies, derivatives, configuration.
+#include <cstring>
+#include <map>
+#include <string>
+
+#include "support/engine.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::HasSubstr;
+
+// A two-link arm with a servo, a motor, and a cable through sites.
+std::string Arm(const std::string& plugin, const std::string& config, const std::string& option) {
+  return "<mujoco><option timestep=\"2e-3\" " + option + "/>" +
+         "<extension><plugin plugin=\"continuum." + plugin + "\"><instance name=\"i\">" + config +
+         "</instance></plugin></extension>" + R"(
+    <worldbody><site name="a" pos=".03 0 0.1"/>
+      <body><joint name="q1" axis="0 1 0" damping=".01"/><geom type="capsule" size=".02" fromto="0 0 0 0 0 -.2" mass=".3"/>
+        <site name="b" pos=".03 0 -.05"/><site name="c" pos=".03 0 -.15"/>
+        <body pos="0 0 -.2"><joint name="q2" axis="0 1 0" damping=".005" stiffness=".1"/>
+          <geom type="capsule" size=".02" fromto="0 0 0 0 0 -.2" mass=".2"/>
+          <site name="e" pos=".03 0 -.05"/><site name="f" pos=".03 0 -.15"/></body></body>
+    </worldbody>
+    <tendon><spatial name="cable"><site site="a"/><site site="b"/><site site="c"/><site site="e"/><site site="f"/></spatial></tendon>
+    <actuator><position name="servo" joint="q1" kp="5" kv=".1"/><motor name="pull" tendon="cable" gear="-1" forcerange="0 6"/></actuator>
+    </mujoco>)";
+}
+
+const std::map<std::string, std::string>& Laws() {
+  const auto key = [](const std::string& k, const std::string& v) {
+    return "<config key=\"" + k + "\" value=\"" + v + "\"/>";
+  };
+  static const std::map<std::string, std::string> laws{
+      {"coulomb", key("joint", "q*") + key("tau_c", ".05")},
+      {"stribeck", key("joint", "q2") + key("tau_mu", ".005") + key("tau_c", ".05")},
+      {"load_friction", key("joint", "q1") + key("tau_c", ".01") + key("mu_l", ".2")},
+      {"position_friction", key("joint", "q1") + key("tau_c", ".05") + key("c", ".03")},
+      {"dahl", key("joint", "q1 q2") + key("sigma", "5") + key("f", ".1")},
+      {"backlash", key("actuator", "servo") + key("gap", ".05")},
+      {"capstan", key("tendon", "cable") + key("mu", ".3")}};
+  return laws;
+}
+
+class EveryLaw : public testing::Engine,
+                 public ::testing::WithParamInterface<std::tuple<std::string, std::string>> {
+ protected:
+  static testing::Owned<mjModel> Build() {
+    const auto& [law, integrator] = GetParam();
+    return Model(Arm(law, Laws().at(law), "integrator=\"" + integrator + "\""));
+  }
+  static void Drive(const mjModel* m, mjData* d, int steps) {
+    for (int k = 0; k < steps; ++k) {
+      d->ctrl[0] = std::sin(3 * d->time);
+      d->ctrl[1] = 4 + 4 * std::sin(5 * d->time);
+      mj_step(m, d);
+    }
+  }
+};
+std::vector<std::tuple<std::string, std::string>> Cases() {
+  std::vector<std::tuple<std::string, std::string>> all;
+  for (const auto& [law, config] : Laws()) {
+    for (const char* integrator : {"Euler", "RK4", "implicit", "implicitfast", "discrete"}) {
+      all.emplace_back(law, integrator);
+    }
+  }
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(All, EveryLaw, ::testing::ValuesIn(Cases()), [](const auto& info) {
+  return std::get<0>(info.param) + "_" + std::get<1>(info.param);
+});
+
+TEST_P(EveryLaw, ReplaysBitByBitFromASavedState) {
+  const auto m = Build();
+  const auto d = Data(m);
+  Drive(m.get(), d.get(), 300);
+  const auto saved = State(m, d);
+  Drive(m.get(), d.get(), 300);
+  const auto end = State(m, d);
+  const auto fresh = Data(m);
+  Drive(m.get(), fresh.get(), 17);  // leaves other remains behind
+  mj_setState(m.get(), fresh.get(), saved.data(), mjSTATE_INTEGRATION);
+  Drive(m.get(), fresh.get(), 300);
+  EXPECT_EQ(State(m, fresh), end);
+}
+
+TEST_P(EveryLaw, ResetStartsAnew) {
+  const auto m = Build();
+  const auto d = Data(m);
+  Drive(m.get(), d.get(), 200);
+  const auto end = State(m, d);
+  mj_resetData(m.get(), d.get());
+  Drive(m.get(), d.get(), 200);
+  EXPECT_EQ(State(m, d), end);
+}
+
+TEST_P(EveryLaw, ACopyRunsOnByItself) {
+  const auto m = Build();
+  const auto a = Data(m);
+  Drive(m.get(), a.get(), 100);
+  const testing::Owned<mjData> b(mj_copyData(nullptr, m.get(), a.get()));
+  mj_forwardSkip(m.get(), b.get(), mjSTAGE_VEL, 0);
+  Drive(m.get(), a.get(), 100);
+  Drive(m.get(), b.get(), 100);
+  EXPECT_EQ(State(m, a), State(m, b));
+}
+
+TEST_P(EveryLaw, RepeatingTheControlStageChangesNothing) {
+  const auto m = Build();
+  const auto d = Data(m);
+  Drive(m.get(), d.get(), 100);
+  mj_forward(m.get(), d.get());
+  const std::vector<double> qacc(d->qacc, d->qacc + m->nv),
+      passive(d->qfrc_passive, d->qfrc_passive + m->nv);
+  for (int k = 0; k < 3; ++k) mj_forwardSkip(m.get(), d.get(), mjSTAGE_VEL, 0);
+  EXPECT_EQ(passive, std::vector<double>(d->qfrc_passive, d->qfrc_passive + m->nv));
+  for (int i = 0; i < m->nv; ++i) EXPECT_NEAR(qacc[i], d->qacc[i], 1e-9);
+}
+
+TEST_P(EveryLaw, InverseDynamicsSeesTheLaw) {
+  if (std::get<1>(GetParam()) == "discrete") return;  // its acceleration belongs to the step
+  const auto m = Build();
+  m->opt.enableflags |= mjENBL_FWDINV;
+  const auto d = Data(m);
+  Drive(m.get(), d.get(), 150);
+  mj_forward(m.get(), d.get());
+  mj_compareFwdInv(m.get(), d.get());
+  EXPECT_LT(d->solver_fwdinv[0], 1e-7);
+  EXPECT_LT(d->solver_fwdinv[1], 1e-7);
+}
+
+TEST_P(EveryLaw, TransitionDerivativeEqualsDifferencesOfSteps) {
+  if (std::get<1>(GetParam()) == "RK4") return;  // MuJoCo has no transition derivative for it
+  const auto m = Build();
+  const auto d = Data(m);
+  Drive(m.get(), d.get(), 137);
+  const auto n = static_cast<std::size_t>(2 * m->nv + m->na);
+  std::vector<double> A(n * n), B(n * m->nu);
+  const double eps = 1e-6;
+  mjd_transitionFD(m.get(), d.get(), eps, 1, A.data(), B.data(), nullptr, nullptr);
+  const auto saved = State(m, d);
+  const auto next = [&](int control, double step) {
+    const auto e = Data(m);
+    mj_setState(m.get(), e.get(), saved.data(), mjSTATE_INTEGRATION);
+    e->ctrl[control] += step;
+    mj_step(m.get(), e.get());
+    return std::vector<double>(e->qvel, e->qvel + m->nv);
+  };
+  for (int u = 0; u < m->nu; ++u) {
+    const auto plus = next(u, eps), minus = next(u, -eps);
+    for (int i = 0; i < m->nv; ++i) {
+      const double expected = (plus[i] - minus[i]) / (2 * eps);
+      EXPECT_NEAR(B[(m->nv + i) * m->nu + u], expected, 1e-5 * (1 + std::abs(expected)));
+    }
+  }
+}
+
+class Configuration : public testing::Engine {};
+
+TEST_F(Configuration, ErrorsNameAttributeValueRangeAndUnit) {
+  const auto error = [](const std::string& law, const std::string& config) {
+    return Compile(Arm(law, config, "")).error;
+  };
+  const std::string joint = Key("joint", "q1");
+  EXPECT_THAT(
+      error("coulomb", joint + Key("tau_c", "-1")),
+      HasSubstr(
+          "continuum.coulomb 'i': tau_c: expected a finite number in [0, inf] N*m, found '-1'"));
+  EXPECT_THAT(error("coulomb", joint + Key("tau_c", "nan")), HasSubstr("found 'nan'"));
+  EXPECT_THAT(error("coulomb", joint + Key("tau_c", "1x")), HasSubstr("found '1x'"));
+  EXPECT_THAT(error("stribeck", joint + Key("v_d", "0")),
+              HasSubstr("v_d: expected a finite number in ]0"));
+  EXPECT_THAT(error("coulomb", Key("joint", "shoulder")), HasSubstr("no joint 'shoulder'"));
+  EXPECT_THAT(error("coulomb", Key("joint", "x*")), HasSubstr("no joint 'x*'"));
+  EXPECT_THAT(error("coulomb", ""), HasSubstr("one of the keys 'joint' and 'tendon'"));
+  EXPECT_THAT(error("coulomb", joint + Key("tendon", "cable")), HasSubstr("both"));
+  EXPECT_THAT(error("coulomb", joint + Key("tua", "1")), HasSubstr("tua"));
+  EXPECT_THAT(error("load_friction", joint + Key("load", "gear")),
+              HasSubstr("transmitted | actuator"));
+  EXPECT_THAT(error("backlash", Key("actuator", "pull")), HasSubstr("a position servo"));
+  EXPECT_THAT(error("capstan", Key("tendon", "rope")), HasSubstr("no tendon 'rope'"));
+}
+
+TEST_F(Configuration, AWrongJointTypeIsRefused) {
+  const auto [model, error] = Compile(
+      "<mujoco>" + Instance("dahl", Key("joint", "j")) +
+      R"(<worldbody><body><joint name="j" type="ball"/><geom size=".1"/></body></worldbody></mujoco>)");
+  EXPECT_FALSE(model);
+  EXPECT_THAT(error, HasSubstr("joint 'j': expected a hinge or slide joint"));
+}
+
+TEST_F(Configuration, AnEditedConfigurationIsFollowed) {
+  const auto m = Model(Arm("coulomb", Key("joint", "q1") + Key("tau_c", ".05"), ""));
+  const auto d = Data(m);
+  mj_forward(m.get(), d.get());
+  EXPECT_DOUBLE_EQ(d->efc_frictionloss[0], .05);
+  char* const text = const_cast<char*>(mj_getPluginConfig(m.get(), 0, "tau_c"));
+  std::memcpy(text, ".09", 3);
+  mj_forward(m.get(), d.get());
+  EXPECT_DOUBLE_EQ(d->efc_frictionloss[0], .09);
+}
+
+TEST_F(Configuration, DataOfOneModelFollowsAnother) {
+  const auto a = Model(Arm("coulomb", Key("joint", "q1") + Key("tau_c", ".05"), ""));
+  const auto b = Model(Arm("coulomb", Key("joint", "q1") + Key("tau_c", ".07"), ""));
+  const auto d = Data(a);
+  mj_forward(b.get(), d.get());
+  EXPECT_DOUBLE_EQ(d->efc_frictionloss[0], .07);
+}
+
+TEST_F(Configuration, BacklashLeavesTheServoFreeInsideTheGap) {
+  const auto m = Model(Arm("backlash", Key("actuator", "servo") + Key("gap", ".2"), ""));
+  const auto d = Data(m);
+  for (const auto& [u, force] : {std::pair{.09, 0.0}, {.3, 5 * .2}, {-.3, -5 * .2}}) {
+    d->ctrl[0] = u;
+    mj_forward(m.get(), d.get());
+    EXPECT_NEAR(d->actuator_force[0], force, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace continuum
