@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+namespace continuum {
+
+/// One element of a model specification, with its numeric attributes by their MJCF names ("damping",
+/// "gear[0]", "pos[2]"; SI and radians whatever the file uses). Some names stand for what a user
+/// means by them:
+///
+///   body      mass (scales the inertia with it), point_mass (added at the body's origin)
+///   actuator  kp, kv (gain and bias), force_scale (gain, bias and force range), input (what it
+///             receives: Scale, Add), delay, lag (first-order, filterexact)
+///
+/// Satisfies the Element of effects/effect.h, so that native effects apply to it.
+class Element {
+ public:
+  /// compiled: the compiled model of the same specification; masses that come from geoms are read
+  /// there.
+  Element(mjSpec* spec, mjsElement* element, const mjModel* compiled);
+
+  double Get(std::string_view attribute) const;
+  void Set(std::string_view attribute, double value);
+  void Add(std::string_view attribute, double value);
+  void Scale(std::string_view attribute, double factor);
+
+  /// The element as it is now; Restore puts it back.
+  struct Saved {
+    void* address;
+    std::vector<std::byte> bytes;
+    void Restore() const;
+  };
+  Saved Save() const;
+
+  std::string Name() const;
+  /// "joint 'q1'", for messages.
+  std::string Who() const;
+
+ private:
+  double* Address(std::string_view attribute, double& unit) const;
+  void FreezeInertia();
+  void SetBodyMass(double mass);
+  void AddPointMass(double mass);
+  void SetLag(double lag);
+  void SetDelay(double delay);
+  mjsActuator& Affine();
+
+  mjSpec* spec_;
+  mjsElement* element_;
+  const mjModel* compiled_;
+};
+
+/// The elements that a target "kind:glob" names, in the order of the model ("option" gives none: see
+/// OptionAttribute). Throws Error (where) when the kind is unknown or nothing matches.
+std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const std::string& target,
+                                   const std::string& where);
+
+/// The number behind an attribute of <option>: "gravity[2]", "timestep". Throws Error when unknown.
+double& OptionAttribute(mjOption& option, std::string_view attribute, const std::string& where);
+
+}  // namespace continuum

@@ -1,0 +1,369 @@
+#include "sim/experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "effects/all.h"
+#include "error.h"
+#include "sim/mat.h"
+#include "sim/table.h"
+#include "sim/units.h"
+
+namespace continuum {
+namespace {
+
+// The numbers of a log's file, whatever its format.
+class Recording {
+ public:
+  Recording(const std::filesystem::path& file, const std::string& variable) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".mat") {
+      mat_ = ReadMat(file, variable);
+      name_ = file.string();
+    } else {
+      table_ = Table::Read(file);
+      name_ = file.string();
+    }
+  }
+
+  std::size_t rows() const { return table_ ? table_->rows() : mat_->values.front().size(); }
+  std::string Where(std::size_t row) const {
+    return table_ ? table_->Where(row) : name_ + ", row " + std::to_string(row + 1);
+  }
+  double Number(std::size_t row, const std::string& column, bool may_miss) const {
+    if (table_) return may_miss ? table_->NumberOrNan(row, column) : table_->Number(row, column);
+    const auto found = std::find(mat_->names.begin(), mat_->names.end(), column);
+    if (found == mat_->names.end()) {
+      std::string all;
+      for (const auto& name : mat_->names) all += (all.empty() ? "" : ", ") + name;
+      throw Error::Input(name_, "a column '" + column + "'", all);
+    }
+    const double value = mat_->values[found - mat_->names.begin()][row];
+    if (std::isfinite(value) || (may_miss && std::isnan(value))) return value;
+    throw Error::Input(Where(row) + ", column '" + column + "'", "a finite number", "none");
+  }
+
+ private:
+  std::optional<Table> table_;
+  std::optional<Columns> mat_;
+  std::string name_;
+};
+
+template <class T> T OneOf(const Yaml& y, const std::vector<std::pair<std::string, T>>& options) {
+  const std::string text = y.Text();
+  std::string all;
+  for (const auto& [name, value] : options) {
+    if (text == name) return value;
+    all += (all.empty() ? "" : " | ") + name;
+  }
+  throw Error::Input(y.Where(), all, "'" + text + "'");
+}
+
+std::string TextOr(const Yaml& y, const std::string& key, const std::string& fallback) {
+  const auto found = y.Find(key);
+  return found ? found->Text() : fallback;
+}
+double NumberOr(const Yaml& y, const std::string& key, double fallback) {
+  const auto found = y.Find(key);
+  return found ? found->Number() : fallback;
+}
+
+Input ReadInput(const Yaml& y) {
+  y.Only({"column", "unit", "actuator", "interpolate", "enable"});
+  Input in;
+  in.actuator = y.At("actuator").Text();
+  in.column = TextOr(y, "column", "");
+  in.enable = TextOr(y, "enable", "");
+  in.unit = TextOr(y, "unit", "1");
+  if (in.column.empty() && in.enable.empty()) {
+    throw Error::Input(y.Where(), "the key 'column' or 'enable'", "none");
+  }
+  if (const auto i = y.Find("interpolate")) {
+    in.linear = OneOf<bool>(*i, {{"hold", false}, {"linear", true}});
+  }
+  if (const auto unit = y.Find("unit")) UnitFactor(in.unit, unit->Where());
+  return in;
+}
+
+Measurement ReadMeasurement(const Yaml& y) {
+  Measurement m;
+  m.bias = NumberOr(y, "bias", 0);
+  m.scale = NumberOr(y, "scale", 1);
+  m.delay = NumberOr(y, "delay", 0);
+  m.rate = NumberOr(y, "rate", 0);
+  m.angle = NumberOr(y, "angle", 0);
+  if (const auto axis = y.Find("axis")) {
+    m.axis = axis->Numbers();
+    if (m.axis.size() != 3) throw Error::Input(axis->Where(), "three numbers", "another count");
+  }
+  if (m.delay < 0) throw Error::Input(y.At("delay").Where(), "a delay >= 0 s", "a negative one");
+  return m;
+}
+
+Output ReadOutput(const Yaml& y) {
+  y.Only({"column", "columns", "unit", "sensor", "actuator", "quantity", "sigma", "weight", "bias",
+          "scale", "delay", "rate", "angle", "axis"});
+  Output out;
+  const Yaml column = y.Has("columns") ? y.At("columns") : y.At("column");
+  if (column.IsList()) {
+    for (const Yaml& item : column.Items()) out.columns.push_back(item.Text());
+    if (out.columns.size() != 4) {
+      throw Error::Input(column.Where(), "one column, or four of a quaternion (w, x, y, z)",
+                         std::to_string(out.columns.size()));
+    }
+  } else {
+    out.columns = {column.Text()};
+  }
+  out.unit = TextOr(y, "unit", "1");
+  if (y.Has("sensor") == y.Has("actuator")) {
+    throw Error::Input(y.Where(), "one of the keys 'sensor' and 'actuator'",
+                       y.Has("sensor") ? "both" : "none");
+  }
+  if (y.Has("sensor")) {
+    out.source = y.At("sensor").Text();
+  } else {
+    out.source = y.At("actuator").Text();
+    out.kind = Output::Kind::kForce;
+    if (const auto q = y.Find("quantity")) {
+      out.kind = OneOf<Output::Kind>(
+          *q, {{"force", Output::Kind::kForce}, {"control", Output::Kind::kControl}});
+    }
+  }
+  if (const auto sigma = y.Find("sigma")) out.sigma = sigma->Number(1e-300, kInfinity);
+  if (const auto weight = y.Find("weight")) out.weight = weight->Number(0, kInfinity);
+  out.measurement = ReadMeasurement(y);
+  if (const auto unit = y.Find("unit")) UnitFactor(out.unit, unit->Where());
+  return out;
+}
+
+std::vector<Setting> ReadSettings(const Yaml& y) {
+  std::vector<Setting> settings;
+  for (const auto& target : y.Keys()) {
+    const Yaml attributes = y.At(target);
+    for (const auto& attribute : attributes.Keys()) {
+      settings.push_back({target, attribute, attributes.At(attribute).Number()});
+    }
+  }
+  return settings;
+}
+
+Parameter ReadParameter(const Yaml& y) {
+  y.Only({"name", "target", "attribute", "initial", "lower", "upper", "operation", "frozen", "per"});
+  Parameter p;
+  p.where = y.Where();
+  p.name = y.At("name").Text();
+  p.target = y.At("target").Text();
+  p.attribute = y.At("attribute").Text();
+  p.lower = y.At("lower").Number();
+  p.upper = y.At("upper").Number();
+  if (!(p.lower < p.upper)) {
+    throw Error::Input(y.At("upper").Where(), "upper above lower", y.At("upper").Text());
+  }
+  if (const auto initial = y.Find("initial")) {
+    p.initial = initial->Number();
+    p.has_initial = true;
+    if (p.initial < p.lower || p.initial > p.upper) {
+      throw Error::Input(initial->Where(), "a start within the bounds", initial->Text());
+    }
+  }
+  if (const auto o = y.Find("operation")) {
+    p.scale = OneOf<bool>(*o, {{"set", false}, {"scale", true}});
+  }
+  if (const auto frozen = y.Find("frozen")) p.frozen = frozen->Bool();
+  if (const auto per = y.Find("per")) {
+    p.per = OneOf<Parameter::Per>(
+        *per, {{"log", Parameter::Per::kLog}, {"condition", Parameter::Per::kCondition}});
+  }
+  return p;
+}
+
+Candidate ReadCandidate(const Yaml& y) {
+  Candidate c;
+  const Yaml name = y.IsMap() ? y.At("effect") : y;
+  c.effect = name.Text();
+  bool known = false;
+  std::string all;
+  All::ForEach([&]<class E>() {
+    known |= c.effect == E::kName;
+    all += (all.empty() ? "" : ", ") + std::string(E::kName);
+  });
+  if (!known) throw Error::Input(name.Where(), "an effect: " + all, "'" + c.effect + "'");
+  if (!y.IsMap()) return c;
+  y.Only({"effect", "where", "per"});
+  c.where = TextOr(y, "where", "");
+  if (const auto per = y.Find("per")) c.per_condition = OneOf<bool>(*per, {{"condition", true}});
+  return c;
+}
+
+void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_unit,
+              const std::vector<double>& window) {
+  double last = -kInfinity;
+  std::vector<std::size_t> kept;
+  for (std::size_t row = 0; row < rec.rows(); ++row) {
+    const double t = rec.Number(row, e.time_column, false) * time_unit;
+    if (!(t > last)) {
+      throw Error::Input(rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
+                         std::to_string(t / time_unit) + " after " +
+                             std::to_string(last / time_unit));
+    }
+    last = t;
+    if (!window.empty() && (t < window[0] || t > window[1])) continue;
+    kept.push_back(row);
+    log.time.push_back(t * (1 + e.skew));
+  }
+  if (kept.size() < 2) {
+    throw Error::Input(log.file.string() + (window.empty() ? "" : " within its window"),
+                       "at least two rows", std::to_string(kept.size()));
+  }
+  for (const Input& in : e.inputs) {
+    std::vector<double> values;
+    std::vector<bool> on;
+    const double factor = UnitFactor(in.unit, "");
+    for (const std::size_t row : kept) {
+      values.push_back(in.column.empty() ? 0 : factor * rec.Number(row, in.column, false));
+      if (!in.enable.empty()) on.push_back(rec.Number(row, in.enable, false) != 0);
+    }
+    log.input.push_back(std::move(values));
+    log.enable.push_back(std::move(on));
+  }
+  for (const auto& channel : e.channels) {
+    std::vector<double> values;
+    for (const std::size_t row : kept) {
+      values.push_back(channel.factor * rec.Number(row, channel.name, true));
+    }
+    if (std::all_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) {
+      throw Error::Input(log.file.string() + ", column '" + channel.name + "'",
+                         "at least one number", "none");
+    }
+    log.measured.push_back(std::move(values));
+  }
+}
+
+Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
+  y.Only({"file", "variable", "trial", "use", "window", "condition", "set"});
+  Log log;
+  log.file = e.file.parent_path() / y.At("file").Text();
+  if (!std::filesystem::exists(log.file)) {
+    throw Error::Input(y.At("file").Where(), "a log file", "no file " + log.file.string());
+  }
+  log.label = log.file.stem().string();
+  log.trial = TextOr(y, "trial", log.label);
+  log.condition = TextOr(y, "condition", "");
+  if (const auto use = y.Find("use")) {
+    log.train = OneOf<bool>(*use, {{"train", true}, {"validate", false}});
+  }
+  std::vector<double> window;
+  if (const auto w = y.Find("window")) {
+    window = w->Numbers();
+    if (window.size() != 2 || !(window[0] < window[1])) {
+      throw Error::Input(w->Where(), "[begin, end] in s", "something else");
+    }
+    log.label += "_" + w->Items()[0].Text() + "_" + w->Items()[1].Text();
+  }
+  if (const auto set = y.Find("set")) log.set = ReadSettings(*set);
+  ReadRows(log, e, Recording(log.file, TextOr(y, "variable", "")), time_unit, window);
+  return log;
+}
+
+void CheckNames(const Experiment& e, const Yaml& root) {
+  std::set<std::string> names;
+  for (const auto& channel : e.channels) {
+    if (!names.insert(channel.name).second) {
+      throw Error::Input(root.At("outputs").Where(), "different columns",
+                         "'" + channel.name + "' twice");
+    }
+  }
+  names.clear();
+  for (const auto& p : e.parameters) {
+    if (!names.insert(p.name).second) {
+      throw Error::Input(p.where, "different parameter names", "'" + p.name + "' twice");
+    }
+  }
+  std::set<std::string> actuators;
+  for (const auto& in : e.inputs) {
+    if (!actuators.insert(in.actuator).second) {
+      throw Error::Input(root.At("inputs").Where(), "one input per actuator",
+                         "'" + in.actuator + "' twice");
+    }
+  }
+}
+
+// Two logs of one file, or of files with one name, need labels of their own.
+void MakeLabelsUnique(std::vector<Log>& logs) {
+  std::map<std::string, int> count;
+  for (const Log& log : logs) ++count[log.label];
+  std::map<std::string, int> seen;
+  for (Log& log : logs) {
+    if (count[log.label] > 1) log.label += "_" + std::to_string(++seen[log.label]);
+  }
+}
+
+}  // namespace
+
+Experiment Experiment::Read(const std::filesystem::path& file) {
+  const Yaml y = Yaml::Read(file);
+  y.Only({"format", "model", "logs", "time", "start", "inputs", "outputs", "registration",
+          "quasi_static", "parameters", "candidates", "folds"});
+  if (y.At("format").Number() != 1) {
+    throw Error::Input(y.At("format").Where(), "format 1", y.At("format").Text());
+  }
+  if (y.Has("registration")) {
+    throw Error::Input(y.At("registration").Where(), "registration is not available yet");
+  }
+  if (const auto q = y.Find("quasi_static"); q && q->Bool()) {
+    throw Error::Input(q->Where(), "quasi_static is not available yet");
+  }
+
+  Experiment e;
+  e.file = file;
+  e.model = file.parent_path() / y.At("model").Text();
+  double time_unit = 1;
+  if (const auto time = y.Find("time")) {
+    time->Only({"column", "unit", "skew"});
+    e.time_column = TextOr(*time, "column", "time");
+    if (const auto unit = time->Find("unit")) time_unit = UnitFactor(unit->Text(), unit->Where());
+    e.skew = NumberOr(*time, "skew", 0);
+    if (e.skew <= -1) throw Error::Input(time->At("skew").Where(), "a skew above -1", "less");
+  }
+  if (const auto start = y.Find("start")) {
+    e.start = OneOf<Start>(*start, {{"rest", Start::kRest},
+                                    {"equilibrium", Start::kEquilibrium},
+                                    {"measured", Start::kMeasured},
+                                    {"estimate", Start::kEstimate}});
+  }
+  if (const auto inputs = y.Find("inputs")) {
+    for (const Yaml& item : inputs->Items()) e.inputs.push_back(ReadInput(item));
+  }
+  for (const Yaml& item : y.At("outputs").Items()) {
+    e.outputs.push_back(ReadOutput(item));
+    const Output& out = e.outputs.back();
+    for (std::size_t c = 0; c < out.columns.size(); ++c) {
+      e.channels.push_back(
+          {out.columns[c], out.unit, e.outputs.size() - 1, c, UnitFactor(out.unit, "")});
+    }
+  }
+  if (e.outputs.empty()) throw Error::Input(y.At("outputs").Where(), "at least one output", "none");
+  if (const auto parameters = y.Find("parameters")) {
+    for (const Yaml& item : parameters->Items()) e.parameters.push_back(ReadParameter(item));
+  }
+  if (const auto c = y.Find("candidates"); c && !(c->IsScalar() && c->Text() == "all")) {
+    e.all_candidates = false;
+    for (const Yaml& item : c->Items()) e.candidates.push_back(ReadCandidate(item));
+  }
+  if (const auto folds = y.Find("folds")) {
+    e.folds = OneOf<Folds>(*folds, {{"trial", Folds::kTrial},
+                                    {"condition", Folds::kCondition},
+                                    {"window", Folds::kWindow}});
+  }
+  CheckNames(e, y);
+  for (const Yaml& item : y.At("logs").Items()) e.logs.push_back(ReadLog(item, e, time_unit));
+  if (e.logs.empty()) throw Error::Input(y.At("logs").Where(), "at least one log", "none");
+  MakeLabelsUnique(e.logs);
+  return e;
+}
+
+}  // namespace continuum

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/yaml.h"
+
+namespace continuum {
+
+/// Known values of one log: attribute → value by target ("actuator:servo").
+struct Setting {
+  std::string target, attribute;
+  double value;
+};
+
+/// What an actuator receives.
+struct Input {
+  std::string column;  ///< empty: control 0
+  std::string unit, actuator, enable;
+  bool linear = false;  ///< else held between rows
+};
+
+/// How a channel is measured: y_meas(t) = scale · R(axis, angle) y(t − delay) + bias + rate (t − t_0).
+struct Measurement {
+  double bias = 0, scale = 1, delay = 0, rate = 0, angle = 0;
+  std::vector<double> axis{0, 0, 1};
+  bool operator==(const Measurement&) const = default;
+};
+
+/// What is compared: one column against one number of the simulation, or four columns against a
+/// quaternion sensor (the error is a rotation vector).
+struct Output {
+  enum class Kind { kSensor, kForce, kControl };
+  std::vector<std::string> columns;
+  std::string unit;
+  Kind kind = Kind::kSensor;
+  std::string source;  ///< sensor ("tip_pos[1]" for a component) or actuator
+  double sigma = 0;    ///< standard deviation of the noise in unit; 0: not given
+  double weight = 1;
+  Measurement measurement;
+
+  bool quaternion() const { return columns.size() == 4; }
+  const std::string& name() const { return columns.front(); }
+};
+
+/// A recorded trial: rows of numbers in SI.
+struct Log {
+  std::string label;  ///< unique: file stem, with the window when a file gives several logs
+  std::filesystem::path file;
+  std::string trial, condition;
+  bool train = true;
+  std::vector<Setting> set;
+
+  std::vector<double> time;                   ///< [s] in model time, increasing
+  std::vector<std::vector<double>> input;     ///< [input][row]
+  std::vector<std::vector<bool>> enable;      ///< [input][row], empty when always on
+  std::vector<std::vector<double>> measured;  ///< [channel][row] SI; NaN: not measured
+
+  std::size_t rows() const { return time.size(); }
+};
+
+/// One number that a fit may move.
+struct Parameter {
+  enum class Per { kAll, kLog, kCondition };
+  std::string name, target, attribute;
+  double initial = 0, lower = 0, upper = 0;
+  bool has_initial = false;
+  bool scale = false;   ///< multiplies what the model or `set` gives
+  bool frozen = false;
+  Per per = Per::kAll;
+  std::string where;    ///< file:line: key, for messages
+};
+
+/// An effect the diagnosis may try.
+struct Candidate {
+  std::string effect;
+  std::string where;  ///< "joint:GLOB", "tendon:GLOB", …; empty: everywhere it makes sense
+  bool per_condition = false;
+};
+
+/// Everything a replay, a fit or a diagnosis needs, from one EXPERIMENT.yaml.
+struct Experiment {
+  enum class Start { kRest, kEquilibrium, kMeasured, kEstimate };
+  enum class Folds { kTrial, kCondition, kWindow };
+
+  std::filesystem::path file, model;
+  std::string time_column = "time";
+  double skew = 0;
+  Start start = Start::kRest;
+  std::vector<Input> inputs;
+  std::vector<Output> outputs;
+  std::vector<Log> logs;
+  std::vector<Parameter> parameters;
+  bool all_candidates = true;
+  std::vector<Candidate> candidates;
+  Folds folds = Folds::kTrial;
+
+  /// Channels are the columns of all outputs, in order; a quaternion has four.
+  struct Channel {
+    std::string name, unit;
+    std::size_t output, component;
+    double factor;  ///< SI per unit
+  };
+  std::vector<Channel> channels;
+
+  /// Reads the file, its logs included. Throws Error with file:line and key.
+  static Experiment Read(const std::filesystem::path& file);
+};
+
+}  // namespace continuum

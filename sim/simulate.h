@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "sim/experiment.h"
+#include "sim/system.h"
+
+namespace continuum {
+
+/// Where a trial begins; empty: as the experiment says.
+struct InitialState {
+  std::vector<double> qpos, qvel;
+};
+
+/// What the simulation says about the channels of an experiment, at the rows of one log.
+struct Trace {
+  std::vector<std::vector<double>> channel;  ///< [channel][row] SI, as it would be measured
+  bool diverged = false;
+  double diverged_at = 0;  ///< [s]
+};
+
+/// Called at every row with the state that the row sees.
+using RowHook = std::function<void(const mjModel&, mjData&, std::size_t row)>;
+
+/// Names of an experiment resolved in a model. Throws Error for unknown actuators and sensors.
+struct Wiring {
+  struct Source {
+    Output::Kind kind;
+    int address;    ///< of the first number, in sensordata or actuator_force
+    int size;       ///< numbers recorded: 1, or the whole sensor
+    int component;  ///< of the channel among them
+  };
+  std::vector<int> actuator;   ///< of each input
+  std::vector<Source> output;  ///< of each output
+  std::vector<bool> gated;     ///< inputs with an enable column
+
+  Wiring(const Experiment& e, const mjModel& m);
+};
+
+/// Runs one log through a machine (whose model is changed on the way): inputs held between rows or
+/// linear, a row active at its own time (the crossing step is shortened), channels those of the
+/// state at the row's time.
+///
+/// A simulation that diverges ends there: diverged is set, the rest of the channels is NaN.
+Trace Simulate(Machine& machine, const Experiment& e, const Log& log,
+               const InitialState& initial = {}, const RowHook& hook = {});
+
+/// The state in which the experiment's start leaves a log's trial.
+InitialState StartOf(Machine& machine, const Experiment& e, const Log& log);
+
+/// Static equilibrium under the first inputs, without friction, lags settled. Throws Error (kJob)
+/// when there is none near qpos0.
+InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log);
+
+/// Changes that a log's `set` makes.
+std::vector<Change> SettingsOf(const Log& log);
+
+}  // namespace continuum

@@ -1,0 +1,241 @@
+#include "sim/system.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "effects/all.h"
+#include "engine.h"
+#include "error.h"
+#include "sim/element.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+constexpr std::string_view kPluginTarget = "plugin:";
+
+void RegisterOnce() {
+  static const bool once = [] {
+    mju_user_warning = [](const char*) {};  // compile errors carry the text; see Simulate for the rest
+    RegisterEffects();
+    return true;
+  }();
+  (void)once;
+}
+
+Owned<mjModel> Compile(mjSpec& spec, const std::string& name) {
+  Owned<mjModel> model(mj_compile(&spec, nullptr));
+  if (!model) throw Error::Input(name, mjs_getError(&spec));
+  return model;
+}
+
+bool IsPlugin(const Change& change) { return change.target.starts_with(kPluginTarget); }
+
+int InstanceId(const mjModel& m, const std::string& target) {
+  const std::string instance = target.substr(kPluginTarget.size());
+  const int id = mj_name2id(&m, mjOBJ_PLUGIN, instance.c_str());
+  if (id >= 0) return id;
+  std::string all;
+  for (int i = 0; i < m.nplugin; ++i) {
+    const char* known = mj_id2name(&m, mjOBJ_PLUGIN, i);
+    if (known) all += (all.empty() ? "" : ", ") + std::string(known);
+  }
+  throw Error::Input(target, "a plugin instance of the model", all.empty() ? "none" : all);
+}
+
+std::size_t IndexOn(const mjModel& m, int instance, const std::string& parameter) {
+  return ParameterIndex(mjp_getPluginAtSlot(m.plugin[instance])->name, parameter);
+}
+
+double Changed(double old, const Change& change) {
+  switch (change.operation) {
+    case Change::Operation::kScale: return old * change.value;
+    case Change::Operation::kAdd: return old + change.value;
+    default: return change.value;
+  }
+}
+
+void ApplyToPlugin(mjModel& m, mjData& d, const Change& change) {
+  const int instance = InstanceId(m, change.target);
+  auto values = BoundOf(m, d, instance).parameters();
+  double& value = values[IndexOn(m, instance, change.attribute)];
+  value = Changed(value, change);
+  SetParameters(m, d, instance, values);
+}
+
+// Sets <config key= value=> of an instance in MJCF text as MuJoCo writes it.
+void SetConfig(std::string& xml, const std::string& instance, const std::string& key,
+               const std::string& value) {
+  const std::size_t begin = xml.find("<instance name=\"" + instance + "\"");
+  if (begin == xml.npos) throw Error::Input("plugin:" + instance, "an instance in the MJCF", "none");
+  const std::size_t open_end = xml.find('>', begin);
+  if (xml[open_end - 1] == '/') {  // <instance name="…"/>
+    xml.replace(open_end - 1, 2, ">\n        </instance>");
+  }
+  const std::size_t end = xml.find("</instance>", begin);
+  const std::string head = "<config key=\"" + key + "\" value=\"";
+  const std::size_t found = xml.find(head, begin);
+  if (found < end) {
+    const std::size_t from = found + head.size();
+    xml.replace(from, xml.find('"', from) - from, value);
+  } else {
+    const std::size_t line = xml.rfind('\n', end);
+    xml.insert(line, "\n        " + head + value + "\"/>");
+  }
+}
+
+void AddInstance(std::string& xml, const EffectInstance& effect) {
+  std::string text = "    <plugin plugin=\"continuum." + effect.effect + "\">\n      <instance name=\"" +
+                     effect.name + "\">\n";
+  for (const auto& [key, value] : effect.config) {
+    text += "        <config key=\"" + key + "\" value=\"" + value + "\"/>\n";
+  }
+  text += "      </instance>\n    </plugin>\n";
+  const std::size_t end = xml.find("</extension>");
+  if (end != xml.npos) {
+    xml.insert(xml.rfind('\n', end) + 1, text);
+  } else {
+    const std::size_t root = xml.find('>', xml.find("<mujoco"));
+    xml.insert(root + 1, "\n  <extension>\n" + text + "  </extension>\n");
+  }
+}
+
+}  // namespace
+
+std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter) {
+  std::string all = "no parameters";
+  std::size_t index = 0;
+  bool found = false;
+  All::ForEach([&]<class E>() {
+    if (plugin != "continuum." + std::string(E::kName)) return;
+    all.clear();
+    for (std::size_t i = 0; i < E::kParams.size(); ++i) {
+      all += (i ? ", " : "") + std::string(E::kParams[i].name);
+      if (parameter == E::kParams[i].name) found = true, index = i;
+    }
+  });
+  if (!found) throw Error::Input(plugin, "one of the parameters " + all, "'" + parameter + "'");
+  return index;
+}
+
+System System::Load(const std::filesystem::path& model) {
+  RegisterOnce();
+  ReadFile(model);  // a clear message when it cannot be read
+  System system;
+  system.name_ = model.string();
+  system.folder_ = std::filesystem::absolute(model).parent_path().string() + "/";
+  char error[1000] = "";
+  system.spec_.reset(mj_parseXML(model.c_str(), nullptr, error, sizeof error));
+  if (!system.spec_) throw Error::Input(system.name_, error);
+  system.compiled_ = Compile(*system.spec_, system.name_);
+  return system;
+}
+
+System System::Parse(const std::string& xml, const std::string& folder, std::string name) {
+  System system;
+  system.name_ = std::move(name);
+  system.folder_ = folder;
+  char error[1000] = "";
+  system.spec_.reset(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
+  if (!system.spec_) throw Error::Input(system.name_, error);
+  mjs_setString(system.spec_->modelfiledir, folder.c_str());
+  system.compiled_ = Compile(*system.spec_, system.name_);
+  return system;
+}
+
+class System::Edits {
+ public:
+  Edits(const System& system, std::span<const Change> changes)
+      : spec_(*system.spec_), option_(spec_.option), compiler_(spec_.compiler) {
+    for (const Change& change : changes) {
+      if (!IsPlugin(change)) Apply(system, change);
+    }
+  }
+  Edits(const Edits&) = delete;
+  ~Edits() {
+    for (auto e = elements_.rbegin(); e != elements_.rend(); ++e) e->Restore();
+    spec_.option = option_;
+    spec_.compiler = compiler_;
+  }
+
+ private:
+  void Apply(const System& system, const Change& change) {
+    if (change.target == "option") {
+      double& value = OptionAttribute(spec_.option, change.attribute, change.target);
+      value = Changed(value, change);
+      return;
+    }
+    for (Element& e : MatchElements(&spec_, system.compiled_.get(), change.target, change.target)) {
+      elements_.push_back(e.Save());
+      switch (change.operation) {
+        case Change::Operation::kSet: e.Set(change.attribute, change.value); break;
+        case Change::Operation::kScale: e.Scale(change.attribute, change.value); break;
+        case Change::Operation::kAdd: e.Add(change.attribute, change.value); break;
+      }
+    }
+  }
+
+  mjSpec& spec_;
+  mjOption option_;
+  mjsCompiler compiler_;
+  std::vector<Element::Saved> elements_;
+};
+
+System::System(const System& other) : System(Parse(other.Xml(), other.folder_, other.name_)) {}
+
+Machine System::Build(std::span<const Change> changes) const {
+  Machine machine;
+  {
+    const Edits edits(*this, changes);
+    machine.model = Compile(*spec_, name_);
+  }
+  machine.data.reset(mj_makeData(machine.model.get()));
+  if (!machine.data) throw Error::Job(name_ + ": MuJoCo cannot allocate its data");
+  for (const Change& change : changes) {
+    if (IsPlugin(change)) ApplyToPlugin(*machine.model, *machine.data, change);
+  }
+  return machine;
+}
+
+double System::Value(const std::string& target, const std::string& attribute) const {
+  if (target == "option") return OptionAttribute(spec_->option, attribute, target);
+  if (target.starts_with(kPluginTarget)) {
+    const Owned<mjData> d(mj_makeData(compiled_.get()));
+    const int instance = InstanceId(*compiled_, target);
+    return BoundOf(*compiled_, *d, instance).parameters()[IndexOn(*compiled_, instance, attribute)];
+  }
+  return MatchElements(spec_.get(), compiled_.get(), target, target).front().Get(attribute);
+}
+
+std::string System::Xml(std::span<const Change> changes,
+                        std::span<const EffectInstance> added) const {
+  const Edits edits(*this, changes);
+  spec_->compiler.savecompiled = 0;
+  spec_->compiler.savecanonical = 0;
+  std::string xml(1 << 16, '\0');
+  char error[1000] = "";
+  while (true) {
+    const int length = mj_saveXMLString(spec_.get(), xml.data(), static_cast<int>(xml.size()), error,
+                                        sizeof error);
+    if (length < 0) throw Error::Job(name_ + ": " + error);
+    if (length == 0) {
+      xml.resize(xml.find('\0'));
+      break;
+    }
+    xml.resize(static_cast<std::size_t>(length) + 1);
+  }
+  for (const EffectInstance& effect : added) AddInstance(xml, effect);
+  for (const Change& change : changes) {
+    if (!IsPlugin(change)) continue;
+    const double value = Changed(change.operation == Change::Operation::kSet
+                                     ? 0 : Value(change.target, change.attribute), change);
+    SetConfig(xml, change.target.substr(kPluginTarget.size()), change.attribute, Decimal(value));
+  }
+  return xml;
+}
+
+System System::With(std::span<const Change> changes, std::span<const EffectInstance> added) const {
+  return Parse(Xml(changes, added), folder_, name_);
+}
+
+}  // namespace continuum

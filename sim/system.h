@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/mujoco.h"
+
+namespace continuum {
+
+/// Another value for an attribute of the model: target "joint:bend*", "option", "plugin:NAME".
+struct Change {
+  enum class Operation { kSet, kScale, kAdd };
+  std::string target, attribute;
+  double value;
+  Operation operation = Operation::kSet;
+};
+
+/// A compiled model of one's own with its data.
+struct Machine {
+  Owned<mjModel> model;
+  Owned<mjData> data;
+};
+
+/// One plugin instance to be added to a model.
+struct EffectInstance {
+  std::string effect, name;
+  std::vector<std::pair<std::string, std::string>> config;
+};
+
+/// A model specification that compiles with other values and effects. Not thread-safe: every thread
+/// builds from its own copy.
+class System {
+ public:
+  /// Reads an MJCF file, with our effects registered. Throws Error with MuJoCo's text.
+  static System Load(const std::filesystem::path& model);
+  System(const System& other);
+  System(System&&) = default;
+  System& operator=(System&&) = default;
+
+  /// The model as it stands, compiled once; for names and sizes.
+  const mjModel& model() const { return *compiled_; }
+  const std::string& name() const { return name_; }
+
+  /// Compiles with changes, later ones after earlier ones. Throws Error (where the change came from
+  /// is the caller's to say) for unknown targets and attributes, or with MuJoCo's text.
+  Machine Build(std::span<const Change> changes = {}) const;
+  /// The value that a change would replace.
+  double Value(const std::string& target, const std::string& attribute) const;
+  /// MJCF of the specification with changes and plugin instances, as authored.
+  std::string Xml(std::span<const Change> changes = {},
+                  std::span<const EffectInstance> added = {}) const;
+  /// The same with changes and instances inside.
+  System With(std::span<const Change> changes, std::span<const EffectInstance> added) const;
+
+ private:
+  System() = default;
+  static System Parse(const std::string& xml, const std::string& folder, std::string name);
+
+  // Edits of the specification that are taken back at the end of a scope (mj_copySpec would lose
+  // plugin instances that nothing refers to).
+  class Edits;
+
+  std::string name_, folder_;
+  Owned<mjSpec> spec_;
+  Owned<mjModel> compiled_;
+};
+
+/// Index of a parameter on an effect's card; throws Error when the effect has none of this name.
+std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter);
+
+}  // namespace continuum
