@@ -22,7 +22,8 @@ struct Field {
 };
 using Fields = std::map<std::string, Field, std::less<>>;
 
-template <class T> void Put(Fields& fields, const char* name, T* data, int size) {
+template <class T>
+void Put(Fields& fields, const char* name, T* data, int size) {
   if constexpr (std::is_same_v<T, double>) fields[name] = {data, size};
 }
 
@@ -69,14 +70,22 @@ Fields Of(mjsSensor* s) {
 
 Fields FieldsOf(mjsElement* e) {
   switch (e->elemtype) {
-    case mjOBJ_JOINT: return Of(mjs_asJoint(e));
-    case mjOBJ_BODY: return Of(mjs_asBody(e));
-    case mjOBJ_SITE: return Of(mjs_asSite(e));
-    case mjOBJ_GEOM: return Of(mjs_asGeom(e));
-    case mjOBJ_TENDON: return Of(mjs_asTendon(e));
-    case mjOBJ_ACTUATOR: return Of(mjs_asActuator(e));
-    case mjOBJ_SENSOR: return Of(mjs_asSensor(e));
-    default: return {};
+    case mjOBJ_JOINT:
+      return Of(mjs_asJoint(e));
+    case mjOBJ_BODY:
+      return Of(mjs_asBody(e));
+    case mjOBJ_SITE:
+      return Of(mjs_asSite(e));
+    case mjOBJ_GEOM:
+      return Of(mjs_asGeom(e));
+    case mjOBJ_TENDON:
+      return Of(mjs_asTendon(e));
+    case mjOBJ_ACTUATOR:
+      return Of(mjs_asActuator(e));
+    case mjOBJ_SENSOR:
+      return Of(mjs_asSensor(e));
+    default:
+      return {};
   }
 }
 
@@ -96,8 +105,8 @@ std::pair<std::string, int> SplitIndex(std::string_view attribute) {
 
 const std::map<std::string, mjtObj, std::less<>>& Kinds() {
   static const std::map<std::string, mjtObj, std::less<>> kinds{
-      {"joint", mjOBJ_JOINT},   {"body", mjOBJ_BODY},         {"site", mjOBJ_SITE},
-      {"geom", mjOBJ_GEOM},     {"tendon", mjOBJ_TENDON},     {"actuator", mjOBJ_ACTUATOR},
+      {"joint", mjOBJ_JOINT},  {"body", mjOBJ_BODY},     {"site", mjOBJ_SITE},
+      {"geom", mjOBJ_GEOM},    {"tendon", mjOBJ_TENDON}, {"actuator", mjOBJ_ACTUATOR},
       {"sensor", mjOBJ_SENSOR}};
   return kinds;
 }
@@ -122,13 +131,20 @@ Element::Saved Element::Save() const {
     return saved;
   };
   switch (element_->elemtype) {
-    case mjOBJ_JOINT: return copy(mjs_asJoint(element_));
-    case mjOBJ_BODY: return copy(mjs_asBody(element_));
-    case mjOBJ_SITE: return copy(mjs_asSite(element_));
-    case mjOBJ_GEOM: return copy(mjs_asGeom(element_));
-    case mjOBJ_TENDON: return copy(mjs_asTendon(element_));
-    case mjOBJ_ACTUATOR: return copy(mjs_asActuator(element_));
-    default: return copy(mjs_asSensor(element_));
+    case mjOBJ_JOINT:
+      return copy(mjs_asJoint(element_));
+    case mjOBJ_BODY:
+      return copy(mjs_asBody(element_));
+    case mjOBJ_SITE:
+      return copy(mjs_asSite(element_));
+    case mjOBJ_GEOM:
+      return copy(mjs_asGeom(element_));
+    case mjOBJ_TENDON:
+      return copy(mjs_asTendon(element_));
+    case mjOBJ_ACTUATOR:
+      return copy(mjs_asActuator(element_));
+    default:
+      return copy(mjs_asSensor(element_));
   }
 }
 
@@ -268,11 +284,13 @@ void Element::FreezeInertia() {
   const int b = mj_name2id(compiled_, mjOBJ_BODY, Name().c_str());
   body.explicitinertial = 1;
   body.mass = compiled_->body_mass[b];
+  const bool massless = body.mass == 0;  // its compiled centre means nothing
   for (int i = 0; i < 3; ++i) {
-    body.ipos[i] = compiled_->body_ipos[3 * b + i];
+    body.ipos[i] = massless ? 0 : compiled_->body_ipos[3 * b + i];
     body.inertia[i] = compiled_->body_inertia[3 * b + i];
   }
-  for (int i = 0; i < 4; ++i) body.iquat[i] = compiled_->body_iquat[4 * b + i];
+  const double unit[4] = {1, 0, 0, 0};
+  for (int i = 0; i < 4; ++i) body.iquat[i] = massless ? unit[i] : compiled_->body_iquat[4 * b + i];
   body.ialt.type = mjORIENTATION_QUAT;
   body.fullinertia[0] = NAN;
 }
@@ -313,6 +331,8 @@ void Element::AddPointMass(double added) {
   inertia += steiner(body.mass, centre - moved) + steiner(added, moved);
   body.mass = total;
   for (int i = 0; i < 3; ++i) body.ipos[i] = moved[i];
+  // A point alone has no inertia; the compiler asks for some: that of a ball of 0.1 mm.
+  if (inertia.eigenvalues().real().minCoeff() <= 1e-12) inertia.diagonal().array() += 4e-9 * total;
   const double full[6] = {inertia(0, 0), inertia(1, 1), inertia(2, 2),
                           inertia(0, 1), inertia(0, 2), inertia(1, 2)};
   std::copy(full, full + 6, body.fullinertia);
@@ -343,10 +363,12 @@ std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const 
 }
 
 double& OptionAttribute(mjOption& option, std::string_view attribute, const std::string& where) {
-  const std::map<std::string, Field, std::less<>> fields{
-      {"gravity", {option.gravity, 3}},   {"timestep", {&option.timestep, 1}},
-      {"wind", {option.wind, 3}},         {"density", {&option.density, 1}},
-      {"viscosity", {&option.viscosity, 1}}, {"impratio", {&option.impratio, 1}}};
+  const std::map<std::string, Field, std::less<>> fields{{"gravity", {option.gravity, 3}},
+                                                         {"timestep", {&option.timestep, 1}},
+                                                         {"wind", {option.wind, 3}},
+                                                         {"density", {&option.density, 1}},
+                                                         {"viscosity", {&option.viscosity, 1}},
+                                                         {"impratio", {&option.impratio, 1}}};
   const auto [name, index] = SplitIndex(attribute);
   const auto field = fields.find(name);
   if (field != fields.end() && index >= 0 && index < field->second.size) {

@@ -9,9 +9,9 @@
 
 namespace continuum {
 
-/// One element of a model specification, with its numeric attributes by their MJCF names ("damping",
-/// "gear[0]", "pos[2]"; SI and radians whatever the file uses). Some names stand for what a user
-/// means by them:
+/// One element of a model specification, with its numeric attributes by their MJCF names
+/// ("damping", "gear[0]", "pos[2]"; SI and radians whatever the file uses). Some names stand for
+/// what a user means by them:
 ///
 ///   body      mass (scales the inertia with it), point_mass (added at the body's origin)
 ///   actuator  kp, kv (gain and bias), force_scale (gain, bias and force range), input (what it
@@ -55,8 +55,8 @@ class Element {
   const mjModel* compiled_;
 };
 
-/// The elements that a target "kind:glob" names, in the order of the model ("option" gives none: see
-/// OptionAttribute). Throws Error (where) when the kind is unknown or nothing matches.
+/// The elements that a target "kind:glob" names, in the order of the model ("option" gives none:
+/// see OptionAttribute). Throws Error (where) when the kind is unknown or nothing matches.
 std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const std::string& target,
                                    const std::string& where);
 

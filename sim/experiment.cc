@@ -34,6 +34,9 @@ class Recording {
   std::string Where(std::size_t row) const {
     return table_ ? table_->Where(row) : name_ + ", row " + std::to_string(row + 1);
   }
+  bool Flag(std::size_t row, const std::string& column) const {
+    return table_ ? table_->Flag(row, column) : Number(row, column, false) != 0;
+  }
   double Number(std::size_t row, const std::string& column, bool may_miss) const {
     if (table_) return may_miss ? table_->NumberOrNan(row, column) : table_->Number(row, column);
     const auto found = std::find(mat_->names.begin(), mat_->names.end(), column);
@@ -53,7 +56,8 @@ class Recording {
   std::string name_;
 };
 
-template <class T> T OneOf(const Yaml& y, const std::vector<std::pair<std::string, T>>& options) {
+template <class T>
+T OneOf(const Yaml& y, const std::vector<std::pair<std::string, T>>& options) {
   const std::string text = y.Text();
   std::string all;
   for (const auto& [name, value] : options) {
@@ -140,8 +144,8 @@ Output ReadOutput(const Yaml& y) {
   return out;
 }
 
-std::vector<Setting> ReadSettings(const Yaml& y) {
-  std::vector<Setting> settings;
+std::vector<Change> ReadSettings(const Yaml& y) {
+  std::vector<Change> settings;
   for (const auto& target : y.Keys()) {
     const Yaml attributes = y.At(target);
     for (const auto& attribute : attributes.Keys()) {
@@ -152,7 +156,8 @@ std::vector<Setting> ReadSettings(const Yaml& y) {
 }
 
 Parameter ReadParameter(const Yaml& y) {
-  y.Only({"name", "target", "attribute", "initial", "lower", "upper", "operation", "frozen", "per"});
+  y.Only(
+      {"name", "target", "attribute", "initial", "lower", "upper", "operation", "frozen", "per"});
   Parameter p;
   p.where = y.Where();
   p.name = y.At("name").Text();
@@ -171,7 +176,9 @@ Parameter ReadParameter(const Yaml& y) {
     }
   }
   if (const auto o = y.Find("operation")) {
-    p.scale = OneOf<bool>(*o, {{"set", false}, {"scale", true}});
+    p.operation = OneOf<Change::Operation>(*o, {{"set", Change::Operation::kSet},
+                                                {"scale", Change::Operation::kScale},
+                                                {"add", Change::Operation::kAdd}});
   }
   if (const auto frozen = y.Find("frozen")) p.frozen = frozen->Bool();
   if (const auto per = y.Find("per")) {
@@ -199,16 +206,26 @@ Candidate ReadCandidate(const Yaml& y) {
   return c;
 }
 
-void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_unit,
-              const std::vector<double>& window) {
+std::vector<Experiment::Folds> ReadFolds(const Yaml& y) {
+  std::vector<Experiment::Folds> folds;
+  for (const Yaml& item : y.IsList() ? y.Items() : std::vector<Yaml>{y}) {
+    folds.push_back(OneOf<Experiment::Folds>(item, {{"trial", Experiment::Folds::kTrial},
+                                                    {"condition", Experiment::Folds::kCondition},
+                                                    {"window", Experiment::Folds::kWindow}}));
+  }
+  return folds;
+}
+
+void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_unit) {
+  const std::vector<double>& window = log.window;
   double last = -kInfinity;
   std::vector<std::size_t> kept;
   for (std::size_t row = 0; row < rec.rows(); ++row) {
     const double t = rec.Number(row, e.time_column, false) * time_unit;
     if (!(t > last)) {
-      throw Error::Input(rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
-                         std::to_string(t / time_unit) + " after " +
-                             std::to_string(last / time_unit));
+      throw Error::Input(
+          rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
+          std::to_string(t / time_unit) + " after " + std::to_string(last / time_unit));
     }
     last = t;
     if (!window.empty() && (t < window[0] || t > window[1])) continue;
@@ -225,7 +242,7 @@ void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_u
     const double factor = UnitFactor(in.unit, "");
     for (const std::size_t row : kept) {
       values.push_back(in.column.empty() ? 0 : factor * rec.Number(row, in.column, false));
-      if (!in.enable.empty()) on.push_back(rec.Number(row, in.enable, false) != 0);
+      if (!in.enable.empty()) on.push_back(rec.Flag(row, in.enable));
     }
     log.input.push_back(std::move(values));
     log.enable.push_back(std::move(on));
@@ -256,16 +273,16 @@ Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
   if (const auto use = y.Find("use")) {
     log.train = OneOf<bool>(*use, {{"train", true}, {"validate", false}});
   }
-  std::vector<double> window;
+  log.variable = TextOr(y, "variable", "");
   if (const auto w = y.Find("window")) {
-    window = w->Numbers();
-    if (window.size() != 2 || !(window[0] < window[1])) {
+    log.window = w->Numbers();
+    if (log.window.size() != 2 || !(log.window[0] < log.window[1])) {
       throw Error::Input(w->Where(), "[begin, end] in s", "something else");
     }
     log.label += "_" + w->Items()[0].Text() + "_" + w->Items()[1].Text();
   }
   if (const auto set = y.Find("set")) log.set = ReadSettings(*set);
-  ReadRows(log, e, Recording(log.file, TextOr(y, "variable", "")), time_unit, window);
+  ReadRows(log, e, Recording(log.file, log.variable), time_unit);
   return log;
 }
 
@@ -307,7 +324,7 @@ void MakeLabelsUnique(std::vector<Log>& logs) {
 Experiment Experiment::Read(const std::filesystem::path& file) {
   const Yaml y = Yaml::Read(file);
   y.Only({"format", "model", "logs", "time", "start", "inputs", "outputs", "registration",
-          "quasi_static", "parameters", "candidates", "folds"});
+          "quasi_static", "parameters", "candidates", "folds", "loss"});
   if (y.At("format").Number() != 1) {
     throw Error::Input(y.At("format").Where(), "format 1", y.At("format").Text());
   }
@@ -325,7 +342,8 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
   if (const auto time = y.Find("time")) {
     time->Only({"column", "unit", "skew"});
     e.time_column = TextOr(*time, "column", "time");
-    if (const auto unit = time->Find("unit")) time_unit = UnitFactor(unit->Text(), unit->Where());
+    e.time_unit = TextOr(*time, "unit", "s");
+    if (const auto unit = time->Find("unit")) time_unit = UnitFactor(e.time_unit, unit->Where());
     e.skew = NumberOr(*time, "skew", 0);
     if (e.skew <= -1) throw Error::Input(time->At("skew").Where(), "a skew above -1", "less");
   }
@@ -354,10 +372,10 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
     e.all_candidates = false;
     for (const Yaml& item : c->Items()) e.candidates.push_back(ReadCandidate(item));
   }
-  if (const auto folds = y.Find("folds")) {
-    e.folds = OneOf<Folds>(*folds, {{"trial", Folds::kTrial},
-                                    {"condition", Folds::kCondition},
-                                    {"window", Folds::kWindow}});
+  if (const auto folds = y.Find("folds")) e.folds = ReadFolds(*folds);
+  if (const auto loss = y.Find("loss")) {
+    loss->Only({"soft_l1"});
+    e.soft = loss->At("soft_l1").Number(1e-300, kInfinity);
   }
   CheckNames(e, y);
   for (const Yaml& item : y.At("logs").Items()) e.logs.push_back(ReadLog(item, e, time_unit));

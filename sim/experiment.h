@@ -6,15 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/change.h"
 #include "sim/yaml.h"
 
 namespace continuum {
-
-/// Known values of one log: attribute → value by target ("actuator:servo").
-struct Setting {
-  std::string target, attribute;
-  double value;
-};
 
 /// What an actuator receives.
 struct Input {
@@ -23,7 +18,8 @@ struct Input {
   bool linear = false;  ///< else held between rows
 };
 
-/// How a channel is measured: y_meas(t) = scale · R(axis, angle) y(t − delay) + bias + rate (t − t_0).
+/// How a channel is measured: y_meas(t) = scale · R(axis, angle) y(t − delay) + bias + rate (t −
+/// t_0).
 struct Measurement {
   double bias = 0, scale = 1, delay = 0, rate = 0, angle = 0;
   std::vector<double> axis{0, 0, 1};
@@ -50,9 +46,11 @@ struct Output {
 struct Log {
   std::string label;  ///< unique: file stem, with the window when a file gives several logs
   std::filesystem::path file;
+  std::string variable;        ///< of a MAT file
+  std::vector<double> window;  ///< [begin, end] in log time [s], or empty
   std::string trial, condition;
   bool train = true;
-  std::vector<Setting> set;
+  std::vector<Change> set;  ///< known values of this log
 
   std::vector<double> time;                   ///< [s] in model time, increasing
   std::vector<std::vector<double>> input;     ///< [input][row]
@@ -68,10 +66,11 @@ struct Parameter {
   std::string name, target, attribute;
   double initial = 0, lower = 0, upper = 0;
   bool has_initial = false;
-  bool scale = false;   ///< multiplies what the model or `set` gives
+  Change::Operation operation =
+      Change::Operation::kSet;  ///< kScale: of what the model or `set` has
   bool frozen = false;
   Per per = Per::kAll;
-  std::string where;    ///< file:line: key, for messages
+  std::string where;  ///< file:line: key, for messages
 };
 
 /// An effect the diagnosis may try.
@@ -87,7 +86,7 @@ struct Experiment {
   enum class Folds { kTrial, kCondition, kWindow };
 
   std::filesystem::path file, model;
-  std::string time_column = "time";
+  std::string time_column = "time", time_unit = "s";
   double skew = 0;
   Start start = Start::kRest;
   std::vector<Input> inputs;
@@ -96,7 +95,8 @@ struct Experiment {
   std::vector<Parameter> parameters;
   bool all_candidates = true;
   std::vector<Candidate> candidates;
-  Folds folds = Folds::kTrial;
+  std::vector<Folds> folds{Folds::kTrial};
+  double soft = 0;  ///< residuals beyond this size count linearly in a fit [residual unit]; 0: off
 
   /// Channels are the columns of all outputs, in order; a quaternion has four.
   struct Channel {

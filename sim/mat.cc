@@ -21,12 +21,23 @@ std::vector<double> Numbers(const matvar_t& v, const std::string& where) {
   const auto convert = [&](auto* data) { out.assign(data, data + n); };
   if (!v.data || v.isComplex) throw Error::Input(where, "real numbers", "something else");
   switch (v.class_type) {
-    case MAT_C_DOUBLE: convert(static_cast<const double*>(v.data)); break;
-    case MAT_C_SINGLE: convert(static_cast<const float*>(v.data)); break;
-    case MAT_C_INT32: convert(static_cast<const int*>(v.data)); break;
-    case MAT_C_INT16: convert(static_cast<const short*>(v.data)); break;
-    case MAT_C_UINT8: convert(static_cast<const unsigned char*>(v.data)); break;
-    default: throw Error::Input(where, "a numeric matrix", "another type");
+    case MAT_C_DOUBLE:
+      convert(static_cast<const double*>(v.data));
+      break;
+    case MAT_C_SINGLE:
+      convert(static_cast<const float*>(v.data));
+      break;
+    case MAT_C_INT32:
+      convert(static_cast<const int*>(v.data));
+      break;
+    case MAT_C_INT16:
+      convert(static_cast<const short*>(v.data));
+      break;
+    case MAT_C_UINT8:
+      convert(static_cast<const unsigned char*>(v.data));
+      break;
+    default:
+      throw Error::Input(where, "a numeric matrix", "another type");
   }
   return out;
 }

@@ -11,6 +11,7 @@ struct MujocoDeleter {
   void operator()(mjModel* m) const { mj_deleteModel(m); }
   void operator()(mjData* d) const { mj_deleteData(d); }
 };
-template <class T> using Owned = std::unique_ptr<T, MujocoDeleter>;
+template <class T>
+using Owned = std::unique_ptr<T, MujocoDeleter>;
 
 }  // namespace continuum

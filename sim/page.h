@@ -83,7 +83,7 @@ struct BarsSpec {
 struct HeatMapSpec {
   std::string title;
   std::vector<std::string> rows;
-  std::vector<std::string> columns;         ///< empty: the same as `rows`
+  std::vector<std::string> columns = {};    ///< empty: the same as `rows`
   std::vector<std::vector<double>> values;  ///< values[row][column]; non-finite = empty cell
 };
 

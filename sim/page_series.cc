@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "sim/page_text.h"
 
@@ -82,16 +83,15 @@ std::string Times(const std::vector<double>& time, const std::vector<std::size_t
 
 std::vector<std::size_t> Decimate(const std::vector<Series>& series, std::size_t rows,
                                   std::size_t limit) {
-  std::vector<std::size_t> kept;
-  const std::size_t per_stretch = 3 * std::max<std::size_t>(series.size(), 1);
-  const std::size_t stretches = rows <= limit ? rows : std::max<std::size_t>(limit / per_stretch, 1);
+  std::vector<std::size_t> kept(rows);
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  if (rows <= limit) return kept;
+  kept = {0, rows - 1};
+  const std::size_t stretches = std::max<std::size_t>(limit / (3 * series.size()), 1);
   for (std::size_t s = 0; s < stretches; ++s) {
     const Stretch stretch{s * rows / stretches, (s + 1) * rows / stretches};
-    if (s == 0 || rows <= limit) kept.push_back(stretch.begin);
-    if (rows <= limit) continue;
     for (const Series& one : series) KeepExtremes(one.values, stretch, kept);
   }
-  if (rows > limit) kept.push_back(rows - 1);
   std::sort(kept.begin(), kept.end());
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   return kept;
@@ -101,7 +101,7 @@ std::string SeriesJson(const TimeSeriesSpec& spec, const std::vector<std::size_t
                        int group) {
   std::vector<std::string> styles, values;
   for (std::size_t i = 0; i < spec.series.size(); ++i) {
-    styles.push_back("\"" + StyleName(spec.series[i].style, i) + "\"");
+    styles.push_back(fmt::format("\"{}\"", StyleName(spec.series[i].style, i)));
     values.push_back(Values(spec.series[i].values, rows));
   }
   return fmt::format("{{\"group\":{},{},\"styles\":{},\"values\":{}}}", group,

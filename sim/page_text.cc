@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdint>
 
 namespace continuum::page {
 namespace {
@@ -30,14 +29,21 @@ std::size_t CharacterSize(std::string_view text) {
 
 std::string EscapeByte(char c) {
   switch (c) {
-    case '&': return "&amp;";
-    case '<': return "&lt;";
-    case '>': return "&gt;";
-    case '"': return "&quot;";
-    case '\'': return "&#39;";
-    default: break;
+    case '&':
+      return "&amp;";
+    case '<':
+      return "&lt;";
+    case '>':
+      return "&gt;";
+    case '"':
+      return "&quot;";
+    case '\'':
+      return "&#39;";
+    default:
+      break;
   }
-  const bool control = (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
+  const bool control =
+      (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
   return control ? std::string(kReplacement) : std::string(1, c);
 }
 
@@ -109,12 +115,18 @@ std::string Readable(double value, int digits) {
 
 std::string StyleName(Style style, std::size_t index) {
   switch (style) {
-    case Style::kMeasured: return "measured";
-    case Style::kSimulated: return "simulated";
-    case Style::kBefore: return "before";
-    case Style::kAfter: return "after";
-    case Style::kResidual: return "residual";
-    case Style::kAuto: break;
+    case Style::kMeasured:
+      return "measured";
+    case Style::kSimulated:
+      return "simulated";
+    case Style::kBefore:
+      return "before";
+    case Style::kAfter:
+      return "after";
+    case Style::kResidual:
+      return "residual";
+    case Style::kAuto:
+      break;
   }
   return fmt::format("palette{}", index % kPalette);
 }

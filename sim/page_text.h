@@ -32,7 +32,8 @@ std::string Readable(double value, int digits = 3);
 /// CSS class and colour variable of a style; `index` picks the palette's colour for kAuto.
 std::string StyleName(Style style, std::size_t index);
 
-/// One entry of a legend; kind "line", "dot" or "band". With `value`, a place for the hovered value.
+/// One entry of a legend; kind "line", "dot" or "band". With `value`, a place for the hovered
+/// value.
 std::string LegendKey(const std::string& name, const std::string& style, const std::string& kind,
                       bool value);
 

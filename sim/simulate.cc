@@ -19,7 +19,8 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 std::string NamesOf(const mjModel& m, mjtObj type, int count) {
   std::string all;
   for (int i = 0; i < count; ++i) {
-    if (const char* name = mj_id2name(&m, type, i)) all += (all.empty() ? "" : ", ") + std::string(name);
+    if (const char* name = mj_id2name(&m, type, i))
+      all += (all.empty() ? "" : ", ") + std::string(name);
   }
   return all.empty() ? "none" : all;
 }
@@ -50,9 +51,10 @@ Wiring::Source SensorSource(const mjModel& m, const Output& out) {
   }
   const int dim = m.sensor_dim[id];
   if (component < 0 || component >= dim || (out.quaternion() && dim != 4)) {
-    throw Error::Input("sensor '" + out.source + "'",
-                       out.quaternion() ? "a quaternion" : "a component below " + std::to_string(dim),
-                       out.quaternion() ? std::to_string(dim) + " numbers" : "another");
+    throw Error::Input(
+        "sensor '" + out.source + "'",
+        out.quaternion() ? "a quaternion" : "a component below " + std::to_string(dim),
+        out.quaternion() ? std::to_string(dim) + " numbers" : "another");
   }
   return {Output::Kind::kSensor, m.sensor_adr[id], dim, component};
 }
@@ -84,7 +86,8 @@ class Inputs {
  public:
   Inputs(mjModel& m, const Experiment& e, const Log& log, const Wiring& wiring)
       : experiment_(e), log_(log), wiring_(wiring) {
-    for (std::size_t i = 0; i < wiring.actuator.size(); ++i) gates_.emplace_back(m, wiring.actuator[i]);
+    for (std::size_t i = 0; i < wiring.actuator.size(); ++i)
+      gates_.emplace_back(m, wiring.actuator[i]);
   }
 
   void AtRow(mjData& d, std::size_t row) {
@@ -116,7 +119,8 @@ class Inputs {
 void Settle(const mjModel& m, mjData& d) {
   for (int a = 0; a < m.nu; ++a) {
     const int adr = m.actuator_actadr[a];
-    const bool lagged = m.actuator_dyntype[a] == mjDYN_FILTER || m.actuator_dyntype[a] == mjDYN_FILTEREXACT;
+    const bool lagged =
+        m.actuator_dyntype[a] == mjDYN_FILTER || m.actuator_dyntype[a] == mjDYN_FILTEREXACT;
     if (adr >= 0 && lagged) d.act[adr] = d.ctrl[a];
     const int samples = m.actuator_history[2 * a];
     if (samples > 0) {
@@ -145,7 +149,8 @@ double At(const std::vector<double>& time, const std::vector<double>& y, double 
 }
 
 // y_meas(t) = scale R(axis, angle) y(t − delay) + bias + rate (t − t_0), in the output's unit.
-void Measure(Record& record, const Measurement& how, const std::vector<double>& time, double factor) {
+void Measure(Record& record, const Measurement& how, const std::vector<double>& time,
+             double factor) {
   if (how == Measurement{}) return;
   Record late = record;
   if (how.delay > 0) {
@@ -168,8 +173,8 @@ void Measure(Record& record, const Measurement& how, const std::vector<double>& 
       for (int c = 0; c < 3; ++c) late[c][k] = turned[c];
     }
     for (std::size_t c = 0; c < record.size(); ++c) {
-      record[c][k] = how.scale * late[c][k] +
-                     factor * (how.bias + how.rate * (time[k] - time.front()));
+      record[c][k] =
+          how.scale * late[c][k] + factor * (how.bias + how.rate * (time[k] - time.front()));
     }
   }
 }
@@ -202,12 +207,6 @@ Wiring::Wiring(const Experiment& e, const mjModel& m) {
       output.push_back({out.kind, ActuatorId(m, out.source), 1, 0});
     }
   }
-}
-
-std::vector<Change> SettingsOf(const Log& log) {
-  std::vector<Change> changes;
-  for (const Setting& s : log.set) changes.push_back({s.target, s.attribute, s.value});
-  return changes;
 }
 
 InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
@@ -245,7 +244,8 @@ InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log) 
   inputs.AtRow(d, 0);
   const int nv = static_cast<int>(m.nv);
   const auto residual = [&](double load) {  // M·qacc: what is not balanced
-    for (std::size_t i = 0; i < wiring.actuator.size(); ++i) d.ctrl[wiring.actuator[i]] = load * log.input[i][0];
+    for (std::size_t i = 0; i < wiring.actuator.size(); ++i)
+      d.ctrl[wiring.actuator[i]] = load * log.input[i][0];
     Settle(m, d);
     mj_forward(&m, &d);
     Eigen::VectorXd r(nv);
@@ -293,7 +293,7 @@ InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log) 
 }
 
 Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const InitialState& initial,
-               const RowHook& hook) {
+               const Hooks& hooks) {
   const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
@@ -322,7 +322,7 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
         records[o][c][row] = from[source.address + c];
       }
     }
-    if (hook) hook(m, d, row);
+    if (hooks.row) hooks.row(m, d, row);
   };
 
   for (std::size_t row = 0; row + 1 < log.rows() && !trace.diverged; ++row) {
@@ -334,6 +334,7 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
     for (int step = 0; step < all; ++step) {
       m.opt.timestep = step < steps ? h : rest;
       if (step > 0) inputs.Between(d, row, begin + step * h);
+      if (hooks.step) hooks.step(m, d);
       mj_step(&m, &d);  // its sensors are those of the state it starts from
       if (step == 0) record(row);
       if (!Healthy(m, d)) {

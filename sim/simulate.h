@@ -20,8 +20,12 @@ struct Trace {
   double diverged_at = 0;  ///< [s]
 };
 
-/// Called at every row with the state that the row sees.
-using RowHook = std::function<void(const mjModel&, mjData&, std::size_t row)>;
+struct Hooks {
+  /// At every row, with the state that the row sees.
+  std::function<void(const mjModel&, mjData&, std::size_t row)> row = {};
+  /// Before every step; may write qfrc_applied.
+  std::function<void(const mjModel&, mjData&)> step = {};
+};
 
 /// Names of an experiment resolved in a model. Throws Error for unknown actuators and sensors.
 struct Wiring {
@@ -44,7 +48,7 @@ struct Wiring {
 ///
 /// A simulation that diverges ends there: diverged is set, the rest of the channels is NaN.
 Trace Simulate(Machine& machine, const Experiment& e, const Log& log,
-               const InitialState& initial = {}, const RowHook& hook = {});
+               const InitialState& initial = {}, const Hooks& hooks = {});
 
 /// The state in which the experiment's start leaves a log's trial.
 InitialState StartOf(Machine& machine, const Experiment& e, const Log& log);
@@ -52,8 +56,5 @@ InitialState StartOf(Machine& machine, const Experiment& e, const Log& log);
 /// Static equilibrium under the first inputs, without friction, lags settled. Throws Error (kJob)
 /// when there is none near qpos0.
 InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log);
-
-/// Changes that a log's `set` makes.
-std::vector<Change> SettingsOf(const Log& log);
 
 }  // namespace continuum

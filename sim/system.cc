@@ -14,9 +14,24 @@ namespace {
 
 constexpr std::string_view kPluginTarget = "plugin:";
 
+constexpr std::string_view kEffectAttribute = "effect:";
+
+// A native effect with one parameter.
+void ApplyEffect(Element& e, const Change& change) {
+  const std::string name = change.attribute.substr(kEffectAttribute.size());
+  bool known = false;
+  All::ForEach([&]<class E>() {
+    if constexpr (EditLaw<E>) {
+      if (name == E::kName) known = true, E::Apply(e, {change.value});
+    }
+  });
+  if (!known) throw Error::Input(change.attribute, "a native effect", "'" + name + "'");
+}
+
 void RegisterOnce() {
   static const bool once = [] {
-    mju_user_warning = [](const char*) {};  // compile errors carry the text; see Simulate for the rest
+    mju_user_warning = [](const char*) {
+    };  // compile errors carry the text; see Simulate for the rest
     RegisterEffects();
     return true;
   }();
@@ -49,9 +64,12 @@ std::size_t IndexOn(const mjModel& m, int instance, const std::string& parameter
 
 double Changed(double old, const Change& change) {
   switch (change.operation) {
-    case Change::Operation::kScale: return old * change.value;
-    case Change::Operation::kAdd: return old + change.value;
-    default: return change.value;
+    case Change::Operation::kScale:
+      return old * change.value;
+    case Change::Operation::kAdd:
+      return old + change.value;
+    default:
+      return change.value;
   }
 }
 
@@ -67,7 +85,8 @@ void ApplyToPlugin(mjModel& m, mjData& d, const Change& change) {
 void SetConfig(std::string& xml, const std::string& instance, const std::string& key,
                const std::string& value) {
   const std::size_t begin = xml.find("<instance name=\"" + instance + "\"");
-  if (begin == xml.npos) throw Error::Input("plugin:" + instance, "an instance in the MJCF", "none");
+  if (begin == xml.npos)
+    throw Error::Input("plugin:" + instance, "an instance in the MJCF", "none");
   const std::size_t open_end = xml.find('>', begin);
   if (xml[open_end - 1] == '/') {  // <instance name="…"/>
     xml.replace(open_end - 1, 2, ">\n        </instance>");
@@ -85,8 +104,8 @@ void SetConfig(std::string& xml, const std::string& instance, const std::string&
 }
 
 void AddInstance(std::string& xml, const EffectInstance& effect) {
-  std::string text = "    <plugin plugin=\"continuum." + effect.effect + "\">\n      <instance name=\"" +
-                     effect.name + "\">\n";
+  std::string text = "    <plugin plugin=\"continuum." + effect.effect +
+                     "\">\n      <instance name=\"" + effect.name + "\">\n";
   for (const auto& [key, value] : effect.config) {
     text += "        <config key=\"" + key + "\" value=\"" + value + "\"/>\n";
   }
@@ -167,10 +186,20 @@ class System::Edits {
     }
     for (Element& e : MatchElements(&spec_, system.compiled_.get(), change.target, change.target)) {
       elements_.push_back(e.Save());
+      if (change.attribute.starts_with(kEffectAttribute)) {
+        ApplyEffect(e, change);
+        continue;
+      }
       switch (change.operation) {
-        case Change::Operation::kSet: e.Set(change.attribute, change.value); break;
-        case Change::Operation::kScale: e.Scale(change.attribute, change.value); break;
-        case Change::Operation::kAdd: e.Add(change.attribute, change.value); break;
+        case Change::Operation::kSet:
+          e.Set(change.attribute, change.value);
+          break;
+        case Change::Operation::kScale:
+          e.Scale(change.attribute, change.value);
+          break;
+        case Change::Operation::kAdd:
+          e.Add(change.attribute, change.value);
+          break;
       }
     }
   }
@@ -180,6 +209,8 @@ class System::Edits {
   mjsCompiler compiler_;
   std::vector<Element::Saved> elements_;
 };
+
+void System::DropVisuals() { spec_->compiler.discardvisual = 1; }
 
 System::System(const System& other) : System(Parse(other.Xml(), other.folder_, other.name_)) {}
 
@@ -204,19 +235,34 @@ double System::Value(const std::string& target, const std::string& attribute) co
     const int instance = InstanceId(*compiled_, target);
     return BoundOf(*compiled_, *d, instance).parameters()[IndexOn(*compiled_, instance, attribute)];
   }
-  return MatchElements(spec_.get(), compiled_.get(), target, target).front().Get(attribute);
+  auto elements = MatchElements(spec_.get(), compiled_.get(), target, target);
+  return attribute.starts_with(kEffectAttribute) ? 0 : elements.front().Get(attribute);
+}
+
+double System::ValueAfter(std::span<const Change> changes, const std::string& target,
+                          const std::string& attribute) const {
+  if (!target.starts_with(kPluginTarget)) {
+    const Edits edits(*this, changes);
+    return Value(target, attribute);
+  }
+  double value = Value(target, attribute);
+  for (const Change& change : changes) {
+    if (change.target == target && change.attribute == attribute) value = Changed(value, change);
+  }
+  return value;
 }
 
 std::string System::Xml(std::span<const Change> changes,
                         std::span<const EffectInstance> added) const {
   const Edits edits(*this, changes);
+  spec_->compiler.discardvisual = 0;
   spec_->compiler.savecompiled = 0;
   spec_->compiler.savecanonical = 0;
   std::string xml(1 << 16, '\0');
   char error[1000] = "";
   while (true) {
-    const int length = mj_saveXMLString(spec_.get(), xml.data(), static_cast<int>(xml.size()), error,
-                                        sizeof error);
+    const int length = mj_saveXMLString(spec_.get(), xml.data(), static_cast<int>(xml.size()),
+                                        error, sizeof error);
     if (length < 0) throw Error::Job(name_ + ": " + error);
     if (length == 0) {
       xml.resize(xml.find('\0'));
@@ -227,11 +273,28 @@ std::string System::Xml(std::span<const Change> changes,
   for (const EffectInstance& effect : added) AddInstance(xml, effect);
   for (const Change& change : changes) {
     if (!IsPlugin(change)) continue;
-    const double value = Changed(change.operation == Change::Operation::kSet
-                                     ? 0 : Value(change.target, change.attribute), change);
+    const double value = Changed(
+        change.operation == Change::Operation::kSet ? 0 : Value(change.target, change.attribute),
+        change);
     SetConfig(xml, change.target.substr(kPluginTarget.size()), change.attribute, Decimal(value));
   }
   return xml;
+}
+
+System System::Replacing(const std::string& instance, const EffectInstance& by) const {
+  std::string xml = Xml();
+  const std::size_t begin = xml.find("<instance name=\"" + instance + "\"");
+  if (begin == xml.npos)
+    throw Error::Input("plugin:" + instance, "an instance in the MJCF", "none");
+  const std::string close = "</instance>";
+  const std::size_t end = xml.find(close, begin) + close.size();
+  xml.erase(begin, end - begin);
+  const std::size_t open = xml.rfind("<plugin ", begin);
+  const std::size_t shut = xml.find("</plugin>", open);
+  if (xml.find("<instance", open) > shut)
+    xml.erase(open, shut + 9 - open);  // nothing is left in it
+  AddInstance(xml, by);
+  return Parse(xml, folder_, name_);
 }
 
 System System::With(std::span<const Change> changes, std::span<const EffectInstance> added) const {

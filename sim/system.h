@@ -6,17 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "sim/change.h"
 #include "sim/mujoco.h"
 
 namespace continuum {
-
-/// Another value for an attribute of the model: target "joint:bend*", "option", "plugin:NAME".
-struct Change {
-  enum class Operation { kSet, kScale, kAdd };
-  std::string target, attribute;
-  double value;
-  Operation operation = Operation::kSet;
-};
 
 /// A compiled model of one's own with its data.
 struct Machine {
@@ -44,14 +37,22 @@ class System {
   const mjModel& model() const { return *compiled_; }
   const std::string& name() const { return name_; }
 
+  /// Leaves out textures and visual geoms from now on: compiling is much faster, motion the same.
+  void DropVisuals();
+
   /// Compiles with changes, later ones after earlier ones. Throws Error (where the change came from
   /// is the caller's to say) for unknown targets and attributes, or with MuJoCo's text.
   Machine Build(std::span<const Change> changes = {}) const;
   /// The value that a change would replace.
   double Value(const std::string& target, const std::string& attribute) const;
+  /// The value after changes.
+  double ValueAfter(std::span<const Change> changes, const std::string& target,
+                    const std::string& attribute) const;
   /// MJCF of the specification with changes and plugin instances, as authored.
   std::string Xml(std::span<const Change> changes = {},
                   std::span<const EffectInstance> added = {}) const;
+  /// The same with another effect under an instance's name; keys that the other effect lacks go.
+  System Replacing(const std::string& instance, const EffectInstance& by) const;
   /// The same with changes and instances inside.
   System With(std::span<const Change> changes, std::span<const EffectInstance> added) const;
 

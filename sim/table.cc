@@ -55,7 +55,9 @@ std::vector<std::string> Split(std::string_view line, const std::string& where) 
 
 }  // namespace
 
-Table Table::Read(const std::filesystem::path& file) { return Parse(ReadFile(file), file.string()); }
+Table Table::Read(const std::filesystem::path& file) {
+  return Parse(ReadFile(file), file.string());
+}
 
 Table Table::Parse(std::string_view text, std::string name) {
   Table t;
@@ -119,8 +121,6 @@ double Table::NumberOrNan(std::size_t row, std::string_view column) const {
 
 double Table::Number(std::size_t row, std::string_view column) const {
   const std::string& cell = Text(row, column);
-  if (cell == "True" || cell == "true") return 1;
-  if (cell == "False" || cell == "false") return 0;
   const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
   const char* const end = cell.data() + cell.size();
   double value = 0;
@@ -128,6 +128,13 @@ double Table::Number(std::size_t row, std::string_view column) const {
   if (error == std::errc{} && stop == end && std::isfinite(value)) return value;
   throw Error::Input(Where(row) + ", column '" + std::string(column) + "'", "a finite number",
                      cell.empty() ? "an empty cell" : "'" + cell + "'");
+}
+
+bool Table::Flag(std::size_t row, std::string_view column) const {
+  const std::string& cell = Text(row, column);
+  if (cell == "True" || cell == "true" || cell == "TRUE") return true;
+  if (cell == "False" || cell == "false" || cell == "FALSE") return false;
+  return Number(row, column) != 0;
 }
 
 std::vector<double> Table::Numbers(std::string_view column) const {

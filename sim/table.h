@@ -30,6 +30,8 @@ class Table {
   double Number(std::size_t row, std::string_view column) const;
   /// As Number, but an empty cell or "nan" is NaN: a value that was not measured.
   double NumberOrNan(std::size_t row, std::string_view column) const;
+  /// true, false or a number (0 is false).
+  bool Flag(std::size_t row, std::string_view column) const;
   std::vector<double> Numbers(std::string_view column) const;
 
  private:

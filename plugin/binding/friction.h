@@ -20,14 +20,14 @@ struct Row {
 ///
 ///   efc_aref = −B v − K (q − anchor),   K = 1/(2h)², B = 1/h                (1)
 ///
-/// While |efc_force| has reached the level the anchor moves with q, at the distance at which the row
-/// would hold that force at rest:
+/// While |efc_force| has reached the level the anchor moves with q, at the distance at which the
+/// row would hold that force at rest:
 ///
 ///   anchor = q − x,   x = −R efc_force/(K d)                                (2)
 ///
 /// (K, d, R: stiffness, impedance, regularization of the row), so that a joint that comes to rest
-/// under load stays there. Source: MuJoCo's constraint model. The two states of a row are {anchored,
-/// anchor}; a ball joint has six numbers, {anchored, quaternion, 0}.
+/// under load stays there. Source: MuJoCo's constraint model. The two states of a row are
+/// {anchored, anchor}; a ball joint has six numbers, {anchored, quaternion, 0}.
 class Rows {
  public:
   /// Joints (hinge, slide, ball) or tendons named in config.
@@ -103,6 +103,7 @@ class BoundFriction : public Bound {
     if constexpr (requires { E::kDamping; }) {
       double& native = m.dof_damping[row.index];
       const double own = p_[E::kDamping];
+      if (own == 0) return;
       if (native != 0 && native != own && native != imposed_) {
         throw Error::Input("continuum." + std::string(E::kName) + ": joint '" +
                                mj_id2name(&m, mjOBJ_JOINT, row.id) + "'",

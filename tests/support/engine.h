@@ -16,7 +16,8 @@ struct Delete {
   void operator()(mjModel* m) const { mj_deleteModel(m); }
   void operator()(mjData* d) const { mj_deleteData(d); }
 };
-template <class T> using Owned = std::unique_ptr<T, Delete>;
+template <class T>
+using Owned = std::unique_ptr<T, Delete>;
 
 /// An unmodified MuJoCo with libmujoco_continuum.so loaded, as any user has it.
 class Engine : public ::testing::Test {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include <CLI/App.hpp>
+
+namespace continuum {
+
+/// Progress on stderr: one line that is rewritten on a terminal, plain lines otherwise.
+void ShowProgress(const std::string& text);
+/// Ends a rewritten line.
+void EndProgress();
+
+/// Subcommands; each sets exit_code when it runs and throws Error otherwise.
+void AddRun(CLI::App& app);
+void AddCheck(CLI::App& app);
+void AddReplay(CLI::App& app);
+void AddRender(CLI::App& app);
+void AddIdentify(CLI::App& app);
+void AddDiagnose(CLI::App& app);
+void AddApply(CLI::App& app);
+void AddEffects(CLI::App& app);
+void AddModels(CLI::App& app);
+
+}  // namespace continuum

@@ -1,0 +1,132 @@
+#include <cstdio>
+#include <memory>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "app/console.h"
+#include "error.h"
+#include "identification/diagnosis_output.h"
+#include "identification/extension.h"
+#include "sim/file.h"
+#include "sim/film.h"
+
+namespace continuum {
+namespace {
+
+struct Options {
+  std::string experiment, out, candidates, compare;
+  int placebos = 20;
+  std::uint64_t seed = 1;
+  bool video = false;
+};
+
+nlohmann::json ReadJson(const std::string& file) {
+  try {
+    return nlohmann::json::parse(ReadFile(file));
+  } catch (const nlohmann::json::exception& e) {
+    throw Error::Input(file, "JSON", e.what());
+  }
+}
+
+void PrintComparison(const std::string& file, const nlohmann::json& before,
+                     const nlohmann::json& now) {
+  const auto line = [](const char* what, const nlohmann::json& d) {
+    std::printf("%-6s %-12s validate %.4g -> %.4g\n", what,
+                d.at("verdict").get<std::string>().c_str(),
+                d.at("error").at("before").at("validate").get<double>(),
+                d.at("error").at("after").at("validate").get<double>());
+  };
+  try {
+    std::printf("compared with %s:\n", file.c_str());
+    line("then", before);
+    line("now", now);
+  } catch (const nlohmann::json::exception& e) {
+    throw Error::Input(file, "a diagnosis.json", e.what());
+  }
+}
+
+void RunDiagnose(const Options& o) {
+  const Experiment e = Experiment::Read(o.experiment);
+  const System system = System::Load(e.model);
+  const nlohmann::json old = o.compare.empty() ? nlohmann::json{} : ReadJson(o.compare);
+  DiagnosisOptions options;
+  std::istringstream names(o.candidates);
+  for (std::string name; std::getline(names, name, ',');) {
+    options.candidates.emplace_back(EffectNamed(name).name);
+  }
+  options.placebos = o.placebos;
+  options.seed = o.seed;
+  options.progress = ShowProgress;
+  MakeFolder(o.out);
+  const Diagnosis d = Diagnose(e, system, options);
+  ShowProgress("files");
+  const Told told = WriteDiagnosis(e, d, o.out);
+  EndProgress();
+  std::fputs(Summary(e, d, told).c_str(), stdout);
+  if (!o.compare.empty()) PrintComparison(o.compare, old, DiagnosisJson(e, d, told));
+  const std::filesystem::path folder = o.out;
+  if (o.video) {
+    FilmOptions film;
+    film.progress = ShowProgress;
+    std::vector<std::size_t> shown;
+    for (std::size_t l = 0; l < e.logs.size(); ++l) {
+      if (!e.logs[l].train && shown.size() < 2) shown.push_back(l);
+    }
+    if (shown.empty()) shown.push_back(0);
+    const Experiment extended = Experiment::Read(folder / "extended.yaml");
+    FilmExperiment(extended, System::Load(folder / "extended.xml"), shown, folder / "extended.mp4",
+                   film);
+    EndProgress();
+    std::printf("video     %s\n", (folder / "extended.mp4").c_str());
+  }
+  std::printf("report    %s (%.0f s)\n", (folder / "report.html").c_str(), d.seconds);
+}
+
+struct ApplyOptions {
+  std::string diagnosis, model, out;
+};
+
+void RunApply(const ApplyOptions& o) {
+  const auto json = ReadJson(o.diagnosis);
+  WriteFile(o.out, ApplyJson(System::Load(o.model), json, o.diagnosis));
+  System::Load(o.out);  // it must load
+}
+
+}  // namespace
+
+void AddDiagnose(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* const sub = app.add_subcommand(
+      "diagnose", "Find what the simulation gets wrong, name the cause, extend the model");
+  sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
+  sub->add_option("--out", o->out,
+                  "folder for diagnosis.json, extended.xml, extended.yaml, simulated/, report.html")
+      ->required();
+  sub->add_option("--candidates", o->candidates, "effects to try, separated by commas");
+  sub->add_option("--compare", o->compare, "an earlier diagnosis.json");
+  sub->add_option("--placebos", o->placebos, "random forces to compare with")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  sub->add_option("--seed", o->seed, "of the random forces")->capture_default_str();
+  sub->add_flag("--video", o->video,
+                "also extended.mp4: the extended model beside the measured pose");
+  sub->footer(
+      "Example:\n  continuum diagnose models/annelida/demo/annelida.yaml --out out --video");
+  sub->callback([o] { RunDiagnose(*o); });
+}
+
+void AddApply(CLI::App& app) {
+  const auto o = std::make_shared<ApplyOptions>();
+  CLI::App* const sub =
+      app.add_subcommand("apply", "Put the extension of a diagnosis into a model");
+  sub->add_option("diagnosis", o->diagnosis, "DIAGNOSIS.json")->required();
+  sub->add_option("model", o->model, "MODEL.xml")->required();
+  sub->add_option("--out", o->out, "EXTENDED.xml")->required();
+  sub->footer(
+      "Example:\n  continuum apply out/diagnosis.json models/annelida/annelida.xml --out "
+      "extended.xml");
+  sub->callback([o] { RunApply(*o); });
+}
+
+}  // namespace continuum

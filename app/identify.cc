@@ -1,0 +1,88 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "app/console.h"
+#include "error.h"
+#include "identification/fit_output.h"
+#include "sim/check.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+struct Options {
+  std::string experiment, out, method = "lm", path = "stepped";
+  int iterations = 50;
+  bool all = false, for_step = false;
+};
+
+void RunIdentify(const Options& o) {
+  if (o.method != "lm")
+    throw Error::Input("--method", "lm (others are not available yet)", "'" + o.method + "'");
+  if (o.path != "stepped")
+    throw Error::Input("--path", "stepped (smooth is not available yet)", "'" + o.path + "'");
+  const Experiment e = Experiment::Read(o.experiment);
+  const Problem problem(e, System::Load(e.model));
+  if (problem.parameters().empty())
+    throw Error::Input(o.experiment, "the key 'parameters'", "none");
+  MakeFolder(o.out);
+  std::fprintf(stderr,
+               "path: stepped, by differences of MuJoCo's own steps; %zu parameters, %zu logs\n",
+               problem.parameters().size(), e.logs.size());
+  for (const Finding& f : CheckLogs(e)) {
+    if (f.severity == Finding::Severity::kError)
+      std::fprintf(stderr, "log check: %s %s: %s\n", f.log.c_str(), f.channel.c_str(),
+                   f.text.c_str());
+  }
+  FitOptions options;
+  options.iterations = o.iterations;
+  options.soft = e.soft;
+  options.progress = ShowProgress;
+  const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
+  const Fit fit = FitParameters(problem, problem.Start(), use, options);
+  EndProgress();
+  WriteFit(problem, fit, o.out);
+  double mae = 0, count = 0;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    for (const ChannelScore& s : ScoreLog(e, e.logs[l], problem.Predict(fit.x, l)))
+      mae += s.mae, count += 1;
+  }
+  for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    std::printf("%-24s %.6g %s\n", p.name.c_str(), fit.x[i], p.unit.c_str());
+  }
+  const auto r = problem.Residuals(fit.x, problem.AllLogs());
+  auto validate = problem.TrainLogs();
+  validate.flip();
+  std::printf(
+      "error %.4g (train) %.4g (validate) %s RMS; mean absolute error averaged over logs and "
+      "channels %.4g\n",
+      problem.PooledRms(r, problem.TrainLogs()), problem.PooledRms(r, validate),
+      Pool(e).unit().c_str(), count > 0 ? mae / count : 0);
+  std::printf("%d iterations, %zu simulations, %.1f s; report: %s/report.html\n", fit.iterations,
+              fit.evaluations, fit.seconds, o.out.c_str());
+  if (!fit.converged) throw Error::Job("the fit did not converge: " + fit.message);
+}
+
+}  // namespace
+
+void AddIdentify(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* const sub = app.add_subcommand("identify", "Fit the parameters of an experiment");
+  sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
+  sub->add_option("--out", o->out, "folder for fit.json, fitted.xml, simulated/, report.html")
+      ->required();
+  sub->add_option("--method", o->method, "lm")->capture_default_str();
+  sub->add_option("--path", o->path, "stepped")->capture_default_str();
+  sub->add_option("--iterations", o->iterations, "at most")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub->add_flag("--all", o->all, "fit the validate logs too");
+  sub->add_flag("--for-step", o->for_step,
+                "fit at the model's own step (the stepped path always does)");
+  sub->footer("Example:\n  continuum identify models/annelida/demo/annelida.yaml --out out");
+  sub->callback([o] { RunIdentify(*o); });
+}
+
+}  // namespace continuum

@@ -1,0 +1,69 @@
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+
+#include "app/console.h"
+#include "app/solve.h"
+#include "error.h"
+#include "identification/parallel.h"
+
+namespace {
+
+// CLI11 has exit codes of its own; ours are 0 done, 1 failed, 2 wrong use.
+int Parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::CallForHelp& e) {
+    return app.exit(e);
+  } catch (const CLI::CallForAllHelp& e) {
+    return app.exit(e);
+  } catch (const CLI::CallForVersion& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    std::fprintf(stderr, "continuum: %s\nSee continuum --help.\n", e.what());
+    return 2;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGINT, [](int) {
+    if (continuum::StopRequested()) std::_Exit(130);
+    continuum::RequestStop();
+  });
+  CLI::App app{
+      "Continuum robots in MuJoCo: run, fit, and find out what the simulation gets wrong."};
+  app.set_version_flag("--version", CONTINUUM_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n  continuum diagnose models/annelida/demo/annelida.yaml --out out\n"
+      "continuum SUBCOMMAND --help shows the options of one.");
+  int exit_code = 0;
+  continuum::AddRun(app);
+  continuum::AddCheck(app);
+  continuum::AddReplay(app);
+  continuum::AddRender(app);
+  continuum::AddIdentify(app);
+  continuum::AddDiagnose(app);
+  continuum::AddApply(app);
+  continuum::AddSolve(app, exit_code);
+  continuum::AddEffects(app);
+  continuum::AddModels(app);
+  try {
+    const int parsed = Parse(app, argc, argv);
+    continuum::EndProgress();
+    return parsed ? parsed : exit_code;
+  } catch (const continuum::Error& e) {
+    continuum::EndProgress();
+    std::fprintf(stderr, "continuum: %s\n", e.what());
+    return e.exit_code();
+  } catch (const std::exception& e) {
+    continuum::EndProgress();
+    std::fprintf(stderr, "continuum: %s\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,60 @@
+#include <cstdio>
+#include <memory>
+
+#include "app/console.h"
+#include "error.h"
+#include "sim/film.h"
+
+namespace continuum {
+namespace {
+
+struct Options {
+  std::string experiment, out, size = "960x720", camera, gl = "osmesa", log;
+  int fps = 25;
+};
+
+void RunRender(const Options& o) {
+  FilmOptions film;
+  char rest = 0;
+  if (std::sscanf(o.size.c_str(), "%dx%d%c", &film.width, &film.height, &rest) != 2) {
+    throw Error::Input("--size", "WIDTHxHEIGHT", "'" + o.size + "'");
+  }
+  film.fps = o.fps;
+  film.camera = o.camera;
+  film.gl = ParseGl(o.gl);
+  film.progress = ShowProgress;
+  const Experiment e = Experiment::Read(o.experiment);
+  const System system = System::Load(e.model);
+  const std::filesystem::path out = o.out;
+  if (out.extension() == ".png") return PictureOf(e, system, out, film);
+  if (out.extension() != ".mp4")
+    throw Error::Input("--out", "a name that ends in .mp4 or .png", "'" + o.out + "'");
+  std::vector<std::size_t> logs;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    if (o.log.empty() || e.logs[l].label == o.log) logs.push_back(l);
+  }
+  if (logs.empty()) throw Error::Input("--log", "a log of the experiment", "'" + o.log + "'");
+  FilmExperiment(e, system, logs, out, film);
+}
+
+}  // namespace
+
+void AddRender(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* const sub = app.add_subcommand("render", "Film the logs of an experiment off-screen");
+  sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
+  sub->add_option("--out", o->out, "OUT.mp4, or OUT.png for one frame")->required();
+  sub->add_option("--size", o->size, "WIDTHxHEIGHT")->capture_default_str();
+  sub->add_option("--fps", o->fps, "frames per second")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub->add_option("--camera", o->camera, "a camera of the model");
+  sub->add_option("--gl", o->gl, "osmesa or egl")->capture_default_str();
+  sub->add_option("--log", o->log, "only this log");
+  sub->footer(
+      "Example:\n  continuum render models/annelida/demo/annelida.yaml --out arm.mp4 --size "
+      "1280x720");
+  sub->callback([o] { RunRender(*o); });
+}
+
+}  // namespace continuum

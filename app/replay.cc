@@ -1,0 +1,96 @@
+#include "sim/replay.h"
+
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/console.h"
+#include "sim/check.h"
+#include "sim/file.h"
+#include "sim/film.h"
+
+namespace continuum {
+namespace {
+
+struct Options {
+  std::string experiment, out;
+  bool video = false;
+};
+
+void RunReplay(const Options& o) {
+  const Experiment e = Experiment::Read(o.experiment);
+  const System system = System::Load(e.model);
+  MakeFolder(o.out);
+  const std::filesystem::path folder = o.out;
+  const auto logs = Replay(e, system, ShowProgress);
+  EndProgress();
+  std::vector<Trace> traces;
+  double mae = 0, rows = 0;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    traces.push_back(logs[l].trace);
+    for (const ChannelScore& s : logs[l].score) {
+      std::printf(
+          "%-28s %-8s %-12s rmse %.4g  mean abs. %.4g  largest %.4g %s at %.3f s  fit %.1f %%\n",
+          e.logs[l].label.c_str(), e.logs[l].train ? "train" : "validate", s.channel.c_str(),
+          s.rmse, s.mae, s.largest, s.unit.c_str(), s.when, s.fit);
+      mae += s.mae, rows += 1;
+    }
+  }
+  const SplitError error = PooledError(e, logs);
+  const std::string unit = Pool(e).unit();
+  std::printf(
+      "all: RMS %.4g (train), %.4g (validate) %s; mean absolute error averaged over logs %.4g\n",
+      error.train, error.validate, unit.c_str(), rows > 0 ? mae / rows : 0);
+  WriteFile(folder / "errors.json", ErrorsJson(e, logs).dump(2) + "\n");
+  WriteSimulated(e, traces, folder / "simulated");
+  WriteReplayReport(e, logs, folder / "report.html");
+  if (o.video) {
+    FilmOptions film;
+    film.progress = ShowProgress;
+    std::vector<std::size_t> all(e.logs.size());
+    for (std::size_t l = 0; l < all.size(); ++l) all[l] = l;
+    FilmExperiment(e, system, all, folder / "replay.mp4", film);
+  }
+  EndProgress();
+  std::printf("report: %s\n", (folder / "report.html").c_str());
+}
+
+struct CheckOptions {
+  std::string experiment;
+  bool json = false;
+};
+
+void RunCheck(const CheckOptions& o) {
+  const Experiment e = Experiment::Read(o.experiment);
+  auto findings = CheckLogs(e);
+  const auto more = CheckAgainstModel(e, System::Load(e.model));
+  findings.insert(findings.end(), more.begin(), more.end());
+  const std::string text = o.json ? ToJson(findings).dump(2) + "\n" : Report(findings);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+}  // namespace
+
+void AddReplay(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* const sub =
+      app.add_subcommand("replay", "Simulate every log of an experiment as it stands");
+  sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
+  sub->add_option("--out", o->out, "folder for errors.json, simulated/, report.html")->required();
+  sub->add_flag("--video", o->video, "also replay.mp4");
+  sub->footer("Example:\n  continuum replay models/annelida/demo/annelida.yaml --out out");
+  sub->callback([o] { RunReplay(*o); });
+}
+
+void AddCheck(CLI::App& app) {
+  const auto o = std::make_shared<CheckOptions>();
+  CLI::App* const sub =
+      app.add_subcommand("check", "Look at the logs of an experiment before anything else");
+  sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
+  sub->add_flag("--json", o->json, "as JSON");
+  sub->footer("Example:\n  continuum check models/annelida/demo/annelida.yaml");
+  sub->callback([o] { RunCheck(*o); });
+}
+
+}  // namespace continuum

@@ -1,0 +1,41 @@
+#include "app/solve.h"
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+
+#include "models/solver/solve.h"
+
+namespace continuum {
+
+void AddSolve(CLI::App& app, int& exit_code) {
+  CLI::App* const solve = app.add_subcommand(
+      "solve", "Static shape of a robot (tdcr, twin_pivot, stiff_flop) for every row of a table");
+  const auto request = std::make_shared<SolveRequest>();
+  solve->add_option("robot", request->robot, "The robot: models/<robot>/<name>.yaml")->required();
+  solve->add_option("--method", request->method,
+                    "tdcr: eas (default), pcca, crt, crt_friction, fit; twin_pivot: virtual_work "
+                    "(default), printed; stiff_flop: energy+body+chamber");
+  solve->add_option("--input", request->input, "Cases: one row each (CSV)");
+  solve->add_option("--measured", request->measured,
+                    "tdcr: measured disks of the cases (CSV), for errors, fit and calibration");
+  solve
+      ->add_option("--out", request->out,
+                   "Results (.csv or .json), or the calibrated robot (.yaml)")
+      ->required();
+  solve->add_option("--plot", request->plot, "Picture of the shapes (.png or .svg)");
+  solve->add_flag("--calibrate", request->calibrate,
+                  "Fit the robot's parameters to the data instead of solving cases");
+  solve->add_option("--hybrid", request->hybrid,
+                    "tdcr: train a linear correction on measured shapes, or apply one");
+  solve->add_flag("--sensitivity", request->sensitivity,
+                  "stiff_flop: derivatives by fibre angle and by E");
+  solve->add_option("--lambda", request->lambda, "tdcr fit: weight of the curvatures (1e-7)");
+  solve->footer(
+      "Example:\n"
+      "  continuum solve models/tdcr/tdcr.yaml --method eas --input models/tdcr/cases.csv "
+      "--out shapes.csv --plot shapes.png");
+  solve->callback([request, &exit_code] { exit_code = Solve(*request); });
+}
+
+}  // namespace continuum

@@ -1,0 +1,79 @@
+#include "identification/catalog.h"
+
+#include "binding/config.h"
+#include "effects/all.h"
+#include "error.h"
+
+namespace continuum {
+namespace {
+
+using Kind = EffectInfo::Kind;
+
+template <class E>
+constexpr Kind KindOf() {
+  if constexpr (ForceLaw<E>)
+    return Kind::kForce;
+  else if constexpr (FrictionLaw<E>)
+    return Kind::kFriction;
+  else if constexpr (PathLaw<E>)
+    return Kind::kPath;
+  else if constexpr (SegmentLaw<E>)
+    return Kind::kSegment;
+  else if constexpr (SignalLaw<E>)
+    return Kind::kSignal;
+  else if constexpr (MeasureLaw<E>)
+    return Kind::kMeasure;
+  else
+    return Kind::kEdit;
+}
+
+template <class E>
+EffectInfo InfoOf() {
+  EffectInfo info{E::kName, E::kSummary, E::kSource, KindOf<E>(), {}, {}, {}, false};
+  info.places.assign(E::kPlaces.begin(), E::kPlaces.end());
+  info.params.assign(E::kParams.begin(), E::kParams.end());
+  const auto choices = ChoicesOf<E>();
+  info.choices.assign(choices.begin(), choices.end());
+  if constexpr (SignalLaw<E>) info.servo = E::kTap == Tap::kServoError;
+  return info;
+}
+
+}  // namespace
+
+const std::vector<EffectInfo>& Catalog() {
+  static const auto catalog = [] {
+    std::vector<EffectInfo> all;
+    All::ForEach([&]<class E>() { all.push_back(InfoOf<E>()); });
+    return all;
+  }();
+  return catalog;
+}
+
+const EffectInfo& EffectNamed(std::string_view name) {
+  std::string all;
+  for (const EffectInfo& info : Catalog()) {
+    if (info.name == name) return info;
+    all += (all.empty() ? "" : ", ") + std::string(info.name);
+  }
+  throw Error::Input("effect", all, "'" + std::string(name) + "'");
+}
+
+std::string_view KindName(Kind kind) {
+  constexpr std::string_view names[] = {"force",  "friction", "path", "segment",
+                                        "signal", "measure",  "edit"};
+  return names[static_cast<int>(kind)];
+}
+
+std::string_view PlaceName(Place place) {
+  constexpr std::string_view names[] = {"joint", "tendon", "actuator", "body",
+                                        "site",  "sensor", "world"};
+  return names[static_cast<int>(place)];
+}
+
+std::string_view Becomes(Kind kind) {
+  constexpr std::string_view becomes[] = {"force", "row",        "contact path", "force",
+                                          "force", "experiment", "native"};
+  return becomes[static_cast<int>(kind)];
+}
+
+}  // namespace continuum

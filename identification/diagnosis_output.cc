@@ -1,0 +1,352 @@
+#include "identification/diagnosis_output.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "identification/extension.h"
+#include "identification/fit_output.h"
+#include "sim/file.h"
+#include "sim/replay.h"
+
+namespace continuum {
+namespace {
+
+// RMS of y(t − shift) − measured over a stretch of rows.
+double ShiftedError(const std::vector<double>& y, const std::vector<double>& measured, int shift) {
+  double sum = 0, n = 0;
+  const int rows = static_cast<int>(y.size());
+  for (int k = std::max(0, shift); k < std::min(rows, rows + shift); ++k) {
+    if (std::isnan(measured[k])) continue;
+    const double e = y[k - shift] - measured[k];
+    sum += e * e, n += 1;
+  }
+  return n > 0 ? std::sqrt(sum / n) : 0;
+}
+
+// "lags by 40 ms" when a shift in time alone halves the error.
+std::string LagInWords(const Log& log, const std::vector<double>& y,
+                       const std::vector<double>& measured) {
+  const double period = (log.time.back() - log.time.front()) / static_cast<double>(log.rows() - 1);
+  const int reach = static_cast<int>(std::min(0.25 / period, static_cast<double>(log.rows()) / 4));
+  const double present = ShiftedError(y, measured, 0);
+  double best = present;
+  int at = 0;
+  for (int s = -reach; s <= reach; ++s) {
+    const double e = ShiftedError(y, measured, s);
+    if (e < best) best = e, at = s;
+  }
+  if (at == 0 || best > 0.5 * present) return "";
+  return fmt::format("{} the measurement by {:.0f} ms", at > 0 ? "runs ahead of" : "lags behind",
+                     1000 * period * std::abs(at));
+}
+
+// A problem for the hypothesis that was chosen, or the null one.
+Problem ChosenProblem(const Experiment& e, const Diagnosis& d) {
+  const CandidateResult* chosen = d.chosen();
+  return chosen ? Problem(e, chosen->hypothesis.system, chosen->hypothesis.extra)
+                : Problem(e, d.system);
+}
+
+nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
+                         const std::vector<std::string>& equivalent) {
+  nlohmann::json parameters = nlohmann::json::object();
+  const Eigen::Index known = d.before.fit.x.size();
+  for (std::size_t i = 0; i < c.hypothesis.extra.size(); ++i) {
+    const Eigen::Index at = known + static_cast<Eigen::Index>(i);
+    const double value = c.fitted.fit.x[at];
+    const bool sure = std::isfinite(c.fitted.uncertainty.standard_error[at]);
+    std::string unit = "1";
+    for (const Param& p : EffectNamed(c.hypothesis.effect).params) {
+      if (p.name == c.hypothesis.extra[i].name) unit = p.unit;
+    }
+    parameters[c.hypothesis.extra[i].name] = {{"value", value},
+                                              {"unit", unit},
+                                              {"ci95",
+                                               {sure ? c.fitted.uncertainty.lower[at] : value,
+                                                sure ? c.fitted.uncertainty.upper[at] : value}}};
+  }
+  std::size_t won = 0;
+  for (std::size_t f = 0; f < c.record.after.size(); ++f) {
+    won += std::all_of(d.candidates.begin(), d.candidates.end(), [&](const CandidateResult& other) {
+      return other.record.after[f] >= c.record.after[f];
+    });
+  }
+  return {
+      {"effect", c.hypothesis.effect},
+      {"variant", c.hypothesis.variant},
+      {"equivalent", equivalent},
+      {"probability", static_cast<double>(won) / static_cast<double>(c.record.after.size())},
+      {"probability_is", "share of the folds in which it is the best candidate; not calibrated"},
+      {"parameters", parameters},
+      {"where", c.hypothesis.where},
+      {"evidence",
+       fmt::format("leaving out one group at a time, the error falls in {} of {} folds, by {:.0f} "
+                   "% in the median; {}",
+                   std::count_if(c.record.after.begin(), c.record.after.end(),
+                                 [&](const double& a) {
+                                   return a < c.record.before[&a - c.record.after.data()];
+                                 }),
+                   c.record.after.size(), 100 * Median(Gains(c.record)), d.verdict.reason)}};
+}
+
+}  // namespace
+
+std::vector<Wrong> FindWrong(const Experiment& e, const std::vector<Trace>& before) {
+  struct Item {
+    double size;
+    Wrong wrong;
+  };
+  std::vector<Item> items;
+  const Pool pool(e);
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    const Log& log = e.logs[l];
+    const auto residual = Residuals(e, log, before[l]);
+    const auto score = ScoreLog(e, log, before[l]);
+    for (std::size_t c = 0; c < e.channels.size(); ++c) {
+      if (!pool.counts(c) || !(score[c].rmse > 0)) continue;
+      const double factor = e.channels[c].factor;
+      std::size_t at = 0;
+      for (std::size_t k = 0; k < log.rows(); ++k) {
+        if (std::abs(residual[c][k]) > std::abs(residual[c][at])) at = k;
+      }
+      std::size_t from = at, to = at;  // while the deviation stays above half its peak
+      const auto large = [&](std::size_t k) { return residual[c][k] / residual[c][at] > 0.5; };
+      while (from > 0 && large(from - 1)) --from;
+      while (to + 1 < log.rows() && large(to + 1)) ++to;
+      std::string what = fmt::format("is {:.3g} {} too {}", std::abs(score[c].largest),
+                                     e.channels[c].unit, score[c].largest > 0 ? "high" : "low");
+      const std::string lag = LagInWords(log, before[l].channel[c], log.measured[c]);
+      if (!lag.empty()) what += "; over the whole log it " + lag;
+      items.push_back({score[c].rmse * factor / pool.scale(c),
+                       {log.label, e.channels[c].name,
+                        fmt::format("{:.2f}-{:.2f} s", log.time[from], log.time[to]), what}});
+    }
+  }
+  std::stable_sort(items.begin(), items.end(),
+                   [](const Item& a, const Item& b) { return a.size > b.size; });
+  std::vector<Wrong> wrong;
+  for (std::size_t i = 0; i < std::min<std::size_t>(6, items.size()); ++i)
+    wrong.push_back(items[i].wrong);
+  return wrong;
+}
+
+Gain GainOf(const Diagnosis& d, const TwoErrors& after) {
+  const double before2 = d.before.error.validate * d.before.error.validate;
+  const double after2 = after.validate * after.validate;
+  const double noise2 = d.noise.rms * d.noise.rms;
+  Gain gain;
+  gain.removed = before2 > 0 ? 1 - std::sqrt(after2 / before2) : 0;
+  gain.explainable = before2 > noise2 ? (before2 - after2) / (before2 - noise2) : 0;
+  return gain;
+}
+
+double ShareReached(const Diagnosis& d, const TwoErrors& after) {
+  const double possible =
+      d.before.error.validate - std::min(d.ceiling_error.validate, after.validate);
+  return possible > 0 ? std::clamp((d.before.error.validate - after.validate) / possible, 0.0, 1.0)
+                      : 1;
+}
+
+bool ModelLimited(const Diagnosis& d, const TwoErrors& after) {
+  return d.noise.rms > 0 && after.train > 3 * d.noise.rms;
+}
+
+double Separation(const Diagnosis& d) {
+  if (d.candidates.size() < 2) return 0;
+  const auto& a = d.candidates[0].record;
+  const auto& b = d.candidates[1].record;
+  const double n = static_cast<double>(a.after.size());
+  double mean = 0, squares = 0;
+  for (std::size_t f = 0; f < a.after.size(); ++f) mean += (b.after[f] - a.after[f]) / n;
+  for (std::size_t f = 0; f < a.after.size(); ++f) {
+    squares += std::pow(b.after[f] - a.after[f] - mean, 2);
+  }
+  return squares > 0 ? std::abs(mean) / std::sqrt(squares / (n - 1) / n) : 0;
+}
+
+std::string NextExperiment(const Diagnosis& d) {
+  const auto has = [&](std::string_view effect) {
+    return std::any_of(d.verdict.named.begin(), d.verdict.named.end(),
+                       [&](std::size_t i) { return d.candidates[i].hypothesis.effect == effect; });
+  };
+  if (d.verdict.named.size() < 2) return "";
+  if (has("load_friction") && (has("position_friction") || has("payload"))) {
+    return "repeat the same motions with another known mass: the load changes at the same angles";
+  }
+  if (has("load_friction")) {
+    return "repeat with the motor off (free swing) and with another mass: the kinds of load part "
+           "there";
+  }
+  if (has("dead_time") || has("pt1")) {
+    return "a fast chirp: a delay and a lag part in the phase at high frequency";
+  }
+  if (has("dahl") || has("backlash") || has("stribeck") || has("coulomb")) {
+    return "slow reversals of growing amplitude: friction laws part where the motion turns round";
+  }
+  return "a slow sweep over the whole range and a fast one: the candidates part in position and "
+         "speed";
+}
+
+Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder) {
+  MakeFolder(folder);
+  Told told;
+  const Problem null(e, d.system);
+  const Problem problem = ChosenProblem(e, d);
+  const CandidateResult* const chosen = d.chosen();
+  const Problem::Vector& x = chosen ? chosen->fitted.fit.x : d.before.fit.x;
+  const Extension extension = Extend(problem, x, folder);
+  WriteFile(folder / "extended.xml", extension.xml);
+  WriteFile(folder / "extended.yaml", extension.yaml);
+  told.difference = LineDiff(d.system.Xml(), extension.xml);
+
+  const Experiment extended = Experiment::Read(folder / "extended.yaml");
+  const auto replayed = Replay(extended, System::Load(folder / "extended.xml"));
+  const SplitError error = PooledError(extended, replayed);
+  told.after = {error.train, error.validate};
+  for (const Replayed& r : replayed) told.after_traces.push_back(r.trace);
+  for (std::size_t l = 0; l < e.logs.size(); ++l)
+    told.before_traces.push_back(null.Predict(d.before.fit.x, l));
+  told.wrong = FindWrong(e, told.before_traces);
+  told.findings = CheckLogs(e);
+  WriteSimulated(e, told.after_traces, folder / "simulated");
+  WriteFile(folder / "diagnosis.json", DiagnosisJson(e, d, told).dump(2) + "\n");
+  WriteDiagnosisReport(e, d, told, folder / "report.html");
+  return told;
+}
+
+nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told& told) {
+  const Gain gain = GainOf(d, told.after);
+  nlohmann::json json;
+  json["verdict"] = d.verdict.text;
+  json["reason"] = d.verdict.reason;
+  json["causes"] = nlohmann::json::array();
+  if (!d.verdict.named.empty()) {
+    std::vector<std::string> equivalent;
+    for (std::size_t i = 1; i < d.verdict.named.size(); ++i) {
+      const std::string& name = d.candidates[d.verdict.named[i]].hypothesis.effect;
+      const bool known = name == d.chosen()->hypothesis.effect ||
+                         std::find(equivalent.begin(), equivalent.end(), name) != equivalent.end();
+      if (!known) equivalent.push_back(name);
+    }
+    json["causes"].push_back(CauseJson(d, *d.chosen(), equivalent));
+  }
+  json["alternatives"] = nlohmann::json::array();
+  for (const std::size_t i : d.verdict.named)
+    json["alternatives"].push_back(CauseJson(d, d.candidates[i], {}));
+  json["error"] = {
+      {"unit", d.pool.unit()},
+      {"before", {{"train", d.before.error.train}, {"validate", d.before.error.validate}}},
+      {"after", {{"train", told.after.train}, {"validate", told.after.validate}}}};
+  json["gain"] = {{"validate_error_removed", gain.removed},
+                  {"ci95", {d.gain_low, d.gain_high}},
+                  {"explainable_error_removed", gain.explainable}};
+  json["wrong"] = nlohmann::json::array();
+  for (const Wrong& w : told.wrong) {
+    json["wrong"].push_back(
+        {{"log", w.log}, {"channel", w.channel}, {"when", w.when}, {"what", w.what}});
+  }
+  auto alternatives = nlohmann::json::array();
+  for (const std::size_t i : d.verdict.named)
+    alternatives.push_back(d.candidates[i].hypothesis.Name());
+  json["next_experiment"] = {
+      {"for", d.verdict.named.size() > 1 ? alternatives : nlohmann::json::array()},
+      {"input", NextExperiment(d)},
+      {"expected_separation", Separation(d)}};
+  const double over = d.noise.rms > 0 ? told.after.train / d.noise.rms : 0;
+  json["adequacy"] = {{"regime", ModelLimited(d, told.after) ? "model_limited" : "noise_limited"},
+                      {"remaining_over_noise", over},
+                      {"noise", d.noise.rms},
+                      {"step_effect", d.noise.step},
+                      {"noise_source", d.noise.source},
+                      {"ceiling",
+                       {{"validate_error", d.ceiling_error.validate},
+                        {"share_reached", ShareReached(d, told.after)}}}};
+  json["folds"] = nlohmann::json::array();
+  const auto& after = d.chosen() ? d.chosen()->record.after : d.before.folds.error;
+  for (std::size_t f = 0; f < d.folds.size(); ++f) {
+    json["folds"].push_back(
+        {{"left_out", d.folds[f].name}, {"before", d.before.folds.error[f]}, {"after", after[f]}});
+  }
+  json["candidates"] = nlohmann::json::array();
+  for (std::size_t i = 0; i < d.candidates.size(); ++i) {
+    const CandidateResult& c = d.candidates[i];
+    const auto& p = c.record.placebo_gains;
+    const double median = Median(Gains(c.record));
+    const double beaten = static_cast<double>(
+        std::count_if(p.begin(), p.end(), [&](double g) { return g < median; }));
+    const bool named =
+        std::find(d.verdict.named.begin(), d.verdict.named.end(), i) != d.verdict.named.end();
+    json["candidates"].push_back(
+        {{"effect", c.hypothesis.effect},
+         {"variant", c.hypothesis.variant},
+         {"where", c.hypothesis.where},
+         {"score", median},
+         {"p", (static_cast<double>(p.size()) - beaten + 1) / static_cast<double>(p.size() + 1)},
+         {"group", named && d.verdict.named.size() > 1 ? "not told apart" : ""},
+         {"folds", c.record.after},
+         {"amplitude", c.record.amplitude},
+         {"placebos", p},
+         {"fails", c.failures},
+         {"error", {{"train", c.fitted.error.train}, {"validate", c.fitted.error.validate}}}});
+  }
+  json["skipped"] = d.skipped;
+  json["parameters"] = nlohmann::json::array();
+  const Problem problem = ChosenProblem(e, d);
+  const auto& fitted = d.chosen() ? d.chosen()->fitted : d.before;
+  json["parameters"] = ParametersJson(problem, fitted.fit.x, fitted.uncertainty);
+  json["extension"] = ChangesJson(problem, fitted.fit.x,
+                                  d.chosen() ? d.chosen()->hypothesis.instance : EffectInstance{},
+                                  d.chosen() ? d.chosen()->hypothesis.replaces : "");
+  json["extended_model"] = "extended.xml";
+  json["extended_experiment"] = "extended.yaml";
+  json["seconds"] = d.seconds;
+  return json;
+}
+
+std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
+  const Gain gain = GainOf(d, told.after);
+  const std::string unit = d.pool.unit();
+  std::string text = fmt::format("verdict   {}: {}\n", d.verdict.text, d.verdict.reason);
+  for (const std::size_t i : d.verdict.named) {
+    const CandidateResult& c = d.candidates[i];
+    text += fmt::format("{} {} at {}", i == d.verdict.named.front() ? "cause    " : "   or    ",
+                        c.hypothesis.Name(), c.hypothesis.where);
+    const Eigen::Index known = d.before.fit.x.size();
+    for (std::size_t k = 0; k < c.hypothesis.extra.size(); ++k) {
+      text += fmt::format(", {} = {:.4g}", c.hypothesis.extra[k].name,
+                          c.fitted.fit.x[known + static_cast<Eigen::Index>(k)]);
+    }
+    text += "\n";
+  }
+  text += fmt::format("error     train {:.4g} -> {:.4g} {u}, validate {:.4g} -> {:.4g} {u}\n",
+                      d.before.error.train, told.after.train, d.before.error.validate,
+                      told.after.validate, fmt::arg("u", unit));
+  text += fmt::format(
+      "gain      {:.0f} % of the held-out error ({:.0f} .. {:.0f} %), {:.0f} % of what is "
+      "explainable\n",
+      100 * gain.removed, 100 * d.gain_low, 100 * d.gain_high, 100 * gain.explainable);
+  text +=
+      fmt::format("noise     {:.3g} {} ({}), time step {:.3g}; what remains is {:.1f} times both\n",
+                  d.noise.rms, unit, d.noise.source, d.noise.step,
+                  d.noise.rms > 0 ? told.after.train / std::hypot(d.noise.rms, d.noise.step) : 0);
+  text += fmt::format("ceiling   {:.4g} {} on validate with a smooth force without a name\n",
+                      d.ceiling_error.validate, unit);
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, told.wrong.size()); ++i) {
+    const Wrong& w = told.wrong[i];
+    text +=
+        fmt::format("wrong     {} {} at {}: the simulation {}\n", w.log, w.channel, w.when, w.what);
+  }
+  text += "ranking  ";
+  for (const CandidateResult& c : d.candidates) {
+    text += fmt::format(" {} {:.0f} %,", c.hypothesis.Name(), 100 * Median(Gains(c.record)));
+  }
+  if (text.back() == ',') text.back() = '\n';
+  if (d.verdict.named.size() > 1) text += "next      " + NextExperiment(d) + "\n";
+  (void)e;
+  return text;
+}
+
+}  // namespace continuum

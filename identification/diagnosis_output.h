@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "identification/diagnosis.h"
+#include "sim/check.h"
+
+namespace continuum {
+
+/// Where and how the simulation parts from the measurement, in words.
+struct Wrong {
+  std::string log, channel, when, what;
+};
+std::vector<Wrong> FindWrong(const Experiment& experiment, const std::vector<Trace>& before);
+
+/// What the files of a diagnosis need beyond it.
+struct Told {
+  TwoErrors after;  ///< of extended.xml with extended.yaml, as written
+  std::vector<Trace> before_traces, after_traces;
+  std::vector<Wrong> wrong;
+  std::vector<Finding> findings;
+  std::string difference;  ///< of the MJCF
+};
+
+/// Writes extended.xml, extended.yaml, simulated/*.csv, diagnosis.json and report.html, after
+/// having run the two extended files to measure error.after. Returns what was found on the way.
+Told WriteDiagnosis(const Experiment& experiment, const Diagnosis& diagnosis,
+                    const std::filesystem::path& folder);
+
+nlohmann::json DiagnosisJson(const Experiment& experiment, const Diagnosis& diagnosis,
+                             const Told& told);
+void WriteDiagnosisReport(const Experiment& experiment, const Diagnosis& diagnosis,
+                          const Told& told, const std::filesystem::path& file);
+
+/// The same story in about fifteen lines.
+std::string Summary(const Experiment& experiment, const Diagnosis& diagnosis, const Told& told);
+
+/// Shared wording.
+struct Gain {
+  double removed = 0;      ///< 1 − RMS ratio on the validate logs
+  double explainable = 0;  ///< (MSE0 − MSE1)/(MSE0 − noise MSE)
+};
+Gain GainOf(const Diagnosis& diagnosis, const TwoErrors& after);
+std::string NextExperiment(const Diagnosis& diagnosis);
+/// Mean paired difference of the two best candidates' fold errors over its standard error.
+double Separation(const Diagnosis& diagnosis);
+bool ModelLimited(const Diagnosis& diagnosis, const TwoErrors& after);
+/// Share of the reducible error (down to the ceiling) that was removed on the validate logs.
+double ShareReached(const Diagnosis& diagnosis, const TwoErrors& after);
+
+}  // namespace continuum

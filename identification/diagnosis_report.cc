@@ -1,0 +1,262 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "identification/diagnosis_output.h"
+#include "identification/fit_output.h"
+#include "identification/missing_force.h"
+#include "sim/replay.h"
+
+namespace continuum {
+namespace {
+
+class Story {
+ public:
+  Story(const Experiment& e, const Diagnosis& d, const Told& told)
+      : e_(e),
+        d_(d),
+        told_(told),
+        unit_(d.pool.unit()),
+        page_("Diagnosis", e.model.filename().string() + " against " +
+                               std::to_string(e.logs.size()) + " logs") {}
+
+  void Write(const std::filesystem::path& file) {
+    VerdictBox();
+    WhatIsWrong();
+    TheCause();
+    TheExtension();
+    TheGain();
+    WhatIsLeft();
+    Assumptions();
+    page_.Write(file);
+  }
+
+ private:
+  void VerdictBox() {
+    const std::string& v = d_.verdict.text;
+    std::string names;
+    for (const std::size_t i : d_.verdict.named) {
+      names += (names.empty() ? "" : " or ") + d_.candidates[i].hypothesis.Name();
+    }
+    const Gain gain = GainOf(d_, told_.after);
+    page_.Badge(
+        v == "named" || v == "adequate" ? Tone::kGood : Tone::kWarn,
+        v + (names.empty() ? "" : ": the data are consistent with " + names),
+        fmt::format("{}. Held-out error {:.4g} to {:.4g} {} ({:.0f} % removed).", d_.verdict.reason,
+                    d_.before.error.validate, told_.after.validate, unit_, 100 * gain.removed));
+  }
+
+  void WhatIsWrong() {
+    page_.Heading("What is wrong");
+    page_.Paragraph(
+        "Where the fitted model without any extension parts most from the measurement:");
+    std::vector<std::string> items;
+    for (const Wrong& w : told_.wrong) {
+      items.push_back(
+          fmt::format("**{}**, {} at {}: the simulation {}.", w.log, w.channel, w.when, w.what));
+    }
+    page_.List(items);
+    std::vector<std::size_t> shown;
+    for (const Wrong& w : told_.wrong) {
+      for (std::size_t l = 0; l < e_.logs.size(); ++l) {
+        const bool is = e_.logs[l].label == w.log;
+        if (is && std::find(shown.begin(), shown.end(), l) == shown.end() && shown.size() < 3)
+          shown.push_back(l);
+      }
+    }
+    for (const std::size_t l : shown) Overlay(l);
+    Missing();
+  }
+
+  void Overlay(std::size_t l) {
+    std::vector<NamedTrace> traces{{"before", Style::kBefore, &told_.before_traces[l]}};
+    if (d_.chosen()) traces.push_back({"after", Style::kAfter, &told_.after_traces[l]});
+    AddOverlay(page_, e_, e_.logs[l], traces, false);
+  }
+
+  void Missing() {
+    const MissingForce f = FindMissingForce(Problem(e_, d_.system), d_.before.fit.x);
+    if (f.joint.empty()) {
+      page_.Paragraph("The missing force cannot be shown: not every joint is measured.");
+      return;
+    }
+    page_.Heading("The missing force on joint " + f.joint, 3);
+    page_.Paragraph(
+        "Mass times the difference between the measured acceleration and the model's at the "
+        "measured "
+        "state. Line: median in bins, band: quartiles.");
+    Scatter(f, f.angle, {"angle", "rad"});
+    Scatter(f, f.velocity, {"velocity", "rad/s"});
+    Scatter(f, f.load, {"actuator torque", "N*m"});
+    Scatter(f, f.time, {"time", "s"});
+  }
+
+  void Scatter(const MissingForce& f, const std::vector<double>& x, const Axis& axis) {
+    ScatterSpec spec{"over " + axis.label, axis, {"missing force", "N*m"}, {}, {}, true};
+    PointGroup points{"rows", {}, {}, Style::kResidual};
+    const std::size_t stride = std::max<std::size_t>(1, x.size() / 1500);
+    for (std::size_t k = 0; k < x.size(); k += stride)
+      points.x.push_back(x[k]), points.y.push_back(f.force[k]);
+    std::vector<std::size_t> order(x.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return x[a] < x[b]; });
+    Trend trend{"median", {}, {}, {}, {}, Style::kAfter};
+    constexpr std::size_t kBins = 20;
+    for (std::size_t b = 0; b < kBins; ++b) {
+      std::vector<double> xs, ys;
+      for (std::size_t k = b * order.size() / kBins; k < (b + 1) * order.size() / kBins; ++k) {
+        xs.push_back(x[order[k]]), ys.push_back(f.force[order[k]]);
+      }
+      if (ys.size() < 4) continue;
+      std::sort(ys.begin(), ys.end());
+      trend.x.push_back(Median(xs));
+      trend.y.push_back(Median(ys));
+      trend.low.push_back(ys[ys.size() / 4]);
+      trend.high.push_back(ys[3 * ys.size() / 4]);
+    }
+    spec.groups.push_back(points);
+    spec.trends.push_back(trend);
+    page_.Scatter(spec);
+  }
+
+  void TheCause() {
+    page_.Heading("The cause");
+    if (d_.candidates.empty()) {
+      page_.Paragraph("No candidate could be tried.");
+      return;
+    }
+    BarsSpec bars{
+        "Error removed on left-out logs, median over the folds", {"error removed", "%"}, {}, {}};
+    double placebo = -1;
+    for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
+      const auto& c = d_.candidates[i];
+      const bool named =
+          std::find(d_.verdict.named.begin(), d_.verdict.named.end(), i) != d_.verdict.named.end();
+      bars.bars.push_back({c.hypothesis.Name(), 100 * Median(Gains(c.record)), 0, named});
+      auto p = c.record.placebo_gains;
+      std::sort(p.begin(), p.end());
+      if (!p.empty()) placebo = std::max(placebo, p[(p.size() - 1) * 95 / 100]);
+    }
+    if (placebo > -1) bars.marks.push_back({"95 % of random forces stay below", 100 * placebo});
+    bars.marks.push_back({"asked for", 10});
+    page_.Bars(bars);
+    FoldTable();
+    std::vector<std::string> items;
+    for (const auto& c : d_.candidates) {
+      std::string why;
+      for (const auto& f : c.failures) why += (why.empty() ? "" : "; ") + f;
+      if (!why.empty()) items.push_back("**" + c.hypothesis.Name() + "**: " + why + ".");
+    }
+    page_.Details("Why the others are not named", [&] { page_.List(items); });
+    if (d_.verdict.named.size() > 1) {
+      page_.Heading("The next experiment", 3);
+      page_.Paragraph("To tell them apart: " + NextExperiment(d_) + ".");
+    }
+  }
+
+  void FoldTable() {
+    std::vector<std::string> header{"candidate"};
+    for (const Fold& f : d_.folds) header.push_back("without " + f.name);
+    std::vector<std::vector<std::string>> rows{{"as it is"}};
+    for (const double error : d_.before.folds.error)
+      rows[0].push_back(fmt::format("{:.4g}", error));
+    for (const auto& c : d_.candidates) {
+      rows.push_back({c.hypothesis.Name()});
+      for (const double error : c.record.after) rows.back().push_back(fmt::format("{:.4g}", error));
+    }
+    rows.push_back({"smooth force (ceiling)"});
+    for (const double error : d_.ceiling.error) rows.back().push_back(fmt::format("{:.4g}", error));
+    page_.Table(header, rows,
+                {"Error [" + unit_ + "] on the logs left out, after refitting on the others."});
+  }
+
+  void TheExtension() {
+    page_.Heading("The extension");
+    const CandidateResult* c = d_.chosen();
+    if (c) {
+      page_.Paragraph(
+          "`extended.xml` runs in plain MuJoCo with the plugin; `extended.yaml` is the experiment "
+          "that "
+          "belongs to it.");
+      AddParameterTable(page_, Problem(e_, c->hypothesis.system, c->hypothesis.extra),
+                        c->fitted.fit.x, c->fitted.uncertainty);
+    } else {
+      page_.Paragraph("Nothing was added: `extended.xml` is the model with refitted parameters.");
+      AddParameterTable(page_, Problem(e_, d_.system), d_.before.fit.x, d_.before.uncertainty);
+    }
+    page_.Code(told_.difference, "diff");
+  }
+
+  void TheGain() {
+    page_.Heading("The gain");
+    const Gain gain = GainOf(d_, told_.after);
+    const auto row = [&](const char* name, const TwoErrors& e) {
+      return std::vector<std::string>{name, fmt::format("{:.4g}", e.train),
+                                      fmt::format("{:.4g}", e.validate)};
+    };
+    page_.Table(
+        {"model", "train [" + unit_ + "]", "validate [" + unit_ + "]"},
+        {row("before", d_.before.error), row("after", told_.after),
+         row("smooth force (ceiling)", d_.ceiling_error)},
+        {fmt::format(
+            "Free simulation of every log. Noise: {:.3g} {} ({}). {:.0f} % of the held-out error "
+            "removed, {:.0f} … {:.0f} % (95 %, whole trials resampled); {:.0f} % of what is "
+            "explainable above the noise.",
+            d_.noise.rms, unit_, d_.noise.source, 100 * gain.removed, 100 * d_.gain_low,
+            100 * d_.gain_high, 100 * gain.explainable)});
+  }
+
+  void WhatIsLeft() {
+    page_.Heading("What is left");
+    const double over = d_.noise.rms > 0 ? told_.after.train / d_.noise.rms : 0;
+    page_.Paragraph(fmt::format(
+        "What remains is {:.1f} times the noise: the data are {}. The extension reaches {:.0f} % "
+        "of what a smooth force without a name reaches on the held-out logs.",
+        over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited",
+        100 * ShareReached(d_, told_.after)));
+    page_.Details("All logs", [&] {
+      for (std::size_t l = 0; l < e_.logs.size(); ++l) Overlay(l);
+    });
+  }
+
+  void Assumptions() {
+    page_.Heading("What this rests on");
+    std::vector<std::string> items{
+        "A cause is named when the error falls in at least 80 % of the folds and by at least 10 % "
+        "in the median, its "
+        "size agrees over the folds within 30 %, it beats 95 % of random smooth forces with as "
+        "many parameters, and "
+        "it is clearly better than every other candidate in paired folds.",
+        "No probability is given: on such data none would be calibrated.",
+        fmt::format("The model's own time step moves the trajectories by {:.3g} {} (h against "
+                    "h/4); nothing smaller is "
+                    "named.",
+                    d_.noise.step, unit_),
+        d_.noise.source == "replicates"
+            ? fmt::format("The noise comes from {} pairs of replicates.", d_.noise.pairs)
+            : "There are no replicates: \"unexplained\" cannot be told from noise that is not "
+              "white."};
+    for (const auto& s : d_.skipped) items.push_back("Not tried: " + s + ".");
+    for (const Finding& f : told_.findings) {
+      if (f.severity != Finding::Severity::kInfo)
+        items.push_back("Log check, " + f.log + ": " + f.text);
+    }
+    page_.List(items);
+  }
+
+  const Experiment& e_;
+  const Diagnosis& d_;
+  const Told& told_;
+  std::string unit_;
+  Page page_;
+};
+
+}  // namespace
+
+void WriteDiagnosisReport(const Experiment& e, const Diagnosis& d, const Told& told,
+                          const std::filesystem::path& file) {
+  Story(e, d, told).Write(file);
+}
+
+}  // namespace continuum

@@ -1,0 +1,230 @@
+#include "identification/extension.h"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+std::string Quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string Relative(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code failed;
+  const auto from = std::filesystem::weakly_canonical(folder, failed);
+  const auto to = std::filesystem::weakly_canonical(file, failed);
+  const auto path = to.lexically_relative(from);
+  return path.empty() ? to.string() : path.string();
+}
+
+std::string SettingsYaml(const Problem& problem, const Problem::Vector& x, std::size_t log) {
+  const auto changes = problem.ChangesFor(x, log);
+  std::map<std::string, std::map<std::string, double>> settings;
+  const auto read = [&](const Change& c) {
+    settings[c.target][c.attribute] = problem.system().ValueAfter(changes, c.target, c.attribute);
+  };
+  for (const Change& c : problem.experiment().logs[log].set) read(c);
+  for (const FreeParameter& p : problem.parameters()) {
+    const bool common = std::find(p.log.begin(), p.log.end(), false) == p.log.end();
+    if (!common && p.log[log]) read(p.change);
+  }
+  if (settings.empty()) return "";
+  std::string text = ",\n     set: {";
+  for (const auto& [target, attributes] : settings) {
+    if (text.back() != '{') text += ", ";
+    text += Quoted(target) + ": {";
+    for (const auto& [attribute, value] : attributes) {
+      if (text.back() != '{') text += ", ";
+      text += Quoted(attribute) + ": " + Decimal(value);
+    }
+    text += "}";
+  }
+  return text + "}";
+}
+
+std::string MeasurementYaml(const Measurement& m) {
+  std::string text;
+  const Measurement none;
+  if (m.bias != none.bias) text += ", bias: " + Decimal(m.bias);
+  if (m.scale != none.scale) text += ", scale: " + Decimal(m.scale);
+  if (m.delay != none.delay) text += ", delay: " + Decimal(m.delay);
+  if (m.rate != none.rate) text += ", rate: " + Decimal(m.rate);
+  if (m.angle != none.angle) {
+    text += fmt::format(", angle: {}, axis: [{}, {}, {}]", Decimal(m.angle), Decimal(m.axis[0]),
+                        Decimal(m.axis[1]), Decimal(m.axis[2]));
+  }
+  return text;
+}
+
+std::string OutputYaml(const Output& out) {
+  std::string text = "  - {";
+  if (out.quaternion()) {
+    text += "column: [";
+    for (const auto& c : out.columns) text += (text.back() == '[' ? "" : ", ") + Quoted(c);
+    text += "]";
+  } else {
+    text += "column: " + Quoted(out.columns.front());
+  }
+  text += ", unit: " + Quoted(out.unit);
+  if (out.kind == Output::Kind::kSensor) {
+    text += ", sensor: " + Quoted(out.source);
+  } else {
+    text += ", actuator: " + Quoted(out.source) +
+            ", quantity: " + (out.kind == Output::Kind::kForce ? "force" : "control");
+  }
+  if (out.sigma > 0) text += ", sigma: " + Decimal(out.sigma);
+  if (out.weight != 1) text += ", weight: " + Decimal(out.weight);
+  return text + MeasurementYaml(out.measurement) + "}\n";
+}
+
+std::string ParameterYaml(const FreeParameter& p, double value) {
+  const bool absolute = p.change.operation == Change::Operation::kSet;
+  const double null = p.change.operation == Change::Operation::kScale ? 1 : 0;
+  const bool effect = p.change.attribute.starts_with("effect:");
+  const double start = absolute && !effect ? value : null;  // the model has the rest already
+  const char* const operation[] = {"set", "scale", "add"};
+  return fmt::format(
+      "  - {{name: {}, target: {}, attribute: {}, operation: {}, initial: {}, lower: {}, upper: "
+      "{}}}\n",
+      Quoted(p.name), Quoted(p.change.target), Quoted(p.change.attribute),
+      operation[static_cast<int>(p.change.operation)], Decimal(start),
+      Decimal(std::min(p.lower, start)), Decimal(std::max(p.upper, start)));
+}
+
+}  // namespace
+
+Extension Extend(const Problem& problem, const Problem::Vector& x,
+                 const std::filesystem::path& folder) {
+  const Experiment& e = problem.experiment();
+  std::string y = "format: 1\nmodel: extended.xml\nlogs:\n";
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    const Log& log = e.logs[l];
+    y += fmt::format("  - {{file: {}", Quoted(Relative(log.file, folder)));
+    if (!log.variable.empty()) y += ", variable: " + Quoted(log.variable);
+    y += fmt::format(", trial: {}, use: {}", Quoted(log.trial), log.train ? "train" : "validate");
+    if (!log.window.empty()) {
+      y += fmt::format(", window: [{}, {}]", Decimal(log.window[0]), Decimal(log.window[1]));
+    }
+    if (!log.condition.empty()) y += ", condition: " + Quoted(log.condition);
+    y += SettingsYaml(problem, x, l) + "}\n";
+  }
+  y += fmt::format("time: {{column: {}, unit: {}, skew: {}}}\n", Quoted(e.time_column),
+                   Quoted(e.time_unit), Decimal(e.skew));
+  const char* const starts[] = {"rest", "equilibrium", "measured", "estimate"};
+  y += fmt::format("start: {}\ninputs:\n", starts[static_cast<int>(e.start)]);
+  for (const Input& in : e.inputs) {
+    y += "  - {actuator: " + Quoted(in.actuator) + ", unit: " + Quoted(in.unit);
+    if (!in.column.empty()) y += ", column: " + Quoted(in.column);
+    if (!in.enable.empty()) y += ", enable: " + Quoted(in.enable);
+    y += in.linear ? ", interpolate: linear}\n" : "}\n";
+  }
+  if (e.inputs.empty()) y.replace(y.rfind("inputs:\n"), 8, "");
+  y += "outputs:\n";
+  for (const Output& out : e.outputs) y += OutputYaml(out);
+  std::string parameters;
+  for (std::size_t i = 0; i < problem.parameters().size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const bool common = std::find(p.log.begin(), p.log.end(), false) == p.log.end();
+    if (common && !p.change.target.empty())
+      parameters += ParameterYaml(p, x[static_cast<Eigen::Index>(i)]);
+  }
+  if (!parameters.empty()) y += "parameters:\n" + parameters;
+  const char* const folds[] = {"trial", "condition", "window"};
+  y += "folds: [";
+  for (const auto f : e.folds)
+    y += std::string(y.back() == '[' ? "" : ", ") + folds[static_cast<int>(f)];
+  y += "]\n";
+  if (e.soft > 0) y += "loss: {soft_l1: " + Decimal(e.soft) + "}\n";
+  return {problem.system().Xml(problem.CommonChanges(x)), y};
+}
+
+nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
+                           const EffectInstance& instance, const std::string& replaces) {
+  nlohmann::json json{{"instances", nlohmann::json::array()},
+                      {"replaces", replaces},
+                      {"changes", nlohmann::json::array()}};
+  if (!instance.effect.empty()) {
+    auto config = nlohmann::json::array();
+    for (const auto& [key, value] : instance.config) config.push_back({key, value});
+    json["instances"].push_back(
+        {{"effect", instance.effect}, {"name", instance.name}, {"config", config}});
+  }
+  const char* const operation[] = {"set", "scale", "add"};
+  for (const Change& c : problem.CommonChanges(x)) {
+    json["changes"].push_back({{"target", c.target},
+                               {"attribute", c.attribute},
+                               {"value", c.value},
+                               {"operation", operation[static_cast<int>(c.operation)]}});
+  }
+  return json;
+}
+
+std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where) {
+  try {
+    const auto& extension = json.at("extension");
+    std::vector<Change> changes;
+    for (const auto& c : extension.at("changes")) {
+      const std::string o = c.at("operation");
+      changes.push_back({c.at("target"), c.at("attribute"), c.at("value"),
+                         o == "scale" ? Change::Operation::kScale
+                         : o == "add" ? Change::Operation::kAdd
+                                      : Change::Operation::kSet});
+    }
+    std::vector<EffectInstance> instances;
+    for (const auto& i : extension.at("instances")) {
+      EffectInstance instance{i.at("effect"), i.at("name"), {}};
+      for (const auto& pair : i.at("config")) instance.config.emplace_back(pair.at(0), pair.at(1));
+      instances.push_back(std::move(instance));
+    }
+    const std::string replaces = extension.at("replaces");
+    const System extended = !replaces.empty() && !instances.empty()
+                                ? system.Replacing(replaces, instances.front())
+                                : system.With({}, instances);
+    return extended.Xml(changes);
+  } catch (const nlohmann::json::exception& e) {
+    throw Error::Input(where, "a diagnosis.json with an extension", e.what());
+  }
+}
+
+std::string LineDiff(const std::string& before, const std::string& after) {
+  const auto split = [](const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+  };
+  const auto a = split(before), b = split(after);
+  // Longest common subsequence; models have hundreds of lines.
+  std::vector<std::vector<int>> common(a.size() + 1, std::vector<int>(b.size() + 1, 0));
+  for (std::size_t i = a.size(); i-- > 0;) {
+    for (std::size_t j = b.size(); j-- > 0;) {
+      common[i][j] =
+          a[i] == b[j] ? common[i + 1][j + 1] + 1 : std::max(common[i + 1][j], common[i][j + 1]);
+    }
+  }
+  std::string out;
+  for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
+    if (i < a.size() && j < b.size() && a[i] == b[j]) {
+      ++i, ++j;
+    } else if (j == b.size() || (i < a.size() && common[i + 1][j] >= common[i][j + 1])) {
+      out += "-" + a[i++] + "\n";
+    } else {
+      out += "+" + b[j++] + "\n";
+    }
+  }
+  return out;
+}
+
+}  // namespace continuum

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "identification/problem.h"
+
+namespace continuum {
+
+/// The extended model as files: extended.xml (the hypothesis' system with its fitted values) and
+/// extended.yaml, the experiment that belongs to it. Values that logs set themselves are written as
+/// they are after the fit, so that both files together simulate what was fitted.
+struct Extension {
+  std::string xml, yaml;
+};
+Extension Extend(const Problem& problem, const Problem::Vector& x,
+                 const std::filesystem::path& folder);
+
+/// What was changed, for `continuum apply`: {instances, replaces, changes}.
+nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
+                           const EffectInstance& instance, const std::string& replaces);
+/// Applies ChangesJson to another model and returns its MJCF. Throws Error naming what is missing.
+std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where);
+
+/// Lines that differ between two texts, with "-" and "+" in front, as a minimal line diff.
+std::string LineDiff(const std::string& before, const std::string& after);
+
+}  // namespace continuum

@@ -1,0 +1,305 @@
+#include "identification/fit.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+#include <Eigen/Dense>
+#include <boost/math/distributions/students_t.hpp>
+
+#include "error.h"
+#include "identification/parallel.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+Vector Stack(const std::vector<Vector>& parts) {
+  Eigen::Index n = 0;
+  for (const Vector& p : parts) n += p.size();
+  Vector all(n);
+  n = 0;
+  for (const Vector& p : parts) {
+    all.segment(n, p.size()) = p;
+    n += p.size();
+  }
+  return all;
+}
+
+// All residuals as one Ceres cost in the scaled parameters y = x/scale.
+class Cost : public ceres::CostFunction {
+ public:
+  Cost(const Problem& problem, const std::vector<bool>& use, double soft, Eigen::Index residuals)
+      : problem_(problem), use_(use), soft_(soft) {
+    set_num_residuals(static_cast<int>(residuals));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
+  }
+
+  bool Evaluate(const double* const* y, double* residuals, double** jacobians) const override {
+    const auto& parameters = problem_.parameters();
+    Vector x(static_cast<Eigen::Index>(parameters.size()));
+    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = y[0][i] * parameters[i].scale;
+    x = problem_.Clamp(x);
+    if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x;
+    const Vector all = Stack(r_);
+    if (!all.allFinite()) return false;
+    for (Eigen::Index k = 0; k < all.size(); ++k) residuals[k] = Soften(all[k]).first;
+    if (!jacobians || !jacobians[0]) return true;
+    const auto J = problem_.Jacobian(x, r_, use_);
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
+        jacobians[0], all.size(), x.size());
+    Eigen::Index row = 0;
+    for (const Matrix& part : J) {
+      if (!part.size()) continue;  // not in use
+      out.middleRows(row, part.rows()) = part;
+      row += part.rows();
+    }
+    for (Eigen::Index i = 0; i < x.size(); ++i) out.col(i) *= parameters[i].scale;
+    for (Eigen::Index k = 0; k < all.size(); ++k) out.row(k) *= Soften(all[k]).second;
+    return out.allFinite();
+  }
+
+ private:
+  // w with ½ w² = ρ(r), and dw/dr.
+  std::pair<double, double> Soften(double r) const {
+    if (soft_ == 0) return {r, 1};
+    const double root = std::sqrt(1 + r * r / (soft_ * soft_));
+    const double w = std::copysign(soft_ * std::sqrt(2 * (root - 1)), r);
+    return {w, std::abs(w) > 1e-12 * soft_ ? r / (w * root) : 1};
+  }
+
+  const Problem& problem_;
+  const std::vector<bool>& use_;
+  double soft_;
+  mutable Vector x_;
+  mutable std::vector<Vector> r_;
+};
+
+class Watch : public ceres::IterationCallback {
+ public:
+  Watch(const Problem& problem, const FitOptions& options, Fit& fit)
+      : problem_(problem), options_(options), fit_(fit) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
+    if (s.step_is_successful || s.iteration == 0) fit_.trace.push_back(s.cost);
+    if (options_.progress) {
+      options_.progress(fmt::format("iteration {:2}  cost {:.6g}  {} simulations", s.iteration,
+                                    s.cost, problem_.evaluations()));
+    }
+    return StopRequested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const Problem& problem_;
+  const FitOptions& options_;
+  Fit& fit_;
+};
+
+void RequireEffect(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                   const std::vector<bool>& use) {
+  const auto J = problem.Jacobian(x, r, use);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    double norm = 0;
+    for (const Matrix& part : J) {
+      if (part.size()) norm += part.col(i).squaredNorm();
+    }
+    if (norm * p.scale * p.scale > 0) continue;
+    throw Error::Input(
+        "parameter '" + p.name + "' (" + p.change.target + ", " + p.change.attribute + ")",
+        "an effect on some output at its start " + fmt::format("{:g}", x[i]), "none");
+  }
+}
+
+// Σ_t s_t s_tᵀ with Bartlett-weighted lags up to the bandwidth.
+Matrix LongRunCovariance(const Matrix& scores, double bandwidth) {
+  const Eigen::Index n = scores.rows();
+  Matrix S = scores.transpose() * scores;
+  for (Eigen::Index lag = 1; lag < n && static_cast<double>(lag) < bandwidth; ++lag) {
+    const double w = 1 - static_cast<double>(lag) / bandwidth;
+    const Matrix G = scores.topRows(n - lag).transpose() * scores.bottomRows(n - lag);
+    S += w * (G + G.transpose());
+  }
+  return S;
+}
+
+// Andrews' plug-in for the Bartlett kernel with AR(1) scores, averaged over parameters.
+double Bandwidth(const Matrix& scores) {
+  const Eigen::Index n = scores.rows();
+  double top = 0, bottom = 0;
+  for (Eigen::Index i = 0; i < scores.cols(); ++i) {
+    const auto s = scores.col(i);
+    const double power = s.head(n - 1).squaredNorm();
+    if (!(power > 0)) continue;
+    const double rho = std::clamp(s.head(n - 1).dot(s.tail(n - 1)) / power, -0.99, 0.99);
+    top += 4 * rho * rho / (std::pow(1 - rho, 6) * std::pow(1 + rho, 2));
+    bottom += 1 / std::pow(1 - rho, 4);
+  }
+  if (!(bottom > 0)) return 1;
+  return std::min(1.1447 * std::cbrt(top / bottom * static_cast<double>(n)) + 1,
+                  static_cast<double>(n) / 3);
+}
+
+}  // namespace
+
+Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<bool>& use,
+                  const FitOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::size_t before = problem.evaluations();
+  Fit fit;
+  fit.x = problem.Clamp(x);
+  const auto r = problem.Residuals(fit.x, use);
+  const Vector all = Stack(r);
+  if (!all.allFinite()) throw Error::Job("the simulation diverges at the start of the fit");
+  if (x.size() == 0) {
+    fit.cost = 0.5 * all.squaredNorm();
+    fit.converged = true;
+    return fit;
+  }
+  RequireEffect(problem, fit.x, r, use);
+
+  const auto& parameters = problem.parameters();
+  Vector y(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) y[i] = fit.x[i] / parameters[i].scale;
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  Cost cost(problem, use, options.soft, all.size());
+  ceres::Problem ceres(ownership);
+  ceres.AddResidualBlock(&cost, nullptr, y.data());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = parameters[i];
+    if (std::isfinite(p.lower))
+      ceres.SetParameterLowerBound(y.data(), static_cast<int>(i), p.lower / p.scale);
+    if (std::isfinite(p.upper))
+      ceres.SetParameterUpperBound(y.data(), static_cast<int>(i), p.upper / p.scale);
+  }
+  Watch watch(problem, options, fit);
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = options.iterations;
+  solver.function_tolerance = options.tolerance;
+  solver.parameter_tolerance = 1e-7;
+  solver.initial_trust_region_radius = 1e3;
+  solver.max_num_consecutive_invalid_steps = 12;
+  solver.logging_type = ceres::SILENT;
+  solver.callbacks.push_back(&watch);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &ceres, &summary);
+
+  for (Eigen::Index i = 0; i < x.size(); ++i) fit.x[i] = y[i] * parameters[i].scale;
+  fit.x = problem.Clamp(fit.x);
+  fit.cost = summary.final_cost;
+  fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  fit.message = summary.message;
+  fit.evaluations = problem.evaluations() - before;
+  fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return fit;
+}
+
+Vector RefitByChords(const Problem& problem, const Vector& x, const std::vector<Matrix>& J,
+                     const std::vector<bool>& use, int iterations) {
+  const Eigen::Index n = x.size();
+  Matrix H = Matrix::Zero(n, n);
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (use[l]) H += J[l].transpose() * J[l];
+  }
+  Vector best = x;
+  auto r = problem.Residuals(best, use);
+  double cost = SumOfSquares(r);
+  for (int k = 0; k < iterations && !StopRequested(); ++k) {
+    Vector g = Vector::Zero(n);
+    for (std::size_t l = 0; l < use.size(); ++l) {
+      if (use[l]) g += J[l].transpose() * r[l];
+    }
+    // Parameters that a bound stops do not move; the others solve without them.
+    std::vector<bool> fixed(n, false);
+    Vector step;
+    for (bool again = true; again;) {
+      again = false;
+      Matrix A = H;
+      Vector b = -g;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        A(i, i) += 1e-9 * (H(i, i) + 1e-300);
+        if (!fixed[i]) continue;
+        A.row(i).setZero(), A.col(i).setZero();
+        A(i, i) = 1, b[i] = 0;
+      }
+      step = A.ldlt().solve(b);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const FreeParameter& p = problem.parameters()[i];
+        const bool stopped =
+            (best[i] <= p.lower && step[i] < 0) || (best[i] >= p.upper && step[i] > 0);
+        if (!fixed[i] && stopped) fixed[i] = again = true;
+      }
+    }
+    bool lower = false;
+    for (double share = 1; share > 0.2 && !lower; share /= 2) {
+      const Vector next = problem.Clamp(best + share * step);
+      auto there = problem.Residuals(next, use);
+      const double value = SumOfSquares(there);
+      if (!(value < cost)) continue;
+      lower = true;
+      const bool done = value > cost * (1 - 1e-4);
+      best = next, r = std::move(there), cost = value;
+      if (done) return best;
+    }
+    if (!lower) break;
+  }
+  return best;
+}
+
+Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                          const std::vector<Matrix>& J) {
+  const Eigen::Index n = x.size();
+  Uncertainty u;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  u.standard_error = u.lower = u.upper = Vector::Constant(n, nan);
+  u.correlation = Matrix::Identity(n, n);
+  std::vector<Eigen::Index> inside;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const double edge = 1e-6 * p.scale;
+    u.at_bound.push_back(x[i] <= p.lower + edge || x[i] >= p.upper - edge);
+    if (!u.at_bound.back()) inside.push_back(i);
+  }
+  const auto k = static_cast<Eigen::Index>(inside.size());
+  if (k == 0) return u;
+  Matrix H = Matrix::Zero(k, k), S = Matrix::Zero(k, k);
+  double effective = 0;  // independent samples, for the quantile
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (!J[l].size()) continue;
+    const auto channels = static_cast<Eigen::Index>(problem.channels().size());
+    const Eigen::Index rows = r[l].size() / channels;
+    for (Eigen::Index c = 0; c < channels; ++c) {
+      Matrix Jc(rows, k);
+      for (Eigen::Index i = 0; i < k; ++i) Jc.col(i) = J[l].col(inside[i]).segment(c * rows, rows);
+      const Matrix scores = r[l].segment(c * rows, rows).asDiagonal() * Jc;
+      const double bandwidth = Bandwidth(scores);
+      H += Jc.transpose() * Jc;
+      S += LongRunCovariance(scores, bandwidth);
+      effective += static_cast<double>(rows) / bandwidth;
+    }
+  }
+  const Matrix Hi = H.completeOrthogonalDecomposition().pseudoInverse();
+  const Matrix cov = Hi * S * Hi;
+  const double freedom = std::max(2.0, effective - static_cast<double>(k));
+  const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
+  for (Eigen::Index a = 0; a < k; ++a) {
+    const Eigen::Index i = inside[a];
+    const FreeParameter& p = problem.parameters()[i];
+    u.standard_error[i] = std::sqrt(std::max(0.0, cov(a, a)));
+    u.lower[i] = std::max(p.lower, x[i] - t * u.standard_error[i]);
+    u.upper[i] = std::min(p.upper, x[i] + t * u.standard_error[i]);
+    for (Eigen::Index b = 0; b < k; ++b) {
+      const double size = std::sqrt(cov(a, a) * cov(b, b));
+      u.correlation(i, inside[b]) = size > 0 ? cov(a, b) / size : (a == b ? 1 : 0);
+    }
+  }
+  return u;
+}
+
+}  // namespace continuum

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "identification/problem.h"
+
+namespace continuum {
+
+struct FitOptions {
+  int iterations = 30;
+  double tolerance = 1e-5;  ///< relative decrease of the cost at which it ends
+  /// Robust loss: residuals beyond this size (in residual units) count linearly; 0: least squares.
+  ///   ρ(r) = s² (√(1 + (r/s)²) − 1)   (soft L1)
+  double soft = 0;
+  /// One line per iteration: cost and evaluations so far.
+  std::function<void(const std::string&)> progress = {};
+};
+
+struct Fit {
+  Problem::Vector x;
+  double cost = 0;  ///< ½ Σ r² over the logs of the fit
+  int iterations = 0;
+  std::size_t evaluations = 0;  ///< simulated logs
+  double seconds = 0;
+  bool converged = false;
+  std::string message;
+  std::vector<double> trace;  ///< cost after each iteration
+};
+
+/// Bounded Levenberg-Marquardt (Ceres) over the logs in use, from x. Divergence of the simulation
+/// is a rejected step. Throws Error when a parameter has no effect on any output at the start, or
+/// the start itself diverges.
+Fit FitParameters(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,
+                  const FitOptions& options = {});
+
+/// Gauss-Newton with a fixed Jacobian (per log, at some nearby x): each iteration is one simulation
+/// of the logs in use, steps that do not lower the cost are halved. For refits close to a known
+/// optimum. Returns the refitted x; never worse than the start on the logs in use.
+Problem::Vector RefitByChords(const Problem& problem, const Problem::Vector& x,
+                              const std::vector<Problem::Matrix>& J, const std::vector<bool>& use,
+                              int iterations = 3);
+
+/// Standard errors and correlations of a fit, allowing for residuals that are correlated in time:
+///
+///   Cov = H⁻¹ S H⁻¹,   H = Σ JᵀJ,   S = Σ_logs Σ_lags w(lag) Σ_t s_t s_{t+lag}ᵀ,   s_t = Jᵀ_t r_t
+///
+/// with Bartlett weights and Andrews' bandwidth for AR(1) scores (heteroskedasticity and
+/// autocorrelation consistent, newey1987, andrews1991). Parameters at a bound are left out (NaN).
+struct Uncertainty {
+  Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
+  Problem::Matrix correlation;
+  std::vector<bool> at_bound;
+};
+Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
+                          const std::vector<Problem::Vector>& r,
+                          const std::vector<Problem::Matrix>& J);
+
+}  // namespace continuum

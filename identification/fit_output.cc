@@ -1,0 +1,190 @@
+#include "identification/fit_output.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sim/file.h"
+#include "sim/replay.h"
+
+namespace continuum {
+namespace {
+
+constexpr int kLags = 100;
+
+std::vector<double> Autocorrelation(const std::vector<double>& r) {
+  double power = 0, mean = 0;
+  for (const double v : r) mean += v / static_cast<double>(r.size());
+  for (const double v : r) power += (v - mean) * (v - mean);
+  std::vector<double> rho;
+  for (std::size_t lag = 0; lag < std::min<std::size_t>(kLags, r.size()); ++lag) {
+    double sum = 0;
+    for (std::size_t k = lag; k < r.size(); ++k) sum += (r[k] - mean) * (r[k - lag] - mean);
+    rho.push_back(power > 0 ? sum / power : 0);
+  }
+  return rho;
+}
+
+void AddAutocorrelation(Page& page, const Problem& problem, const std::vector<Replayed>& logs) {
+  const Experiment& e = problem.experiment();
+  ScatterSpec spec{"Residual autocorrelation", {"lag", "s"}, {"correlation", ""}, {}, {}, true};
+  for (std::size_t l = 0; l < logs.size() && l < 6; ++l) {
+    const auto residual = Residuals(e, e.logs[l], logs[l].trace);
+    const std::size_t c = problem.channels().front();
+    const auto rho = Autocorrelation(residual[c]);
+    Trend trend{e.logs[l].label + ": " + e.channels[c].name, {}, rho};
+    const double dt = (e.logs[l].time.back() - e.logs[l].time.front()) /
+                      static_cast<double>(e.logs[l].rows() - 1);
+    for (std::size_t k = 0; k < rho.size(); ++k) trend.x.push_back(static_cast<double>(k) * dt);
+    spec.trends.push_back(std::move(trend));
+  }
+  page.Scatter(spec);
+}
+
+void AddResidualAgainstInput(Page& page, const Problem& problem,
+                             const std::vector<Replayed>& logs) {
+  const Experiment& e = problem.experiment();
+  const std::size_t c = problem.channels().front();
+  for (std::size_t i = 0; i < e.inputs.size() && i < 4; ++i) {
+    if (e.inputs[i].column.empty()) continue;
+    ScatterSpec spec{"Residual over input " + e.inputs[i].column,
+                     {e.inputs[i].column, "SI"},
+                     {e.channels[c].name + " residual", e.channels[c].unit},
+                     {},
+                     {},
+                     true};
+    PointGroup points{"all logs", {}, {}, Style::kResidual};
+    for (std::size_t l = 0; l < logs.size(); ++l) {
+      const auto residual = Residuals(e, e.logs[l], logs[l].trace);
+      for (std::size_t k = 0; k < e.logs[l].rows(); k += 5) {
+        points.x.push_back(e.logs[l].input[i][k]);
+        points.y.push_back(residual[c][k] / e.channels[c].factor);
+      }
+    }
+    spec.groups.push_back(std::move(points));
+    page.Scatter(spec);
+  }
+}
+
+HeatMapSpec CorrelationMap(const Problem& problem, const Uncertainty& u) {
+  HeatMapSpec spec{"Correlation of the parameters", {}, {}, {}};
+  for (const FreeParameter& p : problem.parameters()) spec.rows.push_back(p.name);
+  for (Eigen::Index a = 0; a < u.correlation.rows(); ++a) {
+    spec.values.emplace_back();
+    for (Eigen::Index b = 0; b < u.correlation.cols(); ++b)
+      spec.values.back().push_back(u.correlation(a, b));
+  }
+  return spec;
+}
+
+}  // namespace
+
+nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
+                              const Uncertainty& u) {
+  auto all = nlohmann::json::array();
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const bool known = std::isfinite(u.standard_error[i]);
+    const double edge = 1e-9 * p.scale;
+    all.push_back({{"name", p.name},
+                   {"unit", p.unit},
+                   {"value", x[i]},
+                   {"standard_error", known ? u.standard_error[i] : 0},
+                   {"ci95", {known ? u.lower[i] : x[i], known ? u.upper[i] : x[i]}},
+                   {"lower", p.lower},
+                   {"upper", p.upper},
+                   {"start", p.initial},
+                   {"at_bound", static_cast<bool>(u.at_bound[i])},
+                   {"start_at_bound", p.initial <= p.lower + edge || p.initial >= p.upper - edge}});
+  }
+  return all;
+}
+
+void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector& x,
+                       const Uncertainty& u) {
+  std::vector<std::vector<std::string>> rows;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const bool known = std::isfinite(u.standard_error[i]);
+    rows.push_back({p.name, fmt::format("{:.5g}", x[i]), p.unit,
+                    known ? fmt::format("{:.2g}", u.standard_error[i]) : "",
+                    known ? fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) : "",
+                    u.at_bound[i] ? "at its bound" : "", fmt::format("{:.5g}", p.initial)});
+  }
+  page.Table({"parameter", "value", "unit", "standard error", "95 % interval", "", "start"}, rows,
+             {"Intervals allow for residuals that are correlated in time."});
+}
+
+void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder) {
+  const Experiment& e = problem.experiment();
+  MakeFolder(folder);
+  const auto r = problem.Residuals(fit.x, problem.AllLogs());
+  auto J = problem.Jacobian(fit.x, r, problem.TrainLogs());
+  const Uncertainty u = UncertaintyOf(problem, fit.x, r, J);
+  std::vector<Replayed> logs;
+  std::vector<Trace> traces;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    Trace trace = problem.Predict(fit.x, l);
+    logs.push_back({trace, ScoreLog(e, e.logs[l], trace)});
+    traces.push_back(std::move(trace));
+  }
+  const SplitError error = PooledError(e, logs);
+  const std::string unit = Pool(e).unit();
+
+  nlohmann::json json{{"parameters", ParametersJson(problem, fit.x, u)},
+                      {"correlation", nlohmann::json::array()},
+                      {"error", ErrorsJson(e, logs)},
+                      {"method", "lm"},
+                      {"path", "stepped"},
+                      {"cost", fit.cost},
+                      {"iterations", fit.iterations},
+                      {"evaluations", fit.evaluations},
+                      {"seconds", fit.seconds},
+                      {"converged", fit.converged},
+                      {"message", fit.message},
+                      {"trace", fit.trace},
+                      {"fitted_model", "fitted.xml"}};
+  for (Eigen::Index a = 0; a < u.correlation.rows(); ++a) {
+    json["correlation"].emplace_back(
+        std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
+  }
+  WriteFile(folder / "fit.json", json.dump(2) + "\n");
+  WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(fit.x)));
+  WriteSimulated(e, traces, folder / "simulated");
+
+  Page page("Fit", e.model.filename().string() + " to " + std::to_string(e.logs.size()) + " logs");
+  page.Badge(fit.converged ? Tone::kGood : Tone::kWarn,
+             fmt::format("error {:.4g} {} on train, {:.4g} {} on validate", error.train, unit,
+                         error.validate, unit),
+             fmt::format("{} iterations, {} simulations, {:.1f} s. {}", fit.iterations,
+                         fit.evaluations, fit.seconds, fit.message));
+  page.Heading("Parameters");
+  AddParameterTable(page, problem, fit.x, u);
+  if (u.correlation.rows() > 1) page.HeatMap(CorrelationMap(problem, u));
+  page.Heading("Convergence");
+  ScatterSpec cost{"Cost", {"iteration", ""}, {"cost", ""}, {}, {}, true};
+  Trend trend{"cost", {}, fit.trace};
+  for (std::size_t k = 0; k < fit.trace.size(); ++k) trend.x.push_back(static_cast<double>(k));
+  cost.trends.push_back(trend);
+  page.Scatter(cost);
+  page.Heading("What remains");
+  AddAutocorrelation(page, problem, logs);
+  AddResidualAgainstInput(page, problem, logs);
+  page.Heading("Errors");
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    for (const ChannelScore& s : logs[l].score) {
+      rows.push_back({e.logs[l].label, e.logs[l].train ? "train" : "validate", s.channel, s.unit,
+                      fmt::format("{:.4g}", s.rmse), fmt::format("{:.4g}", s.mae),
+                      fmt::format("{:.3f}", s.nrmse), fmt::format("{:.1f}", s.fit)});
+    }
+  }
+  page.Table({"log", "use", "channel", "unit", "RMSE", "mean abs.", "NRMSE", "fit %"}, rows);
+  page.Heading("Logs");
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    AddOverlay(page, e, e.logs[l], {{"fitted", Style::kAfter, &traces[l]}}, true);
+  }
+  page.Write(folder / "report.html");
+}
+
+}  // namespace continuum

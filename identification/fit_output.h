@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "identification/fit.h"
+
+namespace continuum {
+
+/// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder.
+void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder);
+
+/// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}]; where no error can be
+/// given (at a bound) the interval is the value itself.
+nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
+                              const Uncertainty& uncertainty);
+
+/// The same as a table for a page.
+class Page;
+void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector& x,
+                       const Uncertainty& uncertainty);
+
+}  // namespace continuum

@@ -1,0 +1,377 @@
+#include "identification/hypothesis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "binding/config.h"
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+const std::string kInstance = "diagnosis";
+
+mjtObj TypeOf(Place place) {
+  switch (place) {
+    case Place::kJoint:
+      return mjOBJ_JOINT;
+    case Place::kTendon:
+      return mjOBJ_TENDON;
+    case Place::kActuator:
+      return mjOBJ_ACTUATOR;
+    default:
+      return mjOBJ_BODY;
+  }
+}
+
+int CountOf(const mjModel& m, Place place) {
+  switch (place) {
+    case Place::kJoint:
+      return static_cast<int>(m.njnt);
+    case Place::kTendon:
+      return static_cast<int>(m.ntendon);
+    case Place::kActuator:
+      return static_cast<int>(m.nu);
+    default:
+      return static_cast<int>(m.nbody);
+  }
+}
+
+// Whether an effect makes sense at one object of the model.
+bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
+          const Experiment& experiment) {
+  switch (place) {
+    case Place::kJoint:
+      return m.jnt_type[id] == mjJNT_HINGE || m.jnt_type[id] == mjJNT_SLIDE;
+    case Place::kTendon: {
+      if (effect.kind != EffectInfo::Kind::kPath) return true;
+      if (m.tendon_num[id] < 3) return false;  // no contact
+      for (int w = m.tendon_adr[id]; w < m.tendon_adr[id] + m.tendon_num[id]; ++w) {
+        if (m.wrap_type[w] != mjWRAP_SITE) return false;
+      }
+      return true;
+    }
+    case Place::kActuator: {
+      const double kp = m.actuator_gainprm[mjNGAIN * id];
+      const bool servo = m.actuator_gaintype[id] == mjGAIN_FIXED &&
+                         m.actuator_biastype[id] == mjBIAS_AFFINE && kp != 0 &&
+                         kp == -m.actuator_biasprm[mjNBIAS * id + 1];
+      if (effect.servo && !servo) return false;
+      const char* name = mj_id2name(&m, mjOBJ_ACTUATOR, id);
+      return std::any_of(experiment.inputs.begin(), experiment.inputs.end(), [&](const Input& in) {
+        return !in.column.empty() && name && in.actuator == name;
+      });
+    }
+    default: {  // bodies: the ends of the tree
+      if (id == 0) return false;
+      for (int b = id + 1; b < m.nbody; ++b) {
+        if (m.body_parentid[b] == id) return false;
+      }
+      return true;
+    }
+  }
+}
+
+std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
+                                   const std::string& glob, const Experiment& experiment) {
+  std::vector<std::string> names;
+  for (int i = 0; i < CountOf(m, place); ++i) {
+    const char* name = mj_id2name(&m, TypeOf(place), i);
+    if (!name || !*name || !GlobMatches(glob, name)) continue;
+    const bool chosen = glob != "*" && place == Place::kBody;
+    if (chosen || Fits(m, effect, place, i, experiment)) names.emplace_back(name);
+  }
+  return names;
+}
+
+std::string Join(const std::vector<std::string>& names) {
+  std::string all;
+  for (const auto& name : names) all += (all.empty() ? "" : " ") + name;
+  return all;
+}
+
+// The name of an instance of another dry friction law on the same joints, and its effect.
+struct Present {
+  std::string instance, effect;
+  bool same = false;  ///< on exactly these joints
+  int id = -1;
+};
+Present FrictionOn(const mjModel& m, const std::vector<std::string>& joints) {
+  Present found;
+  for (int i = 0; i < m.nplugin; ++i) {
+    const std::string plugin = mjp_getPluginAtSlot(m.plugin[i])->name;
+    if (!plugin.starts_with("continuum.")) continue;
+    const std::string effect = plugin.substr(10);
+    if (EffectNamed(effect).kind != EffectInfo::Kind::kFriction) continue;
+    const auto ids = Config(m, i).Match("joint", mjOBJ_JOINT);
+    std::set<std::string> on;
+    for (const int j : ids) on.insert(mj_id2name(&m, mjOBJ_JOINT, j));
+    const std::set<std::string> wanted(joints.begin(), joints.end());
+    std::vector<std::string> common;
+    std::set_intersection(on.begin(), on.end(), wanted.begin(), wanted.end(),
+                          std::back_inserter(common));
+    if (common.empty()) continue;
+    const char* name = mj_id2name(&m, mjOBJ_PLUGIN, i);
+    found = {name ? name : "", effect, on == wanted, i};
+  }
+  return found;
+}
+
+// The size in which a parameter is looked for, from its unit.
+double SizeFor(const Param& p, Place place, const Sizes& s) {
+  const std::string_view u = p.unit;
+  const bool line = place == Place::kTendon;
+  if (u == "N*m") return line ? s.tension : s.torque;
+  if (u == "N") return line ? s.tension : s.torque;  // Dahl's f, on joints a torque
+  if (u == "rad") return s.angle;
+  if (u == "rad/s") return s.velocity;
+  if (u == "N*m*s/rad") return s.torque / s.velocity;
+  if (u == "N*m/rad" || u == "N/m") return (line ? s.tension : s.torque) / (0.02 * s.angle);
+  if (u == "kg") return s.mass;
+  if (u == "s") return 4 * s.period;
+  if (u == "input") return s.angle;
+  return 1;
+}
+
+Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::string& target,
+                  const std::string& attribute, Change::Operation operation) {
+  const double size = SizeFor(p, place, sizes);
+  Parameter out;
+  out.name = p.name;
+  out.target = target;
+  out.attribute = attribute;
+  out.operation = operation;
+  out.has_initial = true;
+  out.where = "candidate";
+  const bool nuisance = std::isnan(p.null);
+  const double reach = p.unit == "kg" ? 5 : p.unit == "s" ? 25 : p.unit == "1" ? 10 : 3;
+  out.upper = std::min(p.upper, (nuisance ? 100 : reach) * size);
+  out.lower = nuisance ? std::max(p.lower, 1e-3 * size) : std::max(p.lower, -reach * size);
+  const double typical = p.unit == "1" ? 0.1 : p.unit == "s" ? 0.5 : p.unit == "rad" ? 0.02 : 0.05;
+  out.initial = nuisance ? 0.3 * size : p.null + typical * size;
+  if (p.null == 1) out.lower = 0.1, out.upper = 10, out.initial = 1.02;  // a factor
+  out.initial = std::clamp(out.initial, out.lower, out.upper);
+  return out;
+}
+
+// Initial values, with every nuisance at three sizes.
+std::vector<std::vector<double>> StartsOf(const EffectInfo& effect, const Hypothesis& h) {
+  std::vector<double> first;
+  for (const Parameter& p : h.extra) first.push_back(p.initial);
+  std::vector<std::vector<double>> starts{first};
+  for (std::size_t i = 0; i < h.extra.size(); ++i) {
+    for (const Param& p : effect.params) {
+      if (p.name != h.extra[i].name || !std::isnan(p.null)) continue;
+      for (const double factor : {0.2, 5.0}) {
+        auto start = first;
+        start[i] = std::clamp(factor * start[i], h.extra[i].lower, h.extra[i].upper);
+        starts.push_back(start);
+      }
+    }
+  }
+  return starts;
+}
+
+std::string InWords(Place place, const std::vector<std::string>& names) {
+  std::string text(PlaceName(place));
+  if (names.size() > 1) text += "s";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i == 6) return text + fmt::format(" … ({} in all)", names.size());
+    text += (i ? ", " : " ") + names[i];
+  }
+  return text;
+}
+
+bool AlreadyFitted(const Experiment& e, const std::string& kind, const std::string& attribute) {
+  return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const Parameter& p) {
+    return p.target.starts_with(kind + ":") && p.attribute == attribute;
+  });
+}
+
+Hypothesis EditCandidate(const EffectInfo& effect, Place place, const std::string& glob,
+                         const std::vector<std::string>& names, const System& system,
+                         const Sizes& sizes) {
+  Hypothesis h{std::string(effect.name), "", InWords(place, names), system, {}, {}, "", {}};
+  const std::string target =
+      std::string(PlaceName(place)) + ":" + (names.size() == 1 ? names.front() : glob);
+  h.extra.push_back(FreeOne(effect.params.front(), place, sizes, target,
+                            "effect:" + std::string(effect.name), Change::Operation::kSet));
+  return h;
+}
+
+Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
+                           const std::vector<std::string>& names, const System& system,
+                           const Sizes& sizes, int option) {
+  EffectInstance added{
+      std::string(effect.name), kInstance, {{std::string(PlaceName(place)), Join(names)}}};
+  std::string variant;
+  if (!effect.choices.empty() && effect.kind == EffectInfo::Kind::kFriction) {
+    const Choice& choice = effect.choices.front();
+    added.config.emplace_back(choice.name, choice.options[option]);
+    variant = std::string(choice.name) + "=" + std::string(choice.options[option]);
+  }
+  Present present;
+  if (effect.kind == EffectInfo::Kind::kFriction && place == Place::kJoint) {
+    present = FrictionOn(system.model(), names);
+  }
+  // A law that contains the model's Coulomb friction takes its place (and keeps its name, so that
+  // the experiment's parameters still find it).
+  const bool replaces = present.effect == "coulomb" && present.same && !present.instance.empty() &&
+                        effect.params.front().name != "" &&
+                        std::any_of(effect.params.begin(), effect.params.end(),
+                                    [](const Param& p) { return p.name == "tau_c"; });
+  if (replaces) added.name = present.instance;
+  Hypothesis h{std::string(effect.name), variant, InWords(place, names), system, {}, {}, "", {}};
+  for (const Param& p : effect.params) {
+    const bool dry_elsewhere = p.name == "tau_c" && present.id >= 0;
+    if (p.name == "tau_c" && replaces) {
+      const double tau_c = system.Value("plugin:" + present.instance, "tau_c");
+      added.config.emplace_back("tau_c", Decimal(tau_c));
+      continue;
+    }
+    const bool damping = p.name == "tau_mu";  // the joint's native damping says it already
+    const bool literal = p.name == "k_v";
+    if (dry_elsewhere || damping || literal) {
+      if (!literal) added.config.emplace_back(p.name, "0");
+      continue;
+    }
+    Parameter free = FreeOne(p, place, sizes, "plugin:" + added.name, std::string(p.name),
+                             Change::Operation::kSet);
+    added.config.emplace_back(p.name, Decimal(free.initial));
+    h.extra.push_back(std::move(free));
+  }
+  h.system = replaces ? system.Replacing(present.instance, added) : system.With({}, {{added}});
+  h.instance = added;
+  if (replaces) h.replaces = present.instance;
+  return h;
+}
+
+void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
+               const System& system, const Sizes& sizes, std::vector<Hypothesis>& all,
+               std::vector<std::string>& skipped) {
+  const auto skip = [&](const std::string& why) {
+    skipped.push_back(std::string(effect.name) + ": " + why);
+  };
+  if (effect.kind == EffectInfo::Kind::kSegment || effect.kind == EffectInfo::Kind::kMeasure) {
+    return skip("not a candidate of the model");
+  }
+  const std::size_t colon = wanted.where.find(':');
+  for (const Place place : effect.places) {
+    const std::string key(PlaceName(place));
+    if (!wanted.where.empty() && wanted.where.substr(0, colon) != key) continue;
+    const std::string glob = wanted.where.empty() ? "*" : wanted.where.substr(colon + 1);
+    const auto names = PlacesFor(system.model(), effect, place, glob, e);
+    if (names.empty()) continue;
+    if (effect.kind == EffectInfo::Kind::kEdit) {
+      const std::string attribute = effect.name == "viscous" ? "damping" : std::string(effect.name);
+      if (AlreadyFitted(e, key, attribute)) return skip("the experiment fits it already");
+      if (effect.name == "viscous" && place == Place::kJoint &&
+          FrictionOn(system.model(), names).effect == "stribeck") {
+        return skip("the model's stribeck has it: fit its tau_mu");
+      }
+      all.push_back(EditCandidate(effect, place, glob, names, system, sizes));
+    } else {
+      const bool friction = effect.kind == EffectInfo::Kind::kFriction;
+      if (friction) {
+        const Present present = FrictionOn(system.model(), names);
+        if (present.effect == effect.name) return skip("the model has it already");
+        if (effect.name == "coulomb" && present.id >= 0) return skip("the model has dry friction");
+      }
+      if (effect.kind == EffectInfo::Kind::kPath) {
+        for (int i = 0; i < system.model().nplugin; ++i) {
+          const std::string name = mjp_getPluginAtSlot(system.model().plugin[i])->name;
+          if (name == "continuum." + std::string(effect.name))
+            return skip("the model has it already");
+        }
+      }
+      const std::size_t options =
+          friction && !effect.choices.empty() ? effect.choices.front().options.size() : 1;
+      for (std::size_t o = 0; o < options; ++o) {
+        all.push_back(PluginCandidate(effect, place, names, system, sizes, static_cast<int>(o)));
+      }
+    }
+    all.back().starts = StartsOf(effect, all.back());
+    for (Hypothesis& h : all) {
+      if (h.starts.empty()) h.starts = StartsOf(effect, h);
+    }
+    return;
+  }
+  skip("nothing in the model to bind it to");
+}
+
+}  // namespace
+
+std::size_t Hypothesis::Main(std::span<const double> values) const {
+  std::size_t main = 0;
+  double largest = -1;
+  for (std::size_t i = 0; i < extra.size(); ++i) {
+    const auto& params = EffectNamed(effect).params;
+    const bool amplitude = std::any_of(params.begin(), params.end(), [&](const Param& p) {
+      return p.name == extra[i].name && !std::isnan(p.null);
+    });
+    const double size =
+        std::abs(values[i]) / std::max(std::abs(extra[i].lower), std::abs(extra[i].upper));
+    if (amplitude && size > largest) main = i, largest = size;
+  }
+  return main;
+}
+
+Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
+  const Experiment& e = problem.experiment();
+  Sizes s;
+  double torque = 0, velocity = 0, tension = 0, count = 0;
+  double lower = kInfinity, upper = -kInfinity;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    Machine machine = problem.system().Build(problem.ChangesFor(x, l));
+    Hooks hooks;
+    hooks.row = [&](const mjModel& m, mjData& d, std::size_t) {
+      for (int i = 0; i < m.nv; ++i) {
+        const double load = d.qfrc_actuator[i] - d.qfrc_bias[i] + d.qfrc_spring[i];
+        torque += d.qfrc_actuator[i] * d.qfrc_actuator[i] + load * load;
+        velocity += d.qvel[i] * d.qvel[i];
+        count += 1;
+      }
+      for (int i = 0; i < m.nq; ++i) {
+        lower = std::min(lower, d.qpos[i]), upper = std::max(upper, d.qpos[i]);
+      }
+      for (int i = 0; i < m.nu; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
+    };
+    Simulate(machine, e, e.logs[l], {}, hooks);
+  }
+  const auto rms = [&](double sum) { return count > 0 && sum > 0 ? std::sqrt(sum / count) : 1.0; };
+  s.torque = rms(torque);
+  s.velocity = rms(velocity);
+  if (upper > lower) s.angle = upper - lower;
+  if (tension > 0) s.tension = tension;
+  const mjModel& m = problem.system().model();
+  if (m.nbody > 1)
+    s.mass = std::max(1e-6, m.body_subtreemass[0] / static_cast<double>(m.nbody - 1));
+  std::vector<double> intervals;
+  for (const Log& log : e.logs) {
+    for (std::size_t k = 1; k < log.rows(); ++k) intervals.push_back(log.time[k] - log.time[k - 1]);
+  }
+  std::nth_element(intervals.begin(), intervals.begin() + intervals.size() / 2, intervals.end());
+  s.period = intervals[intervals.size() / 2];
+  return s;
+}
+
+std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system,
+                                       const Sizes& sizes, std::vector<std::string>& skipped) {
+  std::vector<Hypothesis> all;
+  if (e.all_candidates) {
+    for (const EffectInfo& effect : Catalog())
+      AddEffect(effect, {}, e, system, sizes, all, skipped);
+  } else {
+    for (const Candidate& c : e.candidates) {
+      AddEffect(EffectNamed(c.effect), c, e, system, sizes, all, skipped);
+    }
+  }
+  return all;
+}
+
+}  // namespace continuum

@@ -1,0 +1,41 @@
+#include "identification/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace continuum {
+namespace {
+std::atomic<bool> stop_requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free);  // set from a signal handler
+}  // namespace
+
+std::size_t ThreadCount() { return std::max(1u, std::thread::hardware_concurrency()); }
+
+void RequestStop() { stop_requested = true; }
+bool StopRequested() { return stop_requested; }
+
+void ParallelFor(std::size_t n, const std::function<void(std::size_t, std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto run = [&](std::size_t thread) {
+    try {
+      for (std::size_t i = next++; i < n; i = next++) work(thread, i);
+    } catch (...) {
+      next = n;
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t t = 1; t < std::min(n, ThreadCount()); ++t) threads.emplace_back(run, t);
+  run(0);
+  for (std::thread& t : threads) t.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace continuum

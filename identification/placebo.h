@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+#include "identification/hypothesis.h"
+
+namespace continuum {
+
+/// count smooth random functions of a joint's angle, speed and (loaded) actuator torque, the same
+/// on every hinge and slide joint:
+///
+///   τ_j = Σ_k θ_k cos(a_k q_j/s_q + b_k v_j/s_v + l_k τ_act,j/s_τ + c_k)
+///
+/// with a, b, l standard normal, c uniform: what a law that names no cause could do. Repeats
+/// exactly for a seed.
+ForceTerms RandomForce(std::size_t count, bool loaded, const Sizes& sizes, std::uint64_t seed);
+
+}  // namespace continuum

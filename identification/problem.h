@@ -1,0 +1,96 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/score.h"
+#include "sim/simulate.h"
+
+namespace continuum {
+
+/// A parameter of a fit, after "per log" and "per condition" were multiplied out.
+struct FreeParameter {
+  std::string name;  ///< "mass", "mass[CONDITION]", "mass[LOG]"
+  std::string unit;
+  double initial, lower, upper;
+  double scale;           ///< a typical size, for scaling and finite differences
+  Change change;          ///< value is filled in
+  std::vector<bool> log;  ///< which logs it acts on
+};
+
+/// A force on the joints that is linear in parameters of its own: a placebo, or the best that any
+/// smooth law could do. Its parameters follow the others.
+struct ForceTerms {
+  /// Adds Σ θ_k φ_k(state) to qfrc_applied.
+  std::function<void(const mjModel&, mjData&, std::span<const double> theta)> add;
+  std::size_t count = 0;
+  double size = 1;  ///< typical θ [N*m]
+};
+
+/// Residuals of an experiment's logs as functions of the parameters of one model.
+///
+/// Residuals are (simulated − measured)/scale · sqrt(weight) over all counted channels of a log,
+/// row by row; scale is sigma where every output gives it, else the pooled unit. Rows that were not
+/// measured give zero. Evaluations run on all cores.
+class Problem {
+ public:
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+
+  /// extra: parameters beyond the experiment's own. Throws Error (key and file) for targets that
+  /// match nothing and starts outside the bounds.
+  Problem(const Experiment& experiment, const System& system, std::vector<Parameter> extra = {},
+          ForceTerms terms = {});
+
+  const Experiment& experiment() const { return *experiment_; }
+  const System& system() const { return systems_.front(); }
+  const std::vector<FreeParameter>& parameters() const { return parameters_; }
+  Vector Start() const;
+  Vector Clamp(const Vector& x) const;
+
+  /// Residuals of the logs marked in use; other entries are empty. A diverged log gives NaN.
+  std::vector<Vector> Residuals(const Vector& x, const std::vector<bool>& use) const;
+  /// d residual / d parameter [per unit of the parameter] of each log by one-sided differences;
+  /// r: the residuals at x; known: its leading columns, when they are known already.
+  std::vector<Matrix> Jacobian(const Vector& x, const std::vector<Vector>& r,
+                               const std::vector<bool>& use,
+                               const std::vector<Matrix>& known = {}) const;
+  /// Pooled RMS (unit: see Pool) of residuals over all measured samples of the logs in use.
+  double PooledRms(const std::vector<Vector>& r, const std::vector<bool>& use) const;
+  /// What the model says about one log.
+  Trace Predict(const Vector& x, std::size_t log) const;
+  /// The changes that make the model of one log.
+  std::vector<Change> ChangesFor(const Vector& x, std::size_t log) const;
+  /// The changes that hold for every log alike: those of the model file to be written.
+  std::vector<Change> CommonChanges(const Vector& x) const;
+
+  std::vector<bool> AllLogs() const { return std::vector<bool>(experiment_->logs.size(), true); }
+  std::vector<bool> TrainLogs() const;
+  /// Simulations run so far.
+  std::size_t evaluations() const { return evaluations_; }
+  /// Counted channels, in the order in which their rows follow each other in a residual vector.
+  const std::vector<std::size_t>& channels() const { return channels_; }
+
+ private:
+  void Expand(const Parameter& p);
+  Trace Run(std::size_t thread, const Vector& x, std::size_t log) const;
+  Vector ResidualOf(std::size_t log, const Trace& trace) const;
+
+  const Experiment* experiment_;
+  std::vector<System> systems_;  ///< one per thread
+  std::vector<FreeParameter> parameters_;
+  std::vector<Change> frozen_;
+  std::vector<std::size_t> channels_;
+  std::vector<double> scale_;   ///< SI per residual unit, of each counted channel
+  std::vector<double> pooled_;  ///< pooled units per residual unit
+  ForceTerms terms_;
+  mutable std::size_t evaluations_ = 0;
+};
+
+double SumOfSquares(const std::vector<Eigen::VectorXd>& residuals);
+
+}  // namespace continuum

@@ -1,0 +1,128 @@
+#include "identification/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace continuum {
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+std::vector<double> Gains(const FoldRecord& record) {
+  std::vector<double> gains;
+  for (std::size_t f = 0; f < record.before.size(); ++f) {
+    gains.push_back(record.before[f] > 0 ? 1 - record.after[f] / record.before[f] : 0);
+  }
+  return gains;
+}
+
+std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules) {
+  std::vector<std::string> failures;
+  const auto gains = Gains(record);
+  const double n = static_cast<double>(gains.size());
+  const double better = static_cast<double>(
+      std::count_if(gains.begin(), gains.end(), [](double g) { return g > 0; }));
+  if (n < 2) failures.push_back("fewer than two folds");
+  if (better < rules.folds_better * n - 1e-9) {
+    failures.push_back(fmt::format("the error falls in only {:.0f} of {:.0f} folds", better, n));
+  }
+  if (!(Median(gains) >= rules.median_gain)) {
+    failures.push_back(
+        fmt::format("the error falls by {:.1f} % in the median, {:.0f} % are asked for",
+                    100 * Median(gains), 100 * rules.median_gain));
+  }
+  const double middle = Median(record.amplitude);
+  for (const double a : record.amplitude) {
+    if (std::abs(a - middle) <= rules.amplitude_spread * std::abs(middle) && middle != 0) continue;
+    failures.push_back(fmt::format("its size varies over the folds by more than {:.0f} %",
+                                   100 * rules.amplitude_spread));
+    break;
+  }
+  if (!record.placebo_gains.empty()) {
+    const double beaten =
+        static_cast<double>(std::count_if(record.placebo_gains.begin(), record.placebo_gains.end(),
+                                          [&](double g) { return g < Median(gains); }));
+    const double all = static_cast<double>(record.placebo_gains.size());
+    if (beaten < rules.placebo_share * all) {
+      failures.push_back(
+          fmt::format("it beats only {:.0f} of {:.0f} random smooth forces", beaten, all));
+    }
+  }
+  return failures;
+}
+
+bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b) {
+  const std::size_t n = a.after.size();
+  if (n < 2) return false;
+  double mean = 0, squares = 0;
+  std::size_t wins = 0;
+  std::vector<double> difference;  // in units of the fold's error, so that no fold dominates
+  for (std::size_t f = 0; f < n; ++f) {
+    difference.push_back((b.after[f] - a.after[f]) / std::max(1e-300, a.before[f]));
+    mean += difference.back() / static_cast<double>(n);
+    wins += difference.back() > 0;
+  }
+  for (const double d : difference) squares += (d - mean) * (d - mean);
+  const double error = std::sqrt(squares / static_cast<double>(n - 1) / static_cast<double>(n));
+  return mean > error && 2 * wins > n;
+}
+
+Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, double ceiling_gain,
+              const Rules& rules) {
+  std::vector<std::size_t> order(candidates.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto gain = [&](std::size_t i) { return Median(Gains(candidates[i])); };
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return gain(a) > gain(b); });
+
+  if (noise_over > 0 && noise_over < 1.1) {
+    return {
+        "adequate", {}, fmt::format("what the model leaves is {:.2f} times the noise", noise_over)};
+  }
+  std::size_t best = candidates.size();
+  for (const std::size_t i : order) {
+    if (!Failures(candidates[i], rules).empty()) continue;
+    best = i;
+    break;
+  }
+  if (best == candidates.size()) {
+    if (noise_over == 0 && ceiling_gain < rules.median_gain) {
+      return {"adequate",
+              {},
+              fmt::format("no candidate and no smooth force removes {:.0f} % of the error, and "
+                          "without replicates the noise is not known",
+                          100 * rules.median_gain)};
+    }
+    return {"unexplained", {}, "no candidate passes all rules"};
+  }
+  const double left = candidates[best].remaining;
+  if (left > rules.noise_reached && left < rules.noise_limited) {
+    return {
+        "unexplained",
+        {},
+        fmt::format("the best candidate, {}, leaves {:.1f} times the noise: another cause is at "
+                    "work, or one more",
+                    candidates[best].name, left)};
+  }
+  Verdict verdict{"named", {best}, ""};
+  for (const std::size_t i : order) {
+    if (i == best || ClearlyBetter(candidates[best], candidates[i])) continue;
+    if (gain(i) < 0.5 * gain(best)) continue;
+    verdict.named.push_back(i);
+  }
+  if (verdict.named.size() > 1) {
+    verdict.text = "ambiguous";
+    verdict.reason =
+        "the folds do not tell " + std::to_string(verdict.named.size()) + " candidates apart";
+  } else {
+    verdict.reason = "it passes all rules and is clearly better than every other candidate";
+  }
+  return verdict;
+}
+
+}  // namespace continuum

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace continuum {
+
+/// One candidate's record over the folds, and what random forces with as many parameters reached.
+struct FoldRecord {
+  std::string name;
+  std::vector<double> before, after;  ///< error left out, per fold, without and with the candidate
+  std::vector<double> amplitude;      ///< of its main parameter, per fold
+  std::vector<double> placebo_gains;  ///< median gain of each placebo
+  double remaining = 0;               ///< error of its fit over the noise; 0: noise not known
+};
+
+/// The rules of a name on model-limited data.
+struct Rules {
+  double folds_better = 0.8;      ///< share of folds in which the error must fall
+  double median_gain = 0.10;      ///< and by how much in the median
+  double amplitude_spread = 0.3;  ///< over the folds, about its median, with one sign
+  double placebo_share = 0.95;    ///< of placebos that it must beat
+  double noise_reached = 1.25;    ///< error over noise up to which nothing is left to explain
+  double noise_limited = 3;       ///< above it the data are model-limited: something always is left
+};
+
+/// 1 − after/before per fold, and its median.
+std::vector<double> Gains(const FoldRecord& record);
+double Median(std::vector<double> values);
+
+/// Which rules a candidate fails, in words; empty when it may be named.
+std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules = {});
+
+/// Whether a is better than b in paired folds: by more than one standard error of the mean
+/// difference, and in most of them.
+bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b);
+
+struct Verdict {
+  std::string text;                ///< adequate | named | ambiguous | unexplained
+  std::vector<std::size_t> named;  ///< one when named, two or more when ambiguous
+  std::string reason;              ///< one sentence
+};
+
+/// What the folds allow one to say. noise_over: remaining error of the present model over the
+/// noise, 0 when the noise is unknown; ceiling_gain: median share of the error that any smooth
+/// force removed on left-out folds.
+Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, double ceiling_gain,
+              const Rules& rules = {});
+
+}  // namespace continuum

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+namespace continuum {
+
+inline constexpr int kAnnelidaLinks = 5;
+
+/// The snake arm's parameters (SI); sources and uncertainties: annelida.yaml.
+struct AnnelidaParameters {
+  double a;                      ///< radius of the holes
+  double b1;                     ///< joint to the hole plane on either side
+  double b2;                     ///< hole plane to hole plane through a link
+  double m, I;                   ///< mass and principal moment of inertia of a link
+  double m_last, I_last;         ///< of the last link
+  double K;                      ///< stiffness of a joint in each direction
+  double tau_mu, tau_c, S, v_d;  ///< Stribeck friction of a joint, eq. 7
+  double mu;                     ///< capstan friction of a cable at a hole
+  double R;                      ///< radius of the discs
+  double lead;                   ///< straight lead-in of the cables before the base
+  double tension;                ///< largest tension of a cable
+  double gravity;
+
+  double Pitch() const { return 2 * b1 + b2; }  ///< joint to joint
+  /// Angle at which the discs on either side of a joint touch.
+  double Stop() const { return 2 * std::atan(b1 / R); }
+  double Length() const { return kAnnelidaLinks * Pitch(); }  ///< base plane to tip plane
+};
+
+/// Throws Error with file:line for missing and impossible values.
+AnnelidaParameters ReadAnnelida(const std::filesystem::path& file);
+
+/// The robot's MJCF.
+///
+/// The arm hangs: frames of base and links have z down along the straight arm, x as the world's.
+/// Link i turns at its origin about x (bend<i>_x) and then y (bend<i>_y); cable j lies at azimuth
+/// (j − 1) 90°, so that cable1 makes bend*_y positive and cable2 bend*_x negative.
+std::string AnnelidaMjcf(const AnnelidaParameters& p);
+
+}  // namespace continuum

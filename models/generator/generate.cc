@@ -1,0 +1,48 @@
+#include <filesystem>
+#include <functional>
+#include <map>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "error.h"
+#include "models/annelida/annelida.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+using Generator = std::function<std::string(const std::filesystem::path&)>;
+
+int Main(int argc, char** argv) {
+  const std::map<std::string, Generator> robots{
+      {"annelida", [](const auto& file) { return AnnelidaMjcf(ReadAnnelida(file)); }}};
+
+  CLI::App app{"Writes the MJCF of a robot from its parameters"};
+  std::string robot, parameters, out;
+  app.add_option("robot", robot, "which robot")->required()->check(CLI::IsMember(robots));
+  app.add_option("parameters", parameters, "its parameters (YAML)")->required();
+  app.add_option("--out", out, "the MJCF file")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  WriteFile(out, robots.at(robot)(parameters));
+  return 0;
+}
+
+}  // namespace
+}  // namespace continuum
+
+int main(int argc, char** argv) {
+  try {
+    return continuum::Main(argc, argv);
+  } catch (const continuum::Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

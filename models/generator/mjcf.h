@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/mujoco.h"
+#include "sim/system.h"
+
+namespace continuum {
+
+using Point = std::array<double, 3>;  ///< [m] or a direction, in the frame of the parent body
+using Colour = std::array<float, 4>;  ///< red, green, blue, opacity
+
+/// A robot's MJCF in the making: what a generator says of it, through mjSpec.
+///
+/// Angles in rad. Geoms neither collide nor weigh: masses come from AddBody. Names that are empty
+/// are left out. Pointers stay valid as long as this does.
+class Mjcf {
+ public:
+  /// comment: stands at the top of the file.
+  Mjcf(const std::string& model, const std::string& comment);
+
+  mjSpec& spec() { return *spec_; }
+  mjsBody* world();
+
+  void AddMaterial(const std::string& name, const Colour& colour, float specular = 0.3F);
+  /// Sky, light, a floor and a wall behind, all without reflections. floor: its z; wall: its y.
+  void AddStudio(double floor, double wall);
+  void AddCamera(const std::string& name, const Point& from, const Point& at, double fovy_degree);
+
+  mjsBody* AddBody(mjsBody* parent, const std::string& name, const Point& pos);
+  /// mass [kg] at centre with principal moments [kg m^2] about the body's axes.
+  void SetInertia(mjsBody* body, double mass, const Point& centre, const Point& moments);
+  /// A hinge through the body's origin; stiffness [N m/rad], hard stops at ±stop [rad].
+  void AddHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
+                double stop);
+  void AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius);
+  void AddCylinder(mjsBody* body, const Point& from, const Point& to, double radius,
+                   const std::string& material);
+  void AddCapsule(mjsBody* body, const Point& from, const Point& to, double radius,
+                  const std::string& material);
+  /// A spatial tendon through sites, actuator side first; width: radius it is drawn with [m].
+  void AddCable(const std::string& name, const std::vector<std::string>& sites, double width,
+                const Colour& colour);
+  /// A motor on a tendon whose control is the tension [N], 0 .. largest.
+  void AddTension(const std::string& name, const std::string& tendon, double largest);
+  void AddSensor(mjtSensor type, const std::string& name, mjtObj kind, const std::string& object);
+
+  /// The file, with plugin instances under <extension>. Throws Error when it does not compile.
+  std::string Text(std::span<const EffectInstance> effects) const;
+
+ private:
+  mjsGeom* AddGeom(mjsBody* body, mjtGeom type, const std::string& material);
+
+  Owned<mjSpec> spec_;
+};
+
+}  // namespace continuum

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace continuum {
+
+/// What `continuum solve` was asked to do; empty text or path: not given.
+struct SolveRequest {
+  std::filesystem::path robot;     ///< the robot's YAML file
+  std::filesystem::path input;     ///< CASES.csv
+  std::filesystem::path measured;  ///< MEASURED.csv
+  std::filesystem::path out;       ///< .csv, .json or .yaml, as the job asks
+  std::filesystem::path plot;      ///< picture of the shapes, .png or .svg
+  std::string method;
+  std::string hybrid;  ///< train or apply
+  bool calibrate = false;
+  bool sensitivity = false;
+  double lambda = 1e-7;
+};
+
+/// One static model each. @returns 0 when every case was solved, 1 when the results were written
+/// but some case failed. @throws Error for bad input (nothing is written then).
+int SolveTdcr(const SolveRequest& request);
+int SolveTwinPivot(const SolveRequest& request);
+int SolveStiffFlop(const SolveRequest& request);
+
+/// Hands the request to the model that the key `robot` (stiff_flop: `model`) of the YAML file
+/// names.
+int Solve(const SolveRequest& request);
+
+}  // namespace continuum

@@ -1,0 +1,132 @@
+#include "models/solver/solve.h"
+
+#include <initializer_list>
+#include <utility>
+
+#include "error.h"
+#include "models/solver/plot.h"
+#include "models/solver/results.h"
+#include "models/stiff_flop/forward.h"
+#include "models/stiff_flop/inverse.h"
+
+namespace continuum {
+namespace {
+
+using namespace stiff_flop;
+
+using Names = std::vector<std::string>;
+
+void RefuseOptions(const SolveRequest& request) {
+  const std::initializer_list<std::pair<const char*, bool>> foreign = {
+      {"--calibrate", request.calibrate},
+      {"--hybrid", !request.hybrid.empty()},
+      {"--measured", !request.measured.empty()}};
+  for (const auto& [option, given] : foreign) {
+    if (given) throw Error::Input(option, "no such option for a stiff_flop robot");
+  }
+  if (request.input.empty()) throw Error::Input("--input", "a CSV file", "nothing");
+}
+
+void Append(Names& names, std::initializer_list<const char*> more) {
+  names.insert(names.end(), more.begin(), more.end());
+}
+
+Names SensitivityColumns(Direction direction) {
+  if (direction == Direction::kInverse) {
+    return {"dp1_dgamma", "dp2_dgamma", "dp3_dgamma", "dp1_dE", "dp2_dE", "dp3_dE"};
+  }
+  return {"dx_dgamma", "dy_dgamma", "dz_dgamma", "dx_dE", "dy_dE", "dz_dE"};
+}
+
+Names Columns(Direction direction, bool sensitivity) {
+  Names names = {"case"};
+  if (direction == Direction::kInverse) Append(names, {"p1", "p2", "p3"});
+  Append(names, {"x", "y", "z", "tx", "ty", "tz"});
+  if (direction == Direction::kForward) Append(names, {"kappa", "phi", "lambda_l"});
+  Append(names, {"r_o", "r_G1", "r_G2", "r_G3", "gamma_e1", "gamma_e2", "gamma_e3", "x_in", "x_out",
+                 "residual", "iterations", "micros", "status"});
+  if (sensitivity) {
+    const Names more = SensitivityColumns(direction);
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
+}
+
+void Set(solver::Results& results, const Names& columns, const Eigen::Vector3d& values) {
+  for (int i = 0; i < 3; ++i) results.Set(columns[i], values[i]);
+}
+
+void WriteRow(const Case& row, Direction direction, bool sensitivity, const Solution& solution,
+              solver::Results& results) {
+  results.Row();
+  results.Set("case", row.label);
+  results.Set("status", Name(solution.status));
+  if (solution.status != Status::kOk) return;
+  results.Set(solution.outcome, Name(solution.status));
+  Set(results,
+      direction == Direction::kInverse ? Names{"p1", "p2", "p3"}
+                                       : Names{"kappa", "phi", "lambda_l"},
+      solution.answer);
+  Set(results, {"x", "y", "z"}, solution.tip);
+  Set(results, {"tx", "ty", "tz"}, solution.tangent);
+  const BaseSection& section = solution.section;
+  results.Set("r_o", section.r_o);
+  for (int i = 0; i < 3; ++i) {
+    results.Set("r_G" + std::to_string(i + 1), section.r_G[i]);
+    results.Set("gamma_e" + std::to_string(i + 1), section.gamma_e[i]);
+  }
+  results.Set("x_in", section.x_in);
+  results.Set("x_out", section.x_out);
+  if (!sensitivity) return;
+  const Names names = SensitivityColumns(direction);
+  Set(results, {names.begin(), names.begin() + 3}, solution.by_gamma);
+  Set(results, {names.begin() + 3, names.end()}, solution.by_E);
+}
+
+void Plot(const SolveRequest& request, const Robot& robot, const Method& method, const Cases& cases,
+          const std::vector<Solution>& solved) {
+  solver::Picture picture;
+  picture.title = "stiff_flop, module " + robot.name;
+  picture.views = {{{0, 1}, {2, 1}}};
+  for (std::size_t i = 0; i < cases.rows.size(); ++i) {
+    if (solved[i].status != Status::kOk) continue;
+    solver::Shape shape;
+    shape.label = cases.rows[i].label;
+    const auto points = cases.direction == Direction::kInverse
+                            ? InverseLine(robot.module, cases.rows[i])
+                            : ForwardLine(robot.module, method, cases.rows[i]);
+    for (const Eigen::Vector3d& point : points) {
+      shape.line.push_back({point.x(), point.y(), point.z()});
+    }
+    picture.shapes.push_back(std::move(shape));
+  }
+  solver::WritePicture(request.plot, picture);
+}
+
+}  // namespace
+
+int SolveStiffFlop(const SolveRequest& request) {
+  RefuseOptions(request);
+  const Robot robot = Robot::Read(request.robot);
+  const Cases cases = Cases::Read(request.input, robot.gravity);
+  const Method method = Method::Parse(request.method, cases.direction);
+  solver::RequireExtension(request.out, {".csv", ".json"}, "--out");
+  if (!request.plot.empty()) {
+    solver::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
+  }
+  std::vector<Solution> solved;
+  solver::Results results(Columns(cases.direction, request.sensitivity));
+  int failed = 0;
+  for (const Case& row : cases.rows) {
+    solved.push_back(cases.direction == Direction::kInverse
+                         ? SolveInverse(robot.module, method, row, request.sensitivity)
+                         : SolveForward(robot.module, method, row, request.sensitivity));
+    WriteRow(row, cases.direction, request.sensitivity, solved.back(), results);
+    failed += solved.back().status != Status::kOk;
+  }
+  results.Write(request.out);
+  if (!request.plot.empty()) Plot(request, robot, method, cases, solved);
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace continuum

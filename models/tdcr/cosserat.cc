@@ -1,0 +1,229 @@
+#include "models/tdcr/cosserat.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <type_traits>
+
+namespace continuum::tdcr {
+namespace {
+
+struct NoTensions {};
+
+}  // namespace
+
+// Rotation as a quaternion (w first), curvature, position and, with friction, tensions.
+template <class T, bool kFriction>
+struct RodBalance::State {
+  using Vector3 = Eigen::Matrix<T, 3, 1>;
+  using Tensions =
+      std::conditional_t<kFriction, Eigen::Matrix<T, Eigen::Dynamic, 1, 0, kMaxTendons, 1>,
+                         NoTensions>;
+  static constexpr bool kPosition = std::is_same_v<T, double>;  // the residual needs none
+
+  Eigen::Matrix<T, 4, 1> q;
+  Vector3 u, p;
+  [[no_unique_address]] Tensions tension;
+
+  void Add(double h, const State& slope) {
+    q += T(h) * slope.q;
+    u += T(h) * slope.u;
+    if constexpr (kPosition) p += T(h) * slope.p;
+    if constexpr (kFriction) tension += T(h) * slope.tension;
+  }
+};
+
+RodBalance::RodBalance(const Robot& robot, const Loads& loads, bool friction, int steps)
+    : length_(robot.length),
+      twist_(1 / (1 + robot.nu)),
+      mu_(friction ? loads.mu : 0),
+      friction_(friction && loads.mu > 0),
+      disks_(robot.disks),
+      steps_(steps),
+      direction_(loads.direction) {
+  const double unit = robot.length / robot.moment();  // L^2/EI
+  for (int k = 0; k < robot.tendons; ++k) {
+    holes_.push_back(robot.Hole(k) / robot.length);
+    tension_.push_back(unit * loads.tension[static_cast<std::size_t>(k)]);
+  }
+  natural_ =
+      robot.length * Eigen::Vector3d(-robot.natural.y(), robot.natural.x(), robot.natural.z());
+  tip_force_ = unit * loads.tip_force;
+  disk_weight_ = unit * robot.disk_mass * loads.gravity;
+  rod_weight_ = unit * robot.density * robot.area() * robot.length * loads.gravity;
+}
+
+Eigen::Vector3d RodBalance::DeadForce(int piece, double s) const {
+  return load_ * (tip_force_ + (disks_ - piece) * disk_weight_ + (1 - s) * rod_weight_);
+}
+
+template <class T, bool kFriction>
+Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kFriction>& y) const {
+  using std::sqrt;
+  Eigen::Matrix<T, 3, 1> moment(y.u.x() - natural_.x(), y.u.y() - natural_.y(),
+                                twist_ * (y.u.z() - natural_.z()));
+  for (std::size_t k = 0; k < holes_.size(); ++k) {
+    const double ax = holes_[k].x(), ay = holes_[k].y(), r2 = holes_[k].squaredNorm();
+    const T wz = 1.0 + y.u.x() * ay - y.u.y() * ax;
+    T pull = T(load_ * tension_[k]);
+    if constexpr (kFriction) pull = y.tension[static_cast<Eigen::Index>(k)];
+    pull /= sqrt(wz * wz + r2 * y.u.z() * y.u.z());
+    moment.x() += pull * wz * ay;
+    moment.y() -= pull * wz * ax;
+    moment.z() += pull * y.u.z() * r2;
+  }
+  return moment;
+}
+
+template <class T, bool kFriction>
+bool RodBalance::Slope(const State<T, kFriction>& y, const Eigen::Vector3d& force,
+                       State<T, kFriction>& dy) const {
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<T, 3, 1>;
+  const Vector3& u = y.u;
+  Vector3 moment(u.x() - natural_.x(), u.y() - natural_.y(), twist_ * (u.z() - natural_.z()));
+  T hxx(1), hxy(0), hyy(1), hxz(0), hyz(0), hzz(twist_);
+  for (std::size_t k = 0; k < holes_.size(); ++k) {
+    const double ax = holes_[k].x(), ay = holes_[k].y(), r2 = holes_[k].squaredNorm();
+    T pull = T(load_ * tension_[k]);
+    if constexpr (kFriction) pull = y.tension[static_cast<Eigen::Index>(k)];
+    const T wz = 1.0 + u.x() * ay - u.y() * ax;
+    if (!(wz > T(0))) return false;
+    const T side = r2 * u.z() * u.z();
+    const T square = wz * wz + side;
+    const T inverse = pull / sqrt(square);
+    moment.x() += inverse * wz * ay;
+    moment.y() -= inverse * wz * ax;
+    moment.z() += inverse * u.z() * r2;
+    // Hessian of T |w| by (wz, u_z), with dwz/du = (ay, -ax, 0).
+    const T cube = inverse / square;
+    const T by_wz = cube * side;
+    const T mixed = cube * wz * u.z() * r2;
+    hxx += by_wz * (ay * ay);
+    hxy -= by_wz * (ax * ay);
+    hyy += by_wz * (ax * ax);
+    hxz -= mixed * ay;
+    hyz += mixed * ax;
+    hzz += cube * wz * wz * r2;
+  }
+  const T &q0 = y.q[0], &q1 = y.q[1], &q2 = y.q[2], &q3 = y.q[3];
+  const Vector3 tangent(2.0 * (q1 * q3 + q0 * q2), 2.0 * (q2 * q3 - q0 * q1),
+                        q0 * q0 - q1 * q1 - q2 * q2 + q3 * q3);
+  const T nx = (q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3) * force.x() +
+               2.0 * ((q1 * q2 + q0 * q3) * force.y() + (q1 * q3 - q0 * q2) * force.z());
+  const T ny = (q0 * q0 - q1 * q1 + q2 * q2 - q3 * q3) * force.y() +
+               2.0 * ((q1 * q2 - q0 * q3) * force.x() + (q2 * q3 + q0 * q1) * force.z());
+  const Vector3 right(moment.y() * u.z() - moment.z() * u.y() + ny,
+                      moment.z() * u.x() - moment.x() * u.z() - nx,
+                      moment.x() * u.y() - moment.y() * u.x());
+
+  const T cxx = hyy * hzz - hyz * hyz, cxy = hxz * hyz - hxy * hzz, cxz = hxy * hyz - hxz * hyy;
+  const T cyy = hxx * hzz - hxz * hxz, cyz = hxy * hxz - hxx * hyz, czz = hxx * hyy - hxy * hxy;
+  const T determinant = 1.0 / (hxx * cxx + hxy * cxy + hxz * cxz);
+  const auto solve = [&](const Vector3& b) {
+    return Vector3((cxx * b.x() + cxy * b.y() + cxz * b.z()) * determinant,
+                   (cxy * b.x() + cyy * b.y() + cyz * b.z()) * determinant,
+                   (cxz * b.x() + cyz * b.y() + czz * b.z()) * determinant);
+  };
+  dy.u = solve(right);
+  if constexpr (kFriction) {
+    // T' needs u' and u' needs T': their coupling is about mu T r^2/EI, so a few rounds are exact.
+    dy.tension.resize(y.tension.size());
+    for (int round = 0; round < 8; ++round) {
+      Vector3 rest = right;
+      for (std::size_t k = 0; k < holes_.size(); ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        const double ax = holes_[k].x(), ay = holes_[k].y();
+        const Vector3 w(-u.z() * ay, u.z() * ax, 1.0 + u.x() * ay - u.y() * ax);
+        const T inverse = 1.0 / sqrt(w.squaredNorm());
+        const Vector3 t = w * inverse;
+        const Vector3 dw(-dy.u.z() * ay, dy.u.z() * ax, dy.u.x() * ay - dy.u.y() * ax);
+        const Vector3 turn = u.cross(t) + (dw - t * t.dot(dw)) * inverse;
+        const T rate = sqrt(turn.squaredNorm() + 1e-24);  // the kink at a straight tendon
+        dy.tension[i] = -double(direction_[k]) * mu_ * y.tension[i] * rate;
+        rest -= dy.tension[i] * Vector3(t.z() * ay, -t.z() * ax, t.y() * ax - t.x() * ay);
+      }
+      dy.u = solve(rest);
+    }
+  }
+  if constexpr (State<T, kFriction>::kPosition) dy.p = tangent;
+  dy.q = 0.5 * Eigen::Matrix<T, 4, 1>(
+                   -q1 * u.x() - q2 * u.y() - q3 * u.z(), q0 * u.x() + q2 * u.z() - q3 * u.y(),
+                   q0 * u.y() + q3 * u.x() - q1 * u.z(), q0 * u.z() + q1 * u.y() - q2 * u.x());
+  return true;
+}
+
+// Dormand-Prince's fifth-order formula, `steps_` equal steps per piece.
+template <class T, bool kFriction, class AtNode>
+bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const {
+  static constexpr double kNodes[6] = {0, 0.2, 0.3, 0.8, 8. / 9, 1};
+  static constexpr double kA[7][6] = {
+      {},
+      {1. / 5},
+      {3. / 40, 9. / 40},
+      {44. / 45, -56. / 15, 32. / 9},
+      {19372. / 6561, -25360. / 2187, 64448. / 6561, -212. / 729},
+      {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656},
+      {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84}};
+  using S = State<T, kFriction>;
+  S y;
+  y.q << T(1), T(0), T(0), T(0);
+  y.u << x[0], x[1], x[2];
+  y.p.setZero();
+  if constexpr (kFriction) {
+    y.tension.resize(static_cast<Eigen::Index>(tension_.size()));
+    for (std::size_t k = 0; k < tension_.size(); ++k) {
+      y.tension[static_cast<Eigen::Index>(k)] = T(load_ * tension_[k]);
+    }
+  }
+  std::array<S, 6> slope;
+  const double h = 1.0 / (disks_ * steps_);
+  for (int step = 0; step < disks_ * steps_; ++step) {
+    for (int stage = 0; stage <= 6; ++stage) {
+      S at = y;
+      for (int j = 0; j < stage; ++j) {
+        if (kA[stage][j] != 0) at.Add(h * kA[stage][j], slope[static_cast<std::size_t>(j)]);
+      }
+      if (stage == 6) {
+        y = at;
+      } else if (!Slope(at, DeadForce(step / steps_, h * (step + kNodes[stage])),
+                        slope[static_cast<std::size_t>(stage)])) {
+        return false;
+      }
+    }
+    at_node(step + 1, y);
+  }
+  // R nu by the quaternion: nu + 2 q_0 (q x nu) + 2 q x (q x nu).
+  const Eigen::Matrix<T, 3, 1> axis = y.q.template tail<3>(), moment = Moment(y);
+  const Eigen::Matrix<T, 3, 1> turned = 2.0 * axis.cross(moment);
+  end = moment + y.q[0] * turned + axis.cross(turned);
+  return true;
+}
+
+template <class T>
+bool RodBalance::operator()(const T* x, T* f) const {
+  Eigen::Matrix<T, 3, 1> end;
+  const auto nothing = [](int, const auto&) {};
+  const bool ok = friction_ ? Walk<T, true>(x, end, nothing) : Walk<T, false>(x, end, nothing);
+  if (!ok) return false;
+  for (int i = 0; i < 3; ++i) f[i] = end[i];
+  return true;
+}
+
+template bool RodBalance::operator()(const double* x, double* f) const;
+template bool RodBalance::operator()(const ceres::Jet<double, 3>* x,
+                                     ceres::Jet<double, 3>* f) const;
+
+RodBalance::Shape RodBalance::Integrate(const Vector& x) const {
+  Shape shape{Eigen::Matrix3Xd(3, disks_), Eigen::Matrix3Xd(3, disks_), Vector::Zero()};
+  const auto keep = [&](int step, const auto& y) {
+    const int piece = (step - 1) / steps_, within = step - piece * steps_;
+    if (2 * within == steps_)
+      shape.middles.col(piece) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
+    if (within == steps_) shape.disks.col(piece) = y.p * length_;
+  };
+  shape.valid = friction_ ? Walk<double, true>(x.data(), shape.residual, keep)
+                          : Walk<double, false>(x.data(), shape.residual, keep);
+  return shape;
+}
+
+}  // namespace continuum::tdcr

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/tdcr/robot.h"
+
+namespace continuum::tdcr {
+
+/// Kirchhoff rod (inextensible, unshearable) whose tendons run in frictionless channels along
+/// curves parallel to it, as a shooting problem for solver::Newton. Everything in units of L and
+/// EI/L.
+///
+///   w_k = e_3 + u x a_k              tendon k per unit of rod, |w_k| its stretch           (1)
+///   nu = K (u - u_0) + sum_k T_k a_k x w_k/|w_k| = R^T (moment of all dead forces beyond s) (2)
+///   nu' = -u x nu - e_3 x R^T N(s)   N: sum of the dead forces beyond s                    (3)
+///   R' = R [u]x,  p' = R e_3,  R(0) = 1,  p(0) = 0,  nu(1) = 0                             (4)
+///
+/// (2) is the gradient of the energy u.Ku/2 + sum T_k |w_k|, so (3) gives u' by its Hessian H:
+/// H u' = -u x nu - e_3 x R^T N. The unknown is u(0), the residual R nu(1), seen from the base
+/// frame (in the tip's, bending alone would turn the Jacobian over). Disk masses are forces at s =
+/// i/n, where N jumps and u does not.
+///
+/// With friction (beyond the paper) the tension falls along the channel, T_k' = -dir_k mu T_k
+/// |t_k'| with t_k the unit vector of w_k, and T_k' a_k x t_k joins H u' on the left.
+class RodBalance {
+ public:
+  using Vector = Eigen::Vector3d;
+
+  /// steps: of the integrator per piece between disks, even.
+  RodBalance(const Robot& robot, const Loads& loads, bool friction, int steps);
+
+  /// All loads are multiplied by this from here on.
+  void SetLoad(double load) { load_ = load; }
+  void SetSteps(int steps) { steps_ = steps; }
+  int steps() const { return steps_; }
+
+  template <class T>
+  bool operator()(const T* x, T* f) const;
+
+  /// J_0^-1 J, J_0 that of the rod without loads: diag(1, 1, GJ/EI).
+  Eigen::Matrix3d RelativeToUnloaded(const Eigen::Matrix3d& jacobian) const {
+    Eigen::Matrix3d relative = jacobian;
+    relative.row(2) /= twist_;
+    return relative;
+  }
+
+  struct Shape {
+    Eigen::Matrix3Xd disks;    ///< O_1..O_n [m]
+    Eigen::Matrix3Xd middles;  ///< kappa_x = u_y, kappa_y = -u_x, tau in the middles [1/m]
+    Eigen::Vector3d residual;  ///< R nu(1)
+    bool valid = false;
+  };
+  Shape Integrate(const Vector& x) const;
+
+ private:
+  template <class T, bool kFriction>
+  struct State;
+  template <class T, bool kFriction>
+  bool Slope(const State<T, kFriction>& y, const Eigen::Vector3d& force,
+             State<T, kFriction>& dy) const;
+  template <class T, bool kFriction>
+  Eigen::Matrix<T, 3, 1> Moment(const State<T, kFriction>& y) const;
+  template <class T, bool kFriction, class AtNode>
+  bool Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const;
+  Eigen::Vector3d DeadForce(int piece, double s) const;
+
+  double length_, twist_;  ///< twist_: GJ/EI
+  double mu_;
+  bool friction_;
+  int disks_, steps_;
+  double load_ = 1;
+  std::vector<Eigen::Vector2d> holes_;  ///< over L
+  std::vector<double> tension_;         ///< times L^2/EI, as the forces below
+  std::vector<int> direction_;
+  Eigen::Vector3d natural_;  ///< u of the rod when nothing acts
+  Eigen::Vector3d tip_force_, disk_weight_, rod_weight_;
+};
+
+}  // namespace continuum::tdcr

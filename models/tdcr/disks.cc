@@ -1,0 +1,389 @@
+#include "models/tdcr/disks.h"
+
+namespace continuum::tdcr {
+namespace {
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+Eigen::Matrix3d Skew(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d s;
+  s << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return s;
+}
+
+// The constitutive moment over EI/L for x = L u: (-kappa_y, kappa_x, tau/(1 + nu)).
+void SubtractStiffness(const double* x, double twist, double* f) {
+  f[0] -= -x[1];
+  f[1] -= x[0];
+  f[2] -= twist * x[2];
+}
+
+template <class Block>
+void SubtractStiffness(double twist, Block&& jacobian) {
+  jacobian(0, 1) += 1;
+  jacobian(1, 0) -= 1;
+  jacobian(2, 2) -= twist;
+}
+
+}  // namespace
+
+bool TendonChord(const Arc& arc, const Eigen::Vector2d& a, bool derivatives, Chord& chord) {
+  const auto& [A, B, C, dA, dB] = arc.bend;
+  const Eigen::Vector2d& v = arc.v;
+  const double r2 = a.squaredNorm();
+  const Eigen::Vector2d t(arc.cos_psi * a.x() - arc.sin_psi * a.y(),
+                          arc.sin_psi * a.x() + arc.cos_psi * a.y());
+  const double alpha = v.dot(a), beta = v.dot(t), gamma = Cross(t, v);  // gamma = dbeta/dpsi
+  const double h = arc.l - alpha, g = arc.l - beta;
+  const double square = 2 * B * g * h + 2 * r2 * (1 - arc.cos_psi);
+  if (!(square > 1e-12 * arc.l * arc.l)) return false;
+  const double inverse = 1 / std::sqrt(square);
+  const Eigen::Vector2d delta = t - a;
+  const Eigen::Vector2d b = arc.l * a - alpha * t;
+  const Eigen::Vector3d lever(A * b.y(), -A * b.x(), B * Cross(v, b) + r2 * arc.sin_psi);
+  const Eigen::Vector2d from = B * g * v + delta;  // c and Q^T c without z
+  const Eigen::Vector2d to = delta - B * h * v;
+  const auto untwist = [&](const Eigen::Vector2d& y) {
+    return Eigen::Vector2d(arc.cos_psi * y.x() + arc.sin_psi * y.y(),
+                           arc.cos_psi * y.y() - arc.sin_psi * y.x());
+  };
+  chord.moment = -inverse * lever;
+  chord.start = inverse * from;
+  chord.end = inverse * untwist(to);
+  if (!derivatives) return true;
+
+  const Eigen::Vector2d t_psi(-t.y(), t.x());
+  const Eigen::Vector2d square_v = 2 * dB * g * h * v - 2 * B * (h * t + g * a);
+  const double square_psi = -2 * B * h * gamma + 2 * r2 * arc.sin_psi;
+  const double scale = -0.5 * inverse * inverse;  // d(inverse)/inverse per d(square)
+  for (int j = 0; j < 2; ++j) {
+    const Eigen::Vector2d unit = Eigen::Vector2d::Unit(j);
+    const Eigen::Vector2d b_j = -a[j] * t;
+    const double relative = scale * square_v[j];
+    const Eigen::Vector3d lever_j(dA * v[j] * b.y() + A * b_j.y(), -dA * v[j] * b.x() - A * b_j.x(),
+                                  dB * v[j] * Cross(v, b) + B * (Cross(unit, b) + Cross(v, b_j)));
+    const Eigen::Vector2d from_j = (dB * v[j] * g - B * t[j]) * v + B * g * unit;
+    const Eigen::Vector2d to_j = (B * a[j] - dB * v[j] * h) * v - B * h * unit;
+    chord.d_moment.col(j) = -inverse * lever_j + relative * chord.moment;
+    chord.d_start.col(j) = inverse * from_j + relative * chord.start;
+    chord.d_end.col(j) = inverse * untwist(to_j) + relative * chord.end;
+  }
+  const double relative = scale * square_psi;
+  const Eigen::Vector3d lever_psi(-alpha * A * t_psi.y(), alpha * A * t_psi.x(),
+                                  -B * alpha * beta + r2 * arc.cos_psi);
+  const Eigen::Vector2d from_psi = t_psi - B * gamma * v;
+  const Eigen::Vector2d to_psi = t_psi - Eigen::Vector2d(-to.y(), to.x());
+  chord.d_moment.col(2) = -inverse * lever_psi + relative * chord.moment;
+  chord.d_start.col(2) = inverse * from_psi + relative * chord.start;
+  chord.d_end.col(2) = inverse * untwist(to_psi) + relative * chord.end;
+  return true;
+}
+
+FrictionRatio::FrictionRatio(const Eigen::Vector2d& end, const Eigen::Vector2d& start, double mu,
+                             int s) {
+  // (1 - mu^2 b.b) x^2 - 2 (1 + mu^2 a.b) x + (1 - mu^2 a.a) = 0; its discriminant written with the
+  // difference start - end, which vanishes at the kink.
+  const double square = mu * mu;
+  const Eigen::Vector2d difference = start - end;
+  const double cross = Cross(end, start);
+  const double leading = 1 - square * start.squaredNorm();
+  const double discriminant = square * difference.squaredNorm() - square * square * cross * cross;
+  const double root = std::sqrt(std::max(discriminant, 0.0));
+  x = (1 - square * end.dot(start) - s * root) / leading;
+  const double slope = root > 1e-14 ? s / (2 * root) : 0;  // at the kink: the mean of both sides
+  const Eigen::Vector2d by_end =
+      -2 * square * difference -
+      2 * square * square * cross * Eigen::Vector2d(start.y(), -start.x());
+  const Eigen::Vector2d by_start =
+      2 * square * difference - 2 * square * square * cross * Eigen::Vector2d(-end.y(), end.x());
+  d_end = (-square * start - slope * by_end) / leading;
+  d_start = (-square * end - slope * by_start + 2 * square * x * start) / leading;
+}
+
+Chain Forward(double length, const Eigen::Matrix3Xd& u) {
+  Chain chain{{Eigen::Matrix3d::Identity()}, {Eigen::Vector3d::Zero()}};
+  for (Eigen::Index i = 0; i < u.cols(); ++i) {
+    const Arc arc(length, u.col(i));
+    chain.O.push_back(chain.O.back() + chain.R.back() * arc.p());
+    chain.R.push_back(chain.R.back() * arc.Twisted(arc.Q()));
+  }
+  return chain;
+}
+
+Eigen::Matrix3Xd Positions(double length, const Eigen::Matrix3Xd& u) {
+  const Chain chain = Forward(length, u);
+  Eigen::Matrix3Xd disks(3, u.cols());
+  for (Eigen::Index i = 0; i < u.cols(); ++i)
+    disks.col(i) = chain.O[static_cast<std::size_t>(i) + 1];
+  return disks;
+}
+
+Eigen::Matrix3Xd Linear(const Eigen::Matrix<double, 6, 1>& ends, int n) {
+  Eigen::Matrix3Xd u(3, n);
+  for (int i = 1; i <= n; ++i) {
+    const double w = Fraction(i, n);
+    u.col(i - 1) = (1 - w) * ends.head<3>() + w * ends.tail<3>();
+  }
+  return u;
+}
+
+std::vector<Eigen::Matrix<double, 3, 6>> LinearGradient(double length,
+                                                        const Eigen::Matrix<double, 6, 1>& ends,
+                                                        int n) {
+  using Columns = Eigen::Matrix<double, 3, 6>;
+  std::vector<Columns> gradient;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Columns dO = Columns::Zero(), dphi = Columns::Zero();
+  const Eigen::Matrix3Xd u = Linear(ends, n);
+  for (int i = 1; i <= n; ++i) {
+    const Arc arc(length, u.col(i - 1));
+    const double w = Fraction(i, n);
+    Eigen::Matrix3d dp = Eigen::Matrix3d::Zero(), turn;
+    dp.leftCols<2>() = length * R * arc.dp();
+    const Eigen::Matrix3d next = R * arc.Twisted(arc.Q());
+    turn.leftCols<2>() = length * R * arc.Rotation();
+    turn.col(2) = length * next.col(2);
+    dO -= Skew(R * arc.p()) * dphi;
+    dO.leftCols<3>() += (1 - w) * dp;
+    dO.rightCols<3>() += w * dp;
+    dphi.leftCols<3>() += (1 - w) * turn;
+    dphi.rightCols<3>() += w * turn;
+    R = next;
+    gradient.push_back(dO);
+  }
+  return gradient;
+}
+
+template <int C>
+DiskBalance<C>::DiskBalance(const Robot& robot, const Loads& loads)
+    : robot_(robot),
+      loads_(loads),
+      weight_((robot.disk_mass + robot.density * robot.area() * robot.arc()) * loads.gravity) {
+  const auto n = static_cast<std::size_t>(robot.disks);
+  const int columns = C == Eigen::Dynamic ? 3 * robot.disks : C;
+  for (int k = 0; k < robot.tendons; ++k) holes_.push_back(robot.Hole(k));
+  arcs_.reserve(n);
+  m_.resize(n);
+  G_.resize(n);
+  R_.assign(n + 1, Eigen::Matrix3d::Identity());
+  O_.assign(n + 1, Eigen::Vector3d::Zero());
+  dm_.assign(n, Columns::Zero(3, columns));
+  dO_.assign(n + 1, Columns::Zero(3, columns));
+  dphi_.assign(n + 1, Columns::Zero(3, columns));
+  dphi_end_.assign(n, Columns::Zero(3, columns));
+}
+
+template <int C>
+Eigen::Vector3d DiskBalance<C>::Curvature(const double* x, int i) const {
+  using Map = Eigen::Map<const Eigen::Vector3d>;
+  if constexpr (C == Eigen::Dynamic) {
+    return Map(x + 3 * (i - 1)) / robot_.length;
+  } else {
+    const double w = Fraction(i, robot_.disks);
+    return ((1 - w) * Map(x) + w * Map(x + 3)) / robot_.length;
+  }
+}
+
+template <int C>
+Eigen::Matrix3Xd DiskBalance<C>::Curvatures(const Vector& x) const {
+  Eigen::Matrix3Xd u(3, robot_.disks);
+  for (int i = 1; i <= robot_.disks; ++i) u.col(i - 1) = Curvature(x.data(), i);
+  return u;
+}
+
+// Adds a derivative by (v_x, v_y, psi) of arc i, which are x/n of that arc.
+template <int C>
+template <class Target, class Local>
+void DiskBalance<C>::Scatter(int i, const Local& local, Target& target) const {
+  const double share = 1.0 / robot_.disks;
+  if constexpr (C == Eigen::Dynamic) {
+    target.template middleCols<3>(3 * (i - 1)) += share * local;
+  } else {
+    const double w = Fraction(i, robot_.disks);
+    target.template leftCols<3>() += (share * (1 - w)) * local;
+    target.template rightCols<3>() += (share * w) * local;
+  }
+}
+
+template <int C>
+template <bool kDerivatives>
+bool DiskBalance<C>::AddTendons() const {
+  Chord chord, before;
+  Row dF = Row::Zero(1, unknowns());
+  for (std::size_t k = 0; k < holes_.size(); ++k) {
+    double F = load_ * loads_.tension[k];
+    if (F == 0) continue;
+    const int s = loads_.direction[k];
+    const bool friction = loads_.mu > 0 && s != 0;
+    if (kDerivatives) dF.setZero();
+    for (int i = 1; i <= robot_.disks; ++i) {
+      const auto at = static_cast<std::size_t>(i - 1);
+      if (!TendonChord(arcs_[at], holes_[k], kDerivatives, chord)) return false;
+      if (friction && i > 1) {
+        const FrictionRatio ratio(before.end, chord.start, loads_.mu, s);
+        if (kDerivatives) {
+          dF *= ratio.x;
+          Scatter(i - 1, F * ratio.d_end.transpose() * before.d_end, dF);
+          Scatter(i, F * ratio.d_start.transpose() * chord.d_start, dF);
+        }
+        F *= ratio.x;
+      }
+      m_[at] += F * chord.moment;
+      if (kDerivatives) {
+        Scatter(i, F * chord.d_moment, dm_[at]);
+        if (friction && i > 1) dm_[at].noalias() += chord.moment * dF;
+      }
+      std::swap(chord, before);
+    }
+  }
+  return true;
+}
+
+template <int C>
+template <bool kDerivatives>
+void DiskBalance<C>::AddDeadForces() const {
+  const int n = robot_.disks;
+  for (int i = 1; i <= n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Arc& arc = arcs_[at - 1];
+    const Eigen::Matrix3d& R = R_[at - 1];
+    const Eigen::Matrix3d q = arc.Q();
+    const Eigen::Vector3d p = R * arc.p();
+    G_[at - 1].noalias() = R * q;
+    R_[at] = arc.Twisted(G_[at - 1]);
+    O_[at] = O_[at - 1] + p;
+    if (kDerivatives) {
+      Eigen::Matrix3d local = Eigen::Matrix3d::Zero();
+      local.leftCols<2>().noalias() = R * arc.dp();
+      dO_[at] = dO_[at - 1];
+      dO_[at].noalias() -= Skew(p) * dphi_[at - 1];
+      Scatter(i, local, dO_[at]);
+      local.leftCols<2>().noalias() = R * arc.Rotation();
+      dphi_end_[at - 1] = dphi_[at - 1];
+      Scatter(i, local, dphi_end_[at - 1]);
+      dphi_[at] = dphi_end_[at - 1];
+      local.leftCols<2>().setZero();
+      local.col(2) = R_[at].col(2);
+      Scatter(i, local, dphi_[at]);
+    }
+  }
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Columns d_sum = Columns::Zero(3, unknowns());
+  const Eigen::Vector3d weight = load_ * weight_, force = load_ * loads_.tip_force;
+  const Eigen::Matrix3d weight_cross = Skew(weight), force_cross = Skew(force);
+  for (int i = n; i >= 1; --i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double count = n - i + 1;
+    sum += O_[at];
+    const Eigen::Vector3d& base = O_[at - 1];
+    const Eigen::Vector3d M = (sum - count * base).cross(weight) + (O_.back() - base).cross(force);
+    const Eigen::Matrix3d& G = G_[at - 1];
+    m_[at - 1].noalias() += G.transpose() * M;
+    if (kDerivatives) {
+      d_sum += dO_[at];
+      const Eigen::Matrix3d turned = G.transpose() * Skew(M);
+      const Eigen::Matrix3d by_weight = G.transpose() * weight_cross;
+      const Eigen::Matrix3d by_force = G.transpose() * force_cross;
+      dm_[at - 1].noalias() += turned * dphi_end_[at - 1];
+      dm_[at - 1].noalias() -= by_weight * d_sum;
+      dm_[at - 1].noalias() -= by_force * dO_.back();
+      dm_[at - 1].noalias() += (count * by_weight + by_force) * dO_[at - 1];
+    }
+  }
+}
+
+template <int C>
+template <bool kDerivatives>
+bool DiskBalance<C>::Assemble(const double* x) const {
+  arcs_.clear();
+  for (int i = 1; i <= robot_.disks; ++i) arcs_.emplace_back(robot_.arc(), Curvature(x, i));
+  for (auto& m : m_) m.setZero();
+  if (kDerivatives) {
+    for (auto& dm : dm_) dm.setZero();
+  }
+  if (!AddTendons<kDerivatives>()) return false;
+  if (!weight_.isZero(0) || !loads_.tip_force.isZero(0)) AddDeadForces<kDerivatives>();
+  return true;
+}
+
+// The line through rows i = 1..n at i = 1 and i = n is sum_i (1/n +- (i - c)/spread) row_i.
+template <class Add>
+void FitLine(int n, Add&& add) {
+  const double centre = (n + 1) / 2.0;
+  const double spread = n * (n + 1.0) / 6;  // sum of (i - c)^2 over half the range
+  for (int i = 1; i <= n; ++i) {
+    const double slope = (i - centre) / spread;
+    add(static_cast<std::size_t>(i - 1), 1.0 / n - slope, 1.0 / n + slope);
+  }
+}
+
+template <int C>
+void DiskBalance<C>::Project(const double* x, double* f) const {
+  const double scale = 1 / robot_.moment();
+  const double twist = 1 / (1 + robot_.nu);
+  using Map = Eigen::Map<Eigen::Vector3d>;
+  if constexpr (C == Eigen::Dynamic) {
+    for (int i = 0; i < robot_.disks; ++i) {
+      Map(f + 3 * i) = scale * m_[static_cast<std::size_t>(i)];
+      SubtractStiffness(x + 3 * i, twist, f + 3 * i);
+    }
+  } else {
+    Map first(f), last(f + 3);
+    first.setZero();
+    last.setZero();
+    FitLine(robot_.disks, [&](std::size_t i, double at_first, double at_last) {
+      first += (scale * at_first) * m_[i];
+      last += (scale * at_last) * m_[i];
+    });
+    SubtractStiffness(x, twist, f);
+    SubtractStiffness(x + 3, twist, f + 3);
+  }
+}
+
+template <int C>
+bool DiskBalance<C>::operator()(const double* x, double* f) const {
+  if (!Assemble<false>(x)) return false;
+  Project(x, f);
+  return true;
+}
+
+template <int C>
+bool DiskBalance<C>::Jacobian(const Vector& x, Vector& f, Matrix& jacobian) const {
+  if (!Assemble<true>(x.data())) return false;
+  Project(x.data(), f.data());
+  const double scale = 1 / robot_.moment();
+  const double twist = 1 / (1 + robot_.nu);
+  if constexpr (C == Eigen::Dynamic) {
+    for (int i = 0; i < robot_.disks; ++i) {
+      jacobian.template middleRows<3>(3 * i) = scale * dm_[static_cast<std::size_t>(i)];
+      SubtractStiffness(twist, jacobian.template block<3, 3>(3 * i, 3 * i));
+    }
+  } else {
+    jacobian.setZero();
+    FitLine(robot_.disks, [&](std::size_t i, double at_first, double at_last) {
+      jacobian.template topRows<3>() += (scale * at_first) * dm_[i];
+      jacobian.template bottomRows<3>() += (scale * at_last) * dm_[i];
+    });
+    SubtractStiffness(twist, jacobian.template topLeftCorner<3, 3>());
+    SubtractStiffness(twist, jacobian.template bottomRightCorner<3, 3>());
+  }
+  return true;
+}
+
+template <int C>
+typename DiskBalance<C>::Matrix DiskBalance<C>::RelativeToUnloaded(const Matrix& jacobian) const {
+  Matrix relative = jacobian;
+  for (int i = 0; i < unknowns(); i += 3) {  // J_0 = (e_y, -e_x, -e_z/(1 + nu)) in every block
+    relative.row(i) = -jacobian.row(i + 1);
+    relative.row(i + 1) = jacobian.row(i);
+    relative.row(i + 2) = -(1 + robot_.nu) * jacobian.row(i + 2);
+  }
+  return relative;
+}
+
+template class DiskBalance<6>;
+template class DiskBalance<Eigen::Dynamic>;
+
+}  // namespace continuum::tdcr

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "models/tdcr/arc.h"
+#include "models/tdcr/robot.h"
+
+namespace continuum::tdcr {
+
+/// One tendon along one arc, from hole a to hole R_z(psi) a of the next disk, seen by the arc
+/// alone.
+struct Chord {
+  using Gradient = Eigen::Matrix<double, 3, 3>;  ///< columns: by v_x, v_y, psi
+
+  Eigen::Vector3d moment;  ///< of a unit tension about the arc's start, in the untwisted end frame
+  Eigen::Vector2d
+      start;            ///< unit vector along the chord without z, in the frame of the arc's start
+  Eigen::Vector2d end;  ///< the same in the frame of the arc's end
+  Gradient d_moment;
+  Eigen::Matrix<double, 2, 3> d_start, d_end;
+};
+
+/// The chord c = p + D a - a of length |c| = sqrt(2 B g h + 2 a^2 (1 - cos psi)) with g = l - v.a',
+/// h = l - v.a, a' = R_z(psi) a. All distal forces of a tendon add up to -F c/|c| at the hole of
+/// the arc's start (its pieces between disks are pairs of opposite forces on one line), so
+///
+///   moment = -Q^T (a x c)/|c| = -(A b_y, -A b_x, B v x b + a^2 sin psi)/|c|,  b = l a - (v.a) a'.
+///
+/// @returns false when the chord has no length. Derivatives only when asked for.
+bool TendonChord(const Arc& arc, const Eigen::Vector2d& a, bool derivatives, Chord& chord);
+
+/// Tension after a disk over tension before it, (13)-(14): s (1 - x) = mu |N|, N = a + x b with
+/// a = -end of the arc before and b = start of the arc after, both without z.
+struct FrictionRatio {
+  double x = 1;
+  Eigen::Vector2d d_end = Eigen::Vector2d::Zero(), d_start = Eigen::Vector2d::Zero();
+
+  FrictionRatio() = default;
+  /// s: 1 pulled, -1 released, 0 without friction.
+  FrictionRatio(const Eigen::Vector2d& end, const Eigen::Vector2d& start, double mu, int s);
+};
+
+/// Frames and origins of all disks for curvatures u_1..u_n (columns of u, [1/m]), and how they move
+/// with the unknowns.
+struct Chain {
+  std::vector<Eigen::Matrix3d> R;  ///< n + 1, base frame
+  std::vector<Eigen::Vector3d> O;  ///< n + 1, [m]
+};
+Chain Forward(double arc, const Eigen::Matrix3Xd& u);
+/// O_1..O_n of Forward, as columns.
+Eigen::Matrix3Xd Positions(double arc, const Eigen::Matrix3Xd& u);
+
+/// Curvature of arc i (1..n) between the first and the last, (1).
+inline double Fraction(int i, int n) { return (i - 1.0) / (n - 1.0); }
+Eigen::Matrix3Xd Linear(const Eigen::Matrix<double, 6, 1>& ends, int n);
+
+/// dO_i/d(u_1, u_n), 3 x 6 for i = 1..n, of a chain with linear curvature.
+std::vector<Eigen::Matrix<double, 3, 6>> LinearGradient(double arc,
+                                                        const Eigen::Matrix<double, 6, 1>& ends,
+                                                        int n);
+
+/// The balance of moments of all arcs, (9)-(23), as a problem for solver::Newton.
+///
+/// Unknowns: x = L (u_1, u_n) for C = 6 (Euler arc spline: the six equations (24)-(27)), or
+/// x = L (u_1, .., u_n) for a dynamic C (constant curvature piecewise: 3n equations). Residuals
+/// over EI/L. An object belongs to one thread: it keeps its scratch memory.
+template <int C>
+class DiskBalance {
+ public:
+  using Vector = Eigen::Matrix<double, C, 1>;
+  using Matrix = Eigen::Matrix<double, C, C>;
+
+  DiskBalance(const Robot& robot, const Loads& loads);
+
+  /// All loads are multiplied by this from here on.
+  void SetLoad(double load) { load_ = load; }
+  int unknowns() const { return C == Eigen::Dynamic ? 3 * robot_.disks : C; }
+  bool operator()(const double* x, double* f) const;
+  bool Jacobian(const Vector& x, Vector& f, Matrix& jacobian) const;
+  /// J_0^-1 J, J_0 that of the rod without loads.
+  Matrix RelativeToUnloaded(const Matrix& jacobian) const;
+  /// Curvatures of the arcs [1/m], 3 x n.
+  Eigen::Matrix3Xd Curvatures(const Vector& x) const;
+
+ private:
+  using Columns = Eigen::Matrix<double, 3, C>;
+  using Row = Eigen::Matrix<double, 1, C>;
+
+  Eigen::Vector3d Curvature(const double* x, int i) const;
+  template <class Target, class Local>
+  void Scatter(int i, const Local& local, Target& target) const;
+  template <bool kDerivatives>
+  bool Assemble(const double* x) const;
+  template <bool kDerivatives>
+  bool AddTendons() const;
+  template <bool kDerivatives>
+  void AddDeadForces() const;
+  void Project(const double* x, double* f) const;
+
+  const Robot& robot_;
+  const Loads& loads_;
+  double load_ = 1;
+  Eigen::Vector3d weight_;  ///< of one disk and its arc [N]
+  std::vector<Eigen::Vector2d> holes_;
+  mutable std::vector<Arc> arcs_;
+  mutable std::vector<Eigen::Vector3d> m_;  ///< moments in the untwisted end frames [N m]
+  mutable std::vector<Columns> dm_;
+  mutable std::vector<Eigen::Matrix3d> R_, G_;
+  mutable std::vector<Eigen::Vector3d> O_;
+  mutable std::vector<Columns> dO_, dphi_, dphi_end_;
+};
+
+extern template class DiskBalance<6>;
+extern template class DiskBalance<Eigen::Dynamic>;
+
+}  // namespace continuum::tdcr

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <string>
+
+#include "models/tdcr/measured.h"
+
+namespace continuum::tdcr {
+
+/// A number as a YAML scalar that reads back exactly; null when not finite.
+YAML::Node Number(double value);
+/// A list on one line.
+YAML::Node List(const Eigen::VectorXd& values);
+YAML::Node List(const std::vector<std::string>& values);
+
+/// Replaces the value of a parameter, whether it stands alone or in a map with its unit.
+void SetParameter(YAML::Node& robot, const std::string& key, const YAML::Node& value);
+
+/// {mean, std, min, max}
+YAML::Node Document(const Spread& spread);
+/// {train: {..}, test: {..}}, each only if it has cases.
+YAML::Node Document(const TipErrors& errors);
+
+/// The whole file or nothing.
+void WriteDocument(const std::filesystem::path& path, const YAML::Node& document);
+
+}  // namespace continuum::tdcr

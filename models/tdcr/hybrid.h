@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "models/tdcr/measured.h"
+#include "models/tdcr/model.h"
+
+namespace continuum::tdcr {
+
+/// The linear correction (32) of the Euler arc spline: (u_1, u_n) = those of the model + W^T
+/// features, without intercept.
+struct Hybrid {
+  std::vector<std::string> features;  ///< among FeatureNames
+  Eigen::MatrixXd weights;            ///< p x 6: kappa_x_1, kappa_y_1, tau_1, kappa_x_n, ..
+  TipErrors tips;                     ///< of the corrected model
+  std::vector<double> left_out;       ///< tip errors [%] of training cases by five-fold validation
+};
+
+/// tau_1, tau_1^2, tau_n, tau_n^2, fx, fy, fz, T1..Tm.
+std::vector<std::string> FeatureNames(int tendons);
+
+/// Weights that minimise sum |R^c x_i - O_i|^2 over measured disks of the cases for training, from
+/// zero weights by Levenberg-Marquardt. A feature that is constant over them is left out.
+/// @throws Error (input) when there are fewer residuals than weights; (job) without convergence or
+/// when a case has no equilibrium.
+Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::string& file);
+
+/// The `hybrid` map of a robot's file. @throws Error with file, line and key.
+Hybrid ReadHybrid(const Yaml& file, const Robot& robot);
+
+/// Corrects an eas solution in place: u and disks.
+void Apply(const Hybrid& hybrid, const Robot& robot, const Loads& loads, Solution& solution);
+
+}  // namespace continuum::tdcr

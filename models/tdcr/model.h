@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "models/solver/newton.h"
+#include "models/tdcr/robot.h"
+
+namespace continuum::tdcr {
+
+/// The static models of one segment. `kCrtFriction` is beyond the paper: the Cosserat rod whose
+/// tendons also rub along their channels; it makes synthetic measurements.
+enum class Method { kEas, kPcca, kCrt, kCrtFriction };
+
+/// @throws Error for another name than eas, pcca, crt, crt_friction.
+Method ParseMethod(const std::string& name);
+
+struct Solution {
+  solver::Outcome outcome;
+  Eigen::VectorXd x;       ///< the unknowns of the method, for a warm start
+  Eigen::Matrix3Xd u;      ///< kappa_x, kappa_y, tau of arcs 1..n [1/m]
+  Eigen::Matrix3Xd disks;  ///< O_1..O_n [m], base frame
+};
+
+/// The equilibrium that is reached by raising all loads together from zero.
+///
+/// Without `start`: from the straight rod. Dead forces below kOneEquilibrium EI/L^2 leave one
+/// equilibrium and damped Newton finds it; above, the path of equilibria is followed from zero
+/// load. With `start` (x of a neighbouring case): Newton from there, and as above when that fails.
+/// When the path has an end (the rod snaps through), an equilibrium at full load is sought from
+/// there. u and disks are only valid when outcome.ok().
+Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
+                   const Eigen::VectorXd* start = nullptr);
+
+inline constexpr double kOneEquilibrium = 2.4;  // Euler's clamped column: pi^2/4
+
+}  // namespace continuum::tdcr

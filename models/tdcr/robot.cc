@@ -1,0 +1,205 @@
+#include "models/tdcr/robot.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum::tdcr {
+namespace {
+
+// A value of the robot's file with the word for its range.
+double Positive(const Yaml& file, const std::string& key) {
+  const Yaml node = file.At(key);
+  const double value = node.Parameter();
+  if (value > 0) return value;
+  throw Error::Input(node.Where(), "a number above 0", Decimal(value));
+}
+
+double NotNegative(const Yaml& file, const std::string& key) {
+  const Yaml node = file.At(key);
+  const double value = node.Parameter();
+  if (value >= 0) return value;
+  throw Error::Input(node.Where(), "a number of at least 0", Decimal(value));
+}
+
+int Count(const Yaml& file, const std::string& key, int least, int most) {
+  const Yaml node = file.At(key);
+  const double value = node.Parameter();
+  if (value >= least && value <= most && value == std::floor(value)) return static_cast<int>(value);
+  throw Error::Input(node.Where(),
+                     "a whole number from " + std::to_string(least) + " to " + std::to_string(most),
+                     Decimal(value));
+}
+
+Eigen::Vector3d Vector(const Yaml& node) {
+  const auto values = node.Parameters();
+  if (values.size() == 3) return {values[0], values[1], values[2]};
+  throw Error::Input(node.Where(), "three numbers", std::to_string(values.size()));
+}
+
+Eigen::Vector3d Gravity(const Yaml& node) {
+  const bool list = node.IsList() || (node.IsMap() && node.At("value").IsList());
+  if (list) return Vector(node);
+  if (node.Parameter() == 0) return Eigen::Vector3d::Zero();
+  throw Error::Input(node.Where(), "three numbers or 0", Decimal(node.Parameter()));
+}
+
+double Friction(double mu, const std::string& where) {
+  if (mu >= 0 && mu < 1) return mu;
+  throw Error::Input(where, "0 <= mu < 1", Decimal(mu));
+}
+
+std::string Lowered(const std::string& name) {
+  std::string plain;
+  for (const char c : name) {
+    if (c != '_' && c != ' ') plain += static_cast<char>(std::tolower(c));
+  }
+  return plain;
+}
+
+std::vector<std::string> KnownColumns(int tendons) {
+  std::vector<std::string> known{"case", "fx", "fy", "fz", "gx", "gy", "gz", "mu"};
+  for (const char* prefix : {"T", "dir"}) {
+    for (int k = 1; k <= tendons; ++k) known.push_back(prefix + std::to_string(k));
+  }
+  return known;
+}
+
+// Columns of other readers are welcome, but a slip in the name of an optional one must not be
+// passed over in silence.
+void RejectMisspelt(const Table& table, int tendons) {
+  const auto known = KnownColumns(tendons);
+  for (const auto& column : table.columns()) {
+    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+    const std::string plain = Lowered(column);
+    const std::size_t letters = plain.find_first_of("0123456789");
+    const bool numbered = letters != plain.npos &&
+                          plain.find_first_not_of("0123456789", letters) == plain.npos &&
+                          (plain.substr(0, letters) == "t" || plain.substr(0, letters) == "dir");
+    const bool other_case = std::any_of(known.begin(), known.end(), [&](const std::string& name) {
+      return Lowered(name) == plain;
+    });
+    if (!numbered && !other_case) continue;
+    std::string all;
+    for (const auto& name : known) all += (all.empty() ? "" : ", ") + name;
+    throw Error::Input(table.name() + ":1", "columns among " + all, "'" + column + "'");
+  }
+}
+
+int Direction(const Table& table, std::size_t row, const std::string& column) {
+  const double value = table.Number(row, column);
+  if (value == 1 || value == 0 || value == -1) return static_cast<int>(value);
+  throw Error::Input(table.Where(row) + ", column '" + column + "'",
+                     "1 (pulled), -1 (released) or 0 (without friction)", Decimal(value));
+}
+
+}  // namespace
+
+bool HasVector(const Table& table, const std::vector<std::string>& columns) {
+  const auto has = [&](const std::string& column) { return table.Has(column); };
+  if (std::none_of(columns.begin(), columns.end(), has)) return false;
+  for (const auto& column : columns) {
+    if (!has(column)) throw Error::Input(table.name() + ":1", "a column '" + column + "'", "none");
+  }
+  return true;
+}
+
+Eigen::Vector2d Robot::Hole(int tendon) const {
+  const double sigma = 2 * std::numbers::pi * tendon / tendons;
+  return {tendon_radius * std::cos(sigma), tendon_radius * std::sin(sigma)};
+}
+
+Eigen::Matrix3d Robot::MeasuringToBase() const {
+  const double cx = std::cos(base_rotation.x()), sx = std::sin(base_rotation.x());
+  const double cy = std::cos(base_rotation.y()), sy = std::sin(base_rotation.y());
+  const double cz = std::cos(base_rotation.z()), sz = std::sin(base_rotation.z());
+  Eigen::Matrix3d x, y, z;
+  x << 1, 0, 0, 0, cx, -sx, 0, sx, cx;
+  y << cy, 0, sy, 0, 1, 0, -sy, 0, cy;
+  z << cz, -sz, 0, sz, cz, 0, 0, 0, 1;
+  return x * y * z;
+}
+
+Loads Loads::Scaled(double load) const {
+  Loads scaled = *this;
+  for (double& t : scaled.tension) t *= load;
+  scaled.tip_force *= load;
+  scaled.gravity *= load;
+  return scaled;
+}
+
+double Loads::DeadForce(const Robot& robot) const {
+  const double mass = robot.disks * robot.disk_mass + robot.density * robot.area() * robot.length;
+  return tip_force.norm() + mass * gravity.norm();
+}
+
+Loads NoLoads(const Robot& robot) {
+  Loads loads;
+  loads.tension.assign(static_cast<std::size_t>(robot.tendons), 0);
+  loads.direction.assign(static_cast<std::size_t>(robot.tendons), 1);
+  loads.gravity = robot.gravity;
+  loads.mu = robot.mu;
+  return loads;
+}
+
+Robot ReadRobot(const Yaml& file) {
+  Robot robot;
+  if (const int format = file.At("format").Integer(); format != 1) {
+    throw Error::Input(file.At("format").Where(), "format 1", std::to_string(format));
+  }
+  robot.length = Positive(file, "length");
+  robot.diameter = Positive(file, "diameter");
+  robot.disks = Count(file, "disks", 2, 1000);
+  robot.tendons = Count(file, "tendons", 1, kMaxTendons);
+  robot.tendon_radius = Positive(file, "tendon_radius");
+  robot.E = Positive(file, "E");
+  robot.nu = file.At("nu").Parameter();
+  if (!(robot.nu > -1 && robot.nu <= 0.5)) {
+    throw Error::Input(file.At("nu").Where(), "-1 < nu <= 0.5", Decimal(robot.nu));
+  }
+  robot.density = NotNegative(file, "density");
+  robot.disk_mass = NotNegative(file, "disk_mass");
+  robot.mu = Friction(file.At("mu").Parameter(), file.At("mu").Where());
+  robot.gravity = Gravity(file.At("gravity"));
+  if (const auto node = file.Find("base_rotation")) robot.base_rotation = Vector(*node);
+  return robot;
+}
+
+std::vector<Case> ReadCases(const Table& table, const Robot& robot) {
+  RejectMisspelt(table, robot.tendons);
+  std::vector<std::string> needed{"case", "fx", "fy", "fz"};
+  for (int k = 1; k <= robot.tendons; ++k) needed.push_back("T" + std::to_string(k));
+  HasVector(table, needed);
+  const bool gravity = HasVector(table, {"gx", "gy", "gz"});
+  const bool mu = table.Has("mu");
+  std::vector<Case> cases(table.rows());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    Case& c = cases[row];
+    c.name = table.Text(row, "case");
+    c.loads = NoLoads(robot);
+    for (int k = 0; k < robot.tendons; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const std::string column = "T" + std::to_string(k + 1);
+      const std::string direction = "dir" + std::to_string(k + 1);
+      c.loads.tension[i] = table.Number(row, column);
+      if (c.loads.tension[i] < 0) {
+        throw Error::Input(table.Where(row) + ", column '" + column + "'",
+                           "a tension of at least 0", Decimal(c.loads.tension[i]));
+      }
+      if (table.Has(direction)) c.loads.direction[i] = Direction(table, row, direction);
+    }
+    c.loads.tip_force = {table.Number(row, "fx"), table.Number(row, "fy"), table.Number(row, "fz")};
+    if (gravity) {
+      c.loads.gravity = {table.Number(row, "gx"), table.Number(row, "gy"), table.Number(row, "gz")};
+    }
+    if (mu) {
+      c.loads.own_mu = true;
+      c.loads.mu = Friction(table.Number(row, "mu"), table.Where(row) + ", column 'mu'");
+    }
+  }
+  return cases;
+}
+
+}  // namespace continuum::tdcr

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "models/solver/newton.h"
+#include "sim/table.h"
+#include "sim/yaml.h"
+
+namespace continuum::tdcr {
+
+inline constexpr int kMaxTendons = 64;
+
+/// One segment driven by tendons: a straight elastic rod along z with n disks at equal distances
+/// and m tendons at equal angles, tendon 1 on +x. SI units.
+struct Robot {
+  double length = 0.134;
+  double diameter = 0.99e-3;
+  int disks = 9;
+  int tendons = 3;
+  double tendon_radius = 7e-3;
+  double E = 60e9;
+  double nu = 0.3;
+  double density = 0;
+  double disk_mass = 0;
+  double mu = 0;                                      ///< Coulomb friction between tendon and disk
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2], base frame
+  /// Curvature of the rod when nothing acts (kappa_x, kappa_y, tau) [1/m]: an imperfection that
+  /// only the Cosserat rod knows, for synthetic measurements. Not in the file.
+  Eigen::Vector3d natural = Eigen::Vector3d::Zero();
+  Eigen::Vector3d base_rotation = Eigen::Vector3d::Zero();  ///< theta_x, theta_y, theta_z of (31)
+
+  double arc() const { return length / disks; }
+  double area() const { return std::numbers::pi * diameter * diameter / 4; }
+  double EI() const { return E * std::numbers::pi * std::pow(diameter, 4) / 64; }
+  double GJ() const { return EI() / (1 + nu); }  // G = E/(2 (1 + nu)), J = 2 I
+  /// Moments are divided by this in residuals.
+  double moment() const { return EI() / length; }
+  Eigen::Vector2d Hole(int tendon) const;
+  /// R^c = R_x R_y R_z of base_rotation: measuring frame to base frame.
+  Eigen::Matrix3d MeasuringToBase() const;
+};
+
+/// What acts on the robot in one case.
+struct Loads {
+  std::vector<double> tension;  ///< T_k at the base [N], at least 0
+  std::vector<int> direction;   ///< 1 pulled, -1 released, 0 without friction
+  Eigen::Vector3d tip_force = Eigen::Vector3d::Zero();  ///< dead force at the tip, base frame [N]
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();    ///< [m/s^2]
+  double mu = 0;
+  bool own_mu = false;  ///< mu belongs to this case, whatever the robot's
+
+  /// The tensions, the tip force and the weights multiplied by `load`.
+  Loads Scaled(double load) const;
+  /// All of the dead forces added as if they pulled in one direction at the tip [N].
+  double DeadForce(const Robot& robot) const;
+};
+
+struct Case {
+  std::string name;
+  Loads loads;
+};
+
+/// Reads a robot's file. @throws Error with file, line and key for a value that is missing or out
+/// of range.
+Robot ReadRobot(const Yaml& file);
+
+/// Reads CASES.csv. @throws Error with file, line and column for bad input.
+std::vector<Case> ReadCases(const Table& table, const Robot& robot);
+
+/// Whether the table has these columns: all or none. @throws Error when some are missing.
+bool HasVector(const Table& table, const std::vector<std::string>& columns);
+
+/// The loads of a robot at rest: no tension, no tip force, its own gravity and friction.
+Loads NoLoads(const Robot& robot);
+
+}  // namespace continuum::tdcr

@@ -1,0 +1,269 @@
+#include "models/solver/solve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "error.h"
+#include "models/solver/plot.h"
+#include "models/solver/results.h"
+#include "models/tdcr/calibrate.h"
+#include "models/tdcr/disks.h"
+#include "models/tdcr/document.h"
+#include "models/tdcr/fit.h"
+#include "models/tdcr/hybrid.h"
+#include "models/tdcr/model.h"
+
+namespace continuum {
+namespace {
+
+using namespace tdcr;  // the model behind this front
+
+// One row of the results before it is written.
+struct Solved {
+  std::string name;
+  Solution solution;
+  const Measured* measured = nullptr;
+};
+
+void Need(const std::filesystem::path& path, const std::string& option, const std::string& job) {
+  if (path.empty()) throw Error::Input(option, "a file for " + job, "nothing");
+}
+
+void Refuse(bool given, const std::string& option, const std::string& job) {
+  if (given) throw Error::Input(option, "not with " + job);
+}
+
+std::vector<std::string> Columns(int disks) {
+  std::vector<std::string> columns{"case",   "status", "iterations", "residual",
+                                   "micros", "x",      "y",          "z"};
+  for (int i = 1; i <= disks; ++i) {
+    for (const char* axis : {"x", "y", "z"}) columns.push_back(fmt::format("{}_{}", axis, i));
+  }
+  for (int i = 1; i <= disks; ++i) {
+    for (const char* u : {"kappa_x", "kappa_y", "tau"})
+      columns.push_back(fmt::format("{}_{}", u, i));
+  }
+  return columns;
+}
+
+// error_i of every disk that was measured in some case.
+void AddErrorColumns(const std::vector<Solved>& solved, int disks,
+                     std::vector<std::string>& columns) {
+  for (int i = 0; i < disks; ++i) {
+    for (const Solved& s : solved) {
+      if (s.measured == nullptr || !s.measured->Has(i)) continue;
+      columns.push_back(fmt::format("error_{}", i + 1));
+      break;
+    }
+  }
+}
+
+void AddShape(const Robot& robot, const Solved& s, solver::Results& results) {
+  const char* const axes[3] = {"x", "y", "z"};
+  const char* const curvatures[3] = {"kappa_x", "kappa_y", "tau"};
+  const Solution& solution = s.solution;
+  for (int a = 0; a < 3; ++a) results.Set(axes[a], solution.disks(a, robot.disks - 1));
+  for (int i = 0; i < robot.disks; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      results.Set(fmt::format("{}_{}", axes[a], i + 1), solution.disks(a, i));
+      results.Set(fmt::format("{}_{}", curvatures[a], i + 1), solution.u(a, i));
+    }
+  }
+  if (s.measured == nullptr) return;
+  const Eigen::VectorXd errors = Errors(robot, *s.measured, solution.disks);
+  for (int i = 0; i < robot.disks; ++i) {
+    if (s.measured->Has(i)) results.Set(fmt::format("error_{}", i + 1), errors[i]);
+  }
+}
+
+std::array<double, 3> Point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+// The backbone between the disks, four points per arc: enough to look round.
+Eigen::Matrix3Xd Backbone(const Robot& robot, const Solution& solution) {
+  constexpr int kParts = 4;
+  Eigen::Matrix3Xd fine(3, kParts * robot.disks);
+  for (int i = 0; i < kParts * robot.disks; ++i) fine.col(i) = solution.u.col(i / kParts);
+  return Positions(robot.arc() / kParts, fine);
+}
+
+void Draw(const std::filesystem::path& path, const Robot& robot, const std::string& title,
+          const std::vector<Solved>& solved) {
+  solver::Picture picture;
+  picture.title = title;
+  for (const Solved& s : solved) {
+    if (!s.solution.outcome.ok()) continue;
+    solver::Shape shape;
+    shape.label = s.name;
+    shape.line.push_back({0, 0, 0});
+    for (const auto& p : Backbone(robot, s.solution).colwise()) shape.line.push_back(Point(p));
+    for (const auto& p : s.solution.disks.colwise()) shape.markers.push_back(Point(p));
+    if (s.measured != nullptr) {
+      const Eigen::Matrix3Xd points = robot.MeasuringToBase() * s.measured->disks;
+      for (int i = 0; i < robot.disks; ++i) {
+        if (s.measured->Has(i)) shape.measured.push_back(Point(points.col(i)));
+      }
+    }
+    picture.shapes.push_back(std::move(shape));
+  }
+  solver::WritePicture(path, picture);
+}
+
+int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
+  auto columns = Columns(robot.disks);
+  AddErrorColumns(solved, robot.disks, columns);
+  const auto failed = [](const Solved& s) { return !s.solution.outcome.ok(); };
+  const bool all = std::none_of(solved.begin(), solved.end(), failed);
+  if (!all) columns.emplace_back("why");
+  solver::Results results(columns);
+  for (const Solved& s : solved) {
+    const bool ok = s.solution.outcome.ok();
+    results.Row();
+    results.Set("case", s.name);
+    results.Set(s.solution.outcome, ok ? "ok" : "no_convergence");
+    if (ok) {
+      AddShape(robot, s, results);
+    } else {
+      results.Set("why", s.solution.outcome.why);
+    }
+  }
+  results.Write(request.out);
+  if (!request.plot.empty()) {
+    Draw(request.plot, robot, "tdcr " + (request.method.empty() ? "eas" : request.method), solved);
+  }
+  return all ? 0 : 1;
+}
+
+std::vector<Measured> ReadMeasurements(const SolveRequest& request, const Robot& robot) {
+  if (request.measured.empty()) return {};
+  return ReadMeasured(Table::Read(request.measured), robot.disks);
+}
+
+int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
+               const Hybrid* hybrid) {
+  const auto cases = ReadCases(Table::Read(request.input), robot);
+  const auto measured = ReadMeasurements(request, robot);
+  std::vector<Solved> solved;
+  for (const Case& c : cases) {
+    Solved s{c.name, SolveCase(robot, c.loads, method), Find(measured, c.name)};
+    if (hybrid != nullptr && s.solution.outcome.ok()) Apply(*hybrid, robot, c.loads, s.solution);
+    solved.push_back(std::move(s));
+  }
+  return Report(request, robot, solved);
+}
+
+int FitShapes(const SolveRequest& request, const Robot& robot) {
+  Need(request.measured, "--measured", "--method fit");
+  Refuse(!request.input.empty(), "--input", "--method fit");
+  if (!(request.lambda >= 0 && std::isfinite(request.lambda))) {
+    throw Error::Input("--lambda", "a number of at least 0", fmt::format("{}", request.lambda));
+  }
+  const auto measured = ReadMeasurements(request, robot);
+  std::vector<Solved> solved;
+  for (const Measured& m : measured) {
+    solved.push_back(
+        {m.name, FitShape(robot, robot.MeasuringToBase() * m.disks, request.lambda), &m});
+  }
+  return Report(request, robot, solved);
+}
+
+std::vector<Pair> ReadPairs(const SolveRequest& request, const std::vector<Case>& cases,
+                            const std::vector<Measured>& measured) {
+  return Match(cases, measured, request.measured.string());
+}
+
+int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& robot,
+                   Method method) {
+  Need(request.input, "--input", "--calibrate");
+  Need(request.measured, "--measured", "--calibrate");
+  Refuse(!request.plot.empty(), "--plot", "--calibrate");
+  solver::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
+  const auto cases = ReadCases(Table::Read(request.input), robot);
+  const auto measured = ReadMeasurements(request, robot);
+  const Calibration c = Calibrate(robot, method, ReadPairs(request, cases, measured));
+  const bool friction = method != Method::kCrt;
+
+  YAML::Node document = YAML::Clone(file.node());
+  SetParameter(document, "E", Number(c.robot.E));
+  if (friction) SetParameter(document, "mu", Number(c.robot.mu));
+  SetParameter(document, "base_rotation", List(c.robot.base_rotation));
+  YAML::Node standard;
+  standard["E"] = Number(c.standard[0]);
+  if (friction) standard["mu"] = Number(c.standard[4]);
+  standard["base_rotation"] = List(Eigen::VectorXd(c.standard.segment<3>(1)));
+  YAML::Node node;
+  node["method"] = request.method.empty() ? "eas" : request.method;
+  node["cases"] = c.cases;
+  node["E"] = Number(c.robot.E);
+  if (friction) node["mu"] = Number(c.robot.mu);
+  node["base_rotation"] = List(c.robot.base_rotation);
+  node["standard_error"] = standard;
+  node["at_bound"] = List(c.at_bound);
+  node["tip_error_percent"] = Document(c.tips);
+  document["calibration"] = node;
+  WriteDocument(request.out, document);
+  return 0;
+}
+
+int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot) {
+  Need(request.input, "--input", "--hybrid train");
+  Need(request.measured, "--measured", "--hybrid train");
+  Refuse(!request.plot.empty(), "--plot", "--hybrid train");
+  solver::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
+  const auto cases = ReadCases(Table::Read(request.input), robot);
+  const auto measured = ReadMeasurements(request, robot);
+  const Hybrid h = Train(robot, ReadPairs(request, cases, measured), request.measured.string());
+
+  YAML::Node node;
+  node["features"] = List(h.features);
+  YAML::Node weights(YAML::NodeType::Sequence);
+  for (Eigen::Index i = 0; i < h.weights.rows(); ++i) {
+    weights.push_back(List(Eigen::VectorXd(h.weights.row(i).transpose())));
+  }
+  node["weights"] = weights;
+  node["tip_error_percent"] = Document(h.tips);
+  if (const auto spread = Statistics(h.left_out)) {
+    node["tip_error_percent"]["five_fold"] = Document(*spread);
+  }
+  YAML::Node document = YAML::Clone(file.node());
+  document["hybrid"] = node;
+  WriteDocument(request.out, document);
+  return 0;
+}
+
+}  // namespace
+
+int SolveTdcr(const SolveRequest& request) {
+  const Yaml file = Yaml::Read(request.robot);
+  const Robot robot = ReadRobot(file);
+  const std::string method = request.method.empty() ? "eas" : request.method;
+  Refuse(request.sensitivity, "--sensitivity", "the robot tdcr");
+  Need(request.out, "--out", "the results");
+  if (!request.hybrid.empty()) {
+    Refuse(request.calibrate, "--calibrate", "--hybrid");
+    if (method != "eas") throw Error::Input("--method", "eas with --hybrid", "'" + method + "'");
+    if (request.hybrid == "train") return TrainHybrid(request, file, robot);
+    if (request.hybrid != "apply") {
+      throw Error::Input("--hybrid", "train or apply", "'" + request.hybrid + "'");
+    }
+  }
+  if (request.calibrate) {
+    if (method != "eas" && method != "pcca" && method != "crt") {
+      throw Error::Input("--method", "eas, pcca or crt with --calibrate", "'" + method + "'");
+    }
+    return CalibrateRobot(request, file, robot, ParseMethod(method));
+  }
+  solver::RequireExtension(request.out, {".csv", ".json"}, "--out");
+  if (!request.plot.empty()) solver::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
+  if (method == "fit") return FitShapes(request, robot);
+  const Method parsed = ParseMethod(method);
+  Need(request.input, "--input", "the cases");
+  if (request.hybrid.empty()) return SolveCases(request, robot, parsed, nullptr);
+  const Hybrid hybrid = ReadHybrid(file, robot);
+  return SolveCases(request, robot, parsed, &hybrid);
+}
+
+}  // namespace continuum

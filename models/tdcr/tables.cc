@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <exception>
+#include <string>
+
+#include "models/solver/results.h"
+#include "models/tdcr/calibrate.h"
+#include "models/tdcr/fit.h"
+#include "models/tdcr/hybrid.h"
+#include "models/tdcr/synthetic.h"
+
+namespace continuum::tdcr {
+namespace {
+
+constexpr unsigned kSeed = 2020;
+
+std::string Text(const Spread& s) { return fmt::format("{:.2f} +- {:.2f}", s.mean, s.std); }
+
+std::vector<double> Together(const TipErrors& tips) {
+  std::vector<double> all = tips.train;
+  all.insert(all.end(), tips.test.begin(), tips.test.end());
+  return all;
+}
+
+Spread FitErrors(const Experiment& experiment, double lambda) {
+  const Robot truth = Truth(experiment.nominal);
+  TipErrors tips;
+  for (const Measured& m : experiment.measured) {
+    const Solution fit = FitShape(truth, truth.MeasuringToBase() * m.disks, lambda);
+    tips.Add(truth, m, fit.disks);
+  }
+  return *Statistics(Together(tips));
+}
+
+void PrintCalibration(const char* name, const Calibration& c, const char* published) {
+  const Eigen::Vector3d& angles = c.robot.base_rotation;
+  fmt::print(
+      "  {:5} {:14} paper {:12}  E {:.1f} GPa, mu {:.3f}, base ({:.3f}, {:.3f}, {:.3f}) rad\n",
+      name, Text(*Statistics(Together(c.tips))), published, c.robot.E / 1e9, c.robot.mu, angles.x(),
+      angles.y(), angles.z());
+}
+
+void PrintSpread(const char* name, const Spread& s, const char* published) {
+  fmt::print("  {:10} mean {:.2f}  std {:.2f}  min {:.2f}  max {:.2f}   paper {}\n", name, s.mean,
+             s.std, s.min, s.max, published);
+}
+
+void Print(const Robot& robot, int set, unsigned seed) {
+  const char* const published[2][3] = {{"3.59 +- 3.36", "3.68 +- 3.08", "5.46 +- 4.02"},
+                                       {"2.75 +- 1.64", "2.15 +- 1.02", "3.27 +- 2.14"}};
+  const char* const hybrids[2][2] = {{"3.37 2.64 0.05 8.60", "2.72 1.63 0.34 5.10"},
+                                     {"2.44 2.05 0.61 6.65", "1.59 1.10 0.96 4.8"}};
+  const auto experiment = Synthesize(robot, set, seed + static_cast<unsigned>(set));
+  const auto pairs = Match(experiment.cases, experiment.measured, "synthetic");
+  fmt::print("Set {}: {} cases, tip errors in % of L\n", set, pairs.size());
+  fmt::print("  fit (8)  lambda 1e-7: {}   lambda 0: {}   paper 0.43 +- 0.21 (1e-7, both sets)\n",
+             Text(FitErrors(experiment, 1e-7)), Text(FitErrors(experiment, 0)));
+  const Method methods[] = {Method::kEas, Method::kPcca, Method::kCrt};
+  const char* const names[] = {"eas", "pcca", "crt"};
+  Calibration eas{};
+  for (int i = 0; i < 3; ++i) {
+    const Calibration c = Calibrate(experiment.nominal, methods[i], pairs);
+    PrintCalibration(names[i], c, published[set - 1][i]);
+    if (i == 0) eas = c;
+  }
+  std::vector<Case> cases = experiment.cases;
+  for (Case& c : cases) c.loads.mu = eas.robot.mu;
+  const Hybrid hybrid =
+      Train(eas.robot, Match(cases, experiment.measured, "synthetic"), "synthetic");
+  PrintSpread("calibrated", *Statistics(eas.tips.test), hybrids[set - 1][0]);
+  PrintSpread("hybrid", *Statistics(hybrid.tips.test), hybrids[set - 1][1]);
+  if (const auto left_out = Statistics(hybrid.left_out)) {
+    PrintSpread("five-fold", *left_out, "-");
+  }
+}
+
+}  // namespace
+}  // namespace continuum::tdcr
+
+int main(int count, char** arguments) {
+  using namespace continuum;
+  if (count != 2 && count != 3) {
+    fmt::print(stderr, "usage: tdcr_tables models/tdcr/tdcr.yaml [SEED]\n");
+    return 2;
+  }
+  try {
+    const tdcr::Robot robot = tdcr::ReadRobot(Yaml::Read(arguments[1]));
+    const unsigned seed =
+        count == 3 ? static_cast<unsigned>(std::stoul(arguments[2])) : tdcr::kSeed;
+    for (const int set : {1, 2}) tdcr::Print(robot, set, seed);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+}

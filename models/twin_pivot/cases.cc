@@ -1,0 +1,121 @@
+#include "models/twin_pivot/cases.h"
+
+#include <algorithm>
+#include <map>
+
+#include "error.h"
+#include "models/solver/results.h"
+#include "sim/file.h"
+#include "sim/table.h"
+
+namespace continuum::twin_pivot {
+namespace {
+
+constexpr double kNewtonPerKilogram = 9.81;
+
+std::string Cell(const Table& table, std::size_t row, const std::string& column) {
+  return table.Where(row) + ", column '" + column + "'";
+}
+
+std::string Quoted(const std::string& text) {
+  return text.empty() ? "an empty cell" : "'" + text + "'";
+}
+
+double NotNegative(const Table& table, std::size_t row, const std::string& column) {
+  const double value = table.Number(row, column);
+  if (value >= 0) return value;
+  throw Error::Input(Cell(table, row, column), "a number >= 0", Decimal(value));
+}
+
+// The columns of the cables' loads: all masses or all tensions, whichever the first cable has.
+std::vector<std::string> LoadColumns(const Table& table, int cables) {
+  return solver::Numbered(table.Has("F1") ? "F" : "m", cables);
+}
+
+void RequireColumns(const Table& table, const std::vector<std::string>& loads) {
+  std::vector<std::string> known = {"case", "condition", "payload", "fx", "fy", "fz",       "Mx",
+                                    "My",   "Mz",        "gx",      "gy", "gz", "reference"};
+  known.insert(known.end(), loads.begin(), loads.end());
+  std::string all;
+  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
+  const std::string header = table.name() + ":1";
+  for (const std::string& column : table.columns()) {
+    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+    throw Error::Input(header + ", column '" + column + "'", "one of the columns " + all,
+                       "'" + column + "'");
+  }
+  std::vector<std::string> needed = {"case"};
+  needed.insert(needed.end(), loads.begin(), loads.end());
+  for (const std::string& column : needed) {
+    if (table.Has(column)) continue;
+    throw Error::Input(header, "a column '" + column + "' (F1.. or m1.. for every cable)", "none");
+  }
+}
+
+Condition ReadCondition(const Table& table, std::size_t row) {
+  if (!table.Has("condition")) return Condition::kV;
+  const std::string& text = table.Text(row, "condition");
+  const auto found = std::find(kConditions.begin(), kConditions.end(), text);
+  if (found != kConditions.end()) return static_cast<Condition>(found - kConditions.begin());
+  throw Error::Input(Cell(table, row, "condition"), "I, II, III, IV or V", Quoted(text));
+}
+
+// The components that have a column; the others stay as they are.
+void ReadVector(const Table& table, std::size_t row, const std::string& prefix,
+                Eigen::Vector3d& vector) {
+  for (int i = 0; i < 3; ++i) {
+    const std::string column = prefix + "xyz"[i];
+    if (table.Has(column)) vector[i] = table.Number(row, column);
+  }
+}
+
+int ReadReference(const Table& table, std::size_t row, const std::map<std::string, int>& earlier) {
+  if (!table.Has("reference")) return -1;
+  const std::string& label = table.Text(row, "reference");
+  if (label.empty()) return -1;
+  const auto found = earlier.find(label);
+  if (found != earlier.end()) return found->second;
+  throw Error::Input(Cell(table, row, "reference"), "the case of an earlier row", Quoted(label));
+}
+
+Load ReadLoad(const Table& table, std::size_t row, const std::vector<std::string>& columns,
+              const Robot& robot) {
+  Load load;
+  load.condition = ReadCondition(table, row);
+  const double scale = table.Has("F1") ? 1 : kNewtonPerKilogram;
+  for (const std::string& column : columns) {
+    load.tension.push_back(scale * NotNegative(table, row, column));
+  }
+  if (table.Has("payload")) load.payload = NotNegative(table, row, "payload");
+  load.gravity = robot.gravity;
+  ReadVector(table, row, "f", load.force);
+  ReadVector(table, row, "M", load.moment);
+  ReadVector(table, row, "g", load.gravity);
+  return load;
+}
+
+}  // namespace
+
+std::vector<Case> ReadCases(const std::filesystem::path& file, const Robot& robot) {
+  const Table table = Table::Read(file);
+  const std::vector<std::string> columns = LoadColumns(table, robot.Cables());
+  RequireColumns(table, columns);
+  if (table.rows() == 0) throw Error::Input(table.name(), "one case or more", "only a header");
+  std::vector<Case> cases;
+  std::map<std::string, int> earlier;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    Case read;
+    read.label = table.Text(row, "case");
+    if (read.label.empty() || earlier.contains(read.label)) {
+      throw Error::Input(Cell(table, row, "case"), "a name that no other case has",
+                         Quoted(read.label));
+    }
+    read.load = ReadLoad(table, row, columns, robot);
+    read.reference = ReadReference(table, row, earlier);
+    earlier[read.label] = static_cast<int>(row);
+    cases.push_back(std::move(read));
+  }
+  return cases;
+}
+
+}  // namespace continuum::twin_pivot

@@ -1,0 +1,138 @@
+#include "models/solver/solve.h"
+
+#include <initializer_list>
+#include <optional>
+#include <utility>
+
+#include "error.h"
+#include "models/solver/plot.h"
+#include "models/solver/results.h"
+#include "models/twin_pivot/calibrate.h"
+#include "models/twin_pivot/cases.h"
+#include "models/twin_pivot/twin_pivot.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+using twin_pivot::Case;
+using twin_pivot::Method;
+using twin_pivot::Robot;
+using twin_pivot::Solution;
+
+void RefuseOptions(const SolveRequest& request) {
+  const std::initializer_list<std::pair<const char*, bool>> foreign = {
+      {"--hybrid", !request.hybrid.empty()},
+      {"--sensitivity", request.sensitivity},
+      {"--measured", !request.measured.empty()},
+      {"--plot with --calibrate", request.calibrate && !request.plot.empty()},
+      {"--method with --calibrate", request.calibrate && !request.method.empty()}};
+  for (const auto& [option, given] : foreign) {
+    if (given) throw Error::Input(option, "no such option for a twin_pivot robot");
+  }
+  if (request.input.empty()) throw Error::Input("--input", "a CSV file", "nothing");
+}
+
+Method ReadMethod(const std::string& name) {
+  if (name.empty() || name == "virtual_work") return Method::kVirtualWork;
+  if (name == "printed") return Method::kPrinted;
+  throw Error::Input("--method", "virtual_work or printed", "'" + name + "'");
+}
+
+int Calibrate(const SolveRequest& request) {
+  solver::RequireExtension(request.out, {".json"}, "--out");
+  WriteFile(request.out, twin_pivot::CalibrateFriction(request.input).Json());
+  return 0;
+}
+
+std::vector<Solution> SolveCases(const Robot& robot, const std::vector<Case>& cases,
+                                 Method method) {
+  std::vector<Solution> solved;
+  for (const Case& row : cases) {
+    twin_pivot::Load load = row.load;
+    if (row.reference >= 0) {
+      const Solution& from = solved[row.reference];
+      if (!from.outcome.ok()) {
+        solved.emplace_back();
+        solved.back().outcome.why = "its reference '" + cases[row.reference].label + "' failed";
+        continue;
+      }
+      load.reference = from.length;
+    }
+    solved.push_back(twin_pivot::Solve(robot, load, method));
+  }
+  return solved;
+}
+
+void WriteRow(const Robot& robot, const Case& row, const Solution& solution,
+              solver::Results& results) {
+  results.Row();
+  results.Set("case", row.label);
+  results.Set("condition",
+              std::string(twin_pivot::kConditions[static_cast<int>(row.load.condition)]));
+  results.Set(solution.outcome, solution.outcome.ok() ? "ok" : "no_convergence");
+  if (!solution.outcome.ok()) return;
+  for (int i = 0; i < 3; ++i) results.Set(std::string(1, "xyz"[i]), solution.tip[i]);
+  for (int m = 0; m < robot.Joints(); ++m) {
+    results.Set("beta_" + std::to_string(m + 1), solution.beta[m]);
+  }
+  for (int j = 0; j < robot.Cables(); ++j) {
+    results.Set("F_end_" + std::to_string(j + 1), solution.tension(robot.Anchor(j) - 1, j));
+  }
+}
+
+void WriteResults(const SolveRequest& request, const Robot& robot, const std::vector<Case>& cases,
+                  const std::vector<Solution>& solved) {
+  std::vector<std::string> columns = {"case",   "condition", "status", "iterations", "residual",
+                                      "micros", "x",         "y",      "z"};
+  for (const auto& [prefix, count] :
+       {std::pair{"beta_", robot.Joints()}, std::pair{"F_end_", robot.Cables()}}) {
+    for (const std::string& name : solver::Numbered(prefix, count)) columns.push_back(name);
+  }
+  solver::Results results(columns);
+  for (std::size_t i = 0; i < cases.size(); ++i) WriteRow(robot, cases[i], solved[i], results);
+  results.Write(request.out);
+}
+
+void Plot(const SolveRequest& request, const Robot& robot, const std::vector<Case>& cases,
+          const std::vector<Solution>& solved) {
+  solver::Picture picture;
+  picture.title = "twin_pivot: " + request.robot.filename().string();
+  picture.views = {{{0, 1}, {0, 2}}};
+  constexpr int kPerRod = 6;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!solved[i].outcome.ok()) continue;
+    solver::Shape shape;
+    shape.label = cases[i].label;
+    const auto points = twin_pivot::CentreLine(robot, solved[i].beta, kPerRod);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      shape.line.push_back({points[k].x(), points[k].y(), points[k].z()});
+      if (k % (kPerRod + 1) == 0) shape.markers.push_back(shape.line.back());
+    }
+    picture.shapes.push_back(std::move(shape));
+  }
+  solver::WritePicture(request.plot, picture);
+}
+
+}  // namespace
+
+int SolveTwinPivot(const SolveRequest& request) {
+  RefuseOptions(request);
+  const Robot robot = Robot::Read(request.robot);
+  if (request.calibrate) return Calibrate(request);
+  const Method method = ReadMethod(request.method);
+  solver::RequireExtension(request.out, {".csv", ".json"}, "--out");
+  if (!request.plot.empty()) {
+    solver::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
+  }
+  const std::vector<Case> cases = twin_pivot::ReadCases(request.input, robot);
+  const std::vector<Solution> solved = SolveCases(robot, cases, method);
+  WriteResults(request, robot, cases, solved);
+  if (!request.plot.empty()) Plot(request, robot, cases, solved);
+  for (const Solution& solution : solved) {
+    if (!solution.outcome.ok()) return 1;
+  }
+  return 0;
+}
+
+}  // namespace continuum

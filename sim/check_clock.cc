@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "sim/check_rules.h"
+#include "sim/check_series.h"
+
+namespace continuum {
+namespace {
+
+using Severity = Finding::Severity;
+
+void ReportGaps(const std::vector<double>& time, std::vector<std::size_t> gaps, double period,
+                Findings& out) {
+  const auto length = [&](std::size_t k) { return time[k + 1] - time[k]; };
+  const std::size_t count = gaps.size();
+  std::stable_sort(gaps.begin(), gaps.end(),
+                   [&](std::size_t a, std::size_t b) { return length(a) > length(b); });
+  gaps.resize(std::min<std::size_t>(count, 3));
+  std::string list;
+  for (const std::size_t k : gaps) {
+    list +=
+        fmt::format("{}{:.4g} s after t = {}", list.empty() ? "" : ", ", length(k), Clock(time[k]));
+  }
+  out.Add(
+      Severity::kWarning, "", "gap",
+      fmt::format("the clock has {} gap{} where rows are missing (rows are {:.4g} s apart): {}{}",
+                  count, count == 1 ? "" : "s", period, list,
+                  count > 3 ? fmt::format(" and {} more", count - 3) : ""),
+      time[gaps.front()], time[gaps.front() + 1]);
+}
+
+void ReportJitter(const std::vector<double>& time, const std::vector<double>& steps, double period,
+                  Findings& out) {
+  double squares = 0, largest = 0;
+  std::size_t where = 0;
+  double count = 0;
+  const double gap = 2.5 * period;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    if (steps[k] > gap) continue;
+    const double off = std::abs(steps[k] - period);
+    squares += off * off;
+    count += 1;
+    if (off > largest) largest = off, where = k;
+  }
+  const double jitter = std::sqrt(squares / std::max(count, 1.0)) / period;
+  const bool bad = jitter > 0.02 || largest > 0.2 * period;
+  const std::string text = fmt::format(
+      "{} rows over {:.4g} s, {:.4g} s apart ({:.4g} Hz); the clock jitters by {:.2g} % rms, at "
+      "most by {:.2g} s at t = {}",
+      time.size(), time.back() - time.front(), period, 1 / period, 100 * jitter, largest,
+      Clock(time[where]));
+  if (bad) {
+    out.Add(Severity::kWarning, "", "clock_jitter", text);
+  } else {
+    out.Add(Severity::kInfo, "", "clock", text);
+  }
+}
+
+}  // namespace
+
+void CheckClock(const CheckedLog& log, Findings& out) {
+  const auto& time = log.log->time;
+  const std::vector<double> steps = Differences(time);
+  if (steps.empty()) return;
+  const auto back = std::find_if(steps.begin(), steps.end(), [](double d) { return !(d > 0); });
+  if (back != steps.end()) {
+    const double t = time[back - steps.begin()];
+    out.Add(Severity::kError, "", "clock", fmt::format("time does not increase after {:.6g} s", t),
+            t, t);
+    return;
+  }
+  // An irregular clock is jitter, not a series of gaps.
+  const double missing = std::max(2.5 * log.period, 1.5 * Quantile(steps, 0.9));
+  std::vector<std::size_t> gaps;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    if (steps[k] > missing) gaps.push_back(k);
+  }
+  if (!gaps.empty()) ReportGaps(time, gaps, log.period, out);
+  ReportJitter(time, steps, log.period, out);
+}
+
+}  // namespace continuum

@@ -1,0 +1,303 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "error.h"
+#include "sim/check_rules.h"
+#include "sim/check_series.h"
+#include "sim/simulate.h"
+#include "sim/units.h"
+
+namespace continuum {
+namespace {
+
+using Severity = Finding::Severity;
+using Values = std::vector<double>;
+
+// Measured and simulated numbers of one channel where both exist, in SI.
+struct Compared {
+  std::size_t channel;
+  std::string name, unit;
+  Values measured, simulated;
+  std::vector<std::size_t> row;
+};
+
+std::vector<Compared> Compare(const Experiment& e, const Log& log, const Trace& trace) {
+  std::vector<Compared> all;
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    if (e.outputs[e.channels[c].output].quaternion()) continue;
+    Compared p{c, e.channels[c].name, e.channels[c].unit, {}, {}, {}};
+    for (std::size_t k = 0; k < log.rows(); ++k) {
+      if (!std::isfinite(log.measured[c][k]) || !std::isfinite(trace.channel[c][k])) continue;
+      p.measured.push_back(log.measured[c][k]);
+      p.simulated.push_back(trace.channel[c][k]);
+      p.row.push_back(k);
+    }
+    if (p.row.size() >= 20) all.push_back(std::move(p));
+  }
+  return all;
+}
+
+// Deviation of the difference: what is left beside an offset.
+double Misfit(const Values& a, const Values& b) {
+  Values difference(a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) difference[k] = a[k] - b[k];
+  return Deviation(difference);
+}
+
+const char* UnitMistake(double ratio) {
+  const auto near = [&](double factor) { return ratio > factor / 1.5 && ratio < factor * 1.5; };
+  if (near(1000)) return "millimetres for metres, or thousandths of another unit";
+  if (near(1e-3)) return "metres for millimetres, or thousands of another unit";
+  if (near(57.29578)) return "degrees for radians";
+  if (near(1 / 57.29578)) return "radians for degrees";
+  return nullptr;
+}
+
+void CheckScale(const Compared& p, Findings& out) {
+  const double correlation = Correlation(p.simulated, p.measured);
+  const double simulated = Deviation(p.simulated), measured = Deviation(p.measured);
+  if (std::abs(correlation) < 0.7) return;
+  if (correlation < 0) {
+    out.Add(
+        Severity::kWarning, p.name, "sign_suspect",
+        fmt::format("runs against the simulation (correlation {:.2f}): wrong sign of this column "
+                    "or of an input?",
+                    correlation));
+  }
+  if (const char* mistake = UnitMistake(measured / simulated)) {
+    out.Add(Severity::kWarning, p.name, "unit_suspect",
+            fmt::format("is {:.3g} times as large as simulated: {}? (this column or an input)",
+                        measured / simulated, mistake));
+  }
+}
+
+std::optional<Lag> Shift(const Compared& p) {
+  const auto reach = std::min<std::ptrdiff_t>(50, static_cast<std::ptrdiff_t>(p.row.size()) / 8);
+  const auto lag = LagOf(p.simulated, p.measured, -reach, reach, Sign::kAsWithoutLag);
+  if (!lag || std::abs(lag->correlation) < 0.7) return std::nullopt;
+  if (std::abs(lag->rows) < std::max(0.7, 4 * lag->sd)) return std::nullopt;
+  // The shift has to explain most of what is left; a wrong damping does not shift that cleanly.
+  const double before = 1 - lag->at_zero * lag->at_zero;
+  const double after = 1 - lag->correlation * lag->correlation;
+  return after < 0.5 * before ? lag : std::nullopt;
+}
+
+void CheckShifts(const std::vector<Compared>& pairs, double period, Findings& out) {
+  std::vector<std::pair<const Compared*, Lag>> shifted;
+  for (const Compared& p : pairs) {
+    if (const auto lag = Shift(p)) shifted.push_back({&p, *lag});
+  }
+  const auto say = [&](const Lag& lag) {
+    return fmt::format("{} the simulation by {:.3g} ms ({:.1f} rows)",
+                       lag.rows > 0 ? "late against" : "ahead of",
+                       1e3 * period * std::abs(lag.rows), std::abs(lag.rows));
+  };
+  const bool together = shifted.size() > 1 && shifted.size() == pairs.size() &&
+                        std::all_of(shifted.begin(), shifted.end(), [&](const auto& s) {
+                          return std::abs(s.second.rows - shifted.front().second.rows) < 0.5;
+                        });
+  if (together) {
+    out.Add(
+        Severity::kWarning, "", "clock_shift",
+        fmt::format("all outputs are {}: inputs and outputs are on different clocks, or an input "
+                    "acts with a dead time",
+                    say(shifted.front().second)));
+    return;
+  }
+  for (const auto& [p, lag] : shifted) {
+    out.Add(Severity::kWarning, p->name, "lag",
+            fmt::format("is {}: the column is shifted, or the model lacks a delay", say(lag)));
+  }
+}
+
+// Which simulated channel of the same unit each column resembles best.
+void CheckSwaps(const std::vector<Compared>& pairs, Findings& out) {
+  std::vector<std::size_t> like(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    like[i] = i;
+    double best = 0.3 * Misfit(pairs[i].measured, pairs[i].simulated);
+    for (std::size_t j = 0; j < pairs.size(); ++j) {
+      if (j == i || pairs[j].unit != pairs[i].unit || pairs[j].row != pairs[i].row) continue;
+      const double misfit = Misfit(pairs[i].measured, pairs[j].simulated);
+      if (misfit < best && misfit < 0.5 * Deviation(pairs[i].measured)) best = misfit, like[i] = j;
+    }
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::size_t j = like[i];
+    if (j == i) continue;
+    const bool mutual = like[j] == i;
+    if (mutual && j < i) continue;
+    out.Add(Severity::kWarning, pairs[i].name, "swapped",
+            mutual
+                ? fmt::format("columns '{}' and '{}' look swapped: each follows what is simulated "
+                              "for the other",
+                              pairs[i].name, pairs[j].name)
+                : fmt::format("follows what is simulated for '{}'", pairs[j].name));
+  }
+}
+
+// A constant difference while nothing moves.
+void CheckRest(const Compared& p, const Log& log, Findings& out) {
+  constexpr std::size_t kStill = 10;  // rows
+  const double range = RangeOf(p.measured), noise = NoiseOf(p.measured);
+  const double simulated_range = RangeOf(p.simulated);
+  Values differences;
+  std::size_t first = 0, last = 0;
+  for (std::size_t k = kStill; k < p.row.size(); ++k) {
+    const bool held = std::all_of(log.input.begin(), log.input.end(), [&](const Values& u) {
+      return u[p.row[k]] == u[p.row[k - kStill]];
+    });
+    if (!held || std::abs(p.simulated[k] - p.simulated[k - kStill]) > 1e-3 * simulated_range)
+      continue;
+    if (std::abs(p.measured[k] - p.measured[k - kStill]) > 6 * noise + 2e-3 * range) continue;
+    if (differences.empty()) first = p.row[k];
+    last = p.row[k];
+    differences.push_back(p.measured[k] - p.simulated[k]);
+  }
+  if (differences.size() < 20) return;
+  const double offset = Median(differences);
+  const double spread = Quantile(differences, 0.9) - Quantile(differences, 0.1);
+  if (std::abs(offset) < std::max(0.03 * range, 4 * noise) || spread > std::abs(offset) + 4 * noise)
+    return;
+  out.Add(
+      Severity::kWarning, p.name, "offset_at_rest",
+      fmt::format("differs from the simulation by {} at rest, {:.2g} % of its range: a "
+                  "bias, or a static load that the model lacks",
+                  Amount(offset / UnitFactor(p.unit, ""), p.unit), 100 * std::abs(offset) / range),
+      log.time[first], log.time[last]);
+}
+
+// Tries mistakes in the inputs on the beginning of a log that the model does not explain.
+class InputTrials {
+ public:
+  InputTrials(const Experiment& e, const System& system) : experiment_(e), system_(system) {}
+
+  void Run(const Log& whole, Findings& out) {
+    Log log = Beginning(whole);
+    const double plain = ErrorOf(log);
+    if (!(plain > 0.5) || budget_ <= 0) return;
+    for (std::size_t i = 0; i < experiment_.inputs.size(); ++i) TryInput(log, i, plain, out);
+    for (std::size_t i = 0; i < experiment_.inputs.size(); ++i) {
+      for (std::size_t j = i + 1; j < experiment_.inputs.size(); ++j)
+        TrySwap(log, i, j, plain, out);
+    }
+  }
+
+ private:
+  static Log Beginning(const Log& whole) {
+    constexpr std::size_t kRows = 2000;
+    Log log = whole;
+    if (log.rows() <= kRows) return log;
+    log.time.resize(kRows);
+    for (auto* columns : {&log.input, &log.measured}) {
+      for (auto& column : *columns) column.resize(kRows);
+    }
+    for (auto& on : log.enable) on.resize(std::min(on.size(), kRows));
+    return log;
+  }
+
+  // Mean square over channels of misfit over deviation; infinite when the simulation fails.
+  double ErrorOf(const Log& log) {
+    --budget_;
+    Machine machine = system_.Build(log.set);
+    Trace trace;
+    try {
+      trace = Simulate(machine, experiment_, log);
+    } catch (const Error& error) {
+      if (error.kind() == Error::Kind::kInput) throw;
+      return HUGE_VAL;
+    }
+    if (trace.diverged) return HUGE_VAL;
+    double sum = 0, count = 0;
+    for (const Compared& p : Compare(experiment_, log, trace)) {
+      const double deviation = Deviation(p.measured);
+      if (!(deviation > 0)) continue;
+      sum += std::pow(Misfit(p.measured, p.simulated) / deviation, 2);
+      count += 1;
+    }
+    return count > 0 ? sum / count : HUGE_VAL;
+  }
+
+  void TryInput(Log& log, std::size_t i, double plain, Findings& out) {
+    struct Mistake {
+      double factor;
+      const char *what, *text;
+    };
+    static constexpr Mistake kMistakes[]{
+        {-1, "sign_suspect", "has the wrong sign"},
+        {1e-3, "unit_suspect", "is in thousandths of its unit (millimetres for metres)"},
+        {1e3, "unit_suspect", "is in thousands of its unit (metres for millimetres)"},
+        {1 / 57.29578, "unit_suspect", "is in degrees and not in radians"},
+        {57.29578, "unit_suspect", "is in radians and not in degrees"}};
+    const Values original = log.input[i];
+    for (const Mistake& mistake : kMistakes) {
+      if (budget_ <= 0 || RangeOf(original) == 0) break;
+      for (double& u : log.input[i]) u *= mistake.factor;
+      Tell(log, plain, experiment_.inputs[i].column, mistake.what, mistake.text, out);
+      log.input[i] = original;
+    }
+  }
+
+  void TrySwap(Log& log, std::size_t i, std::size_t j, double plain, Findings& out) {
+    const auto &a = experiment_.inputs[i], &b = experiment_.inputs[j];
+    if (budget_ <= 0 || a.unit != b.unit || a.column.empty() || b.column.empty()) return;
+    std::swap(log.input[i], log.input[j]);
+    Tell(log, plain, a.column, "swapped", "is swapped with '" + b.column + "'", out);
+    std::swap(log.input[i], log.input[j]);
+  }
+
+  void Tell(const Log& log, double plain, const std::string& column, const char* what,
+            const std::string& text, Findings& out) {
+    const double error = ErrorOf(log);
+    if (!(error < 0.1 * std::min(plain, 10.0))) return;
+    out.Add(
+        Severity::kWarning, column, what,
+        fmt::format("the simulation fits if this input {}: relative error {:.2g} instead of {:.2g}",
+                    text, std::sqrt(error), std::sqrt(plain)));
+  }
+
+  const Experiment& experiment_;
+  const System& system_;
+  int budget_ = 60;  // simulations over all logs
+};
+
+void CheckSimulated(const Experiment& e, const Log& log, const Trace& trace, Findings& out) {
+  const std::vector<Compared> pairs = Compare(e, log, trace);
+  for (const Compared& p : pairs) {
+    CheckScale(p, out);
+    CheckRest(p, log, out);
+  }
+  CheckShifts(pairs, Median(Differences(log.time)), out);
+  CheckSwaps(pairs, out);
+}
+
+}  // namespace
+
+std::vector<Finding> CheckAgainstModel(const Experiment& e, const System& system) {
+  std::vector<Finding> all;
+  InputTrials trials(e, system);
+  for (const Log& log : e.logs) {
+    Findings found(&log);
+    Machine machine = system.Build(log.set);
+    try {
+      const Trace trace = Simulate(machine, e, log);
+      if (trace.diverged) {
+        found.Add(Severity::kWarning, "", "diverged",
+                  fmt::format("the simulation diverges at t = {}", Clock(trace.diverged_at)),
+                  trace.diverged_at, trace.diverged_at);
+      }
+      CheckSimulated(e, log, trace, found);
+      trials.Run(log, found);
+    } catch (const Error& error) {
+      if (error.kind() == Error::Kind::kInput) throw;
+      found.Add(Severity::kWarning, "", "simulation", error.what());
+    }
+    for (Finding& f : found.Take()) all.push_back(std::move(f));
+  }
+  return all;
+}
+
+}  // namespace continuum

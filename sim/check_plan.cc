@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/core.h>
+
+#include "sim/check_rules.h"
+
+namespace continuum {
+namespace {
+
+using Severity = Finding::Severity;
+
+struct Trial {
+  std::size_t logs = 0, train = 0;
+};
+
+void CheckTrials(const Experiment& e, Findings& out) {
+  std::map<std::string, Trial> trials;
+  std::size_t train = 0;
+  for (const Log& log : e.logs) {
+    ++trials[log.trial].logs;
+    trials[log.trial].train += log.train;
+    train += log.train;
+  }
+  std::size_t replicated = 0;
+  for (const auto& [name, trial] : trials) {
+    replicated += trial.logs > 1;
+    if (trial.train > 0 && trial.train < trial.logs) {
+      out.Add(Severity::kWarning, "", "split",
+              fmt::format("trial '{}' is in both train and validate: its replicates are no test of "
+                          "what was fitted to it",
+                          name));
+    }
+  }
+  const std::size_t validate = e.logs.size() - train;
+  out.Add(
+      Severity::kInfo, "", "split",
+      fmt::format("{} log{} of {} trial{}: {} train, {} validate{}", e.logs.size(),
+                  e.logs.size() == 1 ? "" : "s", trials.size(), trials.size() == 1 ? "" : "s",
+                  train, validate,
+                  validate ? "" : "; without validate logs a gain on unseen data cannot be given"));
+  if (train == 0) {
+    out.Add(Severity::kWarning, "", "split", "no log is marked train: there is nothing to fit");
+  }
+  out.Add(Severity::kInfo, "", "replicates",
+          replicated ? fmt::format("{} trial{} recorded more than once: noise comes from the "
+                                   "differences between replicates",
+                                   replicated, replicated == 1 ? " was" : "s were")
+                     : "no trial was recorded twice: without replicates \"unexplained\" cannot be "
+                       "concluded");
+}
+
+void CheckOverlap(const Experiment& e, Findings& out) {
+  for (std::size_t i = 0; i < e.logs.size(); ++i) {
+    for (std::size_t j = i + 1; j < e.logs.size(); ++j) {
+      const Log &a = e.logs[i], &b = e.logs[j];
+      if (a.measured == b.measured && a.input == b.input) {
+        out.Add(Severity::kWarning, "", "duplicate_log",
+                fmt::format("logs '{}' and '{}' hold the same numbers: a copy is no replicate",
+                            a.label, b.label));
+      } else if (!a.file.empty() && a.file == b.file && a.train != b.train &&
+                 a.time.front() <= b.time.back() && b.time.front() <= a.time.back()) {
+        out.Add(Severity::kWarning, "", "split",
+                fmt::format("the windows of '{}' (train and validate) and '{}' overlap", a.label,
+                            b.label));
+      }
+    }
+  }
+}
+
+// Of position, speed or acceleration: free of mass.
+bool IsKinematic(const std::string& unit) {
+  static const std::set<std::string> kUnits{"m",   "mm",   "cm",   "um", "rad",
+                                            "deg", "mrad", "step", "rpm"};
+  return kUnits.count(unit.substr(0, unit.find("/s"))) > 0;
+}
+
+void CheckInvariance(const Experiment& e, Findings& out) {
+  if (e.inputs.empty()) return;
+  const bool displaced = std::all_of(e.inputs.begin(), e.inputs.end(), [](const Input& in) {
+    return in.column.empty() || IsKinematic(in.unit);
+  });
+  const bool moved = std::all_of(e.outputs.begin(), e.outputs.end(), [](const Output& out) {
+    return out.kind == Output::Kind::kSensor && (out.quaternion() || IsKinematic(out.unit));
+  });
+  const bool weighed = std::any_of(e.logs.begin(), e.logs.end(), [](const Log& log) {
+    return std::any_of(log.set.begin(), log.set.end(),
+                       [](const Change& s) { return s.attribute == "mass"; });
+  });
+  if (!displaced || !moved || weighed) return;
+  out.Add(
+      Severity::kInfo, "", "invariance",
+      "inputs are displacement and outputs position: only ratios of mass, stiffness and friction "
+      "are determined; a known mass or a force sensor would fix the scale");
+}
+
+}  // namespace
+
+void CheckPlan(const Experiment& e, Findings& out) {
+  CheckTrials(e, out);
+  CheckOverlap(e, out);
+  CheckInvariance(e, out);
+}
+
+}  // namespace continuum

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/check.h"
+
+namespace continuum {
+
+/// A column of a log as `check` looks at it: in its unit, rows without a number left out.
+struct CheckedColumn {
+  std::string name, unit;
+  bool input = false;
+  bool smooth = false;  ///< a sensor, which physics keeps from jumping
+  std::vector<double> time, value;
+  std::vector<std::size_t> row;  ///< of the log
+  std::size_t missing = 0;
+  double quantum = 0;
+
+  bool constant() const;
+};
+
+/// A log with its columns, inputs first (those without a column are left out).
+struct CheckedLog {
+  const Experiment* experiment;
+  const Log* log;
+  std::vector<CheckedColumn> columns;
+  double period;                ///< median interval [s]
+  std::vector<bool> disturbed;  ///< [row] a gap or a step of an input just before
+};
+CheckedLog Prepare(const Experiment& e, const Log& log);
+
+/// Collects findings of one log.
+class Findings {
+ public:
+  using Severity = Finding::Severity;
+  explicit Findings(const Log* log) : log_(log) {}
+
+  void Add(Severity severity, const std::string& channel, const std::string& what,
+           const std::string& text);
+  void Add(Severity severity, const std::string& channel, const std::string& what,
+           const std::string& text, double begin, double end);
+  std::vector<Finding> Take() { return std::move(findings_); }
+
+ private:
+  const Log* log_;
+  std::vector<Finding> findings_;
+};
+
+void CheckClock(const CheckedLog& log, Findings& out);
+void CheckColumns(const CheckedLog& log, Findings& out);
+void CheckExcitation(const CheckedLog& log, Findings& out);
+/// Copied columns, quaternions, velocities against positions, inputs against outputs.
+void CheckPairs(const CheckedLog& log, Findings& out);
+/// Replicates, split, what cannot be determined.
+void CheckPlan(const Experiment& e, Findings& out);
+
+/// "0.0123 rad"; the unit "1" is left out.
+std::string Amount(double value, const std::string& unit);
+
+/// A time of the log with its unit, to a millisecond where the clock counts from long ago.
+std::string Clock(double time);
+
+}  // namespace continuum

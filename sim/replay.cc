@@ -1,0 +1,155 @@
+#include "sim/replay.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+std::vector<double> InUnit(const std::vector<double>& si, double factor) {
+  std::vector<double> out(si);
+  for (double& v : out) v /= factor;
+  return out;
+}
+
+std::string Cell(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
+
+}  // namespace
+
+std::vector<Replayed> Replay(const Experiment& e, const System& system,
+                             const std::function<void(const std::string&)>& progress) {
+  std::vector<Replayed> out;
+  for (const Log& log : e.logs) {
+    if (progress)
+      progress(fmt::format("log {} of {}: {}", out.size() + 1, e.logs.size(), log.label));
+    Machine machine = system.Build(log.set);
+    Replayed r{Simulate(machine, e, log), {}};
+    if (r.trace.diverged) {
+      throw Error::Job(
+          fmt::format("{}: the simulation diverges at {:g} s", log.label, r.trace.diverged_at));
+    }
+    r.score = ScoreLog(e, log, r.trace);
+    out.push_back(std::move(r));
+  }
+  return out;
+}
+
+SplitError PooledError(const Experiment& e, const std::vector<Replayed>& logs) {
+  const Pool pool(e);
+  Pool::Sum train, validate;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    pool.Add(Residuals(e, e.logs[l], logs[l].trace), e.logs[l].train ? train : validate);
+  }
+  return {train.Rms(), validate.Rms()};
+}
+
+nlohmann::json ScoreJson(const std::vector<ChannelScore>& score) {
+  auto channels = nlohmann::json::array();
+  for (const ChannelScore& s : score) {
+    channels.push_back({{"channel", s.channel},
+                        {"unit", s.unit},
+                        {"rows", s.rows},
+                        {"rmse", s.rmse},
+                        {"mae", s.mae},
+                        {"nrmse", s.nrmse},
+                        {"fit_percent", s.fit},
+                        {"largest", s.largest},
+                        {"when", s.when}});
+  }
+  return channels;
+}
+
+nlohmann::json ErrorsJson(const Experiment& e, const std::vector<Replayed>& logs) {
+  const SplitError error = PooledError(e, logs);
+  nlohmann::json json{
+      {"unit", Pool(e).unit()}, {"train", error.train}, {"validate", error.validate}};
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    const Log& log = e.logs[l];
+    json["logs"].push_back({{"log", log.label},
+                            {"trial", log.trial},
+                            {"condition", log.condition},
+                            {"use", log.train ? "train" : "validate"},
+                            {"channels", ScoreJson(logs[l].score)}});
+  }
+  return json;
+}
+
+void WriteSimulated(const Experiment& e, const std::vector<Trace>& traces,
+                    const std::filesystem::path& folder) {
+  MakeFolder(folder);
+  for (std::size_t l = 0; l < traces.size(); ++l) {
+    const Log& log = e.logs[l];
+    std::string text = "time";
+    for (const auto& c : e.channels) text += "," + c.name + "," + c.name + "_measured";
+    text += "\n";
+    for (std::size_t k = 0; k < log.rows(); ++k) {
+      text += Decimal(log.time[k]);
+      for (std::size_t c = 0; c < e.channels.size(); ++c) {
+        const double factor = e.channels[c].factor;
+        text +=
+            "," + Cell(traces[l].channel[c][k] / factor) + "," + Cell(log.measured[c][k] / factor);
+      }
+      text += "\n";
+    }
+    WriteFile(folder / (log.label + ".csv"), text);
+  }
+}
+
+void AddOverlay(Page& page, const Experiment& e, const Log& log,
+                const std::vector<NamedTrace>& traces, bool residual) {
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const auto& channel = e.channels[c];
+    if (e.outputs[channel.output].weight == 0) continue;
+    TimeSeriesSpec spec{
+        log.label + ": " + channel.name, {channel.name, channel.unit}, log.time, {}, log.label};
+    spec.series.push_back({"measured", InUnit(log.measured[c], channel.factor), Style::kMeasured});
+    for (const auto& t : traces) {
+      spec.series.push_back({t.name, InUnit(t.trace->channel[c], channel.factor), t.style});
+    }
+    page.TimeSeries(spec);
+    if (!residual) continue;
+    TimeSeriesSpec rest{"", {"residual", channel.unit}, log.time, {}, log.label, 110};
+    for (const auto& t : traces) {
+      const auto r = Residuals(e, log, *t.trace);
+      rest.series.push_back({t.name + " − measured", InUnit(r[c], channel.factor),
+                             traces.size() == 1 ? Style::kResidual : t.style});
+    }
+    page.TimeSeries(rest);
+  }
+}
+
+void WriteReplayReport(const Experiment& e, const std::vector<Replayed>& logs,
+                       const std::filesystem::path& file) {
+  const SplitError error = PooledError(e, logs);
+  const std::string unit = Pool(e).unit();
+  Page page("Replay",
+            e.model.filename().string() + " against " + std::to_string(logs.size()) + " logs");
+  page.Badge(Tone::kInfo,
+             fmt::format("error {:.4g} {} on train, {:.4g} {} on validate", error.train, unit,
+                         error.validate, unit),
+             "root mean square over all samples, channels and logs; the model as it stands");
+  page.Heading("Errors");
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    for (const ChannelScore& s : logs[l].score) {
+      rows.push_back({e.logs[l].label, e.logs[l].train ? "train" : "validate", s.channel, s.unit,
+                      fmt::format("{:.4g}", s.rmse), fmt::format("{:.4g}", s.mae),
+                      fmt::format("{:.3f}", s.nrmse), fmt::format("{:.1f}", s.fit),
+                      fmt::format("{:.4g}", s.largest), fmt::format("{:.3f}", s.when)});
+    }
+  }
+  page.Table(
+      {"log", "use", "channel", "unit", "RMSE", "mean abs.", "NRMSE", "fit %", "largest", "at s"},
+      rows);
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    page.Heading(e.logs[l].label);
+    AddOverlay(page, e, e.logs[l], {{"simulated", Style::kSimulated, &logs[l].trace}}, true);
+  }
+  page.Write(file);
+}
+
+}  // namespace continuum

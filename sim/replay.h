@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "sim/page.h"
+#include "sim/score.h"
+
+namespace continuum {
+
+/// One log, simulated and scored.
+struct Replayed {
+  Trace trace;
+  std::vector<ChannelScore> score;
+};
+
+/// Every log of an experiment as it stands. Throws Error (kJob) when a simulation diverges.
+std::vector<Replayed> Replay(const Experiment& experiment, const System& system,
+                             const std::function<void(const std::string&)>& progress = {});
+
+/// Pooled RMS of the train and validate logs.
+struct SplitError {
+  double train = 0, validate = 0;
+};
+SplitError PooledError(const Experiment& experiment, const std::vector<Replayed>& logs);
+
+/// errors.json: pooled errors, and per log and channel what ChannelScore holds.
+nlohmann::json ErrorsJson(const Experiment& experiment, const std::vector<Replayed>& logs);
+/// [channels] of one log as JSON.
+nlohmann::json ScoreJson(const std::vector<ChannelScore>& score);
+
+/// simulated/<log>.csv: time [s], and per channel the simulated and the measured value in its unit.
+void WriteSimulated(const Experiment& experiment, const std::vector<Trace>& traces,
+                    const std::filesystem::path& folder);
+
+/// Adds one panel per counted channel of a log: measured and the named traces.
+struct NamedTrace {
+  std::string name;
+  Style style;
+  const Trace* trace;
+};
+void AddOverlay(Page& page, const Experiment& experiment, const Log& log,
+                const std::vector<NamedTrace>& traces, bool residual);
+
+void WriteReplayReport(const Experiment& experiment, const std::vector<Replayed>& logs,
+                       const std::filesystem::path& file);
+
+}  // namespace continuum

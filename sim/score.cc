@@ -1,0 +1,126 @@
+#include "sim/score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace continuum {
+namespace {
+
+void RotationResidual(const Log& log, const Trace& trace, std::size_t first, std::size_t row,
+                      std::vector<std::vector<double>>& out) {
+  double simulated[4], measured[4], turn[3];
+  for (int c = 0; c < 4; ++c) {
+    simulated[c] = trace.channel[first + c][row];
+    measured[c] = log.measured[first + c][row];
+  }
+  const double norm = std::sqrt(mju_dot(measured, measured, 4));
+  if (!(norm > 0.5)) {  // also NaN: not measured
+    for (int c = 0; c < 4; ++c) out[first + c][row] = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
+  mju_normalize4(measured);
+  mju_subQuat(turn, simulated, measured);
+  for (int c = 0; c < 3; ++c) out[first + c][row] = turn[c];
+  out[first + 3][row] = 0;
+}
+
+struct Moments {
+  double mean = 0, std = 0;
+};
+Moments MomentsOf(const std::vector<double>& values) {
+  double sum = 0, squares = 0;
+  std::size_t n = 0;
+  for (const double v : values) {
+    if (!std::isnan(v)) sum += v, ++n;
+  }
+  const double mean = n ? sum / static_cast<double>(n) : 0;
+  for (const double v : values) {
+    if (!std::isnan(v)) squares += (v - mean) * (v - mean);
+  }
+  return {mean, n ? std::sqrt(squares / static_cast<double>(n)) : 0};
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> Residuals(const Experiment& e, const Log& log,
+                                           const Trace& trace) {
+  std::vector<std::vector<double>> out(e.channels.size(), std::vector<double>(log.rows()));
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const bool turn = e.outputs[e.channels[c].output].quaternion();
+    if (turn && e.channels[c].component > 0) continue;
+    for (std::size_t row = 0; row < log.rows(); ++row) {
+      if (turn) {
+        RotationResidual(log, trace, c, row, out);
+      } else {
+        out[c][row] = trace.channel[c][row] - log.measured[c][row];
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Trace& trace) {
+  const auto residuals = Residuals(e, log, trace);
+  std::vector<ChannelScore> scores;
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const auto& channel = e.channels[c];
+    ChannelScore s{channel.name, channel.unit};
+    double squares = 0, absolute = 0;
+    for (std::size_t row = 0; row < log.rows(); ++row) {
+      if (std::isnan(log.measured[c][row])) continue;
+      const double error = residuals[c][row] / channel.factor;
+      ++s.rows;
+      squares += error * error;
+      absolute += std::abs(error);
+      if (!(std::abs(error) <= std::abs(s.largest))) s.largest = error, s.when = log.time[row];
+    }
+    const double n = static_cast<double>(std::max<std::size_t>(s.rows, 1));
+    const double std = MomentsOf(log.measured[c]).std / channel.factor;
+    s.rmse = std::sqrt(squares / n);
+    s.mae = absolute / n;
+    s.nrmse = std > 0 ? s.rmse / std : 0;
+    s.fit = std > 0 ? 100 * (1 - s.nrmse) : 0;
+    scores.push_back(s);
+  }
+  return scores;
+}
+
+Pool::Pool(const Experiment& e) {
+  std::string unit;
+  bool one = true;
+  for (const auto& channel : e.channels) {
+    counts_.push_back(e.outputs[channel.output].weight > 0);
+    if (!counts_.back()) continue;
+    one &= unit.empty() || unit == channel.unit;
+    unit = channel.unit;
+  }
+  unit_ = one ? unit : "std";
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    scale_.push_back(e.channels[c].factor);
+    if (one) continue;
+    std::vector<double> train;
+    for (const Log& log : e.logs) {
+      if (log.train) train.insert(train.end(), log.measured[c].begin(), log.measured[c].end());
+    }
+    const double std = MomentsOf(train).std;
+    if (std > 0) scale_.back() = std;
+  }
+}
+
+double Pool::Sum::Rms() const {
+  return count ? std::sqrt(squares / static_cast<double>(count)) : 0;
+}
+
+void Pool::Add(const std::vector<std::vector<double>>& residuals, Sum& sum) const {
+  for (std::size_t c = 0; c < residuals.size(); ++c) {
+    if (!counts_[c]) continue;
+    for (const double r : residuals[c]) {
+      if (std::isnan(r)) continue;
+      sum.squares += r * r / (scale_[c] * scale_[c]);
+      ++sum.count;
+    }
+  }
+}
+
+}  // namespace continuum

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/simulate.h"
+
+namespace continuum {
+
+/// Simulated minus measured, per channel and row, in SI; NaN where nothing was measured. The four
+/// channels of a quaternion hold the three components of the rotation vector from the simulated to
+/// the measured orientation [rad], and zero.
+std::vector<std::vector<double>> Residuals(const Experiment& e, const Log& log, const Trace& trace);
+
+/// How far one channel of one log is off.
+struct ChannelScore {
+  std::string channel, unit;
+  std::size_t rows = 0;  ///< compared
+  double rmse = 0;       ///< [unit]
+  double mae = 0;        ///< mean absolute error [unit]
+  double nrmse = 0;      ///< rmse over the standard deviation of the measured values
+  double fit = 0;        ///< 100 (1 − |error| / |measured − mean|) [%]
+  double largest = 0;    ///< largest deviation [unit], signed
+  double when = 0;       ///< its time [s]
+};
+std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Trace& trace);
+
+/// One unit for all channels, so that errors can be pooled: the channels' own when they share one,
+/// else "std", the standard deviation of each channel's measured train rows.
+class Pool {
+ public:
+  explicit Pool(const Experiment& e);
+
+  const std::string& unit() const { return unit_; }
+  /// SI per pooled unit of a channel.
+  double scale(std::size_t channel) const { return scale_[channel]; }
+  /// Whether the channel counts (weight above 0).
+  bool counts(std::size_t channel) const { return counts_[channel]; }
+
+  /// Adds one log's residuals; Rms is over all samples added since Clear.
+  struct Sum {
+    double squares = 0;
+    std::size_t count = 0;
+    double Rms() const;
+  };
+  void Add(const std::vector<std::vector<double>>& residuals, Sum& sum) const;
+
+ private:
+  std::string unit_;
+  std::vector<double> scale_;
+  std::vector<bool> counts_;
+};
+
+}  // namespace continuum

@@ -1,0 +1,338 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <random>
+
+#include "error.h"
+#include "models/solver/solve.h"
+#include "models/tdcr/calibrate.h"
+#include "models/tdcr/fit.h"
+#include "models/tdcr/hybrid.h"
+#include "models/tdcr/synthetic.h"
+#include "sim/file.h"
+
+namespace continuum::tdcr {
+namespace {
+
+using testing::HasSubstr;
+
+const char kRobot[] =
+    "format: 1\nrobot: tdcr\nlength: 0.134\ndiameter: 0.99e-3\ndisks: 9\ntendons: 3\n"
+    "tendon_radius: 7.0e-3\nE: {value: 60.0e9, unit: Pa}\nnu: 0.3\ndensity: 6450\n"
+    "disk_mass: 0.6e-3\nmu: 0.2\ngravity: [0, 0, 9.81]\nbase_rotation: [0, 0, 0]\n";
+const char kHeader[] = "case,T1,T2,T3,fx,fy,fz\n";
+
+class TdcrSolve : public testing::Test {
+ protected:
+  TdcrSolve()
+      : folder_(std::filesystem::temp_directory_path() /
+                fmt::format("tdcr_{}_{}", getpid(),
+                            testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    MakeFolder(folder_);
+    request_.robot = Write("robot.yaml", kRobot);
+    request_.out = folder_ / "out.csv";
+  }
+  ~TdcrSolve() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path Write(const std::string& name, const std::string& text) const {
+    WriteFile(folder_ / name, text);
+    return folder_ / name;
+  }
+  // The message of the input error that the request ends with; nothing may have been written.
+  std::string Message() const {
+    try {
+      SolveTdcr(request_);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.exit_code(), 2);
+      EXPECT_FALSE(std::filesystem::exists(request_.out));
+      return e.what();
+    }
+    return "no error";
+  }
+  std::string MessageOfCases(const std::string& text) {
+    request_.input = Write("cases.csv", text);
+    return Message();
+  }
+  std::string MessageOfRobot(const std::string& from, const std::string& to) {
+    std::string text = kRobot;
+    text.replace(text.find(from), from.size(), to);
+    request_.robot = Write("robot.yaml", text);
+    request_.input = Write("cases.csv", std::string(kHeader) + "a,1,0,0,0,0,0\n");
+    return Message();
+  }
+
+  std::filesystem::path folder_;
+  SolveRequest request_;
+};
+
+TEST_F(TdcrSolve, WritesTheContractsColumnsAndEchoesTheCases) {
+  request_.input =
+      Write("cases.csv", std::string(kHeader) + "a,1,0,0,0,0,0\n\"b, c\",0,0,0,0,0,0\n");
+  for (const char* method : {"", "eas", "pcca", "crt"}) {
+    request_.method = method;
+    EXPECT_EQ(SolveTdcr(request_), 0);
+    const Table table = Table::Read(request_.out);
+    const auto& columns = table.columns();
+    ASSERT_EQ(columns.size(), 8u + 27 + 27);
+    EXPECT_THAT(std::vector(columns.begin(), columns.begin() + 11),
+                testing::ElementsAre("case", "status", "iterations", "residual", "micros", "x", "y",
+                                     "z", "x_1", "y_1", "z_1"));
+    EXPECT_EQ(columns.back(), "tau_9");
+    EXPECT_EQ(table.Text(1, "case"), "b, c");
+    EXPECT_EQ(table.Text(0, "status"), "ok");
+    EXPECT_EQ(table.Number(1, "z"), table.Number(1, "z_9"));
+    EXPECT_GT(table.Number(0, "kappa_x_5"), 0);
+  }
+}
+
+TEST_F(TdcrSolve, ACaseOverridesGravityFrictionAndDirection) {
+  request_.input = Write("cases.csv",
+                         "case,T1,T2,T3,fx,fy,fz,gx,gy,gz,mu,dir1,dir2,dir3\n"
+                         "a,4,0,0,0,0,0,0,0,0,0,1,1,1\nb,4,0,0,0,0,0,0,0,0,0.5,0,1,1\n"
+                         "c,4,0,0,0,0,0,0,0,0,0.5,1,1,1\n");
+  EXPECT_EQ(SolveTdcr(request_), 0);
+  const Table table = Table::Read(request_.out);
+  EXPECT_EQ(table.Number(0, "x"), table.Number(1, "x"));
+  EXPECT_LT(table.Number(2, "x"), 0.95 * table.Number(0, "x"));
+}
+
+TEST_F(TdcrSolve, AFailedCaseLeavesItsNumbersEmptyAndTheOthersSolved) {
+  request_.method = "crt";
+  request_.input = Write("cases.csv", std::string(kHeader) + "a,1e6,0,0,0,0,0\nb,1,0,0,0,0,0\n");
+  EXPECT_EQ(SolveTdcr(request_), 1);
+  const Table table = Table::Read(request_.out);
+  EXPECT_EQ(table.Text(0, "status"), "no_convergence");
+  EXPECT_EQ(table.Text(0, "x"), "");
+  EXPECT_EQ(table.Text(0, "tau_9"), "");
+  EXPECT_NE(table.Text(0, "why"), "");
+  EXPECT_GE(table.Number(0, "residual"), 0);
+  EXPECT_EQ(table.Text(1, "status"), "ok");
+  request_.out = folder_ / "out.json";
+  EXPECT_EQ(SolveTdcr(request_), 1);
+  EXPECT_THAT(ReadFile(request_.out), HasSubstr("\"x\": null"));
+}
+
+TEST_F(TdcrSolve, BadCasesAreNamedWithLineAndColumn) {
+  const std::string header = kHeader;
+  EXPECT_THAT(MessageOfCases(header + "a,-1,0,0,0,0,0\n"), HasSubstr("cases.csv:2, column 'T1'"));
+  EXPECT_THAT(MessageOfCases(header + "a,1,0,0,0,0,0\nb,1,0,x,0,0,0\n"),
+              HasSubstr("cases.csv:3, column 'T3'"));
+  EXPECT_THAT(MessageOfCases(header + "a,1,0,0,nan,0,0\n"), HasSubstr("a finite number"));
+  EXPECT_THAT(MessageOfCases("case,T1,T2,fx,fy,fz\na,1,1,0,0,0\n"), HasSubstr("'T3'"));
+  EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,mu\na,1,1,0,0,0,0,1\n"),
+              HasSubstr("0 <= mu < 1"));
+  EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,gx\na,1,1,0,0,0,0,1\n"), HasSubstr("'gy'"));
+  EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,T4\na,1,1,0,0,0,0,1\n"), HasSubstr("'T4'"));
+  EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,dir1\na,1,1,0,0,0,0,2\n"),
+              HasSubstr("column 'dir1'"));
+}
+
+TEST_F(TdcrSolve, BadRobotsAreNamedWithLineAndKey) {
+  EXPECT_THAT(MessageOfRobot("length: 0.134", "length: -0.134"), HasSubstr("robot.yaml:3: length"));
+  EXPECT_THAT(MessageOfRobot("disks: 9", "disks: 1"), HasSubstr("robot.yaml:5: disks"));
+  EXPECT_THAT(MessageOfRobot("disks: 9", "disks: 2.5"), HasSubstr("whole number"));
+  EXPECT_THAT(MessageOfRobot("mu: 0.2", "mu: 1"), HasSubstr("0 <= mu < 1"));
+  EXPECT_THAT(MessageOfRobot("gravity: [0, 0, 9.81]", "gravity: 9.81"), HasSubstr("gravity"));
+  EXPECT_THAT(MessageOfRobot("nu: 0.3\n", ""), HasSubstr("'nu'"));
+}
+
+TEST_F(TdcrSolve, WrongUseIsRefused) {
+  EXPECT_THAT(Message(), HasSubstr("--input"));
+  request_.input = Write("cases.csv", std::string(kHeader) + "a,1,0,0,0,0,0\n");
+  request_.method = "euler";
+  EXPECT_THAT(Message(), HasSubstr("eas, pcca, crt"));
+  request_.method = "fit";
+  EXPECT_THAT(Message(), HasSubstr("--measured"));
+  request_.method = "pcca";
+  request_.hybrid = "apply";
+  EXPECT_THAT(Message(), HasSubstr("eas with --hybrid"));
+  request_.method = "";
+  EXPECT_THAT(Message(), HasSubstr("'hybrid'"));
+  request_.hybrid = "";
+  request_.sensitivity = true;
+  EXPECT_THAT(Message(), HasSubstr("--sensitivity"));
+  request_.sensitivity = false;
+  request_.out = folder_ / "out.txt";
+  EXPECT_THAT(Message(), HasSubstr("--out"));
+}
+
+TEST_F(TdcrSolve, BadMeasurementsAreNamedWithLine) {
+  request_.input = Write("cases.csv", std::string(kHeader) + "a,1,0,0,0,0,0\n");
+  const auto message = [&](const std::string& text) {
+    request_.measured = Write("measured.csv", text);
+    return Message();
+  };
+  EXPECT_THAT(message("case,x_10,y_10,z_10\na,0,0,0\n"), HasSubstr("'x_10'"));
+  EXPECT_THAT(message("case,x_1,y_1\na,0,0\n"), HasSubstr("'z_1'"));
+  EXPECT_THAT(message("case,x_1,y_1,z_1\na,0,,0\n"), HasSubstr("measured.csv:2"));
+  EXPECT_THAT(message("case,x_1,y_1,z_1\na,,,\n"), HasSubstr("at least one"));
+  EXPECT_THAT(message("case,x_1,y_1,z_1\na,0,0,1\na,0,0,1\n"), HasSubstr("measured.csv:3"));
+  EXPECT_THAT(message("case,use,x_1,y_1,z_1\na,maybe,0,0,1\n"), HasSubstr("train or test"));
+}
+
+// Shapes of a robot by one of the methods, as a table in its measuring frame.
+std::string MeasuredText(const Robot& robot, const std::vector<Case>& cases, Method method) {
+  std::string text = "case,use";
+  for (int i = 1; i <= robot.disks; ++i) text += fmt::format(",x_{0},y_{0},z_{0}", i);
+  int row = 0;
+  for (Case c : cases) {
+    c.loads.mu = robot.mu;
+    const Solution s = SolveCase(robot, c.loads, method);
+    const Eigen::Matrix3Xd x = robot.MeasuringToBase().transpose() * s.disks;
+    text += fmt::format("\n{},{}", c.name, ++row % 4 == 0 ? "test" : "train");
+    for (const double coordinate : x.reshaped()) text += "," + Decimal(coordinate);
+  }
+  return text + "\n";
+}
+
+std::string CasesText(int count) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::string text = kHeader;
+  for (int i = 1; i <= count; ++i) {
+    text += fmt::format("c{}", i);
+    for (int k = 0; k < 3; ++k) text += "," + Decimal(4 * share(random));
+    for (int k = 0; k < 3; ++k) text += "," + Decimal(0.2 * (2 * share(random) - 1));
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(TdcrSolve, CalibrationFindsTheParametersThatMadeTheShapes) {
+  request_.input = Write("cases.csv", CasesText(12));
+  for (const char* method : {"eas", "pcca", "crt"}) {
+    Robot truth = ReadRobot(Yaml::Read(request_.robot));
+    truth.E = 51e9;
+    truth.mu = 0.12;
+    truth.base_rotation = {0.05, -0.1, 0.3};
+    const auto cases = ReadCases(Table::Read(request_.input), truth);
+    request_.measured = Write("measured.csv", MeasuredText(truth, cases, ParseMethod(method)));
+    request_.method = method;
+    request_.calibrate = true;
+    request_.out = folder_ / "calibrated.yaml";
+    ASSERT_EQ(SolveTdcr(request_), 0);
+    const Yaml file = Yaml::Read(request_.out);
+    const Robot found = ReadRobot(file);
+    EXPECT_NEAR(found.E / truth.E, 1, 1e-7) << method;
+    EXPECT_LT((found.base_rotation - truth.base_rotation).norm(), 1e-7) << method;
+    const Yaml calibration = file.At("calibration");
+    EXPECT_EQ(calibration.At("cases").Integer(), 9);
+    EXPECT_EQ(calibration.Has("mu"), std::string(method) != "crt");
+    if (calibration.Has("mu")) {
+      EXPECT_NEAR(found.mu, truth.mu, 1e-6) << method;
+    }
+    EXPECT_LT(calibration.At("tip_error_percent").At("test").At("max").Number(), 1e-4);
+    // The calibrated file is a robot's file: with the measurements it gives the errors.
+    SolveRequest again = request_;
+    again.robot = request_.out;
+    again.calibrate = false;
+    again.out = folder_ / "errors.csv";
+    ASSERT_EQ(SolveTdcr(again), 0);
+    EXPECT_LT(Table::Read(again.out).Number(3, "error_9"), 1e-6 * truth.length);
+  }
+}
+
+TEST_F(TdcrSolve, FitFindsAnEulerArcSplineAgain) {
+  request_.input = Write("cases.csv", CasesText(8));
+  const Robot robot = ReadRobot(Yaml::Read(request_.robot));
+  const auto cases = ReadCases(Table::Read(request_.input), robot);
+  request_.measured = Write("measured.csv", MeasuredText(robot, cases, Method::kEas));
+  request_.input.clear();
+  request_.method = "fit";
+  request_.lambda = 0;
+  ASSERT_EQ(SolveTdcr(request_), 0);
+  const Table table = Table::Read(request_.out);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    EXPECT_LE(table.Number(row, "residual"), 1e-9);
+    EXPECT_LT(table.Number(row, "error_9"), 1e-9 * robot.length);
+    const Solution s = SolveCase(robot, cases[row].loads, Method::kEas);
+    EXPECT_NEAR(table.Number(row, "kappa_x_1"), s.u(0, 0), 1e-6);
+    EXPECT_NEAR(table.Number(row, "tau_9"), s.u(2, 8), 1e-6);
+  }
+}
+
+TEST_F(TdcrSolve, FitOfATipAloneIsHeldByThePenalty) {
+  request_.measured = Write("measured.csv", "case,x_9,y_9,z_9\na,0.05,0.02,0.11\n");
+  request_.method = "fit";
+  ASSERT_EQ(SolveTdcr(request_), 0);
+  const Table table = Table::Read(request_.out);
+  EXPECT_LE(table.Number(0, "residual"), 1e-9);
+  EXPECT_LT(table.Number(0, "error_9"), 0.03 * 0.134);
+  EXPECT_FALSE(table.Has("error_8"));
+}
+
+TEST_F(TdcrSolve, HybridTrainingLowersTheTrainingErrorAndApplyRepeatsIt) {
+  const Robot robot = ReadRobot(Yaml::Read(request_.robot));
+  request_.input = Write("cases.csv", CasesText(16));
+  const auto cases = ReadCases(Table::Read(request_.input), robot);
+  Robot twisted = robot;
+  twisted.natural = {0.5, 0, 2};
+  request_.measured = Write("measured.csv", MeasuredText(twisted, cases, Method::kCrt));
+  request_.hybrid = "train";
+  request_.out = folder_ / "hybrid.yaml";
+  ASSERT_EQ(SolveTdcr(request_), 0);
+  const Yaml hybrid = Yaml::Read(request_.out).At("hybrid");
+  EXPECT_EQ(hybrid.At("features").Items().size(), 10u);
+  const double trained = hybrid.At("tip_error_percent").At("train").At("mean").Number();
+
+  const auto mean_error = [&](const SolveRequest& request) {
+    EXPECT_EQ(SolveTdcr(request), 0);
+    const Table table = Table::Read(request.out);
+    double sum = 0;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      if ((row + 1) % 4 != 0) sum += table.Number(row, "error_9");
+    }
+    return 100 * sum / 12 / robot.length;
+  };
+  SolveRequest plain = request_;
+  plain.hybrid = "";
+  plain.out = folder_ / "plain.csv";
+  SolveRequest apply = plain;
+  apply.robot = request_.out;
+  apply.hybrid = "apply";
+  apply.out = folder_ / "applied.csv";
+  const double before = mean_error(plain), after = mean_error(apply);
+  EXPECT_LT(after, 0.25 * before);
+  EXPECT_NEAR(after, trained, 1e-6);
+}
+
+TEST_F(TdcrSolve, HybridTrainingLeavesConstantFeaturesOutAndRefusesTooFewResiduals) {
+  std::string cases = kHeader, measured = "case,x_9,y_9,z_9\n";
+  for (int i = 1; i <= 5; ++i) {
+    cases += fmt::format("c{},{},1,0,0.1,0,0\n", i, i);
+    measured += fmt::format("c{},{},0.01,0.1\n", i, 0.01 * i);
+  }
+  request_.input = Write("cases.csv", cases);
+  request_.measured = Write("measured.csv", measured);
+  request_.hybrid = "train";
+  request_.out = folder_ / "hybrid.yaml";
+  // tau_1, tau_1^2, tau_n, tau_n^2 and T1 change: 30 weights against 15 residuals.
+  EXPECT_THAT(Message(), HasSubstr("at least 30 residuals for 30 weights, found 15"));
+}
+
+TEST_F(TdcrSolve, DrawsAPicture) {
+  request_.input = Write("cases.csv", std::string(kHeader) + "a,3,0,0,0,0,0\n");
+  request_.plot = folder_ / "shape.svg";
+  EXPECT_EQ(SolveTdcr(request_), 0);
+  EXPECT_THAT(ReadFile(request_.plot), HasSubstr("</svg>"));
+}
+
+TEST(TdcrSynthetic, HybridHalvesTheErrorOfTheLevelSet) {
+  Robot nominal;
+  nominal.density = 6450;
+  nominal.disk_mass = 0.6e-3;
+  nominal.mu = 0.2;
+  const Experiment e = Synthesize(nominal, 2, 2022);
+  EXPECT_EQ(e.cases.size(), 30u);
+  const Calibration c = Calibrate(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"));
+  std::vector<Case> cases = e.cases;
+  for (Case& each : cases) each.loads.mu = c.robot.mu;
+  const Hybrid h = Train(c.robot, Match(cases, e.measured, "synthetic"), "synthetic");
+  EXPECT_THAT(h.features, testing::Not(testing::Contains("fx")));  // a constant tip force
+  EXPECT_LT(Statistics(h.tips.test)->mean, 0.6 * Statistics(c.tips.test)->mean);
+}
+
+}  // namespace
+}  // namespace continuum::tdcr

@@ -1,0 +1,308 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "error.h"
+#include "models/solver/solve.h"
+#include "models/twin_pivot/calibrate.h"
+#include "models/twin_pivot/cases.h"
+#include "sim/file.h"
+#include "sim/table.h"
+
+namespace continuum::twin_pivot {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const fs::path kFolder = CONTINUUM_SOURCE "/models/twin_pivot";
+
+class TwinPivotSolve : public testing::Test {
+ protected:
+  TwinPivotSolve() {
+    const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("twin_pivot_" + std::string(test->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    request_.robot = kFolder / "a.yaml";
+    request_.input = folder_ / "cases.csv";
+    request_.out = folder_ / "out.csv";
+  }
+  ~TwinPivotSolve() override { fs::remove_all(folder_); }
+
+  void Cases(const std::string& text) const { WriteFile(request_.input, text); }
+
+  /// The message of the input error, with nothing written.
+  std::string Refusal() const {
+    try {
+      SolveTwinPivot(request_);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.exit_code(), 2);
+      EXPECT_FALSE(fs::exists(request_.out));
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  std::string RobotRefusal(const std::string& from, const std::string& to) {
+    std::string text = ReadFile(kFolder / "a.yaml");
+    const auto at = text.find(from);
+    EXPECT_NE(at, text.npos) << from;
+    WriteFile(folder_ / "robot.yaml", text.replace(at, from.size(), to));
+    request_.robot = folder_ / "robot.yaml";
+    Cases("case,m1,m2,m3,m4\none,1,1,0.1,0.1\n");
+    return Refusal();
+  }
+
+  fs::path folder_;
+  SolveRequest request_;
+};
+
+TEST_F(TwinPivotSolve, EveryPublishedCaseConvergesUnderEveryConditionOnBothPrototypes) {
+  request_.input = kFolder / "cases.csv";
+  for (const char* robot : {"a.yaml", "b.yaml"}) {
+    for (const char* method : {"", "printed"}) {
+      request_.robot = kFolder / robot;
+      request_.method = method;
+      EXPECT_EQ(SolveTwinPivot(request_), 0);
+      const Table results = Table::Read(request_.out);
+      ASSERT_EQ(results.rows(), 210U);
+      for (std::size_t row = 0; row < results.rows(); ++row) {
+        EXPECT_EQ(results.Text(row, "status"), "ok");
+        EXPECT_LE(results.Number(row, "residual"), 1e-10);
+      }
+    }
+  }
+}
+
+TEST_F(TwinPivotSolve, MultiSectionTrajectoryRuns) {
+  request_.robot = kFolder / "c.yaml";
+  request_.input = kFolder / "trajectory.csv";
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  const Table results = Table::Read(request_.out);
+  EXPECT_TRUE(results.Has("beta_14"));
+  EXPECT_TRUE(results.Has("F_end_8"));
+  for (std::size_t row = 1; row < results.rows(); ++row) {
+    for (const char* axis : {"x", "y", "z"}) {
+      // 60 steps around a loop of some 300 mm: no jump from one to the next.
+      EXPECT_NEAR(results.Number(row, axis), results.Number(row - 1, axis), 0.015);
+    }
+  }
+}
+
+TEST_F(TwinPivotSolve, MassesAreTensionsOf981NewtonPerKilogramWhateverTheGravity) {
+  Cases("case,m1,m2,m3,m4,gx,gy,gz\none,1,0.5,0.2,0.1,1,2,3\n");
+  const Robot robot = Robot::Read(request_.robot);
+  const auto by_mass = ReadCases(request_.input, robot);
+  Cases("case,gz,gy,gx,F4,F3,F2,F1\none,3,2,1,0.981,1.962,4.905,9.81\n");
+  const auto by_force = ReadCases(request_.input, robot);
+  EXPECT_EQ(by_force[0].load.gravity, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(by_force[0].load.gravity, by_mass[0].load.gravity);
+  for (int j = 0; j < 4; ++j) {
+    EXPECT_DOUBLE_EQ(by_mass[0].load.tension[j], by_force[0].load.tension[j]);
+  }
+  EXPECT_EQ(by_mass[0].load.condition, Condition::kV);
+}
+
+TEST_F(TwinPivotSolve, ResultsKeepFullPrecisionInCsvAndJson) {
+  Cases("case,condition,F1,F2,F3,F4\n\"pull, up\",II,9,8,1,2\n");
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  const Table table = Table::Read(request_.out);
+  const std::vector<std::string> columns = {
+      "case",   "condition", "status",  "iterations", "residual", "micros", "x",
+      "y",      "z",         "beta_1",  "beta_2",     "beta_3",   "beta_4", "beta_5",
+      "beta_6", "F_end_1",   "F_end_2", "F_end_3",    "F_end_4"};
+  EXPECT_EQ(table.columns(), columns);
+  request_.out = folder_ / "out.json";
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  const auto json = nlohmann::json::parse(ReadFile(request_.out));
+  ASSERT_EQ(json.size(), 1U);
+  EXPECT_EQ(json[0]["case"], "pull, up");
+  const Robot robot = Robot::Read(request_.robot);
+  Load load;
+  load.condition = Condition::kII;
+  load.tension = {9, 8, 1, 2};
+  const Solution solution = Solve(robot, load);
+  EXPECT_EQ(json[0]["y"].get<double>(), solution.tip.y());
+  EXPECT_EQ(table.Number(0, "beta_6"), solution.beta[5]);
+  EXPECT_EQ(table.Number(0, "F_end_4"), solution.tension(5, 3));
+}
+
+TEST_F(TwinPivotSolve, FailedCaseAndThoseThatReferToItDoNotStopTheOthers) {
+  Cases("case,F1,F2,F3,F4,reference\nbad,1e9,0,0,0,\nafter,5,5,1,1,bad\ngood,5,5,1,1,\n");
+  EXPECT_EQ(SolveTwinPivot(request_), 1);
+  const Table table = Table::Read(request_.out);
+  EXPECT_EQ(table.Text(0, "status"), "no_convergence");
+  EXPECT_FALSE(table.Text(0, "residual").empty());
+  EXPECT_FALSE(table.Text(0, "iterations").empty());
+  EXPECT_TRUE(table.Text(0, "x").empty());
+  EXPECT_TRUE(table.Text(0, "F_end_1").empty());
+  EXPECT_EQ(table.Text(1, "status"), "no_convergence");
+  EXPECT_EQ(table.Text(2, "status"), "ok");
+}
+
+TEST_F(TwinPivotSolve, ReferenceIsTheSolutionOfAnEarlierRow) {
+  Cases("case,F1,F2,F3,F4,reference\nfar,14,14,8,8,\nback,11,11,8,8,far\ndirect,11,11,8,8,\n");
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  const Table table = Table::Read(request_.out);
+  EXPECT_GT(table.Number(1, "y"), table.Number(2, "y"));
+}
+
+TEST_F(TwinPivotSolve, BadCasesAreRefusedWithLineAndColumn) {
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"case,m1,m2,m3\none,1,1,1\n", "m4"},
+      {"case,m1,m2,m3,m4,F1\none,1,1,1,1,1\n", "cases.csv:1"},
+      {"m1,m2,m3,m4\n1,1,1,1\n", "case"},
+      {"case,m1,m2,m3,m4,tension\none,1,1,1,1,1\n", "column 'tension'"},
+      {"case,m1,m2,m3,m4\none,1,1,1,1\ntwo,1,1,x,1\n", "cases.csv:3, column 'm3'"},
+      {"case,m1,m2,m3,m4\none,1,,1,1\n", "cases.csv:2, column 'm2'"},
+      {"case,m1,m2,m3,m4\none,1,nan,1,1\n", "cases.csv:2, column 'm2'"},
+      {"case,m1,m2,m3,m4\none,1,-1,1,1\n", "cases.csv:2, column 'm2'"},
+      {"case,F1,F2,F3,F4\none,1,-1,1,1\n", "cases.csv:2, column 'F2'"},
+      {"case,m1,m2,m3,m4,payload\none,1,1,1,1,-0.1\n", "cases.csv:2, column 'payload'"},
+      {"case,m1,m2,m3,m4,fx\none,1,1,1,1,inf\n", "cases.csv:2, column 'fx'"},
+      {"case,m1,m2,m3,m4,condition\none,1,1,1,1,VI\n", "cases.csv:2, column 'condition'"},
+      {"case,m1,m2,m3,m4,reference\none,1,1,1,1,two\ntwo,1,1,1,1,\n",
+       "cases.csv:2, column 'reference'"},
+      {"case,m1,m2,m3,m4\none,1,1,1,1\none,1,1,1,1\n", "cases.csv:3, column 'case'"},
+      {"case,m1,m2,m3,m4\n", "cases.csv"}};
+  for (const auto& [text, place] : bad) {
+    Cases(text);
+    EXPECT_THAT(Refusal(), HasSubstr(place)) << text;
+  }
+}
+
+TEST_F(TwinPivotSolve, BadRobotsAreRefusedWithLineAndKey) {
+  const std::vector<std::array<std::string, 3>> bad = {
+      {"format: 1", "format: 2", "format"},
+      {"[6]", "[5]", "discs"},
+      {"[6]", "[]", "discs"},
+      {"[6]", "[6, 6]", "r"},
+      {"value: 6.1666667e-3", "value: 0", ": L"},
+      {"value: 60.6e9", "value: -1", ": E"},
+      {"value: 2, source", "value: 0, source", "rods"},
+      {"[5.0e-3, 5.0e-3, 5.0e-3, 5.0e-3]", "[5.0e-3, 5.0e-3, 5.0e-3, 0]", "[3]"},
+      {"-0.78539816", "left", "[0]"},
+      {"value: 1.4e-3", "value: -1.4e-3", "m_D"},
+      {"value: 0.14", "value: -0.14", "friction.c"},
+      {"value: 1.0e-6", "value: 0", "friction.eps"},
+      {"[0, -9.81, 0]", "[0, -9.81]", "gravity"},
+      {"m_D:", "m_disc:", "m_disc"},
+      {"value: 0.3,", "value: .nan,", "mu_const"}};
+  for (const auto& [from, to, key] : bad) {
+    const std::string message = RobotRefusal(from, to);
+    EXPECT_THAT(message, HasSubstr("robot.yaml:")) << to;
+    EXPECT_THAT(message, HasSubstr(key)) << to;
+  }
+}
+
+TEST_F(TwinPivotSolve, NegativeFrictionInUseNamesTheFile) {
+  EXPECT_THAT(RobotRefusal("value: 16.7", "value: -300"), HasSubstr("robot.yaml: friction"));
+}
+
+TEST_F(TwinPivotSolve, OptionsOfOtherModelsAreRefused) {
+  Cases("case,m1,m2,m3,m4\none,1,1,0.1,0.1\n");
+  const SolveRequest good = request_;
+  request_.method = "newton";
+  EXPECT_THAT(Refusal(), HasSubstr("virtual_work or printed"));
+  request_ = good;
+  request_.hybrid = "train";
+  EXPECT_THAT(Refusal(), HasSubstr("--hybrid"));
+  request_ = good;
+  request_.out = folder_ / "out.txt";
+  EXPECT_THAT(Refusal(), HasSubstr("--out"));
+  request_ = good;
+  request_.input.clear();
+  EXPECT_THAT(Refusal(), HasSubstr("--input"));
+}
+
+// ---- Calibration
+
+class TwinPivotCalibrate : public TwinPivotSolve {
+ protected:
+  TwinPivotCalibrate() {
+    request_.calibrate = true;
+    request_.out = folder_ / "fit.json";
+  }
+};
+
+// The paper's rig: five angles, four weights.
+std::string Rig(const Friction& friction, double noise) {
+  std::mt19937 generator(5);
+  std::normal_distribution<double> normal(0, noise);
+  std::string text = "m,F_SC,theta\n";
+  for (const double degrees : {1, 3, 5, 7, 9}) {
+    for (const double mass : {0.3035, 0.3535, 0.4035, 0.5035}) {
+      const double theta = degrees * M_PI / 180;
+      const double mu = friction.At(theta) + normal(generator);
+      const double sensor = 9.81 * mass * (1 + mu * std::sin(theta));
+      text += Decimal(mass) + "," + Decimal(sensor) + "," + Decimal(theta) + "\n";
+    }
+  }
+  return text;
+}
+
+TEST_F(TwinPivotCalibrate, FindsTheCoefficientsThatMadeTheData) {
+  Cases(Rig({16.7, -0.2, 0.14}, 0));
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  const auto fit = nlohmann::json::parse(ReadFile(request_.out));
+  // mu carries rounding of some 1e-16/sin(1 deg); a is its second difference over 0.14 rad.
+  EXPECT_NEAR(fit["a"].get<double>(), 16.7, 1e-10);
+  EXPECT_NEAR(fit["b"].get<double>(), -0.2, 1e-11);
+  EXPECT_NEAR(fit["c"].get<double>(), 0.14, 1e-12);
+  EXPECT_LT(fit["rms"].get<double>(), 1e-13);
+  EXPECT_EQ(fit["n"], 20);
+}
+
+TEST_F(TwinPivotCalibrate, StandardErrorsAreThoseOfTheNormalEquations) {
+  const std::vector<double> theta = {0.02, 0.05, 0.09, 0.12, 0.16};
+  const std::vector<double> mu = {0.15, 0.17, 0.29, 0.36, 0.58};
+  const FrictionFit fit = FitFriction(theta, mu);
+  Eigen::MatrixXd x(5, 3);
+  Eigen::VectorXd y(5);
+  for (int i = 0; i < 5; ++i) {
+    x.row(i) << theta[i] * theta[i], theta[i], 1;
+    y[i] = mu[i];
+  }
+  const Eigen::Matrix3d inverse = (x.transpose() * x).inverse();
+  const Eigen::Vector3d best = inverse * x.transpose() * y;
+  const double ssr = (y - x * best).squaredNorm();
+  // The normal matrix squares a condition number of 1e3.
+  EXPECT_NEAR(fit.value.a, best[0], 1e-8);
+  EXPECT_NEAR(fit.stderror.a, std::sqrt(inverse(0, 0) * ssr / 2), 1e-8);
+  EXPECT_NEAR(fit.stderror.b, std::sqrt(inverse(1, 1) * ssr / 2), 1e-9);
+  EXPECT_NEAR(fit.stderror.c, std::sqrt(inverse(2, 2) * ssr / 2), 1e-10);
+  EXPECT_NEAR(fit.rms, std::sqrt(ssr / 5), 1e-12);
+}
+
+TEST_F(TwinPivotCalibrate, NoisyCoefficientsAreWithinFourStandardErrors) {
+  Cases(Rig({16.7, 0, 0.14}, 0.02));
+  const FrictionFit fit = CalibrateFriction(request_.input);
+  EXPECT_NEAR(fit.value.a, 16.7, 4 * fit.stderror.a);
+  EXPECT_NEAR(fit.value.c, 0.14, 4 * fit.stderror.c);
+}
+
+TEST_F(TwinPivotCalibrate, BadDataAreRefused) {
+  const std::string head = "theta,m,F_SC\n";
+  const std::string row = "0.1,0.3,3.1\n";
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {head + row + row + "0.2,0.3,3.2\n" + "0.2,0.3,3.2\n", "three different angles"},
+      {head + row + "0.2,0.3,3.2\n0.3,0.3,3.3\n", "four rows"},
+      {head + row + "0,0.3,3.2\n", "cases.csv:3, column 'theta'"},
+      {head + row + "-0.1,0.3,3.2\n", "cases.csv:3, column 'theta'"},
+      {head + "0.1,0,3.1\n", "column 'm'"},
+      {head + "0.1,0.3,-1\n", "column 'F_SC'"},
+      {"theta,m\n0.1,0.3\n", "F_SC"},
+      {"theta,m,F_SC,n\n0.1,0.3,3,1\n", "column 'n'"}};
+  for (const auto& [text, place] : bad) {
+    Cases(text);
+    EXPECT_THAT(Refusal(), HasSubstr(place)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace continuum::twin_pivot
