@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include <Eigen/Dense>
+
 #include "error.h"
 
 namespace continuum {
@@ -38,48 +40,90 @@ bool Carries(const mjModel& m, int ancestor, int body) {
   return body == ancestor;
 }
 
-// dL_k/dq for one degree of freedom at rest; ball and free joints by their rotation axes.
-double Lever(const mjModel& m, const Rest& rest, int dof, int a, int b) {
-  const int j = m.dof_jntid[dof], body = m.jnt_bodyid[j];
-  const bool moves_a = Carries(m, body, m.site_bodyid[a]);
-  const bool moves_b = Carries(m, body, m.site_bodyid[b]);
-  if (moves_a == moves_b) return 0;
-  double pa[3], pb[3], u[3], axis[3], anchor[3], arm[3], velocity[3];
-  rest.Site(m, a, pa), rest.Site(m, b, pb);
-  mju_sub3(u, pb, pa);
-  mju_normalize3(u);
-  const int component = dof - m.jnt_dofadr[j];
-  const bool single = m.jnt_type[j] == mjJNT_HINGE || m.jnt_type[j] == mjJNT_SLIDE;
+// Rotation and velocity at a point of one degree of freedom at rest.
+struct Motion {
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero(), move = Eigen::Vector3d::Zero();
+};
+Motion MotionOf(const mjModel& m, const Rest& rest, int dof, const Eigen::Vector3d& point) {
+  const int j = m.dof_jntid[dof], body = m.jnt_bodyid[j], component = dof - m.jnt_dofadr[j];
+  const int type = m.jnt_type[j];
   double local[3] = {0, 0, 0};
-  if (single) {
+  if (type == mjJNT_HINGE || type == mjJNT_SLIDE) {
     mju_copy3(local, m.jnt_axis + 3 * j);
   } else {
     local[component % 3] = 1;
   }
-  mju_rotVecQuat(axis, local, rest.quat[body].data());
-  const bool slides =
-      m.jnt_type[j] == mjJNT_SLIDE || (m.jnt_type[j] == mjJNT_FREE && component < 3);
-  rest.At(body, m.jnt_pos + 3 * j, anchor);
-  mju_sub3(arm, moves_b ? pb : pa, anchor);
-  if (slides) {
-    mju_copy3(velocity, axis);
+  Eigen::Vector3d axis, anchor;
+  mju_rotVecQuat(axis.data(), local, rest.quat[body].data());
+  rest.At(body, m.jnt_pos + 3 * j, anchor.data());
+  Motion motion;
+  if (type == mjJNT_SLIDE || (type == mjJNT_FREE && component < 3)) {
+    motion.move = axis;
   } else {
-    mju_cross(velocity, axis, arm);
+    motion.turn = axis;
+    motion.move = axis.cross(point - anchor);
   }
-  return (moves_b ? 1 : -1) * mju_dot3(u, velocity);
+  return motion;
 }
 
-double Compliance(const mjModel& m, const Cable& cable) {
-  const Rest rest(m);
-  double total = 0;
-  for (int dof = 0; dof < m.nv; ++dof) {
-    double distal = 0;
-    for (int k = cable.segments() - 1; k >= 1; --k) {
-      distal += Lever(m, rest, dof, cable.sites[k], cable.sites[k + 1]);
-      total += distal * distal * m.dof_invweight0[dof];
+// The inertia matrix at rest.
+Eigen::MatrixXd InertiaAtRest(const mjModel& m, const Rest& rest) {
+  const auto nv = static_cast<int>(m.nv);
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(nv, nv);
+  for (int dof = 0; dof < nv; ++dof) M(dof, dof) = m.dof_armature[dof];
+  for (int b = 1; b < m.nbody; ++b) {
+    Eigen::Vector3d com;
+    rest.At(b, m.body_ipos + 3 * b, com.data());
+    double quat[4], mat[9];
+    mju_mulQuat(quat, rest.quat[b].data(), m.body_iquat + 4 * b);
+    mju_quat2Mat(mat, quat);
+    const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(mat);
+    const Eigen::Matrix3d I =
+        R * Eigen::Map<const Eigen::Vector3d>(m.body_inertia + 3 * b).asDiagonal() * R.transpose();
+    std::vector<int> dofs;
+    std::vector<Motion> motions;
+    for (int a = b; a > 0; a = m.body_parentid[a]) {
+      for (int dof = m.body_dofadr[a]; dof >= 0 && dof < m.body_dofadr[a] + m.body_dofnum[a];
+           ++dof) {
+        dofs.push_back(dof);
+        motions.push_back(MotionOf(m, rest, dof, com));
+      }
+    }
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
+      for (std::size_t k = 0; k < dofs.size(); ++k) {
+        M(dofs[i], dofs[k]) += m.body_mass[b] * motions[i].move.dot(motions[k].move) +
+                               motions[i].turn.dot(I * motions[k].turn);
+      }
     }
   }
-  return total;
+  return M;
+}
+
+// Largest eigenvalue of D M⁻¹ Dᵀ, D_i the gradient of the cable length distal of contact i.
+double Compliance(const mjModel& m, const Cable& cable) {
+  const int contacts = cable.segments() - 1, nv = static_cast<int>(m.nv);
+  if (contacts < 1 || nv == 0) return 0;
+  const Rest rest(m);
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(contacts, nv);
+  for (int k = cable.segments() - 1; k >= 1; --k) {
+    const int a = cable.sites[k], b = cable.sites[k + 1];
+    if (k < contacts) D.row(k - 1) = D.row(k);
+    Eigen::Vector3d pa, pb;
+    rest.Site(m, a, pa.data()), rest.Site(m, b, pb.data());
+    const Eigen::Vector3d u = (pb - pa).normalized();
+    for (int dof = 0; dof < nv; ++dof) {
+      const int body = m.dof_bodyid[dof];
+      const bool moves_a = Carries(m, body, m.site_bodyid[a]),
+                 moves_b = Carries(m, body, m.site_bodyid[b]);
+      if (moves_a == moves_b) continue;
+      D(k - 1, dof) += (moves_b ? 1 : -1) * u.dot(MotionOf(m, rest, dof, moves_b ? pb : pa).move);
+    }
+  }
+  const Eigen::MatrixXd M = InertiaAtRest(m, rest);
+  const Eigen::MatrixXd A = D * M.ldlt().solve(D.transpose());
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .maxCoeff();
 }
 
 }  // namespace

@@ -14,9 +14,9 @@ struct Cable {
   int tendon;
   std::vector<int> sites;
   std::vector<int> actuators;
-  /// Compliance of all contacts together at qpos0 [1/kg]: sum over contacts i and degrees of
-  /// freedom of (dD_i/dq)² / inertia, D_i the cable length distal of contact i. Bounds the stick
-  /// stiffness that an explicit step can carry.
+  /// Largest eigenvalue of D M⁻¹ Dᵀ at qpos0 [1/kg], D_i = d(cable length distal of contact i)/dq:
+  /// how strongly friction forces at the contacts accelerate the cable over them. It bounds the
+  /// stick stiffness that an explicit step can carry.
   double compliance;
 
   int segments() const { return static_cast<int>(sites.size()) - 1; }

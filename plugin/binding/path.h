@@ -18,13 +18,13 @@ namespace continuum {
 /// (1) is a damper that reaches the band at v_c, (2) a spring behind it, so that a load is held
 /// without creep. g rises to ±2 between 10 and 20 mm/s: beyond that a contact slides fully whatever
 /// its memory. v_c is 5 mm/s, more where the step h could not carry that slope:
-/// v_c = max(5 mm/s, h · compliance · T · band). With h → 0 the contact becomes rigid.
+/// v_c = max(5 mm/s, 1.5 h · compliance · T · band). With h → 0 the contact becomes rigid.
 struct Grip {
   static constexpr double kSlow = 5e-3, kRampBegin = 0.010, kRampEnd = 0.020, kSpring = 0.2;
 
   /// The argument of (1) and (2): v/v_c + g(v).
   static double Travel(double v, double band, double tension, double compliance, double h) {
-    const double v_c = std::max(kSlow, h * compliance * tension * band);
+    const double v_c = std::max(kSlow, 1.5 * h * compliance * tension * band);
     const double x = std::clamp((std::abs(v) - kRampBegin) / (kRampEnd - kRampBegin), 0.0, 1.0);
     return v / v_c + std::copysign(2 * x * x * (3 - 2 * x), v);
   }

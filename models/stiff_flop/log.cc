@@ -1,0 +1,174 @@
+#include "models/stiff_flop/log.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "error.h"
+#include "models/stiff_flop/forward.h"
+#include "sim/mat.h"
+
+namespace continuum::stiff_flop {
+namespace {
+
+constexpr double kStart = 7;          // s
+constexpr double kEndOfTrain = 37.8;  // s
+constexpr double kBar = 1e5;
+constexpr double kLongestOffset = 60e-3;
+
+const std::vector<double>& Column(const Columns& table, int index) {
+  return table.values[static_cast<std::size_t>(index)];
+}
+
+std::vector<Eigen::Vector3d> Points(const std::vector<Solution>& shapes, double along,
+                                    std::size_t rows) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < rows; ++i) {
+    points.push_back(shapes[i].tip + along * shapes[i].tangent);
+  }
+  return points;
+}
+
+Registration Align(const std::vector<Solution>& shapes, const Log& log, std::size_t rows,
+                   double along) {
+  const std::vector<Eigen::Vector3d> points = Points(shapes, along, rows);
+  const auto columns = static_cast<Eigen::Index>(rows);
+  const Eigen::Map<const Eigen::Matrix3Xd> from(points.data()->data(), 3, columns);
+  const Eigen::Map<const Eigen::Matrix3Xd> to(log.marker.data()->data(), 3, columns);
+  const Eigen::Matrix4d rigid = Eigen::umeyama(from, to, false);
+  return {rigid.topLeftCorner<3, 3>(), rigid.topRightCorner<3, 1>(), along};
+}
+
+/// Marker residuals [mm] after the best registration, as a function of (E/E_0, gamma).
+struct Residuals {
+  const Robot& robot;
+  const Method& method;
+  const Log& log;
+  std::size_t rows;
+
+  bool operator()(const double* x, double* f) const {
+    Robot changed = robot;
+    changed.module.E *= x[0];
+    changed.module.gamma = x[1];
+    std::vector<Solution> shapes;
+    try {
+      shapes = Replay(changed, method, log);
+    } catch (const Error&) {
+      return false;
+    }
+    const Registration registration = Registration::Fit(shapes, log, rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+      Eigen::Vector3d::Map(f + 3 * i) = 1e3 * (registration.Marker(shapes[i]) - log.marker[i]);
+    }
+    return true;
+  }
+
+  template <class X, class F, class J>
+  bool Jacobian(const X& x, F& f, J& jacobian) const {
+    return solver::Differences(*this, x, 1e-4, f, jacobian);
+  }
+};
+
+}  // namespace
+
+Log Log::Read(const std::filesystem::path& file, int stride) {
+  const Columns table = ReadMat(file, "NoLoad");
+  if (table.values.size() != 18) {
+    throw Error::Input(file.string(), "18 columns", std::to_string(table.values.size()));
+  }
+  const std::vector<double>& time = Column(table, 0);
+  const auto start = std::lower_bound(time.begin(), time.end(), kStart) - time.begin();
+  constexpr std::array<int, 3> kOrder = {1, 3, 2};
+  Eigen::Vector3d rest = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    for (int row = 0; row < start; ++row) {
+      rest[i] += Column(table, kOrder[i])[row] / static_cast<double>(start);
+    }
+  }
+  Log log;
+  for (auto row = static_cast<std::size_t>(start); row < time.size(); row += stride) {
+    Eigen::Vector3d pressure, marker;
+    for (int i = 0; i < 3; ++i) {
+      pressure[i] = kBar * (Column(table, kOrder[i])[row] - rest[i]);
+      marker[i] = 1e-3 * Column(table, 11 + i)[row];
+    }
+    log.time.push_back(time[row]);
+    log.pressure.push_back(pressure);
+    log.marker.push_back(marker);
+  }
+  return log;
+}
+
+std::size_t TrainRows(const Log& log) {
+  return std::lower_bound(log.time.begin(), log.time.end(), kEndOfTrain) - log.time.begin();
+}
+
+Registration Registration::Fit(const std::vector<Solution>& shapes, const Log& log,
+                               std::size_t rows) {
+  const auto cost = [&](double along) {
+    return ErrorOf(Align(shapes, log, rows, along), shapes, log, 0, rows).rms;
+  };
+  double low = 0, high = kLongestOffset;
+  while (high - low > 1e-6) {
+    const double width = (high - low) / std::numbers::phi;
+    const double left = high - width;
+    const double right = low + width;
+    if (cost(left) < cost(right)) {
+      high = right;
+    } else {
+      low = left;
+    }
+  }
+  return Align(shapes, log, rows, 0.5 * (low + high));
+}
+
+TipError ErrorOf(const Registration& registration, const std::vector<Solution>& shapes,
+                 const Log& log, std::size_t first, std::size_t last) {
+  TipError error;
+  const auto count = static_cast<double>(last - first);
+  for (std::size_t i = first; i < last; ++i) {
+    const double distance = (registration.Marker(shapes[i]) - log.marker[i]).norm();
+    error.mean += distance / count;
+    error.rms += distance * distance / count;
+  }
+  error.rms = std::sqrt(error.rms);
+  return error;
+}
+
+std::vector<Solution> Replay(const Robot& robot, const Method& method, const Log& log) {
+  std::vector<Solution> shapes;
+  for (std::size_t i = 0; i < log.time.size(); ++i) {
+    const Case row{"", log.pressure[i], {Eigen::Vector3d::Zero(), robot.gravity}};
+    shapes.push_back(SolveForward(robot.module, method, row, false));
+    if (shapes.back().status != Status::kOk) {
+      throw Error::Job("at " + std::to_string(log.time[i]) + " s: " + Name(shapes.back().status) +
+                       ", " + shapes.back().outcome.why);
+    }
+  }
+  return shapes;
+}
+
+solver::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
+  const std::size_t rows = TrainRows(log);
+  Log train = log;
+  train.time.resize(rows);
+  train.pressure.resize(rows);
+  train.marker.resize(rows);
+  Eigen::Vector2d x(1, robot.module.gamma);
+  solver::Bounds<2> bounds;
+  bounds.lower = {0.2, std::numbers::pi / 4};
+  bounds.upper = {5, std::numbers::pi / 2};
+  solver::Options options;
+  options.max_iterations = 12;
+  options.gradient = 1e-4;
+  options.step = 1e-5;
+  const solver::Outcome outcome = solver::LevenbergMarquardt<Eigen::VectorXd>(
+      Residuals{robot, method, train, rows}, x, static_cast<Eigen::Index>(3 * rows), options,
+      bounds);
+  robot.module.E *= x[0];
+  robot.module.gamma = x[1];
+  return outcome;
+}
+
+}  // namespace continuum::stiff_flop
