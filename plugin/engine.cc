@@ -28,6 +28,7 @@ struct Instance {
   std::unique_ptr<Bound> bound;
   std::vector<double> force;
   bool changed = false;             ///< force, since the last sum
+  std::vector<int> sensors;         ///< of this instance
   std::vector<int> givers;          ///< in the last instance: all that give forces, itself included
   std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
 };
@@ -78,10 +79,11 @@ std::vector<int> Givers(const mjModel& m, const mjData& d, int last, const Insta
   return givers;
 }
 
-void CheckSensors(const mjModel& m, int i, const Instance& self, const Config& config) {
+void FindSensors(const mjModel& m, int i, Instance& self, const Config& config) {
   for (int s = 0; s < m.nsensor; ++s) {
     if (m.sensor_type[s] != mjSENS_PLUGIN || m.sensor_plugin[s] != i) continue;
     const int site = m.sensor_objid[s];
+    self.sensors.push_back(s);
     if (m.sensor_objtype[s] == mjOBJ_SITE && self.bound->Knows(site)) continue;
     throw Error::Input(
         config.Who() + ": its sensor " + std::to_string(s),
@@ -104,7 +106,7 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     if (last) self->givers = Givers(m, d, i, *self);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
     self->sum = self->before;
-    CheckSensors(m, i, *self, config);
+    FindSensors(m, i, *self, config);
     WarnOfSilence(m, *self, config);
     d.plugin_data[i] = reinterpret_cast<uintptr_t>(self.release());
     return 0;
@@ -148,21 +150,16 @@ void Total(const mjModel& m, mjData& d, Instance& last, Stage stage) {
   }
 }
 
-void Sense(const mjModel& m, mjData& d, int i) {
-  for (int s = 0; s < m.nsensor; ++s) {
-    if (m.sensor_type[s] == mjSENS_PLUGIN && m.sensor_plugin[s] == i) {
-      d.sensordata[m.sensor_adr[s]] = Get(d, i)->bound->Sense(m, d, m.sensor_objid[s]);
-    }
-  }
-}
-
 void Compute(const mjModel& m, mjData& d, int i, int capability) {
-  if (capability == mjPLUGIN_SENSOR) return Sense(m, d, i);
+  if (capability == mjPLUGIN_SENSOR) return;  // written below, as soon as it is known
   const Stage stage = capability == mjPLUGIN_PASSIVE ? Stage::kPassive : Stage::kActuator;
   Instance& self = *Get(d, i);
   Follow(m, self, i);
   const double* const z = d.plugin_state + m.plugin_stateadr[i];
   self.changed |= self.bound->Evaluate(m, d, z, stage, self.force);
+  for (const int s : self.sensors) {
+    d.sensordata[m.sensor_adr[s]] = self.bound->Sense(m, d, m.sensor_objid[s]);
+  }
   if (!self.givers.empty()) Total(m, d, self, stage);
 }
 
@@ -174,7 +171,7 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.bound->Set(a.bound->parameters());
   b.bound->CopyFrom(*a.bound);
   b.force = a.force, b.changed = a.changed;
-  b.givers = a.givers, b.before = a.before, b.sum = a.sum;
+  b.sensors = a.sensors, b.givers = a.givers, b.before = a.before, b.sum = a.sum;
 }
 
 template <class E>
@@ -275,7 +272,9 @@ void Register() {
   };
   if constexpr (PathLaw<E>) {
     plugin.capabilityflags |= mjPLUGIN_SENSOR;
-    plugin.needstage = mjSTAGE_ACC;
+    // Sensors are written with the forces: a sensor of the acceleration stage would make MuJoCo
+    // compute the forces between all bodies in every step.
+    plugin.needstage = mjSTAGE_POS;
     plugin.nsensordata = +[](const mjModel*, int, int) noexcept { return 1; };
     plugin.visualize = +[](const mjModel* m, mjData* d, const mjvOption*, mjvScene* scene,
                            int i) noexcept { Get(*d, i)->bound->Visualize(*m, *d, *scene); };

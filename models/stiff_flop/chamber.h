@@ -18,10 +18,10 @@ namespace continuum::stiff_flop {
 /// A point at radius r and angle psi (0 toward the centre of bending) moves to radius x r, its
 /// fibre is stretched by y. With lambda, kappa of the tube's own axis:
 ///
-///   fixed       x = 1                                                  y = lambda            (16)
-///   elongation  x² sin²γ = 1 - lambda² cos²γ                           y = lambda            (12)
-///   constant    x² + c² (y² - 1) = 1, c = cot γ                        y = lambda (1 - κ r x cos
-///   ψ) (29) exact       as constant, c = (1 + 2 cos²ψ) cot γ_e, cos γ_e = lambda cos γ (25-28)
+///   fixed       x = 1, y = lambda                                                     (16)
+///   elongation  x² sin²γ = 1 - lambda² cos²γ, y = lambda                              (12)
+///   constant    x² + c² (y² - 1) = 1, y = lambda (1 - kappa r x cos ψ), c = cot γ     (29)
+///   exact       as constant, but c = (1 + 2 cos²ψ) cot γ_e, cos γ_e = lambda cos γ    (25-28)
 ///
 /// (1) radius  the root of the quadratic in x that tends to 1 as c -> 0
 /// (2) wall    I_1 = x² + y² + 1/(x y)², incompressible

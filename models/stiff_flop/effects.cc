@@ -176,7 +176,7 @@ int Main(const std::filesystem::path& file) {
 int main(int argc, char** argv) {
   try {
     if (argc == 2) return continuum::stiff_flop::Main(argv[1]);
-    fmt::print(stderr, "usage: stiff_flop_effects ROBOT.yaml\n");
+    fmt::print(stderr, "usage: continuum_stiff_flop_effects ROBOT.yaml\n");
     return 2;
   } catch (const continuum::Error& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -100,102 +100,99 @@ class Balance {
     }
     return outcome;
   }
-  outcome = After(outcome, Shoot(2 * steps_));
-} return outcome;
-}
 
-/// Why there is no answer, from the last point of the path that had one.
-Status Reason() const {
-  if (last_.domain < kSpent && last_.domain < last_.stiffness) return Status::kOutOfDomain;
-  if (last_.stiffness < kSpent || last_determinant_ < kSpent) return Status::kNoEquilibrium;
-  return Status::kNotConverged;
-}
+  /// Why there is no answer, from the last point of the path that had one.
+  Status Reason() const {
+    if (last_.domain < kSpent && last_.domain < last_.stiffness) return Status::kOutOfDomain;
+    if (last_.stiffness < kSpent || last_determinant_ < kSpent) return Status::kNoEquilibrium;
+    return Status::kNotConverged;
+  }
 
-private:
-// Near the end of a path of smallest step 1e-5 the stiffness has fallen to about sqrt(1e-5).
-static constexpr double kSpent = 0.05;
+ private:
+  // Near the end of a path of smallest step 1e-5 the stiffness has fallen to about sqrt(1e-5).
+  static constexpr double kSpent = 0.05;
 
-// Moment of all loads about the base of the unbent module, per unit.
-Vector3d Straight() const {
-  const Vector3d y = Vector3d::UnitY();
-  const Vector3d weight =
-      (0.5 * module_.m * module_.l + module_.m_fs * (module_.l + 0.5 * module_.l_fs)) *
-      row_.load.gravity;
-  const Vector3d tip = (module_.l + module_.l_fs) * row_.load.force;
-  return y.cross(weight + tip) / Rod(module_, method_, row_, 1, 1).unit();
-}
+  // Moment of all loads about the base of the unbent module, per unit.
+  Vector3d Straight() const {
+    const Vector3d y = Vector3d::UnitY();
+    const Vector3d weight =
+        (0.5 * module_.m * module_.l + module_.m_fs * (module_.l + 0.5 * module_.l_fs)) *
+        row_.load.gravity;
+    const Vector3d tip = (module_.l + module_.l_fs) * row_.load.force;
+    return y.cross(weight + tip) / Rod(module_, method_, row_, 1, 1).unit();
+  }
 
-static solver::Outcome After(const solver::Outcome& before, solver::Outcome outcome) {
-  outcome.iterations += before.iterations;
-  return outcome;
-}
+  static solver::Outcome After(const solver::Outcome& before, solver::Outcome outcome) {
+    outcome.iterations += before.iterations;
+    return outcome;
+  }
 
-solver::Outcome Shoot(int steps) {
-  steps_ = steps;
-  Rod rod(module_, method_, row_, 1, steps);
-  const solver::Outcome outcome = solver::Newton(Shooting{&rod}, moment_);
-  stable_ =
-      outcome.ok() && tip_.Find(rod, moment_) && rod.reserve().stiffness > 0 && rod.reserve().plain;
-  trusted_ = stable_ && tip_.determinant > 0;
-  base_ = rod.base();
-  return outcome;
-}
+  solver::Outcome Shoot(int steps) {
+    steps_ = steps;
+    Rod rod(module_, method_, row_, 1, steps);
+    const solver::Outcome outcome = solver::Newton(Shooting{&rod}, moment_);
+    stable_ = outcome.ok() && tip_.Find(rod, moment_) && rod.reserve().stiffness > 0 &&
+              rod.reserve().plain;
+    trusted_ = stable_ && tip_.determinant > 0;
+    base_ = rod.base();
+    return outcome;
+  }
 
-// Along the rising load. Past a bifurcation there may be no path to follow: a direct answer with
-// stable sections stays one.
-solver::Outcome Recover(const solver::Outcome& direct) {
-  const Vector3d moment = moment_;
-  const solver::Outcome along = After(direct, Climb());
-  if (along.ok()) return After(along, Shoot(kFirstSteps));
-  if (!stable_) return along;
-  moment_ = moment;
-  return direct;
-}
+  // Along the rising load. Past a bifurcation there may be no path to follow: a direct answer with
+  // stable sections stays one.
+  solver::Outcome Recover(const solver::Outcome& direct) {
+    const Vector3d moment = moment_;
+    const solver::Outcome along = After(direct, Climb());
+    if (along.ok()) return After(along, Shoot(kFirstSteps));
+    if (!stable_) return along;
+    moment_ = moment;
+    return direct;
+  }
 
-solver::Outcome Climb() {
-  steps_ = 2 * kFirstSteps;
-  moment_.setZero();
-  std::optional<Rod> rod;
-  Axis<double> base{1, 0, 0};
-  const auto at = [&](double fraction) {
-    rod.emplace(module_, method_, row_, fraction, steps_);
-    rod->StartFrom(base);
-    return Shooting{&*rod};
-  };
-  const auto on_branch = [&](const Vector3d& moment) {
-    Tip tip;
-    if (!tip.Find(*rod, moment) || rod->reserve().stiffness <= 0) return false;
-    if (IsJump(module_, base, rod->base())) return false;
-    base = rod->base();
-    last_ = rod->reserve();
-    last_determinant_ = tip.determinant;
-    return true;
-  };
-  return solver::Continue(at, moment_, {}, {}, on_branch);
-}
+  solver::Outcome Climb() {
+    steps_ = 2 * kFirstSteps;
+    moment_.setZero();
+    std::optional<Rod> rod;
+    Axis<double> base{1, 0, 0};
+    const auto at = [&](double fraction) {
+      rod.emplace(module_, method_, row_, fraction, steps_);
+      rod->StartFrom(base);
+      return Shooting{&*rod};
+    };
+    const auto on_branch = [&](const Vector3d& moment) {
+      Tip tip;
+      if (!tip.Find(*rod, moment) || rod->reserve().stiffness <= 0) return false;
+      if (IsJump(module_, base, rod->base())) return false;
+      base = rod->base();
+      last_ = rod->reserve();
+      last_determinant_ = tip.determinant;
+      return true;
+    };
+    return solver::Continue(at, moment_, {}, {}, on_branch);
+  }
 
-// How far tip (per l) and moment (per unit) move when every step is halved.
-double ChangeOfHalvedSteps() {
-  Rod finer(module_, method_, row_, 1, 2 * steps_);
-  finer.StartFrom(base_);
-  Rod::State<double> fine;
-  if (!finer.Integrate(moment_, fine)) return std::numeric_limits<double>::infinity();
-  double moved = 0;
-  for (int i = 0; i < 3; ++i) moved = std::hypot(moved, fine[i] - tip_.state[i].a);
-  return std::max(moved / module_.l, finer.Mismatch(fine).norm());
-}
+  // How far tip (per l) and moment (per unit) move when every step is halved.
+  double ChangeOfHalvedSteps() {
+    Rod finer(module_, method_, row_, 1, 2 * steps_);
+    finer.StartFrom(base_);
+    Rod::State<double> fine;
+    if (!finer.Integrate(moment_, fine)) return std::numeric_limits<double>::infinity();
+    double moved = 0;
+    for (int i = 0; i < 3; ++i) moved = std::hypot(moved, fine[i] - tip_.state[i].a);
+    return std::max(moved / module_.l, finer.Mismatch(fine).norm());
+  }
 
-const Module& module_;
-const Method& method_;
-const Case& row_;
-Vector3d moment_ = Vector3d::Zero();
-int steps_ = kFirstSteps;
-Tip tip_;
-Axis<double> base_ = {1, 0, 0};
-bool stable_ = false;   // every section
-bool trusted_ = false;  // and the rod as a whole
-Reserve last_ = {};
-double last_determinant_ = 1;
+  const Module& module_;
+  const Method& method_;
+  const Case& row_;
+  Vector3d moment_ = Vector3d::Zero();
+  int steps_ = kFirstSteps;
+  Tip tip_;
+  Axis<double> base_ = {1, 0, 0};
+  bool stable_ = false;   // every section
+  bool trusted_ = false;  // and the rod as a whole
+  Reserve last_ = {};
+  double last_determinant_ = 1;
 };
 
 void Read(const Balance& balance, Solution& solution) {

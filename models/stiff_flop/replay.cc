@@ -58,7 +58,7 @@ int Main(const std::filesystem::path& file, const std::filesystem::path& data) {
 int main(int argc, char** argv) {
   try {
     if (argc == 3) return continuum::stiff_flop::Main(argv[1], argv[2]);
-    fmt::print(stderr, "usage: stiff_flop_replay ROBOT.yaml NoLoad.mat\n");
+    fmt::print(stderr, "usage: continuum_stiff_flop_replay ROBOT.yaml NoLoad.mat\n");
     return 2;
   } catch (const continuum::Error& error) {
     fmt::print(stderr, "{}\n", error.what());

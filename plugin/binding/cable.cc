@@ -12,6 +12,22 @@
 namespace continuum {
 namespace {
 
+// Three numbers, inlined: MuJoCo's own vector functions are calls into another library.
+struct Vector {
+  double x = 0, y = 0, z = 0;
+  Vector() = default;
+  Vector(double a, double b, double c) : x(a), y(b), z(c) {}
+  explicit Vector(const double* p) : x(p[0]), y(p[1]), z(p[2]) {}
+  void Store(double* p) const { p[0] = x, p[1] = y, p[2] = z; }
+  Vector operator+(const Vector& o) const { return {x + o.x, y + o.y, z + o.z}; }
+  Vector operator-(const Vector& o) const { return {x - o.x, y - o.y, z - o.z}; }
+  Vector operator*(double f) const { return {f * x, f * y, f * z}; }
+};
+double Dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vector Cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 // Places of all bodies at qpos0, where no joint is displaced.
 struct Rest {
   std::vector<std::array<double, 3>> pos;
@@ -166,29 +182,27 @@ double BaseTension(const mjModel& m, const mjData& d, const Cable& cable) {
 
 void CableGeometry::Update(const mjModel& m, const mjData& d, const Cable& cable) {
   const int n = cable.segments();
-  direction.resize(3 * n), theta.resize(n), slip.resize(n);
-  double last[3];
-  const auto velocity = [&](int site, double* v) {
-    const int b = m.site_bodyid[site];
-    double arm[3];
-    mju_sub3(arm, d.site_xpos + 3 * site, d.subtree_com + 3 * m.body_rootid[b]);
-    mju_cross(v, d.cvel + 6 * b, arm);
-    mju_addTo3(v, d.cvel + 6 * b + 3);
-  };
-  velocity(cable.sites[0], last);
-  for (int k = 0; k < n; ++k) {
-    double* const u = direction.data() + 3 * k;
-    mju_sub3(u, d.site_xpos + 3 * cable.sites[k + 1], d.site_xpos + 3 * cable.sites[k]);
-    mju_normalize3(u);
-    double next[3], relative[3];
-    velocity(cable.sites[k + 1], next);
-    mju_sub3(relative, next, last);
-    slip[k] = -mju_dot3(u, relative);  // rate of this segment; summed below
-    mju_copy3(last, next);
-    if (k == 0) continue;
-    double cross[3];
-    mju_cross(cross, u - 3, u);
-    theta[k] = std::atan2(mju_norm3(cross), mju_dot3(u - 3, u));
+  direction.resize(3 * n), theta.resize(n), slip.resize(n), arm.resize(3 * (n + 1));
+  Vector last, point, u, before;
+  for (int k = 0; k <= n; ++k) {
+    const int site = cable.sites[k], body = m.site_bodyid[site];
+    const Vector p(d.site_xpos + 3 * site);
+    const Vector r = p - Vector(d.subtree_com + 3 * m.body_rootid[body]);
+    const Vector velocity = Vector(d.cvel + 6 * body + 3) + Cross(Vector(d.cvel + 6 * body), r);
+    r.Store(arm.data() + 3 * k);
+    if (k > 0) {
+      const Vector span = p - point;
+      const double length = std::sqrt(Dot(span, span));
+      u = length > mjMINVAL ? span * (1 / length) : Vector{1, 0, 0};
+      u.Store(direction.data() + 3 * (k - 1));
+      slip[k - 1] = -Dot(u, velocity - last);  // rate of this segment; summed below
+      if (k > 1) {
+        const Vector sine = Cross(before, u);
+        theta[k - 1] = std::atan2(std::sqrt(Dot(sine, sine)), Dot(before, u));
+      }
+      before = u;
+    }
+    point = p, last = velocity;
   }
   for (int k = n - 2; k >= 0; --k) slip[k] += slip[k + 1];
 }
@@ -203,16 +217,19 @@ BodyWrenches::BodyWrenches(const mjModel& m, std::span<const Cable> cables) : wr
   bodies_.assign(bodies.begin(), bodies.end());
 }
 
-void BodyWrenches::Pull(const mjModel& m, const mjData& d, int a, int b, const double* u,
-                        double tension) {
-  for (const auto& [site, sign] : {std::pair{a, 1.0}, std::pair{b, -1.0}}) {
-    const int body = m.site_bodyid[site];
-    double arm[3], force[3], torque[3];
-    mju_sub3(arm, d.site_xpos + 3 * site, d.subtree_com + 3 * m.body_rootid[body]);
-    mju_scl3(force, u, sign * tension);
-    mju_cross(torque, arm, force);
-    mju_addTo3(wrench_.data() + 6 * body, torque);
-    mju_addTo3(wrench_.data() + 6 * body + 3, force);
+void BodyWrenches::Add(const mjModel& m, const Cable& cable, const CableGeometry& at,
+                       const double* tension) {
+  const int n = cable.segments();
+  Vector behind;  // what the segment before a site does to it
+  for (int k = 0; k <= n; ++k) {
+    const double beyond = k < n ? tension[k] - tension[0] : 0;
+    const Vector ahead = k < n ? Vector(at.direction.data() + 3 * k) * beyond : Vector{};
+    const Vector force = ahead - behind;
+    const Vector torque = Cross(Vector(at.arm.data() + 3 * k), force);
+    double* const w = wrench_.data() + 6 * m.site_bodyid[cable.sites[k]];
+    w[0] += torque.x, w[1] += torque.y, w[2] += torque.z;
+    w[3] += force.x, w[4] += force.y, w[5] += force.z;
+    behind = ahead;
   }
 }
 
@@ -222,11 +239,16 @@ void BodyWrenches::Collect(const mjModel& m, const mjData& d, std::span<double> 
     double* const w = wrench_.data() + 6 * *b;
     const int first = m.body_dofadr[*b];
     for (int dof = first; dof < first + m.body_dofnum[*b]; ++dof) {
-      force[dof] = mju_dot(d.cdof + 6 * dof, w, 6);
+      const double* const c = d.cdof + 6 * dof;
+      force[dof] =
+          c[0] * w[0] + c[1] * w[1] + c[2] * w[2] + c[3] * w[3] + c[4] * w[4] + c[5] * w[5];
     }
     const int parent = m.body_parentid[*b];
-    if (parent > 0) mju_addTo(wrench_.data() + 6 * parent, w, 6);
-    std::fill_n(w, 6, 0.0);
+    double* const p = wrench_.data() + 6 * parent;
+    for (int i = 0; i < 6; ++i) {
+      if (parent > 0) p[i] += w[i];
+      w[i] = 0;
+    }
   }
   std::fill_n(wrench_.begin(), 6, 0.0);
 }

@@ -32,6 +32,7 @@ double BaseTension(const mjModel& m, const mjData& d, const Cable& cable);
 struct CableGeometry {
   std::vector<double> direction;  ///< [3 · segments] unit vectors s_k → s_{k+1}
   std::vector<double> theta;  ///< [segments] wrap angle at contact i = 1 .. (entry 0 unused) [rad]
+  std::vector<double> arm;    ///< [3 * sites] from the centre of mass of the tree of the site
   std::vector<double> slip;   ///< [segments] v_i = −Σ_{k ≥ i} dL_k/dt, > 0 when pulled [m/s]
 
   void Update(const mjModel& m, const mjData& d, const Cable& cable);
@@ -42,8 +43,9 @@ class BodyWrenches {
  public:
   BodyWrenches(const mjModel& m, std::span<const Cable> cables);
 
-  /// Adds tension [N] · unit vector u at site a and its opposite at site b.
-  void Pull(const mjModel& m, const mjData& d, int a, int b, const double* u, double tension);
+  /// Adds what a cable does to its sites beyond the tension that it has at its base. tension: of
+  /// its segments [N].
+  void Add(const mjModel& m, const Cable& cable, const CableGeometry& at, const double* tension);
   /// force[nv] = Jᵀ · wrenches, and clears them.
   void Collect(const mjModel& m, const mjData& d, std::span<double> force);
 

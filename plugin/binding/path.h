@@ -22,9 +22,12 @@ namespace continuum {
 struct Grip {
   static constexpr double kSlow = 5e-3, kRampBegin = 0.010, kRampEnd = 0.020, kSpring = 0.2;
 
+  /// v_c [m/s].
+  static double Slope(double band, double tension, double compliance, double h) {
+    return std::max(kSlow, 1.5 * h * compliance * tension * band);
+  }
   /// The argument of (1) and (2): v/v_c + g(v).
-  static double Travel(double v, double band, double tension, double compliance, double h) {
-    const double v_c = std::max(kSlow, 1.5 * h * compliance * tension * band);
+  static double Travel(double v, double v_c) {
     const double x = std::clamp((std::abs(v) - kRampBegin) / (kRampEnd - kRampBegin), 0.0, 1.0);
     return v / v_c + std::copysign(2 * x * x * (3 - 2 * x), v);
   }
@@ -58,8 +61,7 @@ class BoundPath : public Bound {
     std::size_t segments = 0;
     for (const Cable& cable : cables_) segments += cable.segments();
     tension_.assign(segments, 0);
-    travel_.assign(segments, 0);
-    band_.assign(segments, 0);
+    contacts_.assign(segments, {});
   }
 
   // In nstate the tendons' paths are not known yet: the model's wrap points bound the contacts.
@@ -80,25 +82,23 @@ class BoundPath : public Bound {
     for (std::size_t c = 0; c < cables_.size(); ++c) {
       const double base = std::max(0.0, BaseTension(m, d, cables_[c]));
       changed |= base != tension_[s];
-      Tensions(m, cables_[c], geometry_[c], base, z + s, s, p);
+      Tensions(m, cables_[c], geometry_[c], base, z + s, s, stage, p);
       s += cables_[c].segments();
     }
     if (!changed) return false;
     s = 0;
     for (std::size_t c = 0; c < cables_.size(); ++c) {
-      const double base = tension_[s];
-      for (int k = 0; k < cables_[c].segments(); ++k, ++s) {
-        if (tension_[s] == base) continue;
-        wrenches_.Pull(m, d, cables_[c].sites[k], cables_[c].sites[k + 1],
-                       geometry_[c].direction.data() + 3 * k, tension_[s] - base);
-      }
+      if (tension_[s] > 0) wrenches_.Add(m, cables_[c], geometry_[c], tension_.data() + s);
+      s += cables_[c].segments();
     }
     wrenches_.Collect(m, d, force);
     return true;
   }
 
   void Advance(const mjModel&, const mjData&, double* z) override {
-    for (std::size_t s = 0; s < tension_.size(); ++s) z[s] = Grip::Next(z[s], band_[s], travel_[s]);
+    for (std::size_t s = 0; s < contacts_.size(); ++s) {
+      z[s] = Grip::Next(z[s], contacts_[s].band, contacts_[s].travel);
+    }
   }
 
   bool Knows(int site) const override { return Index(site) >= 0; }
@@ -111,25 +111,32 @@ class BoundPath : public Bound {
   void CopyFrom(const Bound& other) override {
     const auto& from = static_cast<const BoundPath&>(other);
     geometry_ = from.geometry_;
-    tension_ = from.tension_, travel_ = from.travel_, band_ = from.band_;
+    tension_ = from.tension_, contacts_ = from.contacts_;
   }
   /// Tension [N] of every segment, cable after cable, at the last evaluation.
   const std::vector<double>& tension() const { return tension_; }
 
  private:
-  // Tensions of one cable from its base on; slack cables carry none.
+  // What is known of the site in front of a segment.
+  struct Contact {
+    double band = 0, v_c = 0, travel = 0, ratio = 1;
+  };
+
+  // Tensions of one cable from its base on; slack cables carry none. Within one evaluation only the
+  // base tension changes, and what does not depend on it is kept.
   void Tensions(const mjModel& m, const Cable& cable, const CableGeometry& at, double base,
-                const double* z, int s, const ParamsOf<E, double>& p) {
+                const double* z, int s, Stage stage, const ParamsOf<E, double>& p) {
     tension_[s] = base;
-    travel_[s] = 0;
     for (int i = 1; i < cable.segments(); ++i) {
-      const double above = tension_[s + i - 1];
-      band_[s + i] = E::template Band<double>(at.theta[i], law_, p);
-      travel_[s + i] =
-          Grip::Travel(at.slip[i], band_[s + i], base, cable.compliance, m.opt.timestep);
-      tension_[s + i] = band_[s + i] > 0
-                            ? above * std::exp(Grip::Held(z[i], band_[s + i], travel_[s + i]))
-                            : above;
+      Contact& c = contacts_[s + i];
+      if (stage == Stage::kPassive) c.band = E::template Band<double>(at.theta[i], law_, p);
+      const double v_c = Grip::Slope(c.band, base, cable.compliance, m.opt.timestep);
+      if (stage == Stage::kPassive || v_c != c.v_c) {
+        c.v_c = v_c;
+        c.travel = Grip::Travel(at.slip[i], v_c);
+        c.ratio = c.band > 0 ? std::exp(Grip::Held(z[i], c.band, c.travel)) : 1;
+      }
+      tension_[s + i] = tension_[s + i - 1] * c.ratio;
     }
   }
 
@@ -150,7 +157,8 @@ class BoundPath : public Bound {
   BodyWrenches wrenches_;
   int law_;
   double full_ = 20;
-  std::vector<double> tension_, travel_, band_;  ///< per segment; travel and band of its first site
+  std::vector<double> tension_;    ///< per segment [N]
+  std::vector<Contact> contacts_;  ///< per segment, of its first site
 };
 
 }  // namespace continuum

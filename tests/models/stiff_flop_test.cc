@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
@@ -11,8 +14,6 @@ namespace {
 
 using Eigen::Vector3d;
 using std::numbers::pi;
-using testing::Each;
-using testing::Le;
 
 constexpr double kThird = 2 * pi / 3;
 
@@ -226,6 +227,20 @@ TEST_P(StiffFlop, NoShrinkingSectionCarriesAnyPressure) {
                           : GetParam().chamber == ChamberLaw::kExact ? Status::kOutOfDomain
                                                                      : Status::kNoEquilibrium;
   EXPECT_EQ(solution.status, expected) << solution.outcome.why;
+}
+
+TEST_P(StiffFlop, RandomLoadsAndPressuresSettle) {
+  std::mt19937 source(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&](double scale) {
+    return Vector3d(scale * unit(source), scale * unit(source), scale * unit(source));
+  };
+  for (int i = 0; i < 10; ++i) {
+    const Case row{"", Vector3d::Constant(4e4) + vector(4e4), {vector(0.3), vector(9.81)}};
+    const Solution solution = Forward(Published(), row);
+    EXPECT_EQ(solution.status, Status::kOk) << solution.outcome.why;
+    EXPECT_LE(solution.outcome.residual, 1e-9);
+  }
 }
 
 TEST_P(StiffFlop, ShapesThatFoldAreOutOfTheDomain) {

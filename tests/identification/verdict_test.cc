@@ -1,0 +1,253 @@
+#include "identification/verdict.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace continuum {
+namespace {
+
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+
+// Ten folds, halved by the candidate with a steady size, above all of twenty placebos.
+FoldRecord Good() {
+  FoldRecord r;
+  r.name = "good";
+  r.before.assign(10, 1.0);
+  r.after = {0.50, 0.52, 0.48, 0.51, 0.49, 0.50, 0.52, 0.48, 0.51, 0.49};
+  r.amplitude.assign(10, 2.0);
+  r.placebo_gains.assign(20, 0.05);
+  r.remaining = 1.0;
+  return r;
+}
+
+// Worse than Good in every fold, by more than their scatter.
+FoldRecord RunnerUp() {
+  FoldRecord r = Good();
+  r.name = "runner-up";
+  for (double& a : r.after) a += 0.1;
+  return r;
+}
+
+constexpr double kNoisy = 10;  // present error over the noise: something is left to explain
+constexpr double kCeiling = 0.9;
+
+std::string TextOf(const FoldRecord& r) { return Judge({r}, kNoisy, kCeiling).text; }
+
+TEST(Gains, AreTheRelativeFallOfTheErrorPerFold) {
+  FoldRecord r;
+  r.before = {2, 4, 0};
+  r.after = {1, 5, 1};
+  EXPECT_THAT(Gains(r), ElementsAre(DoubleNear(0.5, 1e-15), DoubleNear(-0.25, 1e-15), 0));
+}
+
+TEST(Median, TakesTheMiddleWhateverTheOrder) {
+  EXPECT_EQ(Median({3, 1, 2}), 2);
+  EXPECT_EQ(Median({4, 1, 3, 2}), 2.5);
+  EXPECT_EQ(Median({}), 0);
+}
+
+TEST(Failures, AreNoneForARecordThatMeetsEveryRule) {
+  EXPECT_THAT(Failures(Good()), IsEmpty());
+  EXPECT_EQ(TextOf(Good()), "named");
+}
+
+TEST(Failures, AllowTwoWorseFoldsOfTenButNotThree) {
+  FoldRecord r = Good();
+  r.after[0] = r.after[1] = 1.01;
+  EXPECT_THAT(Failures(r), IsEmpty());
+  r.after[2] = 1.01;
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("only 7 of 10 folds")));
+  EXPECT_EQ(TextOf(r), "unexplained");
+}
+
+TEST(Failures, OneWorseFoldOfFourIsTooMany) {
+  FoldRecord r = Good();
+  r.before.resize(4), r.after.resize(4), r.amplitude.resize(4);
+  EXPECT_THAT(Failures(r), IsEmpty());
+  r.after[3] = 1.01;
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("only 3 of 4 folds")));
+}
+
+TEST(Failures, AnUnchangedFoldDoesNotCountAsBetter) {
+  FoldRecord r = Good();
+  r.after[0] = r.after[1] = r.after[2] = 1.0;
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("only 7 of 10 folds")));
+}
+
+TEST(Failures, AskForATenthOfTheErrorInTheMedian) {
+  FoldRecord r = Good();
+  r.placebo_gains.assign(20, 0.01);
+  r.after.assign(10, 0.89);
+  EXPECT_THAT(Failures(r), IsEmpty());
+  r.after.assign(10, 0.91);
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("falls by 9.0 % in the median")));
+  EXPECT_EQ(TextOf(r), "unexplained");
+}
+
+TEST(Failures, OneOtherSignOfTheAmplitudeIsEnough) {
+  FoldRecord r = Good();
+  r.amplitude[4] = -2;
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("size varies")));
+  EXPECT_EQ(TextOf(r), "unexplained");
+}
+
+TEST(Failures, TheAmplitudeMayVaryByThirtyPercentEitherWay) {
+  for (const double a : {1.42, 2.58}) {
+    FoldRecord r = Good();
+    r.amplitude[0] = a;
+    EXPECT_THAT(Failures(r), IsEmpty()) << a;
+  }
+  for (const double a : {1.38, 2.62}) {
+    FoldRecord r = Good();
+    r.amplitude[0] = a;
+    EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("size varies"))) << a;
+  }
+}
+
+TEST(Failures, ANegativeAmplitudeMayBeSteadyToo) {
+  FoldRecord r = Good();
+  for (double& a : r.amplitude) a = -a;
+  EXPECT_THAT(Failures(r), IsEmpty());
+}
+
+TEST(Failures, AnAmplitudeOfZeroIsNoCause) {
+  FoldRecord r = Good();
+  r.amplitude.assign(10, 0.0);
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("size varies")));
+}
+
+TEST(Failures, OnePlaceboOfTwentyMayBeBetterButNotTwo) {
+  FoldRecord r = Good();
+  r.placebo_gains[0] = 0.9;
+  EXPECT_THAT(Failures(r), IsEmpty());
+  r.placebo_gains[1] = 0.9;
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("18 of 20 random")));
+  EXPECT_EQ(TextOf(r), "unexplained");
+}
+
+TEST(Failures, APlaceboAsGoodIsNotBeaten) {
+  FoldRecord r = Good();
+  r.after.assign(10, 0.5);
+  r.placebo_gains.assign(20, 0.5);
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("0 of 20 random")));
+}
+
+TEST(Failures, OneFoldIsNoCrossValidation) {
+  FoldRecord r = Good();
+  r.before.resize(1), r.after.resize(1), r.amplitude.resize(1);
+  EXPECT_THAT(Failures(r), ElementsAre(HasSubstr("two folds")));
+}
+
+TEST(Failures, NumbersThatAreNoneNeverPass) {
+  FoldRecord r = Good();
+  r.after.assign(10, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(Failures(r).empty());
+  r = Good();
+  r.amplitude[3] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(Failures(r).empty());
+}
+
+TEST(ClearlyBetter, NeedsMoreThanOneStandardErrorOfThePairedDifference) {
+  FoldRecord a = Good(), b = Good();
+  // Differences d ± s alternating over ten folds: standard error s sqrt(10/9)/sqrt(10) = s/3.
+  const auto shift = [&](double d, double s) {
+    b.after = a.after;
+    for (std::size_t f = 0; f < 10; ++f) b.after[f] += f % 2 ? d + s : d - s;
+  };
+  shift(0.034, 0.1);
+  EXPECT_FALSE(ClearlyBetter(a, b));  // five wins of ten
+  b.after[0] += 0.2;                  // sixth win
+  EXPECT_TRUE(ClearlyBetter(a, b));
+  EXPECT_FALSE(ClearlyBetter(b, a));
+  shift(0.1, 0.05);
+  EXPECT_TRUE(ClearlyBetter(a, b));
+}
+
+TEST(ClearlyBetter, OneHugeFoldIsNotEnough) {
+  const FoldRecord a = Good();
+  FoldRecord b = Good();
+  for (double& y : b.after) y -= 0.001;
+  b.after[0] = 5;
+  EXPECT_FALSE(ClearlyBetter(a, b));
+}
+
+TEST(ClearlyBetter, WeighsFoldsByTheirOwnError) {
+  FoldRecord a = Good(), b = RunnerUp();
+  a.before[0] = b.before[0] = 1e3;
+  a.after[0] = 560;  // a fold in other units, slightly for b
+  b.after[0] = 550;
+  EXPECT_TRUE(ClearlyBetter(a, b));
+}
+
+TEST(ClearlyBetter, IsNeverSoForEquals) { EXPECT_FALSE(ClearlyBetter(Good(), Good())); }
+
+TEST(Judge, NamesTheBestOfTwoThatTheFoldsTellApart) {
+  for (const bool first : {true, false}) {
+    const auto records = first ? std::vector{Good(), RunnerUp()} : std::vector{RunnerUp(), Good()};
+    const Verdict v = Judge(records, kNoisy, kCeiling);
+    EXPECT_EQ(v.text, "named");
+    EXPECT_THAT(v.named, ElementsAre(first ? 0 : 1));
+  }
+}
+
+TEST(Judge, AnEqualRunnerUpMakesItAmbiguous) {
+  FoldRecord twin = Good();
+  std::swap(twin.after[0], twin.after[1]);
+  const Verdict v = Judge({Good(), RunnerUp(), twin}, kNoisy, kCeiling);
+  EXPECT_EQ(v.text, "ambiguous");
+  EXPECT_THAT(v.named, UnorderedElementsAre(0, 2));
+}
+
+TEST(Judge, ARivalThatFailsARuleStillStandsInTheWayOfAName) {
+  FoldRecord rival = Good();
+  rival.amplitude[0] = -2;
+  EXPECT_EQ(Judge({Good(), rival}, kNoisy, kCeiling).text, "ambiguous");
+}
+
+TEST(Judge, TwiceTheNoiseLeftIsUnexplained) {
+  FoldRecord r = Good();
+  r.remaining = 1.2;
+  EXPECT_EQ(TextOf(r), "named");
+  r.remaining = 2;
+  EXPECT_EQ(TextOf(r), "unexplained");
+  EXPECT_THAT(Judge({r}, kNoisy, kCeiling).named, IsEmpty());
+  EXPECT_THAT(Judge({r}, kNoisy, kCeiling).reason, HasSubstr("2.0 times the noise"));
+}
+
+TEST(Judge, NamesOnModelLimitedDataWhereSomethingIsAlwaysLeft) {
+  FoldRecord r = Good();
+  r.remaining = 4;
+  EXPECT_EQ(TextOf(r), "named");
+}
+
+TEST(Judge, IsAdequateAtTheNoiseWhateverTheCandidatesSay) {
+  const Verdict v = Judge({Good()}, 1.05, kCeiling);
+  EXPECT_EQ(v.text, "adequate");
+  EXPECT_THAT(v.named, IsEmpty());
+  EXPECT_EQ(Judge({Good()}, 1.15, kCeiling).text, "named");
+}
+
+TEST(Judge, WithoutNoiseItIsAdequateOnlyWhenNoForceHelps) {
+  FoldRecord bad = Good();
+  bad.after = bad.before;
+  EXPECT_EQ(Judge({bad}, 0, 0.05).text, "adequate");
+  EXPECT_EQ(Judge({bad}, 0, 0.15).text, "unexplained");
+  EXPECT_EQ(Judge({bad}, kNoisy, 0.05).text, "unexplained");
+  EXPECT_EQ(Judge({Good()}, 0, 0.05).text, "named");
+}
+
+TEST(Judge, IsUnexplainedWithoutCandidates) {
+  const Verdict v = Judge({}, kNoisy, kCeiling);
+  EXPECT_EQ(v.text, "unexplained");
+  EXPECT_THAT(v.named, IsEmpty());
+  EXPECT_FALSE(v.reason.empty());
+}
+
+}  // namespace
+}  // namespace continuum
