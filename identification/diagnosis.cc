@@ -128,8 +128,11 @@ class Session {
         c.record.after = c.fitted.folds.error;
         const Eigen::Index known = d_.before.fit.x.size();
         const std::span<const double> own(c.fitted.fit.x.data() + known, c.hypothesis.extra.size());
-        const auto main = known + static_cast<Eigen::Index>(c.hypothesis.Main(own));
-        for (const Vector& x : c.fitted.folds.x) c.record.amplitude.push_back(x[main]);
+        const std::size_t main = c.hypothesis.Main(own);
+        for (const Vector& x : c.fitted.folds.x) {
+          c.record.amplitude.push_back(x[known + static_cast<Eigen::Index>(main)] -
+                                       c.hypothesis.NullOf(main));
+        }
       } catch (const Error& error) {
         c.error = error.what();
       }
@@ -207,18 +210,27 @@ class Session {
     ceiling.before = d_.before.folds.error;
     ceiling.after = d_.ceiling.error;
     const double over = Known() ? d_.before.error.train / Floor() : 0;
-    d_.verdict = Judge(records, over, Median(Gains(ceiling)));
+    Rules rules;
+    // Replicates tell the noise whatever the model: then nothing above it may remain unexplained.
+    if (d_.noise.source == "replicates") rules.noise_limited = kInfinity;
+    d_.verdict = Judge(records, over, Median(Gains(ceiling)), rules);
   }
 
   // Resamples whole trials of the held-out logs.
   void BootstrapGain() {
     const CandidateResult* chosen = d_.chosen();
     if (!chosen) return;
-    std::vector<std::pair<double, double>> squares;  // per validation log: before, after
+    std::vector<std::pair<double, double>>
+        squares;  // per validation log, over its rows: before, after
     for (std::size_t l = 0; l < e_.logs.size(); ++l) {
       if (e_.logs[l].train) continue;
-      squares.emplace_back(d_.before.residuals[l].squaredNorm(),
-                           chosen->fitted.residuals[l].squaredNorm());
+      std::vector<bool> one(e_.logs.size(), false);
+      one[l] = true;
+      const auto sum = [&](const Fitted& f) {
+        return std::pow(null_.PooledRms(f.residuals, one), 2) *
+               static_cast<double>(e_.logs[l].rows());
+      };
+      squares.emplace_back(sum(d_.before), sum(chosen->fitted));
     }
     if (squares.empty()) return;
     std::mt19937_64 rng(options_.seed);

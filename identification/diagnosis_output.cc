@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -101,8 +102,10 @@ std::vector<Wrong> FindWrong(const Experiment& e, const std::vector<Trace>& befo
   };
   std::vector<Item> items;
   const Pool pool(e);
+  std::set<std::pair<std::string, std::string>> seen;  // replicates need no second mention
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     const Log& log = e.logs[l];
+    if (!seen.insert({log.trial, log.condition}).second && log.window.empty()) continue;
     const auto residual = Residuals(e, log, before[l]);
     const auto score = ScoreLog(e, log, before[l]);
     for (std::size_t c = 0; c < e.channels.size(); ++c) {

@@ -57,22 +57,18 @@ class Story {
           fmt::format("**{}**, {} at {}: the simulation {}.", w.log, w.channel, w.when, w.what));
     }
     page_.List(items);
-    std::vector<std::size_t> shown;
     for (const Wrong& w : told_.wrong) {
       for (std::size_t l = 0; l < e_.logs.size(); ++l) {
-        const bool is = e_.logs[l].label == w.log;
-        if (is && std::find(shown.begin(), shown.end(), l) == shown.end() && shown.size() < 3)
-          shown.push_back(l);
+        if (e_.logs[l].label == w.log) Overlay(l, w.channel);
       }
     }
-    for (const std::size_t l : shown) Overlay(l);
     Missing();
   }
 
-  void Overlay(std::size_t l) {
+  void Overlay(std::size_t l, const std::string& only = "") {
     std::vector<NamedTrace> traces{{"before", Style::kBefore, &told_.before_traces[l]}};
     if (d_.chosen()) traces.push_back({"after", Style::kAfter, &told_.after_traces[l]});
-    AddOverlay(page_, e_, e_.logs[l], traces, false);
+    AddOverlay(page_, e_, e_.logs[l], traces, false, only);
   }
 
   void Missing() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -89,7 +90,9 @@ std::string OutputYaml(const Output& out) {
   return text + MeasurementYaml(out.measurement) + "}\n";
 }
 
-std::string ParameterYaml(const FreeParameter& p, double value) {
+std::string ParameterYaml(const FreeParameter& p, double value, std::set<std::string>& names) {
+  std::string name = p.name;  // an effect's parameter may be called as one of the experiment's
+  while (!names.insert(name).second) name += "_effect";
   const bool absolute = p.change.operation == Change::Operation::kSet;
   const double null = p.change.operation == Change::Operation::kScale ? 1 : 0;
   const bool effect = p.change.attribute.starts_with("effect:");
@@ -98,7 +101,7 @@ std::string ParameterYaml(const FreeParameter& p, double value) {
   return fmt::format(
       "  - {{name: {}, target: {}, attribute: {}, operation: {}, initial: {}, lower: {}, upper: "
       "{}}}\n",
-      Quoted(p.name), Quoted(p.change.target), Quoted(p.change.attribute),
+      Quoted(name), Quoted(p.change.target), Quoted(p.change.attribute),
       operation[static_cast<int>(p.change.operation)], Decimal(start),
       Decimal(std::min(p.lower, start)), Decimal(std::max(p.upper, start)));
 }
@@ -134,11 +137,12 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
   y += "outputs:\n";
   for (const Output& out : e.outputs) y += OutputYaml(out);
   std::string parameters;
+  std::set<std::string> names;
   for (std::size_t i = 0; i < problem.parameters().size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
     const bool common = std::find(p.log.begin(), p.log.end(), false) == p.log.end();
     if (common && !p.change.target.empty())
-      parameters += ParameterYaml(p, x[static_cast<Eigen::Index>(i)]);
+      parameters += ParameterYaml(p, x[static_cast<Eigen::Index>(i)], names);
   }
   if (!parameters.empty()) y += "parameters:\n" + parameters;
   const char* const folds[] = {"trial", "condition", "window"};

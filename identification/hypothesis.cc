@@ -306,6 +306,13 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
 
 }  // namespace
 
+double Hypothesis::NullOf(std::size_t i) const {
+  for (const Param& p : EffectNamed(effect).params) {
+    if (p.name == extra[i].name && !std::isnan(p.null)) return p.null;
+  }
+  return 0;
+}
+
 std::size_t Hypothesis::Main(std::span<const double> values) const {
   std::size_t main = 0;
   double largest = -1;
@@ -314,8 +321,8 @@ std::size_t Hypothesis::Main(std::span<const double> values) const {
     const bool amplitude = std::any_of(params.begin(), params.end(), [&](const Param& p) {
       return p.name == extra[i].name && !std::isnan(p.null);
     });
-    const double size =
-        std::abs(values[i]) / std::max(std::abs(extra[i].lower), std::abs(extra[i].upper));
+    const double size = std::abs(values[i] - NullOf(i)) /
+                        std::max(std::abs(extra[i].lower), std::abs(extra[i].upper));
     if (amplitude && size > largest) main = i, largest = size;
   }
   return main;

@@ -23,6 +23,8 @@ struct Hypothesis {
   /// Which of extra (values: theirs) says how large the effect is: the largest, in units of its
   /// bounds, of those that are 0 when the effect is absent.
   std::size_t Main(std::span<const double> values) const;
+  /// The value of an extra parameter at which the effect is absent; 0 for those without one.
+  double NullOf(std::size_t i) const;
   std::string Name() const { return variant.empty() ? effect : effect + " (" + variant + ")"; }
 };
 

@@ -204,6 +204,7 @@ void Element::Set(std::string_view attribute, double value) {
       return;
     }
     if (attribute == "kv") {
+      if (value < 0) throw Error::Input(Who() + ": kv", "a number >= 0", std::to_string(value));
       Affine().biasprm[2] = -value;
       return;
     }

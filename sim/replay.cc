@@ -100,10 +100,10 @@ void WriteSimulated(const Experiment& e, const std::vector<Trace>& traces,
 }
 
 void AddOverlay(Page& page, const Experiment& e, const Log& log,
-                const std::vector<NamedTrace>& traces, bool residual) {
+                const std::vector<NamedTrace>& traces, bool residual, const std::string& only) {
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const auto& channel = e.channels[c];
-    if (e.outputs[channel.output].weight == 0) continue;
+    if (e.outputs[channel.output].weight == 0 || (!only.empty() && channel.name != only)) continue;
     TimeSeriesSpec spec{
         log.label + ": " + channel.name, {channel.name, channel.unit}, log.time, {}, log.label};
     spec.series.push_back({"measured", InUnit(log.measured[c], channel.factor), Style::kMeasured});

@@ -37,14 +37,14 @@ nlohmann::json ScoreJson(const std::vector<ChannelScore>& score);
 void WriteSimulated(const Experiment& experiment, const std::vector<Trace>& traces,
                     const std::filesystem::path& folder);
 
-/// Adds one panel per counted channel of a log: measured and the named traces.
 struct NamedTrace {
   std::string name;
   Style style;
   const Trace* trace;
 };
+/// Adds one panel per counted channel of a log (or only for one): measured and the named traces.
 void AddOverlay(Page& page, const Experiment& experiment, const Log& log,
-                const std::vector<NamedTrace>& traces, bool residual);
+                const std::vector<NamedTrace>& traces, bool residual, const std::string& only = "");
 
 void WriteReplayReport(const Experiment& experiment, const std::vector<Replayed>& logs,
                        const std::filesystem::path& file);

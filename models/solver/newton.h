@@ -140,7 +140,7 @@ Outcome Newton(const Problem& problem, Eigen::Matrix<double, N, 1>& x,
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
   Outcome outcome;
-  Vector f(x.size()), trial_f(x.size()), trial(x.size()), dx(x.size());
+  Vector f = Vector::Zero(x.size()), trial_f = f, trial = f, dx = f;
   Matrix jacobian(x.size(), x.size());
   if (!Linearize(problem, x, f, jacobian)) {
     return internal::Failed(outcome, Status::kOutOfDomain, "the start is out of the domain");
@@ -220,7 +220,7 @@ Outcome LevenbergMarquardt(const Problem& problem, Eigen::Matrix<double, N, 1>& 
   using Matrix = Eigen::Matrix<double, F::RowsAtCompileTime, N>;
   const Eigen::Index n = x.size();
   Outcome outcome;
-  F f(equations), trial_f(equations);
+  F f = F::Zero(equations), trial_f = f;
   Matrix jacobian(equations, n);
   if (bounds.lower.size() == n && n > 0) x = x.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
   if (!Linearize(problem, x, f, jacobian)) {

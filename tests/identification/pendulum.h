@@ -2,13 +2,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
-#include <numbers>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -29,9 +27,7 @@ struct Pendulum {
   double kp = 5, damping = 0.1, tau_c = 0;                         // N m/rad, N m s/rad, N m
   double payload = 0, gap = 0;                                     // kg, rad
 
-  double Play(double e) const {
-    return std::abs(e) < gap / 2 ? 0 : e - std::copysign(gap / 2, e);
-  }
+  double Play(double e) const { return std::abs(e) < gap / 2 ? 0 : e - std::copysign(gap / 2, e); }
 
   /// Angle [rad] at every row from rest at 0, inputs held; symplectic Euler at 20 us in which
   /// friction stops the joint exactly.
@@ -44,8 +40,7 @@ struct Pendulum {
     for (const double input : u) {
       angle.push_back(q);
       for (int k = 0; k < steps; ++k) {
-        const double torque =
-            kp * Play(input - q) - damping * v - mass * g * length * std::sin(q);
+        const double torque = kp * Play(input - q) - damping * v - mass * g * length * std::sin(q);
         const double free = v + h * torque / j, stop = h * tau_c / j;
         v = std::abs(free) <= stop ? 0 : free - std::copysign(stop, free);
         q += h * v;
@@ -99,9 +94,9 @@ inline std::vector<double> Command(int trial, std::size_t rows) {
 }
 
 /// Stationary AR(1) noise of standard deviation sigma; rho = 0 is white.
-class Noise1 {
+class ArNoise {
  public:
-  Noise1(double sigma, double rho, unsigned seed)
+  ArNoise(double sigma, double rho, unsigned seed)
       : rng_(seed), sigma_(sigma), rho_(rho), last_(normal_(rng_)) {}
   double Next() {
     const double now = sigma_ * last_;
@@ -116,7 +111,7 @@ class Noise1 {
 };
 
 inline std::vector<double> Noisy(std::vector<double> y, double sigma, double rho, unsigned seed) {
-  Noise1 noise(sigma, rho, seed);
+  ArNoise noise(sigma, rho, seed);
   for (double& value : y) value += noise.Next();
   return y;
 }
@@ -126,8 +121,10 @@ class Bench : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              fmt::format("continuum_{}_{}_{}", info->test_suite_name(), info->name(), ::getpid());
+    std::string name =
+        fmt::format("continuum_{}_{}_{}", info->test_suite_name(), info->name(), ::getpid());
+    std::replace(name.begin(), name.end(), '/', '_');  // of parameterised tests
+    folder_ = std::filesystem::temp_directory_path() / name;
     std::filesystem::remove_all(folder_);
     MakeFolder(folder_);
   }
@@ -151,11 +148,10 @@ class Bench : public ::testing::Test {
   /// The experiment of the logs so far; more: further sections, such as "parameters:\n…".
   Experiment ReadExperiment(const std::string& more, const std::string& output = "") const {
     return Experiment::Read(
-        Write("experiment.yaml",
-              "format: 1\nmodel: model.xml\nstart: rest\nlogs:\n" + logs_ +
-                  "inputs:\n  - {actuator: servo, column: u, unit: rad}\n"
-                  "outputs:\n  - {column: q, unit: rad, sensor: angle" +
-                  output + "}\n" + more));
+        Write("experiment.yaml", "format: 1\nmodel: model.xml\nstart: rest\nlogs:\n" + logs_ +
+                                     "inputs:\n  - {actuator: servo, column: u, unit: rad}\n"
+                                     "outputs:\n  - {column: q, unit: rad, sensor: angle" +
+                                     output + "}\n" + more));
   }
 
   std::filesystem::path folder_;

@@ -8,6 +8,7 @@
 namespace continuum {
 namespace {
 
+using ::testing::Contains;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -147,7 +148,7 @@ TEST(Failures, OneFoldIsNoCrossValidation) {
 TEST(Failures, NumbersThatAreNoneNeverPass) {
   FoldRecord r = Good();
   r.after.assign(10, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_FALSE(Failures(r).empty());
+  EXPECT_THAT(Failures(r), Contains(HasSubstr("in the median")));
   r = Good();
   r.amplitude[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(Failures(r).empty());
@@ -167,6 +168,14 @@ TEST(ClearlyBetter, NeedsMoreThanOneStandardErrorOfThePairedDifference) {
   EXPECT_FALSE(ClearlyBetter(b, a));
   shift(0.1, 0.05);
   EXPECT_TRUE(ClearlyBetter(a, b));
+}
+
+TEST(ClearlyBetter, AMajorityOfFoldsIsNotEnough) {
+  const FoldRecord a = Good();
+  FoldRecord b = Good();
+  // Mean 0.04, standard error 0.065.
+  for (std::size_t f = 0; f < 10; ++f) b.after[f] = a.after[f] + (f < 6 ? 0.2 : -0.2);
+  EXPECT_FALSE(ClearlyBetter(a, b));
 }
 
 TEST(ClearlyBetter, OneHugeFoldIsNotEnough) {
@@ -208,6 +217,13 @@ TEST(Judge, ARivalThatFailsARuleStillStandsInTheWayOfAName) {
   FoldRecord rival = Good();
   rival.amplitude[0] = -2;
   EXPECT_EQ(Judge({Good(), rival}, kNoisy, kCeiling).text, "ambiguous");
+}
+
+TEST(Judge, OneWithLessThanHalfTheGainIsNoRival) {
+  FoldRecord erratic = Good();
+  for (std::size_t f = 0; f < 10; ++f) erratic.after[f] = f < 4 ? 0 : 0.99;
+  ASSERT_FALSE(ClearlyBetter(Good(), erratic));
+  EXPECT_EQ(Judge({Good(), erratic}, kNoisy, kCeiling).text, "named");
 }
 
 TEST(Judge, TwiceTheNoiseLeftIsUnexplained) {

@@ -1,0 +1,191 @@
+#include "identification/diagnosis.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "error.h"
+#include "identification/diagnosis_output.h"
+#include "pendulum.h"
+
+namespace continuum {
+namespace {
+
+using testing::Bench;
+using testing::Command;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::Noisy;
+using testing::Pendulum;
+using ::testing::SizeIs;
+
+// Logs of a servo pendulum by its own integrator, four trials of which the last is held out, two
+// replicates each; the model knows neither payload nor free play.
+class DiagnosisTest : public Bench {
+ protected:
+  static constexpr std::size_t kRows = 200;
+  static constexpr double kNoise = 1e-3;  // rad, of every sample
+
+  void AddTrials(const Pendulum& p, double rho = 0) {
+    for (int t = 0; t < 4; ++t) {
+      const auto u = Command(t, kRows);
+      const auto q = p.Run(u, testing::kPeriod);
+      for (int replicate = 0; replicate < 2; ++replicate) {
+        AddLog("t" + std::to_string(t) + "_" + std::to_string(replicate),
+               "trial: t" + std::to_string(t) + ", use: " + (t < 3 ? "train" : "validate"), u,
+               Noisy(q, kNoise, rho, static_cast<unsigned>(10 * t + replicate)));
+      }
+    }
+  }
+  Experiment ReadWith(const std::string& candidates) {
+    return ReadExperiment(
+        "parameters:\n"
+        "  - {name: b, target: 'joint:hinge', attribute: damping, initial: 0.08, lower: 0, upper: "
+        "1}\n"
+        "candidates: [" +
+        candidates + "]\n");
+  }
+  Diagnosis Ask(const Experiment& e, int placebos = 4) {
+    DiagnosisOptions options;
+    options.placebos = placebos;
+    options.iterations = 8;
+    return Diagnose(e, System::Load(Write("model.xml", Pendulum().Xml())), options);
+  }
+  static std::string Told(const Diagnosis& d) {
+    std::string text = d.verdict.text + ": " + d.verdict.reason + "\n";
+    text += fmt::format("  validate error {:.3g}, with a smooth force {:.3g}, after {:.3g}\n",
+                        d.before.error.validate, d.ceiling_error.validate, d.after().validate);
+    for (const CandidateResult& c : d.candidates) {
+      text += fmt::format("  {}: median gain {:.3f}, {:.2f} times the noise left\n",
+                          c.hypothesis.Name(), Median(Gains(c.record)), c.record.remaining);
+      for (const auto& failure : c.failures) text += "    " + failure + "\n";
+    }
+    return text;
+  }
+};
+
+const std::string kCandidates = "payload, coulomb, stiffness, input_gain, dead_time";
+
+TEST_F(DiagnosisTest, NamesAHiddenPayload) {
+  Pendulum truth;
+  truth.payload = 0.05;
+  AddTrials(truth);
+  const Experiment e = ReadWith(kCandidates);
+  const Diagnosis d = Ask(e);
+  EXPECT_EQ(d.verdict.text, "named") << Told(d);
+  ASSERT_THAT(d.verdict.named, SizeIs(1)) << Told(d);
+  const CandidateResult& cause = *d.chosen();
+  EXPECT_EQ(cause.hypothesis.effect, "payload");
+  EXPECT_EQ(cause.hypothesis.where, "body tip");
+  EXPECT_NEAR(cause.fitted.fit.x[1], truth.payload, 0.02 * truth.payload);
+  EXPECT_THAT(cause.failures, IsEmpty());
+  // Noise: 800 differences tell it to 1/sqrt(1600) = 2.5 %; four times that.
+  EXPECT_EQ(d.noise.source, "replicates");
+  EXPECT_EQ(d.noise.pairs, 4u);
+  EXPECT_NEAR(d.noise.rms, kNoise, 0.1 * kNoise);
+  EXPECT_LT(d.after().validate, 0.2 * d.before.error.validate);
+  EXPECT_GT(d.gain_low, 0.8);
+}
+
+TEST_F(DiagnosisTest, FindsNothingWhereNothingIsHidden) {
+  AddTrials({});
+  const Experiment e = ReadWith(kCandidates);
+  const Diagnosis d = Ask(e);
+  EXPECT_EQ(d.verdict.text, "adequate") << Told(d);
+  EXPECT_THAT(d.verdict.named, IsEmpty());
+  EXPECT_EQ(d.chosen(), nullptr);
+  EXPECT_LT(d.before.error.train, 1.1 * kNoise);
+}
+
+// Else its spread over the folds is that of 1, which says nothing.
+TEST_F(DiagnosisTest, TheSizeOfAFactorIsCountedFromOne) {
+  AddTrials({});
+  const Experiment e = ReadWith("input_gain");
+  const Diagnosis d = Ask(e, 0);
+  ASSERT_THAT(d.candidates, SizeIs(1));
+  EXPECT_LT(std::abs(Median(d.candidates[0].record.amplitude)), 0.05) << Told(d);
+}
+
+TEST_F(DiagnosisTest, NamesBacklashWhenItIsAmongTheCandidates) {
+  Pendulum truth;
+  truth.gap = 0.05;
+  AddTrials(truth);
+  const Experiment e = ReadWith("backlash, payload, input_gain");
+  const Diagnosis d = Ask(e);
+  EXPECT_EQ(d.verdict.text, "named") << Told(d);
+  ASSERT_NE(d.chosen(), nullptr);
+  EXPECT_EQ(d.chosen()->hypothesis.effect, "backlash");
+  EXPECT_NEAR(d.chosen()->fitted.fit.x[1], truth.gap, 0.02 * truth.gap);
+}
+
+// The gap in mrad.
+class Unlisted : public DiagnosisTest, public ::testing::WithParamInterface<int> {};
+INSTANTIATE_TEST_SUITE_P(Gaps, Unlisted, ::testing::Values(10, 25, 60));
+
+TEST_P(Unlisted, BacklashIsNotGivenAnotherName) {
+  Pendulum truth;
+  truth.gap = 1e-3 * GetParam();
+  AddTrials(truth);
+  const Experiment e = ReadWith("payload, coulomb, input_gain");
+  const Diagnosis d = Ask(e);
+  EXPECT_NE(d.verdict.text, "named") << Told(d);
+  EXPECT_NE(d.verdict.text, "adequate") << Told(d);
+}
+
+TEST_F(DiagnosisTest, NothingIsNamedWhenInputsBelongToOtherLogs) {
+  Pendulum truth;
+  truth.payload = 0.05;
+  AddTrials(truth);
+  Experiment e = ReadWith("payload, input_gain, dead_time");
+  const auto logs = e.logs;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    e.logs[l].input = logs[(l + 2) % logs.size()].input;
+  }
+  const Diagnosis d = Ask(e);
+  EXPECT_NE(d.verdict.text, "named") << Told(d);
+  EXPECT_NE(d.verdict.text, "adequate") << Told(d);
+}
+
+TEST_F(DiagnosisTest, NothingIsNamedWhenTheInputsHaveTheOtherSign) {
+  Pendulum truth;
+  truth.payload = 0.05;
+  AddTrials(truth);
+  Experiment e = ReadWith("payload, input_gain, dead_time");
+  for (Log& log : e.logs) {
+    for (double& u : log.input[0]) u = -u;
+  }
+  const Diagnosis d = Ask(e);
+  EXPECT_NE(d.verdict.text, "named") << Told(d);
+}
+
+TEST_F(DiagnosisTest, AsksForTwoGroupsToLeaveOut) {
+  const auto u = Command(0, kRows);
+  AddLog("only", "use: train", u, Pendulum().Run(u, testing::kPeriod));
+  const Experiment e = ReadWith("payload");
+  EXPECT_THROW(Ask(e), Error);
+}
+
+TEST_F(DiagnosisTest, WritesFilesThatReproduceTheNamedModel) {
+  Pendulum truth;
+  truth.payload = 0.05;
+  AddTrials(truth);
+  const Experiment e = ReadWith("payload, input_gain");
+  const Diagnosis d = Ask(e, 2);
+  ASSERT_NE(d.chosen(), nullptr) << Told(d);
+  const auto told = WriteDiagnosis(e, d, folder_ / "out");
+  EXPECT_NEAR(told.after.train, d.after().train, 0.02 * d.after().train);
+  EXPECT_NEAR(told.after.validate, d.after().validate, 0.02 * d.after().validate);
+  const auto json = nlohmann::json::parse(ReadFile(folder_ / "out" / "diagnosis.json"));
+  EXPECT_EQ(json["verdict"], d.verdict.text);
+  EXPECT_EQ(json["candidates"].size(), d.candidates.size());
+  for (const char* file : {"extended.xml", "extended.yaml", "report.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
+  }
+  EXPECT_THAT(Summary(e, d, told), HasSubstr("payload"));
+}
+
+}  // namespace
+}  // namespace continuum

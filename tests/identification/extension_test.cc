@@ -1,0 +1,218 @@
+#include "identification/extension.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "error.h"
+#include "identification/hypothesis.h"
+#include "pendulum.h"
+#include "sim/replay.h"
+
+namespace continuum {
+namespace {
+
+using testing::Bench;
+using testing::Command;
+using testing::CoulombInstance;
+using ::testing::Gt;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::Noisy;
+using testing::Pendulum;
+using ::testing::SizeIs;
+
+class ExtensionTest : public Bench {
+ protected:
+  static constexpr std::size_t kRows = 150;
+
+  System Model(const std::string& extension = "") {
+    return System::Load(Write("model.xml", Pendulum().Xml(extension)));
+  }
+  void AddTrial(const Pendulum& p, const std::string& name, int trial, const std::string& keys) {
+    const auto u = Command(trial, kRows);
+    AddLog(name, keys, u,
+           Noisy(p.Run(u, testing::kPeriod), 1e-3, 0, static_cast<unsigned>(logs_.size())));
+  }
+  // Two trials, one held out, of the servo as the file has it and of one that the log says is
+  // stiffer; all servos are 1.2 times stiffer than anybody knows.
+  void AddTrials(double payload = 0) {
+    Pendulum p;
+    p.damping = 0.16;
+    p.tau_c = 0.1;
+    p.payload = payload;
+    p.kp = 1.2 * 5;
+    AddTrial(p, "soft0", 0, "use: train, condition: soft");
+    AddTrial(p, "soft1", 1, "use: validate, condition: soft");
+    p.kp = 1.2 * 8;
+    const std::string set = ", condition: stiff, set: {'actuator:servo': {kp: 8}}";
+    AddTrial(p, "stiff0", 2, "use: train" + set);
+    AddTrial(p, "stiff1", 3, "use: validate" + set);
+  }
+
+  // The errors of the two files, as a user would replay them.
+  SplitError ErrorsOf(const Extension& extension, const std::string& folder) {
+    MakeFolder(folder_ / folder);
+    WriteFile(folder_ / folder / "extended.xml", extension.xml);
+    WriteFile(folder_ / folder / "extended.yaml", extension.yaml);
+    const Experiment e = Experiment::Read(folder_ / folder / "extended.yaml");
+    return PooledError(e, Replay(e, System::Load(folder_ / folder / "extended.xml")));
+  }
+  // Fits, extends, replays and compares.
+  void ExpectSameErrors(const Problem& problem) {
+    const Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs());
+    const auto r = problem.Residuals(fit.x, problem.AllLogs());
+    auto held_out = problem.TrainLogs();
+    held_out.flip();
+    const double train = problem.PooledRms(r, problem.TrainLogs());
+    const double validate = problem.PooledRms(r, held_out);
+    const SplitError files = ErrorsOf(Extend(problem, fit.x, folder_ / "out"), "out");
+    EXPECT_NEAR(files.train, train, 0.02 * train);
+    EXPECT_NEAR(files.validate, validate, 0.02 * validate);
+    // The fit moved something: the model as it was is far off.
+    const auto before = problem.Residuals(problem.Start(), problem.AllLogs());
+    EXPECT_GT(problem.PooledRms(before, problem.TrainLogs()), 2 * train);
+  }
+};
+
+const std::string kScaled =
+    "parameters:\n"
+    "  - {name: k, target: 'actuator:servo', attribute: kp, operation: scale, lower: 0.5, upper: "
+    "2}\n"
+    "  - {name: b, target: 'joint:hinge', attribute: damping, operation: add, lower: -0.05, upper: "
+    "0.5}\n"
+    "  - {name: tau_c, target: 'plugin:dry', attribute: tau_c, lower: 0, upper: 1}\n";
+
+TEST_F(ExtensionTest, ReproducesTheFitWithSettingsOfLogsAndAScaledParameter) {
+  AddTrials();
+  const System system = Model(CoulombInstance(0.02));
+  const Experiment e = ReadExperiment(kScaled);
+  ExpectSameErrors(Problem(e, system));
+}
+
+TEST_F(ExtensionTest, ReproducesParametersPerCondition) {
+  AddTrials();
+  const System system = Model(CoulombInstance(0.1));
+  const Experiment e = ReadExperiment(
+      "parameters:\n"
+      "  - {name: k, target: 'actuator:servo', attribute: kp, operation: scale, lower: 0.5, upper: "
+      "2, per: condition}\n"
+      "  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1}\n");
+  ExpectSameErrors(Problem(e, system));
+}
+
+TEST_F(ExtensionTest, ReproducesFrozenParameters) {
+  AddTrials();
+  const System system = Model(CoulombInstance(0.1));
+  const Experiment e = ReadExperiment(
+      "parameters:\n"
+      "  - {name: k, target: 'actuator:servo', attribute: kp, operation: scale, initial: 1.2, "
+      "lower: "
+      "0.5, upper: 2, frozen: true}\n"
+      "  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1}\n");
+  Problem problem(e, system);
+  const Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs());
+  const double train =
+      problem.PooledRms(problem.Residuals(fit.x, problem.AllLogs()), problem.TrainLogs());
+  EXPECT_NEAR(ErrorsOf(Extend(problem, fit.x, folder_ / "out"), "out").train, train, 0.02 * train);
+}
+
+TEST_F(ExtensionTest, KeepsWindowsTrialsOutputsAndFolds) {
+  AddTrials();
+  const System system = Model(CoulombInstance(0.1));
+  logs_ += "  - {file: soft0.csv, use: validate, trial: again, window: [0, 0.9]}\n";
+  const Experiment e = ReadExperiment(kScaled + "folds: [trial, condition]\nloss: {soft_l1: 3}\n",
+                                      ", sigma: 0.001, weight: 2, bias: 0.01, delay: 0.002");
+  const Problem problem(e, system);
+  MakeFolder(folder_ / "out");
+  const Extension extension = Extend(problem, problem.Start(), folder_ / "out");
+  WriteFile(folder_ / "out" / "extended.yaml", extension.yaml);
+  const Experiment again = Experiment::Read(folder_ / "out" / "extended.yaml");
+  ASSERT_EQ(again.logs.size(), e.logs.size());
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    EXPECT_EQ(again.logs[l].label, e.logs[l].label);
+    EXPECT_EQ(again.logs[l].trial, e.logs[l].trial);
+    EXPECT_EQ(again.logs[l].condition, e.logs[l].condition);
+    EXPECT_EQ(again.logs[l].train, e.logs[l].train);
+    EXPECT_EQ(again.logs[l].time, e.logs[l].time);
+  }
+  EXPECT_EQ(again.outputs[0].measurement, e.outputs[0].measurement);
+  EXPECT_EQ(again.outputs[0].sigma, e.outputs[0].sigma);
+  EXPECT_EQ(again.outputs[0].weight, e.outputs[0].weight);
+  EXPECT_EQ(again.folds, e.folds);
+  EXPECT_EQ(again.soft, e.soft);
+  EXPECT_THAT(again.parameters, SizeIs(3));
+}
+
+class Applied : public ExtensionTest, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Candidates, Applied,
+                         ::testing::Values("payload", "stiffness", "stribeck", "load_friction",
+                                           "backlash"),
+                         [](const auto& info) { return std::string(info.param); });
+
+// A native edit, a signal, and laws that take the place of the model's Coulomb friction.
+TEST_P(Applied, GivesTheSameModelAsTheExtensionWithTheSameErrors) {
+  AddTrials(0.05);
+  const System system = Model(CoulombInstance(0.1));
+  const Experiment e = ReadExperiment(kScaled + "candidates: [" + GetParam() + "]\n");
+  std::vector<std::string> skipped;
+  const Problem null(e, system);
+  const auto candidates = MakeCandidates(e, system, SizesOf(null, null.Start()), skipped);
+  ASSERT_THAT(candidates, SizeIs(Gt(0u))) << (skipped.empty() ? "" : skipped.front());
+  for (const Hypothesis& h : candidates) {
+    SCOPED_TRACE(h.Name());
+    const Problem problem(e, h.system, h.extra);
+    auto x = problem.Start();
+    x[0] = 1.15, x[1] = 0.04, x[2] = 0.09;
+    const Extension extension = Extend(problem, x, folder_ / "out");
+    const nlohmann::json json{{"extension", ChangesJson(problem, x, h.instance, h.replaces)}};
+    EXPECT_EQ(ApplyJson(system, nlohmann::json::parse(json.dump()), "diagnosis.json"),
+              extension.xml);
+    const double train =
+        problem.PooledRms(problem.Residuals(x, problem.AllLogs()), problem.TrainLogs());
+    EXPECT_NEAR(ErrorsOf(extension, "out").train, train, 0.02 * train);
+  }
+}
+
+TEST_F(ExtensionTest, ApplyNamesWhatIsMissing) {
+  const System system = Model();
+  for (const char* text : {"{}", R"({"extension": {"changes": []}})"}) {
+    try {
+      ApplyJson(system, nlohmann::json::parse(text), "some.json");
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("some.json"));
+      EXPECT_EQ(error.exit_code(), 2);
+    }
+  }
+  const auto json = nlohmann::json::parse(
+      R"({"extension": {"instances": [], "replaces": "", "changes": [{"target": "joint:elbow",
+          "attribute": "damping", "value": 1, "operation": "set"}]}})");
+  try {
+    ApplyJson(system, json, "some.json");
+    FAIL() << "there is no elbow";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("elbow"));
+  }
+}
+
+TEST(LineDiff, ShowsWhatWentAndWhatCame) {
+  EXPECT_THAT(LineDiff("a\nb\nc\n", "a\nb\nc\n"), IsEmpty());
+  EXPECT_EQ(LineDiff("a\nb\nc\n", "a\nx\nc\n"), "-b\n+x\n");
+  EXPECT_EQ(LineDiff("a\nc\n", "a\nb\nc\nd\n"), "+b\n+d\n");
+  EXPECT_EQ(LineDiff("a\nb\nc\n", "c\n"), "-a\n-b\n");
+  EXPECT_EQ(LineDiff("", "a\n"), "+a\n");
+}
+
+// b, c and d stay in their order: four lines are shown, not ten.
+TEST(LineDiff, IsMinimal) {
+  const std::string diff = LineDiff("a\nb\nc\nd\ne\n", "b\nx\nc\nd\na\n");
+  EXPECT_EQ(std::count(diff.begin(), diff.end(), '\n'), 4);
+}
+
+}  // namespace
+}  // namespace continuum
