@@ -104,6 +104,9 @@ Measurement ReadMeasurement(const Yaml& y) {
     m.axis = axis->Numbers();
     if (m.axis.size() != 3) throw Error::Input(axis->Where(), "three numbers", "another count");
   }
+  if (m.angle != 0 && m.axis[0] == 0 && m.axis[1] == 0 && m.axis[2] == 0) {
+    throw Error::Input(y.At("axis").Where(), "an axis with a direction", "zero");
+  }
   if (m.delay < 0) throw Error::Input(y.At("delay").Where(), "a delay >= 0 s", "a negative one");
   return m;
 }
@@ -264,7 +267,8 @@ Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
   y.Only({"file", "variable", "trial", "use", "window", "condition", "set"});
   Log log;
   log.file = e.file.parent_path() / y.At("file").Text();
-  if (!std::filesystem::exists(log.file)) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(log.file, ignored)) {
     throw Error::Input(y.At("file").Where(), "a log file", "no file " + log.file.string());
   }
   log.label = log.file.stem().string();
@@ -311,11 +315,12 @@ void CheckNames(const Experiment& e, const Yaml& root) {
 
 // Two logs of one file, or of files with one name, need labels of their own.
 void MakeLabelsUnique(std::vector<Log>& logs) {
-  std::map<std::string, int> count;
-  for (const Log& log : logs) ++count[log.label];
-  std::map<std::string, int> seen;
+  std::set<std::string> taken;
   for (Log& log : logs) {
-    if (count[log.label] > 1) log.label += "_" + std::to_string(++seen[log.label]);
+    const std::string stem = log.label;
+    for (int k = 2; !taken.insert(log.label).second; ++k) {
+      log.label = stem + "_" + std::to_string(k);
+    }
   }
 }
 

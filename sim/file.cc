@@ -15,7 +15,8 @@ namespace continuum {
 namespace fs = std::filesystem;
 
 std::string ReadFile(const fs::path& path) {
-  if (fs::is_directory(path)) throw Error::Input(path.string(), "a file", "a folder");
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw Error::Input(path.string(), "a file", "a folder");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error::Input(path.string(), "a readable file", std::strerror(errno));
   std::string text(std::istreambuf_iterator<char>(in), {});

@@ -68,7 +68,7 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
     ChannelScore s{channel.name, channel.unit};
     double squares = 0, absolute = 0;
     for (std::size_t row = 0; row < log.rows(); ++row) {
-      if (std::isnan(log.measured[c][row])) continue;
+      if (std::isnan(log.measured[c][row]) || std::isnan(residuals[c][row])) continue;
       const double error = residuals[c][row] / channel.factor;
       ++s.rows;
       squares += error * error;
@@ -90,7 +90,9 @@ Pool::Pool(const Experiment& e) {
   std::string unit;
   bool one = true;
   for (const auto& channel : e.channels) {
-    counts_.push_back(e.outputs[channel.output].weight > 0);
+    // A rotation has three numbers, its quaternion four channels.
+    const bool fourth = e.outputs[channel.output].quaternion() && channel.component == 3;
+    counts_.push_back(e.outputs[channel.output].weight > 0 && !fourth);
     if (!counts_.back()) continue;
     one &= unit.empty() || unit == channel.unit;
     unit = channel.unit;

@@ -121,7 +121,8 @@ double Table::NumberOrNan(std::size_t row, std::string_view column) const {
 
 double Table::Number(std::size_t row, std::string_view column) const {
   const std::string& cell = Text(row, column);
-  const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
+  const bool plus = cell.starts_with('+') && !cell.starts_with("+-");
+  const char* const begin = cell.data() + (plus ? 1 : 0);
   const char* const end = cell.data() + cell.size();
   double value = 0;
   const auto [stop, error] = std::from_chars(begin, end, value);

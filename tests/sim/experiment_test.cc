@@ -1,0 +1,255 @@
+#include "sim/experiment.h"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "error.h"
+#include "sim/file.h"
+#include "support/scratch.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAreArray;
+
+constexpr char kLog[] = "t,T1,on,q1\n0,1,1,10\n100,2,0,\n250,3,1,30\n400,4,0,40\n";
+constexpr char kExperiment[] = R"(format: 1
+model: m.xml
+time: {column: t, unit: ms}
+inputs: [{column: T1, unit: mN, actuator: cable1, enable: on}]
+outputs: [{column: q1, unit: deg, sensor: bend1}]
+logs: [{file: log.csv}]
+)";
+
+class ExperimentFile : public ::testing::Test {
+ protected:
+  ExperimentFile() { scratch_.Write("log.csv", kLog); }
+
+  Experiment Read(const std::string& text) const {
+    return Experiment::Read(scratch_.Write("e.yaml", text));
+  }
+  // The good file with one text replaced by another.
+  Experiment With(const std::string& old, const std::string& by) const {
+    std::string text = kExperiment;
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, text.npos) << old;
+    return Read(text.replace(at, old.size(), by));
+  }
+  static std::string Message(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const Error& e) {
+      EXPECT_EQ(e.exit_code(), 2);
+      return e.what();
+    } catch (const std::exception& e) {
+      ADD_FAILURE() << "not a continuum::Error: " << e.what();
+      return e.what();
+    }
+    return "no error";
+  }
+  std::string Wrong(const std::string& old, const std::string& by) const {
+    return Message([&] { With(old, by); });
+  }
+  std::string Wrong(const std::string& log) const {
+    scratch_.Write("log.csv", log);
+    return Message([&] { Read(kExperiment); });
+  }
+
+  testing::Scratch scratch_;
+};
+
+TEST_F(ExperimentFile, IsReadInSi) {
+  const Experiment e = Read(kExperiment);
+  EXPECT_EQ(e.model, scratch_ / "m.xml");
+  ASSERT_EQ(e.logs.size(), 1u);
+  const Log& log = e.logs[0];
+  EXPECT_THAT(log.time, ElementsAre(0, 0.1, 0.25, 0.4));
+  EXPECT_THAT(log.input[0], ElementsAre(1e-3, 2e-3, 3e-3, 4e-3));
+  EXPECT_THAT(log.enable[0], ElementsAre(true, false, true, false));
+  EXPECT_DOUBLE_EQ(log.measured[0][2], std::numbers::pi / 6);
+  EXPECT_TRUE(std::isnan(log.measured[0][1]));
+  EXPECT_EQ(log.label, "log");
+  EXPECT_EQ(log.trial, "log");
+  EXPECT_TRUE(log.train && e.all_candidates);
+  EXPECT_EQ(e.start, Experiment::Start::kRest);
+}
+
+TEST_F(ExperimentFile, CutsWindowsInSecondsOfTheLogAndThenSkewsTheClock) {
+  std::string text = kExperiment;
+  text.replace(text.find("unit: ms"), 8, "unit: ms, skew: 0.01");
+  text.replace(text.find("[{file: log.csv}]"), 17,
+               "\n  - {file: log.csv, window: [0, 0.1]}\n  - {file: log.csv, window: [0.25, 0.4]}");
+  const Experiment e = Read(text);
+  EXPECT_THAT(e.logs[0].time, ElementsAre(0, 0.1 * 1.01));
+  EXPECT_THAT(e.logs[1].time, ElementsAre(0.25 * 1.01, 0.4 * 1.01));
+  EXPECT_NE(e.logs[0].label, e.logs[1].label);
+}
+
+TEST_F(ExperimentFile, GivesEveryLogALabelOfItsOwn) {
+  scratch_.Write("log_1.csv", kLog);
+  const Experiment e =
+      With("[{file: log.csv}]", "[{file: log.csv}, {file: log.csv}, {file: log_1.csv}]");
+  EXPECT_NE(e.logs[0].label, e.logs[1].label);
+  EXPECT_NE(e.logs[0].label, e.logs[2].label);
+  EXPECT_NE(e.logs[1].label, e.logs[2].label);
+}
+
+TEST_F(ExperimentFile, KeepsColumnNamesAsTheyAreWritten) {
+  scratch_.Write("log.csv", "t,T1,on,1\n0,1,1,10\n100,2,0,20\n");
+  EXPECT_EQ(With("column: q1", "column: 1").channels[0].name, "1");
+}
+
+TEST_F(ExperimentFile, ReadsKnownValuesParametersAndCandidates) {
+  const Experiment e =
+      With("logs: [{file: log.csv}]", R"(candidates: [{effect: payload, where: "body:tip",
+    per: condition}, dead_time]
+folds: [trial, window]
+parameters:
+  - {name: k, target: "joint:bend*", attribute: stiffness, initial: 1, lower: 0.1, upper: 10, per: log,
+     operation: scale, frozen: true}
+logs: [{file: log.csv, use: validate, trial: a, condition: b, set: {"body:tip": {mass: 0.1}, option: {timestep: 1e-3}}}])");
+  ASSERT_EQ(e.candidates.size(), 2u);
+  EXPECT_TRUE(e.candidates[0].per_condition && !e.candidates[1].per_condition);
+  EXPECT_EQ(e.parameters[0].operation, Change::Operation::kScale);
+  EXPECT_EQ(e.parameters[0].per, Parameter::Per::kLog);
+  EXPECT_FALSE(e.logs[0].train);
+  EXPECT_EQ(e.logs[0].set.size(), 2u);
+  EXPECT_EQ(e.folds.size(), 2u);
+}
+
+TEST_F(ExperimentFile, ErrorsNameLineAndKey) {
+  EXPECT_THAT(Wrong("format: 1", "format: 2"), HasSubstr("e.yaml:1: format"));
+  EXPECT_THAT(Wrong("model: m.xml", "modle: m.xml"),
+              AllOf(HasSubstr("e.yaml:2"), HasSubstr("modle")));
+  EXPECT_THAT(Wrong("model: m.xml\n", ""), HasSubstr("'model'"));
+  EXPECT_THAT(Wrong("unit: ms", "unit: fortnight"),
+              AllOf(HasSubstr("e.yaml:3"), HasSubstr("fortnight")));
+  EXPECT_THAT(Wrong("column: T1", "column: [T1]"),
+              AllOf(HasSubstr("e.yaml:4"), HasSubstr("a list")));
+  EXPECT_THAT(Wrong("actuator: cable1, ", ""),
+              AllOf(HasSubstr("e.yaml:4"), HasSubstr("'actuator'")));
+  EXPECT_THAT(Wrong("[{column: q1, unit: deg, sensor: bend1}]", "[]"),
+              HasSubstr("at least one output"));
+  EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, actuator: a"), HasSubstr("both"));
+  EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, sigma: -1"), HasSubstr("sigma"));
+  EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, weight: .nan"), HasSubstr("weight"));
+  EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, delay: -1"), HasSubstr("delay"));
+  EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, scale: two"), HasSubstr("'two'"));
+  EXPECT_THAT(Wrong("column: q1,", "columns: [a, b, c],"), HasSubstr("quaternion"));
+  EXPECT_THAT(Wrong("[{file: log.csv}]", "[]"), HasSubstr("at least one log"));
+  EXPECT_THAT(Wrong("file: log.csv", "file: none.csv"),
+              AllOf(HasSubstr("e.yaml:6"), HasSubstr("none.csv")));
+  EXPECT_THAT(Wrong("file: log.csv", "file: log.csv, use: test"), HasSubstr("train | validate"));
+  EXPECT_THAT(Wrong("file: log.csv", "file: log.csv, window: [1, 0]"), HasSubstr("window"));
+  EXPECT_THAT(Wrong("file: log.csv", "file: log.csv, window: [0, 0.05]"), HasSubstr("two rows"));
+  EXPECT_THAT(Wrong("format: 1", "format: 1\nformat: 1"), HasSubstr("'format' twice"));
+  EXPECT_THAT(Wrong("format: 1", "format: 1\nstart: warm"), HasSubstr("'warm'"));
+  EXPECT_THAT(Wrong("format: 1", "format: 1\ncandidates: [ghosts]"), HasSubstr("'ghosts'"));
+  EXPECT_THAT(Wrong("format: 1", "format: [1"), HasSubstr("e.yaml:"));
+  EXPECT_THAT(Wrong("inputs: [{", "inputs: [{column: T1, actuator: cable1}, {"),
+              HasSubstr("'cable1' twice"));
+  EXPECT_THAT(Wrong("outputs: [{", "outputs: [{column: q1, sensor: other}, {"),
+              HasSubstr("'q1' twice"));
+}
+
+TEST_F(ExperimentFile, RefusesATurnWithoutADirectionOrWithoutAVector) {
+  EXPECT_THAT(Wrong("sensor: bend1", "sensor: \"tip[0]\", angle: 0.1, axis: [0, 0, 0]"),
+              HasSubstr("axis"));
+}
+
+TEST_F(ExperimentFile, ErrorsOfALogNameItsLineAndColumn) {
+  EXPECT_THAT(Wrong("t,T1,on,q1\n0,1,1,1\n0,1,1,1\n"),
+              AllOf(HasSubstr("log.csv:3"), HasSubstr("increasing")));
+  EXPECT_THAT(Wrong("t,T1,on,q1\n0,1,1,1\n1,nan,1,1\n"),
+              AllOf(HasSubstr("log.csv:3"), HasSubstr("'T1'")));
+  EXPECT_THAT(Wrong("t,T1,on,q1\n0,1,1,1\n1,1,maybe,1\n"),
+              AllOf(HasSubstr("log.csv:3"), HasSubstr("'on'")));
+  EXPECT_THAT(Wrong("t,T1,on,q1\n0,1,1,1\n1,1,1,inf\n"),
+              AllOf(HasSubstr("log.csv:3"), HasSubstr("'q1'")));
+  EXPECT_THAT(Wrong("t,T1,on\n0,1,1\n1,1,1\n"), AllOf(HasSubstr("log.csv:1"), HasSubstr("'q1'")));
+  EXPECT_THAT(Wrong("t,T1,on,q1\n0,1,1,\n1,1,1,nan\n"),
+              AllOf(HasSubstr("'q1'"), HasSubstr("at least one")));
+  EXPECT_THAT(Wrong("t,T1,on,q1\n0,1,1,1\n"), HasSubstr("two rows"));
+  EXPECT_THAT(Wrong(""), HasSubstr("header"));
+}
+
+TEST_F(ExperimentFile, SurvivesPathsThatNoFileSystemTakes) {
+  const std::string name(5000, 'a');
+  EXPECT_THAT(Wrong("file: log.csv", "file: " + name), HasSubstr("e.yaml:6"));
+  EXPECT_THAT(Wrong("file: log.csv", "file: \"a\\0b\""), HasSubstr("e.yaml:6"));
+  EXPECT_THAT(Wrong("file: log.csv", "file: ."), HasSubstr("a folder"));
+  EXPECT_THAT(Message([&] { Experiment::Read(scratch_ / name); }), HasSubstr("readable"));
+}
+
+TEST_F(ExperimentFile, SurvivesDeepAndCircularYaml) {
+  EXPECT_NE(Message([&] { Read(std::string(100000, '[')); }), "no error");
+  EXPECT_NE(Message([&] { Read(std::string(100000, '{')); }), "no error");
+  EXPECT_NE(
+      Message([&] { Read("format: 1\nlogs: &a [*a]\noutputs: &b {column: *b}\nmodel: x\n"); }),
+      "no error");
+}
+
+std::string Arbitrary(const std::string& good, std::size_t from, std::size_t count,
+                      const std::string& by) {
+  std::string text = good;
+  from %= text.size();
+  return text.replace(from, std::min(count, text.size() - from), by);
+}
+
+void ExpectErrorOrNothing(const testing::Scratch& scratch) {
+  try {
+    Experiment::Read(scratch / "e.yaml");
+  } catch (const Error&) {
+  }
+}
+
+RC_GTEST_PROP(ExperimentBytes, NeverFailExceptWithAnError, (const std::string& bytes)) {
+  const testing::Scratch scratch;
+  scratch.Write("log.csv", kLog);
+  scratch.Write("e.yaml", bytes);
+  ExpectErrorOrNothing(scratch);
+}
+
+RC_GTEST_PROP(ExperimentBytes, NeverFailWhenAGoodFileIsDamagedExceptWithAnError,
+              (std::size_t from, std::uint8_t count)) {
+  const auto by = *rc::gen::container<std::string>(
+      rc::gen::element('{', '}', '[', ']', ':', ',', '-', '&', '*', '"', '\n', ' ', 'a', '1', '.',
+                       '~', '!', '?', '|', '<', '\xFF', '\0'));
+  const bool log = *rc::gen::arbitrary<bool>();
+  const testing::Scratch scratch;
+  scratch.Write("log.csv", log ? Arbitrary(kLog, from, count % 8, by) : kLog);
+  scratch.Write("e.yaml", log ? kExperiment : Arbitrary(kExperiment, from, count % 8, by));
+  ExpectErrorOrNothing(scratch);
+}
+
+RC_GTEST_PROP(ExperimentLog, RoundTripsIncreasingTimesAndNumbers, ()) {
+  const auto steps = *rc::gen::container<std::vector<int>>(rc::gen::inRange(1, 1000000));
+  RC_PRE(steps.size() >= 2u);
+  std::string text = "t,T1,on,q1\n";
+  std::vector<double> time, value;
+  double t = *rc::gen::inRange(-1000, 1000);
+  for (const int step : steps) {
+    t += step * 1e-3;
+    time.push_back(t * 1e-3);
+    value.push_back(*rc::gen::arbitrary<double>() * 1e-3);
+    text += Decimal(t) + ",0,1," + Decimal(value.back()) + "\n";
+  }
+  const testing::Scratch scratch;
+  scratch.Write("log.csv", text);
+  std::string good = kExperiment;
+  const Experiment e =
+      Experiment::Read(scratch.Write("e.yaml", good.replace(good.find("deg"), 3, "rad")));
+  RC_ASSERT(e.logs[0].time == time);
+  RC_ASSERT(e.logs[0].measured[0] == value);
+}
+
+}  // namespace
+}  // namespace continuum

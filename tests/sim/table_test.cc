@@ -1,0 +1,138 @@
+#include "sim/table.h"
+
+#include <cmath>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string Message(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 2);
+    return e.what();
+  }
+  return "no error";
+}
+std::string ParseError(const std::string& text) {
+  return Message([&] { Table::Parse(text, "log.csv"); });
+}
+
+TEST(Table, ReadsColumnsByNameInAnyLineEnding) {
+  const Table t = Table::Parse("\xEF\xBB\xBFtime , T1\r\n\r\n0,1\r\n+0.5 , -2e-3\r\n", "log.csv");
+  EXPECT_THAT(t.columns(), ElementsAre("time", "T1"));
+  EXPECT_THAT(t.Numbers("time"), ElementsAre(0, 0.5));
+  EXPECT_THAT(t.Numbers("T1"), ElementsAre(1, -2e-3));
+  EXPECT_EQ(t.Where(1), "log.csv:4");
+}
+
+TEST(Table, KeepsCommasAndQuotesInsideQuotedCells) {
+  const Table t = Table::Parse("a,b\n\"x, \"\"y\"\"\",\n", "log.csv");
+  EXPECT_EQ(t.Text(0, "a"), "x, \"y\"");
+  EXPECT_TRUE(std::isnan(t.NumberOrNan(0, "b")));
+}
+
+TEST(Table, SaysWhereALineIsWrong) {
+  EXPECT_THAT(ParseError(""), AllOf(HasSubstr("log.csv"), HasSubstr("header")));
+  EXPECT_THAT(ParseError("\n \r\n"), HasSubstr("header"));
+  EXPECT_THAT(ParseError("t,x,t\n"), AllOf(HasSubstr("log.csv:1"), HasSubstr("'t' twice")));
+  EXPECT_THAT(ParseError("t,,x\n"), HasSubstr("log.csv:1"));
+  EXPECT_THAT(ParseError("t,x\n0,1\n\n2\n"), AllOf(HasSubstr("log.csv:4"), HasSubstr("found 1")));
+  EXPECT_THAT(ParseError("t,x\n0,1,\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("found 3")));
+  EXPECT_THAT(ParseError("t\n\"0\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("closing quote")));
+  EXPECT_THAT(ParseError("t\n\"0\"1\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("'1'")));
+  EXPECT_THAT(ParseError(std::string("t\n\0\n", 4)), HasSubstr("zero byte"));
+}
+
+TEST(Table, SaysWhichCellIsNoFiniteNumber) {
+  for (const std::string cell : {"", "nan", "inf", "-inf", "1e999", "0x10", "1 2", "1,", "--1",
+                                 "++1", "+-1", "1d3", "one"}) {
+    const Table t = Table::Parse("t,x\n0,\"" + cell + "\"\n", "log.csv");
+    EXPECT_THAT(Message([&] { t.Number(0, "x"); }),
+                AllOf(HasSubstr("log.csv:2"), HasSubstr("'x'"), HasSubstr("finite number")))
+        << cell;
+  }
+  const Table t = Table::Parse("t\n0\n", "log.csv");
+  EXPECT_THAT(Message([&] { t.Numbers("x"); }),
+              AllOf(HasSubstr("column 'x'"), HasSubstr("found t")));
+}
+
+TEST(Table, ReadsFlagsInTheUsualSpellings) {
+  const Table t = Table::Parse("on\nTrue\nfalse\n1\n0.0\nyes\n", "log.csv");
+  EXPECT_TRUE(t.Flag(0, "on"));
+  EXPECT_FALSE(t.Flag(1, "on"));
+  EXPECT_TRUE(t.Flag(2, "on"));
+  EXPECT_FALSE(t.Flag(3, "on"));
+  EXPECT_THAT(Message([&] { t.Flag(4, "on"); }), HasSubstr("log.csv:6"));
+}
+
+RC_GTEST_PROP(Table, NeverFailsOnArbitraryBytesExceptWithAnError, (const std::string& bytes)) {
+  try {
+    const Table t = Table::Parse(bytes, "log.csv");
+    for (std::size_t row = 0; row < t.rows(); ++row) {
+      RC_ASSERT(t.Where(row).starts_with("log.csv:"));
+      for (const auto& column : t.columns()) {
+        try {
+          RC_ASSERT(std::isfinite(t.Number(row, column)));
+        } catch (const Error&) {
+        }
+      }
+    }
+  } catch (const Error& e) {
+    RC_ASSERT(std::string(e.what()).starts_with("log.csv"));
+  }
+}
+
+// Denser in what matters to a reader of CSV than arbitrary bytes are.
+RC_GTEST_PROP(Table, NeverFailsOnArbitraryCsvExceptWithAnError, ()) {
+  const auto text = *rc::gen::container<std::string>(
+      rc::gen::element(',', '"', '\n', '\r', ' ', '\t', 't', '1', '-', '.', 'e', '\xEF', '\0'));
+  try {
+    const Table t = Table::Parse(text, "log.csv");
+    for (std::size_t row = 0; row < t.rows(); ++row) {
+      for (const auto& column : t.columns()) t.Text(row, column);
+    }
+  } catch (const Error&) {
+  }
+}
+
+std::string Quoted(const std::string& cell) {
+  std::string out = "\"";
+  for (const char c : cell) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+RC_GTEST_PROP(Table, RoundTripsNamesAndNumbersExactly, ()) {
+  const auto names = *rc::gen::unique<std::vector<std::string>>(rc::gen::nonEmpty(
+      rc::gen::container<std::string>(rc::gen::element('a', 'B', '[', ']', ',', '"', ' ', '_'))));
+  RC_PRE(!names.empty());
+  const auto rows = *rc::gen::container<std::vector<std::vector<double>>>(
+      rc::gen::container<std::vector<double>>(names.size(), rc::gen::arbitrary<double>()));
+  std::string text;
+  for (std::size_t c = 0; c < names.size(); ++c) text += (c ? "," : "") + Quoted(names[c]);
+  for (const auto& row : rows) {
+    text += "\n";
+    for (std::size_t c = 0; c < names.size(); ++c) text += (c ? "," : "") + Decimal(row[c]);
+  }
+  const Table t = Table::Parse(text, "log.csv");
+  RC_ASSERT(t.columns() == names);
+  RC_ASSERT(t.rows() == rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t c = 0; c < names.size(); ++c) RC_ASSERT(t.Number(r, names[c]) == rows[r][c]);
+  }
+}
+
+}  // namespace
+}  // namespace continuum
