@@ -14,6 +14,7 @@ struct Change {
   std::string target, attribute;
   double value = 0;
   Operation operation = Operation::kSet;
+  bool operator==(const Change&) const = default;
 };
 
 }  // namespace continuum

@@ -177,9 +177,7 @@ double* Element::Address(std::string_view attribute, double& unit) const {
 }
 
 double Element::Get(std::string_view attribute) const {
-  if (element_->elemtype == mjOBJ_BODY && attribute == "mass") {
-    return compiled_->body_mass[mj_name2id(compiled_, mjOBJ_BODY, Name().c_str())];
-  }
+  if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return BodyMass();
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return 0;
   if (element_->elemtype == mjOBJ_ACTUATOR) {
     const mjsActuator& a = *mjs_asActuator(element_);
@@ -187,6 +185,7 @@ double Element::Get(std::string_view attribute) const {
     if (attribute == "kv") return -a.biasprm[2];
     if (attribute == "force_scale") return 1;
     if (attribute == "lag") return a.dyntype == mjDYN_NONE ? 0 : a.dynprm[0];
+    if (attribute == "delay") return a.delay;
   }
   double unit = 1;
   return *Address(attribute, unit) * unit;
@@ -222,6 +221,13 @@ void Element::Add(std::string_view attribute, double value) {
     mjsActuator& a = Affine();
     a.biasprm[0] += a.gainprm[0] * value;
     return;
+  }
+  const bool lag = element_->elemtype == mjOBJ_ACTUATOR && attribute == "lag";
+  const bool delay = element_->elemtype == mjOBJ_ACTUATOR && attribute == "delay";
+  if ((lag || delay) && value == 0) return;
+  if (lag && Get("lag") > 0) {
+    throw Error::Input(Who(), "an actuator without a lag",
+                       "one of " + std::to_string(Get("lag")) + " s");
   }
   Set(attribute, Get(attribute) + value);
 }
@@ -270,18 +276,45 @@ void Element::SetLag(double lag) {
   a.dynprm[0] = lag;
 }
 
-// The history must reach back over the delay also where rows of a log shorten the steps.
 void Element::SetDelay(double delay) {
+  if (delay < 0) throw Error::Input(Who() + ": delay", "a number >= 0", std::to_string(delay));
   mjsActuator& a = *mjs_asActuator(element_);
-  a.delay = delay > 0 ? delay : 0;
-  a.nsample = delay > 0 ? 4 * (static_cast<int>(delay / spec_->option.timestep) + 4) : 0;
-  a.interp = 1;
+  a.delay = delay;
+  if (delay == 0) a.nsample = 0;
+  if (delay > 0 && a.nsample == 0) a.interp = 1;
 }
 
-// Makes the inertia that compilation found explicit, so that it can be edited.
+void Element::CoverDelay() {
+  mjsActuator& a = *mjs_asActuator(element_);
+  if (a.delay <= 0) return;
+  const double samples = 8 * (a.delay / spec_->option.timestep + 4);
+  a.nsample = std::max(a.nsample, static_cast<int>(std::min(samples, 1e6)));
+}
+
+// Of the specification where it says so, else what compilation found in the geoms.
+double Element::BodyMass() const {
+  const mjsBody& body = *mjs_asBody(element_);
+  if (body.explicitinertial && spec_->compiler.inertiafromgeom != mjINERTIAFROMGEOM_TRUE)
+    return body.mass;
+  return compiled_->body_mass[mj_name2id(compiled_, mjOBJ_BODY, Name().c_str())];
+}
+
+// Makes the inertia that compilation found explicit, with a quaternion, so that it can be edited.
 void Element::FreezeInertia() {
+  if (spec_->compiler.inertiafromgeom == mjINERTIAFROMGEOM_TRUE ||
+      spec_->compiler.settotalmass > 0) {
+    throw Error::Input(Who() + ": mass",
+                       "a <compiler> without inertiafromgeom=\"true\" and settotalmass",
+                       "one that overrides the mass of a body");
+  }
   mjsBody& body = *mjs_asBody(element_);
-  if (body.explicitinertial) return;
+  if (body.explicitinertial) {
+    const char* const failed = mjs_resolveOrientation(body.iquat, spec_->compiler.degree,
+                                                      spec_->compiler.eulerseq, &body.ialt);
+    if (failed) throw Error::Input(Who() + ": inertial", failed);
+    body.ialt.type = mjORIENTATION_QUAT;
+    return;
+  }
   const int b = mj_name2id(compiled_, mjOBJ_BODY, Name().c_str());
   body.explicitinertial = 1;
   body.mass = compiled_->body_mass[b];
@@ -342,6 +375,13 @@ void Element::AddPointMass(double added) {
   for (double& i : body.inertia) i = 0;
 }
 
+std::vector<Element> Elements(mjSpec* spec, mjtObj kind, const mjModel* compiled) {
+  std::vector<Element> all;
+  for (mjsElement* e = mjs_firstElement(spec, kind); e; e = mjs_nextElement(spec, e))
+    all.emplace_back(spec, e, compiled);
+  return all;
+}
+
 std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const std::string& target,
                                    const std::string& where) {
   const std::size_t colon = target.find(':');
@@ -353,9 +393,8 @@ std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const 
   }
   const std::string glob = target.substr(colon + 1);
   std::vector<Element> found;
-  for (mjsElement* e = mjs_firstElement(spec, kind->second); e; e = mjs_nextElement(spec, e)) {
-    const std::string name = mjs_getString(mjs_getName(e));
-    if (!name.empty() && GlobMatches(glob, name)) found.emplace_back(spec, e, compiled);
+  for (const Element& e : Elements(spec, kind->second, compiled)) {
+    if (!e.Name().empty() && GlobMatches(glob, e.Name())) found.push_back(e);
   }
   if (found.empty()) {
     throw Error::Input(where, "a " + kind->first + " of the model", "no match for '" + glob + "'");

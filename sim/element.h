@@ -15,7 +15,8 @@ namespace continuum {
 ///
 ///   body      mass (scales the inertia with it), point_mass (added at the body's origin)
 ///   actuator  kp, kv (gain and bias), force_scale (gain, bias and force range), input (what it
-///             receives: Scale, Add), delay, lag (first-order, filterexact)
+///             receives: Scale, Add), delay (Add: on top of the present one), lag (first-order,
+///             filterexact; Add is refused where there is one)
 ///
 /// Satisfies the Element of effects/effect.h, so that native effects apply to it.
 class Element {
@@ -37,12 +38,17 @@ class Element {
   };
   Saved Save() const;
 
+  /// Gives a delayed actuator a history that reaches back over its delay at the model's time step,
+  /// also where rows of a log shorten the steps to an eighth; one that is long enough stays.
+  void CoverDelay();
+
   std::string Name() const;
   /// "joint 'q1'", for messages.
   std::string Who() const;
 
  private:
   double* Address(std::string_view attribute, double& unit) const;
+  double BodyMass() const;
   void FreezeInertia();
   void SetBodyMass(double mass);
   void AddPointMass(double mass);
@@ -54,6 +60,9 @@ class Element {
   mjsElement* element_;
   const mjModel* compiled_;
 };
+
+/// Every element of a kind, in the order of the model.
+std::vector<Element> Elements(mjSpec* spec, mjtObj kind, const mjModel* compiled);
 
 /// The elements that a target "kind:glob" names, in the order of the model ("option" gives none:
 /// see OptionAttribute). Throws Error (where) when the kind is unknown or nothing matches.

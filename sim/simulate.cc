@@ -9,6 +9,7 @@
 
 #include "engine.h"
 #include "error.h"
+#include "sim/file.h"
 #include "sim/units.h"
 
 namespace continuum {
@@ -115,18 +116,55 @@ class Inputs {
   std::vector<Gate> gates_;
 };
 
-// Lags and delays as if the present inputs had been there for ever.
+double Within(double value, bool limited, const double range[2]) {
+  return limited ? std::clamp(value, range[0], range[1]) : value;
+}
+
+// Lags and delays as if the present inputs, as the engine clamps them, had been there for ever.
 void Settle(const mjModel& m, mjData& d) {
+  const bool clamped = !(m.opt.disableflags & mjDSBL_CLAMPCTRL);
   for (int a = 0; a < m.nu; ++a) {
     const int adr = m.actuator_actadr[a];
     const bool lagged =
         m.actuator_dyntype[a] == mjDYN_FILTER || m.actuator_dyntype[a] == mjDYN_FILTEREXACT;
-    if (adr >= 0 && lagged) d.act[adr] = d.ctrl[a];
+    if (adr >= 0 && lagged) {
+      const double u =
+          Within(d.ctrl[a], clamped && m.actuator_ctrllimited[a], m.actuator_ctrlrange + 2 * a);
+      d.act[adr] = Within(u, m.actuator_actlimited[a], m.actuator_actrange + 2 * a);
+    }
     const int samples = m.actuator_history[2 * a];
     if (samples > 0) {
       const std::vector<double> past(samples, d.ctrl[a]);
       mj_initCtrlHistory(&m, &d, a, nullptr, past.data());
     }
+  }
+}
+
+// The most rows of a log in any interval of this length [s].
+std::size_t RowsWithin(const std::vector<double>& time, double length) {
+  std::size_t most = 0;
+  for (std::size_t first = 0, last = 0; last < time.size(); ++last) {
+    while (time[last] - time[first] > length) ++first;
+    most = std::max(most, last - first + 1);
+  }
+  return most;
+}
+
+// A delay reaches back over its steps, which rows shorten, only as far as the actuator's history.
+void RequireHistory(const mjModel& m, const Log& log) {
+  for (int a = 0; a < m.nu; ++a) {
+    const double delay = m.actuator_delay[a];
+    if (delay <= 0) continue;
+    const double steps = std::ceil(delay / m.opt.timestep);
+    const std::size_t needed = static_cast<std::size_t>(steps) + RowsWithin(log.time, delay) + 2;
+    const auto samples = static_cast<std::size_t>(m.actuator_history[2 * a]);
+    if (needed <= samples) continue;
+    const char* const name = mj_id2name(&m, mjOBJ_ACTUATOR, a);
+    throw Error::Input(log.label + ": actuator '" + (name ? name : "") + "' with a delay of " +
+                           Decimal(delay) + " s",
+                       "a history of " + std::to_string(needed) +
+                           " samples, or a time step near the log's sampling interval",
+                       std::to_string(samples));
   }
 }
 
@@ -292,6 +330,19 @@ InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log) 
   return {{d.qpos, d.qpos + m.nq}, std::vector<double>(nv, 0)};
 }
 
+void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Trace& trace) {
+  trace.channel.clear();
+  for (std::size_t o = 0; o < trace.raw.size(); ++o) {
+    Record record = trace.raw[o];
+    Measure(record, e.outputs[o].measurement, log.time, UnitFactor(e.outputs[o].unit, ""));
+    if (e.outputs[o].quaternion()) {
+      for (auto& component : record) trace.channel.push_back(std::move(component));
+    } else {
+      trace.channel.push_back(std::move(record[wiring.output[o].component]));
+    }
+  }
+}
+
 Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const InitialState& initial,
                const Hooks& hooks) {
   const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
@@ -299,6 +350,7 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
   mjData& d = *machine.data;
   const double h = m.opt.timestep;
   m.opt.disableflags |= mjDSBL_AUTORESET;
+  RequireHistory(m, log);
   const Wiring wiring(e, m);
   Inputs inputs(m, e, log, wiring);
   mj_resetData(&m, &d);
@@ -322,7 +374,27 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
         records[o][c][row] = from[source.address + c];
       }
     }
-    if (hooks.row) hooks.row(m, d, row);
+  };
+  // The stages of RK4 overwrite the forces of the first: evaluate the row before its step.
+  const bool staged = m.opt.integrator == mjINT_RK4;
+  std::vector<double> qpos(m.nq), qvel(m.nv);
+  const auto stepped = [&](std::size_t row) {  // a row's step; what the row sees is recorded
+    std::copy(d.qpos, d.qpos + m.nq, qpos.begin());
+    std::copy(d.qvel, d.qvel + m.nv, qvel.begin());
+    if (staged) {
+      mj_forward(&m, &d);
+      record(row);
+      if (hooks.row) hooks.row(m, d, row);
+    }
+    mj_step(&m, &d);  // its sensors and forces are those of the state it starts from
+    if (staged) return;
+    record(row);
+    if (!hooks.row) return;
+    std::swap_ranges(qpos.begin(), qpos.end(), d.qpos);
+    std::swap_ranges(qvel.begin(), qvel.end(), d.qvel);
+    hooks.row(m, d, row);
+    std::swap_ranges(qpos.begin(), qpos.end(), d.qpos);
+    std::swap_ranges(qvel.begin(), qvel.end(), d.qvel);
   };
 
   for (std::size_t row = 0; row + 1 < log.rows() && !trace.diverged; ++row) {
@@ -335,8 +407,11 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
       m.opt.timestep = step < steps ? h : rest;
       if (step > 0) inputs.Between(d, row, begin + step * h);
       if (hooks.step) hooks.step(m, d);
-      mj_step(&m, &d);  // its sensors are those of the state it starts from
-      if (step == 0) record(row);
+      if (step == 0) {
+        stepped(row);
+      } else {
+        mj_step(&m, &d);
+      }
       if (!Healthy(m, d)) {
         trace.diverged = true;
         trace.diverged_at = begin + step * h;
@@ -349,17 +424,12 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
     inputs.AtRow(d, log.rows() - 1);
     mj_forward(&m, &d);
     record(log.rows() - 1);
+    if (hooks.row) hooks.row(m, d, log.rows() - 1);
   }
   inputs.AllOn();
 
-  for (std::size_t o = 0; o < records.size(); ++o) {
-    Measure(records[o], e.outputs[o].measurement, log.time, UnitFactor(e.outputs[o].unit, ""));
-    if (e.outputs[o].quaternion()) {
-      for (auto& component : records[o]) trace.channel.push_back(std::move(component));
-    } else {
-      trace.channel.push_back(std::move(records[o][wiring.output[o].component]));
-    }
-  }
+  trace.raw = std::move(records);
+  MeasureTrace(e, wiring, log, trace);
   return trace;
 }
 

@@ -18,10 +18,12 @@ struct Trace {
   std::vector<std::vector<double>> channel;  ///< [channel][row] SI, as it would be measured
   bool diverged = false;
   double diverged_at = 0;  ///< [s]
+  /// [output][component][row] of whole sensors, before they are measured.
+  std::vector<std::vector<std::vector<double>>> raw = {};
 };
 
 struct Hooks {
-  /// At every row, with the state that the row sees.
+  /// At every row, with the state that the row sees and all that follows from it; must not write.
   std::function<void(const mjModel&, mjData&, std::size_t row)> row = {};
   /// Before every step; may write qfrc_applied.
   std::function<void(const mjModel&, mjData&)> step = {};
@@ -49,6 +51,9 @@ struct Wiring {
 /// A simulation that diverges ends there: diverged is set, the rest of the channels is NaN.
 Trace Simulate(Machine& machine, const Experiment& e, const Log& log,
                const InitialState& initial = {}, const Hooks& hooks = {});
+
+/// The channels anew from raw, as this experiment's outputs measure them.
+void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Trace& trace);
 
 /// The state in which the experiment's start leaves a log's trial.
 InitialState StartOf(Machine& machine, const Experiment& e, const Log& log);

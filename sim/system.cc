@@ -166,18 +166,29 @@ class System::Edits {
  public:
   Edits(const System& system, std::span<const Change> changes)
       : spec_(*system.spec_), option_(spec_.option), compiler_(spec_.compiler) {
-    for (const Change& change : changes) {
-      if (!IsPlugin(change)) Apply(system, change);
+    try {
+      for (const Change& change : changes) {
+        if (!IsPlugin(change)) Apply(system, change);
+      }
+      for (Element& actuator : Elements(&spec_, mjOBJ_ACTUATOR, system.compiled_.get())) {
+        elements_.push_back(actuator.Save());
+        actuator.CoverDelay();
+      }
+    } catch (...) {
+      Restore();
+      throw;
     }
   }
   Edits(const Edits&) = delete;
-  ~Edits() {
+  ~Edits() { Restore(); }
+
+ private:
+  void Restore() {
     for (auto e = elements_.rbegin(); e != elements_.rend(); ++e) e->Restore();
     spec_.option = option_;
     spec_.compiler = compiler_;
   }
 
- private:
   void Apply(const System& system, const Change& change) {
     if (change.target == "option") {
       double& value = OptionAttribute(spec_.option, change.attribute, change.target);

@@ -4,7 +4,8 @@
 
 namespace continuum {
 
-/// The input arrives late.   y(t) = u(t − delay),  delay [s], a native delay of the actuator.
+/// The input arrives late.   y(t) = u(t − delay),  delay [s], a native delay of the actuator, on
+/// top of one that it has.
 struct DeadTime {
   static constexpr std::string_view kName = "dead_time", kSource = "mujoco",
                                     kSummary = "an input that arrives late";
@@ -13,7 +14,7 @@ struct DeadTime {
 
   template <class Element>
   static void Apply(Element& actuator, const Vec<double, 1>& p) {
-    actuator.Set("delay", p[0]);
+    actuator.Add("delay", p[0]);
   }
 };
 

@@ -4,7 +4,8 @@
 
 namespace continuum {
 
-/// First-order lag of the input.   T ẏ + y = u,  T [s], the native dynamics "filterexact".
+/// First-order lag of the input.   T ẏ + y = u,  T [s], the native dynamics "filterexact". An
+/// actuator has room for one lag: where the model has one already, only T = 0 is accepted.
 struct Pt1 {
   static constexpr std::string_view kName = "pt1", kSource = "mujoco",
                                     kSummary = "an input with a first-order lag";
@@ -13,7 +14,7 @@ struct Pt1 {
 
   template <class Element>
   static void Apply(Element& actuator, const Vec<double, 1>& p) {
-    actuator.Set("lag", p[0]);
+    actuator.Add("lag", p[0]);
   }
 };
 

@@ -1,0 +1,99 @@
+#include "sim/measurement.h"
+
+#include <map>
+#include <sstream>
+
+#include "binding/config.h"
+#include "error.h"
+
+namespace continuum {
+namespace {
+
+constexpr std::string_view kSensor = "sensor:";
+
+using Member = double Measurement::*;
+const std::map<std::string, Member, std::less<>>& Members() {
+  static const std::map<std::string, Member, std::less<>> members{{"bias", &Measurement::bias},
+                                                                  {"scale", &Measurement::scale},
+                                                                  {"delay", &Measurement::delay},
+                                                                  {"rate", &Measurement::rate},
+                                                                  {"angle", &Measurement::angle}};
+  return members;
+}
+
+// globs: one or several, separated by spaces.
+bool Matches(const Output& out, const std::string& globs) {
+  const std::string sensor = out.source.substr(0, out.source.find('['));
+  std::istringstream all(globs);
+  for (std::string glob; all >> glob;) {
+    if (GlobMatches(glob, out.source) || GlobMatches(glob, sensor) || GlobMatches(glob, out.name()))
+      return true;
+  }
+  return false;
+}
+
+std::vector<std::size_t> OutputsOf(const Experiment& e, const std::string& target) {
+  const std::string glob = target.substr(kSensor.size());
+  std::vector<std::size_t> found;
+  std::string all;
+  for (std::size_t o = 0; o < e.outputs.size(); ++o) {
+    if (Matches(e.outputs[o], glob)) found.push_back(o);
+    all += (o ? ", " : "") + e.outputs[o].name();
+  }
+  if (found.empty()) throw Error::Input(target, "one of the outputs " + all, "no match");
+  return found;
+}
+
+double& ValueOf(Experiment& e, std::size_t output, const std::string& attribute) {
+  return e.outputs[output].measurement.*Members().find(attribute)->second;
+}
+
+double Changed(double old, const Change& change) {
+  switch (change.operation) {
+    case Change::Operation::kScale:
+      return old * change.value;
+    case Change::Operation::kAdd:
+      return old + change.value;
+    default:
+      return change.value;
+  }
+}
+
+}  // namespace
+
+bool IsMeasurement(const std::string& target, const std::string& attribute) {
+  if (target == "time") return attribute == "skew";
+  return target.starts_with(kSensor) && Members().contains(attribute);
+}
+
+double MeasurementValue(const Experiment& e, const std::string& target,
+                        const std::string& attribute) {
+  if (target == "time") return e.skew;
+  return e.outputs[OutputsOf(e, target).front()].measurement.*Members().find(attribute)->second;
+}
+
+void ApplyMeasurement(Experiment& e, const Change& change) {
+  if (change.target == "time") {
+    e.skew = Changed(e.skew, change);
+    return;
+  }
+  for (const std::size_t o : OutputsOf(e, change.target)) {
+    double& value = ValueOf(e, o, change.attribute);
+    value = Changed(value, change);
+  }
+}
+
+std::string MeasurementUnit(const Experiment& e, const std::string& target,
+                            const std::string& attribute) {
+  if (attribute == "scale" || attribute == "skew") return "1";
+  if (attribute == "delay") return "s";
+  if (attribute == "angle") return "rad";
+  std::string unit;
+  for (const std::size_t o : OutputsOf(e, target)) {
+    if (!unit.empty() && unit != e.outputs[o].unit) return "1";
+    unit = e.outputs[o].unit;
+  }
+  return attribute == "rate" ? unit + "/s" : unit;
+}
+
+}  // namespace continuum

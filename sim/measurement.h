@@ -1,0 +1,25 @@
+#pragma once
+
+#include "sim/change.h"
+#include "sim/experiment.h"
+
+namespace continuum {
+
+/// Whether a change is one of how channels are measured instead of the model: target "sensor:GLOB
+/// …" (of sensors, actuators or columns of outputs) with bias, scale, delay, rate or angle, or
+/// target "time" with skew.
+bool IsMeasurement(const std::string& target, const std::string& attribute);
+
+/// The value that such a change would replace, of the first output that matches. Throws Error when
+/// none does.
+double MeasurementValue(const Experiment& e, const std::string& target,
+                        const std::string& attribute);
+
+/// Changes the outputs (or the skew) of an experiment; its logs stay as they are.
+void ApplyMeasurement(Experiment& e, const Change& change);
+
+/// The unit of a measurement attribute: that of the outputs that match, or "1" when they differ.
+std::string MeasurementUnit(const Experiment& e, const std::string& target,
+                            const std::string& attribute);
+
+}  // namespace continuum

@@ -1,0 +1,129 @@
+#include "sim/system.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "error.h"
+#include "support/scratch.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::HasSubstr;
+using Operation = Change::Operation;
+
+constexpr char kArm[] = R"(<mujoco>
+  <option timestep="0.002"/>
+  <worldbody>
+    <body name="arm">
+      <joint name="q" axis="0 1 0" damping="0.1"/>
+      <inertial pos="0.1 0 0" mass="2" euler="0 0 30" diaginertia="0.01 0.02 0.025"/>
+      <body name="ball" pos="0.3 0 0"><geom size="0.05" mass="1"/></body>
+    </body>
+  </worldbody>
+  <actuator>
+    <position name="servo" joint="q" kp="10"/>
+    <general name="late" joint="q" delay="0.05" nsample="30" interp="linear"/>
+    <general name="lagged" joint="q" dyntype="filterexact" dynprm="0.1"/>
+  </actuator>
+</mujoco>
+)";
+
+class Changed : public ::testing::Test {
+ protected:
+  System Arm(std::string xml = kArm) const { return System::Load(scratch_.Write("arm.xml", xml)); }
+  static double Mass(const Machine& machine, const char* body) {
+    return machine.model->body_mass[mj_name2id(machine.model.get(), mjOBJ_BODY, body)];
+  }
+  // R diag(I) Rᵀ of a body about its centre, in the body's axes.
+  static std::vector<double> Inertia(const mjModel& m, const char* body) {
+    const int b = mj_name2id(&m, mjOBJ_BODY, body);
+    double R[9];
+    mju_quat2Mat(R, m.body_iquat + 4 * b);
+    std::vector<double> I(9);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        for (int k = 0; k < 3; ++k)
+          I[3 * i + j] += R[3 * i + k] * m.body_inertia[3 * b + k] * R[3 * j + k];
+      }
+    }
+    return I;
+  }
+
+  testing::Scratch scratch_;
+};
+
+TEST_F(Changed, SystemsAreAsBeforeAfterAChangeThatFails) {
+  const System arm = Arm();
+  const std::vector<Change> half{{"joint:q", "damping", 5}, {"joint:q", "no_such", 1}};
+  EXPECT_THROW(arm.Build(half), Error);
+  EXPECT_EQ(arm.Build().model->dof_damping[0], 0.1);
+}
+
+TEST_F(Changed, MassesFollowOneAnother) {
+  const System arm = Arm();
+  for (const std::string body : {"arm", "ball"}) {
+    const Machine machine = arm.Build({{{"body:" + body, "mass", 2, Operation::kSet},
+                                        {"body:" + body, "mass", 3, Operation::kScale},
+                                        {"body:" + body, "mass", 0.5, Operation::kAdd}}});
+    EXPECT_DOUBLE_EQ(Mass(machine, body.c_str()), 6.5) << body;
+  }
+}
+
+TEST_F(Changed, AnInertialWithAnglesTakesAPointMass) {
+  const System arm = Arm();
+  const Machine plain = arm.Build();
+  const Machine loaded = arm.Build({{{"body:arm", "effect:payload", 0.5}}});
+  EXPECT_DOUBLE_EQ(Mass(loaded, "arm"), 2.5);
+  const int b = mj_name2id(loaded.model.get(), mjOBJ_BODY, "arm");
+  EXPECT_NEAR(loaded.model->body_ipos[3 * b], 0.1 * 2 / 2.5, 1e-12);
+  // Two points a distance 0.1 apart: reduced mass 2·0.5/2.5 about y and z.
+  auto expected = Inertia(*plain.model, "arm");
+  expected[4] += 0.4 * 0.01, expected[8] += 0.4 * 0.01;
+  const auto found = Inertia(*loaded.model, "arm");
+  for (int i = 0; i < 9; ++i) EXPECT_NEAR(found[i], expected[i], 1e-12) << i;
+}
+
+TEST_F(Changed, AMassThatTheCompilerOverridesIsRefused) {
+  std::string xml = kArm;
+  xml.insert(xml.find("<option"), "<compiler settotalmass=\"5\"/>");
+  EXPECT_THROW(
+      {
+        try {
+          Arm(xml).Build({{{"body:arm", "mass", 1}}});
+        } catch (const Error& e) {
+          EXPECT_THAT(e.what(), HasSubstr("settotalmass"));
+          throw;
+        }
+      },
+      Error);
+}
+
+TEST_F(Changed, NothingIsNoDelayAndNoLagEvenWhereTheModelHasOne) {
+  const System arm = Arm();
+  const std::vector<Change> nothing{{"actuator:late", "effect:dead_time", 0},
+                                    {"actuator:lagged", "effect:pt1", 0}};
+  const Machine machine = arm.Build(nothing);
+  EXPECT_EQ(machine.model->actuator_delay[1], 0.05);
+  EXPECT_EQ(machine.model->actuator_dyntype[2], mjDYN_FILTEREXACT);
+  EXPECT_EQ(machine.model->actuator_dynprm[mjNDYN * 2], 0.1);
+}
+
+TEST_F(Changed, DelaysAddAndASecondLagIsRefused) {
+  const System arm = Arm();
+  EXPECT_DOUBLE_EQ(
+      arm.Build({{{"actuator:late", "effect:dead_time", 0.03}}}).model->actuator_delay[1], 0.08);
+  EXPECT_THROW(arm.Build({{{"actuator:lagged", "effect:pt1", 0.03}}}), Error);
+}
+
+TEST_F(Changed, AHistoryCoversItsDelayAtTheStepThatIsUsed) {
+  const System arm = Arm();
+  const Machine machine =
+      arm.Build({{{"actuator:servo", "effect:dead_time", 0.05}, {"option", "timestep", 2e-4}}});
+  EXPECT_GE(machine.model->actuator_history[0], 250);
+}
+
+}  // namespace
+}  // namespace continuum
