@@ -6,10 +6,12 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <Eigen/Dense>
 
 #include "error.h"
 #include "identification/parallel.h"
 #include "identification/placebo.h"
+#include "identification/trial.h"
 
 namespace continuum {
 namespace {
@@ -19,75 +21,157 @@ using Vector = Problem::Vector;
 class Session {
  public:
   Session(const Experiment& experiment, const System& system, const DiagnosisOptions& options)
-      : e_(experiment), options_(options), null_(experiment, system), d_(experiment, system) {}
+      : e_(experiment), options_(options), null_(experiment, system), d_(experiment, system) {
+    trials_.experiment = &e_;
+    trials_.iterations = options.iterations;
+  }
 
   Diagnosis Run() {
     const auto begin = std::chrono::steady_clock::now();
     d_.noise = NoiseOf(e_);
+    if (d_.noise.known()) trials_.whitening = Whitening(null_, d_.noise);
     d_.folds = FoldsOf(e_);
-    if (d_.folds.empty()) {
-      throw Error::Input(e_.file.string() + ": folds",
-                         "at least two groups of logs to leave out in turn", "one");
-    }
     Say("null fit");
-    d_.before = FitAndValidate(null_, null_.Start(), options_.iterations);
+    d_.before = trials_.Fit(null_, null_.Start());
+    if (d_.noise.known()) Requantise();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
-    d_.noise.step = StepEffect();
-    TryCandidates();
-    RunCeiling();
-    RunPlacebos();
-    Rank();
+    d_.noise.step = null_.PooledRms(d_.before.step, null_.TrainLogs());
+    MakeHypotheses();
+    if (d_.noise.known()) {
+      Screen();
+      if (SomethingIsLeft()) FitCandidates();
+      d_.noise_limited = BestLeaves() < kModelLimited;
+    } else {
+      FitCandidates();
+    }
+    if (d_.noise_limited) {
+      CompareLikelihoods();
+    } else {
+      CompareFolds();
+    }
     BootstrapGain();
     d_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(d_);
   }
 
  private:
+  static constexpr double kModelLimited = 3;  // times the noise
+
   void Say(const std::string& text) const {
+    if (StopRequested()) throw Error::Job("interrupted");
     if (options_.progress) options_.progress(text);
   }
 
-  std::vector<bool> Validate() const {
-    auto use = null_.TrainLogs();
-    use.flip();
-    return use;
+  // Once a model tells how the values move between the steps of a quantised channel.
+  void Requantise() {
+    bool any = false;
+    for (std::size_t c = 0; c < e_.channels.size(); ++c) {
+      if (d_.noise.channel[c].quantum == 0) continue;
+      any = true;
+      std::vector<std::vector<double>> values;
+      for (std::size_t l = 0; l < e_.logs.size(); ++l)
+        values.push_back(null_.Predict(d_.before.fit.x, l).channel[c]);
+      d_.noise.channel[c] = RoundingNoise(d_.noise.channel[c], values);
+    }
+    if (!any) return;
+    trials_.whitening = Whitening(null_, d_.noise);
+    d_.before = trials_.Fit(null_, d_.before.fit.x);
   }
 
-  Fitted FitAndValidate(const Problem& problem, const Vector& start, int iterations) const {
-    Fitted f;
-    f.fit = FitParameters(problem, start, problem.TrainLogs(), {iterations, 1e-4});
-    f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
-    for (std::size_t l = 0; l < e_.logs.size(); ++l) {
-      if (!f.residuals[l].allFinite()) {
-        throw Error::Job("the simulation of " + e_.logs[l].label +
-                         " diverges with the fitted parameters");
+  void MakeHypotheses() {
+    Experiment wanted = e_;
+    if (!options_.candidates.empty()) {
+      wanted.all_candidates = false;
+      wanted.candidates.clear();
+      for (const auto& name : options_.candidates) wanted.candidates.push_back({name, "", false});
+    }
+    for (Hypothesis& h : MakeCandidates(wanted, d_.system, d_.sizes, d_.skipped)) {
+      CandidateResult c{std::move(h)};
+      c.record.name = c.hypothesis.Name();
+      d_.candidates.push_back(std::move(c));
+    }
+  }
+
+  Problem ProblemOf(const CandidateResult& c) const {
+    return Problem(e_, c.hypothesis.system, c.hypothesis.extra);
+  }
+
+  // First order: what every candidate could explain of what the null fit leaves, and whether that
+  // is more than noise lets the best of so many explain.
+  void Screen() {
+    const Remainder left = trials_.LeftBy(d_.before);
+    for (CandidateResult& c : d_.candidates) {
+      Say("screen " + c.hypothesis.Name());
+      try {
+        probes_.push_back(trials_.Probes(c.hypothesis, ProblemOf(c), d_.before, left));
+      } catch (const Error& error) {
+        c.error = error.what();
+        probes_.emplace_back();
       }
     }
-    f.jacobian = problem.Jacobian(f.fit.x, f.residuals, problem.AllLogs());
-    auto r = f.residuals;
-    auto J = f.jacobian;
-    for (std::size_t l = 0; l < r.size(); ++l) {
-      if (!e_.logs[l].train) J[l].resize(0, 0);
+    screen_ = SignificanceOf(probes_, left.residual(), 1, options_.seed);
+    for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
+      CandidateResult& c = d_.candidates[i];
+      c.explained = screen_.explained[i];
+      c.p = screen_.p[i];
+      if (!probes_[i].empty()) {
+        const std::size_t best = screen_.best[i];
+        c.start = trials_.StartFrom(c.hypothesis, d_.before, best,
+                                    ExplainedBy(probes_[i][best], left.residual()));
+      }
     }
-    f.uncertainty = UncertaintyOf(problem, f.fit.x, r, J);
-    f.error = {problem.PooledRms(f.residuals, problem.TrainLogs()),
-               problem.PooledRms(f.residuals, Validate())};
-    f.folds = CrossValidate(problem, f.fit.x, f.jacobian, d_.folds);
-    return f;
   }
 
-  // The best of several starts after a few iterations, fitted to the end. The larger model contains
-  // the smaller: its likelihood may not be lower.
-  Fitted FitCandidate(const Hypothesis& h, const Problem& problem) const {
+  // Candidates are fitted when one of them is significant, or when what is left is plainly not
+  // noise.
+  bool SomethingIsLeft() const {
+    const bool significant =
+        std::any_of(d_.candidates.begin(), d_.candidates.end(),
+                    [](const auto& c) { return c.p < LikelihoodRules{}.level; });
+    return significant || d_.before.cost > kModelLimited * kModelLimited * d_.before.freedom;
+  }
+
+  // Those that first order leaves far behind are not fitted: it is wrong about sizes by factors,
+  // not by orders of magnitude.
+  bool Hopeless(const CandidateResult& c) const {
+    double best = 0;
+    for (const CandidateResult& other : d_.candidates) best = std::max(best, other.explained);
+    return d_.noise.known() && c.error.empty() && c.explained < 0.02 * best;
+  }
+
+  // The likeliest first, so that the others know what to reach.
+  void FitCandidates() {
+    Sort([](const auto& a, const auto& b) { return a.explained > b.explained; });
+    double rival = std::numeric_limits<double>::infinity();
+    for (CandidateResult& c : d_.candidates) {
+      if (!c.error.empty() || Hopeless(c)) continue;
+      Say("fit " + c.hypothesis.Name());
+      try {
+        c.fitted = FitCandidate(c, rival);
+        c.fits = true;
+        if (d_.noise.known()) rival = std::min(rival, c.fitted.fit.cost);
+        c.likelihood = d_.before.cost - c.fitted.cost;
+      } catch (const Error& error) {
+        c.error = error.what();
+      }
+    }
+    Sort([](const auto& a, const auto& b) { return a.likelihood > b.likelihood; });
+  }
+
+  // From the screen's start, or the best of several after a few iterations. The larger model
+  // contains the smaller: its likelihood may not be lower.
+  Fitted FitCandidate(const CandidateResult& c, double rival) const {
+    const Problem problem = ProblemOf(c);
+    if (c.start.size()) return trials_.Fit(problem, c.start, rival);
     const Vector& known = d_.before.fit.x;
     double best_cost = std::numeric_limits<double>::infinity();
     Vector best;
-    for (const auto& start : h.starts) {
+    for (const auto& start : c.hypothesis.starts) {
       Vector x(known.size() + static_cast<Eigen::Index>(start.size()));
       x.head(known.size()) = known;
       for (std::size_t i = 0; i < start.size(); ++i)
         x[known.size() + static_cast<Eigen::Index>(i)] = start[i];
-      if (h.starts.size() == 1) return FitAndValidate(problem, x, options_.iterations);
+      if (c.hypothesis.starts.size() == 1) return trials_.Fit(problem, x);
       try {
         const Fit fit = FitParameters(problem, x, problem.TrainLogs(), {4, 1e-3});
         if (fit.cost < best_cost) best_cost = fit.cost, best = fit.x;
@@ -96,48 +180,136 @@ class Session {
       }
     }
     if (best.size() == 0) throw Error::Job("the simulation diverges from every start");
-    return FitAndValidate(problem, best, options_.iterations);
+    return trials_.Fit(problem, best);
   }
 
-  // How far the trajectories at h and at h/4 are apart: a numerical error that no cause explains.
-  double StepEffect() const {
-    const Experiment fine = WithStep(e_, d_.system.model().opt.timestep / 4);
-    auto r = Problem(fine, d_.system).Residuals(d_.before.fit.x, null_.TrainLogs());
-    for (std::size_t l = 0; l < r.size(); ++l) r[l] -= d_.before.residuals[l].head(r[l].size());
-    const double step = null_.PooledRms(r, null_.TrainLogs());
-    return std::isfinite(step) ? step : 0;
-  }
-
-  void TryCandidates() {
-    Experiment wanted = e_;
-    if (!options_.candidates.empty()) {
-      wanted.all_candidates = false;
-      wanted.candidates.clear();
-      for (const auto& name : options_.candidates) wanted.candidates.push_back({name, "", false});
+  template <class Before>
+  void Sort(const Before& before) {
+    std::vector<std::size_t> order(d_.candidates.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return before(d_.candidates[a], d_.candidates[b]);
+    });
+    std::vector<CandidateResult> sorted;
+    std::vector<std::vector<Probe>> probes;
+    for (const std::size_t i : order) {
+      sorted.push_back(std::move(d_.candidates[i]));
+      if (!probes_.empty()) probes.push_back(std::move(probes_[i]));
     }
-    auto hypotheses = MakeCandidates(wanted, d_.system, d_.sizes, d_.skipped);
-    for (Hypothesis& h : hypotheses) {
-      if (StopRequested()) throw Error::Job("interrupted");
-      Say("candidate " + h.Name());
-      CandidateResult c{std::move(h), {}, {}, {}, ""};
-      c.record.name = c.hypothesis.Name();
-      try {
-        const Problem problem(e_, c.hypothesis.system, c.hypothesis.extra);
-        c.fitted = FitCandidate(c.hypothesis, problem);
-        c.record.before = d_.before.folds.error;
-        c.record.after = c.fitted.folds.error;
-        const Eigen::Index known = d_.before.fit.x.size();
-        const std::span<const double> own(c.fitted.fit.x.data() + known, c.hypothesis.extra.size());
-        const std::size_t main = c.hypothesis.Main(own);
-        for (const Vector& x : c.fitted.folds.x) {
-          c.record.amplitude.push_back(x[known + static_cast<Eigen::Index>(main)] -
-                                       c.hypothesis.NullOf(main));
+    d_.candidates = std::move(sorted), probes_ = std::move(probes);
+  }
+
+  // Root of the whitened sum of squares that the best model leaves, over what noise would leave.
+  double BestLeaves() const {
+    const Fitted& best = Leading() ? Leading()->fitted : d_.before;
+    return std::sqrt(best.cost / best.freedom);
+  }
+  const CandidateResult* Leading() const {
+    if (d_.candidates.empty() || !d_.candidates.front().fits) return nullptr;
+    return &d_.candidates.front();
+  }
+
+  // A is contained in B when B's directions span A's.
+  std::vector<std::size_t> ContainedIn(std::size_t b) const {
+    std::vector<std::size_t> inner;
+    for (std::size_t a = 0; a < probes_.size(); ++a) {
+      if (a == b || probes_[a].empty() || probes_[b].empty()) continue;
+      if (probes_[a].front().columns.cols() >= probes_[b].front().columns.cols()) continue;
+      const Problem::Matrix& A = probes_[a].front().columns;
+      const Problem::Matrix& B = probes_[b].front().columns;
+      const Problem::Matrix rest = A - B * B.completeOrthogonalDecomposition().solve(A);
+      if (rest.squaredNorm() < 0.01 * A.squaredNorm()) inner.push_back(a);
+    }
+    return inner;
+  }
+
+  // Noise is all that the best model leaves: likelihoods are calibrated.
+  void CompareLikelihoods() {
+    Dismiss();
+    std::vector<LikelihoodRecord> records;
+    for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
+      const CandidateResult& c = d_.candidates[i];
+      records.push_back(
+          {c.hypothesis.Name(), c.hypothesis.extra.size(), c.likelihood, ContainedIn(i)});
+    }
+    const auto probability = ProbabilitiesOf(records);
+    for (std::size_t i = 0; i < records.size(); ++i) d_.candidates[i].probability = probability[i];
+    Say("what is left");
+    const CandidateResult* const best = Leading();
+    d_.lack = best ? trials_.LackIn(best->hypothesis.system, best->hypothesis.extra, best->fitted,
+                                    d_.sizes, options_.seed)
+                   : trials_.LackIn(d_.system, {}, d_.before, d_.sizes, options_.seed);
+    d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), SmallestP());
+    if (d_.folds.empty()) return;
+    AddFolds(d_.before, null_);
+    for (const std::size_t i : d_.verdict.named) Record(d_.candidates[i]);
+    d_.ceiling = d_.before.folds, d_.ceiling_error = d_.before.error;
+    if (d_.chosen()) d_.ceiling = d_.chosen()->fitted.folds, d_.ceiling_error = d_.after();
+  }
+
+  // Of all candidates, fitted or not.
+  double SmallestP() const {
+    double p = 1;
+    for (const double one : screen_.p) p = std::min(p, one);
+    return p;
+  }
+
+  void Dismiss() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
+      CandidateResult& c = d_.candidates[i];
+      if (c.fits) {
+        if (kept != i) {
+          d_.candidates[kept] = std::move(c);
+          if (!probes_.empty()) probes_[kept] = std::move(probes_[i]);
         }
-      } catch (const Error& error) {
-        c.error = error.what();
+        ++kept;
+      } else if (!c.error.empty()) {
+        d_.skipped.push_back(c.hypothesis.Name() + ": " + c.error);
+      } else {
+        d_.dismissed.push_back(
+            {c.hypothesis.effect, c.hypothesis.variant, c.hypothesis.where, c.explained, c.p});
       }
-      d_.candidates.push_back(std::move(c));
     }
+    d_.candidates.erase(d_.candidates.begin() + static_cast<std::ptrdiff_t>(kept),
+                        d_.candidates.end());
+    if (!probes_.empty()) probes_.resize(kept);
+  }
+
+  void AddFolds(Fitted& fitted, const Problem& problem) const {
+    fitted.folds = CrossValidate(problem, fitted.fit.x, fitted.jacobian, d_.folds);
+  }
+
+  void Record(CandidateResult& c) const {
+    AddFolds(c.fitted, ProblemOf(c));
+    c.record.before = d_.before.folds.error;
+    c.record.after = c.fitted.folds.error;
+    const Eigen::Index known = d_.before.fit.x.size();
+    const std::span<const double> own(c.fitted.fit.x.data() + known, c.hypothesis.extra.size());
+    const std::size_t main = c.hypothesis.Main(own);
+    for (const Vector& x : c.fitted.folds.x) {
+      c.record.amplitude.push_back(x[known + static_cast<Eigen::Index>(main)] -
+                                   c.hypothesis.null[main]);
+    }
+  }
+
+  // The model leaves more than noise, or nobody knows the noise: only what holds on logs left out
+  // counts.
+  void CompareFolds() {
+    if (d_.folds.empty()) {
+      throw Error::Input(e_.file.string() + ": folds",
+                         "at least two groups of logs to leave out in turn", "one");
+    }
+    Dismiss();
+    Say("folds");
+    AddFolds(d_.before, null_);
+    for (CandidateResult& c : d_.candidates) {
+      Say("folds of " + c.hypothesis.Name());
+      Record(c);
+    }
+    RunCeiling();
+    RunPlacebos();
+    Rank();
   }
 
   // Fits a force without a name at the null optimum (Gauss-Newton), scored like a candidate.
@@ -147,9 +319,11 @@ class Session {
     x.head(d_.before.fit.x.size()) = d_.before.fit.x;
     const auto J = problem.Jacobian(x, d_.before.residuals, problem.AllLogs(), d_.before.jacobian);
     if (error) {
+      auto validate = problem.TrainLogs();
+      validate.flip();
       const Vector fitted = RefitByChords(problem, x, J, problem.TrainLogs(), 5);
       const auto r = problem.Residuals(fitted, problem.AllLogs());
-      *error = {problem.PooledRms(r, problem.TrainLogs()), problem.PooledRms(r, Validate())};
+      *error = {problem.PooledRms(r, problem.TrainLogs()), problem.PooledRms(r, validate)};
     }
     return CrossValidate(problem, x, J, d_.folds);
   }
@@ -165,13 +339,11 @@ class Session {
       const auto size = [](const CandidateResult& c) {
         return std::min<std::size_t>(2, c.hypothesis.extra.size());
       };
-      const bool needed =
-          std::any_of(d_.candidates.begin(), d_.candidates.end(),
-                      [&](const auto& c) { return c.error.empty() && size(c) == count; });
+      const bool needed = std::any_of(d_.candidates.begin(), d_.candidates.end(),
+                                      [&](const auto& c) { return size(c) == count; });
       if (!needed) continue;
       std::vector<double> gains;
       for (int k = 0; k < options_.placebos; ++k) {
-        if (StopRequested()) throw Error::Job("interrupted");
         Say(fmt::format("random force {} of {} with {} parameter(s)", k + 1, options_.placebos,
                         count));
         FoldRecord record;
@@ -189,15 +361,11 @@ class Session {
     }
   }
 
-  bool Known() const { return d_.noise.source != "differences" && d_.noise.rms > 0; }
+  bool Known() const { return d_.noise.known() && d_.noise.rms > 0; }
   double Floor() const { return std::hypot(d_.noise.rms, d_.noise.step); }
 
   void Rank() {
-    std::erase_if(d_.candidates, [&](const CandidateResult& c) {
-      if (!c.error.empty()) d_.skipped.push_back(c.hypothesis.Name() + ": " + c.error);
-      return !c.error.empty();
-    });
-    std::stable_sort(d_.candidates.begin(), d_.candidates.end(), [](const auto& a, const auto& b) {
+    Sort([](const auto& a, const auto& b) {
       return Median(Gains(a.record)) > Median(Gains(b.record));
     });
     std::vector<FoldRecord> records;
@@ -252,6 +420,9 @@ class Session {
   const DiagnosisOptions& options_;
   Problem null_;
   Diagnosis d_;
+  Trials trials_;
+  std::vector<std::vector<Probe>> probes_;  // [candidate]
+  Significance screen_;
 };
 
 }  // namespace

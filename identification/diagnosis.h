@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include "identification/folds.h"
 #include "identification/hypothesis.h"
 #include "identification/noise.h"
+#include "identification/screen.h"
 #include "identification/verdict.h"
 
 namespace continuum {
@@ -29,17 +31,39 @@ struct Fitted {
   Fit fit;
   std::vector<Problem::Vector> residuals;  ///< [log] at the optimum
   std::vector<Problem::Matrix> jacobian;   ///< [log]
+  std::vector<Problem::Vector> step = {};  ///< [train log] what the time step adds
   Uncertainty uncertainty;
   TwoErrors error;
-  FoldScores folds;
+  FoldScores folds;    ///< empty where the noise alone decides
+  double cost = 0;     ///< whitened sum of squares to first order, where the noise is known
+  double freedom = 0;  ///< what noise alone would make it
 };
 
 struct CandidateResult {
   Hypothesis hypothesis;
-  Fitted fitted;
-  FoldRecord record;
-  std::vector<std::string> failures;
-  std::string error;  ///< why it could not be tried, else empty
+  Problem::Vector start = {};  ///< of its fit, when the screen found one
+  bool fits = false;           ///< whether it was fitted
+  Fitted fitted = {};
+  FoldRecord record = {};
+  std::vector<std::string> failures = {};
+  std::string error = "";  ///< why it could not be tried, else empty
+  double explained = 0;    ///< of the whitened sum of squares, to first order from the null fit
+  double p = 1;            ///< family-wise, of explained
+  double likelihood = 0;   ///< twice the logarithm of the likelihood gained by its fit
+  double probability = 0;  ///< among all candidates, each as likely before; noise-limited only
+};
+
+/// A candidate that the first-order screen left behind without a fit.
+struct Dismissed {
+  std::string effect, variant, where;
+  double explained = 0, p = 1;
+};
+
+/// Whether anything but noise is left in a fitted model, by directions that belong to no candidate.
+struct LackOfFit {
+  double force = 1;    ///< p-value of smooth forces of angle, speed and load
+  double channel = 1;  ///< of constants and shifts in time of the channels
+  double smallest() const { return std::min(force, channel); }
 };
 
 struct Diagnosis {
@@ -51,7 +75,10 @@ struct Diagnosis {
   Sizes sizes;
   std::vector<Fold> folds;
   Fitted before;
-  std::vector<CandidateResult> candidates;  ///< best median gain first
+  std::vector<CandidateResult> candidates;  ///< best first
+  std::vector<Dismissed> dismissed;
+  bool noise_limited = false;  ///< the best model leaves noise: likelihoods judge, else folds
+  LackOfFit lack;              ///< of the model that is left standing
   std::vector<std::string> skipped;
   Verdict verdict;     ///< indices into candidates
   FoldScores ceiling;  ///< what a smooth force without a name reaches

@@ -51,6 +51,17 @@ Problem ChosenProblem(const Experiment& e, const Diagnosis& d) {
                 : Problem(e, d.system);
 }
 
+double FoldsWon(const Diagnosis& d, const CandidateResult& c) {
+  std::size_t won = 0;
+  for (std::size_t f = 0; f < c.record.after.size(); ++f) {
+    won += std::all_of(d.candidates.begin(), d.candidates.end(), [&](const CandidateResult& other) {
+      return other.record.after[f] >= c.record.after[f];
+    });
+  }
+  return static_cast<double>(won) /
+         static_cast<double>(std::max<std::size_t>(c.record.after.size(), 1));
+}
+
 nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
                          const std::vector<std::string>& equivalent) {
   nlohmann::json parameters = nlohmann::json::object();
@@ -69,28 +80,32 @@ nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
                                                {sure ? c.fitted.uncertainty.lower[at] : value,
                                                 sure ? c.fitted.uncertainty.upper[at] : value}}};
   }
-  std::size_t won = 0;
-  for (std::size_t f = 0; f < c.record.after.size(); ++f) {
-    won += std::all_of(d.candidates.begin(), d.candidates.end(), [&](const CandidateResult& other) {
-      return other.record.after[f] >= c.record.after[f];
-    });
+  const auto falls = std::count_if(
+      c.record.after.begin(), c.record.after.end(),
+      [&](const double& a) { return a < c.record.before[&a - c.record.after.data()]; });
+  std::string evidence =
+      d.noise_limited ? fmt::format(
+                            "consistent with the data: twice the log-likelihood rises by {:.1f} "
+                            "(family-wise p = {:.2g}); {}",
+                            c.likelihood, c.p, d.verdict.reason)
+                      : fmt::format("consistent with the data: {}", d.verdict.reason);
+  if (!c.record.after.empty()) {
+    evidence += fmt::format(
+        "; leaving out one group at a time, the error falls in {} of {} folds, by {:.0f} % in the "
+        "median",
+        falls, c.record.after.size(), 100 * Median(Gains(c.record)));
   }
-  return {
-      {"effect", c.hypothesis.effect},
-      {"variant", c.hypothesis.variant},
-      {"equivalent", equivalent},
-      {"probability", static_cast<double>(won) / static_cast<double>(c.record.after.size())},
-      {"probability_is", "share of the folds in which it is the best candidate; not calibrated"},
-      {"parameters", parameters},
-      {"where", c.hypothesis.where},
-      {"evidence",
-       fmt::format("leaving out one group at a time, the error falls in {} of {} folds, by {:.0f} "
-                   "% in the median; {}",
-                   std::count_if(c.record.after.begin(), c.record.after.end(),
-                                 [&](const double& a) {
-                                   return a < c.record.before[&a - c.record.after.data()];
-                                 }),
-                   c.record.after.size(), 100 * Median(Gains(c.record)), d.verdict.reason)}};
+  return {{"effect", c.hypothesis.effect},
+          {"variant", c.hypothesis.variant},
+          {"equivalent", equivalent},
+          {"probability", d.noise_limited ? c.probability : FoldsWon(d, c)},
+          {"probability_is", d.noise_limited
+                                 ? "posterior among the candidates tried, each as likely before"
+                                 : "share of the folds in which it is the best candidate; not "
+                                   "calibrated"},
+          {"parameters", parameters},
+          {"where", c.hypothesis.where},
+          {"evidence", evidence}};
 }
 
 }  // namespace
@@ -153,12 +168,19 @@ double ShareReached(const Diagnosis& d, const TwoErrors& after) {
                       : 1;
 }
 
+double Share(const Diagnosis& d, const CandidateResult& c) {
+  if (!d.noise_limited) return Median(Gains(c.record));
+  const double explainable = std::max(d.before.cost - d.before.freedom, 1e-300);
+  return std::min(1.0, c.likelihood / explainable);
+}
+
 bool ModelLimited(const Diagnosis& d, const TwoErrors& after) {
-  return d.noise.rms > 0 && after.train > 3 * d.noise.rms;
+  return !d.noise_limited && d.noise.rms > 0 && after.train > 3 * d.noise.rms;
 }
 
 double Separation(const Diagnosis& d) {
   if (d.candidates.size() < 2) return 0;
+  if (d.noise_limited) return std::abs(d.candidates[0].likelihood - d.candidates[1].likelihood);
   const auto& a = d.candidates[0].record;
   const auto& b = d.candidates[1].record;
   const double n = static_cast<double>(a.after.size());
@@ -269,7 +291,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
                         {"share_reached", ShareReached(d, told.after)}}}};
   json["folds"] = nlohmann::json::array();
   const auto& after = d.chosen() ? d.chosen()->record.after : d.before.folds.error;
-  for (std::size_t f = 0; f < d.folds.size(); ++f) {
+  for (std::size_t f = 0; f < after.size(); ++f) {
     json["folds"].push_back(
         {{"left_out", d.folds[f].name}, {"before", d.before.folds.error[f]}, {"after", after[f]}});
   }
@@ -277,17 +299,21 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
   for (std::size_t i = 0; i < d.candidates.size(); ++i) {
     const CandidateResult& c = d.candidates[i];
     const auto& p = c.record.placebo_gains;
-    const double median = Median(Gains(c.record));
-    const double beaten = static_cast<double>(
-        std::count_if(p.begin(), p.end(), [&](double g) { return g < median; }));
+    const double score = Share(d, c);
+    const double beaten =
+        static_cast<double>(std::count_if(p.begin(), p.end(), [&](double g) { return g < score; }));
+    const double of_placebos =
+        (static_cast<double>(p.size()) - beaten + 1) / static_cast<double>(p.size() + 1);
     const bool named =
         std::find(d.verdict.named.begin(), d.verdict.named.end(), i) != d.verdict.named.end();
     json["candidates"].push_back(
         {{"effect", c.hypothesis.effect},
          {"variant", c.hypothesis.variant},
          {"where", c.hypothesis.where},
-         {"score", median},
-         {"p", (static_cast<double>(p.size()) - beaten + 1) / static_cast<double>(p.size() + 1)},
+         {"score", score},
+         {"p", d.noise_limited ? c.p : of_placebos},
+         {"likelihood", c.likelihood},
+         {"probability", c.probability},
          {"group", named && d.verdict.named.size() > 1 ? "not told apart" : ""},
          {"folds", c.record.after},
          {"amplitude", c.record.amplitude},
@@ -295,6 +321,15 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
          {"fails", c.failures},
          {"error", {{"train", c.fitted.error.train}, {"validate", c.fitted.error.validate}}}});
   }
+  for (const Dismissed& c : d.dismissed) {
+    json["candidates"].push_back({{"effect", c.effect},
+                                  {"variant", c.variant},
+                                  {"where", c.where},
+                                  {"score", 0},
+                                  {"p", c.p},
+                                  {"group", "left behind by the first-order screen"}});
+  }
+  json["lack_of_fit"] = {{"force", d.lack.force}, {"channel", d.lack.channel}};
   json["skipped"] = d.skipped;
   json["parameters"] = nlohmann::json::array();
   const Problem problem = ChosenProblem(e, d);
@@ -335,8 +370,14 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
       fmt::format("noise     {:.3g} {} ({}), time step {:.3g}; what remains is {:.1f} times both\n",
                   d.noise.rms, unit, d.noise.source, d.noise.step,
                   d.noise.rms > 0 ? told.after.train / std::hypot(d.noise.rms, d.noise.step) : 0);
-  text += fmt::format("ceiling   {:.4g} {} on validate with a smooth force without a name\n",
-                      d.ceiling_error.validate, unit);
+  if (d.noise_limited) {
+    text +=
+        fmt::format("left      p = {:.2g} (smooth forces), {:.2g} (channels): noise when large\n",
+                    d.lack.force, d.lack.channel);
+  } else {
+    text += fmt::format("ceiling   {:.4g} {} on validate with a smooth force without a name\n",
+                        d.ceiling_error.validate, unit);
+  }
   for (std::size_t i = 0; i < std::min<std::size_t>(3, told.wrong.size()); ++i) {
     const Wrong& w = told.wrong[i];
     text +=
@@ -344,7 +385,7 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
   }
   text += "ranking  ";
   for (const CandidateResult& c : d.candidates) {
-    text += fmt::format(" {} {:.0f} %,", c.hypothesis.Name(), 100 * Median(Gains(c.record)));
+    text += fmt::format(" {} {:.0f} %,", c.hypothesis.Name(), 100 * Share(d, c));
   }
   if (text.back() == ',') text.back() = '\n';
   if (d.verdict.named.size() > 1) text += "next      " + NextExperiment(d) + "\n";

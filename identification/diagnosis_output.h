@@ -46,8 +46,12 @@ struct Gain {
 };
 Gain GainOf(const Diagnosis& diagnosis, const TwoErrors& after);
 std::string NextExperiment(const Diagnosis& diagnosis);
-/// Mean paired difference of the two best candidates' fold errors over its standard error.
+/// What parts the two best candidates: their likelihoods, or the mean paired difference of their
+/// fold errors over its standard error.
 double Separation(const Diagnosis& diagnosis);
+/// How much a candidate achieves: the share of the explainable sum of squares that its fit explains
+/// where noise is all that is left, else the median share of the error removed over the folds.
+double Share(const Diagnosis& diagnosis, const CandidateResult& candidate);
 bool ModelLimited(const Diagnosis& diagnosis, const TwoErrors& after);
 /// Share of the reducible error (down to the ceiling) that was removed on the validate logs.
 double ShareReached(const Diagnosis& diagnosis, const TwoErrors& after);

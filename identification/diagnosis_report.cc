@@ -122,21 +122,25 @@ class Story {
       page_.Paragraph("No candidate could be tried.");
       return;
     }
-    BarsSpec bars{
-        "Error removed on left-out logs, median over the folds", {"error removed", "%"}, {}, {}};
+    BarsSpec bars{d_.noise_limited ? "Share of what is above the noise that each candidate explains"
+                                   : "Error removed on left-out logs, median over the folds",
+                  {d_.noise_limited ? "explained" : "error removed", "%"},
+                  {},
+                  {}};
     double placebo = -1;
     for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
       const auto& c = d_.candidates[i];
       const bool named =
           std::find(d_.verdict.named.begin(), d_.verdict.named.end(), i) != d_.verdict.named.end();
-      bars.bars.push_back({c.hypothesis.Name(), 100 * Median(Gains(c.record)), 0, named});
+      bars.bars.push_back({c.hypothesis.Name(), 100 * Share(d_, c), 0, named});
       auto p = c.record.placebo_gains;
       std::sort(p.begin(), p.end());
       if (!p.empty()) placebo = std::max(placebo, p[(p.size() - 1) * 95 / 100]);
     }
     if (placebo > -1) bars.marks.push_back({"95 % of random forces stay below", 100 * placebo});
-    bars.marks.push_back({"asked for", 10});
+    if (!d_.noise_limited) bars.marks.push_back({"asked for", 10});
     page_.Bars(bars);
+    if (d_.noise_limited) LikelihoodTable();
     FoldTable();
     std::vector<std::string> items;
     for (const auto& c : d_.candidates) {
@@ -151,13 +155,34 @@ class Story {
     }
   }
 
+  void LikelihoodTable() {
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& c : d_.candidates) {
+      rows.push_back({c.hypothesis.Name(), c.hypothesis.where, fmt::format("{:.1f}", c.likelihood),
+                      std::to_string(c.hypothesis.extra.size()), fmt::format("{:.2g}", c.p),
+                      fmt::format("{:.3f}", c.probability)});
+    }
+    for (const auto& c : d_.dismissed) {
+      rows.push_back({c.effect, c.where, "not fitted", "", fmt::format("{:.2g}", c.p), ""});
+    }
+    page_.Table(
+        {"candidate", "where", "2 ln L gained", "parameters", "p, family-wise", "posterior"}, rows,
+        {"Twice the log-likelihood over the model without it; p: how often noise alone lets "
+         "one of all candidates do as well to first order; posterior: each candidate as "
+         "likely before. What the best one leaves has p = " +
+         fmt::format("{:.2g} against smooth forces and {:.2g} against shifts of the channels.",
+                     d_.lack.force, d_.lack.channel)});
+  }
+
   void FoldTable() {
+    if (d_.before.folds.error.empty()) return;
     std::vector<std::string> header{"candidate"};
     for (const Fold& f : d_.folds) header.push_back("without " + f.name);
     std::vector<std::vector<std::string>> rows{{"as it is"}};
     for (const double error : d_.before.folds.error)
       rows[0].push_back(fmt::format("{:.4g}", error));
     for (const auto& c : d_.candidates) {
+      if (c.record.after.empty()) continue;
       rows.push_back({c.hypothesis.Name()});
       for (const double error : c.record.after) rows.back().push_back(fmt::format("{:.4g}", error));
     }
@@ -219,12 +244,16 @@ class Story {
   void Assumptions() {
     page_.Heading("What this rests on");
     std::vector<std::string> items{
-        "A cause is named when the error falls in at least 80 % of the folds and by at least 10 % "
-        "in the median, its "
-        "size agrees over the folds within 30 %, it beats 95 % of random smooth forces with as "
-        "many parameters, and "
-        "it is clearly better than every other candidate in paired folds.",
-        "No probability is given: on such data none would be calibrated.",
+        d_.noise_limited
+            ? "Noise is all that the best model leaves, so likelihoods are calibrated. A cause is "
+              "named when noise alone would let one of the candidates do as well in less than 5 % "
+              "of such data, nothing is left that smooth forces or shifts of the channels explain, "
+              "and every rival is clearly less likely."
+            : "A cause is named when the error falls in at least 80 % of the folds and by at least "
+              "10 % in the median, its size agrees over the folds within 30 %, it beats 95 % of "
+              "random smooth forces with as many parameters, and it is clearly better than every "
+              "other candidate in paired folds. No probability is given: on such data none would "
+              "be calibrated.",
         fmt::format("The model's own time step moves the trajectories by {:.3g} {} (h against "
                     "h/4); nothing smaller is "
                     "named.",

@@ -111,6 +111,7 @@ std::string ParameterYaml(const FreeParameter& p, double value, std::set<std::st
 Extension Extend(const Problem& problem, const Problem::Vector& x,
                  const std::filesystem::path& folder) {
   const Experiment& e = problem.experiment();
+  const Experiment measured = problem.MeasuredBy(x, 0);
   std::string y = "format: 1\nmodel: extended.xml\nlogs:\n";
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     const Log& log = e.logs[l];
@@ -124,7 +125,7 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
     y += SettingsYaml(problem, x, l) + "}\n";
   }
   y += fmt::format("time: {{column: {}, unit: {}, skew: {}}}\n", Quoted(e.time_column),
-                   Quoted(e.time_unit), Decimal(e.skew));
+                   Quoted(e.time_unit), Decimal(measured.skew));
   const char* const starts[] = {"rest", "equilibrium", "measured", "estimate"};
   y += fmt::format("start: {}\ninputs:\n", starts[static_cast<int>(e.start)]);
   for (const Input& in : e.inputs) {
@@ -135,7 +136,7 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
   }
   if (e.inputs.empty()) y.replace(y.rfind("inputs:\n"), 8, "");
   y += "outputs:\n";
-  for (const Output& out : e.outputs) y += OutputYaml(out);
+  for (const Output& out : measured.outputs) y += OutputYaml(out);
   std::string parameters;
   std::set<std::string> names;
   for (std::size_t i = 0; i < problem.parameters().size(); ++i) {

@@ -18,23 +18,12 @@ namespace {
 using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
-Vector Stack(const std::vector<Vector>& parts) {
-  Eigen::Index n = 0;
-  for (const Vector& p : parts) n += p.size();
-  Vector all(n);
-  n = 0;
-  for (const Vector& p : parts) {
-    all.segment(n, p.size()) = p;
-    n += p.size();
-  }
-  return all;
-}
-
 // All residuals as one Ceres cost in the scaled parameters y = x/scale.
 class Cost : public ceres::CostFunction {
  public:
-  Cost(const Problem& problem, const std::vector<bool>& use, double soft, Eigen::Index residuals)
-      : problem_(problem), use_(use), soft_(soft) {
+  Cost(const Problem& problem, const std::vector<bool>& use, double soft,
+       const Whitening& whitening, Eigen::Index residuals)
+      : problem_(problem), use_(use), soft_(soft), whitening_(whitening) {
     set_num_residuals(static_cast<int>(residuals));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
   }
@@ -45,19 +34,14 @@ class Cost : public ceres::CostFunction {
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = y[0][i] * parameters[i].scale;
     x = problem_.Clamp(x);
     if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x;
-    const Vector all = Stack(r_);
+    const Vector all = whitening_.Stack(r_, use_);
     if (!all.allFinite()) return false;
     for (Eigen::Index k = 0; k < all.size(); ++k) residuals[k] = Soften(all[k]).first;
     if (!jacobians || !jacobians[0]) return true;
     const auto J = problem_.Jacobian(x, r_, use_);
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
         jacobians[0], all.size(), x.size());
-    Eigen::Index row = 0;
-    for (const Matrix& part : J) {
-      if (!part.size()) continue;  // not in use
-      out.middleRows(row, part.rows()) = part;
-      row += part.rows();
-    }
+    out = whitening_.Stack(J, use_);
     for (Eigen::Index i = 0; i < x.size(); ++i) out.col(i) *= parameters[i].scale;
     for (Eigen::Index k = 0; k < all.size(); ++k) out.row(k) *= Soften(all[k]).second;
     return out.allFinite();
@@ -75,6 +59,7 @@ class Cost : public ceres::CostFunction {
   const Problem& problem_;
   const std::vector<bool>& use_;
   double soft_;
+  const Whitening& whitening_;
   mutable Vector x_;
   mutable std::vector<Vector> r_;
 };
@@ -89,7 +74,10 @@ class Watch : public ceres::IterationCallback {
       options_.progress(fmt::format("iteration {:2}  cost {:.6g}  {} simulations", s.iteration,
                                     s.cost, problem_.evaluations()));
     }
-    return StopRequested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    const bool hopeless =
+        s.iteration >= 4 && s.cost > options_.hopeless && s.cost_change < 0.2 * s.cost;
+    return StopRequested() || hopeless ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                       : ceres::SOLVER_CONTINUE;
   }
 
  private:
@@ -152,7 +140,9 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   Fit fit;
   fit.x = problem.Clamp(x);
   const auto r = problem.Residuals(fit.x, use);
-  const Vector all = Stack(r);
+  const Whitening none;
+  const Whitening& whitening = options.whitening ? *options.whitening : none;
+  const Vector all = whitening.Stack(r, use);
   if (!all.allFinite()) throw Error::Job("the simulation diverges at the start of the fit");
   if (x.size() == 0) {
     fit.cost = 0.5 * all.squaredNorm();
@@ -166,7 +156,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   for (Eigen::Index i = 0; i < x.size(); ++i) y[i] = fit.x[i] / parameters[i].scale;
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  Cost cost(problem, use, options.soft, all.size());
+  Cost cost(problem, use, options.soft, whitening, all.size());
   ceres::Problem ceres(ownership);
   ceres.AddResidualBlock(&cost, nullptr, y.data());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -253,7 +243,7 @@ Vector RefitByChords(const Problem& problem, const Vector& x, const std::vector<
 }
 
 Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
-                          const std::vector<Matrix>& J) {
+                          const std::vector<Matrix>& J, const Whitening& whitening) {
   const Eigen::Index n = x.size();
   Uncertainty u;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -274,10 +264,13 @@ Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::ve
     if (!J[l].size()) continue;
     const auto channels = static_cast<Eigen::Index>(problem.channels().size());
     const Eigen::Index rows = r[l].size() / channels;
+    const Vector white = whitening.Apply(l, r[l]).col(0);
+    const Matrix columns = whitening.Apply(l, J[l]);
     for (Eigen::Index c = 0; c < channels; ++c) {
       Matrix Jc(rows, k);
-      for (Eigen::Index i = 0; i < k; ++i) Jc.col(i) = J[l].col(inside[i]).segment(c * rows, rows);
-      const Matrix scores = r[l].segment(c * rows, rows).asDiagonal() * Jc;
+      for (Eigen::Index i = 0; i < k; ++i)
+        Jc.col(i) = columns.col(inside[i]).segment(c * rows, rows);
+      const Matrix scores = white.segment(c * rows, rows).asDiagonal() * Jc;
       const double bandwidth = Bandwidth(scores);
       H += Jc.transpose() * Jc;
       S += LongRunCovariance(scores, bandwidth);

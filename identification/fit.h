@@ -1,10 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "identification/problem.h"
+#include "identification/whitening.h"
 
 namespace continuum {
 
@@ -14,6 +15,10 @@ struct FitOptions {
   /// Robust loss: residuals beyond this size (in residual units) count linearly; 0: least squares.
   ///   ρ(r) = s² (√(1 + (r/s)²) − 1)   (soft L1)
   double soft = 0;
+  /// Of the residuals, when their noise is known; none: as they are.
+  const Whitening* whitening = nullptr;
+  /// Give up after four iterations that leave the cost above this and gain less than a fifth.
+  double hopeless = std::numeric_limits<double>::infinity();
   /// One line per iteration: cost and evaluations so far.
   std::function<void(const std::string&)> progress = {};
 };
@@ -46,8 +51,9 @@ Problem::Vector RefitByChords(const Problem& problem, const Problem::Vector& x,
 ///
 ///   Cov = H⁻¹ S H⁻¹,   H = Σ JᵀJ,   S = Σ_logs Σ_lags w(lag) Σ_t s_t s_{t+lag}ᵀ,   s_t = Jᵀ_t r_t
 ///
-/// with Bartlett weights and Andrews' bandwidth for AR(1) scores (heteroskedasticity and
-/// autocorrelation consistent, newey1987, andrews1991). Parameters at a bound are left out (NaN).
+/// of whitened residuals, with Bartlett weights and Andrews' bandwidth for AR(1) scores
+/// (heteroskedasticity and autocorrelation consistent, newey1987, andrews1991). Parameters at a
+/// bound are left out (NaN).
 struct Uncertainty {
   Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
   Problem::Matrix correlation;
@@ -55,6 +61,6 @@ struct Uncertainty {
 };
 Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
                           const std::vector<Problem::Vector>& r,
-                          const std::vector<Problem::Matrix>& J);
+                          const std::vector<Problem::Matrix>& J, const Whitening& whitening = {});
 
 }  // namespace continuum

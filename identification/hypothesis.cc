@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 #include "binding/config.h"
 #include "error.h"
 #include "sim/file.h"
+#include "sim/measurement.h"
 
 namespace continuum {
 namespace {
@@ -132,7 +135,10 @@ double SizeFor(const Param& p, Place place, const Sizes& s) {
   if (u == "rad/s") return s.velocity;
   if (u == "N*m*s/rad") return s.torque / s.velocity;
   if (u == "N*m/rad" || u == "N/m") return (line ? s.tension : s.torque) / (0.02 * s.angle);
+  if (u == "N*m/rad^3") return s.torque / std::pow(s.angle, 3);
   if (u == "kg") return s.mass;
+  if (u == "kg*m^2") return s.inertia;
+  if (u == "m/N") return 0.01 / s.tension;
   if (u == "s") return 4 * s.period;
   if (u == "input") return s.angle;
   return 1;
@@ -160,18 +166,16 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
 }
 
 // Initial values, with every nuisance at three sizes.
-std::vector<std::vector<double>> StartsOf(const EffectInfo& effect, const Hypothesis& h) {
+std::vector<std::vector<double>> StartsOf(const Hypothesis& h) {
   std::vector<double> first;
   for (const Parameter& p : h.extra) first.push_back(p.initial);
   std::vector<std::vector<double>> starts{first};
   for (std::size_t i = 0; i < h.extra.size(); ++i) {
-    for (const Param& p : effect.params) {
-      if (p.name != h.extra[i].name || !std::isnan(p.null)) continue;
-      for (const double factor : {0.2, 5.0}) {
-        auto start = first;
-        start[i] = std::clamp(factor * start[i], h.extra[i].lower, h.extra[i].upper);
-        starts.push_back(start);
-      }
+    if (!std::isnan(h.null[i])) continue;
+    for (const double factor : {0.2, 5.0}) {
+      auto start = first;
+      start[i] = std::clamp(factor * start[i], h.extra[i].lower, h.extra[i].upper);
+      starts.push_back(start);
     }
   }
   return starts;
@@ -187,6 +191,23 @@ std::string InWords(Place place, const std::vector<std::string>& names) {
   return text;
 }
 
+// How far the measured values of some outputs reach [their unit].
+double OutputSize(const Experiment& e, const std::vector<std::string>& columns) {
+  double lower = kInfinity, upper = -kInfinity;
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const bool wanted =
+        std::find(columns.begin(), columns.end(), e.channels[c].name) != columns.end();
+    for (const Log& log : e.logs) {
+      for (const double y : log.measured[c]) {
+        if (!wanted || std::isnan(y)) continue;
+        lower = std::min(lower, y / e.channels[c].factor);
+        upper = std::max(upper, y / e.channels[c].factor);
+      }
+    }
+  }
+  return upper > lower ? upper - lower : 1;
+}
+
 bool AlreadyFitted(const Experiment& e, const std::string& kind, const std::string& attribute) {
   return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const Parameter& p) {
     return p.target.starts_with(kind + ":") && p.attribute == attribute;
@@ -199,8 +220,13 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place, const std::strin
   Hypothesis h{std::string(effect.name), "", InWords(place, names), system, {}, {}, "", {}};
   const std::string target =
       std::string(PlaceName(place)) + ":" + (names.size() == 1 ? names.front() : glob);
-  h.extra.push_back(FreeOne(effect.params.front(), place, sizes, target,
-                            "effect:" + std::string(effect.name), Change::Operation::kSet));
+  Param param = effect.params.front();
+  const bool as_is = std::isnan(param.null);  // the effect is an attribute of the model
+  if (as_is) param.null = system.Value(target, std::string(effect.name));
+  h.extra.push_back(FreeOne(param, place, sizes, target,
+                            as_is ? std::string(effect.name) : "effect:" + std::string(effect.name),
+                            Change::Operation::kSet));
+  h.null.push_back(param.null);
   return h;
 }
 
@@ -244,11 +270,71 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
                              Change::Operation::kSet);
     added.config.emplace_back(p.name, Decimal(free.initial));
     h.extra.push_back(std::move(free));
+    h.null.push_back(p.null);
   }
   h.system = replaces ? system.Replacing(present.instance, added) : system.With({}, {{added}});
   h.instance = added;
   if (replaces) h.replaces = present.instance;
   return h;
+}
+
+// An effect of the measurement on some outputs (or on the clock): nothing of the model changes.
+Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
+                            const std::vector<std::string>& names, const Experiment& e,
+                            const System& system, const Sizes& sizes) {
+  const std::string where = names.empty() ? "clock" : InWords(Place::kSensor, names);
+  Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
+  const Param& card = effect.params.front();
+  const std::string name(card.name);
+  double size = 1, typical = 0.02;  // of a scale, an angle or a skew
+  if (name == "delay") size = 4 * sizes.period, typical = 0.5;
+  if (name == "bias" || name == "rate") {
+    size = OutputSize(e, names);
+    if (name == "rate") size /= std::max(1e-9, e.logs.front().time.back() - e.logs.front().time[0]);
+  }
+  Parameter p;
+  p.name = name;
+  p.target = target, p.attribute = name;
+  p.has_initial = true;
+  p.where = "candidate";
+  const double null = MeasurementValue(e, target, name);
+  const bool factor = card.null == 1;
+  p.initial = null + typical * size;
+  p.upper = null + (factor ? 9 * std::abs(null) : name == "delay" ? 25 * size : size);
+  p.lower = factor ? 0.1 * null : name == "delay" ? 0 : null - size;
+  h.extra.push_back(p);
+  h.null.push_back(null);
+  return h;
+}
+
+// All outputs of one unit together, and each alone.
+void AddMeasure(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
+                const System& system, const Sizes& sizes, std::vector<Hypothesis>& all) {
+  if (effect.params.front().name == "skew") {
+    all.push_back(MeasureCandidate(effect, "time", {}, e, system, sizes));
+    return;
+  }
+  const bool turned = effect.params.front().name == "angle";
+  const std::string glob =
+      wanted.where.empty() ? "*" : wanted.where.substr(wanted.where.find(':') + 1);
+  std::map<std::string, std::vector<std::string>> groups;
+  for (const Output& out : e.outputs) {
+    if (out.kind != Output::Kind::kSensor || out.weight == 0 || out.quaternion()) continue;
+    const std::string sensor = out.source.substr(0, out.source.find('['));
+    if (!GlobMatches(glob, sensor) && !GlobMatches(glob, out.name())) continue;
+    const int id = mj_name2id(&system.model(), mjOBJ_SENSOR, sensor.c_str());
+    if (turned && (id < 0 || system.model().sensor_dim[id] != 3)) continue;
+    auto& group = groups[turned ? sensor : out.unit];
+    const std::string& name = turned ? sensor : out.name();
+    if (std::find(group.begin(), group.end(), name) == group.end()) group.push_back(name);
+  }
+  for (const auto& [unit, names] : groups) {
+    if (names.size() > 1)
+      all.push_back(MeasureCandidate(effect, "sensor:" + Join(names), names, e, system, sizes));
+    if (names.size() > 1 && effect.params.front().name != "bias") continue;
+    for (const auto& name : names)
+      all.push_back(MeasureCandidate(effect, "sensor:" + name, {name}, e, system, sizes));
+  }
 }
 
 void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
@@ -257,8 +343,15 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
   const auto skip = [&](const std::string& why) {
     skipped.push_back(std::string(effect.name) + ": " + why);
   };
-  if (effect.kind == EffectInfo::Kind::kSegment || effect.kind == EffectInfo::Kind::kMeasure) {
-    return skip("not a candidate of the model");
+  if (effect.kind == EffectInfo::Kind::kSegment) return skip("not a candidate of the model");
+  if (effect.kind == EffectInfo::Kind::kMeasure) {
+    const std::size_t before = all.size();
+    AddMeasure(effect, wanted, e, system, sizes, all);
+    if (all.size() == before) skip("no output that it acts on");
+    for (Hypothesis& h : all) {
+      if (h.starts.empty()) h.starts = StartsOf(h);
+    }
+    return;
   }
   const std::size_t colon = wanted.where.find(':');
   for (const Place place : effect.places) {
@@ -295,9 +388,8 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
         all.push_back(PluginCandidate(effect, place, names, system, sizes, static_cast<int>(o)));
       }
     }
-    all.back().starts = StartsOf(effect, all.back());
     for (Hypothesis& h : all) {
-      if (h.starts.empty()) h.starts = StartsOf(effect, h);
+      if (h.starts.empty()) h.starts = StartsOf(h);
     }
     return;
   }
@@ -306,24 +398,21 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
 
 }  // namespace
 
-double Hypothesis::NullOf(std::size_t i) const {
-  for (const Param& p : EffectNamed(effect).params) {
-    if (p.name == extra[i].name && !std::isnan(p.null)) return p.null;
+std::vector<std::size_t> Hypothesis::Amplitudes() const {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < null.size(); ++i) {
+    if (!std::isnan(null[i])) out.push_back(i);
   }
-  return 0;
+  return out;
 }
 
 std::size_t Hypothesis::Main(std::span<const double> values) const {
   std::size_t main = 0;
   double largest = -1;
-  for (std::size_t i = 0; i < extra.size(); ++i) {
-    const auto& params = EffectNamed(effect).params;
-    const bool amplitude = std::any_of(params.begin(), params.end(), [&](const Param& p) {
-      return p.name == extra[i].name && !std::isnan(p.null);
-    });
-    const double size = std::abs(values[i] - NullOf(i)) /
+  for (const std::size_t i : Amplitudes()) {
+    const double size = std::abs(values[i] - null[i]) /
                         std::max(std::abs(extra[i].lower), std::abs(extra[i].upper));
-    if (amplitude && size > largest) main = i, largest = size;
+    if (size > largest) main = i, largest = size;
   }
   return main;
 }
@@ -356,6 +445,8 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
   if (upper > lower) s.angle = upper - lower;
   if (tension > 0) s.tension = tension;
   const mjModel& m = problem.system().model();
+  if (m.nv > 0)
+    s.inertia = std::accumulate(m.dof_M0, m.dof_M0 + m.nv, 0.0) / static_cast<double>(m.nv);
   if (m.nbody > 1)
     s.mass = std::max(1e-6, m.body_subtreemass[0] / static_cast<double>(m.nbody - 1));
   std::vector<double> intervals;

@@ -19,12 +19,14 @@ struct Hypothesis {
   EffectInstance instance;  ///< the plugin instance, for effects that need one (else no effect)
   std::string replaces;     ///< instance whose place it takes
   std::vector<std::vector<double>> starts;  ///< values of extra to begin a search from
+  /// Values of extra at which the effect is absent; NaN for those that mean nothing then.
+  std::vector<double> null = {};
 
   /// Which of extra (values: theirs) says how large the effect is: the largest, in units of its
-  /// bounds, of those that are 0 when the effect is absent.
+  /// bounds, of those that say whether the effect is there.
   std::size_t Main(std::span<const double> values) const;
-  /// The value of an extra parameter at which the effect is absent; 0 for those without one.
-  double NullOf(std::size_t i) const;
+  /// Those of extra that say whether the effect is there.
+  std::vector<std::size_t> Amplitudes() const;
   std::string Name() const { return variant.empty() ? effect : effect + " (" + variant + ")"; }
 };
 
@@ -35,6 +37,7 @@ struct Sizes {
   double velocity = 1;   ///< typical joint speed [rad/s]
   double tension = 1;    ///< typical force along tendons [N]
   double mass = 1;       ///< mass of the moving bodies [kg]
+  double inertia = 1;    ///< inertia that a joint sees [kg*m^2]
   double period = 0.01;  ///< median sampling interval [s]
 };
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x);

@@ -1,9 +1,17 @@
 #include "identification/noise.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
+
+#include <Eigen/Dense>
+#include <boost/math/distributions/chi_squared.hpp>
 
 namespace continuum {
 namespace {
+
+constexpr int kHighestOrder = 4;
 
 bool Replicates(const Log& a, const Log& b) {
   if (a.trial != b.trial || a.condition != b.condition || a.rows() != b.rows()) return false;
@@ -16,64 +24,212 @@ bool Replicates(const Log& a, const Log& b) {
   return true;
 }
 
+// What each replicate of one channel differs from their mean, at the size of one log's noise.
+std::vector<std::vector<double>> Deviations(const Experiment& e,
+                                            const std::vector<std::size_t>& group,
+                                            std::size_t channel) {
+  const std::size_t rows = e.logs[group[0]].rows(), n = group.size();
+  std::vector<std::vector<double>> out(n, std::vector<double>(rows));
+  const double size = std::sqrt(static_cast<double>(n) / static_cast<double>(n - 1));
+  for (std::size_t k = 0; k < rows; ++k) {
+    double mean = 0;  // NaN as soon as one is missing
+    for (const std::size_t l : group)
+      mean += e.logs[l].measured[channel][k] / static_cast<double>(n);
+    for (std::size_t i = 0; i < n; ++i)
+      out[i][k] = size * (e.logs[group[i]].measured[channel][k] - mean);
+  }
+  if (n == 2) out.pop_back();  // the other one mirrored
+  return out;
+}
+
+double MeanOf(const std::vector<double>& y) {
+  double sum = 0, n = 0;
+  for (const double v : y) {
+    if (!std::isnan(v)) sum += v, n += 1;
+  }
+  return n > 0 ? sum / n : 0;
+}
+
+// Σ_k y_k y_{k+lag} / n over all series about their means, where both were measured.
+std::vector<double> Autocovariance(const std::vector<std::vector<double>>& series, double& count) {
+  std::vector<double> c(kHighestOrder + 1, 0);
+  count = 0;
+  for (const auto& y : series) {
+    const double mean = MeanOf(y);
+    for (std::size_t lag = 0; lag < c.size(); ++lag) {
+      for (std::size_t k = lag; k < y.size(); ++k) {
+        if (std::isnan(y[k]) || std::isnan(y[k - lag])) continue;
+        c[lag] += (y[k] - mean) * (y[k - lag] - mean);
+        if (lag == 0) count += 1;
+      }
+    }
+  }
+  for (double& v : c) v /= std::max(1.0, count - static_cast<double>(series.size()));
+  return c;
+}
+
+// The smallest step between measured values, when all of them are whole multiples of it.
+double QuantumOf(const std::vector<const std::vector<double>*>& logs) {
+  std::vector<double> values;
+  std::size_t rows = 0;
+  for (const auto* log : logs) {
+    for (const double v : *log) {
+      if (!std::isnan(v)) values.push_back(v);
+    }
+  }
+  rows = values.size();
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  if (values.size() < 3 || 4 * values.size() > rows) return 0;
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < values.size(); ++i) step = std::min(step, values[i] - values[i - 1]);
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double multiple = (values[i] - values[i - 1]) / step;
+    if (std::abs(multiple - std::round(multiple)) > 0.01) return 0;
+  }
+  return step;
+}
+
+// A value between two steps is anywhere in ±q/2: as noise, and at rest as an offset.
+void AddQuantum(ChannelNoise& noise, double quantum) {
+  noise.quantum = quantum;
+  noise.before = noise.rms;
+  const double error = quantum / std::sqrt(12.0);
+  if (noise.rms >= quantum / 2) return;  // the noise carries the values over the steps
+  noise.offset = std::max(noise.offset, error);
+  if (noise.rms >= error) return;
+  noise.ar.clear();
+  noise.innovation = noise.rms = error;
+}
+
 }  // namespace
 
-Experiment WithStep(const Experiment& experiment, double step) {
-  Experiment e = experiment;
-  for (Log& log : e.logs) log.set.push_back({"option", "timestep", step});
-  return e;
+std::vector<std::vector<std::size_t>> ReplicateGroups(const Experiment& e) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+      return Replicates(e.logs[group[0]], e.logs[l]);
+    });
+    if (same != groups.end()) {
+      same->push_back(l);
+    } else {
+      groups.push_back({l});
+    }
+  }
+  std::erase_if(groups, [](const auto& group) { return group.size() < 2; });
+  return groups;
+}
+
+// Yule-Walker, the order by Schwarz's criterion. Offsets: what the means of the samples scatter
+// more than e alone makes them.
+ChannelNoise NoiseFrom(const std::vector<std::vector<double>>& samples) {
+  double count = 0;
+  const auto c = Autocovariance(samples, count);
+  ChannelNoise noise;
+  if (!(c[0] > 0) || count < 20) {
+    noise.innovation = noise.rms = std::sqrt(std::max(0.0, c[0]));
+    return noise;
+  }
+  double best = count * std::log(c[0]), variance = c[0];
+  for (int p = 1; p <= kHighestOrder; ++p) {
+    Eigen::MatrixXd R(p, p);
+    Eigen::VectorXd r(p);
+    for (int i = 0; i < p; ++i) {
+      r[i] = c[i + 1];
+      for (int j = 0; j < p; ++j) R(i, j) = c[std::abs(i - j)];
+    }
+    const Eigen::VectorXd a = R.ldlt().solve(r);
+    const double left = c[0] - a.dot(r);
+    if (!(left > 0)) break;
+    const double score = count * std::log(left) + p * std::log(count);
+    if (score >= best) continue;
+    best = score, variance = left;
+    noise.ar.assign(a.begin(), a.end());
+  }
+  noise.innovation = std::sqrt(variance);
+  noise.rms = std::sqrt(c[0]);
+  double gain = 1;
+  for (const double a : noise.ar) gain -= a;
+  double scatter = 0, expected = 0;
+  for (const auto& y : samples) {
+    const double mean = MeanOf(y), n = static_cast<double>(y.size());
+    const double of_mean = variance / (gain * gain) / n;
+    scatter += mean * mean / of_mean;
+    expected += of_mean / static_cast<double>(samples.size());
+  }
+  const double s = static_cast<double>(samples.size());
+  if (scatter > boost::math::quantile(boost::math::chi_squared(s), 0.95)) {
+    noise.offset = std::sqrt((scatter / s - 1) * expected);
+  }
+  return noise;
+}
+
+ChannelNoise RoundingNoise(const ChannelNoise& noise,
+                           const std::vector<std::vector<double>>& values) {
+  if (noise.quantum == 0 || noise.before >= noise.quantum / 2) return noise;
+  std::mt19937_64 rng(1);
+  std::normal_distribution<double> normal;
+  auto errors = values;
+  for (auto& log : errors) {
+    for (double& y : log) {
+      const double noisy = y + noise.before * normal(rng);
+      y = noise.quantum * std::round(noisy / noise.quantum) - y;
+    }
+  }
+  ChannelNoise out = NoiseFrom(errors);
+  out.quantum = noise.quantum, out.before = noise.before;
+  return out;
 }
 
 Noise NoiseOf(const Experiment& e) {
   const Pool pool(e);
   Noise noise;
-  Pool::Sum sum;
-  for (std::size_t a = 0; a < e.logs.size(); ++a) {
-    for (std::size_t b = a + 1; b < e.logs.size(); ++b) {
-      if (!Replicates(e.logs[a], e.logs[b])) continue;
-      ++noise.pairs;
-      auto difference = e.logs[a].measured;
-      for (std::size_t c = 0; c < difference.size(); ++c) {
-        for (std::size_t k = 0; k < difference[c].size(); ++k) {
-          difference[c][k] = (difference[c][k] - e.logs[b].measured[c][k]) / std::sqrt(2.0);
-        }
-      }
-      pool.Add(difference, sum);
-    }
-  }
-  if (noise.pairs > 0) {
-    noise.rms = sum.Rms();
-    noise.source = "replicates";
-    return noise;
-  }
-  double squares = 0, count = 0;
+  const auto groups = ReplicateGroups(e);
+  for (const auto& group : groups) noise.pairs += group.size() * (group.size() - 1) / 2;
+  double squares = 0, counted = 0;
   bool sigma = true;
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const Output& out = e.outputs[e.channels[c].output];
-    if (!pool.counts(c)) continue;
-    sigma &= out.sigma > 0;
-    const double s = out.sigma * e.channels[c].factor / pool.scale(c);
-    squares += s * s, count += 1;
+    sigma &= out.sigma > 0 || !pool.counts(c);
   }
-  if (sigma && count > 0) {
-    noise.rms = std::sqrt(squares / count);
-    noise.source = "sigma";
+  noise.source = noise.pairs > 0 ? "replicates" : sigma ? "sigma" : "differences";
+  if (noise.source == "differences") {
+    Pool::Sum sum;
+    for (const Log& log : e.logs) {
+      auto third = log.measured;
+      for (auto& y : third) {
+        if (y.size() < 4) continue;
+        std::vector<double> d;
+        for (std::size_t k = 3; k < y.size(); ++k) {
+          d.push_back((y[k] - 3 * y[k - 1] + 3 * y[k - 2] - y[k - 3]) / std::sqrt(20.0));
+        }
+        y = std::move(d);
+      }
+      pool.Add(third, sum);
+    }
+    noise.rms = sum.Rms();
     return noise;
   }
-  for (const Log& log : e.logs) {
-    auto third = log.measured;
-    for (auto& y : third) {
-      if (y.size() < 4) continue;
-      std::vector<double> d;
-      for (std::size_t k = 3; k < y.size(); ++k) {
-        d.push_back((y[k] - 3 * y[k - 1] + 3 * y[k - 2] - y[k - 3]) / std::sqrt(20.0));
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const Output& out = e.outputs[e.channels[c].output];
+    ChannelNoise one;
+    one.innovation = one.rms = out.sigma * e.channels[c].factor;
+    if (noise.source == "replicates") {
+      std::vector<std::vector<double>> samples;
+      for (const auto& group : groups) {
+        for (auto& sample : Deviations(e, group, c)) samples.push_back(std::move(sample));
       }
-      y = std::move(d);
+      one = NoiseFrom(samples);
     }
-    pool.Add(third, sum);
+    std::vector<const std::vector<double>*> measured;
+    for (const Log& log : e.logs) measured.push_back(&log.measured[c]);
+    if (const double quantum = QuantumOf(measured); quantum > 0) AddQuantum(one, quantum);
+    noise.channel.push_back(one);
+    if (!pool.counts(c)) continue;
+    const double total = std::hypot(one.rms, one.offset) / pool.scale(c);
+    squares += total * total, counted += 1;
   }
-  noise.rms = sum.Rms();
-  noise.source = "differences";
+  noise.rms = counted > 0 ? std::sqrt(squares / counted) : 0;
   return noise;
 }
 

@@ -1,26 +1,52 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "sim/score.h"
 
 namespace continuum {
 
-/// How large the measurement noise is, and how one knows.
-struct Noise {
-  double rms = 0;      ///< pooled unit; 0: not known
-  double step = 0;     ///< what the model's own time step adds (h against h/4), pooled unit
-  std::string source;  ///< "replicates", "sigma", "differences"
-  std::size_t pairs = 0;
+/// The noise of one channel, in SI:   y = f + o + e,   e_k = Σ a_i e_{k−i} + w_k
+///
+/// o: one offset per log, normal with standard deviation offset; w: white, normal.
+struct ChannelNoise {
+  std::vector<double> ar;  ///< a_1 …, empty: white
+  double innovation = 0;   ///< standard deviation of w
+  double offset = 0;
+  double rms = 0;      ///< standard deviation of e
+  double quantum = 0;  ///< step of the measured values; 0: none to be seen
+  double before = 0;   ///< standard deviation of what was added before the values were rounded
 };
 
-/// From replicates (logs of one trial, condition and set with the same rows): the differences
-/// between them, in which model error cancels, over √2. Else from sigma where every output gives
+/// How large the measurement noise is, and how one knows.
+struct Noise {
+  double rms = 0;         ///< pooled unit; 0: not known
+  double step = 0;        ///< what the model's own time step adds (h against h/4), pooled unit
+  std::string source;     ///< "replicates", "sigma", "differences"
+  std::size_t pairs = 0;  ///< of replicates
+  std::vector<ChannelNoise> channel;  ///< [channel]; empty: not known
+
+  bool known() const { return !channel.empty(); }
+};
+
+/// From replicates (logs of one trial and condition with the same inputs and rows): what each
+/// differs from their mean, in which model error cancels. Else from sigma where every output gives
 /// it. Else from third differences of the measured rows (smooth motion cancels), a lower bound that
 /// sees only white noise.
 Noise NoiseOf(const Experiment& experiment);
 
-/// The experiment with every log simulated at a fraction of the model's time step h.
-Experiment WithStep(const Experiment& experiment, double step);
+/// The noise of a channel whose values are rounded to steps larger than its noise, from values that
+/// a model gives [log][row]: rounding errors of a slow motion are slow, and differences of
+/// replicates do not show them. Repeats exactly.
+ChannelNoise RoundingNoise(const ChannelNoise& noise,
+                           const std::vector<std::vector<double>>& values);
+
+/// Logs that repeat each other, one group per motion; logs without a replicate are in none.
+std::vector<std::vector<std::size_t>> ReplicateGroups(const Experiment& experiment);
+
+/// The model of a channel's noise from samples of it, each of one log and with mean error (NaN:
+/// not measured).
+ChannelNoise NoiseFrom(const std::vector<std::vector<double>>& samples);
 
 }  // namespace continuum

@@ -9,6 +9,7 @@
 #include "effects/all.h"
 #include "error.h"
 #include "identification/parallel.h"
+#include "sim/measurement.h"
 
 namespace continuum {
 namespace {
@@ -59,7 +60,9 @@ double SumOfSquares(const std::vector<Eigen::VectorXd>& residuals) {
 
 Problem::Problem(const Experiment& experiment, const System& system, std::vector<Parameter> extra,
                  ForceTerms terms)
-    : experiment_(&experiment), terms_(std::move(terms)) {
+    : experiment_(&experiment), setup_(experiment), terms_(std::move(terms)) {
+  setup_.logs.clear();
+  memory_.resize(experiment.logs.size());
   for (std::size_t t = 0; t < ThreadCount(); ++t) {
     systems_.push_back(system);
     systems_.back().DropVisuals();
@@ -99,8 +102,15 @@ void Problem::Expand(const Parameter& p) {
       throw Error::Input(p.where, e.what());
     }
   };
-  FreeParameter free{p.name, UnitOf(system(), p), p.initial, p.lower, p.upper, 1, {}, {}};
-  const double present = at([&] { return system().Value(p.target, p.attribute); });
+  const std::string unit = IsMeasurement(p.target, p.attribute)
+                               ? MeasurementUnit(*experiment_, p.target, p.attribute)
+                               : UnitOf(system(), p);
+  FreeParameter free{p.name, unit, p.initial, p.lower, p.upper, 1, {}, {}};
+  const double present = at([&] {
+    return IsMeasurement(p.target, p.attribute)
+               ? MeasurementValue(*experiment_, p.target, p.attribute)
+               : system().Value(p.target, p.attribute);
+  });
   if (!p.has_initial) {
     free.initial = p.operation == Change::Operation::kScale ? 1
                    : p.operation == Change::Operation::kAdd ? 0
@@ -166,40 +176,76 @@ std::vector<bool> Problem::TrainLogs() const {
   return use;
 }
 
-std::vector<Change> Problem::ChangesFor(const Vector& x, std::size_t log) const {
-  std::vector<Change> changes = experiment_->logs[log].set;
-  changes.insert(changes.end(), frozen_.begin(), frozen_.end());
+// Those of the model, or those of the measurement, in the order in which they apply.
+std::vector<Change> Problem::ChangesAt(const Vector& x, std::size_t log, bool measurement) const {
+  std::vector<Change> changes;
+  const auto add = [&](const Change& c) {
+    if (IsMeasurement(c.target, c.attribute) == measurement) changes.push_back(c);
+  };
+  for (const Change& c : experiment_->logs[log].set) add(c);
+  for (const Change& c : frozen_) add(c);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (!parameters_[i].log[log] || parameters_[i].change.target.empty()) continue;
-    changes.push_back(parameters_[i].change);
-    changes.back().value = x[i];
+    Change change = parameters_[i].change;
+    change.value = x[i];
+    add(change);
   }
   return changes;
+}
+
+std::vector<Change> Problem::ChangesFor(const Vector& x, std::size_t log) const {
+  return ChangesAt(x, log, false);
+}
+
+Experiment Problem::MeasuredBy(const Vector& x, std::size_t log) const {
+  Experiment e = setup_;
+  for (const Change& c : ChangesAt(x, log, true)) ApplyMeasurement(e, c);
+  return e;
 }
 
 std::vector<Change> Problem::CommonChanges(const Vector& x) const {
-  std::vector<Change> changes = frozen_;
+  std::vector<Change> changes;
+  for (const Change& c : frozen_) {
+    if (!IsMeasurement(c.target, c.attribute)) changes.push_back(c);
+  }
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const auto& acts = parameters_[i].log;
     if (std::find(acts.begin(), acts.end(), false) != acts.end()) continue;
-    if (parameters_[i].change.target.empty()) continue;
+    const Change& change = parameters_[i].change;
+    if (change.target.empty() || IsMeasurement(change.target, change.attribute)) continue;
     changes.push_back(parameters_[i].change);
     changes.back().value = x[i];
   }
   return changes;
 }
 
-Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log) const {
-  Machine machine = systems_[thread].Build(ChangesFor(x, log));
+// step: a time step other than the model's [s], or 0.
+Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double step) const {
+  const Experiment setup = MeasuredBy(x, log);
+  auto changes = ChangesFor(x, log);
+  if (step > 0) changes.push_back({"option", "timestep", step});
+  const Vector theta = x.tail(static_cast<Eigen::Index>(terms_.count));
+  Memory& memory = memory_[log];
+  const Log& logged = experiment_->logs[log];
+  if (!memory.trace.raw.empty() && memory.changes == changes && memory.theta == theta &&
+      memory.skew == setup.skew) {
+    Trace trace = memory.trace;
+    MeasureTrace(setup, Wiring(setup, system().model()), logged, trace);
+    return trace;
+  }
+  Machine machine = systems_[thread].Build(changes);
   Hooks hooks;
   if (terms_.count > 0) {
-    const std::span<const double> theta(x.data() + x.size() - terms_.count, terms_.count);
-    hooks.step = [&terms = terms_, theta](const mjModel& m, mjData& d) {
+    const std::span<const double> weights(theta.data(), terms_.count);
+    hooks.step = [&terms = terms_, weights](const mjModel& m, mjData& d) {
       mju_zero(d.qfrc_applied, static_cast<int>(m.nv));
-      terms.add(m, d, theta);
+      terms.add(m, d, weights);
     };
   }
-  return Simulate(machine, *experiment_, experiment_->logs[log], {}, hooks);
+  if (setup.skew == experiment_->skew) return Simulate(machine, setup, logged, {}, hooks);
+  Log stretched = logged;
+  for (double& t : stretched.time) t *= (1 + setup.skew) / (1 + experiment_->skew);
+  return Simulate(machine, setup, stretched, {}, hooks);
 }
 
 Trace Problem::Predict(const Vector& x, std::size_t log) const { return Run(0, x, log); }
@@ -228,9 +274,26 @@ std::vector<Problem::Vector> Problem::Residuals(const Vector& x,
   }
   std::vector<Vector> out(use.size());
   ParallelFor(logs.size(), [&](std::size_t thread, std::size_t i) {
-    out[logs[i]] = ResidualOf(logs[i], Run(thread, x, logs[i]));
+    const std::size_t log = logs[i];
+    Trace trace = Run(thread, x, log);
+    out[log] = ResidualOf(log, trace);
+    memory_[log] = {ChangesFor(x, log), x.tail(static_cast<Eigen::Index>(terms_.count)),
+                    MeasuredBy(x, log).skew, std::move(trace)};
   });
   evaluations_ += logs.size();
+  return out;
+}
+
+std::vector<Problem::Vector> Problem::StepEffect(const Vector& x, const std::vector<Vector>& r,
+                                                 const std::vector<bool>& use) const {
+  std::vector<Vector> out(use.size());
+  const double step = system().model().opt.timestep / 4;
+  ParallelFor(use.size(), [&](std::size_t thread, std::size_t l) {
+    if (!use[l]) return;
+    out[l] = r[l] - ResidualOf(l, Run(thread, x, l, step));
+    if (!out[l].allFinite()) out[l].setZero();
+  });
+  evaluations_ += use.size();
   return out;
 }
 

@@ -54,6 +54,10 @@ class Problem {
 
   /// Residuals of the logs marked in use; other entries are empty. A diverged log gives NaN.
   std::vector<Vector> Residuals(const Vector& x, const std::vector<bool>& use) const;
+  /// What the model's time step adds: residuals at its step less those at a quarter of it (r: those
+  /// at its step). Zero where the finer simulation diverges.
+  std::vector<Vector> StepEffect(const Vector& x, const std::vector<Vector>& r,
+                                 const std::vector<bool>& use) const;
   /// d residual / d parameter [per unit of the parameter] of each log by one-sided differences;
   /// r: the residuals at x; known: its leading columns, when they are known already.
   std::vector<Matrix> Jacobian(const Vector& x, const std::vector<Vector>& r,
@@ -63,6 +67,8 @@ class Problem {
   double PooledRms(const std::vector<Vector>& r, const std::vector<bool>& use) const;
   /// What the model says about one log.
   Trace Predict(const Vector& x, std::size_t log) const;
+  /// The experiment's outputs and clock as one log is measured; without logs.
+  Experiment MeasuredBy(const Vector& x, std::size_t log) const;
   /// The changes that make the model of one log.
   std::vector<Change> ChangesFor(const Vector& x, std::size_t log) const;
   /// The changes that hold for every log alike: those of the model file to be written.
@@ -74,14 +80,26 @@ class Problem {
   std::size_t evaluations() const { return evaluations_; }
   /// Counted channels, in the order in which their rows follow each other in a residual vector.
   const std::vector<std::size_t>& channels() const { return channels_; }
+  /// SI per residual unit of a counted channel.
+  double scale(std::size_t counted) const { return scale_[counted]; }
 
  private:
   void Expand(const Parameter& p);
-  Trace Run(std::size_t thread, const Vector& x, std::size_t log) const;
+  Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
+  std::vector<Change> ChangesAt(const Vector& x, std::size_t log, bool measurement) const;
   Vector ResidualOf(std::size_t log, const Trace& trace) const;
 
   const Experiment* experiment_;
   std::vector<System> systems_;  ///< one per thread
+  Experiment setup_;             ///< without logs
+  /// [log] the last simulation and what it was made of, as only the measurement may change.
+  struct Memory {
+    std::vector<Change> changes;
+    Vector theta;
+    double skew = 0;
+    Trace trace;
+  };
+  mutable std::vector<Memory> memory_;
   std::vector<FreeParameter> parameters_;
   std::vector<Change> frozen_;
   std::vector<std::size_t> channels_;

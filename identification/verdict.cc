@@ -125,4 +125,70 @@ Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, doub
   return verdict;
 }
 
+double ScoreOf(const LikelihoodRecord& record, const LikelihoodRules& rules) {
+  return record.likelihood - rules.parameter * static_cast<double>(record.parameters - 1);
+}
+
+std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candidates,
+                                    const LikelihoodRules& rules) {
+  double best = 0, sum = 0;
+  for (const auto& c : candidates) best = std::max(best, ScoreOf(c, rules));
+  std::vector<double> out;
+  for (const auto& c : candidates) out.push_back(std::exp(0.5 * (ScoreOf(c, rules) - best)));
+  for (const double v : out) sum += v;
+  for (double& v : out) v /= std::max(sum, 1e-300);
+  return out;
+}
+
+Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double lack, double p,
+                         const LikelihoodRules& rules) {
+  const bool any = p < rules.level && !candidates.empty();
+  if (!any && lack < rules.lack) {
+    return {"unexplained", {}, "something beside noise is left that no candidate explains"};
+  }
+  if (!any) {
+    return {"adequate",
+            {},
+            fmt::format("what the model leaves is noise: noise alone lets the best candidate do as "
+                        "well with p = {:.2g}",
+                        p)};
+  }
+  std::vector<std::size_t> order(candidates.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto score = [&](std::size_t i) { return ScoreOf(candidates[i], rules); };
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return score(a) > score(b); });
+  if (lack < rules.lack) {
+    return {"unexplained",
+            {},
+            fmt::format("the best candidate, {}, leaves more than noise (p = {:.2g}): another "
+                        "cause is at work, or one more",
+                        candidates[order.front()].name, lack)};
+  }
+  // Only as deep as the data allow: a law that contains another must clearly beat it.
+  const auto contains = [&](std::size_t a, std::size_t b) {
+    const auto& inner = candidates[a].contains;
+    return std::find(inner.begin(), inner.end(), b) != inner.end();
+  };
+  const std::size_t first = order.front();
+  const auto plain = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
+    return contains(first, i) && score(first) - score(i) < rules.deeper;
+  });
+  const std::size_t best = plain == order.end() ? first : *plain;
+  Verdict verdict{"named", {best}, ""};
+  for (const std::size_t i : order) {
+    if (i == best || contains(i, best)) continue;
+    if (score(best) - score(i) < rules.apart) verdict.named.push_back(i);
+  }
+  if (verdict.named.size() > 1) {
+    verdict.text = "ambiguous";
+    verdict.reason = fmt::format("the likelihoods of {} candidates are within {:g}",
+                                 verdict.named.size(), rules.apart);
+  } else {
+    verdict.reason = fmt::format(
+        "it leaves nothing but noise, and the next candidate is {:.1f} behind in likelihood",
+        score(best) - (order.size() > 1 ? score(order[best == order[0] ? 1 : 0]) : 0));
+  }
+  return verdict;
+}
+
 }  // namespace continuum

@@ -35,6 +35,23 @@ std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules =
 /// difference, and in most of them.
 bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b);
 
+/// One candidate where noise is all that its fit leaves.
+struct LikelihoodRecord {
+  std::string name;
+  std::size_t parameters = 0;
+  double likelihood = 0;                   ///< twice the logarithm gained over the model without it
+  double p = 1;                            ///< family-wise
+  std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
+};
+
+struct LikelihoodRules {
+  double level = 0.045;     ///< family-wise, of any name at all
+  double lack = 0.002;      ///< below it something is left that no name covers; each of three tests
+  double apart = 5;         ///< likelihood by which a rival must fall behind
+  double deeper = 2.8;      ///< score by which a law must beat one that it contains (99 %)
+  double parameter = 3.84;  ///< what another parameter must gain (95 % of chi-squared)
+};
+
 struct Verdict {
   std::string text;                ///< adequate | named | ambiguous | unexplained
   std::vector<std::size_t> named;  ///< one when named, two or more when ambiguous
@@ -46,5 +63,17 @@ struct Verdict {
 /// force removed on left-out folds.
 Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, double ceiling_gain,
               const Rules& rules = {});
+
+/// What the likelihoods allow one to say. lack: p-value of what the best candidate (or, without a
+/// significant one, the present model) leaves; p: family-wise, of the best.
+Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double lack, double p,
+                         const LikelihoodRules& rules = {});
+
+/// Likelihood less what its parameters gain from noise alone.
+double ScoreOf(const LikelihoodRecord& record, const LikelihoodRules& rules = {});
+
+/// Posterior probabilities of the candidates by Schwarz-like scores, equal before.
+std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candidates,
+                                    const LikelihoodRules& rules = {});
 
 }  // namespace continuum

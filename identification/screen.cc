@@ -1,0 +1,190 @@
+#include "identification/screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <Eigen/Dense>
+
+namespace continuum {
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+
+// The time step's effect is taken from a finer step, not from the limit: its size is known to a
+// factor of a few.
+constexpr double kStepSpread = 3;
+
+// Orthonormal columns that span A, directions below 1e-9 of the largest left out.
+Matrix Basis(const Matrix& A) {
+  if (A.cols() == 0) return Matrix(A.rows(), 0);
+  Matrix scaled = A;
+  for (Eigen::Index i = 0; i < A.cols(); ++i) {
+    const double norm = A.col(i).norm();
+    if (norm > 0) scaled.col(i) /= norm;
+  }
+  Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
+  qr.setThreshold(1e-9);
+  return qr.householderQ() * Matrix::Identity(A.rows(), qr.rank());
+}
+
+class Normals {
+ public:
+  explicit Normals(std::uint64_t seed) : rng_(seed) {}
+  double Next() {  // Box-Muller, so that every library gives the same numbers
+    return std::sqrt(-2 * std::log(Uniform())) * std::cos(2 * std::numbers::pi * Uniform());
+  }
+
+ private:
+  double Uniform() { return (static_cast<double>(rng_() >> 11) + 0.5) * 0x1p-53; }
+  std::mt19937_64 rng_;
+};
+
+// A candidate in the few dimensions that any candidate reaches.
+struct Small {
+  std::vector<Probe> probes;
+  double Best(const Vector& z, std::size_t* which = nullptr) const {
+    double best = 0;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+      const double amount = ExplainedBy(probes[i], z).amount;
+      if (amount > best) {
+        best = amount;
+        if (which) *which = i;
+      }
+    }
+    return best;
+  }
+};
+
+}  // namespace
+
+Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
+                     const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
+                     const std::vector<bool>& fixed, const std::vector<Vector>& step)
+    : whitening_(&whitening), use_(use) {
+  const Vector r = whitening.Stack(residuals, use);
+  const Matrix J = whitening.Stack(jacobian, use);
+  const Vector s = whitening.Stack(step, use);
+  const Eigen::Index n = r.size();
+  Matrix A(n + 1, J.cols() + 1);  // the last row is the prior of the step
+  A.setZero();
+  Eigen::Index free = 0;
+  for (Eigen::Index i = 0; i < J.cols(); ++i) {
+    if (!fixed[i]) A.col(free++).head(n) = J.col(i);
+  }
+  A.col(free).head(n) = s;
+  A(n, free) = 1 / kStepSpread;
+  basis_ = Basis(A.leftCols(free + 1));
+  Vector padded = Vector::Zero(n + 1);
+  padded.head(n) = r;
+  residual_ = Out(padded).col(0);
+  const double measured = static_cast<double>((r.array() != 0).count());
+  freedom_ = measured - static_cast<double>(free);
+}
+
+Remainder::Matrix Remainder::Out(Matrix columns) const {
+  columns -= basis_ * (basis_.transpose() * columns);
+  return columns;
+}
+
+Remainder::Matrix Remainder::Project(const std::vector<Matrix>& columns) const {
+  const Matrix stacked = whitening_->Stack(columns, use_);
+  Matrix padded = Matrix::Zero(stacked.rows() + 1, stacked.cols());
+  padded.topRows(stacked.rows()) = stacked;
+  return Out(std::move(padded));
+}
+
+// Least squares of z + C a; coefficients of a forbidden sign are put to zero one after the other.
+Explained ExplainedBy(const Probe& probe, const Vector& z) {
+  const Eigen::Index k = probe.columns.cols();
+  std::vector<bool> out(k, false);
+  while (true) {
+    std::vector<Eigen::Index> in;
+    for (Eigen::Index i = 0; i < k; ++i) {
+      if (!out[i] && probe.columns.col(i).squaredNorm() > 0) in.push_back(i);
+    }
+    Explained e{0, Vector::Zero(k)};
+    if (in.empty()) return e;
+    Matrix C(z.size(), static_cast<Eigen::Index>(in.size()));
+    for (std::size_t i = 0; i < in.size(); ++i) C.col(i) = probe.columns.col(in[i]);
+    Eigen::CompleteOrthogonalDecomposition<Matrix> solver(C);
+    const Vector a = -solver.solve(z);
+    Eigen::Index worst = -1;
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      if (probe.sign[in[i]] * a[i] < 0) worst = in[i];
+      e.coefficients[in[i]] = a[i];
+    }
+    if (worst < 0) {
+      e.amount = std::max(0.0, z.squaredNorm() - (z + C * a).squaredNorm());
+      return e;
+    }
+    out[worst] = true;
+  }
+}
+
+// Everything happens in the span of all probes: z and draws of noise are projected into it once.
+Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, const Vector& z,
+                            double inflation, std::uint64_t seed) {
+  constexpr int kDraws = 1999;
+  Significance out;
+  out.explained.assign(candidates.size(), 0);
+  out.best.assign(candidates.size(), 0);
+  out.p.assign(candidates.size(), 1);
+  Eigen::Index columns = 0;
+  for (const auto& probes : candidates) {
+    for (const Probe& p : probes) columns += p.columns.cols();
+  }
+  if (columns == 0) return out;
+  Matrix all(z.size(), columns);
+  columns = 0;
+  for (const auto& probes : candidates) {
+    for (const Probe& p : probes) {
+      all.middleCols(columns, p.columns.cols()) = p.columns;
+      columns += p.columns.cols();
+    }
+  }
+  const Matrix Q = Basis(all);
+  std::vector<Small> small(candidates.size());
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    for (const Probe& p : candidates[c])
+      small[c].probes.push_back({Q.transpose() * p.columns, p.sign});
+  }
+  const Vector here = Q.transpose() * z;
+  for (std::size_t c = 0; c < small.size(); ++c)
+    out.explained[c] = small[c].Best(here, &out.best[c]);
+
+  Normals normals(seed);
+  Matrix draws(static_cast<Eigen::Index>(small.size()), kDraws);
+  for (int d = 0; d < kDraws; ++d) {
+    Vector noise(Q.cols());
+    for (double& v : noise) v = std::sqrt(inflation) * normals.Next();
+    for (std::size_t c = 0; c < small.size(); ++c) draws(c, d) = small[c].Best(noise);
+  }
+  // Own p-values of every draw by its rank, then the distribution of the smallest.
+  Matrix own(draws.rows(), kDraws);
+  std::vector<std::vector<double>> sorted(small.size());
+  const auto share = [&](std::size_t c, double amount) {
+    const auto& s = sorted[c];
+    const auto above = s.end() - std::lower_bound(s.begin(), s.end(), amount);
+    return (static_cast<double>(above) + 1) / (kDraws + 1);
+  };
+  for (std::size_t c = 0; c < small.size(); ++c) {
+    for (int d = 0; d < kDraws; ++d) sorted[c].push_back(draws(c, d));
+    std::sort(sorted[c].begin(), sorted[c].end());
+    for (int d = 0; d < kDraws; ++d) own(c, d) = share(c, draws(c, d));
+  }
+  std::vector<double> smallest;
+  for (int d = 0; d < kDraws; ++d) smallest.push_back(own.col(d).minCoeff());
+  std::sort(smallest.begin(), smallest.end());
+  for (std::size_t c = 0; c < small.size(); ++c) {
+    const double mine = share(c, out.explained[c]);
+    const auto as_small =
+        std::upper_bound(smallest.begin(), smallest.end(), mine) - smallest.begin();
+    out.p[c] = (static_cast<double>(as_small) + 1) / (kDraws + 1);
+  }
+  return out;
+}
+
+}  // namespace continuum

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "identification/fit.h"
+
+namespace continuum {
+
+/// What the data say against a fitted model, to first order: its whitened residuals r over the
+/// train logs after projecting out whatever may move freely,   z = M r,   M = I − A A⁺,
+/// with A the sensitivities of the fitted parameters and, with a prior, what the time step adds.
+class Remainder {
+ public:
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+
+  /// residuals, jacobian: [log] at the optimum; fixed: parameters that a bound holds; step: [log]
+  /// residuals at the model's step minus those at a finer one, known to a factor of about 1.
+  Remainder(const Whitening& whitening, const std::vector<bool>& use,
+            const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
+            const std::vector<bool>& fixed, const std::vector<Vector>& step);
+
+  const Vector& residual() const { return residual_; }
+  /// |z|², the whitened sum of squares at the optimum to first order.
+  double cost() const { return residual_.squaredNorm(); }
+  /// M applied to columns given per log.
+  Matrix Project(const std::vector<Matrix>& columns) const;
+  /// How much of |z|² may be expected from noise of size 1: measured numbers less free parameters.
+  double freedom() const { return freedom_; }
+
+ private:
+  Matrix Out(Matrix columns) const;
+
+  const Whitening* whitening_;
+  std::vector<bool> use_;
+  Matrix basis_;  // orthonormal, of A
+  Vector residual_;
+  double freedom_;
+};
+
+/// Directions in which one candidate could move the residuals.
+struct Probe {
+  Eigen::MatrixXd columns;   ///< projected, per unit of the coefficients
+  std::vector<double> sign;  ///< of each coefficient: +1 may only be positive, −1 negative, 0 both
+};
+
+/// The part of |z|² that a probe explains with coefficients of allowed signs, and those.
+struct Explained {
+  double amount = 0;
+  Eigen::VectorXd coefficients;
+};
+Explained ExplainedBy(const Probe& probe, const Eigen::VectorXd& z);
+
+/// Family-wise significance of several candidates, each with one or more probes (the best counts):
+/// the share of draws of white noise in which some candidate reaches as small a p-value of its own
+/// as this one did with z. Repeats exactly for a seed.
+struct Significance {
+  std::vector<double> explained;  ///< [candidate] of its best probe
+  std::vector<std::size_t> best;  ///< [candidate] its best probe
+  std::vector<double> p;          ///< [candidate] family-wise
+};
+Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates,
+                            const Eigen::VectorXd& z, double inflation, std::uint64_t seed);
+
+}  // namespace continuum

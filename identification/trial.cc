@@ -1,0 +1,170 @@
+#include "identification/trial.h"
+
+#include <cmath>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+
+#include "error.h"
+#include "identification/placebo.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+// p-value of what unsigned columns explain of white noise of size 1.
+double ChiSquared(const Matrix& columns, const Vector& z) {
+  Probe probe{columns, std::vector<double>(columns.cols(), 0)};
+  const double rank = static_cast<double>(
+      std::min<Eigen::Index>(columns.cols(), (columns.colwise().norm().array() > 1e-9).count()));
+  if (rank < 1) return 1;
+  return boost::math::cdf(
+      boost::math::complement(boost::math::chi_squared(rank), ExplainedBy(probe, z).amount));
+}
+
+// Of each counted channel: a constant, and a shift in time.
+Matrix ChannelColumns(const Problem& problem, const Trace& trace, const Log& log) {
+  const auto rows = static_cast<Eigen::Index>(log.rows());
+  const auto channels = static_cast<Eigen::Index>(problem.channels().size());
+  Matrix columns = Matrix::Zero(rows * channels, 2 * channels);
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    const auto& y = trace.channel[problem.channels()[c]];
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      columns(c * rows + k, 2 * c) = 1;
+      if (k == 0 || k + 1 == rows) continue;
+      columns(c * rows + k, 2 * c + 1) =
+          (y[k + 1] - y[k - 1]) / (log.time[k + 1] - log.time[k - 1]) / problem.scale(c);
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::vector<bool> Trials::Train() const {
+  std::vector<bool> use;
+  for (const Log& log : experiment->logs) use.push_back(log.train);
+  return use;
+}
+
+Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) const {
+  const auto train = Train();
+  auto validate = train;
+  validate.flip();
+  Fitted f;
+  FitOptions options{iterations, 1e-4};  // first order does the rest
+  options.whitening = &whitening;
+  options.hopeless = 1.5 * rival + 50;
+  f.fit = FitParameters(problem, start, train, options);
+  f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
+  for (std::size_t l = 0; l < train.size(); ++l) {
+    if (f.residuals[l].allFinite()) continue;
+    throw Error::Job("the simulation of " + experiment->logs[l].label +
+                     " diverges with the fitted parameters");
+  }
+  f.jacobian = problem.Jacobian(f.fit.x, f.residuals, problem.AllLogs());
+  auto J = f.jacobian;
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (!train[l]) J[l].resize(0, 0);
+  }
+  f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, J, whitening);
+  f.error = {problem.PooledRms(f.residuals, train), problem.PooledRms(f.residuals, validate)};
+  f.step = problem.StepEffect(f.fit.x, f.residuals, train);
+  if (!whitening.active()) return f;
+  const Remainder left = LeftBy(f);
+  f.cost = left.cost();
+  f.freedom = left.freedom();
+  return f;
+}
+
+Remainder Trials::LeftBy(const Fitted& fitted) const {
+  return Remainder(whitening, Train(), fitted.residuals, fitted.jacobian,
+                   fitted.uncertainty.at_bound, fitted.step);
+}
+
+std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
+                                  const Remainder& left) const {
+  const auto train = Train();
+  const auto known = null.fit.x.size();
+  const auto amplitudes = h.Amplitudes();
+  std::vector<Probe> probes;
+  for (const auto& start : h.starts) {
+    std::vector<Matrix> columns(train.size());
+    for (std::size_t l = 0; l < train.size(); ++l) {
+      columns[l] =
+          Matrix::Zero(null.residuals[l].size(), static_cast<Eigen::Index>(amplitudes.size()));
+    }
+    Probe probe;
+    for (std::size_t a = 0; a < amplitudes.size(); ++a) {
+      Vector x(known + static_cast<Eigen::Index>(start.size()));
+      x.head(known) = null.fit.x;
+      for (std::size_t i = 0; i < start.size(); ++i)
+        x[known + static_cast<Eigen::Index>(i)] = start[i];
+      for (const std::size_t i : amplitudes) x[known + static_cast<Eigen::Index>(i)] = h.null[i];
+      const std::size_t i = amplitudes[a];
+      x[known + static_cast<Eigen::Index>(i)] = start[i];
+      const auto r = problem.Residuals(x, train);
+      for (std::size_t l = 0; l < train.size(); ++l) {
+        if (!train[l]) continue;
+        if (!r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
+        columns[l].col(static_cast<Eigen::Index>(a)) =
+            (r[l] - null.residuals[l]) / (start[i] - h.null[i]);
+      }
+      const bool above = h.extra[i].lower >= h.null[i], below = h.extra[i].upper <= h.null[i];
+      probe.sign.push_back(above ? 1 : below ? -1 : 0);
+    }
+    probe.columns = left.Project(columns);
+    probes.push_back(std::move(probe));
+  }
+  return probes;
+}
+
+Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
+                         const Explained& probe) const {
+  const auto known = null.fit.x.size();
+  const auto amplitudes = h.Amplitudes();
+  Vector x(known + static_cast<Eigen::Index>(h.extra.size()));
+  x.head(known) = null.fit.x;
+  for (std::size_t i = 0; i < h.extra.size(); ++i)
+    x[known + static_cast<Eigen::Index>(i)] = h.starts[start][i];
+  for (std::size_t a = 0; a < amplitudes.size(); ++a) {
+    const std::size_t i = amplitudes[a];
+    const double size = h.starts[start][i] - h.null[i];
+    const double wanted = probe.coefficients[static_cast<Eigen::Index>(a)];
+    // Off the null, where a bound or a kink hides the slope.
+    const double least = 0.05 * std::abs(size);
+    const double moved = std::abs(wanted) > least ? wanted : std::copysign(least, size);
+    x[known + static_cast<Eigen::Index>(i)] = h.null[i] + moved;
+  }
+  for (std::size_t i = 0; i < h.extra.size(); ++i) {
+    double& value = x[known + static_cast<Eigen::Index>(i)];
+    value = std::clamp(value, h.extra[i].lower, h.extra[i].upper);
+  }
+  return x;
+}
+
+LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& extra,
+                         const Fitted& fitted, const Sizes& sizes, std::uint64_t seed) const {
+  const auto train = Train();
+  const ForceTerms terms = RandomForce(12, true, sizes, seed);
+  const Problem problem(*experiment, system, extra, terms);
+  const auto known = fitted.fit.x.size();
+  Vector x = Vector::Zero(known + static_cast<Eigen::Index>(terms.count));
+  x.head(known) = fitted.fit.x;
+  const Remainder left = LeftBy(fitted);
+  LackOfFit lack;
+  auto J = problem.Jacobian(x, fitted.residuals, train, fitted.jacobian);
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (train[l]) J[l] = Matrix(J[l].rightCols(static_cast<Eigen::Index>(terms.count)));
+  }
+  lack.force = ChiSquared(left.Project(J), left.residual());
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (train[l]) J[l] = ChannelColumns(problem, problem.Predict(x, l), experiment->logs[l]);
+  }
+  lack.channel = ChiSquared(left.Project(J), left.residual());
+  return lack;
+}
+
+}  // namespace continuum

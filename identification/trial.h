@@ -1,0 +1,32 @@
+#pragma once
+
+#include "identification/diagnosis.h"
+
+namespace continuum {
+
+/// How the models of one diagnosis are fitted and compared.
+struct Trials {
+  const Experiment* experiment;
+  Whitening whitening;  ///< inactive when the noise is not known
+  int iterations = 15;
+
+  /// Fits on the train logs and scores train and validate; rival: cost of a fit that this one must
+  /// come near to be worth its iterations. Throws Error when it diverges.
+  Fitted Fit(const Problem& problem, const Problem::Vector& start,
+             double rival = std::numeric_limits<double>::infinity()) const;
+  /// What a fit leaves, to first order; needs the noise.
+  Remainder LeftBy(const Fitted& fitted) const;
+  /// The starts of a candidate, each as directions from the null fit.
+  std::vector<Probe> Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
+                            const Remainder& left) const;
+  /// Where to begin a candidate's fit: a start of its own, with sizes from a probe.
+  Problem::Vector StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
+                            const Explained& probe) const;
+  /// Tests of what no candidate covers.
+  LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
+                   const Sizes& sizes, std::uint64_t seed) const;
+
+  std::vector<bool> Train() const;
+};
+
+}  // namespace continuum

@@ -1,0 +1,167 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace continuum::hidden {
+
+/// A two-link arm in a vertical plane with springs and motors at its joints, by hand, as the source
+/// of logs that MuJoCo had no part in. Angles q1, q2 [rad] from hanging, each link's own against
+/// the one before; torques of the motors u [N m]:
+///
+///   M(q) q'' + c(q, q') + g(q) = G u − K q − D q' − τ_f
+///
+/// Symplectic Euler at 20 us; dry friction as impulses that stop a joint exactly (projected
+/// Gauss-Seidel over both joints).
+struct Arm {
+  using Pair = std::array<double, 2>;
+
+  // The arm as its model knows it.
+  double l1 = 0.3, l2 = 0.25;      // m
+  double m1 = 0.5, m2 = 0.3;       // kg, at the middles
+  double i1 = 0.004, i2 = 0.0016;  // kg m², about the middles
+  double k = 2, d = 0.05;          // N m/rad, N m s/rad
+
+  // What may be hidden, absent by default.
+  double payload = 0, link = 1, armature = 0;           // kg, factor on masses, kg m²
+  double tau_c = 0, load = 0, turning = 0;              // N m, 1, N m: + c cos q
+  double stribeck = 0, v_d = 0.2;                       // 1, rad/s
+  double k3 = 0;                                        // N m/rad³
+  double k_m = 0, tau_m = 0.3;                          // N m/rad, s
+  double gain = 1, offset = 0, dead_time = 0, lag = 0;  // 1, N m, s, s
+  double tilt = 0, push = 0;             // rad about the joints' axis, N at the tip along x
+  double dahl = 0, dahl_stiffness = 20;  // N m, N m/rad
+  // At the sensors of the joint angles.
+  double bias = 0, scale = 1, late = 0, drift = 0;  // rad, 1, s, rad/s
+
+  /// Angles and tip positions (x, z) [rad, m] at every row, from rest; inputs held between rows.
+  std::array<std::vector<double>, 4> Run(const std::array<std::vector<double>, 2>& u,
+                                         double period) const {
+    constexpr double h = 2e-5;
+    const int steps = static_cast<int>(std::lround(period / h));
+    const auto behind = static_cast<std::size_t>(std::lround(dead_time / h));
+    std::vector<Pair> given;  // what the motors get, step by step
+    Pair lagged{gain * u[0][0] + offset, gain * u[1][0] + offset};
+    Pair q{0, 0}, v{0, 0}, creep{0, 0}, bristle{0, 0};
+    std::array<std::vector<double>, 4> out;
+    std::vector<Pair> angles;  // every step, for sensors that are late
+    for (std::size_t row = 0; row < u[0].size(); ++row) {
+      angles.push_back(q);
+      const auto& seen = angles[angles.size() - 1 - std::min(angles.size() - 1, Steps(late, h))];
+      const double t = period * static_cast<double>(row);
+      for (int j = 0; j < 2; ++j) out[j].push_back(scale * seen[j] + bias + drift * t);
+      out[2].push_back(l1 * std::sin(q[0]) + l2 * std::sin(q[0] + q[1]));
+      out[3].push_back(-l1 * std::cos(q[0]) - l2 * std::cos(q[0] + q[1]));
+      angles.pop_back();
+      for (int s = 0; s < steps; ++s) {
+        angles.push_back(q);
+        given.push_back({u[0][row], u[1][row]});
+        const Pair late_input = given[given.size() - 1 - std::min(given.size() - 1, behind)];
+        Pair motor;
+        for (int j = 0; j < 2; ++j) {
+          const double wanted = gain * late_input[j] + offset;
+          lagged[j] =
+              lag > 0 ? lagged[j] + (1 - std::exp(-h / lag)) * (wanted - lagged[j]) : wanted;
+          motor[j] = lagged[j];
+        }
+        Step(q, v, creep, bristle, motor, h);
+      }
+    }
+    return out;
+  }
+
+ private:
+  static std::size_t Steps(double t, double h) {
+    return static_cast<std::size_t>(std::lround(t / h));
+  }
+
+  void Step(Pair& q, Pair& v, Pair& creep, Pair& bristle, const Pair& motor, double h) const {
+    const double a1 = link * m1, a2 = link * m2, j1 = link * i1, j2 = link * i2;
+    const double tip = payload, c2 = std::cos(q[1]), s2 = std::sin(q[1]);
+    const double r1 = l1 / 2, r2 = l2 / 2;
+    const double far = a2 * r2 + tip * l2;                  // first moment of the second link
+    const double far2 = a2 * r2 * r2 + tip * l2 * l2 + j2;  // second
+    const double m22 = far2 + armature;
+    const double m12 = far2 + l1 * far * c2;
+    const double m11 =
+        a1 * r1 * r1 + j1 + (a2 + tip) * l1 * l1 + far2 + 2 * l1 * far * c2 + armature;
+    const double coriolis = l1 * far * s2;
+    const double gx = 9.81 * std::sin(tilt), gz = 9.81 * std::cos(tilt);  // g = (gx, −gz)
+    const double near = a1 * r1 + (a2 + tip) * l1;
+    const double s_1 = std::sin(q[0]), c_1 = std::cos(q[0]);
+    const double s_12 = std::sin(q[0] + q[1]), c_12 = std::cos(q[0] + q[1]);
+    Pair outer;  // all but motors, friction and inertia
+    outer[1] = -far * (gz * s_12 - gx * c_12) + push * l2 * c_12 - coriolis * v[0] * v[0];
+    outer[0] = -near * (gz * s_1 - gx * c_1) - far * (gz * s_12 - gx * c_12) +
+               push * (l1 * c_1 + l2 * c_12) + coriolis * (2 * v[0] + v[1]) * v[1];
+    Pair torque, level;
+    for (int j = 0; j < 2; ++j) {
+      outer[j] -= k * q[j] + k3 * q[j] * q[j] * q[j];
+      if (k_m > 0) {
+        outer[j] -= k_m * (q[j] - creep[j]);
+        creep[j] += (1 - std::exp(-h / tau_m)) * (q[j] - creep[j]);
+      }
+      if (dahl > 0) {
+        bristle[j] += h * v[j] * dahl_stiffness * (1 - bristle[j] / dahl * (v[j] > 0 ? 1 : -1));
+        outer[j] -= bristle[j];
+      }
+      const double through = std::abs(motor[j] - outer[j]) / 2;
+      outer[j] -= d * v[j];
+      torque[j] = motor[j] + outer[j];
+      const double slow = 1 + stribeck * std::exp(-std::pow(v[j] / v_d, 2));
+      level[j] = std::max(0.0, tau_c * slow + load * through + turning * std::cos(q[j]));
+    }
+    const double det = m11 * m22 - m12 * m12;
+    const Pair free{v[0] + h * (m22 * torque[0] - m12 * torque[1]) / det,
+                    v[1] + h * (m11 * torque[1] - m12 * torque[0]) / det};
+    Pair p{0, 0};
+    v = free;
+    for (int iteration = 0; iteration < 30; ++iteration) {
+      for (int j = 0; j < 2; ++j) {
+        const double inverse = (j ? m11 : m22) / det, other = -m12 / det;
+        const double now = free[j] + inverse * p[j] + other * p[1 - j];
+        p[j] = std::clamp(p[j] - now / inverse, -h * level[j], h * level[j]);
+      }
+      if (level[0] == 0 && level[1] == 0) break;
+    }
+    v[0] = free[0] + (m22 * p[0] - m12 * p[1]) / det;
+    v[1] = free[1] + (m11 * p[1] - m12 * p[0]) / det;
+    for (int j = 0; j < 2; ++j) q[j] += h * v[j];
+  }
+};
+
+/// The same arm as MJCF, with nothing hidden.
+inline std::string ArmXml() {
+  return R"(<mujoco model="two-link arm">
+  <option timestep="0.002" integrator="implicitfast"/>
+  <worldbody>
+    <body name="upper">
+      <joint name="q1" axis="0 -1 0" stiffness="2" damping="0.05"/>
+      <inertial pos="0 0 -0.15" mass="0.5" diaginertia="0.004 0.004 0.0001"/>
+      <body name="lower" pos="0 0 -0.3">
+        <joint name="q2" axis="0 -1 0" stiffness="2" damping="0.05"/>
+        <inertial pos="0 0 -0.125" mass="0.3" diaginertia="0.0016 0.0016 0.0001"/>
+        <body name="tip" pos="0 0 -0.25">
+          <inertial pos="0 0 0" mass="1e-6" diaginertia="1e-9 1e-9 1e-9"/>
+          <site name="tip"/>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="u1" joint="q1"/>
+    <motor name="u2" joint="q2"/>
+  </actuator>
+  <sensor>
+    <jointpos name="q1" joint="q1"/>
+    <jointpos name="q2" joint="q2"/>
+    <framepos name="tip" objtype="site" objname="tip"/>
+  </sensor>
+</mujoco>
+)";
+}
+
+}  // namespace continuum::hidden

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hidden_effects/arm.h"
+#include "hidden_effects/noise.h"
+
+namespace continuum::hidden {
+
+/// One effect that the logs may have and the model has not.
+struct Hidden {
+  std::string name;       ///< of the effect as the diagnosis calls it
+  std::string parameter;  ///< whose value is the truth
+  double size;            ///< a moderate one
+  std::function<void(Arm&, double)> add;
+  double null = 0;
+  std::vector<std::string> siblings = {};  ///< names that mean the same on these logs
+};
+const std::vector<Hidden>& HiddenEffects();
+const Hidden& HiddenNamed(const std::string& name);  ///< throws std::out_of_range
+
+/// What one run of the suite is about; its logs follow from it and repeat exactly.
+struct Case {
+  std::vector<std::string> effects;  ///< hidden; empty: none
+  double factor = 1;                 ///< of the moderate size
+  NoiseKind noise = NoiseKind::kWhite;
+  std::uint64_t seed = 1;
+  bool listed = true;  ///< whether the hidden effects are among the candidates
+
+  std::string Name() const;
+};
+
+/// What the diagnosis made of it.
+struct Answer {
+  std::string verdict;
+  std::vector<std::string> named;                  ///< effects, likeliest first
+  double truth = 0, value = 0, low = 0, high = 0;  ///< of the first effect, when it is in named
+  double explained = 0;  ///< explainable error removed on the validate logs
+  double next = 0;       ///< likelihood between the two best
+  double seconds = 0;
+  std::string detail;  ///< the summary
+};
+
+/// Writes model, logs and experiment of a case into a folder, and returns the experiment's path.
+std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& folder);
+/// The same, diagnosed.
+Answer Solve(const Case& c, const std::filesystem::path& folder);
+
+/// Whether the answer holds the truth (in the set), is one name, and whether that one is right.
+bool InSet(const Case& c, const Answer& a);
+bool Unique(const Answer& a);
+
+}  // namespace continuum::hidden

@@ -1,0 +1,79 @@
+#include "identification/screen.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace continuum {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+class Screened : public ::testing::Test {
+ protected:
+  static constexpr Eigen::Index kRows = 200;
+
+  Vector Normal() {
+    Vector v(kRows);
+    for (double& x : v) x = normal_(rng_);
+    return v;
+  }
+  Probe OneWay(const Vector& column, double sign = 0) const { return {column, {sign}}; }
+
+  std::mt19937_64 rng_{7};
+  std::normal_distribution<double> normal_;
+};
+
+TEST_F(Screened, ExplainsThePartAlongItsColumn) {
+  const Vector c = Normal();
+  const Vector z = Normal() - 3 * c;
+  const Explained e = ExplainedBy(OneWay(c), z);
+  EXPECT_NEAR(e.coefficients[0], -c.dot(z) / c.squaredNorm(), 1e-12);
+  EXPECT_NEAR(e.amount, std::pow(c.dot(z), 2) / c.squaredNorm(), 1e-9);
+}
+
+TEST_F(Screened, AForbiddenSignExplainsNothing) {
+  const Vector c = Normal();
+  const Vector z = 3 * c;  // wants −3
+  EXPECT_EQ(ExplainedBy(OneWay(c, 1), z).amount, 0);
+  EXPECT_GT(ExplainedBy(OneWay(c, -1), z).amount, 0);
+}
+
+// 400 draws of noise: the share below 5 % is within three standard errors (1.1 %).
+TEST_F(Screened, TheBestOfManyIsSignificantInFivePercentOfPureNoise) {
+  std::vector<std::vector<Probe>> candidates;
+  const Vector common = Normal();
+  for (int i = 0; i < 12; ++i) {
+    const Vector column = Normal() + 2 * common;  // they resemble each other
+    candidates.push_back({OneWay(column, i % 3 - 1)});
+  }
+  int alarms = 0;
+  for (int draw = 0; draw < 400; ++draw) {
+    const auto s = SignificanceOf(candidates, Normal(), 1, 5);
+    alarms += *std::min_element(s.p.begin(), s.p.end()) < 0.05;
+  }
+  EXPECT_NEAR(alarms / 400.0, 0.05, 0.033);
+}
+
+TEST_F(Screened, AStrongEffectIsSignificantAndTheBest) {
+  std::vector<std::vector<Probe>> candidates;
+  std::vector<Vector> columns;
+  for (int i = 0; i < 5; ++i) {
+    columns.push_back(Normal());
+    candidates.push_back({OneWay(columns.back())});
+  }
+  const auto s = SignificanceOf(candidates, Normal() + columns[3], 1, 5);
+  EXPECT_LT(s.p[3], 0.001);
+  for (int i = 0; i < 5; ++i) EXPECT_LE(s.explained[i], s.explained[3]);
+}
+
+TEST_F(Screened, RepeatsExactlyForASeed) {
+  const std::vector<std::vector<Probe>> candidates{{OneWay(Normal())}, {OneWay(Normal(), 1)}};
+  const Vector z = Normal();
+  EXPECT_EQ(SignificanceOf(candidates, z, 1, 3).p, SignificanceOf(candidates, z, 1, 3).p);
+}
+
+}  // namespace
+}  // namespace continuum
