@@ -11,10 +11,16 @@ struct Line {
   bool joint;
   int id, dof;
 
+  /// x is counted from the rest position of the native spring: a joint's springref, the nearest end
+  /// of a tendon's springlength.
   Port<double> At(const mjModel& m, const mjData& d) const {
-    if (!joint) return {d.ten_length[id] - m.tendon_length0[id], d.ten_velocity[id]};
+    if (!joint) {
+      const double* const rest = m.tendon_lengthspring + 2 * id;
+      const double length = d.ten_length[id];
+      return {length - std::clamp(length, rest[0], rest[1]), d.ten_velocity[id]};
+    }
     const int adr = m.jnt_qposadr[id];
-    return {d.qpos[adr] - m.qpos0[adr], d.qvel[dof]};
+    return {d.qpos[adr] - m.qpos_spring[adr], d.qvel[dof]};
   }
   void Add(const mjModel& m, const mjData& d, double f, std::span<double> force) const {
     if (joint) {

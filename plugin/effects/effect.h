@@ -96,10 +96,12 @@ concept ForceLaw = Card<E> &&
   { E::template Step<double>(z, q, 0.001, p) } -> std::same_as<Vec<double, E::kStates.size()>>;
 };
 
-/// What the level of a dry friction may depend on: position, velocity, and the load ≥ 0 [N*m].
+/// What the level of a dry friction may depend on: position, velocity, the load ≥ 0 [N*m], and the
+/// lean [rad]: its sign is the direction in which the contact slides or, at rest, would slide (0:
+/// not known).
 template <class T>
 struct Rubbing {
-  T q, v, load;
+  T q, v, load, lean = T(0);
 };
 
 /// Friction: Level(rubbing, p) ≥ 0, the largest torque that dry friction can take. It becomes a row
@@ -122,21 +124,60 @@ concept SegmentLaw = Card<E> && requires(Vec<double, 3> x, ParamsOf<E, double> p
   { E::template Eval<double>(x, x, x, p) } -> std::same_as<Vec<double, 3>>;
 };
 
-/// Where a Signal law is inserted: the input of an actuator, or the error of a position servo.
-enum class Tap { kInput, kServoError };
+/// Where a Signal law is inserted: the input of an actuator, the error of a position servo, or
+/// between position servos and the tendon that they pull.
+enum class Tap { kInput, kServoError, kTendon };
 
-/// Signal: what an actuator feels instead of u, Eval(u, p) → y.
+/// What position servos do to a tendon: the tension they would give without the law [N], and their
+/// stiffness along the tendon [N/m].
+template <class T>
+struct Pull {
+  T tension, stiffness;
+};
+
+/// Signal without memory: what is felt instead of u, Eval(u, p) → y.
 template <class E>
-concept SignalLaw = Card<E> && requires(ParamsOf<E, double> p) {
+concept GainLaw = Card<E> && requires(ParamsOf<E, double> p) {
   Tap{E::kTap};
   { E::template Eval<double>(0.1, p) } -> std::same_as<double>;
 };
-
-/// Measure: what a sensor reports of y(t) when it was read at the time t, Eval(y, t, p).
+/// Signal with states: Eval(u, z, p) → y, Step(z, u, h, p) → z after h at constant u, exactly.
 template <class E>
-concept MeasureLaw = Card<E> && requires(ParamsOf<E, double> p) {
-  { E::template Eval<double>(0.1, 0.1, p) } -> std::same_as<double>;
+concept FilterLaw = Card<E> && requires(Vec<double, E::kStates.size()> z, ParamsOf<E, double> p) {
+  Tap{E::kTap};
+  std::span<const State>{E::kStates};
+  { E::template Eval<double>(0.1, z, p) } -> std::same_as<double>;
+  { E::template Step<double>(z, 0.1, 0.001, p) } -> std::same_as<Vec<double, E::kStates.size()>>;
 };
+/// Signal at a tendon: Eval(pull, p) → tension.
+template <class E>
+concept PullLaw = Card<E> && requires(Pull<double> pull, ParamsOf<E, double> p) {
+  Tap{E::kTap};
+  { E::template Eval<double>(pull, p) } -> std::same_as<double>;
+};
+template <class E>
+concept SignalLaw = GainLaw<E> || FilterLaw<E> || PullLaw<E>;
+
+/// A signal of time, of one number or of a vector.
+struct AnySignal {
+  double operator()(double) const;
+};
+struct AnyVectorSignal {
+  Vec<double, 3> operator()(double) const;
+};
+
+/// Measure: what a sensor reports at the time t of a signal y, Eval(y, t, p). y is a function of
+/// time; t is counted from the beginning of the log [s].
+template <class E>
+concept ScalarMeasureLaw = Card<E> && requires(AnySignal y, ParamsOf<E, double> p) {
+  { E::template Eval<double>(y, 0.1, p) } -> std::same_as<double>;
+};
+template <class E>
+concept VectorMeasureLaw = Card<E> && requires(AnyVectorSignal y, ParamsOf<E, double> p) {
+  { E::template Eval<double>(y, 0.1, p) } -> std::same_as<Vec<double, 3>>;
+};
+template <class E>
+concept MeasureLaw = ScalarMeasureLaw<E> || VectorMeasureLaw<E>;
 
 /// Edit: a native attribute of MuJoCo as an effect. Apply(element, p) edits one element of a model
 /// through Element's Get, Set, Add, Scale (names and units of MJCF).

@@ -1,7 +1,9 @@
 // Laws that every effect in effects/all.h obeys. Effects are not listed here.
 #include "effects/all.h"
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <random>
 #include <set>
 #include <sstream>
@@ -28,7 +30,7 @@ double Factor(std::string_view unit, Units3 s) {
       u = u.substr(0, caret);
     }
     double f = 0;
-    if (u == "1" || u == "rad" || u == "input") f = 1;
+    if (u == "1" || u == "rad" || u == "input" || u == "output") f = 1;
     if (u == "kg") f = s.m;
     if (u == "m") f = s.l;
     if (u == "s") f = s.t;
@@ -143,6 +145,26 @@ TYPED_TEST(EveryEffect, StepsItsStatesExactly) {
   }
 }
 
+// At constant u a step is two half steps.
+TYPED_TEST(EveryEffect, StepsItsFilterAsTwoHalves) {
+  using E = TypeParam;
+  if constexpr (FilterLaw<E>) {
+    std::normal_distribution<double> n;
+    for (int k = 0; k < 100; ++k) {
+      const auto p = RandomParams<E>(this->rng);
+      Vec<double, E::kStates.size()> z;
+      for (double& value : z) value = n(this->rng);
+      const double u = n(this->rng), h = 0.01;
+      const auto whole = E::template Step<double>(z, u, h, p);
+      const auto half = E::template Step<double>(z, u, h / 2, p);
+      const auto twice = E::template Step<double>(half, u, h / 2, p);
+      for (std::size_t i = 0; i < z.size(); ++i) {
+        EXPECT_NEAR(whole[i], twice[i], 1e-12 * (1 + std::abs(whole[i])));
+      }
+    }
+  }
+}
+
 TYPED_TEST(EveryEffect, IsConsistentInItsUnitsAsFriction) {
   using E = TypeParam;
   if constexpr (FrictionLaw<E>) {
@@ -153,13 +175,29 @@ TYPED_TEST(EveryEffect, IsConsistentInItsUnitsAsFriction) {
       auto w = p;
       for (std::size_t i = 0; i < w.size(); ++i) w[i] *= Factor(E::kParams[i].unit, s);
       const Rubbing<double> r{n(this->rng), n(this->rng), std::abs(n(this->rng))};
-      const Rubbing<double> q{r.q, r.v / s.t, r.load * Factor("N*m", s)};
+      const Rubbing<double> q{r.q, r.v / s.t, r.load * Factor("N*m", s), r.lean};
       const double a = E::template Level<double>(r, p), b = E::template Level<double>(q, w);
       ASSERT_GE(a, 0);
       ASSERT_NEAR(b, a * Factor("N*m", s), 1e-9 * std::abs(b));
     }
   }
 }
+
+// An element whose attributes are all 0.37. A lag and a delay of 0 are those of an actuator that
+// has none.
+struct Untouched {
+  std::map<std::string, double, std::less<>> values;
+  double& At(std::string_view name) {
+    return values.try_emplace(std::string(name), 0.37).first->second;
+  }
+  double Get(std::string_view name) { return At(name); }
+  void Set(std::string_view name, double value) {
+    if ((name == "lag" || name == "delay") && value == 0) return;
+    At(name) = value;
+  }
+  void Add(std::string_view name, double value) { At(name) += value; }
+  void Scale(std::string_view name, double factor) { At(name) *= factor; }
+};
 
 TYPED_TEST(EveryEffect, DoesNothingAtItsNull) {
   using E = TypeParam;
@@ -173,8 +211,33 @@ TYPED_TEST(EveryEffect, DoesNothingAtItsNull) {
   if constexpr (PathLaw<E>) {
     EXPECT_EQ(E::template Band<double>(0.5, 0, p), 0);
   }
-  if constexpr (SignalLaw<E>) {
+  if constexpr (GainLaw<E>) {
     EXPECT_EQ(E::template Eval<double>(0.3, p), 0.3);
+  }
+  if constexpr (FilterLaw<E>) {
+    Vec<double, E::kStates.size()> z{};
+    EXPECT_EQ(E::template Eval<double>(0.3, z, p), 0.3);
+  }
+  if constexpr (PullLaw<E>) {
+    for (const double tension : {-3.0, 0.0, 3.0}) {
+      EXPECT_EQ(E::template Eval<double>(Pull<double>{tension, 1e4}, p), tension);
+    }
+  }
+  if constexpr (ScalarMeasureLaw<E>) {
+    EXPECT_EQ(E::template Eval<double>([](double t) { return std::exp(t); }, 0.7, p),
+              std::exp(0.7));
+  }
+  if constexpr (VectorMeasureLaw<E>) {
+    const auto y = [](double t) { return Vec<double, 3>{t, 2 * t, -t}; };
+    EXPECT_EQ(E::template Eval<double>(y, 0.7, p), y(0.7));
+  }
+  if constexpr (EditLaw<E>) {
+    Untouched element;
+    if (std::none_of(E::kParams.begin(), E::kParams.end(),
+                     [](const Param& param) { return std::isnan(param.null); })) {
+      E::Apply(element, p);
+      for (const auto& [name, value] : element.values) EXPECT_EQ(value, 0.37) << name;
+    }
   }
   if constexpr (ForceLaw<E>) {
     Vec<double, E::kStates.size()> z{};
