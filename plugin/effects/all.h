@@ -4,6 +4,7 @@
 #include "effects/backlash.h"
 #include "effects/capstan.h"
 #include "effects/coulomb.h"
+#include "effects/cubic_stiffness.h"
 #include "effects/dahl.h"
 #include "effects/dead_time.h"
 #include "effects/input_gain.h"
@@ -29,7 +30,8 @@ struct List {
 };
 
 /// Every effect the library knows. Adding one is one line here.
-using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, Backlash, Capstan,
-                 Viscous, Stiffness, Payload, Armature, InputGain, InputOffset, DeadTime, Pt1>;
+using All =
+    List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, CubicStiffness, Backlash, Capstan,
+         Viscous, Stiffness, Payload, Armature, InputGain, InputOffset, DeadTime, Pt1>;
 
 }  // namespace continuum

@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A two-link arm with a servo, a motor, and a cable through sites.
+// A two-link arm with a servo, a cable through sites with a motor, and a wire with a servo.
 std::string Arm(const std::string& plugin, const std::string& config, const std::string& option) {
   return "<mujoco><option timestep=\"2e-3\" " + option + "/>" +
          "<extension><plugin plugin=\"continuum." + plugin + "\"><instance name=\"i\">" + config +
@@ -22,8 +22,10 @@ std::string Arm(const std::string& plugin, const std::string& config, const std:
           <geom type="capsule" size=".02" fromto="0 0 0 0 0 -.2" mass=".2"/>
           <site name="e" pos=".03 0 -.05"/><site name="f" pos=".03 0 -.15"/></body></body>
     </worldbody>
-    <tendon><spatial name="cable"><site site="a"/><site site="b"/><site site="c"/><site site="e"/><site site="f"/></spatial></tendon>
-    <actuator><position name="servo" joint="q1" kp="5" kv=".1"/><motor name="pull" tendon="cable" gear="-1" forcerange="0 6"/></actuator>
+    <tendon><spatial name="cable"><site site="a"/><site site="b"/><site site="c"/><site site="e"/><site site="f"/></spatial>
+      <spatial name="wire"><site site="a"/><site site="c"/></spatial></tendon>
+    <actuator><position name="servo" joint="q1" kp="5" kv=".1"/><motor name="pull" tendon="cable" gear="-1" forcerange="0 6"/>
+      <position name="winch" tendon="wire" gear="-1" kp="20" forcerange="0 3"/></actuator>
     </mujoco>)";
 }
 
@@ -37,6 +39,7 @@ const std::map<std::string, std::string>& Laws() {
       {"load_friction", key("joint", "q1") + key("tau_c", ".01") + key("mu_l", ".2")},
       {"position_friction", key("joint", "q1") + key("tau_c", ".05") + key("c", ".03")},
       {"dahl", key("joint", "q1 q2") + key("sigma", "5") + key("f", ".1")},
+      {"cubic_stiffness", key("joint", "q2") + key("k3", ".2")},
       {"backlash", key("actuator", "servo") + key("gap", ".05")},
       {"capstan", key("tendon", "cable") + key("mu", ".3")}};
   return laws;
@@ -53,6 +56,7 @@ class EveryLaw : public testing::Engine,
     for (int k = 0; k < steps; ++k) {
       d->ctrl[0] = std::sin(3 * d->time);
       d->ctrl[1] = 4 + 4 * std::sin(5 * d->time);
+      d->ctrl[2] = -.2 + .1 * std::sin(4 * d->time);
       mj_step(m, d);
     }
   }
