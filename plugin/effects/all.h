@@ -9,6 +9,7 @@
 #include "effects/dead_time.h"
 #include "effects/input_gain.h"
 #include "effects/input_offset.h"
+#include "effects/link_mass.h"
 #include "effects/load_friction.h"
 #include "effects/payload.h"
 #include "effects/position_friction.h"
@@ -32,6 +33,6 @@ struct List {
 /// Every effect the library knows. Adding one is one line here.
 using All =
     List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, CubicStiffness, Backlash, Capstan,
-         Viscous, Stiffness, Payload, Armature, InputGain, InputOffset, DeadTime, Pt1>;
+         Viscous, Stiffness, Payload, LinkMass, Armature, InputGain, InputOffset, DeadTime, Pt1>;
 
 }  // namespace continuum
