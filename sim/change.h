@@ -6,9 +6,11 @@ namespace continuum {
 
 /// Another value for an attribute of the model.
 ///
-/// target: "joint:bend*", "actuator:servo", "option", "plugin:NAME" (an effect's parameter).
-/// attribute: its MJCF name, with an index where it has several ("gear[0]"), or "effect:NAME" for a
-/// native effect of the list, whose parameter is the value.
+/// target: "joint:bend*", "actuator:servo", "option" or "world", "plugin:NAME" (an effect's
+/// parameter).
+/// attribute: its MJCF name, with an index where it has several ("gear[0]"), or a parameter of a
+/// native effect of the list: "effect:NAME.PARAM", "effect:NAME" for its first. All changes of one
+/// effect at one target act together; parameters that are not among them stay at their null.
 struct Change {
   enum class Operation { kSet, kScale, kAdd };
   std::string target, attribute;

@@ -1,0 +1,111 @@
+#include "sim/native_effect.h"
+
+#include <cmath>
+
+#include "effects/all.h"
+#include "error.h"
+#include "sim/element.h"
+#include "sim/system.h"
+
+namespace continuum {
+namespace {
+
+constexpr std::string_view kPrefix = "effect:";
+
+// "effect:NAME.PARAM" in parts; PARAM is empty for the first.
+struct Named {
+  std::string effect, parameter;
+  explicit Named(const std::string& attribute) : effect(attribute.substr(kPrefix.size())) {
+    const std::size_t dot = effect.find('.');
+    if (dot == effect.npos) return;
+    parameter = effect.substr(dot + 1);
+    effect.resize(dot);
+  }
+  std::size_t Index() const {
+    return parameter.empty() ? 0 : ParameterIndex("continuum." + effect, parameter);
+  }
+};
+
+// The options of a model as an element: what belongs to the world.
+class World {
+ public:
+  explicit World(mjOption& option) : option_(option) {}
+  double Get(std::string_view name) const { return OptionAttribute(option_, name, "world"); }
+  void Set(std::string_view name, double value) { OptionAttribute(option_, name, "world") = value; }
+  void Add(std::string_view name, double value) { Set(name, Get(name) + value); }
+  void Scale(std::string_view name, double factor) { Set(name, Get(name) * factor); }
+
+ private:
+  mjOption& option_;
+};
+
+double Null(const Param& param) { return std::isnan(param.null) ? 0 : param.null; }
+
+double Changed(double old, const Change& change) {
+  if (change.operation == Change::Operation::kScale) return old * change.value;
+  return change.operation == Change::Operation::kAdd ? old + change.value : change.value;
+}
+
+// Calls use<E>() for the native effect of this name.
+template <class Use>
+void WithNative(const std::string& attribute, Use&& use) {
+  const std::string name = Named(attribute).effect;
+  bool known = false;
+  All::ForEach([&]<class E>() {
+    if constexpr (EditLaw<E>) {
+      if (name == E::kName) known = true, use.template operator()<E>();
+    }
+  });
+  if (!known) throw Error::Input(attribute, "a native effect", "'" + name + "'");
+}
+
+bool Together(const Change& a, const Change& b) {
+  return IsNativeEffect(a) && IsNativeEffect(b) && a.target == b.target &&
+         Named(a.attribute).effect == Named(b.attribute).effect;
+}
+
+template <class Target>
+void Apply(Target& target, std::span<const Change> changes, const Change& change) {
+  WithNative(change.attribute, [&]<class E>() {
+    ParamsOf<E, double> p;
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] = Null(E::kParams[i]);
+    for (const Change& c : changes) {
+      if (!Together(c, change)) continue;
+      double& value = p[Named(c.attribute).Index()];
+      value = Changed(value, c);
+    }
+    E::Apply(target, p);
+  });
+}
+
+}  // namespace
+
+bool IsWorld(std::string_view target) {
+  return target == "option" || target.substr(0, target.find(':')) == "world";
+}
+
+bool IsNativeEffect(const Change& change) { return change.attribute.starts_with(kPrefix); }
+
+bool RepeatsEffect(std::span<const Change> changes, std::size_t index) {
+  for (std::size_t i = 0; i < index; ++i) {
+    if (Together(changes[i], changes[index])) return true;
+  }
+  return false;
+}
+
+void ApplyNativeEffect(Element& element, std::span<const Change> changes, const Change& change) {
+  Apply(element, changes, change);
+}
+
+void ApplyNativeEffect(mjOption& world, std::span<const Change> changes, const Change& change) {
+  World element(world);
+  Apply(element, changes, change);
+}
+
+double NullOfNativeEffect(const std::string& attribute) {
+  double null = 0;
+  WithNative(attribute, [&]<class E>() { null = Null(E::kParams[Named(attribute).Index()]); });
+  return null;
+}
+
+}  // namespace continuum

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <mujoco/mujoco.h>
+
+#include "sim/change.h"
+
+namespace continuum {
+
+class Element;
+
+/// Whether the target is the model as a whole: "option", or "world" as the place of an effect
+/// ("world:*" too).
+bool IsWorld(std::string_view target);
+
+/// Whether the change is a parameter of a native effect: "effect:NAME" or "effect:NAME.PARAM".
+bool IsNativeEffect(const Change& change);
+/// Whether an earlier change is of the same effect at the same target, which acts for all of them.
+bool RepeatsEffect(std::span<const Change> changes, std::size_t index);
+
+/// Applies the effect of `change` with the values that `changes` give its parameters. Throws Error
+/// when there is no native effect or parameter of this name.
+void ApplyNativeEffect(Element& element, std::span<const Change> changes, const Change& change);
+void ApplyNativeEffect(mjOption& world, std::span<const Change> changes, const Change& change);
+
+/// The value of a parameter at which its effect is absent; 0 when that is what the model has.
+double NullOfNativeEffect(const std::string& attribute);
+
+}  // namespace continuum
