@@ -21,6 +21,12 @@ struct Options {
   double every = 0, until = 0, timestep = 0;
 };
 
+// Whether an actuator gives the same force whatever its control, so that a log needs no column.
+bool TakesNoControl(const mjModel& m, std::size_t actuator) {
+  return m.actuator_gaintype[actuator] == mjGAIN_FIXED &&
+         m.actuator_gainprm[mjNGAIN * actuator] == 0;
+}
+
 // The run as an experiment: every actuator an input, rows where something is read or written.
 struct Run {
   Experiment experiment;
@@ -68,7 +74,10 @@ Run Plan(const Options& o, const mjModel& m) {
                            Decimal(times[k]) + " after " + Decimal(times[k - 1]));
       }
     }
-    for (std::size_t a = 0; a < actuators.size(); ++a) controls[a] = table.Numbers(actuators[a]);
+    for (std::size_t a = 0; a < actuators.size(); ++a) {
+      const bool needed = !TakesNoControl(m, a) || table.Has(actuators[a]);
+      controls[a] = needed ? table.Numbers(actuators[a]) : std::vector(times.size(), 0.0);
+    }
     if (end == 0) end = times.back();
   }
   if (o.input.empty() && end == 0) end = 10;

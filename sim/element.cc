@@ -126,7 +126,7 @@ Element::Element(mjSpec* spec, mjsElement* element, const mjModel* compiled)
 Element::Saved Element::Save() const {
   // The structs hold numbers and pointers to strings; only numbers are edited here.
   const auto copy = [](auto* s) {
-    Saved saved{s, std::vector<std::byte>(sizeof *s)};
+    Saved saved{s, std::vector<std::byte>(sizeof *s), nullptr};
     std::memcpy(saved.bytes.data(), s, sizeof *s);
     return saved;
   };
@@ -148,7 +148,13 @@ Element::Saved Element::Save() const {
   }
 }
 
-void Element::Saved::Restore() const { std::memcpy(address, bytes.data(), bytes.size()); }
+void Element::Saved::Restore() const {
+  if (created_in) {
+    mjs_delete(created_in, static_cast<mjsElement*>(address));
+  } else {
+    std::memcpy(address, bytes.data(), bytes.size());
+  }
+}
 
 std::string Element::Name() const { return mjs_getString(mjs_getName(element_)); }
 
@@ -216,6 +222,8 @@ void Element::Set(std::string_view attribute, double value) {
 
 void Element::Add(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return AddPointMass(value);
+  const bool place = element_->elemtype == mjOBJ_BODY || element_->elemtype == mjOBJ_SITE;
+  if (place && attribute.starts_with("force[")) return AddForce(attribute, value);
   if (element_->elemtype == mjOBJ_ACTUATOR && attribute == "input") {
     if (value == 0) return;
     mjsActuator& a = Affine();

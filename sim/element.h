@@ -14,6 +14,7 @@ namespace continuum {
 /// what a user means by them:
 ///
 ///   body      mass (scales the inertia with it), point_mass (added at the body's origin)
+///   body and site  force[i] (Add: a constant force in world axes, by an actuator of its own)
 ///   actuator  kp, kv (gain and bias), force_scale (gain, bias and force range), input (what it
 ///             receives: Scale, Add), delay (Add: on top of the present one), lag (first-order,
 ///             filterexact; Add is refused where there is one)
@@ -30,13 +31,17 @@ class Element {
   void Add(std::string_view attribute, double value);
   void Scale(std::string_view attribute, double factor);
 
-  /// The element as it is now; Restore puts it back.
+  /// The element as it is now; Restore puts it back. One that was made since (created_in its
+  /// specification) is deleted.
   struct Saved {
     void* address;
     std::vector<std::byte> bytes;
+    mjSpec* created_in = nullptr;
     void Restore() const;
   };
   Saved Save() const;
+  /// Other elements that edits of this one have made or changed.
+  const std::vector<Saved>& others() const { return others_; }
 
   /// Gives a delayed actuator a history that reaches back over its delay at the model's time step,
   /// also where rows of a log shorten the steps to an eighth; one that is long enough stays.
@@ -52,6 +57,7 @@ class Element {
   void FreezeInertia();
   void SetBodyMass(double mass);
   void AddPointMass(double mass);
+  void AddForce(std::string_view attribute, double newtons);
   void SetLag(double lag);
   void SetDelay(double delay);
   mjsActuator& Affine();
@@ -59,6 +65,7 @@ class Element {
   mjSpec* spec_;
   mjsElement* element_;
   const mjModel* compiled_;
+  std::vector<Saved> others_;
 };
 
 /// Every element of a kind, in the order of the model.

@@ -8,25 +8,12 @@
 #include "error.h"
 #include "sim/element.h"
 #include "sim/file.h"
+#include "sim/native_effect.h"
 
 namespace continuum {
 namespace {
 
 constexpr std::string_view kPluginTarget = "plugin:";
-
-constexpr std::string_view kEffectAttribute = "effect:";
-
-// A native effect with one parameter.
-void ApplyEffect(Element& e, const Change& change) {
-  const std::string name = change.attribute.substr(kEffectAttribute.size());
-  bool known = false;
-  All::ForEach([&]<class E>() {
-    if constexpr (EditLaw<E>) {
-      if (name == E::kName) known = true, E::Apply(e, {change.value});
-    }
-  });
-  if (!known) throw Error::Input(change.attribute, "a native effect", "'" + name + "'");
-}
 
 void RegisterOnce() {
   static const bool once = [] {
@@ -167,8 +154,8 @@ class System::Edits {
   Edits(const System& system, std::span<const Change> changes)
       : spec_(*system.spec_), option_(spec_.option), compiler_(spec_.compiler) {
     try {
-      for (const Change& change : changes) {
-        if (!IsPlugin(change)) Apply(system, change);
+      for (std::size_t i = 0; i < changes.size(); ++i) {
+        if (!IsPlugin(changes[i]) && !RepeatsEffect(changes, i)) Apply(system, changes, changes[i]);
       }
       for (Element& actuator : Elements(&spec_, mjOBJ_ACTUATOR, system.compiled_.get())) {
         elements_.push_back(actuator.Save());
@@ -189,16 +176,18 @@ class System::Edits {
     spec_.compiler = compiler_;
   }
 
-  void Apply(const System& system, const Change& change) {
-    if (change.target == "option") {
+  void Apply(const System& system, std::span<const Change> changes, const Change& change) {
+    if (IsWorld(change.target)) {
+      if (IsNativeEffect(change)) return ApplyNativeEffect(spec_.option, changes, change);
       double& value = OptionAttribute(spec_.option, change.attribute, change.target);
       value = Changed(value, change);
       return;
     }
     for (Element& e : MatchElements(&spec_, system.compiled_.get(), change.target, change.target)) {
       elements_.push_back(e.Save());
-      if (change.attribute.starts_with(kEffectAttribute)) {
-        ApplyEffect(e, change);
+      if (IsNativeEffect(change)) {
+        ApplyNativeEffect(e, changes, change);
+        elements_.insert(elements_.end(), e.others().begin(), e.others().end());
         continue;
       }
       switch (change.operation) {
@@ -240,19 +229,22 @@ Machine System::Build(std::span<const Change> changes) const {
 }
 
 double System::Value(const std::string& target, const std::string& attribute) const {
-  if (target == "option") return OptionAttribute(spec_->option, attribute, target);
+  if (IsNativeEffect({target, attribute})) {
+    if (!IsWorld(target)) MatchElements(spec_.get(), compiled_.get(), target, target);
+    return NullOfNativeEffect(attribute);
+  }
+  if (IsWorld(target)) return OptionAttribute(spec_->option, attribute, target);
   if (target.starts_with(kPluginTarget)) {
     const Owned<mjData> d(mj_makeData(compiled_.get()));
     const int instance = InstanceId(*compiled_, target);
     return BoundOf(*compiled_, *d, instance).parameters()[IndexOn(*compiled_, instance, attribute)];
   }
-  auto elements = MatchElements(spec_.get(), compiled_.get(), target, target);
-  return attribute.starts_with(kEffectAttribute) ? 0 : elements.front().Get(attribute);
+  return MatchElements(spec_.get(), compiled_.get(), target, target).front().Get(attribute);
 }
 
 double System::ValueAfter(std::span<const Change> changes, const std::string& target,
                           const std::string& attribute) const {
-  if (!target.starts_with(kPluginTarget)) {
+  if (!target.starts_with(kPluginTarget) && !IsNativeEffect({target, attribute})) {
     const Edits edits(*this, changes);
     return Value(target, attribute);
   }

@@ -7,6 +7,7 @@
 #include "effects/cubic_stiffness.h"
 #include "effects/dahl.h"
 #include "effects/dead_time.h"
+#include "effects/external_force.h"
 #include "effects/gravity_tilt.h"
 #include "effects/input_gain.h"
 #include "effects/input_offset.h"
@@ -33,7 +34,7 @@ struct List {
 
 /// Every effect the library knows. Adding one is one line here.
 using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, CubicStiffness, Backlash,
-                 Capstan, Viscous, Stiffness, Payload, LinkMass, Armature, GravityTilt, InputGain,
-                 InputOffset, DeadTime, Pt1>;
+                 Capstan, Viscous, Stiffness, Payload, LinkMass, Armature, GravityTilt,
+                 ExternalForce, InputGain, InputOffset, DeadTime, Pt1>;
 
 }  // namespace continuum

@@ -1,0 +1,150 @@
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "error.h"
+#include "sim/system.h"
+#include "support/scratch.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class NativeEffect : public ::testing::Test {
+ protected:
+  static constexpr const char* kModel = R"(<mujoco>
+    <worldbody>
+      <body name="link" pos="0 0 1" euler="0 90 0"><freejoint/>
+        <geom size=".05 .02 .1" type="box" mass=".4" pos="0 0 .1"/><site name="tip" pos="0 0 .2"/>
+      </body>
+    </worldbody>
+    <sensor><framepos name="p" objtype="body" objname="link"/></sensor></mujoco>)";
+
+  System Load() const { return System::Load(scratch_.Write("m.xml", kModel)); }
+  static Machine Forward(const System& system, const std::vector<Change>& changes) {
+    Machine machine = system.Build(changes);
+    mj_forward(machine.model.get(), machine.data.get());
+    return machine;
+  }
+  static std::string Message(const System& system, const Change& change) {
+    try {
+      system.Build({{change}});
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  }
+  static std::vector<double> Run(const Machine& machine) {
+    mjData& d = *machine.data;
+    for (int k = 0; k < 200; ++k) mj_step(machine.model.get(), &d);
+    return {d.qpos, d.qpos + machine.model->nq};
+  }
+
+  testing::Scratch scratch_;
+};
+
+TEST_F(NativeEffect, GravityTiltTurnsGravityWhateverTheOrderOfItsParameters) {
+  const System system = Load();
+  const Change roll{"world", "effect:gravity_tilt.roll", 0.3},
+      pitch{"world", "effect:gravity_tilt.pitch", -0.2};
+  for (const auto& changes : {std::vector{roll, pitch}, std::vector{pitch, roll}}) {
+    const Machine machine = system.Build(changes);
+    const double* const g = machine.model->opt.gravity;
+    EXPECT_NEAR(g[0], -9.81 * std::cos(0.3) * std::sin(-0.2), 1e-14);
+    EXPECT_NEAR(g[1], 9.81 * std::sin(0.3), 1e-14);
+    EXPECT_NEAR(g[2], -9.81 * std::cos(0.3) * std::cos(-0.2), 1e-14);
+  }
+  EXPECT_EQ(system.Build().model->opt.gravity[2], -9.81);
+  EXPECT_EQ(system.ValueAfter({{roll}}, "world", "effect:gravity_tilt.roll"), 0.3);
+  EXPECT_EQ(system.Value("world", "effect:gravity_tilt"), 0);
+}
+
+TEST_F(NativeEffect, LinkMassScalesMassAndInertiaAboutTheSameCentre) {
+  const System system = Load();
+  const Machine plain = system.Build(),
+                heavy = system.Build({{{"body:link", "effect:link_mass", 1.5}}});
+  EXPECT_DOUBLE_EQ(heavy.model->body_mass[1], 0.6);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(heavy.model->body_inertia[3 + i], 1.5 * plain.model->body_inertia[3 + i]);
+    EXPECT_DOUBLE_EQ(heavy.model->body_ipos[3 + i], plain.model->body_ipos[3 + i]);
+  }
+  EXPECT_EQ(system.Value("body:link", "effect:link_mass"), 1);
+}
+
+TEST_F(NativeEffect, ExternalForceActsInWorldAxesAtTheOriginOrASite) {
+  const System system = Load();
+  for (const auto& [target, arm] : {std::pair{"body:link", 0.1}, {"site:tip", -0.1}}) {
+    const Machine m = Forward(system, {{target, "effect:external_force.fx", 0.3},
+                                       {target, "effect:external_force.fy", -0.5},
+                                       {target, "effect:external_force.fz", 0.2 + 0.4 * 9.81}});
+    // The centre of mass is 0.1 m along x from the origin; qacc of a free body: of its origin.
+    double torque[3], omega[3], arm_world[3] = {-arm, 0, 0},
+                                force[3] = {0.3, -0.5, 0.2 + 0.4 * 9.81};
+    mju_cross(torque, arm_world, force);
+    for (int i = 0; i < 3; ++i) omega[i] = m.data->qfrc_actuator[i];
+    EXPECT_NEAR(omega[0], force[0], 1e-12);
+    EXPECT_NEAR(omega[1], force[1], 1e-12);
+    EXPECT_NEAR(omega[2], force[2], 1e-12);
+    // Momentum of the tree: m a of the centre.
+    double a[6];
+    mj_objectAcceleration(m.model.get(), m.data.get(), mjOBJ_BODY, 1, a, 0);
+    EXPECT_NEAR(0.4 * a[3], 0.3, 1e-9);
+    EXPECT_NEAR(0.4 * a[4], -0.5, 1e-9);
+    EXPECT_NEAR(0.4 * (a[5] - 9.81), 0.2, 1e-9);
+    // Angular acceleration about the body's own axes: torque over inertia.
+    double local[3], R[9];
+    mju_quat2Mat(R, m.data->xquat + 4);
+    mju_mulMatTVec3(local, R, torque);
+    double spin[3];
+    mju_mulMatTVec3(spin, R, a);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(spin[i] * m.model->body_inertia[3 + i], local[i], 1e-9);
+  }
+}
+
+TEST_F(NativeEffect, ExternalForceLeavesNothingBehind) {
+  const System system = Load();
+  const std::string before = system.Xml();
+  const std::vector<Change> push{{"body:link", "effect:external_force.fy", 1}};
+  EXPECT_EQ(system.Build(push).model->nu, 1);
+  EXPECT_THAT(system.Xml(push), HasSubstr("external_force_body_link"));
+  EXPECT_EQ(system.Build().model->nu, 0);
+  EXPECT_EQ(system.Xml(), before);
+}
+
+TEST_F(NativeEffect, ExternalForceOfAnExtendedModelRunsByItselfAndAddsUp) {
+  const System system = Load();
+  const std::vector<Change> push{{"body:link", "effect:external_force.fy", 1}};
+  const System extended = system.With(push, {});
+  EXPECT_EQ(Run(extended.Build()), Run(system.Build(push)));
+  const Machine twice = Forward(extended, {{"body:link", "effect:external_force.fy", 0.5}});
+  EXPECT_EQ(twice.model->nu, 1);
+  EXPECT_NEAR(twice.data->qfrc_actuator[1], 1.5, 1e-12);
+  EXPECT_NEAR(Forward(extended, {}).data->qfrc_actuator[1], 1, 1e-12);
+}
+
+TEST_F(NativeEffect, AtTheirNullTheModelMovesBitByBitAsBefore) {
+  const System system = Load();
+  const auto plain = Run(system.Build());
+  for (const Change& change :
+       {Change{"body:link", "effect:link_mass", 1}, Change{"world", "effect:gravity_tilt.pitch", 0},
+        Change{"body:link", "effect:external_force", 0},
+        Change{"site:tip", "effect:external_force.fz", 0}}) {
+    EXPECT_EQ(Run(system.Build({{change}})), plain) << change.attribute;
+  }
+}
+
+TEST_F(NativeEffect, ErrorsNameEffectAndParameter) {
+  const System system = Load();
+  EXPECT_THAT(Message(system, {"world", "effect:gravity_tilt.yaw", 1}),
+              HasSubstr("roll, pitch, found 'yaw'"));
+  EXPECT_THAT(Message(system, {"body:link", "effect:dahl", 1}), HasSubstr("a native effect"));
+  EXPECT_THAT(Message(system, {"body:link", "effect:gravity_tilt", 1}), Not(HasSubstr("no error")));
+  EXPECT_THAT(Message(system, {"world", "effect:link_mass", 2}), HasSubstr("gravity[i]"));
+}
+
+}  // namespace
+}  // namespace continuum
