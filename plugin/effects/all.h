@@ -13,6 +13,7 @@
 #include "effects/input_offset.h"
 #include "effects/link_mass.h"
 #include "effects/load_friction.h"
+#include "effects/maxwell.h"
 #include "effects/payload.h"
 #include "effects/position_friction.h"
 #include "effects/pt1.h"
@@ -33,8 +34,8 @@ struct List {
 };
 
 /// Every effect the library knows. Adding one is one line here.
-using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, CubicStiffness, Backlash,
-                 Capstan, Viscous, Stiffness, Payload, LinkMass, Armature, GravityTilt,
+using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, CubicStiffness, Maxwell,
+                 Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass, Armature, GravityTilt,
                  ExternalForce, InputGain, InputOffset, DeadTime, Pt1>;
 
 }  // namespace continuum

@@ -40,6 +40,7 @@ const std::map<std::string, std::string>& Laws() {
       {"position_friction", key("joint", "q1") + key("tau_c", ".05") + key("c", ".03")},
       {"dahl", key("joint", "q1 q2") + key("sigma", "5") + key("f", ".1")},
       {"cubic_stiffness", key("joint", "q2") + key("k3", ".2")},
+      {"maxwell", key("joint", "q1 q2") + key("k_m", ".3") + key("tau_m", ".2")},
       {"backlash", key("actuator", "servo") + key("gap", ".05")},
       {"capstan", key("tendon", "cable") + key("mu", ".3")}};
   return laws;
