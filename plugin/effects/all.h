@@ -2,6 +2,7 @@
 
 #include "effects/armature.h"
 #include "effects/backlash.h"
+#include "effects/bouc_wen.h"
 #include "effects/capstan.h"
 #include "effects/coulomb.h"
 #include "effects/cubic_stiffness.h"
@@ -34,8 +35,8 @@ struct List {
 };
 
 /// Every effect the library knows. Adding one is one line here.
-using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, CubicStiffness, Maxwell,
-                 Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass, Armature, GravityTilt,
-                 ExternalForce, InputGain, InputOffset, DeadTime, Pt1>;
+using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, BoucWen, CubicStiffness,
+                 Maxwell, Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass, Armature,
+                 GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1>;
 
 }  // namespace continuum
