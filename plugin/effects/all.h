@@ -14,6 +14,7 @@
 #include "effects/input_offset.h"
 #include "effects/link_mass.h"
 #include "effects/load_friction.h"
+#include "effects/lugre.h"
 #include "effects/maxwell.h"
 #include "effects/payload.h"
 #include "effects/position_friction.h"
@@ -35,8 +36,8 @@ struct List {
 };
 
 /// Every effect the library knows. Adding one is one line here.
-using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, BoucWen, CubicStiffness,
-                 Maxwell, Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass, Armature,
-                 GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1>;
+using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, Lugre, BoucWen,
+                 CubicStiffness, Maxwell, Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass,
+                 Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1>;
 
 }  // namespace continuum
