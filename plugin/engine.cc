@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "binding/filter.h"
 #include "binding/force.h"
 #include "binding/friction.h"
 #include "binding/path.h"
@@ -185,6 +186,8 @@ auto BoundType() {
     return std::type_identity<BoundFriction<E>>{};
   else if constexpr (PathLaw<E>)
     return std::type_identity<BoundPath<E>>{};
+  else if constexpr (FilterLaw<E>)
+    return std::type_identity<BoundFilter<E>>{};
   else
     return std::type_identity<BoundSignal<E>>{};
 }
@@ -319,6 +322,12 @@ Bound& BoundOf(const mjModel& m, const mjData& d, int instance) {
     throw Error::Input("plugin instance " + std::to_string(instance), "an effect of ours", "none");
   }
   return *Get(d, instance)->bound;
+}
+
+void SettleEffects(const mjModel& m, mjData& d) {
+  for (int i = 0; i < m.nplugin; ++i) {
+    if (IsOurs(m, i)) Get(d, i)->bound->Settle(m, d, d.plugin_state + m.plugin_stateadr[i]);
+  }
 }
 
 void SetParameters(mjModel& m, mjData& d, int instance, const std::vector<double>& parameters) {

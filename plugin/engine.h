@@ -21,4 +21,7 @@ Bound& BoundOf(const mjModel& m, const mjData& d, int instance);
 /// Sets the parameters of an instance for this d, and the model constants that depend on them.
 void SetParameters(mjModel& m, mjData& d, int instance, const std::vector<double>& parameters);
 
+/// Brings the lags among the effects to where constant controls, those of d, have always held them.
+void SettleEffects(const mjModel& m, mjData& d);
+
 }  // namespace continuum

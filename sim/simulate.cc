@@ -138,6 +138,7 @@ void Settle(const mjModel& m, mjData& d) {
       mj_initCtrlHistory(&m, &d, a, nullptr, past.data());
     }
   }
+  SettleEffects(m, d);
 }
 
 // The most rows of a log in any interval of this length [s].

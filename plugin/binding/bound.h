@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <mujoco/mujoco.h>
@@ -39,6 +40,8 @@ class Bound {
                         std::span<double> force) = 0;
   /// States after the step that d has just taken.
   virtual void Advance(const mjModel&, const mjData&, double*) {}
+  /// States as if the present controls had been there for ever.
+  virtual void Settle(const mjModel&, const mjData&, double*) const {}
   /// Value of a sensor of this effect at a site.
   virtual double Sense(const mjModel&, const mjData&, int /*site*/) const { return 0; }
   /// Whether Sense knows this site.

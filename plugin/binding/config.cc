@@ -48,7 +48,8 @@ double Config::Read(const Param& param) const {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), last, value);
   const bool number = error == std::errc{} && end == last;
-  if (number && std::isfinite(value) && param.lower <= value && value <= param.upper) return value;
+  const bool usable = std::isfinite(value) || value == param.null;
+  if (number && usable && param.lower <= value && value <= param.upper) return value;
   const std::string lower =
       param.lower == std::numeric_limits<double>::min() ? "]0" : "[" + Short(param.lower);
   throw Error::Input(

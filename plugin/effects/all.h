@@ -19,6 +19,7 @@
 #include "effects/payload.h"
 #include "effects/position_friction.h"
 #include "effects/pt1.h"
+#include "effects/pt2.h"
 #include "effects/stiffness.h"
 #include "effects/stribeck.h"
 #include "effects/viscous.h"
@@ -38,6 +39,6 @@ struct List {
 /// Every effect the library knows. Adding one is one line here.
 using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, Lugre, BoucWen,
                  CubicStiffness, Maxwell, Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass,
-                 Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1>;
+                 Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1, Pt2>;
 
 }  // namespace continuum

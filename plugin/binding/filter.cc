@@ -1,0 +1,51 @@
+#include "binding/filter.h"
+
+namespace continuum {
+namespace {
+
+bool IsLag(int dynamics) { return dynamics == mjDYN_FILTER || dynamics == mjDYN_FILTEREXACT; }
+
+bool IsUsable(const mjModel& m, int a) {
+  const int dynamics = m.actuator_dyntype[a];
+  return m.actuator_ctrlnum[a] == 1 && m.actuator_outnum[a] == 1 &&
+         m.actuator_gaintype[a] == mjGAIN_FIXED && !m.actuator_actearly[a] &&
+         (dynamics == mjDYN_NONE || dynamics == mjDYN_INTEGRATOR || IsLag(dynamics));
+}
+
+}  // namespace
+
+double ActuatorInput::Control(const mjModel& m, const mjData& d) const {
+  double value = 0;
+  const double* const read = mj_readCtrl(&m, &d, actuator, d.time, &value, -1);
+  if (read) value = *read;
+  const int u = m.actuator_ctrladr[actuator];
+  if (!m.actuator_ctrllimited[u] || (m.opt.disableflags & mjDSBL_CLAMPCTRL)) return value;
+  return std::clamp(value, m.actuator_ctrlrange[2 * u], m.actuator_ctrlrange[2 * u + 1]);
+}
+
+void ActuatorInput::Shift(const mjModel& m, mjData& d, double change) const {
+  const int dynamics = m.actuator_dyntype[actuator];
+  if (dynamics == mjDYN_NONE) {
+    d.actuator_force[m.actuator_outadr[actuator]] +=
+        m.actuator_gainprm[mjNGAIN * actuator] * change;
+    return;
+  }
+  const double T = std::max(mjMINVAL, m.actuator_dynprm[mjNDYN * actuator]);
+  d.act_dot[m.actuator_actadr[actuator]] += IsLag(dynamics) ? change / T : change;
+}
+
+std::vector<ActuatorInput> MatchInputs(const mjModel& m, const Config& config) {
+  std::vector<ActuatorInput> inputs;
+  for (const int a : config.Match("actuator", mjOBJ_ACTUATOR)) {
+    if (!IsUsable(m, a)) {
+      throw Error::Input(config.Who() + ": actuator '" + mj_id2name(&m, mjOBJ_ACTUATOR, a) + "'",
+                         "one control with a fixed gain, without dynamics or through a lag or an "
+                         "integrator",
+                         "another actuator");
+    }
+    inputs.push_back({a});
+  }
+  return inputs;
+}
+
+}  // namespace continuum
