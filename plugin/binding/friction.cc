@@ -167,8 +167,19 @@ bool Rows::Find(const mjData& d, const Row& row, int& r) {
   return false;
 }
 
-void Rows::WriteRow(const mjModel& m, mjData& d, const double* z, Stage stage, const Row& row,
-                    int r, double level) {
+double Rows::OffAnchor(const mjModel& m, const mjData& d, const double* z, const Row& row) {
+  if (row.axis < 0) {
+    const double q = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.id];
+    return z[0] != 0 ? q - z[1] : 0;
+  }
+  const double* const ball = z - 2 * row.axis;  // the joint's first row
+  double turn[3] = {0, 0, 0};
+  if (ball[0] != 0) mju_subQuat(turn, d.qpos + m.jnt_qposadr[row.id], ball + 1);
+  return turn[row.axis];
+}
+
+void Rows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const Row& row, int r,
+                    double level) {
   if (row.owner) {
     const double native = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
     d.efc_frictionloss[r] = level + (native == kRowMarker ? 0 : native);
@@ -181,15 +192,7 @@ void Rows::WriteRow(const mjModel& m, mjData& d, const double* z, Stage stage, c
   const double h = m.opt.timestep;
   d.efc_KBIP[4 * r] = 1 / (4 * h * h);  // (1)
   d.efc_KBIP[4 * r + 1] = 1 / h;
-  if (row.axis < 0) {
-    const double q = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.id];
-    d.efc_pos[r] = z[0] != 0 ? q - z[1] : 0;
-  } else {
-    const double* const ball = z - 2 * row.axis;  // the joint's first row
-    double turn[3] = {0, 0, 0};
-    if (ball[0] != 0) mju_subQuat(turn, d.qpos + m.jnt_qposadr[row.id], ball + 1);
-    d.efc_pos[r] = turn[row.axis];
-  }
+  d.efc_pos[r] = off;
 }
 
 void Rows::Advance(const mjModel& m, const mjData& d, double* z) const {
@@ -199,7 +202,7 @@ void Rows::Advance(const mjModel& m, const mjData& d, double* z) const {
   for (const Row& row : rows_) {
     double* const state = z;
     z += 2;
-    if (!Find(d, row, r) || !row.owner) continue;
+    if (!Find(d, row, r)) continue;
     const bool slides = std::abs(d.efc_force[r]) >= d.efc_frictionloss[r] * (1 - 1e-9);
     const double stretch = slides ? Yield(d, r) : d.efc_pos[r];  // (2)
     const double* const q = row.joint ? d.qpos + m.jnt_qposadr[row.id] : d.ten_length + row.id;

@@ -10,7 +10,7 @@ struct Row {
   int id;      ///< of the joint or tendon
   int index;   ///< of the degree of freedom or tendon
   int axis;    ///< component of a ball joint, or −1
-  bool owner;  ///< the lowest instance on a row assigns the level and the anchor, others add
+  bool owner;  ///< the lowest instance on a row assigns level and anchor; others add their level
 };
 
 /// Friction rows that hold.
@@ -30,19 +30,27 @@ struct Row {
 /// {anchored, anchor}; a ball joint has six numbers, {anchored, quaternion, 0}.
 class Rows {
  public:
+  static double Speed(const mjData& d, const Row& row) {
+    return row.joint ? d.qvel[row.index] : d.ten_velocity[row.index];
+  }
+
   /// Joints (hinge, slide, ball) or tendons named in config.
   Rows(const mjModel& m, const Config& config, int instance);
   static int StateSize(const mjModel& m, const Config& config);
 
   const std::vector<Row>& rows() const { return rows_; }
   void Impose(mjModel& m) const;
-  /// Calls level(row) → torque for each row that exists at d, and writes it.
+  /// Calls level(row, lean) → torque for each row that exists at d, and writes it. lean: where the
+  /// row would be off its anchor after a step, (q − anchor) + h v.
   template <class Level>
   void Write(const mjModel& m, mjData& d, const double* z, Stage stage, Level&& level) const {
     int r = d.ne;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      if (!Find(d, rows_[k], r)) continue;
-      WriteRow(m, d, z + 2 * k, stage, rows_[k], r, level(rows_[k]));
+      const Row& row = rows_[k];
+      if (!Find(d, row, r)) continue;
+      const double off = OffAnchor(m, d, z + 2 * k, row);
+      const double lean = off + m.opt.timestep * Speed(d, row);
+      WriteRow(m, d, off, stage, row, r, level(row, lean));
     }
   }
   void Advance(const mjModel& m, const mjData& d, double* z) const;
@@ -50,8 +58,10 @@ class Rows {
  private:
   /// Moves r (ascending over calls) to the row's constraint; false when it has none.
   static bool Find(const mjData& d, const Row& row, int& r);
-  static void WriteRow(const mjModel& m, mjData& d, const double* z, Stage stage, const Row& row,
-                       int r, double level);
+  static void WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const Row& row, int r,
+                       double level);
+  /// q − anchor; 0 before the first step.
+  static double OffAnchor(const mjModel& m, const mjData& d, const double* z, const Row& row);
 
   std::vector<Row> rows_;
 };
@@ -84,8 +94,8 @@ class BoundFriction : public Bound {
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double>) override {
     const auto p = AsParams<E>(p_);
-    rows_.Write(m, d, z, stage, [&](const Row& row) {
-      Rubbing<double> r{0, row.joint ? d.qvel[row.index] : d.ten_velocity[row.index], 0};
+    rows_.Write(m, d, z, stage, [&](const Row& row, double lean) {
+      Rubbing<double> r{0, Rows::Speed(d, row), 0, lean};
       if (!row.joint) r.q = d.ten_length[row.index];
       if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
       if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);

@@ -8,6 +8,7 @@
 #include "effects/cubic_stiffness.h"
 #include "effects/dahl.h"
 #include "effects/dead_time.h"
+#include "effects/directional_friction.h"
 #include "effects/external_force.h"
 #include "effects/gravity_tilt.h"
 #include "effects/input_gain.h"
@@ -37,8 +38,9 @@ struct List {
 };
 
 /// Every effect the library knows. Adding one is one line here.
-using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, Dahl, Lugre, BoucWen,
-                 CubicStiffness, Maxwell, Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass,
-                 Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1, Pt2>;
+using All =
+    List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl, Lugre,
+         BoucWen, CubicStiffness, Maxwell, Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass,
+         Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1, Pt2>;
 
 }  // namespace continuum

@@ -39,6 +39,8 @@ const std::map<std::string, std::string>& Laws() {
       {"load_friction", key("joint", "q1") + key("tau_c", ".01") + key("mu_l", ".2")},
       {"position_friction", key("joint", "q1") + key("tau_c", ".05") + key("c", ".03")},
       {"dahl", key("joint", "q1 q2") + key("sigma", "5") + key("f", ".1")},
+      {"directional_friction", key("joint", "q*") + key("tau_c_plus", ".05") +
+                                   key("tau_c_minus", ".02") + key("b_plus", ".01")},
       {"lugre",
        key("joint", "q1 q2") + key("sigma_0", "5") + key("tau_c", ".05") + key("sigma_1", ".01")},
       {"bouc_wen",

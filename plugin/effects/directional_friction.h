@@ -1,0 +1,32 @@
+#pragma once
+
+#include "effects/effect.h"
+
+namespace continuum {
+
+/// Friction that depends on the direction: worm gears, preloaded seals, tendons with one bent end.
+///
+///   |τ_f| ≤ τ_c± + b± |v|        + where it moves or is pushed toward +q      (1)
+///
+/// tau_c_plus, tau_c_minus [N*m] · b_plus, b_minus [N*m*s/rad]. At rest a joint breaks away at
+/// τ_c+ toward +q and at τ_c− toward −q. Beside the joint's native damping, if that is unknown,
+/// only b_plus − b_minus can be determined. Source: armstrong1994.
+struct DirectionalFriction {
+  static constexpr std::string_view kName = "directional_friction", kSource = "armstrong1994",
+                                    kSummary = "friction that differs with the direction";
+  static constexpr std::array kPlaces{Place::kJoint};
+  static constexpr std::array kParams{
+      Magnitude("tau_c_plus", "N*m", 0.01), Magnitude("tau_c_minus", "N*m", 0.01),
+      Magnitude("b_plus", "N*m*s/rad", 0), Magnitude("b_minus", "N*m*s/rad", 0)};
+
+  template <class T>
+  static T Level(const Rubbing<T>& r, const Vec<T, 4>& p) {
+    const auto& [tau_c_plus, tau_c_minus, b_plus, b_minus] = p;
+    const T side = r.lean == 0.0 ? r.v : r.lean;
+    if (side > 0.0) return r.v > 0.0 ? T(tau_c_plus + b_plus * r.v) : tau_c_plus;  // (1)
+    if (side < 0.0) return r.v < 0.0 ? T(tau_c_minus - b_minus * r.v) : tau_c_minus;
+    return tau_c_plus > tau_c_minus ? tau_c_plus : tau_c_minus;
+  }
+};
+
+}  // namespace continuum
