@@ -13,6 +13,7 @@
 #include "binding/force.h"
 #include "binding/friction.h"
 #include "binding/path.h"
+#include "binding/pull.h"
 #include "binding/signal.h"
 #include "effects/all.h"
 
@@ -68,6 +69,9 @@ void WarnOfSilence(const mjModel& m, const Instance& self, const Config& config)
   if (self.bound->GivesForce() && (m.opt.disableflags & mjDSBL_SPRING) &&
       (m.opt.disableflags & mjDSBL_DAMPER)) {
     Warn(config.Who() + ": with springs and dampers disabled MuJoCo applies no passive forces");
+  }
+  if (const std::string why = self.bound->Silence(m); !why.empty()) {
+    Warn(config.Who() + ": " + why);
   }
 }
 
@@ -188,6 +192,8 @@ auto BoundType() {
     return std::type_identity<BoundPath<E>>{};
   else if constexpr (FilterLaw<E>)
     return std::type_identity<BoundFilter<E>>{};
+  else if constexpr (PullLaw<E>)
+    return std::type_identity<BoundPull<E>>{};
   else
     return std::type_identity<BoundSignal<E>>{};
 }

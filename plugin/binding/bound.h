@@ -42,6 +42,8 @@ class Bound {
   virtual void Advance(const mjModel&, const mjData&, double*) {}
   /// States as if the present controls had been there for ever.
   virtual void Settle(const mjModel&, const mjData&, double*) const {}
+  /// Why the law does nothing at some of its places; empty: it acts.
+  virtual std::string Silence(const mjModel&) const { return ""; }
   /// Value of a sensor of this effect at a site.
   virtual double Sense(const mjModel&, const mjData&, int /*site*/) const { return 0; }
   /// Whether Sense knows this site.

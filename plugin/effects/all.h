@@ -23,6 +23,7 @@
 #include "effects/pt2.h"
 #include "effects/stiffness.h"
 #include "effects/stribeck.h"
+#include "effects/tendon_stretch.h"
 #include "effects/viscous.h"
 
 namespace continuum {
@@ -38,9 +39,9 @@ struct List {
 };
 
 /// Every effect the library knows. Adding one is one line here.
-using All =
-    List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl, Lugre,
-         BoucWen, CubicStiffness, Maxwell, Backlash, Capstan, Viscous, Stiffness, Payload, LinkMass,
-         Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1, Pt2>;
+using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl,
+                 Lugre, BoucWen, CubicStiffness, Maxwell, Backlash, Capstan, TendonStretch, Viscous,
+                 Stiffness, Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain,
+                 InputOffset, DeadTime, Pt1, Pt2>;
 
 }  // namespace continuum

@@ -49,6 +49,7 @@ const std::map<std::string, std::string>& Laws() {
       {"maxwell", key("joint", "q1 q2") + key("k_m", ".3") + key("tau_m", ".2")},
       {"backlash", key("actuator", "servo") + key("gap", ".05")},
       {"pt2", key("actuator", "servo pull") + key("w", "30") + key("zeta", ".5")},
+      {"tendon_stretch", key("tendon", "wire") + key("compliance", ".01")},
       {"capstan", key("tendon", "cable") + key("mu", ".3")}};
   return laws;
 }

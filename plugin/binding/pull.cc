@@ -1,0 +1,59 @@
+#include "binding/pull.h"
+
+namespace continuum {
+namespace {
+
+double StiffnessOf(const mjModel& m, int a) {
+  const double gear = m.actuator_gear[6 * a];
+  const double position = m.actuator_biasprm[mjNBIAS * a + 1];
+  return m.actuator_biastype[a] == mjBIAS_AFFINE && position < 0 ? -position * gear * gear : 0;
+}
+
+}  // namespace
+
+double Drive::Stiffness(const mjModel& m) const {
+  double k = 0;
+  for (const int a : actuators) k += StiffnessOf(m, a);
+  return k;
+}
+
+double Drive::Tension(const mjModel& m, const mjData& d) const {
+  double tension = 0;
+  for (const int a : actuators) {
+    tension -= m.actuator_gear[6 * a] * d.actuator_force[m.actuator_outadr[a]];
+  }
+  return tension;
+}
+
+void Drive::Add(const mjModel& m, mjData& d, double change) const {
+  const double k = Stiffness(m);
+  for (const int a : actuators) {
+    const double share = StiffnessOf(m, a) / k;
+    if (share > 0)
+      d.actuator_force[m.actuator_outadr[a]] -= change * share / m.actuator_gear[6 * a];
+  }
+}
+
+std::vector<Drive> MatchDrives(const mjModel& m, const Config& config) {
+  std::vector<Drive> drives;
+  for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
+    Drive drive{t, {}};
+    for (int a = 0; a < m.nactuator; ++a) {
+      if (m.actuator_trntype[a] != mjTRN_TENDON || m.actuator_trnid[2 * a] != t) continue;
+      drive.actuators.push_back(a);
+    }
+    drives.push_back(std::move(drive));
+  }
+  return drives;
+}
+
+std::string WithoutServo(const mjModel& m, std::span<const Drive> drives) {
+  for (const Drive& drive : drives) {
+    if (drive.Stiffness(m) > 0) continue;
+    return "tendon '" + std::string(mj_id2name(&m, mjOBJ_TENDON, drive.tendon)) +
+           "' is not pulled by a position servo, and a given force stays what it is";
+  }
+  return "";
+}
+
+}  // namespace continuum
