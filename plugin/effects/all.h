@@ -21,6 +21,7 @@
 #include "effects/position_friction.h"
 #include "effects/pt1.h"
 #include "effects/pt2.h"
+#include "effects/slack.h"
 #include "effects/stiffness.h"
 #include "effects/stribeck.h"
 #include "effects/tendon_stretch.h"
@@ -40,8 +41,8 @@ struct List {
 
 /// Every effect the library knows. Adding one is one line here.
 using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl,
-                 Lugre, BoucWen, CubicStiffness, Maxwell, Backlash, Capstan, TendonStretch, Viscous,
-                 Stiffness, Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain,
-                 InputOffset, DeadTime, Pt1, Pt2>;
+                 Lugre, BoucWen, CubicStiffness, Maxwell, Backlash, Capstan, TendonStretch, Slack,
+                 Viscous, Stiffness, Payload, LinkMass, Armature, GravityTilt, ExternalForce,
+                 InputGain, InputOffset, DeadTime, Pt1, Pt2>;
 
 }  // namespace continuum

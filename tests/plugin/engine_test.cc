@@ -50,6 +50,7 @@ const std::map<std::string, std::string>& Laws() {
       {"backlash", key("actuator", "servo") + key("gap", ".05")},
       {"pt2", key("actuator", "servo pull") + key("w", "30") + key("zeta", ".5")},
       {"tendon_stretch", key("tendon", "wire") + key("compliance", ".01")},
+      {"slack", key("tendon", "wire") + key("length", ".02")},
       {"capstan", key("tendon", "cable") + key("mu", ".3")}};
   return laws;
 }
