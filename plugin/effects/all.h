@@ -4,6 +4,7 @@
 #include "effects/backlash.h"
 #include "effects/bouc_wen.h"
 #include "effects/capstan.h"
+#include "effects/clock_skew.h"
 #include "effects/coulomb.h"
 #include "effects/cubic_stiffness.h"
 #include "effects/dahl.h"
@@ -17,10 +18,15 @@
 #include "effects/load_friction.h"
 #include "effects/lugre.h"
 #include "effects/maxwell.h"
+#include "effects/misalignment.h"
 #include "effects/payload.h"
 #include "effects/position_friction.h"
 #include "effects/pt1.h"
 #include "effects/pt2.h"
+#include "effects/sensor_bias.h"
+#include "effects/sensor_delay.h"
+#include "effects/sensor_drift.h"
+#include "effects/sensor_scale.h"
 #include "effects/slack.h"
 #include "effects/stiffness.h"
 #include "effects/stribeck.h"
@@ -43,6 +49,7 @@ struct List {
 using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl,
                  Lugre, BoucWen, CubicStiffness, Maxwell, Backlash, Capstan, TendonStretch, Slack,
                  Viscous, Stiffness, Payload, LinkMass, Armature, GravityTilt, ExternalForce,
-                 InputGain, InputOffset, DeadTime, Pt1, Pt2>;
+                 InputGain, InputOffset, DeadTime, Pt1, Pt2, SensorBias, SensorScale, SensorDelay,
+                 SensorDrift, Misalignment, ClockSkew>;
 
 }  // namespace continuum
