@@ -10,9 +10,20 @@
 #include <iterator>
 
 #include "error.h"
+#include "sim/output.h"
 
 namespace continuum {
 namespace fs = std::filesystem;
+namespace {
+
+void WriteInPlace(const fs::path& path, std::string_view content) {
+  std::ofstream out(path, std::ios::binary | std::ios::app);
+  if (out) out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  if (!out) throw Error::Input(path.string(), "a writable file", std::strerror(errno));
+}
+
+}  // namespace
 
 std::string ReadFile(const fs::path& path) {
   std::error_code ignored;
@@ -32,13 +43,18 @@ fs::path Aside(const fs::path& path) {
 }
 
 void WriteFile(const fs::path& path, std::string_view content) {
-  const fs::path aside = Aside(path);
+  const fs::path target = ThroughLinks(path);
+  std::error_code failed;
+  if (IsStream(target)) return WriteInPlace(target, content);  // a rename would destroy it
+  if (fs::is_symlink(target, failed)) {
+    throw Error::Input(path.string(), "a writable file", "symbolic links without an end");
+  }
+  const fs::path aside = Aside(target);
   std::ofstream out(aside, std::ios::binary | std::ios::trunc);
   if (out) out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
-  std::error_code failed;
   const std::string reason = out ? "" : std::strerror(errno);
-  if (out) fs::rename(aside, path, failed);
+  if (out) fs::rename(aside, target, failed);
   if (out && !failed) return;
   std::error_code ignored;
   fs::remove(aside, ignored);

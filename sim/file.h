@@ -9,8 +9,8 @@ namespace continuum {
 /// The whole file as text. Throws Error when it cannot be read.
 std::string ReadFile(const std::filesystem::path& path);
 
-/// Writes the whole file or nothing: to a temporary file beside it, then renamed over it. Throws
-/// Error when the folder is missing, not writable or full.
+/// Writes the whole file or nothing (aside, then renamed); follows symbolic links, writes pipes and
+/// devices in place. Throws Error when the folder is missing, not writable or full.
 void WriteFile(const std::filesystem::path& path, std::string_view content);
 
 /// Creates the folder (and its parents). Throws Error when that is impossible.

@@ -14,6 +14,7 @@
 
 #include "error.h"
 #include "sim/file.h"
+#include "sim/output.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -44,6 +45,7 @@ void CheckArguments(const fs::path& path, int width, int height, int fps) {
   const std::string where = path.string();
   if (path.extension() != ".mp4") throw Error::Input(where, "a name that ends in .mp4", where);
   if (fs::is_directory(path)) throw Error::Input(where, "a file", "a folder");
+  if (fs::is_other(path)) throw Error::Input(where, "a file", "a device");
   const auto allowed = [](int n) { return n >= 16 && n <= 8192 && n % 2 == 0; };
   if (!allowed(width) || !allowed(height)) {
     throw Error::Input(where, "an even width and height from 16 to 8192 px",
@@ -165,7 +167,11 @@ class Partial {
 class VideoWriter::Impl {
  public:
   Impl(const fs::path& path, int width, int height, int fps)
-      : path_(path), width_(width), height_(height), partial_(Aside(path)) {
+      : path_(path),
+        target_(ThroughLinks(path)),
+        width_(width),
+        height_(height),
+        partial_(Aside(target_)) {
     try {
       film_ = std::make_unique<Film>(partial_.path(), width, height, fps);
     } catch (const Error& e) {
@@ -201,7 +207,7 @@ class VideoWriter::Impl {
       throw Error::Job(path_.string() + ": " + e.what());
     }
     std::error_code failed;
-    fs::rename(partial_.path(), path_, failed);
+    fs::rename(partial_.path(), target_, failed);
     if (failed) throw Error::Input(path_.string(), "a writable file", failed.message());
   }
 
@@ -240,7 +246,7 @@ class VideoWriter::Impl {
     if (failure_) throw Error::Job(*failure_);
   }
 
-  fs::path path_;
+  fs::path path_, target_;
   int width_, height_;
   Partial partial_;
   std::unique_ptr<Film> film_;

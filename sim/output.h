@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace continuum {
+
+/// The file that writing to path changes: the end of its symbolic links, whether it exists or not.
+std::filesystem::path ThroughLinks(const std::filesystem::path& path);
+
+/// Pipes, terminals and other devices; and standard output, also when it happens to be a file.
+bool IsStream(const std::filesystem::path& path);
+
+/// A folder for the outputs of a job, made before it starts. Folders that it made and that are
+/// still empty when it ends are taken away again.
+class OutFolder {
+ public:
+  explicit OutFolder(const std::filesystem::path& path);  ///< Throws Error as MakeFolder.
+  OutFolder(const OutFolder&) = delete;
+  ~OutFolder();
+
+ private:
+  void RemoveEmpty();
+
+  std::vector<std::filesystem::path> made_;  ///< the deepest first
+};
+
+}  // namespace continuum

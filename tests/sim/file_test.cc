@@ -1,0 +1,68 @@
+#include "sim/file.h"
+#include "sim/output.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "error.h"
+#include "support/scratch.h"
+
+namespace continuum {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Scratch;
+
+class Written : public ::testing::Test {
+ protected:
+  bool Exists(const std::string& name) const { return fs::exists(scratch_ / name); }
+  Scratch scratch_;
+};
+
+TEST_F(Written, ReachesTheEndOfAChainOfLinks) {
+  fs::create_directory(scratch_ / "there");
+  fs::create_symlink("there/second", scratch_ / "first");
+  fs::create_symlink("../real", scratch_ / "there/second");
+  EXPECT_EQ(fs::weakly_canonical(ThroughLinks(scratch_ / "first")),
+            fs::weakly_canonical(scratch_ / "real"));
+  WriteFile(scratch_ / "first", "text");
+  EXPECT_EQ(Scratch::Text(scratch_ / "real"), "text");
+  EXPECT_TRUE(fs::is_symlink(scratch_ / "first") && fs::is_symlink(scratch_ / "there/second"));
+}
+
+TEST_F(Written, RefusesLinksThatGoRound) {
+  fs::create_symlink("b", scratch_ / "a");
+  fs::create_symlink("a", scratch_ / "b");
+  EXPECT_THROW(WriteFile(scratch_ / "a", "text"), Error);
+  EXPECT_TRUE(fs::is_symlink(scratch_ / "a") && fs::is_symlink(scratch_ / "b"));
+}
+
+TEST_F(Written, LeavesNothingWhereItFails) {
+  fs::create_directory(scratch_ / "folder");
+  scratch_.Write("folder/full", "");
+  EXPECT_THROW(WriteFile(scratch_ / "folder", "text"), Error);
+  EXPECT_THROW(WriteFile(scratch_ / "none/file", "text"), Error);
+  const auto entries = fs::directory_iterator(scratch_.folder());
+  EXPECT_EQ(std::distance(fs::begin(entries), fs::end(entries)), 1);
+}
+
+TEST_F(Written, FoldersGoAgainWhileTheyAreEmpty) {
+  {
+    const OutFolder made(scratch_ / "a/b/c");
+    EXPECT_TRUE(Exists("a/b/c"));
+  }
+  EXPECT_FALSE(Exists("a"));
+  {
+    const OutFolder made(scratch_ / "a/b/c");
+    scratch_.Write("a/b/file", "");
+  }
+  EXPECT_FALSE(Exists("a/b/c"));
+  EXPECT_TRUE(Exists("a/b/file"));
+  { const OutFolder old(scratch_ / "a"); }
+  EXPECT_TRUE(Exists("a/b/file"));
+}
+
+}  // namespace
+}  // namespace continuum
