@@ -258,8 +258,7 @@ Problem::Vector Problem::ResidualOf(std::size_t index, const Trace& trace) const
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     for (Eigen::Index k = 0; k < rows; ++k) {
       const double value = residuals[channels_[c]][k];
-      const bool missing = std::isnan(log.measured[channels_[c]][k]);
-      r[static_cast<Eigen::Index>(c) * rows + k] = missing ? 0 : value / scale_[c];
+      r[static_cast<Eigen::Index>(c) * rows + k] = std::isnan(value) ? 0 : value / scale_[c];
     }
   }
   if (trace.diverged) r.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -333,7 +332,7 @@ double Problem::PooledRms(const std::vector<Vector>& r, const std::vector<bool>&
     const Log& log = experiment_->logs[l];
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       for (std::size_t k = 0; k < log.rows(); ++k) {
-        if (std::isnan(log.measured[channels_[c]][k])) continue;
+        if (!IsMeasured(*experiment_, log, channels_[c], k)) continue;
         const double e = pooled_[c] * r[l][static_cast<Eigen::Index>(c * log.rows() + k)];
         squares += e * e;
         ++count;

@@ -1,28 +1,31 @@
 #include "sim/score.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace continuum {
 namespace {
 
-void RotationResidual(const Log& log, const Trace& trace, std::size_t first, std::size_t row,
-                      std::vector<std::vector<double>>& out) {
-  double simulated[4], measured[4], turn[3];
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// The rotation vector that turns the measured orientation into the simulated one, and zero.
+std::array<double, 4> Turn(const Log& log, const Trace& trace, std::size_t first, std::size_t row) {
+  double simulated[4], measured[4];
+  std::array<double, 4> turn{};
   for (int c = 0; c < 4; ++c) {
     simulated[c] = trace.channel[first + c][row];
     measured[c] = log.measured[first + c][row];
   }
-  const double norm = std::sqrt(mju_dot(measured, measured, 4));
-  if (!(norm > 0.5)) {  // also NaN: not measured
-    for (int c = 0; c < 4; ++c) out[first + c][row] = std::numeric_limits<double>::quiet_NaN();
-    return;
-  }
   mju_normalize4(measured);
-  mju_subQuat(turn, simulated, measured);
-  for (int c = 0; c < 3; ++c) out[first + c][row] = turn[c];
-  out[first + 3][row] = 0;
+  mju_subQuat(turn.data(), simulated, measured);
+  return turn;
+}
+
+// A measured row without a simulated number must not look like one without a measurement.
+double OrDiverged(double residual) {
+  return std::isfinite(residual) ? residual : std::numeric_limits<double>::infinity();
 }
 
 struct Moments {
@@ -43,18 +46,28 @@ Moments MomentsOf(const std::vector<double>& values) {
 
 }  // namespace
 
+bool IsMeasured(const Experiment& e, const Log& log, std::size_t channel, std::size_t row) {
+  const auto& c = e.channels[channel];
+  if (!e.outputs[c.output].quaternion()) return !std::isnan(log.measured[channel][row]);
+  double squares = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double q = log.measured[channel - c.component + i][row];
+    squares += q * q;
+  }
+  return squares > 0.25;  // false for NaN too; loggers write four zeros for what they lost
+}
+
 std::vector<std::vector<double>> Residuals(const Experiment& e, const Log& log,
                                            const Trace& trace) {
-  std::vector<std::vector<double>> out(e.channels.size(), std::vector<double>(log.rows()));
+  std::vector<std::vector<double>> out(e.channels.size(),
+                                       std::vector<double>(log.rows(), kMissing));
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const std::size_t component = e.channels[c].component;
     const bool turn = e.outputs[e.channels[c].output].quaternion();
-    if (turn && e.channels[c].component > 0) continue;
     for (std::size_t row = 0; row < log.rows(); ++row) {
-      if (turn) {
-        RotationResidual(log, trace, c, row, out);
-      } else {
-        out[c][row] = trace.channel[c][row] - log.measured[c][row];
-      }
+      if (!IsMeasured(e, log, c, row)) continue;
+      out[c][row] = OrDiverged(turn ? Turn(log, trace, c - component, row)[component]
+                                    : trace.channel[c][row] - log.measured[c][row]);
     }
   }
   return out;
@@ -68,7 +81,7 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
     ChannelScore s{channel.name, channel.unit};
     double squares = 0, absolute = 0;
     for (std::size_t row = 0; row < log.rows(); ++row) {
-      if (std::isnan(log.measured[c][row]) || std::isnan(residuals[c][row])) continue;
+      if (std::isnan(residuals[c][row])) continue;
       const double error = residuals[c][row] / channel.factor;
       ++s.rows;
       squares += error * error;

@@ -7,9 +7,14 @@
 
 namespace continuum {
 
-/// Simulated minus measured, per channel and row, in SI; NaN where nothing was measured. The four
-/// channels of a quaternion hold the three components of the rotation vector from the simulated to
-/// the measured orientation [rad], and zero.
+/// Whether a row holds a measurement of a channel: a number; for the channels of a quaternion four,
+/// not all near zero.
+bool IsMeasured(const Experiment& e, const Log& log, std::size_t channel, std::size_t row);
+
+/// Simulated minus measured, per channel and row, in SI; NaN where nothing was measured, infinite
+/// where something was and the simulation gives no number (it has diverged). The four channels of a
+/// quaternion hold the three components of the rotation vector from the measured to the simulated
+/// orientation [rad], in the measured frame, and zero.
 std::vector<std::vector<double>> Residuals(const Experiment& e, const Log& log, const Trace& trace);
 
 /// How far one channel of one log is off.

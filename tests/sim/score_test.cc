@@ -12,8 +12,10 @@ namespace {
 
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
+using ::testing::IsNan;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
 // Sums of a few numbers of order one.
 constexpr double kRounding = 1e-14;
 
@@ -58,6 +60,24 @@ TEST(Score, StaysFiniteForAConstantChannel) {
   EXPECT_TRUE(std::isfinite(score[0].nrmse) && std::isfinite(score[0].fit));
 }
 
+// Rows of a simulation that has diverged are no rows without a measurement.
+TEST(Score, IsInfiniteWhereTheSimulationGivesNoNumber) {
+  Experiment e;
+  AddOutput(e, {"x"}, "m", 1);
+  const Log log = Rows({{0, kNan, 2, 3}});
+  const Trace trace{{{0, kNan, kNan, 3}}};
+  const auto r = Residuals(e, log, trace);
+  EXPECT_THAT(r[0], ElementsAre(0, IsNan(), kInf, 0));
+  const auto score = ScoreLog(e, log, trace);
+  EXPECT_EQ(score[0].rows, 3u);
+  EXPECT_EQ(score[0].rmse, kInf);
+  EXPECT_EQ(score[0].mae, kInf);
+  EXPECT_DOUBLE_EQ(score[0].when, 0.2);
+  Pool::Sum sum;
+  Pool(e).Add(r, sum);
+  EXPECT_EQ(sum.Rms(), kInf);
+}
+
 class Turn : public ::testing::Test {
  protected:
   Turn() { AddOutput(e_, {"qw", "qx", "qy", "qz"}, "1", 1); }
@@ -72,6 +92,14 @@ class Turn : public ::testing::Test {
   Experiment e_;
 };
 
+TEST_F(Turn, OfADivergedSimulationIsInfinite) {
+  const auto r = Residuals(e_, Rows(About({0, 1, 0}, 0.2, 1)),
+                           {std::vector<std::vector<double>>(4, {kNan, kNan})});
+  EXPECT_THAT(r[1], ElementsAre(kInf, kInf));
+}
+
+// It turns the measured orientation into the simulated one: simulated minus measured, as for every
+// other channel.
 TEST_F(Turn, IsARotationVectorWhateverSignAndLengthTheMeasuredQuaternionHas) {
   const Trace trace{About({0, 1, 0}, 0.3, 1)};
   for (const double factor : {1., -1., 0.99}) {
