@@ -7,6 +7,7 @@
 
 #include "effects/all.h"
 #include "error.h"
+#include "sim/file.h"
 #include "sim/mat.h"
 #include "sim/table.h"
 #include "sim/units.h"
@@ -79,6 +80,7 @@ double NumberOr(const Yaml& y, const std::string& key, double fallback) {
 Input ReadInput(const Yaml& y) {
   y.Only({"column", "unit", "actuator", "interpolate", "enable"});
   Input in;
+  in.where = y.Where();
   in.actuator = y.At("actuator").Text();
   in.column = TextOr(y, "column", "");
   in.enable = TextOr(y, "enable", "");
@@ -115,6 +117,7 @@ Output ReadOutput(const Yaml& y) {
   y.Only({"column", "columns", "unit", "sensor", "actuator", "quantity", "sigma", "weight", "bias",
           "scale", "delay", "rate", "angle", "axis"});
   Output out;
+  out.where = y.Where();
   const Yaml column = y.Has("columns") ? y.At("columns") : y.At("column");
   if (column.IsList()) {
     for (const Yaml& item : column.Items()) out.columns.push_back(item.Text());
@@ -140,9 +143,16 @@ Output ReadOutput(const Yaml& y) {
           *q, {{"force", Output::Kind::kForce}, {"control", Output::Kind::kControl}});
     }
   }
+  if (out.quaternion() && out.kind != Output::Kind::kSensor) {
+    throw Error::Input(column.Where(), "one column", "four for an actuator's number");
+  }
   if (const auto sigma = y.Find("sigma")) out.sigma = sigma->Number(1e-300, kInfinity);
   if (const auto weight = y.Find("weight")) out.weight = weight->Number(0, kInfinity);
   out.measurement = ReadMeasurement(y);
+  if (out.measurement.angle != 0 && out.kind != Output::Kind::kSensor) {
+    throw Error::Input(y.At("angle").Where(), "a turn of a vector or a quaternion",
+                       "one of an actuator's " + TextOr(y, "quantity", "force"));
+  }
   if (const auto unit = y.Find("unit")) UnitFactor(out.unit, unit->Where());
   return out;
 }
@@ -226,9 +236,8 @@ void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_u
   for (std::size_t row = 0; row < rec.rows(); ++row) {
     const double t = rec.Number(row, e.time_column, false) * time_unit;
     if (!(t > last)) {
-      throw Error::Input(
-          rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
-          std::to_string(t / time_unit) + " after " + std::to_string(last / time_unit));
+      throw Error::Input(rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
+                         Decimal(t / time_unit) + " after " + Decimal(last / time_unit));
     }
     last = t;
     if (!window.empty() && (t < window[0] || t > window[1])) continue;

@@ -16,6 +16,7 @@ struct Input {
   std::string column;  ///< empty: control 0
   std::string unit, actuator, enable;
   bool linear = false;  ///< else held between rows
+  std::string where;    ///< file:line: key, for messages
 };
 
 /// How a channel is measured: y_meas(t) = scale · R(axis, angle) y(t − delay) + bias + rate (t −
@@ -37,6 +38,7 @@ struct Output {
   double sigma = 0;    ///< standard deviation of the noise in unit; 0: not given
   double weight = 1;
   Measurement measurement;
+  std::string where;  ///< file:line: key, for messages
 
   bool quaternion() const { return columns.size() == 4; }
   const std::string& name() const { return columns.front(); }

@@ -1,9 +1,11 @@
 #include "sim/simulate.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include <Eigen/Dense>
 
@@ -16,6 +18,7 @@ namespace continuum {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSteps = 1e9;  // hours of computing for the smallest model; and an int counts them
 
 std::string NamesOf(const mjModel& m, mjtObj type, int count) {
   std::string all;
@@ -26,11 +29,32 @@ std::string NamesOf(const mjModel& m, mjtObj type, int count) {
   return all.empty() ? "none" : all;
 }
 
-int ActuatorId(const mjModel& m, const std::string& name) {
+std::string Place(const std::string& where, const std::string& what) {
+  return where.empty() ? what : where + ": " + what;
+}
+
+int ActuatorId(const mjModel& m, const std::string& name, const std::string& where) {
   const int id = mj_name2id(&m, mjOBJ_ACTUATOR, name.c_str());
   if (id >= 0) return id;
-  throw Error::Input("actuator '" + name + "'", "an actuator of the model",
+  throw Error::Input(Place(where, "actuator '" + name + "'"), "an actuator of the model",
                      NamesOf(m, mjOBJ_ACTUATOR, static_cast<int>(m.nu)));
+}
+
+// "[12]" → 12; -1 when it is none.
+int Index(std::string_view text) {
+  int index = -1;
+  if (!text.starts_with('[') || !text.ends_with(']')) return index;
+  text = text.substr(1, text.size() - 2);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  return error == std::errc{} && end == text.data() + text.size() ? index : -1;
+}
+
+// A turn needs something that has a direction: a vector of three or a quaternion.
+void CheckTurn(const Output& out, int dim) {
+  if (out.measurement.angle == 0 || dim == 3 || out.quaternion()) return;
+  throw Error::Input(out.where + ".angle", "a turn of a vector or a quaternion",
+                     "sensor '" + out.source + "' with " + std::to_string(dim) +
+                         (dim == 1 ? " number" : " numbers"));
 }
 
 // "tip_pos[1]" → sensor and component; the whole sensor is recorded, so that it can be turned.
@@ -39,24 +63,26 @@ Wiring::Source SensorSource(const mjModel& m, const Output& out) {
   int component = 0;
   int id = mj_name2id(&m, mjOBJ_SENSOR, name.c_str());
   const std::size_t open = name.rfind('[');
-  if (id < 0 && open != name.npos && name.size() == open + 3 && name.back() == ']') {
-    component = name[open + 1] - '0';
+  if (id < 0 && open != name.npos && Index(name.substr(open)) >= 0) {
+    component = Index(name.substr(open));
     name.resize(open);
     id = mj_name2id(&m, mjOBJ_SENSOR, name.c_str());
   } else if (id >= 0 && m.sensor_dim[id] > 1 && !out.quaternion()) {
-    throw Error::Input("sensor '" + name + "'", "a component such as '" + name + "[0]'", "none");
+    throw Error::Input(Place(out.where, "sensor '" + name + "'"),
+                       "a component such as '" + name + "[0]'", "none");
   }
   if (id < 0) {
-    throw Error::Input("sensor '" + out.source + "'", "a sensor of the model",
+    throw Error::Input(Place(out.where, "sensor '" + out.source + "'"), "a sensor of the model",
                        NamesOf(m, mjOBJ_SENSOR, static_cast<int>(m.nsensor)));
   }
   const int dim = m.sensor_dim[id];
-  if (component < 0 || component >= dim || (out.quaternion() && dim != 4)) {
+  if (component >= dim || (out.quaternion() && dim != 4)) {
     throw Error::Input(
-        "sensor '" + out.source + "'",
+        Place(out.where, "sensor '" + out.source + "'"),
         out.quaternion() ? "a quaternion" : "a component below " + std::to_string(dim),
-        out.quaternion() ? std::to_string(dim) + " numbers" : "another");
+        out.quaternion() ? std::to_string(dim) + " numbers" : std::to_string(component));
   }
+  CheckTurn(out, dim);
   return {Output::Kind::kSensor, m.sensor_adr[id], dim, component};
 }
 
@@ -210,6 +236,10 @@ void Measure(Record& record, const Measurement& how, const std::vector<double>& 
       double y[3] = {late[0][k], late[1][k], late[2][k]}, turned[3];
       mju_rotVecQuat(turned, y, quat);
       for (int c = 0; c < 3; ++c) late[c][k] = turned[c];
+    } else if (record.size() == 4) {
+      double y[4] = {late[0][k], late[1][k], late[2][k], late[3][k]}, turned[4];
+      mju_mulQuat(turned, quat, y);
+      for (int c = 0; c < 4; ++c) late[c][k] = turned[c];
     }
     for (std::size_t c = 0; c < record.size(); ++c) {
       record[c][k] =
@@ -236,14 +266,14 @@ double FirstMeasured(const Experiment& e, const Log& log, std::size_t channel) {
 
 Wiring::Wiring(const Experiment& e, const mjModel& m) {
   for (const Input& in : e.inputs) {
-    actuator.push_back(ActuatorId(m, in.actuator));
+    actuator.push_back(ActuatorId(m, in.actuator, in.where));
     gated.push_back(!in.enable.empty());
   }
   for (const Output& out : e.outputs) {
     if (out.kind == Output::Kind::kSensor) {
       output.push_back(SensorSource(m, out));
     } else {
-      output.push_back({out.kind, ActuatorId(m, out.source), 1, 0});
+      output.push_back({out.kind, ActuatorId(m, out.source, out.where), 1, 0});
     }
   }
 }
@@ -256,10 +286,15 @@ InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const Output& out = e.outputs[e.channels[c].output];
     int joint = -1;
-    if (std::isnan(log.measured[c][0])) continue;
+    const bool known = !std::isnan(log.measured[c][0]);
     if (IsJoint(m, out, mjSENS_JOINTPOS, joint)) {
-      state.qpos[m.jnt_qposadr[joint]] = FirstMeasured(e, log, c);
-    } else if (IsJoint(m, out, mjSENS_JOINTVEL, joint)) {
+      if (!known && e.start == Experiment::Start::kMeasured) {
+        throw Error::Input(
+            log.file.string() + ", column '" + e.channels[c].name + "'",
+            "a joint position in the first row of '" + log.label + "' (start: measured)", "none");
+      }
+      if (known) state.qpos[m.jnt_qposadr[joint]] = FirstMeasured(e, log, c);
+    } else if (known && IsJoint(m, out, mjSENS_JOINTVEL, joint)) {
       state.qvel[m.jnt_dofadr[joint]] = FirstMeasured(e, log, c);
     }
   }
@@ -344,12 +379,20 @@ void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Tra
   }
 }
 
+void CheckLength(const Log& log, double timestep) {
+  const double span = log.time.back() - log.time.front();
+  if (span / timestep <= kSteps) return;
+  throw Error::Input(log.file.empty() ? log.label : log.file.string(),
+                     "at most 1e9 time steps of " + Decimal(timestep) + " s", Decimal(span) + " s");
+}
+
 Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const InitialState& initial,
                const Hooks& hooks) {
   const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   const double h = m.opt.timestep;
+  CheckLength(log, h);
   m.opt.disableflags |= mjDSBL_AUTORESET;
   RequireHistory(m, log);
   const Wiring wiring(e, m);

@@ -44,6 +44,9 @@ struct Wiring {
   Wiring(const Experiment& e, const mjModel& m);
 };
 
+/// Throws Error when a log has more steps than anybody can wait for (times in a wrong unit).
+void CheckLength(const Log& log, double timestep);
+
 /// Runs one log through a machine (whose model is changed on the way): inputs held between rows or
 /// linear, a row active at its own time (the crossing step is shortened), channels those of the
 /// state at the row's time.

@@ -90,7 +90,8 @@ std::string Yaml::Text() const {
 double Yaml::Number() const {
   if (node_.IsScalar()) {
     const std::string& text = node_.Scalar();
-    const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const bool plus = text.starts_with('+') && !text.starts_with("+-");
+    const char* const begin = text.data() + (plus ? 1 : 0);
     double value = 0;
     const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
     if (error == std::errc{} && end == text.data() + text.size() && std::isfinite(value)) {
