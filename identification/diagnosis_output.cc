@@ -225,7 +225,7 @@ Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesyst
   const Extension extension = Extend(problem, x, folder);
   WriteFile(folder / "extended.xml", extension.xml);
   WriteFile(folder / "extended.yaml", extension.yaml);
-  told.difference = LineDiff(d.system.Xml(), extension.xml);
+  told.difference = LineDiff(d.system.Xml({}, {}, folder), extension.xml);
 
   const Experiment extended = Experiment::Read(folder / "extended.yaml");
   const auto replayed = Replay(extended, System::Load(folder / "extended.xml"));

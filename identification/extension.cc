@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "error.h"
+#include "sim/asset_folders.h"
 #include "sim/file.h"
 
 namespace continuum {
@@ -20,14 +20,6 @@ std::string Quoted(const std::string& text) {
     out += c;
   }
   return out + "\"";
-}
-
-std::string Relative(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  std::error_code failed;
-  const auto from = std::filesystem::weakly_canonical(folder, failed);
-  const auto to = std::filesystem::weakly_canonical(file, failed);
-  const auto path = to.lexically_relative(from);
-  return path.empty() ? to.string() : path.string();
 }
 
 std::string SettingsYaml(const Problem& problem, const Problem::Vector& x, std::size_t log) {
@@ -115,7 +107,7 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
   std::string y = "format: 1\nmodel: extended.xml\nlogs:\n";
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     const Log& log = e.logs[l];
-    y += fmt::format("  - {{file: {}", Quoted(Relative(log.file, folder)));
+    y += fmt::format("  - {{file: {}", Quoted(RelativePath(log.file, folder).string()));
     if (!log.variable.empty()) y += ", variable: " + Quoted(log.variable);
     y += fmt::format(", trial: {}, use: {}", Quoted(log.trial), log.train ? "train" : "validate");
     if (!log.window.empty()) {
@@ -152,7 +144,7 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
     y += std::string(y.back() == '[' ? "" : ", ") + folds[static_cast<int>(f)];
   y += "]\n";
   if (e.soft > 0) y += "loss: {soft_l1: " + Decimal(e.soft) + "}\n";
-  return {problem.system().Xml(problem.CommonChanges(x)), y};
+  return {problem.system().Xml(problem.CommonChanges(x), {}, folder), y};
 }
 
 nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
@@ -174,33 +166,6 @@ nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
                                {"operation", operation[static_cast<int>(c.operation)]}});
   }
   return json;
-}
-
-std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where) {
-  try {
-    const auto& extension = json.at("extension");
-    std::vector<Change> changes;
-    for (const auto& c : extension.at("changes")) {
-      const std::string o = c.at("operation");
-      changes.push_back({c.at("target"), c.at("attribute"), c.at("value"),
-                         o == "scale" ? Change::Operation::kScale
-                         : o == "add" ? Change::Operation::kAdd
-                                      : Change::Operation::kSet});
-    }
-    std::vector<EffectInstance> instances;
-    for (const auto& i : extension.at("instances")) {
-      EffectInstance instance{i.at("effect"), i.at("name"), {}};
-      for (const auto& pair : i.at("config")) instance.config.emplace_back(pair.at(0), pair.at(1));
-      instances.push_back(std::move(instance));
-    }
-    const std::string replaces = extension.at("replaces");
-    const System extended = !replaces.empty() && !instances.empty()
-                                ? system.Replacing(replaces, instances.front())
-                                : system.With({}, instances);
-    return extended.Xml(changes);
-  } catch (const nlohmann::json::exception& e) {
-    throw Error::Input(where, "a diagnosis.json with an extension", e.what());
-  }
 }
 
 std::string LineDiff(const std::string& before, const std::string& after) {

@@ -21,8 +21,10 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
 /// What was changed, for `continuum apply`: {instances, replaces, changes}.
 nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
                            const EffectInstance& instance, const std::string& replaces);
-/// Applies ChangesJson to another model and returns its MJCF. Throws Error naming what is missing.
-std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where);
+/// Applies ChangesJson to another model and returns its MJCF, to be written into a folder (empty:
+/// beside the model). where: the file of the JSON. Throws Error with file and key.
+std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where,
+                      const std::filesystem::path& folder = {});
 
 /// Lines that differ between two texts, with "-" and "+" in front, as a minimal line diff.
 std::string LineDiff(const std::string& before, const std::string& after);

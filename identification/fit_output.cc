@@ -149,7 +149,7 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
         std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
   }
   WriteFile(folder / "fit.json", json.dump(2) + "\n");
-  WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(fit.x)));
+  WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(fit.x), {}, folder));
   WriteSimulated(e, traces, folder / "simulated");
 
   Page page("Fit", e.model.filename().string() + " to " + std::to_string(e.logs.size()) + " logs");

@@ -1,11 +1,14 @@
 #include "sim/system.h"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <vector>
 
 #include "effects/all.h"
 #include "engine.h"
 #include "error.h"
+#include "sim/asset_folders.h"
 #include "sim/element.h"
 #include "sim/file.h"
 #include "sim/native_effect.h"
@@ -25,9 +28,28 @@ void RegisterOnce() {
   (void)once;
 }
 
+// MuJoCo's errors span lines and repeat what a plugin said: each line once, in one line.
+std::string OneLine(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == line.npos) continue;
+    line = line.substr(first, line.find_last_not_of(" \t\r,;") - first + 1);
+    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  }
+  std::string all;
+  for (const auto& line : lines) all += (all.empty() ? "" : "; ") + line;
+  return all;
+}
+
 Owned<mjModel> Compile(mjSpec& spec, const std::string& name) {
   Owned<mjModel> model(mj_compile(&spec, nullptr));
-  if (!model) throw Error::Input(name, mjs_getError(&spec));
+  if (!model) throw Error::Input(name, OneLine(mjs_getError(&spec)));
+  if (!(model->opt.timestep > 0) || std::isinf(model->opt.timestep)) {
+    throw Error::Input(name + ": option timestep", "a positive number [s]",
+                       Decimal(model->opt.timestep));
+  }
   return model;
 }
 
@@ -132,9 +154,14 @@ System System::Load(const std::filesystem::path& model) {
   system.folder_ = std::filesystem::absolute(model).parent_path().string() + "/";
   char error[1000] = "";
   system.spec_.reset(mj_parseXML(model.c_str(), nullptr, error, sizeof error));
-  if (!system.spec_) throw Error::Input(system.name_, error);
+  if (!system.spec_) throw Error::Input(system.name_, OneLine(error));
   system.compiled_ = Compile(*system.spec_, system.name_);
   return system;
+}
+
+void System::Check(const std::string& xml, const std::filesystem::path& folder,
+                   const std::string& name) {
+  Parse(xml, std::filesystem::absolute(folder / "").string(), name);
 }
 
 System System::Parse(const std::string& xml, const std::string& folder, std::string name) {
@@ -143,7 +170,7 @@ System System::Parse(const std::string& xml, const std::string& folder, std::str
   system.folder_ = folder;
   char error[1000] = "";
   system.spec_.reset(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
-  if (!system.spec_) throw Error::Input(system.name_, error);
+  if (!system.spec_) throw Error::Input(system.name_, OneLine(error));
   mjs_setString(system.spec_->modelfiledir, folder.c_str());
   system.compiled_ = Compile(*system.spec_, system.name_);
   return system;
@@ -255,9 +282,11 @@ double System::ValueAfter(std::span<const Change> changes, const std::string& ta
   return value;
 }
 
-std::string System::Xml(std::span<const Change> changes,
-                        std::span<const EffectInstance> added) const {
+std::string System::Xml(std::span<const Change> changes, std::span<const EffectInstance> added,
+                        const std::filesystem::path& folder) const {
   const Edits edits(*this, changes);
+  const AssetFolders moved(*spec_, folder_,
+                           folder.empty() ? std::filesystem::path(folder_) : folder);
   spec_->compiler.discardvisual = 0;
   spec_->compiler.savecompiled = 0;
   spec_->compiler.savecanonical = 0;
@@ -266,7 +295,7 @@ std::string System::Xml(std::span<const Change> changes,
   while (true) {
     const int length = mj_saveXMLString(spec_.get(), xml.data(), static_cast<int>(xml.size()),
                                         error, sizeof error);
-    if (length < 0) throw Error::Job(name_ + ": " + error);
+    if (length < 0) throw Error::Job(name_ + ": " + OneLine(error));
     if (length == 0) {
       xml.resize(xml.find('\0'));
       break;

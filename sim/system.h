@@ -48,9 +48,13 @@ class System {
   /// The value after changes.
   double ValueAfter(std::span<const Change> changes, const std::string& target,
                     const std::string& attribute) const;
-  /// MJCF of the specification with changes and plugin instances, as authored.
-  std::string Xml(std::span<const Change> changes = {},
-                  std::span<const EffectInstance> added = {}) const;
+  /// MJCF of the specification with changes and plugin instances, as authored. folder: where the
+  /// text is going to lie, so that it finds its meshes and textures; empty: beside the model.
+  std::string Xml(std::span<const Change> changes = {}, std::span<const EffectInstance> added = {},
+                  const std::filesystem::path& folder = {}) const;
+  /// Throws Error, with MuJoCo's text, when MJCF does not compile as a file of this folder.
+  static void Check(const std::string& xml, const std::filesystem::path& folder,
+                    const std::string& name);
   /// The same with another effect under an instance's name; keys that the other effect lacks go.
   System Replacing(const std::string& instance, const EffectInstance& by) const;
   /// The same with changes and instances inside.

@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "error.h"
+#include "identification/extension.h"
+
+namespace continuum {
+namespace {
+
+// A value of a JSON file that knows where it stands: every error names file and key.
+class Json {
+ public:
+  Json(const nlohmann::json& value, std::string file, std::string path = "")
+      : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
+
+  Json At(const std::string& key) const {
+    if (!value_->is_object()) Refuse("a map with '" + key + "'");
+    if (!value_->contains(key)) throw Error::Input(Where(), "the key '" + key + "'", "none");
+    return {(*value_)[key], file_, path_.empty() ? key : path_ + "." + key};
+  }
+  std::vector<Json> Items() const {
+    if (!value_->is_array()) Refuse("a list");
+    std::vector<Json> items;
+    for (std::size_t i = 0; i < value_->size(); ++i)
+      items.push_back({(*value_)[i], file_, path_ + "[" + std::to_string(i) + "]"});
+    return items;
+  }
+  std::string Text() const {
+    if (!value_->is_string()) Refuse("a text");
+    return value_->get<std::string>();
+  }
+  double Number() const {
+    if (!value_->is_number() || !std::isfinite(value_->get<double>())) Refuse("a finite number");
+    return value_->get<double>();
+  }
+  [[noreturn]] void Refuse(const std::string& expected) const {
+    constexpr std::size_t kShown = 60;
+    std::string found = value_->dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    if (found.size() > kShown) found = found.substr(0, kShown) + "...";
+    throw Error::Input(Where(), expected, found);
+  }
+
+ private:
+  std::string Where() const { return path_.empty() ? file_ : file_ + ": " + path_; }
+
+  const nlohmann::json* value_;
+  std::string file_, path_;
+};
+
+Change ReadChange(const Json& json) {
+  Change change{json.At("target").Text(), json.At("attribute").Text(), json.At("value").Number(),
+                Change::Operation::kSet};
+  const Json operation = json.At("operation");
+  const std::string name = operation.Text();
+  if (name == "scale") {
+    change.operation = Change::Operation::kScale;
+  } else if (name == "add") {
+    change.operation = Change::Operation::kAdd;
+  } else if (name != "set") {
+    operation.Refuse("set | scale | add");
+  }
+  return change;
+}
+
+EffectInstance ReadInstance(const Json& json) {
+  EffectInstance instance{json.At("effect").Text(), json.At("name").Text(), {}};
+  for (const Json& pair : json.At("config").Items()) {
+    const auto both = pair.Items();
+    if (both.size() != 2) pair.Refuse("[key, value]");
+    instance.config.emplace_back(both[0].Text(), both[1].Text());
+  }
+  return instance;
+}
+
+}  // namespace
+
+std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where,
+                      const std::filesystem::path& folder) {
+  const Json extension = Json(json, where).At("extension");
+  std::vector<Change> changes;
+  for (const Json& c : extension.At("changes").Items()) changes.push_back(ReadChange(c));
+  std::vector<EffectInstance> instances;
+  for (const Json& i : extension.At("instances").Items()) instances.push_back(ReadInstance(i));
+  const Json replaces = extension.At("replaces");
+  if (replaces.Text().empty()) return system.With({}, instances).Xml(changes, {}, folder);
+  if (instances.size() != 1)
+    extension.At("instances").Refuse("the one instance that replaces '" + replaces.Text() + "'");
+  return system.Replacing(replaces.Text(), instances.front()).Xml(changes, {}, folder);
+}
+
+}  // namespace continuum
