@@ -2,7 +2,10 @@
 
 #include <unistd.h>
 
+#include <charconv>
 #include <cstdio>
+
+#include <fmt/format.h>
 
 namespace continuum {
 namespace {
@@ -22,6 +25,18 @@ void ShowProgress(const std::string& text) {
 void EndProgress() {
   if (open_line) std::fprintf(stderr, "\n");
   open_line = false;
+}
+
+CLI::Validator NumberWithin(double lower, double upper) {
+  const std::string range = fmt::format("a number in [{:g}, {:g}]", lower, upper);
+  const auto check = [=](const std::string& text) {
+    double value = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value);
+    const bool good = error == std::errc{} && end == last && lower <= value && value <= upper;
+    return good ? std::string() : "expected " + range + ", found '" + text + "'";
+  };
+  return {check, "", "NUMBER"};
 }
 
 }  // namespace continuum

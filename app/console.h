@@ -3,6 +3,7 @@
 #include <string>
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 
 namespace continuum {
 
@@ -10,6 +11,9 @@ namespace continuum {
 void ShowProgress(const std::string& text);
 /// Ends a rewritten line.
 void EndProgress();
+
+/// Accepts a finite number from lower to upper.
+CLI::Validator NumberWithin(double lower, double upper);
 
 /// Subcommands; each sets exit_code when it runs and throws Error otherwise.
 void AddRun(CLI::App& app);

@@ -2,6 +2,7 @@
 #include <memory>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
@@ -10,6 +11,8 @@
 #include "identification/extension.h"
 #include "sim/file.h"
 #include "sim/film.h"
+#include "sim/output.h"
+#include "sim/replay.h"
 
 namespace continuum {
 namespace {
@@ -29,42 +32,51 @@ nlohmann::json ReadJson(const std::string& file) {
   }
 }
 
-void PrintComparison(const std::string& file, const nlohmann::json& before,
-                     const nlohmann::json& now) {
-  const auto line = [](const char* what, const nlohmann::json& d) {
-    std::printf("%-6s %-12s validate %.4g -> %.4g\n", what,
-                d.at("verdict").get<std::string>().c_str(),
-                d.at("error").at("before").at("validate").get<double>(),
-                d.at("error").at("after").at("validate").get<double>());
-  };
+std::string ComparisonLine(const char* when, const nlohmann::json& d) {
+  return fmt::format("{:<6} {:<12} validate {:.4g} -> {:.4g}\n", when,
+                     d.at("verdict").get<std::string>(),
+                     d.at("error").at("before").at("validate").get<double>(),
+                     d.at("error").at("after").at("validate").get<double>());
+}
+
+std::string OldComparison(const std::string& file) {
+  if (file.empty()) return "";
   try {
-    std::printf("compared with %s:\n", file.c_str());
-    line("then", before);
-    line("now", now);
+    return "compared with " + file + ":\n" + ComparisonLine("then", ReadJson(file));
   } catch (const nlohmann::json::exception& e) {
     throw Error::Input(file, "a diagnosis.json", e.what());
+  }
+}
+
+std::string CandidateNamed(const std::string& name) {
+  try {
+    return std::string(EffectNamed(name).name);
+  } catch (const Error& e) {
+    throw Error::Input("--candidates", e.what());
   }
 }
 
 void RunDiagnose(const Options& o) {
   const Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
-  const nlohmann::json old = o.compare.empty() ? nlohmann::json{} : ReadJson(o.compare);
+  const std::string old = OldComparison(o.compare);
   DiagnosisOptions options;
   std::istringstream names(o.candidates);
   for (std::string name; std::getline(names, name, ',');) {
-    options.candidates.emplace_back(EffectNamed(name).name);
+    options.candidates.push_back(CandidateNamed(name));
   }
   options.placebos = o.placebos;
   options.seed = o.seed;
   options.progress = ShowProgress;
-  MakeFolder(o.out);
+  CheckNames(e, system);
+  const OutFolder made(o.out);
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress("files");
   const Told told = WriteDiagnosis(e, d, o.out);
   EndProgress();
   std::fputs(Summary(e, d, told).c_str(), stdout);
-  if (!o.compare.empty()) PrintComparison(o.compare, old, DiagnosisJson(e, d, told));
+  if (!old.empty())
+    std::fputs((old + ComparisonLine("now", DiagnosisJson(e, d, told))).c_str(), stdout);
   const std::filesystem::path folder = o.out;
   if (o.video) {
     FilmOptions film;
@@ -89,8 +101,10 @@ struct ApplyOptions {
 
 void RunApply(const ApplyOptions& o) {
   const auto json = ReadJson(o.diagnosis);
-  WriteFile(o.out, ApplyJson(System::Load(o.model), json, o.diagnosis));
-  System::Load(o.out);  // it must load
+  const auto folder = std::filesystem::absolute(ThroughLinks(o.out)).parent_path();
+  const std::string xml = ApplyJson(System::Load(o.model), json, o.diagnosis, folder);
+  System::Check(xml, folder, o.diagnosis + " applied to " + o.model);
+  WriteFile(o.out, xml);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include "identification/fit_output.h"
 #include "sim/check.h"
 #include "sim/file.h"
+#include "sim/output.h"
+#include "sim/replay.h"
 
 namespace continuum {
 namespace {
@@ -23,10 +25,12 @@ void RunIdentify(const Options& o) {
   if (o.path != "stepped")
     throw Error::Input("--path", "stepped (smooth is not available yet)", "'" + o.path + "'");
   const Experiment e = Experiment::Read(o.experiment);
-  const Problem problem(e, System::Load(e.model));
+  const System system = System::Load(e.model);
+  CheckNames(e, system);
+  const Problem problem(e, system);
   if (problem.parameters().empty())
     throw Error::Input(o.experiment, "the key 'parameters'", "none");
-  MakeFolder(o.out);
+  const OutFolder made(o.out);
   std::fprintf(stderr,
                "path: stepped, by differences of MuJoCo's own steps; %zu parameters, %zu logs\n",
                problem.parameters().size(), e.logs.size());

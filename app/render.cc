@@ -1,5 +1,5 @@
-#include <cstdio>
 #include <memory>
+#include <sstream>
 
 #include "app/console.h"
 #include "error.h"
@@ -13,12 +13,20 @@ struct Options {
   int fps = 25;
 };
 
+// "960x720"
+void ReadSize(const std::string& text, FilmOptions& film) {
+  std::istringstream in(text);
+  char by = 0;
+  in >> film.width >> by >> film.height;
+  const auto allowed = [](int n) { return 16 <= n && n <= 8192; };
+  const bool whole = in && by == 'x' && in.peek() == std::istringstream::traits_type::eof();
+  if (whole && allowed(film.width) && allowed(film.height)) return;
+  throw Error::Input("--size", "WIDTHxHEIGHT, each from 16 to 8192 px", "'" + text + "'");
+}
+
 void RunRender(const Options& o) {
   FilmOptions film;
-  char rest = 0;
-  if (std::sscanf(o.size.c_str(), "%dx%d%c", &film.width, &film.height, &rest) != 2) {
-    throw Error::Input("--size", "WIDTHxHEIGHT", "'" + o.size + "'");
-  }
+  ReadSize(o.size, film);
   film.fps = o.fps;
   film.camera = o.camera;
   film.gl = ParseGl(o.gl);

@@ -9,6 +9,7 @@
 #include "sim/check.h"
 #include "sim/file.h"
 #include "sim/film.h"
+#include "sim/output.h"
 
 namespace continuum {
 namespace {
@@ -21,7 +22,8 @@ struct Options {
 void RunReplay(const Options& o) {
   const Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
-  MakeFolder(o.out);
+  CheckNames(e, system);
+  const OutFolder made(o.out);
   const std::filesystem::path folder = o.out;
   const auto logs = Replay(e, system, ShowProgress);
   EndProgress();

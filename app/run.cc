@@ -27,6 +27,11 @@ bool TakesNoControl(const mjModel& m, std::size_t actuator) {
          m.actuator_gainprm[mjNGAIN * actuator] == 0;
 }
 
+constexpr double kDefaultEnd = 10;     // [s]
+constexpr double kSameTime = 1e-9;     // [s]
+constexpr double kMostRows = 1e7;      // some gigabytes
+constexpr double kFramePeriod = 0.02;  // [s]
+
 // The run as an experiment: every actuator an input, rows where something is read or written.
 struct Run {
   Experiment experiment;
@@ -55,67 +60,96 @@ void CheckColumns(const Table& table, const std::vector<std::string>& actuators,
   }
 }
 
+// What --input says, or all controls zero from 0 s on.
+struct Controls {
+  std::vector<double> time;
+  std::vector<std::string> actuator;
+  std::vector<std::vector<double>> value;  ///< [actuator][row]
+};
+
+Controls ReadControls(const Options& o, const mjModel& m) {
+  Controls c{{0}, {}, {}};
+  if (o.input.empty()) return c;
+  c.actuator = Names(m, mjOBJ_ACTUATOR, static_cast<int>(m.nu));
+  const auto unnamed = std::find(c.actuator.begin(), c.actuator.end(), "");
+  if (unnamed != c.actuator.end()) {
+    throw Error::Input(o.model, "a name for every actuator, for the columns of " + o.input,
+                       fmt::format("none for actuator {}", unnamed - c.actuator.begin()));
+  }
+  const Table table = Table::Read(o.input);
+  CheckColumns(table, c.actuator, o.model);
+  c.time = table.Numbers("time");
+  if (c.time.empty()) throw Error::Input(o.input, "at least one row", "none");
+  for (std::size_t k = 1; k < c.time.size(); ++k) {
+    if (!(c.time[k] > c.time[k - 1])) {
+      throw Error::Input(table.Where(k) + ", column 'time'", "increasing time",
+                         Decimal(c.time[k]) + " after " + Decimal(c.time[k - 1]));
+    }
+  }
+  for (std::size_t a = 0; a < c.actuator.size(); ++a) {
+    const bool needed = !TakesNoControl(m, a) || table.Has(c.actuator[a]);
+    c.value.push_back(needed ? table.Numbers(c.actuator[a]) : std::vector(c.time.size(), 0.0));
+  }
+  return c;
+}
+
+double EndOf(const Options& o, const Controls& c) {
+  const double end = o.until > 0 ? o.until : o.input.empty() ? kDefaultEnd : c.time.back();
+  if (end >= c.time.front()) return end;
+  throw Error::Input(
+      "--until",
+      "an end after the first row of " + o.input + ", at " + Decimal(c.time.front()) + " s",
+      Decimal(end) + " s");
+}
+
+// When rows are written: at multiples of a period, or at the input's own rows.
+std::set<double> Written(const Options& o, const Controls& c, double end, double timestep) {
+  if (o.every == 0 && !o.input.empty()) return {c.time.begin(), c.time.end()};
+  const double begin = c.time.front(), period = o.every > 0 ? o.every : timestep;
+  const double count = (end - begin) / period;
+  if (!(count < kMostRows)) {
+    throw Error::Input(
+        "--every", fmt::format("a period that gives at most {:g} rows", kMostRows),
+        fmt::format("{} s from {} s to {} s", Decimal(period), Decimal(begin), Decimal(end)));
+  }
+  std::set<double> rows;
+  for (int k = 0; begin + k * period <= end + kSameTime; ++k) rows.insert(begin + k * period);
+  return rows;
+}
+
 Run Plan(const Options& o, const mjModel& m) {
   Run run;
   Log log;
   log.label = std::filesystem::path(o.model).stem().string();
-  const auto actuators = Names(m, mjOBJ_ACTUATOR, static_cast<int>(m.nu));
-  std::vector<double> times{0};
-  std::vector<std::vector<double>> controls(actuators.size(), std::vector<double>(1, 0.0));
-  double end = o.until;
-  if (!o.input.empty()) {
-    const Table table = Table::Read(o.input);
-    CheckColumns(table, actuators, o.model);
-    times = table.Numbers("time");
-    if (times.empty()) throw Error::Input(o.input, "at least one row", "none");
-    for (std::size_t k = 1; k < times.size(); ++k) {
-      if (!(times[k] > times[k - 1])) {
-        throw Error::Input(table.Where(k) + ", column 'time'", "increasing time",
-                           Decimal(times[k]) + " after " + Decimal(times[k - 1]));
-      }
-    }
-    for (std::size_t a = 0; a < actuators.size(); ++a) {
-      const bool needed = !TakesNoControl(m, a) || table.Has(actuators[a]);
-      controls[a] = needed ? table.Numbers(actuators[a]) : std::vector(times.size(), 0.0);
-    }
-    if (end == 0) end = times.back();
-  }
-  if (o.input.empty() && end == 0) end = 10;
-  // Rows of the input, and rows to be written.
-  std::set<double> rows(times.begin(), times.end());
-  std::set<double> written;
-  if (o.every > 0) {
-    for (int k = 0; times.front() + k * o.every <= end + 1e-9; ++k)
-      written.insert(times.front() + k * o.every);
-  } else if (o.input.empty()) {
-    for (int k = 0; k * m.opt.timestep <= end + 1e-9; ++k) written.insert(k * m.opt.timestep);
-  } else {
-    written = rows;
-  }
+  log.file = o.input.empty() ? o.model : o.input;
+  const Controls controls = ReadControls(o, m);
+  const double end = EndOf(o, controls);
+  const std::set<double> written = Written(o, controls, end, m.opt.timestep);
+  std::set<double> rows(controls.time.begin(), controls.time.end());
   rows.insert(written.begin(), written.end());
-  if (end > times.front()) rows.insert(end);
+  rows.insert(end);
   double last = -std::numeric_limits<double>::infinity();
   for (const double t : rows) {
-    if (t > end + 1e-9 || t - last < 1e-9) continue;
+    if (t > end + kSameTime || t - last < kSameTime) continue;
     last = t;
     log.time.push_back(t);
-    const auto nearest = written.lower_bound(t - 1e-9);
-    run.written.push_back(nearest != written.end() && *nearest < t + 1e-9);
+    const auto nearest = written.lower_bound(t - kSameTime);
+    run.written.push_back(nearest != written.end() && *nearest < t + kSameTime);
   }
-  for (std::size_t a = 0; a < actuators.size(); ++a) {
+  for (std::size_t a = 0; a < controls.actuator.size(); ++a) {
     Input in;
-    in.actuator = in.column = actuators[a];
+    in.actuator = in.column = controls.actuator[a];
     run.experiment.inputs.push_back(in);
     log.input.emplace_back();
     log.enable.emplace_back();
     std::size_t row = 0;
     for (const double t : log.time) {
-      while (row + 1 < times.size() && times[row + 1] <= t + 1e-9) ++row;
-      log.input.back().push_back(controls[a][row]);
+      while (row + 1 < controls.time.size() && controls.time[row + 1] <= t + kSameTime) ++row;
+      log.input.back().push_back(controls.value[a][row]);
     }
   }
+  run.experiment.file = log.file;
   run.experiment.logs.push_back(std::move(log));
-  run.experiment.file = o.input.empty() ? o.model : o.input;
   return run;
 }
 
@@ -132,11 +166,16 @@ std::string Header(const mjModel& m) {
 }
 
 void RunModel(const Options& o) {
+  if (!o.video.empty() && std::filesystem::path(o.video).extension() != ".mp4")
+    throw Error::Input("--video", "a name that ends in .mp4", "'" + o.video + "'");
   System system = System::Load(o.model);
   std::vector<Change> changes;
   if (o.timestep > 0) changes.push_back({"option", "timestep", o.timestep});
   Machine machine = system.Build(changes);
-  Run run = Plan(o, *machine.model);
+  const Run run = Plan(o, *machine.model);
+  Options frames = o;
+  if (frames.every == 0) frames.every = kFramePeriod;
+  const Run shown = o.video.empty() ? Run{} : Plan(frames, *machine.model);
   std::string csv = Header(*machine.model);
   Hooks hooks;
   hooks.row = [&](const mjModel& m, mjData& d, std::size_t row) {
@@ -156,9 +195,6 @@ void RunModel(const Options& o) {
     WriteFile(o.out, csv);
   }
   if (o.video.empty()) return;
-  Options frames = o;
-  if (frames.every == 0) frames.every = 0.02;
-  const Run shown = Plan(frames, *machine.model);
   FilmOptions film;
   film.progress = ShowProgress;
   FilmExperiment(shown.experiment, system.With(changes, {}), {0}, o.video, film);
@@ -173,11 +209,11 @@ void AddRun(CLI::App& app) {
   sub->add_option("--input", o->input, "CSV with time and one column per actuator");
   sub->add_option("--out", o->out, "CSV of all sensors (default: standard output)");
   sub->add_option("--every", o->every, "write every S seconds instead of at the input's rows")
-      ->check(CLI::PositiveNumber);
+      ->check(NumberWithin(1e-9, 1e9));
   sub->add_option("--until", o->until, "end [s] (default: the input's last row, or 10)")
-      ->check(CLI::PositiveNumber);
+      ->check(NumberWithin(1e-9, 1e9));
   sub->add_option("--timestep", o->timestep, "instead of the model's [s]")
-      ->check(CLI::PositiveNumber);
+      ->check(NumberWithin(1e-9, 1e3));
   sub->add_option("--video", o->video, "MP4 film");
   sub->footer(
       "Example:\n  continuum run models/annelida/annelida.xml --input pull.csv --out angles.csv "

@@ -132,7 +132,7 @@ void PictureOf(const Experiment& e, const System& system, const std::filesystem:
   std::vector<Image> frames;
   FilmOptions few = options;
   const Log& log = e.logs.front();
-  few.fps = std::max(1, static_cast<int>(4 / (log.time.back() - log.time.front())));
+  few.fps = static_cast<int>(std::clamp(4 / (log.time.back() - log.time.front()), 1., 1000.));
   Shot(e, system, log, few).Film([&](Image image) { frames.push_back(std::move(image)); });
   WritePng(file, frames[frames.size() / 2]);
 }

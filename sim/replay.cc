@@ -20,6 +20,18 @@ std::string Cell(double value) { return std::isnan(value) ? "" : fmt::format("{:
 
 }  // namespace
 
+void CheckNames(const Experiment& e, const System& system) {
+  const Wiring wiring(e, system.model());
+  for (const Log& log : e.logs) {
+    if (log.set.empty()) continue;
+    try {
+      system.Build(log.set);
+    } catch (const Error& error) {
+      throw Error::Input(e.file.string() + ": set of log '" + log.label + "'", error.what());
+    }
+  }
+}
+
 std::vector<Replayed> Replay(const Experiment& e, const System& system,
                              const std::function<void(const std::string&)>& progress) {
   std::vector<Replayed> out;
@@ -73,6 +85,7 @@ nlohmann::json ErrorsJson(const Experiment& e, const std::vector<Replayed>& logs
                             {"trial", log.trial},
                             {"condition", log.condition},
                             {"use", log.train ? "train" : "validate"},
+                            {"diverged", logs[l].trace.diverged},
                             {"channels", ScoreJson(logs[l].score)}});
   }
   return json;

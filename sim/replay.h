@@ -18,6 +18,10 @@ struct Replayed {
   std::vector<ChannelScore> score;
 };
 
+/// Throws Error (file and place) when an experiment names what its model lacks, or a log's known
+/// values do not compile: before the first simulation.
+void CheckNames(const Experiment& experiment, const System& system);
+
 /// Every log of an experiment as it stands. Throws Error (kJob) when a simulation diverges.
 std::vector<Replayed> Replay(const Experiment& experiment, const System& system,
                              const std::function<void(const std::string&)>& progress = {});
