@@ -1,0 +1,147 @@
+#include "bench.h"
+
+namespace continuum {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using testing::Scratch;
+
+// A wrong command line among good files.
+struct Bad {
+  const char* name;
+  std::vector<std::string> arguments, words;
+};
+
+class BadCommand : public testing::AppBench, public ::testing::WithParamInterface<Bad> {};
+
+TEST_P(BadCommand, IsRefusedByOptionOrFile) {
+  ExpectRefused(GetParam().arguments, GetParam().words);
+}
+
+const std::string kE = "experiment.yaml", kM = "model.xml";
+const auto kName = [](const auto& info) { return std::string(info.param.name); };
+
+INSTANTIATE_TEST_SUITE_P(
+    App, BadCommand,
+    ::testing::Values(
+        Bad{"Nothing", {}, {"subcommand"}}, Bad{"UnknownSubcommand", {"dance"}, {"dance"}},
+        Bad{"UnknownOption", {"run", kM, "--loud"}, {"--loud"}},
+        Bad{"NoArgument", {"run"}, {"model"}}, Bad{"NoValue", {"run", kM, "--until"}, {"--until"}},
+        Bad{"RunNoSuchModel", {"run", "none.xml"}, {"none.xml", "readable"}},
+        Bad{"RunFolder", {"run", "."}, {".", "a folder"}},
+        Bad{"RunLog", {"run", "log.csv"}, {"log.csv"}},
+        Bad{"RunNoSuchInput", {"run", kM, "--input", "none.csv"}, {"none.csv", "readable"}},
+        Bad{"RunFolderAsInput", {"run", kM, "--input", "."}, {"a folder"}},
+        Bad{"RunWrongColumns", {"run", kM, "--input", "log.csv"}, {"log.csv:1", "motor", "'t'"}},
+        Bad{"RunIntoAFolder", {"run", kM, "--until", "0.1", "--out", "."}, {"."}},
+        Bad{"RunIntoNoFolder",
+            {"run", kM, "--until", "0.1", "--out", "none/x.csv"},
+            {"none/x.csv", "writable"}},
+        Bad{"RunIntoReadOnly",
+            {"run", kM, "--until", "0.1", "--out", "/proc/none/x.csv"},
+            {"/proc/none/x.csv", "writable"}},
+        Bad{"RunFilmOfAnotherKind", {"run", kM, "--until", "0.1", "--video", "x.avi"}, {"--video"}},
+        Bad{"CheckNoSuchFile", {"check", "none.yaml"}, {"none.yaml"}},
+        Bad{"CheckFolder", {"check", "."}, {"a folder"}}, Bad{"CheckModel", {"check", kM}, {kM}},
+        Bad{"ReplayNoOut", {"replay", kE}, {"--out"}},
+        Bad{"ReplayIntoAFile", {"replay", kE, "--out", "log.csv"}, {"log.csv", "folder"}},
+        Bad{"ReplayBelowAFile", {"replay", kE, "--out", "log.csv/out"}, {"log.csv/out", "folder"}},
+        Bad{"ReplayIntoReadOnly", {"replay", kE, "--out", "/proc/out"}, {"/proc/out", "folder"}},
+        Bad{"RenderNoSize", {"render", kE, "--out", "x.png", "--size", "big"}, {"--size", "'big'"}},
+        Bad{"RenderHuge",
+            {"render", kE, "--out", "x.png", "--size", "99999999999x2"},
+            {"--size", "99999999999x2"}},
+        Bad{"RenderEmpty", {"render", kE, "--out", "x.png", "--size", "0x0"}, {"--size", "'0x0'"}},
+        Bad{"RenderNegative", {"render", kE, "--out", "x.png", "--size=-2x2"}, {"--size"}},
+        Bad{"RenderAnotherKind", {"render", kE, "--out", "x.gif"}, {"--out", "x.gif"}},
+        Bad{"RenderNoSuchLog", {"render", kE, "--out", "x.mp4", "--log", "no"}, {"--log", "'no'"}},
+        Bad{"RenderNoSuchCamera",
+            {"render", kE, "--out", "x.png", "--camera", "mine"},
+            {"camera", "mine"}},
+        Bad{"RenderUnknownGl", {"render", kE, "--out", "x.png", "--gl", "vulkan"}, {"vulkan"}},
+        Bad{"RenderNoFrames", {"render", kE, "--out", "x.mp4", "--fps", "0"}, {"--fps"}},
+        Bad{"IdentifyMethod", {"identify", kE, "--out", "out", "--method", "luck"}, {"--method"}},
+        Bad{"IdentifyIterations",
+            {"identify", kE, "--out", "out", "--iterations", "nan"},
+            {"--iterations"}},
+        Bad{"DiagnoseUnknownEffect",
+            {"diagnose", kE, "--out", "out", "--candidates", "ghost"},
+            {"--candidates", "ghost"}},
+        Bad{"DiagnoseCompareNothing",
+            {"diagnose", kE, "--out", "out", "--compare", "none.json"},
+            {"none.json"}},
+        Bad{"DiagnoseCompareAnother",
+            {"diagnose", kE, "--out", "out", "--compare", "diagnosis.json"},
+            {"diagnosis.json"}},
+        Bad{"DiagnoseSeed", {"diagnose", kE, "--out", "out", "--seed", "-1"}, {"--seed"}},
+        Bad{"ApplyNoSuchDiagnosis",
+            {"apply", "none.json", kM, "--out", "x.xml"},
+            {"none.json", "readable"}},
+        Bad{"ApplyYaml", {"apply", kE, kM, "--out", "x.xml"}, {kE, "JSON"}},
+        Bad{"ApplyToALog", {"apply", "diagnosis.json", "log.csv", "--out", "x.xml"}, {"log.csv"}},
+        Bad{"ApplyIntoNoFolder",
+            {"apply", "diagnosis.json", kM, "--out", "none/x.xml"},
+            {"none/x.xml", "writable"}},
+        Bad{"SolveNoSuchRobot", {"solve", "none.yaml", "--out", "x.csv"}, {"none.yaml"}},
+        Bad{"SolveExperiment", {"solve", kE, "--out", "x.csv"}, {"experiment.yaml", "robot"}}),
+    kName);
+
+class GoodFile : public testing::AppBench {
+ protected:
+  void ExpectReplayed(const std::string& experiment = "experiment.yaml") const {
+    const auto f = Run({"replay", experiment, "--out", "out"});
+    EXPECT_EQ(f.exit_code, 0) << f.err;
+    EXPECT_TRUE(fs::exists(files_ / "out/errors.json"));
+  }
+};
+
+TEST_F(GoodFile, MayHaveAByteOrderMarkAndWindowsLineEnds) {
+  for (const char* file : {"log.csv", "experiment.yaml", "model.xml"}) {
+    std::string text = "\xEF\xBB\xBF";
+    for (const char c : Scratch::Text(files_ / file))
+      text += c == '\n' ? "\r\n" : std::string(1, c);
+    files_.Write(file, text);
+  }
+  ExpectReplayed();
+}
+
+TEST_F(GoodFile, MayLieInAFolderWithSpacesAndUmlauts) {
+  const fs::path folder = "Versuche März – 1";
+  fs::create_directory(files_.folder() / folder);
+  for (const char* file : {"log.csv", "experiment.yaml", "model.xml"})
+    fs::rename(files_ / file, files_.folder() / folder / file);
+  ExpectReplayed(folder / "experiment.yaml");
+}
+
+TEST_F(GoodFile, MayUseAnchors) {
+  Spoil("experiment.yaml", "[{file: log.csv}]", "\n  - &log {file: log.csv, trial: a}\n  - *log\n");
+  ExpectReplayed();
+}
+
+TEST_F(GoodFile, IsNoMatFileBecauseOfItsName) {
+  Spoil("experiment.yaml", "log.csv", "log.mat");
+  fs::rename(files_ / "log.csv", files_ / "log.mat");
+  ExpectRefused({"replay", "experiment.yaml", "--out", "out"}, {"log.mat", "MATLAB"});
+}
+
+TEST_F(GoodFile, StillFailsAsAJobWhenTheSimulationDivergesAndLeavesNoEmptyFolder) {
+  Spoil("log.csv", "0.1,0.1,0.01", "0.1,1e15,0.01");
+  const auto before = Listing();
+  const auto f = Run({"replay", "experiment.yaml", "--out", "out"});
+  EXPECT_EQ(f.exit_code, 1);
+  EXPECT_THAT(f.err, HasSubstr("diverges"));
+  EXPECT_EQ(Listing(), before);
+}
+
+TEST_F(GoodFile, WithoutAJointPositionCannotStartAsMeasured) {
+  Spoil("experiment.yaml", "format: 1", "format: 1\nstart: measured");
+  ExpectReplayed();
+  fs::remove_all(files_ / "out");
+  Spoil("log.csv", "0,0.1,0\n", "0,0.1,\n");
+  ExpectRefused({"replay", "experiment.yaml", "--out", "out"},
+                {"log.csv", "column 'q'", "start: measured"});
+}
+
+}  // namespace
+}  // namespace continuum

@@ -1,0 +1,97 @@
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include "bench.h"
+
+namespace continuum {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::Scratch;
+using ::testing::StartsWith;
+
+class RunCommand : public testing::AppBench {};
+
+TEST_F(RunCommand, WritesTheSensorsAtTheRowsOfItsInput) {
+  const auto f = Run({"run", "model.xml", "--input", "input.csv"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+  EXPECT_THAT(f.out, StartsWith("time,angle,tip_pos[0],tip_pos[1],tip_pos[2]\n0.5,0,"));
+  EXPECT_THAT(f.out, AllOf(HasSubstr("\n0.6,"), HasSubstr("\n0.7,")));
+}
+
+TEST_F(RunCommand, EndsAtUntilWhereTheInputIsHeld) {
+  EXPECT_THAT(
+      Run({"run", "model.xml", "--input", "input.csv", "--until", "0.9", "--every", "0.2"}).out,
+      AllOf(HasSubstr("\n0.5,"), HasSubstr("\n0.7,"), HasSubstr("\n0.9,")));
+  const auto one = Run({"run", "model.xml", "--input", "input.csv", "--until", "0.5"});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("\n0.5,"));
+}
+
+TEST_F(RunCommand, RefusesToEndBeforeItBegins) {
+  ExpectRefused({"run", "model.xml", "--input", "input.csv", "--until", "0.4"},
+                {"--until", "0.5 s", "0.4 s"});
+}
+
+TEST_F(RunCommand, RefusesNumbersThatAreNoneOrNeverEnd) {
+  for (const char* option : {"--until", "--every", "--timestep"}) {
+    for (const char* value : {"nan", "inf", "1e-300", "1e300", "-1", "0", "1s", ""}) {
+      SCOPED_TRACE(std::string(option) + " " + value);
+      ExpectRefused({"run", "model.xml", option, value}, {option, std::string("'") + value + "'"});
+    }
+  }
+  ExpectRefused({"run", "model.xml", "--every", "1e-8"}, {"--every", "1e+07 rows"});
+  ExpectRefused({"run", "model.xml", "--timestep", "1e-9", "--every", "1", "--until", "10"},
+                {"model.xml", "time steps"});
+}
+
+TEST_F(RunCommand, NeedsNamesOnlyForActuatorsThatColumnsDrive) {
+  Spoil("model.xml", R"(<motor name="motor")", "<motor");
+  ExpectRefused({"run", "model.xml", "--input", "input.csv"}, {"model.xml", "name", "actuator 0"});
+  EXPECT_EQ(Run({"run", "model.xml", "--until", "0.1"}).exit_code, 0);
+}
+
+TEST_F(RunCommand, WritesThroughSymbolicLinks) {
+  fs::create_directory(files_ / "there");
+  fs::create_symlink("there/real.csv", files_ / "link.csv");
+  for (int k = 0; k < 2; ++k) {  // the target is new, then old
+    EXPECT_EQ(Run({"run", "model.xml", "--until", "0.1", "--out", "link.csv"}).exit_code, 0);
+    EXPECT_TRUE(fs::is_symlink(files_ / "link.csv"));
+    EXPECT_THAT(Scratch::Text(files_ / "there/real.csv"), StartsWith("time,angle"));
+  }
+}
+
+// Links of its own stand for /dev/stdout and /dev/null: should this fail, nothing of the machine is
+// lost.
+TEST_F(RunCommand, LeavesStandardOutputAndPipesWhatTheyAre) {
+  fs::create_symlink("/proc/self/fd/1", files_ / "stdout");
+  const auto out = Run({"run", "model.xml", "--until", "0.1", "--out", "stdout"});
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_THAT(out.out, StartsWith("time,angle"));
+  EXPECT_TRUE(fs::is_symlink(files_ / "stdout"));
+
+  const std::string pipe = files_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int end = open(pipe.c_str(), O_RDWR | O_NONBLOCK);
+  EXPECT_EQ(Run({"run", "model.xml", "--until", "0.1", "--out", "pipe"}).exit_code, 0);
+  char text[11] = "";
+  EXPECT_EQ(read(end, text, 10), 10);
+  EXPECT_STREQ(text, "time,angle");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  close(end);
+}
+
+TEST_F(RunCommand, TakesPathsWithSpacesAndUmlauts) {
+  fs::create_directory(files_ / "mein Ordner – ü");
+  for (const char* file : {"model.xml", "input.csv"})
+    fs::rename(files_ / file, files_ / (std::string("mein Ordner – ü/") + file));
+  const auto f = Run({"run", "mein Ordner – ü/model.xml", "--input", "mein Ordner – ü/input.csv",
+                      "--out", "mein Ordner – ü/Ergebnis 1.csv"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+  EXPECT_THAT(Scratch::Text(files_ / "mein Ordner – ü/Ergebnis 1.csv"), StartsWith("time,angle"));
+}
+
+}  // namespace
+}  // namespace continuum
