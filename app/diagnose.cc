@@ -122,7 +122,9 @@ void AddDiagnose(CLI::App& app) {
   sub->add_option("--placebos", o->placebos, "random forces to compare with")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  sub->add_option("--seed", o->seed, "of the random forces")->capture_default_str();
+  sub->add_option("--seed", o->seed, "of the random forces")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   sub->add_flag("--video", o->video,
                 "also extended.mp4: the extended model beside the measured pose");
   sub->footer(

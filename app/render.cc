@@ -18,10 +18,10 @@ void ReadSize(const std::string& text, FilmOptions& film) {
   std::istringstream in(text);
   char by = 0;
   in >> film.width >> by >> film.height;
-  const auto allowed = [](int n) { return 16 <= n && n <= 8192; };
+  const auto allowed = [](int n) { return 64 <= n && n <= 16384; };
   const bool whole = in && by == 'x' && in.peek() == std::istringstream::traits_type::eof();
   if (whole && allowed(film.width) && allowed(film.height)) return;
-  throw Error::Input("--size", "WIDTHxHEIGHT, each from 16 to 8192 px", "'" + text + "'");
+  throw Error::Input("--size", "WIDTHxHEIGHT, each from 64 to 16384 px", "'" + text + "'");
 }
 
 void RunRender(const Options& o) {

@@ -11,6 +11,19 @@
 
 namespace continuum {
 
+namespace {
+
+// The beginning of a text, in one line.
+std::string Shown(std::string text) {
+  std::size_t length = 60;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.size() <= length) return text;
+  while (length > 0 && (text[length] & 0xC0) == 0x80) --length;  // not within a character
+  return text.substr(0, length) + "...";
+}
+
+}  // namespace
+
 Yaml Yaml::Read(const std::filesystem::path& file) { return Parse(ReadFile(file), file.string()); }
 
 Yaml Yaml::Parse(const std::string& text, std::string name) {
@@ -34,7 +47,7 @@ std::string Yaml::Found() const {
   if (!node_.IsDefined() || node_.IsNull()) return "nothing";
   if (node_.IsMap()) return "a map";
   if (node_.IsSequence()) return "a list";
-  return "'" + node_.Scalar() + "'";
+  return "'" + Shown(node_.Scalar()) + "'";
 }
 
 bool Yaml::Has(const std::string& key) const { return node_.IsMap() && node_[key].IsDefined(); }

@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"apply", "diagnosis.json", kM, "--out", "none/x.xml"},
             {"none/x.xml", "writable"}},
         Bad{"SolveNoSuchRobot", {"solve", "none.yaml", "--out", "x.csv"}, {"none.yaml"}},
-        Bad{"SolveExperiment", {"solve", kE, "--out", "x.csv"}, {"experiment.yaml", "robot"}}),
+        Bad{"SolveExperiment", {"solve", kE, "--out", "x.csv"}, {"experiment.yaml:2", "tdcr"}}),
     kName);
 
 class GoodFile : public testing::AppBench {

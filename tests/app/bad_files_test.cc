@@ -62,6 +62,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Bad{"Empty", "experiment.yaml", "", "", {"a map"}},
         Bad{"Junk", "experiment.yaml", "", kJunk, {}},
+        Bad{"LongText",
+            "experiment.yaml",
+            "format: 1",
+            "format: |\n " + std::string(9999, 'x') + "\n y",
+            {"yaml:1: format", "'xxx", "xxx...'"}},
         Bad{"List", "experiment.yaml", "", "- 1\n- 2\n", {"a map", "a list"}},
         Bad{"Cycle", "experiment.yaml", "[{file: log.csv}]", "&a [*a]", {"yaml:7", "logs[0]"}},
         Bad{"UnknownAnchor", "experiment.yaml", "[{file: log.csv}]", "*nobody", {"yaml:7"}},
