@@ -83,11 +83,16 @@ std::string ApplyJson(const System& system, const nlohmann::json& json, const st
   for (const Json& c : extension.At("changes").Items()) changes.push_back(ReadChange(c));
   std::vector<EffectInstance> instances;
   for (const Json& i : extension.At("instances").Items()) instances.push_back(ReadInstance(i));
-  const Json replaces = extension.At("replaces");
-  if (replaces.Text().empty()) return system.With({}, instances).Xml(changes, {}, folder);
-  if (instances.size() != 1)
-    extension.At("instances").Refuse("the one instance that replaces '" + replaces.Text() + "'");
-  return system.Replacing(replaces.Text(), instances.front()).Xml(changes, {}, folder);
+  const std::string replaces = extension.At("replaces").Text();
+  if (!replaces.empty() && instances.size() != 1)
+    extension.At("instances").Refuse("the one instance that replaces '" + replaces + "'");
+  try {
+    const System extended = replaces.empty() ? system.With({}, instances)
+                                             : system.Replacing(replaces, instances.front());
+    return extended.Xml(changes, {}, folder);
+  } catch (const Error& error) {
+    throw Error::Input(where, error.what());
+  }
 }
 
 }  // namespace continuum

@@ -280,6 +280,9 @@ Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
   if (!std::filesystem::exists(log.file, ignored)) {
     throw Error::Input(y.At("file").Where(), "a log file", "no file " + log.file.string());
   }
+  if (std::filesystem::is_directory(log.file, ignored)) {
+    throw Error::Input(y.At("file").Where(), "a log file", "a folder");
+  }
   log.label = log.file.stem().string();
   log.trial = TextOr(y, "trial", log.label);
   log.condition = TextOr(y, "condition", "");

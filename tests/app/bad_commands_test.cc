@@ -119,6 +119,11 @@ TEST_F(GoodFile, MayUseAnchors) {
   ExpectReplayed();
 }
 
+TEST_F(GoodFile, NeedsItsModel) {
+  fs::remove(files_ / "model.xml");
+  ExpectRefused({"replay", "experiment.yaml", "--out", "out"}, {"model.xml", "readable"});
+}
+
 TEST_F(GoodFile, IsNoMatFileBecauseOfItsName) {
   Spoil("experiment.yaml", "log.csv", "log.mat");
   fs::rename(files_ / "log.csv", files_ / "log.mat");
