@@ -109,7 +109,8 @@ class Session {
         probes_.emplace_back();
       }
     }
-    screen_ = SignificanceOf(probes_, left.residual(), 1, options_.seed);
+    inflation_ = Inflation(left);
+    screen_ = SignificanceOf(probes_, left.residual(), inflation_, options_.seed);
     for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
       CandidateResult& c = d_.candidates[i];
       c.explained = screen_.explained[i];
@@ -120,6 +121,52 @@ class Session {
                                     ExplainedBy(probes_[i][best], left.residual()));
       }
     }
+  }
+
+  // Rounding errors are neither normal nor stationary: how much more of them than of whitened noise
+  // the candidates' directions take up, by draws.
+  double Inflation(const Remainder& left) const {
+    bool any = false;
+    for (const ChannelNoise& n : d_.noise.channel) any |= Rounded(n);
+    if (!any) return 1;
+    std::vector<Problem::Matrix> columns;
+    for (const auto& probes : probes_) {
+      for (const Probe& probe : probes) columns.push_back(probe.columns);
+    }
+    std::vector<Trace> traces;
+    for (std::size_t l = 0; l < e_.logs.size(); ++l)
+      traces.push_back(null_.Predict(d_.before.fit.x, l));
+    std::mt19937_64 rng(options_.seed);
+    constexpr int kDraws = 40;
+    double power = 0, count = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const Vector z = left.Project(RoundingDraw(traces, rng)).col(0);
+      for (const Problem::Matrix& c : columns) {
+        for (Eigen::Index i = 0; i < c.cols(); ++i) {
+          const double norm = c.col(i).squaredNorm();
+          if (norm > 0) power += std::pow(c.col(i).dot(z), 2) / norm, count += 1;
+        }
+      }
+    }
+    return count > 0 ? std::max(1.0, power / count) : 1;
+  }
+
+  std::vector<Problem::Matrix> RoundingDraw(const std::vector<Trace>& traces,
+                                            std::mt19937_64& rng) const {
+    std::vector<Problem::Matrix> draw(e_.logs.size());
+    const auto channels = null_.channels();
+    for (std::size_t l = 0; l < e_.logs.size(); ++l) {
+      const auto rows = static_cast<Eigen::Index>(e_.logs[l].rows());
+      draw[l] = Problem::Matrix::Zero(rows * static_cast<Eigen::Index>(channels.size()), 1);
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        const ChannelNoise& n = d_.noise.channel[channels[c]];
+        if (!Rounded(n)) continue;
+        const auto errors = RoundingErrors(n, traces[l].channel[channels[c]], rng);
+        for (Eigen::Index k = 0; k < rows; ++k)
+          draw[l](static_cast<Eigen::Index>(c) * rows + k, 0) = errors[k] / null_.scale(c);
+      }
+    }
+    return draw;
   }
 
   // Candidates are fitted when one of them is significant, or when what is left is plainly not
@@ -150,7 +197,7 @@ class Session {
         c.fitted = FitCandidate(c, rival);
         c.fits = true;
         if (d_.noise.known()) rival = std::min(rival, c.fitted.fit.cost);
-        c.likelihood = d_.before.cost - c.fitted.cost;
+        c.likelihood = (d_.before.cost - c.fitted.cost) / inflation_;
       } catch (const Error& error) {
         c.error = error.what();
       }
@@ -237,8 +284,8 @@ class Session {
     Say("what is left");
     const CandidateResult* const best = Leading();
     d_.lack = best ? trials_.LackIn(best->hypothesis.system, best->hypothesis.extra, best->fitted,
-                                    d_.sizes, options_.seed)
-                   : trials_.LackIn(d_.system, {}, d_.before, d_.sizes, options_.seed);
+                                    d_.sizes, inflation_, options_.seed)
+                   : trials_.LackIn(d_.system, {}, d_.before, d_.sizes, inflation_, options_.seed);
     d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), SmallestP());
     if (d_.folds.empty()) return;
     AddFolds(d_.before, null_);
@@ -287,10 +334,9 @@ class Session {
     const Eigen::Index known = d_.before.fit.x.size();
     const std::span<const double> own(c.fitted.fit.x.data() + known, c.hypothesis.extra.size());
     const std::size_t main = c.hypothesis.Main(own);
-    for (const Vector& x : c.fitted.folds.x) {
-      c.record.amplitude.push_back(x[known + static_cast<Eigen::Index>(main)] -
-                                   c.hypothesis.null[main]);
-    }
+    const double null = std::isinf(c.hypothesis.null[main]) ? 0 : c.hypothesis.null[main];
+    for (const Vector& x : c.fitted.folds.x)
+      c.record.amplitude.push_back(x[known + static_cast<Eigen::Index>(main)] - null);
   }
 
   // The model leaves more than noise, or nobody knows the noise: only what holds on logs left out
@@ -423,6 +469,7 @@ class Session {
   Trials trials_;
   std::vector<std::vector<Probe>> probes_;  // [candidate]
   Significance screen_;
+  double inflation_ = 1;  // of what rounding errors explain over whitened noise
 };
 
 }  // namespace

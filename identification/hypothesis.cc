@@ -70,8 +70,9 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
         return !in.column.empty() && name && in.actuator == name;
       });
     }
-    default: {  // bodies: the ends of the tree
+    default: {  // bodies: the ends of the tree, or every one for what scales them
       if (id == 0) return false;
+      if (effect.params.front().null == 1) return m.body_mass[id] > 0;
       for (int b = id + 1; b < m.nbody; ++b) {
         if (m.body_parentid[b] == id) return false;
       }
@@ -82,6 +83,7 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
 
 std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
                                    const std::string& glob, const Experiment& experiment) {
+  if (place == Place::kWorld) return {"world"};
   std::vector<std::string> names;
   for (int i = 0; i < CountOf(m, place); ++i) {
     const char* name = mj_id2name(&m, TypeOf(place), i);
@@ -132,7 +134,7 @@ double SizeFor(const Param& p, Place place, const Sizes& s) {
   if (u == "N*m") return line ? s.tension : s.torque;
   if (u == "N") return line ? s.tension : s.torque;  // Dahl's f, on joints a torque
   if (u == "rad") return s.angle;
-  if (u == "rad/s") return s.velocity;
+  if (u == "rad/s") return place == Place::kActuator ? 0.25 / s.period : s.velocity;
   if (u == "N*m*s/rad") return s.torque / s.velocity;
   if (u == "N*m/rad" || u == "N/m") return (line ? s.tension : s.torque) / (0.02 * s.angle);
   if (u == "N*m/rad^3") return s.torque / std::pow(s.angle, 3);
@@ -156,6 +158,10 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   out.where = "candidate";
   const bool nuisance = std::isnan(p.null);
   const double reach = p.unit == "kg" ? 5 : p.unit == "s" ? 25 : p.unit == "1" ? 10 : 3;
+  if (std::isinf(p.null)) {  // absent when it is large
+    out.lower = std::max(p.lower, 0.02 * size), out.upper = 100 * size, out.initial = size;
+    return out;
+  }
   out.upper = std::min(p.upper, (nuisance ? 100 : reach) * size);
   out.lower = nuisance ? std::max(p.lower, 1e-3 * size) : std::max(p.lower, -reach * size);
   const double typical = p.unit == "1" ? 0.1 : p.unit == "s" ? 0.5 : p.unit == "rad" ? 0.02 : 0.05;
@@ -182,6 +188,7 @@ std::vector<std::vector<double>> StartsOf(const Hypothesis& h) {
 }
 
 std::string InWords(Place place, const std::vector<std::string>& names) {
+  if (place == Place::kWorld) return "world";
   std::string text(PlaceName(place));
   if (names.size() > 1) text += "s";
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -219,14 +226,18 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place, const std::strin
                          const Sizes& sizes) {
   Hypothesis h{std::string(effect.name), "", InWords(place, names), system, {}, {}, "", {}};
   const std::string target =
-      std::string(PlaceName(place)) + ":" + (names.size() == 1 ? names.front() : glob);
-  Param param = effect.params.front();
-  const bool as_is = std::isnan(param.null);  // the effect is an attribute of the model
-  if (as_is) param.null = system.Value(target, std::string(effect.name));
-  h.extra.push_back(FreeOne(param, place, sizes, target,
-                            as_is ? std::string(effect.name) : "effect:" + std::string(effect.name),
-                            Change::Operation::kSet));
-  h.null.push_back(param.null);
+      place == Place::kWorld
+          ? "world"
+          : std::string(PlaceName(place)) + ":" + (names.size() == 1 ? names.front() : glob);
+  for (Param param : effect.params) {
+    const bool as_is = std::isnan(param.null);  // the effect is an attribute of the model
+    if (as_is) param.null = system.Value(target, std::string(effect.name));
+    h.extra.push_back(FreeOne(
+        param, place, sizes, target,
+        as_is ? std::string(effect.name) : fmt::format("effect:{}.{}", effect.name, param.name),
+        Change::Operation::kSet));
+    h.null.push_back(param.null);
+  }
   return h;
 }
 
@@ -260,7 +271,8 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
       added.config.emplace_back("tau_c", Decimal(tau_c));
       continue;
     }
-    const bool damping = p.name == "tau_mu";  // the joint's native damping says it already
+    // The native damping of joints says it already.
+    const bool damping = p.unit == "N*m*s/rad" && p.null == 0;
     const bool literal = p.name == "k_v";
     if (dry_elsewhere || damping || literal) {
       if (!literal) added.config.emplace_back(p.name, "0");

@@ -164,18 +164,27 @@ ChannelNoise NoiseFrom(const std::vector<std::vector<double>>& samples) {
   return noise;
 }
 
+bool Rounded(const ChannelNoise& noise) {
+  return noise.quantum > 0 && noise.before < noise.quantum / 2;
+}
+
+std::vector<double> RoundingErrors(const ChannelNoise& noise, std::vector<double> values,
+                                   std::mt19937_64& rng) {
+  std::normal_distribution<double> normal;
+  const double phase = noise.quantum * std::uniform_real_distribution<double>()(rng);
+  for (double& y : values) {
+    const double noisy = y + phase + noise.before * normal(rng);
+    y = noise.quantum * std::round(noisy / noise.quantum) - y - phase;
+  }
+  return values;
+}
+
 ChannelNoise RoundingNoise(const ChannelNoise& noise,
                            const std::vector<std::vector<double>>& values) {
-  if (noise.quantum == 0 || noise.before >= noise.quantum / 2) return noise;
+  if (!Rounded(noise)) return noise;
   std::mt19937_64 rng(1);
-  std::normal_distribution<double> normal;
-  auto errors = values;
-  for (auto& log : errors) {
-    for (double& y : log) {
-      const double noisy = y + noise.before * normal(rng);
-      y = noise.quantum * std::round(noisy / noise.quantum) - y;
-    }
-  }
+  std::vector<std::vector<double>> errors;
+  for (const auto& log : values) errors.push_back(RoundingErrors(noise, log, rng));
   ChannelNoise out = NoiseFrom(errors);
   out.quantum = noise.quantum, out.before = noise.before;
   return out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <random>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,13 @@ Noise NoiseOf(const Experiment& experiment);
 /// replicates do not show them. Repeats exactly.
 ChannelNoise RoundingNoise(const ChannelNoise& noise,
                            const std::vector<std::vector<double>>& values);
+
+/// Whether a channel's values are rounded to steps larger than its noise.
+bool Rounded(const ChannelNoise& noise);
+/// One draw of a rounded channel's noise in one log, from values that a model gives: where they lie
+/// between two steps is as good as random.
+std::vector<double> RoundingErrors(const ChannelNoise& noise, std::vector<double> values,
+                                   std::mt19937_64& rng);
 
 /// Logs that repeat each other, one group per motion; logs without a replicate are in none.
 std::vector<std::vector<std::size_t>> ReplicateGroups(const Experiment& experiment);

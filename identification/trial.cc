@@ -15,13 +15,24 @@ using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
 // p-value of what unsigned columns explain of white noise of size 1.
-double ChiSquared(const Matrix& columns, const Vector& z) {
+double ChiSquared(const Matrix& columns, const Vector& z, double inflation) {
   Probe probe{columns, std::vector<double>(columns.cols(), 0)};
   const double rank = static_cast<double>(
       std::min<Eigen::Index>(columns.cols(), (columns.colwise().norm().array() > 1e-9).count()));
   if (rank < 1) return 1;
-  return boost::math::cdf(
-      boost::math::complement(boost::math::chi_squared(rank), ExplainedBy(probe, z).amount));
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(rank),
+                                                  ExplainedBy(probe, z).amount / inflation));
+}
+
+// The value of a parameter that leaves the effect out: its null, or its bound toward one at
+// infinity.
+double Absent(const Hypothesis& h, std::size_t i) {
+  return std::isinf(h.null[i]) ? h.extra[i].upper : h.null[i];
+}
+
+// What a coefficient of 1 stands for; a parameter that is absent at infinity has its start as 1.
+double Size(const Hypothesis& h, const std::vector<double>& start, std::size_t i) {
+  return std::isinf(h.null[i]) ? 1 : start[i] - h.null[i];
 }
 
 // Of each counted channel: a constant, and a shift in time.
@@ -102,7 +113,7 @@ std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, c
       x.head(known) = null.fit.x;
       for (std::size_t i = 0; i < start.size(); ++i)
         x[known + static_cast<Eigen::Index>(i)] = start[i];
-      for (const std::size_t i : amplitudes) x[known + static_cast<Eigen::Index>(i)] = h.null[i];
+      for (const std::size_t i : amplitudes) x[known + static_cast<Eigen::Index>(i)] = Absent(h, i);
       const std::size_t i = amplitudes[a];
       x[known + static_cast<Eigen::Index>(i)] = start[i];
       const auto r = problem.Residuals(x, train);
@@ -110,9 +121,10 @@ std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, c
         if (!train[l]) continue;
         if (!r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
         columns[l].col(static_cast<Eigen::Index>(a)) =
-            (r[l] - null.residuals[l]) / (start[i] - h.null[i]);
+            (r[l] - null.residuals[l]) / Size(h, start, i);
       }
-      const bool above = h.extra[i].lower >= h.null[i], below = h.extra[i].upper <= h.null[i];
+      const bool above = h.extra[i].lower >= h.null[i] || std::isinf(h.null[i]);
+      const bool below = h.extra[i].upper <= h.null[i] && !std::isinf(h.null[i]);
       probe.sign.push_back(above ? 1 : below ? -1 : 0);
     }
     probe.columns = left.Project(columns);
@@ -131,7 +143,8 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t st
     x[known + static_cast<Eigen::Index>(i)] = h.starts[start][i];
   for (std::size_t a = 0; a < amplitudes.size(); ++a) {
     const std::size_t i = amplitudes[a];
-    const double size = h.starts[start][i] - h.null[i];
+    if (std::isinf(h.null[i])) continue;  // its start is as good as any
+    const double size = Size(h, h.starts[start], i);
     const double wanted = probe.coefficients[static_cast<Eigen::Index>(a)];
     // Off the null, where a bound or a kink hides the slope.
     const double least = 0.05 * std::abs(size);
@@ -146,7 +159,8 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t st
 }
 
 LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& extra,
-                         const Fitted& fitted, const Sizes& sizes, std::uint64_t seed) const {
+                         const Fitted& fitted, const Sizes& sizes, double inflation,
+                         std::uint64_t seed) const {
   const auto train = Train();
   const ForceTerms terms = RandomForce(12, true, sizes, seed);
   const Problem problem(*experiment, system, extra, terms);
@@ -159,11 +173,11 @@ LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& ext
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = Matrix(J[l].rightCols(static_cast<Eigen::Index>(terms.count)));
   }
-  lack.force = ChiSquared(left.Project(J), left.residual());
+  lack.force = ChiSquared(left.Project(J), left.residual(), inflation);
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = ChannelColumns(problem, problem.Predict(x, l), experiment->logs[l]);
   }
-  lack.channel = ChiSquared(left.Project(J), left.residual());
+  lack.channel = ChiSquared(left.Project(J), left.residual(), inflation);
   return lack;
 }
 

@@ -22,9 +22,9 @@ struct Trials {
   /// Where to begin a candidate's fit: a start of its own, with sizes from a probe.
   Problem::Vector StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
                             const Explained& probe) const;
-  /// Tests of what no candidate covers.
+  /// Tests of what no candidate covers; inflation: of noise along any direction.
   LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
-                   const Sizes& sizes, std::uint64_t seed) const;
+                   const Sizes& sizes, double inflation, std::uint64_t seed) const;
 
   std::vector<bool> Train() const;
 };

@@ -40,7 +40,6 @@ struct LikelihoodRecord {
   std::string name;
   std::size_t parameters = 0;
   double likelihood = 0;                   ///< twice the logarithm gained over the model without it
-  double p = 1;                            ///< family-wise
   std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
 };
 
