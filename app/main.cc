@@ -1,6 +1,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -11,8 +12,18 @@
 
 namespace {
 
+bool IsSubcommand(const CLI::App& app, const std::string& name) {
+  const auto known =
+      app.get_subcommands([&](const CLI::App* sub) { return sub->get_name() == name; });
+  return !known.empty();
+}
+
 // CLI11 has exit codes of its own; ours are 0 done, 1 failed, 2 wrong use.
 int Parse(CLI::App& app, int argc, char** argv) {
+  if (argc > 1 && argv[1][0] != '-' && !IsSubcommand(app, argv[1])) {
+    std::fprintf(stderr, "continuum: no subcommand '%s'. See continuum --help.\n", argv[1]);
+    return 2;
+  }
   try {
     app.parse(argc, argv);
     return 0;

@@ -35,7 +35,7 @@ class Session {
     d_.before = trials_.Fit(null_, null_.Start());
     if (d_.noise.known()) Requantise();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
-    d_.noise.step = null_.PooledRms(d_.before.step, null_.TrainLogs());
+    d_.noise.step = StepEffect();
     MakeHypotheses();
     if (d_.noise.known()) {
       Screen();
@@ -60,6 +60,15 @@ class Session {
   void Say(const std::string& text) const {
     if (StopRequested()) throw Error::Job("interrupted");
     if (options_.progress) options_.progress(text);
+  }
+
+  // How far the trajectories at h and at h/4 are apart [pooled unit].
+  double StepEffect() const {
+    std::vector<Vector> column(e_.logs.size());
+    for (std::size_t l = 0; l < column.size(); ++l) {
+      if (e_.logs[l].train) column[l] = d_.before.step[l].col(0);
+    }
+    return null_.PooledRms(column, null_.TrainLogs());
   }
 
   // Once a model tells how the values move between the steps of a quantised channel.
@@ -287,11 +296,27 @@ class Session {
                                     d_.sizes, inflation_, options_.seed)
                    : trials_.LackIn(d_.system, {}, d_.before, d_.sizes, inflation_, options_.seed);
     d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), SmallestP());
+    NameOnce();
     if (d_.folds.empty()) return;
     AddFolds(d_.before, null_);
     for (const std::size_t i : d_.verdict.named) Record(d_.candidates[i]);
     d_.ceiling = d_.before.folds, d_.ceiling_error = d_.before.error;
     if (d_.chosen()) d_.ceiling = d_.chosen()->fitted.folds, d_.ceiling_error = d_.after();
+  }
+
+  // One effect at several places is one name: the data do not tell the places apart.
+  void NameOnce() {
+    auto& named = d_.verdict.named;
+    if (named.size() < 2) return;
+    const std::string& effect = d_.candidates[named.front()].hypothesis.effect;
+    std::string places;
+    for (const std::size_t i : named) {
+      if (d_.candidates[i].hypothesis.effect != effect) return;
+      places += (places.empty() ? "" : " or ") + d_.candidates[i].hypothesis.where;
+    }
+    d_.verdict.text = "named";
+    d_.verdict.reason = "it leaves nothing but noise; the data do not tell " + places + " apart";
+    named.resize(1);
   }
 
   // Of all candidates, fitted or not.

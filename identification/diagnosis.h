@@ -31,7 +31,7 @@ struct Fitted {
   Fit fit;
   std::vector<Problem::Vector> residuals;  ///< [log] at the optimum
   std::vector<Problem::Matrix> jacobian;   ///< [log]
-  std::vector<Problem::Vector> step = {};  ///< [train log] what the time step adds
+  std::vector<Problem::Matrix> step = {};  ///< [train log] what the time step leaves open
   Uncertainty uncertainty;
   TwoErrors error;
   FoldScores folds;    ///< empty where the noise alone decides

@@ -221,14 +221,12 @@ bool AlreadyFitted(const Experiment& e, const std::string& kind, const std::stri
   });
 }
 
-Hypothesis EditCandidate(const EffectInfo& effect, Place place, const std::string& glob,
+Hypothesis EditCandidate(const EffectInfo& effect, Place place,
                          const std::vector<std::string>& names, const System& system,
                          const Sizes& sizes) {
   Hypothesis h{std::string(effect.name), "", InWords(place, names), system, {}, {}, "", {}};
   const std::string target =
-      place == Place::kWorld
-          ? "world"
-          : std::string(PlaceName(place)) + ":" + (names.size() == 1 ? names.front() : glob);
+      place == Place::kWorld ? "world" : std::string(PlaceName(place)) + ":" + Join(names);
   for (Param param : effect.params) {
     const bool as_is = std::isnan(param.null);  // the effect is an attribute of the model
     if (as_is) param.null = system.Value(target, std::string(effect.name));
@@ -349,6 +347,48 @@ void AddMeasure(const EffectInfo& effect, const Candidate& wanted, const Experim
   }
 }
 
+// Up to so many places are tried one by one too, beside all of them together.
+constexpr std::size_t kEach = 3;
+
+// Why an effect makes no sense at places of a model; empty when it does.
+std::string WhyNot(const EffectInfo& effect, Place place, const std::vector<std::string>& names,
+                   const Experiment& e, const mjModel& m) {
+  if (effect.kind == EffectInfo::Kind::kEdit) {
+    const std::string attribute = effect.name == "viscous" ? "damping" : std::string(effect.name);
+    if (AlreadyFitted(e, std::string(PlaceName(place)), attribute))
+      return "the experiment fits it already";
+    if (effect.name == "viscous" && place == Place::kJoint &&
+        FrictionOn(m, names).effect == "stribeck") {
+      return "the model's stribeck has it: fit its tau_mu";
+    }
+  }
+  if (effect.kind == EffectInfo::Kind::kFriction) {
+    const Present present = FrictionOn(m, names);
+    if (present.effect == effect.name) return "the model has it already";
+    if (effect.name == "coulomb" && present.id >= 0) return "the model has dry friction";
+  }
+  if (effect.kind == EffectInfo::Kind::kPath) {
+    for (int i = 0; i < m.nplugin; ++i) {
+      const std::string name = mjp_getPluginAtSlot(m.plugin[i])->name;
+      if (name == "continuum." + std::string(effect.name)) return "the model has it already";
+    }
+  }
+  return "";
+}
+
+// One hypothesis, or one for each option of a friction's choice.
+void AddAt(const EffectInfo& effect, Place place, const std::vector<std::string>& names,
+           const System& system, const Sizes& sizes, std::vector<Hypothesis>& all) {
+  if (effect.kind == EffectInfo::Kind::kEdit) {
+    all.push_back(EditCandidate(effect, place, names, system, sizes));
+    return;
+  }
+  const bool choice = effect.kind == EffectInfo::Kind::kFriction && !effect.choices.empty();
+  const std::size_t options = choice ? effect.choices.front().options.size() : 1;
+  for (std::size_t o = 0; o < options; ++o)
+    all.push_back(PluginCandidate(effect, place, names, system, sizes, static_cast<int>(o)));
+}
+
 void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
                const System& system, const Sizes& sizes, std::vector<Hypothesis>& all,
                std::vector<std::string>& skipped) {
@@ -360,9 +400,6 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
     const std::size_t before = all.size();
     AddMeasure(effect, wanted, e, system, sizes, all);
     if (all.size() == before) skip("no output that it acts on");
-    for (Hypothesis& h : all) {
-      if (h.starts.empty()) h.starts = StartsOf(h);
-    }
     return;
   }
   const std::size_t colon = wanted.where.find(':');
@@ -372,37 +409,12 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
     const std::string glob = wanted.where.empty() ? "*" : wanted.where.substr(colon + 1);
     const auto names = PlacesFor(system.model(), effect, place, glob, e);
     if (names.empty()) continue;
-    if (effect.kind == EffectInfo::Kind::kEdit) {
-      const std::string attribute = effect.name == "viscous" ? "damping" : std::string(effect.name);
-      if (AlreadyFitted(e, key, attribute)) return skip("the experiment fits it already");
-      if (effect.name == "viscous" && place == Place::kJoint &&
-          FrictionOn(system.model(), names).effect == "stribeck") {
-        return skip("the model's stribeck has it: fit its tau_mu");
-      }
-      all.push_back(EditCandidate(effect, place, glob, names, system, sizes));
-    } else {
-      const bool friction = effect.kind == EffectInfo::Kind::kFriction;
-      if (friction) {
-        const Present present = FrictionOn(system.model(), names);
-        if (present.effect == effect.name) return skip("the model has it already");
-        if (effect.name == "coulomb" && present.id >= 0) return skip("the model has dry friction");
-      }
-      if (effect.kind == EffectInfo::Kind::kPath) {
-        for (int i = 0; i < system.model().nplugin; ++i) {
-          const std::string name = mjp_getPluginAtSlot(system.model().plugin[i])->name;
-          if (name == "continuum." + std::string(effect.name))
-            return skip("the model has it already");
-        }
-      }
-      const std::size_t options =
-          friction && !effect.choices.empty() ? effect.choices.front().options.size() : 1;
-      for (std::size_t o = 0; o < options; ++o) {
-        all.push_back(PluginCandidate(effect, place, names, system, sizes, static_cast<int>(o)));
-      }
-    }
-    for (Hypothesis& h : all) {
-      if (h.starts.empty()) h.starts = StartsOf(h);
-    }
+    const std::string why = WhyNot(effect, place, names, e, system.model());
+    if (!why.empty()) return skip(why);
+    AddAt(effect, place, names, system, sizes, all);
+    const bool each = wanted.where.empty() && names.size() > 1 && names.size() <= kEach;
+    for (std::size_t i = 0; each && i < names.size(); ++i)
+      AddAt(effect, place, {names[i]}, system, sizes, all);
     return;
   }
   skip("nothing in the model to bind it to");
@@ -481,6 +493,7 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system
       AddEffect(EffectNamed(c.effect), c, e, system, sizes, all, skipped);
     }
   }
+  for (Hypothesis& h : all) h.starts = StartsOf(h);
   return all;
 }
 

@@ -159,7 +159,9 @@ ChannelNoise NoiseFrom(const std::vector<std::vector<double>>& samples) {
   }
   const double s = static_cast<double>(samples.size());
   if (scatter > boost::math::quantile(boost::math::chi_squared(s), 0.95)) {
-    noise.offset = std::sqrt((scatter / s - 1) * expected);
+    // A few offsets may all be small by chance: take the variance at the upper end of its 90 %.
+    const double few = s / boost::math::quantile(boost::math::chi_squared(s), 0.1);
+    noise.offset = std::sqrt(few * (scatter / s - 1) * expected);
   }
   return noise;
 }

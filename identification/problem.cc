@@ -283,14 +283,25 @@ std::vector<Problem::Vector> Problem::Residuals(const Vector& x,
   return out;
 }
 
-std::vector<Problem::Vector> Problem::StepEffect(const Vector& x, const std::vector<Vector>& r,
-                                                 const std::vector<bool>& use) const {
-  std::vector<Vector> out(use.size());
-  const double step = system().model().opt.timestep / 4;
+// The same motion, measured later.
+Trace Problem::Later(const Trace& trace, const Vector& x, std::size_t log, double delay) const {
+  Experiment setup = MeasuredBy(x, log);
+  for (Output& out : setup.outputs) out.measurement.delay += delay;
+  Trace later = trace;
+  MeasureTrace(setup, Wiring(setup, system().model()), experiment_->logs[log], later);
+  return later;
+}
+
+std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::vector<Vector>& r,
+                                                  const std::vector<bool>& use) const {
+  std::vector<Matrix> out(use.size());
+  const double h = system().model().opt.timestep;
   ParallelFor(use.size(), [&](std::size_t thread, std::size_t l) {
     if (!use[l]) return;
-    out[l] = r[l] - ResidualOf(l, Run(thread, x, l, step));
-    if (!out[l].allFinite()) out[l].setZero();
+    out[l].resize(r[l].size(), 2);
+    out[l].col(0) = r[l] - ResidualOf(l, Run(thread, x, l, h / 4));
+    if (!out[l].col(0).allFinite()) out[l].col(0).setZero();
+    out[l].col(1) = ResidualOf(l, Later(Run(thread, x, l), x, l, h)) - r[l];
   });
   evaluations_ += use.size();
   return out;

@@ -54,10 +54,11 @@ class Problem {
 
   /// Residuals of the logs marked in use; other entries are empty. A diverged log gives NaN.
   std::vector<Vector> Residuals(const Vector& x, const std::vector<bool>& use) const;
-  /// What the model's time step adds: residuals at its step less those at a quarter of it (r: those
-  /// at its step). Zero where the finer simulation diverges.
-  std::vector<Vector> StepEffect(const Vector& x, const std::vector<Vector>& r,
-                                 const std::vector<bool>& use) const;
+  /// What the time step h leaves open, one column each: residuals at h less those at h/4, and what
+  /// all channels change when they come one step later (r: residuals at x). Zero where the finer
+  /// simulation diverges.
+  std::vector<Matrix> StepEffects(const Vector& x, const std::vector<Vector>& r,
+                                  const std::vector<bool>& use) const;
   /// d residual / d parameter [per unit of the parameter] of each log by one-sided differences;
   /// r: the residuals at x; known: its leading columns, when they are known already.
   std::vector<Matrix> Jacobian(const Vector& x, const std::vector<Vector>& r,
@@ -88,6 +89,7 @@ class Problem {
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
   std::vector<Change> ChangesAt(const Vector& x, std::size_t log, bool measurement) const;
   Vector ResidualOf(std::size_t log, const Trace& trace) const;
+  Trace Later(const Trace& trace, const Vector& x, std::size_t log, double delay) const;
 
   const Experiment* experiment_;
   std::vector<System> systems_;  ///< one per thread

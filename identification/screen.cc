@@ -13,9 +13,9 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-// The time step's effect is taken from a finer step, not from the limit: its size is known to a
-// factor of a few.
-constexpr double kStepSpread = 3;
+// Standard deviations of the time step's effects: the difference to a finer step is not that to the
+// limit; when within a step a row was taken and an input came is a matter of convention.
+constexpr double kStepSpread[] = {3, 0.5};
 
 // Orthonormal columns that span A, directions below 1e-9 of the largest left out.
 Matrix Basis(const Matrix& A) {
@@ -62,22 +62,23 @@ struct Small {
 
 Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
                      const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
-                     const std::vector<bool>& fixed, const std::vector<Vector>& step)
+                     const std::vector<bool>& fixed, const std::vector<Matrix>& step)
     : whitening_(&whitening), use_(use) {
   const Vector r = whitening.Stack(residuals, use);
   const Matrix J = whitening.Stack(jacobian, use);
-  const Vector s = whitening.Stack(step, use);
-  const Eigen::Index n = r.size();
-  Matrix A(n + 1, J.cols() + 1);  // the last row is the prior of the step
-  A.setZero();
+  const Matrix S = whitening.Stack(step, use);
+  const Eigen::Index n = r.size(), priors = S.cols();
+  Matrix A = Matrix::Zero(n + priors, J.cols() + priors);  // the last rows are the priors of S
   Eigen::Index free = 0;
   for (Eigen::Index i = 0; i < J.cols(); ++i) {
     if (!fixed[i]) A.col(free++).head(n) = J.col(i);
   }
-  A.col(free).head(n) = s;
-  A(n, free) = 1 / kStepSpread;
-  basis_ = Basis(A.leftCols(free + 1));
-  Vector padded = Vector::Zero(n + 1);
+  for (Eigen::Index i = 0; i < priors; ++i) {
+    A.col(free + i).head(n) = S.col(i);
+    A(n + i, free + i) = 1 / kStepSpread[i];
+  }
+  basis_ = Basis(A.leftCols(free + priors));
+  Vector padded = Vector::Zero(n + priors);
   padded.head(n) = r;
   residual_ = Out(padded).col(0);
   const double measured = static_cast<double>((r.array() != 0).count());
@@ -91,7 +92,7 @@ Remainder::Matrix Remainder::Out(Matrix columns) const {
 
 Remainder::Matrix Remainder::Project(const std::vector<Matrix>& columns) const {
   const Matrix stacked = whitening_->Stack(columns, use_);
-  Matrix padded = Matrix::Zero(stacked.rows() + 1, stacked.cols());
+  Matrix padded = Matrix::Zero(residual_.size(), stacked.cols());
   padded.topRows(stacked.rows()) = stacked;
   return Out(std::move(padded));
 }

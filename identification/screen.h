@@ -17,10 +17,10 @@ class Remainder {
   using Matrix = Eigen::MatrixXd;
 
   /// residuals, jacobian: [log] at the optimum; fixed: parameters that a bound holds; step: [log]
-  /// residuals at the model's step minus those at a finer one, known to a factor of about 1.
+  /// Problem::StepEffects, which may be there in part.
   Remainder(const Whitening& whitening, const std::vector<bool>& use,
             const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
-            const std::vector<bool>& fixed, const std::vector<Vector>& step);
+            const std::vector<bool>& fixed, const std::vector<Matrix>& step);
 
   const Vector& residual() const { return residual_; }
   /// |z|², the whitened sum of squares at the optimum to first order.

@@ -82,7 +82,7 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) co
   }
   f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, J, whitening);
   f.error = {problem.PooledRms(f.residuals, train), problem.PooledRms(f.residuals, validate)};
-  f.step = problem.StepEffect(f.fit.x, f.residuals, train);
+  f.step = problem.StepEffects(f.fit.x, f.residuals, train);
   if (!whitening.active()) return f;
   const Remainder left = LeftBy(f);
   f.cost = left.cost();

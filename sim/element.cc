@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 #include <numbers>
+#include <sstream>
 #include <type_traits>
 
 #include <mujoco/mjspecmacro.h>
@@ -399,13 +400,16 @@ std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const 
     for (const auto& [name, type] : Kinds()) all += ", " + name + ":GLOB";
     throw Error::Input(where, "a target such as " + all, "'" + target + "'");
   }
-  const std::string glob = target.substr(colon + 1);
+  const std::string globs = target.substr(colon + 1);
   std::vector<Element> found;
   for (const Element& e : Elements(spec, kind->second, compiled)) {
-    if (!e.Name().empty() && GlobMatches(glob, e.Name())) found.push_back(e);
+    std::istringstream all(globs);
+    bool matches = false;
+    for (std::string glob; all >> glob;) matches |= GlobMatches(glob, e.Name());
+    if (matches && !e.Name().empty()) found.push_back(e);
   }
   if (found.empty()) {
-    throw Error::Input(where, "a " + kind->first + " of the model", "no match for '" + glob + "'");
+    throw Error::Input(where, "a " + kind->first + " of the model", "no match for '" + globs + "'");
   }
   return found;
 }

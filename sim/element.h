@@ -71,8 +71,9 @@ class Element {
 /// Every element of a kind, in the order of the model.
 std::vector<Element> Elements(mjSpec* spec, mjtObj kind, const mjModel* compiled);
 
-/// The elements that a target "kind:glob" names, in the order of the model ("option" gives none:
-/// see OptionAttribute). Throws Error (where) when the kind is unknown or nothing matches.
+/// The elements that a target "kind:glob" (or several globs, separated by spaces) names, in the
+/// order of the model ("option" gives none: see OptionAttribute). Throws Error (where) when the
+/// kind is unknown or nothing matches.
 std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const std::string& target,
                                    const std::string& where);
 

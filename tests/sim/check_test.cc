@@ -52,7 +52,7 @@ struct Recipe {
 
 Experiment Bench() {
   Experiment e;
-  e.inputs = {{"u1", "rad", "m1", "", false}, {"u2", "rad", "m2", "", false}};
+  e.inputs = {{"u1", "rad", "m1", "", false, ""}, {"u2", "rad", "m2", "", false, ""}};
   for (const auto& [column, unit] :
        {std::pair{"q1", "rad"}, std::pair{"v1", "rad/s"}, std::pair{"q2", "rad"}}) {
     Output out;

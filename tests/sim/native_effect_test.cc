@@ -91,6 +91,7 @@ TEST_F(NativeEffect, ExternalForceActsInWorldAxesAtTheOriginOrASite) {
     EXPECT_NEAR(omega[2], force[2], 1e-12);
     // Momentum of the tree: m a of the centre.
     double a[6];
+    mj_rnePostConstraint(m.model.get(), m.data.get());
     mj_objectAcceleration(m.model.get(), m.data.get(), mjOBJ_BODY, 1, a, 0);
     EXPECT_NEAR(0.4 * a[3], 0.3, 1e-9);
     EXPECT_NEAR(0.4 * a[4], -0.5, 1e-9);

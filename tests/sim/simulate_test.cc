@@ -37,10 +37,11 @@ class Slider : public ::testing::Test {
     scratch_.Write("log.csv", log);
     Trial trial;
     trial.experiment = Experiment::Read(scratch_.Write(
-        "e.yaml", "format: 1\nmodel: m.xml\nstart: " + start +
-                      "\ninputs: [{column: u, unit: N, actuator: a}]\n"
-                      "outputs: [{column: x, unit: m, sensor: x},\n"
-                      "  {column: f, unit: N, force: a}]\nlogs: [{file: log.csv}]\n"));
+        "e.yaml",
+        "format: 1\nmodel: m.xml\nstart: " + start +
+            "\ninputs: [{column: u, unit: N, actuator: a}]\n"
+            "outputs: [{column: x, unit: m, sensor: x},\n"
+            "  {column: f, unit: N, actuator: a, quantity: force}]\nlogs: [{file: log.csv}]\n"));
     trial.machine = System::Load(trial.experiment.model).Build();
     return trial;
   }

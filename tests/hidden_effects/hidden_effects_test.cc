@@ -1,0 +1,82 @@
+#include <unistd.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "hidden_effects/suite.h"
+
+namespace continuum::hidden {
+namespace {
+
+// The small suite: one test per kind of noise, so that they run side by side. Its gates count over
+// the cases of one kind; `continuum_hidden_effects` runs hundreds.
+class HiddenEffects : public ::testing::TestWithParam<NoiseKind> {
+ protected:
+  void TearDown() override { std::filesystem::remove_all(Folder()); }
+  std::filesystem::path Folder() const {
+    return std::filesystem::temp_directory_path() / fmt::format("hidden_effects_{}", ::getpid());
+  }
+  Answer Ask(Case c) {
+    c.noise = GetParam();
+    std::filesystem::remove_all(Folder());
+    const Answer a = Solve(c, Folder());
+    std::string names;
+    for (const auto& n : a.named) names += " " + n;
+    told_ += c.Name() + ": " + a.verdict + names + "\n";
+    return a;
+  }
+
+  std::string told_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Noise, HiddenEffects,
+                         ::testing::Values(NoiseKind::kWhite, NoiseKind::kSlow, NoiseKind::kOffset,
+                                           NoiseKind::kQuantised, NoiseKind::kHeavy),
+                         [](const auto& info) {
+                           std::string name(kNoiseNames[static_cast<int>(info.param)]);
+                           std::erase_if(name, [](char c) { return !std::isalnum(c); });
+                           return name;
+                         });
+
+// At a level of 5 %, more than two alarms in eight have a probability of 0.6 %.
+TEST_P(HiddenEffects, NothingIsNamedWhereNothingIsHidden) {
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Answer a = Ask({{}, 1, NoiseKind::kWhite, 1000 + seed});
+    alarms += a.verdict != "adequate";
+  }
+  EXPECT_LE(alarms, 2) << told_;
+}
+
+// Effects that these logs tell from all others, at four times a moderate size.
+TEST_P(HiddenEffects, AreNamed) {
+  const std::vector<std::string> effects{"payload",   "coulomb",         "input_gain",
+                                         "dead_time", "cubic_stiffness", "sensor_scale"};
+  int right = 0, wrong = 0;
+  std::uint64_t seed = 2000;
+  for (const auto& effect : effects) {
+    const Case c{{effect}, 4, NoiseKind::kWhite, ++seed};
+    const Answer a = Ask(c);
+    right += InSet(c, a);
+    wrong += Unique(a) && !InSet(c, a);
+  }
+  EXPECT_GE(right, 5) << told_;
+  EXPECT_EQ(wrong, 0) << told_;
+}
+
+// Backlash-like or unknown: the hidden effect is not among the candidates, and no other is its
+// sibling.
+TEST_P(HiddenEffects, WithoutACandidateGetNoOtherName) {
+  int wrong = 0;
+  std::uint64_t seed = 3000;
+  for (const char* const effect : {"payload", "dahl", "input_gain"}) {
+    const Case c{{effect}, 4, NoiseKind::kWhite, ++seed, false};
+    wrong += Unique(Ask(c));
+  }
+  EXPECT_LE(wrong, 0) << told_;
+}
+
+}  // namespace
+}  // namespace continuum::hidden
