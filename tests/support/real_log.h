@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "sim/experiment.h"
+#include "support/scratch.h"
+
+namespace continuum::testing {
+
+/// A test on the recordings of a real machine: folder of its own, imported experiment. Skips where
+/// the recordings are not at hand ($CONTINUUM_DATA, else ../shared/data beside the project).
+class RealLog : public ::testing::Test {
+ protected:
+  /// Runs models/<robot>/import.py; nothing to test when it was skipped.
+  void Import(const std::string& robot) {
+    const char* const chosen = std::getenv("CONTINUUM_DATA");
+    const std::filesystem::path data =
+        std::filesystem::path(chosen ? chosen : CONTINUUM_SOURCE "/../shared/data") / robot;
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << "no recordings at " << data;
+    const std::string import = CONTINUUM_SOURCE "/models/" + robot + "/import.py";
+    const std::string command = "python3 '" + import + "' '" + data.string() + "' '" +
+                                scratch_.folder().string() + "' > /dev/null";
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    experiment_ = Experiment::Read(scratch_ / "experiment.yaml");
+  }
+
+  Scratch scratch_;
+  Experiment experiment_;
+};
+
+}  // namespace continuum::testing
