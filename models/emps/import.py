@@ -4,9 +4,10 @@
 usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER
 
 SOURCE_FOLDER holds DATA_EMPS.mat (t [s], qg reference [m], qm position [m], vir control [V]). Written:
-a copy of it and experiment.yaml. Two windows with a gap: the first 12 s train, 13 s to the end
-validate (the axis reverses at 12.47 s, so it starts at rest). The position is shown but not scored: the loop holds it within 31 um of the measured one
-whatever the parameters are, and what they do is in the voltage.
+a copy of it and experiment.yaml. Two windows: the first 12 s train, 12.47 s to the end validate
+(there the axis reverses, so the second window starts at rest as well). The position is shown but not
+scored: the loop holds it within 31 um of the measured one whatever the parameters are, and what they
+do is in the voltage.
 """
 import os
 import pathlib
@@ -31,7 +32,7 @@ parameters:
   - {{name: F_v, target: "joint:q", attribute: damping, lower: 0, upper: 1000}}
   - {{name: F_c, target: "plugin:friction", attribute: tau_c, lower: 0, upper: 100}}
   - {{name: offset, target: "actuator:offset", attribute: "biasprm[0]", lower: -50, upper: 50}}
-candidates: [stribeck, directional_friction, position_friction, load_friction, dahl, dead_time, input_gain]
+candidates: [stribeck, load_friction, position_friction, dahl, dead_time]
 folds: window
 """
 
