@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/core.h>
 
@@ -70,9 +71,10 @@ bool CheckedColumn::constant() const {
 
 CheckedLog Prepare(const Experiment& e, const Log& log) {
   CheckedLog checked{&e, &log, {}, Median(Differences(log.time)), {}};
+  std::set<std::string> seen;  // a column may drive several actuators
   for (std::size_t i = 0; i < e.inputs.size(); ++i) {
     const Input& in = e.inputs[i];
-    if (in.column.empty()) continue;
+    if (in.column.empty() || !seen.insert(in.column).second) continue;
     checked.columns.push_back(
         Column(in.column, in.unit, UnitFactor(in.unit, ""), log, log.input[i]));
     checked.columns.back().input = true;

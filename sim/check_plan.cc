@@ -17,15 +17,17 @@ struct Trial {
 
 void CheckTrials(const Experiment& e, Findings& out) {
   std::map<std::string, Trial> trials;
+  std::map<std::pair<std::string, std::string>, std::size_t> recorded;  // trial, condition
   std::size_t train = 0;
   for (const Log& log : e.logs) {
+    ++recorded[{log.trial, log.condition}];
     ++trials[log.trial].logs;
     trials[log.trial].train += log.train;
     train += log.train;
   }
   std::size_t replicated = 0;
+  for (const auto& [name, count] : recorded) replicated += count > 1;
   for (const auto& [name, trial] : trials) {
-    replicated += trial.logs > 1;
     if (trial.train > 0 && trial.train < trial.logs) {
       out.Add(Severity::kWarning, "", "split",
               fmt::format("trial '{}' is in both train and validate: its replicates are no test of "

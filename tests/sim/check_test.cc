@@ -1,5 +1,6 @@
 #include "sim/check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -378,6 +379,19 @@ TEST(Check, ACopiedColumnIsNamed) {
   EXPECT_THAT(Only(log, "copied", "q2").text, HasSubstr("'q1'"));
 }
 
+TEST(Check, AColumnThatDrivesTwoActuatorsIsToldOnce) {
+  Experiment e = With(Record({}));
+  e.inputs[1].column = "u1";  // the second of an antagonistic pair
+  e.logs[0].input[1] = e.logs[0].input[0];
+  const auto all = CheckLogs(e);
+  EXPECT_EQ(Find(all, "copied", "u1"), nullptr) << Report(all);
+  EXPECT_EQ(
+      std::count_if(all.begin(), all.end(),
+                    [](const Finding& f) { return f.what == "excitation" && f.channel == "u1"; }),
+      1)
+      << Report(all);
+}
+
 TEST(Check, TheLagBehindAnInputIsTold) {
   Recipe recipe;
   recipe.u1 = [](double t) { return std::sin(2.1 * t); };
@@ -410,6 +424,9 @@ TEST(Check, TheExperimentsLimitsAreTold) {
   const std::string text = Report(CheckLogs(e));
   EXPECT_THAT(text, HasSubstr("1 trial was recorded more than once"));
   EXPECT_THAT(text, ::testing::Not(HasSubstr("only ratios")));
+  e.logs[1].condition = "loaded";  // another condition is no replicate
+  EXPECT_THAT(Report(CheckLogs(e)), HasSubstr("no trial was recorded twice"));
+  e.logs[1].condition = e.logs[0].condition;
   e.logs[1].train = false;
   EXPECT_NE(Find(Bad(CheckLogs(e)), "split"), nullptr);
   e.logs[1] = e.logs[0];
