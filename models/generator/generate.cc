@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "models/annelida/annelida.h"
+#include "models/generator/tendon_arm.h"
 #include "sim/file.h"
 
 namespace continuum {
@@ -15,8 +16,11 @@ namespace {
 using Generator = std::function<std::string(const std::filesystem::path&)>;
 
 int Main(int argc, char** argv) {
+  const Generator tendon_arm = [](const auto& file) { return TendonArmMjcf(ReadTendonArm(file)); };
   const std::map<std::string, Generator> robots{
-      {"annelida", [](const auto& file) { return AnnelidaMjcf(ReadAnnelida(file)); }}};
+      {"annelida", [](const auto& file) { return AnnelidaMjcf(ReadAnnelida(file)); }},
+      {"trunk", tendon_arm},
+      {"tdcr_three_segment", tendon_arm}};
 
   CLI::App app{"Writes the MJCF of a robot from its parameters"};
   std::string robot, parameters, out;

@@ -26,6 +26,13 @@ Point Tidy(Point p) {
 }
 double Tidy(double x) { return Tidy(Point{x, 0, 0})[0]; }
 
+// Nine digits, so that products read as one would write them.
+double Rounded(double x) {
+  if (x == 0) return 0;
+  const double unit = std::pow(10.0, 8 - std::floor(std::log10(std::abs(x))));
+  return std::round(x * unit) / unit;
+}
+
 void FromTo(mjsGeom* geom, const Point& from, const Point& to, double radius) {
   Copy(geom->fromto, Tidy(from));
   Copy(geom->fromto + 3, Tidy(to));
@@ -150,11 +157,22 @@ void Mjcf::AddHinge(mjsBody* body, const std::string& name, const Point& axis, d
   joint->solimp_limit[0] = 0.95, joint->solimp_limit[1] = 0.99, joint->solimp_limit[2] = 1e-4;
 }
 
-void Mjcf::AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius) {
+void Mjcf::AddBend(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
+                   double damping) {
+  mjsJoint* const joint = mjs_addJoint(body, nullptr);
+  Name(joint->element, name);
+  joint->type = mjJNT_HINGE;
+  Copy(joint->axis, axis);
+  joint->stiffness[0] = Rounded(stiffness);
+  joint->damping[0] = Rounded(damping);
+}
+
+mjsSite* Mjcf::AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius) {
   mjsSite* const site = mjs_addSite(body, nullptr);
   Name(site->element, name);
   Copy(site->pos, Tidy(pos));
   site->size[0] = radius;
+  return site;
 }
 
 mjsGeom* Mjcf::AddGeom(mjsBody* body, mjtGeom type, const std::string& material) {
@@ -192,6 +210,31 @@ void Mjcf::AddTension(const std::string& name, const std::string& tendon, double
   actuator->gear[0] = -1;  // MuJoCo's positive force lengthens a tendon
   actuator->ctrllimited = mjLIMITED_TRUE;
   actuator->ctrlrange[1] = largest;
+}
+
+void Mjcf::AddDrive(const std::string& name, const std::string& tendon, const Drive& d) {
+  mjsActuator* const actuator = mjs_addActuator(spec_.get(), nullptr);
+  Name(actuator->element, name);
+  actuator->trntype = mjTRN_TENDON;
+  mjs_setString(actuator->target, tendon.c_str());
+  actuator->biastype = mjBIAS_AFFINE;
+  // MuJoCo's force is minus the tension.
+  actuator->gainprm[0] = Rounded(-d.stiffness * d.travel);
+  actuator->biasprm[0] = Rounded(d.stiffness * d.length - d.pretension);
+  actuator->biasprm[1] = Rounded(-d.stiffness);
+  actuator->biasprm[2] = Rounded(-d.damping);
+  actuator->forcelimited = mjLIMITED_TRUE;
+  actuator->forcerange[0] = -d.largest;
+  actuator->forcerange[1] = -d.smallest + 0.0;  // no -0
+}
+
+void Mjcf::AddPosition(const std::string& site, const std::string& frame) {
+  mjsSensor* const sensor = mjs_addSensor(spec_.get());
+  Name(sensor->element, site);
+  sensor->type = mjSENS_FRAMEPOS;
+  sensor->objtype = sensor->reftype = mjOBJ_SITE;
+  mjs_setString(sensor->objname, site.c_str());
+  mjs_setString(sensor->refname, frame.c_str());
 }
 
 void Mjcf::AddSensor(mjtSensor type, const std::string& name, mjtObj kind,

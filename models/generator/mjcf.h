@@ -36,7 +36,10 @@ class Mjcf {
   /// A hinge through the body's origin; stiffness [N m/rad], hard stops at ±stop [rad].
   void AddHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
                 double stop);
-  void AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius);
+  /// A hinge through the body's origin without stops; stiffness [N m/rad], damping [N m s/rad].
+  void AddBend(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
+               double damping);
+  mjsSite* AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius);
   void AddCylinder(mjsBody* body, const Point& from, const Point& to, double radius,
                    const std::string& material);
   void AddCapsule(mjsBody* body, const Point& from, const Point& to, double radius,
@@ -46,6 +49,19 @@ class Mjcf {
                 const Colour& colour);
   /// A motor on a tendon whose control is the tension [N], 0 .. largest.
   void AddTension(const std::string& name, const std::string& tendon, double largest);
+  /// A drive that moves a tendon's end, through the tendon's own elasticity.
+  ///
+  ///   T = k (travel u + l − length) + c dl/dt + T_0,   smallest ≤ T ≤ largest
+  ///
+  /// u: control; travel [m per control]: how much tendon it takes in; l: path length [m]; length:
+  /// that at which T = T_0 for u = 0; k: stiffness [N/m]; c: damping [N s/m]; T_0: pretension [N];
+  /// smallest: 0 where a tendon goes slack, below 0 where T counts from the pretension of a pair.
+  struct Drive {
+    double travel, length, stiffness, damping, pretension, smallest, largest;
+  };
+  void AddDrive(const std::string& name, const std::string& tendon, const Drive& drive);
+  /// Position of a site in the frame of another; named like the first.
+  void AddPosition(const std::string& site, const std::string& frame);
   void AddSensor(mjtSensor type, const std::string& name, mjtObj kind, const std::string& object);
 
   /// The file, with plugin instances under <extension>. Throws Error when it does not compile.
