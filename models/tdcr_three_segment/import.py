@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Turns the recording of the three-segment arm into an experiment folder.
+
+usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER
+
+SOURCE_FOLDER holds *_train.csv: timestamp [s], pattern_label, nine servo_<id>_mm (measured tendon
+displacement [mm], pulling is positive), tip_x tip_y tip_z [mm]. Written: one CSV per family of
+patterns with the time t [s] since the first row in front, and experiment.yaml. Patterns that bend one
+segment train, those that bend two together validate. Servos and tip are read at the same time, so the
+displacement is linear between rows.
+"""
+import csv
+import os
+import pathlib
+import sys
+
+SERVOS = (4, 3, 9, 5, 2, 8, 6, 1, 7)  # in the file's order: three of segment 1, then 2, then 3
+PARAMETERS = [
+    # name, target, attribute, operation, lower, upper
+    ("rod_stiffness", "joint:bend*", "stiffness", "scale", 0.3, 3),
+    ("tendon_stiffness", "actuator:t*", "force_scale", "scale", 0.1, 10),
+    ("travel", "actuator:t*", "gainprm[0]", "scale", 0.7, 1.4),
+    ("marker", "site:plate3", "pos[2]", "add", -0.02, 0.02),
+    ("frame_x", "site:frame", "pos[0]", "add", -0.02, 0.02),
+    ("frame_y", "site:frame", "pos[1]", "add", -0.02, 0.02),
+    ("frame_z", "site:frame", "pos[2]", "add", -0.02, 0.02),
+]
+
+
+def family(label):
+    """rep1_pair12_same_dir60_hold -> pair12_same; rep1_tendon0_id4_pull -> tendon_pull."""
+    words = label.split("_")[1:]
+    if words[0].startswith("tendon"):
+        return "tendon_pull"
+    return "_".join(words[:2]) if words[0].startswith("pair") else words[0]
+
+
+def read_families(source):
+    """Rows of each family in file order, time from the first row of all."""
+    families, start = {}, None
+    with source.open(newline="") as recording:
+        for row in csv.DictReader(recording):
+            start = float(row["timestamp"]) if start is None else start
+            values = {"t": f"{float(row['timestamp']) - start:.4f}"}
+            values |= {key: row[key] for key in row if key not in ("timestamp", "pattern_label")}
+            families.setdefault(family(row["pattern_label"]), []).append(values)
+    return families
+
+
+def experiment(families, model):
+    lines = ["format: 1", f"model: {model}", "logs:"]
+    for name in families:
+        use = "validate" if name.startswith("pair") else "train"
+        lines.append(f"  - {{file: {name}.csv, trial: {name}, use: {use}}}")
+    lines += ["time: {column: t, unit: s}", "start: equilibrium", "inputs:"]
+    for k, servo in enumerate(SERVOS):
+        lines.append(f"  - {{column: servo_{servo}_mm, unit: mm, actuator: t{k // 3 + 1}_{k % 3 + 1},"
+                     " interpolate: linear}")
+    lines.append("outputs:")
+    for component, axis in enumerate("xyz"):
+        lines.append(f"  - {{column: tip_{axis}, unit: mm, sensor: \"plate3[{component}]\"}}")
+    lines.append("parameters:")
+    for name, target, attribute, operation, lower, upper in PARAMETERS:
+        initial = 1 if operation == "scale" else 0
+        lines.append(f"  - {{name: {name}, target: \"{target}\", attribute: \"{attribute}\", "
+                     f"operation: {operation}, initial: {initial}, lower: {lower}, upper: {upper}}}")
+    lines += ["candidates: [stiffness, coulomb, capstan, input_offset]",
+              "folds: trial"]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    files = sorted(source.glob("*_train.csv"))
+    if len(files) != 1:
+        sys.exit(f"{source}: expected one recording (*_train.csv), found {len(files)}")
+    target.mkdir(parents=True, exist_ok=True)
+    families = read_families(files[0])
+    for name, rows in families.items():
+        with (target / f"{name}.csv").open("w", newline="") as log:
+            out = csv.DictWriter(log, rows[0], lineterminator="\n")
+            out.writeheader()
+            out.writerows(rows)
+    model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "tdcr_three_segment.xml",
+                            target.resolve())
+    (target / "experiment.yaml").write_text(experiment(families, model))
+    print(f"{len(families)} logs and experiment.yaml in {target}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "error.h"
+#include "sim/simulate.h"
+#include "sim/system.h"
+#include "support/real_log.h"
+
+namespace continuum {
+namespace {
+
+class TdcrThreeSegment : public testing::RealLog {
+ protected:
+  void SetUp() override { Import("tdcr_three_segment"); }
+
+  // RMS distance of the tip [m] over one family of patterns.
+  double TipError(const std::string& family) const {
+    const System system = System::Load(experiment_.model);
+    for (const Log& log : experiment_.logs) {
+      if (log.trial != family) continue;
+      Machine machine = system.Build();
+      const Trace trace = Simulate(machine, experiment_, log);
+      double sum = 0;
+      for (std::size_t k = 0; k < log.rows(); ++k) {
+        for (std::size_t c = 0; c < 3; ++c)
+          sum += std::pow(trace.channel[c][k] - log.measured[c][k], 2);
+      }
+      return std::sqrt(sum / static_cast<double>(log.rows()));
+    }
+    throw Error::Input("experiment.yaml", "a log " + family, "none");
+  }
+};
+
+// A family that bends one segment and one that bends two; 0.1 mm: one digit for other compilers.
+TEST_F(TdcrThreeSegment, ReplaysUnfittedAsItsReadmeSays) {
+  EXPECT_NEAR(TipError("seg3"), 5.22e-3, 1e-4);
+  EXPECT_NEAR(TipError("pair12_same"), 7.85e-3, 1e-4);
+}
+
+TEST_F(TdcrThreeSegment, ItsFamiliesHoldEveryRowOnce) {
+  std::size_t rows = 0;
+  for (const Log& log : experiment_.logs) rows += log.rows();
+  EXPECT_EQ(experiment_.logs.size(), 10u);
+  EXPECT_EQ(rows, 1620u);
+}
+
+}  // namespace
+}  // namespace continuum
