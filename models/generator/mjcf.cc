@@ -142,13 +142,19 @@ void Mjcf::SetInertia(mjsBody* body, double mass, const Point& centre, const Poi
   Copy(body->inertia, moments);
 }
 
-void Mjcf::AddHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
-                    double stop) {
+mjsJoint* Mjcf::AddJoint(mjsBody* body, const std::string& name, const Point& axis,
+                         double stiffness) {
   mjsJoint* const joint = mjs_addJoint(body, nullptr);
   Name(joint->element, name);
   joint->type = mjJNT_HINGE;
   Copy(joint->axis, axis);
   joint->stiffness[0] = stiffness;
+  return joint;
+}
+
+void Mjcf::AddHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
+                    double stop) {
+  mjsJoint* const joint = AddJoint(body, name, axis, stiffness);
   joint->limited = mjLIMITED_TRUE;
   joint->range[0] = -Tidy(stop);
   joint->range[1] = Tidy(stop);
@@ -165,6 +171,13 @@ void Mjcf::AddBend(mjsBody* body, const std::string& name, const Point& axis, do
   Copy(joint->axis, axis);
   joint->stiffness[0] = Rounded(stiffness);
   joint->damping[0] = Rounded(damping);
+}
+
+void Mjcf::AddElasticHinge(mjsBody* body, const std::string& name, const Point& axis,
+                           double stiffness, const Pace& pace) {
+  mjsJoint* const joint = AddJoint(body, name, axis, stiffness);
+  joint->armature = stiffness / (pace.fastest * pace.fastest);
+  joint->damping[0] = stiffness * pace.lag;
 }
 
 mjsSite* Mjcf::AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius) {
@@ -201,15 +214,21 @@ void Mjcf::AddCable(const std::string& name, const std::vector<std::string>& sit
   for (const std::string& site : sites) mjs_wrapSite(tendon, site.c_str());
 }
 
-void Mjcf::AddTension(const std::string& name, const std::string& tendon, double largest) {
+mjsActuator* Mjcf::AddMotor(const std::string& name, double least, double largest) {
   mjsActuator* const actuator = mjs_addActuator(spec_.get(), nullptr);
   Name(actuator->element, name);
   mjs_setToMotor(actuator);
+  actuator->ctrllimited = mjLIMITED_TRUE;
+  actuator->ctrlrange[0] = least;
+  actuator->ctrlrange[1] = largest;
+  return actuator;
+}
+
+void Mjcf::AddTension(const std::string& name, const std::string& tendon, double largest) {
+  mjsActuator* const actuator = AddMotor(name, 0, largest);
   actuator->trntype = mjTRN_TENDON;
   mjs_setString(actuator->target, tendon.c_str());
   actuator->gear[0] = -1;  // MuJoCo's positive force lengthens a tendon
-  actuator->ctrllimited = mjLIMITED_TRUE;
-  actuator->ctrlrange[1] = largest;
 }
 
 void Mjcf::AddDrive(const std::string& name, const std::string& tendon, const Drive& d) {
@@ -228,22 +247,31 @@ void Mjcf::AddDrive(const std::string& name, const std::string& tendon, const Dr
   actuator->forcerange[1] = -d.smallest + 0.0;  // no -0
 }
 
-void Mjcf::AddPosition(const std::string& site, const std::string& frame) {
-  mjsSensor* const sensor = mjs_addSensor(spec_.get());
-  Name(sensor->element, site);
-  sensor->type = mjSENS_FRAMEPOS;
-  sensor->objtype = sensor->reftype = mjOBJ_SITE;
-  mjs_setString(sensor->objname, site.c_str());
+void Mjcf::AddForce(const std::string& site, const std::string& frame, double largest) {
+  for (int axis = 0; axis < 3; ++axis) {
+    mjsActuator* const actuator = AddMotor(site + "_f" + "xyz"[axis], -largest, largest);
+    actuator->trntype = mjTRN_SITE;
+    mjs_setString(actuator->target, site.c_str());
+    mjs_setString(actuator->refsite, frame.c_str());
+    actuator->gear[0] = 0;
+    actuator->gear[axis] = 1;
+  }
+}
+
+void Mjcf::AddPosition(const std::string& name, const std::string& site, const std::string& frame) {
+  mjsSensor* const sensor = AddSensor(mjSENS_FRAMEPOS, name, mjOBJ_SITE, site);
+  sensor->reftype = mjOBJ_SITE;
   mjs_setString(sensor->refname, frame.c_str());
 }
 
-void Mjcf::AddSensor(mjtSensor type, const std::string& name, mjtObj kind,
-                     const std::string& object) {
+mjsSensor* Mjcf::AddSensor(mjtSensor type, const std::string& name, mjtObj kind,
+                           const std::string& object) {
   mjsSensor* const sensor = mjs_addSensor(spec_.get());
   Name(sensor->element, name);
   sensor->type = type;
   sensor->objtype = kind;
   mjs_setString(sensor->objname, object.c_str());
+  return sensor;
 }
 
 std::string Mjcf::Text(std::span<const EffectInstance> effects) const {

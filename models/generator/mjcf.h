@@ -13,6 +13,15 @@ namespace continuum {
 using Point = std::array<double, 3>;  ///< [m] or a direction, in the frame of the parent body
 using Colour = std::array<float, 4>;  ///< red, green, blue, opacity
 
+/// How a hinge that stands for a piece of an elastic body moves. Armature and damping in the ratio
+/// of the stiffnesses keep the shapes of the slow modes: a mode at w swings at
+/// 1/sqrt(1/w² + 1/fastest²) instead, so an explicit step of a fraction of 1/fastest is stable
+/// however light and stiff the pieces are, and statics are untouched.
+struct Pace {
+  double fastest;  ///< no mode swings faster [rad/s]: armature k/fastest²
+  double lag;      ///< of the material [s]: damping k · lag
+};
+
 /// A robot's MJCF in the making: what a generator says of it, through mjSpec.
 ///
 /// Angles in rad. Geoms neither collide nor weigh: masses come from AddBody. Names that are empty
@@ -39,6 +48,9 @@ class Mjcf {
   /// A hinge through the body's origin without stops; stiffness [N m/rad], damping [N m s/rad].
   void AddBend(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
                double damping);
+  /// A hinge without stops whose stiffness [N m/rad] is that of a piece of an elastic body.
+  void AddElasticHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
+                       const Pace& pace);
   mjsSite* AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius);
   void AddCylinder(mjsBody* body, const Point& from, const Point& to, double radius,
                    const std::string& material);
@@ -60,14 +72,20 @@ class Mjcf {
     double travel, length, stiffness, damping, pretension, smallest, largest;
   };
   void AddDrive(const std::string& name, const std::string& tendon, const Drive& drive);
-  /// Position of a site in the frame of another; named like the first.
-  void AddPosition(const std::string& site, const std::string& frame);
-  void AddSensor(mjtSensor type, const std::string& name, mjtObj kind, const std::string& object);
+  /// Motors "<site>_fx", "<site>_fy", "<site>_fz": components [N] of a force at a site in the axes
+  /// of the site `frame`, at most `largest`.
+  void AddForce(const std::string& site, const std::string& frame, double largest);
+  /// A site's position in the frame of another site.
+  void AddPosition(const std::string& name, const std::string& site, const std::string& frame);
+  mjsSensor* AddSensor(mjtSensor type, const std::string& name, mjtObj kind,
+                       const std::string& object);
 
   /// The file, with plugin instances under <extension>. Throws Error when it does not compile.
   std::string Text(std::span<const EffectInstance> effects) const;
 
  private:
+  mjsJoint* AddJoint(mjsBody* body, const std::string& name, const Point& axis, double stiffness);
+  mjsActuator* AddMotor(const std::string& name, double least, double largest);
   mjsGeom* AddGeom(mjsBody* body, mjtGeom type, const std::string& material);
 
   Owned<mjSpec> spec_;

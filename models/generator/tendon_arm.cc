@@ -139,7 +139,7 @@ mjsBody* Builder::AddLink(mjsBody* parent, std::size_t s, int i) {
     const std::string name = "plate" + std::to_string(s + 1);
     const Point& m = segment.marker;
     mjcf_.AddSite(link, name, {m[0], m[1], l / 2 + m[2]}, arm_.guide_radius / 6);
-    mjcf_.AddPosition(name, "frame");
+    mjcf_.AddPosition(name, name, "frame");
   }
   next_ = reach;
   return link;
