@@ -8,6 +8,7 @@
 #include "error.h"
 #include "models/annelida/annelida.h"
 #include "models/generator/tendon_arm.h"
+#include "models/tdcr/mjcf.h"
 #include "sim/file.h"
 
 namespace continuum {
@@ -15,12 +16,20 @@ namespace {
 
 using Generator = std::function<std::string(const std::filesystem::path&)>;
 
+std::string Segment(const std::filesystem::path& file, tdcr::Guides guides) {
+  constexpr int kLinksPerDisk = 5;
+  const tdcr::Robot robot = tdcr::ReadRobot(Yaml::Read(file));
+  return tdcr::SegmentMjcf(robot, kLinksPerDisk * robot.disks, guides);
+}
+
 int Main(int argc, char** argv) {
   const Generator tendon_arm = [](const auto& file) { return TendonArmMjcf(ReadTendonArm(file)); };
   const std::map<std::string, Generator> robots{
       {"annelida", [](const auto& file) { return AnnelidaMjcf(ReadAnnelida(file)); }},
       {"trunk", tendon_arm},
-      {"tdcr_three_segment", tendon_arm}};
+      {"tdcr_three_segment", tendon_arm},
+      {"tdcr", [](const auto& file) { return Segment(file, tdcr::Guides::kLinks); }},
+      {"tdcr_disks", [](const auto& file) { return Segment(file, tdcr::Guides::kDisks); }}};
 
   CLI::App app{"Writes the MJCF of a robot from its parameters"};
   std::string robot, parameters, out;

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <exception>
+#include <filesystem>
+
+#include "error.h"
+#include "models/generator/pull.h"
+#include "models/tdcr/mjcf.h"
+#include "models/tdcr/model.h"
+#include "sim/table.h"
+#include "sim/yaml.h"
+
+/// Prints the distances between the tips of the MJCF, pulled slowly, and of the Cosserat rod with
+/// friction, as Markdown.
+namespace continuum::tdcr {
+namespace {
+
+constexpr int kLinksPerDisk[] = {1, 2, 3, 5, 6};
+
+void Print(const std::filesystem::path& folder) {
+  const Robot robot = ReadRobot(Yaml::Read(folder / "tdcr.yaml"));
+  std::vector<System> models;
+  fmt::print("| tip off by [% L] |");
+  for (const int per_disk : kLinksPerDisk) {
+    const int links = per_disk * robot.disks;
+    models.push_back(Generated(SegmentMjcf(robot, links, Guides::kLinks)));
+    fmt::print(" {} links |", links);
+  }
+  const int fine = kLinksPerDisk[3] * robot.disks;
+  models.push_back(Generated(SegmentMjcf(robot, fine, Guides::kDisks)));
+  fmt::print(" {} links, tendons through the disks only |\n|---|", fine);
+  for (std::size_t i = 0; i < models.size(); ++i) fmt::print("---|");
+  fmt::print("\n");
+  for (const Case& c : ReadCases(Table::Read(folder / "pulls.csv"), robot)) {
+    const Solution rod = SolveCase(robot, c.loads, Method::kCrtFriction);
+    if (!rod.outcome.ok()) throw Error::Job(c.name + ": " + rod.outcome.why);
+    fmt::print("| {} |", c.name);
+    for (const System& model : models) {
+      const Eigen::Vector3d off = PulledTip(model, c.loads) - rod.disks.col(robot.disks - 1);
+      fmt::print(" {:.3f} |", 100 * off.norm() / robot.length);
+    }
+    fmt::print("\n");
+  }
+}
+
+}  // namespace
+}  // namespace continuum::tdcr
+
+int main(int count, char** arguments) {
+  try {
+    if (count != 2) throw continuum::Error::Input("continuum_tdcr_pulls", "FOLDER of tdcr.yaml");
+    continuum::tdcr::Print(arguments[1]);
+    return 0;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+}
