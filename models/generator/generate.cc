@@ -9,6 +9,7 @@
 #include "models/annelida/annelida.h"
 #include "models/generator/tendon_arm.h"
 #include "models/tdcr/mjcf.h"
+#include "models/twin_pivot/mjcf.h"
 #include "sim/file.h"
 
 namespace continuum {
@@ -29,7 +30,9 @@ int Main(int argc, char** argv) {
       {"trunk", tendon_arm},
       {"tdcr_three_segment", tendon_arm},
       {"tdcr", [](const auto& file) { return Segment(file, tdcr::Guides::kLinks); }},
-      {"tdcr_disks", [](const auto& file) { return Segment(file, tdcr::Guides::kDisks); }}};
+      {"tdcr_disks", [](const auto& file) { return Segment(file, tdcr::Guides::kDisks); }},
+      {"twin_pivot",
+       [](const auto& file) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }}};
 
   CLI::App app{"Writes the MJCF of a robot from its parameters"};
   std::string robot, parameters, out;
