@@ -187,12 +187,13 @@ class Session {
     return significant || d_.before.cost > kModelLimited * kModelLimited * d_.before.freedom;
   }
 
-  // Those that first order leaves far behind are not fitted: it is wrong about sizes by factors,
-  // not by orders of magnitude.
+  // Those that first order leaves far behind are not fitted: where little is to be explained it is
+  // right to a few units, else wrong about sizes by factors but not by orders of magnitude.
   bool Hopeless(const CandidateResult& c) const {
     double best = 0;
     for (const CandidateResult& other : d_.candidates) best = std::max(best, other.explained);
-    return d_.noise.known() && c.error.empty() && c.explained < 0.02 * best;
+    const double needed = std::max(std::min(best - 15, 45.0), 0.02 * best);
+    return d_.noise.known() && c.error.empty() && c.explained < needed;
   }
 
   // The likeliest first, so that the others know what to reach.

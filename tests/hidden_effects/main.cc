@@ -1,16 +1,14 @@
-#include <cstdio>
-#include <cstdlib>
+#include <unistd.h>
+
+#include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <set>
 
-#include <unistd.h>
-
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "effects/all.h"
 #include "hidden_effects/suite.h"
 #include "identification/catalog.h"
 #include "sim/file.h"
@@ -49,49 +47,125 @@ std::vector<Case> Cases(int repeats) {
 }
 
 nlohmann::json ToJson(const Case& c, const Answer& a) {
-  return {{"case", c.Name()},    {"verdict", a.verdict},     {"named", a.named},
-          {"truth", a.truth},    {"value", a.value},         {"low", a.low},
-          {"high", a.high},      {"explained", a.explained}, {"next", a.next},
+  return {{"case", c.Name()},
+          {"effects", c.effects},
+          {"listed", c.listed},
+          {"factor", c.factor},
+          {"noise", kNoiseNames[static_cast<int>(c.noise)]},
+          {"verdict", a.verdict},
+          {"named", a.named},
+          {"right", InSet(c, a)},
+          {"unique", Unique(a)},
+          {"truth", a.truth},
+          {"value", a.value},
+          {"low", a.low},
+          {"high", a.high},
+          {"explained", a.explained},
+          {"next", a.next},
           {"seconds", a.seconds}};
 }
 
-int Run(int argc, char** argv) {
-  const std::filesystem::path out = argc > 1 ? argv[1] : "hidden_effects.jsonl";
-  const int repeats = argc > 2 ? std::atoi(argv[2]) : 1;
-  const std::string only = argc > 3 ? argv[3] : "";
-  std::set<std::string> done;
-  std::ifstream before(out);
-  for (std::string line; std::getline(before, line);) {
-    const auto json = nlohmann::json::parse(line, nullptr, false);
-    if (json.is_object()) done.insert(json.at("case"));
+// Counts of one group of lines.
+struct Count {
+  int n = 0, alarm = 0, right = 0, unique_right = 0, unique_wrong = 0, covered = 0, with_value = 0;
+  double seconds = 0;
+  void Add(const nlohmann::json& line) {
+    const bool one = line.value("unique", false), good = line.value("right", false);
+    ++n;
+    alarm += line.at("verdict") != "adequate";
+    right += good;
+    unique_right += one && good;
+    unique_wrong += one && !good;
+    seconds += line.value("seconds", 0.0);
+    if (!good || line.value("value", 0.0) == 0) return;
+    ++with_value;
+    const double truth = line.at("truth");
+    covered += line.at("low") <= truth && truth <= line.at("high");
   }
+};
+
+void Report(const std::vector<nlohmann::json>& lines) {
+  std::map<std::string, Count> none, effects, unlisted;
+  Count all;
+  for (const auto& line : lines) {
+    if (!line.contains("effects")) continue;
+    const auto& hidden = line.at("effects");
+    if (hidden.empty()) {
+      none[line.at("noise")].Add(line);
+    } else if (!line.at("listed")) {
+      unlisted[hidden.front()].Add(line);
+    } else {
+      effects[hidden.front()].Add(line);
+      all.Add(line);
+    }
+  }
+  fmt::print("nothing hidden: alarms\n");
+  for (const auto& [noise, c] : none) fmt::print("  {:<18} {:3} of {:3}\n", noise, c.alarm, c.n);
+  fmt::print(
+      "hidden and listed: truth in the set, one right name, one wrong name, intervals that "
+      "cover\n");
+  for (const auto& [name, c] : effects) {
+    fmt::print("  {:<18} {:3} {:3} {:3} of {:3}   {:3} of {:3}   {:.1f} s each\n", name, c.right,
+               c.unique_right, c.unique_wrong, c.n, c.covered, c.with_value, c.seconds / c.n);
+  }
+  fmt::print("  {:<18} {:3} {:3} {:3} of {:3}   {:3} of {:3}\n", "all", all.right, all.unique_right,
+             all.unique_wrong, all.n, all.covered, all.with_value);
+  fmt::print("hidden and not listed: one (wrong) name\n");
+  for (const auto& [name, c] : unlisted)
+    fmt::print("  {:<18} {:3} of {:3}\n", name, c.unique_wrong, c.n);
+}
+
+std::vector<nlohmann::json> ReadLines(const std::filesystem::path& file) {
+  std::vector<nlohmann::json> lines;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    auto json = nlohmann::json::parse(line, nullptr, false);
+    if (json.is_object()) lines.push_back(std::move(json));  // the last may be cut short
+  }
+  return lines;
+}
+
+nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool verbose) {
+  try {
+    const Answer a = Solve(c, folder);
+    if (verbose) fmt::print("{}\n", a.detail);
+    return ToJson(c, a);
+  } catch (const std::exception& e) {
+    return {{"case", c.Name()}, {"verdict", "error"}, {"what", e.what()}};
+  }
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
+  std::string out, only;
+  int repeats = 1;
+  bool verbose = false;
+  app.add_option("--out", out, "one JSON line per case")->required();
+  app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
+  app.add_option("--only", only, "cases whose name holds this");
+  app.add_flag("--verbose", verbose, "print each summary");
+  CLI11_PARSE(app, argc, argv);
+  std::set<std::string> done;
+  for (const auto& line : ReadLines(out)) done.insert(line.at("case"));
   const auto folder =
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
   const auto cases = Cases(repeats);
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const Case& c = cases[i];
-    if (done.contains(c.Name()) || (!only.empty() && c.Name().find(only) == std::string::npos))
-      continue;
+    const std::string name = cases[i].Name();
+    if (done.contains(name) || name.find(only) == name.npos) continue;
     std::filesystem::remove_all(folder);
-    nlohmann::json line;
-    try {
-      const Answer a = Solve(c, folder);
-      line = ToJson(c, a);
-      if (argc > 4) std::cout << a.detail << std::endl;
-    } catch (const std::exception& e) {
-      line = {{"case", c.Name()}, {"verdict", "error"}, {"what", e.what()}};
-    }
+    const nlohmann::json line = Line(cases[i], folder, verbose);
     std::ofstream(out, std::ios::app) << line.dump() << std::endl;
-    std::fprintf(stderr, "%zu/%zu %s: %s %s %.1f s\n", i + 1, cases.size(), c.Name().c_str(),
-                 line.at("verdict").get<std::string>().c_str(),
-                 line.value("named", nlohmann::json::array()).dump().c_str(),
-                 line.value("seconds", 0.0));
+    fmt::print(stderr, "{}/{} {}: {} {} {:.1f} s\n", i + 1, cases.size(), name,
+               line.at("verdict").get<std::string>(),
+               line.value("named", nlohmann::json::array()).dump(), line.value("seconds", 0.0));
   }
   std::filesystem::remove_all(folder);
+  Report(ReadLines(out));
   return 0;
 }
 
 }  // namespace
 }  // namespace continuum::hidden
 
-int main(int argc, char** argv) { return continuum::hidden::Run(argc, argv); }
+int main(int argc, char** argv) { return continuum::hidden::Main(argc, argv); }
