@@ -31,6 +31,7 @@ struct Instance {
   std::vector<double> force;
   bool changed = false;             ///< force, since the last sum
   std::vector<int> sensors;         ///< of this instance
+  std::vector<int> signals;         ///< in the first instance: all signals, in the order they act
   std::vector<int> givers;          ///< in the last instance: all that give forces, itself included
   std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
 };
@@ -84,6 +85,21 @@ std::vector<int> Givers(const mjModel& m, const mjData& d, int last, const Insta
   return givers;
 }
 
+// Signals act in the order of the effects' list, from the input of an actuator to its tendon: that
+// is the order in which plugins are registered.
+void OrderSignals(const mjModel& m, mjData& d, int last) {
+  int first = last;
+  std::vector<int> signals;
+  for (int j = 0; j <= last; ++j) {
+    if (!IsOurs(m, j)) continue;
+    first = std::min(first, j);
+    if (Get(d, j)->bound->IsSignal()) signals.push_back(j);
+  }
+  std::stable_sort(signals.begin(), signals.end(),
+                   [&](int a, int b) { return m.plugin[a] < m.plugin[b]; });
+  Get(d, first)->signals = signals;
+}
+
 void FindSensors(const mjModel& m, int i, Instance& self, const Config& config) {
   for (int s = 0; s < m.nsensor; ++s) {
     if (m.sensor_type[s] != mjSENS_PLUGIN || m.sensor_plugin[s] != i) continue;
@@ -114,6 +130,7 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     FindSensors(m, i, *self, config);
     WarnOfSilence(m, *self, config);
     d.plugin_data[i] = reinterpret_cast<uintptr_t>(self.release());
+    if (last) OrderSignals(m, d, i);
     return 0;
   } catch (const std::exception& e) {
     Warn(e.what());
@@ -155,13 +172,21 @@ void Total(const mjModel& m, mjData& d, Instance& last, Stage stage) {
   }
 }
 
-void Compute(const mjModel& m, mjData& d, int i, int capability) {
-  if (capability == mjPLUGIN_SENSOR) return;  // written below, as soon as it is known
-  const Stage stage = capability == mjPLUGIN_PASSIVE ? Stage::kPassive : Stage::kActuator;
+void Evaluate(const mjModel& m, mjData& d, int i, Stage stage) {
   Instance& self = *Get(d, i);
   Follow(m, self, i);
   const double* const z = d.plugin_state + m.plugin_stateadr[i];
   self.changed |= self.bound->Evaluate(m, d, z, stage, self.force);
+}
+
+void Compute(const mjModel& m, mjData& d, int i, int capability) {
+  if (capability == mjPLUGIN_SENSOR) return;  // written below, as soon as it is known
+  const Stage stage = capability == mjPLUGIN_PASSIVE ? Stage::kPassive : Stage::kActuator;
+  Instance& self = *Get(d, i);
+  if (stage == Stage::kActuator) {
+    for (const int j : self.signals) Evaluate(m, d, j, stage);
+  }
+  if (!self.bound->IsSignal()) Evaluate(m, d, i, stage);
   for (const int s : self.sensors) {
     d.sensordata[m.sensor_adr[s]] = self.bound->Sense(m, d, m.sensor_objid[s]);
   }
@@ -176,7 +201,8 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.bound->Set(a.bound->parameters());
   b.bound->CopyFrom(*a.bound);
   b.force = a.force, b.changed = a.changed;
-  b.sensors = a.sensors, b.givers = a.givers, b.before = a.before, b.sum = a.sum;
+  b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers, b.before = a.before,
+  b.sum = a.sum;
 }
 
 template <class E>

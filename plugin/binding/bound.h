@@ -30,6 +30,10 @@ class Bound {
   virtual bool GivesForce() const { return false; }
   virtual bool IsRow() const { return false; }
 
+  /// Whether the law changes what actuators give. It is then evaluated before all others, which see
+  /// the changed forces whatever the order of the instances.
+  virtual bool IsSignal() const { return false; }
+
   /// Writes what MuJoCo must know before its first step (rows, native damping). Assigns constants
   /// only, so that repeating it changes nothing. Throws Error when the model contradicts it.
   virtual void Impose(mjModel&) const {}

@@ -37,6 +37,8 @@ class BoundFilter : public Bound {
     return static_cast<int>(kZ * config.Match("actuator", mjOBJ_ACTUATOR).size());
   }
 
+  bool IsSignal() const override { return true; }
+
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double>) override {
     if (stage != Stage::kActuator) return false;

@@ -34,6 +34,8 @@ class BoundPull : public Bound {
 
   std::string Silence(const mjModel& m) const override { return WithoutServo(m, drives_); }
 
+  bool IsSignal() const override { return true; }
+
   bool Evaluate(const mjModel& m, mjData& d, const double*, Stage stage,
                 std::span<double>) override {
     if (stage != Stage::kActuator) return false;

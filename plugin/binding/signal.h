@@ -28,6 +28,8 @@ class BoundSignal : public Bound {
   }
   static int StateSize(const mjModel&, const Config&) { return 0; }
 
+  bool IsSignal() const override { return true; }
+
   bool Evaluate(const mjModel& m, mjData& d, const double*, Stage stage,
                 std::span<double>) override {
     if (stage != Stage::kActuator) return false;

@@ -45,11 +45,12 @@ struct List {
   }
 };
 
-/// Every effect the library knows. Adding one is one line here.
-using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl,
-                 Lugre, BoucWen, CubicStiffness, Maxwell, Backlash, Capstan, TendonStretch, Slack,
-                 Viscous, Stiffness, Payload, LinkMass, Armature, GravityTilt, ExternalForce,
-                 InputGain, InputOffset, DeadTime, Pt1, Pt2, SensorBias, SensorScale, SensorDelay,
-                 SensorDrift, Misalignment, ClockSkew>;
+/// Every effect the library knows. Adding one is one line here. Signals act in this order: input,
+/// servo, cable.
+using All =
+    List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl, Lugre,
+         BoucWen, CubicStiffness, Maxwell, Pt2, Backlash, Slack, TendonStretch, Capstan, Viscous,
+         Stiffness, Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset,
+         DeadTime, Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
 
 }  // namespace continuum

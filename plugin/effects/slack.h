@@ -10,8 +10,7 @@ namespace continuum {
 ///
 /// length [m] of cable beyond that of the model · k [N/m] stiffness of the servos along the tendon
 /// · T_0 what they would give on a tight cable. A cable that is pulled by a given force (k = 0) is
-/// tight by itself. Beside tendon_stretch on the same tendon its instance comes first. Source:
-/// camarillo2008.
+/// tight by itself. Source: camarillo2008.
 struct Slack {
   static constexpr std::string_view kName = "slack", kSource = "camarillo2008",
                                     kSummary = "a cable that must be wound up before it pulls";

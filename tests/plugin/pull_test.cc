@@ -46,13 +46,32 @@ TEST_F(Pull, SlackIsWoundUpFirst) {
   EXPECT_NEAR(RestAt(xml, 0.05), -0.03 * 400 / (400 + 600), 1e-9);
 }
 
-TEST_F(Pull, SlackAndStretchActTogether) {
-  std::string xml = Winch("slack", Key("length", "0.02"));
-  xml.insert(xml.find("</extension>"),
-             "<plugin plugin=\"continuum.tendon_stretch\"><instance name=\"s\">" +
-                 Key("tendon", "cable") + Key("compliance", "2e-3") + "</instance></plugin>");
+TEST_F(Pull, SlackAndStretchActTogetherInAnyOrder) {
+  const std::string stretch = "<plugin plugin=\"continuum.tendon_stretch\"><instance name=\"s\">" +
+                              Key("tendon", "cable") + Key("compliance", "2e-3") +
+                              "</instance></plugin>";
   const double k = 400 / (1 + 400 * 2e-3);
-  EXPECT_NEAR(RestAt(xml, 0.05), -0.03 * k / (k + 600), 1e-9);
+  for (const char* before : {"<plugin", "</extension>"}) {
+    std::string xml = Winch("slack", Key("length", "0.02"));
+    xml.insert(xml.find(before), stretch);
+    EXPECT_NEAR(RestAt(xml, 0.05), -0.03 * k / (k + 600), 1e-9);
+  }
+}
+
+// The friction of the rail follows the tension that the slack leaves.
+TEST_F(Pull, LawsOfForcesSeeWhatSignalsMakeOfThem) {
+  const std::string friction = "<plugin plugin=\"continuum.load_friction\"><instance name=\"f\">" +
+                               Key("joint", "x") + Key("tau_c", "0") + Key("mu_l", "0.1") +
+                               Key("load", "actuator") + "</instance></plugin>";
+  for (const char* before : {"<plugin", "</extension>"}) {
+    std::string xml = Winch("slack", Key("length", "0.02"));
+    xml.insert(xml.find(before), friction);
+    const auto m = Model(xml);
+    const auto d = Data(m);
+    d->ctrl[0] = -(1 - 0.05);
+    mj_forward(m.get(), d.get());
+    EXPECT_NEAR(d->efc_frictionloss[0], 0.1 * 400 * 0.03, 1e-12);
+  }
 }
 
 TEST_F(Pull, TheGearMayWindEitherWay) {
