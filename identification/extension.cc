@@ -82,13 +82,17 @@ std::string OutputYaml(const Output& out) {
   return text + MeasurementYaml(out.measurement) + "}\n";
 }
 
-std::string ParameterYaml(const FreeParameter& p, double value, std::set<std::string>& names) {
+std::string ParameterYaml(const Problem& problem, const FreeParameter& p, double value,
+                          std::set<std::string>& names) {
   std::string name = p.name;  // an effect's parameter may be called as one of the experiment's
   while (!names.insert(name).second) name += "_effect";
   const bool absolute = p.change.operation == Change::Operation::kSet;
-  const double null = p.change.operation == Change::Operation::kScale ? 1 : 0;
   const bool effect = p.change.attribute.starts_with("effect:");
-  const double start = absolute && !effect ? value : null;  // the model has the rest already
+  // The model has the rest already.
+  const double null = effect ? problem.system().Value(p.change.target, p.change.attribute)
+                      : p.change.operation == Change::Operation::kScale ? 1
+                                                                        : 0;
+  const double start = absolute && !effect ? value : null;
   const char* const operation[] = {"set", "scale", "add"};
   return fmt::format(
       "  - {{name: {}, target: {}, attribute: {}, operation: {}, initial: {}, lower: {}, upper: "
@@ -135,7 +139,7 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
     const FreeParameter& p = problem.parameters()[i];
     const bool common = std::find(p.log.begin(), p.log.end(), false) == p.log.end();
     if (common && !p.change.target.empty())
-      parameters += ParameterYaml(p, x[static_cast<Eigen::Index>(i)], names);
+      parameters += ParameterYaml(problem, p, x[static_cast<Eigen::Index>(i)], names);
   }
   if (!parameters.empty()) y += "parameters:\n" + parameters;
   const char* const folds[] = {"trial", "condition", "window"};

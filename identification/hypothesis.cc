@@ -140,6 +140,7 @@ double SizeFor(const Param& p, Place place, const Sizes& s) {
   if (u == "N*m/rad^3") return s.torque / std::pow(s.angle, 3);
   if (u == "kg") return s.mass;
   if (u == "kg*m^2") return s.inertia;
+  if (u == "1/rad") return 50 / s.angle;
   if (u == "m/N") return 0.01 / s.tension;
   if (u == "s") return 4 * s.period;
   if (u == "input") return s.angle;
