@@ -49,12 +49,14 @@ TEST(TwinPivotMjcf, PulledSlowlyItsTipIsTheSolversOverTenCases) {
 }
 
 TEST(TwinPivotMjcf, SectionsEndTheirCablesAtTheirLastDisc) {
-  const Robot robot = Prototype("c");
+  Robot robot = Prototype("c");
+  robot.friction = {};
   Load load;
   load.tension = {6, 6, 2, 2, 4, 2, 1, 2};
   const Solution solution = Solve(robot, load);
   ASSERT_TRUE(solution.outcome.ok());
-  EXPECT_LT((PulledTip(Generated(RobotMjcf(robot)), load) - solution.tip).norm(), 0.5e-3);
+  // What the pull leaves (1e-4 rad/s) and the cables' weight at their straight length.
+  EXPECT_LT((PulledTip(Generated(RobotMjcf(robot)), load) - solution.tip).norm(), 1e-4);
 }
 
 TEST(TwinPivotMjcf, WithoutFrictionAndWeightsTwoHingesAreAnArcToTheFourthOrder) {
