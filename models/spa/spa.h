@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <boost/math/quadrature/gauss.hpp>
 
-#include "effects/pcc_kinematics.h"
+#include "effects/pcc_segment.h"
 #include "models/spa/base_motion.h"
 
 namespace continuum {
@@ -27,6 +27,9 @@ struct SpaParameters {
 
   PccSegment<T> Segment() const { return {L0, d}; }
   PccChambers<T> Chambers() const { return {r_ch, x_m, y_m, A}; }
+  PccSegmentLaw::Params<T> Law() const {
+    return {L0, d, r_ch, x_m, y_m, A, d_theta, d_dL, k_theta, k_theta3, k_dL1, k_dL3};
+  }
 
   template <class U>
   SpaParameters<U> Cast() const {
@@ -93,10 +96,8 @@ class Spa {
 
   /// Generalised forces [N] on δ of the chamber pressures [Pa] (21)-(26).
   Vector3 Actuation(const Vector3& delta, const Vector3& pressure) const {
-    const PccLoad<T> load = PccPressureLoad(p_.Chambers(), Array(pressure));
-    return ToEigen(options_.actuation == SpaActuation::kTip
-                       ? PccTipForces(p_.Segment(), Array(delta), load)
-                       : PccVolumeForces(p_.Segment(), load));
+    const int law = options_.actuation == SpaActuation::kTip ? 0 : 1;
+    return ToEigen(PccSegmentLaw::Drive(Array(delta), Array(pressure), law, p_.Law()));
   }
 
   /// Hybrid dynamics (28): δ̈ [m/s²] for a given motion of the base and chamber pressures [Pa].
@@ -252,13 +253,7 @@ class Spa {
   }
 
   Vector3 Material(const SpaState<T>& state) const {
-    Vector3 force;
-    for (int i = 0; i < 3; ++i) {
-      const T x = state.delta[i];
-      force[i] = x * ((i < 2 ? p_.k_theta : p_.k_dL1) + x * x * (i < 2 ? p_.k_theta3 : p_.k_dL3)) +
-                 (i < 2 ? p_.d_theta : p_.d_dL) * state.rate[i];
-    }
-    return force;
+    return ToEigen(PccSegmentLaw::Material(Array(state.delta), Array(state.rate), p_.Law()));
   }
 
   static Vec<T, 3> Array(const Vector3& v) { return {v[0], v[1], v[2]}; }

@@ -20,6 +20,7 @@
 #include "effects/maxwell.h"
 #include "effects/misalignment.h"
 #include "effects/payload.h"
+#include "effects/pcc_segment.h"
 #include "effects/position_friction.h"
 #include "effects/pt1.h"
 #include "effects/pt2.h"
@@ -47,10 +48,10 @@ struct List {
 
 /// Every effect the library knows. Adding one is one line here. Signals act in this order: input,
 /// servo, cable.
-using All =
-    List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl, Lugre,
-         BoucWen, CubicStiffness, Maxwell, Pt2, Backlash, Slack, TendonStretch, Capstan, Viscous,
-         Stiffness, Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset,
-         DeadTime, Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
+using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl,
+                 Lugre, BoucWen, CubicStiffness, Maxwell, Pt2, Backlash, Slack, TendonStretch,
+                 Capstan, PccSegmentLaw, Viscous, Stiffness, Payload, LinkMass, Armature,
+                 GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1, SensorBias,
+                 SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
 
 }  // namespace continuum

@@ -183,6 +183,28 @@ TYPED_TEST(EveryEffect, IsConsistentInItsUnitsAsFriction) {
   }
 }
 
+TYPED_TEST(EveryEffect, IsConsistentInItsUnitsAsASegment) {
+  using E = TypeParam;
+  if constexpr (SegmentLaw<E>) {
+    const Units3 s{1.7, 0.6, 2.3};
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int k = 0; k < 100; ++k) {
+      const auto p = RandomParams<E>(this->rng);
+      auto w = p;
+      for (std::size_t i = 0; i < w.size(); ++i) w[i] *= Factor(E::kParams[i].unit, s);
+      Vec<double, 3> x, v, pressure, x2, v2, pressure2;
+      for (int i = 0; i < 3; ++i) {
+        x[i] = 0.02 * unit(this->rng), v[i] = unit(this->rng), pressure[i] = 4e4 * unit(this->rng);
+        x2[i] = x[i] * s.l, v2[i] = v[i] * s.l / s.t,
+        pressure2[i] = pressure[i] * Factor("N/m^2", s);
+      }
+      const auto a = E::template Eval<double>(x, v, pressure, 0, p);
+      const auto b = E::template Eval<double>(x2, v2, pressure2, 0, w);
+      for (int i = 0; i < 3; ++i) ASSERT_NEAR(b[i], a[i] * Factor("N", s), 1e-12);
+    }
+  }
+}
+
 // An element whose attributes are all 0.37. A lag and a delay of 0 are those of an actuator that
 // has none.
 struct Untouched {
@@ -207,6 +229,12 @@ TYPED_TEST(EveryEffect, DoesNothingAtItsNull) {
   }
   if constexpr (FrictionLaw<E>) {
     EXPECT_EQ(E::template Level<double>({0.3, 0.2, 1}, p), 0);
+  }
+  if constexpr (SegmentLaw<E>) {
+    for (const double force :
+         E::template Eval<double>({.1, .2, .3}, {.1, .2, .3}, {1, 2, 3}, 0, p)) {
+      EXPECT_EQ(force, 0);
+    }
   }
   if constexpr (PathLaw<E>) {
     EXPECT_EQ(E::template Band<double>(0.5, 0, p), 0);
