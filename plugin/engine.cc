@@ -14,6 +14,7 @@
 #include "binding/friction.h"
 #include "binding/path.h"
 #include "binding/pull.h"
+#include "binding/segment.h"
 #include "binding/signal.h"
 #include "effects/all.h"
 
@@ -103,13 +104,14 @@ void OrderSignals(const mjModel& m, mjData& d, int last) {
 void FindSensors(const mjModel& m, int i, Instance& self, const Config& config) {
   for (int s = 0; s < m.nsensor; ++s) {
     if (m.sensor_type[s] != mjSENS_PLUGIN || m.sensor_plugin[s] != i) continue;
-    const int site = m.sensor_objid[s];
+    const auto kind = static_cast<mjtObj>(m.sensor_objtype[s]);
+    const int id = m.sensor_objid[s];
     self.sensors.push_back(s);
-    if (m.sensor_objtype[s] == mjOBJ_SITE && self.bound->Knows(site)) continue;
-    throw Error::Input(
-        config.Who() + ": its sensor " + std::to_string(s),
-        "objtype=\"site\" and a site of the tendons",
-        m.sensor_objtype[s] == mjOBJ_SITE ? mj_id2name(&m, mjOBJ_SITE, site) : "another object");
+    const std::string_view expected = self.bound->SensorPlace(m, kind, id);
+    if (expected.empty()) continue;
+    const char* const name = id < 0 ? nullptr : mj_id2name(&m, kind, id);
+    throw Error::Input(config.Who() + ": its sensor " + std::to_string(s), std::string(expected),
+                       name ? name : "another object");
   }
 }
 
@@ -188,7 +190,8 @@ void Compute(const mjModel& m, mjData& d, int i, int capability) {
   }
   if (!self.bound->IsSignal()) Evaluate(m, d, i, stage);
   for (const int s : self.sensors) {
-    d.sensordata[m.sensor_adr[s]] = self.bound->Sense(m, d, m.sensor_objid[s]);
+    self.bound->Sense(m, d, m.sensor_objid[s],
+                      {d.sensordata + m.sensor_adr[s], static_cast<std::size_t>(m.sensor_dim[s])});
   }
   if (!self.givers.empty()) Total(m, d, self, stage);
 }
@@ -206,7 +209,14 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
 }
 
 template <class E>
-constexpr bool kInEngine = ForceLaw<E> || FrictionLaw<E> || PathLaw<E> || SignalLaw<E>;
+constexpr bool kInEngine =
+    ForceLaw<E> || FrictionLaw<E> || PathLaw<E> || SegmentLaw<E> || SignalLaw<E>;
+
+// Numbers of one of an effect's sensors; 0: it has none.
+template <class E>
+constexpr int kSensorSize = PathLaw<E>      ? 1
+                            : SegmentLaw<E> ? 3
+                                            : 0;
 
 template <class E>
 auto BoundType() {
@@ -220,6 +230,8 @@ auto BoundType() {
     return std::type_identity<BoundFilter<E>>{};
   else if constexpr (PullLaw<E>)
     return std::type_identity<BoundPull<E>>{};
+  else if constexpr (SegmentLaw<E>)
+    return std::type_identity<BoundSegment<E>>{};
   else
     return std::type_identity<BoundSignal<E>>{};
 }
@@ -305,12 +317,13 @@ void Register() {
   plugin.advance = +[](const mjModel* m, mjData* d, int i) noexcept {
     Get(*d, i)->bound->Advance(*m, *d, d->plugin_state + m->plugin_stateadr[i]);
   };
-  if constexpr (PathLaw<E>) {
+  constexpr int kSize = kSensorSize<E>;
+  if constexpr (kSize > 0) {
     plugin.capabilityflags |= mjPLUGIN_SENSOR;
     // Sensors are written with the forces: a sensor of the acceleration stage would make MuJoCo
     // compute the forces between all bodies in every step.
     plugin.needstage = mjSTAGE_POS;
-    plugin.nsensordata = +[](const mjModel*, int, int) noexcept { return 1; };
+    plugin.nsensordata = +[](const mjModel*, int, int) noexcept { return kSize; };
     plugin.visualize = +[](const mjModel* m, mjData* d, const mjvOption*, mjvScene* scene,
                            int i) noexcept { Get(*d, i)->bound->Visualize(*m, *d, *scene); };
   }

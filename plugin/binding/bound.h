@@ -48,10 +48,12 @@ class Bound {
   virtual void Settle(const mjModel&, const mjData&, double*) const {}
   /// Why the law does nothing at some of its places; empty: it acts.
   virtual std::string Silence(const mjModel&) const { return ""; }
-  /// Value of a sensor of this effect at a site.
-  virtual double Sense(const mjModel&, const mjData&, int /*site*/) const { return 0; }
-  /// Whether Sense knows this site.
-  virtual bool Knows(int /*site*/) const { return false; }
+  /// What a sensor of this effect must be on; "" when this object will do.
+  virtual std::string_view SensorPlace(const mjModel&, mjtObj /*kind*/, int /*id*/) const {
+    return "an effect that has sensors";
+  }
+  /// Writes the value of a sensor of this effect on an object.
+  virtual void Sense(const mjModel&, const mjData&, int /*id*/, std::span<double>) const {}
   virtual void Visualize(const mjModel&, const mjData&, mjvScene&) const {}
   /// Takes over what was computed (not configured) from another Bound of the same kind.
   virtual void CopyFrom(const Bound&) {}

@@ -101,9 +101,12 @@ class BoundPath : public Bound {
     }
   }
 
-  bool Knows(int site) const override { return Index(site) >= 0; }
-  double Sense(const mjModel&, const mjData&, int site) const override {
-    return tension_[Index(site)];
+  std::string_view SensorPlace(const mjModel&, mjtObj kind, int id) const override {
+    const bool known = kind == mjOBJ_SITE && Index(id) >= 0;
+    return known ? "" : "objtype=\"site\" and a site of the tendons";
+  }
+  void Sense(const mjModel&, const mjData&, int site, std::span<double> out) const override {
+    out[0] = tension_[Index(site)];
   }
   void Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const override {
     DrawCables(m, d, cables_, tension_, full_, scene);

@@ -10,7 +10,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A two-link arm with a servo, a cable through sites with a motor, and a wire with a servo.
+// A two-link arm with a servo, a cable through sites with a motor, and a wire with a servo; a link
+// with three chambers.
 std::string Arm(const std::string& plugin, const std::string& config, const std::string& option) {
   return "<mujoco><option timestep=\"2e-3\" " + option + "/>" +
          "<extension><plugin plugin=\"continuum." + plugin + "\"><instance name=\"i\">" + config +
@@ -21,11 +22,16 @@ std::string Arm(const std::string& plugin, const std::string& config, const std:
         <body pos="0 0 -.2"><joint name="q2" axis="0 1 0" damping=".005" stiffness=".1"/>
           <geom type="capsule" size=".02" fromto="0 0 0 0 0 -.2" mass=".2"/>
           <site name="e" pos=".03 0 -.05"/><site name="f" pos=".03 0 -.15"/></body></body>
+      <body name="base" pos="1 0 0"><body name="tip" pos="0 0 .1">
+        <inertial pos="0 0 0" mass=".2" diaginertia="1e-4 1e-4 1e-4"/>
+        <joint name="stretch" type="slide" axis="0 0 1"/><joint name="bend" axis="0 1 0"/></body></body>
     </worldbody>
     <tendon><spatial name="cable"><site site="a"/><site site="b"/><site site="c"/><site site="e"/><site site="f"/></spatial>
       <spatial name="wire"><site site="a"/><site site="c"/></spatial></tendon>
     <actuator><position name="servo" joint="q1" kp="5" kv=".1"/><motor name="pull" tendon="cable" gear="-1" forcerange="0 6"/>
-      <position name="winch" tendon="wire" gear="-1" kp="20" forcerange="0 3"/></actuator>
+      <position name="winch" tendon="wire" gear="-1" kp="20" forcerange="0 3"/>
+      <general name="p1" joint="stretch" gear="0"/><general name="p2" joint="stretch" gear="0"/>
+      <general name="p3" joint="stretch" gear="0" dyntype="filterexact" dynprm="7e-3"/></actuator>
     </mujoco>)";
 }
 
@@ -51,7 +57,8 @@ const std::map<std::string, std::string>& Laws() {
       {"pt2", key("actuator", "servo pull") + key("w", "30") + key("zeta", ".5")},
       {"tendon_stretch", key("tendon", "wire") + key("compliance", ".01")},
       {"slack", key("tendon", "wire") + key("length", ".02")},
-      {"capstan", key("tendon", "cable") + key("mu", ".3")}};
+      {"capstan", key("tendon", "cable") + key("mu", ".3")},
+      {"pcc_segment", key("body", "base tip") + key("actuator", "p1 p2 p3")}};
   return laws;
 }
 
@@ -67,6 +74,7 @@ class EveryLaw : public testing::Engine,
       d->ctrl[0] = std::sin(3 * d->time);
       d->ctrl[1] = 4 + 4 * std::sin(5 * d->time);
       d->ctrl[2] = -.2 + .1 * std::sin(4 * d->time);
+      for (int i = 0; i < 3; ++i) d->ctrl[3 + i] = 2e4 * (1 + std::sin(4 * d->time + i));
       mj_step(m, d);
     }
   }
