@@ -8,6 +8,8 @@
 #include "error.h"
 #include "models/annelida/annelida.h"
 #include "models/generator/tendon_arm.h"
+#include "models/spa/chain.h"
+#include "models/spa/parameters.h"
 #include "models/tdcr/mjcf.h"
 #include "models/twin_pivot/mjcf.h"
 #include "sim/file.h"
@@ -32,7 +34,9 @@ int Main(int argc, char** argv) {
       {"tdcr", [](const auto& file) { return Segment(file, tdcr::Guides::kLinks); }},
       {"tdcr_disks", [](const auto& file) { return Segment(file, tdcr::Guides::kDisks); }},
       {"twin_pivot",
-       [](const auto& file) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }}};
+       [](const auto& file) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }},
+      {"spa", [](const auto& file) { return SpaMjcf(ReadSpa(file)); }},
+      {"spa_series", [](const auto& file) { return SpaMjcf(ReadSpa(file), {.series = 2}); }}};
 
   CLI::App app{"Writes the MJCF of a robot from its parameters"};
   std::string robot, parameters, out;

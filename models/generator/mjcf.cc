@@ -63,6 +63,15 @@ std::string Extension(std::span<const EffectInstance> effects) {
   return text + "  </extension>\n";
 }
 
+std::string Sensors(std::span<const EffectSensor> sensors) {
+  std::string text;
+  for (const EffectSensor& sensor : sensors) {
+    text += "    <plugin name=\"" + sensor.name + "\" plugin=\"continuum." + sensor.effect +
+            "\" instance=\"" + sensor.instance + "\"/>\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 Mjcf::Mjcf(const std::string& model, const std::string& comment) : spec_(mj_makeSpec()) {
@@ -180,6 +189,27 @@ void Mjcf::AddElasticHinge(mjsBody* body, const std::string& name, const Point& 
   joint->damping[0] = stiffness * pace.lag;
 }
 
+void Mjcf::AddFreeJoint(mjsBody* body, const std::string& name, mjtJoint type, const Point& axis,
+                        double armature) {
+  mjsJoint* const joint = mjs_addJoint(body, nullptr);
+  Name(joint->element, name);
+  joint->type = type;
+  Copy(joint->axis, axis);
+  joint->armature = armature;
+}
+
+void Mjcf::AddCoupling(const std::string& joint, const std::string& leader, double ratio) {
+  mjsEquality* const equality = mjs_addEquality(spec_.get(), nullptr);
+  equality->type = mjEQ_JOINT;
+  equality->objtype = mjOBJ_JOINT;
+  mjs_setString(equality->name1, joint.c_str());
+  mjs_setString(equality->name2, leader.c_str());
+  std::fill_n(equality->data, mjNEQDATA, 0.0);
+  equality->data[1] = ratio;
+  equality->solref[0] = 1e-4;  // MuJoCo keeps it at two steps or more
+  equality->solimp[0] = equality->solimp[1] = 0.9999;
+}
+
 mjsSite* Mjcf::AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius) {
   mjsSite* const site = mjs_addSite(body, nullptr);
   Name(site->element, name);
@@ -264,6 +294,23 @@ void Mjcf::AddPosition(const std::string& name, const std::string& site, const s
   mjs_setString(sensor->refname, frame.c_str());
 }
 
+void Mjcf::AddPressure(const std::string& name, const std::string& joint, double lag,
+                       double largest) {
+  mjsActuator* const actuator = mjs_addActuator(spec_.get(), nullptr);
+  Name(actuator->element, name);
+  actuator->trntype = mjTRN_JOINT;
+  mjs_setString(actuator->target, joint.c_str());
+  actuator->gear[0] = 0;
+  actuator->gaintype = mjGAIN_FIXED;
+  actuator->gainprm[0] = 1;
+  if (lag > 0) {
+    actuator->dyntype = mjDYN_FILTEREXACT;
+    actuator->dynprm[0] = lag;
+  }
+  actuator->ctrllimited = mjLIMITED_TRUE;
+  actuator->ctrlrange[1] = largest;
+}
+
 mjsSensor* Mjcf::AddSensor(mjtSensor type, const std::string& name, mjtObj kind,
                            const std::string& object) {
   mjsSensor* const sensor = mjs_addSensor(spec_.get());
@@ -274,7 +321,8 @@ mjsSensor* Mjcf::AddSensor(mjtSensor type, const std::string& name, mjtObj kind,
   return sensor;
 }
 
-std::string Mjcf::Text(std::span<const EffectInstance> effects) const {
+std::string Mjcf::Text(std::span<const EffectInstance> effects,
+                       std::span<const EffectSensor> sensors) const {
   const Owned<mjModel> compiled(mj_compile(spec_.get(), nullptr));
   if (!compiled) throw Error::Input("MJCF", mjs_getError(spec_.get()));
   std::string xml(1 << 20, '\0');
@@ -284,6 +332,7 @@ std::string Mjcf::Text(std::span<const EffectInstance> effects) const {
   if (missing != 0) throw Error::Job(std::string("MJCF: ") + error);
   xml.resize(xml.find('\0'));
   const std::size_t root = xml.find('>', xml.find("<mujoco"));
+  if (!sensors.empty()) xml.insert(xml.rfind("  </sensor>"), Sensors(sensors));
   if (!effects.empty()) xml.insert(root + 1, Extension(effects));
   return xml;
 }

@@ -22,6 +22,11 @@ struct Pace {
   double lag;      ///< of the material [s]: damping k · lag
 };
 
+/// A sensor of a plugin instance as a whole.
+struct EffectSensor {
+  std::string name, effect, instance;
+};
+
 /// A robot's MJCF in the making: what a generator says of it, through mjSpec.
 ///
 /// Angles in rad. Geoms neither collide nor weigh: masses come from AddBody. Names that are empty
@@ -51,6 +56,12 @@ class Mjcf {
   /// A hinge without stops whose stiffness [N m/rad] is that of a piece of an elastic body.
   void AddElasticHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
                        const Pace& pace);
+  /// A slide along z or a hinge through the body's origin, free of springs and stops; armature [kg]
+  /// or [kg m^2].
+  void AddFreeJoint(mjsBody* body, const std::string& name, mjtJoint type, const Point& axis,
+                    double armature);
+  /// Keeps joint = ratio * leader, as hard as the step allows.
+  void AddCoupling(const std::string& joint, const std::string& leader, double ratio);
   mjsSite* AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius);
   void AddCylinder(mjsBody* body, const Point& from, const Point& to, double radius,
                    const std::string& material);
@@ -77,11 +88,16 @@ class Mjcf {
   void AddForce(const std::string& site, const std::string& frame, double largest);
   /// A site's position in the frame of another site.
   void AddPosition(const std::string& name, const std::string& site, const std::string& frame);
+  /// An actuator whose force is the gauge pressure [Pa], 0 .. largest, that follows its control
+  /// with a first-order lag [s]. It does nothing by itself; a joint must be named for it.
+  void AddPressure(const std::string& name, const std::string& joint, double lag, double largest);
   mjsSensor* AddSensor(mjtSensor type, const std::string& name, mjtObj kind,
                        const std::string& object);
 
-  /// The file, with plugin instances under <extension>. Throws Error when it does not compile.
-  std::string Text(std::span<const EffectInstance> effects) const;
+  /// The file, with plugin instances under <extension> and sensors of them. Throws Error when it
+  /// does not compile.
+  std::string Text(std::span<const EffectInstance> effects,
+                   std::span<const EffectSensor> sensors = {}) const;
 
  private:
   mjsJoint* AddJoint(mjsBody* body, const std::string& name, const Point& axis, double stiffness);

@@ -5,8 +5,10 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <tuple>
 
 #include "engine.h"
+#include "models/spa/chain.h"
 
 namespace continuum {
 namespace {
@@ -114,6 +116,51 @@ void JointFrictionRows(benchmark::State& state) {
           Chain("", "frictionloss=\".01\""));
 }
 BENCHMARK(JointFrictionRows);
+
+// Without the tags from `begin` to `end`.
+std::string Less(std::string xml, const std::string& begin, const std::string& end) {
+  for (std::size_t from = 0; (from = xml.find(begin, from)) != xml.npos;) {
+    xml.erase(from, xml.find(end, from) + end.size() - from);
+  }
+  return xml;
+}
+
+SpaFile Actuator() { return ReadSpa(std::string(CONTINUUM_SOURCE) + "/models/spa/spa.yaml"); }
+
+// The same chain with the linear part of the law as native springs and dampers of the joints. Sums
+// over the shares of the links: N of the stretch, N − 1/2 of the bend.
+std::string WithNativeSprings(std::string xml, const SpaParameters<double>& p, int links) {
+  xml = Less(Less(xml, "<extension>", "</extension>"), "<plugin ", "/>");
+  const double bend = p.d * p.d * links * links / (links - 0.5);
+  for (const auto& [joint, k, d] : {std::tuple{"bend", bend * p.k_theta, bend * p.d_theta},
+                                    {"stretch", links * p.k_dL1, links * p.d_dL}}) {
+    const std::string tag = std::string("<joint name=\"") + joint;
+    const std::string springs =
+        " stiffness=\"" + std::to_string(k) + "\" damping=\"" + std::to_string(d) + "\"";
+    for (std::size_t at = 0; (at = xml.find(tag, at)) != xml.npos; at += tag.size()) {
+      xml.insert(at + 6, springs);
+    }
+  }
+  return xml;
+}
+
+void SoftActuator(benchmark::State& state) {
+  const SpaFile spa = Actuator();
+  Compare(state, SpaMjcf(spa), WithNativeSprings(SpaMjcf(spa), spa.parameters, 10));
+}
+BENCHMARK(SoftActuator);
+
+// Simulated seconds per second.
+void TenSoftActuators(benchmark::State& state) {
+  Model ten(SpaMjcf(Actuator(), {.row = 10}));
+  double simulated = 0, taken = 0;
+  for (auto _ : state) {
+    taken += ten.Steps(100);
+    simulated += 100 * ten.m->opt.timestep;
+  }
+  state.counters["real_time_factor"] = simulated / taken;
+}
+BENCHMARK(TenSoftActuators);
 
 }  // namespace
 }  // namespace continuum
