@@ -35,7 +35,7 @@ class Session {
     d_.before = trials_.Fit(null_, null_.Start());
     if (d_.noise.known()) Requantise();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
-    d_.noise.step = StepEffect();
+    d_.noise.step = StepEffect(d_.before);
     MakeHypotheses();
     if (d_.noise.known()) {
       Screen();
@@ -63,10 +63,10 @@ class Session {
   }
 
   // How far the trajectories at h and at h/4 are apart [pooled unit].
-  double StepEffect() const {
+  double StepEffect(const Fitted& fitted) const {
     std::vector<Vector> column(e_.logs.size());
     for (std::size_t l = 0; l < column.size(); ++l) {
-      if (e_.logs[l].train) column[l] = d_.before.step[l].col(0);
+      if (e_.logs[l].train) column[l] = fitted.step[l].col(0);
     }
     return null_.PooledRms(column, null_.TrainLogs());
   }
@@ -296,13 +296,24 @@ class Session {
     d_.lack = best ? trials_.LackIn(best->hypothesis.system, best->hypothesis.extra, best->fitted,
                                     d_.sizes, inflation_, options_.seed)
                    : trials_.LackIn(d_.system, {}, d_.before, d_.sizes, inflation_, options_.seed);
-    d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), SmallestP());
+    const bool numerical = WithinStep(best ? best->fitted : d_.before);
+    d_.verdict = JudgeLikelihoods(records, numerical ? 1 : d_.lack.smallest(), SmallestP());
+    if (numerical && d_.lack.smallest() < LikelihoodRules{}.lack)
+      d_.verdict.reason += "; what is left above the noise is within what the time step adds";
     NameOnce();
     if (d_.folds.empty()) return;
     AddFolds(d_.before, null_);
     for (const std::size_t i : d_.verdict.named) Record(d_.candidates[i]);
     d_.ceiling = d_.before.folds, d_.ceiling_error = d_.before.error;
     if (d_.chosen()) d_.ceiling = d_.chosen()->fitted.folds, d_.ceiling_error = d_.after();
+  }
+
+  // Whether what a model leaves above the noise is no more than what its time step adds: then it is
+  // no sign of another cause.
+  bool WithinStep(const Fitted& fitted) const {
+    const double left = fitted.error.train, noise = d_.noise.rms;
+    const double excess = std::sqrt(std::max(0.0, left * left - noise * noise));
+    return excess <= 1.25 * StepEffect(fitted);
   }
 
   // One effect at several places is one name: the data do not tell the places apart.
