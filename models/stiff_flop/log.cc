@@ -45,23 +45,12 @@ struct Residuals {
   const Robot& robot;
   const Method& method;
   const Log& log;
-  std::size_t rows;
 
   bool operator()(const double* x, double* f) const {
     Robot changed = robot;
     changed.module.E *= x[0];
     changed.module.gamma = x[1];
-    std::vector<Solution> shapes;
-    try {
-      shapes = Replay(changed, method, log);
-    } catch (const Error&) {
-      return false;
-    }
-    const Registration registration = Registration::Fit(shapes, log, rows);
-    for (std::size_t i = 0; i < rows; ++i) {
-      Eigen::Vector3d::Map(f + 3 * i) = 1e3 * (registration.Marker(shapes[i]) - log.marker[i]);
-    }
-    return true;
+    return MarkerResiduals(changed, method, log, f);
   }
 
   template <class X, class F, class J>
@@ -98,6 +87,14 @@ Log Log::Read(const std::filesystem::path& file, int stride) {
     log.marker.push_back(marker);
   }
   return log;
+}
+
+Log Log::First(std::size_t rows) const {
+  Log first = *this;
+  first.time.resize(rows);
+  first.pressure.resize(rows);
+  first.marker.resize(rows);
+  return first;
 }
 
 std::size_t TrainRows(const Log& log) {
@@ -149,12 +146,23 @@ std::vector<Solution> Replay(const Robot& robot, const Method& method, const Log
   return shapes;
 }
 
+bool MarkerResiduals(const Robot& robot, const Method& method, const Log& log, double* f) {
+  std::vector<Solution> shapes;
+  try {
+    shapes = Replay(robot, method, log);
+  } catch (const Error&) {
+    return false;
+  }
+  const std::size_t rows = log.time.size();
+  const Registration registration = Registration::Fit(shapes, log, rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    Eigen::Vector3d::Map(f + 3 * i) = 1e3 * (registration.Marker(shapes[i]) - log.marker[i]);
+  }
+  return true;
+}
+
 solver::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
-  const std::size_t rows = TrainRows(log);
-  Log train = log;
-  train.time.resize(rows);
-  train.pressure.resize(rows);
-  train.marker.resize(rows);
+  const Log train = log.First(TrainRows(log));
   Eigen::Vector2d x(1, robot.module.gamma);
   solver::Bounds<2> bounds;
   bounds.lower = {0.2, std::numbers::pi / 4};
@@ -164,7 +172,7 @@ solver::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
   options.gradient = 1e-4;
   options.step = 1e-5;
   const solver::Outcome outcome = solver::LevenbergMarquardt<Eigen::VectorXd>(
-      Residuals{robot, method, train, rows}, x, static_cast<Eigen::Index>(3 * rows), options,
+      Residuals{robot, method, train}, x, static_cast<Eigen::Index>(3 * train.time.size()), options,
       bounds);
   robot.module.E *= x[0];
   robot.module.gamma = x[1];

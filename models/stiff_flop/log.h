@@ -18,6 +18,7 @@ struct Log {
   /// all valves are shut; lines 2 and 3 of the log are numbered against the sense of phi.
   /// @throws Error when the file has another layout.
   static Log Read(const std::filesystem::path& file, int stride);
+  Log First(std::size_t rows) const;
 };
 
 /// Where the tracker sees the module: marker = position + turn (rho(l) + along t).
@@ -47,6 +48,10 @@ TipError ErrorOf(const Registration& registration, const std::vector<Solution>& 
 
 /// The forward model at every row. @throws Error when a row has no equilibrium.
 std::vector<Solution> Replay(const Robot& robot, const Method& method, const Log& log);
+
+/// Marker residuals [mm], three a row, of the forward model after the best registration; false when
+/// a row has no equilibrium.
+bool MarkerResiduals(const Robot& robot, const Method& method, const Log& log, double* f);
 
 /// E [Pa] and gamma [rad] of least squared marker distance over the train rows, registration fitted
 /// for each. Starts from the robot's own and changes them.

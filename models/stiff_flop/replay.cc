@@ -6,14 +6,14 @@
 #include <string>
 
 #include "error.h"
-#include "models/stiff_flop/log.h"
+#include "models/stiff_flop/lines.h"
 
 /// Replays the public log NoLoad.mat in the forward models and prints tip errors beside published
 /// ones.
 namespace continuum::stiff_flop {
 namespace {
 
-constexpr int kStride = 5;
+constexpr int kStride = 5, kStrideOfLines = 20;
 
 void PrintLine(const std::string& name, const Robot& robot, const Method& method, const Log& log) {
   const std::vector<Solution> shapes = Replay(robot, method, log);
@@ -28,6 +28,28 @@ void PrintLine(const std::string& name, const Robot& robot, const Method& method
              1e3 * fresh.mean, 1e3 * whole.mean,
              100 * whole.mean / (robot.module.l + robot.module.l_fs), 1e3 * registration.along);
   std::fflush(stdout);
+}
+
+/// The default model with effects of its lines fitted on the train rows.
+Lines PrintWithLines(const std::string& name, const Robot& robot, const Log& log,
+                     const LineEffects& effects, Lines lines) {
+  FitLines(robot, {}, log, effects, lines);
+  PrintLine(name, robot, {}, lines.Acting(log));
+  fmt::print(stderr, "{}: gain {:.3f} {:.3f} {:.3f}, dead {:.2f} kPa, creep {:.3f}, lag {:.2f} s\n",
+             name, lines.gain[0], lines.gain[1], lines.gain[2], lines.dead / 1e3, lines.creep,
+             lines.lag);
+  return lines;
+}
+
+void PrintLines(const Robot& robot, const Log& log) {
+  const Lines ideal;
+  Lines stepped;
+  stepped.dead = 8e3;
+  PrintWithLines("gain of each line fitted", robot, log, {true, false, false}, ideal);
+  PrintWithLines("dead pressure fitted", robot, log, {false, true, false}, stepped);
+  Lines fitted = PrintWithLines("both", robot, log, {true, true, false}, stepped);
+  fitted.creep = 0.05;
+  PrintWithLines("both and creep", robot, log, {true, true, true}, fitted);
 }
 
 int Main(const std::filesystem::path& file, const std::filesystem::path& data) {
@@ -49,6 +71,7 @@ int Main(const std::filesystem::path& file, const std::filesystem::path& data) {
     FitBraid(method, log, fitted);
     PrintLine(method.Name(Direction::kForward) + ", fitted", fitted, method, log);
   }
+  PrintLines(robot, Log::Read(data, kStrideOfLines));
   return 0;
 }
 

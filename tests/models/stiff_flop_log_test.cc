@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "models/stiff_flop/log.h"
+#include "models/stiff_flop/lines.h"
 
 namespace continuum::stiff_flop {
 namespace {
@@ -48,6 +48,42 @@ TEST(StiffFlopLog, FitRecoversTheModulusOfASyntheticLog) {
   robot.module.E *= 1.2;
   EXPECT_TRUE(FitBraid({}, log, robot).ok());
   EXPECT_NEAR(robot.module.E, E, 1e-3 * E);
+}
+
+TEST(StiffFlopLines, AStepActsBeyondTheDeadPressureAndItsShareOfCreepFollows) {
+  Lines lines;
+  lines.gain = {1, 2, 1};
+  lines.dead = 1e4, lines.creep = 0.2, lines.lag = 2;
+  Log log;
+  for (int i = 0; i < 200; ++i) {
+    log.time.push_back(0.1 * i);
+    log.pressure.push_back(i == 0 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(0, 4e4, 5e3));
+  }
+  const Log acting = lines.Acting(log);
+  EXPECT_EQ(acting.pressure[50].x(), 0);
+  EXPECT_EQ(acting.pressure[50].z(), 0);
+  const double q = 2 * (4e4 - 1e4), h = 0.1;
+  // The rise takes one row: what creeps is q t/h until then, so z(h) = q (1 - (lag/h)(1 -
+  // e^-h/lag)).
+  const double z = q * (1 - lines.lag / h * (1 - std::exp(-h / lines.lag)));
+  EXPECT_NEAR(acting.pressure[1].y(), 0.8 * q + 0.2 * z, 1e-9 * q);
+  EXPECT_NEAR(acting.pressure[100].y(), 0.8 * q + 0.2 * (q + (z - q) * std::exp(-9.9 / 2)),
+              1e-9 * q);
+}
+
+TEST(StiffFlopLines, FitRecoversTheDeadPressureOfASyntheticLog) {
+  const Robot robot = Robot::Read(kRobot);
+  Registration truth;
+  Log log = Synthetic(robot, truth);
+  Lines real;
+  real.gain = {1, 0.9, 1.1};
+  real.dead = 5e3;
+  const Log acting = real.Acting(log);
+  const std::vector<Solution> shapes = Replay(robot, {}, acting);
+  for (std::size_t i = 0; i < shapes.size(); ++i) log.marker[i] = truth.Marker(shapes[i]);
+  Lines found{real.gain, 2e3, 0, 2};
+  FitLines(robot, {}, log, {false, true, false}, found);
+  EXPECT_NEAR(found.dead, real.dead, 10);
 }
 
 // 2.57 mm is the best of the physical models published for this log.
