@@ -15,9 +15,10 @@ namespace continuum {
 ///
 ///   K = EI/l  [N m/rad],   b = τ K  [N m s/rad]      (1)
 ///
-/// about either axis: the chain has the deflection and the slope of the rod at the ends of its
-/// intervals where the moment is constant along them. Tendons pass guides on a circle and end on
-/// the last plate of their segment; their drives are those of Mjcf::AddDrive.
+/// about either axis: under a constant moment the chain has the slope of the rod at the ends of its
+/// intervals, and its arc, smaller by x/tan x with x half the angle of an interval. Tendons pass
+/// guides on a circle and end on the last plate of their segment; their drives are those of
+/// Mjcf::AddDrive.
 struct TendonArm {
   struct Segment {
     double length;      ///< [m]
