@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "binding/actuator_force.h"
 #include "error.h"
 
 namespace continuum {
@@ -155,7 +156,7 @@ Cable MakeCable(const mjModel& m, int tendon, const std::string& who) {
     cable.sites.push_back(m.wrap_objid[w]);
   }
   if (cable.sites.size() < 2) throw Error::Input(where, "at least two sites", "fewer");
-  for (int a = 0; a < m.nu; ++a) {
+  for (int a = 0; a < m.nactuator; ++a) {
     if (m.actuator_trntype[a] == mjTRN_TENDON && m.actuator_trnid[2 * a] == tendon) {
       cable.actuators.push_back(a);
     }
@@ -167,15 +168,7 @@ Cable MakeCable(const mjModel& m, int tendon, const std::string& who) {
 double BaseTension(const mjModel& m, const mjData& d, const Cable& cable) {
   double pull = 0;
   for (const int a : cable.actuators) {
-    double f = d.actuator_force[a];
-    if (m.actuator_forcelimited[a]) {
-      f = std::clamp(f, m.actuator_forcerange[2 * a], m.actuator_forcerange[2 * a + 1]);
-    }
-    pull -= m.actuator_gear[6 * a] * f;
-  }
-  if (m.tendon_actfrclimited[cable.tendon]) {
-    const double* const range = m.tendon_actfrcrange + 2 * cable.tendon;
-    pull = -std::clamp(-pull, range[0], range[1]);
+    pull -= m.actuator_gear[6 * m.actuator_outadr[a]] * LimitedForce(m, d, a);
   }
   return pull;
 }

@@ -25,7 +25,7 @@ struct Cable {
 /// Throws Error when the tendon is not a spatial tendon through at least two sites only.
 Cable MakeCable(const mjModel& m, int tendon, const std::string& who);
 
-/// Tension at the actuator's end [N]: −sum(gear · force), forces clamped to their ranges.
+/// Tension at the actuator's end [N]: −sum(gear · force), forces within their ranges.
 double BaseTension(const mjModel& m, const mjData& d, const Cable& cable);
 
 /// Directions, wrap angles and sliding speeds of one cable.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "binding/actuator_force.h"
 #include "effects/all.h"
 
 namespace continuum {
@@ -60,19 +61,14 @@ std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
   return taken;
 }
 
-double Clamped(const mjModel& m, const mjData& d, int actuator) {
-  const double f = d.actuator_force[actuator];
-  if (!m.actuator_forcelimited[actuator]) return f;
-  return std::clamp(f, m.actuator_forcerange[2 * actuator],
-                    m.actuator_forcerange[2 * actuator + 1]);
-}
-
 double ActuatorTorque(const mjModel& m, const mjData& d, int dof) {
   double torque = 0;
-  for (int i = 0; i < m.nu; ++i) {
-    const int adr = d.moment_rowadr[i];
-    for (int k = adr; k < adr + d.moment_rownnz[i]; ++k) {
-      if (d.moment_colind[k] == dof) torque += d.actuator_moment[k] * Clamped(m, d, i);
+  for (int a = 0; a < m.nactuator; ++a) {
+    for (int o = 0; o < m.actuator_outnum[a]; ++o) {
+      const int row = m.actuator_outadr[a] + o, adr = d.moment_rowadr[row];
+      for (int k = adr; k < adr + d.moment_rownnz[row]; ++k) {
+        if (d.moment_colind[k] == dof) torque += d.actuator_moment[k] * LimitedForce(m, d, a, o);
+      }
     }
   }
   const int j = m.dof_jntid[dof];

@@ -128,6 +128,37 @@ TEST_F(Capstan, WithoutFrictionIsExactlyTheNativeModel) {
   EXPECT_EQ(d->qpos[0], e->qpos[0]);
 }
 
+// MuJoCo limits the sum of a tendon's actuator forces before their gears, then each by its own
+// range.
+TEST_F(Capstan, TheBaseTensionIsThatOfTheNativeTendonWithinItsRanges) {
+  struct Case {
+    std::string range, actuators;
+    std::vector<double> control;
+    double expected;
+  };
+  const std::string one = R"(<motor tendon="cable" gear="-1"/>)",
+                    two = R"(<motor tendon="cable" gear="-2"/>)",
+                    weak = R"(<motor tendon="cable" gear="-1" forcerange="0 3"/>)";
+  for (const auto& [range, actuators, control, expected] :
+       {Case{"0 4", one, {10}, 4}, Case{"-3 4", one, {10}, 4}, Case{"-4 4", two, {10}, 8},
+        Case{"-4 4", one + two, {10, -2}, 4 * (10 - 4) / 8.},
+        Case{"0 5", weak + two, {10, 4}, 3 + 2 * 4 * 5 / 14.}, Case{"0 4", one, {-1}, 0}}) {
+    std::string xml = Crane(0.2);
+    const std::string motor = R"(<motor name="pull" tendon="cable" gear="-1"/>)";
+    xml.replace(xml.find(motor), motor.size(), actuators);
+    xml.insert(xml.find("name=\"cable\""), "actuatorfrcrange=\"" + range + "\" ");
+    const auto m = Model(xml);
+    const auto d = Data(m);
+    std::copy(control.begin(), control.end(), d->ctrl);
+    d->qvel[0] = 0.1;
+    mj_forward(m.get(), d.get());
+    double native = 0;
+    for (int a = 0; a < m->nu; ++a) native -= m->actuator_gear[6 * a] * d->actuator_force[a];
+    EXPECT_NEAR(native, expected, 1e-12) << range << actuators;
+    EXPECT_NEAR(d->sensordata[0], native, 1e-12) << range << actuators;
+  }
+}
+
 TEST_F(Capstan, NeverCreatesEnergy) {
   const auto m = Model(Crane(0.3));
   m->opt.gravity[2] = 0;

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+namespace continuum {
+
+/// Force of one output of an actuator, before its gear, as MuJoCo applies it: actuator_force scaled
+/// so that the sum over the actuators of a tendon, before their gears, stays in the tendon's
+/// actuatorfrcrange; then clamped to the actuator's own forcerange.
+double LimitedForce(const mjModel& m, const mjData& d, int actuator, int output = 0);
+
+}  // namespace continuum
