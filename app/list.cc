@@ -36,7 +36,8 @@ void ListEffects(bool json) {
                                     {"lower", Bound(p.lower)},
                                     {"upper", Bound(p.upper)},
                                     {"initial", p.initial},
-                                    {"null", Bound(p.null)}});
+                                    {"null", Bound(p.null)},
+                                    {"omitted", p.Omitted()}});
       parameters += " " + std::string(p.name) + " [" + std::string(p.unit) + "]";
     }
     for (const Choice& c : e.choices) item["choices"][std::string(c.name)] = c.options;

@@ -43,7 +43,7 @@ std::string Config::Who() const {
 
 double Config::Read(const Param& param) const {
   const std::string_view text = Get(param.name);
-  if (text.empty()) return param.initial;
+  if (text.empty()) return param.Omitted();
   const char* const last = text.data() + text.size();
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), last, value);

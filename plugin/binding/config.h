@@ -21,7 +21,7 @@ class Config {
   /// "continuum.stribeck 'friction'", for messages.
   std::string Who() const;
 
-  /// The number under param.name, or param.initial. Throws Error with value, range and unit.
+  /// The number under param.name, or param.Omitted(). Throws Error with value, range and unit.
   double Read(const Param& param) const;
   /// The index of the option under choice.name, 0 when absent.
   int Read(const Choice& choice) const;

@@ -26,8 +26,14 @@ enum class Place { kJoint, kTendon, kActuator, kBody, kSite, kSensor, kWorld };
 struct Param {
   std::string_view name, unit;
   double lower, upper;  ///< closed bounds; anything else is an error
-  double initial;       ///< value when the MJCF gives none, and where a search starts
+  double initial;       ///< where a search starts
   double null;          ///< value at which the law does nothing; kAsIs: what the model has
+
+  /// Value when the MJCF gives none: the null, so that what is not written does not act. initial,
+  /// where no finite value is one.
+  constexpr double Omitted() const {
+    return null > -kInfinity && null < kInfinity ? null : initial;
+  }
 };
 
 /// A text parameter with a few allowed values; the first is the default.

@@ -203,6 +203,38 @@ TEST_F(Configuration, ErrorsNameAttributeValueRangeAndUnit) {
   EXPECT_THAT(error("capstan", Key("tendon", "rope")), HasSubstr("no tendon 'rope'"));
 }
 
+TEST_F(Configuration, WhatIsNotWrittenDoesNotAct) {
+  const auto native = Model(Arm("coulomb", Key("joint", "q1") + Key("tau_c", "0"), ""));
+  const auto e = Data(native);
+  e->qvel[0] = 0.02;
+  mj_forward(native.get(), e.get());
+  for (const auto& [law, key, place] : {std::tuple{"coulomb", "joint", "q1"},
+                                        {"stribeck", "joint", "q1"},
+                                        {"load_friction", "joint", "q1"},
+                                        {"position_friction", "joint", "q1"},
+                                        {"directional_friction", "joint", "q1"},
+                                        {"dahl", "joint", "q1"},
+                                        {"lugre", "joint", "q1"},
+                                        {"bouc_wen", "joint", "q1"},
+                                        {"cubic_stiffness", "joint", "q1"},
+                                        {"maxwell", "joint", "q1"},
+                                        {"backlash", "actuator", "servo"},
+                                        {"tendon_stretch", "tendon", "wire"},
+                                        {"slack", "tendon", "wire"},
+                                        {"capstan", "tendon", "cable"}}) {
+    const auto m = Model(Arm(law, Key(key, place), ""));
+    const auto d = Data(m);
+    d->qvel[0] = 0.02;
+    mj_forward(m.get(), d.get());
+    EXPECT_EQ(m->dof_damping[0], native->dof_damping[0]) << law;
+    for (int i = 0; i < m->nv; ++i) EXPECT_NEAR(d->qacc[i], e->qacc[i], 1e-12) << law;
+  }
+  const auto plain = Model(Arm("stribeck", Key("joint", "q1") + Key("tau_c", ".05"), ""));
+  const auto d = Data(plain);
+  mj_forward(plain.get(), d.get());
+  EXPECT_DOUBLE_EQ(d->efc_frictionloss[0], .05);  // no excess at rest
+}
+
 TEST_F(Configuration, AWrongJointTypeIsRefused) {
   const auto [model, error] = Compile(
       "<mujoco>" + Instance("dahl", Key("joint", "j")) +
