@@ -24,7 +24,8 @@ namespace {
 using Bind = std::unique_ptr<Bound> (*)(const mjModel&, const Config&, int instance);
 
 // What the engine keeps of one instance: its law, the configuration it was read from, the force it
-// last gave. The last instance of a model also keeps the sum over all of them.
+// last gave. The last instance of a model also keeps the sum over all of them, and evaluates the
+// rows once it is known: their levels may depend on every force.
 struct Instance {
   Bind bind;
   std::string config;
@@ -34,6 +35,7 @@ struct Instance {
   std::vector<int> sensors;         ///< of this instance
   std::vector<int> signals;         ///< in the first instance: all signals, in the order they act
   std::vector<int> givers;          ///< in the last instance: all that give forces, itself included
+  std::vector<int> rows;            ///< in the last instance: all that are rows, itself included
   std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
 };
 
@@ -77,13 +79,15 @@ void WarnOfSilence(const mjModel& m, const Instance& self, const Config& config)
   }
 }
 
-std::vector<int> Givers(const mjModel& m, const mjData& d, int last, const Instance& self) {
-  std::vector<int> givers;
+// Instances of ours up to the last one, which is not registered in d yet.
+std::vector<int> Those(const mjModel& m, const mjData& d, int last, const Instance& self,
+                       bool (Bound::*kind)() const) {
+  std::vector<int> those;
   for (int j = 0; j < last; ++j) {
-    if (IsOurs(m, j) && Get(d, j)->bound->GivesForce()) givers.push_back(j);
+    if (IsOurs(m, j) && (*Get(d, j)->bound.*kind)()) those.push_back(j);
   }
-  if (self.bound->GivesForce()) givers.push_back(last);
-  return givers;
+  if ((*self.bound.*kind)()) those.push_back(last);
+  return those;
 }
 
 // Signals act in the order of the effects' list, from the input of an actuator to its tendon: that
@@ -126,7 +130,8 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     self->force.assign(m.nv, 0);
     bool last = true;
     for (int j = i + 1; j < m.nplugin; ++j) last &= !IsOurs(m, j);
-    if (last) self->givers = Givers(m, d, i, *self);
+    if (last) self->givers = Those(m, d, i, *self, &Bound::GivesForce);
+    if (last) self->rows = Those(m, d, i, *self, &Bound::IsRow);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
     self->sum = self->before;
     FindSensors(m, i, *self, config);
@@ -188,12 +193,13 @@ void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (stage == Stage::kActuator) {
     for (const int j : self.signals) Evaluate(m, d, j, stage);
   }
-  if (!self.bound->IsSignal()) Evaluate(m, d, i, stage);
+  if (!self.bound->IsSignal() && !self.bound->IsRow()) Evaluate(m, d, i, stage);
   for (const int s : self.sensors) {
     self.bound->Sense(m, d, m.sensor_objid[s],
                       {d.sensordata + m.sensor_adr[s], static_cast<std::size_t>(m.sensor_dim[s])});
   }
   if (!self.givers.empty()) Total(m, d, self, stage);
+  for (const int j : self.rows) Evaluate(m, d, j, stage);
 }
 
 void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
@@ -204,8 +210,8 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.bound->Set(a.bound->parameters());
   b.bound->CopyFrom(*a.bound);
   b.force = a.force, b.changed = a.changed;
-  b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers, b.before = a.before,
-  b.sum = a.sum;
+  b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers, b.rows = a.rows;
+  b.before = a.before, b.sum = a.sum;
 }
 
 template <class E>
