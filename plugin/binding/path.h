@@ -19,8 +19,20 @@ namespace continuum {
 /// without creep. g rises to ±2 between 10 and 20 mm/s: beyond that a contact slides fully whatever
 /// its memory. v_c is 5 mm/s, more where the step h could not carry that slope:
 /// v_c = max(5 mm/s, 1.5 h · compliance · T · band). With h → 0 the contact becomes rigid.
+///
+/// A sharp bend holds ratios far beyond e, any ratio when it locks: at that band (1) and (2) are
+/// stiffer than a step can carry. Above the ratio e the held tension T_i = T_{i−1} exp(ρ) therefore
+/// changes no faster than by damper and spring at that limit, and the more ρ exceeds 1 (from 2 on
+/// fully) the less it grows with T_{i−1}:
+///
+///   |T_i(v) − T_i| ≤ κ |v|/(h · compliance),   κ = 2/3                  (3)
+///   |T_i,next − T_i| ≤ β κ |v|/(h · compliance)                         (4)
+///
+/// so that friction brakes a contact within a step or more and never throws it back. Ratios are all
+/// the memory there is: a locked contact behind which the tension falls to nothing lets go.
 struct Grip {
-  static constexpr double kSlow = 5e-3, kRampBegin = 0.010, kRampEnd = 0.020, kSpring = 0.2;
+  static constexpr double kSlow = 5e-3, kRampBegin = 0.010, kRampEnd = 0.020, kSpring = 0.2,
+                          kFree = 1, kBrake = 2.0 / 3;
 
   /// v_c [m/s].
   static double Slope(double band, double tension, double compliance, double h) {
@@ -37,6 +49,24 @@ struct Grip {
   static double Next(double rho, double band, double travel) {
     const double all = Held(rho, band, travel);
     return std::abs(all) < band || std::abs(travel) < 1 ? Held(rho, band, kSpring * travel) : all;
+  }
+  /// Bound of (3) on the ratio T_i/T_{i−1}.
+  static double Reach(double v, double tension, double compliance, double h) {
+    const double stiff = h * compliance * tension;
+    return stiff > 0 ? kBrake * std::abs(v) / stiff : kInfinity;
+  }
+  /// The wanted ρ as near as a change of the ratio by `reach` comes to it from rho.
+  static double Within(double rho, double wanted, double reach) {
+    if (std::max(rho, wanted) <= kFree) return wanted;
+    const double ratio = std::exp(rho), free = std::exp(kFree);
+    const double lowest = ratio - reach > free ? std::log(ratio - reach) : wanted;
+    return std::min(std::max(wanted, lowest), std::log(std::max(ratio, free) + reach));
+  }
+  /// ρ > kFree of a contact whose T_{i−1} has become `now` since it was `before`: one far beyond
+  /// kFree keeps its tension where one below keeps its ratio.
+  static double Carried(double rho, double before, double now) {
+    if (now <= before) return rho;
+    return before > 0 ? rho + std::min(rho - kFree, 1.0) * std::log(before / now) : kFree;
   }
 };
 
@@ -95,9 +125,17 @@ class BoundPath : public Bound {
     return true;
   }
 
+  // The states of a cable: its base tension, then ρ of every contact.
   void Advance(const mjModel&, const mjData&, double* z) override {
-    for (std::size_t s = 0; s < contacts_.size(); ++s) {
-      z[s] = Grip::Next(z[s], contacts_[s].band, contacts_[s].travel);
+    int s = 0;
+    for (const Cable& cable : cables_) {
+      z[s] = tension_[s];
+      for (int k = s + 1; k < s + cable.segments(); ++k) {
+        const Contact& c = contacts_[k];
+        const double next = Grip::Next(c.rho, c.band, c.travel);
+        z[k] = Grip::Within(c.rho, next, Grip::kSpring * c.reach);
+      }
+      s += cable.segments();
     }
   }
 
@@ -122,7 +160,7 @@ class BoundPath : public Bound {
  private:
   // What is known of the site in front of a segment.
   struct Contact {
-    double band = 0, v_c = 0, travel = 0, ratio = 1;
+    double band = 0, v_c = 0, travel = 0, rho = 0, reach = 0, ratio = 1;
   };
 
   // Tensions of one cable from its base on; slack cables carry none. Within one evaluation only the
@@ -130,16 +168,23 @@ class BoundPath : public Bound {
   void Tensions(const mjModel& m, const Cable& cable, const CableGeometry& at, double base,
                 const double* z, int s, Stage stage, const ParamsOf<E, double>& p) {
     tension_[s] = base;
+    double grown = 0;  // logarithm of (tension before the contact)/(base tension), as remembered
     for (int i = 1; i < cable.segments(); ++i) {
       Contact& c = contacts_[s + i];
       if (stage == Stage::kPassive) c.band = E::template Band<double>(at.theta[i], law_, p);
       const double v_c = Grip::Slope(c.band, base, cable.compliance, m.opt.timestep);
-      if (stage == Stage::kPassive || v_c != c.v_c) {
+      if (stage == Stage::kPassive || v_c != c.v_c || c.band > Grip::kFree) {
+        const double tension = tension_[s + i - 1];
         c.v_c = v_c;
         c.travel = Grip::Travel(at.slip[i], v_c);
-        c.ratio = c.band > 0 ? std::exp(Grip::Held(z[i], c.band, c.travel)) : 1;
+        c.rho = z[i];
+        if (z[i] > Grip::kFree) c.rho = Grip::Carried(z[i], z[0] * std::exp(grown), tension);
+        c.reach = Grip::Reach(at.slip[i], tension, cable.compliance, m.opt.timestep);
+        const double held = Grip::Held(c.rho, c.band, c.travel);
+        c.ratio = c.band > 0 ? std::exp(Grip::Within(c.rho, held, c.reach)) : 1;
       }
       tension_[s + i] = tension_[s + i - 1] * c.ratio;
+      grown += z[i];
     }
   }
 

@@ -14,8 +14,9 @@ inline constexpr std::array<std::string_view, 2> kCapstanOptions{"exponential", 
 ///   μ(θ) = mu + mu1 θ + mu2 θ²                                                  (3)
 ///
 /// and one at rest holds any ratio in between. (2) is Coulomb friction on the normal force of a
-/// sharp bend, (T_{i−1} − T_i) cos(θ/2) = μ (T_{i−1} + T_i) sin(θ/2); it locks at t = 1.
-/// Source: snake_arm, eq. 8 (1); eytelwein1808.
+/// sharp bend, (T_{i−1} − T_i) cos(θ/2) = μ (T_{i−1} + T_i) sin(θ/2). At t = 1 the bend locks: what
+/// is pulled hands on nothing, and no load draws the cable out. The band ends there, at the ratio
+/// 2·10⁶. Source: snake_arm, eq. 8 (1); eytelwein1808.
 struct Capstan {
   static constexpr std::string_view kName = "capstan", kSource = "eytelwein1808",
                                     kSummary = "friction of a cable along its route";
@@ -32,7 +33,7 @@ struct Capstan {
     if (!(friction > 0.0)) return T(0);
     if (law == 0) return friction * theta;  // (1)
     const T t = friction * tan(0.5 * theta);
-    const double locked = 0.999999;  // a locked contact carries next to nothing further
+    const double locked = 0.999999;
     return t < locked ? T(log((1.0 + t) / (1.0 - t))) : T(std::log((1 + locked) / (1 - locked)));
   }
 };
