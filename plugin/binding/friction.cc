@@ -119,6 +119,10 @@ void Harden(mjModel& m, const Row& row) {
   solimp[0] = solimp[1] = 0.9999;
 }
 
+bool Saturated(const mjData& d, int r) {
+  return std::abs(d.efc_force[r]) >= d.efc_frictionloss[r] * (1 - 1e-9);
+}
+
 // Deflection from the anchor at which the row at rest gives the force that it gives now.
 double Yield(const mjData& d, int r) {
   const double stiffness = d.efc_KBIP[4 * r] * d.efc_KBIP[4 * r + 2];
@@ -191,28 +195,46 @@ void Rows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const 
   d.efc_pos[r] = off;
 }
 
+Rows::Sliding Rows::SlidingOf(const mjData& d, const double* z, const Row& row) {
+  if (row.axis < 0) return {z[0] == kHeld ? 0 : Speed(d, row), 1};
+  const double grasp = (z - 2 * row.axis)[0];
+  const double* const turn = d.qvel + row.index - row.axis;
+  const double v = grasp == kHeld ? 0 : mju_norm3(turn);
+  return {v, v > 0 ? std::abs(turn[row.axis]) / v : 1};
+}
+
+void Rows::AdvanceLine(const mjModel& m, const mjData& d, const Row& row, double* z, int& r) {
+  if (!Find(d, row, r)) return;
+  const bool slides = Saturated(d, r);
+  const double q = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.id];
+  if (z[0] == kUnknown || slides) z[1] = q - (slides ? Yield(d, r) : 0);  // (2)
+  z[0] = slides ? kSlid : kHeld;
+}
+
+void Rows::AdvanceBall(const mjModel& m, const mjData& d, const Row* rows, double* z, int& r) {
+  double yield[3];
+  bool slides = false;
+  for (int k = 0; k < 3; ++k) {
+    if (!Find(d, rows[k], r)) return;
+    const bool full = Saturated(d, r) && d.efc_frictionloss[r] > 0;
+    yield[k] = full ? -Yield(d, r) : -d.efc_pos[r];  // (2)
+    slides |= full;
+  }
+  if (z[0] == kUnknown || slides) {
+    std::copy_n(d.qpos + m.jnt_qposadr[rows->id], 4, z + 1);
+    mju_quatIntegrate(z + 1, yield, 1);
+  }
+  z[0] = slides ? kSlid : kHeld;
+}
+
 void Rows::Advance(const mjModel& m, const mjData& d, double* z) const {
   int r = d.ne;
-  bool turn = false;
-  double yield[3];
-  for (const Row& row : rows_) {
-    double* const state = z;
-    z += 2;
-    if (!Find(d, row, r)) continue;
-    const bool slides = std::abs(d.efc_force[r]) >= d.efc_frictionloss[r] * (1 - 1e-9);
-    const double stretch = slides ? Yield(d, r) : d.efc_pos[r];  // (2)
-    const double* const q = row.joint ? d.qpos + m.jnt_qposadr[row.id] : d.ten_length + row.id;
-    if (row.axis < 0) {
-      if (state[0] == 0 || slides) state[0] = 1, state[1] = *q - (slides ? stretch : 0);
-      continue;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    if (rows_[k].axis < 0) {
+      AdvanceLine(m, d, rows_[k], z + 2 * k, r);
+    } else if (rows_[k].axis == 0) {
+      AdvanceBall(m, d, &rows_[k], z + 2 * k, r);
     }
-    double* const ball = state - 2 * row.axis;
-    turn = (row.axis > 0 && turn) || slides || ball[0] == 0;
-    yield[row.axis] = -stretch;
-    if (row.axis < 2 || !turn) continue;
-    ball[0] = 1;
-    std::copy_n(q, 4, ball + 1);
-    mju_quatIntegrate(ball + 1, yield, 1);
   }
 }
 

@@ -26,22 +26,24 @@ struct Row {
 ///   anchor = q − x,   x = −R efc_force/(K d)                                (2)
 ///
 /// (K, d, R: stiffness, impedance, regularization of the row), so that a joint that comes to rest
-/// under load stays there. Source: MuJoCo's constraint model. The two states of a row are
-/// {anchored, anchor}; a ball joint has six numbers, {anchored, quaternion, 0}.
+/// under load stays there. Source: MuJoCo's constraint model.
+///
+/// A row that held in the last step has the level of v = 0, whatever the speed of its elastic
+/// deflection: a sudden load breaks it away as a slow one does. The three rows of a ball joint that
+/// slides share one level, split by the direction of ω; at rest each of them can take all of it.
+///
+/// The two states of a row are {Grasp, anchor}; a ball joint has six numbers,
+/// {Grasp, quaternion, 0}.
 class Rows {
  public:
-  static double Speed(const mjData& d, const Row& row) {
-    return row.joint ? d.qvel[row.index] : d.ten_velocity[row.index];
-  }
-
   /// Joints (hinge, slide, ball) or tendons named in config.
   Rows(const mjModel& m, const Config& config, int instance);
   static int StateSize(const mjModel& m, const Config& config);
 
   const std::vector<Row>& rows() const { return rows_; }
   void Impose(mjModel& m) const;
-  /// Calls level(row, lean) → torque for each row that exists at d, and writes it. lean: where the
-  /// row would be off its anchor after a step, (q − anchor) + h v.
+  /// Calls level(row, v, lean) → torque for each row that exists at d, and writes it. v: speed of
+  /// sliding; lean: where the row would be off its anchor after a step, (q − anchor) + h v.
   template <class Level>
   void Write(const mjModel& m, mjData& d, const double* z, Stage stage, Level&& level) const {
     int r = d.ne;
@@ -49,19 +51,34 @@ class Rows {
       const Row& row = rows_[k];
       if (!Find(d, row, r)) continue;
       const double off = OffAnchor(m, d, z + 2 * k, row);
+      const Sliding sliding = SlidingOf(d, z + 2 * k, row);
       const double lean = off + m.opt.timestep * Speed(d, row);
-      WriteRow(m, d, off, stage, row, r, level(row, lean));
+      WriteRow(m, d, off, stage, row, r, sliding.share * level(row, sliding.v, lean));
     }
   }
   void Advance(const mjModel& m, const mjData& d, double* z) const;
 
  private:
+  /// Grasp: what a row did in the last step.
+  static constexpr double kUnknown = 0, kHeld = 1, kSlid = 2;
+  /// Speed of sliding, and the share of the level that falls to this row.
+  struct Sliding {
+    double v, share;
+  };
+  static double Speed(const mjData& d, const Row& row) {
+    return row.joint ? d.qvel[row.index] : d.ten_velocity[row.index];
+  }
+  static Sliding SlidingOf(const mjData& d, const double* z, const Row& row);
+
   /// Moves r (ascending over calls) to the row's constraint; false when it has none.
   static bool Find(const mjData& d, const Row& row, int& r);
   static void WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const Row& row, int r,
                        double level);
   /// q − anchor; 0 before the first step.
   static double OffAnchor(const mjModel& m, const mjData& d, const double* z, const Row& row);
+  /// States of the row or of the three rows of a ball joint that begin at `rows`.
+  static void AdvanceLine(const mjModel& m, const mjData& d, const Row& row, double* z, int& r);
+  static void AdvanceBall(const mjModel& m, const mjData& d, const Row* rows, double* z, int& r);
 
   std::vector<Row> rows_;
 };
@@ -94,8 +111,8 @@ class BoundFriction : public Bound {
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double>) override {
     const auto p = AsParams<E>(p_);
-    rows_.Write(m, d, z, stage, [&](const Row& row, double lean) {
-      Rubbing<double> r{0, Rows::Speed(d, row), 0, lean};
+    rows_.Write(m, d, z, stage, [&](const Row& row, double v, double lean) {
+      Rubbing<double> r{0, v, 0, lean};
       if (!row.joint) r.q = d.ten_length[row.index];
       if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
       if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);
