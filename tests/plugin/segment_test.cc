@@ -1,5 +1,7 @@
 #include <cmath>
+#include <iomanip>
 #include <random>
+#include <sstream>
 #include <string>
 
 #include "effects/pcc_segment.h"
@@ -22,6 +24,18 @@ class Segment : public testing::Engine {
     bool delta = true;    // the sensor
   };
 
+  // The segment's own numbers, where the configuration has no others.
+  static std::string Complete(std::string config) {
+    for (const Param& param : PccSegmentLaw::kParams) {
+      const std::string name(param.name);
+      if (config.find("key=\"" + name + "\"") != config.npos) continue;
+      std::ostringstream value;
+      value << std::setprecision(17) << param.initial;
+      config += Key(name, value.str());
+    }
+    return config;
+  }
+
   // Three links, the base upside down; each stretches, then bends about x and y.
   static std::string Arm(const Options& o) {
     std::string bodies, close;
@@ -36,8 +50,9 @@ class Segment : public testing::Engine {
       close += "</body>";
     }
     return "<mujoco><option timestep=\"1e-3\">" + o.flags + "</option>" +
-           Instance("pcc_segment", o.config) + "<worldbody><body name=\"base\" quat=\"0 1 0 0\">" +
-           bodies + close + "</body><body name=\"aside\"/></worldbody><actuator>" + o.p1 +
+           Instance("pcc_segment", Complete(o.config)) +
+           "<worldbody><body name=\"base\" quat=\"0 1 0 0\">" + bodies + close +
+           "</body><body name=\"aside\"/></worldbody><actuator>" + o.p1 +
            R"(<general name="p2" joint="l1" gear="0" forcelimited="true" forcerange="0 50000"/>
               <general name="p3" joint="l1" gear="0" ctrllimited="true" ctrlrange="0 75000"/>
               <motor name="motor" joint="l1"/></actuator>)" +
