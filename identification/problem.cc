@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "effects/all.h"
@@ -78,6 +79,11 @@ Problem::Problem(const Experiment& experiment, const System& system, std::vector
                            10 * terms_.size,
                            {},
                            AllLogs()});
+  }
+  for (std::size_t l = 0; l < experiment.logs.size(); ++l) {
+    std::size_t first = 0;
+    while (!SameMotion(first, l)) ++first;
+    motion_.push_back(first);
   }
   const Pool pool(experiment);
   bool sigma = true;
@@ -225,7 +231,7 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
   auto changes = ChangesFor(x, log);
   if (step > 0) changes.push_back({"option", "timestep", step});
   const Vector theta = x.tail(static_cast<Eigen::Index>(terms_.count));
-  Memory& memory = memory_[log];
+  const Memory& memory = memory_[motion_[log]];
   const Log& logged = experiment_->logs[log];
   if (!memory.trace.raw.empty() && memory.changes == changes && memory.theta == theta &&
       memory.skew == setup.skew) {
@@ -265,21 +271,42 @@ Problem::Vector Problem::ResidualOf(std::size_t index, const Trace& trace) const
   return r;
 }
 
+// Whether two logs make the same simulation: replicates do, unless they start as measured.
+bool Problem::SameMotion(std::size_t a, std::size_t b) const {
+  if (a == b) return true;
+  const Log &x = experiment_->logs[a], &y = experiment_->logs[b];
+  const bool known = experiment_->start == Experiment::Start::kRest ||
+                     experiment_->start == Experiment::Start::kEquilibrium;
+  return known && x.time == y.time && x.input == y.input && x.enable == y.enable &&
+         x.set == y.set &&
+         std::all_of(parameters_.begin(), parameters_.end(),
+                     [&](const FreeParameter& p) { return p.log[a] == p.log[b]; });
+}
+
+// The logs in use by the simulation that they share.
+std::vector<std::vector<std::size_t>> Problem::Motions(const std::vector<bool>& use) const {
+  std::map<std::size_t, std::vector<std::size_t>> shared;
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (use[l]) shared[motion_[l]].push_back(l);
+  }
+  std::vector<std::vector<std::size_t>> motions;
+  for (auto& [first, logs] : shared) motions.push_back(std::move(logs));
+  return motions;
+}
+
 std::vector<Problem::Vector> Problem::Residuals(const Vector& x,
                                                 const std::vector<bool>& use) const {
-  std::vector<std::size_t> logs;
-  for (std::size_t l = 0; l < use.size(); ++l) {
-    if (use[l]) logs.push_back(l);
-  }
+  const auto motions = Motions(use);
   std::vector<Vector> out(use.size());
-  ParallelFor(logs.size(), [&](std::size_t thread, std::size_t i) {
-    const std::size_t log = logs[i];
-    Trace trace = Run(thread, x, log);
-    out[log] = ResidualOf(log, trace);
-    memory_[log] = {ChangesFor(x, log), x.tail(static_cast<Eigen::Index>(terms_.count)),
-                    MeasuredBy(x, log).skew, std::move(trace)};
+  ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
+    const std::size_t first = motions[i].front();
+    Trace trace = Run(thread, x, first);
+    for (const std::size_t l : motions[i]) out[l] = ResidualOf(l, trace);
+    memory_[motion_[first]] = {ChangesFor(x, first),
+                               x.tail(static_cast<Eigen::Index>(terms_.count)),
+                               MeasuredBy(x, first).skew, std::move(trace)};
   });
-  evaluations_ += logs.size();
+  evaluations_ += motions.size();
   return out;
 }
 
@@ -296,14 +323,19 @@ std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::ve
                                                   const std::vector<bool>& use) const {
   std::vector<Matrix> out(use.size());
   const double h = system().model().opt.timestep;
-  ParallelFor(use.size(), [&](std::size_t thread, std::size_t l) {
-    if (!use[l]) return;
-    out[l].resize(r[l].size(), 2);
-    out[l].col(0) = r[l] - ResidualOf(l, Run(thread, x, l, h / 4));
-    if (!out[l].col(0).allFinite()) out[l].col(0).setZero();
-    out[l].col(1) = ResidualOf(l, Later(Run(thread, x, l), x, l, h)) - r[l];
+  const auto motions = Motions(use);
+  ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
+    const std::size_t first = motions[i].front();
+    const Trace fine = Run(thread, x, first, h / 4);
+    const Trace later = Later(Run(thread, x, first), x, first, h);
+    for (const std::size_t l : motions[i]) {
+      out[l].resize(r[l].size(), 2);
+      out[l].col(0) = r[l] - ResidualOf(l, fine);
+      if (!out[l].col(0).allFinite()) out[l].col(0).setZero();
+      out[l].col(1) = ResidualOf(l, later) - r[l];
+    }
   });
-  evaluations_ += use.size();
+  evaluations_ += motions.size();
   return out;
 }
 
@@ -311,25 +343,28 @@ std::vector<Problem::Matrix> Problem::Jacobian(const Vector& x, const std::vecto
                                                const std::vector<bool>& use,
                                                const std::vector<Matrix>& known) const {
   std::vector<Matrix> J(use.size());
-  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // log, parameter
-  for (std::size_t l = 0; l < use.size(); ++l) {
-    if (!use[l]) continue;
-    J[l] = Matrix::Zero(r[l].size(), x.size());
-    const std::size_t first = known.empty() ? 0 : static_cast<std::size_t>(known[l].cols());
-    if (first > 0) J[l].leftCols(known[l].cols()) = known[l];
-    for (std::size_t i = first; i < parameters_.size(); ++i) {
-      if (parameters_[i].log[l]) tasks.emplace_back(l, i);
+  const auto motions = Motions(use);
+  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    std::size_t first = 0;
+    for (const std::size_t l : motions[i]) {
+      J[l] = Matrix::Zero(r[l].size(), x.size());
+      first = known.empty() ? 0 : static_cast<std::size_t>(known[l].cols());
+      if (first > 0) J[l].leftCols(known[l].cols()) = known[l];
+    }
+    for (std::size_t k = first; k < parameters_.size(); ++k) {
+      if (parameters_[k].log[motions[i].front()]) tasks.emplace_back(i, k);
     }
   }
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
-    const auto [l, i] = tasks[t];
-    const FreeParameter& p = parameters_[i];
+    const auto [i, k] = tasks[t];
+    const FreeParameter& p = parameters_[k];
     double step = 1e-3 * p.scale;  // stick and slip are decided step by step: average over some
-    if (x[i] + step > p.upper) step = -step;
+    if (x[k] + step > p.upper) step = -step;
     Vector moved = x;
-    moved[i] += step;
-    const Vector there = ResidualOf(l, Run(thread, moved, l));
-    J[l].col(i) = (there - r[l]) / step;
+    moved[k] += step;
+    const Trace there = Run(thread, moved, motions[i].front());
+    for (const std::size_t l : motions[i]) J[l].col(k) = (ResidualOf(l, there) - r[l]) / step;
   });
   evaluations_ += tasks.size();
   return J;

@@ -86,6 +86,8 @@ class Problem {
 
  private:
   void Expand(const Parameter& p);
+  bool SameMotion(std::size_t a, std::size_t b) const;
+  std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
   std::vector<Change> ChangesAt(const Vector& x, std::size_t log, bool measurement) const;
   Vector ResidualOf(std::size_t log, const Trace& trace) const;
@@ -102,6 +104,7 @@ class Problem {
     Trace trace;
   };
   mutable std::vector<Memory> memory_;
+  std::vector<std::size_t> motion_;  ///< [log] the first log that moves alike: repeats run once
   std::vector<FreeParameter> parameters_;
   std::vector<Change> frozen_;
   std::vector<std::size_t> channels_;
