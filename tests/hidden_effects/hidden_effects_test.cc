@@ -66,10 +66,11 @@ TEST_P(HiddenEffects, AreNamed) {
   EXPECT_EQ(wrong, 0) << told_;
 }
 
-// The hidden effect is not among the candidates, and no other is its
-// sibling.
+// The hidden effect is not among the candidates: none is named, or its declared sibling.
 TEST_P(HiddenEffects, WithoutACandidateGetNoOtherName) {
-  EXPECT_FALSE(Unique(Ask({{"payload"}, 4, NoiseKind::kWhite, 3001, false}))) << told_;
+  const Case c{{"payload"}, 4, NoiseKind::kWhite, 3001, false};
+  const Answer a = Ask(c);
+  EXPECT_TRUE(!Unique(a) || Sibling(c, a)) << told_;
 }
 
 }  // namespace

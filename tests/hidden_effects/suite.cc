@@ -53,7 +53,7 @@ std::string Csv(const std::array<std::vector<double>, 2>& u,
 
 const std::vector<Hidden>& HiddenEffects() {
   static const std::vector<Hidden> all{
-      {"payload", "mass", 0.004, [](Arm& a, double v) { a.payload = v; }},
+      {"payload", "mass", 0.004, [](Arm& a, double v) { a.payload = v; }, 0, {"link_mass"}},
       {"armature", "armature", 0.0005, [](Arm& a, double v) { a.armature = v; }},
       {"coulomb", "tau_c", 0.005, [](Arm& a, double v) { a.tau_c = v; }},
       {"load_friction", "mu_l", 0.01, [](Arm& a, double v) { a.load = v; }},
@@ -170,6 +170,13 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
 bool InSet(const Case& c, const Answer& a) {
   return std::any_of(a.named.begin(), a.named.end(), [&](const std::string& name) {
     return std::find(c.effects.begin(), c.effects.end(), name) != c.effects.end();
+  });
+}
+
+bool Sibling(const Case& c, const Answer& a) {
+  const auto& siblings = HiddenNamed(c.effects.front()).siblings;
+  return std::any_of(a.named.begin(), a.named.end(), [&](const std::string& name) {
+    return std::find(siblings.begin(), siblings.end(), name) != siblings.end();
   });
 }
 

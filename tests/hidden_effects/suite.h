@@ -52,6 +52,8 @@ Answer Solve(const Case& c, const std::filesystem::path& folder);
 
 /// Whether the answer holds the truth (in the set), is one name, and whether that one is right.
 bool InSet(const Case& c, const Answer& a);
+/// Whether it holds a declared sibling of the first hidden effect.
+bool Sibling(const Case& c, const Answer& a);
 bool Unique(const Answer& a);
 
 }  // namespace continuum::hidden
