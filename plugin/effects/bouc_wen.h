@@ -37,15 +37,14 @@ struct BoucWen {
 
   /// (2) at constant v, over the path ρ |v| h, by Runge-Kutta steps short enough for 1e-7. With
   /// u = w sgn(v) it is du/dx = 1 − |u|ⁿ (u ≥ 0) or 1 + (2σ − 1) |u|ⁿ (u < 0); a step ends at the
-  /// kink u = 0. The rest of a path longer than kFar changes nothing.
+  /// kink u = 0, and the path where u is within kNear of 1: in sliding nothing changes.
   template <class T>
   static Vec<T, 1> Step(const Vec<T, 1>& s, const Port<T>& q, double h, const Vec<T, 4>& p) {
     const auto& [w] = s;
     const auto& [kappa_w, rho, sigma, n] = p;
     const double d = q.v < 0.0 ? -1 : 1;
     T u = d * w, path = rho * abs(q.v) * h;
-    if (path > kFar) path = T(kFar);
-    while (path > 0.0) {
+    while (path > 0.0 && abs(u - 1.0) > kNear) {
       const T steep = n * (u < 0.0 && sigma > 1.0 ? T(2.0 * sigma - 1.0) : T(1));
       T dx = kFine / steep;
       if (path < dx) dx = path;
@@ -64,7 +63,7 @@ struct BoucWen {
   }
 
  private:
-  static constexpr double kFar = 50, kFine = 0.05;
+  static constexpr double kNear = 1e-8, kFine = 0.05;
 
   template <class T>
   static T Power(const T& u, const T& n) {
