@@ -36,34 +36,23 @@ struct BoucWen {
   }
 
   /// (2) at constant v, over the path ρ |v| h, by Runge-Kutta steps short enough for 1e-7. With
-  /// u = w sgn(v) it is du/dx = 1 − |u|ⁿ (u ≥ 0) or 1 + (2σ − 1) |u|ⁿ (u < 0); a step ends at the
-  /// kink u = 0, and the path where u is within kNear of 1: in sliding nothing changes.
+  /// u = w sgn(v) it is
+  ///   du/dx = 1 + (2σ − 1) |u|ⁿ   u < 0  (unloading)                      (4)
+  ///   dy/dx = (1 − uⁿ)/(1 − u)    u ≥ 0, u = 1 − e^{−y}                   (5)
+  /// where y has no end to come close to: (5) tends to n.
   template <class T>
   static Vec<T, 1> Step(const Vec<T, 1>& s, const Port<T>& q, double h, const Vec<T, 4>& p) {
     const auto& [w] = s;
     const auto& [kappa_w, rho, sigma, n] = p;
     const double d = q.v < 0.0 ? -1 : 1;
     T u = d * w, path = rho * abs(q.v) * h;
-    while (path > 0.0 && abs(u - 1.0) > kNear) {
-      const T steep = n * (u < 0.0 && sigma > 1.0 ? T(2.0 * sigma - 1.0) : T(1));
-      T dx = kFine / steep;
-      if (path < dx) dx = path;
-      T next = Walk(u, dx, u < 0.0, sigma, n);
-      if (u < 0.0 && next > 0.0) {
-        for (int i = 0; i < 4; ++i) {
-          dx = dx - next / Branch(next, true, sigma, n);
-          next = Walk(u, dx, true, sigma, n);
-        }
-        next = T(0);
-      }
-      u = next;
-      path = path - dx;
-    }
+    Unload(u, path, sigma, n);
+    Load(u, path, n);
     return {d * u};
   }
 
  private:
-  static constexpr double kNear = 1e-8, kFine = 0.05;
+  static constexpr double kFine = 0.05, kSaturated = 10;
 
   template <class T>
   static T Power(const T& u, const T& n) {
@@ -71,20 +60,52 @@ struct BoucWen {
     return a > 0.0 ? T(exp(n * log(a))) : T(0);
   }
   template <class T>
-  static T Branch(const T& u, bool unloading, const T& sigma, const T& n) {
-    return 1.0 + (unloading ? T(2.0 * sigma - 1.0) : T(-1)) * Power(u, n);
-  }
-  template <class T>
   static T Slope(const T& u, const T& sigma, const T& n) {
-    return Branch(u, u < 0.0, sigma, n);
+    return 1.0 + (u < 0.0 ? T(2.0 * sigma - 1.0) : T(-1)) * Power(u, n);
   }
+
+  template <class T, class F>
+  static T Walk(const T& u, const T& dx, const F& slope) {
+    const T a = slope(u), b = slope(T(u + 0.5 * dx * a)), c = slope(T(u + 0.5 * dx * b));
+    return u + dx / 6.0 * (a + 2.0 * b + 2.0 * c + slope(T(u + dx * c)));
+  }
+
+  // Takes from the path what leads along (4), at most up to u = 0.
   template <class T>
-  static T Walk(const T& u, const T& dx, bool unloading, const T& sigma, const T& n) {
-    const T a = Branch(u, unloading, sigma, n);
-    const T b = Branch(T(u + 0.5 * dx * a), unloading, sigma, n);
-    const T c = Branch(T(u + 0.5 * dx * b), unloading, sigma, n);
-    const T e = Branch(T(u + dx * c), unloading, sigma, n);
-    return u + dx / 6.0 * (a + 2.0 * b + 2.0 * c + e);
+  static void Unload(T& u, T& path, const T& sigma, const T& n) {
+    const auto slope = [&](const T& at) { return 1.0 + (2.0 * sigma - 1.0) * Power(at, n); };
+    while (u < 0.0 && path > 0.0) {
+      T dx = kFine / (1.0 + n * (slope(u) - 1.0) / abs(u));
+      if (path < dx) dx = path;
+      T next = Walk(u, dx, slope);
+      if (next > 0.0) {
+        for (int i = 0; i < 4; ++i) {
+          dx = dx - next / slope(next);
+          next = Walk(u, dx, slope);
+        }
+        next = T(0);
+      }
+      u = next;
+      path = path - dx;
+    }
+  }
+
+  // Walks the path along (5); from kSaturated on its slope is n to 1e-9 of u.
+  template <class T>
+  static void Load(T& u, const T& path, const T& n) {
+    if (!(path > 0.0) || u >= 1.0) return;
+    const auto slope = [&](const T& at) {
+      const T rest = exp(-at);
+      return (1.0 - Power(T(1.0 - rest), n)) / rest;
+    };
+    T y = -log(1.0 - u), left = path;
+    while (left > 0.0 && y < kSaturated) {
+      T dx = kFine * (1.0 + y) / slope(y);
+      if (left < dx) dx = left;
+      y = Walk(y, dx, slope);
+      left = left - dx;
+    }
+    u = 1.0 - exp(-(y + n * left));
   }
 };
 
