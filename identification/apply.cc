@@ -81,14 +81,14 @@ std::string ApplyJson(const System& system, const nlohmann::json& json, const st
   const Json extension = Json(json, where).At("extension");
   std::vector<Change> changes;
   for (const Json& c : extension.At("changes").Items()) changes.push_back(ReadChange(c));
-  std::vector<EffectInstance> instances;
-  for (const Json& i : extension.At("instances").Items()) instances.push_back(ReadInstance(i));
-  const std::string replaces = extension.At("replaces").Text();
-  if (!replaces.empty() && instances.size() != 1)
-    extension.At("instances").Refuse("the one instance that replaces '" + replaces + "'");
+  System extended = system;
   try {
-    const System extended = replaces.empty() ? system.With({}, instances)
-                                             : system.Replacing(replaces, instances.front());
+    for (const Json& json_instance : extension.At("instances").Items()) {
+      const EffectInstance instance = ReadInstance(json_instance);
+      const std::string replaces = json_instance.At("replaces").Text();
+      extended =
+          replaces.empty() ? extended.With({}, {{instance}}) : extended.Replacing(replaces, instance);
+    }
     return extended.Xml(changes, {}, folder);
   } catch (const Error& error) {
     throw Error::Input(where, error.what());

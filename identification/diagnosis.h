@@ -30,19 +30,21 @@ struct TwoErrors {
 struct Fitted {
   Fit fit;
   std::vector<Problem::Vector> residuals;  ///< [log] at the optimum
-  std::vector<Problem::Matrix> jacobian;   ///< [log]
+  std::vector<Problem::Matrix> jacobian;   ///< [train log], after folds [log]
   std::vector<Problem::Matrix> step = {};  ///< [train log] what the time step leaves open
   Uncertainty uncertainty;
   TwoErrors error;
-  FoldScores folds;    ///< empty where the noise alone decides
-  double cost = 0;     ///< whitened sum of squares to first order, where the noise is known
-  double freedom = 0;  ///< what noise alone would make it
+  FoldScores folds;       ///< empty where the noise alone decides
+  double cost = 0;        ///< whitened sum of squares to first order, where the noise is known
+  double freedom = 0;     ///< what noise alone would make it
+  bool complete = false;  ///< else only x, residuals, error and the plain cost are known
 };
 
 struct CandidateResult {
   Hypothesis hypothesis;
-  Problem::Vector start = {};  ///< of its fit, when the screen found one
-  bool fits = false;           ///< whether it was fitted
+  std::vector<Probe> probes = {};  ///< one for each start: directions from the fit without it
+  Problem::Vector start = {};      ///< of its fit, when the screen found one
+  bool fits = false;               ///< whether it was fitted
   Fitted fitted = {};
   FoldRecord record = {};
   std::vector<std::string> failures = {};
@@ -51,6 +53,23 @@ struct CandidateResult {
   double p = 1;            ///< family-wise, of explained
   double likelihood = 0;   ///< twice the logarithm of the likelihood gained by its fit
   double probability = 0;  ///< among all candidates, each as likely before; noise-limited only
+  /// How well the data tell the leading candidate from this one: what this one cannot imitate of
+  /// what that explains, in units of twice the log-likelihood, to first order.
+  double apart = 0;
+
+  /// Where the values of hypothesis.extra begin in fitted.fit.x.
+  Eigen::Index own() const {
+    return fitted.fit.x.size() - static_cast<Eigen::Index>(hypothesis.extra.size());
+  }
+  Problem ProblemOf(const Experiment& experiment) const {
+    return Problem(experiment, hypothesis.system, hypothesis.Free());
+  }
+};
+
+/// A cause that acts together with the one that the candidates are compared for.
+struct Partner {
+  Hypothesis hypothesis;
+  std::vector<std::string> equivalent;  ///< effects that the data do not tell from it
 };
 
 /// A candidate that the first-order screen left behind without a fit.
@@ -76,6 +95,7 @@ struct Diagnosis {
   std::vector<Fold> folds;
   Fitted before;
   std::vector<CandidateResult> candidates;  ///< best first
+  std::optional<Partner> partner;           ///< of all candidates: their systems have it
   std::vector<Dismissed> dismissed;
   bool noise_limited = false;  ///< the best model leaves noise: likelihoods judge, else folds
   LackOfFit lack;              ///< of the model that is left standing
@@ -93,8 +113,9 @@ struct Diagnosis {
   const TwoErrors& after() const { return chosen() ? chosen()->fitted.error : before.error; }
 };
 
-/// Fits the model, tries every candidate by leaving out one group of logs at a time, compares them
-/// with random forces, and judges. Throws Error for experiments that cannot be diagnosed.
+/// Fits the model, tries every candidate, and judges: by likelihood where noise is all that the
+/// best one leaves (then also two causes together), else by leaving out one group of logs at a
+/// time, beside random forces. Throws Error for experiments that cannot be diagnosed.
 Diagnosis Diagnose(const Experiment& experiment, const System& system,
                    const DiagnosisOptions& options = {});
 

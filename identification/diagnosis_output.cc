@@ -47,8 +47,15 @@ std::string LagInWords(const Log& log, const std::vector<double>& y,
 // A problem for the hypothesis that was chosen, or the null one.
 Problem ChosenProblem(const Experiment& e, const Diagnosis& d) {
   const CandidateResult* chosen = d.chosen();
-  return chosen ? Problem(e, chosen->hypothesis.system, chosen->hypothesis.extra)
-                : Problem(e, d.system);
+  return chosen ? chosen->ProblemOf(e) : Problem(e, d.system);
+}
+
+std::vector<Added> AddedBy(const Diagnosis& d) {
+  std::vector<Added> added;
+  const auto add = [&](const Hypothesis& h) { added.push_back({h.instance, h.replaces}); };
+  if (d.chosen() && d.partner) add(d.partner->hypothesis);
+  if (d.chosen()) add(d.chosen()->hypothesis);
+  return added;
 }
 
 double FoldsWon(const Diagnosis& d, const CandidateResult& c) {
@@ -62,24 +69,50 @@ double FoldsWon(const Diagnosis& d, const CandidateResult& c) {
          static_cast<double>(std::max<std::size_t>(c.record.after.size(), 1));
 }
 
+// The parameters of one cause, whose values begin somewhere in a fit's.
+nlohmann::json ParametersOf(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin) {
+  nlohmann::json parameters = nlohmann::json::object();
+  for (std::size_t i = 0; i < h.extra.size(); ++i) {
+    const Eigen::Index at = begin + static_cast<Eigen::Index>(i);
+    const double value = fitted.fit.x[at];
+    const bool sure = std::isfinite(fitted.uncertainty.standard_error[at]);
+    std::string unit = "1";
+    for (const Param& p : EffectNamed(h.effect).params) {
+      if (p.name == h.extra[i].name) unit = p.unit;
+    }
+    parameters[h.extra[i].name] = {{"value", value},
+                                   {"unit", unit},
+                                   {"ci95",
+                                    {sure ? fitted.uncertainty.lower[at] : value,
+                                     sure ? fitted.uncertainty.upper[at] : value}}};
+  }
+  return parameters;
+}
+
+std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin) {
+  std::string text;
+  for (std::size_t k = 0; k < h.extra.size(); ++k) {
+    text += fmt::format(", {} = {:.4g}", h.extra[k].name,
+                        fitted.fit.x[begin + static_cast<Eigen::Index>(k)]);
+  }
+  return text;
+}
+
+// The cause that acts beside the chosen one.
+nlohmann::json PartnerJson(const Diagnosis& d) {
+  const Hypothesis& h = d.partner->hypothesis;
+  return {{"effect", h.effect},
+          {"variant", h.variant},
+          {"equivalent", d.partner->equivalent},
+          {"probability", d.chosen()->probability},
+          {"probability_is", "of both causes together"},
+          {"parameters", ParametersOf(h, d.chosen()->fitted, d.before.fit.x.size())},
+          {"where", h.where},
+          {"evidence", "consistent with the data: " + d.verdict.reason}};
+}
+
 nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
                          const std::vector<std::string>& equivalent) {
-  nlohmann::json parameters = nlohmann::json::object();
-  const Eigen::Index known = d.before.fit.x.size();
-  for (std::size_t i = 0; i < c.hypothesis.extra.size(); ++i) {
-    const Eigen::Index at = known + static_cast<Eigen::Index>(i);
-    const double value = c.fitted.fit.x[at];
-    const bool sure = std::isfinite(c.fitted.uncertainty.standard_error[at]);
-    std::string unit = "1";
-    for (const Param& p : EffectNamed(c.hypothesis.effect).params) {
-      if (p.name == c.hypothesis.extra[i].name) unit = p.unit;
-    }
-    parameters[c.hypothesis.extra[i].name] = {{"value", value},
-                                              {"unit", unit},
-                                              {"ci95",
-                                               {sure ? c.fitted.uncertainty.lower[at] : value,
-                                                sure ? c.fitted.uncertainty.upper[at] : value}}};
-  }
   const auto falls = std::count_if(
       c.record.after.begin(), c.record.after.end(),
       [&](const double& a) { return a < c.record.before[&a - c.record.after.data()]; });
@@ -103,7 +136,7 @@ nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
                                  ? "posterior among the candidates tried, each as likely before"
                                  : "share of the folds in which it is the best candidate; not "
                                    "calibrated"},
-          {"parameters", parameters},
+          {"parameters", ParametersOf(c.hypothesis, c.fitted, c.own())},
           {"where", c.hypothesis.where},
           {"evidence", evidence}};
 }
@@ -257,6 +290,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
       if (!known) equivalent.push_back(name);
     }
     json["causes"].push_back(CauseJson(d, *d.chosen(), equivalent));
+    if (d.partner) json["causes"].push_back(PartnerJson(d));
   }
   json["alternatives"] = nlohmann::json::array();
   for (const std::size_t i : d.verdict.named)
@@ -314,6 +348,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
          {"p", d.noise_limited ? c.p : of_placebos},
          {"likelihood", c.likelihood},
          {"probability", c.probability},
+         {"lambda", c.apart},
          {"group", named && d.verdict.named.size() > 1 ? "not told apart" : ""},
          {"folds", c.record.after},
          {"amplitude", c.record.amplitude},
@@ -335,9 +370,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
   const Problem problem = ChosenProblem(e, d);
   const auto& fitted = d.chosen() ? d.chosen()->fitted : d.before;
   json["parameters"] = ParametersJson(problem, fitted.fit.x, fitted.uncertainty);
-  json["extension"] = ChangesJson(problem, fitted.fit.x,
-                                  d.chosen() ? d.chosen()->hypothesis.instance : EffectInstance{},
-                                  d.chosen() ? d.chosen()->hypothesis.replaces : "");
+  json["extension"] = ChangesJson(problem, fitted.fit.x, AddedBy(d));
   json["extended_model"] = "extended.xml";
   json["extended_experiment"] = "extended.yaml";
   json["seconds"] = d.seconds;
@@ -352,11 +385,13 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
     const CandidateResult& c = d.candidates[i];
     text += fmt::format("{} {} at {}", i == d.verdict.named.front() ? "cause    " : "   or    ",
                         c.hypothesis.Name(), c.hypothesis.where);
-    const Eigen::Index known = d.before.fit.x.size();
-    for (std::size_t k = 0; k < c.hypothesis.extra.size(); ++k) {
-      text += fmt::format(", {} = {:.4g}", c.hypothesis.extra[k].name,
-                          c.fitted.fit.x[known + static_cast<Eigen::Index>(k)]);
-    }
+    text += ValuesInWords(c.hypothesis, c.fitted, c.own()) + "\n";
+  }
+  if (d.partner && d.chosen()) {
+    text += fmt::format(
+        "and       {} at {}{}", d.partner->hypothesis.Name(), d.partner->hypothesis.where,
+        ValuesInWords(d.partner->hypothesis, d.chosen()->fitted, d.before.fit.x.size()));
+    for (const std::string& other : d.partner->equivalent) text += ", or " + other;
     text += "\n";
   }
   text += fmt::format("error     train {:.4g} -> {:.4g} {u}, validate {:.4g} -> {:.4g} {u}\n",

@@ -39,6 +39,7 @@ class Story {
     for (const std::size_t i : d_.verdict.named) {
       names += (names.empty() ? "" : " or ") + d_.candidates[i].hypothesis.Name();
     }
+    if (d_.partner) names += ", beside " + d_.partner->hypothesis.Name();
     const Gain gain = GainOf(d_, told_.after);
     page_.Badge(
         v == "named" || v == "adequate" ? Tone::kGood : Tone::kWarn,
@@ -160,16 +161,19 @@ class Story {
     for (const auto& c : d_.candidates) {
       rows.push_back({c.hypothesis.Name(), c.hypothesis.where, fmt::format("{:.1f}", c.likelihood),
                       std::to_string(c.hypothesis.extra.size()), fmt::format("{:.2g}", c.p),
-                      fmt::format("{:.3f}", c.probability)});
+                      fmt::format("{:.3f}", c.probability), fmt::format("{:.1f}", c.apart)});
     }
     for (const auto& c : d_.dismissed) {
-      rows.push_back({c.effect, c.where, "not fitted", "", fmt::format("{:.2g}", c.p), ""});
+      rows.push_back({c.effect, c.where, "not fitted", "", fmt::format("{:.2g}", c.p), "", ""});
     }
     page_.Table(
-        {"candidate", "where", "2 ln L gained", "parameters", "p, family-wise", "posterior"}, rows,
+        {"candidate", "where", "2 ln L gained", "parameters", "p, family-wise", "posterior",
+         "lambda"},
+        rows,
         {"Twice the log-likelihood over the model without it; p: how often noise alone lets "
          "one of all candidates do as well to first order; posterior: each candidate as "
-         "likely before. What the best one leaves has p = " +
+         "likely before; lambda: what of the best candidate this one cannot imitate on these logs "
+         "(below about 15 they are hard to tell apart). What the best one leaves has p = " +
          fmt::format("{:.2g} against smooth forces and {:.2g} against shifts of the channels.",
                      d_.lack.force, d_.lack.channel)});
   }
@@ -200,8 +204,7 @@ class Story {
           "`extended.xml` runs in plain MuJoCo with the plugin; `extended.yaml` is the experiment "
           "that "
           "belongs to it.");
-      AddParameterTable(page_, Problem(e_, c->hypothesis.system, c->hypothesis.extra),
-                        c->fitted.fit.x, c->fitted.uncertainty);
+      AddParameterTable(page_, c->ProblemOf(e_), c->fitted.fit.x, c->fitted.uncertainty);
     } else {
       page_.Paragraph("Nothing was added: `extended.xml` is the model with refitted parameters.");
       AddParameterTable(page_, Problem(e_, d_.system), d_.before.fit.x, d_.before.uncertainty);

@@ -152,15 +152,16 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
 }
 
 nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
-                           const EffectInstance& instance, const std::string& replaces) {
-  nlohmann::json json{{"instances", nlohmann::json::array()},
-                      {"replaces", replaces},
-                      {"changes", nlohmann::json::array()}};
-  if (!instance.effect.empty()) {
+                           const std::vector<Added>& added) {
+  nlohmann::json json{{"instances", nlohmann::json::array()}, {"changes", nlohmann::json::array()}};
+  for (const auto& [instance, replaces] : added) {
+    if (instance.effect.empty()) continue;
     auto config = nlohmann::json::array();
     for (const auto& [key, value] : instance.config) config.push_back({key, value});
-    json["instances"].push_back(
-        {{"effect", instance.effect}, {"name", instance.name}, {"config", config}});
+    json["instances"].push_back({{"effect", instance.effect},
+                                 {"name", instance.name},
+                                 {"config", config},
+                                 {"replaces", replaces}});
   }
   const char* const operation[] = {"set", "scale", "add"};
   for (const Change& c : problem.CommonChanges(x)) {

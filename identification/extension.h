@@ -18,9 +18,16 @@ struct Extension {
 Extension Extend(const Problem& problem, const Problem::Vector& x,
                  const std::filesystem::path& folder);
 
-/// What was changed, for `continuum apply`: {instances, replaces, changes}.
+/// A plugin instance that an extension adds (native effects have none: no effect), and the name of
+/// the one whose place it takes, if any.
+struct Added {
+  EffectInstance instance;
+  std::string replaces;
+};
+/// What was changed, for `continuum apply`: {instances: [{effect, name, config, replaces}],
+/// changes}.
 nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
-                           const EffectInstance& instance, const std::string& replaces);
+                           const std::vector<Added>& added);
 /// Applies ChangesJson to another model and returns its MJCF, to be written into a folder (empty:
 /// beside the model). where: the file of the JSON. Throws Error with file and key.
 std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where,

@@ -74,13 +74,15 @@ class Watch : public ceres::IterationCallback {
       options_.progress(fmt::format("iteration {:2}  cost {:.6g}  {} simulations", s.iteration,
                                     s.cost, problem_.evaluations()));
     }
-    const bool hopeless =
-        s.iteration >= 4 && s.cost > options_.hopeless && s.cost_change < 0.2 * s.cost;
+    const bool hopeless = s.step_is_successful && s.iteration >= 2 &&
+                          s.cost > options_.hopeless + kMore * s.cost_change;
     return StopRequested() || hopeless ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                                        : ceres::SOLVER_CONTINUE;
   }
 
  private:
+  static constexpr double kMore = 4;  // steps as good as the last that a fit may still hope for
+
   const Problem& problem_;
   const FitOptions& options_;
   Fit& fit_;

@@ -17,7 +17,7 @@ struct FitOptions {
   double soft = 0;
   /// Of the residuals, when their noise is known; none: as they are.
   const Whitening* whitening = nullptr;
-  /// Give up after four iterations that leave the cost above this and gain less than a fifth.
+  /// Give up when even four more steps as good as the last would leave the cost above this.
   double hopeless = std::numeric_limits<double>::infinity();
   /// One line per iteration: cost and evaluations so far.
   std::function<void(const std::string&)> progress = {};

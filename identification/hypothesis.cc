@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
@@ -17,7 +16,14 @@
 namespace continuum {
 namespace {
 
-const std::string kInstance = "diagnosis";
+// A name that no instance of the model has.
+std::string FreshInstance(const mjModel& m) {
+  const std::string name = "diagnosis";
+  for (int i = 1;; ++i) {
+    std::string one = i == 1 ? name : name + std::to_string(i);
+    if (mj_name2id(&m, mjOBJ_PLUGIN, one.c_str()) < 0) return one;
+  }
+}
 
 mjtObj TypeOf(Place place) {
   switch (place) {
@@ -243,8 +249,9 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place,
 Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
                            const std::vector<std::string>& names, const System& system,
                            const Sizes& sizes, int option) {
-  EffectInstance added{
-      std::string(effect.name), kInstance, {{std::string(PlaceName(place)), Join(names)}}};
+  EffectInstance added{std::string(effect.name),
+                       FreshInstance(system.model()),
+                       {{std::string(PlaceName(place)), Join(names)}}};
   std::string variant;
   if (!effect.choices.empty() && effect.kind == EffectInfo::Kind::kFriction) {
     const Choice& choice = effect.choices.front();
@@ -442,49 +449,15 @@ std::size_t Hypothesis::Main(std::span<const double> values) const {
   return main;
 }
 
-Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
-  const Experiment& e = problem.experiment();
-  Sizes s;
-  double torque = 0, velocity = 0, tension = 0, count = 0;
-  double lower = kInfinity, upper = -kInfinity;
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    Machine machine = problem.system().Build(problem.ChangesFor(x, l));
-    Hooks hooks;
-    hooks.row = [&](const mjModel& m, mjData& d, std::size_t) {
-      for (int i = 0; i < m.nv; ++i) {
-        const double load = d.qfrc_actuator[i] - d.qfrc_bias[i] + d.qfrc_spring[i];
-        torque += d.qfrc_actuator[i] * d.qfrc_actuator[i] + load * load;
-        velocity += d.qvel[i] * d.qvel[i];
-        count += 1;
-      }
-      for (int i = 0; i < m.nq; ++i) {
-        lower = std::min(lower, d.qpos[i]), upper = std::max(upper, d.qpos[i]);
-      }
-      for (int i = 0; i < m.nu; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
-    };
-    Simulate(machine, e, e.logs[l], {}, hooks);
-  }
-  const auto rms = [&](double sum) { return count > 0 && sum > 0 ? std::sqrt(sum / count) : 1.0; };
-  s.torque = rms(torque);
-  s.velocity = rms(velocity);
-  if (upper > lower) s.angle = upper - lower;
-  if (tension > 0) s.tension = tension;
-  const mjModel& m = problem.system().model();
-  if (m.nv > 0)
-    s.inertia = std::accumulate(m.dof_M0, m.dof_M0 + m.nv, 0.0) / static_cast<double>(m.nv);
-  if (m.nbody > 1)
-    s.mass = std::max(1e-6, m.body_subtreemass[0] / static_cast<double>(m.nbody - 1));
-  std::vector<double> intervals;
-  for (const Log& log : e.logs) {
-    for (std::size_t k = 1; k < log.rows(); ++k) intervals.push_back(log.time[k] - log.time[k - 1]);
-  }
-  std::nth_element(intervals.begin(), intervals.begin() + intervals.size() / 2, intervals.end());
-  s.period = intervals[intervals.size() / 2];
-  return s;
+std::vector<Parameter> Hypothesis::Free() const {
+  std::vector<Parameter> all = given;
+  all.insert(all.end(), extra.begin(), extra.end());
+  return all;
 }
 
 std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system,
-                                       const Sizes& sizes, std::vector<std::string>& skipped) {
+                                       const Sizes& sizes, std::vector<std::string>& skipped,
+                                       const std::vector<Parameter>& given) {
   std::vector<Hypothesis> all;
   if (e.all_candidates) {
     for (const EffectInfo& effect : Catalog())
@@ -494,7 +467,7 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system
       AddEffect(EffectNamed(c.effect), c, e, system, sizes, all, skipped);
     }
   }
-  for (Hypothesis& h : all) h.starts = StartsOf(h);
+  for (Hypothesis& h : all) h.starts = StartsOf(h), h.given = given;
   return all;
 }
 

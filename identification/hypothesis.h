@@ -6,6 +6,7 @@
 
 #include "identification/catalog.h"
 #include "identification/fit.h"
+#include "identification/sizes.h"
 
 namespace continuum {
 
@@ -22,6 +23,10 @@ struct Hypothesis {
   /// Values of extra at which the effect is absent; NaN for those that mean nothing then.
   std::vector<double> null = {};
 
+  /// Free parameters of the causes that its system has already; they come before extra.
+  std::vector<Parameter> given = {};
+
+  std::vector<Parameter> Free() const;  ///< given and extra
   /// Which of extra (values: theirs) says how large the effect is: the largest, in units of its
   /// bounds, of those that say whether the effect is there.
   std::size_t Main(std::span<const double> values) const;
@@ -30,21 +35,11 @@ struct Hypothesis {
   std::string Name() const { return variant.empty() ? effect : effect + " (" + variant + ")"; }
 };
 
-/// What a search may assume about sizes, measured on the experiment's own simulation.
-struct Sizes {
-  double torque = 1;     ///< typical generalized force on the joints [N*m]
-  double angle = 1;      ///< typical joint range [rad]
-  double velocity = 1;   ///< typical joint speed [rad/s]
-  double tension = 1;    ///< typical force along tendons [N]
-  double mass = 1;       ///< mass of the moving bodies [kg]
-  double inertia = 1;    ///< inertia that a joint sees [kg*m^2]
-  double period = 0.01;  ///< median sampling interval [s]
-};
-Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
-
 /// The candidates of an experiment that make sense in its model, one Hypothesis per effect and
-/// choice; skipped: one sentence for each that does not.
+/// choice; skipped: one sentence for each that does not. given: free parameters of causes that the
+/// system has already.
 std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const System& system,
-                                       const Sizes& sizes, std::vector<std::string>& skipped);
+                                       const Sizes& sizes, std::vector<std::string>& skipped,
+                                       const std::vector<Parameter>& given = {});
 
 }  // namespace continuum

@@ -53,6 +53,12 @@ std::string UnitOf(const System& system, const Parameter& p) {
 
 }  // namespace
 
+std::vector<bool> TrainLogs(const Experiment& experiment) {
+  std::vector<bool> use;
+  for (const Log& log : experiment.logs) use.push_back(log.train);
+  return use;
+}
+
 double SumOfSquares(const std::vector<Eigen::VectorXd>& residuals) {
   double sum = 0;
   for (const auto& r : residuals) sum += r.squaredNorm();
@@ -174,12 +180,6 @@ Problem::Vector Problem::Clamp(const Vector& x) const {
     out[i] = std::clamp(x[i], parameters_[i].lower, parameters_[i].upper);
   }
   return out;
-}
-
-std::vector<bool> Problem::TrainLogs() const {
-  std::vector<bool> use;
-  for (const Log& log : experiment_->logs) use.push_back(log.train);
-  return use;
 }
 
 // Those of the model, or those of the measurement, in the order in which they apply.

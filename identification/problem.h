@@ -31,6 +31,9 @@ struct ForceTerms {
   double size = 1;  ///< typical θ [N*m]
 };
 
+/// Which logs a fit may see.
+std::vector<bool> TrainLogs(const Experiment& experiment);
+
 /// Residuals of an experiment's logs as functions of the parameters of one model.
 ///
 /// Residuals are (simulated − measured)/scale · sqrt(weight) over all counted channels of a log,
@@ -76,7 +79,7 @@ class Problem {
   std::vector<Change> CommonChanges(const Vector& x) const;
 
   std::vector<bool> AllLogs() const { return std::vector<bool>(experiment_->logs.size(), true); }
-  std::vector<bool> TrainLogs() const;
+  std::vector<bool> TrainLogs() const { return continuum::TrainLogs(*experiment_); }
   /// Simulations run so far.
   std::size_t evaluations() const { return evaluations_; }
   /// Counted channels, in the order in which their rows follow each other in a residual vector.

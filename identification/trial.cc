@@ -1,9 +1,9 @@
 #include "identification/trial.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 
 #include "error.h"
 #include "identification/placebo.h"
@@ -54,20 +54,21 @@ Matrix ChannelColumns(const Problem& problem, const Trace& trace, const Log& log
 
 }  // namespace
 
-std::vector<bool> Trials::Train() const {
-  std::vector<bool> use;
-  for (const Log& log : experiment->logs) use.push_back(log.train);
-  return use;
+Vector Append(const Vector& known, const std::vector<double>& own) {
+  Vector x(known.size() + static_cast<Eigen::Index>(own.size()));
+  x.head(known.size()) = known;
+  std::copy(own.begin(), own.end(), x.data() + known.size());
+  return x;
 }
 
 Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) const {
-  const auto train = Train();
+  const auto train = TrainLogs(*experiment);
   auto validate = train;
   validate.flip();
   Fitted f;
   FitOptions options{iterations, 1e-4};  // first order does the rest
   options.whitening = &whitening;
-  options.hopeless = 1.5 * rival + 50;
+  options.hopeless = 1.1 * rival + 50;
   f.fit = FitParameters(problem, start, train, options);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
   for (std::size_t l = 0; l < train.size(); ++l) {
@@ -75,29 +76,49 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) co
     throw Error::Job("the simulation of " + experiment->logs[l].label +
                      " diverges with the fitted parameters");
   }
-  f.jacobian = problem.Jacobian(f.fit.x, f.residuals, problem.AllLogs());
-  auto J = f.jacobian;
-  for (std::size_t l = 0; l < J.size(); ++l) {
-    if (!train[l]) J[l].resize(0, 0);
-  }
-  f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, J, whitening);
   f.error = {problem.PooledRms(f.residuals, train), problem.PooledRms(f.residuals, validate)};
-  f.step = problem.StepEffects(f.fit.x, f.residuals, train);
-  if (!whitening.active()) return f;
-  const Remainder left = LeftBy(f);
-  f.cost = left.cost();
-  f.freedom = left.freedom();
+  f.cost = 2 * f.fit.cost;
   return f;
 }
 
+void Trials::Complete(const Problem& problem, Fitted& f) const {
+  const auto train = TrainLogs(*experiment);
+  f.jacobian = problem.Jacobian(f.fit.x, f.residuals, train);
+  f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, f.jacobian, whitening);
+  f.step = problem.StepEffects(f.fit.x, f.residuals, train);
+  f.complete = true;
+  if (!whitening.active()) return;
+  const Remainder left = LeftBy(f);
+  f.cost = left.cost();
+  f.freedom = left.freedom();
+}
+
+Fitted Trials::FitAll(const Problem& problem, const Vector& start) const {
+  Fitted f = Fit(problem, start);
+  Complete(problem, f);
+  return f;
+}
+
+void Trials::AddFolds(const Problem& problem, const std::vector<Fold>& folds,
+                      Fitted& fitted) const {
+  auto validate = TrainLogs(*experiment);
+  validate.flip();
+  auto J = problem.Jacobian(fitted.fit.x, fitted.residuals, validate);
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (!validate[l]) J[l] = fitted.jacobian[l];
+  }
+  fitted.jacobian = std::move(J);
+  fitted.folds = CrossValidate(problem, fitted.fit.x, fitted.jacobian, folds);
+}
+
 Remainder Trials::LeftBy(const Fitted& fitted) const {
-  return Remainder(whitening, Train(), fitted.residuals, fitted.jacobian,
+  return Remainder(whitening, TrainLogs(*experiment), fitted.residuals, fitted.jacobian,
                    fitted.uncertainty.at_bound, fitted.step);
 }
 
 std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                                   const Remainder& left) const {
-  const auto train = Train();
+  const auto train = TrainLogs(*experiment);
   const auto known = null.fit.x.size();
   const auto amplitudes = h.Amplitudes();
   std::vector<Probe> probes;
@@ -109,10 +130,7 @@ std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, c
     }
     Probe probe;
     for (std::size_t a = 0; a < amplitudes.size(); ++a) {
-      Vector x(known + static_cast<Eigen::Index>(start.size()));
-      x.head(known) = null.fit.x;
-      for (std::size_t i = 0; i < start.size(); ++i)
-        x[known + static_cast<Eigen::Index>(i)] = start[i];
+      Vector x = Append(null.fit.x, start);
       for (const std::size_t i : amplitudes) x[known + static_cast<Eigen::Index>(i)] = Absent(h, i);
       const std::size_t i = amplitudes[a];
       x[known + static_cast<Eigen::Index>(i)] = start[i];
@@ -137,10 +155,7 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t st
                          const Explained& probe) const {
   const auto known = null.fit.x.size();
   const auto amplitudes = h.Amplitudes();
-  Vector x(known + static_cast<Eigen::Index>(h.extra.size()));
-  x.head(known) = null.fit.x;
-  for (std::size_t i = 0; i < h.extra.size(); ++i)
-    x[known + static_cast<Eigen::Index>(i)] = h.starts[start][i];
+  Vector x = Append(null.fit.x, h.starts[start]);
   for (std::size_t a = 0; a < amplitudes.size(); ++a) {
     const std::size_t i = amplitudes[a];
     if (std::isinf(h.null[i])) continue;  // its start is as good as any
@@ -161,12 +176,10 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t st
 LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& extra,
                          const Fitted& fitted, const Sizes& sizes, double inflation,
                          std::uint64_t seed) const {
-  const auto train = Train();
+  const auto train = TrainLogs(*experiment);
   const ForceTerms terms = RandomForce(12, true, sizes, seed);
   const Problem problem(*experiment, system, extra, terms);
-  const auto known = fitted.fit.x.size();
-  Vector x = Vector::Zero(known + static_cast<Eigen::Index>(terms.count));
-  x.head(known) = fitted.fit.x;
+  const Vector x = Append(fitted.fit.x, std::vector<double>(terms.count, 0.0));
   const Remainder left = LeftBy(fitted);
   LackOfFit lack;
   auto J = problem.Jacobian(x, fitted.residuals, train, fitted.jacobian);

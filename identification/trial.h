@@ -14,6 +14,13 @@ struct Trials {
   /// come near to be worth its iterations. Throws Error when it diverges.
   Fitted Fit(const Problem& problem, const Problem::Vector& start,
              double rival = std::numeric_limits<double>::infinity()) const;
+  /// What else there is to know of a fit: sensitivities and intervals, what the time step leaves
+  /// open, and with these the cost to first order.
+  void Complete(const Problem& problem, Fitted& fitted) const;
+  /// Both.
+  Fitted FitAll(const Problem& problem, const Problem::Vector& start) const;
+  /// Leaves out each fold in turn.
+  void AddFolds(const Problem& problem, const std::vector<Fold>& folds, Fitted& fitted) const;
   /// What a fit leaves, to first order; needs the noise.
   Remainder LeftBy(const Fitted& fitted) const;
   /// The starts of a candidate, each as directions from the null fit.
@@ -25,8 +32,9 @@ struct Trials {
   /// Tests of what no candidate covers; inflation: of noise along any direction.
   LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
                    const Sizes& sizes, double inflation, std::uint64_t seed) const;
-
-  std::vector<bool> Train() const;
 };
+
+/// Parameters that are known, and then those of a candidate.
+Problem::Vector Append(const Problem::Vector& known, const std::vector<double>& own);
 
 }  // namespace continuum

@@ -45,7 +45,7 @@ struct LikelihoodRecord {
 
 struct LikelihoodRules {
   double level = 0.045;     ///< family-wise, of any name at all
-  double lack = 0.002;      ///< below it something is left that no name covers; each of three tests
+  double lack = 0.002;      ///< below it something is left that no name covers; each of two tests
   double apart = 5;         ///< likelihood by which a rival must fall behind
   double deeper = 2.8;      ///< score by which a law must beat one that it contains (99 %)
   double parameter = 3.84;  ///< what another parameter must gain (95 % of chi-squared)

@@ -42,8 +42,8 @@ inline constexpr char kLog[] = "t,u,q\n0,0.1,0\n0.1,0.1,0.01\n0.2,0.1,0.03\n0.3,
 inline constexpr char kInput[] = "time,motor\n0.5,0.1\n0.6,0.2\n0.7,0.1\n";
 /// What `apply` needs of a diagnosis: a stiffer joint and dry friction.
 inline constexpr char kDiagnosis[] = R"({"extension": {
-  "instances": [{"effect": "coulomb", "name": "dry", "config": [["joint", "hinge"], ["tau_c", "0.01"]]}],
-  "replaces": "",
+  "instances": [{"effect": "coulomb", "name": "dry", "config": [["joint", "hinge"], ["tau_c", "0.01"]],
+                 "replaces": ""}],
   "changes": [{"target": "joint:hinge", "attribute": "damping", "value": 2, "operation": "scale"}]}}
 )";
 

@@ -169,7 +169,7 @@ TEST_P(Applied, GivesTheSameModelAsTheExtensionWithTheSameErrors) {
     auto x = problem.Start();
     x[0] = 1.15, x[1] = 0.04, x[2] = 0.09;
     const Extension extension = Extend(problem, x, folder_ / "out");
-    const nlohmann::json json{{"extension", ChangesJson(problem, x, h.instance, h.replaces)}};
+    const nlohmann::json json{{"extension", ChangesJson(problem, x, {{h.instance, h.replaces}})}};
     EXPECT_EQ(ApplyJson(system, nlohmann::json::parse(json.dump()), "diagnosis.json"),
               extension.xml);
     const double train =
@@ -190,7 +190,7 @@ TEST_F(ExtensionTest, ApplyNamesWhatIsMissing) {
     }
   }
   const auto json = nlohmann::json::parse(
-      R"({"extension": {"instances": [], "replaces": "", "changes": [{"target": "joint:elbow",
+      R"({"extension": {"instances": [], "changes": [{"target": "joint:elbow",
           "attribute": "damping", "value": 1, "operation": "set"}]}})");
   try {
     ApplyJson(system, json, "some.json");

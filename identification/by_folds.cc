@@ -1,0 +1,136 @@
+#include "identification/by_folds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "identification/parallel.h"
+#include "identification/placebo.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+
+class Comparison {
+ public:
+  Comparison(const Trials& trials, const DiagnosisOptions& options, Diagnosis& d)
+      : trials_(trials), e_(*trials.experiment), options_(options), d_(d) {}
+
+  void Run() {
+    Say("folds");
+    trials_.AddFolds(Problem(e_, d_.system), d_.folds, d_.before);
+    for (CandidateResult& c : d_.candidates) {
+      Say("folds of " + c.hypothesis.Name());
+      RecordFolds(trials_, d_, c);
+    }
+    RunCeiling();
+    RunPlacebos();
+    Rank();
+  }
+
+ private:
+  void Say(const std::string& text) const {
+    if (StopRequested()) throw Error::Job("interrupted");
+    if (options_.progress) options_.progress(text);
+  }
+
+  // Fits a force without a name at the null optimum (Gauss-Newton), scored like a candidate.
+  FoldScores TryForce(const ForceTerms& terms, TwoErrors* error) const {
+    const Problem problem(e_, d_.system, {}, terms);
+    Vector x = Vector::Zero(d_.before.fit.x.size() + static_cast<Eigen::Index>(terms.count));
+    x.head(d_.before.fit.x.size()) = d_.before.fit.x;
+    const auto J = problem.Jacobian(x, d_.before.residuals, problem.AllLogs(), d_.before.jacobian);
+    if (error) {
+      auto validate = problem.TrainLogs();
+      validate.flip();
+      const Vector fitted = RefitByChords(problem, x, J, problem.TrainLogs(), 5);
+      const auto r = problem.Residuals(fitted, problem.AllLogs());
+      *error = {problem.PooledRms(r, problem.TrainLogs()), problem.PooledRms(r, validate)};
+    }
+    return CrossValidate(problem, x, J, d_.folds);
+  }
+
+  void RunCeiling() {
+    Say("ceiling");
+    d_.ceiling = TryForce(RandomForce(16, true, d_.sizes, options_.seed), &d_.ceiling_error);
+  }
+
+  // Placebos with one and with two parameters, as many as the candidates have.
+  void RunPlacebos() {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{2}}) {
+      const auto size = [](const CandidateResult& c) {
+        return std::min<std::size_t>(2, c.hypothesis.extra.size());
+      };
+      const bool needed = std::any_of(d_.candidates.begin(), d_.candidates.end(),
+                                      [&](const auto& c) { return size(c) == count; });
+      if (!needed) continue;
+      std::vector<double> gains;
+      for (int k = 0; k < options_.placebos; ++k) {
+        Say(fmt::format("random force {} of {} with {} parameter(s)", k + 1, options_.placebos,
+                        count));
+        FoldRecord record;
+        record.before = d_.before.folds.error;
+        record.after =
+            TryForce(RandomForce(count, k % 2 == 1, d_.sizes,
+                                 options_.seed + 1000 * count + static_cast<unsigned>(k)),
+                     nullptr)
+                .error;
+        gains.push_back(Median(Gains(record)));
+      }
+      for (CandidateResult& c : d_.candidates) {
+        if (size(c) == count) c.record.placebo_gains = gains;
+      }
+    }
+  }
+
+  bool Known() const { return d_.noise.known() && d_.noise.rms > 0; }
+  double Floor() const { return std::hypot(d_.noise.rms, d_.noise.step); }
+
+  void Rank() {
+    std::stable_sort(d_.candidates.begin(), d_.candidates.end(), [](const auto& a, const auto& b) {
+      return Median(Gains(a.record)) > Median(Gains(b.record));
+    });
+    std::vector<FoldRecord> records;
+    for (CandidateResult& c : d_.candidates) {
+      c.failures = Failures(c.record);
+      if (Known()) c.record.remaining = c.fitted.error.train / Floor();
+      records.push_back(c.record);
+    }
+    FoldRecord ceiling;
+    ceiling.before = d_.before.folds.error;
+    ceiling.after = d_.ceiling.error;
+    const double over = Known() ? d_.before.error.train / Floor() : 0;
+    Rules rules;
+    // Replicates tell the noise whatever the model: then nothing above it may remain unexplained.
+    if (d_.noise.source == "replicates") rules.noise_limited = kInfinity;
+    d_.verdict = Judge(records, over, Median(Gains(ceiling)), rules);
+  }
+
+  const Trials& trials_;
+  const Experiment& e_;
+  const DiagnosisOptions& options_;
+  Diagnosis& d_;
+};
+
+}  // namespace
+
+void RecordFolds(const Trials& trials, const Diagnosis& d, CandidateResult& c) {
+  trials.AddFolds(c.ProblemOf(*trials.experiment), d.folds, c.fitted);
+  c.record.before = d.before.folds.error;
+  c.record.after = c.fitted.folds.error;
+  const Eigen::Index own = c.own();
+  const std::span<const double> values(c.fitted.fit.x.data() + own, c.hypothesis.extra.size());
+  const std::size_t main = c.hypothesis.Main(values);
+  const double null = std::isinf(c.hypothesis.null[main]) ? 0 : c.hypothesis.null[main];
+  for (const Vector& x : c.fitted.folds.x)
+    c.record.amplitude.push_back(x[own + static_cast<Eigen::Index>(main)] - null);
+}
+
+void CompareByFolds(const Trials& trials, const DiagnosisOptions& options, Diagnosis& diagnosis) {
+  Comparison(trials, options, diagnosis).Run();
+}
+
+}  // namespace continuum

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "identification/round.h"
+
+namespace continuum {
+
+/// Two causes that act together and leave nothing but noise: the candidates of a round whose base
+/// has one of them already, and what the data do not tell from that one.
+struct Pair {
+  Round round;                          ///< for the second cause; its leading candidate is it
+  Hypothesis first;                     ///< what the base has
+  double first_likelihood;              ///< gained by the first alone
+  std::vector<std::string> equivalent;  ///< effects that could stand for the first
+  Verdict verdict;                      ///< indices into round.candidates
+};
+
+/// Looks for two causes when no single one leaves noise: forward from the best single candidates,
+/// and backward, since the first may have been taken for two that together do better: the partner
+/// that was found becomes the base, until nothing changes. single: a round that has been fitted.
+/// Nothing when no pair leaves noise.
+std::optional<Pair> FindPair(const Trials& trials, const Round& single, const Noise& noise,
+                             const Sizes& sizes, const DiagnosisOptions& options);
+
+}  // namespace continuum

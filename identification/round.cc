@@ -1,0 +1,230 @@
+#include "identification/round.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "error.h"
+#include "identification/parallel.h"
+#include "identification/rounding.h"
+
+namespace continuum {
+namespace {
+
+// Whether B's directions span A's.
+bool Contains(const CandidateResult& b, const CandidateResult& a) {
+  if (a.probes.empty() || b.probes.empty()) return false;
+  const Problem::Matrix &A = a.probes.front().columns, &B = b.probes.front().columns;
+  if (A.cols() >= B.cols()) return false;
+  const Problem::Matrix rest = A - B * B.completeOrthogonalDecomposition().solve(A);
+  return rest.squaredNorm() < 0.01 * A.squaredNorm();
+}
+
+}  // namespace
+
+Round::Round(const Trials& trials, const Base& base, const Noise& noise, const Sizes& sizes,
+             const DiagnosisOptions& options)
+    : trials_(trials), base_(base), noise_(noise), sizes_(sizes), options_(options) {
+  Experiment wanted = *trials.experiment;
+  if (!options.candidates.empty()) {
+    wanted.all_candidates = false;
+    wanted.candidates.clear();
+    for (const auto& name : options.candidates) wanted.candidates.push_back({name, "", false});
+  }
+  for (Hypothesis& h : MakeCandidates(wanted, *base.system, sizes, skipped, base.given)) {
+    candidates.push_back({std::move(h)});
+    candidates.back().record.name = candidates.back().hypothesis.Name();
+  }
+}
+
+void Round::Say(const std::string& text) const {
+  if (StopRequested()) throw Error::Job("interrupted");
+  if (options_.progress) options_.progress(text);
+}
+
+void Round::Screen() {
+  const Remainder left = trials_.LeftBy(*base_.fitted);
+  std::vector<std::vector<Probe>> probes;
+  std::vector<Problem::Matrix> columns;
+  for (CandidateResult& c : candidates) {
+    Say("screen " + c.hypothesis.Name());
+    try {
+      c.probes =
+          trials_.Probes(c.hypothesis, c.ProblemOf(*trials_.experiment), *base_.fitted, left);
+    } catch (const Error& error) {
+      c.error = error.what();
+    }
+    probes.push_back(c.probes);
+    for (const Probe& probe : c.probes) columns.push_back(probe.columns);
+  }
+  const Problem base(*trials_.experiment, *base_.system, base_.given);
+  std::vector<Trace> traces;
+  for (std::size_t l = 0; l < trials_.experiment->logs.size(); ++l)
+    traces.push_back(base.Predict(base_.fitted->fit.x, l));
+  const Rounding rounding(base, noise_, std::move(traces));
+  if (rounding.any()) inflation_ = rounding.Inflation(left, columns, options_.seed);
+  const Significance found = SignificanceOf(probes, left.residual(), inflation_, options_.seed);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    CandidateResult& c = candidates[i];
+    c.explained = found.explained[i];
+    c.p = found.p[i];
+    smallest_p_ = std::min(smallest_p_, c.p);
+    if (c.probes.empty()) continue;
+    const std::size_t best = found.best[i];
+    c.start = trials_.StartFrom(c.hypothesis, *base_.fitted, best,
+                                ExplainedBy(c.probes[best], left.residual()));
+    std::swap(c.probes[0], c.probes[best]);
+  }
+}
+
+double Round::smallest_p() const { return smallest_p_; }
+
+bool Round::SomethingIsLeft() const {
+  const Fitted& f = *base_.fitted;
+  return smallest_p_ < LikelihoodRules{}.level ||
+         f.cost > kModelLimited * kModelLimited * f.freedom;
+}
+
+// Where little is to be explained first order is right to a few units, else wrong about sizes by
+// factors but not by orders of magnitude.
+double Round::HowMuchIsNeeded() const {
+  double best = 0;
+  for (const CandidateResult& c : candidates) best = std::max(best, c.explained);
+  return std::max(std::min(best - 15, 45.0), 0.02 * best);
+}
+
+// The likeliest first, so that the others know what to reach.
+void Round::Fit() {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.explained > b.explained; });
+  const double needed = noise_.known() ? HowMuchIsNeeded() : 0;
+  double rival = std::numeric_limits<double>::infinity();
+  for (CandidateResult& c : candidates) {
+    if (!c.error.empty() || c.explained < needed) continue;
+    Say("fit " + c.hypothesis.Name());
+    try {
+      FitOne(c, rival);
+      if (noise_.known()) rival = std::min(rival, c.fitted.fit.cost);
+    } catch (const Error& error) {
+      c.error = error.what();
+    }
+  }
+  CompleteTheBest();
+  Dismiss();
+  TellApart();
+}
+
+// From the screen's start, or the best of several after a few iterations.
+void Round::FitOne(CandidateResult& c, double rival) const {
+  const Problem problem = c.ProblemOf(*trials_.experiment);
+  c.fitted = trials_.Fit(problem, c.start.size() ? c.start : BestStart(c, problem), rival);
+  c.fits = true;
+}
+
+CandidateResult Round::FitAlone(CandidateResult c) const {
+  FitOne(c, std::numeric_limits<double>::infinity());
+  trials_.Complete(c.ProblemOf(*trials_.experiment), c.fitted);
+  c.likelihood = (base_.fitted->cost - c.fitted.cost) / inflation_;
+  return c;
+}
+
+Problem::Vector Round::BestStart(const CandidateResult& c, const Problem& problem) const {
+  const auto& starts = c.hypothesis.starts;
+  if (starts.size() == 1) return Append(base_.fitted->fit.x, starts.front());
+  double best_cost = std::numeric_limits<double>::infinity();
+  Problem::Vector best;
+  for (const auto& start : starts) {
+    try {
+      const continuum::Fit fit = FitParameters(problem, Append(base_.fitted->fit.x, start),
+                                               problem.TrainLogs(), {4, 1e-3});
+      if (fit.cost < best_cost) best_cost = fit.cost, best = fit.x;
+    } catch (const Error&) {
+      continue;  // this start diverges; another may not
+    }
+  }
+  if (best.size() == 0) throw Error::Job("the simulation diverges from every start");
+  return best;
+}
+
+// Sensitivities are dear: only those get theirs that may come near the best with them. What the
+// time step leaves open takes about as much off everybody's cost.
+void Round::CompleteTheBest() {
+  std::vector<CandidateResult*> order;
+  for (CandidateResult& c : candidates) {
+    if (c.fits) order.push_back(&c);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto* a, const auto* b) { return a->fitted.cost < b->fitted.cost; });
+  constexpr double kNear = 50;
+  double best = std::numeric_limits<double>::infinity(), taken_off = 0;
+  for (CandidateResult* const c : order) {
+    const double plain = c->fitted.cost;
+    if (!noise_.known() || plain - best < kNear + 2 * taken_off) {
+      Say("sensitivities of " + c->hypothesis.Name());
+      trials_.Complete(c->ProblemOf(*trials_.experiment), c->fitted);
+      best = std::min(best, c->fitted.cost);
+      taken_off = std::max(taken_off, plain - c->fitted.cost);
+    }
+    c->likelihood = (base_.fitted->cost - c->fitted.cost) / inflation_;
+  }
+}
+
+void Round::Dismiss() {
+  std::vector<CandidateResult> kept;
+  for (CandidateResult& c : candidates) {
+    if (c.fits) {
+      kept.push_back(std::move(c));
+    } else if (!c.error.empty()) {
+      skipped.push_back(c.hypothesis.Name() + ": " + c.error);
+    } else {
+      left_behind.push_back(std::move(c));
+    }
+  }
+  candidates = std::move(kept);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.likelihood > b.likelihood; });
+}
+
+// |v − P v|², v what the leading candidate's directions explain, P onto the other's directions.
+void Round::TellApart() {
+  if (candidates.empty() || candidates.front().probes.empty()) return;
+  const Remainder left = trials_.LeftBy(*base_.fitted);
+  const Probe& lead = candidates.front().probes.front();
+  const Problem::Vector v = lead.columns * ExplainedBy(lead, left.residual()).coefficients;
+  for (CandidateResult& c : candidates) {
+    if (c.probes.empty()) continue;
+    const Problem::Matrix& B = c.probes.front().columns;
+    c.apart = (v - B * B.completeOrthogonalDecomposition().solve(v)).squaredNorm() / inflation_;
+  }
+}
+
+const CandidateResult* Round::leading() const {
+  return candidates.empty() || !candidates.front().fits ? nullptr : &candidates.front();
+}
+
+double Round::BestLeaves() const {
+  const Fitted& best = leading() ? leading()->fitted : *base_.fitted;
+  return std::sqrt(best.cost / best.freedom);
+}
+
+LackOfFit Round::Lack() const {
+  const CandidateResult* const best = leading();
+  return trials_.LackIn(best ? best->hypothesis.system : *base_.system,
+                        best ? best->hypothesis.Free() : base_.given,
+                        best ? best->fitted : *base_.fitted, sizes_, inflation_, options_.seed);
+}
+
+std::vector<LikelihoodRecord> Round::Records() const {
+  std::vector<LikelihoodRecord> records;
+  for (const CandidateResult& c : candidates) {
+    LikelihoodRecord record{c.hypothesis.Name(), c.hypothesis.extra.size(), c.likelihood, {}};
+    for (std::size_t a = 0; a < candidates.size(); ++a) {
+      if (&candidates[a] != &c && Contains(c, candidates[a])) record.contains.push_back(a);
+    }
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+}  // namespace continuum

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "identification/trial.h"
+
+namespace continuum {
+
+/// A fitted model from which to look for one more cause.
+struct Base {
+  const System* system;
+  std::vector<Parameter> given;  ///< free parameters of causes that the system has already
+  const Fitted* fitted;          ///< complete
+};
+
+/// One search for one more cause where the noise is known: all candidates to first order, then fits
+/// of those that matter. Where it is not known, Screen is left out and every candidate fitted.
+class Round {
+ public:
+  Round(const Trials& trials, const Base& base, const Noise& noise, const Sizes& sizes,
+        const DiagnosisOptions& options);
+
+  /// What every candidate could explain of what the base leaves, and how often noise alone would
+  /// let the best of so many do as well.
+  void Screen();
+  /// Whether a candidate is significant, or what is left is plainly not noise.
+  bool SomethingIsLeft() const;
+  /// Fits those that first order does not leave far behind; then best first, the others dismissed.
+  void Fit();
+
+  /// A candidate that was left behind or not fitted to the end, with a complete fit. Throws Error
+  /// when it diverges.
+  CandidateResult FitAlone(CandidateResult candidate) const;
+
+  /// Root of the whitened sum of squares that the best model leaves, over what noise would leave.
+  double BestLeaves() const;
+  /// The best model of this round: the leading candidate, or null for the base.
+  const CandidateResult* leading() const;
+  LackOfFit Lack() const;
+  /// For JudgeLikelihoods, of the fitted candidates.
+  std::vector<LikelihoodRecord> Records() const;
+  double smallest_p() const;  ///< of all candidates, fitted or not
+
+  std::vector<CandidateResult> candidates;   ///< after Fit: the fitted ones
+  std::vector<CandidateResult> left_behind;  ///< by the screen, without a fit
+  std::vector<std::string> skipped;
+
+  static constexpr double kModelLimited = 3;  ///< times the noise: more is plainly not noise
+
+ private:
+  void Say(const std::string& text) const;
+  double HowMuchIsNeeded() const;
+  void FitOne(CandidateResult& c, double rival) const;
+  Problem::Vector BestStart(const CandidateResult& c, const Problem& problem) const;
+  void CompleteTheBest();
+  void Dismiss();
+  void TellApart();
+
+  const Trials& trials_;
+  Base base_;
+  const Noise& noise_;
+  const Sizes& sizes_;
+  const DiagnosisOptions& options_;
+  double smallest_p_ = 1;
+  double inflation_ = 1;  // of what rounding errors explain over whitened noise
+};
+
+}  // namespace continuum

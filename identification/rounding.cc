@@ -1,0 +1,59 @@
+#include "identification/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace continuum {
+
+Rounding::Rounding(const Problem& problem, const Noise& noise, std::vector<Trace> traces)
+    : problem_(&problem), noise_(&noise), traces_(std::move(traces)) {
+  for (const std::size_t c : problem.channels()) any_ |= Rounded(noise.channel[c]);
+}
+
+Noise Rounding::Corrected() const {
+  Noise noise = *noise_;
+  for (std::size_t c = 0; c < noise.channel.size(); ++c) {
+    std::vector<std::vector<double>> values;
+    for (const Trace& trace : traces_) values.push_back(trace.channel[c]);
+    noise.channel[c] = RoundingNoise(noise.channel[c], values);
+  }
+  return noise;
+}
+
+double Rounding::Inflation(const Remainder& left, const std::vector<Problem::Matrix>& columns,
+                           std::uint64_t seed) const {
+  std::mt19937_64 rng(seed);
+  constexpr int kDraws = 40;
+  double power = 0, count = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const Problem::Vector z = left.Project(Draw(rng)).col(0);
+    for (const Problem::Matrix& c : columns) {
+      for (Eigen::Index i = 0; i < c.cols(); ++i) {
+        const double norm = c.col(i).squaredNorm();
+        if (norm > 0) power += std::pow(c.col(i).dot(z), 2) / norm, count += 1;
+      }
+    }
+  }
+  return count > 0 ? std::max(1.0, power / count) : 1;
+}
+
+std::vector<Problem::Matrix> Rounding::Draw(std::mt19937_64& rng) const {
+  const auto& channels = problem_->channels();
+  std::vector<Problem::Matrix> draw;
+  for (const Trace& trace : traces_) {
+    const auto rows = static_cast<Eigen::Index>(trace.channel[channels.front()].size());
+    Problem::Matrix log =
+        Problem::Matrix::Zero(rows * static_cast<Eigen::Index>(channels.size()), 1);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const ChannelNoise& n = noise_->channel[channels[c]];
+      if (!Rounded(n)) continue;
+      const auto errors = RoundingErrors(n, trace.channel[channels[c]], rng);
+      for (Eigen::Index k = 0; k < rows; ++k)
+        log(static_cast<Eigen::Index>(c) * rows + k, 0) = errors[k] / problem_->scale(c);
+    }
+    draw.push_back(std::move(log));
+  }
+  return draw;
+}
+
+}  // namespace continuum

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "identification/screen.h"
+
+namespace continuum {
+
+/// What values rounded to steps larger than their noise do to a diagnosis. traces: [log] what the
+/// fitted model says.
+class Rounding {
+ public:
+  Rounding(const Problem& problem, const Noise& noise, std::vector<Trace> traces);
+
+  bool any() const { return any_; }
+  /// The noise with that of the rounded channels as a model moves between their steps.
+  Noise Corrected() const;
+  /// Rounding errors are neither normal nor stationary: how much more of them than of whitened
+  /// noise the columns (projected) take up, by draws; at least 1.
+  double Inflation(const Remainder& left, const std::vector<Problem::Matrix>& columns,
+                   std::uint64_t seed) const;
+
+ private:
+  std::vector<Problem::Matrix> Draw(std::mt19937_64& rng) const;
+
+  const Problem* problem_;
+  const Noise* noise_;
+  std::vector<Trace> traces_;
+  bool any_ = false;
+};
+
+}  // namespace continuum

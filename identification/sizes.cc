@@ -1,0 +1,52 @@
+#include "identification/sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "effects/effect.h"
+
+namespace continuum {
+
+Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
+  const Experiment& e = problem.experiment();
+  Sizes s;
+  double torque = 0, velocity = 0, tension = 0, count = 0;
+  double lower = kInfinity, upper = -kInfinity;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    Machine machine = problem.system().Build(problem.ChangesFor(x, l));
+    Hooks hooks;
+    hooks.row = [&](const mjModel& m, mjData& d, std::size_t) {
+      for (int i = 0; i < m.nv; ++i) {
+        const double load = d.qfrc_actuator[i] - d.qfrc_bias[i] + d.qfrc_spring[i];
+        torque += d.qfrc_actuator[i] * d.qfrc_actuator[i] + load * load;
+        velocity += d.qvel[i] * d.qvel[i];
+        count += 1;
+      }
+      for (int i = 0; i < m.nq; ++i) {
+        lower = std::min(lower, d.qpos[i]), upper = std::max(upper, d.qpos[i]);
+      }
+      for (int i = 0; i < m.nu; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
+    };
+    Simulate(machine, e, e.logs[l], {}, hooks);
+  }
+  const auto rms = [&](double sum) { return count > 0 && sum > 0 ? std::sqrt(sum / count) : 1.0; };
+  s.torque = rms(torque);
+  s.velocity = rms(velocity);
+  if (upper > lower) s.angle = upper - lower;
+  if (tension > 0) s.tension = tension;
+  const mjModel& m = problem.system().model();
+  if (m.nv > 0)
+    s.inertia = std::accumulate(m.dof_M0, m.dof_M0 + m.nv, 0.0) / static_cast<double>(m.nv);
+  if (m.nbody > 1)
+    s.mass = std::max(1e-6, m.body_subtreemass[0] / static_cast<double>(m.nbody - 1));
+  std::vector<double> intervals;
+  for (const Log& log : e.logs) {
+    for (std::size_t k = 1; k < log.rows(); ++k) intervals.push_back(log.time[k] - log.time[k - 1]);
+  }
+  std::nth_element(intervals.begin(), intervals.begin() + intervals.size() / 2, intervals.end());
+  s.period = intervals[intervals.size() / 2];
+  return s;
+}
+
+}  // namespace continuum

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "identification/problem.h"
+
+namespace continuum {
+
+/// What a search may assume about sizes, measured on the experiment's own simulation.
+struct Sizes {
+  double torque = 1;     ///< typical generalized force on the joints [N*m]
+  double angle = 1;      ///< typical joint range [rad]
+  double velocity = 1;   ///< typical joint speed [rad/s]
+  double tension = 1;    ///< typical force along tendons [N]
+  double mass = 1;       ///< mass of the moving bodies [kg]
+  double inertia = 1;    ///< inertia that a joint sees [kg*m^2]
+  double period = 0.01;  ///< median sampling interval [s]
+};
+Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
+
+}  // namespace continuum
