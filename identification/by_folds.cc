@@ -118,7 +118,9 @@ class Comparison {
 }  // namespace
 
 void RecordFolds(const Trials& trials, const Diagnosis& d, CandidateResult& c) {
-  trials.AddFolds(c.ProblemOf(*trials.experiment), d.folds, c.fitted);
+  const Problem problem = c.ProblemOf(*trials.experiment);
+  if (!c.fitted.complete) trials.Complete(problem, c.fitted);
+  trials.AddFolds(problem, d.folds, c.fitted);
   c.record.before = d.before.folds.error;
   c.record.after = c.fitted.folds.error;
   const Eigen::Index own = c.own();

@@ -28,20 +28,25 @@ class Cost : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
   }
 
+  // What is known at one x already.
+  void Know(const Vector& x, std::vector<Vector> r, std::vector<Matrix> J) {
+    x_ = x, r_ = std::move(r), J_ = std::move(J);
+  }
+
   bool Evaluate(const double* const* y, double* residuals, double** jacobians) const override {
     const auto& parameters = problem_.parameters();
     Vector x(static_cast<Eigen::Index>(parameters.size()));
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = y[0][i] * parameters[i].scale;
     x = problem_.Clamp(x);
-    if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x;
+    if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x, J_.clear();
     const Vector all = whitening_.Stack(r_, use_);
     if (!all.allFinite()) return false;
     for (Eigen::Index k = 0; k < all.size(); ++k) residuals[k] = Soften(all[k]).first;
     if (!jacobians || !jacobians[0]) return true;
-    const auto J = problem_.Jacobian(x, r_, use_);
+    if (J_.empty()) J_ = problem_.Jacobian(x, r_, use_);
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
         jacobians[0], all.size(), x.size());
-    out = whitening_.Stack(J, use_);
+    out = whitening_.Stack(J_, use_);
     for (Eigen::Index i = 0; i < x.size(); ++i) out.col(i) *= parameters[i].scale;
     for (Eigen::Index k = 0; k < all.size(); ++k) out.row(k) *= Soften(all[k]).second;
     return out.allFinite();
@@ -62,6 +67,7 @@ class Cost : public ceres::CostFunction {
   const Whitening& whitening_;
   mutable Vector x_;
   mutable std::vector<Vector> r_;
+  mutable std::vector<Matrix> J_;  // at x_, once it was asked for
 };
 
 class Watch : public ceres::IterationCallback {
@@ -88,9 +94,7 @@ class Watch : public ceres::IterationCallback {
   Fit& fit_;
 };
 
-void RequireEffect(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
-                   const std::vector<bool>& use) {
-  const auto J = problem.Jacobian(x, r, use);
+void RequireEffect(const Problem& problem, const Vector& x, const std::vector<Matrix>& J) {
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
     double norm = 0;
@@ -140,8 +144,16 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t before = problem.evaluations();
   Fit fit;
-  fit.x = problem.Clamp(x);
-  const auto r = problem.Residuals(fit.x, use);
+  const auto& parameters = problem.parameters();
+  Vector y = problem.Clamp(x);  // scaled, as Ceres sees them
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] /= parameters[i].scale;
+  const auto unscaled = [&] {
+    Vector values(y.size());
+    for (Eigen::Index i = 0; i < y.size(); ++i) values[i] = y[i] * parameters[i].scale;
+    return problem.Clamp(values);
+  };
+  fit.x = unscaled();
+  auto r = problem.Residuals(fit.x, use);
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const Vector all = whitening.Stack(r, use);
@@ -151,14 +163,13 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
     fit.converged = true;
     return fit;
   }
-  RequireEffect(problem, fit.x, r, use);
+  auto J = problem.Jacobian(fit.x, r, use);
+  RequireEffect(problem, fit.x, J);
 
-  const auto& parameters = problem.parameters();
-  Vector y(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) y[i] = fit.x[i] / parameters[i].scale;
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   Cost cost(problem, use, options.soft, whitening, all.size());
+  cost.Know(fit.x, std::move(r), std::move(J));
   ceres::Problem ceres(ownership);
   ceres.AddResidualBlock(&cost, nullptr, y.data());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -176,13 +187,15 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   solver.parameter_tolerance = 1e-7;
   solver.initial_trust_region_radius = 1e3;
   solver.max_num_consecutive_invalid_steps = 12;
+  // Steps that a bound cuts short are searched by values alone: a gradient is a Jacobian here.
+  solver.line_search_interpolation_type = ceres::BISECTION;
+  solver.max_num_line_search_step_size_iterations = 3;
   solver.logging_type = ceres::SILENT;
   solver.callbacks.push_back(&watch);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &ceres, &summary);
 
-  for (Eigen::Index i = 0; i < x.size(); ++i) fit.x[i] = y[i] * parameters[i].scale;
-  fit.x = problem.Clamp(fit.x);
+  fit.x = unscaled();
   fit.cost = summary.final_cost;
   fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
   fit.converged = summary.termination_type == ceres::CONVERGENCE;
