@@ -86,8 +86,8 @@ std::string ApplyJson(const System& system, const nlohmann::json& json, const st
     for (const Json& json_instance : extension.At("instances").Items()) {
       const EffectInstance instance = ReadInstance(json_instance);
       const std::string replaces = json_instance.At("replaces").Text();
-      extended =
-          replaces.empty() ? extended.With({}, {{instance}}) : extended.Replacing(replaces, instance);
+      extended = replaces.empty() ? extended.With({}, {{instance}})
+                                  : extended.Replacing(replaces, instance);
     }
     return extended.Xml(changes, {}, folder);
   } catch (const Error& error) {

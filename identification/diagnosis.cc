@@ -30,19 +30,29 @@ class Session {
     d_.folds = FoldsOf(e_);
     FitNull();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
-    d_.noise.step = StepEffect(d_.before);
+    d_.noise.step = trials_.StepEffect(null_, d_.before);
     Round round(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_);
     if (d_.noise.known()) {
       round.Screen();
       if (round.SomethingIsLeft()) round.Fit();
-      d_.noise_limited = round.BestLeaves() < Round::kModelLimited;
+      Judge(round);
+      auto pair =
+          MayBeTwo(round) ? FindPair(trials_, round, d_.noise, d_.sizes, options_) : std::nullopt;
+      d_.noise_limited = pair || round.BestLeaves() < Round::kModelLimited;
+      if (pair) {
+        JudgePair(*pair);
+      } else {
+        Take(round);
+      }
     } else {
       round.Fit();
+      Take(round);
     }
     if (d_.noise_limited) {
-      CompareLikelihoods(std::move(round));
+      NameOnce();
+      ScoreFolds();
     } else {
-      CompareFolds(std::move(round));
+      CompareFolds();
     }
     BootstrapGain();
     d_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -74,15 +84,6 @@ class Session {
     trials_.Complete(null_, d_.before);
   }
 
-  // How far the trajectories at h and at h/4 are apart [pooled unit].
-  double StepEffect(const Fitted& fitted) const {
-    std::vector<Problem::Vector> column(e_.logs.size());
-    for (std::size_t l = 0; l < column.size(); ++l) {
-      if (e_.logs[l].train) column[l] = fitted.step[l].col(0);
-    }
-    return null_.PooledRms(column, TrainLogs(e_));
-  }
-
   void Take(Round& round) {
     d_.candidates = std::move(round.candidates);
     for (const CandidateResult& c : round.left_behind) {
@@ -92,19 +93,15 @@ class Session {
     for (std::string& s : round.skipped) d_.skipped.push_back(std::move(s));
   }
 
-  // Noise is all that the best model leaves: likelihoods are calibrated.
-  void CompareLikelihoods(Round round) {
-    Say("what is left");
-    Judge(round);
-    const bool two = d_.verdict.text == "unexplained" && round.leading() &&
-                     round.smallest_p() < LikelihoodRules{}.level;
-    auto pair = two ? FindPair(trials_, round, d_.noise, d_.sizes, options_) : std::nullopt;
-    if (pair) {
-      JudgePair(*pair);
-    } else {
-      Take(round);
-    }
-    NameOnce();
+  // No single candidate leaves noise, and what the best leaves is not a hundred times the noise.
+  bool MayBeTwo(const Round& round) const {
+    constexpr double kHopeless = 10;
+    return d_.verdict.text == "unexplained" && round.leading() &&
+           round.smallest_p() < LikelihoodRules{}.level && round.BestLeaves() < kHopeless;
+  }
+
+  // Likelihoods have judged; the folds show what that is worth.
+  void ScoreFolds() {
     if (d_.folds.empty()) return;
     trials_.AddFolds(null_, d_.folds, d_.before);
     for (const std::size_t i : d_.verdict.named) RecordFolds(trials_, d_, d_.candidates[i]);
@@ -112,11 +109,14 @@ class Session {
     if (d_.chosen()) d_.ceiling = d_.chosen()->fitted.folds, d_.ceiling_error = d_.after();
   }
 
+  // By likelihoods, which are calibrated where noise is all that the best model leaves.
   void Judge(Round& round) {
+    Say("what is left");
     const auto records = round.Records();
     SetProbabilities(round.candidates, records);
-    d_.lack = round.Lack();
-    const bool numerical = WithinStep(round.leading() ? round.leading()->fitted : d_.before);
+    const CandidateResult* const best = round.leading();
+    d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
+    const bool numerical = trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.noise);
     d_.verdict = JudgeLikelihoods(records, numerical ? 1 : d_.lack.smallest(), round.smallest_p());
     if (numerical && d_.lack.smallest() < LikelihoodRules{}.lack)
       d_.verdict.reason += "; what is left above the noise is within what the time step adds";
@@ -131,23 +131,17 @@ class Session {
   // Likelihoods of both together, over the model without either.
   void JudgePair(Pair& pair) {
     d_.verdict = pair.verdict;
-    d_.lack = pair.round.Lack();
+    d_.lack = pair.lack;
     SetProbabilities(pair.round.candidates, pair.round.Records());
     for (CandidateResult& c : pair.round.candidates) c.likelihood += pair.first_likelihood;
     Take(pair.round);
+    d_.pairs = std::move(pair.tried);
     d_.partner = {std::move(pair.first), std::move(pair.equivalent)};
     d_.verdict.reason =
         fmt::format("no single candidate leaves only noise, two do: {} at {} beside this; {}",
                     d_.partner->hypothesis.Name(), d_.partner->hypothesis.where, d_.verdict.reason);
-    if (!d_.partner->equivalent.empty()) d_.verdict.text = "ambiguous";
-  }
-
-  // Whether what a model leaves above the noise is no more than what its time step adds: then it is
-  // no sign of another cause.
-  bool WithinStep(const Fitted& fitted) const {
-    const double left = fitted.error.train, noise = d_.noise.rms;
-    const double excess = std::sqrt(std::max(0.0, left * left - noise * noise));
-    return excess <= 1.25 * StepEffect(fitted);
+    const bool one = d_.verdict.named.size() == 1 && d_.partner->equivalent.empty();
+    d_.verdict.text = one ? "named" : "ambiguous";
   }
 
   // One effect at several places is one name: the data do not tell the places apart.
@@ -170,12 +164,12 @@ class Session {
     named.resize(1);
   }
 
-  void CompareFolds(Round round) {
+  void CompareFolds() {
     if (d_.folds.empty()) {
       throw Error::Input(e_.file.string() + ": folds",
                          "at least two groups of logs to leave out in turn", "one");
     }
-    Take(round);
+    d_.verdict = {};
     CompareByFolds(trials_, options_, d_);
   }
 

@@ -72,6 +72,12 @@ struct Partner {
   std::vector<std::string> equivalent;  ///< effects that the data do not tell from it
 };
 
+/// Two causes that were fitted together, and what both gain in twice the log-likelihood.
+struct PairTried {
+  std::string first, second;
+  double likelihood;
+};
+
 /// A candidate that the first-order screen left behind without a fit.
 struct Dismissed {
   std::string effect, variant, where;
@@ -96,6 +102,7 @@ struct Diagnosis {
   Fitted before;
   std::vector<CandidateResult> candidates;  ///< best first
   std::optional<Partner> partner;           ///< of all candidates: their systems have it
+  std::vector<PairTried> pairs;             ///< where no single candidate was enough; best first
   std::vector<Dismissed> dismissed;
   bool noise_limited = false;  ///< the best model leaves noise: likelihoods judge, else folds
   LackOfFit lack;              ///< of the model that is left standing

@@ -364,6 +364,11 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
                                   {"p", c.p},
                                   {"group", "left behind by the first-order screen"}});
   }
+  json["pairs"] = nlohmann::json::array();
+  for (const PairTried& pair : d.pairs) {
+    json["pairs"].push_back(
+        {{"effects", {pair.first, pair.second}}, {"likelihood", pair.likelihood}});
+  }
   json["lack_of_fit"] = {{"force", d.lack.force}, {"channel", d.lack.channel}};
   json["skipped"] = d.skipped;
   json["parameters"] = nlohmann::json::array();

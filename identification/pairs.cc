@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <set>
 
 #include "error.h"
@@ -12,6 +13,24 @@ namespace {
 constexpr std::size_t kBases = 4;  // single causes that are tried as one of two
 
 std::string Key(const Hypothesis& h) { return h.Name() + " at " + h.where; }
+
+// A first cause, and the round for a second beside it.
+struct Beside {
+  const CandidateResult* first;
+  Round round;
+};
+
+// One pair that was fitted.
+struct Fitting {
+  std::size_t base;    // index of its Beside
+  std::size_t second;  // index in its round
+  const CandidateResult *a, *b;
+
+  double likelihood() const { return a->likelihood + b->likelihood; }
+  bool Has(const std::string& effect) const {
+    return a->hypothesis.effect == effect || b->hypothesis.effect == effect;
+  }
+};
 
 class Search {
  public:
@@ -34,12 +53,6 @@ class Search {
   }
 
  private:
-  struct Tried {
-    const CandidateResult* first;
-    Round round;
-    double total() const { return first->likelihood + round.leading()->likelihood; }
-  };
-
   void Await(const CandidateResult& c) {
     if (known_.insert(Key(c.hypothesis)).second) waiting_.push_back(&c);
   }
@@ -74,40 +87,96 @@ class Search {
     return nullptr;
   }
 
-  // The pair with the highest likelihood; its first cause is judged by the rounds of the others.
-  std::optional<Pair> Best() {
-    const auto best =
-        std::max_element(tried_.begin(), tried_.end(),
-                         [](const Tried& a, const Tried& b) { return a.total() < b.total(); });
-    if (best == tried_.end()) return {};
-    const Verdict verdict = JudgeLikelihoods(best->round.Records(), best->round.Lack().smallest(),
-                                             best->round.smallest_p());
-    if (verdict.named.empty()) return {};
-    std::vector<std::string> equivalent;
-    for (const Tried& other : tried_) {
-      if (best->total() - other.total() >= LikelihoodRules{}.apart) continue;
-      AddOthers(*best, other, equivalent);
+  // Every pair that was fitted, once, best first.
+  std::vector<Fitting> All() const {
+    std::map<std::set<std::string>, Fitting> all;
+    for (std::size_t t = 0; t < tried_.size(); ++t) {
+      const auto& candidates = tried_[t].round.candidates;
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const Fitting one{t, i, tried_[t].first, &candidates[i]};
+        const auto [at, fresh] =
+            all.try_emplace({Key(one.a->hypothesis), Key(one.b->hypothesis)}, one);
+        if (!fresh && at->second.likelihood() < one.likelihood()) at->second = one;
+      }
     }
-    return Pair{std::move(best->round), best->first->hypothesis, best->first->likelihood,
-                std::move(equivalent), verdict};
+    std::vector<Fitting> list;
+    for (const auto& [keys, one] : all) list.push_back(one);
+    std::stable_sort(list.begin(), list.end(), [](const Fitting& a, const Fitting& b) {
+      return a.likelihood() > b.likelihood();
+    });
+    return list;
   }
 
-  // Effects of pairs about as likely as the best that could stand for its first cause.
-  static void AddOthers(const Tried& best, const Tried& other,
-                        std::vector<std::string>& equivalent) {
-    const std::string& second = best.round.leading()->hypothesis.effect;
-    const std::string& first = best.first->hypothesis.effect;
-    const auto add = [&](const std::string& effect) {
-      if (effect == first || effect == second) return;
-      if (std::find(equivalent.begin(), equivalent.end(), effect) == equivalent.end())
-        equivalent.push_back(effect);
-    };
-    add(other.first->hypothesis.effect);
-    for (const CandidateResult& c : other.round.candidates) {
-      const double total = other.first->likelihood + c.likelihood;
-      if (best.total() - total < LikelihoodRules{}.apart && other.first != best.first)
-        add(c.hypothesis.effect);
+  // A pair contains another when they share a cause and its other one contains the other's.
+  static bool Inside(const Fitting& outer, const Fitting& inner) {
+    return (outer.base == inner.base && Contains(*outer.b, *inner.b)) ||
+           (Key(outer.b->hypothesis) == Key(inner.b->hypothesis) && Contains(*outer.a, *inner.a));
+  }
+
+  static std::vector<LikelihoodRecord> RecordsOf(const std::vector<Fitting>& pairs) {
+    std::vector<LikelihoodRecord> records;
+    for (const Fitting& p : pairs) {
+      const Hypothesis &a = p.a->hypothesis, &b = p.b->hypothesis;
+      LikelihoodRecord record{
+          a.Name() + " and " + b.Name(), a.extra.size() + b.extra.size(), p.likelihood(), {}};
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (&pairs[i] != &p && Inside(p, pairs[i])) record.contains.push_back(i);
+      }
+      records.push_back(std::move(record));
     }
+    return records;
+  }
+
+  std::optional<Pair> Best() {
+    const auto pairs = All();
+    if (pairs.empty()) return {};
+    Verdict verdict = JudgeLikelihoods(RecordsOf(pairs), 1, 0);
+    const Fitting& best = pairs[verdict.named.front()];
+    const Round& round = tried_[best.base].round;
+    const LackOfFit lack = round.LackOf(*best.b);
+    if (lack.smallest() < LikelihoodRules{}.lack && !WithinStep(*best.b)) return {};
+    const auto equivalent = OthersForFirst(pairs, verdict);
+    auto tried = List(pairs);
+    std::vector<std::size_t> seconds;
+    for (const std::size_t n : verdict.named) {
+      if (pairs[n].base == best.base) seconds.push_back(pairs[n].second);
+    }
+    verdict.named = seconds;
+    return Pair{std::move(tried_[best.base].round),
+                best.a->hypothesis,
+                best.a->likelihood,
+                equivalent,
+                std::move(verdict),
+                lack,
+                std::move(tried)};
+  }
+
+  bool WithinStep(const CandidateResult& c) const {
+    return trials_.WithinStep(c.ProblemOf(*trials_.experiment), c.fitted, noise_);
+  }
+
+  // Effects of pairs in the set that are neither of the best pair's, nor stand for its second.
+  static std::vector<std::string> OthersForFirst(const std::vector<Fitting>& pairs,
+                                                 const Verdict& verdict) {
+    const Fitting& best = pairs[verdict.named.front()];
+    std::set<std::string> taken{best.a->hypothesis.effect, best.b->hypothesis.effect};
+    for (const std::size_t n : verdict.named) {
+      if (pairs[n].base == best.base) taken.insert(pairs[n].b->hypothesis.effect);
+    }
+    std::vector<std::string> others;
+    for (const std::size_t n : verdict.named) {
+      for (const CandidateResult* const c : {pairs[n].a, pairs[n].b}) {
+        if (taken.insert(c->hypothesis.effect).second) others.push_back(c->hypothesis.effect);
+      }
+    }
+    return others;
+  }
+
+  static std::vector<PairTried> List(const std::vector<Fitting>& pairs) {
+    std::vector<PairTried> list;
+    for (const Fitting& p : pairs)
+      list.push_back({Key(p.a->hypothesis), Key(p.b->hypothesis), p.likelihood()});
+    return list;
   }
 
   const Trials& trials_;
@@ -118,7 +187,7 @@ class Search {
   std::deque<const CandidateResult*> waiting_;
   std::set<std::string> known_;
   std::deque<CandidateResult> alone_;  // where single_ has no complete fit
-  std::vector<Tried> tried_;
+  std::deque<Beside> tried_;
 };
 
 }  // namespace

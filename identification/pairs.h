@@ -4,14 +4,15 @@
 
 namespace continuum {
 
-/// Two causes that act together and leave nothing but noise: the candidates of a round whose base
-/// has one of them already, and what the data do not tell from that one.
+/// Two causes that act together and leave nothing but noise.
 struct Pair {
-  Round round;                          ///< for the second cause; its leading candidate is it
-  Hypothesis first;                     ///< what the base has
+  Round round;  ///< for the second cause: its base has the first
+  Hypothesis first;
   double first_likelihood;              ///< gained by the first alone
   std::vector<std::string> equivalent;  ///< effects that could stand for the first
-  Verdict verdict;                      ///< indices into round.candidates
+  Verdict verdict;                      ///< on the second; indices into round.candidates
+  LackOfFit lack;
+  std::vector<PairTried> tried;  ///< best first
 };
 
 /// Looks for two causes when no single one leaves noise: forward from the best single candidates,

@@ -10,9 +10,7 @@
 #include "identification/rounding.h"
 
 namespace continuum {
-namespace {
 
-// Whether B's directions span A's.
 bool Contains(const CandidateResult& b, const CandidateResult& a) {
   if (a.probes.empty() || b.probes.empty()) return false;
   const Problem::Matrix &A = a.probes.front().columns, &B = b.probes.front().columns;
@@ -20,8 +18,6 @@ bool Contains(const CandidateResult& b, const CandidateResult& a) {
   const Problem::Matrix rest = A - B * B.completeOrthogonalDecomposition().solve(A);
   return rest.squaredNorm() < 0.01 * A.squaredNorm();
 }
-
-}  // namespace
 
 Round::Round(const Trials& trials, const Base& base, const Noise& noise, const Sizes& sizes,
              const DiagnosisOptions& options)
@@ -208,11 +204,13 @@ double Round::BestLeaves() const {
   return std::sqrt(best.cost / best.freedom);
 }
 
-LackOfFit Round::Lack() const {
-  const CandidateResult* const best = leading();
-  return trials_.LackIn(best ? best->hypothesis.system : *base_.system,
-                        best ? best->hypothesis.Free() : base_.given,
-                        best ? best->fitted : *base_.fitted, sizes_, inflation_, options_.seed);
+LackOfFit Round::LackOf(const CandidateResult& c) const {
+  return trials_.LackIn(c.hypothesis.system, c.hypothesis.Free(), c.fitted, sizes_, inflation_,
+                        options_.seed);
+}
+LackOfFit Round::LackOfBase() const {
+  return trials_.LackIn(*base_.system, base_.given, *base_.fitted, sizes_, inflation_,
+                        options_.seed);
 }
 
 std::vector<LikelihoodRecord> Round::Records() const {

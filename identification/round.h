@@ -11,6 +11,9 @@ struct Base {
   const Fitted* fitted;          ///< complete
 };
 
+/// Whether b can imitate whatever a does: its directions span a's.
+bool Contains(const CandidateResult& b, const CandidateResult& a);
+
 /// One search for one more cause where the noise is known: all candidates to first order, then fits
 /// of those that matter. Where it is not known, Screen is left out and every candidate fitted.
 class Round {
@@ -34,7 +37,8 @@ class Round {
   double BestLeaves() const;
   /// The best model of this round: the leading candidate, or null for the base.
   const CandidateResult* leading() const;
-  LackOfFit Lack() const;
+  LackOfFit LackOf(const CandidateResult& candidate) const;
+  LackOfFit LackOfBase() const;
   /// For JudgeLikelihoods, of the fitted candidates.
   std::vector<LikelihoodRecord> Records() const;
   double smallest_p() const;  ///< of all candidates, fitted or not

@@ -173,6 +173,21 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t st
   return x;
 }
 
+double Trials::StepEffect(const Problem& problem, const Fitted& fitted) const {
+  const auto train = TrainLogs(*experiment);
+  std::vector<Vector> column(train.size());
+  for (std::size_t l = 0; l < column.size(); ++l) {
+    if (train[l]) column[l] = fitted.step[l].col(0);
+  }
+  return problem.PooledRms(column, train);
+}
+
+bool Trials::WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const {
+  const double left = fitted.error.train;
+  const double excess = std::sqrt(std::max(0.0, left * left - noise.rms * noise.rms));
+  return excess <= 1.25 * StepEffect(problem, fitted);
+}
+
 LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& extra,
                          const Fitted& fitted, const Sizes& sizes, double inflation,
                          std::uint64_t seed) const {

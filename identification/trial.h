@@ -29,6 +29,11 @@ struct Trials {
   /// Where to begin a candidate's fit: a start of its own, with sizes from a probe.
   Problem::Vector StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
                             const Explained& probe) const;
+  /// How far the trajectories at the time step h and at h/4 are apart [pooled unit].
+  double StepEffect(const Problem& problem, const Fitted& fitted) const;
+  /// Whether what a candidate leaves above the noise is no more than what its time step adds: then
+  /// it is no sign of another cause.
+  bool WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const;
   /// Tests of what no candidate covers; inflation: of noise along any direction.
   LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
                    const Sizes& sizes, double inflation, std::uint64_t seed) const;

@@ -18,6 +18,12 @@ namespace {
 
 constexpr double kFactors[] = {0.125, 0.25, 0.5, 1, 2, 4};
 
+constexpr const char* kPairs[][2] = {
+    {"payload", "coulomb"},           {"cubic_stiffness", "sensor_scale"},
+    {"input_gain", "coulomb"},        {"gravity_tilt", "armature"},
+    {"payload", "sensor_delay"},      {"coulomb", "input_offset"},
+    {"dead_time", "cubic_stiffness"}, {"external_force", "armature"}};
+
 bool Known(const std::string& effect) {
   for (const EffectInfo& info : Catalog()) {
     if (info.name == effect) return true;
@@ -36,6 +42,8 @@ std::vector<Case> Cases(int repeats) {
       for (int n = 0; n < 4; ++n) all.push_back({{}, 1, noise, seed++});
     }
     int turn = r;
+    for (const auto& pair : kPairs)
+      all.push_back({{pair[0], pair[1]}, 2, static_cast<NoiseKind>(turn++ % 5), seed++});
     for (const Hidden& h : HiddenEffects()) {
       if (!Known(h.name)) continue;
       for (const double factor : kFactors)
@@ -54,6 +62,7 @@ nlohmann::json ToJson(const Case& c, const Answer& a) {
           {"noise", kNoiseNames[static_cast<int>(c.noise)]},
           {"verdict", a.verdict},
           {"named", a.named},
+          {"partner", a.partner},
           {"right", InSet(c, a)},
           {"unique", Unique(a)},
           {"truth", a.truth},
@@ -86,12 +95,14 @@ struct Count {
 
 void Report(const std::vector<nlohmann::json>& lines) {
   std::map<std::string, Count> none, effects, unlisted;
-  Count all;
+  Count all, pairs;
   for (const auto& line : lines) {
     if (!line.contains("effects")) continue;
     const auto& hidden = line.at("effects");
     if (hidden.empty()) {
       none[line.at("noise")].Add(line);
+    } else if (hidden.size() > 1) {
+      pairs.Add(line);
     } else if (!line.at("listed")) {
       unlisted[hidden.front()].Add(line);
     } else {
@@ -110,6 +121,8 @@ void Report(const std::vector<nlohmann::json>& lines) {
   }
   fmt::print("  {:<18} {:3} {:3} {:3} of {:3}   {:3} of {:3}\n", "all", all.right, all.unique_right,
              all.unique_wrong, all.n, all.covered, all.with_value);
+  fmt::print("two hidden: both found {} of {}, single names that are wrong {}\n", pairs.right,
+             pairs.n, pairs.unique_wrong);
   fmt::print("hidden and not listed: one (wrong) name\n");
   for (const auto& [name, c] : unlisted)
     fmt::print("  {:<18} {:3} of {:3}\n", name, c.unique_wrong, c.n);

@@ -156,21 +156,29 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
     if (c.effects.empty() || one.hypothesis.effect != c.effects.front()) continue;
     const Hidden& h = HiddenNamed(c.effects.front());
     a.truth = h.null + h.size * c.factor;
-    const Eigen::Index known = d.before.fit.x.size();
     for (std::size_t k = 0; k < one.hypothesis.extra.size(); ++k) {
       if (one.hypothesis.extra[k].name != h.parameter) continue;
-      const Eigen::Index at = known + static_cast<Eigen::Index>(k);
+      const Eigen::Index at = one.own() + static_cast<Eigen::Index>(k);
       a.value = one.fitted.fit.x[at];
       a.low = one.fitted.uncertainty.lower[at], a.high = one.fitted.uncertainty.upper[at];
     }
+  }
+  if (d.partner && d.chosen()) {
+    a.partner = {d.partner->hypothesis.effect};
+    for (const auto& other : d.partner->equivalent) a.partner.push_back(other);
   }
   return a;
 }
 
 bool InSet(const Case& c, const Answer& a) {
-  return std::any_of(a.named.begin(), a.named.end(), [&](const std::string& name) {
-    return std::find(c.effects.begin(), c.effects.end(), name) != c.effects.end();
-  });
+  const auto has = [](const std::vector<std::string>& names, const std::string& effect) {
+    return std::find(names.begin(), names.end(), effect) != names.end();
+  };
+  if (c.effects.empty()) return false;
+  const std::string &first = c.effects.front(), &last = c.effects.back();
+  if (c.effects.size() == 1) return a.partner.empty() && has(a.named, first);
+  return (has(a.named, first) && has(a.partner, last)) ||
+         (has(a.named, last) && has(a.partner, first));
 }
 
 bool Sibling(const Case& c, const Answer& a) {

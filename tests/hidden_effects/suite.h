@@ -38,6 +38,7 @@ struct Case {
 struct Answer {
   std::string verdict;
   std::vector<std::string> named;                  ///< effects, likeliest first
+  std::vector<std::string> partner = {};           ///< of a second cause beside those
   double truth = 0, value = 0, low = 0, high = 0;  ///< of the first effect, when it is in named
   double explained = 0;  ///< explainable error removed on the validate logs
   double next = 0;       ///< likelihood between the two best
@@ -50,7 +51,7 @@ std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& fold
 /// The same, diagnosed.
 Answer Solve(const Case& c, const std::filesystem::path& folder);
 
-/// Whether the answer holds the truth (in the set), is one name, and whether that one is right.
+/// Whether the answer holds the truth (of two effects: both), and whether it is one name.
 bool InSet(const Case& c, const Answer& a);
 /// Whether it holds a declared sibling of the first hidden effect.
 bool Sibling(const Case& c, const Answer& a);
