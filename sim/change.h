@@ -19,4 +19,16 @@ struct Change {
   bool operator==(const Change&) const = default;
 };
 
+/// What becomes of a value.
+inline double Changed(double old, const Change& change) {
+  switch (change.operation) {
+    case Change::Operation::kScale:
+      return old * change.value;
+    case Change::Operation::kAdd:
+      return old + change.value;
+    default:
+      return change.value;
+  }
+}
+
 }  // namespace continuum

@@ -48,17 +48,6 @@ double& ValueOf(Experiment& e, std::size_t output, const std::string& attribute)
   return e.outputs[output].measurement.*Members().find(attribute)->second;
 }
 
-double Changed(double old, const Change& change) {
-  switch (change.operation) {
-    case Change::Operation::kScale:
-      return old * change.value;
-    case Change::Operation::kAdd:
-      return old + change.value;
-    default:
-      return change.value;
-  }
-}
-
 }  // namespace
 
 bool IsMeasurement(const std::string& target, const std::string& attribute) {

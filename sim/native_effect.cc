@@ -41,11 +41,6 @@ class World {
 
 double Null(const Param& param) { return std::isnan(param.null) ? 0 : param.null; }
 
-double Changed(double old, const Change& change) {
-  if (change.operation == Change::Operation::kScale) return old * change.value;
-  return change.operation == Change::Operation::kAdd ? old + change.value : change.value;
-}
-
 // Calls use<E>() for the native effect of this name.
 template <class Use>
 void WithNative(const std::string& attribute, Use&& use) {

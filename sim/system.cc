@@ -71,17 +71,6 @@ std::size_t IndexOn(const mjModel& m, int instance, const std::string& parameter
   return ParameterIndex(mjp_getPluginAtSlot(m.plugin[instance])->name, parameter);
 }
 
-double Changed(double old, const Change& change) {
-  switch (change.operation) {
-    case Change::Operation::kScale:
-      return old * change.value;
-    case Change::Operation::kAdd:
-      return old + change.value;
-    default:
-      return change.value;
-  }
-}
-
 void ApplyToPlugin(mjModel& m, mjData& d, const Change& change) {
   const int instance = InstanceId(m, change.target);
   auto values = BoundOf(m, d, instance).parameters();
