@@ -4,7 +4,6 @@
 #include <cstring>
 #include <map>
 #include <numbers>
-#include <sstream>
 #include <type_traits>
 
 #include <mujoco/mjspecmacro.h>
@@ -403,10 +402,7 @@ std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const 
   const std::string globs = target.substr(colon + 1);
   std::vector<Element> found;
   for (const Element& e : Elements(spec, kind->second, compiled)) {
-    std::istringstream all(globs);
-    bool matches = false;
-    for (std::string glob; all >> glob;) matches |= GlobMatches(glob, e.Name());
-    if (matches && !e.Name().empty()) found.push_back(e);
+    if (!e.Name().empty() && AnyGlobMatches(globs, e.Name())) found.push_back(e);
   }
   if (found.empty()) {
     throw Error::Input(where, "a " + kind->first + " of the model", "no match for '" + globs + "'");

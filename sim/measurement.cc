@@ -1,7 +1,6 @@
 #include "sim/measurement.h"
 
 #include <map>
-#include <sstream>
 
 #include "binding/config.h"
 #include "error.h"
@@ -24,12 +23,8 @@ const std::map<std::string, Member, std::less<>>& Members() {
 // globs: one or several, separated by spaces.
 bool Matches(const Output& out, const std::string& globs) {
   const std::string sensor = out.source.substr(0, out.source.find('['));
-  std::istringstream all(globs);
-  for (std::string glob; all >> glob;) {
-    if (GlobMatches(glob, out.source) || GlobMatches(glob, sensor) || GlobMatches(glob, out.name()))
-      return true;
-  }
-  return false;
+  return AnyGlobMatches(globs, out.source) || AnyGlobMatches(globs, sensor) ||
+         AnyGlobMatches(globs, out.name());
 }
 
 std::vector<std::size_t> OutputsOf(const Experiment& e, const std::string& target) {

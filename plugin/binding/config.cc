@@ -2,6 +2,7 @@
 
 #include <fnmatch.h>
 
+#include <algorithm>
 #include <charconv>
 #include <set>
 #include <sstream>
@@ -26,6 +27,12 @@ std::vector<std::string> Words(std::string_view text) {
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
   return words;
+}
+
+bool AnyGlobMatches(std::string_view globs, const std::string& name) {
+  const auto all = Words(globs);
+  return std::any_of(all.begin(), all.end(),
+                     [&](const std::string& glob) { return GlobMatches(glob, name); });
 }
 
 std::string_view Config::Get(std::string_view key) const {

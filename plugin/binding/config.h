@@ -41,6 +41,9 @@ bool GlobMatches(const std::string& glob, const std::string& name);
 /// The words of a text.
 std::vector<std::string> Words(std::string_view text);
 
+/// Whether one of several globs, separated by spaces, matches the whole name.
+bool AnyGlobMatches(std::string_view globs, const std::string& name);
+
 template <class E>
 std::vector<double> ReadParams(const Config& config) {
   std::vector<double> p;
