@@ -103,7 +103,7 @@ void RunApply(const ApplyOptions& o) {
   const auto json = ReadJson(o.diagnosis);
   const auto folder = std::filesystem::absolute(ThroughLinks(o.out)).parent_path();
   const std::string xml = ApplyJson(System::Load(o.model), json, o.diagnosis, folder);
-  System::Check(xml, folder, o.diagnosis + " applied to " + o.model);
+  System::Parse(xml, folder, o.diagnosis + " applied to " + o.model);  // says why it cannot be
   WriteFile(o.out, xml);
 }
 

@@ -148,19 +148,16 @@ System System::Load(const std::filesystem::path& model) {
   return system;
 }
 
-void System::Check(const std::string& xml, const std::filesystem::path& folder,
-                   const std::string& name) {
-  Parse(xml, std::filesystem::absolute(folder / "").string(), name);
-}
-
-System System::Parse(const std::string& xml, const std::string& folder, std::string name) {
+System System::Parse(const std::string& xml, const std::filesystem::path& folder,
+                     const std::string& name) {
+  RegisterOnce();
   System system;
-  system.name_ = std::move(name);
-  system.folder_ = folder;
+  system.name_ = name;
+  system.folder_ = std::filesystem::absolute(folder / "").string();
   char error[1000] = "";
   system.spec_.reset(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
   if (!system.spec_) throw Error::Input(system.name_, OneLine(error));
-  mjs_setString(system.spec_->modelfiledir, folder.c_str());
+  mjs_setString(system.spec_->modelfiledir, system.folder_.c_str());
   system.compiled_ = Compile(*system.spec_, system.name_);
   return system;
 }

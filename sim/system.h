@@ -29,6 +29,9 @@ class System {
  public:
   /// Reads an MJCF file, with our effects registered. Throws Error with MuJoCo's text.
   static System Load(const std::filesystem::path& model);
+  /// Takes MJCF as a file of this folder would be taken. Throws Error (name) with MuJoCo's text.
+  static System Parse(const std::string& xml, const std::filesystem::path& folder = ".",
+                      const std::string& name = "MJCF");
   System(const System& other);
   System(System&&) = default;
   System& operator=(System&&) = default;
@@ -52,9 +55,6 @@ class System {
   /// text is going to lie, so that it finds its meshes and textures; empty: beside the model.
   std::string Xml(std::span<const Change> changes = {}, std::span<const EffectInstance> added = {},
                   const std::filesystem::path& folder = {}) const;
-  /// Throws Error, with MuJoCo's text, when MJCF does not compile as a file of this folder.
-  static void Check(const std::string& xml, const std::filesystem::path& folder,
-                    const std::string& name);
   /// The same with another effect under an instance's name; keys that the other effect lacks go.
   System Replacing(const std::string& instance, const EffectInstance& by) const;
   /// The same with changes and instances inside.
@@ -62,7 +62,6 @@ class System {
 
  private:
   System() = default;
-  static System Parse(const std::string& xml, const std::string& folder, std::string name);
 
   // Edits of the specification that are taken back at the end of a scope (mj_copySpec would lose
   // plugin instances that nothing refers to).

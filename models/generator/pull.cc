@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include "error.h"
 #include "sim/file.h"
@@ -31,16 +29,6 @@ double Fastest(const mjModel& m, const mjData& d) {
 }
 
 }  // namespace
-
-System Generated(const std::string& mjcf) {
-  std::string folder = (std::filesystem::temp_directory_path() / "continuum_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) throw Error::Job("no temporary folder: " + folder);
-  const std::filesystem::path file = std::filesystem::path(folder) / "generated.xml";
-  WriteFile(file, mjcf);
-  System system = System::Load(file);
-  std::filesystem::remove_all(folder);
-  return system;
-}
 
 void Pull(const Machine& machine, const SlowPull& pull) {
   mjModel& m = *machine.model;

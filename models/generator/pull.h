@@ -8,9 +8,6 @@
 
 namespace continuum {
 
-/// A generated model, without its file being kept.
-System Generated(const std::string& mjcf);
-
 /// Loads that are raised together from zero until a model rests under them. Cables that rub
 /// remember how they got there: this is one slow pull from the state without loads.
 struct SlowPull {

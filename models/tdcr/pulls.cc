@@ -23,11 +23,11 @@ void Print(const std::filesystem::path& folder) {
   fmt::print("| tip off by [% L] |");
   for (const int per_disk : kLinksPerDisk) {
     const int links = per_disk * robot.disks;
-    models.push_back(Generated(SegmentMjcf(robot, links, Guides::kLinks)));
+    models.push_back(System::Parse(SegmentMjcf(robot, links, Guides::kLinks)));
     fmt::print(" {} links |", links);
   }
   const int fine = kLinksPerDisk[3] * robot.disks;
-  models.push_back(Generated(SegmentMjcf(robot, fine, Guides::kDisks)));
+  models.push_back(System::Parse(SegmentMjcf(robot, fine, Guides::kDisks)));
   fmt::print(" {} links, tendons through the disks only |\n|---|", fine);
   for (std::size_t i = 0; i < models.size(); ++i) fmt::print("---|");
   fmt::print("\n");

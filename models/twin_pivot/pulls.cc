@@ -22,7 +22,7 @@ struct Sweep {
 
 void Print(const Robot& robot, const std::filesystem::path& cases,
            std::initializer_list<Sweep> sweeps) {
-  const System mjcf = Generated(RobotMjcf(robot));
+  const System mjcf = System::Parse(RobotMjcf(robot));
   for (const Sweep& sweep : sweeps) {
     double sum = 0, worst = 0, bent = 0;
     int count = 0;

@@ -19,7 +19,7 @@ const std::string kFolder = std::string(CONTINUUM_SOURCE) + "/models/tdcr/";
 Robot Segment() { return ReadRobot(Yaml::Read(kFolder + "tdcr.yaml")); }
 
 System Links(const Robot& robot, int links) {
-  return Generated(SegmentMjcf(robot, links, Guides::kLinks));
+  return System::Parse(SegmentMjcf(robot, links, Guides::kLinks));
 }
 
 Eigen::Vector3d RodTip(const Robot& robot, const Loads& loads, Method method) {
