@@ -174,12 +174,7 @@ void Mjcf::AddHinge(mjsBody* body, const std::string& name, const Point& axis, d
 
 void Mjcf::AddBend(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
                    double damping) {
-  mjsJoint* const joint = mjs_addJoint(body, nullptr);
-  Name(joint->element, name);
-  joint->type = mjJNT_HINGE;
-  Copy(joint->axis, axis);
-  joint->stiffness[0] = Rounded(stiffness);
-  joint->damping[0] = Rounded(damping);
+  AddJoint(body, name, axis, Rounded(stiffness))->damping[0] = Rounded(damping);
 }
 
 void Mjcf::AddElasticHinge(mjsBody* body, const std::string& name, const Point& axis,
@@ -191,10 +186,8 @@ void Mjcf::AddElasticHinge(mjsBody* body, const std::string& name, const Point& 
 
 void Mjcf::AddFreeJoint(mjsBody* body, const std::string& name, mjtJoint type, const Point& axis,
                         double armature) {
-  mjsJoint* const joint = mjs_addJoint(body, nullptr);
-  Name(joint->element, name);
+  mjsJoint* const joint = AddJoint(body, name, axis, 0);
   joint->type = type;
-  Copy(joint->axis, axis);
   joint->armature = armature;
 }
 
