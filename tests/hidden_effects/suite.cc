@@ -49,6 +49,11 @@ std::string Csv(const std::array<std::vector<double>, 2>& u,
   return text;
 }
 
+// Whether a name is in both.
+bool Share(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
 }  // namespace
 
 const std::vector<Hidden>& HiddenEffects() {
@@ -171,21 +176,15 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
 }
 
 bool InSet(const Case& c, const Answer& a) {
-  const auto has = [](const std::vector<std::string>& names, const std::string& effect) {
-    return std::find(names.begin(), names.end(), effect) != names.end();
-  };
   if (c.effects.empty()) return false;
-  const std::string &first = c.effects.front(), &last = c.effects.back();
-  if (c.effects.size() == 1) return a.partner.empty() && has(a.named, first);
-  return (has(a.named, first) && has(a.partner, last)) ||
-         (has(a.named, last) && has(a.partner, first));
+  const std::vector<std::string> first{c.effects.front()}, last{c.effects.back()};
+  if (c.effects.size() == 1) return a.partner.empty() && Share(a.named, first);
+  return (Share(a.named, first) && Share(a.partner, last)) ||
+         (Share(a.named, last) && Share(a.partner, first));
 }
 
 bool Sibling(const Case& c, const Answer& a) {
-  const auto& siblings = HiddenNamed(c.effects.front()).siblings;
-  return std::any_of(a.named.begin(), a.named.end(), [&](const std::string& name) {
-    return std::find(siblings.begin(), siblings.end(), name) != siblings.end();
-  });
+  return Share(a.named, HiddenNamed(c.effects.front()).siblings);
 }
 
 bool Unique(const Answer& a) { return a.verdict == "named" && a.named.size() == 1; }

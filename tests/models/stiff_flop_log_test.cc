@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "models/stiff_flop/lines.h"
+#include "support/recordings.h"
 
 namespace continuum::stiff_flop {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kRobot = CONTINUUM_SOURCE "/models/stiff_flop/no_load.yaml";
-const fs::path kLog = CONTINUUM_SOURCE "/../shared/data/stiff_flop/NoLoad.mat";
 
 /// What a tracker would see of the model itself, turned, shifted and with the marker 12 mm out.
 Log Synthetic(const Robot& robot, Registration& truth) {
@@ -88,9 +88,10 @@ TEST(StiffFlopLines, FitRecoversTheDeadPressureOfASyntheticLog) {
 
 // 2.57 mm is the best of the physical models published for this log.
 TEST(StiffFlopLog, UnfittedForwardModelIsCloserThanThePublishedOnes) {
-  if (!fs::exists(kLog)) GTEST_SKIP() << "the measured log " << kLog << " is not here";
+  const fs::path measured = testing::Recordings("stiff_flop") / "NoLoad.mat";
+  if (!fs::exists(measured)) GTEST_SKIP() << "no recordings at " << measured;
   const Robot robot = Robot::Read(kRobot);
-  const Log log = Log::Read(kLog, 20);
+  const Log log = Log::Read(measured, 20);
   const std::vector<Solution> shapes = Replay(robot, {}, log);
   const Registration registration = Registration::Fit(shapes, log, TrainRows(log));
   EXPECT_LT(ErrorOf(registration, shapes, log, 0, TrainRows(log)).mean, 2.57e-3);

@@ -15,6 +15,8 @@
 #include "sim/file.h"
 #include "sim/simulate.h"
 #include "sim/table.h"
+#include "support/recordings.h"
+#include "support/scratch.h"
 
 namespace continuum {
 namespace {
@@ -589,25 +591,22 @@ TEST_F(CheckModel, ASimulationThatDivergesIsTold) {
 class CheckReal : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!fs::exists(kData)) GTEST_SKIP() << "no real logs at " << kData;
-    folder_ = fs::temp_directory_path() / fmt::format("check_real_{}", ::getpid());
-    MakeFolder(folder_);
+    if (!fs::exists(data_)) GTEST_SKIP() << "no recordings at " << data_;
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   // logs, time, inputs, outputs of an experiment file.
   std::vector<Finding> Check(const std::string& yaml) const {
-    WriteFile(folder_ / "experiment.yaml", "format: 1\nmodel: none.xml\n" + yaml);
-    return CheckLogs(Experiment::Read(folder_ / "experiment.yaml"));
+    return CheckLogs(
+        Experiment::Read(scratch_.Write("experiment.yaml", "format: 1\nmodel: none.xml\n" + yaml)));
   }
 
-  static inline const fs::path kData = CONTINUUM_SOURCE "/../shared/data";
-  fs::path folder_;
+  const fs::path data_ = testing::Recordings("");
+  const testing::Scratch scratch_;
 };
 
 TEST_F(CheckReal, ServoPendulum) {
   std::string logs;
-  for (const auto& entry : fs::directory_iterator(kData / "servo_pendulum")) {
+  for (const auto& entry : fs::directory_iterator(data_ / "servo_pendulum")) {
     if (entry.path().extension() != ".json") continue;
     const auto json = nlohmann::json::parse(ReadFile(entry.path()));
     std::string csv = "t,q,w,goal,enable\n";
@@ -618,7 +617,7 @@ TEST_F(CheckReal, ServoPendulum) {
                       row["goal_position"].get<double>(), row["torque_enable"].get<bool>() ? 1 : 0);
     }
     const std::string name = entry.path().stem().string() + ".csv";
-    WriteFile(folder_ / name, csv);
+    scratch_.Write(name, csv);
     logs += fmt::format("  - {{file: {}}}\n", name);
   }
   const auto all =
@@ -637,7 +636,7 @@ TEST_F(CheckReal, ServoPendulum) {
 }
 
 TEST_F(CheckReal, Emps) {
-  const auto all = Check("logs: [{file: '" + (kData / "emps/DATA_EMPS.mat").string() +
+  const auto all = Check("logs: [{file: '" + (data_ / "emps/DATA_EMPS.mat").string() +
                          "'}]\ntime: {column: t}\n"
                          "inputs: [{column: qg, unit: m, actuator: axis}]\n"
                          "outputs: [{column: qm, unit: m, sensor: q}, {column: vir, unit: V, "
@@ -649,14 +648,14 @@ TEST_F(CheckReal, Emps) {
 TEST_F(CheckReal, Trunk) {
   std::string logs, inputs, outputs;
   for (const char* name : {"observations_controlled_1", "observations_controlled_1_100g"}) {
-    const Table table = Table::Read(kData / "trunk" / (std::string(name) + ".csv"));
+    const Table table = Table::Read(data_ / "trunk" / (std::string(name) + ".csv"));
     std::string csv = "t";
     for (const auto& column : table.columns()) csv += "," + column;
     for (std::size_t k = 0; k < table.rows(); ++k) {
       csv += fmt::format("\n{}", 0.01 * table.Number(k, "ID"));
       for (const auto& column : table.columns()) csv += "," + table.Text(k, column);
     }
-    WriteFile(folder_ / (std::string(name) + ".csv"), csv + "\n");
+    scratch_.Write(std::string(name) + ".csv", csv + "\n");
     logs += fmt::format("  - {{file: {}.csv}}\n", name);
   }
   for (int i = 1; i <= 6; ++i)
@@ -687,7 +686,7 @@ TEST_F(CheckReal, TdcrThreeSegment) {
     outputs += fmt::format("  - {{column: tip_{0}, unit: mm, sensor: {0}}}\n", axis);
   const auto all =
       Check("logs: [{file: '" +
-            (kData / "tdcr_three_segment/tdcr_sysid_20260511-183002_train.csv").string() +
+            (data_ / "tdcr_three_segment/tdcr_sysid_20260511-183002_train.csv").string() +
             "'}]\ntime: {column: timestamp}\ninputs:\n" + inputs + "outputs:\n" + outputs);
   EXPECT_THAT(Find(all, "gap")->text, HasSubstr("15.68 s after t = 1778538796.086 s"));
   EXPECT_NE(Find(all, "clock_jitter"), nullptr) << Report(all);
@@ -696,7 +695,7 @@ TEST_F(CheckReal, TdcrThreeSegment) {
 
 TEST_F(CheckReal, StiffFlop) {
   const auto all = Check(
-      "logs: [{file: '" + (kData / "stiff_flop/NoLoad.mat").string() +
+      "logs: [{file: '" + (data_ / "stiff_flop/NoLoad.mat").string() +
       "', variable: NoLoad}]\ntime: {column: 1}\n"
       "inputs:\n  - {column: 2, unit: bar, actuator: p1}\n  - {column: 3, unit: bar, actuator: "
       "p2}\n"

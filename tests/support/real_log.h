@@ -7,19 +7,18 @@
 #include <gtest/gtest.h>
 
 #include "sim/experiment.h"
+#include "support/recordings.h"
 #include "support/scratch.h"
 
 namespace continuum::testing {
 
 /// A test on the recordings of a real machine: folder of its own, imported experiment. Skips where
-/// the recordings are not at hand ($CONTINUUM_DATA, else ../shared/data beside the project).
+/// the recordings are not at hand.
 class RealLog : public ::testing::Test {
  protected:
   /// Runs models/<robot>/import.py; nothing to test when it was skipped.
   void Import(const std::string& robot) {
-    const char* const chosen = std::getenv("CONTINUUM_DATA");
-    const std::filesystem::path data =
-        std::filesystem::path(chosen ? chosen : CONTINUUM_SOURCE "/../shared/data") / robot;
+    const std::filesystem::path data = Recordings(robot);
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "no recordings at " << data;
     const std::string import = CONTINUUM_SOURCE "/models/" + robot + "/import.py";
     const std::string command = "python3 '" + import + "' '" + data.string() + "' '" +
