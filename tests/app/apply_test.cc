@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
             R"([["joint", "hinge"], ["tau_c", "0.01"]])",
             "[1]",
             {"extension.instances[0].config[0]"}}),
-    [](const auto& info) { return std::string(info.param.name); });
+    testing::kCaseName);
 
 TEST_P(BadDiagnosis, IsRefusedByFileAndKey) {
   Spoil("diagnosis.json", GetParam().old, GetParam().by);

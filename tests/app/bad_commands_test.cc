@@ -20,7 +20,6 @@ TEST_P(BadCommand, IsRefusedByOptionOrFile) {
 }
 
 const std::string kE = "experiment.yaml", kM = "model.xml";
-const auto kName = [](const auto& info) { return std::string(info.param.name); };
 
 INSTANTIATE_TEST_SUITE_P(
     App, BadCommand,
@@ -85,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"none/x.xml", "writable"}},
         Bad{"SolveNoSuchRobot", {"solve", "none.yaml", "--out", "x.csv"}, {"none.yaml"}},
         Bad{"SolveExperiment", {"solve", kE, "--out", "x.csv"}, {"experiment.yaml:2", "tdcr"}}),
-    kName);
+    testing::kCaseName);
 
 class GoodFile : public testing::AppBench {
  protected:

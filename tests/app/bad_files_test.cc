@@ -3,8 +3,6 @@
 namespace continuum {
 namespace {
 
-namespace fs = std::filesystem;
-
 // What `continuum replay` says to a damaged file. Where `old` is empty the whole file is replaced.
 struct Bad {
   const char *name, *file, *old;
@@ -26,7 +24,6 @@ TEST_P(BadFile, IsRefusedByFileAndPlace) {
   ExpectRefused({"replay", "experiment.yaml", "--out", "out/of/it"}, words);
 }
 
-const auto kName = [](const auto& info) { return std::string(info.param.name); };
 const std::string kJunk("\x7f\x45LF\0\1\2\3\xff\xfe\n\0;\t\x80", 16);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -55,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"OpenQuote", "log.csv", "0.1,0.1,0.01", "0.1,\"0.1,0.01", {"log.csv:3", "quote"}},
         Bad{"DecimalComma", "log.csv", "0.1,0.1,0.01", "0,1;0,1;0,01", {"log.csv:3"}},
         Bad{"NoMeasurement", "log.csv", "", "t,u,q\n0,0,\n1,0,nan\n", {"'q'", "at least one"}}),
-    kName);
+    testing::kCaseName);
 
 INSTANTIATE_TEST_SUITE_P(
     Experiment, BadFile,
@@ -128,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
             "{file: log.csv, set: {\"joint:hinge\": {colour: 1}}}",
             {"'log'", "colour"}},
         Bad{"FutureFormat", "experiment.yaml", "format: 1", "format: 2", {"yaml:1", "format 1"}}),
-    kName);
+    testing::kCaseName);
 
 INSTANTIATE_TEST_SUITE_P(
     Model, BadFile,
@@ -176,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
             "key='joint' value='hinge'/><config key='tau_c' value='-1'/></instance></plugin>"
             "</extension><worldbody>",
             {"tau_c", "-1"}}),
-    kName);
+    testing::kCaseName);
 
 }  // namespace
 }  // namespace continuum

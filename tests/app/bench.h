@@ -47,6 +47,9 @@ inline constexpr char kDiagnosis[] = R"({"extension": {
   "changes": [{"target": "joint:hinge", "attribute": "damping", "value": 2, "operation": "scale"}]}}
 )";
 
+/// Names the cases of a table by their member `name`.
+inline constexpr auto kCaseName = [](const auto& info) { return std::string(info.param.name); };
+
 /// A folder with a good model, log, experiment, input and diagnosis, in which `continuum` runs.
 class AppBench : public ::testing::Test {
  protected:

@@ -461,20 +461,16 @@ TEST(Check, TheReportIsGroupedByLogWithASummaryFirst) {
 class CheckModel : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / fmt::format("check_model_{}", ::getpid());
-    MakeFolder(folder_);
-    WriteFile(folder_ / "two.xml", R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>
+    system_.emplace(System::Parse(R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>
       <worldbody>
         <body><joint name="a" axis="0 1 0" damping="0.02"/><geom type="capsule" size=".01" fromto="0 0 0 0 0 -.2" mass=".3"/></body>
         <body pos="1 0 0"><joint name="b" axis="0 1 0" damping="0.05"/><geom type="capsule" size=".01" fromto="0 0 0 0 0 -.3" mass=".4"/></body>
       </worldbody>
       <actuator><position name="m1" joint="a" kp="1"/><position name="m2" joint="b" kp="3"/></actuator>
       <sensor><jointpos name="q1" joint="a"/><jointvel name="v1" joint="a"/><jointpos name="q2" joint="b"/></sensor>
-    </mujoco>)");
-    system_.emplace(System::Load(folder_ / "two.xml"));
+    </mujoco>)"));
     RecordFrom({});
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   // What the model does, with noise, is what was measured.
   void RecordFrom(const Recipe& recipe) {
@@ -498,7 +494,6 @@ class CheckModel : public ::testing::Test {
     EXPECT_EQ(bad[0].channel, channel) << Report(bad);
   }
 
-  fs::path folder_;
   std::optional<System> system_;
   Experiment experiment_;
 };
