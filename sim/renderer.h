@@ -1,36 +1,15 @@
 #pragma once
 
-#include <array>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 #include <string_view>
 
 #include <mujoco/mujoco.h>
 
 #include "sim/gl.h"
 #include "sim/image.h"
+#include "sim/overlay.h"
 
 namespace continuum {
-
-/// A scale of colours, drawn bottom right: "label" above a bar that goes from `low` to `high`.
-struct ColorBar {
-  std::string label;      ///< with unit: "cable tension [N]"
-  std::string low, high;  ///< texts at the ends: "0", "12.3"
-  /// RGB 0..1 at the ends, linear between: as the effects colour their cables.
-  std::array<float, 3> from = {0.13f, 0.40f, 0.85f}, to = {0.93f, 0.15f, 0.10f};
-};
-
-/// What a frame shows besides the model. Text is ASCII; common signs (degree, micro, times, dashes)
-/// are spelled out, others become '?'.
-struct Overlay {
-  std::string caption = {};                   ///< top left, wrapped to the frame
-  std::optional<double> time = {};            ///< [s], bottom left
-  std::optional<ColorBar> bar = {};           ///< bottom right
-  std::function<void(mjvScene&)> geoms = {};  ///< adds markers to the scene
-  mjData* ghost = nullptr;                    ///< a second pose of the model, drawn translucent
-};
 
 /// Draws poses of one model off-screen: shadows, no mirroring floor, no multisampling.
 ///
