@@ -7,9 +7,9 @@
 #include <map>
 #include <set>
 
-#include "effects/all.h"
 #include "error.h"
 #include "identification/parallel.h"
+#include "identification/unit.h"
 #include "sim/measurement.h"
 
 namespace continuum {
@@ -19,36 +19,6 @@ double TypicalSize(double initial, double lower, double upper) {
   const double range = upper - lower;
   const double size = std::max(std::abs(initial), 1e-3 * range);
   return std::isfinite(size) && size > 0 ? std::min(size, range) : 1;
-}
-
-std::string UnitOf(const System& system, const Parameter& p) {
-  if (p.operation == Change::Operation::kScale) return "1";
-  const mjModel& m = system.model();
-  if (p.target.starts_with("plugin:")) {
-    const int id = mj_name2id(&m, mjOBJ_PLUGIN, p.target.substr(7).c_str());
-    const std::string plugin = id < 0 ? "" : mjp_getPluginAtSlot(m.plugin[id])->name;
-    std::string unit = "1";
-    All::ForEach([&]<class E>() {
-      for (const Param& param : E::kParams) {
-        if (plugin == "continuum." + std::string(E::kName) && param.name == p.attribute) {
-          unit = param.unit;
-        }
-      }
-    });
-    return unit;
-  }
-  const std::string name = p.attribute.substr(0, p.attribute.find('['));
-  const std::string kind = p.target.substr(0, p.target.find(':'));
-  if (name == "mass" || name == "point_mass") return "kg";
-  if (name == "inertia" || name == "fullinertia" || name == "armature") return "kg*m^2";
-  if (name == "ref" || name == "springref") return "rad";
-  if (name == "pos" || name == "springlength") return "m";
-  if (name == "delay" || name == "lag" || name == "timestep") return "s";
-  if (name == "gravity") return "m/s^2";
-  if (name == "stiffness") return kind == "tendon" ? "N/m" : "N*m/rad";
-  if (name == "damping") return kind == "tendon" ? "N*s/m" : "N*m*s/rad";
-  if (name == "frictionloss") return kind == "tendon" ? "N" : "N*m";
-  return "1";
 }
 
 }  // namespace
@@ -114,15 +84,15 @@ void Problem::Expand(const Parameter& p) {
       throw Error::Input(p.where, e.what());
     }
   };
-  const std::string unit = IsMeasurement(p.target, p.attribute)
-                               ? MeasurementUnit(*experiment_, p.target, p.attribute)
-                               : UnitOf(system(), p);
-  FreeParameter free{p.name, unit, p.initial, p.lower, p.upper, 1, {}, {}};
   const double present = at([&] {
     return IsMeasurement(p.target, p.attribute)
                ? MeasurementValue(*experiment_, p.target, p.attribute)
                : system().Value(p.target, p.attribute);
   });
+  const std::string unit = IsMeasurement(p.target, p.attribute)
+                               ? MeasurementUnit(*experiment_, p.target, p.attribute)
+                               : UnitOf(system(), p);
+  FreeParameter free{p.name, unit, p.initial, p.lower, p.upper, 1, {}, {}};
   if (!p.has_initial) {
     free.initial = p.operation == Change::Operation::kScale ? 1
                    : p.operation == Change::Operation::kAdd ? 0

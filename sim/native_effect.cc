@@ -103,4 +103,10 @@ double NullOfNativeEffect(const std::string& attribute) {
   return null;
 }
 
+std::string UnitOfNativeEffect(const std::string& attribute) {
+  std::string unit;
+  WithNative(attribute, [&]<class E>() { unit = E::kParams[Named(attribute).Index()].unit; });
+  return unit;
+}
+
 }  // namespace continuum

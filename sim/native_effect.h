@@ -28,5 +28,7 @@ void ApplyNativeEffect(mjOption& world, std::span<const Change> changes, const C
 
 /// The value of a parameter at which its effect is absent; 0 when that is what the model has.
 double NullOfNativeEffect(const std::string& attribute);
+/// Its unit, of what turns.
+std::string UnitOfNativeEffect(const std::string& attribute);
 
 }  // namespace continuum
