@@ -12,6 +12,10 @@ namespace {
 // Creates a row without saying how large the friction is: the level is written in every evaluation.
 constexpr double kRowMarker = 1e-12;
 
+// By so much the share of a ball joint's rows follows in a step: what it takes for a moment to stop
+// the joint is no load.
+constexpr double kShareStep = 0.02;
+
 bool IsFriction(const char* plugin) {
   bool friction = false;
   All::ForEach([&]<class E>() {
@@ -20,43 +24,12 @@ bool IsFriction(const char* plugin) {
   return friction;
 }
 
-std::vector<Row> MatchRows(const mjModel& m, const Config& config) {
-  const bool joints = !config.Get("joint").empty(), tendons = !config.Get("tendon").empty();
-  if (joints == tendons) {
-    throw Error::Input(config.Who(), "one of the keys 'joint' and 'tendon'",
-                       joints ? "both" : "none");
-  }
-  std::vector<Row> rows;
-  if (tendons) {
-    for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
-      rows.push_back({false, t, t, -1, true});
-    }
-    return rows;
-  }
-  for (const int j : config.Match("joint", mjOBJ_JOINT)) {
-    const int dof = m.jnt_dofadr[j];
-    switch (m.jnt_type[j]) {
-      case mjJNT_HINGE:
-      case mjJNT_SLIDE:
-        rows.push_back({true, j, dof, -1, true});
-        break;
-      case mjJNT_BALL:
-        for (int k = 0; k < 3; ++k) rows.push_back({true, j, dof + k, k, true});
-        break;
-      default:
-        throw Error::Input(config.Who() + ": joint '" + mj_id2name(&m, mjOBJ_JOINT, j) + "'",
-                           "a hinge, slide or ball joint", "a free joint");
-    }
-  }
-  return rows;
-}
-
 std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
   std::set<std::pair<bool, int>> taken;
   for (int j = 0; j < instance; ++j) {
     const mjpPlugin* plugin = mjp_getPluginAtSlot(m.plugin[j]);
     if (!plugin || !IsFriction(plugin->name)) continue;
-    for (const Row& row : MatchRows(m, Config(m, j))) taken.insert({row.joint, row.index});
+    for (const Row& row : RowsOf(m, Config(m, j))) taken.insert({row.joint, row.index});
   }
   return taken;
 }
@@ -131,6 +104,37 @@ double Yield(const mjData& d, int r) {
 
 }  // namespace
 
+std::vector<Row> RowsOf(const mjModel& m, const Config& config) {
+  const bool joints = !config.Get("joint").empty(), tendons = !config.Get("tendon").empty();
+  if (joints == tendons) {
+    throw Error::Input(config.Who(), "one of the keys 'joint' and 'tendon'",
+                       joints ? "both" : "none");
+  }
+  std::vector<Row> rows;
+  if (tendons) {
+    for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
+      rows.push_back({false, t, t, -1, true});
+    }
+    return rows;
+  }
+  for (const int j : config.Match("joint", mjOBJ_JOINT)) {
+    const int dof = m.jnt_dofadr[j];
+    switch (m.jnt_type[j]) {
+      case mjJNT_HINGE:
+      case mjJNT_SLIDE:
+        rows.push_back({true, j, dof, -1, true});
+        break;
+      case mjJNT_BALL:
+        for (int k = 0; k < 3; ++k) rows.push_back({true, j, dof + k, k, true});
+        break;
+      default:
+        throw Error::Input(config.Who() + ": joint '" + mj_id2name(&m, mjOBJ_JOINT, j) + "'",
+                           "a hinge, slide or ball joint", "a free joint");
+    }
+  }
+  return rows;
+}
+
 double GearLoad(const mjModel& m, const mjData& d, int dof, int option) {
   const double actuator = ActuatorTorque(m, d, dof);
   if (option == 1) return std::abs(actuator);
@@ -139,13 +143,13 @@ double GearLoad(const mjModel& m, const mjData& d, int dof, int option) {
   return 0.5 * std::abs(actuator - external);
 }
 
-Rows::Rows(const mjModel& m, const Config& config, int instance) : rows_(MatchRows(m, config)) {
+Rows::Rows(const mjModel& m, const Config& config, int instance) : rows_(RowsOf(m, config)) {
   const auto taken = RowsBelow(m, instance);
   for (Row& row : rows_) row.owner = !taken.contains({row.joint, row.index});
 }
 
 int Rows::StateSize(const mjModel& m, const Config& config) {
-  return 2 * static_cast<int>(MatchRows(m, config).size());
+  return 2 * static_cast<int>(RowsOf(m, config).size());
 }
 
 void Rows::Impose(mjModel& m) const {
@@ -197,9 +201,10 @@ void Rows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const 
 
 Rows::Sliding Rows::SlidingOf(const mjData& d, const double* z, const Row& row) {
   if (row.axis < 0) return {z[0] == kHeld ? 0 : Speed(d, row), 1};
-  const double grasp = (z - 2 * row.axis)[0];
+  const double* const ball = z - 2 * row.axis;  // the joint's first row
+  if (ball[0] == kHeld) return {0, ball[5]};
   const double* const turn = d.qvel + row.index - row.axis;
-  const double v = grasp == kHeld ? 0 : mju_norm3(turn);
+  const double v = mju_norm3(turn);
   return {v, v > 0 ? std::abs(turn[row.axis]) / v : 1};
 }
 
@@ -212,18 +217,23 @@ void Rows::AdvanceLine(const mjModel& m, const mjData& d, const Row& row, double
 }
 
 void Rows::AdvanceBall(const mjModel& m, const mjData& d, const Row* rows, double* z, int& r) {
-  double yield[3];
+  double yield[3], force[3], limit[3];
   bool slides = false;
   for (int k = 0; k < 3; ++k) {
     if (!Find(d, rows[k], r)) return;
     const bool full = Saturated(d, r) && d.efc_frictionloss[r] > 0;
     yield[k] = full ? -Yield(d, r) : -d.efc_pos[r];  // (2)
     slides |= full;
+    force[k] = std::abs(d.efc_force[r]);
+    limit[k] = d.efc_frictionloss[r];
   }
   if (z[0] == kUnknown || slides) {
     std::copy_n(d.qpos + m.jnt_qposadr[rows->id], 4, z + 1);
     mju_quatIntegrate(z + 1, yield, 1);
   }
+  const double level = z[0] == kHeld ? limit[0] / z[5] : mju_norm3(limit), load = mju_norm3(force);
+  const double share = load > level ? *std::max_element(force, force + 3) / load : 1;
+  z[5] = z[0] == kUnknown ? 1 : z[5] + std::clamp(share - z[5], -kShareStep, kShareStep);  // (3)
   z[0] = slides ? kSlid : kHeld;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "binding/bound.h"
+#include "binding/native_damping.h"
 
 namespace continuum {
 
@@ -12,6 +15,10 @@ struct Row {
   int axis;    ///< component of a ball joint, or −1
   bool owner;  ///< the lowest instance on a row assigns level and anchor; others add their level
 };
+
+/// The rows of the joints (hinge, slide, ball) or tendons that a configuration names, all as
+/// owners.
+std::vector<Row> RowsOf(const mjModel& m, const Config& config);
 
 /// Friction rows that hold.
 ///
@@ -29,11 +36,16 @@ struct Row {
 /// under load stays there. Source: MuJoCo's constraint model.
 ///
 /// A row that held in the last step has the level of v = 0, whatever the speed of its elastic
-/// deflection: a sudden load breaks it away as a slow one does. The three rows of a ball joint that
-/// slides share one level, split by the direction of ω; at rest each of them can take all of it.
+/// deflection: a sudden load breaks it away as a slow one does.
 ///
-/// The two states of a row are {Grasp, anchor}; a ball joint has six numbers,
-/// {Grasp, quaternion, 0}.
+/// The three rows of a ball joint share one level. While it slides they split it by the direction
+/// of ω. While it rests each of them can take a share of it that follows, within a few hundredths
+/// of a second,
+///
+///   max |f_i|/|f|  where |f| > level,  else 1                                 (3)
+///
+/// so that a load breaks it away at the same torque in all directions. The two states of a row are
+/// {Grasp, anchor}; a ball joint has six numbers, {Grasp, quaternion, share}.
 class Rows {
  public:
   /// Joints (hinge, slide, ball) or tendons named in config.
@@ -94,18 +106,25 @@ class BoundFriction : public Bound {
   BoundFriction(const mjModel& m, const Config& config, int instance)
       : Bound(ReadParams<E>(config)), rows_(m, config, instance) {
     if constexpr (kLoaded) load_ = config.Read(E::kChoices[0]);
+    if constexpr (kDamped) {
+      damping_.emplace("continuum." + std::string(E::kName), E::kParams[E::kDamping].name,
+                       p_[E::kDamping]);
+    }
+    if constexpr (requires { E::kLiteral; }) {
+      const std::string name(E::kParams[E::kLiteral].name);
+      if (!config.Get(name).empty()) idle_ = name + " does nothing: a row holds at rest";
+    }
   }
   static int StateSize(const mjModel& m, const Config& config) {
     return Rows::StateSize(m, config);
   }
 
   bool IsRow() const override { return true; }
+  std::string Silence(const mjModel&) const override { return idle_; }
 
   void Impose(mjModel& m) const override {
     rows_.Impose(m);
-    if constexpr (requires { E::kDamping; }) {
-      for (const Row& row : rows_.rows()) ImposeDamping(m, row);
-    }
+    if constexpr (kDamped) damping_->Impose(m, rows_.rows(), p_[E::kDamping]);
   }
 
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
@@ -125,28 +144,12 @@ class BoundFriction : public Bound {
 
  private:
   static constexpr bool kLoaded = ChoicesOf<E>().size() > 0;
-
-  void ImposeDamping(mjModel& m, const Row& row) const {
-    if constexpr (requires { E::kDamping; }) {
-      double& native = m.dof_damping[row.index];
-      const double own = p_[E::kDamping];
-      if (own == 0) return;
-      if (native != 0 && native != own && native != imposed_) {
-        throw Error::Input("continuum." + std::string(E::kName) + ": joint '" +
-                               mj_id2name(&m, mjOBJ_JOINT, row.id) + "'",
-                           "native damping 0 or equal to " +
-                               std::string(E::kParams[E::kDamping].name) + " = " +
-                               std::to_string(own),
-                           std::to_string(native));
-      }
-      native = own;
-      imposed_ = own;
-    }
-  }
+  static constexpr bool kDamped = requires { E::kDamping; };
 
   Rows rows_;
   int load_ = 0;
-  mutable double imposed_ = -1;  ///< damping written so far, so that an edited value can follow
+  std::string idle_;  ///< which parameter of the MJCF does not act
+  std::optional<NativeDamping> damping_;
 };
 
 }  // namespace continuum

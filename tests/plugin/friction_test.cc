@@ -1,8 +1,10 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
-#include "effects/stribeck.h"
+#include "effects/all.h"
 #include "support/engine.h"
 
 namespace continuum {
@@ -134,6 +136,94 @@ TEST_F(Friction, TwoEffectsOnOneJointAddUp) {
   EXPECT_GT(std::abs(d->qpos[0]), 0.1);
 }
 
+// Every dry friction of the list, with all of its parameters at work.
+struct Law {
+  std::string name, config;
+};
+std::vector<Law> Laws() {
+  std::vector<Law> laws;
+  All::ForEach([&]<class E>() {
+    if constexpr (FrictionLaw<E>) {
+      Law law{std::string(E::kName), ""};
+      for (const Param& p : E::kParams) {
+        const double value = p.initial != 0 ? p.initial : 0.003;
+        law.config +=
+            "<config key=\"" + std::string(p.name) + "\" value=\"" + std::to_string(value) + "\"/>";
+      }
+      laws.push_back(law);
+    }
+  });
+  return laws;
+}
+
+TEST_F(Friction, OfEveryPairOnOneJointAddsUpInLevelAndDamping) {
+  struct Drag {
+    double level, damping;
+  };
+  const auto drag = [](const std::vector<Law>& on, double q, double v) {
+    std::string xml = Wheel("coulomb", "");
+    const std::size_t begin = xml.find("<extension>"), end = xml.find("</extension>");
+    std::string all = "<extension>";
+    for (std::size_t i = 0; i < on.size(); ++i) {
+      all += "<plugin plugin=\"continuum." + on[i].name + "\"><instance name=\"i" +
+             std::to_string(i) + "\">" + Key("joint", "q") + on[i].config + "</instance></plugin>";
+    }
+    const auto m = Model(xml.replace(begin, end - begin, all));
+    const auto d = Data(m);
+    d->qpos[0] = q, d->qvel[0] = v, d->ctrl[0] = 0.02;
+    mj_forward(m.get(), d.get());
+    return Drag{d->efc_frictionloss[0], m->dof_damping[0]};
+  };
+  const auto laws = Laws();
+  EXPECT_GE(laws.size(), 5);
+  for (const Law& a : laws) {
+    for (const Law& b : laws) {
+      for (const auto& [q, v] : {std::pair{0.0, 0.0}, {0.4, 0.2}, {-0.7, -0.3}}) {
+        const Drag both = drag({a, b}, q, v), one = drag({a}, q, v), other = drag({b}, q, v);
+        EXPECT_NEAR(both.level, one.level + other.level, 1e-15) << a.name << " and " << b.name;
+        EXPECT_NEAR(both.damping, one.damping + other.damping, 1e-15) << a.name << ", " << b.name;
+      }
+    }
+  }
+}
+
+// An instance of Stribeck friction besides the one of Wheel.
+std::string AndStribeck(std::string xml, const std::string& config) {
+  return xml.insert(xml.find("</extension>"),
+                    "<plugin plugin=\"continuum.stribeck\"><instance name=\"j\">"
+                    "<config key=\"joint\" value=\"q\"/>" +
+                        config + "</instance></plugin>");
+}
+
+TEST_F(Friction, TwoStribecksMoveAsOneOfTheirSum) {
+  const auto config = [](double share) {
+    return Key("tau_mu", std::to_string(share * 0.03)) +
+           Key("tau_c", std::to_string(share * 0.04)) + Key("S", "0.7") + Key("v_d", "0.3");
+  };
+  const auto path = [](const std::string& xml) {
+    const auto m = Model(xml);
+    const auto again = Data(m), d = Data(m);  // a second mjData finds the damping already there
+    d->ctrl[0] = 0.1;
+    RunUntil(m, d, 1);
+    d->ctrl[0] = 0;
+    RunUntil(m, d, 2);
+    return d->qpos[0];
+  };
+  const double one = path(Wheel("stribeck", config(1)));
+  EXPECT_GT(one, 0.1);
+  EXPECT_NEAR(path(AndStribeck(Wheel("stribeck", config(0.7)), config(0.3))), one, 1e-12);
+}
+
+TEST_F(Friction, DampingOfTheMjcfIsTheSumOfTheLawsOrNone) {
+  const auto with = [](const std::string& damping) {
+    return AndStribeck(Wheel("stribeck", TableThree(), "", damping), Key("tau_mu", "0.02"));
+  };
+  EXPECT_NEAR(Model(with(""))->dof_damping[0], kTauMu + 0.02, 1e-15);
+  Model(with("damping=\"0.0514\""));
+  EXPECT_THAT(Compile(with("damping=\"0.0314\"")).error,
+              HasSubstr("joint 'q': expected native damping 0 or equal to tau_mu = 0.0514"));
+}
+
 TEST_F(Friction, NativeFrictionlossIsKeptAndAddedTo) {
   const auto m = Model(Wheel("coulomb", Key("tau_c", "0.03"), "", "frictionloss=\"0.02\""));
   const auto d = Data(m);
@@ -198,6 +288,29 @@ TEST_F(Friction, ABallJointHoldsAndSlides) {
   EXPECT_GT(std::abs(d->qvel[1]), 0.5);
 }
 
+TEST_F(Friction, ABallJointBreaksAwayAtTheSameTorqueInAllDirections) {
+  const auto m =
+      Model("<mujoco><option timestep=\"2e-3\" integrator=\"implicitfast\" gravity=\"0 0 0\"/>" +
+            Instance("stribeck", Key("joint", "q") + TableThree()) +
+            R"(<worldbody><body><joint name="q" type="ball"/>
+         <inertial pos="0 0 0" mass="1" diaginertia="0.02 0.02 0.02"/></body></worldbody></mujoco>)");
+  for (int k = 1; k < 27; ++k) {
+    const double way[3] = {k % 3 - 1.0, k / 3 % 3 - 1.0, k / 9 - 1.0};
+    const double length = mju_norm3(way);
+    if (length == 0) continue;
+    for (const double share : {0.98, 1.02}) {
+      const auto d = Data(m);
+      for (int i = 0; i < 3; ++i) d->qfrc_applied[i] = share * kBreakaway * way[i] / length;
+      RunUntil(m, d, 5);
+      const double turned = 2 * std::acos(std::min(1.0, std::abs(d->qpos[0])));
+      if (share < 1)
+        EXPECT_LT(turned, 1e-4) << way[0] << way[1] << way[2];
+      else
+        EXPECT_GT(turned, 0.1) << way[0] << way[1] << way[2];
+    }
+  }
+}
+
 TEST_F(Friction, ATendonHoldsALoadOnItsRow) {
   const std::string xml =
       "<mujoco><option timestep=\"2e-3\" integrator=\"implicitfast\"/>" +
@@ -232,6 +345,8 @@ TEST_F(Friction, WarnsWhereItIsWeakOrAbsent) {
   xml.replace(xml.find("/>"), 2, "><flag frictionloss=\"disable\"/></option>");
   Data(Model(xml));
   EXPECT_THAT(warning, HasSubstr("frictionloss"));
+  Data(Model(Wheel("stribeck", Key("k_v", "500"))));
+  EXPECT_THAT(warning, HasSubstr("k_v does nothing"));
   mju_user_warning = [](const char*) {};
 }
 

@@ -1,0 +1,61 @@
+#include "binding/native_damping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "binding/friction.h"
+#include "effects/all.h"
+
+namespace continuum {
+namespace {
+
+// The damping that the laws of a model give to each degree of freedom, as its MJCF says.
+std::map<int, double> SumsOf(const mjModel& m) {
+  std::map<int, double> sums;
+  for (int i = 0; i < m.nplugin; ++i) {
+    const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[i]);
+    if (!plugin) continue;
+    All::ForEach([&]<class E>() {
+      if constexpr (requires { E::kDamping; }) {
+        if (plugin->name != "continuum." + std::string(E::kName)) return;
+        const Config config(m, i);
+        const double damping = config.Read(E::kParams[E::kDamping]);
+        for (const Row& row : RowsOf(m, config)) sums[row.index] += damping;
+      }
+    });
+  }
+  return sums;
+}
+
+}  // namespace
+
+void NativeDamping::Refuse(const mjModel& m, const Row& row, double allowed) const {
+  throw Error::Input(effect_ + ": joint '" + mj_id2name(&m, mjOBJ_JOINT, row.id) + "'",
+                     "native damping 0 or equal to " + parameter_ + " = " + std::to_string(allowed),
+                     std::to_string(m.dof_damping[row.index]));
+}
+
+void NativeDamping::ImposeSums(mjModel& m, const std::vector<Row>& rows) const {
+  const auto sums = SumsOf(m);
+  for (const Row& row : rows) {
+    double& native = m.dof_damping[row.index];
+    const double sum = sums.at(row.index);
+    foreign_.push_back(sum == 0 && native != 0);
+    if (native == 0) native = sum;
+    if (sum != 0 && std::abs(native - sum) > 1e-9 * sum) Refuse(m, row, sum);
+  }
+}
+
+void NativeDamping::Impose(mjModel& m, const std::vector<Row>& rows, double own) const {
+  if (foreign_.empty()) ImposeSums(m, rows);
+  if (own == mine_) return;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (foreign_[k]) Refuse(m, rows[k], own);
+    double& native = m.dof_damping[rows[k].index];
+    native = own + std::max(0.0, native - mine_);
+  }
+  mine_ = own;
+}
+
+}  // namespace continuum
