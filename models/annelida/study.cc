@@ -6,6 +6,7 @@
 #include <string>
 
 #include "error.h"
+#include "models/annelida/constant_curvature.h"
 
 namespace continuum {
 namespace {
@@ -15,7 +16,9 @@ constexpr double kRightAngle = std::numbers::pi / 2, kLargestTension = 100;
 // A plant: joint angles after the next step under this tension of cable 1.
 using Plant = std::function<Joints(double tension)>;
 
-BendResult Run(const Plant& plant, const BendAndRelease& plan, double h) {
+BendResult Run(
+    const Plant& plant, const BendAndRelease& plan, double h,
+    const std::function<void()>& held = [] {}) {
   const long stride = std::lround(plan.period / h);
   BendResult result;
   // The k-th step of a course; returns the angle by which the tip has turned.
@@ -37,13 +40,15 @@ BendResult Run(const Plant& plant, const BendAndRelease& plan, double h) {
   for (const long end = k + std::lround(plan.hold / h); k < end;) {
     step(result.bend, ++k, result.tension);
   }
+  held();
   for (long i = 0; i < std::lround(plan.after / h);) step(result.release, ++i, 0);
   return result;
 }
 
 }  // namespace
 
-BendResult BendMujoco(const System& annelida, const BendAndRelease& plan, double h) {
+BendResult BendMujoco(const System& annelida, const BendAndRelease& plan, double h,
+                      const std::function<void(const mjModel&, const mjData&)>& held) {
   const Change step{"option", "timestep", h};
   const Machine machine = annelida.Build(std::span(&step, 1));
   const mjModel& m = *machine.model;
@@ -61,7 +66,9 @@ BendResult BendMujoco(const System& annelida, const BendAndRelease& plan, double
     for (int i = 0; i < kAnnelidaLinks; ++i) q[i] = d.qpos[address[i]];
     return q;
   };
-  return Run(plant, plan, h);
+  return Run(plant, plan, h, [&] {
+    if (held) held(m, d);
+  });
 }
 
 BendResult BendChain(const PlanarChain& chain, const BendAndRelease& plan, double h) {
@@ -71,6 +78,24 @@ BendResult BendChain(const PlanarChain& chain, const BendAndRelease& plan, doubl
     return state.q;
   };
   return Run(plant, plan, h);
+}
+
+Joints Even(const Joints& q) { return Joints::Constant(q.mean()); }
+
+Eigen::Matrix2Xd ArcPoints(const AnnelidaParameters& p, const Joints& q, int n) {
+  Eigen::Matrix2Xd points(2, n);
+  for (int i = 0; i < n; ++i) {
+    const double share = double(i) / double(n - 1);
+    const Eigen::Vector3d at = ArcPose(Arc{0, share * q.sum(), share * p.Length()}).translation();
+    points.col(i) << at.x(), -at.z();
+  }
+  return points;
+}
+
+Joints At(const Course& course, double time) {
+  std::size_t i = 0;
+  while (i + 1 < course.time.size() && course.time[i] < time - 1e-6) ++i;
+  return course.q[i];
 }
 
 }  // namespace continuum

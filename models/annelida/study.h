@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "models/annelida/planar_chain.h"
@@ -27,9 +28,25 @@ struct BendResult {
   double tension = 0;    ///< at which the tip had turned by 90° [N]
 };
 
-/// In MuJoCo with the plugin, at step h [s].
-BendResult BendMujoco(const System& annelida, const BendAndRelease& plan, double h);
+/// In MuJoCo with the plugin, at step h [s]. held: sees the arm at the end of the hold.
+BendResult BendMujoco(const System& annelida, const BendAndRelease& plan, double h,
+                      const std::function<void(const mjModel&, const mjData&)>& held = {});
 /// By the chain written out, at step h [s].
 BendResult BendChain(const PlanarChain& chain, const BendAndRelease& plan, double h);
+
+/// The study: in MuJoCo at 2 ms, 0.5 ms and 0.1 ms, and by the chain.
+struct Study {
+  AnnelidaParameters p;
+  BendAndRelease plan;
+  BendResult coarse, medium, fine, reference;
+};
+
+/// Equal angles of the same sum.
+Joints Even(const Joints& q);
+/// The paper's arc of the arm's length that turns as far as the joints: world x and z of n points
+/// from the base to the tip.
+Eigen::Matrix2Xd ArcPoints(const AnnelidaParameters& p, const Joints& q, int n);
+/// The row of a course at a time [s].
+Joints At(const Course& course, double time);
 
 }  // namespace continuum

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "error.h"
-#include "models/annelida/constant_curvature.h"
+#include "models/annelida/pictures.h"
 #include "models/annelida/study.h"
 #include "sim/file.h"
 
@@ -17,14 +17,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFine = 2e-5;  // step of the chain [s]
-
-Joints Even(const Joints& q) { return Joints::Constant(q.mean()); }
-
-// The paper's arc of the arm's length, bent by the same angle; world x and z.
-Eigen::Vector2d ArcTip(const AnnelidaParameters& p, const Joints& q) {
-  const Eigen::Vector3d tip = ArcPose(Arc{0, q.sum(), p.Length()}).translation();
-  return {tip.x(), -tip.z()};
-}
 
 // RMS distance from the best straight line over the joints' numbers, relative to the spread.
 double Unevenness(const Joints& q) {
@@ -59,17 +51,11 @@ std::string StaticTable(const AnnelidaParameters& p, const PlanarChain& chain,
   text += row("MuJoCo and plugin, 2 ms", q, chain.Tip(q));
   text += row("chain written out, 20 us", r, truth);
   text += row("equal angles", Even(r), chain.Tip(Even(r)));
-  text += row("constant curvature, eq. 2", Even(r), ArcTip(p, r));
+  text += row("constant curvature, eq. 2", Even(r), ArcPoints(p, r, 2).col(1));
   text += Angles("curvature θ/(2 b1 + b2) / (°/mm)", r / (1e3 * p.Pitch()));
   return text +
          fmt::format("\n\nDeparture from a straight line over the joints: {:.0f} % of the spread\n",
                      100 * Unevenness(r));
-}
-
-Joints At(const Course& course, double time) {
-  std::size_t i = 0;
-  while (i + 1 < course.time.size() && course.time[i] < time - 1e-6) ++i;
-  return course.q[i];
 }
 
 double Distance(const Course& a, const Course& b, double until) {
@@ -120,11 +106,7 @@ double Softest(AnnelidaParameters p, double gravity) {
   return stiffness.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
 }
 
-struct Runs {
-  BendResult coarse, medium, fine, reference;
-};
-
-std::string BendCsv(const Runs& runs) {
+std::string BendCsv(const Study& runs) {
   std::string csv = "time,tension,tension_chain";
   for (int i = 1; i <= kAnnelidaLinks; ++i) csv += fmt::format(",bend{}_y,chain{}_y", i, i);
   csv += "\n";
@@ -138,7 +120,7 @@ std::string BendCsv(const Runs& runs) {
   return csv;
 }
 
-std::string ReleaseCsv(const Runs& runs, const PlanarChain& chain) {
+std::string ReleaseCsv(const Study& runs, const PlanarChain& chain) {
   std::string csv = "time";
   for (const char* name : {"mujoco", "mujoco_fine", "chain"}) {
     for (int i = 1; i <= kAnnelidaLinks; ++i) csv += fmt::format(",{}_bend{}_y", name, i);
@@ -158,20 +140,20 @@ std::string ReleaseCsv(const Runs& runs, const PlanarChain& chain) {
   return csv;
 }
 
-std::string ShapeCsv(const AnnelidaParameters& p, const Runs& runs, const PlanarChain& chain) {
+std::string ShapeCsv(const Study& runs, const PlanarChain& chain) {
   const Joints q = runs.coarse.bend.q.back(), r = runs.reference.bend.q.back();
   const auto ours = chain.Points(q), truth = chain.Points(r);
   std::string csv = "mujoco_x,mujoco_z,chain_x,chain_z,arc_x,arc_z\n";
+  const Eigen::Matrix2Xd arc = ArcPoints(runs.p, r, static_cast<int>(ours.cols()));
   for (int i = 0; i < ours.cols(); ++i) {
-    const double share = double(i) / double(ours.cols() - 1);
-    const Eigen::Vector3d arc = ArcPose(Arc{0, share * r.sum(), share * p.Length()}).translation();
     csv += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", ours(0, i), ours(1, i),
-                       truth(0, i), truth(1, i), arc.x(), -arc.z());
+                       truth(0, i), truth(1, i), arc(0, i), arc(1, i));
   }
   return csv;
 }
 
-std::string Report(const AnnelidaParameters& p, const Runs& runs, const BendAndRelease& plan) {
+std::string Report(const Study& runs) {
+  const AnnelidaParameters& p = runs.p;
   const PlanarChain chain(p);
   std::string text = StaticTable(p, chain, runs.coarse, runs.reference);
   text +=
@@ -181,7 +163,7 @@ std::string Report(const AnnelidaParameters& p, const Runs& runs, const BendAndR
   text += ReleaseRow("MuJoCo and plugin, 0.5 ms", runs.medium, runs.reference);
   text += ReleaseRow("MuJoCo and plugin, 0.1 ms", runs.fine, runs.reference);
   text += ReleaseRow("chain written out, 20 us", runs.reference, runs.reference);
-  text += "\nStatic bend by the chain for other cable friction\n" + FrictionTable(p, plan);
+  text += "\nStatic bend by the chain for other cable friction\n" + FrictionTable(p, runs.plan);
   return text + fmt::format(
                     "\nSmallest stiffness of the straight arm / (N m/rad): hanging {:.3f}, "
                     "upright {:.3f}\n",
@@ -189,11 +171,12 @@ std::string Report(const AnnelidaParameters& p, const Runs& runs, const BendAndR
 }
 
 int Main(int argc, char** argv) {
-  std::filesystem::path folder = CONTINUUM_ANNELIDA_FOLDER, out;
+  std::filesystem::path folder = CONTINUUM_ANNELIDA_FOLDER, out, pictures;
   CLI::App app{"Static bend, release and constant curvature of the snake arm"};
   app.add_option("--model", folder, "folder of annelida.xml and annelida.yaml")
       ->capture_default_str();
   app.add_option("--out", out, "folder for bend.csv, release.csv, shape.csv");
+  app.add_option("--pictures", pictures, "folder for bend.png, bend.svg, release.svg");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -203,14 +186,19 @@ int Main(int argc, char** argv) {
   const System system = System::Load(folder / "annelida.xml");
   const PlanarChain chain(p);
   const BendAndRelease plan;
-  const Runs runs{BendMujoco(system, plan, 2e-3), BendMujoco(system, plan, 5e-4),
-                  BendMujoco(system, plan, 1e-4), BendChain(chain, plan, kFine)};
-  fmt::print("{}", Report(p, runs, plan));
+  const Study runs{p,
+                   plan,
+                   BendMujoco(system, plan, 2e-3),
+                   BendMujoco(system, plan, 5e-4),
+                   BendMujoco(system, plan, 1e-4),
+                   BendChain(chain, plan, kFine)};
+  fmt::print("{}", Report(runs));
+  if (!pictures.empty()) WritePictures(runs, system, pictures);
   if (!out.empty()) {
     MakeFolder(out);
     WriteFile(out / "bend.csv", BendCsv(runs));
     WriteFile(out / "release.csv", ReleaseCsv(runs, chain));
-    WriteFile(out / "shape.csv", ShapeCsv(p, runs, chain));
+    WriteFile(out / "shape.csv", ShapeCsv(runs, chain));
   }
   return 0;
 }
