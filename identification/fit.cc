@@ -164,7 +164,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
     return fit;
   }
   auto J = problem.Jacobian(fit.x, r, use);
-  RequireEffect(problem, fit.x, J);
+  if (!options.idle) RequireEffect(problem, fit.x, J);
 
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

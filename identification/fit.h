@@ -15,6 +15,8 @@ struct FitOptions {
   /// Robust loss: residuals beyond this size (in residual units) count linearly; 0: least squares.
   ///   ρ(r) = s² (√(1 + (r/s)²) − 1)   (soft L1)
   double soft = 0;
+  /// Parameters without an effect on any output stay where they start; else they are refused.
+  bool idle = false;
   /// Of the residuals, when their noise is known; none: as they are.
   const Whitening* whitening = nullptr;
   /// Give up when even four more steps as good as the last would leave the cost above this.

@@ -171,7 +171,7 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   }
   out.upper = std::min(p.upper, (nuisance ? 100 : reach) * size);
   out.lower = nuisance ? std::max(p.lower, 1e-3 * size) : std::max(p.lower, -reach * size);
-  const double typical = p.unit == "1" ? 0.1 : p.unit == "s" ? 0.5 : p.unit == "rad" ? 0.02 : 0.05;
+  const double typical = p.unit == "1" ? 0.1 : p.unit == "s" ? 0.125 : p.unit == "rad" ? 0.02 : 0.05;
   out.initial = nuisance ? 0.3 * size : p.null + typical * size;
   if (p.null == 1) out.lower = 0.1, out.upper = 10, out.initial = 1.02;  // a factor
   out.initial = std::clamp(out.initial, out.lower, out.upper);
@@ -305,7 +305,7 @@ Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
   const Param& card = effect.params.front();
   const std::string name(card.name);
   double size = 1, typical = 0.02;  // of a scale, an angle or a skew
-  if (name == "delay") size = 4 * sizes.period, typical = 0.5;
+  if (name == "delay") size = 4 * sizes.period, typical = 0.125;
   if (name == "bias" || name == "rate") {
     size = OutputSize(e, names);
     if (name == "rate") size /= std::max(1e-9, e.logs.front().time.back() - e.logs.front().time[0]);

@@ -10,6 +10,9 @@
 #include "identification/rounding.h"
 
 namespace continuum {
+namespace {
+constexpr const char kUnresolved[] = "the time step adds more to its fit than it removes";
+}
 
 bool Contains(const CandidateResult& b, const CandidateResult& a) {
   if (a.probes.empty() || b.probes.empty()) return false;
@@ -68,8 +71,9 @@ void Round::Screen() {
     smallest_p_ = std::min(smallest_p_, c.p);
     if (c.probes.empty()) continue;
     const std::size_t best = found.best[i];
-    c.start = trials_.StartFrom(c.hypothesis, *base_.fitted, best,
-                                ExplainedBy(c.probes[best], left.residual()));
+    const Probe& probe = c.probes[best];
+    c.start = trials_.StartFrom(c.hypothesis, *base_.fitted, best, probe,
+                                ExplainedBy(probe, left.residual()));
     std::swap(c.probes[0], c.probes[best]);
   }
 }
@@ -120,7 +124,9 @@ void Round::FitOne(CandidateResult& c, double rival) const {
 
 CandidateResult Round::FitAlone(CandidateResult c) const {
   FitOne(c, std::numeric_limits<double>::infinity());
-  trials_.Complete(c.ProblemOf(*trials_.experiment), c.fitted);
+  const Problem problem = c.ProblemOf(*trials_.experiment);
+  trials_.Complete(problem, c.fitted);
+  if (!Resolved(problem, c.fitted)) throw Error::Job(kUnresolved);
   c.likelihood = (base_.fitted->cost - c.fitted.cost) / inflation_;
   return c;
 }
@@ -158,12 +164,26 @@ void Round::CompleteTheBest() {
     const double plain = c->fitted.cost;
     if (!noise_.known() || plain - best < kNear + 2 * taken_off) {
       Say("sensitivities of " + c->hypothesis.Name());
-      trials_.Complete(c->ProblemOf(*trials_.experiment), c->fitted);
+      const Problem problem = c->ProblemOf(*trials_.experiment);
+      trials_.Complete(problem, c->fitted);
+      if (noise_.known() && !Resolved(problem, c->fitted)) {
+        c->fits = false;
+        c->error = kUnresolved;
+        continue;
+      }
       best = std::min(best, c->fitted.cost);
       taken_off = std::max(taken_off, plain - c->fitted.cost);
     }
     c->likelihood = (base_.fitted->cost - c->fitted.cost) / inflation_;
   }
+}
+
+// What the time step leaves open is free to vary: a fit that is mostly that explains anything.
+bool Round::Resolved(const Problem& problem, const Fitted& fitted) const {
+  const double before = base_.fitted->error.train, after = fitted.error.train;
+  const double removed = std::sqrt(std::max(0.0, before * before - after * after));
+  return trials_.StepEffect(problem, fitted) <
+         trials_.StepEffect(problem, *base_.fitted) + removed + 0.1 * noise_.rms;
 }
 
 void Round::Dismiss() {

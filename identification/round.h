@@ -55,6 +55,7 @@ class Round {
   void FitOne(CandidateResult& c, double rival) const;
   Problem::Vector BestStart(const CandidateResult& c, const Problem& problem) const;
   void CompleteTheBest();
+  bool Resolved(const Problem& problem, const Fitted& fitted) const;
   void Dismiss();
   void TellApart();
 

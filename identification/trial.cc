@@ -68,6 +68,7 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) co
   Fitted f;
   FitOptions options{iterations, 1e-4};  // first order does the rest
   options.whitening = &whitening;
+  options.idle = true;
   options.hopeless = 1.1 * rival + 50;
   f.fit = FitParameters(problem, start, train, options);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
@@ -152,15 +153,19 @@ std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, c
 }
 
 Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
-                         const Explained& probe) const {
+                         const Probe& probe, const Explained& explained) const {
   const auto known = null.fit.x.size();
   const auto amplitudes = h.Amplitudes();
   Vector x = Append(null.fit.x, h.starts[start]);
   for (std::size_t a = 0; a < amplitudes.size(); ++a) {
     const std::size_t i = amplitudes[a];
     if (std::isinf(h.null[i])) continue;  // its start is as good as any
+    if (!(probe.columns.col(static_cast<Eigen::Index>(a)).squaredNorm() > 0)) {  // idle
+      x[known + static_cast<Eigen::Index>(i)] = h.null[i];
+      continue;
+    }
     const double size = Size(h, h.starts[start], i);
-    const double wanted = probe.coefficients[static_cast<Eigen::Index>(a)];
+    const double wanted = explained.coefficients[static_cast<Eigen::Index>(a)];
     // Off the null, where a bound or a kink hides the slope.
     const double least = 0.05 * std::abs(size);
     const double moved = std::abs(wanted) > least ? wanted : std::copysign(least, size);

@@ -26,9 +26,9 @@ struct Trials {
   /// The starts of a candidate, each as directions from the null fit.
   std::vector<Probe> Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                             const Remainder& left) const;
-  /// Where to begin a candidate's fit: a start of its own, with sizes from a probe.
+  /// Where to begin a candidate's fit: a start of its own, with sizes from its probe.
   Problem::Vector StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
-                            const Explained& probe) const;
+                            const Probe& probe, const Explained& explained) const;
   /// How far the trajectories at the time step h and at h/4 are apart [pooled unit].
   double StepEffect(const Problem& problem, const Fitted& fitted) const;
   /// Whether what a candidate leaves above the noise is no more than what its time step adds: then

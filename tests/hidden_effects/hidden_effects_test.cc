@@ -12,24 +12,26 @@ namespace {
 
 // The small suite: one test per kind of noise, so that they run side by side. Its gates count over
 // the cases of one kind; `continuum_hidden_effects` runs hundreds.
-class HiddenEffects : public ::testing::TestWithParam<NoiseKind> {
+class Suite : public ::testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove_all(Folder()); }
   std::filesystem::path Folder() const {
     return std::filesystem::temp_directory_path() / fmt::format("hidden_effects_{}", ::getpid());
   }
-  Answer Ask(Case c) {
-    c.noise = GetParam();
+  Answer Ask(const Case& c) {
     std::filesystem::remove_all(Folder());
     const Answer a = Solve(c, Folder());
     std::string names;
     for (const auto& n : a.named) names += " " + n;
+    for (const auto& n : a.partner) names += " +" + n;
     told_ += c.Name() + ": " + a.verdict + names + "\n";
     return a;
   }
 
   std::string told_;
 };
+
+class HiddenEffects : public Suite, public ::testing::WithParamInterface<NoiseKind> {};
 
 INSTANTIATE_TEST_SUITE_P(Noise, HiddenEffects,
                          ::testing::Values(NoiseKind::kWhite, NoiseKind::kSlow, NoiseKind::kOffset,
@@ -44,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Noise, HiddenEffects,
 TEST_P(HiddenEffects, NothingIsNamedWhereNothingIsHidden) {
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Answer a = Ask({{}, 1, NoiseKind::kWhite, 1000 + seed});
+    const Answer a = Ask({{}, 1, GetParam(), 1000 + seed});
     alarms += a.verdict != "adequate";
   }
   EXPECT_LE(alarms, 2) << told_;
@@ -57,7 +59,7 @@ TEST_P(HiddenEffects, AreNamed) {
   int right = 0, wrong = 0;
   std::uint64_t seed = 2000;
   for (const auto& effect : effects) {
-    const Case c{{effect}, 2, NoiseKind::kWhite, ++seed};
+    const Case c{{effect}, 2, GetParam(), ++seed};
     const Answer a = Ask(c);
     right += InSet(c, a);
     wrong += Unique(a) && !InSet(c, a);
@@ -68,9 +70,18 @@ TEST_P(HiddenEffects, AreNamed) {
 
 // The hidden effect is not among the candidates: none is named, or its declared sibling.
 TEST_P(HiddenEffects, WithoutACandidateGetNoOtherName) {
-  const Case c{{"payload"}, 4, NoiseKind::kWhite, 3001, false};
+  const Case c{{"payload"}, 4, GetParam(), 3001, false};
   const Answer a = Ask(c);
   EXPECT_TRUE(!Unique(a) || Sibling(c, a)) << told_;
+}
+
+// No single candidate leaves noise: both are found, with their sizes.
+TEST_F(Suite, TwoTogetherAreBothNamed) {
+  for (const Case& c : {Case{{"gravity_tilt", "armature"}, 2, NoiseKind::kWhite, 4001},
+                        Case{{"payload", "sensor_delay"}, 2, NoiseKind::kOffset, 4002}}) {
+    const Answer a = Ask(c);
+    EXPECT_TRUE(InSet(c, a)) << told_;
+  }
 }
 
 }  // namespace
