@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "effects/braid.h"
 #include "models/stiff_flop/even.h"
 #include "models/stiff_flop/module.h"
 
@@ -19,7 +20,7 @@ namespace continuum::stiff_flop {
 /// fibre is stretched by y. With lambda, kappa of the tube's own axis:
 ///
 ///   fixed       x = 1, y = lambda                                                     (16)
-///   elongation  x² sin²γ = 1 - lambda² cos²γ, y = lambda                              (12)
+///   elongation  x² = BraidSection(cot²γ, lambda²), y = lambda                         (12)
 ///   constant    x² + c² (y² - 1) = 1, y = lambda (1 - kappa r x cos ψ), c = cot γ     (29)
 ///   exact       as constant, but c = (1 + 2 cos²ψ) cot γ_e, cos γ_e = lambda cos γ    (25-28)
 ///
@@ -40,8 +41,9 @@ class Chamber {
     const T sine = sin(gamma);
     const T free = 1.0 - lambda_ * lambda_ * cosine * cosine;
     room_ = law == ChamberLaw::kFixed ? 1 : Value(free);
-    if (law == ChamberLaw::kElongation) square_ = free / (sine * sine);
-    if (law == ChamberLaw::kConstant) cot2_ = cosine * cosine / (sine * sine);
+    const T cot2 = cosine * cosine / (sine * sine);
+    if (law == ChamberLaw::kElongation) square_ = BraidSection<T>(cot2, lambda_ * lambda_);
+    if (law == ChamberLaw::kConstant) cot2_ = cot2;
     if (law == ChamberLaw::kExact) cot2_ = lambda_ * lambda_ * cosine * cosine / free;
     law_value_ = {Value(square_), Value(cot2_)};
   }

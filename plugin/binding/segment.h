@@ -72,7 +72,7 @@ class BoundSegment : public Bound {
  public:
   BoundSegment(const mjModel& m, const Config& config)
       : Bound(ReadParams<E>(config)),
-        choice_(config.Read(E::kChoices[0])),
+        choice_(ChoiceOf(config)),
         chain_(m, config),
         chambers_(MatchChambers(m, config)) {}
   static int StateSize(const mjModel&, const Config&) { return 0; }
@@ -105,9 +105,11 @@ class BoundSegment : public Bound {
   }
 
   void Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const override {
-    const auto chambers = E::template Chambers<double>(AsParams<E>(p_));
-    for (int i = 0; i < 3; ++i) {
-      DrawChamber(m, d, chain_, PccChamber(chambers, i), chambers.A, chambers_[i], scene);
+    if constexpr (requires { E::template Chambers<double>(AsParams<E>(p_)); }) {
+      const auto chambers = E::template Chambers<double>(AsParams<E>(p_));
+      for (int i = 0; i < 3; ++i) {
+        DrawChamber(m, d, chain_, PccChamber(chambers, i), chambers.A, chambers_[i], scene);
+      }
     }
   }
   void CopyFrom(const Bound& other) override {
@@ -115,6 +117,9 @@ class BoundSegment : public Bound {
   }
 
  private:
+  static int ChoiceOf(const Config& config) {
+    return ChoicesOf<E>().empty() ? 0 : config.Read(ChoicesOf<E>()[0]);
+  }
   double Reference() const { return E::template Segment<double>(AsParams<E>(p_)).d; }
 
   int choice_;

@@ -3,6 +3,7 @@
 #include "effects/armature.h"
 #include "effects/backlash.h"
 #include "effects/bouc_wen.h"
+#include "effects/braid.h"
 #include "effects/capstan.h"
 #include "effects/clock_skew.h"
 #include "effects/coulomb.h"
@@ -50,7 +51,7 @@ struct List {
 /// servo, cable.
 using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl,
                  Lugre, BoucWen, CubicStiffness, Maxwell, Pt2, Backlash, Slack, TendonStretch,
-                 Capstan, PccSegmentLaw, Viscous, Stiffness, Payload, LinkMass, Armature,
+                 Capstan, PccSegmentLaw, Braid, Viscous, Stiffness, Payload, LinkMass, Armature,
                  GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1, SensorBias,
                  SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
 

@@ -126,12 +126,12 @@ concept PathLaw = Card<E> && requires(ParamsOf<E, double> p) {
 
 /// Segment: three coordinates of a soft segment, their rates and three pressures → the three forces
 /// that drive the coordinates, Eval(x, v, pressure, choice, p). Segment(p).d is the distance at
-/// which the first two are arc lengths, Chambers(p) says where the pressures are.
+/// which the first two are arc lengths. Chambers(p), of a law that stands for the whole segment,
+/// says where the pressures are; laws without it act beside such a one.
 template <class E>
 concept SegmentLaw = Card<E> && requires(Vec<double, 3> x, ParamsOf<E, double> p) {
   { E::template Eval<double>(x, x, x, 0, p) } -> std::same_as<Vec<double, 3>>;
   { E::template Segment<double>(p).d } -> std::convertible_to<double>;
-  { E::template Chambers<double>(p).A } -> std::convertible_to<double>;
 };
 
 /// Where a Signal law is inserted: the input of an actuator, the error of a position servo, or
