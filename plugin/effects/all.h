@@ -5,6 +5,7 @@
 #include "effects/bouc_wen.h"
 #include "effects/braid.h"
 #include "effects/capstan.h"
+#include "effects/chamber_asymmetry.h"
 #include "effects/clock_skew.h"
 #include "effects/coulomb.h"
 #include "effects/cubic_stiffness.h"
@@ -51,8 +52,8 @@ struct List {
 /// servo, cable.
 using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl,
                  Lugre, BoucWen, CubicStiffness, Maxwell, Pt2, Backlash, Slack, TendonStretch,
-                 Capstan, PccSegmentLaw, Braid, Viscous, Stiffness, Payload, LinkMass, Armature,
-                 GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime, Pt1, SensorBias,
-                 SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
+                 Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness, Payload,
+                 LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime,
+                 Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
 
 }  // namespace continuum

@@ -62,7 +62,9 @@ const std::map<std::string, std::string>& Laws() {
                           key("y_m", "-1.5e-3") + key("A", "31e-6") + key("d_theta", ".2301") +
                           key("d_dL", "1.8384") + key("k_theta", "183.5195") +
                           key("k_dL1", "251.7274") + key("k_dL3", "-4.2e4")},
-      {"braid", key("body", "base tip") + key("actuator", "p1 p2 p3") + key("cot2_gamma", ".3")}};
+      {"braid", key("body", "base tip") + key("actuator", "p1 p2 p3") + key("cot2_gamma", ".3")},
+      {"chamber_asymmetry", key("body", "base tip") + key("actuator", "p1 p2 p3") +
+                                key("x_m", "1e-3") + key("y_m", "-1e-3")}};
   return laws;
 }
 
