@@ -150,6 +150,7 @@ double SizeFor(const Param& p, Place place, const Sizes& s) {
   if (u == "m/N") return 0.01 / s.tension;
   if (u == "s") return 4 * s.period;
   if (u == "input") return s.angle;
+  if (u == "m") return s.length;
   return 1;
 }
 
@@ -296,6 +297,53 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
   return h;
 }
 
+// The instances of soft segments that have all that an effect beside them takes from them: what has
+// no null on its card.
+std::vector<int> SegmentsFor(const mjModel& m, const EffectInfo& effect) {
+  std::vector<int> found;
+  for (int i = 0; i < m.nplugin; ++i) {
+    const std::string plugin = mjp_getPluginAtSlot(m.plugin[i])->name;
+    if (!plugin.starts_with("continuum.") || plugin.substr(10) == effect.name) continue;
+    const EffectInfo& other = EffectNamed(plugin.substr(10));
+    if (other.kind != EffectInfo::Kind::kSegment) continue;
+    const bool all = std::all_of(effect.params.begin(), effect.params.end(), [&](const Param& p) {
+      return !std::isnan(p.null) || std::any_of(other.params.begin(), other.params.end(),
+                                                [&](const Param& q) { return q.name == p.name; });
+    });
+    if (all) found.push_back(i);
+  }
+  return found;
+}
+
+// A law beside a soft segment of the model: places, choices and geometry are the segment's.
+Hypothesis BesideCandidate(const EffectInfo& effect, int segment, const System& system,
+                           Sizes sizes) {
+  const Config config(system.model(), segment);
+  const std::string name = mj_id2name(&system.model(), mjOBJ_PLUGIN, segment);
+  EffectInstance added{std::string(effect.name), FreshInstance(system.model()), {}};
+  const auto copy = [&](std::string_view key) {
+    if (const auto text = config.Get(key); !text.empty()) added.config.emplace_back(key, text);
+  };
+  for (const Place place : effect.places) copy(PlaceName(place));
+  for (const Choice& choice : effect.choices) copy(choice.name);
+  Hypothesis h{std::string(effect.name), "", "segment " + name, system, {}, {}, "", {}};
+  for (const Param& p : effect.params) {
+    if (std::isnan(p.null)) {
+      const double value = system.Value("plugin:" + name, std::string(p.name));
+      added.config.emplace_back(p.name, Decimal(value));
+      if (p.name == "d") sizes.length = 0.05 * value;
+      continue;
+    }
+    h.extra.push_back(FreeOne(p, Place::kBody, sizes, "plugin:" + added.name, std::string(p.name),
+                              Change::Operation::kSet));
+    added.config.emplace_back(p.name, Decimal(h.extra.back().initial));
+    h.null.push_back(p.null);
+  }
+  h.system = system.With({}, {{added}});
+  h.instance = added;
+  return h;
+}
+
 // An effect of the measurement on some outputs (or on the clock): nothing of the model changes.
 Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
                             const std::vector<std::string>& names, const Experiment& e,
@@ -397,13 +445,34 @@ void AddAt(const EffectInfo& effect, Place place, const std::vector<std::string>
     all.push_back(PluginCandidate(effect, place, names, system, sizes, static_cast<int>(o)));
 }
 
+// Why a law of soft segments was not added; empty when it was.
+std::string AddBeside(const EffectInfo& effect, const Experiment& e, const System& system,
+                      const Sizes& sizes, std::vector<Hypothesis>& all) {
+  const mjModel& m = system.model();
+  for (int i = 0; i < m.nplugin; ++i) {
+    if (mjp_getPluginAtSlot(m.plugin[i])->name == "continuum." + std::string(effect.name))
+      return "the model has it already";
+  }
+  const auto segments = SegmentsFor(m, effect);
+  if (segments.empty()) return "no soft segment in the model";
+  for (const Param& p : effect.params) {
+    if (!std::isnan(p.null) && AlreadyFitted(e, "plugin", std::string(p.name)))
+      return "the experiment fits it already";
+  }
+  for (const int i : segments) all.push_back(BesideCandidate(effect, i, system, sizes));
+  return "";
+}
+
 void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
                const System& system, const Sizes& sizes, std::vector<Hypothesis>& all,
                std::vector<std::string>& skipped) {
   const auto skip = [&](const std::string& why) {
     skipped.push_back(std::string(effect.name) + ": " + why);
   };
-  if (effect.kind == EffectInfo::Kind::kSegment) return skip("not a candidate of the model");
+  if (effect.kind == EffectInfo::Kind::kSegment) {
+    const std::string why = AddBeside(effect, e, system, sizes, all);
+    return why.empty() ? void() : skip(why);
+  }
   if (effect.kind == EffectInfo::Kind::kMeasure) {
     const std::size_t before = all.size();
     AddMeasure(effect, wanted, e, system, sizes, all);

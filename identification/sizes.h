@@ -12,6 +12,7 @@ struct Sizes {
   double tension = 1;    ///< typical force along tendons [N]
   double mass = 1;       ///< mass of the moving bodies [kg]
   double inertia = 1;    ///< inertia that a joint sees [kg*m^2]
+  double length = 1;     ///< typical shift of a part [m]
   double period = 0.01;  ///< median sampling interval [s]
 };
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
