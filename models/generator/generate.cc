@@ -10,6 +10,7 @@
 #include "models/generator/tendon_arm.h"
 #include "models/spa/chain.h"
 #include "models/spa/parameters.h"
+#include "models/stiff_flop/mjcf.h"
 #include "models/tdcr/mjcf.h"
 #include "models/twin_pivot/mjcf.h"
 #include "sim/file.h"
@@ -35,6 +36,8 @@ int Main(int argc, char** argv) {
       {"tdcr_disks", [](const auto& file) { return Segment(file, tdcr::Guides::kDisks); }},
       {"twin_pivot",
        [](const auto& file) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }},
+      {"stiff_flop",
+       [](const auto& file) { return stiff_flop::ModuleMjcf(stiff_flop::Robot::Read(file)); }},
       {"spa", [](const auto& file) { return SpaMjcf(ReadSpa(file)); }},
       {"spa_series", [](const auto& file) { return SpaMjcf(ReadSpa(file), {.series = 2}); }}};
 

@@ -1,0 +1,116 @@
+#include "models/stiff_flop/mjcf.h"
+
+#include <ceres/jet.h>
+
+#include <cmath>
+#include <vector>
+
+#include "models/stiff_flop/elastic.h"
+#include "sim/file.h"
+
+namespace continuum::stiff_flop {
+namespace {
+
+constexpr int kLinks = 6;
+constexpr double kSupply = 150e3;  // [Pa]
+constexpr double kStep = 2e-3;     // [s]
+
+const char* const kComment =
+    "Written by: continuum_generate stiff_flop models/stiff_flop/no_load.yaml. Values, their "
+    "sources and conventions: no_load.yaml and README.md";
+
+// E a [N] and E K [N m^2] of the unloaded straight section.
+struct Stiffness {
+  double stretch, bend;
+};
+Stiffness StiffnessOf(const Module& module) {
+  using Dual = ceres::Jet<double, 2>;
+  const Axis<Dual> axis{Dual(1.0, 0), Dual(0.0, 1), Dual(0.0)};
+  const Reaction<Dual> reaction =
+      ReactionOf(module, {BodyLaw::kFixed, ChamberLaw::kFixed}, Eigen::Vector3d::Zero(),
+                 Dual(module.E), Dual(module.gamma), axis);
+  return {reaction.n_y.v[0], -reaction.M_z.v[1]};
+}
+
+void AddLines(Mjcf& mjcf) {
+  for (const char* name : {"p1", "p2", "p3"}) {
+    mjsActuator* const line = mjs_asActuator(mjs_findElement(&mjcf.spec(), mjOBJ_ACTUATOR, name));
+    line->biastype = mjBIAS_AFFINE;
+    line->forcelimited = mjLIMITED_TRUE;
+    line->forcerange[1] = kSupply;
+  }
+}
+
+void AddMount(Mjcf& mjcf, mjsBody* tip, const Module& module) {
+  mjsBody* const mount = mjcf.AddBody(tip, "mount", {0, 0, 0});
+  const double R2 = module.r_2 * module.r_2, h2 = module.l_fs * module.l_fs;
+  const double across = module.m_fs * (3 * R2 + h2) / 12;
+  mjcf.SetInertia(mount, module.m_fs, {0, 0, module.l_fs / 2},
+                  {across, across, module.m_fs * R2 / 2});
+  mjcf.AddCylinder(mount, {0, 0, 0}, {0, 0, module.l_fs}, 0.8 * module.r_2, "plate");
+  mjcf.AddSite(mount, "marker", {0, 0, module.l_fs}, 0.0015);
+}
+
+void AddMarkerSensors(Mjcf& mjcf) {
+  mjcf.AddPosition("marker_pos", "marker", "frame");
+  mjsSensor* const turn = mjcf.AddSensor(mjSENS_FRAMEQUAT, "marker_quat", mjOBJ_SITE, "marker");
+  turn->reftype = mjOBJ_SITE;
+  mjs_setString(turn->refname, "frame");
+}
+
+void AddScene(Mjcf& mjcf, double length) {
+  AddSoftMaterials(mjcf);
+  mjcf.AddStudio(-1.7 * length, 0.25);
+  mjcf.AddCamera("side", {0.25 * length, -3.4 * length, -0.5 * length},
+                 {0.25 * length, 0, -0.62 * length}, 32);
+}
+
+void SetOptions(mjOption& option, const Eigen::Vector3d& gravity) {
+  option.timestep = kStep;
+  option.integrator = mjINT_IMPLICITFAST;
+  // Robot's y is z of the base, which points down.
+  const double world[] = {-gravity.x() + 0.0, -gravity.z() + 0.0, -gravity.y() + 0.0};
+  std::copy(world, world + 3, option.gravity);
+}
+
+}  // namespace
+
+SoftSegment SegmentOf(const Module& module) {
+  const auto [stretch, bend] = StiffnessOf(module);
+  const double d = module.r_2, l = module.l;
+  const double A = module.n_c * std::numbers::pi * module.r_c1 * module.r_c1;
+  const double k_theta = bend / (l * d * d), k_dL1 = stretch / l;  // (1)
+  const double swing = (l + module.l_fs) / 2;
+  const double m_theta = (module.m * l * l / 20 + module.m_fs * swing * swing) / (d * d);
+  const double m_dL = module.m / 3 + module.m_fs;
+  return {{l, d, module.r_o, 0, 0, A, 2 * std::sqrt(k_theta * m_theta), 2 * std::sqrt(k_dL1 * m_dL),
+           k_theta, 0, k_dL1, 0},
+          "volume",
+          module.m,
+          0,
+          kSupply,
+          kLinks,
+          0.0012,
+          0.0004};
+}
+
+std::string ModuleMjcf(const Robot& robot) {
+  const SoftSegment segment = SegmentOf(robot.module);
+  Mjcf mjcf("stiff_flop", kComment);
+  SetOptions(mjcf.spec().option, robot.gravity);
+  AddScene(mjcf, robot.module.l + robot.module.l_fs);
+  mjsBody* const base = mjcf.AddBody(mjcf.world(), "base", {0, 0, 0});
+  const double down[] = {0, 1, 0, 0};  // half a turn about x
+  std::copy(down, down + 4, base->quat);
+  mjcf.AddSite(base, "frame", {0, 0, 0}, 0.001);
+  SoftChain chain(mjcf, segment);
+  AddMount(mjcf, chain.Add(base, "base"), robot.module);
+  chain.AddWrench(base);
+  AddLines(mjcf);
+  AddMarkerSensors(mjcf);
+  const EffectInstance creep{
+      "maxwell", "creep", {{"joint", "bend1_x bend1_y"}, {"k_m", "0"}, {"tau_m", "2"}}};
+  return mjcf.Text(std::vector{chain.Effect(), creep}, std::vector{chain.Delta()});
+}
+
+}  // namespace continuum::stiff_flop
