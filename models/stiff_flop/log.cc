@@ -15,29 +15,30 @@ namespace {
 constexpr double kStart = 7;          // s
 constexpr double kEndOfTrain = 37.8;  // s
 constexpr double kBar = 1e5;
-constexpr double kLongestOffset = 60e-3;
 
 const std::vector<double>& Column(const Columns& table, int index) {
   return table.values[static_cast<std::size_t>(index)];
 }
 
-std::vector<Eigen::Vector3d> Points(const std::vector<Solution>& shapes, double along,
-                                    std::size_t rows) {
-  std::vector<Eigen::Vector3d> points;
-  for (std::size_t i = 0; i < rows; ++i) {
-    points.push_back(shapes[i].tip + along * shapes[i].tangent);
-  }
-  return points;
-}
-
 Registration Align(const std::vector<Solution>& shapes, const Log& log, std::size_t rows,
-                   double along) {
-  const std::vector<Eigen::Vector3d> points = Points(shapes, along, rows);
+                   const Eigen::Vector3d& offset) {
   const auto columns = static_cast<Eigen::Index>(rows);
-  const Eigen::Map<const Eigen::Matrix3Xd> from(points.data()->data(), 3, columns);
+  Eigen::Matrix3Xd from(3, columns);
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    from.col(i) = Registration::Carried(shapes[static_cast<std::size_t>(i)], offset);
+  }
   const Eigen::Map<const Eigen::Matrix3Xd> to(log.marker.data()->data(), 3, columns);
   const Eigen::Matrix4d rigid = Eigen::umeyama(from, to, false);
-  return {rigid.topLeftCorner<3, 3>(), rigid.topRightCorner<3, 1>(), along};
+  return {rigid.topLeftCorner<3, 3>(), rigid.topRightCorner<3, 1>(), offset};
+}
+
+Eigen::VectorXd Distances(const Registration& registration, const std::vector<Solution>& shapes,
+                          const Log& log, std::size_t rows) {
+  Eigen::VectorXd left(3 * static_cast<Eigen::Index>(rows));
+  for (std::size_t i = 0; i < rows; ++i) {
+    Eigen::Vector3d::Map(left.data() + 3 * i) = registration.Marker(shapes[i]) - log.marker[i];
+  }
+  return left;
 }
 
 /// Marker residuals [mm] after the best registration, as a function of (E/E_0, gamma).
@@ -103,21 +104,28 @@ std::size_t TrainRows(const Log& log) {
 
 Registration Registration::Fit(const std::vector<Solution>& shapes, const Log& log,
                                std::size_t rows) {
-  const auto cost = [&](double along) {
-    return ErrorOf(Align(shapes, log, rows, along), shapes, log, 0, rows).rms;
+  constexpr double kProbe = 1e-4, kClose = 1e-9;  // m
+  const auto left = [&](const Eigen::Vector3d& offset) {
+    return Distances(Align(shapes, log, rows, offset), shapes, log, rows);
   };
-  double low = 0, high = kLongestOffset;
-  while (high - low > 1e-6) {
-    const double width = (high - low) / std::numbers::phi;
-    const double left = high - width;
-    const double right = low + width;
-    if (cost(left) < cost(right)) {
-      high = right;
-    } else {
-      low = left;
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    Eigen::MatrixX3d slope(3 * static_cast<Eigen::Index>(rows), 3);
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d step = kProbe * Eigen::Vector3d::Unit(i);
+      slope.col(i) = (left(offset + step) - left(offset - step)) / (2 * kProbe);
     }
+    const Eigen::Vector3d move =
+        (slope.transpose() * slope).ldlt().solve(-slope.transpose() * left(offset));
+    offset += move;
+    if (move.norm() < kClose) break;
   }
-  return Align(shapes, log, rows, 0.5 * (low + high));
+  return Align(shapes, log, rows, offset);
+}
+
+Eigen::Vector3d Registration::Carried(const Solution& solution, const Eigen::Vector3d& offset) {
+  const auto tilt = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), solution.tangent);
+  return solution.tip + tilt * offset;
 }
 
 TipError ErrorOf(const Registration& registration, const std::vector<Solution>& shapes,

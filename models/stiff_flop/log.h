@@ -21,18 +21,21 @@ struct Log {
   Log First(std::size_t rows) const;
 };
 
-/// Where the tracker sees the module: marker = position + turn (rho(l) + along t).
+/// Where the tracker sees the module: marker = position + turn (rho(l) + Tilt offset), where Tilt
+/// turns y straight into the tip's tangent. A marker is glued where there is room, not on the axis.
 struct Registration {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  double along = 0;  ///< distance of the marker beyond the tip, along its tangent [m]
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< of the marker from the tip [m]
 
   Eigen::Vector3d Marker(const Solution& solution) const {
-    return position + turn * (solution.tip + along * solution.tangent);
+    return position + turn * Carried(solution, offset);
   }
+  /// A point that moves with the tip, in the base frame [m].
+  static Eigen::Vector3d Carried(const Solution& solution, const Eigen::Vector3d& offset);
 
-  /// Least squares over the rows [0, rows): turn and position in closed form, `along` by golden
-  /// section in [0, 60 mm].
+  /// Least squares over the rows [0, rows): turn and position in closed form, offset by
+  /// Gauss-Newton on what they leave. The rows must bend to several sides.
   static Registration Fit(const std::vector<Solution>& shapes, const Log& log, std::size_t rows);
 };
 

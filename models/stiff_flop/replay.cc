@@ -23,10 +23,11 @@ void PrintLine(const std::string& name, const Robot& robot, const Method& method
   const TipError fresh = ErrorOf(registration, shapes, log, train, log.time.size());
   const Registration all = Registration::Fit(shapes, log, log.time.size());
   const TipError whole = ErrorOf(all, shapes, log, 0, log.time.size());
-  fmt::print("| {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} ({:.2f} %) | {:.1f} |\n", name,
-             robot.module.E / 1e3, robot.module.gamma * 180 / std::numbers::pi, 1e3 * fitted.mean,
-             1e3 * fresh.mean, 1e3 * whole.mean,
-             100 * whole.mean / (robot.module.l + robot.module.l_fs), 1e3 * registration.along);
+  fmt::print(
+      "| {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} ({:.2f} %) | {:.1f}, {:.1f}, {:.1f} |\n",
+      name, robot.module.E / 1e3, robot.module.gamma * 180 / std::numbers::pi, 1e3 * fitted.mean,
+      1e3 * fresh.mean, 1e3 * whole.mean, 100 * whole.mean / (robot.module.l + robot.module.l_fs),
+      1e3 * registration.offset.x(), 1e3 * registration.offset.y(), 1e3 * registration.offset.z());
   std::fflush(stdout);
 }
 
@@ -57,7 +58,7 @@ int Main(const std::filesystem::path& file, const std::filesystem::path& data) {
   const Log log = Log::Read(data, kStride);
   fmt::print(
       "| model | E [kPa] | gamma [deg] | train [mm] | validate [mm] | whole log [mm] |"
-      " marker beyond tip [mm] |\n|---|---|---|---|---|---|---|\n"
+      " marker from the tip [mm] |\n|---|---|---|---|---|---|---|\n"
       "| published physical models | | | | | 2.57, 2.80, 3.06 (4.40, 4.79, 5.22 %) | |\n"
       "| published regression | | | | | 0.72 | |\n");
   for (const Method& method : Method::All()) {
