@@ -48,5 +48,30 @@ TEST_F(StiffFlopRecording, GivesThreeCyclesOfThreeLines) {
   }
 }
 
+// The README's table; 0.05 mm and 0.1 deg: its last digits, and other compilers.
+TEST_F(StiffFlopRecording, ReplaysAsItsReadmeSays) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  const Errors train = Replay(true), validate = Replay(false);
+  EXPECT_NEAR(train.tip, 2.08e-3, 5e-5);
+  EXPECT_NEAR(train.turn, 3.8 * kDegree, 0.1 * kDegree);
+  EXPECT_NEAR(validate.tip, 6.84e-3, 5e-5);
+  EXPECT_NEAR(validate.turn, 13.4 * kDegree, 0.1 * kDegree);
+}
+
+// What identify found on cycles 1 and 2. 1.5 mm was asked for; physical models published for this
+// log have 2.57 mm.
+TEST_F(StiffFlopRecording, WithDeadPressureAsymmetryAndCreepItForesaysTheThirdCycle) {
+  constexpr auto kScale = Change::Operation::kScale;
+  const std::vector<Change> fitted{{"plugin:segment", "k_theta", 0.561824, kScale},
+                                   {"plugin:segment", "k_dL1", 0.781825, kScale},
+                                   {"plugin:segment", "x_m", 1.47624e-4},
+                                   {"plugin:segment", "y_m", 1.2689e-4},
+                                   {"actuator:p*", "biasprm[0]", -10797.6},
+                                   {"plugin:creep", "k_m", 0.0544953},
+                                   {"plugin:creep", "tau_m", 1.70938}};
+  EXPECT_NEAR(Replay(true, fitted).tip, 0.35e-3, 5e-5);
+  EXPECT_NEAR(Replay(false, fitted).tip, 0.66e-3, 5e-5);
+}
+
 }  // namespace
 }  // namespace continuum
