@@ -59,9 +59,8 @@ Image BentArm(const Study& s, const System& annelida) {
     Overlay overlay;
     const double even_error = TipError(s, PlanarChain(s.p).Tip(Even(s.reference.bend.q.back())));
     overlay.caption = fmt::format(
-        "90° by {:.1f} N on cable 1. Translucent: the same arm with equal angles, its tip {:.1f} "
-        "mm "
-        "off. An arc of the same length and angle ends {:.1f} mm off.",
+        "90° by {:.1f} N on cable 1. Translucent: the arm with equal angles, tip {:.1f} mm off "
+        "(an arc of the same length: {:.1f} mm).",
         s.coarse.tension, 1e3 * even_error, 1e3 * TipError(s, ArcTip(s)));
     overlay.bar = ColorBar{"cable tension [N]", "0", fmt::format("{:.0f}", s.coarse.tension)};
     overlay.ghost = even.get();
