@@ -10,9 +10,9 @@ namespace continuum {
 ///
 /// τ_μ [N*m*s/rad] viscous · τ_c [N*m] Coulomb · S [1] excess at rest · v_d [rad/s] Stribeck speed.
 /// τ_μ is the joint's native damping, which must be 0 or equal in the MJCF (τ_μ = 0 leaves it
-/// alone). Breakaway is τ_c (1 + S). The print's tanh(k_v v) in place of sgn(v) never sticks: it
-/// only serves to replay the paper's own curve (Literal) and does not change the friction in a
-/// simulation. Source: snake_arm, eq. 7.
+/// alone); of several laws on one joint it is the sum. Breakaway is τ_c (1 + S). The print's
+/// tanh(k_v v) in place of sgn(v) never sticks: it only serves to replay the paper's own curve
+/// (Literal) and does not change the friction in a simulation. Source: snake_arm, eq. 7.
 struct Stribeck {
   static constexpr std::string_view kName = "stribeck", kSource = "snake_arm",
                                     kSummary = "dry friction that is larger at rest, and viscous";
