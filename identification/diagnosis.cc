@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "identification/by_folds.h"
+#include "identification/next_experiment.h"
 #include "identification/pairs.h"
 #include "identification/parallel.h"
 #include "identification/rounding.h"
@@ -55,6 +56,8 @@ class Session {
       CompareFolds();
     }
     BootstrapGain();
+    Say("next experiment");
+    d_.next = ProposeNext(trials_, d_);
     d_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(d_);
   }

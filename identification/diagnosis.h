@@ -91,6 +91,12 @@ struct LackOfFit {
   double smallest() const { return std::min(force, channel); }
 };
 
+/// What to measure next to tell the models of an ambiguous set apart.
+struct NextExperiment {
+  std::string input;      ///< in words; empty: none is needed
+  double separation = 0;  ///< expected; see ProposeNext
+};
+
 struct Diagnosis {
   Diagnosis(const Experiment& experiment, const System& null) : pool(experiment), system(null) {}
 
@@ -110,6 +116,7 @@ struct Diagnosis {
   Verdict verdict;     ///< indices into candidates
   FoldScores ceiling;  ///< what a smooth force without a name reaches
   TwoErrors ceiling_error;
+  NextExperiment next;
   double gain_low = 0, gain_high = 0;  ///< 95 % interval of the held-out error removed
   double seconds = 0;
 

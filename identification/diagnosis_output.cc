@@ -225,29 +225,6 @@ double Separation(const Diagnosis& d) {
   return squares > 0 ? std::abs(mean) / std::sqrt(squares / (n - 1) / n) : 0;
 }
 
-std::string NextExperiment(const Diagnosis& d) {
-  const auto has = [&](std::string_view effect) {
-    return std::any_of(d.verdict.named.begin(), d.verdict.named.end(),
-                       [&](std::size_t i) { return d.candidates[i].hypothesis.effect == effect; });
-  };
-  if (d.verdict.named.size() < 2) return "";
-  if (has("load_friction") && (has("position_friction") || has("payload"))) {
-    return "repeat the same motions with another known mass: the load changes at the same angles";
-  }
-  if (has("load_friction")) {
-    return "repeat with the motor off (free swing) and with another mass: the kinds of load part "
-           "there";
-  }
-  if (has("dead_time") || has("pt1")) {
-    return "a fast chirp: a delay and a lag part in the phase at high frequency";
-  }
-  if (has("dahl") || has("backlash") || has("stribeck") || has("coulomb")) {
-    return "slow reversals of growing amplitude: friction laws part where the motion turns round";
-  }
-  return "a slow sweep over the whole range and a fast one: the candidates part in position and "
-         "speed";
-}
-
 Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder) {
   MakeFolder(folder);
   Told told;
@@ -312,8 +289,8 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
     alternatives.push_back(d.candidates[i].hypothesis.Name());
   json["next_experiment"] = {
       {"for", d.verdict.named.size() > 1 ? alternatives : nlohmann::json::array()},
-      {"input", NextExperiment(d)},
-      {"expected_separation", Separation(d)}};
+      {"input", d.next.input},
+      {"expected_separation", d.next.separation}};
   const double over = d.noise.rms > 0 ? told.after.train / d.noise.rms : 0;
   json["adequacy"] = {{"regime", ModelLimited(d, told.after) ? "model_limited" : "noise_limited"},
                       {"remaining_over_noise", over},
@@ -428,7 +405,8 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
     text += fmt::format(" {} {:.0f} %,", c.hypothesis.Name(), 100 * Share(d, c));
   }
   if (text.back() == ',') text.back() = '\n';
-  if (d.verdict.named.size() > 1) text += "next      " + NextExperiment(d) + "\n";
+  if (d.verdict.named.size() > 1)
+    text += fmt::format("next      {} (separation {:.3g})\n", d.next.input, d.next.separation);
   (void)e;
   return text;
 }

@@ -45,7 +45,6 @@ struct Gain {
   double explainable = 0;  ///< (MSE0 − MSE1)/(MSE0 − noise MSE)
 };
 Gain GainOf(const Diagnosis& diagnosis, const TwoErrors& after);
-std::string NextExperiment(const Diagnosis& diagnosis);
 /// What parts the two best candidates: their likelihoods, or the mean paired difference of their
 /// fold errors over its standard error.
 double Separation(const Diagnosis& diagnosis);

@@ -152,7 +152,11 @@ class Story {
     page_.Details("Why the others are not named", [&] { page_.List(items); });
     if (d_.verdict.named.size() > 1) {
       page_.Heading("The next experiment", 3);
-      page_.Paragraph("To tell them apart: " + NextExperiment(d_) + ".");
+      page_.Paragraph(
+          fmt::format("To tell them apart: {}. Expected separation {:.3g}, in units of twice the "
+                      "log-likelihood{}.",
+                      d_.next.input, d_.next.separation,
+                      d_.noise.known() ? "" : " if what remains were white noise"));
     }
   }
 

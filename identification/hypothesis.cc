@@ -172,7 +172,10 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   }
   out.upper = std::min(p.upper, (nuisance ? 100 : reach) * size);
   out.lower = nuisance ? std::max(p.lower, 1e-3 * size) : std::max(p.lower, -reach * size);
-  const double typical = p.unit == "1" ? 0.1 : p.unit == "s" ? 0.125 : p.unit == "rad" ? 0.02 : 0.05;
+  const double typical = p.unit == "1"     ? 0.1
+                         : p.unit == "s"   ? 0.125
+                         : p.unit == "rad" ? 0.02
+                                           : 0.05;
   out.initial = nuisance ? 0.3 * size : p.null + typical * size;
   if (p.null == 1) out.lower = 0.1, out.upper = 10, out.initial = 1.02;  // a factor
   out.initial = std::clamp(out.initial, out.lower, out.upper);

@@ -181,6 +181,20 @@ std::vector<double> RoundingErrors(const ChannelNoise& noise, std::vector<double
   return values;
 }
 
+std::vector<double> NoiseDraw(const ChannelNoise& noise, std::size_t rows, std::mt19937_64& rng) {
+  std::normal_distribution<double> normal;
+  const double offset = noise.offset * normal(rng);
+  std::vector<double> e;
+  for (std::size_t k = 0; k < rows; ++k) {
+    const bool begun = k >= noise.ar.size();  // as the whitening begins
+    double now = (begun ? noise.innovation : noise.rms) * normal(rng);
+    for (std::size_t i = 0; begun && i < noise.ar.size(); ++i) now += noise.ar[i] * e[k - 1 - i];
+    e.push_back(now);
+  }
+  for (double& value : e) value += offset;
+  return e;
+}
+
 ChannelNoise RoundingNoise(const ChannelNoise& noise,
                            const std::vector<std::vector<double>>& values) {
   if (!Rounded(noise)) return noise;

@@ -50,6 +50,9 @@ bool Rounded(const ChannelNoise& noise);
 std::vector<double> RoundingErrors(const ChannelNoise& noise, std::vector<double> values,
                                    std::mt19937_64& rng);
 
+/// One draw of a channel's noise over so many rows, as its model says.
+std::vector<double> NoiseDraw(const ChannelNoise& noise, std::size_t rows, std::mt19937_64& rng);
+
 /// Logs that repeat each other, one group per motion; logs without a replicate are in none.
 std::vector<std::vector<std::size_t>> ReplicateGroups(const Experiment& experiment);
 

@@ -11,8 +11,9 @@
 
 namespace continuum {
 namespace {
+constexpr int kDraws = 399;  // of rounding errors
 constexpr const char kUnresolved[] = "the time step adds more to its fit than it removes";
-}
+}  // namespace
 
 bool Contains(const CandidateResult& b, const CandidateResult& a) {
   if (a.probes.empty() || b.probes.empty()) return false;
@@ -62,8 +63,12 @@ void Round::Screen() {
   for (std::size_t l = 0; l < trials_.experiment->logs.size(); ++l)
     traces.push_back(base.Predict(base_.fitted->fit.x, l));
   const Rounding rounding(base, noise_, std::move(traces));
-  if (rounding.any()) inflation_ = rounding.Inflation(left, columns, options_.seed);
-  const Significance found = SignificanceOf(probes, left.residual(), inflation_, options_.seed);
+  Problem::Matrix draws;
+  if (rounding.any()) {
+    inflation_ = rounding.Inflation(left, columns, options_.seed);
+    draws = rounding.Draws(left, kDraws, options_.seed);
+  }
+  const Significance found = SignificanceOf(probes, left.residual(), options_.seed, draws);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     CandidateResult& c = candidates[i];
     c.explained = found.explained[i];

@@ -26,7 +26,7 @@ double Rounding::Inflation(const Remainder& left, const std::vector<Problem::Mat
   constexpr int kDraws = 40;
   double power = 0, count = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Problem::Vector z = left.Project(Draw(rng)).col(0);
+    const Problem::Vector z = left.Project(Draw(rng, false)).col(0);
     for (const Problem::Matrix& c : columns) {
       for (Eigen::Index i = 0; i < c.cols(); ++i) {
         const double norm = c.col(i).squaredNorm();
@@ -37,7 +37,15 @@ double Rounding::Inflation(const Remainder& left, const std::vector<Problem::Mat
   return count > 0 ? std::max(1.0, power / count) : 1;
 }
 
-std::vector<Problem::Matrix> Rounding::Draw(std::mt19937_64& rng) const {
+Problem::Matrix Rounding::Draws(const Remainder& left, int count, std::uint64_t seed) const {
+  std::mt19937_64 rng(seed);
+  Problem::Matrix draws(left.residual().size(), count);
+  for (int i = 0; i < count; ++i) draws.col(i) = left.Project(Draw(rng, true)).col(0);
+  return draws;
+}
+
+// all: also the noise of channels that are not rounded.
+std::vector<Problem::Matrix> Rounding::Draw(std::mt19937_64& rng, bool all) const {
   const auto& channels = problem_->channels();
   std::vector<Problem::Matrix> draw;
   for (const Trace& trace : traces_) {
@@ -46,8 +54,10 @@ std::vector<Problem::Matrix> Rounding::Draw(std::mt19937_64& rng) const {
         Problem::Matrix::Zero(rows * static_cast<Eigen::Index>(channels.size()), 1);
     for (std::size_t c = 0; c < channels.size(); ++c) {
       const ChannelNoise& n = noise_->channel[channels[c]];
-      if (!Rounded(n)) continue;
-      const auto errors = RoundingErrors(n, trace.channel[channels[c]], rng);
+      if (!Rounded(n) && !all) continue;
+      const auto& values = trace.channel[channels[c]];
+      const auto errors =
+          Rounded(n) ? RoundingErrors(n, values, rng) : NoiseDraw(n, values.size(), rng);
       for (Eigen::Index k = 0; k < rows; ++k)
         log(static_cast<Eigen::Index>(c) * rows + k, 0) = errors[k] / problem_->scale(c);
     }

@@ -17,9 +17,11 @@ class Rounding {
   /// noise the columns (projected) take up, by draws; at least 1.
   double Inflation(const Remainder& left, const std::vector<Problem::Matrix>& columns,
                    std::uint64_t seed) const;
+  /// Draws of the noise of all channels, as they stand in what a fit leaves; one column each.
+  Problem::Matrix Draws(const Remainder& left, int count, std::uint64_t seed) const;
 
  private:
-  std::vector<Problem::Matrix> Draw(std::mt19937_64& rng) const;
+  std::vector<Problem::Matrix> Draw(std::mt19937_64& rng, bool all) const;
 
   const Problem* problem_;
   const Noise* noise_;

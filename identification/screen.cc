@@ -127,8 +127,8 @@ Explained ExplainedBy(const Probe& probe, const Vector& z) {
 
 // Everything happens in the span of all probes: z and draws of noise are projected into it once.
 Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, const Vector& z,
-                            double inflation, std::uint64_t seed) {
-  constexpr int kDraws = 1999;
+                            std::uint64_t seed, const Matrix& given) {
+  const int count = given.cols() > 0 ? static_cast<int>(given.cols()) : 1999;
   Significance out;
   out.explained.assign(candidates.size(), 0);
   out.best.assign(candidates.size(), 0);
@@ -157,33 +157,37 @@ Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, c
     out.explained[c] = small[c].Best(here, &out.best[c]);
 
   Normals normals(seed);
-  Matrix draws(static_cast<Eigen::Index>(small.size()), kDraws);
-  for (int d = 0; d < kDraws; ++d) {
+  Matrix draws(static_cast<Eigen::Index>(small.size()), count);
+  for (int d = 0; d < count; ++d) {
     Vector noise(Q.cols());
-    for (double& v : noise) v = std::sqrt(inflation) * normals.Next();
+    if (given.cols() > 0) {
+      noise = Q.transpose() * given.col(d);
+    } else {
+      for (double& v : noise) v = normals.Next();
+    }
     for (std::size_t c = 0; c < small.size(); ++c) draws(c, d) = small[c].Best(noise);
   }
   // Own p-values of every draw by its rank, then the distribution of the smallest.
-  Matrix own(draws.rows(), kDraws);
+  Matrix own(draws.rows(), count);
   std::vector<std::vector<double>> sorted(small.size());
   const auto share = [&](std::size_t c, double amount) {
     const auto& s = sorted[c];
     const auto above = s.end() - std::lower_bound(s.begin(), s.end(), amount);
-    return (static_cast<double>(above) + 1) / (kDraws + 1);
+    return (static_cast<double>(above) + 1) / (count + 1);
   };
   for (std::size_t c = 0; c < small.size(); ++c) {
-    for (int d = 0; d < kDraws; ++d) sorted[c].push_back(draws(c, d));
+    for (int d = 0; d < count; ++d) sorted[c].push_back(draws(c, d));
     std::sort(sorted[c].begin(), sorted[c].end());
-    for (int d = 0; d < kDraws; ++d) own(c, d) = share(c, draws(c, d));
+    for (int d = 0; d < count; ++d) own(c, d) = share(c, draws(c, d));
   }
   std::vector<double> smallest;
-  for (int d = 0; d < kDraws; ++d) smallest.push_back(own.col(d).minCoeff());
+  for (int d = 0; d < count; ++d) smallest.push_back(own.col(d).minCoeff());
   std::sort(smallest.begin(), smallest.end());
   for (std::size_t c = 0; c < small.size(); ++c) {
     const double mine = share(c, out.explained[c]);
     const auto as_small =
         std::upper_bound(smallest.begin(), smallest.end(), mine) - smallest.begin();
-    out.p[c] = (static_cast<double>(as_small) + 1) / (kDraws + 1);
+    out.p[c] = (static_cast<double>(as_small) + 1) / (count + 1);
   }
   return out;
 }

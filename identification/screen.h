@@ -55,13 +55,15 @@ Explained ExplainedBy(const Probe& probe, const Eigen::VectorXd& z);
 
 /// Family-wise significance of several candidates, each with one or more probes (the best counts):
 /// the share of draws of white noise in which some candidate reaches as small a p-value of its own
-/// as this one did with z. Repeats exactly for a seed.
+/// as this one did with z. Repeats exactly for a seed. draws: of the noise where it is not white,
+/// one column each, instead.
 struct Significance {
   std::vector<double> explained;  ///< [candidate] of its best probe
   std::vector<std::size_t> best;  ///< [candidate] its best probe
   std::vector<double> p;          ///< [candidate] family-wise
 };
 Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates,
-                            const Eigen::VectorXd& z, double inflation, std::uint64_t seed);
+                            const Eigen::VectorXd& z, std::uint64_t seed,
+                            const Eigen::MatrixXd& draws = {});
 
 }  // namespace continuum

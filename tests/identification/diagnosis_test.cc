@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "identification/diagnosis_output.h"
+#include "identification/next_experiment.h"
 #include "pendulum.h"
 
 namespace continuum {
@@ -19,6 +20,7 @@ using testing::Command;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::Noisy;
+using ::testing::Not;
 using testing::Pendulum;
 using ::testing::SizeIs;
 
@@ -161,6 +163,27 @@ TEST_F(DiagnosisTest, NothingIsNamedWhenTheInputsHaveTheOtherSign) {
   }
   const Diagnosis d = Ask(e);
   EXPECT_NE(d.verdict.text, "named") << Told(d);
+}
+
+TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
+  Pendulum truth;
+  truth.payload = 0.05;
+  AddTrials(truth);
+  const Experiment e = ReadWith("payload, stiffness");
+  Diagnosis d = Ask(e, 2);
+  ASSERT_THAT(d.candidates, SizeIs(2)) << Told(d);
+  Trials trials;
+  trials.experiment = &e;
+  d.verdict.named = {0};
+  EXPECT_EQ(ProposeNext(trials, d).input, "");
+  d.verdict.named = {0, 1};
+  const NextExperiment parts = ProposeNext(trials, d);
+  EXPECT_GT(parts.separation, 15);
+  EXPECT_THAT(parts.input, Not(HasSubstr("no change")));
+  d.candidates[1] = CandidateResult(d.candidates[0]);
+  const NextExperiment same = ProposeNext(trials, d);
+  EXPECT_LT(same.separation, 1e-6);
+  EXPECT_THAT(same.input, HasSubstr("no change of these inputs"));
 }
 
 TEST_F(DiagnosisTest, AsksForTwoGroupsToLeaveOut) {

@@ -51,7 +51,7 @@ TEST_F(Screened, TheBestOfManyIsSignificantInFivePercentOfPureNoise) {
   }
   int alarms = 0;
   for (int draw = 0; draw < 400; ++draw) {
-    const auto s = SignificanceOf(candidates, Normal(), 1, 5);
+    const auto s = SignificanceOf(candidates, Normal(), 5);
     alarms += *std::min_element(s.p.begin(), s.p.end()) < 0.05;
   }
   EXPECT_NEAR(alarms / 400.0, 0.05, 0.033);
@@ -64,7 +64,7 @@ TEST_F(Screened, AStrongEffectIsSignificantAndTheBest) {
     columns.push_back(Normal());
     candidates.push_back({OneWay(columns.back())});
   }
-  const auto s = SignificanceOf(candidates, Normal() + columns[3], 1, 5);
+  const auto s = SignificanceOf(candidates, Normal() + columns[3], 5);
   EXPECT_LT(s.p[3], 0.001);
   for (int i = 0; i < 5; ++i) EXPECT_LE(s.explained[i], s.explained[3]);
 }
@@ -72,7 +72,7 @@ TEST_F(Screened, AStrongEffectIsSignificantAndTheBest) {
 TEST_F(Screened, RepeatsExactlyForASeed) {
   const std::vector<std::vector<Probe>> candidates{{OneWay(Normal())}, {OneWay(Normal(), 1)}};
   const Vector z = Normal();
-  EXPECT_EQ(SignificanceOf(candidates, z, 1, 3).p, SignificanceOf(candidates, z, 1, 3).p);
+  EXPECT_EQ(SignificanceOf(candidates, z, 3).p, SignificanceOf(candidates, z, 3).p);
 }
 
 }  // namespace

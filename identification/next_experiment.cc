@@ -1,0 +1,211 @@
+#include "identification/next_experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "error.h"
+
+namespace continuum {
+namespace {
+
+using Signal = std::vector<double>;
+
+constexpr double kTooClose = 15;    // of separation
+constexpr std::size_t kRivals = 3;  // of the chosen one that are looked at
+constexpr double kTau = 2 * std::numbers::pi;
+
+// A change of all inputs of a log. u: one input over its rows.
+struct Variation {
+  std::string words;
+  std::function<Signal(const Signal& u)> change;
+};
+
+double Reach(const Signal& u) {
+  const auto [low, high] = std::minmax_element(u.begin(), u.end());
+  return (*high - *low) / 2;
+}
+double Middle(const Signal& u) {
+  const auto [low, high] = std::minmax_element(u.begin(), u.end());
+  return (*high + *low) / 2;
+}
+
+Signal Larger(const Signal& u, double factor) {
+  Signal out = u;
+  for (double& v : out) v = u.front() + factor * (v - u.front());
+  return out;
+}
+
+Signal Faster(const Signal& u, double factor) {
+  Signal out = u;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    const auto at = static_cast<std::size_t>(factor * static_cast<double>(k));
+    out[k] = u[std::min(at, u.size() - 1)];
+  }
+  return out;
+}
+
+Signal Staircase(const Signal& u) {
+  Signal out = u;
+  const std::size_t stair = std::max<std::size_t>(1, u.size() / 8);
+  for (std::size_t k = 0; k < u.size(); ++k) out[k] = u[k - k % stair];
+  return out;
+}
+
+// shape of the part x in [0, 1) of the log, about the middle of u.
+Signal Shaped(const Signal& u, const std::function<double(double)>& shape) {
+  Signal out = u;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    const double x = static_cast<double>(k) / static_cast<double>(u.size());
+    out[k] = Middle(u) + Reach(u) * shape(x);
+  }
+  return out;
+}
+
+double Triangle(double turns) { return 2 / std::numbers::pi * std::asin(std::sin(kTau * turns)); }
+
+std::vector<Variation> Library() {
+  return {
+      {"the same inputs half as large", [](const Signal& u) { return Larger(u, 0.5); }},
+      {"the same inputs 1.5 times as large", [](const Signal& u) { return Larger(u, 1.5); }},
+      {"the same inputs half as fast", [](const Signal& u) { return Faster(u, 0.5); }},
+      {"the same inputs twice as fast", [](const Signal& u) { return Faster(u, 2); }},
+      {"a staircase with rests", Staircase},
+      {"slow reversals of growing amplitude",
+       [](const Signal& u) { return Shaped(u, [](double x) { return x * Triangle(4 * x); }); }},
+      {"a fast chirp of half the amplitude",
+       [](const Signal& u) {
+         return Shaped(u, [](double x) { return 0.5 * std::sin(kTau * (2 + 20 * x) * x); });
+       }},
+  };
+}
+
+class Proposal {
+ public:
+  Proposal(const Trials& trials, const Diagnosis& d) : e_(*trials.experiment), d_(d) {}
+
+  NextExperiment Run() {
+    NextExperiment best;
+    for (const Variation& v : Library()) {
+      Log log = Longest();
+      if (!Apply(v, log)) continue;
+      Consider(log, v.words, best);
+    }
+    for (const std::string& body : Ends()) {
+      Log log = Longest();
+      const double mass = 0.1 * d_.sizes.mass;
+      log.set.push_back({"body:" + body, "point_mass", mass, Change::Operation::kAdd});
+      Consider(log, fmt::format("the same inputs with {:.2g} kg more at body {}", mass, body),
+               best);
+    }
+    if (best.input.empty())
+      best.input = "slow and fast motions over the whole range";
+    else if (best.separation < kTooClose) {
+      best.input = "no change of these inputs tells them apart (the best: " + best.input +
+                   "): add a sensor, or fix one of them by a known mass or a separate measurement";
+    }
+    return best;
+  }
+
+ private:
+  void Consider(const Log& log, const std::string& words, NextExperiment& best) const {
+    double least = std::numeric_limits<double>::infinity();
+    try {
+      const std::size_t rivals = std::min(kRivals + 1, d_.verdict.named.size());
+      for (std::size_t i = 1; i < rivals; ++i)
+        least = std::min(least, Apart(log, d_.candidates[d_.verdict.named[i]]));
+    } catch (const Error&) {
+      return;  // a simulation diverges under these inputs
+    }
+    if (best.input.empty() || least > best.separation) best = {words, least};
+  }
+
+  // Either may be the larger model, which can do what the other does.
+  double Apart(const Log& log, const CandidateResult& rival) const {
+    return std::max(Separation(log, *d_.chosen(), rival), Separation(log, rival, *d_.chosen()));
+  }
+
+  // λ of one candidate, refitted to first order to what another does in this log.
+  double Separation(const Log& log, const CandidateResult& truth,
+                    const CandidateResult& rival) const {
+    Experiment e = e_;
+    e.logs = {log};
+    e.logs[0].train = true;
+    e.logs[0].measured = Moves(e, truth);
+    const Problem problem = ProblemOf(e, rival);
+    const auto all = problem.AllLogs();
+    const auto r = problem.Residuals(rival.fitted.fit.x, all);
+    if (!r[0].allFinite()) throw Error::Job("diverged");
+    const auto J = problem.Jacobian(rival.fitted.fit.x, r, all);
+    const Whitening whitening = d_.noise.known() ? Whitening(problem, d_.noise) : Whitening();
+    const std::vector<bool> free(static_cast<std::size_t>(rival.fitted.fit.x.size()), false);
+    const Remainder left(whitening, all, r, J, free, {Problem::Matrix(r[0].size(), 0)});
+    if (d_.noise.known()) return left.cost();
+    // In pooled units, which are those of the experiment's error.
+    return left.cost() / std::pow(d_.chosen()->fitted.error.train, 2);
+  }
+
+  std::vector<Signal> Moves(const Experiment& e, const CandidateResult& c) const {
+    Trace trace = ProblemOf(e, c).Predict(c.fitted.fit.x, 0);
+    if (trace.diverged) throw Error::Job("diverged");
+    return std::move(trace.channel);
+  }
+
+  static Problem ProblemOf(const Experiment& e, const CandidateResult& c) {
+    Problem problem = c.ProblemOf(e);
+    if (problem.Start().size() != c.fitted.fit.x.size())
+      throw Error::Job("parameters of single logs say nothing about a new one");
+    return problem;
+  }
+
+  // False when a limit of an actuator forbids it.
+  bool Apply(const Variation& v, Log& log) const {
+    const mjModel& m = d_.system.model();
+    for (std::size_t i = 0; i < log.input.size(); ++i) {
+      if (log.input[i].empty()) continue;
+      log.input[i] = v.change(log.input[i]);
+      const int id = mj_name2id(&m, mjOBJ_ACTUATOR, e_.inputs[i].actuator.c_str());
+      if (id < 0 || !m.actuator_ctrllimited[id]) continue;
+      const auto [low, high] = std::minmax_element(log.input[i].begin(), log.input[i].end());
+      if (*low < m.actuator_ctrlrange[2 * id] || *high > m.actuator_ctrlrange[2 * id + 1])
+        return false;
+    }
+    return true;
+  }
+
+  const Log& Longest() const {
+    const Log* longest = nullptr;
+    for (const Log& log : e_.logs) {
+      if (log.train && (!longest || log.rows() > longest->rows())) longest = &log;
+    }
+    return *longest;
+  }
+
+  // Bodies that carry no other.
+  std::vector<std::string> Ends() const {
+    const mjModel& m = d_.system.model();
+    std::vector<bool> carries(static_cast<std::size_t>(m.nbody), false);
+    for (int b = 1; b < m.nbody; ++b) carries[m.body_parentid[b]] = true;
+    std::vector<std::string> names;
+    for (int b = 1; b < m.nbody; ++b) {
+      const char* const name = mj_id2name(&m, mjOBJ_BODY, b);
+      if (!carries[b] && name && *name) names.emplace_back(name);
+    }
+    return names;
+  }
+
+  const Experiment& e_;
+  const Diagnosis& d_;
+};
+
+}  // namespace
+
+NextExperiment ProposeNext(const Trials& trials, const Diagnosis& diagnosis) {
+  return diagnosis.verdict.named.size() < 2 ? NextExperiment{} : Proposal(trials, diagnosis).Run();
+}
+
+}  // namespace continuum
