@@ -12,6 +12,7 @@
 #include "sim/file.h"
 #include "sim/film.h"
 #include "sim/output.h"
+#include "sim/registration.h"
 #include "sim/replay.h"
 
 namespace continuum {
@@ -57,8 +58,8 @@ std::string CandidateNamed(const std::string& name) {
 }
 
 void RunDiagnose(const Options& o) {
-  const Experiment e = Experiment::Read(o.experiment);
-  const System system = System::Load(e.model);
+  const Experiment read = Experiment::Read(o.experiment);
+  const System system = System::Load(read.model);
   const std::string old = OldComparison(o.compare);
   DiagnosisOptions options;
   std::istringstream names(o.candidates);
@@ -68,7 +69,8 @@ void RunDiagnose(const Options& o) {
   options.placebos = o.placebos;
   options.seed = o.seed;
   options.progress = ShowProgress;
-  CheckNames(e, system);
+  CheckNames(read, system);
+  const Experiment e = Registered(read, system);
   const OutFolder made(o.out);
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress("files");

@@ -8,6 +8,7 @@
 #include "sim/check.h"
 #include "sim/file.h"
 #include "sim/output.h"
+#include "sim/registration.h"
 #include "sim/replay.h"
 
 namespace continuum {
@@ -24,9 +25,10 @@ void RunIdentify(const Options& o) {
     throw Error::Input("--method", "lm (others are not available yet)", "'" + o.method + "'");
   if (o.path != "stepped")
     throw Error::Input("--path", "stepped (smooth is not available yet)", "'" + o.path + "'");
-  const Experiment e = Experiment::Read(o.experiment);
-  const System system = System::Load(e.model);
-  CheckNames(e, system);
+  const Experiment read = Experiment::Read(o.experiment);
+  const System system = System::Load(read.model);
+  CheckNames(read, system);
+  const Experiment e = Registered(read, system);
   const Problem problem(e, system);
   if (problem.parameters().empty())
     throw Error::Input(o.experiment, "the key 'parameters'", "none");

@@ -10,6 +10,7 @@
 #include "sim/file.h"
 #include "sim/film.h"
 #include "sim/output.h"
+#include "sim/registration.h"
 
 namespace continuum {
 namespace {
@@ -20,7 +21,7 @@ struct Options {
 };
 
 void RunReplay(const Options& o) {
-  const Experiment e = Experiment::Read(o.experiment);
+  Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
   CheckNames(e, system);
   const OutFolder made(o.out);
@@ -44,7 +45,11 @@ void RunReplay(const Options& o) {
   std::printf(
       "all: RMS %.4g (train), %.4g (validate) %s; mean absolute error averaged over logs %.4g\n",
       error.train, error.validate, unit.c_str(), rows > 0 ? mae / rows : 0);
-  WriteFile(folder / "errors.json", ErrorsJson(e, logs).dump(2) + "\n");
+  for (const auto& line : RegistrationLines(e.registration)) std::printf("%s\n", line.c_str());
+  auto errors = ErrorsJson(e, logs);
+  const auto registration = RegistrationJson(e.registration);
+  if (!registration.is_null()) errors["registration"] = registration;
+  WriteFile(folder / "errors.json", errors.dump(2) + "\n");
   WriteSimulated(e, traces, folder / "simulated");
   WriteReplayReport(e, logs, folder / "report.html");
   if (o.video) {

@@ -237,7 +237,7 @@ Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesyst
   WriteFile(folder / "extended.yaml", extension.yaml);
   told.difference = LineDiff(d.system.Xml({}, {}, folder), extension.xml);
 
-  const Experiment extended = Experiment::Read(folder / "extended.yaml");
+  Experiment extended = Experiment::Read(folder / "extended.yaml");
   const auto replayed = Replay(extended, System::Load(folder / "extended.xml"));
   const SplitError error = PooledError(extended, replayed);
   told.after = {error.train, error.validate};

@@ -9,6 +9,7 @@
 
 #include "sim/asset_folders.h"
 #include "sim/file.h"
+#include "sim/registration.h"
 
 namespace continuum {
 namespace {
@@ -123,7 +124,9 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
   y += fmt::format("time: {{column: {}, unit: {}, skew: {}}}\n", Quoted(e.time_column),
                    Quoted(e.time_unit), Decimal(measured.skew));
   const char* const starts[] = {"rest", "equilibrium", "measured", "estimate"};
-  y += fmt::format("start: {}\ninputs:\n", starts[static_cast<int>(e.start)]);
+  y += fmt::format("start: {}\n", starts[static_cast<int>(e.start)]);
+  if (e.quasi_static) y += "quasi_static: true\n";
+  y += RegistrationYaml(measured.registration) + "inputs:\n";
   for (const Input& in : e.inputs) {
     y += "  - {actuator: " + Quoted(in.actuator) + ", unit: " + Quoted(in.unit);
     if (!in.column.empty()) y += ", column: " + Quoted(in.column);

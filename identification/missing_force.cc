@@ -52,7 +52,7 @@ std::map<int, std::size_t> JointChannels(const Experiment& e, const mjModel& m) 
 MissingForce FindMissingForce(const Problem& problem, const Problem::Vector& x) {
   const Experiment& e = problem.experiment();
   const auto channels = JointChannels(e, problem.system().model());
-  if (channels.empty()) return {};
+  if (channels.empty() || e.quasi_static) return {};
   std::map<int, MissingForce> found;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     const Log& log = e.logs[l];

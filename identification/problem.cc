@@ -11,6 +11,7 @@
 #include "identification/parallel.h"
 #include "identification/unit.h"
 #include "sim/measurement.h"
+#include "sim/registration.h"
 
 namespace continuum {
 namespace {
@@ -45,6 +46,8 @@ Problem::Problem(const Experiment& experiment, const System& system, std::vector
     systems_.back().DropVisuals();
   }
   for (const Parameter& p : experiment.parameters) Expand(p);
+  const Wiring wiring(experiment, system.model());
+  for (const Parameter& p : RegistrationParameters(experiment, wiring, system.model())) Expand(p);
   for (const Parameter& p : extra) Expand(p);
   for (std::size_t k = 0; k < terms_.count; ++k) {
     parameters_.push_back({"force term " + std::to_string(k + 1),
@@ -303,6 +306,7 @@ std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::ve
       out[l].col(0) = r[l] - ResidualOf(l, fine);
       if (!out[l].col(0).allFinite()) out[l].col(0).setZero();
       out[l].col(1) = ResidualOf(l, later) - r[l];
+      if (experiment_->quasi_static) out[l].col(1).setZero();  // rows know no time
     }
   });
   evaluations_ += motions.size();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -155,6 +156,50 @@ Output ReadOutput(const Yaml& y) {
   }
   if (const auto unit = y.Find("unit")) UnitFactor(out.unit, unit->Where());
   return out;
+}
+
+Registration::Vector ReadVector(const Yaml& y) {
+  const auto numbers = y.Numbers();
+  if (numbers.size() != 3) {
+    throw Error::Input(y.Where(), "three numbers", std::to_string(numbers.size()));
+  }
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+// Whether a part is to be estimated; anything else is read as what is known of it.
+Registration::Part ReadPart(const Yaml& y, const std::function<void()>& known) {
+  using Part = Registration::Part;
+  if (y.IsScalar() && y.Text() == "estimate") return Part::kEstimate;
+  known();
+  return Part::kKnown;
+}
+
+Registration ReadRegistration(const Yaml& y) {
+  y.Only({"frame", "marker", "clock_shift"});
+  Registration r;
+  if (const auto frame = y.Find("frame")) {
+    r.frame = ReadPart(*frame, [&] {
+      if (!frame->IsMap()) {
+        throw Error::Input(frame->Where(), "estimate | {rotation: [x, y, z], translation: [..]}",
+                           "something else");
+      }
+      frame->Only({"rotation", "translation"});
+      if (const auto v = frame->Find("rotation")) r.rotation = ReadVector(*v);
+      if (const auto v = frame->Find("translation")) r.translation = ReadVector(*v);
+    });
+  }
+  if (const auto marker = y.Find("marker")) {
+    r.marker = ReadPart(*marker, [&] {
+      if (!marker->IsMap()) {
+        r.offset[""] = ReadVector(*marker);
+        return;
+      }
+      for (const auto& sensor : marker->Keys()) r.offset[sensor] = ReadVector(marker->At(sensor));
+    });
+  }
+  if (const auto clock = y.Find("clock_shift"))
+    r.clock = ReadPart(*clock, [&] { r.clock_shift = clock->Number(); });
+  return r;
 }
 
 std::vector<Change> ReadSettings(const Yaml& y) {
@@ -345,12 +390,6 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
   if (y.At("format").Number() != 1) {
     throw Error::Input(y.At("format").Where(), "format 1", y.At("format").Text());
   }
-  if (y.Has("registration")) {
-    throw Error::Input(y.At("registration").Where(), "registration is not available yet");
-  }
-  if (const auto q = y.Find("quasi_static"); q && q->Bool()) {
-    throw Error::Input(q->Where(), "quasi_static is not available yet");
-  }
 
   Experiment e;
   e.file = file;
@@ -370,6 +409,7 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
                                     {"measured", Start::kMeasured},
                                     {"estimate", Start::kEstimate}});
   }
+  if (const auto q = y.Find("quasi_static")) e.quasi_static = q->Bool();
   if (const auto inputs = y.Find("inputs")) {
     for (const Yaml& item : inputs->Items()) e.inputs.push_back(ReadInput(item));
   }
@@ -382,8 +422,14 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
     }
   }
   if (e.outputs.empty()) throw Error::Input(y.At("outputs").Where(), "at least one output", "none");
+  if (const auto r = y.Find("registration")) e.registration = ReadRegistration(*r);
   if (const auto parameters = y.Find("parameters")) {
-    for (const Yaml& item : parameters->Items()) e.parameters.push_back(ReadParameter(item));
+    for (const Yaml& item : parameters->Items()) {
+      e.parameters.push_back(ReadParameter(item));
+      const Parameter& p = e.parameters.back();
+      if (p.target == "registration" && p.attribute.starts_with("marker:"))
+        e.registration.offset.try_emplace(p.attribute.substr(7, p.attribute.rfind('[') - 7));
+    }
   }
   if (const auto c = y.Find("candidates"); c && !(c->IsScalar() && c->Text() == "all")) {
     e.all_candidates = false;

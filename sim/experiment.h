@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -42,6 +43,31 @@ struct Output {
 
   bool quaternion() const { return columns.size() == 4; }
   const std::string& name() const { return columns.front(); }
+};
+
+/// Where and when the outputs were measured, beside what each output's Measurement says:
+///
+///   p_meas(t) = R (p + Q o)(t − s) + T
+///
+/// of every position (framepos): R(rotation) and T turn and shift the world into the frame of the
+/// measurement, o is the offset of the marker in the axes Q of the sensor's object, s the shift of
+/// the outputs' clock against that of the inputs. R turns other vectors and orientations too.
+struct Registration {
+  enum class Part { kAbsent, kKnown, kEstimate };
+  using Vector = std::array<double, 3>;
+  Part frame = Part::kAbsent, marker = Part::kAbsent, clock = Part::kAbsent;
+  Vector rotation{}, translation{};      ///< rotation vector [rad], [m]
+  std::map<std::string, Vector> offset;  ///< of each sensor's marker [m]; "": of all others
+  double clock_shift = 0;                ///< [s], positive: outputs are late
+
+  bool has_frame() const {
+    return frame != Part::kAbsent || rotation != Vector{} || translation != Vector{};
+  }
+  bool has_marker() const { return marker != Part::kAbsent || !offset.empty(); }
+  bool has_clock() const { return clock != Part::kAbsent || clock_shift != 0; }
+  bool estimates() const {
+    return frame == Part::kEstimate || marker == Part::kEstimate || clock == Part::kEstimate;
+  }
 };
 
 /// A recorded trial: rows of numbers in SI.
@@ -91,8 +117,10 @@ struct Experiment {
   std::string time_column = "time", time_unit = "s";
   double skew = 0;
   Start start = Start::kRest;
+  bool quasi_static = false;  ///< rows in order, each at rest: sim/quasi_static.h
   std::vector<Input> inputs;
   std::vector<Output> outputs;
+  Registration registration;
   std::vector<Log> logs;
   std::vector<Parameter> parameters;
   bool all_candidates = true;

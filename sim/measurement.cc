@@ -4,6 +4,7 @@
 
 #include "binding/config.h"
 #include "error.h"
+#include "sim/registration.h"
 
 namespace continuum {
 namespace {
@@ -47,18 +48,28 @@ double& ValueOf(Experiment& e, std::size_t output, const std::string& attribute)
 
 bool IsMeasurement(const std::string& target, const std::string& attribute) {
   if (target == "time") return attribute == "skew";
+  if (target == "registration") return IsRegistration(attribute);
   return target.starts_with(kSensor) && Members().contains(attribute);
 }
 
 double MeasurementValue(const Experiment& e, const std::string& target,
                         const std::string& attribute) {
   if (target == "time") return e.skew;
+  if (target == "registration") {
+    Registration present = e.registration;
+    return RegistrationValue(present, attribute);
+  }
   return e.outputs[OutputsOf(e, target).front()].measurement.*Members().find(attribute)->second;
 }
 
 void ApplyMeasurement(Experiment& e, const Change& change) {
   if (change.target == "time") {
     e.skew = Changed(e.skew, change);
+    return;
+  }
+  if (change.target == "registration") {
+    double& value = RegistrationValue(e.registration, change.attribute);
+    value = Changed(value, change);
     return;
   }
   for (const std::size_t o : OutputsOf(e, change.target)) {
@@ -69,6 +80,8 @@ void ApplyMeasurement(Experiment& e, const Change& change) {
 
 std::string MeasurementUnit(const Experiment& e, const std::string& target,
                             const std::string& attribute) {
+  if (target == "registration")
+    return attribute == "clock_shift" ? "s" : attribute.starts_with("rotation") ? "rad" : "m";
   if (attribute == "scale" || attribute == "skew") return "1";
   if (attribute == "delay") return "s";
   if (attribute == "angle") return "rad";

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "sim/file.h"
+#include "sim/registration.h"
 
 namespace continuum {
 namespace {
@@ -17,6 +18,14 @@ std::vector<double> InUnit(const std::vector<double>& si, double factor) {
 }
 
 std::string Cell(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
+
+void AddRegistration(Page& page, const Registration& r) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& line : RegistrationLines(r)) rows.push_back({line});
+  if (rows.empty()) return;
+  page.Heading("Registration");
+  page.Table({"where and when the outputs were measured"}, rows);
+}
 
 }  // namespace
 
@@ -32,20 +41,23 @@ void CheckNames(const Experiment& e, const System& system) {
   }
 }
 
-std::vector<Replayed> Replay(const Experiment& e, const System& system,
+std::vector<Replayed> Replay(Experiment& e, const System& system,
                              const std::function<void(const std::string&)>& progress) {
-  std::vector<Replayed> out;
+  std::vector<Trace> traces;
   for (const Log& log : e.logs) {
     if (progress)
-      progress(fmt::format("log {} of {}: {}", out.size() + 1, e.logs.size(), log.label));
+      progress(fmt::format("log {} of {}: {}", traces.size() + 1, e.logs.size(), log.label));
     Machine machine = system.Build(log.set);
-    Replayed r{Simulate(machine, e, log), {}};
-    if (r.trace.diverged) {
-      throw Error::Job(
-          fmt::format("{}: the simulation diverges at {:g} s", log.label, r.trace.diverged_at));
-    }
-    r.score = ScoreLog(e, log, r.trace);
-    out.push_back(std::move(r));
+    traces.push_back(Simulate(machine, e, log));
+    if (traces.back().diverged) throw Error::Job(log.label + ": " + traces.back().Failure());
+  }
+  const Wiring wiring(e, system.model());
+  e.registration = Registered(e, wiring, system.model(), traces);
+  std::vector<Replayed> out;
+  for (std::size_t l = 0; l < traces.size(); ++l) {
+    if (e.registration.estimates()) MeasureTrace(e, wiring, e.logs[l], traces[l]);
+    out.push_back({std::move(traces[l]), {}});
+    out.back().score = ScoreLog(e, e.logs[l], out.back().trace);
   }
   return out;
 }
@@ -158,6 +170,7 @@ void WriteReplayReport(const Experiment& e, const std::vector<Replayed>& logs,
   page.Table(
       {"log", "use", "channel", "unit", "RMSE", "mean abs.", "NRMSE", "fit %", "largest", "at s"},
       rows);
+  AddRegistration(page, e.registration);
   for (std::size_t l = 0; l < logs.size(); ++l) {
     page.Heading(e.logs[l].label);
     AddOverlay(page, e, e.logs[l], {{"simulated", Style::kSimulated, &logs[l].trace}}, true);

@@ -22,8 +22,9 @@ struct Replayed {
 /// values do not compile: before the first simulation.
 void CheckNames(const Experiment& experiment, const System& system);
 
-/// Every log of an experiment as it stands. Throws Error (kJob) when a simulation diverges.
-std::vector<Replayed> Replay(const Experiment& experiment, const System& system,
+/// Every log of an experiment as it stands; what its registration leaves open is estimated from the
+/// train logs and written into it. Throws Error (kJob) when a simulation diverges or finds no rest.
+std::vector<Replayed> Replay(Experiment& experiment, const System& system,
                              const std::function<void(const std::string&)>& progress = {});
 
 /// Pooled RMS of the train and validate logs.

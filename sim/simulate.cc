@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -12,12 +12,13 @@
 #include "engine.h"
 #include "error.h"
 #include "sim/file.h"
-#include "sim/units.h"
+#include "sim/inputs.h"
+#include "sim/quasi_static.h"
+#include "sim/recorder.h"
 
 namespace continuum {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSteps = 1e9;  // hours of computing for the smallest model; and an int counts them
 
 std::string NamesOf(const mjModel& m, mjtObj type, int count) {
@@ -57,6 +58,27 @@ void CheckTurn(const Output& out, int dim) {
                          (dim == 1 ? " number" : " numbers"));
 }
 
+Wiring::Source::Seen SeenOf(int type) {
+  using Seen = Wiring::Source::Seen;
+  switch (type) {
+    case mjSENS_FRAMEPOS:
+      return Seen::kPoint;
+    case mjSENS_FRAMEQUAT:
+      return Seen::kTurn;
+    case mjSENS_FRAMEXAXIS:
+    case mjSENS_FRAMEYAXIS:
+    case mjSENS_FRAMEZAXIS:
+    case mjSENS_FRAMELINVEL:
+    case mjSENS_FRAMEANGVEL:
+    case mjSENS_FRAMELINACC:
+    case mjSENS_FRAMEANGACC:
+    case mjSENS_SUBTREELINVEL:
+      return Seen::kVector;
+    default:
+      return Seen::kAsIs;
+  }
+}
+
 // "tip_pos[1]" → sensor and component; the whole sensor is recorded, so that it can be turned.
 Wiring::Source SensorSource(const mjModel& m, const Output& out) {
   std::string name = out.source;
@@ -83,88 +105,25 @@ Wiring::Source SensorSource(const mjModel& m, const Output& out) {
         out.quaternion() ? std::to_string(dim) + " numbers" : std::to_string(component));
   }
   CheckTurn(out, dim);
-  return {Output::Kind::kSensor, m.sensor_adr[id], dim, component};
+  return {Output::Kind::kSensor, m.sensor_adr[id], dim, component, SeenOf(m.sensor_type[id]), id};
 }
 
-// Gain and bias of an actuator with an enable column, so that "off" can take them away: neither
-// torque nor back-EMF.
-class Gate {
- public:
-  Gate(mjModel& m, int actuator) : m_(&m), a_(actuator) {
-    gain_.assign(Gain(), Gain() + mjNGAIN);
-    bias_.assign(Bias(), Bias() + mjNBIAS);
+// A marker belongs to a position that is measured.
+void CheckMarkers(const Experiment& e, const mjModel& m, const Wiring& wiring) {
+  std::set<std::string> points;
+  std::string all;
+  for (const auto& source : wiring.output) {
+    if (source.seen != Wiring::Source::Seen::kPoint) continue;
+    const std::string name = mj_id2name(&m, mjOBJ_SENSOR, source.sensor);
+    if (points.insert(name).second) all += (all.empty() ? "" : ", ") + name;
   }
-  void Switch(bool on) {
-    for (int i = 0; i < mjNGAIN; ++i) Gain()[i] = on ? gain_[i] : 0;
-    for (int i = 0; i < mjNBIAS; ++i) Bias()[i] = on ? bias_[i] : 0;
-  }
-
- private:
-  double* Gain() const { return m_->actuator_gainprm + mjNGAIN * a_; }
-  double* Bias() const { return m_->actuator_biasprm + mjNBIAS * a_; }
-
-  mjModel* m_;
-  int a_;
-  std::vector<double> gain_, bias_;
-};
-
-// The inputs of one log on one machine.
-class Inputs {
- public:
-  Inputs(mjModel& m, const Experiment& e, const Log& log, const Wiring& wiring)
-      : experiment_(e), log_(log), wiring_(wiring) {
-    for (std::size_t i = 0; i < wiring.actuator.size(); ++i)
-      gates_.emplace_back(m, wiring.actuator[i]);
-  }
-
-  void AtRow(mjData& d, std::size_t row) {
-    for (std::size_t i = 0; i < gates_.size(); ++i) {
-      d.ctrl[wiring_.actuator[i]] = log_.input[i][row];
-      if (wiring_.gated[i]) gates_[i].Switch(log_.enable[i][row]);
+  for (const auto& [sensor, offset] : e.registration.offset) {
+    if (sensor.empty() ? points.empty() : !points.contains(sensor)) {
+      throw Error::Input(Place(e.file.string(), "registration.marker"),
+                         "a position sensor (framepos) of the outputs",
+                         "'" + sensor + "' (" + (all.empty() ? "there is none" : all) + ")");
     }
   }
-  void Between(mjData& d, std::size_t row, double t) const {
-    const double share = (t - log_.time[row]) / (log_.time[row + 1] - log_.time[row]);
-    for (std::size_t i = 0; i < gates_.size(); ++i) {
-      if (!experiment_.inputs[i].linear) continue;
-      const auto& u = log_.input[i];
-      d.ctrl[wiring_.actuator[i]] = u[row] + share * (u[row + 1] - u[row]);
-    }
-  }
-  void AllOn() {
-    for (Gate& gate : gates_) gate.Switch(true);
-  }
-
- private:
-  const Experiment& experiment_;
-  const Log& log_;
-  const Wiring& wiring_;
-  std::vector<Gate> gates_;
-};
-
-double Within(double value, bool limited, const double range[2]) {
-  return limited ? std::clamp(value, range[0], range[1]) : value;
-}
-
-// Lags and delays as if the present inputs, as the engine clamps them, had been there for ever.
-void Settle(const mjModel& m, mjData& d) {
-  const bool clamped = !(m.opt.disableflags & mjDSBL_CLAMPCTRL);
-  for (int a = 0; a < m.nu; ++a) {
-    const int adr = m.actuator_actadr[a];
-    const bool lagged =
-        m.actuator_dyntype[a] == mjDYN_FILTER || m.actuator_dyntype[a] == mjDYN_FILTEREXACT;
-    if (adr >= 0 && lagged) {
-      const double u =
-          Within(d.ctrl[a], clamped && m.actuator_ctrllimited[a], m.actuator_ctrlrange + 2 * a);
-      d.act[adr] = Within(u, m.actuator_actlimited[a], m.actuator_actrange + 2 * a);
-    }
-    const int samples = m.actuator_history[2 * a];
-    if (samples > 0) {
-      const std::vector<double> past(samples, d.ctrl[a]);
-      mj_initCtrlHistory(&m, &d, a, nullptr, past.data());
-    }
-  }
-  SettleEffects(m, d);
 }
 
 // The most rows of a log in any interval of this length [s].
@@ -192,59 +151,6 @@ void RequireHistory(const mjModel& m, const Log& log) {
                        "a history of " + std::to_string(needed) +
                            " samples, or a time step near the log's sampling interval",
                        std::to_string(samples));
-  }
-}
-
-bool Healthy(const mjModel& m, const mjData& d) {
-  for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC, mjWARN_BADCTRL}) {
-    if (d.warning[kind].number > 0) return false;
-  }
-  return std::all_of(d.qpos, d.qpos + m.nq, [](double q) { return std::isfinite(q); });
-}
-
-// Numbers of one output over the rows.
-using Record = std::vector<std::vector<double>>;  // [component][row]
-
-double At(const std::vector<double>& time, const std::vector<double>& y, double t) {
-  if (t <= time.front()) return y.front();
-  const auto next = std::upper_bound(time.begin(), time.end(), t);
-  if (next == time.end()) return y.back();
-  const std::size_t i = next - time.begin();
-  return y[i - 1] + (t - time[i - 1]) / (time[i] - time[i - 1]) * (y[i] - y[i - 1]);
-}
-
-// y_meas(t) = scale R(axis, angle) y(t − delay) + bias + rate (t − t_0), in the output's unit.
-void Measure(Record& record, const Measurement& how, const std::vector<double>& time,
-             double factor) {
-  if (how == Measurement{}) return;
-  Record late = record;
-  if (how.delay > 0) {
-    for (std::size_t c = 0; c < record.size(); ++c) {
-      for (std::size_t k = 0; k < time.size(); ++k) {
-        late[c][k] = At(time, record[c], time[k] - how.delay);
-      }
-    }
-  }
-  double quat[4] = {1, 0, 0, 0};
-  double axis[3] = {how.axis[0], how.axis[1], how.axis[2]};
-  if (how.angle != 0) {
-    mju_normalize3(axis);
-    mju_axisAngle2Quat(quat, axis, how.angle);
-  }
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    if (record.size() == 3) {
-      double y[3] = {late[0][k], late[1][k], late[2][k]}, turned[3];
-      mju_rotVecQuat(turned, y, quat);
-      for (int c = 0; c < 3; ++c) late[c][k] = turned[c];
-    } else if (record.size() == 4) {
-      double y[4] = {late[0][k], late[1][k], late[2][k], late[3][k]}, turned[4];
-      mju_mulQuat(turned, quat, y);
-      for (int c = 0; c < 4; ++c) late[c][k] = turned[c];
-    }
-    for (std::size_t c = 0; c < record.size(); ++c) {
-      record[c][k] =
-          how.scale * late[c][k] + factor * (how.bias + how.rate * (time[k] - time.front()));
-    }
   }
 }
 
@@ -276,6 +182,8 @@ Wiring::Wiring(const Experiment& e, const mjModel& m) {
       output.push_back({out.kind, ActuatorId(m, out.source, out.where), 1, 0});
     }
   }
+  CheckMarkers(e, m, *this);
+  marked = e.registration.has_marker();
 }
 
 InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
@@ -366,19 +274,6 @@ InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log) 
   return {{d.qpos, d.qpos + m.nq}, std::vector<double>(nv, 0)};
 }
 
-void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Trace& trace) {
-  trace.channel.clear();
-  for (std::size_t o = 0; o < trace.raw.size(); ++o) {
-    Record record = trace.raw[o];
-    Measure(record, e.outputs[o].measurement, log.time, UnitFactor(e.outputs[o].unit, ""));
-    if (e.outputs[o].quaternion()) {
-      for (auto& component : record) trace.channel.push_back(std::move(component));
-    } else {
-      trace.channel.push_back(std::move(record[wiring.output[o].component]));
-    }
-  }
-}
-
 void CheckLength(const Log& log, double timestep) {
   const double span = log.time.back() - log.time.front();
   if (span / timestep <= kSteps) return;
@@ -388,6 +283,7 @@ void CheckLength(const Log& log, double timestep) {
 
 Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const InitialState& initial,
                const Hooks& hooks) {
+  if (e.quasi_static) return SimulateAtRest(machine, e, log, initial, hooks);
   const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
@@ -404,21 +300,7 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
   Settle(m, d);
 
   Trace trace;
-  std::vector<Record> records;
-  for (const auto& source : wiring.output) {
-    records.emplace_back(source.size, std::vector<double>(log.rows(), kMissing));
-  }
-  const auto record = [&](std::size_t row) {
-    for (std::size_t o = 0; o < records.size(); ++o) {
-      const auto& source = wiring.output[o];
-      for (int c = 0; c < source.size; ++c) {
-        const double* const from = source.kind == Output::Kind::kSensor  ? d.sensordata
-                                   : source.kind == Output::Kind::kForce ? d.actuator_force
-                                                                         : d.ctrl;
-        records[o][c][row] = from[source.address + c];
-      }
-    }
-  };
+  Recorder recorder(m, wiring, log.rows());
   // The stages of RK4 overwrite the forces of the first: evaluate the row before its step.
   const bool staged = m.opt.integrator == mjINT_RK4;
   std::vector<double> qpos(m.nq), qvel(m.nv);
@@ -427,12 +309,12 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
     std::copy(d.qvel, d.qvel + m.nv, qvel.begin());
     if (staged) {
       mj_forward(&m, &d);
-      record(row);
+      recorder.Take(d, row);
       if (hooks.row) hooks.row(m, d, row);
     }
     mj_step(&m, &d);  // its sensors and forces are those of the state it starts from
     if (staged) return;
-    record(row);
+    recorder.Take(d, row);
     if (!hooks.row) return;
     std::swap_ranges(qpos.begin(), qpos.end(), d.qpos);
     std::swap_ranges(qvel.begin(), qvel.end(), d.qvel);
@@ -467,12 +349,12 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
   if (!trace.diverged) {
     inputs.AtRow(d, log.rows() - 1);
     mj_forward(&m, &d);
-    record(log.rows() - 1);
+    recorder.Take(d, log.rows() - 1);
     if (hooks.row) hooks.row(m, d, log.rows() - 1);
   }
   inputs.AllOn();
 
-  trace.raw = std::move(records);
+  recorder.Release(trace);
   MeasureTrace(e, wiring, log, trace);
   return trace;
 }

@@ -15,11 +15,18 @@ struct InitialState {
 
 /// What the simulation says about the channels of an experiment, at the rows of one log.
 struct Trace {
+  using Raw = std::vector<std::vector<std::vector<double>>>;
   std::vector<std::vector<double>> channel;  ///< [channel][row] SI, as it would be measured
   bool diverged = false;
   double diverged_at = 0;  ///< [s]
   /// [output][component][row] of whole sensors, before they are measured.
-  std::vector<std::vector<std::vector<double>>> raw = {};
+  Raw raw = {};
+  /// [output][element][row] axes (row by row) in which a marker's offset is given; of positions
+  /// only, and only where the experiment's registration has a marker.
+  Raw axes = {};
+  std::string why = {};  ///< it ended before the last row, where that is more than divergence
+
+  std::string Failure() const;
 };
 
 struct Hooks {
@@ -36,10 +43,14 @@ struct Wiring {
     int address;    ///< of the first number, in sensordata or actuator_force
     int size;       ///< numbers recorded: 1, or the whole sensor
     int component;  ///< of the channel among them
+    /// What a registration does to it: nothing; R p + T; R v; R q.
+    enum class Seen { kAsIs, kPoint, kVector, kTurn } seen = Seen::kAsIs;
+    int sensor = -1;
   };
   std::vector<int> actuator;   ///< of each input
   std::vector<Source> output;  ///< of each output
   std::vector<bool> gated;     ///< inputs with an enable column
+  bool marked = false;         ///< whether positions are those of markers
 
   Wiring(const Experiment& e, const mjModel& m);
 };
@@ -55,7 +66,7 @@ void CheckLength(const Log& log, double timestep);
 Trace Simulate(Machine& machine, const Experiment& e, const Log& log,
                const InitialState& initial = {}, const Hooks& hooks = {});
 
-/// The channels anew from raw, as this experiment's outputs measure them.
+/// The channels anew from raw, as this experiment's registration and outputs measure them.
 void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Trace& trace);
 
 /// The state in which the experiment's start leaves a log's trial.

@@ -59,7 +59,7 @@ class ExtensionTest : public Bench {
     MakeFolder(folder_ / folder);
     WriteFile(folder_ / folder / "extended.xml", extension.xml);
     WriteFile(folder_ / folder / "extended.yaml", extension.yaml);
-    const Experiment e = Experiment::Read(folder_ / folder / "extended.yaml");
+    Experiment e = Experiment::Read(folder_ / folder / "extended.yaml");
     return PooledError(e, Replay(e, System::Load(folder_ / folder / "extended.xml")));
   }
   // Fits, extends, replays and compares.

@@ -44,7 +44,7 @@ class Measured : public Bench {
     const Fit fit = FitParameters(problem, problem.Start(), problem.AllLogs());
     const Extension extension = Extend(problem, fit.x, folder_);
     Write("extended.xml", extension.xml);
-    const Experiment again = Experiment::Read(Write("extended.yaml", extension.yaml));
+    Experiment again = Experiment::Read(Write("extended.yaml", extension.yaml));
     const SplitError error = PooledError(again, Replay(again, System::Load(again.model)));
     const auto r = problem.Residuals(fit.x, problem.AllLogs());
     EXPECT_NEAR(error.train, problem.PooledRms(r, problem.AllLogs()), 1e-9);

@@ -1,0 +1,116 @@
+#include "sim/modes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace continuum {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double kSlowest = 5;  // s; a mode slower than this is a free one
+
+// Forces at other states than d's, without constraints; d and m are given back as they were.
+class Probing {
+ public:
+  Probing(mjModel& m, mjData& d)
+      : m_(m), d_(d), flags_(m.opt.disableflags), state_(mj_stateSize(&m, mjSTATE_INTEGRATION)) {
+    mj_getState(&m, &d, state_.data(), mjSTATE_INTEGRATION);
+    m.opt.disableflags |= mjDSBL_CONSTRAINT | mjDSBL_SENSOR;
+  }
+  Probing(const Probing&) = delete;
+  ~Probing() {
+    m_.opt.disableflags = flags_;
+    mj_setState(&m_, &d_, state_.data(), mjSTATE_INTEGRATION);
+  }
+
+  // At rest, moved along one degree of freedom.
+  VectorXd Moved(int dof, double by) {
+    Restore();
+    const VectorXd step = by * VectorXd::Unit(m_.nv, dof);
+    mj_integratePos(&m_, d_.qpos, step.data(), 1);
+    return Force();
+  }
+  VectorXd Moving(int dof, double speed) {
+    Restore();
+    d_.qvel[dof] = speed;
+    return Force();
+  }
+
+ private:
+  void Restore() {
+    mj_setState(&m_, &d_, state_.data(), mjSTATE_INTEGRATION);
+    mju_zero(d_.qvel, static_cast<int>(m_.nv));
+  }
+  VectorXd Force() {
+    mj_forward(&m_, &d_);
+    return VectorXd::Map(d_.qfrc_smooth, m_.nv);
+  }
+
+  mjModel& m_;
+  mjData& d_;
+  int flags_;
+  std::vector<double> state_;
+};
+
+MatrixXd Symmetric(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
+
+// The slower root of s² + damping s + omega² = 0 as a time constant.
+double TimeConstant(double omega, double damping) {
+  const double half = 0.5 * damping;
+  return 1 / (half > omega ? omega * omega / (half + std::sqrt(half * half - omega * omega))
+                           : std::max(half, 0.1 * omega));
+}
+
+}  // namespace
+
+Modes::Modes(mjModel& m, mjData& d) : damping_(m.nv, m.nv) {
+  // From 1 to 2 (rad/s or m/s), forward and back: what dry friction gives cancels, and so does
+  // what is even in v.
+  Probing at(m, d);
+  for (int i = 0; i < m.nv; ++i) {
+    damping_.col(i) =
+        0.5 * (at.Moving(i, 1) - at.Moving(i, 2) - at.Moving(i, -1) + at.Moving(i, -2));
+  }
+  damping_ = Symmetric(damping_);
+}
+
+void Modes::Update(mjModel& m, mjData& d) {
+  const auto nv = static_cast<int>(m.nv);
+  MatrixXd stiffness(nv, nv), mass(nv, nv);
+  {
+    constexpr double kMove = 1e-6;  // rad or m
+    Probing at(m, d);
+    for (int i = 0; i < nv; ++i)
+      stiffness.col(i) = (at.Moved(i, -kMove) - at.Moved(i, kMove)) / (2 * kMove);
+  }
+  mj_forward(&m, &d);
+  VectorXd column(nv);
+  for (int i = 0; i < nv; ++i) {
+    const VectorXd unit = VectorXd::Unit(nv, i);
+    mj_mulM(&m, &d, column.data(), unit.data());
+    mass.col(i) = column;
+  }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(Symmetric(stiffness),
+                                                                 Symmetric(mass));
+  const MatrixXd& V = modes.eigenvectors();
+  const double h = m.opt.timestep;
+  VectorXd lack(nv);
+  slowest_ = 0;
+  for (int i = 0; i < nv; ++i) {
+    const double omega = std::max(std::sqrt(std::abs(modes.eigenvalues()[i])), 1 / kSlowest);
+    const double own = V.col(i).dot(damping_ * V.col(i));
+    const double turn = std::min(omega * h, 2.0);  // (1); a step at most stops a mode
+    lack[i] = std::max(0.0, turn * (2 - turn) / h - own);
+    slowest_ = std::max(slowest_, std::min(TimeConstant(omega, own + lack[i]), kSlowest));
+  }
+  brake_ = mass * V * lack.asDiagonal() * V.transpose() * mass;
+}
+
+VectorXd Modes::Brake(const mjData& d) const {
+  return -brake_ * VectorXd::Map(d.qvel, brake_.cols());
+}
+
+}  // namespace continuum

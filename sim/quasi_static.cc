@@ -1,0 +1,190 @@
+#include "sim/quasi_static.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "effects/all.h"
+#include "error.h"
+#include "sim/inputs.h"
+#include "sim/modes.h"
+#include "sim/recorder.h"
+
+namespace continuum {
+namespace {
+
+constexpr double kFar = 0.05;  // shares of their ranges that inputs move before modes are renewed
+
+// Whether a law moves on its own while what it acts on stands still.
+template <class E>
+bool Creeps() {
+  if constexpr (ForceLaw<E>) {
+    ParamsOf<E, double> p;
+    Vec<double, E::kStates.size()> z;
+    z.fill(1);
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] = E::kParams[i].initial;
+    const auto rates = E::template Eval<double>(Port<double>{0, 0}, z, p).zdot;
+    return std::any_of(rates.begin(), rates.end(), [](double rate) { return rate != 0; });
+  }
+  return false;
+}
+
+void RefuseCreep(const mjModel& m) {
+  for (int i = 0; i < m.nplugin; ++i) {
+    const std::string plugin = mjp_getPluginAtSlot(m.plugin[i])->name;
+    All::ForEach([&]<class E>() {
+      if (plugin != "continuum." + std::string(E::kName) || !Creeps<E>()) return;
+      const char* const name = mj_id2name(&m, mjOBJ_PLUGIN, i);
+      throw Error::Input(plugin + " '" + (name ? name : "") + "'",
+                         "effects without a time of their own (quasi_static)", "one that creeps");
+    });
+  }
+}
+
+// One log on one machine.
+class Walk {
+ public:
+  Walk(Machine& machine, const Experiment& e, const Log& log, const Wiring& wiring,
+       const Hooks& hooks, const Pace& pace)
+      : m_(*machine.model),
+        d_(*machine.data),
+        log_(log),
+        hooks_(hooks),
+        pace_(pace),
+        inputs_(m_, e, log, wiring) {
+    for (std::size_t i = 0; i < log.input.size(); ++i) {
+      const auto [low, high] = std::minmax_element(log.input[i].begin(), log.input[i].end());
+      range_.push_back(*high - *low);
+    }
+  }
+
+  // Puts the machine at its start, under the first inputs or (risen) under none of them.
+  void Begin(const InitialState& start, bool risen) {
+    mj_resetData(&m_, &d_);
+    std::copy(start.qpos.begin(), start.qpos.end(), d_.qpos);
+    for (std::size_t i = 0; i < range_.size(); ++i) {
+      from_.push_back(risen ? 0 : log_.input[i][0]);
+      if (risen) range_[i] = std::max(range_[i], std::abs(log_.input[i][0]));
+    }
+    inputs_.Switch(0);
+    inputs_.OnTheWay(d_, from_, 0, 0);
+    Settle(m_, d_);
+    modes_.emplace(m_, d_);
+    modes_->Update(m_, d_);
+  }
+
+  // Moves to a row and waits there; false when there is no rest.
+  bool Reach(std::size_t row) {
+    const double way = WayTo(row);
+    if (row > 0) inputs_.Switch(row);
+    moved_ += way;
+    if (moved_ > kFar || (row > 0 && Switched(row))) modes_->Update(m_, d_), moved_ = 0;
+    const double h = m_.opt.timestep, slowest = modes_->slowest();
+    const auto ramp = static_cast<int>(std::ceil(pace_.crossing * way * slowest / h));
+    const auto wait = static_cast<int>(std::ceil(pace_.patience * slowest / h));
+    for (int step = 1; step <= ramp + wait; ++step) {
+      inputs_.OnTheWay(d_, from_, row, std::min(1.0, static_cast<double>(step) / ramp));
+      Step();
+      if (!Healthy(m_, d_)) return false;
+      if (step > ramp && Rests()) break;
+      if (step == ramp + wait) return false;
+    }
+    for (std::size_t i = 0; i < from_.size(); ++i) from_[i] = log_.input[i][row];
+    mj_forward(&m_, &d_);
+    return true;
+  }
+
+  std::string WhyNot(std::size_t row) const {
+    const std::string place =
+        fmt::format("row {} of {} ({:g} s)", row + 1, log_.rows(), log_.time[row]);
+    if (!Healthy(m_, d_)) return "the simulation diverges at " + place;
+    const int dof = static_cast<int>(
+        std::max_element(d_.qvel, d_.qvel + m_.nv,
+                         [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+        d_.qvel);
+    const int joint = m_.dof_jntid[dof];
+    const char* const name = mj_id2name(&m_, mjOBJ_JOINT, joint);
+    return fmt::format("no rest at {}: joint '{}' still moves at {:.3g} {}/s after {:.3g} s", place,
+                       name ? name : "", d_.qvel[dof],
+                       m_.jnt_type[joint] == mjJNT_SLIDE ? "m" : "rad",
+                       pace_.patience * modes_->slowest());
+  }
+
+  void End() { inputs_.AllOn(); }
+
+ private:
+  // The largest share of its range that an input has to go.
+  double WayTo(std::size_t row) const {
+    double way = 0;
+    for (std::size_t i = 0; i < range_.size(); ++i) {
+      if (range_[i] > 0) way = std::max(way, std::abs(log_.input[i][row] - from_[i]) / range_[i]);
+    }
+    return way;
+  }
+  bool Switched(std::size_t row) const {
+    return std::any_of(log_.enable.begin(), log_.enable.end(),
+                       [&](const auto& on) { return !on.empty() && on[row] != on[row - 1]; });
+  }
+  void Step() {
+    Settle(m_, d_);
+    mju_zero(d_.qfrc_applied, static_cast<int>(m_.nv));
+    if (hooks_.step) hooks_.step(m_, d_);
+    const Eigen::VectorXd brake = modes_->Brake(d_);
+    mju_addTo(d_.qfrc_applied, brake.data(), static_cast<int>(m_.nv));
+    mj_step(&m_, &d_);
+    mju_zero(d_.qfrc_applied, static_cast<int>(m_.nv));
+  }
+  bool Rests() const {
+    const double t = modes_->slowest();
+    for (int i = 0; i < m_.nv; ++i) {
+      if (std::abs(d_.qvel[i]) * t > pace_.rest || std::abs(d_.qacc[i]) * t * t > pace_.rest)
+        return false;
+    }
+    return true;
+  }
+
+  mjModel& m_;
+  mjData& d_;
+  const Log& log_;
+  const Hooks& hooks_;
+  const Pace& pace_;
+  Inputs inputs_;
+  std::vector<double> range_, from_;  // of each input
+  std::optional<Modes> modes_;
+  double moved_ = 0;
+};
+
+}  // namespace
+
+Trace SimulateAtRest(Machine& machine, const Experiment& e, const Log& log,
+                     const InitialState& initial, const Hooks& hooks, const Pace& pace) {
+  const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
+  const bool risen = initial.qpos.empty() && e.start == Experiment::Start::kRest;
+  mjModel& m = *machine.model;
+  mjData& d = *machine.data;
+  m.opt.disableflags |= mjDSBL_AUTORESET;
+  RefuseCreep(m);
+  const Wiring wiring(e, m);
+  Walk walk(machine, e, log, wiring, hooks, pace);
+  walk.Begin(start, risen);
+  Recorder recorder(m, wiring, log.rows());
+  Trace trace;
+  for (std::size_t row = 0; row < log.rows() && !trace.diverged; ++row) {
+    if (walk.Reach(row)) {
+      recorder.Take(d, row);
+      if (hooks.row) hooks.row(m, d, row);
+      continue;
+    }
+    trace.diverged = true;
+    trace.diverged_at = log.time[row];
+    trace.why = walk.WhyNot(row);
+  }
+  walk.End();
+  recorder.Release(trace);
+  MeasureTrace(e, wiring, log, trace);
+  return trace;
+}
+
+}  // namespace continuum

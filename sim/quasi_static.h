@@ -1,0 +1,38 @@
+#pragma once
+
+#include "sim/simulate.h"
+
+namespace continuum {
+
+/// How slowly a quasi-static simulation moves, in time constants of the machine's slowest mode.
+struct Pace {
+  double crossing = 50;   ///< for an input to cross the range that it has in the log
+  double patience = 500;  ///< that a row waits for rest after its ramp
+  /// Rest: within the slowest time constant τ neither speed nor acceleration would carry a joint
+  /// farther, |v| τ and |a| τ² [rad or m].
+  double rest = 1e-6;
+};
+
+/// Runs one log through a machine row by row, without real time.
+///
+/// From each row to the next all inputs move on straight lines (`interpolate` is of no account),
+/// then the machine comes to rest, and there the outputs are read. What remembers the way (anchors
+/// of dry friction, cables that stick, hysteresis) is kept from row to row. Lags and delays have
+/// always settled. The first row follows on the experiment's start: under `start: rest` inputs
+/// move up from zero, else the machine settles under them.
+///
+/// So that nothing swings past its stop, which would turn friction round, every mode of the
+/// machine around its present state gets what it lacks to critical damping,
+///
+///   M a = f(q, v) − C v,   C = M V diag(c) Vᵀ M,   c_i = max(0, ω_i (2 − ω_i h) − d_i)      (1)
+///
+/// K V = M V diag(ω²), K and D = −∂f/∂q and −∂f/∂v by differences, d = diag(Vᵀ D V), h the time
+/// step. C v is gone at rest, so it moves no rest that friction holds; while moving it is as small
+/// as the ramp is slow (crossing). Modes slower than 5 s count as free.
+///
+/// A row that finds no rest ends the simulation: diverged and why are set. Throws Error for effects
+/// that creep: their rest is a matter of time.
+Trace SimulateAtRest(Machine& machine, const Experiment& e, const Log& log,
+                     const InitialState& initial = {}, const Hooks& hooks = {}, const Pace& = {});
+
+}  // namespace continuum
