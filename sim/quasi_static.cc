@@ -15,6 +15,7 @@
 namespace continuum {
 namespace {
 
+constexpr double kGrace = 50;  // time constants after which a row without rest gets finer steps
 constexpr double kFar = 0.05;  // shares of their ranges that inputs move before modes are renewed
 
 // Whether a law moves on its own while what it acts on stands still.
@@ -81,16 +82,21 @@ class Walk {
     if (row > 0) inputs_.Switch(row);
     moved_ += way;
     if (moved_ > kFar || (row > 0 && Switched(row))) modes_->Update(m_, d_), moved_ = 0;
-    const double h = m_.opt.timestep, slowest = modes_->slowest();
-    const auto ramp = static_cast<int>(std::ceil(pace_.crossing * way * slowest / h));
-    const auto wait = static_cast<int>(std::ceil(pace_.patience * slowest / h));
-    for (int step = 1; step <= ramp + wait; ++step) {
-      inputs_.OnTheWay(d_, from_, row, std::min(1.0, static_cast<double>(step) / ramp));
+    const double h = m_.opt.timestep;
+    const int ramp = Steps(pace_.crossing * way);
+    for (int step = 1; step <= ramp && Healthy(m_, d_); ++step) {
+      inputs_.OnTheWay(d_, from_, row, static_cast<double>(step) / ramp);
       Step();
-      if (!Healthy(m_, d_)) return false;
-      if (step > ramp && Rests()) break;
-      if (step == ramp + wait) return false;
     }
+    inputs_.OnTheWay(d_, from_, row, 1);
+    bool rests = ramp == 0 && row > 0 && !Switched(row);  // nothing has changed
+    for (double waited = 0; !rests && waited < pace_.patience; waited += kGrace) {
+      if (waited > 0) Refine(h);
+      rests = Wait(kGrace);
+      if (!Healthy(m_, d_)) break;
+    }
+    m_.opt.timestep = h;
+    if (!rests) return false;
     for (std::size_t i = 0; i < from_.size(); ++i) from_[i] = log_.input[i][row];
     mj_forward(&m_, &d_);
     return true;
@@ -126,6 +132,25 @@ class Walk {
   bool Switched(std::size_t row) const {
     return std::any_of(log_.enable.begin(), log_.enable.end(),
                        [&](const auto& on) { return !on.empty() && on[row] != on[row - 1]; });
+  }
+  // Of a duration in time constants of the slowest mode.
+  int Steps(double duration) const {
+    return static_cast<int>(std::ceil(duration * modes_->slowest() / m_.opt.timestep));
+  }
+  // Until the machine rests; false when it does not.
+  bool Wait(double duration) {
+    const int steps = Steps(duration);
+    for (int step = 0; step < steps && Healthy(m_, d_); ++step) {
+      Step();
+      if (Rests()) return true;
+    }
+    return false;
+  }
+  // A machine that still moves may have become stiffer than its modes were and its step can carry,
+  // say by a cable that was slack.
+  void Refine(double usual) {
+    m_.opt.timestep = std::max(0.5 * m_.opt.timestep, usual / 8);
+    modes_->Update(m_, d_);
   }
   void Step() {
     Settle(m_, d_);

@@ -30,6 +30,9 @@ struct Pace {
 /// step. C v is gone at rest, so it moves no rest that friction holds; while moving it is as small
 /// as the ramp is slow (crossing). Modes slower than 5 s count as free.
 ///
+/// A row that does not come to rest soon gets its modes anew and finer steps, down to h/8: a cable
+/// that becomes taut stiffens a machine beyond what was measured before.
+///
 /// A row that finds no rest ends the simulation: diverged and why are set. Throws Error for effects
 /// that creep: their rest is a matter of time.
 Trace SimulateAtRest(Machine& machine, const Experiment& e, const Log& log,
