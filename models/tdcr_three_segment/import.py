@@ -6,8 +6,8 @@ usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER
 SOURCE_FOLDER holds *_train.csv: timestamp [s], pattern_label, nine servo_<id>_mm (measured tendon
 displacement [mm], pulling is positive), tip_x tip_y tip_z [mm]. Written: one CSV per family of
 patterns with the time t [s] since the first row in front, and experiment.yaml. Patterns that bend one
-segment train, those that bend two together validate. Servos and tip are read at the same time, so the
-displacement is linear between rows.
+segment train, those that bend two together validate. Rows are poses at rest (quasi_static); where the
+cameras' frame and the marker are is estimated from the train rows.
 """
 import csv
 import os
@@ -20,10 +20,6 @@ PARAMETERS = [
     ("rod_stiffness", "joint:bend*", "stiffness", "scale", 0.3, 3),
     ("tendon_stiffness", "actuator:t*", "force_scale", "scale", 0.1, 10),
     ("travel", "actuator:t*", "gainprm[0]", "scale", 0.7, 1.4),
-    ("marker", "site:plate3", "pos[2]", "add", -0.02, 0.02),
-    ("frame_x", "site:frame", "pos[0]", "add", -0.02, 0.02),
-    ("frame_y", "site:frame", "pos[1]", "add", -0.02, 0.02),
-    ("frame_z", "site:frame", "pos[2]", "add", -0.02, 0.02),
 ]
 
 
@@ -52,7 +48,8 @@ def experiment(families, model):
     for name in families:
         use = "validate" if name.startswith("pair") else "train"
         lines.append(f"  - {{file: {name}.csv, trial: {name}, use: {use}}}")
-    lines += ["time: {column: t, unit: s}", "start: equilibrium", "inputs:"]
+    lines += ["time: {column: t, unit: s}", "start: equilibrium", "quasi_static: true",
+              "registration: {frame: estimate, marker: estimate}", "inputs:"]
     for k, servo in enumerate(SERVOS):
         lines.append(f"  - {{column: servo_{servo}_mm, unit: mm, actuator: t{k // 3 + 1}_{k % 3 + 1},"
                      " interpolate: linear}")

@@ -61,7 +61,8 @@ TEST_F(RegisteredFit, WithoutTheKeyTheStiffnessTakesTheBlame) {
   const System system = System::Load(e.model);
   const Problem problem(e, system);
   const Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs());
-  EXPECT_GT(std::abs(fit.x[0] / MeasuredArm::kStiffness - 1), 0.1);
+  // Five times what the registered fit may be off.
+  EXPECT_GT(std::abs(fit.x[0] / MeasuredArm::kStiffness - 1), 0.05);
 }
 
 TEST_F(RegisteredFit, TheExtendedExperimentKnowsTheRegistration) {
