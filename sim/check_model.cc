@@ -5,9 +5,9 @@
 #include <fmt/core.h>
 
 #include "error.h"
-#include "sim/check_rules.h"
+#include "sim/check_model.h"
 #include "sim/check_series.h"
-#include "sim/simulate.h"
+#include "sim/registration.h"
 #include "sim/units.h"
 
 namespace continuum {
@@ -15,37 +15,6 @@ namespace {
 
 using Severity = Finding::Severity;
 using Values = std::vector<double>;
-
-// Measured and simulated numbers of one channel where both exist, in SI.
-struct Compared {
-  std::size_t channel;
-  std::string name, unit;
-  Values measured, simulated;
-  std::vector<std::size_t> row;
-};
-
-std::vector<Compared> Compare(const Experiment& e, const Log& log, const Trace& trace) {
-  std::vector<Compared> all;
-  for (std::size_t c = 0; c < e.channels.size(); ++c) {
-    if (e.outputs[e.channels[c].output].quaternion()) continue;
-    Compared p{c, e.channels[c].name, e.channels[c].unit, {}, {}, {}};
-    for (std::size_t k = 0; k < log.rows(); ++k) {
-      if (!std::isfinite(log.measured[c][k]) || !std::isfinite(trace.channel[c][k])) continue;
-      p.measured.push_back(log.measured[c][k]);
-      p.simulated.push_back(trace.channel[c][k]);
-      p.row.push_back(k);
-    }
-    if (p.row.size() >= 20) all.push_back(std::move(p));
-  }
-  return all;
-}
-
-// Deviation of the difference: what is left beside an offset.
-double Misfit(const Values& a, const Values& b) {
-  Values difference(a.size());
-  for (std::size_t k = 0; k < a.size(); ++k) difference[k] = a[k] - b[k];
-  return Deviation(difference);
-}
 
 const char* UnitMistake(double ratio) {
   const auto near = [&](double factor) { return ratio > factor / 1.5 && ratio < factor * 1.5; };
@@ -170,131 +139,90 @@ void CheckRest(const Compared& p, const Log& log, Findings& out) {
       log.time[first], log.time[last]);
 }
 
-// Tries mistakes in the inputs on the beginning of a log that the model does not explain.
-class InputTrials {
- public:
-  InputTrials(const Experiment& e, const System& system) : experiment_(e), system_(system) {}
-
-  void Run(const Log& whole, Findings& out) {
-    Log log = Beginning(whole);
-    const double plain = ErrorOf(log);
-    if (!(plain > 0.5) || budget_ <= 0) return;
-    for (std::size_t i = 0; i < experiment_.inputs.size(); ++i) TryInput(log, i, plain, out);
-    for (std::size_t i = 0; i < experiment_.inputs.size(); ++i) {
-      for (std::size_t j = i + 1; j < experiment_.inputs.size(); ++j)
-        TrySwap(log, i, j, plain, out);
-    }
-  }
-
- private:
-  static Log Beginning(const Log& whole) {
-    constexpr std::size_t kRows = 2000;
-    Log log = whole;
-    if (log.rows() <= kRows) return log;
-    log.time.resize(kRows);
-    for (auto* columns : {&log.input, &log.measured}) {
-      for (auto& column : *columns) column.resize(kRows);
-    }
-    for (auto& on : log.enable) on.resize(std::min(on.size(), kRows));
-    return log;
-  }
-
-  // Mean square over channels of misfit over deviation; infinite when the simulation fails.
-  double ErrorOf(const Log& log) {
-    --budget_;
-    Machine machine = system_.Build(log.set);
-    Trace trace;
-    try {
-      trace = Simulate(machine, experiment_, log);
-    } catch (const Error& error) {
-      if (error.kind() == Error::Kind::kInput) throw;
-      return HUGE_VAL;
-    }
-    if (trace.diverged) return HUGE_VAL;
-    double sum = 0, count = 0;
-    for (const Compared& p : Compare(experiment_, log, trace)) {
-      const double deviation = Deviation(p.measured);
-      if (!(deviation > 0)) continue;
-      sum += std::pow(Misfit(p.measured, p.simulated) / deviation, 2);
-      count += 1;
-    }
-    return count > 0 ? sum / count : HUGE_VAL;
-  }
-
-  void TryInput(Log& log, std::size_t i, double plain, Findings& out) {
-    struct Mistake {
-      double factor;
-      const char *what, *text;
-    };
-    static constexpr Mistake kMistakes[]{
-        {-1, "sign_suspect", "has the wrong sign"},
-        {1e-3, "unit_suspect", "is in thousandths of its unit (millimetres for metres)"},
-        {1e3, "unit_suspect", "is in thousands of its unit (metres for millimetres)"},
-        {1 / 57.29578, "unit_suspect", "is in degrees and not in radians"},
-        {57.29578, "unit_suspect", "is in radians and not in degrees"}};
-    const Values original = log.input[i];
-    for (const Mistake& mistake : kMistakes) {
-      if (budget_ <= 0 || RangeOf(original) == 0) break;
-      for (double& u : log.input[i]) u *= mistake.factor;
-      Tell(log, plain, experiment_.inputs[i].column, mistake.what, mistake.text, out);
-      log.input[i] = original;
-    }
-  }
-
-  void TrySwap(Log& log, std::size_t i, std::size_t j, double plain, Findings& out) {
-    const auto &a = experiment_.inputs[i], &b = experiment_.inputs[j];
-    if (budget_ <= 0 || a.unit != b.unit || a.column.empty() || b.column.empty()) return;
-    std::swap(log.input[i], log.input[j]);
-    Tell(log, plain, a.column, "swapped", "is swapped with '" + b.column + "'", out);
-    std::swap(log.input[i], log.input[j]);
-  }
-
-  void Tell(const Log& log, double plain, const std::string& column, const char* what,
-            const std::string& text, Findings& out) {
-    const double error = ErrorOf(log);
-    if (!(error < 0.1 * std::min(plain, 10.0))) return;
-    out.Add(
-        Severity::kWarning, column, what,
-        fmt::format("the simulation fits if this input {}: relative error {:.2g} instead of {:.2g}",
-                    text, std::sqrt(error), std::sqrt(plain)));
-  }
-
-  const Experiment& experiment_;
-  const System& system_;
-  int budget_ = 60;  // simulations over all logs
-};
-
 void CheckSimulated(const Experiment& e, const Log& log, const Trace& trace, Findings& out) {
   const std::vector<Compared> pairs = Compare(e, log, trace);
   for (const Compared& p : pairs) {
     CheckScale(p, out);
     CheckRest(p, log, out);
   }
-  CheckShifts(pairs, Median(Differences(log.time)), out);
+  if (!e.quasi_static) CheckShifts(pairs, Median(Differences(log.time)), out);
   CheckSwaps(pairs, out);
+}
+
+// What the registration leaves open must not look like swapped or shifted columns.
+void RegisterTraces(const System& system, Experiment& e, std::vector<Trace>& traces,
+                    std::vector<Finding>& all) {
+  if (!e.registration.estimates()) return;
+  const Wiring wiring(e, system.model());
+  try {
+    e.registration = Registered(e, wiring, system.model(), traces);
+  } catch (const Error& error) {
+    Findings found(nullptr);
+    found.Add(Severity::kError, "", "registration", error.what());
+    for (Finding& f : found.Take()) all.push_back(std::move(f));
+    return;
+  }
+  for (std::size_t l = 0; l < traces.size(); ++l) {
+    if (!traces[l].raw.empty()) MeasureTrace(e, wiring, e.logs[l], traces[l]);
+  }
 }
 
 }  // namespace
 
-std::vector<Finding> CheckAgainstModel(const Experiment& e, const System& system) {
+std::vector<Compared> Compare(const Experiment& e, const Log& log, const Trace& trace) {
+  std::vector<Compared> all;
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    if (e.outputs[e.channels[c].output].quaternion()) continue;
+    Compared p{c, e.channels[c].name, e.channels[c].unit, {}, {}, {}};
+    for (std::size_t k = 0; k < log.rows(); ++k) {
+      if (!std::isfinite(log.measured[c][k]) || !std::isfinite(trace.channel[c][k])) continue;
+      p.measured.push_back(log.measured[c][k]);
+      p.simulated.push_back(trace.channel[c][k]);
+      p.row.push_back(k);
+    }
+    if (p.row.size() >= 20) all.push_back(std::move(p));
+  }
+  return all;
+}
+
+double Misfit(const Values& a, const Values& b) {
+  Values difference(a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) difference[k] = a[k] - b[k];
+  return Deviation(difference);
+}
+
+std::vector<Finding> CheckAgainstModel(const Experiment& read, const System& system) {
+  Experiment e = read;
   std::vector<Finding> all;
-  InputTrials trials(e, system);
+  std::vector<Trace> traces;
   for (const Log& log : e.logs) {
     Findings found(&log);
     Machine machine = system.Build(log.set);
+    traces.emplace_back();
     try {
-      const Trace trace = Simulate(machine, e, log);
+      traces.back() = Simulate(machine, e, log);
+      const Trace& trace = traces.back();
       if (trace.diverged) {
         found.Add(Severity::kWarning, "", "diverged",
-                  fmt::format("the simulation diverges at t = {}", Clock(trace.diverged_at)),
+                  trace.why.empty()
+                      ? fmt::format("the simulation diverges at t = {}", Clock(trace.diverged_at))
+                      : trace.why,
                   trace.diverged_at, trace.diverged_at);
       }
-      CheckSimulated(e, log, trace, found);
-      trials.Run(log, found);
     } catch (const Error& error) {
       if (error.kind() == Error::Kind::kInput) throw;
       found.Add(Severity::kWarning, "", "simulation", error.what());
+      traces.back().diverged = true;
     }
+    for (Finding& f : found.Take()) all.push_back(std::move(f));
+  }
+  RegisterTraces(system, e, traces, all);
+  InputTrials trials(e, system);
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    if (traces[l].channel.empty()) continue;
+    Findings found(&e.logs[l]);
+    CheckSimulated(e, e.logs[l], traces[l], found);
+    trials.Run(e.logs[l], traces[l], found);
     for (Finding& f : found.Take()) all.push_back(std::move(f));
   }
   return all;

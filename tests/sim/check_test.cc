@@ -554,6 +554,16 @@ TEST_F(CheckModel, AnInputInAnotherUnitOrSignIsNamed) {
   EXPECT_NE(Find(Bad(), "sign_suspect", "u2"), nullptr) << Report(Bad());
 }
 
+TEST_F(CheckModel, AMistakeInAnInputThatMovesLateInALongLogIsNamed) {
+  Recipe recipe;
+  recipe.rows = 12000;
+  recipe.u2 = [](double t) { return t < 9 ? 0 : 0.5 * std::sin(4 * (t - 9)); };
+  RecordFrom(recipe);
+  experiment_.start = Experiment::Start::kEquilibrium;
+  for (double& u : log().input[1]) u = -u;
+  EXPECT_NE(Find(Bad(), "sign_suspect", "u2"), nullptr) << Report(Bad());
+}
+
 TEST_F(CheckModel, AColumnShiftedByOneRowIsNamed) {
   auto& q = Column(log(), "q2");
   q.insert(q.begin(), q.front());

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "error.h"
+#include "sim/check_model.h"
+#include "sim/check_series.h"
+
+namespace continuum {
+namespace {
+
+using Severity = Finding::Severity;
+using Values = std::vector<double>;
+
+constexpr std::size_t kRows = 2000;  // of a window at most
+constexpr double kSteps = 10'000;    // time steps of a window at most
+constexpr double kStepsOfRow = 200;  // about what a quasi-static row takes
+constexpr std::size_t kLeastRows = 40;
+
+Log Cut(const Log& whole, std::size_t first, std::size_t last) {
+  const auto cut = [&](auto& column) {
+    if (column.empty()) return;
+    column.erase(column.begin() + static_cast<std::ptrdiff_t>(last), column.end());
+    column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  Log log = whole;
+  cut(log.time);
+  for (auto* columns : {&log.input, &log.measured}) {
+    for (auto& column : *columns) cut(column);
+  }
+  for (auto& on : log.enable) cut(on);
+  return log;
+}
+
+Trace Cut(const Trace& whole, std::size_t first, std::size_t last) {
+  Trace trace;
+  for (const auto& channel : whole.channel) {
+    trace.channel.emplace_back(channel.begin() + static_cast<std::ptrdiff_t>(first),
+                               channel.begin() + static_cast<std::ptrdiff_t>(last));
+  }
+  return trace;
+}
+
+}  // namespace
+
+// The row after the last of a window that begins at a row.
+std::size_t InputTrials::End(const Log& whole, std::size_t first) const {
+  const double h = system_.model().opt.timestep;
+  const std::size_t least = std::min(whole.rows(), first + kLeastRows);
+  std::size_t end = first;
+  while (end < whole.rows() && end < first + kRows) {
+    const double steps = experiment_.quasi_static ? kStepsOfRow * static_cast<double>(end - first)
+                                                  : (whole.time[end] - whole.time[first]) / h;
+    if (steps > kSteps && end >= least) break;
+    ++end;
+  }
+  return end;
+}
+
+// A machine that starts at rest is only known at the beginning: the window then grows until the
+// input has moved.
+InputTrials::Excerpt InputTrials::Where(const Log& whole, const Trace& trace,
+                                        std::size_t input) const {
+  const Values& u = whole.input[input];
+  const auto range = [&](std::size_t first, std::size_t last) {
+    const auto begin = u.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto [low, high] =
+        std::minmax_element(begin, u.begin() + static_cast<std::ptrdiff_t>(last));
+    return *high - *low;
+  };
+  std::size_t first = 0, last = End(whole, 0);
+  if (experiment_.start == Experiment::Start::kRest) {
+    const double enough = 0.5 * RangeOf(u);
+    while (last < std::min(whole.rows(), kRows) && range(0, last) < enough) ++last;
+  } else {
+    for (std::size_t begin = last / 2, end = last; end < whole.rows();
+         begin = begin + (end - begin + 1) / 2) {
+      end = End(whole, begin);
+      if (range(begin, end) > 1.1 * range(first, last)) first = begin, last = end;
+    }
+  }
+  Excerpt excerpt{Cut(whole, first, last), 0};
+  excerpt.plain = RelativeError(excerpt.log, Cut(trace, first, last));
+  return excerpt;
+}
+
+void InputTrials::Run(const Log& whole, const Trace& trace, Findings& out) {
+  std::vector<Excerpt> excerpts;
+  for (std::size_t i = 0; i < experiment_.inputs.size(); ++i)
+    excerpts.push_back(Where(whole, trace, i));
+  for (std::size_t i = 0; i < excerpts.size(); ++i) TryInput(excerpts[i], i, out);
+  for (std::size_t i = 0; i < excerpts.size(); ++i) {
+    for (std::size_t j = i + 1; j < excerpts.size(); ++j) TrySwap(excerpts[i], i, j, out);
+  }
+}
+
+// Mean square over channels of misfit over deviation; infinite where the simulation failed.
+double InputTrials::RelativeError(const Log& log, const Trace& trace) const {
+  double sum = 0, count = 0;
+  for (const Compared& p : Compare(experiment_, log, trace)) {
+    const double deviation = Deviation(p.measured);
+    if (!(deviation > 0)) continue;
+    sum += std::pow(Misfit(p.measured, p.simulated) / deviation, 2);
+    count += 1;
+  }
+  return count > 0 ? sum / count : HUGE_VAL;
+}
+
+double InputTrials::ErrorOf(const Log& log) {
+  --budget_;
+  Machine machine = system_.Build(log.set);
+  Trace trace;
+  try {
+    trace = Simulate(machine, experiment_, log);
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::kInput) throw;
+    return HUGE_VAL;
+  }
+  return trace.diverged ? HUGE_VAL : RelativeError(log, trace);
+}
+
+void InputTrials::TryInput(Excerpt& excerpt, std::size_t i, Findings& out) {
+  struct Mistake {
+    double factor;
+    const char *what, *text;
+  };
+  static constexpr Mistake kMistakes[]{
+      {-1, "sign_suspect", "has the wrong sign"},
+      {1e-3, "unit_suspect", "is in thousandths of its unit (millimetres for metres)"},
+      {1e3, "unit_suspect", "is in thousands of its unit (metres for millimetres)"},
+      {1 / 57.29578, "unit_suspect", "is in degrees and not in radians"},
+      {57.29578, "unit_suspect", "is in radians and not in degrees"}};
+  Values& u = excerpt.log.input[i];
+  const Values original = u;
+  for (const Mistake& mistake : kMistakes) {
+    if (RangeOf(original) == 0) break;
+    for (double& value : u) value *= mistake.factor;
+    Tell(excerpt, experiment_.inputs[i].column, mistake.what, mistake.text, out);
+    u = original;
+  }
+}
+
+void InputTrials::TrySwap(Excerpt& excerpt, std::size_t i, std::size_t j, Findings& out) {
+  const auto &a = experiment_.inputs[i], &b = experiment_.inputs[j];
+  if (a.unit != b.unit || a.column.empty() || b.column.empty()) return;
+  auto& input = excerpt.log.input;
+  if (input[i] == input[j]) return;
+  std::swap(input[i], input[j]);
+  Tell(excerpt, a.column, "swapped", "is swapped with '" + b.column + "'", out);
+  std::swap(input[i], input[j]);
+}
+
+void InputTrials::Tell(const Excerpt& excerpt, const std::string& column, const char* what,
+                       const std::string& text, Findings& out) {
+  if (!(excerpt.plain > 0.5) || budget_ <= 0) return;
+  const double error = ErrorOf(excerpt.log);
+  if (!(error < 0.1 * std::min(excerpt.plain, 10.0))) return;
+  out.Add(
+      Severity::kWarning, column, what,
+      fmt::format("the simulation fits if this input {}: relative error {:.2g} instead of {:.2g}",
+                  text, std::sqrt(error), std::sqrt(excerpt.plain)));
+}
+
+}  // namespace continuum

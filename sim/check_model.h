@@ -1,0 +1,52 @@
+#pragma once
+
+#include "sim/check_rules.h"
+#include "sim/simulate.h"
+
+namespace continuum {
+
+/// Measured and simulated numbers of one channel in the rows where both exist, in SI.
+struct Compared {
+  std::size_t channel;
+  std::string name, unit;
+  std::vector<double> measured, simulated;
+  std::vector<std::size_t> row;
+};
+
+/// The channels with at least 20 such rows; no quaternions.
+std::vector<Compared> Compare(const Experiment& e, const Log& log, const Trace& trace);
+
+/// Deviation of the difference: what is left beside an offset.
+double Misfit(const std::vector<double>& a, const std::vector<double>& b);
+
+/// Tries mistakes in the inputs of logs that the model does not explain: another sign or unit, two
+/// inputs swapped. Each is tried where its input moves most, in a window of a bounded number of
+/// time steps, so that long logs cost no more than short ones.
+class InputTrials {
+ public:
+  InputTrials(const Experiment& e, const System& system) : experiment_(e), system_(system) {}
+
+  /// trace: the whole log as simulated.
+  void Run(const Log& whole, const Trace& trace, Findings& out);
+
+ private:
+  /// A window of a log and how far the model is off in it.
+  struct Excerpt {
+    Log log;
+    double plain;
+  };
+  Excerpt Where(const Log& whole, const Trace& trace, std::size_t input) const;
+  std::size_t End(const Log& whole, std::size_t first) const;
+  double ErrorOf(const Log& log);
+  double RelativeError(const Log& log, const Trace& trace) const;
+  void TryInput(Excerpt& excerpt, std::size_t i, Findings& out);
+  void TrySwap(Excerpt& excerpt, std::size_t i, std::size_t j, Findings& out);
+  void Tell(const Excerpt& excerpt, const std::string& column, const char* what,
+            const std::string& text, Findings& out);
+
+  const Experiment& experiment_;
+  const System& system_;
+  int budget_ = 60;  ///< simulations over all logs
+};
+
+}  // namespace continuum
