@@ -47,7 +47,8 @@ def experiment(model):
             lines.append(f"  - {{file: {name}.csv, trial: {window}, use: {use}, "
                          f"condition: {condition}, window: [{begin}, {end}], "
                          f"set: {{\"body:tip\": {{mass: {mass}}}}}}}")
-    lines += ["time: {column: t, unit: s}", "start: equilibrium", "inputs:"]
+    lines += ["time: {column: t, unit: s}", "start: equilibrium",
+              "registration: {frame: estimate, clock_shift: estimate}", "inputs:"]
     for motor in range(1, 7):
         for side in ("pull", "back"):
             lines.append(f"  - {{column: phi{motor}, unit: deg, actuator: m{motor}_{side}}}")
