@@ -35,6 +35,7 @@ struct Instance {
   std::vector<int> sensors;         ///< of this instance
   std::vector<int> signals;         ///< in the first instance: all signals, in the order they act
   std::vector<int> givers;          ///< in the last instance: all that give forces, itself included
+  std::vector<int> answers;         ///< in the last instance: those that depend on all other forces
   std::vector<int> rows;            ///< in the last instance: all that are rows, itself included
   std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
 };
@@ -131,6 +132,7 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     bool last = true;
     for (int j = i + 1; j < m.nplugin; ++j) last &= !IsOurs(m, j);
     if (last) self->givers = Those(m, d, i, *self, &Bound::GivesForce);
+    if (last) self->answers = Those(m, d, i, *self, &Bound::Answers);
     if (last) self->rows = Those(m, d, i, *self, &Bound::IsRow);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
     self->sum = self->before;
@@ -163,14 +165,14 @@ void Follow(const mjModel& m, Instance& self, int i) {
 // Adds the forces of all instances to qfrc_passive so that repeating any part of the pipeline never
 // adds twice: mj_forwardSkip and mjd_transitionFD run kActuator again without kPassive, mj_inverse
 // runs kPassive only. The result is exactly before + sum, whatever was added in between, so that a
-// restored state replays bit by bit.
-void Total(const mjModel& m, mjData& d, Instance& last, Stage stage) {
-  bool changed = stage == Stage::kPassive;
+// restored state replays bit by bit. One instance may be left out.
+void Total(const mjModel& m, mjData& d, Instance& last, Stage stage, int without = -1) {
+  bool changed = stage == Stage::kPassive || without >= 0;
   for (const int j : last.givers) changed |= std::exchange(Get(d, j)->changed, false);
   if (!changed) return;
   for (int dof = 0; dof < m.nv; ++dof) {
     double f = 0;
-    for (const int j : last.givers) f += Get(d, j)->force[dof];
+    for (const int j : last.givers) f += j == without ? 0 : Get(d, j)->force[dof];
     double& total = d.qfrc_passive[dof];
     if (stage == Stage::kPassive) last.before[dof] = total;
     const bool untouched = stage == Stage::kPassive || total == last.before[dof] + last.sum[dof];
@@ -186,6 +188,28 @@ void Evaluate(const mjModel& m, mjData& d, int i, Stage stage) {
   self.changed |= self.bound->Evaluate(m, d, z, stage, self.force);
 }
 
+void Sense(const mjModel& m, mjData& d, int i) {
+  const Instance& self = *Get(d, i);
+  for (const int s : self.sensors) {
+    self.bound->Sense(m, d, m.sensor_objid[s],
+                      {d.sensordata + m.sensor_adr[s], static_cast<std::size_t>(m.sensor_dim[s])});
+  }
+}
+
+// Laws that depend on all other forces, one after the other. Those that are still to come give what
+// follows from their states.
+void Answer(const mjModel& m, mjData& d, Instance& last) {
+  if (last.answers.size() > 1) {
+    for (const int j : last.answers) Evaluate(m, d, j, Stage::kActuator);
+  }
+  for (const int j : last.answers) {
+    Total(m, d, last, Stage::kAnswer, j);
+    Evaluate(m, d, j, Stage::kAnswer);
+    Get(d, j)->changed = true;
+    Sense(m, d, j);
+  }
+}
+
 void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (capability == mjPLUGIN_SENSOR) return;  // written below, as soon as it is known
   const Stage stage = capability == mjPLUGIN_PASSIVE ? Stage::kPassive : Stage::kActuator;
@@ -193,11 +217,10 @@ void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (stage == Stage::kActuator) {
     for (const int j : self.signals) Evaluate(m, d, j, stage);
   }
-  if (!self.bound->IsSignal() && !self.bound->IsRow()) Evaluate(m, d, i, stage);
-  for (const int s : self.sensors) {
-    self.bound->Sense(m, d, m.sensor_objid[s],
-                      {d.sensordata + m.sensor_adr[s], static_cast<std::size_t>(m.sensor_dim[s])});
-  }
+  const bool later = stage == Stage::kActuator && self.bound->Answers();
+  if (!self.bound->IsSignal() && !self.bound->IsRow() && !later) Evaluate(m, d, i, stage);
+  if (!later) Sense(m, d, i);
+  if (stage == Stage::kActuator) Answer(m, d, self);
   if (!self.givers.empty()) Total(m, d, self, stage);
   for (const int j : self.rows) Evaluate(m, d, j, stage);
 }
@@ -210,7 +233,8 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.bound->Set(a.bound->parameters());
   b.bound->CopyFrom(*a.bound);
   b.force = a.force, b.changed = a.changed;
-  b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers, b.rows = a.rows;
+  b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers;
+  b.answers = a.answers, b.rows = a.rows;
   b.before = a.before, b.sum = a.sum;
 }
 

@@ -12,8 +12,9 @@
 namespace continuum {
 
 /// When a law is evaluated: before the actuators (kPassive; actuator_force is the previous
-/// evaluation's) or after them (kActuator; actuator_force is current and not yet clamped).
-enum class Stage { kPassive, kActuator };
+/// evaluation's), after them (kActuator; actuator_force is current and not yet clamped), or after
+/// all other forces (kAnswer; qfrc_passive holds everything but what this law gives).
+enum class Stage { kPassive, kActuator, kAnswer };
 
 /// A law bound to places of one model. The engine plugin and the identification both use it.
 ///
@@ -29,6 +30,10 @@ class Bound {
   /// Whether Evaluate ever writes force, and whether the law is a row of the constraint solver.
   virtual bool GivesForce() const { return false; }
   virtual bool IsRow() const { return false; }
+
+  /// Whether the law depends on all other forces. It is then evaluated in kAnswer; in kActuator
+  /// only where another such law has to know its force, which must follow from the states alone.
+  virtual bool Answers() const { return false; }
 
   /// Whether the law changes what actuators give. It is then evaluated before all others, which see
   /// the changed forces whatever the order of the instances.

@@ -8,18 +8,24 @@
 
 namespace continuum {
 
-/// A spatial tendon through sites s_0 (actuator side) .. s_n (fixed end), and what its friction
-/// needs. Segment k runs from s_k to s_{k+1}; contact i is the interior site s_i, 1 ≤ i < n.
+/// A degree of freedom that changes the length of a segment: it moves the far end (sign +1) or the
+/// near end (−1) of the segment and not the other.
+struct Lever {
+  int dof;
+  double sign;
+};
+
+/// A spatial tendon through sites s_0 (actuator side) .. s_n (fixed end). Segment k runs from s_k
+/// to s_{k+1}; contact i is the interior site s_i, 1 ≤ i < n.
 struct Cable {
   int tendon;
   std::vector<int> sites;
   std::vector<int> actuators;
-  /// Largest eigenvalue of D M⁻¹ Dᵀ at qpos0 [1/kg], D_i = d(cable length distal of contact i)/dq:
-  /// how strongly friction forces at the contacts accelerate the cable over them. It bounds the
-  /// stick stiffness that an explicit step can carry.
-  double compliance;
+  std::vector<Lever> levers;  ///< of all segments
+  std::vector<int> begin;     ///< [segments + 1] of a segment's levers
 
   int segments() const { return static_cast<int>(sites.size()) - 1; }
+  bool Rigid(int k) const { return begin[k] == begin[k + 1]; }
 };
 
 /// Throws Error when the tendon is not a spatial tendon through at least two sites only.
@@ -28,30 +34,17 @@ Cable MakeCable(const mjModel& m, int tendon, const std::string& who);
 /// Tension at the actuator's end [N]: −sum(gear · force), forces within their ranges.
 double BaseTension(const mjModel& m, const mjData& d, const Cable& cable);
 
-/// Directions, wrap angles and sliding speeds of one cable.
+/// Where a cable runs and how it moves at d.
 struct CableGeometry {
-  std::vector<double> direction;  ///< [3 · segments] unit vectors s_k → s_{k+1}
   std::vector<double> theta;  ///< [segments] wrap angle at contact i = 1 .. (entry 0 unused) [rad]
-  std::vector<double> arm;    ///< [3 * sites] from the centre of mass of the tree of the site
   std::vector<double> slip;   ///< [segments] v_i = −Σ_{k ≥ i} dL_k/dt, > 0 when pulled [m/s]
+  std::vector<double> arm;    ///< [levers] dL_k/dq of the segment of each lever [m/rad or 1]
 
   void Update(const mjModel& m, const mjData& d, const Cable& cable);
-};
-
-/// Wrenches on bodies about the centre of mass of their tree, mapped to generalized forces.
-class BodyWrenches {
- public:
-  BodyWrenches(const mjModel& m, std::span<const Cable> cables);
-
-  /// Adds what a cable does to its sites beyond the tension that it has at its base. tension: of
-  /// its segments [N].
-  void Add(const mjModel& m, const Cable& cable, const CableGeometry& at, const double* tension);
-  /// force[nv] = Jᵀ · wrenches, and clears them.
-  void Collect(const mjModel& m, const mjData& d, std::span<double> force);
-
- private:
-  std::vector<int> bodies_;     ///< all that carry sites, with their ancestors, ascending
-  std::vector<double> wrench_;  ///< [6 · nbody] torque, force
+  /// dL_k/dt of a segment at the velocities v [nv].
+  double Rate(const Cable& cable, int segment, const double* v) const;
+  /// force[nv] += f dL_k/dq.
+  void Add(const Cable& cable, int segment, double f, double* force) const;
 };
 
 }  // namespace continuum

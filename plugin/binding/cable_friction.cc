@@ -1,0 +1,198 @@
+#include "binding/cable_friction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "binding/applied_force.h"
+
+namespace continuum {
+namespace {
+
+constexpr double kFull = 20;  // tension drawn in red [N]
+
+std::vector<Cable> MatchCables(const mjModel& m, const Config& config) {
+  std::vector<Cable> cables;
+  for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
+    cables.push_back(MakeCable(m, t, config.Who()));
+  }
+  return cables;
+}
+
+std::vector<int> Dofs(std::span<const Cable> cables) {
+  std::vector<int> dofs;
+  for (const Cable& cable : cables) {
+    for (const Lever& lever : cable.levers) dofs.push_back(lever.dof);
+  }
+  return dofs;
+}
+
+// MuJoCo applies no passive forces then.
+bool Silent(const mjModel& m) {
+  return (m.opt.disableflags & mjDSBL_SPRING) && (m.opt.disableflags & mjDSBL_DAMPER);
+}
+
+}  // namespace
+
+CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters)
+    : Bound(std::move(parameters)),
+      cables_(MatchCables(m, config)),
+      sliding_(m, Dofs(cables_)),
+      geometry_(cables_.size()),
+      base_(cables_.size()),
+      force_(m.nv) {
+  int s = 0;
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    const Cable& cable = cables_[c];
+    first_.push_back(s);
+    int begin = s + 1;
+    for (int k = 1; k < cable.segments(); ++k) {
+      if (cable.Rigid(k)) continue;
+      groups_.push_back({static_cast<int>(c), k, begin, s + k + 1});
+      begin = s + k + 1;
+    }
+    s += cable.segments();
+  }
+  for (std::vector<double>* const each : {&band_, &rho_, &tension_}) each->assign(s, 0);
+  ratio_.assign(s, 1);
+}
+
+bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
+                             std::span<double> force) {
+  if (stage == Stage::kPassive) {
+    Locate(m, d);
+  } else if (Silent(m)) {
+    return false;
+  }
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    base_[c] = std::max(0.0, BaseTension(m, d, cables_[c]));
+  }
+  if (stage == Stage::kActuator) Remember(z);
+  if (stage == Stage::kAnswer) Solve(m, d, z);
+  Add(force);
+  return true;
+}
+
+void CableFriction::Locate(const mjModel& m, const mjData& d) {
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    geometry_[c].Update(m, d, cables_[c]);
+    for (int k = 1; k < cables_[c].segments(); ++k) {
+      band_[first_[c] + k] = Band(geometry_[c].theta[k]);
+    }
+  }
+}
+
+void CableFriction::Remember(const double* z) {
+  for (std::size_t k = 0; k < rho_.size(); ++k) {
+    rho_[k] = std::clamp(z[k], -band_[k], band_[k]);
+    ratio_[k] = rho_[k] == 0 ? 1 : std::exp(rho_[k]);
+  }
+}
+
+void CableFriction::Solve(const mjModel& m, const mjData& d, const double* z) {
+  std::fill(rho_.begin(), rho_.end(), 0.0);
+  std::fill(ratio_.begin(), ratio_.end(), 1.0);
+  bends_.clear(), active_.clear();
+  double friction = 0;
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const Group& group = groups_[i];
+    if (base_[group.cable] == 0) continue;
+    Bend bend{group.cable, group.segment, 0, 0, geometry_[group.cable].slip[group.segment]};
+    for (int k = group.begin; k < group.end; ++k) {
+      bend.band += band_[k];
+      bend.memory += std::clamp(z[k], -band_[k], band_[k]);
+    }
+    friction = std::max(friction, bend.band);
+    bends_.push_back(bend);
+    active_.push_back(static_cast<int>(i));
+  }
+  if (friction == 0) return;
+  AppliedForces(m, d, force_.data());
+  for (const int dof : sliding_.inertia().dofs()) force_[dof] += z[m.nwrap + dof];
+  sliding_.Solve({m, d, cables_, geometry_, base_, force_}, bends_);
+  for (std::size_t g = 0; g < bends_.size(); ++g) {
+    const Bend& bend = bends_[g];
+    const bool first = g == 0 || bends_[g - 1].cable != bend.cable;
+    const double before = first ? base_[bend.cable] : bends_[g - 1].tension;
+    const double rho = bend.side != 0 ? bend.side * bend.band : std::log(bend.tension / before);
+    Spread(groups_[active_[g]], rho, z);
+  }
+}
+
+// Shares ρ of a group: every contact moves from what it was by the same part of the way to its
+// band.
+void CableFriction::Spread(const Group& group, double rho, const double* z) {
+  double memory = 0, band = 0;
+  for (int k = group.begin; k < group.end; ++k) {
+    memory += std::clamp(z[k], -band_[k], band_[k]);
+    band += band_[k];
+  }
+  const double sign = rho < memory ? -1 : 1, room = band - sign * memory;
+  const double part = room > 0 ? std::min(1.0, std::abs(rho - memory) / room) : 0;
+  for (int k = group.begin; k < group.end; ++k) {
+    const double old = std::clamp(z[k], -band_[k], band_[k]);
+    rho_[k] = old + part * (sign * band_[k] - old);
+    ratio_[k] = std::exp(rho_[k]);
+  }
+}
+
+void CableFriction::Add(std::span<double> force) {
+  std::fill(force.begin(), force.end(), 0.0);
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    double tension = tension_[first_[c]] = base_[c];
+    for (int k = 1; k < cables_[c].segments(); ++k) {
+      tension = tension_[first_[c] + k] = tension * ratio_[first_[c] + k];
+      if (tension != base_[c]) {
+        geometry_[c].Add(cables_[c], k, base_[c] - tension, force.data());
+      }
+    }
+  }
+}
+
+void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
+  std::copy(rho_.begin(), rho_.end(), z);
+  for (const int dof : sliding_.inertia().dofs()) z[m.nwrap + dof] = d.qfrc_constraint[dof];
+}
+
+std::string_view CableFriction::SensorPlace(const mjModel&, mjtObj kind, int id) const {
+  const bool known = kind == mjOBJ_SITE && Index(id) >= 0;
+  return known ? "" : "objtype=\"site\" and a site of the tendons";
+}
+
+void CableFriction::Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const {
+  std::size_t s = 0;
+  for (const Cable& cable : cables_) {
+    const double width = 1.05 * m.tendon_width[cable.tendon];
+    for (int k = 0; k < cable.segments(); ++k, ++s) {
+      if (scene.ngeom >= scene.maxgeom) return;
+      const float x = static_cast<float>(std::clamp(tension_[s] / kFull, 0.0, 1.0));
+      const float rgba[4] = {0.13f + 0.80f * x, 0.40f - 0.25f * x, 0.85f - 0.75f * x, 1};
+      mjvGeom* const geom = scene.geoms + scene.ngeom++;
+      mjv_initGeom(geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, rgba);
+      mjv_connector(geom, mjGEOM_CAPSULE, width, d.site_xpos + 3 * cable.sites[k],
+                    d.site_xpos + 3 * cable.sites[k + 1]);
+      geom->objtype = mjOBJ_TENDON;
+      geom->objid = cable.tendon;
+      geom->category = mjCAT_DECOR;
+    }
+  }
+}
+
+void CableFriction::CopyFrom(const Bound& other) {
+  const auto& from = static_cast<const CableFriction&>(other);
+  geometry_ = from.geometry_, base_ = from.base_;
+  band_ = from.band_, rho_ = from.rho_, ratio_ = from.ratio_, tension_ = from.tension_;
+}
+
+// The segment just distal of a site; the last one for the end of a cable.
+int CableFriction::Index(int site) const {
+  int s = 0;
+  for (const Cable& cable : cables_) {
+    for (int k = 0; k <= cable.segments(); ++k) {
+      if (cable.sites[k] == site) return s + std::min(k, cable.segments() - 1);
+    }
+    s += cable.segments();
+  }
+  return -1;
+}
+
+}  // namespace continuum

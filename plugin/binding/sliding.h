@@ -1,0 +1,84 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "binding/cable.h"
+#include "binding/step_inertia.h"
+
+namespace continuum {
+
+/// Contacts of a cable between which nothing moves, and the moving segment behind them.
+struct Bend {
+  int cable, segment;
+  double band;    ///< largest |ρ|, ρ = log(tension behind/tension before), sum over the contacts
+  double memory;  ///< ρ of the last step
+  double speed;   ///< v, > 0 when pulled toward the actuator, as the step begins [m/s]
+
+  int side = 0;        ///< ±1: slides with ρ = ±band; 0: at rest
+  double tension = 0;  ///< behind it [N]
+};
+
+/// Dry friction of cables, solved for the end of the step.
+///
+/// The tensions t_g behind the bends g of a cable with base tension t_0 move the robot by
+///
+///   M (q̇⁺ − q̇) = h (F − Σ_g (t_g − t_0) dL_g/dq)                        (1)
+///
+/// with all other forces F and M as in StepInertia, and each bend obeys one of
+///
+///   v_g⁺ ≥ 0, ρ_g = −band;   v_g⁺ ≤ 0, ρ_g = +band;   |ρ_g| ≤ band, v_g⁺ = 0       (2)
+///   v_g = −Σ_{k ≥ g} dL_k/dt,   ρ_g = log(t_g/t_{g−1})                   (3)
+///
+/// which holds for any inertia and step: what can stop within the step stops, what rests stays.
+/// Bends at rest may be more than what moves can tell apart. Each therefore gives way a little,
+///
+///   v_g⁺ = v_c (memory − ρ_g)/band,   v_c = 1 mm/s,                      (4)
+///
+/// so that nothing changes without need. A step takes what gave way as the new memory: a bend at
+/// rest is a spring that reaches its band after h v_c, with a damper of v_c, and does not creep.
+///
+/// Once it is known who slides which way, (1) is linear in q̇⁺, when ρ in (4) is linearized about
+/// the memories. Bends that break (2) then change their part: all together as long as that leaves
+/// fewer to change, else one by one (block principal pivoting; judice1994).
+class Sliding {
+ public:
+  struct World {
+    const mjModel& m;
+    const mjData& d;
+    std::span<const Cable> cables;
+    std::span<const CableGeometry> geometry;
+    std::span<const double> base;   ///< tension of each cable [N], > 0 where it has bends
+    std::span<const double> force;  ///< F [nv]
+  };
+  Sliding(const mjModel& m, std::span<const int> dofs) : inertia_(m, dofs) {}
+
+  const StepInertia& inertia() const { return inertia_; }
+  /// Finds side and tension of the bends, cable after cable, each from its base on.
+  void Solve(const World& w, std::span<Bend> bends);
+
+ private:
+  struct Part {
+    double ratio;  // of the tension behind it to that before: exp of ρ when sliding, else of memory
+    double yield;  // d tension/d v of a bend at rest [N s/m]
+    int better;    // side it should have
+  };
+  void Begin(const World& w, std::span<Bend> bends);
+  bool Settle(const World& w, std::span<Bend> bends);
+  void Assign(const World& w, std::span<const Bend> bends);
+  void Rows(const World& w, std::span<const Bend> bends);
+  void Assemble(const World& w, std::span<const Bend> bends);
+  int Judge(const World& w, std::span<Bend> bends);
+  void Change(std::span<Bend> bends, bool one);
+
+  StepInertia inertia_;
+  double give_way_ = 0;  ///< v_c
+  std::vector<Part> parts_;
+  std::vector<double> grown_;     ///< [bends] exp(band)
+  std::vector<double> row_;       ///< [bends · dofs] dv_g/dq̇, empty until a bend rests
+  std::vector<double> follow_;    ///< [dofs]
+  std::vector<double> momentum_;  ///< [dofs] M q̇ + h (F + Σ_g t_0 dL_g/dq)
+  std::vector<double> matrix_, velocity_, speed_;
+};
+
+}  // namespace continuum

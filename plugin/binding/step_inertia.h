@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+namespace continuum {
+
+/// What a force changes the velocity by in a step: v⁺ = v + h (M + h D)⁻¹ force, with the damping D
+/// that the integrator takes implicitly: of joints under Euler, of tendons and actuators too under
+/// the implicit ones, none under RK4. What is missing in D (fluids, velocity terms of the inertial
+/// forces, actuators that are not affine) only makes a force stop less than it could in one step.
+class StepInertia {
+ public:
+  /// Of the kinematic trees that carry the given dofs.
+  StepInertia(const mjModel& m, std::span<const int> dofs);
+
+  void Update(const mjModel& m, const mjData& d);
+
+  int size() const { return static_cast<int>(dofs_.size()); }
+  const std::vector<int>& dofs() const { return dofs_; }
+  /// Place of a dof among dofs().
+  int index(int dof) const { return index_[dof]; }
+  /// M + h D [size · size].
+  const std::vector<double>& matrix() const { return matrix_; }
+
+ private:
+  void AddDamping(const mjModel& m, const mjData& d);
+  void AddOuter(double scale, std::span<const int> dofs, const double* x);
+
+  std::vector<int> dofs_, index_;
+  std::vector<double> matrix_;
+};
+
+}  // namespace continuum
