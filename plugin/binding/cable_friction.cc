@@ -39,6 +39,7 @@ CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector
       sliding_(m, Dofs(cables_)),
       geometry_(cables_.size()),
       base_(cables_.size()),
+      last_(cables_.size()),
       force_(m.nv) {
   int s = 0;
   for (std::size_t c = 0; c < cables_.size(); ++c) {
@@ -83,20 +84,23 @@ void CableFriction::Locate(const mjModel& m, const mjData& d) {
 
 void CableFriction::Remember(const double* z) {
   for (std::size_t k = 0; k < rho_.size(); ++k) {
-    rho_[k] = std::clamp(z[k], -band_[k], band_[k]);
+    rho_[k] = std::clamp(z[k], -band_[k], band_[k]);  // 0 where band_ is: before the first contact
     ratio_[k] = rho_[k] == 0 ? 1 : std::exp(rho_[k]);
   }
 }
 
-void CableFriction::Solve(const mjModel& m, const mjData& d, const double* z) {
+void CableFriction::Solve(const mjModel& m, mjData& d, const double* z) {
   std::fill(rho_.begin(), rho_.end(), 0.0);
   std::fill(ratio_.begin(), ratio_.end(), 1.0);
   bends_.clear(), active_.clear();
-  double friction = 0;
+  for (std::size_t c = 0; c < cables_.size(); ++c) last_[c] = z[first_[c]];
+  double friction = 0, level = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& group = groups_[i];
     if (base_[group.cable] == 0) continue;
-    Bend bend{group.cable, group.segment, 0, 0, geometry_[group.cable].slip[group.segment]};
+    if (i == 0 || groups_[i - 1].cable != group.cable) level = 0;
+    for (int k = group.begin; k < group.end; ++k) level += z[k];
+    Bend bend{group.cable, group.segment, 0, 0, geometry_[group.cable].slip[group.segment], level};
     for (int k = group.begin; k < group.end; ++k) {
       bend.band += band_[k];
       bend.memory += std::clamp(z[k], -band_[k], band_[k]);
@@ -108,13 +112,16 @@ void CableFriction::Solve(const mjModel& m, const mjData& d, const double* z) {
   if (friction == 0) return;
   AppliedForces(m, d, force_.data());
   for (const int dof : sliding_.inertia().dofs()) force_[dof] += z[m.nwrap + dof];
-  sliding_.Solve({m, d, cables_, geometry_, base_, force_}, bends_);
+  sliding_.Solve({m, d, cables_, geometry_, base_, last_, force_}, bends_);
   for (std::size_t g = 0; g < bends_.size(); ++g) {
     const Bend& bend = bends_[g];
     const bool first = g == 0 || bends_[g - 1].cable != bend.cable;
     const double before = first ? base_[bend.cable] : bends_[g - 1].tension;
-    const double rho = bend.side != 0 ? bend.side * bend.band : std::log(bend.tension / before);
-    Spread(groups_[active_[g]], rho, z);
+    const double ratio = bend.tension / before;
+    const double rho = bend.side != 0 ? bend.side * bend.band : std::log(ratio);
+    const Group& group = groups_[active_[g]];
+    rho_[group.begin] = rho, ratio_[group.begin] = ratio;
+    if (group.end > group.begin + 1) Spread(group, rho, z);
   }
 }
 
@@ -150,6 +157,7 @@ void CableFriction::Add(std::span<double> force) {
 
 void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
   std::copy(rho_.begin(), rho_.end(), z);
+  for (std::size_t c = 0; c < cables_.size(); ++c) z[first_[c]] = base_[c];
   for (const int dof : sliding_.inertia().dofs()) z[m.nwrap + dof] = d.qfrc_constraint[dof];
 }
 

@@ -13,8 +13,9 @@ namespace continuum {
 /// constraints do is taken from the last step. In kPassive, all that mj_inverse calls, every
 /// contact keeps the ratio of the last answer.
 ///
-/// States: ρ = log(t_k/t_{k−1}) of the contact in front of each segment, as the last step left it,
-/// and the constraint forces of the last step. Several instances see each other's states.
+/// States, as the last step left them: ρ = log(t_k/t_{k−1}) of the contact in front of each
+/// segment, for the first segment of a cable t_0 instead; and the constraint forces. Several
+/// instances see each other's states.
 class CableFriction : public Bound {
  public:
   CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters);
@@ -48,7 +49,7 @@ class CableFriction : public Bound {
   };
   void Locate(const mjModel& m, const mjData& d);
   void Remember(const double* z);
-  void Solve(const mjModel& m, const mjData& d, const double* z);
+  void Solve(const mjModel& m, mjData& d, const double* z);
   void Spread(const Group& group, double rho, const double* z);
   void Add(std::span<double> force);
   int Index(int site) const;
@@ -59,7 +60,8 @@ class CableFriction : public Bound {
   Sliding sliding_;
   std::vector<CableGeometry> geometry_;
   std::vector<double> band_, rho_, ratio_, tension_;  ///< per segment: of its front contact; [N]
-  std::vector<double> base_, force_;
+  std::vector<double> base_, last_;                   ///< t_0 of each cable, now and before [N]
+  std::vector<double> force_;
   std::vector<Bend> bends_;
   std::vector<int> active_;  ///< group of each bend
 };

@@ -8,7 +8,7 @@
 namespace continuum {
 namespace {
 
-constexpr double kGiveWay = 1e-3, kGiveWayMost = 20;  // v_c of (4) [m/s]
+constexpr double kGiveWay = 1e-3, kGiveWayMost = 20, kEasier = 3;  // v_c of (4) [m/s]
 constexpr double kStart = 1e-3;       // slower bends begin as they were in the last step [m/s]
 constexpr double kSpeedError = 1e-9;  // of v⁺ [m/s]
 constexpr double kRelativeError = 1e-12;
@@ -25,13 +25,22 @@ int FirstGuess(const Bend& bend) {
 }  // namespace
 
 void Sliding::Solve(const World& w, std::span<Bend> bends) {
+  Guess(w, bends);
+  if (AllSlide(w, bends)) return;
   Begin(w, bends);
-  for (give_way_ = kGiveWay; give_way_ < kGiveWayMost && !Settle(w, bends);) give_way_ *= 10;
+  give_way_ = kGiveWay;
+  while (!Settle(w, bends) && give_way_ < kGiveWayMost) give_way_ *= kEasier;
+  while (give_way_ > kGiveWay) {
+    found_.assign(bends.begin(), bends.end());
+    give_way_ = std::max(kGiveWay, give_way_ / kEasier);
+    if (Settle(w, bends)) continue;
+    std::copy(found_.begin(), found_.end(), bends.begin());
+    return;
+  }
 }
 
 // Whether it found who slides which way.
 bool Sliding::Settle(const World& w, std::span<Bend> bends) {
-  for (Bend& bend : bends) bend.side = FirstGuess(bend);
   auto fewest = static_cast<int>(bends.size()) + 1;
   int patience = kPatience;
   for (int round = 0; round < kRounds; ++round) {
@@ -47,7 +56,44 @@ bool Sliding::Settle(const World& w, std::span<Bend> bends) {
   return false;
 }
 
-void Sliding::Begin(const World& w, std::span<Bend> bends) {
+void Sliding::Guess(const World& w, std::span<Bend> bends) {
+  parts_.resize(bends.size()), grown_.resize(bends.size()), speed_.resize(bends.size());
+  double before = 0;
+  for (std::size_t g = 0; g < bends.size(); ++g) {
+    Bend& bend = bends[g];
+    if (g == 0 || bends[g - 1].cable != bend.cable) before = w.base[bend.cable];
+    grown_[g] = std::exp(bend.band);
+    bend.side = FirstGuess(bend);
+    before = bend.tension = before * (bend.side > 0 ? grown_[g] : 1 / grown_[g]);
+  }
+}
+
+// Whether nothing comes near to rest in this step. Damping, left out here, only makes the change of
+// speed smaller.
+bool Sliding::AllSlide(const World& w, std::span<const Bend> bends) {
+  const auto slides = [&](const Bend& bend, double v) {
+    return bend.band == 0 || -bend.side * v > kStart;
+  };
+  for (const Bend& bend : bends) {
+    if (!slides(bend, bend.speed)) return false;
+  }
+  work_.assign(w.force.begin(), w.force.end());
+  for (const Bend& bend : bends) {
+    const double change = w.base[bend.cable] - bend.tension;
+    w.geometry[bend.cable].Add(w.cables[bend.cable], bend.segment, change, work_.data());
+  }
+  mj_solveM(&w.m, &w.d, work_.data(), work_.data(), 1);
+  double change = 0;
+  for (std::size_t g = bends.size(); g-- > 0;) {
+    const int c = bends[g].cable;
+    if (g + 1 == bends.size() || bends[g + 1].cable != c) change = 0;
+    change -= w.m.opt.timestep * w.geometry[c].Rate(w.cables[c], bends[g].segment, work_.data());
+    if (!slides(bends[g], bends[g].speed + change)) return false;
+  }
+  return true;
+}
+
+void Sliding::Begin(const World& w, std::span<const Bend> bends) {
   inertia_.Update(w.m, w.d);
   const int n = inertia_.size();
   const double h = w.m.opt.timestep;
@@ -57,16 +103,14 @@ void Sliding::Begin(const World& w, std::span<Bend> bends) {
     for (int j = 0; j < n; ++j) momentum_[i] += row[j] * w.d.qvel[inertia_.dofs()[j]];
     momentum_[i] += h * w.force[inertia_.dofs()[i]];
   }
-  row_.clear();
-  parts_.resize(bends.size()), grown_.resize(bends.size()), speed_.resize(bends.size());
-  for (std::size_t g = 0; g < bends.size(); ++g) {
-    grown_[g] = std::exp(bends[g].band);
-    const Cable& cable = w.cables[bends[g].cable];
-    const double* const arm = w.geometry[bends[g].cable].arm.data();
-    for (int l = cable.begin[bends[g].segment]; l < cable.begin[bends[g].segment + 1]; ++l) {
-      momentum_[inertia_.index(cable.levers[l].dof)] += h * w.base[bends[g].cable] * arm[l];
+  for (const Bend& bend : bends) {
+    const Cable& cable = w.cables[bend.cable];
+    const double* const arm = w.geometry[bend.cable].arm.data();
+    for (int l = cable.begin[bend.segment]; l < cable.begin[bend.segment + 1]; ++l) {
+      momentum_[inertia_.index(cable.levers[l].dof)] += h * w.base[bend.cable] * arm[l];
     }
   }
+  row_.clear();
 }
 
 void Sliding::Assign(const World& w, std::span<const Bend> bends) {
@@ -78,7 +122,10 @@ void Sliding::Assign(const World& w, std::span<const Bend> bends) {
     Part& part = parts_[g];
     part.ratio = bend.side > 0 ? grown_[g] : bend.side < 0 ? 1 / grown_[g] : std::exp(bend.memory);
     expected *= part.ratio;
-    part.yield = bend.side == 0 ? bend.band * expected / give_way_ : 0;
+    part.yield = 0;
+    if (bend.side != 0) continue;
+    const double stiff = std::max(expected, w.last[cable] * std::exp(bend.level));
+    part.yield = bend.band * stiff / give_way_;
   }
 }
 

@@ -14,6 +14,7 @@ struct Bend {
   double band;    ///< largest |ρ|, ρ = log(tension behind/tension before), sum over the contacts
   double memory;  ///< ρ of the last step
   double speed;   ///< v, > 0 when pulled toward the actuator, as the step begins [m/s]
+  double level;   ///< log(tension behind/base tension) of the last step
 
   int side = 0;        ///< ±1: slides with ρ = ±band; 0: at rest
   double tension = 0;  ///< behind it [N]
@@ -38,17 +39,20 @@ struct Bend {
 /// so that nothing changes without need. A step takes what gave way as the new memory: a bend at
 /// rest is a spring that reaches its band after h v_c, with a damper of v_c, and does not creep.
 ///
-/// Once it is known who slides which way, (1) is linear in q̇⁺, when ρ in (4) is linearized about
-/// the memories. Bends that break (2) then change their part: all together as long as that leaves
-/// fewer to change, else one by one (block principal pivoting; judice1994).
+/// Once it is known who slides which way, (1) is linear in q̇⁺, with a linear ρ in (4): ρ − memory =
+/// (t_g − e^memory t_{g−1})/t, t what t_g would be by the memories or was, if that is more. Bends
+/// that break (2) then change their part: all together as long as that leaves fewer to change, else
+/// one by one (block principal pivoting; judice1994). Where that does not end, v_c grows until it
+/// does, and comes back from what was found.
 class Sliding {
  public:
   struct World {
     const mjModel& m;
-    const mjData& d;
+    mjData& d;
     std::span<const Cable> cables;
     std::span<const CableGeometry> geometry;
     std::span<const double> base;   ///< tension of each cable [N], > 0 where it has bends
+    std::span<const double> last;   ///< the same in the last step [N]
     std::span<const double> force;  ///< F [nv]
   };
   Sliding(const mjModel& m, std::span<const int> dofs) : inertia_(m, dofs) {}
@@ -63,7 +67,9 @@ class Sliding {
     double yield;  // d tension/d v of a bend at rest [N s/m]
     int better;    // side it should have
   };
-  void Begin(const World& w, std::span<Bend> bends);
+  void Guess(const World& w, std::span<Bend> bends);
+  bool AllSlide(const World& w, std::span<const Bend> bends);
+  void Begin(const World& w, std::span<const Bend> bends);
   bool Settle(const World& w, std::span<Bend> bends);
   void Assign(const World& w, std::span<const Bend> bends);
   void Rows(const World& w, std::span<const Bend> bends);
@@ -74,11 +80,12 @@ class Sliding {
   StepInertia inertia_;
   double give_way_ = 0;  ///< v_c
   std::vector<Part> parts_;
+  std::vector<Bend> found_;
   std::vector<double> grown_;     ///< [bends] exp(band)
   std::vector<double> row_;       ///< [bends · dofs] dv_g/dq̇, empty until a bend rests
   std::vector<double> follow_;    ///< [dofs]
   std::vector<double> momentum_;  ///< [dofs] M q̇ + h (F + Σ_g t_0 dL_g/dq)
-  std::vector<double> matrix_, velocity_, speed_;
+  std::vector<double> matrix_, velocity_, speed_, work_;
 };
 
 }  // namespace continuum
