@@ -58,7 +58,7 @@ TEST_F(StiffFlopRecording, ReplaysAsItsReadmeSays) {
   EXPECT_NEAR(validate.turn, 13.4 * kDegree, 0.1 * kDegree);
 }
 
-// What identify found on cycles 1 and 2. 1.5 mm was asked for; physical models published for this
+// What identify found on cycles 1 and 2. Physical models published for this
 // log have 2.57 mm.
 TEST_F(StiffFlopRecording, WithDeadPressureAsymmetryAndCreepItForesaysTheThirdCycle) {
   constexpr auto kScale = Change::Operation::kScale;
