@@ -44,9 +44,15 @@ class Probing {
     mj_setState(&m_, &d_, state_.data(), mjSTATE_INTEGRATION);
     mju_zero(d_.qvel, static_cast<int>(m_.nv));
   }
+  // Passive forces as they are before actuators are known: the friction of a cable keeps its share
+  // there, while at rest it would answer every push.
   VectorXd Force() {
-    mj_forward(&m_, &d_);
-    return VectorXd::Map(d_.qfrc_smooth, m_.nv);
+    mj_fwdPosition(&m_, &d_);
+    mj_fwdVelocity(&m_, &d_);
+    const VectorXd passive = VectorXd::Map(d_.qfrc_passive, m_.nv);
+    mj_fwdActuation(&m_, &d_);
+    const auto of = [&](const double* f) { return VectorXd::Map(f, m_.nv); };
+    return passive + of(d_.qfrc_actuator) + of(d_.qfrc_applied) - of(d_.qfrc_bias);
   }
 
   mjModel& m_;
