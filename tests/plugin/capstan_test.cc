@@ -159,6 +159,19 @@ TEST_F(Capstan, TheBaseTensionIsThatOfTheNativeTendonWithinItsRanges) {
   }
 }
 
+// From 20 mm/s on, where friction cannot stop the load within the step: 4 N on 1 kg take 4 mm/s.
+TEST_F(Capstan, SlidesInFullOnFreshData) {
+  const auto m = Model(Crane(0.3));
+  for (const double v : {-1.0, -0.02, 0.02, 1.0}) {
+    const auto d = Data(m);
+    d->ctrl[0] = 5;
+    d->qvel[0] = v;
+    mj_forward(m.get(), d.get());
+    const double rho = 2 * 0.3 * kAngle * (v > 0 ? -1 : 1);  // upward the cable is paid in
+    EXPECT_NEAR(std::log(d->sensordata[2] / 5), rho, 1e-6) << v;
+  }
+}
+
 // Friction opposes the speed that the step ends with.
 TEST_F(Capstan, NeverCreatesEnergy) {
   for (const char* load : {"1", "0.01", "1e-4"}) {
