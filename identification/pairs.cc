@@ -131,6 +131,7 @@ class Search {
     const auto pairs = All();
     if (pairs.empty()) return {};
     Verdict verdict = JudgeLikelihoods(RecordsOf(pairs), 1, 0);
+    if (verdict.named.empty()) return {};
     const Fitting& best = pairs[verdict.named.front()];
     const Round& round = tried_[best.base].round;
     const LackOfFit lack = round.LackOf(*best.b);

@@ -203,6 +203,10 @@ void Round::Dismiss() {
     }
   }
   candidates = std::move(kept);
+  smallest_p_ = 1;
+  for (const auto* all : {&candidates, &left_behind}) {
+    for (const CandidateResult& c : *all) smallest_p_ = std::min(smallest_p_, c.p);
+  }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.likelihood > b.likelihood; });
 }

@@ -41,7 +41,7 @@ class Round {
   LackOfFit LackOfBase() const;
   /// For JudgeLikelihoods, of the fitted candidates.
   std::vector<LikelihoodRecord> Records() const;
-  double smallest_p() const;  ///< of all candidates, fitted or not
+  double smallest_p() const;  ///< of all candidates that are not skipped, fitted or not
 
   std::vector<CandidateResult> candidates;   ///< after Fit: the fitted ones
   std::vector<CandidateResult> left_behind;  ///< by the screen, without a fit

@@ -142,16 +142,22 @@ std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candida
 
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double lack, double p,
                          const LikelihoodRules& rules) {
-  const bool any = p < rules.level && !candidates.empty();
+  // First order may promise what no fit keeps.
+  const bool kept = std::any_of(candidates.begin(), candidates.end(),
+                                [&](const auto& c) { return ScoreOf(c, rules) > 0; });
+  const bool any = p < rules.level && kept;
   if (!any && lack < rules.lack) {
     return {"unexplained", {}, "something beside noise is left that no candidate explains"};
   }
   if (!any) {
     return {"adequate",
             {},
-            fmt::format("what the model leaves is noise: noise alone lets the best candidate do as "
-                        "well with p = {:.2g}",
-                        p)};
+            p < rules.level
+                ? std::string("what the model leaves is noise: no candidate's fit gains more than "
+                              "its parameters gain from noise alone")
+                : fmt::format("what the model leaves is noise: noise alone lets the best candidate "
+                              "do as well with p = {:.2g}",
+                              p)};
   }
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;

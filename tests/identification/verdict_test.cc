@@ -272,6 +272,11 @@ TEST(Likelihoods, NothingSignificantIsAdequateUnlessSomethingElseIsLeft) {
   EXPECT_EQ(JudgeLikelihoods(none, 1e-4, 0.3).text, "unexplained");
 }
 
+TEST(JudgeLikelihoods, NothingIsNamedThatNoFitConfirms) {
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, 0.5, 1e-3).text, "adequate");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, 1e-4, 1e-3).text, "unexplained");
+}
+
 TEST(Likelihoods, TheClearlyLikeliestIsNamed) {
   const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 34}}, 0.5, 1e-3);
   EXPECT_EQ(v.text, "named");
