@@ -144,7 +144,7 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
                          const LikelihoodRules& rules) {
   // First order may promise what no fit keeps.
   const bool kept = std::any_of(candidates.begin(), candidates.end(),
-                                [&](const auto& c) { return ScoreOf(c, rules) > 0; });
+                                [&](const auto& c) { return ScoreOf(c, rules) > rules.parameter; });
   const bool any = p < rules.level && kept;
   if (!any && lack < rules.lack) {
     return {"unexplained", {}, "something beside noise is left that no candidate explains"};
