@@ -120,6 +120,17 @@ void FindSensors(const mjModel& m, int i, Instance& self, const Config& config) 
   }
 }
 
+// MuJoCo lays out the states when it compiles.
+void RequireState(const mjModel& m, int i, const Config& config) {
+  const int needed = mjp_getPluginAtSlot(m.plugin[i])->nstate(&m, i);
+  if (needed == m.plugin_statenum[i]) return;
+  throw Error::Input(config.Who(),
+                     "an edited configuration that needs as many states as the model was compiled "
+                     "with, " +
+                         std::to_string(m.plugin_statenum[i]),
+                     std::to_string(needed));
+}
+
 int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
   try {
     auto self = std::make_unique<Instance>();
@@ -127,6 +138,7 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     self->bind = bind;
     self->config = ConfigBytes(m, i);
     self->bound = bind(m, config, i);
+    RequireState(m, i, config);
     self->bound->Impose(Mutable(m));
     self->force.assign(m.nv, 0);
     bool last = true;
@@ -154,6 +166,7 @@ void Follow(const mjModel& m, Instance& self, int i) {
   self.config = now;
   try {
     auto bound = self.bind(m, Config(m, i), i);
+    RequireState(m, i, Config(m, i));
     bound->CopyFrom(*self.bound);
     bound->Impose(Mutable(m));
     self.bound = std::move(bound);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "binding/applied_force.h"
+#include "error.h"
 
 namespace continuum {
 namespace {
@@ -16,6 +17,21 @@ std::vector<Cable> MatchCables(const mjModel& m, const Config& config) {
     cables.push_back(MakeCable(m, t, config.Who()));
   }
   return cables;
+}
+
+// Tensions change in proportion: what two instances add to one cable is no friction law.
+void RequireAlone(const mjModel& m, const Config& config) {
+  for (int j = 0; j < m.nplugin; ++j) {
+    const Config other(m, j);
+    if (m.plugin[j] != m.plugin[config.instance()] || j == config.instance()) continue;
+    const auto theirs = other.Match("tendon", mjOBJ_TENDON);
+    for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
+      if (std::find(theirs.begin(), theirs.end(), t) == theirs.end()) continue;
+      throw Error::Input(config.Who() + ": tendon '" + mj_id2name(&m, mjOBJ_TENDON, t) + "'",
+                         "one instance on a cable (with the sum of their mu)",
+                         other.Who() + " on it too");
+    }
+  }
 }
 
 std::vector<int> Dofs(std::span<const Cable> cables) {
@@ -41,6 +57,7 @@ CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector
       base_(cables_.size()),
       last_(cables_.size()),
       force_(m.nv) {
+  RequireAlone(m, config);
   int s = 0;
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     const Cable& cable = cables_[c];
@@ -100,7 +117,9 @@ void CableFriction::Solve(const mjModel& m, mjData& d, const double* z) {
     if (base_[group.cable] == 0) continue;
     if (i == 0 || groups_[i - 1].cable != group.cable) level = 0;
     for (int k = group.begin; k < group.end; ++k) level += z[k];
-    Bend bend{group.cable, group.segment, 0, 0, geometry_[group.cable].slip[group.segment], level};
+    const double speed = geometry_[group.cable].slip[group.segment];
+    const bool fresh = z[first_[group.cable]] == 0;
+    Bend bend{group.cable, group.segment, 0, 0, speed, level, fresh};
     for (int k = group.begin; k < group.end; ++k) {
       bend.band += band_[k];
       bend.memory += std::clamp(z[k], -band_[k], band_[k]);

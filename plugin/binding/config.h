@@ -18,6 +18,7 @@ class Config {
 
   /// "" when the MJCF does not set the key.
   std::string_view Get(std::string_view key) const;
+  int instance() const { return instance_; }
   /// "continuum.stribeck 'friction'", for messages.
   std::string Who() const;
 

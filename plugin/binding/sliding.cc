@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kGiveWay = 1e-3, kGiveWayMost = 20, kEasier = 3;  // v_c of (4) [m/s]
 constexpr double kStart = 1e-3;       // slower bends begin as they were in the last step [m/s]
+constexpr double kMoving = 0.02;      // fresh bends that are faster slide [m/s]
+constexpr double kGentle = 0.5;       // ... when no speed changes by more than that [m/s]
 constexpr double kSpeedError = 1e-9;  // of v⁺ [m/s]
 constexpr double kRelativeError = 1e-12;
 constexpr int kPatience = 5, kRounds = 30;
@@ -26,6 +28,7 @@ int FirstGuess(const Bend& bend) {
 
 void Sliding::Solve(const World& w, std::span<Bend> bends) {
   Guess(w, bends);
+  GiveFresh(w, bends);
   if (AllSlide(w, bends)) return;
   Begin(w, bends);
   give_way_ = kGiveWay;
@@ -68,27 +71,44 @@ void Sliding::Guess(const World& w, std::span<Bend> bends) {
   }
 }
 
-// Whether nothing comes near to rest in this step. Damping, left out here, only makes the change of
-// speed smaller.
-bool Sliding::AllSlide(const World& w, std::span<const Bend> bends) {
-  const auto slides = [&](const Bend& bend, double v) {
-    return bend.band == 0 || -bend.side * v > kStart;
-  };
-  for (const Bend& bend : bends) {
-    if (!slides(bend, bend.speed)) return false;
-  }
+// Of the speeds, if every bend slides as guessed. Damping, left out here, only makes them smaller.
+void Sliding::Changes(const World& w, std::span<const Bend> bends) {
   work_.assign(w.force.begin(), w.force.end());
   for (const Bend& bend : bends) {
     const double change = w.base[bend.cable] - bend.tension;
     w.geometry[bend.cable].Add(w.cables[bend.cable], bend.segment, change, work_.data());
   }
   mj_solveM(&w.m, &w.d, work_.data(), work_.data(), 1);
+  change_.resize(bends.size());
   double change = 0;
   for (std::size_t g = bends.size(); g-- > 0;) {
     const int c = bends[g].cable;
     if (g + 1 == bends.size() || bends[g + 1].cable != c) change = 0;
     change -= w.m.opt.timestep * w.geometry[c].Rate(w.cables[c], bends[g].segment, work_.data());
-    if (!slides(bends[g], bends[g].speed + change)) return false;
+    change_[g] = change;
+  }
+}
+
+void Sliding::GiveFresh(const World& w, std::span<Bend> bends) {
+  const auto moves = [](const Bend& b) { return b.fresh && std::abs(b.speed) >= kMoving; };
+  if (std::none_of(bends.begin(), bends.end(), moves)) return;
+  Changes(w, bends);
+  const auto gentle = [](double change) { return std::abs(change) <= kGentle; };
+  if (!std::all_of(change_.begin(), change_.end(), gentle)) return;
+  for (Bend& bend : bends) bend.given = moves(bend);
+}
+
+// Whether nothing comes near to rest in this step.
+bool Sliding::AllSlide(const World& w, std::span<const Bend> bends) {
+  const auto slides = [&](const Bend& bend, double v) {
+    return bend.band == 0 || bend.given || -bend.side * v > kStart;
+  };
+  for (const Bend& bend : bends) {
+    if (!slides(bend, bend.speed)) return false;
+  }
+  Changes(w, bends);
+  for (std::size_t g = 0; g < bends.size(); ++g) {
+    if (!slides(bends[g], bends[g].speed + change_[g])) return false;
   }
   return true;
 }
@@ -199,7 +219,7 @@ int Sliding::Judge(const World& w, std::span<Bend> bends) {
     part.better = bend.side;
     if (bend.side != 0) {
       bend.tension = part.ratio * before;
-      if (bend.band > 0 && bend.side * speed_[g] > kSpeedError) part.better = 0;
+      if (bend.band > 0 && !bend.given && bend.side * speed_[g] > kSpeedError) part.better = 0;
     } else {
       bend.tension = std::clamp(wanted, before / grown_[g], before * grown_[g]);
       const double error = kRelativeError * bend.tension;

@@ -15,9 +15,11 @@ struct Bend {
   double memory;  ///< ρ of the last step
   double speed;   ///< v, > 0 when pulled toward the actuator, as the step begins [m/s]
   double level;   ///< log(tension behind/base tension) of the last step
+  bool fresh;     ///< no step has gone before
 
   int side = 0;        ///< ±1: slides with ρ = ±band; 0: at rest
   double tension = 0;  ///< behind it [N]
+  bool given = false;  ///< slides as its speed says, whatever it is at the step's end
 };
 
 /// Dry friction of cables, solved for the end of the step.
@@ -38,6 +40,10 @@ struct Bend {
 ///
 /// so that nothing changes without need. A step takes what gave way as the new memory: a bend at
 /// rest is a spring that reaches its band after h v_c, with a damper of v_c, and does not creep.
+///
+/// Where no step has gone before, bends faster than 20 mm/s slide as their speed says, provided
+/// that the step then changes no bend's speed by more than 0.5 m/s: one mj_forward on fresh data
+/// gives the law at that state.
 ///
 /// Once it is known who slides which way, (1) is linear in q̇⁺, with a linear ρ in (4): ρ − memory =
 /// (t_g − e^memory t_{g−1})/t, t what t_g would be by the memories or was, if that is more. Bends
@@ -68,6 +74,8 @@ class Sliding {
     int better;    // side it should have
   };
   void Guess(const World& w, std::span<Bend> bends);
+  void Changes(const World& w, std::span<const Bend> bends);
+  void GiveFresh(const World& w, std::span<Bend> bends);
   bool AllSlide(const World& w, std::span<const Bend> bends);
   void Begin(const World& w, std::span<const Bend> bends);
   bool Settle(const World& w, std::span<Bend> bends);
@@ -85,6 +93,7 @@ class Sliding {
   std::vector<double> row_;       ///< [bends · dofs] dv_g/dq̇, empty until a bend rests
   std::vector<double> follow_;    ///< [dofs]
   std::vector<double> momentum_;  ///< [dofs] M q̇ + h (F + Σ_g t_0 dL_g/dq)
+  std::vector<double> change_;    ///< [bends] of v in the step, if all slide as guessed
   std::vector<double> matrix_, velocity_, speed_, work_;
 };
 

@@ -159,17 +159,27 @@ TEST_F(Capstan, TheBaseTensionIsThatOfTheNativeTendonWithinItsRanges) {
   }
 }
 
-// From 20 mm/s on, where friction cannot stop the load within the step: 4 N on 1 kg take 4 mm/s.
+// From 20 mm/s on, also where friction could stop the load within the step: 0.05 kg.
 TEST_F(Capstan, SlidesInFullOnFreshData) {
-  const auto m = Model(Crane(0.3));
-  for (const double v : {-1.0, -0.02, 0.02, 1.0}) {
-    const auto d = Data(m);
-    d->ctrl[0] = 5;
-    d->qvel[0] = v;
-    mj_forward(m.get(), d.get());
-    const double rho = 2 * 0.3 * kAngle * (v > 0 ? -1 : 1);  // upward the cable is paid in
-    EXPECT_NEAR(std::log(d->sensordata[2] / 5), rho, 1e-6) << v;
+  for (const char* load : {"1", "0.05"}) {
+    const auto m = Model(Crane(0.3, "", load));
+    for (const double v : {-1.0, -0.02, 0.02, 1.0}) {
+      const auto d = Data(m);
+      d->ctrl[0] = 5;
+      d->qvel[0] = v;
+      mj_forward(m.get(), d.get());
+      const double rho = 2 * 0.3 * kAngle * (v > 0 ? -1 : 1);  // upward the cable is paid in
+      EXPECT_NEAR(std::log(d->sensordata[2] / 5), rho, 1e-6) << load << " " << v;
+    }
   }
+}
+
+TEST_F(Capstan, IsAloneOnItsCable) {
+  const auto [model, error] = Compile(Crane(
+      0.3, "<extension><plugin plugin=\"continuum.capstan\"><instance name=\"second\">" +
+               Key("tendon", "cab*") + Key("mu", "0.1") + "</instance></plugin></extension>"));
+  EXPECT_FALSE(model);
+  EXPECT_THAT(error, ::testing::HasSubstr("one instance on a cable"));
 }
 
 // Friction opposes the speed that the step ends with.

@@ -260,6 +260,24 @@ TEST_F(Configuration, AnEditedConfigurationIsFollowed) {
   EXPECT_DOUBLE_EQ(d->efc_frictionloss[0], .09);
 }
 
+// "j0" becomes "j*": five joints in the state of one.
+TEST_F(Configuration, AnEditThatNeedsMoreStateIsNotFollowed) {
+  std::string joints, close;
+  for (int i = 0; i < 5; ++i) {
+    joints += "<body><joint name=\"j" + std::to_string(i) + "\"/><geom size=\".1\" mass=\"1\"/>";
+    close += "</body>";
+  }
+  const auto m = Model("<mujoco><option gravity=\"0 0 0\"/>" +
+                       Instance("coulomb", Key("joint", "j0") + Key("tau_c", ".05")) +
+                       "<worldbody>" + joints + close + "</worldbody></mujoco>");
+  const auto d = Data(m);
+  const_cast<char*>(mj_getPluginConfig(m.get(), 0, "joint"))[1] = '*';
+  d->qvel[0] = 1;
+  for (int k = 0; k < 10; ++k) mj_step(m.get(), d.get());
+  for (int i = 0; i < m->nv; ++i) EXPECT_EQ(d->qfrc_applied[i], 0);
+  EXPECT_EQ(mj_makeData(m.get()), nullptr);
+}
+
 TEST_F(Configuration, DataOfOneModelFollowsAnother) {
   const auto a = Model(Arm("coulomb", Key("joint", "q1") + Key("tau_c", ".05"), ""));
   const auto b = Model(Arm("coulomb", Key("joint", "q1") + Key("tau_c", ".07"), ""));
