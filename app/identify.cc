@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -46,6 +47,9 @@ void RunIdentify(const Options& o) {
   options.soft = e.soft;
   options.progress = ShowProgress;
   const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
+  if (std::find(use.begin(), use.end(), true) == use.end()) {
+    throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");
+  }
   const Fit fit = FitParameters(problem, problem.Start(), use, options);
   EndProgress();
   WriteFit(problem, fit, o.out);

@@ -27,6 +27,10 @@ class Session {
 
   Diagnosis Run() {
     const auto begin = std::chrono::steady_clock::now();
+    const auto train = TrainLogs(e_);
+    if (std::find(train.begin(), train.end(), true) == train.end()) {
+      throw Error::Input(e_.file.string() + ": logs", "at least one with use: train", "none");
+    }
     d_.noise = NoiseOf(e_);
     d_.folds = FoldsOf(e_);
     FitNull();
@@ -108,8 +112,7 @@ class Session {
     if (d_.folds.empty()) return;
     trials_.AddFolds(null_, d_.folds, d_.before);
     for (const std::size_t i : d_.verdict.named) RecordFolds(trials_, d_, d_.candidates[i]);
-    d_.ceiling = d_.before.folds, d_.ceiling_error = d_.before.error;
-    if (d_.chosen()) d_.ceiling = d_.chosen()->fitted.folds, d_.ceiling_error = d_.after();
+    d_.ceiling_error = {d_.noise.rms, d_.noise.rms};
   }
 
   // By likelihoods, which are calibrated where noise is all that the best model leaves.

@@ -113,9 +113,9 @@ struct Diagnosis {
   bool noise_limited = false;  ///< the best model leaves noise: likelihoods judge, else folds
   LackOfFit lack;              ///< of the model that is left standing
   std::vector<std::string> skipped;
-  Verdict verdict;     ///< indices into candidates
-  FoldScores ceiling;  ///< what a smooth force without a name reaches
-  TwoErrors ceiling_error;
+  Verdict verdict;          ///< indices into candidates
+  FoldScores ceiling;       ///< what a smooth force without a name reaches; empty: noise-limited
+  TwoErrors ceiling_error;  ///< of the same; the noise where that is all that is left
   NextExperiment next;
   double gain_low = 0, gain_high = 0;  ///< 95 % interval of the held-out error removed
   double seconds = 0;

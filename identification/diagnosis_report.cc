@@ -194,7 +194,7 @@ class Story {
       rows.push_back({c.hypothesis.Name()});
       for (const double error : c.record.after) rows.back().push_back(fmt::format("{:.4g}", error));
     }
-    rows.push_back({"smooth force (ceiling)"});
+    if (!d_.ceiling.error.empty()) rows.push_back({"smooth force (ceiling)"});
     for (const double error : d_.ceiling.error) rows.back().push_back(fmt::format("{:.4g}", error));
     page_.Table(header, rows,
                 {"Error [" + unit_ + "] on the logs left out, after refitting on the others."});
@@ -226,7 +226,7 @@ class Story {
     page_.Table(
         {"model", "train [" + unit_ + "]", "validate [" + unit_ + "]"},
         {row("before", d_.before.error), row("after", told_.after),
-         row("smooth force (ceiling)", d_.ceiling_error)},
+         row(d_.noise_limited ? "noise (floor)" : "smooth force (ceiling)", d_.ceiling_error)},
         {fmt::format(
             "Free simulation of every log. Noise: {:.3g} {} ({}). {:.0f} % of the held-out error "
             "removed, {:.0f} … {:.0f} % (95 %, whole trials resampled); {:.0f} % of what is "
@@ -240,9 +240,10 @@ class Story {
     const double over = d_.noise.rms > 0 ? told_.after.train / d_.noise.rms : 0;
     page_.Paragraph(fmt::format(
         "What remains is {:.1f} times the noise: the data are {}. The extension reaches {:.0f} % "
-        "of what a smooth force without a name reaches on the held-out logs.",
+        "of what {} on the held-out logs.",
         over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited",
-        100 * ShareReached(d_, told_.after)));
+        100 * ShareReached(d_, told_.after),
+        d_.noise_limited ? "lies above the noise" : "a smooth force without a name reaches"));
     page_.Details("All logs", [&] {
       for (std::size_t l = 0; l < e_.logs.size(); ++l) Overlay(l);
     });

@@ -165,7 +165,12 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   out.has_initial = true;
   out.where = "candidate";
   const bool nuisance = std::isnan(p.null);
-  const double reach = p.unit == "kg" ? 5 : p.unit == "s" ? 25 : p.unit == "1" ? 10 : 3;
+  // The angle is a range over all joints, and its cube much larger than that of any one motion.
+  const double reach = p.unit == "kg"          ? 5
+                       : p.unit == "s"         ? 25
+                       : p.unit == "1"         ? 10
+                       : p.unit == "N*m/rad^3" ? 100
+                                               : 3;
   if (std::isinf(p.null)) {  // absent when it is large
     out.lower = std::max(p.lower, 0.02 * size), out.upper = 100 * size, out.initial = size;
     return out;
@@ -496,6 +501,10 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
     for (std::size_t i = 0; each && i < names.size(); ++i)
       AddAt(effect, place, {names[i]}, system, sizes, all);
     return;
+  }
+  if (!wanted.where.empty()) {
+    throw Error::Input(fmt::format("{}: candidates: {}", e.file.string(), effect.name),
+                       "a place in the model where the effect can act", wanted.where);
   }
   skip("nothing in the model to bind it to");
 }

@@ -193,6 +193,20 @@ TEST_F(DiagnosisTest, AsksForTwoGroupsToLeaveOut) {
   EXPECT_THROW(Ask(e), Error);
 }
 
+TEST_F(DiagnosisTest, AsksForALogToTrainOn) {
+  AddTrials({});
+  Experiment e = ReadWith("payload");
+  for (Log& log : e.logs) log.train = false;
+  EXPECT_THROW(Ask(e), Error);
+}
+
+TEST_F(DiagnosisTest, APlaceThatIsNotThereIsAnError) {
+  AddTrials({});
+  Experiment e = ReadWith("payload");
+  e.candidates[0].where = "body:nowhere";
+  EXPECT_THROW(Ask(e), Error);
+}
+
 TEST_F(DiagnosisTest, WritesFilesThatReproduceTheNamedModel) {
   Pendulum truth;
   truth.payload = 0.05;
