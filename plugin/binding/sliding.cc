@@ -11,7 +11,7 @@ namespace {
 constexpr double kGiveWay = 1e-3, kGiveWayMost = 20, kEasier = 3;  // v_c of (4) [m/s]
 constexpr double kStart = 1e-3;       // slower bends begin as they were in the last step [m/s]
 constexpr double kMoving = 0.02;      // fresh bends that are faster slide [m/s]
-constexpr double kGentle = 0.5;       // ... when no speed changes by more than that [m/s]
+constexpr double kGentle = 0.1;       // ... when no speed changes by more than that [m/s]
 constexpr double kSpeedError = 1e-9;  // of v⁺ [m/s]
 constexpr double kRelativeError = 1e-12;
 constexpr int kPatience = 5, kRounds = 30;

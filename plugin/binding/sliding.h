@@ -42,7 +42,7 @@ struct Bend {
 /// rest is a spring that reaches its band after h v_c, with a damper of v_c, and does not creep.
 ///
 /// Where no step has gone before, bends faster than 20 mm/s slide as their speed says, provided
-/// that the step then changes no bend's speed by more than 0.5 m/s: one mj_forward on fresh data
+/// that the step then changes no bend's speed by more than 0.1 m/s: one mj_forward on fresh data
 /// gives the law at that state.
 ///
 /// Once it is known who slides which way, (1) is linear in q̇⁺, with a linear ρ in (4): ρ − memory =
