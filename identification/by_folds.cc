@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "error.h"
-#include "identification/parallel.h"
 #include "identification/placebo.h"
 
 namespace continuum {
@@ -20,10 +18,10 @@ class Comparison {
       : trials_(trials), e_(*trials.experiment), options_(options), d_(d) {}
 
   void Run() {
-    Say("folds");
+    options_.Say("folds");
     trials_.AddFolds(Problem(e_, d_.system), d_.folds, d_.before);
     for (CandidateResult& c : d_.candidates) {
-      Say("folds of " + c.hypothesis.Name());
+      options_.Say("folds of " + c.hypothesis.Name());
       RecordFolds(trials_, d_, c);
     }
     RunCeiling();
@@ -32,11 +30,6 @@ class Comparison {
   }
 
  private:
-  void Say(const std::string& text) const {
-    if (StopRequested()) throw Error::Job("interrupted");
-    if (options_.progress) options_.progress(text);
-  }
-
   // Fits a force without a name at the null optimum (Gauss-Newton), scored like a candidate.
   FoldScores TryForce(const ForceTerms& terms, TwoErrors* error) const {
     const Problem problem(e_, d_.system, {}, terms);
@@ -54,7 +47,7 @@ class Comparison {
   }
 
   void RunCeiling() {
-    Say("ceiling");
+    options_.Say("ceiling");
     d_.ceiling = TryForce(RandomForce(16, true, d_.sizes, options_.seed), &d_.ceiling_error);
   }
 
@@ -69,8 +62,8 @@ class Comparison {
       if (!needed) continue;
       std::vector<double> gains;
       for (int k = 0; k < options_.placebos; ++k) {
-        Say(fmt::format("random force {} of {} with {} parameter(s)", k + 1, options_.placebos,
-                        count));
+        options_.Say(fmt::format("random force {} of {} with {} parameter(s)", k + 1,
+                                 options_.placebos, count));
         FoldRecord record;
         record.before = d_.before.folds.error;
         record.after =

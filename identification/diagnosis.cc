@@ -39,7 +39,7 @@ class Session {
     Round round(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_);
     if (d_.noise.known()) {
       round.Screen();
-      if (round.SomethingIsLeft()) round.Fit();
+      round.Fit();
       Judge(round);
       auto pair =
           MayBeTwo(round) ? FindPair(trials_, round, d_.noise, d_.sizes, options_) : std::nullopt;
@@ -60,28 +60,20 @@ class Session {
       CompareFolds();
     }
     BootstrapGain();
-    Say("next experiment");
+    options_.Say("next experiment");
     d_.next = ProposeNext(trials_, d_);
     d_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(d_);
   }
 
  private:
-  void Say(const std::string& text) const {
-    if (StopRequested()) throw Error::Job("interrupted");
-    if (options_.progress) options_.progress(text);
-  }
-
   // Twice where values are rounded: a model tells how they move between the steps.
   void FitNull() {
-    Say("null fit");
+    options_.Say("null fit");
     if (d_.noise.known()) trials_.whitening = Whitening(null_, d_.noise);
     d_.before = trials_.Fit(null_, null_.Start());
     if (d_.noise.known()) {
-      std::vector<Trace> traces;
-      for (std::size_t l = 0; l < e_.logs.size(); ++l)
-        traces.push_back(null_.Predict(d_.before.fit.x, l));
-      const Rounding rounding(null_, d_.noise, std::move(traces));
+      const Rounding rounding(null_, d_.noise, d_.before.fit.x);
       if (rounding.any()) {
         d_.noise = rounding.Corrected();
         trials_.whitening = Whitening(null_, d_.noise);
@@ -117,7 +109,7 @@ class Session {
 
   // By likelihoods, which are calibrated where noise is all that the best model leaves.
   void Judge(Round& round) {
-    Say("what is left");
+    options_.Say("what is left");
     const auto records = round.Records();
     SetProbabilities(round.candidates, records);
     const CandidateResult* const best = round.leading();
@@ -219,6 +211,11 @@ class Session {
 };
 
 }  // namespace
+
+void DiagnosisOptions::Say(const std::string& text) const {
+  if (StopRequested()) throw Error::Job("interrupted");
+  if (progress) progress(text);
+}
 
 Diagnosis Diagnose(const Experiment& experiment, const System& system,
                    const DiagnosisOptions& options) {

@@ -20,6 +20,9 @@ struct DiagnosisOptions {
   int iterations = 15;
   std::uint64_t seed = 1;
   std::function<void(const std::string&)> progress = {};
+
+  /// Tells what comes next. Throws Error (kJob) when the user has asked to stop.
+  void Say(const std::string& text) const;
 };
 
 struct TwoErrors {

@@ -59,7 +59,7 @@ class Search {
 
   // The best second cause beside a first; it is the next first.
   void Extend(const CandidateResult& first) {
-    if (options_.progress) options_.progress("a second cause beside " + Key(first.hypothesis));
+    options_.Say("a second cause beside " + Key(first.hypothesis));
     const Base base{&first.hypothesis.system, first.hypothesis.Free(), &first.fitted};
     Round round(trials_, base, noise_, sizes_, options_);
     round.Screen();

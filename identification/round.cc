@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 
 #include "error.h"
-#include "identification/parallel.h"
 #include "identification/rounding.h"
 
 namespace continuum {
@@ -38,34 +37,24 @@ Round::Round(const Trials& trials, const Base& base, const Noise& noise, const S
   }
 }
 
-void Round::Say(const std::string& text) const {
-  if (StopRequested()) throw Error::Job("interrupted");
-  if (options_.progress) options_.progress(text);
-}
-
 void Round::Screen() {
   const Remainder left = trials_.LeftBy(*base_.fitted);
   std::vector<std::vector<Probe>> probes;
-  std::vector<Problem::Matrix> columns;
   for (CandidateResult& c : candidates) {
-    Say("screen " + c.hypothesis.Name());
+    options_.Say("screen " + c.hypothesis.Name());
+    probes.emplace_back();
     try {
-      c.probes =
+      probes.back() =
           trials_.Probes(c.hypothesis, c.ProblemOf(*trials_.experiment), *base_.fitted, left);
     } catch (const Error& error) {
       c.error = error.what();
     }
-    probes.push_back(c.probes);
-    for (const Probe& probe : c.probes) columns.push_back(probe.columns);
   }
   const Problem base(*trials_.experiment, *base_.system, base_.given);
-  std::vector<Trace> traces;
-  for (std::size_t l = 0; l < trials_.experiment->logs.size(); ++l)
-    traces.push_back(base.Predict(base_.fitted->fit.x, l));
-  const Rounding rounding(base, noise_, std::move(traces));
+  const Rounding rounding(base, noise_, base_.fitted->fit.x);
   Problem::Matrix draws;
   if (rounding.any()) {
-    inflation_ = rounding.Inflation(left, columns, options_.seed);
+    inflation_ = rounding.Inflation(left, probes, options_.seed);
     draws = rounding.Draws(left, kDraws, options_.seed);
   }
   const Significance found = SignificanceOf(probes, left.residual(), options_.seed, draws);
@@ -73,6 +62,7 @@ void Round::Screen() {
     CandidateResult& c = candidates[i];
     c.explained = found.explained[i];
     c.p = found.p[i];
+    c.probes = std::move(probes[i]);
     smallest_p_ = std::min(smallest_p_, c.p);
     if (c.probes.empty()) continue;
     const std::size_t best = found.best[i];
@@ -99,15 +89,17 @@ double Round::HowMuchIsNeeded() const {
   return std::max(std::min(best - 15, 45.0), 0.02 * best);
 }
 
-// The likeliest first, so that the others know what to reach.
+// The likeliest first, so that the others know what to reach; nobody where only noise is left.
 void Round::Fit() {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.explained > b.explained; });
-  const double needed = noise_.known() ? HowMuchIsNeeded() : 0;
+  const double needed = !noise_.known()     ? 0
+                        : SomethingIsLeft() ? HowMuchIsNeeded()
+                                            : std::numeric_limits<double>::infinity();
   double rival = std::numeric_limits<double>::infinity();
   for (CandidateResult& c : candidates) {
     if (!c.error.empty() || c.explained < needed) continue;
-    Say("fit " + c.hypothesis.Name());
+    options_.Say("fit " + c.hypothesis.Name());
     try {
       FitOne(c, rival);
       if (noise_.known()) rival = std::min(rival, c.fitted.fit.cost);
@@ -132,7 +124,7 @@ CandidateResult Round::FitAlone(CandidateResult c) const {
   const Problem problem = c.ProblemOf(*trials_.experiment);
   trials_.Complete(problem, c.fitted);
   if (!Resolved(problem, c.fitted)) throw Error::Job(kUnresolved);
-  c.likelihood = (base_.fitted->cost - c.fitted.cost) / inflation_;
+  c.likelihood = Likelihood(c.fitted);
   return c;
 }
 
@@ -168,7 +160,7 @@ void Round::CompleteTheBest() {
   for (CandidateResult* const c : order) {
     const double plain = c->fitted.cost;
     if (!noise_.known() || plain - best < kNear + 2 * taken_off) {
-      Say("sensitivities of " + c->hypothesis.Name());
+      options_.Say("sensitivities of " + c->hypothesis.Name());
       const Problem problem = c->ProblemOf(*trials_.experiment);
       trials_.Complete(problem, c->fitted);
       if (noise_.known() && !Resolved(problem, c->fitted)) {
@@ -179,8 +171,13 @@ void Round::CompleteTheBest() {
       best = std::min(best, c->fitted.cost);
       taken_off = std::max(taken_off, plain - c->fitted.cost);
     }
-    c->likelihood = (base_.fitted->cost - c->fitted.cost) / inflation_;
+    c->likelihood = Likelihood(c->fitted);
   }
+}
+
+// Twice the logarithm of what a fit gains over the base.
+double Round::Likelihood(const Fitted& fitted) const {
+  return (base_.fitted->cost - fitted.cost) / inflation_;
 }
 
 // What the time step leaves open is free to vary: a fit that is mostly that explains anything.

@@ -24,9 +24,8 @@ class Round {
   /// What every candidate could explain of what the base leaves, and how often noise alone would
   /// let the best of so many do as well.
   void Screen();
-  /// Whether a candidate is significant, or what is left is plainly not noise.
-  bool SomethingIsLeft() const;
-  /// Fits those that first order does not leave far behind; then best first, the others dismissed.
+  /// Fits those that first order does not leave far behind, if a candidate is significant or what
+  /// is left is plainly not noise; then best first, the others left behind.
   void Fit();
 
   /// A candidate that was left behind or not fitted to the end, with a complete fit. Throws Error
@@ -50,8 +49,9 @@ class Round {
   static constexpr double kModelLimited = 3;  ///< times the noise: more is plainly not noise
 
  private:
-  void Say(const std::string& text) const;
+  bool SomethingIsLeft() const;
   double HowMuchIsNeeded() const;
+  double Likelihood(const Fitted& fitted) const;
   void FitOne(CandidateResult& c, double rival) const;
   Problem::Vector BestStart(const CandidateResult& c, const Problem& problem) const;
   void CompleteTheBest();

@@ -5,9 +5,12 @@
 
 namespace continuum {
 
-Rounding::Rounding(const Problem& problem, const Noise& noise, std::vector<Trace> traces)
-    : problem_(&problem), noise_(&noise), traces_(std::move(traces)) {
+Rounding::Rounding(const Problem& problem, const Noise& noise, const Problem::Vector& x)
+    : problem_(&problem), noise_(&noise) {
   for (const std::size_t c : problem.channels()) any_ |= Rounded(noise.channel[c]);
+  if (!any_) return;
+  for (std::size_t l = 0; l < problem.experiment().logs.size(); ++l)
+    traces_.push_back(problem.Predict(x, l));
 }
 
 Noise Rounding::Corrected() const {
@@ -20,17 +23,19 @@ Noise Rounding::Corrected() const {
   return noise;
 }
 
-double Rounding::Inflation(const Remainder& left, const std::vector<Problem::Matrix>& columns,
+double Rounding::Inflation(const Remainder& left, const std::vector<std::vector<Probe>>& candidates,
                            std::uint64_t seed) const {
   std::mt19937_64 rng(seed);
   constexpr int kDraws = 40;
   double power = 0, count = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
     const Problem::Vector z = left.Project(Draw(rng, false)).col(0);
-    for (const Problem::Matrix& c : columns) {
-      for (Eigen::Index i = 0; i < c.cols(); ++i) {
-        const double norm = c.col(i).squaredNorm();
-        if (norm > 0) power += std::pow(c.col(i).dot(z), 2) / norm, count += 1;
+    for (const auto& probes : candidates) {
+      for (const Probe& probe : probes) {
+        for (const auto& column : probe.columns.colwise()) {
+          const double norm = column.squaredNorm();
+          if (norm > 0) power += std::pow(column.dot(z), 2) / norm, count += 1;
+        }
       }
     }
   }

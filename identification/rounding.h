@@ -4,18 +4,18 @@
 
 namespace continuum {
 
-/// What values rounded to steps larger than their noise do to a diagnosis. traces: [log] what the
-/// fitted model says.
+/// What values rounded to steps larger than their noise do to a diagnosis. x: the fitted model,
+/// which is simulated only where some are.
 class Rounding {
  public:
-  Rounding(const Problem& problem, const Noise& noise, std::vector<Trace> traces);
+  Rounding(const Problem& problem, const Noise& noise, const Problem::Vector& x);
 
   bool any() const { return any_; }
   /// The noise with that of the rounded channels as a model moves between their steps.
   Noise Corrected() const;
   /// Rounding errors are neither normal nor stationary: how much more of them than of whitened
-  /// noise the columns (projected) take up, by draws; at least 1.
-  double Inflation(const Remainder& left, const std::vector<Problem::Matrix>& columns,
+  /// noise the directions of the candidates take up, by draws; at least 1.
+  double Inflation(const Remainder& left, const std::vector<std::vector<Probe>>& candidates,
                    std::uint64_t seed) const;
   /// Draws of the noise of all channels, as they stand in what a fit leaves; one column each.
   Problem::Matrix Draws(const Remainder& left, int count, std::uint64_t seed) const;
@@ -25,7 +25,7 @@ class Rounding {
 
   const Problem* problem_;
   const Noise* noise_;
-  std::vector<Trace> traces_;
+  std::vector<Trace> traces_;  // [log]
   bool any_ = false;
 };
 
