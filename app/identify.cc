@@ -2,10 +2,12 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "app/console.h"
 #include "error.h"
 #include "identification/fit_output.h"
+#include "identification/path.h"
 #include "sim/check.h"
 #include "sim/file.h"
 #include "sim/output.h"
@@ -16,26 +18,51 @@ namespace continuum {
 namespace {
 
 struct Options {
-  std::string experiment, out, method = "lm", path = "stepped";
+  std::string experiment, out, method = "lm", path = "auto";
   int iterations = 50;
   bool all = false, for_step = false;
 };
 
+// The path that was asked for, else the smooth one where it can go and gains by it.
+Path Choose(const Options& o, const Problem& problem) {
+  if (o.path == "stepped") return Path::kStepped;
+  const std::string obstacle = SmoothObstacle(problem);
+  if (o.path == "smooth") {
+    if (obstacle.empty()) return Path::kSmooth;
+    throw Error::Input("--path smooth", "a model that follows a smooth differential equation",
+                       obstacle);
+  }
+  const std::string why = obstacle.empty() ? SmoothCost(problem) : obstacle;
+  if (why.empty()) return Path::kSmooth;
+  std::fprintf(stderr, "no smooth path: %s\n", why.c_str());
+  return Path::kStepped;
+}
+
+// Parameters for the model's own step: a few iterations from those of the differential equation.
+Problem::Vector ForStep(const Problem& problem, const Fit& fit, const std::vector<bool>& use,
+                        FitOptions options) {
+  Problem stepped = problem;
+  stepped.Follow(Path::kStepped);
+  options.iterations = 2;
+  return FitParameters(stepped, fit.x, use, options).x;
+}
+
 void RunIdentify(const Options& o) {
   if (o.method != "lm")
     throw Error::Input("--method", "lm (others are not available yet)", "'" + o.method + "'");
-  if (o.path != "stepped")
-    throw Error::Input("--path", "stepped (smooth is not available yet)", "'" + o.path + "'");
   const Experiment read = Experiment::Read(o.experiment);
   const System system = System::Load(read.model);
   CheckNames(read, system);
   const Experiment e = Registered(read, system);
-  const Problem problem(e, system);
+  Problem problem(e, system);
   if (problem.parameters().empty())
     throw Error::Input(o.experiment, "the key 'parameters'", "none");
   const OutFolder made(o.out);
-  std::fprintf(stderr,
-               "path: stepped, by differences of MuJoCo's own steps; %zu parameters, %zu logs\n",
+  problem.Follow(Choose(o, problem));
+  const bool smooth = problem.path() == Path::kSmooth;
+  std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n",
+               smooth ? "smooth, by CVODES and its sensitivities"
+                      : "stepped, by differences of MuJoCo's own steps",
                problem.parameters().size(), e.logs.size());
   for (const Finding& f : CheckLogs(e)) {
     if (f.severity == Finding::Severity::kError)
@@ -51,8 +78,10 @@ void RunIdentify(const Options& o) {
     throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");
   }
   const Fit fit = FitParameters(problem, problem.Start(), use, options);
+  std::optional<Problem::Vector> for_step;
+  if (smooth && o.for_step) for_step = ForStep(problem, fit, use, options);
   EndProgress();
-  WriteFit(problem, fit, o.out);
+  WriteFit(problem, fit, o.out, for_step ? &*for_step : nullptr);
   double mae = 0, count = 0;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     for (const ChannelScore& s : ScoreLog(e, e.logs[l], problem.Predict(fit.x, l)))
@@ -84,7 +113,9 @@ void AddIdentify(CLI::App& app) {
   sub->add_option("--out", o->out, "folder for fit.json, fitted.xml, simulated/, report.html")
       ->required();
   sub->add_option("--method", o->method, "lm")->capture_default_str();
-  sub->add_option("--path", o->path, "stepped")->capture_default_str();
+  sub->add_option("--path", o->path, "how logs are simulated: smooth (CVODES), stepped, or auto")
+      ->check(CLI::IsMember({"auto", "smooth", "stepped"}))
+      ->capture_default_str();
   sub->add_option("--iterations", o->iterations, "at most")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

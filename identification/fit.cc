@@ -31,19 +31,22 @@ class Cost : public ceres::CostFunction {
   // What is known at one x already.
   void Know(const Vector& x, std::vector<Vector> r, std::vector<Matrix> J) {
     x_ = x, r_ = std::move(r), J_ = std::move(J);
+    derived_ = {x_, r_};
   }
+  // From now on the derivatives that a pass begins with are not rough.
+  void Sharpen() { rough_ = false, J_.clear(); }
 
   bool Evaluate(const double* const* y, double* residuals, double** jacobians) const override {
     const auto& parameters = problem_.parameters();
     Vector x(static_cast<Eigen::Index>(parameters.size()));
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = y[0][i] * parameters[i].scale;
     x = problem_.Clamp(x);
-    if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x, J_.clear();
+    if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x;
     const Vector all = whitening_.Stack(r_, use_);
     if (!all.allFinite()) return false;
     for (Eigen::Index k = 0; k < all.size(); ++k) residuals[k] = Soften(all[k]).first;
     if (!jacobians || !jacobians[0]) return true;
-    if (J_.empty()) J_ = problem_.Jacobian(x, r_, use_);
+    Derive();
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
         jacobians[0], all.size(), x.size());
     out = whitening_.Stack(J_, use_);
@@ -61,13 +64,49 @@ class Cost : public ceres::CostFunction {
     return {w, std::abs(w) > 1e-12 * soft_ ? r / (w * root) : 1};
   }
 
+  // J_ at x_: updated (Broyden) along the step from where it was known, if the residuals changed
+  // almost as it said; else anew. By differences it is always made anew: they see stick and slip.
+  void Derive() const {
+    if (!J_.empty() && derived_.x == x_) return;
+    if (J_.empty() || problem_.path() == Path::kStepped || !Updated())
+      J_ = problem_.Jacobian(x_, r_, use_, {}, rough_);
+    derived_ = {x_, r_};
+  }
+  bool Updated() const {
+    constexpr double kBent = 0.15, kNothing = 1e-3;  // of the change, of the residuals
+    Vector step = x_ - derived_.x, scaled = step;
+    for (Eigen::Index i = 0; i < step.size(); ++i) {
+      scaled[i] /= std::pow(problem_.parameters()[i].scale, 2);
+    }
+    double bent = 0, change = 0, all = 0;
+    std::vector<Vector> lack(J_.size());
+    for (std::size_t l = 0; l < J_.size(); ++l) {
+      if (!use_[l]) continue;
+      const Vector difference = r_[l] - derived_.r[l];
+      lack[l] = difference - J_[l] * step;
+      bent += lack[l].squaredNorm(), change += difference.squaredNorm();
+      all += r_[l].squaredNorm();
+    }
+    if (bent > kBent * kBent * change && bent > kNothing * kNothing * all) return false;
+    for (std::size_t l = 0; l < J_.size(); ++l) {
+      if (use_[l]) J_[l] += lack[l] * scaled.transpose() / scaled.dot(step);
+    }
+    return true;
+  }
+
   const Problem& problem_;
   const std::vector<bool>& use_;
   double soft_;
   const Whitening& whitening_;
   mutable Vector x_;
-  mutable std::vector<Vector> r_;
-  mutable std::vector<Matrix> J_;  // at x_, once it was asked for
+  mutable std::vector<Vector> r_;  // at x_
+  mutable std::vector<Matrix> J_;
+  struct Derived {
+    Vector x;
+    std::vector<Vector> r;
+  };
+  mutable Derived derived_;  // where J_ is known
+  bool rough_ = true;
 };
 
 class Watch : public ceres::IterationCallback {
@@ -163,7 +202,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
     fit.converged = true;
     return fit;
   }
-  auto J = problem.Jacobian(fit.x, r, use);
+  auto J = problem.Jacobian(fit.x, r, use, {}, true);
   if (!options.idle) RequireEffect(problem, fit.x, J);
 
   ceres::Problem::Options ownership;
@@ -194,10 +233,15 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   solver.callbacks.push_back(&watch);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &ceres, &summary);
-
+  fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  if (problem.path() == Path::kSmooth && summary.termination_type == ceres::CONVERGENCE) {
+    cost.Sharpen();
+    solver.initial_trust_region_radius = 1e6;
+    ceres::Solve(solver, &ceres, &summary);
+    fit.iterations += static_cast<int>(summary.iterations.size()) - 1;
+  }
   fit.x = unscaled();
   fit.cost = summary.final_cost;
-  fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
   fit.converged = summary.termination_type == ceres::CONVERGENCE;
   fit.message = summary.message;
   fit.evaluations = problem.evaluations() - before;

@@ -77,6 +77,24 @@ HeatMapSpec CorrelationMap(const Problem& problem, const Uncertainty& u) {
   return spec;
 }
 
+// What the model gives at its own step, where the fit was one of its differential equation.
+nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x) {
+  Problem stepped = problem;
+  stepped.Follow(Path::kStepped);
+  const Experiment& e = problem.experiment();
+  std::vector<Replayed> logs;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    Trace trace = stepped.Predict(x, l);
+    auto score = ScoreLog(e, e.logs[l], trace);
+    logs.push_back({std::move(trace), std::move(score)});
+  }
+  auto parameters = nlohmann::json::object();
+  for (Eigen::Index i = 0; i < x.size(); ++i) parameters[problem.parameters()[i].name] = x[i];
+  return {{"timestep", problem.system().model().opt.timestep},
+          {"parameters", parameters},
+          {"error", ErrorsJson(e, logs)}};
+}
+
 }  // namespace
 
 nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
@@ -115,7 +133,8 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
              {"Intervals allow for residuals that are correlated in time."});
 }
 
-void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder) {
+void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
+              const Problem::Vector* for_step) {
   const Experiment& e = problem.experiment();
   MakeFolder(folder);
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
@@ -135,7 +154,7 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
                       {"correlation", nlohmann::json::array()},
                       {"error", ErrorsJson(e, logs)},
                       {"method", "lm"},
-                      {"path", "stepped"},
+                      {"path", problem.path() == Path::kSmooth ? "smooth" : "stepped"},
                       {"cost", fit.cost},
                       {"iterations", fit.iterations},
                       {"evaluations", fit.evaluations},
@@ -148,8 +167,10 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
     json["correlation"].emplace_back(
         std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
   }
+  const Problem::Vector& x = for_step ? *for_step : fit.x;
+  if (problem.path() == Path::kSmooth) json["at_step"] = AtStep(problem, x);
   WriteFile(folder / "fit.json", json.dump(2) + "\n");
-  WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(fit.x), {}, folder));
+  WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(x), {}, folder));
   WriteSimulated(e, traces, folder / "simulated");
 
   Page page("Fit", e.model.filename().string() + " to " + std::to_string(e.logs.size()) + " logs");

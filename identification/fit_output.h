@@ -8,8 +8,11 @@
 
 namespace continuum {
 
-/// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder.
-void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder);
+/// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder. for_step:
+/// after a fit on the smooth path, parameters that suit the model's own step better; fitted.xml
+/// gets these.
+void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
+              const Problem::Vector* for_step = nullptr);
 
 /// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}]; where no error can be
 /// given (at a bound) the interval is the value itself.

@@ -1,14 +1,17 @@
 #include "identification/problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "error.h"
 #include "identification/parallel.h"
+#include "identification/smooth.h"
 #include "identification/unit.h"
 #include "sim/measurement.h"
 #include "sim/registration.h"
@@ -76,6 +79,21 @@ Problem::Problem(const Experiment& experiment, const System& system, std::vector
     scale_.push_back(unit / std::sqrt(out.weight));
     pooled_.push_back(scale_.back() / pool.scale(c));
   }
+}
+
+// On the smooth path with the method that takes fewer evaluations at the start.
+void Problem::Follow(Path path) {
+  path_ = path;
+  memory_.assign(memory_.size(), {});
+  if (path == Path::kStepped) return;
+  std::array<long, 2> rates;
+  for (const bool stiff : {false, true}) {
+    solving_.stiff = stiff;
+    const SmoothTraces traces =
+        FollowFlow(*FlowAt(0, Start(), 0), {}, setup_, experiment_->logs[0], solving_);
+    rates[stiff] = traces.trace.diverged ? std::numeric_limits<long>::max() : traces.work.rates;
+  }
+  solving_.stiff = rates[true] <= rates[false];
 }
 
 void Problem::Expand(const Parameter& p) {
@@ -212,6 +230,10 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
     MeasureTrace(setup, Wiring(setup, system().model()), logged, trace);
     return trace;
   }
+  if (path_ == Path::kSmooth) {
+    const auto flow = FlowAt(thread, x, log);
+    return FollowFlow(*flow, {}, setup, logged, solving_).trace;
+  }
   Machine machine = systems_[thread].Build(changes);
   Hooks hooks;
   if (terms_.count > 0) {
@@ -225,6 +247,11 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
   Log stretched = logged;
   for (double& t : stretched.time) t *= (1 + setup.skew) / (1 + experiment_->skew);
   return Simulate(machine, setup, stretched, {}, hooks);
+}
+
+std::unique_ptr<Flow> Problem::FlowAt(std::size_t thread, const Vector& x, std::size_t log) const {
+  return std::make_unique<Flow>(systems_[thread].Build(ChangesFor(x, log)), *experiment_,
+                                experiment_->logs[log]);
 }
 
 Trace Problem::Predict(const Vector& x, std::size_t log) const { return Run(0, x, log); }
@@ -315,33 +342,101 @@ std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::ve
 
 std::vector<Problem::Matrix> Problem::Jacobian(const Vector& x, const std::vector<Vector>& r,
                                                const std::vector<bool>& use,
-                                               const std::vector<Matrix>& known) const {
+                                               const std::vector<Matrix>& known, bool rough) const {
   std::vector<Matrix> J(use.size());
   const auto motions = Motions(use);
+  std::size_t first = 0;
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) continue;
+    J[l] = Matrix::Zero(r[l].size(), x.size());
+    if (known.empty()) continue;
+    first = static_cast<std::size_t>(known[l].cols());
+    J[l].leftCols(known[l].cols()) = known[l];
+  }
+  DifferenceColumns(x, r, motions, first, J);
+  if (path_ == Path::kSmooth) SensitivityColumns(x, motions, first, rough, J);
+  return J;
+}
+
+// Whether a parameter changes how a motion is measured, not the motion.
+bool Problem::Measures(std::size_t k) const {
+  const Change& c = parameters_[k].change;
+  return IsMeasurement(c.target, c.attribute);
+}
+
+// A step of a parameter that stays within its bounds.
+double Problem::StepOf(const Vector& x, std::size_t k, double share) const {
+  const double step = share * parameters_[k].scale;
+  return x[k] + step > parameters_[k].upper ? -step : step;
+}
+
+void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
+                                const std::vector<std::vector<std::size_t>>& motions,
+                                std::size_t first, std::vector<Matrix>& J) const {
   std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    std::size_t first = 0;
-    for (const std::size_t l : motions[i]) {
-      J[l] = Matrix::Zero(r[l].size(), x.size());
-      first = known.empty() ? 0 : static_cast<std::size_t>(known[l].cols());
-      if (first > 0) J[l].leftCols(known[l].cols()) = known[l];
-    }
     for (std::size_t k = first; k < parameters_.size(); ++k) {
-      if (parameters_[k].log[motions[i].front()]) tasks.emplace_back(i, k);
+      const bool ours = path_ == Path::kStepped || Measures(k);
+      if (ours && parameters_[k].log[motions[i].front()]) tasks.emplace_back(i, k);
     }
   }
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
     const auto [i, k] = tasks[t];
-    const FreeParameter& p = parameters_[k];
-    double step = 1e-3 * p.scale;  // stick and slip are decided step by step: average over some
-    if (x[k] + step > p.upper) step = -step;
+    const double step = StepOf(x, k, 1e-3);  // stick and slip are decided step by step: average
     Vector moved = x;
     moved[k] += step;
     const Trace there = Run(thread, moved, motions[i].front());
     for (const std::size_t l : motions[i]) J[l].col(k) = (ResidualOf(l, there) - r[l]) / step;
   });
   evaluations_ += tasks.size();
-  return J;
+}
+
+// Parameters of a motion are shared out so that no core waits for another.
+void Problem::SensitivityColumns(const Vector& x,
+                                 const std::vector<std::vector<std::size_t>>& motions,
+                                 std::size_t first, bool rough, std::vector<Matrix>& J) const {
+  struct Task {
+    std::size_t motion;
+    std::vector<std::size_t> moving;
+  };
+  std::vector<Task> tasks;
+  const std::size_t shares = ThreadCount() / std::gcd(motions.size(), ThreadCount());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    std::vector<std::size_t> moving;
+    for (std::size_t k = first; k < parameters_.size(); ++k) {
+      if (!Measures(k) && parameters_[k].log[motions[i].front()]) moving.push_back(k);
+    }
+    for (std::size_t s = 0; s < shares; ++s) {
+      const auto at = [&](std::size_t share) {
+        return moving.begin() + static_cast<std::ptrdiff_t>(share * moving.size() / shares);
+      };
+      if (at(s) != at(s + 1)) tasks.push_back({i, {at(s), at(s + 1)}});
+    }
+  }
+  Solving how = solving_;
+  if (rough) how.relative = 1e-4, how.absolute = 1e-6;
+  ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
+    const auto& [i, moving] = tasks[t];
+    const std::size_t log = motions[i].front();
+    std::vector<std::unique_ptr<Flow>> neighbours;
+    for (const std::size_t k : moving) {
+      Vector moved = x;
+      moved[k] += StepOf(x, k, kMove);
+      neighbours.push_back(FlowAt(thread, moved, log));
+    }
+    const auto flow = FlowAt(thread, x, log);
+    const Log& logged = experiment_->logs[log];
+    const Experiment measured = MeasuredBy(x, log);
+    SmoothTraces traces = FollowFlow(*flow, neighbours, measured, logged, how);
+    for (std::size_t j = 0; j < moving.size(); ++j) {
+      MeasureTrace(measured, flow->wiring(), logged, traces.moved[j]);
+      for (const std::size_t l : motions[i]) {
+        J[l].col(moving[j]) = (ResidualOf(l, traces.moved[j]) - ResidualOf(l, traces.trace)) /
+                              StepOf(x, moving[j], kMove);
+      }
+    }
+  });
+  evaluations_ += tasks.size();
 }
 
 double Problem::PooledRms(const std::vector<Vector>& r, const std::vector<bool>& use) const {

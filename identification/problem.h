@@ -1,12 +1,15 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "identification/cvodes.h"
+#include "sim/flow.h"
 #include "sim/score.h"
 #include "sim/simulate.h"
 
@@ -31,6 +34,10 @@ struct ForceTerms {
   double size = 1;  ///< typical θ [N*m]
 };
 
+/// How logs are simulated: as the model steps, or as a differential equation by CVODES, whose
+/// sensitivities are exact to the tolerance.
+enum class Path { kStepped, kSmooth };
+
 /// Which logs a fit may see.
 std::vector<bool> TrainLogs(const Experiment& experiment);
 
@@ -48,6 +55,8 @@ class Problem {
   /// match nothing and starts outside the bounds.
   Problem(const Experiment& experiment, const System& system, std::vector<Parameter> extra = {},
           ForceTerms terms = {});
+  /// From now on along this path (SmoothObstacle says where the smooth one cannot go).
+  void Follow(Path path);
 
   const Experiment& experiment() const { return *experiment_; }
   const System& system() const { return systems_.front(); }
@@ -62,11 +71,12 @@ class Problem {
   /// simulation diverges.
   std::vector<Matrix> StepEffects(const Vector& x, const std::vector<Vector>& r,
                                   const std::vector<bool>& use) const;
-  /// d residual / d parameter [per unit of the parameter] of each log by one-sided differences;
-  /// r: the residuals at x; known: its leading columns, when they are known already.
+  /// d residual / d parameter [per unit of the parameter] of each log, by one-sided differences or
+  /// sensitivities; r: the residuals at x; known: its leading columns, when they are known already;
+  /// rough: to three digits are enough.
   std::vector<Matrix> Jacobian(const Vector& x, const std::vector<Vector>& r,
-                               const std::vector<bool>& use,
-                               const std::vector<Matrix>& known = {}) const;
+                               const std::vector<bool>& use, const std::vector<Matrix>& known = {},
+                               bool rough = false) const;
   /// Pooled RMS (unit: see Pool) of residuals over all measured samples of the logs in use.
   double PooledRms(const std::vector<Vector>& r, const std::vector<bool>& use) const;
   /// What the model says about one log.
@@ -80,6 +90,7 @@ class Problem {
 
   std::vector<bool> AllLogs() const { return std::vector<bool>(experiment_->logs.size(), true); }
   std::vector<bool> TrainLogs() const { return continuum::TrainLogs(*experiment_); }
+  Path path() const { return path_; }
   /// Simulations run so far.
   std::size_t evaluations() const { return evaluations_; }
   /// Counted channels, in the order in which their rows follow each other in a residual vector.
@@ -92,6 +103,14 @@ class Problem {
   bool SameMotion(std::size_t a, std::size_t b) const;
   std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
+  std::unique_ptr<Flow> FlowAt(std::size_t thread, const Vector& x, std::size_t log) const;
+  bool Measures(std::size_t k) const;
+  double StepOf(const Vector& x, std::size_t k, double share) const;
+  void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
+                         const std::vector<std::vector<std::size_t>>& motions, std::size_t first,
+                         std::vector<Matrix>& J) const;
+  void SensitivityColumns(const Vector& x, const std::vector<std::vector<std::size_t>>& motions,
+                          std::size_t first, bool rough, std::vector<Matrix>& J) const;
   std::vector<Change> ChangesAt(const Vector& x, std::size_t log, bool measurement) const;
   Vector ResidualOf(std::size_t log, const Trace& trace) const;
   Trace Later(const Trace& trace, const Vector& x, std::size_t log, double delay) const;
@@ -114,6 +133,8 @@ class Problem {
   std::vector<double> scale_;   ///< SI per residual unit, of each counted channel
   std::vector<double> pooled_;  ///< pooled units per residual unit
   ForceTerms terms_;
+  Path path_ = Path::kStepped;
+  Solving solving_;  ///< on the smooth path
   mutable std::size_t evaluations_ = 0;
 };
 

@@ -49,6 +49,10 @@ class Bound {
                         std::span<double> force) = 0;
   /// States after the step that d has just taken.
   virtual void Advance(const mjModel&, const mjData&, double*) {}
+  /// Writes dz/dt at d, where the states follow a differential equation; false: they go in steps.
+  virtual bool Rates(const mjModel&, const mjData&, const double* /*z*/, double* /*rate*/) const {
+    return false;
+  }
   /// States as if the present controls had been there for ever.
   virtual void Settle(const mjModel&, const mjData&, double*) const {}
   /// Why the law does nothing at some of its places; empty: it acts.

@@ -71,6 +71,16 @@ class BoundForce : public Bound {
     }
   }
 
+  bool Rates(const mjModel& m, const mjData& d, const double* z, double* rate) const override {
+    const auto p = AsParams<E>(p_);
+    for (const Line& line : lines_) {
+      const auto zdot = E::template Eval<double>(line.At(m, d), Load(z), p).zdot;
+      rate = std::copy(zdot.begin(), zdot.end(), rate);
+      z += kZ;
+    }
+    return true;
+  }
+
  private:
   static Vec<double, kZ> Load(const double* z) {
     Vec<double, kZ> state;

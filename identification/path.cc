@@ -1,0 +1,62 @@
+#include "identification/path.h"
+
+#include <fmt/format.h>
+
+#include "identification/smooth.h"
+
+namespace continuum {
+namespace {
+
+// Of the model of one log, at a start that lies a little beside the null of every parameter.
+std::string ObstacleOf(const Problem& problem, const Problem::Vector& x, std::size_t log) {
+  const Machine machine = problem.system().Build(problem.ChangesFor(x, log));
+  return Flow::Obstacle(*machine.model, *machine.data);
+}
+
+// Whether a contact or a limit acts on the way.
+std::string Touches(const Problem& problem, std::size_t log) {
+  Machine machine = problem.system().Build(problem.ChangesFor(problem.Start(), log));
+  double when = -1;
+  Hooks hooks;
+  hooks.step = [&](const mjModel&, const mjData& d) {
+    if (d.nefc > 0 && when < 0) when = d.time;
+  };
+  const Log& logged = problem.experiment().logs[log];
+  Simulate(machine, problem.experiment(), logged, {}, hooks);
+  return when < 0 ? "" : fmt::format("{}: a contact or limit acts at {:g} s", logged.label, when);
+}
+
+}  // namespace
+
+std::string SmoothObstacle(const Problem& problem) {
+  const Experiment& e = problem.experiment();
+  if (e.quasi_static) return "the logs are quasi-static";
+  Problem::Vector beside = problem.Start();
+  for (Eigen::Index k = 0; k < beside.size(); ++k) {
+    const FreeParameter& p = problem.parameters()[k];
+    if (p.change.attribute == "skew") return "the clock is a parameter";
+    beside[k] += (beside[k] + kMove * p.scale > p.upper ? -1 : 1) * kMove * p.scale;
+  }
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    std::string why = ObstacleOf(problem, beside, l);
+    if (why.empty()) why = Touches(problem, l);
+    if (!why.empty()) return why;
+  }
+  return "";
+}
+
+std::string SmoothCost(const Problem& problem) {
+  constexpr double kMost = 0.1;  // of the rows
+  const Experiment& e = problem.experiment();
+  std::size_t rows = 0, breaks = 0;
+  for (const Log& log : e.logs) {
+    rows += log.rows();
+    for (std::size_t row = 1; row < log.rows(); ++row) breaks += BreaksAt(e, log, row);
+  }
+  const double share = static_cast<double>(breaks) / static_cast<double>(rows);
+  return share <= kMost
+             ? ""
+             : fmt::format("the inputs jump or bend at {:.0f} % of the rows", 100 * share);
+}
+
+}  // namespace continuum

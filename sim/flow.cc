@@ -1,0 +1,199 @@
+#include "sim/flow.h"
+
+#include <algorithm>
+
+#include "engine.h"
+
+namespace continuum {
+namespace {
+
+std::string Called(const mjModel& m, mjtObj kind, int id) {
+  const char* const name = mj_id2name(&m, kind, id);
+  return name ? "'" + std::string(name) + "'" : std::to_string(id);
+}
+
+std::string Rubs(const mjModel& m) {
+  for (int i = 0; i < m.nv; ++i) {
+    if (m.dof_frictionloss[i] > 0)
+      return "joint " + Called(m, mjOBJ_JOINT, m.dof_jntid[i]) + " rubs";
+  }
+  for (int i = 0; i < m.ntendon; ++i) {
+    if (m.tendon_frictionloss[i] > 0) return "tendon " + Called(m, mjOBJ_TENDON, i) + " rubs";
+  }
+  return "";
+}
+
+std::string Delayed(const mjModel& m) {
+  for (int i = 0; i < m.nu; ++i) {
+    if (m.actuator_delay[i] > 0) return "actuator " + Called(m, mjOBJ_ACTUATOR, i) + " has a delay";
+    if (m.actuator_actadr[i] >= 0 && m.actuator_actlimited[i])
+      return "the activation of actuator " + Called(m, mjOBJ_ACTUATOR, i) + " is limited";
+  }
+  for (int i = 0; i < m.nsensor; ++i) {
+    if (m.sensor_delay[i] > 0 || m.sensor_interval[2 * i] > 0)
+      return "sensor " + Called(m, mjOBJ_SENSOR, i) + " has a delay";
+  }
+  return "";
+}
+
+std::string Switches(const mjModel& m, const mjData& d) {
+  std::vector<double> rate(m.npluginstate);
+  for (int i = 0; i < m.nplugin; ++i) {
+    const std::string name = mjp_getPluginAtSlot(m.plugin[i])->name;
+    const std::string instance = name + " " + Called(m, mjOBJ_PLUGIN, i);
+    if (!name.starts_with("continuum.")) return instance + " is not one of ours";
+    const Bound& law = BoundOf(m, d, i);
+    const double* const z = d.plugin_state + m.plugin_stateadr[i];
+    if (law.IsRow() || law.Answers()) return instance + " rubs";
+    if (m.plugin_statenum[i] > 0 && !law.Rates(m, d, z, rate.data()))
+      return instance + " goes in steps";
+  }
+  return "";
+}
+
+// ½ p ω of a quaternion p and an angular velocity in the axes of the body.
+void Turn(const double* p, const double* w, double* rate) {
+  const double half[4] = {0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]};
+  mju_mulQuat(rate, p, half);
+}
+
+bool Jumps(const std::vector<double>& u, std::size_t row) { return u[row] != u[row - 1]; }
+
+// A linear input is smooth where it goes on as it came.
+bool Bends(const std::vector<double>& t, const std::vector<double>& u, std::size_t row) {
+  if (row + 1 == u.size()) return false;
+  const double before = (u[row] - u[row - 1]) / (t[row] - t[row - 1]);
+  const double after = (u[row + 1] - u[row]) / (t[row + 1] - t[row]);
+  return std::abs(after - before) > 1e-9 * (std::abs(after) + std::abs(before));
+}
+
+}  // namespace
+
+bool BreaksAt(const Experiment& e, const Log& log, std::size_t row) {
+  if (row == 0) return true;
+  for (std::size_t i = 0; i < log.input.size(); ++i) {
+    const auto& u = log.input[i];
+    if (e.inputs[i].linear ? Bends(log.time, u, row) : Jumps(u, row)) return true;
+    const auto& on = log.enable[i];
+    if (!on.empty() && on[row] != on[row - 1]) return true;
+  }
+  return false;
+}
+
+std::string Flow::Obstacle(const mjModel& m, const mjData& d) {
+  for (const std::string& why : {Rubs(m), Delayed(m), Switches(m, d)}) {
+    if (!why.empty()) return why;
+  }
+  return m.neq > 0 ? "there are equality constraints" : "";
+}
+
+Flow::Flow(Machine machine, const Experiment& e, const Log& log)
+    : machine_(std::move(machine)),
+      e_(e),
+      log_(log),
+      wiring_(e, *machine_.model),
+      inputs_(*machine_.model, e, log, wiring_) {
+  mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  const InitialState start = StartOf(machine_, e, log);
+  m.opt.disableflags |= mjDSBL_CONSTRAINT | mjDSBL_AUTORESET;
+  if (m.opt.integrator == mjINT_DISCRETE) m.opt.integrator = mjINT_EULER;  // its forces know h
+  mj_resetData(&m, &d);
+  inputs_.AtRow(d, 0);
+  Settle(m, d);
+  start_.insert(start_.end(), start.qpos.begin(), start.qpos.end());
+  start_.insert(start_.end(), start.qvel.begin(), start.qvel.end());
+  start_.insert(start_.end(), d.act, d.act + m.na);
+  start_.insert(start_.end(), d.plugin_state, d.plugin_state + m.npluginstate);
+  for (const Input& in : e.inputs) linear_ |= in.linear;
+  for (const auto& source : wiring_.output) {
+    if (source.kind != Output::Kind::kSensor) {
+      needs_ = Needs::kAll;
+      continue;
+    }
+    needs_ = std::max(needs_, NeedsOf(m, source.sensor));
+  }
+}
+
+Flow::Needs Flow::NeedsOf(const mjModel& m, int sensor) {
+  switch (m.sensor_type[sensor]) {
+    case mjSENS_JOINTPOS:
+    case mjSENS_JOINTVEL:
+      return Needs::kState;
+    case mjSENS_FRAMEPOS:
+    case mjSENS_FRAMEQUAT:
+    case mjSENS_FRAMEXAXIS:
+    case mjSENS_FRAMEYAXIS:
+    case mjSENS_FRAMEZAXIS:
+      return Needs::kFrames;
+    case mjSENS_PLUGIN:
+      return Needs::kAll;
+    default:
+      return m.sensor_needstage[sensor] == mjSTAGE_POS ? Needs::kPosition : Needs::kAll;
+  }
+}
+
+void Flow::Hold(std::size_t row) {
+  row_ = row;
+  inputs_.AtRow(*machine_.data, row);
+}
+
+void Flow::Load(const double* y) {
+  const mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  std::copy_n(y, m.nq, d.qpos);
+  std::copy_n(y += m.nq, m.nv, d.qvel);
+  std::copy_n(y += m.nv, m.na, d.act);
+  std::copy_n(y += m.na, m.npluginstate, d.plugin_state);
+}
+
+void Flow::Rate(double t, const double* y, double* rate) {
+  const mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  Load(y);
+  if (linear_ && row_ + 1 < log_.rows()) inputs_.Between(d, row_, t);
+  mj_forwardSkip(&m, &d, mjSTAGE_NONE, 1);
+  for (int j = 0; j < m.njnt; ++j) {
+    const int q = m.jnt_qposadr[j], v = m.jnt_dofadr[j];
+    switch (m.jnt_type[j]) {
+      case mjJNT_FREE:
+        std::copy_n(d.qvel + v, 3, rate + q);
+        Turn(d.qpos + q + 3, d.qvel + v + 3, rate + q + 3);
+        break;
+      case mjJNT_BALL:
+        Turn(d.qpos + q, d.qvel + v, rate + q);
+        break;
+      default:
+        rate[q] = d.qvel[v];
+    }
+  }
+  std::copy_n(d.qacc, m.nv, rate += m.nq);
+  std::copy_n(d.act_dot, m.na, rate += m.nv);
+  rate += m.na;
+  for (int i = 0; i < m.nplugin; ++i) {
+    const int z = m.plugin_stateadr[i];
+    if (m.plugin_statenum[i] > 0) BoundOf(m, d, i).Rates(m, d, d.plugin_state + z, rate + z);
+  }
+}
+
+void Flow::Observe(const double* y, Recorder& recorder) {
+  const mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  Load(y);
+  if (linear_) inputs_.AtRow(d, row_);
+  if (needs_ == Needs::kAll) {
+    mj_forward(&m, &d);
+  } else {
+    if (needs_ >= Needs::kFrames) mj_kinematics(&m, &d);
+    if (needs_ >= Needs::kPosition) {
+      mj_comPos(&m, &d);
+      mj_tendon(&m, &d);
+      mj_transmission(&m, &d);
+    }
+    mj_sensorPos(&m, &d);
+    mj_sensorVel(&m, &d);
+  }
+  recorder.Take(d, row_);
+}
+
+}  // namespace continuum

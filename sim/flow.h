@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/inputs.h"
+#include "sim/recorder.h"
+
+namespace continuum {
+
+/// Whether an input of a log jumps or bends at a row.
+bool BreaksAt(const Experiment& e, const Log& log, std::size_t row);
+
+/// A machine under the inputs of one log as a differential equation,
+///
+///   d/dt (q, v, a, z) = (v, M⁻¹(q) (τ − c), ȧ, ż)                              (1)
+///
+/// with τ all forces and c the bias of MuJoCo's forward dynamics, a the activations of actuators
+/// and z the states of our laws. The state y holds qpos (a quaternion p moves by ½ p ω), qvel, act
+/// and plugin_state, in SI. No constraint acts: a model that needs one is refused by Obstacle.
+class Flow {
+ public:
+  /// What keeps a model from being such an equation ("joint 'j1' rubs"); empty: nothing does.
+  static std::string Obstacle(const mjModel& m, const mjData& d);
+
+  /// Throws Error for names that the model lacks, and when the start cannot be found.
+  Flow(Machine machine, const Experiment& e, const Log& log);
+  Flow(const Flow&) = delete;
+
+  std::size_t size() const { return start_.size(); }
+  /// y at the first row.
+  const std::vector<double>& start() const { return start_; }
+  const Wiring& wiring() const { return wiring_; }
+  const mjModel& model() const { return *machine_.model; }
+  /// From here to the next row the inputs are those of this one.
+  void Hold(std::size_t row);
+  /// dy/dt [size] at the time t of the log and y.
+  void Rate(double t, const double* y, double* rate);
+  /// Lets a recorder see the row that is held, at y.
+  void Observe(const double* y, Recorder& recorder);
+
+ private:
+  enum class Needs { kState, kFrames, kPosition, kAll };  // what the outputs are made of
+  static Needs NeedsOf(const mjModel& m, int sensor);
+  void Load(const double* y);
+
+  Machine machine_;
+  const Experiment& e_;
+  const Log& log_;
+  Wiring wiring_;
+  Inputs inputs_;
+  std::vector<double> start_;
+  Needs needs_ = Needs::kState;
+  bool linear_ = false;
+  std::size_t row_ = 0;
+};
+
+}  // namespace continuum

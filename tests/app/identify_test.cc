@@ -1,0 +1,53 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::HasSubstr;
+
+class IdentifyPath : public testing::AppBench {
+ protected:
+  nlohmann::json Identify(std::vector<std::string> more, const std::string& says) const {
+    more.insert(more.begin(), {"identify", "experiment.yaml", "--out", "out"});
+    const auto f = Run(more);
+    EXPECT_EQ(f.exit_code, 0) << f.err;
+    EXPECT_THAT(f.err, HasSubstr(says));
+    return nlohmann::json::parse(testing::Scratch::Text(files_ / "out/fit.json"));
+  }
+};
+
+TEST_F(IdentifyPath, IsSmoothWhereTheModelIs) {
+  const auto fit = Identify({}, "path: smooth");
+  EXPECT_EQ(fit["path"], "smooth");
+  EXPECT_EQ(fit["at_step"]["timestep"], 0.01);
+  EXPECT_EQ(fit["at_step"]["parameters"]["b"], fit["parameters"][0]["value"]);
+}
+
+TEST_F(IdentifyPath, GivesParametersForTheModelsStep) {
+  const auto fit = Identify({"--for-step"}, "path: smooth");
+  const double smooth = fit["parameters"][0]["value"], stepped = fit["at_step"]["parameters"]["b"];
+  EXPECT_NE(smooth, stepped);
+  EXPECT_NEAR(smooth, stepped, 0.1 * smooth);
+  const auto alone = Identify({"--path", "stepped"}, "path: stepped");
+  EXPECT_NEAR(alone["parameters"][0]["value"].get<double>(), stepped, 1e-3 * stepped);
+}
+
+TEST_F(IdentifyPath, IsSteppedWithDryFrictionAndSaysWhy) {
+  Spoil("model.xml", "damping=\"0.1\"", "damping=\"0.1\" frictionloss=\"0.001\"");
+  const auto fit = Identify({}, "no smooth path: joint 'hinge' rubs");
+  EXPECT_EQ(fit["path"], "stepped");
+  EXPECT_FALSE(fit.contains("at_step"));
+}
+
+TEST_F(IdentifyPath, IsRefusedWhereItCannotGo) {
+  Spoil("model.xml", "damping=\"0.1\"", "damping=\"0.1\" frictionloss=\"0.001\"");
+  ExpectRefused({"identify", "experiment.yaml", "--path", "smooth", "--out", "out"},
+                {"--path smooth", "'hinge' rubs"});
+}
+
+}  // namespace
+}  // namespace continuum
