@@ -1,13 +1,17 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "app/console.h"
 #include "error.h"
 #include "identification/fit_output.h"
 #include "identification/path.h"
+#include "identification/regressor.h"
+#include "identification/swarm.h"
 #include "sim/check.h"
 #include "sim/file.h"
 #include "sim/output.h"
@@ -19,13 +23,15 @@ namespace {
 
 struct Options {
   std::string experiment, out, method = "lm", path = "auto";
-  int iterations = 50;
+  int iterations = 0;  // as the method likes
+  double cutoff = 0;
+  std::uint64_t seed = 1;
   bool all = false, for_step = false;
 };
 
 // The path that was asked for, else the smooth one where it can go and gains by it.
 Path Choose(const Options& o, const Problem& problem) {
-  if (o.path == "stepped") return Path::kStepped;
+  if (o.path == "stepped" || o.method == "regressor") return Path::kStepped;
   const std::string obstacle = SmoothObstacle(problem);
   if (o.path == "smooth") {
     if (obstacle.empty()) return Path::kSmooth;
@@ -47,41 +53,45 @@ Problem::Vector ForStep(const Problem& problem, const Fit& fit, const std::vecto
   return FitParameters(stepped, fit.x, use, options).x;
 }
 
-void RunIdentify(const Options& o) {
-  if (o.method != "lm")
-    throw Error::Input("--method", "lm (others are not available yet)", "'" + o.method + "'");
-  const Experiment read = Experiment::Read(o.experiment);
-  const System system = System::Load(read.model);
-  CheckNames(read, system);
-  const Experiment e = Registered(read, system);
-  Problem problem(e, system);
-  if (problem.parameters().empty())
-    throw Error::Input(o.experiment, "the key 'parameters'", "none");
-  const OutFolder made(o.out);
-  problem.Follow(Choose(o, problem));
-  const bool smooth = problem.path() == Path::kSmooth;
-  std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n",
-               smooth ? "smooth, by CVODES and its sensitivities"
-                      : "stepped, by differences of MuJoCo's own steps",
-               problem.parameters().size(), e.logs.size());
-  for (const Finding& f : CheckLogs(e)) {
-    if (f.severity == Finding::Severity::kError)
-      std::fprintf(stderr, "log check: %s %s: %s\n", f.log.c_str(), f.channel.c_str(),
-                   f.text.c_str());
-  }
-  FitOptions options;
-  options.iterations = o.iterations;
-  options.soft = e.soft;
-  options.progress = ShowProgress;
-  const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
-  if (std::find(use.begin(), use.end(), true) == use.end()) {
-    throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");
-  }
-  const Fit fit = FitParameters(problem, problem.Start(), use, options);
+struct Fitting {
+  Fit fit;
   std::optional<Problem::Vector> for_step;
-  if (smooth && o.for_step) for_step = ForStep(problem, fit, use, options);
-  EndProgress();
-  WriteFit(problem, fit, o.out, for_step ? &*for_step : nullptr);
+  std::optional<Regression> regression;
+};
+
+Fitting Run(const Options& o, const Problem& problem, const std::vector<bool>& use) {
+  const double soft = problem.experiment().soft;
+  Fitting all;
+  if (o.method == "pso") {
+    SwarmOptions options{.seed = o.seed, .soft = soft, .progress = ShowProgress};
+    if (o.iterations > 0) options.iterations = o.iterations;
+    all.fit = FitBySwarm(problem, use, options);
+  } else if (o.method == "regressor") {
+    all.regression = FitByRegressor(problem, use, {o.cutoff});
+    all.fit.x = all.regression->x;
+    all.fit.cost = 0.5 * SumOfSquares(problem.Residuals(all.fit.x, use));
+    all.fit.seconds = all.regression->seconds;
+    all.fit.converged = true;
+    all.fit.message = "linear least squares";
+  } else {
+    FitOptions options{.soft = soft, .progress = ShowProgress};
+    options.iterations = o.iterations > 0 ? o.iterations : 50;
+    all.fit = FitParameters(problem, problem.Start(), use, options);
+    if (problem.path() == Path::kSmooth && o.for_step)
+      all.for_step = ForStep(problem, all.fit, use, options);
+  }
+  return all;
+}
+
+const char* Way(const Options& o, const Problem& problem) {
+  if (o.method == "regressor") return "none, the inverse model along the measured motion";
+  return problem.path() == Path::kSmooth ? "smooth, by CVODES and its sensitivities"
+                                         : "stepped, by differences of MuJoCo's own steps";
+}
+
+void Print(const Problem& problem, const Fitting& all, const std::string& out) {
+  const Experiment& e = problem.experiment();
+  const Fit& fit = all.fit;
   double mae = 0, count = 0;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     for (const ChannelScore& s : ScoreLog(e, e.logs[l], problem.Predict(fit.x, l)))
@@ -99,9 +109,42 @@ void RunIdentify(const Options& o) {
       "channels %.4g\n",
       problem.PooledRms(r, problem.TrainLogs()), problem.PooledRms(r, validate),
       Pool(e).unit().c_str(), count > 0 ? mae / count : 0);
+  if (all.regression) {
+    std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
+                all.regression->train, all.regression->validate);
+  }
   std::printf("%d iterations, %zu simulations, %.1f s; report: %s/report.html\n", fit.iterations,
-              fit.evaluations, fit.seconds, o.out.c_str());
-  if (!fit.converged) throw Error::Job("the fit did not converge: " + fit.message);
+              fit.evaluations, fit.seconds, out.c_str());
+}
+
+void RunIdentify(const Options& o) {
+  const Experiment read = Experiment::Read(o.experiment);
+  const System system = System::Load(read.model);
+  CheckNames(read, system);
+  const Experiment e = Registered(read, system);
+  Problem problem(e, system);
+  if (problem.parameters().empty())
+    throw Error::Input(o.experiment, "the key 'parameters'", "none");
+  const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
+  if (std::find(use.begin(), use.end(), true) == use.end()) {
+    throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");
+  }
+  const OutFolder made(o.out);
+  problem.Follow(Choose(o, problem));
+  std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n", Way(o, problem),
+               problem.parameters().size(), e.logs.size());
+  for (const Finding& f : CheckLogs(e)) {
+    if (f.severity == Finding::Severity::kError)
+      std::fprintf(stderr, "log check: %s %s: %s\n", f.log.c_str(), f.channel.c_str(),
+                   f.text.c_str());
+  }
+  const Fitting all = Run(o, problem, use);
+  EndProgress();
+  WriteFit(problem, all.fit, o.out,
+           {o.method, all.for_step ? &*all.for_step : nullptr,
+            all.regression ? &*all.regression : nullptr});
+  Print(problem, all, o.out);
+  if (!all.fit.converged) throw Error::Job("the fit did not converge: " + all.fit.message);
 }
 
 }  // namespace
@@ -112,13 +155,21 @@ void AddIdentify(CLI::App& app) {
   sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
   sub->add_option("--out", o->out, "folder for fit.json, fitted.xml, simulated/, report.html")
       ->required();
-  sub->add_option("--method", o->method, "lm")->capture_default_str();
+  sub->add_option("--method", o->method,
+                  "lm (Levenberg-Marquardt), pso (particle swarm, 20 x 40) or regressor (least "
+                  "squares on the inverse model, where all joints are measured)")
+      ->check(CLI::IsMember({"lm", "pso", "regressor"}))
+      ->capture_default_str();
   sub->add_option("--path", o->path, "how logs are simulated: smooth (CVODES), stepped, or auto")
       ->check(CLI::IsMember({"auto", "smooth", "stepped"}))
       ->capture_default_str();
-  sub->add_option("--iterations", o->iterations, "at most")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  sub->add_option("--iterations", o->iterations, "at most; default: 50 (lm), 40 (pso)")
+      ->check(CLI::Range(1, 1000));
+  sub->add_option("--seed", o->seed, "of the particle swarm")->capture_default_str();
+  sub->add_option(
+         "--cutoff", o->cutoff,
+         "of the regressor's low-pass [Hz]; default: 50, at most a fifth of the rows' rate")
+      ->check(CLI::PositiveNumber);
   sub->add_flag("--all", o->all, "fit the validate logs too");
   sub->add_flag("--for-step", o->for_step,
                 "fit at the model's own step (the stepped path always does)");

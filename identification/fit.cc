@@ -303,6 +303,21 @@ Vector RefitByChords(const Problem& problem, const Vector& x, const std::vector<
 
 Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                           const std::vector<Matrix>& J, const Whitening& whitening) {
+  std::vector<Scores> blocks;
+  const auto channels = static_cast<Eigen::Index>(problem.channels().size());
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (!J[l].size()) continue;
+    const Eigen::Index rows = r[l].size() / channels;
+    const Vector white = whitening.Apply(l, r[l]).col(0);
+    const Matrix columns = whitening.Apply(l, J[l]);
+    for (Eigen::Index c = 0; c < channels; ++c)
+      blocks.push_back({white.segment(c * rows, rows), columns.middleRows(c * rows, rows)});
+  }
+  return UncertaintyFrom(problem, x, blocks);
+}
+
+Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
+                            const std::vector<Scores>& blocks) {
   const Eigen::Index n = x.size();
   Uncertainty u;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -319,22 +334,13 @@ Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::ve
   if (k == 0) return u;
   Matrix H = Matrix::Zero(k, k), S = Matrix::Zero(k, k);
   double effective = 0;  // independent samples, for the quantile
-  for (std::size_t l = 0; l < J.size(); ++l) {
-    if (!J[l].size()) continue;
-    const auto channels = static_cast<Eigen::Index>(problem.channels().size());
-    const Eigen::Index rows = r[l].size() / channels;
-    const Vector white = whitening.Apply(l, r[l]).col(0);
-    const Matrix columns = whitening.Apply(l, J[l]);
-    for (Eigen::Index c = 0; c < channels; ++c) {
-      Matrix Jc(rows, k);
-      for (Eigen::Index i = 0; i < k; ++i)
-        Jc.col(i) = columns.col(inside[i]).segment(c * rows, rows);
-      const Matrix scores = white.segment(c * rows, rows).asDiagonal() * Jc;
-      const double bandwidth = Bandwidth(scores);
-      H += Jc.transpose() * Jc;
-      S += LongRunCovariance(scores, bandwidth);
-      effective += static_cast<double>(rows) / bandwidth;
-    }
+  for (const Scores& block : blocks) {
+    const Matrix J = block.J(Eigen::all, inside);
+    const Matrix scores = block.r.asDiagonal() * J;
+    const double bandwidth = Bandwidth(scores);
+    H += J.transpose() * J;
+    S += LongRunCovariance(scores, bandwidth);
+    effective += static_cast<double>(block.r.size()) / bandwidth;
   }
   const Matrix Hi = H.completeOrthogonalDecomposition().pseudoInverse();
   const Matrix cov = Hi * S * Hi;

@@ -61,6 +61,13 @@ struct Uncertainty {
   Problem::Matrix correlation;
   std::vector<bool> at_bound;
 };
+struct Scores {  ///< of rows that follow each other in time
+  Problem::Vector r;
+  Problem::Matrix J;
+};
+Uncertainty UncertaintyFrom(const Problem& problem, const Problem::Vector& x,
+                            const std::vector<Scores>& blocks);
+/// The same with one block per counted channel of every log that has a Jacobian.
 Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
                           const std::vector<Problem::Vector>& r,
                           const std::vector<Problem::Matrix>& J, const Whitening& whitening = {});

@@ -134,12 +134,14 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
 }
 
 void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
-              const Problem::Vector* for_step) {
+              const FitRecord& record) {
   const Experiment& e = problem.experiment();
   MakeFolder(folder);
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
-  auto J = problem.Jacobian(fit.x, r, problem.TrainLogs());
-  const Uncertainty u = UncertaintyOf(problem, fit.x, r, J);
+  const Uncertainty u =
+      record.regression
+          ? record.regression->uncertainty
+          : UncertaintyOf(problem, fit.x, r, problem.Jacobian(fit.x, r, problem.TrainLogs()));
   std::vector<Replayed> logs;
   std::vector<Trace> traces;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
@@ -153,7 +155,7 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
   nlohmann::json json{{"parameters", ParametersJson(problem, fit.x, u)},
                       {"correlation", nlohmann::json::array()},
                       {"error", ErrorsJson(e, logs)},
-                      {"method", "lm"},
+                      {"method", record.method},
                       {"path", problem.path() == Path::kSmooth ? "smooth" : "stepped"},
                       {"cost", fit.cost},
                       {"iterations", fit.iterations},
@@ -167,7 +169,10 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
     json["correlation"].emplace_back(
         std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
   }
-  const Problem::Vector& x = for_step ? *for_step : fit.x;
+  const Problem::Vector& x = record.for_step ? *record.for_step : fit.x;
+  if (const Regression* const inverse = record.regression)
+    json["force_error"] = {
+        {"unit", "%"}, {"train", inverse->train}, {"validate", inverse->validate}};
   if (problem.path() == Path::kSmooth) json["at_step"] = AtStep(problem, x);
   WriteFile(folder / "fit.json", json.dump(2) + "\n");
   WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(x), {}, folder));

@@ -4,15 +4,22 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/fit.h"
+#include "identification/regressor.h"
 
 namespace continuum {
 
-/// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder. for_step:
-/// after a fit on the smooth path, parameters that suit the model's own step better; fitted.xml
-/// gets these.
+/// What there is to tell of a fit beside its parameters.
+struct FitRecord {
+  std::string method = "lm";
+  /// After a fit on the smooth path: parameters that suit the model's own step better; fitted.xml
+  /// gets these.
+  const Problem::Vector* for_step = nullptr;
+  const Regression* regression = nullptr;  ///< of the inverse model
+};
+
+/// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder.
 void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
-              const Problem::Vector* for_step = nullptr);
+              const FitRecord& record = {});
 
 /// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}]; where no error can be
 /// given (at a bound) the interval is the value itself.

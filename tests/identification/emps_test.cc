@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/fit.h"
+#include "identification/regressor.h"
 #include "support/real_log.h"
 
 namespace continuum {
@@ -29,6 +29,18 @@ TEST_F(EmpsFit, FindsThePublishedMassAndFrictionFromAWrongStart) {
   EXPECT_NEAR(found.at("F_v"), 203.5, 0.05 * 203.5);
   EXPECT_NEAR(found.at("F_c"), 20.4, 0.05 * 20.4);
   EXPECT_NEAR(found.at("offset"), 3.2, 0.3);
+}
+
+// Published: 95.1 kg, 203.5 N s/m, 20.4 N, and 4.1 % of the force left by the inverse model.
+TEST_F(EmpsFit, FindsThePublishedValuesByTheInverseModel) {
+  const System system = System::Load(experiment_.model);
+  const Problem problem(experiment_, system);
+  const Regression found = FitByRegressor(problem, problem.TrainLogs());
+  EXPECT_NEAR(found.x[0], 95.1, 0.01 * 95.1);
+  EXPECT_NEAR(found.x[1], 203.5, 0.01 * 203.5);
+  EXPECT_NEAR(found.x[2], 20.4, 0.01 * 20.4);
+  EXPECT_LE(found.train, 4.1);
+  EXPECT_LE(found.validate, 4.3);
 }
 
 }  // namespace

@@ -88,11 +88,11 @@ def fit_sysid(rows, logs):
     return best.as_vector(), seconds, near
 
 
-def fit_continuum(executable, rows, logs, path):
+def fit_continuum(executable, rows, logs, *how):
     with tempfile.TemporaryDirectory() as folder:
         problem.write_experiment(folder, logs, rows)
         out = pathlib.Path(folder) / "out"
-        subprocess.run([executable, "identify", f"{folder}/experiment.yaml", "--path", path, "--out",
+        subprocess.run([executable, "identify", f"{folder}/experiment.yaml", *how, "--out",
                         out], check=True, capture_output=True)
         fit = json.loads((out / "fit.json").read_text())
     values = [p["value"] for p in fit["parameters"]]
@@ -113,7 +113,8 @@ def main():
         for _ in range(options.repeat):
             fits["mujoco.sysid"].append(fit_sysid(rows, logs))
             for path in ("smooth", "stepped"):
-                fits[path].append(fit_continuum(options.continuum, rows, logs, path))
+                fits[path].append(fit_continuum(options.continuum, rows, logs, "--path", path))
+        fits["pso 20 x 40"] = [fit_continuum(options.continuum, rows, logs, "--method", "pso")]
         rival = np.median([f[1] for f in fits["mujoco.sysid"]])
         near = np.median([f[2] for f in fits["mujoco.sysid"]])
         print(f"\n{count} parameters; mujoco.sysid is within 0.1 % of its best cost after {near:.2f} s")

@@ -1,0 +1,304 @@
+#include "identification/regressor.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+
+#include "engine.h"
+#include "error.h"
+#include "identification/lowpass.h"
+#include "sim/inputs.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+constexpr double kFilter = 50;      // Hz
+constexpr double kOfTheRate = 0.2;  // of the sampling rate, at most
+constexpr double kLinear = 0.01;    // of a column: dry friction near rest bends it by less
+
+std::string JointName(const mjModel& m, int j) {
+  const char* const name = mj_id2name(&m, mjOBJ_JOINT, j);
+  return name ? name : std::to_string(j);
+}
+
+void RequireMeasurable(const mjModel& m, const mjData& d) {
+  const auto refuse = [](const std::string& what) {
+    throw Error::Input("--method regressor", "a model whose states are its joints", what);
+  };
+  if (m.na > 0) refuse("activations of actuators");
+  if (m.neq > 0) refuse("equality constraints");
+  for (int j = 0; j < m.njnt; ++j) {
+    if (m.jnt_type[j] == mjJNT_FREE || m.jnt_type[j] == mjJNT_BALL)
+      refuse("joint '" + JointName(m, j) + "', neither hinge nor slide");
+  }
+  for (int i = 0; i < m.nplugin; ++i) {
+    const Bound& law = BoundOf(m, d, i);
+    if (law.Answers() || (m.plugin_statenum[i] > 0 && !law.IsRow()))
+      refuse(std::string(mjp_getPluginAtSlot(m.plugin[i])->name));
+  }
+}
+
+double EvenStep(const Log& log) {
+  const double step = (log.time.back() - log.time.front()) / static_cast<double>(log.rows() - 1);
+  for (std::size_t k = 1; k < log.rows(); ++k) {
+    if (std::abs(log.time[k] - log.time[k - 1] - step) > 0.01 * step) {
+      throw Error::Input("--method regressor", log.label + " sampled evenly",
+                         fmt::format("{:g} s after {:g} s, {:g} s on average",
+                                     log.time[k] - log.time[k - 1], log.time[k - 1], step));
+    }
+  }
+  return step;
+}
+
+// What one log says about every joint, filtered once.
+struct Motion {
+  std::size_t log;
+  double step, cutoff;                                    // cutoff: share of the sampling rate
+  std::vector<std::vector<double>> q, v, a;               // [dof][row]
+  std::vector<std::pair<int, std::vector<double>>> pull;  // actuator, its measured force
+};
+
+std::vector<double> Unbiased(const Experiment& e, const Log& log, std::size_t channel) {
+  const Measurement& how = e.outputs[e.channels[channel].output].measurement;
+  std::vector<double> y = log.measured[channel];
+  for (double& value : y) value = (value - e.channels[channel].factor * how.bias) / how.scale;
+  return y;
+}
+
+Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double cutoff) {
+  const Log& log = e.logs[index];
+  Motion motion{index, EvenStep(log), 0, {}, {}, {}, {}};
+  const double rate = 1 / motion.step;
+  motion.cutoff = std::min(cutoff > 0 ? cutoff : kFilter, kOfTheRate * rate) / rate;
+  motion.q.resize(m.nv);
+  const Wiring wiring(e, m);
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const auto& source = wiring.output[e.channels[c].output];
+    const bool force = source.kind == Output::Kind::kForce;
+    const bool joint =
+        source.kind == Output::Kind::kSensor && m.sensor_type[source.sensor] == mjSENS_JOINTPOS;
+    if (!force && !joint) continue;
+    std::vector<double> y = Unbiased(e, log, c);
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      if (std::isnan(y[k])) {
+        throw Error::Input("--method regressor",
+                           "channel '" + e.channels[c].name + "' measured at every row",
+                           fmt::format("a gap at {:g} s of {}", log.time[k], log.label));
+      }
+    }
+    if (force) {
+      motion.pull.emplace_back(source.address, std::move(y));
+    } else {
+      motion.q[m.jnt_dofadr[m.sensor_objid[source.sensor]]] = LowPass(y, motion.cutoff);
+    }
+  }
+  for (int i = 0; i < m.nv; ++i) {
+    if (motion.q[i].empty()) {
+      throw Error::Input("--method regressor", "every joint measured",
+                         "no output of joint '" + JointName(m, m.dof_jntid[i]) + "'");
+    }
+    motion.v.push_back(Derivative(motion.q[i], motion.step));
+    motion.a.push_back(Derivative(motion.v[i], motion.step));
+  }
+  return motion;
+}
+
+// Forces of one machine along a motion [row, dof]: what is missing, and what the actuators give.
+struct Forces {
+  Matrix missing, actuated;
+};
+
+void Replace(const mjData& d, int actuator, double measured, Vector& force) {
+  const double change = measured - d.actuator_force[actuator];
+  const int adr = d.moment_rowadr[actuator];
+  for (int k = adr; k < adr + d.moment_rownnz[actuator]; ++k)
+    force[d.moment_colind[k]] += change * d.actuator_moment[k];
+}
+
+Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
+  const Experiment& e = problem.experiment();
+  const Log& log = e.logs[motion.log];
+  Machine machine = problem.system().Build(problem.ChangesFor(x, motion.log));
+  mjModel& m = *machine.model;
+  mjData& d = *machine.data;
+  const Wiring wiring(e, m);
+  Inputs inputs(m, e, log, wiring);
+  const auto rows = static_cast<Eigen::Index>(log.rows());
+  Forces forces{Matrix(rows, m.nv), Matrix(rows, m.nv)};
+  mj_resetData(&m, &d);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    inputs.AtRow(d, k);
+    for (int i = 0; i < m.nv; ++i) {
+      d.qpos[m.jnt_qposadr[m.dof_jntid[i]]] = motion.q[i][k];
+      d.qvel[i] = motion.v[i][k];
+      d.qacc[i] = motion.a[i][k];
+    }
+    mj_inverse(&m, &d);
+    mj_fwdActuation(&m, &d);
+    Vector actuated = Vector::Map(d.qfrc_actuator, m.nv);
+    for (const auto& [actuator, force] : motion.pull) Replace(d, actuator, force[k], actuated);
+    forces.actuated.row(k) = actuated;
+    forces.missing.row(k) = Vector::Map(d.qfrc_inverse, m.nv) - actuated;
+  }
+  for (Matrix* const forces_of : {&forces.missing, &forces.actuated}) {
+    for (auto column : forces_of->colwise()) {
+      const auto smooth = LowPass({column.begin(), column.end()}, motion.cutoff);
+      column = Vector::Map(smooth.data(), rows);
+    }
+  }
+  return forces;
+}
+
+// The equations of one log, without the ends that the filter has to guess.
+struct Equations {
+  bool train;
+  Vector e, f;  // missing and actuator force, dof after dof
+  Matrix Y;     // ∂e/∂p
+};
+
+Vector Inner(const Matrix& forces, const Vector& weight, double cutoff) {
+  const auto ends = std::min<Eigen::Index>(std::lround(1 / cutoff), forces.rows() / 4);
+  const Matrix inner = forces.middleRows(ends, forces.rows() - 2 * ends) * weight.asDiagonal();
+  return inner.reshaped();
+}
+
+Vector Weights(const std::vector<Forces>& forces) {
+  Vector power = Vector::Zero(forces.front().actuated.cols());
+  double rows = 0;
+  for (const Forces& f : forces) {
+    power += f.actuated.colwise().squaredNorm().transpose();
+    rows += static_cast<double>(f.actuated.rows());
+  }
+  const double least = 1e-12 * power.maxCoeff();
+  return (rows / power.array().max(least)).sqrt();
+}
+
+Matrix Columns(const Problem& problem, const Motion& motion, const Vector& x, const Matrix& missing,
+               const Vector& weight) {
+  const Vector base = Inner(missing, weight, motion.cutoff);
+  Matrix Y(base.size(), x.size());
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    const FreeParameter& p = problem.parameters()[k];
+    if (!p.log[motion.log]) {
+      Y.col(k).setZero();
+      continue;
+    }
+    const double step = (x[k] + 0.2 * p.scale > p.upper ? -0.1 : 0.1) * p.scale;
+    const auto moved = [&](double by) -> Vector {
+      Vector there = x;
+      there[k] += by;
+      return (Inner(ForcesOf(problem, motion, there).missing, weight, motion.cutoff) - base) / by;
+    };
+    Y.col(k) = moved(step);
+    const double bend = (moved(2 * step) - Y.col(k)).norm();
+    if (bend > kLinear * Y.col(k).norm()) {
+      throw Error::Input("--method regressor", "parameters that enter the forces linearly",
+                         fmt::format("'{}', whose effect changes by {:.2g} % over {:g} {}", p.name,
+                                     100 * bend / Y.col(k).norm(), step, p.unit));
+    }
+  }
+  return Y;
+}
+
+double Relative(const std::vector<Equations>& equations, const Vector& change, bool train) {
+  double missing = 0, actuated = 0;
+  for (const Equations& q : equations) {
+    if (q.train != train) continue;
+    missing += (q.e + q.Y * change).squaredNorm();
+    actuated += q.f.squaredNorm();
+  }
+  return actuated > 0 ? 100 * std::sqrt(missing / actuated) : 0;
+}
+
+// Least squares within the bounds: what leaves them stays at them, the others again.
+Vector Solve(const Problem& problem, const Vector& x, const std::vector<Equations>& equations) {
+  const Eigen::Index n = x.size();
+  Matrix H = Matrix::Zero(n, n);
+  Vector g = Vector::Zero(n), scale(n);
+  for (Eigen::Index k = 0; k < n; ++k) scale[k] = problem.parameters()[k].scale;
+  for (const Equations& q : equations) {
+    if (!q.train) continue;
+    H += q.Y.transpose() * q.Y;
+    g += q.Y.transpose() * q.e;
+  }
+  H = scale.asDiagonal() * H * scale.asDiagonal();
+  g = scale.cwiseProduct(g);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (H(k, k) > 0) continue;
+    throw Error::Input("parameter '" + problem.parameters()[k].name + "'",
+                       "an effect on the forces of a train log", "none");
+  }
+  const Vector size = H.diagonal().cwiseSqrt();
+  const Matrix unit = size.cwiseInverse().asDiagonal() * H * size.cwiseInverse().asDiagonal();
+  if (unit.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() < 1e-10)
+    throw Error::Job("the logs do not tell the parameters apart");
+  std::vector<bool> fixed(n, false);
+  Vector change = Vector::Zero(n);
+  for (bool again = true; again;) {
+    again = false;
+    Matrix A = H;
+    Vector b = -g;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      if (!fixed[k]) continue;
+      b -= A.col(k) * change[k];
+      A.row(k).setZero(), A.col(k).setZero();
+      A(k, k) = 1, b[k] = change[k];
+    }
+    change = A.ldlt().solve(b);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const FreeParameter& p = problem.parameters()[k];
+      const double value = x[k] + change[k] * scale[k];
+      if (fixed[k] || (value >= p.lower && value <= p.upper)) continue;
+      change[k] = (std::clamp(value, p.lower, p.upper) - x[k]) / scale[k];
+      fixed[k] = again = true;
+    }
+  }
+  return problem.Clamp(x + scale.cwiseProduct(change));
+}
+
+}  // namespace
+
+Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
+                          const RegressorOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Experiment& e = problem.experiment();
+  const Vector x = problem.Start();
+  const Machine machine = problem.system().Build(problem.ChangesFor(x, 0));
+  RequireMeasurable(*machine.model, *machine.data);
+  std::vector<Motion> motions;
+  std::vector<Forces> forces, seen;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    motions.push_back(MotionOf(e, *machine.model, l, options.cutoff));
+    forces.push_back(ForcesOf(problem, motions.back(), x));
+    if (use[l]) seen.push_back(forces.back());
+  }
+  const Vector weight = Weights(seen);
+  std::vector<Equations> equations;
+  Regression found;
+  for (std::size_t l = 0; l < motions.size(); ++l) {
+    const double cutoff = motions[l].cutoff;
+    equations.push_back({use[l], Inner(forces[l].missing, weight, cutoff),
+                         Inner(forces[l].actuated, weight, cutoff),
+                         Columns(problem, motions[l], x, forces[l].missing, weight)});
+    if (use[l]) found.rows += static_cast<std::size_t>(equations.back().e.size());
+  }
+  found.x = Solve(problem, x, equations);
+  const Vector change = found.x - x;
+  found.train = Relative(equations, change, true);
+  found.validate = Relative(equations, change, false);
+  std::vector<Scores> scores;
+  for (const Equations& q : equations) {
+    if (q.train) scores.push_back({q.e + q.Y * change, q.Y});
+  }
+  found.uncertainty = UncertaintyFrom(problem, found.x, scores);
+  found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return found;
+}
+
+}  // namespace continuum

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "identification/fit.h"
+
+namespace continuum {
+
+struct RegressorOptions {
+  double cutoff = 0;  ///< of the low-pass [Hz]; 0: 50 Hz, or a fifth of the sampling rate
+};
+
+/// What a fit of the inverse model found.
+struct Regression {
+  Problem::Vector x;
+  Uncertainty uncertainty;
+  /// 100 |τ_model − τ| / |τ| [%] over all joints, of the train and of the other logs.
+  double train = 0, validate = 0;
+  std::size_t rows = 0;
+  double seconds = 0;
+};
+
+/// Least squares on the inverse dynamics of parameters that enter linearly:
+///
+///   F [ID(q, v, a; p) − Bᵀ f] = 0,   ID = M a + c − (passive forces and dry friction)
+///
+/// at measured q, with v and a as its derivatives; f are measured actuator forces, or what the
+/// model gives under the logged inputs. F low-passes positions first and then both sides, without
+/// phase (gautier1997, janot2014). Each joint's equation is weighted by its RMS force. No
+/// simulation: a start is not needed, but every joint (hinge or slide) must be measured, evenly in
+/// time.
+///
+/// Throws Error for joints that are not measured, states that cannot be (activations, laws with
+/// states, cable friction), parameters that do not enter linearly, or that nothing determines.
+Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
+                          const RegressorOptions& options = {});
+
+}  // namespace continuum
