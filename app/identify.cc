@@ -140,10 +140,11 @@ void RunIdentify(const Options& o) {
   }
   const Fitting all = Run(o, problem, use);
   EndProgress();
-  WriteFit(problem, all.fit, o.out,
-           {o.method, all.for_step ? &*all.for_step : nullptr,
-            all.regression ? &*all.regression : nullptr});
+  const auto trade_offs = WriteFit(problem, all.fit, o.out,
+                                   {o.method, all.for_step ? &*all.for_step : nullptr,
+                                    all.regression ? &*all.regression : nullptr});
   Print(problem, all, o.out);
+  for (const TradeOff& t : trade_offs) std::printf("%s\n", t.text.c_str());
   if (!all.fit.converged) throw Error::Job("the fit did not converge: " + all.fit.message);
 }
 

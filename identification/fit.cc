@@ -323,6 +323,7 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   const double nan = std::numeric_limits<double>::quiet_NaN();
   u.standard_error = u.lower = u.upper = Vector::Constant(n, nan);
   u.correlation = Matrix::Identity(n, n);
+  u.information = Matrix::Zero(n, n);
   std::vector<Eigen::Index> inside;
   for (Eigen::Index i = 0; i < n; ++i) {
     const FreeParameter& p = problem.parameters()[i];
@@ -342,6 +343,7 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
     S += LongRunCovariance(scores, bandwidth);
     effective += static_cast<double>(block.r.size()) / bandwidth;
   }
+  u.information(inside, inside) = H;
   const Matrix Hi = H.completeOrthogonalDecomposition().pseudoInverse();
   const Matrix cov = Hi * S * Hi;
   const double freedom = std::max(2.0, effective - static_cast<double>(k));

@@ -59,6 +59,7 @@ Problem::Vector RefitByChords(const Problem& problem, const Problem::Vector& x,
 struct Uncertainty {
   Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
   Problem::Matrix correlation;
+  Problem::Matrix information;  ///< H; zero for parameters at a bound
   std::vector<bool> at_bound;
 };
 struct Scores {  ///< of rows that follow each other in time

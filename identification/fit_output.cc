@@ -133,8 +133,8 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
              {"Intervals allow for residuals that are correlated in time."});
 }
 
-void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
-              const FitRecord& record) {
+std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
+                               const std::filesystem::path& folder, const FitRecord& record) {
   const Experiment& e = problem.experiment();
   MakeFolder(folder);
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
@@ -142,6 +142,7 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
       record.regression
           ? record.regression->uncertainty
           : UncertaintyOf(problem, fit.x, r, problem.Jacobian(fit.x, r, problem.TrainLogs()));
+  const auto trade_offs = TradeOffsOf(problem, fit.x, u);
   std::vector<Replayed> logs;
   std::vector<Trace> traces;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
@@ -169,6 +170,8 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
     json["correlation"].emplace_back(
         std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
   }
+  json["trade_offs"] = nlohmann::json::array();
+  for (const TradeOff& t : trade_offs) json["trade_offs"].push_back(t.text);
   const Problem::Vector& x = record.for_step ? *record.for_step : fit.x;
   if (const Regression* const inverse = record.regression)
     json["force_error"] = {
@@ -186,6 +189,7 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
                          fit.evaluations, fit.seconds, fit.message));
   page.Heading("Parameters");
   AddParameterTable(page, problem, fit.x, u);
+  for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Not determined alone", t.text);
   if (u.correlation.rows() > 1) page.HeatMap(CorrelationMap(problem, u));
   page.Heading("Convergence");
   ScatterSpec cost{"Cost", {"iteration", ""}, {"cost", ""}, {}, {}, true};
@@ -211,6 +215,7 @@ void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::pat
     AddOverlay(page, e, e.logs[l], {{"fitted", Style::kAfter, &traces[l]}}, true);
   }
   page.Write(folder / "report.html");
+  return trade_offs;
 }
 
 }  // namespace continuum

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/regressor.h"
+#include "identification/trade_off.h"
 
 namespace continuum {
 
@@ -17,9 +18,10 @@ struct FitRecord {
   const Regression* regression = nullptr;  ///< of the inverse model
 };
 
-/// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder.
-void WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
-              const FitRecord& record = {});
+/// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder. Returns
+/// what the logs do not determine alone, which stands in them too.
+std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
+                               const std::filesystem::path& folder, const FitRecord& record = {});
 
 /// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}]; where no error can be
 /// given (at a bound) the interval is the value itself.

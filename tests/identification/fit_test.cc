@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "error.h"
+#include "identification/trade_off.h"
 #include "pendulum.h"
 
 namespace continuum {
@@ -352,6 +353,42 @@ TEST_F(FitTest, ChordsReachTheSameOptimumFromNearby) {
             SumOfSquares(problem.Residuals(fit.x, two)));
   // Both end where a step lowers the cost by less than 1e-4 of it.
   EXPECT_NEAR(0.5 * SumOfSquares(problem.Residuals(chords, two)), full.cost, 1e-3 * full.cost);
+}
+
+// m x'' = g u − k x − c x': all four may grow together.
+TEST_F(FitTest, SaysWhichParametersTradeOff) {
+  const std::string model =
+      "<mujoco><option gravity='0 0 0' timestep='1e-3'/><worldbody><body name='b'><joint name='x' "
+      "type='slide' axis='1 0 0' stiffness='20' damping='0.8'/><inertial pos='0 0 0' mass='0.5' "
+      "diaginertia='1 1 1'/></body></worldbody><actuator><motor name='servo' joint='x'/></actuator>"
+      "<sensor><jointpos name='angle' joint='x'/></sensor></mujoco>";
+  AddTrials({}, 2);
+  const System system = System::Load(Write("model.xml", model));
+  const std::string k = "{name: k, target: 'joint:x', attribute: stiffness, lower: 1, upper: 99}",
+                    c = "{name: c, target: 'joint:x', attribute: damping, lower: 0, upper: 9}",
+                    m = "{name: m, target: 'body:b', attribute: mass, lower: 0.1, upper: 9}",
+                    g = "{name: g, target: 'actuator:servo', attribute: 'gainprm[0]', lower: 0.1, "
+                        "upper: 9}";
+  const auto trade_offs = [&](const std::string& parameters) {
+    const Experiment e = ReadExperiment("parameters: [" + parameters + "]\n");
+    const Problem problem(e, system);
+    const auto x = problem.Start();
+    const auto r = problem.Residuals(x, problem.AllLogs());
+    const auto J = problem.Jacobian(x, r, problem.AllLogs());
+    return TradeOffsOf(problem, x, UncertaintyOf(problem, x, r, J));
+  };
+  EXPECT_TRUE(trade_offs(k + ", " + c + ", " + m).empty());
+  const auto all = trade_offs(k + ", " + c + ", " + m + ", " + g);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_THAT(all[0].names, ElementsAre("k", "c", "m", "g"));
+  EXPECT_GT(all[0].freedom, 100);
+  EXPECT_THAT(all[0].text, HasSubstr("k, c, m and g trade off"));
+  EXPECT_THAT(all[0].text, HasSubstr("only their ratios are determined"));
+  const auto two = trade_offs(g +
+                              ", {name: u, target: 'actuator:servo', attribute: 'gear', lower: "
+                              "0.1, upper: 9}");
+  ASSERT_EQ(two.size(), 1u);
+  EXPECT_THAT(two[0].text, HasSubstr("only g*u is determined"));
 }
 
 }  // namespace

@@ -1,0 +1,94 @@
+#include "identification/trade_off.h"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+constexpr double kPoor = 0.01;   // of an eigenvalue
+constexpr double kNone = 1e-12;  // below this, rounding decides
+constexpr double kTakesPart = 0.05, kAlike = 0.1;
+
+std::string Joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+// What stays the same when parameters move by these shares of their values, the first one by 1.
+std::string Constant(const std::vector<std::string>& names, const Vector& move) {
+  if (move.size() == 2) {
+    if (std::abs(move[0] - move[1]) < kAlike) return "only " + names[0] + "/" + names[1];
+    if (std::abs(move[0] + move[1]) < kAlike) return "only " + names[0] + "*" + names[1];
+    return "only one combination of them";
+  }
+  return (move.array() - move[0]).abs().maxCoeff() < kAlike
+             ? "only their ratios are"
+             : "only " + std::to_string(move.size() - 1) + " combinations of them are";
+}
+
+std::string Sentence(const std::vector<std::string>& names, const Vector& move, bool relative,
+                     double freedom) {
+  std::string text = Joined(names) + " trade off: ";
+  std::string moves;
+  for (Eigen::Index i = 0; i < move.size(); ++i) {
+    moves += fmt::format("{}{} {:+.3g}{}", i ? ", " : "", names[i], move[i], relative ? " %" : "");
+  }
+  text += std::isinf(freedom)
+              ? "changes of " + moves + " leave everything as it is"
+              : fmt::format("changes of {} show {:.0f} times less than one alone", moves, freedom);
+  if (!relative) return text;
+  const std::string constant = Constant(names, move);
+  return text + "; " + constant + (constant.ends_with(" are") ? " determined" : " is determined");
+}
+
+}  // namespace
+
+std::vector<TradeOff> TradeOffsOf(const Problem& problem, const Vector& x, const Uncertainty& u) {
+  std::vector<Eigen::Index> inside;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (!u.at_bound[i] && u.information(i, i) > 0) inside.push_back(i);
+  }
+  if (inside.size() < 2) return {};
+  const Matrix H = u.information(inside, inside);
+  const Vector size = H.diagonal().cwiseSqrt();
+  const Vector one = size.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Matrix> modes(one.asDiagonal() * H * one.asDiagonal());
+  std::vector<TradeOff> all;
+  for (Eigen::Index k = 0; k < modes.eigenvalues().size(); ++k) {
+    const double value = modes.eigenvalues()[k];
+    if (value >= kPoor) break;
+    const Vector v = modes.eigenvectors().col(k);
+    TradeOff found;
+    std::vector<double> move;
+    bool relative = true;
+    for (Eigen::Index i = 0; i < v.size(); ++i) {
+      if (std::abs(v[i]) < kTakesPart * v.cwiseAbs().maxCoeff()) continue;
+      found.names.push_back(problem.parameters()[inside[i]].name);
+      relative &= x[inside[i]] != 0;
+      move.push_back(v[i] * one[i]);
+    }
+    if (found.names.size() < 2) continue;
+    if (relative) {
+      for (std::size_t i = 0, j = 0; i < inside.size() && j < move.size(); ++i) {
+        if (problem.parameters()[inside[i]].name == found.names[j]) move[j++] /= x[inside[i]];
+      }
+    }
+    Vector shown = Vector::Map(move.data(), static_cast<Eigen::Index>(move.size()));
+    shown /= shown[0];
+    found.freedom = value < kNone ? std::numeric_limits<double>::infinity() : 1 / std::sqrt(value);
+    found.text = Sentence(found.names, shown, relative, found.freedom);
+    all.push_back(std::move(found));
+  }
+  return all;
+}
+
+}  // namespace continuum
