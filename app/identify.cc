@@ -102,13 +102,15 @@ void Print(const Problem& problem, const Fitting& all, const std::string& out) {
     std::printf("%-24s %.6g %s\n", p.name.c_str(), fit.x[i], p.unit.c_str());
   }
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
+  const std::string unit = Pool(e).unit();
   auto validate = problem.TrainLogs();
   validate.flip();
-  std::printf(
-      "error %.4g (train) %.4g (validate) %s RMS; mean absolute error averaged over logs and "
-      "channels %.4g\n",
-      problem.PooledRms(r, problem.TrainLogs()), problem.PooledRms(r, validate),
-      Pool(e).unit().c_str(), count > 0 ? mae / count : 0);
+  std::printf("error %.4g %s RMS on train", problem.PooledRms(r, problem.TrainLogs()),
+              unit.c_str());
+  if (std::find(validate.begin(), validate.end(), true) != validate.end())
+    std::printf(", %.4g on validate", problem.PooledRms(r, validate));
+  std::printf("; mean absolute error averaged over logs and channels %.4g\n",
+              count > 0 ? mae / count : 0);
   if (all.regression) {
     std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
                 all.regression->train, all.regression->validate);

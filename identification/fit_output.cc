@@ -1,5 +1,6 @@
 #include "identification/fit_output.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -182,14 +183,15 @@ std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
   WriteSimulated(e, traces, folder / "simulated");
 
   Page page("Fit", e.model.filename().string() + " to " + std::to_string(e.logs.size()) + " logs");
-  page.Badge(fit.converged ? Tone::kGood : Tone::kWarn,
-             fmt::format("error {:.4g} {} on train, {:.4g} {} on validate", error.train, unit,
-                         error.validate, unit),
+  const bool held_out = std::any_of(e.logs.begin(), e.logs.end(), [](auto& l) { return !l.train; });
+  std::string title = fmt::format("error {:.4g} {} on train", error.train, unit);
+  if (held_out) title += fmt::format(", {:.4g} {} on validate", error.validate, unit);
+  page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, title,
              fmt::format("{} iterations, {} simulations, {:.1f} s. {}", fit.iterations,
                          fit.evaluations, fit.seconds, fit.message));
   page.Heading("Parameters");
   AddParameterTable(page, problem, fit.x, u);
-  for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Not determined alone", t.text);
+  for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);
   if (u.correlation.rows() > 1) page.HeatMap(CorrelationMap(problem, u));
   page.Heading("Convergence");
   ScatterSpec cost{"Cost", {"iteration", ""}, {"cost", ""}, {}, {}, true};

@@ -47,7 +47,8 @@ std::string Sentence(const std::vector<std::string>& names, const Vector& move, 
               : fmt::format("changes of {} show {:.0f} times less than one alone", moves, freedom);
   if (!relative) return text;
   const std::string constant = Constant(names, move);
-  return text + "; " + constant + (constant.ends_with(" are") ? " determined" : " is determined");
+  return text + "; " + constant + (constant.ends_with(" are") ? " " : " is ") +
+         (std::isinf(freedom) ? "determined" : "well determined");
 }
 
 }  // namespace
