@@ -38,6 +38,7 @@ struct Instance {
   std::vector<int> answers;         ///< in the last instance: those that depend on all other forces
   std::vector<int> rows;            ///< in the last instance: all that are rows, itself included
   std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
+  std::vector<double> next;         ///< our share, while it is summed up
 };
 
 Instance* Get(const mjData& d, int i) { return reinterpret_cast<Instance*>(d.plugin_data[i]); }
@@ -147,7 +148,7 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     if (last) self->answers = Those(m, d, i, *self, &Bound::Answers);
     if (last) self->rows = Those(m, d, i, *self, &Bound::IsRow);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
-    self->sum = self->before;
+    self->sum = self->next = self->before;
     FindSensors(m, i, *self, config);
     WarnOfSilence(m, *self, config);
     d.plugin_data[i] = reinterpret_cast<uintptr_t>(self.release());
@@ -183,15 +184,19 @@ void Total(const mjModel& m, mjData& d, Instance& last, Stage stage, int without
   bool changed = stage == Stage::kPassive || without >= 0;
   for (const int j : last.givers) changed |= std::exchange(Get(d, j)->changed, false);
   if (!changed) return;
-  for (int dof = 0; dof < m.nv; ++dof) {
-    double f = 0;
-    for (const int j : last.givers) f += j == without ? 0 : Get(d, j)->force[dof];
-    double& total = d.qfrc_passive[dof];
-    if (stage == Stage::kPassive) last.before[dof] = total;
-    const bool untouched = stage == Stage::kPassive || total == last.before[dof] + last.sum[dof];
-    total = untouched ? last.before[dof] + f : total + (f - last.sum[dof]);
-    last.sum[dof] = f;
+  std::vector<double>& next = last.next;
+  std::fill(next.begin(), next.end(), 0.0);
+  for (const int j : last.givers) {
+    const std::vector<double>& force = Get(d, j)->force;
+    for (int dof = 0; j != without && dof < m.nv; ++dof) next[dof] += force[dof];
   }
+  if (stage == Stage::kPassive) last.before.assign(d.qfrc_passive, d.qfrc_passive + m.nv);
+  for (int dof = 0; dof < m.nv; ++dof) {
+    double& total = d.qfrc_passive[dof];
+    const bool untouched = stage == Stage::kPassive || total == last.before[dof] + last.sum[dof];
+    total = untouched ? last.before[dof] + next[dof] : total + (next[dof] - last.sum[dof]);
+  }
+  last.sum.swap(next);
 }
 
 void Evaluate(const mjModel& m, mjData& d, int i, Stage stage) {
@@ -248,7 +253,7 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.force = a.force, b.changed = a.changed;
   b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers;
   b.answers = a.answers, b.rows = a.rows;
-  b.before = a.before, b.sum = a.sum;
+  b.before = a.before, b.sum = a.sum, b.next = a.next;
 }
 
 template <class E>

@@ -32,6 +32,9 @@ void LimitJoints(const mjModel& m, const mjData& d, double* force) {
 }
 
 void AddWrenches(const mjModel& m, const mjData& d, double* force) {
+  bool some = false;
+  for (int i = 6; i < 6 * m.nbody; ++i) some |= d.xfrc_applied[i] != 0;
+  if (!some) return;
   for (int b = 1; b < m.nbody; ++b) {
     const double* const w = d.xfrc_applied + 6 * b;
     if (std::all_of(w, w + 6, [](double x) { return x == 0; })) continue;

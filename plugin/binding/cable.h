@@ -34,17 +34,4 @@ Cable MakeCable(const mjModel& m, int tendon, const std::string& who);
 /// Tension at the actuator's end [N]: −sum(gear · force), forces within their ranges.
 double BaseTension(const mjModel& m, const mjData& d, const Cable& cable);
 
-/// Where a cable runs and how it moves at d.
-struct CableGeometry {
-  std::vector<double> theta;  ///< [segments] wrap angle at contact i = 1 .. (entry 0 unused) [rad]
-  std::vector<double> slip;   ///< [segments] v_i = −Σ_{k ≥ i} dL_k/dt, > 0 when pulled [m/s]
-  std::vector<double> arm;    ///< [levers] dL_k/dq of the segment of each lever [m/rad or 1]
-
-  void Update(const mjModel& m, const mjData& d, const Cable& cable);
-  /// dL_k/dt of a segment at the velocities v [nv].
-  double Rate(const Cable& cable, int segment, const double* v) const;
-  /// force[nv] += f dL_k/dq.
-  void Add(const Cable& cable, int segment, double f, double* force) const;
-};
-
 }  // namespace continuum

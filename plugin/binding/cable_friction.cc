@@ -34,17 +34,22 @@ void RequireAlone(const mjModel& m, const Config& config) {
   }
 }
 
-std::vector<int> Dofs(std::span<const Cable> cables) {
-  std::vector<int> dofs;
-  for (const Cable& cable : cables) {
-    for (const Lever& lever : cable.levers) dofs.push_back(lever.dof);
-  }
-  return dofs;
-}
-
 // MuJoCo applies no passive forces then.
 bool Silent(const mjModel& m) {
   return (m.opt.disableflags & mjDSBL_SPRING) && (m.opt.disableflags & mjDSBL_DAMPER);
+}
+
+// e^x, where all are small by the series, which is then good to 1e-17: without branches, so that
+// the compiler works on several numbers at once.
+void Exponential(std::span<const double> x, std::span<double> y) {
+  bool large = false;
+  for (const double v : x) large |= !(v <= 0.25);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    double sum = 1;
+    for (int n = 12; n > 0; --n) sum = 1 + x[k] * (sum * (1.0 / n));
+    y[k] = sum;
+  }
+  for (std::size_t k = 0; large && k < x.size(); ++k) y[k] = std::exp(x[k]);
 }
 
 }  // namespace
@@ -52,32 +57,31 @@ bool Silent(const mjModel& m) {
 CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters)
     : Bound(std::move(parameters)),
       cables_(MatchCables(m, config)),
-      sliding_(m, Dofs(cables_)),
-      geometry_(cables_.size()),
+      geometry_(m, cables_),
+      sliding_(m, geometry_),
       base_(cables_.size()),
       last_(cables_.size()),
       force_(m.nv) {
   RequireAlone(m, config);
-  int s = 0;
-  for (std::size_t c = 0; c < cables_.size(); ++c) {
-    const Cable& cable = cables_[c];
-    first_.push_back(s);
-    int begin = s + 1;
-    for (int k = 1; k < cable.segments(); ++k) {
-      if (cable.Rigid(k)) continue;
-      groups_.push_back({static_cast<int>(c), k, begin, s + k + 1});
-      begin = s + k + 1;
+  for (int c = 0; c < geometry_.cables(); ++c) {
+    int begin = geometry_.first[c] + 1;
+    for (int s = begin; s < geometry_.first[c + 1]; ++s) {
+      if (geometry_.begin[s] == geometry_.begin[s + 1]) continue;  // nothing changes its length
+      groups_.push_back({c, begin, s + 1});
+      begin = s + 1;
     }
-    s += cable.segments();
   }
-  for (std::vector<double>* const each : {&band_, &rho_, &tension_}) each->assign(s, 0);
-  ratio_.assign(s, 1);
+  bends_.resize(groups_.size()), active_.resize(groups_.size());
+  for (auto* const each : {&band_, &grown_, &rho_, &tension_})
+    each->assign(geometry_.segments(), 0);
+  ratio_.assign(geometry_.segments(), 1);
 }
 
 bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                              std::span<double> force) {
   if (stage == Stage::kPassive) {
-    Locate(m, d);
+    geometry_.Update(d);
+    Bands(geometry_.theta, band_);
   } else if (Silent(m)) {
     return false;
   }
@@ -90,15 +94,6 @@ bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage
   return true;
 }
 
-void CableFriction::Locate(const mjModel& m, const mjData& d) {
-  for (std::size_t c = 0; c < cables_.size(); ++c) {
-    geometry_[c].Update(m, d, cables_[c]);
-    for (int k = 1; k < cables_[c].segments(); ++k) {
-      band_[first_[c] + k] = Band(geometry_[c].theta[k]);
-    }
-  }
-}
-
 void CableFriction::Remember(const double* z) {
   for (std::size_t k = 0; k < rho_.size(); ++k) {
     rho_[k] = std::clamp(z[k], -band_[k], band_[k]);  // 0 where band_ is: before the first contact
@@ -109,37 +104,48 @@ void CableFriction::Remember(const double* z) {
 void CableFriction::Solve(const mjModel& m, mjData& d, const double* z) {
   std::fill(rho_.begin(), rho_.end(), 0.0);
   std::fill(ratio_.begin(), ratio_.end(), 1.0);
-  bends_.clear(), active_.clear();
-  for (std::size_t c = 0; c < cables_.size(); ++c) last_[c] = z[first_[c]];
-  double friction = 0, level = 0;
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    const Group& group = groups_[i];
-    if (base_[group.cable] == 0) continue;
-    if (i == 0 || groups_[i - 1].cable != group.cable) level = 0;
-    for (int k = group.begin; k < group.end; ++k) level += z[k];
-    const double speed = geometry_[group.cable].slip[group.segment];
-    const bool fresh = z[first_[group.cable]] == 0;
-    Bend bend{group.cable, group.segment, 0, 0, speed, level, fresh};
-    for (int k = group.begin; k < group.end; ++k) {
-      bend.band += band_[k];
-      bend.memory += std::clamp(z[k], -band_[k], band_[k]);
-    }
-    friction = std::max(friction, bend.band);
-    bends_.push_back(bend);
-    active_.push_back(static_cast<int>(i));
-  }
-  if (friction == 0) return;
+  if (!Collect(z)) return;
   AppliedForces(m, d, force_.data());
   for (const int dof : sliding_.inertia().dofs()) force_[dof] += z[m.nwrap + dof];
-  sliding_.Solve({m, d, cables_, geometry_, base_, last_, force_}, bends_);
-  for (std::size_t g = 0; g < bends_.size(); ++g) {
+  sliding_.Solve({m, d, geometry_, base_, last_, force_}, {bends_.data(), count_});
+  Share(z);
+}
+
+// The bends of the tight cables; returns whether one of them has friction.
+bool CableFriction::Collect(const double* z) {
+  Exponential(band_, grown_);
+  bool friction = false;
+  double level = 0;
+  count_ = 0;
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const Group& group = groups_[i];
+    const int first = geometry_.first[group.cable];
+    if (base_[group.cable] == 0) continue;
+    if (group.begin == first + 1) level = 0, last_[group.cable] = z[first];
+    active_[count_] = static_cast<int>(i);
+    Bend& bend = bends_[count_++];
+    bend.cable = group.cable, bend.segment = group.end - 1;
+    bend.band = bend.memory = 0, bend.grown = 1;
+    for (int k = group.begin; k < group.end; ++k) {
+      level += z[k];
+      bend.band += band_[k], bend.grown *= grown_[k];
+      bend.memory += std::clamp(z[k], -band_[k], band_[k]);
+    }
+    bend.speed = geometry_.slip[bend.segment];
+    bend.level = level;
+    bend.fresh = z[first] == 0;
+    bend.given = false;
+    friction |= bend.band > 0;
+  }
+  return friction;
+}
+
+void CableFriction::Share(const double* z) {
+  for (std::size_t g = 0; g < count_; ++g) {
     const Bend& bend = bends_[g];
-    const bool first = g == 0 || bends_[g - 1].cable != bend.cable;
-    const double before = first ? base_[bend.cable] : bends_[g - 1].tension;
-    const double ratio = bend.tension / before;
-    const double rho = bend.side != 0 ? bend.side * bend.band : std::log(ratio);
+    const double rho = bend.side != 0 ? bend.side * bend.band : std::log(bend.ratio);
     const Group& group = groups_[active_[g]];
-    rho_[group.begin] = rho, ratio_[group.begin] = ratio;
+    rho_[group.begin] = rho, ratio_[group.begin] = bend.ratio;
     if (group.end > group.begin + 1) Spread(group, rho, z);
   }
 }
@@ -163,20 +169,18 @@ void CableFriction::Spread(const Group& group, double rho, const double* z) {
 
 void CableFriction::Add(std::span<double> force) {
   std::fill(force.begin(), force.end(), 0.0);
-  for (std::size_t c = 0; c < cables_.size(); ++c) {
-    double tension = tension_[first_[c]] = base_[c];
-    for (int k = 1; k < cables_[c].segments(); ++k) {
-      tension = tension_[first_[c] + k] = tension * ratio_[first_[c] + k];
-      if (tension != base_[c]) {
-        geometry_[c].Add(cables_[c], k, base_[c] - tension, force.data());
-      }
+  for (int c = 0; c < geometry_.cables(); ++c) {
+    double tension = base_[c];
+    for (int s = geometry_.first[c]; s < geometry_.first[c + 1]; ++s) {
+      tension_[s] = tension *= ratio_[s];
+      if (tension != base_[c]) geometry_.Add(s, base_[c] - tension, force.data());
     }
   }
 }
 
 void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
   std::copy(rho_.begin(), rho_.end(), z);
-  for (std::size_t c = 0; c < cables_.size(); ++c) z[first_[c]] = base_[c];
+  for (std::size_t c = 0; c < base_.size(); ++c) z[geometry_.first[c]] = base_[c];
   for (const int dof : sliding_.inertia().dofs()) z[m.nwrap + dof] = d.qfrc_constraint[dof];
 }
 

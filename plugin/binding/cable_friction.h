@@ -1,7 +1,7 @@
 #pragma once
 
 #include "binding/bound.h"
-#include "binding/cable.h"
+#include "binding/cable_geometry.h"
 #include "binding/sliding.h"
 
 namespace continuum {
@@ -39,31 +39,33 @@ class CableFriction : public Bound {
   void CopyFrom(const Bound& other) override;
 
  protected:
-  /// Largest |ρ| at a wrap angle.
-  virtual double Band(double theta) const = 0;
+  /// Largest |ρ| at each wrap angle.
+  virtual void Bands(std::span<const double> theta, std::span<double> band) const = 0;
 
  private:
-  // Contacts [begin, end) of a cable, counted over all cables, that slide together.
+  // Contacts [begin, end) of a cable that slide together, as segment end − 1 does.
   struct Group {
-    int cable, segment, begin, end;
+    int cable, begin, end;
   };
-  void Locate(const mjModel& m, const mjData& d);
   void Remember(const double* z);
   void Solve(const mjModel& m, mjData& d, const double* z);
+  bool Collect(const double* z);
+  void Share(const double* z);
   void Spread(const Group& group, double rho, const double* z);
   void Add(std::span<double> force);
   int Index(int site) const;
 
   std::vector<Cable> cables_;
-  std::vector<int> first_;  ///< segment of each cable, counted over all cables
+  CableGeometry geometry_;
   std::vector<Group> groups_;
   Sliding sliding_;
-  std::vector<CableGeometry> geometry_;
-  std::vector<double> band_, rho_, ratio_, tension_;  ///< per segment: of its front contact; [N]
-  std::vector<double> base_, last_;                   ///< t_0 of each cable, now and before [N]
+  std::vector<double> band_, grown_;           ///< per segment: of its front contact, and exp of it
+  std::vector<double> rho_, ratio_, tension_;  ///< ρ, exp of it; behind the contact [N]
+  std::vector<double> base_, last_;            ///< t_0 of each cable, now and before [N]
   std::vector<double> force_;
-  std::vector<Bend> bends_;
-  std::vector<int> active_;  ///< group of each bend
+  std::vector<Bend> bends_;  ///< [groups], of which the first count_ are those of tight cables
+  std::vector<int> active_;  ///< [groups] group of each bend
+  std::size_t count_ = 0;
 };
 
 }  // namespace continuum

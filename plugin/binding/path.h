@@ -12,8 +12,11 @@ class BoundPath : public CableFriction {
       : CableFriction(m, config, ReadParams<E>(config)), law_(config.Read(E::kChoices[0])) {}
 
  private:
-  double Band(double theta) const override {
-    return E::template Band<double>(theta, law_, AsParams<E>(p_));
+  void Bands(std::span<const double> theta, std::span<double> band) const override {
+    const auto p = AsParams<E>(p_);
+    for (std::size_t k = 0; k < theta.size(); ++k) {
+      band[k] = E::template Band<double>(theta[k], law_, p);
+    }
   }
 
   int law_;

@@ -3,34 +3,53 @@
 #include <algorithm>
 #include <cmath>
 
-#include "binding/linear.h"
-
 namespace continuum {
 namespace {
 
 constexpr double kGiveWay = 1e-3, kGiveWayMost = 20, kEasier = 3;  // v_c of (4) [m/s]
-constexpr double kStart = 1e-3;       // slower bends begin as they were in the last step [m/s]
-constexpr double kMoving = 0.02;      // fresh bends that are faster slide [m/s]
+constexpr double kStart = 1e-3;  // slower bends begin as they were in the last step [m/s]
+constexpr double kCreep = 1e-6, kNearly = 0.99;  // ... but these slid, and do [m/s]
+constexpr double kMoving = 0.02;                 // fresh bends that are faster slide [m/s]
 constexpr double kGentle = 0.1;       // ... when no speed changes by more than that [m/s]
 constexpr double kSpeedError = 1e-9;  // of v⁺ [m/s]
 constexpr double kRelativeError = 1e-12;
 constexpr int kPatience = 5, kRounds = 30;
 
-// The part that a bend played in the last step, or plays by its speed.
+// The part that a bend plays by its speed, or played in the last step. The bend may have grown
+// since: what moves and was near to its limit still slides.
 int FirstGuess(const Bend& bend) {
   if (bend.band == 0) return 1;
-  if (std::abs(bend.speed) > kStart) return bend.speed > 0 ? -1 : 1;
+  const int side = bend.speed > 0 ? -1 : 1;
+  if (std::abs(bend.speed) > kStart) return side;
+  if (std::abs(bend.speed) > kCreep && side * bend.memory > kNearly * bend.band) return side;
   if (std::abs(bend.memory) < bend.band * (1 - kRelativeError)) return 0;
   return bend.memory > 0 ? 1 : -1;
 }
 
 }  // namespace
 
+Sliding::Sliding(const mjModel& m, const CableGeometry& geometry) : inertia_(m, geometry.dof) {
+  const int n = inertia_.size();
+  for (const int dof : geometry.dof) place_.push_back(inertia_.index(dof));
+  least_.assign(geometry.segments(), n);
+  for (int c = 0; c < geometry.cables(); ++c) {
+    int least = n;
+    for (int s = geometry.first[c + 1]; s-- > geometry.first[c];) {
+      for (int l = geometry.begin[s]; l < geometry.begin[s + 1]; ++l) {
+        least = std::min(least, place_[l]);
+      }
+      least_[s] = least;
+    }
+  }
+  follow_.resize(n), velocity_.resize(n), work_.resize(m.nv);
+}
+
 void Sliding::Solve(const World& w, std::span<Bend> bends) {
   Guess(w, bends);
   GiveFresh(w, bends);
   if (AllSlide(w, bends)) return;
-  Begin(w, bends);
+  inertia_.Update(w.m, w.d);
+  solver_.Begin(inertia_.matrix(), inertia_.size());
   give_way_ = kGiveWay;
   while (!Settle(w, bends) && give_way_ < kGiveWayMost) give_way_ *= kEasier;
   while (give_way_ > kGiveWay) {
@@ -49,7 +68,7 @@ bool Sliding::Settle(const World& w, std::span<Bend> bends) {
   for (int round = 0; round < kRounds; ++round) {
     Assign(w, bends);
     Assemble(w, bends);
-    SolveLinear(matrix_, velocity_);
+    solver_.Solve(velocity_);
     const int wrong = Judge(w, bends);
     if (wrong == 0) return true;
     patience = wrong < fewest ? kPatience : patience - 1;
@@ -60,31 +79,29 @@ bool Sliding::Settle(const World& w, std::span<Bend> bends) {
 }
 
 void Sliding::Guess(const World& w, std::span<Bend> bends) {
-  parts_.resize(bends.size()), grown_.resize(bends.size()), speed_.resize(bends.size());
+  parts_.resize(bends.size());
   double before = 0;
   for (std::size_t g = 0; g < bends.size(); ++g) {
     Bend& bend = bends[g];
     if (g == 0 || bends[g - 1].cable != bend.cable) before = w.base[bend.cable];
-    grown_[g] = std::exp(bend.band);
     bend.side = FirstGuess(bend);
-    before = bend.tension = before * (bend.side > 0 ? grown_[g] : 1 / grown_[g]);
+    bend.ratio = bend.side > 0 ? bend.grown : 1 / bend.grown;
+    before = bend.tension = before * bend.ratio;
   }
 }
 
 // Of the speeds, if every bend slides as guessed. Damping, left out here, only makes them smaller.
 void Sliding::Changes(const World& w, std::span<const Bend> bends) {
-  work_.assign(w.force.begin(), w.force.end());
+  std::copy(w.force.begin(), w.force.end(), work_.begin());
   for (const Bend& bend : bends) {
-    const double change = w.base[bend.cable] - bend.tension;
-    w.geometry[bend.cable].Add(w.cables[bend.cable], bend.segment, change, work_.data());
+    w.geometry.Add(bend.segment, w.base[bend.cable] - bend.tension, work_.data());
   }
   mj_solveM(&w.m, &w.d, work_.data(), work_.data(), 1);
   change_.resize(bends.size());
   double change = 0;
   for (std::size_t g = bends.size(); g-- > 0;) {
-    const int c = bends[g].cable;
-    if (g + 1 == bends.size() || bends[g + 1].cable != c) change = 0;
-    change -= w.m.opt.timestep * w.geometry[c].Rate(w.cables[c], bends[g].segment, work_.data());
+    if (g + 1 == bends.size() || bends[g + 1].cable != bends[g].cable) change = 0;
+    change -= w.m.opt.timestep * w.geometry.Rate(bends[g].segment, work_.data());
     change_[g] = change;
   }
 }
@@ -113,26 +130,6 @@ bool Sliding::AllSlide(const World& w, std::span<const Bend> bends) {
   return true;
 }
 
-void Sliding::Begin(const World& w, std::span<const Bend> bends) {
-  inertia_.Update(w.m, w.d);
-  const int n = inertia_.size();
-  const double h = w.m.opt.timestep;
-  momentum_.assign(n, 0);
-  for (int i = 0; i < n; ++i) {
-    const double* const row = inertia_.matrix().data() + i * n;
-    for (int j = 0; j < n; ++j) momentum_[i] += row[j] * w.d.qvel[inertia_.dofs()[j]];
-    momentum_[i] += h * w.force[inertia_.dofs()[i]];
-  }
-  for (const Bend& bend : bends) {
-    const Cable& cable = w.cables[bend.cable];
-    const double* const arm = w.geometry[bend.cable].arm.data();
-    for (int l = cable.begin[bend.segment]; l < cable.begin[bend.segment + 1]; ++l) {
-      momentum_[inertia_.index(cable.levers[l].dof)] += h * w.base[bend.cable] * arm[l];
-    }
-  }
-  row_.clear();
-}
-
 void Sliding::Assign(const World& w, std::span<const Bend> bends) {
   int cable = -1;
   double expected = 0;  // tension by all ratios
@@ -140,7 +137,9 @@ void Sliding::Assign(const World& w, std::span<const Bend> bends) {
     const Bend& bend = bends[g];
     if (bend.cable != cable) cable = bend.cable, expected = w.base[cable];
     Part& part = parts_[g];
-    part.ratio = bend.side > 0 ? grown_[g] : bend.side < 0 ? 1 / grown_[g] : std::exp(bend.memory);
+    part.ratio = bend.side > 0   ? bend.grown
+                 : bend.side < 0 ? 1 / bend.grown
+                                 : std::exp(bend.memory);
     expected *= part.ratio;
     part.yield = 0;
     if (bend.side != 0) continue;
@@ -149,65 +148,65 @@ void Sliding::Assign(const World& w, std::span<const Bend> bends) {
   }
 }
 
-// dv_g/dq̇ = −Σ_{k ≥ g} dL_k/dq.
-void Sliding::Rows(const World& w, std::span<const Bend> bends) {
-  const int n = inertia_.size();
-  row_.assign(bends.size() * n, 0);
-  for (std::size_t g = bends.size(); g-- > 0;) {
-    double* const row = row_.data() + g * n;
-    const int c = bends[g].cable;
-    if (g + 1 < bends.size() && bends[g + 1].cable == c) std::copy_n(row + n, n, row);
-    const Cable& cable = w.cables[c];
-    for (int l = cable.begin[bends[g].segment]; l < cable.begin[bends[g].segment + 1]; ++l) {
-      row[inertia_.index(cable.levers[l].dof)] -= w.geometry[c].arm[l];
-    }
+// The place of the first dof that the friction of bends at rest depends on, or acts on.
+int Sliding::FirstAtRest(std::span<const Bend> bends) const {
+  int first = inertia_.size();
+  for (const Bend& bend : bends) {
+    if (bend.side == 0) first = std::min(first, least_[bend.segment]);
   }
+  return first;
 }
 
-// (1) with t_g = constant_g − scale_g follow_g · q̇⁺, where follow collects the rows of bends at
-// rest from the base on.
+// follow += f dv_g/dq̇ = −f Σ_{k ≥ g} dL_k/dq.
+void Sliding::Follow(const World& w, const Bend& bend, double f, std::span<double> follow) const {
+  const CableGeometry& route = w.geometry;
+  const int end = route.begin[route.first[bend.cable + 1]];
+  for (int l = route.begin[bend.segment]; l < end; ++l) follow[place_[l]] -= f * route.arm[l];
+}
+
+// (1) with t_g = constant − scale follow · (q̇⁺ − q̇), where follow collects the speeds of the bends
+// at rest from the base on.
 void Sliding::Assemble(const World& w, std::span<const Bend> bends) {
-  const int n = inertia_.size();
   const double h = w.m.opt.timestep;
-  matrix_ = inertia_.matrix();
-  velocity_ = momentum_;
+  const int n = inertia_.size(), first = FirstAtRest(bends), rest = n - first;
+  const std::span<double> block = solver_.Block(first);
+  for (int i = 0; i < n; ++i) velocity_[i] = h * w.force[inertia_.dofs()[i]];
   int cable = -1;
   double constant = 0, scale = 0;
   bool follows = false;
   for (std::size_t g = 0; g < bends.size(); ++g) {
-    if (bends[g].cable != cable) {
-      cable = bends[g].cable, constant = w.base[cable], scale = 1, follows = false;
-    }
+    const Bend& bend = bends[g];
     const Part& part = parts_[g];
-    constant *= part.ratio, scale *= part.ratio;
+    if (bend.cable != cable)
+      cable = bend.cable, constant = w.base[cable], scale = 1, follows = false;
+    constant = part.ratio * constant - part.yield * bend.speed;
+    scale *= part.ratio;
     if (part.yield > 0) {
-      if (row_.empty()) Rows(w, bends);
-      if (!follows) follow_.assign(n, 0);
+      if (!follows) std::fill(follow_.begin() + first, follow_.end(), 0.0);
       follows = true;
-      const double f = part.yield / scale;
-      for (int i = 0; i < n; ++i) follow_[i] += f * row_[g * n + i];
+      Follow(w, bend, part.yield / scale, follow_);
     }
-    const int segment = bends[g].segment;
-    for (int l = w.cables[cable].begin[segment]; l < w.cables[cable].begin[segment + 1]; ++l) {
-      const int i = inertia_.index(w.cables[cable].levers[l].dof);
-      const double arm = h * w.geometry[cable].arm[l];
-      velocity_[i] -= arm * constant;
+    for (int l = w.geometry.begin[bend.segment]; l < w.geometry.begin[bend.segment + 1]; ++l) {
+      const double arm = h * w.geometry.arm[l];
+      velocity_[place_[l]] -= arm * (constant - w.base[cable]);
       if (!follows) continue;
-      for (int j = 0; j < n; ++j) matrix_[i * n + j] -= arm * scale * follow_[j];
+      double* const row = block.data() + (place_[l] - first) * rest;
+      for (int j = 0; j < rest; ++j) row[j] -= arm * scale * follow_[first + j];
     }
   }
 }
 
 // How many bends have to change their part. Tensions stay within the bands in any case.
 int Sliding::Judge(const World& w, std::span<Bend> bends) {
-  double sum = 0;
+  double change = 0;
+  speed_.resize(bends.size());
   for (std::size_t g = bends.size(); g-- > 0;) {
-    const int c = bends[g].cable, segment = bends[g].segment;
-    if (g + 1 == bends.size() || bends[g + 1].cable != c) sum = 0;
-    for (int l = w.cables[c].begin[segment]; l < w.cables[c].begin[segment + 1]; ++l) {
-      sum -= w.geometry[c].arm[l] * velocity_[inertia_.index(w.cables[c].levers[l].dof)];
+    const int s = bends[g].segment;
+    if (g + 1 == bends.size() || bends[g + 1].cable != bends[g].cable) change = 0;
+    for (int l = w.geometry.begin[s]; l < w.geometry.begin[s + 1]; ++l) {
+      change -= w.geometry.arm[l] * velocity_[place_[l]];
     }
-    speed_[g] = sum;
+    speed_[g] = bends[g].speed + change;
   }
   int wrong = 0, cable = -1;
   double before = 0, wanted = 0;
@@ -221,11 +220,12 @@ int Sliding::Judge(const World& w, std::span<Bend> bends) {
       bend.tension = part.ratio * before;
       if (bend.band > 0 && !bend.given && bend.side * speed_[g] > kSpeedError) part.better = 0;
     } else {
-      bend.tension = std::clamp(wanted, before / grown_[g], before * grown_[g]);
+      bend.tension = std::clamp(wanted, before / bend.grown, before * bend.grown);
       const double error = kRelativeError * bend.tension;
       if (wanted < bend.tension - error) part.better = -1;
       if (wanted > bend.tension + error) part.better = 1;
     }
+    bend.ratio = bend.tension / before;
     before = bend.tension;
     wrong += part.better != bend.side;
   }

@@ -3,23 +3,25 @@
 #include <span>
 #include <vector>
 
-#include "binding/cable.h"
+#include "binding/cable_geometry.h"
+#include "binding/linear.h"
 #include "binding/step_inertia.h"
 
 namespace continuum {
 
 /// Contacts of a cable between which nothing moves, and the moving segment behind them.
 struct Bend {
-  int cable, segment;
+  int cable, segment;  ///< segment as CableGeometry counts them
   double band;    ///< largest |ρ|, ρ = log(tension behind/tension before), sum over the contacts
+  double grown;   ///< exp(band)
   double memory;  ///< ρ of the last step
   double speed;   ///< v, > 0 when pulled toward the actuator, as the step begins [m/s]
   double level;   ///< log(tension behind/base tension) of the last step
   bool fresh;     ///< no step has gone before
 
-  int side = 0;        ///< ±1: slides with ρ = ±band; 0: at rest
-  double tension = 0;  ///< behind it [N]
-  bool given = false;  ///< slides as its speed says, whatever it is at the step's end
+  int side = 0;                   ///< ±1: slides with ρ = ±band; 0: at rest
+  double tension = 0, ratio = 1;  ///< behind it [N]; the same by that before it
+  bool given = false;             ///< slides as its speed says, whatever it is at the step's end
 };
 
 /// Dry friction of cables, solved for the end of the step.
@@ -55,13 +57,12 @@ class Sliding {
   struct World {
     const mjModel& m;
     mjData& d;
-    std::span<const Cable> cables;
-    std::span<const CableGeometry> geometry;
+    const CableGeometry& geometry;
     std::span<const double> base;   ///< tension of each cable [N], > 0 where it has bends
     std::span<const double> last;   ///< the same in the last step [N]
     std::span<const double> force;  ///< F [nv]
   };
-  Sliding(const mjModel& m, std::span<const int> dofs) : inertia_(m, dofs) {}
+  Sliding(const mjModel& m, const CableGeometry& geometry);
 
   const StepInertia& inertia() const { return inertia_; }
   /// Finds side and tension of the bends, cable after cable, each from its base on.
@@ -77,24 +78,25 @@ class Sliding {
   void Changes(const World& w, std::span<const Bend> bends);
   void GiveFresh(const World& w, std::span<Bend> bends);
   bool AllSlide(const World& w, std::span<const Bend> bends);
-  void Begin(const World& w, std::span<const Bend> bends);
   bool Settle(const World& w, std::span<Bend> bends);
   void Assign(const World& w, std::span<const Bend> bends);
-  void Rows(const World& w, std::span<const Bend> bends);
+  int FirstAtRest(std::span<const Bend> bends) const;
   void Assemble(const World& w, std::span<const Bend> bends);
+  void Follow(const World& w, const Bend& bend, double f, std::span<double> follow) const;
   int Judge(const World& w, std::span<Bend> bends);
   void Change(std::span<Bend> bends, bool one);
 
   StepInertia inertia_;
-  double give_way_ = 0;  ///< v_c
+  BlockSolver solver_;
+  std::vector<int> place_;  ///< [levers] of its dof in inertia_
+  std::vector<int> least_;  ///< [segments] the first place that moves it or what is distal of it
+  double give_way_ = 0;     ///< v_c
   std::vector<Part> parts_;
   std::vector<Bend> found_;
-  std::vector<double> grown_;     ///< [bends] exp(band)
-  std::vector<double> row_;       ///< [bends · dofs] dv_g/dq̇, empty until a bend rests
-  std::vector<double> follow_;    ///< [dofs]
-  std::vector<double> momentum_;  ///< [dofs] M q̇ + h (F + Σ_g t_0 dL_g/dq)
-  std::vector<double> change_;    ///< [bends] of v in the step, if all slide as guessed
-  std::vector<double> matrix_, velocity_, speed_, work_;
+  std::vector<double> follow_;          ///< [dofs]
+  std::vector<double> velocity_;        ///< [dofs] q̇⁺ − q̇
+  std::vector<double> change_, speed_;  ///< [bends] of v in the step, if all slide as guessed; v⁺
+  std::vector<double> work_;
 };
 
 }  // namespace continuum

@@ -46,7 +46,7 @@ void StepInertia::Update(const mjModel& m, const mjData& d) {
     const int begin = m.M_rowadr[dofs_[i]], end = begin + m.M_rownnz[dofs_[i]];
     for (int k = begin; k < end; ++k) {
       const int j = index_[m.M_colind[k]];
-      matrix_[i * n + j] = matrix_[j * n + i] = d.M[k];
+      matrix_[j * n + i] = d.M[k];  // j ≤ i: MuJoCo's is the lower one
     }
   }
   AddDamping(m, d);
@@ -76,7 +76,7 @@ void StepInertia::AddOuter(double scale, std::span<const int> dofs, const double
   for (std::size_t i = 0; i < dofs.size(); ++i) {
     for (std::size_t j = 0; j < dofs.size(); ++j) {
       const int row = index_[dofs[i]], column = index_[dofs[j]];
-      if (row >= 0 && column >= 0) matrix_[row * size() + column] += scale * x[i] * x[j];
+      if (row >= 0 && column >= row) matrix_[row * size() + column] += scale * x[i] * x[j];
     }
   }
 }

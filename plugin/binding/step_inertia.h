@@ -22,7 +22,7 @@ class StepInertia {
   const std::vector<int>& dofs() const { return dofs_; }
   /// Place of a dof among dofs().
   int index(int dof) const { return index_[dof]; }
-  /// M + h D [size · size].
+  /// The upper triangle of M + h D [size · size].
   const std::vector<double>& matrix() const { return matrix_; }
 
  private:
