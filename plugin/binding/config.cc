@@ -16,6 +16,19 @@ std::string Short(double x) {
   return out.str();
 }
 
+std::string_view TypeOf(int joint) {
+  switch (joint) {
+    case mjJNT_HINGE:
+      return "a hinge joint";
+    case mjJNT_SLIDE:
+      return "a slide joint";
+    case mjJNT_BALL:
+      return "a ball joint";
+    default:
+      return "a free joint";
+  }
+}
+
 }  // namespace
 
 bool GlobMatches(const std::string& glob, const std::string& name) {
@@ -96,6 +109,24 @@ std::vector<int> Config::Match(std::string_view key, mjtObj type) const {
   }
   if (ids.empty()) throw Error::Input(Who(), "the key '" + std::string(key) + "'", "none");
   return {ids.begin(), ids.end()};
+}
+
+Lines Config::MatchLines(Joints types) const {
+  const bool joints = !Get("joint").empty(), tendons = !Get("tendon").empty();
+  if (joints == tendons) {
+    throw Error::Input(Who(), "one of the keys 'joint' and 'tendon'", joints ? "both" : "none");
+  }
+  if (tendons) return {false, Match("tendon", mjOBJ_TENDON)};
+  const bool ball = types == Joints::kHingeSlideBall;
+  Lines lines{true, Match("joint", mjOBJ_JOINT)};
+  for (const int j : lines.ids) {
+    const int type = m_->jnt_type[j];
+    if (type == mjJNT_HINGE || type == mjJNT_SLIDE || (ball && type == mjJNT_BALL)) continue;
+    throw Error::Input(Who() + ": joint '" + mj_id2name(m_, mjOBJ_JOINT, j) + "'",
+                       ball ? "a hinge, slide or ball joint" : "a hinge or slide joint",
+                       std::string(TypeOf(type)));
+  }
+  return lines;
 }
 
 }  // namespace continuum

@@ -11,6 +11,12 @@
 
 namespace continuum {
 
+/// Joints or tendons that a law acts on.
+struct Lines {
+  bool joints;
+  std::vector<int> ids;
+};
+
 /// The configuration of one plugin instance, as the MJCF gives it.
 class Config {
  public:
@@ -30,6 +36,10 @@ class Config {
   /// Ids of the objects that the names and globs (* ? [..]) under key match, ascending. Throws
   /// Error when a name or glob matches nothing.
   std::vector<int> Match(std::string_view key, mjtObj type) const;
+
+  /// What one of the keys 'joint' and 'tendon' matches. Throws Error when both or none are given,
+  /// and for joints of other types.
+  Lines MatchLines(Joints types) const;
 
  private:
   const mjModel* m_;

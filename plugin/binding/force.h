@@ -32,9 +32,8 @@ struct Line {
   }
 };
 
-/// The joints (hinge, slide) or tendons named in config. Throws Error for other joints, and when
-/// both or none of the keys are given.
-std::vector<Line> MatchLines(const mjModel& m, const Config& config);
+/// The joints or tendons named in config.
+std::vector<Line> LinesOf(const mjModel& m, const Config& config, Joints types);
 
 /// A Force law on joints or tendons: −F(x, v, z) along each.
 template <ForceLaw E>
@@ -43,10 +42,10 @@ class BoundForce : public Bound {
   static constexpr int kZ = static_cast<int>(E::kStates.size());
 
   BoundForce(const mjModel& m, const Config& config)
-      : Bound(ReadParams<E>(config)), lines_(MatchLines(m, config)) {}
+      : Bound(ReadParams<E>(config)), lines_(LinesOf(m, config, JointsOf<E>())) {}
 
   static int StateSize(const mjModel& m, const Config& config) {
-    return kZ * static_cast<int>(MatchLines(m, config).size());
+    return kZ * static_cast<int>(LinesOf(m, config, JointsOf<E>()).size());
   }
 
   bool GivesForce() const override { return true; }

@@ -16,20 +16,18 @@ constexpr double kRowMarker = 1e-12;
 // the joint is no load.
 constexpr double kShareStep = 0.02;
 
-bool IsFriction(const char* plugin) {
-  bool friction = false;
-  All::ForEach([&]<class E>() {
-    if (FrictionLaw<E> && plugin == "continuum." + std::string(E::kName)) friction = true;
-  });
-  return friction;
-}
-
 std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
   std::set<std::pair<bool, int>> taken;
   for (int j = 0; j < instance; ++j) {
-    const mjpPlugin* plugin = mjp_getPluginAtSlot(m.plugin[j]);
-    if (!plugin || !IsFriction(plugin->name)) continue;
-    for (const Row& row : RowsOf(m, Config(m, j))) taken.insert({row.joint, row.index});
+    const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[j]);
+    All::ForEach([&]<class E>() {
+      if constexpr (FrictionLaw<E>) {
+        if (!plugin || plugin->name != "continuum." + std::string(E::kName)) return;
+        const Config config(m, j);
+        for (const Row& row : RowsOf(m, config, JointsOf<E>()))
+          taken.insert({row.joint, row.index});
+      }
+    });
   }
   return taken;
 }
@@ -104,32 +102,14 @@ double Yield(const mjData& d, int r) {
 
 }  // namespace
 
-std::vector<Row> RowsOf(const mjModel& m, const Config& config) {
-  const bool joints = !config.Get("joint").empty(), tendons = !config.Get("tendon").empty();
-  if (joints == tendons) {
-    throw Error::Input(config.Who(), "one of the keys 'joint' and 'tendon'",
-                       joints ? "both" : "none");
-  }
+std::vector<Row> RowsOf(const mjModel& m, const Config& config, Joints types) {
+  const auto [joints, ids] = config.MatchLines(types);
   std::vector<Row> rows;
-  if (tendons) {
-    for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
-      rows.push_back({false, t, t, -1, true});
-    }
-    return rows;
-  }
-  for (const int j : config.Match("joint", mjOBJ_JOINT)) {
-    const int dof = m.jnt_dofadr[j];
-    switch (m.jnt_type[j]) {
-      case mjJNT_HINGE:
-      case mjJNT_SLIDE:
-        rows.push_back({true, j, dof, -1, true});
-        break;
-      case mjJNT_BALL:
-        for (int k = 0; k < 3; ++k) rows.push_back({true, j, dof + k, k, true});
-        break;
-      default:
-        throw Error::Input(config.Who() + ": joint '" + mj_id2name(&m, mjOBJ_JOINT, j) + "'",
-                           "a hinge, slide or ball joint", "a free joint");
+  for (const int id : ids) {
+    const bool ball = joints && m.jnt_type[id] == mjJNT_BALL;
+    const int index = joints ? m.jnt_dofadr[id] : id;
+    for (int k = 0; k < (ball ? 3 : 1); ++k) {
+      rows.push_back({joints, id, index + k, ball ? k : -1, true});
     }
   }
   return rows;
@@ -143,13 +123,14 @@ double GearLoad(const mjModel& m, const mjData& d, int dof, int option) {
   return 0.5 * std::abs(actuator - external);
 }
 
-Rows::Rows(const mjModel& m, const Config& config, int instance) : rows_(RowsOf(m, config)) {
+Rows::Rows(const mjModel& m, const Config& config, Joints types, int instance)
+    : rows_(RowsOf(m, config, types)) {
   const auto taken = RowsBelow(m, instance);
   for (Row& row : rows_) row.owner = !taken.contains({row.joint, row.index});
 }
 
-int Rows::StateSize(const mjModel& m, const Config& config) {
-  return 2 * static_cast<int>(RowsOf(m, config).size());
+int Rows::StateSize(const mjModel& m, const Config& config, Joints types) {
+  return 2 * static_cast<int>(RowsOf(m, config, types).size());
 }
 
 void Rows::Impose(mjModel& m) const {

@@ -16,9 +16,8 @@ struct Row {
   bool owner;  ///< the lowest instance on a row assigns level and anchor; others add their level
 };
 
-/// The rows of the joints (hinge, slide, ball) or tendons that a configuration names, all as
-/// owners.
-std::vector<Row> RowsOf(const mjModel& m, const Config& config);
+/// The rows of the joints or tendons that a configuration names, all as owners.
+std::vector<Row> RowsOf(const mjModel& m, const Config& config, Joints types);
 
 /// Friction rows that hold.
 ///
@@ -48,9 +47,9 @@ std::vector<Row> RowsOf(const mjModel& m, const Config& config);
 /// {Grasp, anchor}; a ball joint has six numbers, {Grasp, quaternion, share}.
 class Rows {
  public:
-  /// Joints (hinge, slide, ball) or tendons named in config.
-  Rows(const mjModel& m, const Config& config, int instance);
-  static int StateSize(const mjModel& m, const Config& config);
+  /// Joints or tendons named in config.
+  Rows(const mjModel& m, const Config& config, Joints types, int instance);
+  static int StateSize(const mjModel& m, const Config& config, Joints types);
 
   const std::vector<Row>& rows() const { return rows_; }
   void Impose(mjModel& m) const;
@@ -104,7 +103,7 @@ template <FrictionLaw E>
 class BoundFriction : public Bound {
  public:
   BoundFriction(const mjModel& m, const Config& config, int instance)
-      : Bound(ReadParams<E>(config)), rows_(m, config, instance) {
+      : Bound(ReadParams<E>(config)), rows_(m, config, JointsOf<E>(), instance) {
     if constexpr (kLoaded) load_ = config.Read(E::kChoices[0]);
     if constexpr (kDamped) {
       damping_.emplace("continuum." + std::string(E::kName), E::kParams[E::kDamping].name,
@@ -116,7 +115,7 @@ class BoundFriction : public Bound {
     }
   }
   static int StateSize(const mjModel& m, const Config& config) {
-    return Rows::StateSize(m, config);
+    return Rows::StateSize(m, config, JointsOf<E>());
   }
 
   bool IsRow() const override { return true; }

@@ -21,7 +21,7 @@ std::map<int, double> SumsOf(const mjModel& m) {
         if (plugin->name != "continuum." + std::string(E::kName)) return;
         const Config config(m, i);
         const double damping = config.Read(E::kParams[E::kDamping]);
-        for (const Row& row : RowsOf(m, config)) sums[row.index] += damping;
+        for (const Row& row : RowsOf(m, config, JointsOf<E>())) sums[row.index] += damping;
       }
     });
   }

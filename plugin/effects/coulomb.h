@@ -14,6 +14,7 @@ struct Coulomb {
   static constexpr std::string_view kName = "coulomb", kSource = "coulomb1785",
                                     kSummary = "dry friction of constant level";
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
+  static constexpr Joints kJoints = Joints::kHingeSlideBall;
   static constexpr std::array kParams{Magnitude("tau_c", "N*m", 0.01)};
 
   template <class T>

@@ -21,6 +21,11 @@ using Vec = std::array<T, N>;
 /// What an effect acts on. The MJCF key of a binding is the lower-case name: joint="…".
 enum class Place { kJoint, kTendon, kActuator, kBody, kSite, kSensor, kWorld };
 
+/// Joints that a law on joints takes: those of one coordinate and one direction (hinge, slide),
+/// which is what a law takes unless its kJoints says more, or ball joints too, where only the speed
+/// counts.
+enum class Joints { kHingeSlide, kHingeSlideBall };
+
 /// One parameter of a law. Units are those of a rotation (rad, N*m); on a slide joint or a tendon
 /// read m for rad and N for N*m.
 struct Param {
@@ -70,6 +75,15 @@ concept Card = requires {
   std::span<const Place>{E::kPlaces};
   std::span<const Param>{E::kParams};
 };
+
+template <class E>
+constexpr Joints JointsOf() {
+  if constexpr (requires { E::kJoints; }) {
+    return E::kJoints;
+  } else {
+    return Joints::kHingeSlide;
+  }
+}
 
 template <class E>
 inline constexpr std::size_t kParamCount = E::kParams.size();

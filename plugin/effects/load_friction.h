@@ -17,6 +17,7 @@ struct LoadFriction {
   static constexpr std::string_view kName = "load_friction", kSource = "duclusaud2024",
                                     kSummary = "dry friction that grows with the load";
   static constexpr std::array kPlaces{Place::kJoint};
+  static constexpr Joints kJoints = Joints::kHingeSlideBall;
   static constexpr std::array kParams{Magnitude("tau_c", "N*m", 0.01), Magnitude("mu_l", "1", 0.1)};
   static constexpr std::array kChoices{Choice{"load", kLoadOptions}};
 

@@ -8,7 +8,7 @@ namespace continuum {
 ///
 ///   |τ_f| ≤ max(0, τ_c + c cos q + s sin q)      τ_c, c, s [N*m]      (1)
 ///
-/// Source: armstrong1994.
+/// Joints of one coordinate q: what a ball joint's would be is not defined. Source: armstrong1994.
 struct PositionFriction {
   static constexpr std::string_view kName = "position_friction", kSource = "armstrong1994",
                                     kSummary = "dry friction that varies with the joint's angle";

@@ -17,6 +17,7 @@ struct Stribeck {
   static constexpr std::string_view kName = "stribeck", kSource = "snake_arm",
                                     kSummary = "dry friction that is larger at rest, and viscous";
   static constexpr std::array kPlaces{Place::kJoint};
+  static constexpr Joints kJoints = Joints::kHingeSlideBall;
   static constexpr std::array kParams{
       Magnitude("tau_mu", "N*m*s/rad", 0.01), Magnitude("tau_c", "N*m", 0.01),
       Magnitude("S", "1", 0.5), Positive("v_d", "rad/s", 0.3), Positive("k_v", "s/rad", 1000)};

@@ -241,12 +241,23 @@ TEST_F(Configuration, WhatIsNotWrittenDoesNotAct) {
   EXPECT_DOUBLE_EQ(d->efc_frictionloss[0], .05);  // no excess at rest
 }
 
+// What depends on a position or a direction has no meaning on three axes.
 TEST_F(Configuration, AWrongJointTypeIsRefused) {
-  const auto [model, error] = Compile(
-      "<mujoco>" + Instance("dahl", Key("joint", "j")) +
-      R"(<worldbody><body><joint name="j" type="ball"/><geom size=".1"/></body></worldbody></mujoco>)");
-  EXPECT_FALSE(model);
-  EXPECT_THAT(error, HasSubstr("joint 'j': expected a hinge or slide joint"));
+  const std::string line = "joint 'j': expected a hinge or slide joint, found a ball joint",
+                    any = "joint 'j': expected a hinge, slide or ball joint, found a free joint";
+  for (const auto& [law, type, refusal] : {std::tuple{"dahl", "ball", line},
+                                           {"position_friction", "ball", line},
+                                           {"directional_friction", "ball", line},
+                                           {"coulomb", "free", any},
+                                           {"stribeck", "free", any},
+                                           {"load_friction", "free", any},
+                                           {"coulomb", "ball", std::string()}}) {
+    const auto [model, error] = Compile("<mujoco>" + Instance(law, Key("joint", "j")) +
+                                        "<worldbody><body><joint name=\"j\" type=\"" + type +
+                                        "\"/><geom size=\".1\"/></body></worldbody></mujoco>");
+    EXPECT_EQ(static_cast<bool>(model), refusal.empty()) << law << " " << type;
+    EXPECT_THAT(error, HasSubstr(refusal)) << law << " " << type;
+  }
 }
 
 TEST_F(Configuration, AnEditedConfigurationIsFollowed) {
