@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <set>
 #include <type_traits>
 #include <utility>
@@ -35,6 +36,7 @@ struct Instance {
   std::vector<int> sensors;         ///< of this instance
   std::vector<int> signals;         ///< in the first instance: all signals, in the order they act
   std::vector<int> givers;          ///< in the last instance: all that give forces, itself included
+  std::vector<int> forces;          ///< in the last instance: those of them that are no rows
   std::vector<int> answers;         ///< in the last instance: those that depend on all other forces
   std::vector<int> rows;            ///< in the last instance: all that are rows, itself included
   std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
@@ -92,6 +94,13 @@ std::vector<int> Those(const mjModel& m, const mjData& d, int last, const Instan
   return those;
 }
 
+// Both ascending.
+std::vector<int> Less(const std::vector<int>& all, const std::vector<int>& but) {
+  std::vector<int> rest;
+  std::set_difference(all.begin(), all.end(), but.begin(), but.end(), std::back_inserter(rest));
+  return rest;
+}
+
 // Signals act in the order of the effects' list, from the input of an actuator to its tendon: that
 // is the order in which plugins are registered.
 void OrderSignals(const mjModel& m, mjData& d, int last) {
@@ -145,6 +154,7 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     bool last = true;
     for (int j = i + 1; j < m.nplugin; ++j) last &= !IsOurs(m, j);
     if (last) self->givers = Those(m, d, i, *self, &Bound::GivesForce);
+    if (last) self->forces = Less(self->givers, Those(m, d, i, *self, &Bound::IsRow));
     if (last) self->answers = Those(m, d, i, *self, &Bound::Answers);
     if (last) self->rows = Those(m, d, i, *self, &Bound::IsRow);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
@@ -176,17 +186,18 @@ void Follow(const mjModel& m, Instance& self, int i) {
   }
 }
 
-// Adds the forces of all instances to qfrc_passive so that repeating any part of the pipeline never
+// Adds the forces of instances to qfrc_passive so that repeating any part of the pipeline never
 // adds twice: mj_forwardSkip and mjd_transitionFD run kActuator again without kPassive, mj_inverse
 // runs kPassive only. The result is exactly before + sum, whatever was added in between, so that a
 // restored state replays bit by bit. One instance may be left out.
-void Total(const mjModel& m, mjData& d, Instance& last, Stage stage, int without = -1) {
-  bool changed = stage == Stage::kPassive || without >= 0;
-  for (const int j : last.givers) changed |= std::exchange(Get(d, j)->changed, false);
+void Total(const mjModel& m, mjData& d, Instance& last, Stage stage, const std::vector<int>& givers,
+           int without = -1) {
+  bool changed = stage == Stage::kPassive || without >= 0 || last.forces != last.givers;
+  for (const int j : givers) changed |= std::exchange(Get(d, j)->changed, false);
   if (!changed) return;
   std::vector<double>& next = last.next;
   std::fill(next.begin(), next.end(), 0.0);
-  for (const int j : last.givers) {
+  for (const int j : givers) {
     const std::vector<double>& force = Get(d, j)->force;
     for (int dof = 0; j != without && dof < m.nv; ++dof) next[dof] += force[dof];
   }
@@ -221,7 +232,7 @@ void Answer(const mjModel& m, mjData& d, Instance& last) {
     for (const int j : last.answers) Evaluate(m, d, j, Stage::kActuator);
   }
   for (const int j : last.answers) {
-    Total(m, d, last, Stage::kAnswer, j);
+    Total(m, d, last, Stage::kAnswer, last.givers, j);
     Evaluate(m, d, j, Stage::kAnswer);
     Get(d, j)->changed = true;
     Sense(m, d, j);
@@ -239,8 +250,10 @@ void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (!self.bound->IsSignal() && !self.bound->IsRow() && !later) Evaluate(m, d, i, stage);
   if (!later) Sense(m, d, i);
   if (stage == Stage::kActuator) Answer(m, d, self);
-  if (!self.givers.empty()) Total(m, d, self, stage);
+  // The load of a row is what all others do, but for what friction itself does.
+  if (!self.givers.empty()) Total(m, d, self, stage, self.forces);
   for (const int j : self.rows) Evaluate(m, d, j, stage);
+  if (self.forces != self.givers) Total(m, d, self, Stage::kActuator, self.givers);
 }
 
 void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
@@ -251,7 +264,8 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.bound->Set(a.bound->parameters());
   b.bound->CopyFrom(*a.bound);
   b.force = a.force, b.changed = a.changed;
-  b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers;
+  b.sensors = a.sensors, b.signals = a.signals;
+  b.givers = a.givers, b.forces = a.forces;
   b.answers = a.answers, b.rows = a.rows;
   b.before = a.before, b.sum = a.sum, b.next = a.next;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "binding/bound.h"
@@ -53,8 +54,8 @@ class Rows {
 
   const std::vector<Row>& rows() const { return rows_; }
   void Impose(mjModel& m) const;
-  /// Calls level(row, v, lean) → torque for each row that exists at d, and writes it. v: speed of
-  /// sliding; lean: where the row would be off its anchor after a step, (q − anchor) + h v.
+  /// Calls level(row, v) → torque for each row that exists at d, and writes it. v: speed of
+  /// sliding.
   template <class Level>
   void Write(const mjModel& m, mjData& d, const double* z, Stage stage, Level&& level) const {
     int r = d.ne;
@@ -63,8 +64,7 @@ class Rows {
       if (!Find(d, row, r)) continue;
       const double off = OffAnchor(m, d, z + 2 * k, row);
       const Sliding sliding = SlidingOf(d, z + 2 * k, row);
-      const double lean = off + m.opt.timestep * Speed(d, row);
-      WriteRow(m, d, off, stage, row, r, sliding.share * level(row, sliding.v, lean));
+      WriteRow(m, d, off, stage, row, r, sliding.share * level(row, sliding.v));
     }
   }
   void Advance(const mjModel& m, const mjData& d, double* z) const;
@@ -119,6 +119,7 @@ class BoundFriction : public Bound {
   }
 
   bool IsRow() const override { return true; }
+  bool GivesForce() const override { return kBiased; }
   std::string Silence(const mjModel&) const override { return idle_; }
 
   void Impose(mjModel& m) const override {
@@ -127,16 +128,18 @@ class BoundFriction : public Bound {
   }
 
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
-                std::span<double>) override {
+                std::span<double> force) override {
     const auto p = AsParams<E>(p_);
-    rows_.Write(m, d, z, stage, [&](const Row& row, double v, double lean) {
-      Rubbing<double> r{0, v, 0, lean};
+    if constexpr (kBiased) std::fill(force.begin(), force.end(), 0.0);
+    rows_.Write(m, d, z, stage, [&](const Row& row, double v) {
+      Rubbing<double> r{0, v, 0};
       if (!row.joint) r.q = d.ten_length[row.index];
       if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
       if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);
+      if constexpr (kBiased) force[row.index] = E::template Bias<double>(p);
       return E::template Level<double>(r, p);
     });
-    return false;
+    return kBiased;
   }
 
   void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }
@@ -144,6 +147,8 @@ class BoundFriction : public Bound {
  private:
   static constexpr bool kLoaded = ChoicesOf<E>().size() > 0;
   static constexpr bool kDamped = requires { E::kDamping; };
+  static constexpr bool kBiased = BiasedFrictionLaw<E>;
+  static_assert(!kBiased || (E::kPlaces.size() == 1 && E::kPlaces[0] == Place::kJoint));
 
   Rows rows_;
   int load_ = 0;

@@ -116,12 +116,10 @@ concept ForceLaw = Card<E> &&
   { E::template Step<double>(z, q, 0.001, p) } -> std::same_as<Vec<double, E::kStates.size()>>;
 };
 
-/// What the level of a dry friction may depend on: position, velocity, the load ≥ 0 [N*m], and the
-/// lean [rad]: its sign is the direction in which the contact slides or, at rest, would slide (0:
-/// not known).
+/// What the level of a dry friction may depend on: position, velocity, the load ≥ 0 [N*m].
 template <class T>
 struct Rubbing {
-  T q, v, load, lean = T(0);
+  T q, v, load;
 };
 
 /// Friction: Level(rubbing, p) ≥ 0, the largest torque that dry friction can take. It becomes a row
@@ -129,6 +127,13 @@ struct Rubbing {
 template <class E>
 concept FrictionLaw = Card<E> && requires(Rubbing<double> r, ParamsOf<E, double> p) {
   { E::template Level<double>(r, p) } -> std::same_as<double>;
+};
+
+/// Friction of joints that takes more in one direction than in the other: its torque is Bias(p)
+/// beside a row, within Bias ± Level. A row has one level, whatever way it is pushed.
+template <class E>
+concept BiasedFrictionLaw = FrictionLaw<E> && requires(ParamsOf<E, double> p) {
+  { E::template Bias<double>(p) } -> std::same_as<double>;
 };
 
 /// Path: friction of a cable that slides over contacts. Band(theta, choice, p) ≥ 0 is the logarithm

@@ -175,9 +175,14 @@ TYPED_TEST(EveryEffect, IsConsistentInItsUnitsAsFriction) {
       auto w = p;
       for (std::size_t i = 0; i < w.size(); ++i) w[i] *= Factor(E::kParams[i].unit, s);
       const Rubbing<double> r{n(this->rng), n(this->rng), std::abs(n(this->rng))};
-      const Rubbing<double> q{r.q, r.v / s.t, r.load * Factor("N*m", s), r.lean};
+      const Rubbing<double> q{r.q, r.v / s.t, r.load * Factor("N*m", s)};
       const double a = E::template Level<double>(r, p), b = E::template Level<double>(q, w);
       ASSERT_GE(a, 0);
+      if constexpr (BiasedFrictionLaw<E>) {
+        const double bias = E::template Bias<double>(p);
+        ASSERT_NEAR(E::template Bias<double>(w), bias * Factor("N*m", s), 1e-9 * std::abs(b));
+        ASSERT_LE(std::abs(bias), a);  // it opposes every motion
+      }
       ASSERT_NEAR(b, a * Factor("N*m", s), 1e-9 * std::abs(b));
     }
   }

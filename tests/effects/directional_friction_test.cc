@@ -7,28 +7,27 @@ namespace {
 
 const Vec<double, 4> kLaw{0.05, 0.02, 0.3, 0.1};
 
-double Level(double v, double lean) {
-  return DirectionalFriction::Level<double>({0, v, 0, lean}, kLaw);
+double Level(double v, const Vec<double, 4>& law) {
+  return DirectionalFriction::Level<double>({0, v, 0}, law);
 }
 
 TEST(DirectionalFriction, SlidesAtTheLevelOfItsDirection) {
-  EXPECT_DOUBLE_EQ(Level(0.4, 1e-3), 0.05 + 0.3 * 0.4);
-  EXPECT_DOUBLE_EQ(Level(-0.4, -1e-3), 0.02 + 0.1 * 0.4);
-  EXPECT_DOUBLE_EQ(Level(0.4, 0), Level(0.4, 1e-3));
+  const double bias = DirectionalFriction::Bias<double>(kLaw);
+  EXPECT_DOUBLE_EQ(bias - Level(0.4, kLaw), -(0.05 + 0.3 * 0.4));
+  EXPECT_DOUBLE_EQ(bias + Level(-0.4, kLaw), 0.02 + 0.1 * 0.4);
 }
 
-TEST(DirectionalFriction, HoldsAtRestByTheSideItLeansTo) {
-  EXPECT_EQ(Level(0, 1e-9), 0.05);
-  EXPECT_EQ(Level(0, -1e-9), 0.02);
-  EXPECT_EQ(Level(-1e-15, 1e-9), 0.05);
-  EXPECT_EQ(Level(0, 0), 0.05);  // not known yet: the larger
+TEST(DirectionalFriction, HoldsUpToTheLevelOfEitherSide) {
+  const double bias = DirectionalFriction::Bias<double>(kLaw);
+  EXPECT_DOUBLE_EQ(bias - Level(0, kLaw), -0.05);
+  EXPECT_DOUBLE_EQ(bias + Level(0, kLaw), 0.02);
 }
 
 TEST(DirectionalFriction, WithEqualSidesIsCoulombAndViscous) {
   const Vec<double, 4> equal{0.05, 0.05, 0.1, 0.1};
+  EXPECT_EQ(DirectionalFriction::Bias<double>(equal), 0);
   for (const double v : {-2.0, 0.0, 2.0}) {
-    EXPECT_DOUBLE_EQ(DirectionalFriction::Level<double>({0, v, 0, v}, equal),
-                     0.05 + 0.1 * std::abs(v));
+    EXPECT_DOUBLE_EQ(Level(v, equal), 0.05 + 0.1 * std::abs(v));
   }
 }
 

@@ -63,6 +63,60 @@ TEST_P(Directional, KeepsHoldingWhenTheLoadChangesSides) {
   EXPECT_LT(d->qvel[0], -0.5);
 }
 
+// From just below one level to just below the other: it is not let go on the way, which would take
+// it on by some 1e-4 rad each time. The row's own deflection is 1e-5 rad.
+TEST_P(Directional, HoldsThroughSuddenReversals) {
+  const auto m = Model(Wheel(GetParam()));
+  for (const double part : {0.9, 0.99}) {
+    const auto d = Data(m);
+    for (int k = 0; k < 10; ++k) {
+      d->ctrl[0] = part * (k % 2 ? kPlus : -kMinus);
+      RunUntil(m, d, 0.2 * (k + 1));
+      EXPECT_LT(std::abs(d->qpos[0]), 1e-4) << part << " " << k;
+    }
+  }
+}
+
+// What slides one way and is pushed back stops and stays, whichever side holds more.
+TEST_P(Directional, StopsAndStaysUnderAPushBack) {
+  const auto m = Model(Wheel(GetParam()));
+  for (const double push : {-0.95 * kMinus, 0.95 * kPlus}) {
+    const auto d = Data(m);
+    d->qvel[0] = std::copysign(0.3, -push);
+    d->ctrl[0] = push;
+    RunUntil(m, d, 1);
+    const double stop = d->qpos[0];
+    EXPECT_LT(std::abs(d->qvel[0]), 1e-9);
+    RunUntil(m, d, 11);
+    EXPECT_NEAR(d->qpos[0], stop, 1e-9);
+    // It stops after v²/2a, to within a step of the travel.
+    const double level = push > 0 ? kMinus : kPlus, a = (level + std::abs(push)) / kInertia;
+    EXPECT_NEAR(std::abs(stop), 0.3 * 0.3 / (2 * a), 0.3 * m->opt.timestep) << push;
+  }
+}
+
+// Without rows there is no friction at all.
+TEST_F(Directional, VanishesWithTheRows) {
+  const auto m = Model(Wheel("implicitfast"));
+  m->opt.disableflags |= mjDSBL_FRICTIONLOSS;
+  const auto d = Data(m);
+  RunUntil(m, d, 1);
+  EXPECT_EQ(d->qvel[0], 0);
+}
+
+// The load of a gear is what others do to it.
+TEST_F(Directional, IsNoLoadToTheGear) {
+  std::string xml = Wheel("implicitfast");
+  xml.insert(xml.find("<plugin plugin=\"continuum.dir"),
+             "<plugin plugin=\"continuum.load_friction\"><instance name=\"l\">" +
+                 Key("joint", "q") + Key("mu_l", "0.5") + "</instance></plugin>");
+  const auto m = Model(xml);
+  const auto d = Data(m);
+  d->ctrl[0] = 0.04;
+  for (int k = 0; k < 3; ++k) mj_step(m.get(), d.get());
+  EXPECT_NEAR(d->efc_frictionloss[0], 0.5 * (kPlus + kMinus) + 0.5 * 0.5 * 0.04, 1e-15);
+}
+
 // I dv/dt = T − τ_c − b v from rest: v = v_end (1 − exp(−b t/I)), v_end = (T − τ_c)/b.
 TEST_P(Directional, SlidesOnEitherSideAsTheClosedForm) {
   for (const auto& [torque, level, b] :
