@@ -112,7 +112,7 @@ void RequireSpread(const Experiment& e, const Eigen::Matrix3Xd& points) {
                        std::to_string(points.cols()));
   }
   const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
-  const Vector3d spread = Eigen::SelfAdjointEigenSolver<Matrix3d>(centred * centred.transpose())
+  const Vector3d spread = Eigen::SelfAdjointEigenSolver<MatrixXd>(centred * centred.transpose())
                               .eigenvalues()
                               .cwiseMax(0)
                               .cwiseSqrt() /
@@ -124,14 +124,29 @@ void RequireSpread(const Experiment& e, const Eigen::Matrix3Xd& points) {
   }
 }
 
-// Kabsch: the proper rotation and the translation of least squared distance.
+// The proper rotation of least squared distance: its quaternion is the eigenvector of the largest
+// eigenvalue of a matrix made of the covariance S (Horn, J. Opt. Soc. Am. A 4(4), 1987, p. 629).
+Eigen::Quaterniond Turn(const Matrix3d& S) {
+  const Vector3d skew(S(1, 2) - S(2, 1), S(2, 0) - S(0, 2), S(0, 1) - S(1, 0));
+  MatrixXd N(4, 4);
+  N(0, 0) = S.trace();
+  N.block<3, 1>(1, 0) = skew;
+  N.block<1, 3>(0, 1) = skew.transpose();
+  N.block<3, 3>(1, 1) = S + S.transpose() - S.trace() * Matrix3d::Identity();
+  const VectorXd q = Eigen::SelfAdjointEigenSolver<MatrixXd>(N).eigenvectors().col(3);
+  return {q[0], q[1], q[2], q[3]};
+}
+
+// The rotation and the translation of least squared distance.
 void StartFrame(const Cloud& cloud, Registration& r) {
-  const Eigen::Matrix4d rigid = Eigen::umeyama(cloud.from, cloud.to, false);
-  const Matrix3d turn = rigid.topLeftCorner<3, 3>();
+  const Vector3d from = cloud.from.rowwise().mean(), to = cloud.to.rowwise().mean();
+  const Eigen::Quaterniond turn =
+      Turn((cloud.from.colwise() - from) * (cloud.to.colwise() - to).transpose());
   const Eigen::AngleAxisd rotation(turn);
+  const Vector3d shift = to - turn * from;
   for (int i = 0; i < 3; ++i) {
     r.rotation[i] = rotation.angle() * rotation.axis()[i];
-    r.translation[i] = rigid(i, 3);
+    r.translation[i] = shift[i];
   }
 }
 

@@ -20,10 +20,10 @@ constexpr double kFine = 2e-5;  // step of the chain [s]
 
 // RMS distance from the best straight line over the joints' numbers, relative to the spread.
 double Unevenness(const Joints& q) {
-  Eigen::Matrix<double, kAnnelidaLinks, 2> line;
-  for (int i = 0; i < kAnnelidaLinks; ++i) line.row(i) << 1, i;
-  const Joints residual = q - line * line.colPivHouseholderQr().solve(q);
-  return residual.norm() / (q - Even(q)).norm();
+  const Joints off = q - Even(q);
+  const Joints place = Joints::LinSpaced(-1, 1);
+  const Joints residual = off - (place.dot(off) / place.squaredNorm()) * place;
+  return residual.norm() / off.norm();
 }
 
 std::string Angles(const std::string& name, const Joints& q) {

@@ -1,9 +1,9 @@
 #include "models/tdcr/model.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "error.h"
+#include "models/solver/eigenvalues.h"
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
 
@@ -49,8 +49,7 @@ bool Stable(const Balance& balance, const Eigen::Matrix<double, N, 1>& x) {
   Vector f(x.size());
   Matrix jacobian(x.size(), x.size());
   if (!solver::Linearize(balance, x, f, jacobian)) return false;
-  const Matrix relative = balance.RelativeToUnloaded(jacobian);
-  return Eigen::EigenSolver<Matrix>(relative, false).eigenvalues().real().minCoeff() > -0.01;
+  return solver::LeastRealEigenvalue(balance.RelativeToUnloaded(jacobian)) > -0.01;
 }
 
 // The path of equilibria from zero load. Corrector steps can cross to an unstable branch where a

@@ -1,0 +1,11 @@
+#include "models/solver/eigenvalues.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace continuum::solver {
+
+double LeastRealEigenvalue(const Eigen::MatrixXd& matrix) {
+  return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues().real().minCoeff();
+}
+
+}  // namespace continuum::solver
