@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -8,7 +10,7 @@
 #include "app/console.h"
 #include "app/solve.h"
 #include "error.h"
-#include "identification/parallel.h"
+#include "sim/stop.h"
 
 namespace {
 
@@ -39,13 +41,18 @@ int Parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
+// Asks the work to end with whole files; who asks again does not want to wait for them.
+void Stop(int) {
+  if (continuum::StopRequested()) std::_Exit(1);
+  continuum::RequestStop();
+  constexpr char kText[] = "\ncontinuum: stopping; once more to end at once\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kText, sizeof kText - 1);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGINT, [](int) {
-    if (continuum::StopRequested()) std::_Exit(130);
-    continuum::RequestStop();
-  });
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, Stop);
   CLI::App app{
       "Continuum robots in MuJoCo: run, fit, and find out what the simulation gets wrong."};
   app.set_version_flag("--version", CONTINUUM_VERSION);

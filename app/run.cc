@@ -177,7 +177,7 @@ void RunModel(const Options& o) {
   if (frames.every == 0) frames.every = kFramePeriod;
   const Run shown = o.video.empty() ? Run{} : Plan(frames, *machine.model);
   std::string csv = Header(*machine.model);
-  Hooks hooks;
+  Hooks hooks = Hooks::Stoppable();
   hooks.row = [&](const mjModel& m, mjData& d, std::size_t row) {
     if (!run.written[row]) return;
     csv += Decimal(run.experiment.logs.front().time[row]);

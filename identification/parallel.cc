@@ -8,15 +8,8 @@
 #include <vector>
 
 namespace continuum {
-namespace {
-std::atomic<bool> stop_requested = false;
-static_assert(std::atomic<bool>::is_always_lock_free);  // set from a signal handler
-}  // namespace
 
 std::size_t ThreadCount() { return std::max(1u, std::thread::hardware_concurrency()); }
-
-void RequestStop() { stop_requested = true; }
-bool StopRequested() { return stop_requested; }
 
 void ParallelFor(std::size_t n, const std::function<void(std::size_t, std::size_t)>& work) {
   std::atomic<std::size_t> next = 0;

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "sim/stop.h"
+
 namespace continuum {
 
 /// Threads that parallel work uses: one per core.
@@ -11,9 +13,5 @@ std::size_t ThreadCount();
 /// Calls work(thread, i) for all i < n on ThreadCount() threads; an exception of any call is
 /// rethrown when all have ended.
 void ParallelFor(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work);
-
-/// Whether the user asked to stop (Ctrl-C); long work checks it between evaluations.
-void RequestStop();
-bool StopRequested();
 
 }  // namespace continuum

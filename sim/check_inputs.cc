@@ -6,6 +6,7 @@
 #include "error.h"
 #include "sim/check_model.h"
 #include "sim/check_series.h"
+#include "sim/stop.h"
 
 namespace continuum {
 namespace {
@@ -112,9 +113,9 @@ double InputTrials::ErrorOf(const Log& log) {
   Machine machine = system_.Build(log.set);
   Trace trace;
   try {
-    trace = Simulate(machine, experiment_, log);
+    trace = Simulate(machine, experiment_, log, {}, Hooks::Stoppable());
   } catch (const Error& error) {
-    if (error.kind() == Error::Kind::kInput) throw;
+    if (error.kind() == Error::Kind::kInput || StopRequested()) throw;
     return HUGE_VAL;
   }
   return trace.diverged ? HUGE_VAL : RelativeError(log, trace);

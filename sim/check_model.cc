@@ -8,6 +8,7 @@
 #include "sim/check_model.h"
 #include "sim/check_series.h"
 #include "sim/registration.h"
+#include "sim/stop.h"
 #include "sim/units.h"
 
 namespace continuum {
@@ -200,7 +201,7 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const System& sys
     Machine machine = system.Build(log.set);
     traces.emplace_back();
     try {
-      traces.back() = Simulate(machine, e, log);
+      traces.back() = Simulate(machine, e, log, {}, Hooks::Stoppable());
       const Trace& trace = traces.back();
       if (trace.diverged) {
         found.Add(Severity::kWarning, "", "diverged",
@@ -210,7 +211,7 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const System& sys
                   trace.diverged_at, trace.diverged_at);
       }
     } catch (const Error& error) {
-      if (error.kind() == Error::Kind::kInput) throw;
+      if (error.kind() == Error::Kind::kInput || StopRequested()) throw;
       found.Add(Severity::kWarning, "", "simulation", error.what());
       traces.back().diverged = true;
     }

@@ -86,13 +86,13 @@ class Shot {
       return true;
     };
     double next = 0;
-    Hooks look;
+    Hooks look = Hooks::Stoppable();
     look.row = [&](const mjModel& m, mjData& d, std::size_t row) {
       if (due(row, next)) renderer_.Include(m, d);
     };
     Simulate(machine_, e_, log_, {}, look);
     next = 0;
-    Hooks draw;
+    Hooks draw = Hooks::Stoppable();
     draw.row = [&](const mjModel& m, mjData& d, std::size_t row) {
       if (!due(row, next)) return;
       Overlay overlay;

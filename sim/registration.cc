@@ -358,7 +358,7 @@ Experiment Registered(const Experiment& e, const System& system) {
     traces.back().diverged = true;
     if (!log.train) continue;
     Machine machine = system.Build(log.set);
-    traces.back() = Simulate(machine, e, log);
+    traces.back() = Simulate(machine, e, log, {}, Hooks::Stoppable());
   }
   out.registration = Registered(e, wiring, system.model(), traces);
   return out;

@@ -15,6 +15,7 @@
 #include "sim/inputs.h"
 #include "sim/quasi_static.h"
 #include "sim/recorder.h"
+#include "sim/stop.h"
 
 namespace continuum {
 namespace {
@@ -170,6 +171,10 @@ double FirstMeasured(const Experiment& e, const Log& log, std::size_t channel) {
 
 }  // namespace
 
+Hooks Hooks::Stoppable() {
+  return {{}, [](const mjModel&, mjData&) { StopIfRequested(); }};
+}
+
 Wiring::Wiring(const Experiment& e, const mjModel& m) {
   for (const Input& in : e.inputs) {
     actuator.push_back(ActuatorId(m, in.actuator, in.where));
@@ -243,6 +248,7 @@ InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log) 
     Eigen::VectorXd r = residual(load);
     balanced = false;
     for (int iteration = 0; iteration < 60 && !balanced; ++iteration) {
+      StopIfRequested();
       const std::vector<double> q(d.qpos, d.qpos + m.nq);
       Eigen::MatrixXd J(nv, nv);
       for (int i = 0; i < nv; ++i) {

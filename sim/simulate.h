@@ -34,6 +34,9 @@ struct Hooks {
   std::function<void(const mjModel&, mjData&, std::size_t row)> row = {};
   /// Before every step; may write qfrc_applied.
   std::function<void(const mjModel&, mjData&)> step = {};
+
+  /// Hooks that end the simulation with an Error (kJob) when the user asks to stop.
+  static Hooks Stoppable();
 };
 
 /// Names of an experiment resolved in a model. Throws Error for unknown actuators and sensors.

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "support/scratch.h"
@@ -19,9 +22,15 @@ struct Finished {
   std::string out, err;
 };
 
+/// A signal sent as soon as a process has written a text to standard error.
+struct Interruption {
+  std::string after;
+  int signal = SIGINT;
+};
+
 /// Runs a program in a folder to its end; after so many seconds it is ended by SIGALRM.
 inline Finished RunProcess(std::vector<std::string> command, const std::filesystem::path& folder,
-                           unsigned seconds = 60) {
+                           unsigned seconds = 60, const Interruption& interruption = {}) {
   const Scratch scratch;
   std::vector<char*> argv;
   for (std::string& word : command) argv.push_back(word.data());
@@ -40,7 +49,16 @@ inline Finished RunProcess(std::vector<std::string> command, const std::filesyst
     _exit(127);
   }
   int status = 0;
-  waitpid(child, &status, 0);
+  bool ended = false;
+  while (!interruption.after.empty() && !ended) {
+    if (Scratch::Text(err).find(interruption.after) != std::string::npos) {
+      kill(child, interruption.signal);
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ended = waitpid(child, &status, WNOHANG) == child;
+  }
+  if (!ended) waitpid(child, &status, 0);
   Finished finished;
   if (WIFEXITED(status)) finished.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) finished.signal = WTERMSIG(status);

@@ -1,0 +1,66 @@
+#include <cmath>
+
+#include "bench.h"
+
+namespace continuum {
+namespace {
+
+using testing::Finished;
+using ::testing::HasSubstr;
+using testing::Scratch;
+
+// Jobs that would take hours: a log of 1e9 time steps, or a fit to 3e5.
+class Stop : public testing::AppBench {
+ protected:
+  void SetUp() override {
+    std::string text = "t,u,q\n";
+    for (int k = 0; k < 20; ++k) text += std::to_string(k * 5e5) + ",0.1,0.1\n";
+    files_.Write("log.csv", text);
+  }
+  Finished Interrupt(std::vector<std::string> arguments, const std::string& after,
+                     int signal = SIGINT) const {
+    arguments.insert(arguments.begin(), CONTINUUM_EXECUTABLE);
+    return testing::RunProcess(std::move(arguments), files_.folder(), 60, {after, signal});
+  }
+  // It says so, exits as a job that failed, and leaves no file.
+  void ExpectStops(const std::vector<std::string>& arguments, const std::string& after,
+                   int signal = SIGINT) const {
+    const auto before = Listing();
+    const Finished f = Interrupt(arguments, after, signal);
+    EXPECT_EQ(f.signal, 0) << "it died of the signal, or did not stop";
+    EXPECT_EQ(f.exit_code, 1) << f.err;
+    EXPECT_THAT(f.err, HasSubstr("continuum: interrupted"));
+    EXPECT_EQ(Listing(), before);
+  }
+};
+
+TEST_F(Stop, EndsAReplay) {
+  ExpectStops({"replay", "experiment.yaml", "--out", "out"}, "log 1 of 1");
+}
+
+TEST_F(Stop, EndsAReplayThatIsTerminated) {
+  ExpectStops({"replay", "experiment.yaml", "--out", "out"}, "log 1 of 1", SIGTERM);
+}
+
+TEST_F(Stop, EndsAFilm) {
+  ExpectStops({"render", "experiment.yaml", "--out", "x.mp4"}, "film of log");
+}
+
+TEST_F(Stop, OfAFitLeavesTheBestSoFar) {
+  std::string text = "t,u,q\n";
+  for (int k = 0; k < 3000; ++k) {
+    const double t = 0.1 * k;
+    text += std::to_string(t) + "," + std::to_string(std::sin(t)) + "," +
+            std::to_string(0.02 * std::sin(1.7 * t)) + "\n";
+  }
+  files_.Write("log.csv", text);
+  const Finished f = Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"},
+                               "iteration  0");
+  EXPECT_EQ(f.signal, 0);
+  EXPECT_EQ(f.exit_code, 1) << f.err;
+  EXPECT_THAT(f.err, HasSubstr("interrupted"));
+  EXPECT_THAT(Scratch::Text(files_ / "out/fit.json"), HasSubstr("\"parameters\""));
+}
+
+}  // namespace
+}  // namespace continuum
