@@ -1,4 +1,5 @@
 #include <memory>
+#include <numeric>
 #include <sstream>
 
 #include "app/console.h"
@@ -31,17 +32,18 @@ void RunRender(const Options& o) {
   film.camera = o.camera;
   film.gl = ParseGl(o.gl);
   film.progress = ShowProgress;
-  const Experiment e = Experiment::Read(o.experiment);
+  Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
   const std::filesystem::path out = o.out;
+  if (!o.log.empty()) {
+    std::erase_if(e.logs, [&](const Log& log) { return log.label != o.log; });
+    if (e.logs.empty()) throw Error::Input("--log", "a log of the experiment", "'" + o.log + "'");
+  }
   if (out.extension() == ".png") return PictureOf(e, system, out, film);
   if (out.extension() != ".mp4")
     throw Error::Input("--out", "a name that ends in .mp4 or .png", "'" + o.out + "'");
-  std::vector<std::size_t> logs;
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    if (o.log.empty() || e.logs[l].label == o.log) logs.push_back(l);
-  }
-  if (logs.empty()) throw Error::Input("--log", "a log of the experiment", "'" + o.log + "'");
+  std::vector<std::size_t> logs(e.logs.size());
+  std::iota(logs.begin(), logs.end(), 0);
   FilmExperiment(e, system, logs, out, film);
 }
 

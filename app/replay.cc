@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/console.h"
+#include "identification/problem.h"
 #include "sim/check.h"
 #include "sim/file.h"
 #include "sim/film.h"
@@ -20,16 +21,22 @@ struct Options {
   bool video = false;
 };
 
+// Names, units and known values, and the parameters as a fit would take them.
+void CheckAll(const Experiment& e, const System& system) {
+  CheckNames(e, system);
+  const Problem problem(e, system);
+}
+
 void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
-  CheckNames(e, system);
+  CheckAll(e, system);
   const OutFolder made(o.out);
   const std::filesystem::path folder = o.out;
   const auto logs = Replay(e, system, ShowProgress);
   EndProgress();
   std::vector<Trace> traces;
-  double mae = 0, rows = 0;
+  std::vector<ChannelScore> scores;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     traces.push_back(logs[l].trace);
     for (const ChannelScore& s : logs[l].score) {
@@ -37,14 +44,13 @@ void RunReplay(const Options& o) {
           "%-28s %-8s %-12s rmse %.4g  mean abs. %.4g  largest %.4g %s at %.3f s  fit %.1f %%\n",
           e.logs[l].label.c_str(), e.logs[l].train ? "train" : "validate", s.channel.c_str(),
           s.rmse, s.mae, s.largest, s.unit.c_str(), s.when, s.fit);
-      mae += s.mae, rows += 1;
+      scores.push_back(s);
     }
   }
   const SplitError error = PooledError(e, logs);
   const std::string unit = Pool(e).unit();
-  std::printf(
-      "all: RMS %.4g (train), %.4g (validate) %s; mean absolute error averaged over logs %.4g\n",
-      error.train, error.validate, unit.c_str(), rows > 0 ? mae / rows : 0);
+  std::printf("all: RMS %.4g (train), %.4g (validate) %s%s\n", error.train, error.validate,
+              unit.c_str(), MeanAbsoluteInWords(scores).c_str());
   for (const auto& line : RegistrationLines(e.registration)) std::printf("%s\n", line.c_str());
   auto errors = ErrorsJson(e, logs);
   const auto registration = RegistrationJson(e.registration);
@@ -70,8 +76,10 @@ struct CheckOptions {
 
 void RunCheck(const CheckOptions& o) {
   const Experiment e = Experiment::Read(o.experiment);
+  const System system = System::Load(e.model);
+  CheckAll(e, system);
   auto findings = CheckLogs(e);
-  const auto more = CheckAgainstModel(e, System::Load(e.model));
+  const auto more = CheckAgainstModel(e, system);
   findings.insert(findings.end(), more.begin(), more.end());
   const std::string text = o.json ? ToJson(findings).dump(2) + "\n" : Report(findings);
   std::fwrite(text.data(), 1, text.size(), stdout);

@@ -48,8 +48,9 @@ class Recording {
       throw Error::Input(name_, "a column '" + column + "'", all);
     }
     const double value = mat_->values[found - mat_->names.begin()][row];
-    if (std::isfinite(value) || (may_miss && std::isnan(value))) return value;
-    throw Error::Input(Where(row) + ", column '" + column + "'", "a finite number", "none");
+    if (std::abs(value) <= Table::kLargest || (may_miss && std::isnan(value))) return value;
+    throw Error::Input(Where(row) + ", column '" + column + "'", "a number within +-1e100",
+                       std::isnan(value) ? "none" : Decimal(value));
   }
 
  private:
@@ -399,7 +400,10 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
     time->Only({"column", "unit", "skew"});
     e.time_column = TextOr(*time, "column", "time");
     e.time_unit = TextOr(*time, "unit", "s");
-    if (const auto unit = time->Find("unit")) time_unit = UnitFactor(e.time_unit, unit->Where());
+    if (const auto unit = time->Find("unit")) {
+      time_unit = UnitFactor(e.time_unit, unit->Where());
+      RequireUnitLike("s", e.time_unit, unit->Where());
+    }
     e.skew = NumberOr(*time, "skew", 0);
     if (e.skew <= -1) throw Error::Input(time->At("skew").Where(), "a skew above -1", "less");
   }

@@ -106,6 +106,7 @@ struct Candidate {
   std::string effect;
   std::string where;  ///< "joint:GLOB", "tendon:GLOB", …; empty: everywhere it makes sense
   bool per_condition = false;
+  bool operator==(const Candidate&) const = default;
 };
 
 /// Everything a replay, a fit or a diagnosis needs, from one EXPERIMENT.yaml.

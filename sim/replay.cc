@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "sim/check_units.h"
 #include "sim/file.h"
+#include "sim/possible.h"
 #include "sim/registration.h"
 
 namespace continuum {
@@ -30,10 +32,11 @@ void AddRegistration(Page& page, const Registration& r) {
 }  // namespace
 
 void CheckNames(const Experiment& e, const System& system) {
-  const Wiring wiring(e, system.model());
+  CheckUnits(e, system.model());
   for (const Log& log : e.logs) {
     if (log.set.empty()) continue;
     try {
+      for (const Change& change : log.set) RequirePossible(change);
       system.Build(log.set);
     } catch (const Error& error) {
       throw Error::Input(e.file.string() + ": set of log '" + log.label + "'", error.what());
@@ -48,7 +51,7 @@ std::vector<Replayed> Replay(Experiment& e, const System& system,
     if (progress)
       progress(fmt::format("log {} of {}: {}", traces.size() + 1, e.logs.size(), log.label));
     Machine machine = system.Build(log.set);
-    traces.push_back(Simulate(machine, e, log));
+    traces.push_back(Simulate(machine, e, log, {}, Hooks::Stoppable()));
     if (traces.back().diverged) throw Error::Job(log.label + ": " + traces.back().Failure());
   }
   const Wiring wiring(e, system.model());

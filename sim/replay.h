@@ -18,8 +18,8 @@ struct Replayed {
   std::vector<ChannelScore> score;
 };
 
-/// Throws Error (file and place) when an experiment names what its model lacks, or a log's known
-/// values do not compile: before the first simulation.
+/// Throws Error (file and place) when an experiment names what its model lacks, when its units do
+/// not fit, or when a log's known values do not compile: before the first simulation.
 void CheckNames(const Experiment& experiment, const System& system);
 
 /// Every log of an experiment as it stands; what its registration leaves open is estimated from the

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/core.h>
+
 namespace continuum {
 namespace {
 
@@ -97,6 +99,17 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
     scores.push_back(s);
   }
   return scores;
+}
+
+std::string MeanAbsoluteInWords(const std::vector<ChannelScore>& scores) {
+  double sum = 0;
+  for (const ChannelScore& s : scores) {
+    if (s.unit != scores.front().unit) return "";
+    sum += s.mae;
+  }
+  if (scores.empty()) return "";
+  return fmt::format("; mean absolute error averaged over logs and channels {:.4g} {}",
+                     sum / static_cast<double>(scores.size()), scores.front().unit);
 }
 
 Pool::Pool(const Experiment& e) {

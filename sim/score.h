@@ -30,6 +30,10 @@ struct ChannelScore {
 };
 std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Trace& trace);
 
+/// "; mean absolute error averaged over logs and channels 0.0736 rad"; empty when the scores have
+/// several units.
+std::string MeanAbsoluteInWords(const std::vector<ChannelScore>& scores);
+
 /// One unit for all channels, so that errors can be pooled: the channels' own when they share one,
 /// else "std", the standard deviation of each channel's measured train rows.
 class Pool {

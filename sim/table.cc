@@ -126,8 +126,10 @@ double Table::Number(std::size_t row, std::string_view column) const {
   const char* const end = cell.data() + cell.size();
   double value = 0;
   const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error == std::errc{} && stop == end && std::isfinite(value)) return value;
-  throw Error::Input(Where(row) + ", column '" + std::string(column) + "'", "a finite number",
+  const bool read = error == std::errc{} && stop == end && std::isfinite(value);
+  if (read && std::abs(value) <= kLargest) return value;
+  throw Error::Input(Where(row) + ", column '" + std::string(column) + "'",
+                     read ? "a number within +-1e100" : "a finite number",
                      cell.empty() ? "an empty cell" : "'" + cell + "'");
 }
 

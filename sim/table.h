@@ -13,6 +13,8 @@ namespace continuum {
 /// names file and line.
 class Table {
  public:
+  static constexpr double kLargest = 1e100;  ///< the sum of squares of such numbers is finite
+
   static Table Read(const std::filesystem::path& file);
   /// name stands for the file in messages.
   static Table Parse(std::string_view text, std::string name);
@@ -26,7 +28,7 @@ class Table {
   std::string Where(std::size_t row) const;
   /// Throws Error when there is no such column.
   const std::string& Text(std::size_t row, std::string_view column) const;
-  /// A finite number; throws Error (file:line, column, cell) otherwise.
+  /// A number of at most kLargest in size; throws Error (file:line, column, cell) otherwise.
   double Number(std::size_t row, std::string_view column) const;
   /// As Number, but an empty cell or "nan" is NaN: a value that was not measured.
   double NumberOrNan(std::size_t row, std::string_view column) const;

@@ -24,6 +24,15 @@ TEST_P(BadFile, IsRefusedByFileAndPlace) {
   ExpectRefused({"replay", "experiment.yaml", "--out", "out/of/it"}, words);
 }
 
+class BadFileOnceMore : public testing::AppBench {};
+
+TEST_F(BadFileOnceMore, IsRefusedByCheck) {
+  Spoil("experiment.yaml", "joint:hinge", "joint:elbow");
+  ExpectRefused({"check", "experiment.yaml"}, {"yaml:6: parameters[0]", "elbow"});
+  Spoil("experiment.yaml", "unit: rad", "unit: kg");
+  ExpectRefused({"check", "experiment.yaml"}, {"yaml:5: outputs[0].unit", "'rad'", "'kg'"});
+}
+
 const std::string kJunk("\x7f\x45LF\0\1\2\3\xff\xfe\n\0;\t\x80", 16);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -41,7 +50,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"Word", "log.csv", "0.1,0.1,0.01", "0.1,up,0.01", {"log.csv:3", "'u'", "'up'"}},
         Bad{"TwoSigns", "log.csv", "0.1,0.1,0.01", "0.1,+-1,0.01", {"log.csv:3", "'+-1'"}},
         Bad{"HugeNumber", "log.csv", "0.1,0.1,0.01", "0.1,1e999,0.01", {"log.csv:3", "1e999"}},
-        Bad{"HugeTime", "log.csv", "0.3,", "1e300,", {"1e9 time steps", "1e+300"}},
+        Bad{"HugeTime", "log.csv", "0.3,", "1e50,", {"1e9 time steps", "1e+50"}},
+        Bad{"HugeOutput",
+            "log.csv",
+            "0.1,0.1,0.01",
+            "0.1,0.1,1e300",
+            {"log.csv:3", "'q'", "1e100"}},
+        Bad{"HugeInput", "log.csv", "0.1,0.1,0.01", "0.1,1e300,0", {"log.csv:3", "'u'", "1e100"}},
         Bad{"TimeGoesBack", "log.csv", "0.2,0.1", "0.05,0.1", {"log.csv:4", "0.05 after 0.1"}},
         Bad{"TimeStands", "log.csv", "0.2,0.1", "0.1,0.1", {"log.csv:4", "0.1 after 0.1"}},
         Bad{"ColumnTwice", "log.csv", "t,u,q", "t,u,q,q", {"log.csv:1", "'q' twice"}},
@@ -124,6 +139,52 @@ INSTANTIATE_TEST_SUITE_P(
             "{file: log.csv}",
             "{file: log.csv, set: {\"joint:hinge\": {colour: 1}}}",
             {"'log'", "colour"}},
+        Bad{"NegativeMassOfALog",
+            "experiment.yaml",
+            "{file: log.csv}",
+            "{file: log.csv, set: {\"body:link\": {mass: -1}}}",
+            {"'log'", "body:link: mass", ">= 0 kg", "-1"}},
+        Bad{"NegativeInertiaOfALog",
+            "experiment.yaml",
+            "{file: log.csv}",
+            "{file: log.csv, set: {\"body:link\": {\"inertia[1]\": -0.1}}}",
+            {"'log'", "inertia[1]", ">= 0 kg*m^2", "-0.1"}},
+        Bad{"NegativeDampingOfALog",
+            "experiment.yaml",
+            "{file: log.csv}",
+            "{file: log.csv, set: {\"joint:hinge\": {damping: -2}}}",
+            {"'log'", "joint:hinge: damping", ">= 0", "-2"}},
+        Bad{"NoTimeStepOfALog",
+            "experiment.yaml",
+            "{file: log.csv}",
+            "{file: log.csv, set: {option: {timestep: 0}}}",
+            {"'log'", "option: timestep", "> 0 s", "0"}},
+        Bad{"TimeInMetres", "experiment.yaml", "unit: s", "unit: m", {"yaml:3", "'s'", "'m'"}},
+        Bad{"AngleInKilograms",
+            "experiment.yaml",
+            "unit: rad",
+            "unit: kg",
+            {"yaml:5: outputs[0].unit", "'rad'", "'kg'"}},
+        Bad{"PositionInRadians",
+            "experiment.yaml",
+            "unit: rad, sensor: angle",
+            "unit: rad, sensor: 'tip_pos[0]'",
+            {"yaml:5: outputs[0].unit", "'m'", "'rad'"}},
+        Bad{"TorqueInNewtons",
+            "experiment.yaml",
+            "unit: Nm",
+            "unit: N",
+            {"yaml:4: inputs[0].unit", "'Nm'", "'N'"}},
+        Bad{"UnknownTargetOfAParameter",
+            "experiment.yaml",
+            "joint:hinge",
+            "joint:elbow",
+            {"yaml:6: parameters[0]", "elbow"}},
+        Bad{"StartOutsideItsBounds",
+            "experiment.yaml",
+            "lower: 0.01",
+            "lower: 0.5",
+            {"yaml:6: parameters[0]", "0.5", "0.1", "what the model has"}},
         Bad{"FutureFormat", "experiment.yaml", "format: 1", "format: 2", {"yaml:1", "format 1"}}),
     testing::kCaseName);
 

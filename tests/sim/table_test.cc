@@ -64,6 +64,11 @@ TEST(Table, SaysWhichCellIsNoFiniteNumber) {
                 AllOf(HasSubstr("log.csv:2"), HasSubstr("'x'"), HasSubstr("finite number")))
         << cell;
   }
+  for (const std::string cell : {"1e101", "-1e300"}) {  // finite, but its square is not
+    const Table t = Table::Parse("t,x\n0," + cell + "\n", "log.csv");
+    EXPECT_THAT(Message([&] { t.NumberOrNan(0, "x"); }),
+                AllOf(HasSubstr("log.csv:2"), HasSubstr("within +-1e100"), HasSubstr(cell)));
+  }
   const Table t = Table::Parse("t\n0\n", "log.csv");
   EXPECT_THAT(Message([&] { t.Numbers("x"); }),
               AllOf(HasSubstr("column 'x'"), HasSubstr("found t")));
