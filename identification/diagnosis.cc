@@ -155,7 +155,7 @@ class Session {
     }
     if (!d_.partner) {
       d_.verdict.text = "named";
-      d_.verdict.reason = "it leaves nothing but noise";
+      d_.verdict.reason = "it leaves " + LeftInWords(d_.lack.smallest());
     } else if (d_.partner->equivalent.empty()) {
       d_.verdict.text = "named";
     }

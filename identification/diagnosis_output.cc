@@ -388,9 +388,9 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
                   d.noise.rms, unit, d.noise.source, d.noise.step,
                   d.noise.rms > 0 ? told.after.train / std::hypot(d.noise.rms, d.noise.step) : 0);
   if (d.noise_limited) {
-    text +=
-        fmt::format("left      p = {:.2g} (smooth forces), {:.2g} (channels): noise when large\n",
-                    d.lack.force, d.lack.channel);
+    text += fmt::format(
+        "left      p = {:.2g} (smooth forces), {:.2g} (channels); significant below {:g}\n",
+        d.lack.force, d.lack.channel, LikelihoodRules{}.lack);
   } else {
     text += fmt::format("ceiling   {:.4g} {} on validate with a smooth force without a name\n",
                         d.ceiling_error.validate, unit);
@@ -402,7 +402,7 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
   }
   text += "ranking  ";
   for (const CandidateResult& c : d.candidates) {
-    text += fmt::format(" {} {:.0f} %,", c.hypothesis.Name(), 100 * Share(d, c));
+    text += fmt::format(" {} {:.0f} %,", c.hypothesis.NameAtPlace(), 100 * Share(d, c));
   }
   if (text.back() == ',') text.back() = '\n';
   if (d.verdict.named.size() > 1)

@@ -133,7 +133,7 @@ class Story {
       const auto& c = d_.candidates[i];
       const bool named =
           std::find(d_.verdict.named.begin(), d_.verdict.named.end(), i) != d_.verdict.named.end();
-      bars.bars.push_back({c.hypothesis.Name(), 100 * Share(d_, c), 0, named});
+      bars.bars.push_back({c.hypothesis.NameAtPlace(), 100 * Share(d_, c), 0, named});
       auto p = c.record.placebo_gains;
       std::sort(p.begin(), p.end());
       if (!p.empty()) placebo = std::max(placebo, p[(p.size() - 1) * 95 / 100]);
@@ -147,7 +147,7 @@ class Story {
     for (const auto& c : d_.candidates) {
       std::string why;
       for (const auto& f : c.failures) why += (why.empty() ? "" : "; ") + f;
-      if (!why.empty()) items.push_back("**" + c.hypothesis.Name() + "**: " + why + ".");
+      if (!why.empty()) items.push_back("**" + c.hypothesis.NameAtPlace() + "**: " + why + ".");
     }
     page_.Details("Why the others are not named", [&] { page_.List(items); });
     if (d_.verdict.named.size() > 1) {
@@ -191,7 +191,7 @@ class Story {
       rows[0].push_back(fmt::format("{:.4g}", error));
     for (const auto& c : d_.candidates) {
       if (c.record.after.empty()) continue;
-      rows.push_back({c.hypothesis.Name()});
+      rows.push_back({c.hypothesis.NameAtPlace()});
       for (const double error : c.record.after) rows.back().push_back(fmt::format("{:.4g}", error));
     }
     if (!d_.ceiling.error.empty()) rows.push_back({"smooth force (ceiling)"});

@@ -206,7 +206,7 @@ std::vector<std::vector<double>> StartsOf(const Hypothesis& h) {
 std::string InWords(Place place, const std::vector<std::string>& names) {
   if (place == Place::kWorld) return "world";
   std::string text(PlaceName(place));
-  if (names.size() > 1) text += "s";
+  if (names.size() > 1) text = place == Place::kBody ? "bodies" : text + "s";
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (i == 6) return text + fmt::format(" … ({} in all)", names.size());
     text += (i ? ", " : " ") + names[i];
@@ -544,7 +544,10 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system
     for (const EffectInfo& effect : Catalog())
       AddEffect(effect, {}, e, system, sizes, all, skipped);
   } else {
+    std::vector<Candidate> seen;
     for (const Candidate& c : e.candidates) {
+      if (std::find(seen.begin(), seen.end(), c) != seen.end()) continue;
+      seen.push_back(c);
       AddEffect(EffectNamed(c.effect), c, e, system, sizes, all, skipped);
     }
   }

@@ -33,6 +33,7 @@ struct Hypothesis {
   /// Those of extra that say whether the effect is there.
   std::vector<std::size_t> Amplitudes() const;
   std::string Name() const { return variant.empty() ? effect : effect + " (" + variant + ")"; }
+  std::string NameAtPlace() const { return Name() + " at " + where; }
 };
 
 /// The candidates of an experiment that make sense in its model, one Hypothesis per effect and

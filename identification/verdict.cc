@@ -140,6 +140,13 @@ std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candida
   return out;
 }
 
+std::string LeftInWords(double lack, const LikelihoodRules& rules) {
+  constexpr double kPlain = 0.05;  // below it "noise" would say too much
+  if (lack >= kPlain) return "nothing but noise";
+  return fmt::format("nothing that is significant at the level {:g} (p = {:.2g})", rules.lack,
+                     lack);
+}
+
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double lack, double p,
                          const LikelihoodRules& rules) {
   // First order may promise what no fit keeps.
@@ -152,12 +159,12 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
   if (!any) {
     return {"adequate",
             {},
-            p < rules.level
-                ? std::string("what the model leaves is noise: no candidate's fit gains more than "
-                              "its parameters gain from noise alone")
-                : fmt::format("what the model leaves is noise: noise alone lets the best candidate "
-                              "do as well with p = {:.2g}",
-                              p)};
+            fmt::format("the model leaves {}: ", LeftInWords(lack, rules)) +
+                (p < rules.level
+                     ? std::string("no candidate's fit gains more than its parameters gain from "
+                                   "noise alone")
+                     : fmt::format("noise alone lets the best candidate do as well with p = {:.2g}",
+                                   p))};
   }
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -190,9 +197,10 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
     verdict.reason = fmt::format("the likelihoods of {} candidates are within {:g}",
                                  verdict.named.size(), rules.apart);
   } else {
-    verdict.reason = fmt::format(
-        "it leaves nothing but noise, and the next candidate is {:.1f} behind in likelihood",
-        score(best) - (order.size() > 1 ? score(order[best == order[0] ? 1 : 0]) : 0));
+    verdict.reason =
+        fmt::format("it leaves {}, and the next candidate is {:.1f} behind in likelihood",
+                    LeftInWords(lack, rules),
+                    score(best) - (order.size() > 1 ? score(order[best == order[0] ? 1 : 0]) : 0));
   }
   return verdict;
 }

@@ -68,6 +68,10 @@ Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, doub
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double lack, double p,
                          const LikelihoodRules& rules = {});
 
+/// What a model leaves whose remainder noise alone would exceed with this probability (from the
+/// level rules.lack on), as in "it leaves nothing but noise".
+std::string LeftInWords(double lack, const LikelihoodRules& rules = {});
+
 /// Likelihood less what its parameters gain from noise alone.
 double ScoreOf(const LikelihoodRecord& record, const LikelihoodRules& rules = {});
 

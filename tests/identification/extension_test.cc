@@ -178,6 +178,19 @@ TEST_P(Applied, GivesTheSameModelAsTheExtensionWithTheSameErrors) {
   }
 }
 
+TEST_F(ExtensionTest, ACandidateThatIsListedTwiceIsTriedOnce) {
+  AddTrials(0.05);
+  const System system = Model(CoulombInstance(0.1));
+  std::vector<std::string> skipped;
+  const auto count = [&](const std::string& candidates) {
+    const Experiment e = ReadExperiment(kScaled + "candidates: [" + candidates + "]\n");
+    const Problem null(e, system);
+    return MakeCandidates(e, system, SizesOf(null, null.Start()), skipped).size();
+  };
+  EXPECT_EQ(count("payload, payload"), count("payload"));
+  EXPECT_GT(count("payload, backlash"), count("payload"));
+}
+
 TEST_F(ExtensionTest, ApplyNamesWhatIsMissing) {
   const System system = Model();
   for (const char* text : {"{}", R"({"extension": {"changes": []}})"}) {

@@ -277,6 +277,15 @@ TEST(JudgeLikelihoods, NothingIsNamedThatNoFitConfirms) {
   EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, 1e-4, 1e-3).text, "unexplained");
 }
 
+TEST(Likelihoods, NoiseIsSaidOnlyWhereNoTestDoubtsIt) {
+  const std::vector<LikelihoodRecord> clear{{"a", 1, 10}, {"b", 1, 40}};
+  EXPECT_THAT(JudgeLikelihoods(clear, 0.5, 1e-3).reason, HasSubstr("nothing but noise"));
+  const auto doubtful = JudgeLikelihoods(clear, 0.004, 1e-3);
+  EXPECT_EQ(doubtful.text, "named");
+  EXPECT_THAT(doubtful.reason, HasSubstr("significant at the level 0.002 (p = 0.004)"));
+  EXPECT_THAT(JudgeLikelihoods({}, 0.004, 0.3).reason, HasSubstr("at the level 0.002"));
+}
+
 TEST(Likelihoods, TheClearlyLikeliestIsNamed) {
   const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 34}}, 0.5, 1e-3);
   EXPECT_EQ(v.text, "named");
