@@ -92,10 +92,10 @@ const char* Way(const Options& o, const Problem& problem) {
 void Print(const Problem& problem, const Fitting& all, const std::string& out) {
   const Experiment& e = problem.experiment();
   const Fit& fit = all.fit;
-  double mae = 0, count = 0;
+  std::vector<ChannelScore> scores;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    for (const ChannelScore& s : ScoreLog(e, e.logs[l], problem.Predict(fit.x, l)))
-      mae += s.mae, count += 1;
+    const auto more = ScoreLog(e, e.logs[l], problem.Predict(fit.x, l));
+    scores.insert(scores.end(), more.begin(), more.end());
   }
   for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
@@ -109,8 +109,7 @@ void Print(const Problem& problem, const Fitting& all, const std::string& out) {
               unit.c_str());
   if (std::find(validate.begin(), validate.end(), true) != validate.end())
     std::printf(", %.4g on validate", problem.PooledRms(r, validate));
-  std::printf("; mean absolute error averaged over logs and channels %.4g\n",
-              count > 0 ? mae / count : 0);
+  std::printf("%s\n", MeanAbsoluteInWords(scores).c_str());
   if (all.regression) {
     std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
                 all.regression->train, all.regression->validate);

@@ -20,15 +20,6 @@ std::string OfTendon(const mjModel& m, int tendon, const char* unit) {
   return m.tendon_num[tendon] > 0 && m.wrap_type[first] != mjWRAP_JOINT ? unit : "";
 }
 
-// Of the force of an actuator that acts without a gear; empty: any.
-std::string OfActuator(const mjModel& m, int actuator) {
-  const int object = m.actuator_trnid[2 * actuator];
-  if (m.actuator_gear[6 * actuator] != 1) return "";
-  if (m.actuator_trntype[actuator] == mjTRN_JOINT) return OfJoint(m, object, "Nm", "N");
-  if (m.actuator_trntype[actuator] == mjTRN_TENDON) return OfTendon(m, object, "N");
-  return "";
-}
-
 std::string OfSensor(const mjModel& m, int sensor) {
   const int object = m.sensor_objid[sensor];
   switch (m.sensor_type[sensor]) {
@@ -42,8 +33,6 @@ std::string OfSensor(const mjModel& m, int sensor) {
       return OfTendon(m, object, "m");
     case mjSENS_TENDONVEL:
       return OfTendon(m, object, "m/s");
-    case mjSENS_ACTUATORFRC:
-      return OfActuator(m, object);
     case mjSENS_FRAMEPOS:
     case mjSENS_SUBTREECOM:
     case mjSENS_RANGEFINDER:
@@ -69,13 +58,6 @@ std::string OfSensor(const mjModel& m, int sensor) {
   }
 }
 
-// Whether the control is the force itself.
-bool IsForce(const mjModel& m, int actuator) {
-  return m.actuator_gaintype[actuator] == mjGAIN_FIXED &&
-         m.actuator_gainprm[mjNGAIN * actuator] == 1 &&
-         m.actuator_biastype[actuator] == mjBIAS_NONE && m.actuator_dyntype[actuator] == mjDYN_NONE;
-}
-
 // An output whose scale is given or sought may be in the unit of the sensor's signal.
 bool IsScaled(const Experiment& e, const Output& out) {
   if (out.measurement.scale != 1) return true;
@@ -88,23 +70,12 @@ bool IsScaled(const Experiment& e, const Output& out) {
 
 void CheckUnits(const Experiment& e, const mjModel& m) {
   const Wiring wiring(e, m);
-  const auto require = [](const std::string& expected, const std::string& unit,
-                          const std::string& where) {
-    if (!expected.empty()) RequireUnitLike(expected, unit, where + ".unit");
-  };
-  for (std::size_t i = 0; i < e.inputs.size(); ++i) {
-    const int actuator = wiring.actuator[i];
-    if (IsForce(m, actuator)) require(OfActuator(m, actuator), e.inputs[i].unit, e.inputs[i].where);
-  }
   for (std::size_t i = 0; i < e.outputs.size(); ++i) {
     const Output& out = e.outputs[i];
     const auto& source = wiring.output[i];
-    if (IsScaled(e, out) || out.quaternion()) continue;
-    if (source.kind == Output::Kind::kSensor) {
-      require(OfSensor(m, source.sensor), out.unit, out.where);
-    } else if (source.kind == Output::Kind::kForce || IsForce(m, source.address)) {
-      require(OfActuator(m, source.address), out.unit, out.where);
-    }
+    if (source.kind != Output::Kind::kSensor || IsScaled(e, out) || out.quaternion()) continue;
+    const std::string expected = OfSensor(m, source.sensor);
+    if (!expected.empty()) RequireUnitLike(expected, out.unit, out.where + ".unit");
   }
 }
 
