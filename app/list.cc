@@ -51,15 +51,22 @@ void ListEffects(bool json) {
   if (json) std::printf("%s\n", all.dump(2).c_str());
 }
 
-// models/<robot>/<robot>.xml beside the sources or the installation.
+// The folder models/ of the installation that this executable belongs to, or of the sources.
+std::filesystem::path ModelsFolder() {
+  namespace fs = std::filesystem;
+  std::error_code unknown;
+  const fs::path prefix = fs::read_symlink("/proc/self/exe", unknown).parent_path().parent_path();
+  const fs::path installed = prefix / "share/mujoco_continuum/models";
+  return fs::is_directory(installed, unknown) ? installed : fs::path(CONTINUUM_MODELS);
+}
+
+// <robot>/<robot>.xml of every robot.
 std::vector<std::filesystem::path> Models() {
   std::vector<std::filesystem::path> found;
-  for (const std::filesystem::path root : {CONTINUUM_MODELS}) {
-    if (!std::filesystem::is_directory(root)) continue;
-    for (const auto& entry : std::filesystem::directory_iterator(root)) {
-      const auto xml = entry.path() / (entry.path().filename().string() + ".xml");
-      if (std::filesystem::exists(xml)) found.push_back(xml);
-    }
+  if (!std::filesystem::is_directory(ModelsFolder())) return found;
+  for (const auto& entry : std::filesystem::directory_iterator(ModelsFolder())) {
+    const auto xml = entry.path() / (entry.path().filename().string() + ".xml");
+    if (std::filesystem::exists(xml)) found.push_back(xml);
   }
   std::sort(found.begin(), found.end());
   return found;

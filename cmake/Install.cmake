@@ -1,0 +1,23 @@
+# The CMake package mujoco_continuum and the robots, beside the plugin, the executable and the laws:
+#   find_package(mujoco_continuum 0.1 REQUIRED)
+#   continuum::effects   the laws, headers that need nothing
+#   continuum::plugin    the plugin, to be loaded: $<TARGET_FILE:continuum::plugin>
+include(CMakePackageConfigHelpers)
+set(_package lib/cmake/mujoco_continuum)
+configure_package_config_file(
+  ${PROJECT_SOURCE_DIR}/cmake/mujoco_continuum-config.cmake.in
+  ${PROJECT_BINARY_DIR}/mujoco_continuum-config.cmake
+  INSTALL_DESTINATION ${_package})
+write_basic_package_version_file(
+  ${PROJECT_BINARY_DIR}/mujoco_continuum-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(EXPORT mujoco_continuum NAMESPACE continuum:: FILE mujoco_continuum-targets.cmake
+  DESTINATION ${_package})
+install(FILES
+  ${PROJECT_BINARY_DIR}/mujoco_continuum-config.cmake
+  ${PROJECT_BINARY_DIR}/mujoco_continuum-config-version.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FindMuJoCo.cmake
+  DESTINATION ${_package})
+install(FILES LICENSE DESTINATION share/mujoco_continuum)
+install(DIRECTORY models DESTINATION share/mujoco_continuum FILES_MATCHING
+  PATTERN *.xml PATTERN *.yaml PATTERN *.csv PATTERN README.md PATTERN import.py
+  PATTERN generator EXCLUDE PATTERN images EXCLUDE PATTERN solver EXCLUDE)
