@@ -1,0 +1,24 @@
+"""mujoco-continuum: the missing physics of continuum robots in MuJoCo, and the tools around it.
+
+Importing this package loads its plugin into the MuJoCo of this Python, so that models with
+`continuum.<effect>` plugins compile. The functions run the packaged executable `continuum`:
+
+    check      what is odd in the logs
+    replay     how far the model is off
+    identify   fit the parameters
+    diagnose   why it is off, and the extended model
+    apply      the extension in another model
+
+An experiment is the path of an EXPERIMENT.yaml or a dict with the same keys. docs/python.md shows a
+whole example.
+"""
+from ._build import MUJOCO, VERSION as __version__
+from ._engine import load as _load
+from ._paths import EXECUTABLE, MODELS, PLUGIN
+from ._tool import Error, InputError, JobError
+from .commands import apply, check, diagnose, effects, identify, models, replay
+
+__all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "Error", "InputError", "JobError", "apply",
+           "check", "diagnose", "effects", "identify", "models", "replay"]
+
+_load()

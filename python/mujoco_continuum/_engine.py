@@ -1,0 +1,36 @@
+"""The plugin in the MuJoCo of this Python."""
+import pathlib
+
+from ._build import MUJOCO, VERSION
+from ._paths import PLUGIN
+
+
+def load() -> None:
+    """Registers the effects.
+
+    Raises ImportError when MuJoCo is not here or is another release (a plugin belongs to exactly
+    one), or when another copy of the plugin is in this process."""
+    need = f"mujoco_continuum {VERSION} needs MuJoCo {MUJOCO}"
+    try:
+        import mujoco
+    except ModuleNotFoundError as error:
+        if error.name != "mujoco":
+            raise
+        raise ImportError(f"{need} and finds none: pip install mujoco-core=={MUJOCO}") from None
+    found = mujoco.mj_versionString()
+    if found != MUJOCO:
+        raise ImportError(f"{need} and finds {found}: pip install mujoco-core=={MUJOCO}, or build "
+                          f"mujoco_continuum for {found}")
+    for other in _loaded_copies():
+        if other != PLUGIN:
+            raise ImportError(f"the plugin is loaded already, from {other}; without that "
+                              "mj_loadPluginLibrary, importing mujoco_continuum loads its own")
+    mujoco.mj_loadPluginLibrary(str(PLUGIN))
+
+
+def _loaded_copies() -> set[pathlib.Path]:
+    """Files of this process that are a plugin of ours."""
+    with open("/proc/self/maps") as maps:
+        words = [line.split(maxsplit=5) for line in maps]
+    files = {pathlib.Path(word[5].strip()) for word in words if len(word) == 6}
+    return {file for file in files if file.name == PLUGIN.name}

@@ -1,0 +1,95 @@
+"""Runs the packaged executable."""
+import importlib.util
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+from collections.abc import Callable, Mapping
+
+from ._paths import EXECUTABLE
+
+Progress = Callable[[str], object]
+
+
+class Error(RuntimeError):
+    """The tool could not do what was asked; the text is its message."""
+
+
+class InputError(Error, ValueError):
+    """Wrong use or bad input: the message says where, what was expected and what was found."""
+
+
+class JobError(Error):
+    """The input was good, but the job failed: it diverged or did not converge."""
+
+
+def environment() -> dict[str, str]:
+    """This process's environment, in which the executable finds the MuJoCo of this Python."""
+    spec = importlib.util.find_spec("mujoco")
+    folders = list(spec.submodule_search_locations or []) if spec else []
+    folders += filter(None, [os.environ.get("LD_LIBRARY_PATH")])
+    return os.environ | {"LD_LIBRARY_PATH": os.pathsep.join(folders)}
+
+
+def run(arguments: list[str], progress: Progress | None = None,
+        rename: Mapping[str, str] = {}) -> str:
+    """Runs `continuum` to its end and returns what it prints.
+
+    progress is called with each line of its progress. rename replaces texts of messages: names of
+    files that the user never saw. On KeyboardInterrupt the tool is asked to stop, which leaves no
+    half-written output; a second one ends it at once."""
+    # stdout to a file: only one pipe has to be read. A process group of its own: Ctrl-C on a
+    # terminal would reach the tool twice, from the terminal and from here, and twice means at once.
+    with tempfile.TemporaryFile("w+") as out:
+        with subprocess.Popen([str(EXECUTABLE), *arguments], stdin=subprocess.DEVNULL, stdout=out,
+                              stderr=subprocess.PIPE, text=True, errors="replace",
+                              env=environment(), process_group=0) as tool:
+            try:
+                lines = _read(tool, progress)
+                tool.wait()
+            except KeyboardInterrupt:
+                _interrupt(tool)
+                raise
+            except BaseException:
+                tool.kill()
+                raise
+        out.seek(0)
+        printed = out.read()
+    if tool.returncode != 0:
+        raise _failure(tool.returncode, lines, rename)
+    return printed
+
+
+def _read(tool: subprocess.Popen, progress: Progress | None) -> list[str]:
+    lines = []
+    for line in tool.stderr:
+        lines.append(line.rstrip("\n"))
+        if progress and not lines[-1].startswith("continuum: "):
+            progress(lines[-1])
+    return lines
+
+
+def _interrupt(tool: subprocess.Popen) -> None:
+    """Asks to stop and waits; once more if the user insists."""
+    for _ in range(2):
+        tool.send_signal(signal.SIGINT)
+        try:
+            tool.communicate()
+            return
+        except KeyboardInterrupt:
+            continue
+    tool.kill()
+
+
+def _failure(code: int, lines: list[str], rename: Mapping[str, str]) -> Error:
+    """The tool's message begins with its name; a hint at --help may follow, of no use here."""
+    starts = [i for i, line in enumerate(lines) if line.startswith("continuum: ")]
+    told = lines[starts[-1]:] if starts else lines[-20:]
+    text = "\n".join(line for line in told if not line.startswith("See continuum "))
+    text = text.removeprefix("continuum: ")
+    for old, new in rename.items():
+        text = text.replace(old, new)
+    if code < 0:
+        return JobError(f"the tool was ended by {signal.Signals(-code).name}. {text}".strip())
+    return InputError(text) if code == 2 else JobError(text or f"the tool ended with code {code}")

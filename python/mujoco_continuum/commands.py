@@ -1,0 +1,117 @@
+"""The subcommands of `continuum` as functions.
+
+Where several take the same:
+  experiment  path of an EXPERIMENT.yaml, or a dict with its keys
+  out         folder for all outputs (report.html and more); without it only the dict is kept
+  folder      where the relative paths of a dict start
+  progress    called with each line of progress, e.g. print
+
+Each raises InputError for wrong use or bad input, JobError for a job that failed. Ctrl-C stops the
+tool, which leaves no half-written output, and raises KeyboardInterrupt.
+"""
+import contextlib
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from ._experiment import Document, StrPath, as_file, with_absolute_paths
+from ._tool import Progress, run
+
+Json = dict[str, Any]
+
+
+def check(experiment: Document, *, folder: StrPath = ".",
+          progress: Progress | None = None) -> list[Json]:
+    """Looks at the logs before anything else: clock, stale samples, jumps, saturation, excitation.
+
+    Returns findings {severity, what, log, channel, begin, end, text}, severity info | warning |
+    error."""
+    with as_file(with_absolute_paths(experiment, folder), "experiment") as (file, rename):
+        return json.loads(run(["check", file, "--json"], progress, rename))
+
+
+def replay(experiment: Document, out: StrPath | None = None, *, video: bool = False,
+           folder: StrPath = ".", progress: Progress | None = None) -> Json:
+    """Simulates every log as it stands. Returns errors.json: errors per log and channel, pooled."""
+    return _job("replay", "errors.json", experiment, out, {"video": video}, folder, progress)
+
+
+def identify(experiment: Document, out: StrPath | None = None, *, method: str = "lm",
+             path: str = "stepped", iterations: int = 50, all: bool = False,
+             for_step: bool = False, folder: StrPath = ".",
+             progress: Progress | None = None) -> Json:
+    """Fits the parameters. Returns fit.json: parameters with intervals, correlation, errors."""
+    options = {"method": method, "path": path, "iterations": iterations, "all": all,
+               "for_step": for_step}
+    return _job("identify", "fit.json", experiment, out, options, folder, progress)
+
+
+def diagnose(experiment: Document, out: StrPath | None = None, *,
+             candidates: str | Sequence[str] = (), compare: Document | None = None,
+             placebos: int = 20, seed: int = 1, video: bool = False, folder: StrPath = ".",
+             progress: Progress | None = None) -> Json:
+    """Finds what the simulation gets wrong. Returns diagnosis.json: verdict, causes, errors, gain.
+
+    candidates: effects to try instead of the experiment's. compare: an earlier diagnosis, which the
+    last lines of progress stand beside. With `out`, extended.xml and extended.yaml lie there."""
+    names = candidates if isinstance(candidates, str) else ",".join(candidates)
+    options = {"candidates": names or None, "placebos": placebos, "seed": seed, "video": video}
+    with as_file(compare or "", "compare") as (old, rename):
+        options["compare"] = old or None
+        return _job("diagnose", "diagnosis.json", experiment, out, options, folder, progress,
+                    rename)
+
+
+def apply(diagnosis: Document, model: StrPath, out: StrPath) -> pathlib.Path:
+    """Puts the extension of a diagnosis into a model and writes it to `out`, which is returned.
+
+    diagnosis: path of a diagnosis.json, or what diagnose() returned."""
+    with as_file(diagnosis, "diagnosis") as (file, rename):
+        run(["apply", file, os.fspath(model), "--out", os.fspath(out)], rename=rename)
+    return pathlib.Path(out)
+
+
+def effects() -> list[Json]:
+    """Every effect: name, kind, what it binds to, parameters with unit, bounds and null."""
+    return json.loads(run(["effects", "--json"]))
+
+
+def models() -> dict[str, pathlib.Path]:
+    """The MJCF files of the robots that come with the package, by name."""
+    listed = json.loads(run(["models", "--json"]))
+    return {item["name"]: pathlib.Path(item["file"]) for item in listed}
+
+
+def _job(command: str, result: str, experiment: Document, out: StrPath | None, options: Json,
+         folder: StrPath, progress: Progress | None, rename: Mapping[str, str] = {}) -> Json:
+    """Runs a subcommand that writes a folder; returns its JSON."""
+    document = with_absolute_paths(experiment, folder)
+    with as_file(document, "experiment") as (file, more), _folder(out) as written:
+        arguments = [command, file, "--out", written, *_options(options)]
+        printed = run(arguments, progress, {**rename, **more})
+        for line in printed.splitlines() if progress else ():
+            progress(line)
+        return json.loads(pathlib.Path(written, result).read_text())
+
+
+def _options(options: Json) -> list[str]:
+    """{"seed": 2, "video": True, "for_step": False, "compare": None} -> --seed 2 --video."""
+    words = []
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        words.append("--" + name.replace("_", "-"))
+        words += [] if value is True else [str(value)]
+    return words
+
+
+@contextlib.contextmanager
+def _folder(out: StrPath | None) -> Iterator[str]:
+    if out is not None:
+        yield os.fspath(out)
+        return
+    with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
+        yield str(pathlib.Path(folder, "out"))

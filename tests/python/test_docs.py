@@ -1,0 +1,27 @@
+"""The example of docs/python.md."""
+import contextlib
+import io
+import pathlib
+import re
+
+from bench import Bench
+
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
+
+
+class Page(Bench):
+    def test_says_what_happens(self):
+        code = "\n".join(re.findall(r"^```python\n(.*?)^```", PAGE.read_text(), re.M | re.S))
+        names = {}
+        with contextlib.redirect_stdout(io.StringIO()):
+            exec(compile(code, str(PAGE), "exec"), names)
+        diagnosis = names["diagnosis"]
+        self.assertEqual(diagnosis["verdict"], "named")
+        self.assertEqual([cause["effect"] for cause in diagnosis["causes"]], ["coulomb"])
+        tau_c = diagnosis["causes"][0]["parameters"]["tau_c"]
+        self.assertLess(tau_c["ci95"][0], 0.03)  # what the page's real arm has
+        self.assertGreater(tau_c["ci95"][1], 0.03)
+        self.assertLess(tau_c["ci95"][1] - tau_c["ci95"][0], 4e-4)
+        # 2 mrad of noise over 800 rows: 2.5 % standard error, four of them
+        self.assertAlmostEqual(diagnosis["error"]["after"]["validate"], 2e-3, delta=2e-4)
+        self.assertEqual(names["mended"].nplugin, 1)

@@ -1,0 +1,49 @@
+"""The plugin in the MuJoCo of this Python."""
+import subprocess
+import sys
+import unittest
+
+import bench
+import mujoco
+import mujoco_continuum
+
+
+def python(code):
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+
+
+class Plugin(bench.Bench):
+    def test_steps_in_mujoco(self):
+        mended = mujoco_continuum.apply(bench.DIAGNOSIS, "model.xml", "mended.xml")
+        model = mujoco.MjModel.from_xml_path(str(mended))
+        data = mujoco.MjData(model)
+        data.ctrl[0] = 0.005  # half of tau_c
+        mujoco.mj_step(model, data, nstep=100)
+        self.assertLess(abs(data.qvel[0]), 1e-9)
+        data.ctrl[0] = 0.05
+        mujoco.mj_step(model, data, nstep=10)
+        self.assertGreater(data.qvel[0], 1e-3)
+
+    def test_may_be_imported_twice(self):
+        again = python("import importlib, mujoco_continuum as m; importlib.reload(m)")
+        self.assertEqual(again.returncode, 0, again.stderr)
+
+
+class Import(unittest.TestCase):
+    def test_without_mujoco_says_which_release_is_needed(self):
+        run = python("import sys; sys.modules['mujoco'] = None; import mujoco_continuum")
+        self.assertIn("ImportError: mujoco_continuum", run.stderr)
+        self.assertIn(f"pip install mujoco-core=={mujoco_continuum.MUJOCO}", run.stderr)
+
+    def test_with_another_release_says_which_is_needed(self):
+        run = python("import mujoco; mujoco.mj_versionString = lambda: '3.9.9'\n"
+                     "import mujoco_continuum")
+        self.assertIn(f"needs MuJoCo {mujoco_continuum.MUJOCO} and finds 3.9.9", run.stderr)
+
+    def test_beside_another_copy_of_the_plugin_says_so(self):
+        run = python("import mujoco, pathlib, shutil, sys, tempfile, importlib.util\n"
+                     f"copy = shutil.copy({str(mujoco_continuum.PLUGIN)!r}, tempfile.mkdtemp())\n"
+                     "mujoco.mj_loadPluginLibrary(copy)\n"
+                     "try: import mujoco_continuum\n"
+                     "finally: shutil.rmtree(pathlib.Path(copy).parent)")
+        self.assertIn("ImportError: the plugin is loaded already, from /", run.stderr)
