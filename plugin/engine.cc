@@ -12,6 +12,7 @@
 
 #include "binding/filter.h"
 #include "binding/force.h"
+#include "binding/formula.h"
 #include "binding/friction.h"
 #include "binding/path.h"
 #include "binding/pull.h"
@@ -272,7 +273,7 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
 
 template <class E>
 constexpr bool kInEngine =
-    ForceLaw<E> || FrictionLaw<E> || PathLaw<E> || SegmentLaw<E> || SignalLaw<E>;
+    ForceLaw<E> || FrictionLaw<E> || PathLaw<E> || SegmentLaw<E> || SignalLaw<E> || FormulaLaw<E>;
 
 // Numbers of one of an effect's sensors; 0: it has none.
 template <class E>
@@ -282,7 +283,11 @@ constexpr int kSensorSize = PathLaw<E>      ? 1
 
 template <class E>
 auto BoundType() {
-  if constexpr (ForceLaw<E>)
+  if constexpr (std::same_as<E, Formula>)
+    return std::type_identity<BoundFormula>{};
+  else if constexpr (std::same_as<E, FormulaFriction>)
+    return std::type_identity<BoundFormulaFriction>{};
+  else if constexpr (ForceLaw<E>)
     return std::type_identity<BoundForce<E>>{};
   else if constexpr (FrictionLaw<E>)
     return std::type_identity<BoundFriction<E>>{};
@@ -301,7 +306,7 @@ auto BoundType() {
 template <class E>
 std::unique_ptr<Bound> BindEffect(const mjModel& m, const Config& c, int i) {
   using B = typename decltype(BoundType<E>())::type;
-  if constexpr (FrictionLaw<E>)
+  if constexpr (std::constructible_from<B, const mjModel&, const Config&, int>)
     return std::make_unique<B>(m, c, i);
   else
     return std::make_unique<B>(m, c);
@@ -346,6 +351,7 @@ void Register() {
     for (const Place place : E::kPlaces) all.emplace_back(KeyOf(place));
     for (const Param& param : E::kParams) all.emplace_back(param.name);
     for (const Choice& choice : ChoicesOf<E>()) all.emplace_back(choice.name);
+    if constexpr (FormulaLaw<E>) all.emplace_back(E::kText);
     return all;
   }();
   static const auto attributes = [] {
@@ -419,9 +425,11 @@ void RegisterEffects() {
     throw Error::Input("mujoco_continuum", "MuJoCo " + std::to_string(mjVERSION_HEADER),
                        std::to_string(mj_version()));
   }
-  All::ForEach([]<class E>() {
+  const auto add = []<class E>() {
     if constexpr (kInEngine<E>) Register<E>();
-  });
+  };
+  All::ForEach(add);
+  Written::ForEach(add);
 }
 
 Bound& BoundOf(const mjModel& m, const mjData& d, int instance) {

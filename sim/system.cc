@@ -123,14 +123,16 @@ std::size_t ParameterIndex(const std::string& plugin, const std::string& paramet
   std::string all = "no parameters";
   std::size_t index = 0;
   bool found = false;
-  All::ForEach([&]<class E>() {
+  const auto look = [&]<class E>() {
     if (plugin != "continuum." + std::string(E::kName)) return;
     all.clear();
     for (std::size_t i = 0; i < E::kParams.size(); ++i) {
       all += (i ? ", " : "") + std::string(E::kParams[i].name);
       if (parameter == E::kParams[i].name) found = true, index = i;
     }
-  });
+  };
+  All::ForEach(look);
+  Written::ForEach(look);
   if (!found) throw Error::Input(plugin, "one of the parameters " + all, "'" + parameter + "'");
   return index;
 }

@@ -20,14 +20,16 @@ std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
   std::set<std::pair<bool, int>> taken;
   for (int j = 0; j < instance; ++j) {
     const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[j]);
-    All::ForEach([&]<class E>() {
-      if constexpr (FrictionLaw<E>) {
+    const auto add = [&]<class E>() {
+      if constexpr (FrictionLaw<E> || std::same_as<E, FormulaFriction>) {
         if (!plugin || plugin->name != "continuum." + std::string(E::kName)) return;
         const Config config(m, j);
         for (const Row& row : RowsOf(m, config, JointsOf<E>()))
           taken.insert({row.joint, row.index});
       }
-    });
+    };
+    All::ForEach(add);
+    Written::ForEach(add);
   }
   return taken;
 }

@@ -13,6 +13,7 @@
 #include "effects/dead_time.h"
 #include "effects/directional_friction.h"
 #include "effects/external_force.h"
+#include "effects/formula.h"
 #include "effects/gravity_tilt.h"
 #include "effects/input_gain.h"
 #include "effects/input_offset.h"
@@ -55,5 +56,8 @@ using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalF
                  Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness, Payload,
                  LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime,
                  Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
+
+/// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.
+using Written = List<Formula, FormulaFriction>;
 
 }  // namespace continuum

@@ -221,8 +221,16 @@ concept EditLaw = Card<E> && requires(AnyElement& e, ParamsOf<E, double> p) {
   E::Apply(e, p);
 };
 
+/// Formula: the equation is the user's, a text of kVariables and the parameters under the key
+/// kText.
+template <class E>
+concept FormulaLaw = Card<E> && requires {
+  std::string_view{E::kText};
+  std::span<const std::string_view>{E::kVariables};
+};
+
 template <class E>
 concept Effect = ForceLaw<E> || FrictionLaw<E> || PathLaw<E> || SegmentLaw<E> || SignalLaw<E> ||
-    MeasureLaw<E> || EditLaw<E>;
+    MeasureLaw<E> || EditLaw<E> || FormulaLaw<E>;
 
 }  // namespace continuum

@@ -1,0 +1,298 @@
+#include "binding/expression.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "error.h"
+
+namespace continuum {
+namespace {
+
+using Step = Expression::Step;
+using Names = std::vector<std::string>;
+
+constexpr std::size_t kStack = 256;  ///< numbers on the stack at once
+constexpr int kDepth = 200;          ///< parentheses within parentheses
+
+bool IsLetter(char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '_'; }
+bool IsDigit(char c) { return '0' <= c && c <= '9'; }
+bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+// The length of the name that a text begins with.
+std::size_t NameLength(std::string_view text) {
+  if (text.empty() || !IsLetter(text.front())) return 0;
+  const auto end =
+      std::find_if(text.begin(), text.end(), [](char c) { return !IsLetter(c) && !IsDigit(c); });
+  return static_cast<std::size_t>(end - text.begin());
+}
+
+std::optional<std::size_t> IndexOf(const Names& names, std::string_view name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return {};
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+template <double (*F)(double)>
+void One(double*& top) {
+  top[-1] = F(top[-1]);
+}
+template <double (*F)(double, double)>
+void Two(double*& top) {
+  --top;
+  top[-1] = F(top[-1], top[0]);
+}
+void Where(double*& top) {
+  top -= 2;
+  top[-1] = top[-1] > 0 ? top[0] : top[1];
+}
+
+struct Function {
+  std::string_view name;
+  std::size_t arguments;
+  void (*run)(double*& top);
+};
+constexpr std::array kFunctions{
+    Function{"abs", 1, One<[](double x) { return std::abs(x); }>},
+    Function{"sign", 1, One<[](double x) { return static_cast<double>((x > 0) - (x < 0)); }>},
+    Function{"sqrt", 1, One<[](double x) { return std::sqrt(x); }>},
+    Function{"exp", 1, One<[](double x) { return std::exp(x); }>},
+    Function{"log", 1, One<[](double x) { return std::log(x); }>},
+    Function{"sin", 1, One<[](double x) { return std::sin(x); }>},
+    Function{"cos", 1, One<[](double x) { return std::cos(x); }>},
+    Function{"tan", 1, One<[](double x) { return std::tan(x); }>},
+    Function{"tanh", 1, One<[](double x) { return std::tanh(x); }>},
+    Function{"atan", 1, One<[](double x) { return std::atan(x); }>},
+    Function{"min", 2, Two<[](double x, double y) { return std::min(x, y); }>},
+    Function{"max", 2, Two<[](double x, double y) { return std::max(x, y); }>},
+    Function{"atan2", 2, Two<[](double x, double y) { return std::atan2(x, y); }>},
+    Function{"pow", 2, Two<[](double x, double y) { return std::pow(x, y); }>},
+    Function{"where", 3, Where},
+};
+constexpr Function kNegate{"-", 1, One<[](double x) { return -x; }>};
+constexpr Function kAdd{"+", 2, Two<[](double x, double y) { return x + y; }>};
+constexpr Function kSubtract{"-", 2, Two<[](double x, double y) { return x - y; }>};
+constexpr Function kMultiply{"*", 2, Two<[](double x, double y) { return x * y; }>};
+constexpr Function kDivide{"/", 2, Two<[](double x, double y) { return x / y; }>};
+constexpr Function kPower{"^", 2, Two<[](double x, double y) { return std::pow(x, y); }>};
+
+const Function* FunctionNamed(std::string_view name) {
+  const auto found = std::find_if(kFunctions.begin(), kFunctions.end(),
+                                  [&](const Function& f) { return f.name == name; });
+  return found == kFunctions.end() ? nullptr : &*found;
+}
+
+// Recursive descent: one method for each line of the grammar.
+class Parser {
+ public:
+  Parser(std::string_view text, const Names& variables, const std::string& where)
+      : text_(text), variables_(variables), where_(where) {}
+
+  std::vector<Step> Formula() {
+    while (const auto part = Assigned()) {
+      Sum();
+      if (!Take(';')) Refuse("';' after the part '" + *part + "'");
+      parts_.push_back(*part);  // it stays where it is on the stack, at the bottom
+    }
+    Sum();
+    if (Space(), at_ < text_.size()) Refuse("an operator or the end");
+    return std::move(steps_);
+  }
+
+ private:
+  [[noreturn]] void Refuse(const std::string& expected) {
+    Space();
+    const std::string rest(text_.substr(at_, 20));
+    throw Error::Input(where_ + ", column " + std::to_string(at_ + 1), expected,
+                       rest.empty() ? "the end of the formula" : "'" + rest + "'");
+  }
+  void Space() {
+    while (at_ < text_.size() && IsSpace(text_[at_])) ++at_;
+  }
+  bool Take(char c) {
+    Space();
+    const bool there = at_ < text_.size() && text_[at_] == c;
+    at_ += there;
+    return there;
+  }
+  std::string_view Name() {
+    Space();
+    const std::string_view name = text_.substr(at_, NameLength(text_.substr(at_)));
+    at_ += name.size();
+    return name;
+  }
+
+  // The name of the part that comes next, and moves behind its "="; none: at_ stays.
+  std::optional<std::string> Assigned() {
+    const std::size_t before = at_;
+    const std::string name(Name());
+    const bool assigns = !name.empty() && Take('=');
+    const bool fresh =
+        Expression::IsName(name) && !IndexOf(variables_, name) && !IndexOf(parts_, name);
+    if (!assigns || !fresh) at_ = before;
+    if (!assigns) return {};
+    if (!fresh) Refuse("a new name for a part");
+    return name;
+  }
+
+  void Put(Step step) {
+    if (++size_ > kStack) Refuse("a shorter formula");
+    steps_.push_back(step);
+  }
+  void Call(const Function& f) {
+    size_ -= f.arguments - 1;
+    steps_.push_back({Step::Kind::kFunction, 0, 0, f.run});
+  }
+  void Deeper() {
+    if (++depth_ > kDepth) Refuse("fewer parentheses within each other");
+  }
+
+  void Sum() {
+    Deeper();
+    Product();
+    while (true) {
+      if (Take('+')) {
+        Product();
+        Call(kAdd);
+      } else if (Take('-')) {
+        Product();
+        Call(kSubtract);
+      } else {
+        break;
+      }
+    }
+    --depth_;
+  }
+  void Product() {
+    Sign();
+    while (true) {
+      if (Take('*')) {
+        Sign();
+        Call(kMultiply);
+      } else if (Take('/')) {
+        Sign();
+        Call(kDivide);
+      } else {
+        return;
+      }
+    }
+  }
+  void Sign() {
+    bool negative = false;
+    while (true) {
+      if (Take('-')) {
+        negative = !negative;
+      } else if (!Take('+')) {
+        break;
+      }
+    }
+    Power();
+    if (negative) Call(kNegate);
+  }
+  void Power() {
+    Atom();
+    if (!Take('^')) return;
+    Deeper();
+    Sign();
+    Call(kPower);
+    --depth_;
+  }
+  void Atom() {
+    if (Take('(')) {
+      Sum();
+      return Close();
+    }
+    if (at_ < text_.size() && (IsDigit(text_[at_]) || text_[at_] == '.')) return Number();
+    const std::size_t before = at_;
+    const std::string_view name = Name();
+    if (const Function* const f = FunctionNamed(name)) return Arguments(*f);
+    if (const auto v = IndexOf(variables_, name)) return Put({Step::Kind::kVariable, 0, *v});
+    if (const auto part = IndexOf(parts_, name)) return Put({Step::Kind::kPart, 0, *part});
+    if (name == "pi") return Put({Step::Kind::kNumber, std::numbers::pi});
+    at_ = before;
+    std::string all;
+    for (const auto& v : variables_) all += v + ", ";
+    Refuse("a number, '(', a function or one of " + all + "pi");
+  }
+  void Number() {
+    double number = 0;
+    const char* const begin = text_.data() + at_;
+    const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), number);
+    if (error != std::errc{}) Refuse("a number");
+    at_ += static_cast<std::size_t>(end - begin);
+    Put({Step::Kind::kNumber, number});
+  }
+  void Arguments(const Function& f) {
+    for (std::size_t i = 0; i < f.arguments; ++i) {
+      const char before = i == 0 ? '(' : ',';
+      if (!Take(before)) Refuse("'" + std::string(1, before) + "' of " + std::string(f.name));
+      Sum();
+    }
+    Close();
+    Call(f);
+  }
+  void Close() {
+    if (!Take(')')) Refuse("')'");
+  }
+
+  std::string_view text_;
+  const Names& variables_;
+  const std::string& where_;
+  std::vector<Step> steps_;
+  Names parts_;
+  std::size_t at_ = 0, size_ = 0;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+Expression::Expression(std::string_view text, const Names& variables, const std::string& where)
+    : steps_(Parser(text, variables, where).Formula()) {}
+
+double Expression::operator()(std::span<const double> values) const {
+  std::array<double, kStack> stack;
+  double* top = stack.data();
+  for (const Step& step : steps_) {
+    switch (step.kind) {
+      case Step::Kind::kNumber:
+        *top++ = step.number;
+        break;
+      case Step::Kind::kVariable:
+        *top++ = values[step.index];
+        break;
+      case Step::Kind::kPart:
+        *top++ = stack[step.index];
+        break;
+      case Step::Kind::kFunction:
+        step.function(top);
+        break;
+    }
+  }
+  return top[-1];
+}
+
+bool Expression::IsName(std::string_view name) {
+  return !name.empty() && NameLength(name) == name.size() && name != "pi" && !FunctionNamed(name);
+}
+
+std::string Expression::Renamed(std::string_view text, const Names& from, const Names& to) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t n = NameLength(text);
+    const auto index = n > 0 ? IndexOf(from, text.substr(0, n)) : std::nullopt;
+    // A number with an exponent, 1e3, is no name.
+    std::size_t length = std::max<std::size_t>(n, 1);
+    if (IsDigit(text.front()) || text.front() == '.') {
+      while (length < text.size() && (IsDigit(text[length]) || text[length] == '.')) ++length;
+      if (length < text.size() && (text[length] == 'e' || text[length] == 'E')) ++length;
+    }
+    out += index ? to[*index] : std::string(text.substr(0, length));
+    text.remove_prefix(length);
+  }
+  return out;
+}
+
+}  // namespace continuum

@@ -1,0 +1,149 @@
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/engine.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// A wheel of 0.02 kg m^2 on a hinge, with one effect and a motor.
+class Formula : public testing::Engine {
+ protected:
+  static constexpr double kInertia = 0.02;
+
+  static std::string Wheel(const std::string& effect, const std::string& config) {
+    return "<mujoco><option timestep=\"1e-3\" integrator=\"implicitfast\"/>" +
+           Instance(effect, Key("joint", "q") + config) +
+           "<worldbody><body><joint name=\"q\" axis=\"1 0 0\"/>"
+           "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"0.02 0.02 0.02\"/></body></worldbody>"
+           "<actuator><motor joint=\"q\"/></actuator></mujoco>";
+  }
+  // The value of a formula at one state, as the torque that the wheel does not feel.
+  static double Value(const std::string& formula, double q, double v) {
+    const auto m = Model(Wheel("formula", Key("force", formula) + Key("p1", "0.5")));
+    const auto d = Data(m);
+    d->qpos[0] = q, d->qvel[0] = v;
+    mj_forward(m.get(), d.get());
+    return -kInertia * d->qacc[0];
+  }
+  // Angles under a swing of the motor.
+  static std::vector<double> Swing(const std::string& effect, const std::string& config) {
+    const auto m = Model(Wheel(effect, config));
+    const auto d = Data(m);
+    std::vector<double> angles;
+    for (int k = 0; k < 3000; ++k) {
+      d->ctrl[0] = 0.1 * std::sin(5e-3 * k) + 0.05 * std::sin(1.7e-3 * k);
+      mj_step(m.get(), d.get());
+      angles.push_back(d->qpos[0]);
+    }
+    return angles;
+  }
+};
+
+TEST_F(Formula, FollowsTheRulesOfArithmetic) {
+  const double q = 0.3, v = -0.7;
+  const struct {
+    const char* text;
+    double value;
+  } cases[] = {
+      {"2 + 3*4 - 6/2/3", 13},
+      {"-2^2", -4},
+      {"2^-1", 0.5},
+      {"2^3^2", 512},
+      {"(1 - -2)*--3", 9},
+      {"1e-2 + .5 + 2.", 2.51},
+      {"p1*v*abs(v)", 0.5 * v * std::abs(v)},
+      {"p2 + p8", 0},
+      {"sin(q)^2 + cos(q)^2", 1},
+      {"where(v, 1, 2) + 10*where(q, 1, 2)", 12},
+      {"min(q, v) + 10*max(q, v) + 100*sign(v)", v + 10 * q - 100},
+      {"exp(log(q)) + sqrt(q*q) + tan(atan(q))", 3 * q},
+      {"tanh(q) + atan2(v, q) + pow(q, 2)", std::tanh(q) + std::atan2(v, q) + q * q},
+      {"a = q*q; b = a + v; a*b + pi", q * q * (q * q + v) + 3.14159265358979},
+  };
+  for (const auto& c : cases) EXPECT_NEAR(Value(c.text, q, v), c.value, 1e-12) << c.text;
+}
+
+TEST_F(Formula, WrittenAsALawOfTheListMovesAsThatLaw) {
+  EXPECT_EQ(Swing("formula", Key("force", "s = q*q; p1*s*q") + Key("p1", "0.8")),
+            Swing("cubic_stiffness", Key("k3", "0.8")));
+  EXPECT_EQ(Swing("formula_friction", Key("level", "p1") + Key("p1", "0.03")),
+            Swing("coulomb", Key("tau_c", "0.03")));
+  EXPECT_EQ(Swing("formula_friction",
+                  Key("level", "p1 + p2*load") + Key("p1", "0.01") + Key("p2", "0.2")),
+            Swing("load_friction", Key("tau_c", "0.01") + Key("mu_l", "0.2")));
+}
+
+TEST_F(Formula, ActsOnATendonAlongItsLength) {
+  const auto m = Model("<mujoco>" +
+                       Instance("formula", Key("tendon", "cable") + Key("force", "p1*q + p2*v") +
+                                               Key("p1", "30") + Key("p2", "2")) +
+                       R"(<worldbody><site name="a"/>
+    <body pos="0 0 -1"><joint type="slide" axis="0 0 1"/><geom size="0.1" mass="2"/>
+      <site name="b"/></body></worldbody>
+  <tendon><spatial name="cable"><site site="a"/><site site="b"/></spatial></tendon></mujoco>)");
+  const auto d = Data(m);
+  d->qvel[0] = -0.5;  // it lengthens
+  mj_forward(m.get(), d.get());
+  EXPECT_NEAR(2 * (d->qacc[0] + 9.81), 30 * 1 + 2 * 0.5, 1e-9);
+}
+
+TEST_F(Formula, LevelBelowZeroIsNoFriction) {
+  EXPECT_EQ(Swing("formula_friction", Key("level", "-1")),
+            Swing("formula_friction", Key("level", "0")));
+}
+
+TEST_F(Formula, FrictionHoldsAtRest) {
+  const auto m = Model(Wheel("formula_friction", Key("level", "0.03 + 0.01*cos(q)")));
+  const auto d = Data(m);
+  d->ctrl[0] = 0.039;
+  RunUntil(m, d, 1);
+  EXPECT_LT(std::abs(d->qvel[0]), 1e-9);
+  d->ctrl[0] = 0.041;
+  RunUntil(m, d, 2);
+  EXPECT_GT(d->qvel[0], 1e-3);
+}
+
+TEST_F(Formula, SaysWhereItIsWrong) {
+  const struct {
+    const char *text, *column, *expected;
+  } cases[] = {
+      {"p1*", "column 4", "found the end of the formula"},
+      {"p1*w", "column 4", "one of q, v, p1"},
+      {"p1 p2", "column 4", "an operator or the end, found 'p2'"},
+      {"sin q", "column 5", "'(' of sin"},
+      {"max(q)", "column 6", "',' of max"},
+      {"(q", "column 3", "')'"},
+      {"q = 2; q", "column 1", "a new name for a part"},
+      {"a = q", "column 6", "';' after the part 'a'"},
+      {"1..2", "column 3", "an operator"},
+  };
+  for (const auto& c : cases) {
+    const auto compiled = Compile(Wheel("formula", Key("force", c.text)));
+    EXPECT_FALSE(compiled.model) << c.text;
+    EXPECT_THAT(compiled.error, AllOf(HasSubstr("continuum.formula 'i': force"),
+                                      HasSubstr(c.column), HasSubstr(c.expected)))
+        << c.text;
+  }
+  EXPECT_THAT(Compile(Wheel("formula", "")).error, HasSubstr("the key 'force'"));
+}
+
+TEST_F(Formula, RefusesWhatDoesNotFitItsStack) {
+  const std::string deep = std::string(300, '(') + "q" + std::string(300, ')');
+  EXPECT_THAT(Compile(Wheel("formula", Key("force", deep))).error,
+              HasSubstr("fewer parentheses within each other"));
+  std::string parts;
+  for (int i = 0; i < 300; ++i) parts += "a" + std::to_string(i) + " = q; ";
+  EXPECT_THAT(Compile(Wheel("formula", Key("force", parts + "q"))).error,
+              HasSubstr("a shorter formula"));
+  std::string sum = "q";  // long is not deep
+  for (int i = 0; i < 5000; ++i) sum += " + q";
+  EXPECT_TRUE(Compile(Wheel("formula", Key("force", sum))).model);
+}
+
+}  // namespace
+}  // namespace continuum
