@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <sstream>
@@ -49,11 +50,15 @@ std::string OldComparison(const std::string& file) {
   }
 }
 
-std::string CandidateNamed(const std::string& name) {
+// An effect, or a law that the experiment writes.
+void CheckCandidate(const std::string& name, const Experiment& e) {
+  const auto written = [&](const Candidate& c) { return c.law && c.law->name == name; };
+  if (std::any_of(e.candidates.begin(), e.candidates.end(), written)) return;
   try {
-    return std::string(EffectNamed(name).name);
-  } catch (const Error& e) {
-    throw Error::Input("--candidates", e.what());
+    if (EffectNamed(name).text.empty()) return;
+    throw Error::Input(name, "a law of the experiment by its own name", "none");
+  } catch (const Error& error) {
+    throw Error::Input("--candidates", error.what());
   }
 }
 
@@ -64,7 +69,8 @@ void RunDiagnose(const Options& o) {
   DiagnosisOptions options;
   std::istringstream names(o.candidates);
   for (std::string name; std::getline(names, name, ',');) {
-    options.candidates.push_back(CandidateNamed(name));
+    CheckCandidate(name, read);
+    options.candidates.push_back(name);
   }
   options.placebos = o.placebos;
   options.seed = o.seed;

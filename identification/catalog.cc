@@ -11,9 +11,9 @@ using Kind = EffectInfo::Kind;
 
 template <class E>
 constexpr Kind KindOf() {
-  if constexpr (ForceLaw<E>)
+  if constexpr (ForceLaw<E> || std::same_as<E, Formula>)
     return Kind::kForce;
-  else if constexpr (FrictionLaw<E>)
+  else if constexpr (FrictionLaw<E> || std::same_as<E, FormulaFriction>)
     return Kind::kFriction;
   else if constexpr (PathLaw<E>)
     return Kind::kPath;
@@ -29,27 +29,35 @@ constexpr Kind KindOf() {
 
 template <class E>
 EffectInfo InfoOf() {
-  EffectInfo info{E::kName, E::kSummary, E::kSource, KindOf<E>(), {}, {}, {}, false};
+  EffectInfo info{E::kName, E::kSummary, E::kSource, KindOf<E>(), {}, {}, {}, false, {}};
   info.places.assign(E::kPlaces.begin(), E::kPlaces.end());
   info.params.assign(E::kParams.begin(), E::kParams.end());
   const auto choices = ChoicesOf<E>();
   info.choices.assign(choices.begin(), choices.end());
   if constexpr (SignalLaw<E>) info.servo = E::kTap == Tap::kServoError;
+  if constexpr (FormulaLaw<E>) info.text = E::kText;
   return info;
+}
+
+template <class Effects>
+std::vector<EffectInfo> InfosOf() {
+  std::vector<EffectInfo> all;
+  Effects::ForEach([&]<class E>() { all.push_back(InfoOf<E>()); });
+  return all;
 }
 
 }  // namespace
 
 const std::vector<EffectInfo>& Catalog() {
-  static const auto catalog = [] {
-    std::vector<EffectInfo> all;
-    All::ForEach([&]<class E>() { all.push_back(InfoOf<E>()); });
-    return all;
-  }();
+  static const auto catalog = InfosOf<All>();
   return catalog;
 }
 
 const EffectInfo& EffectNamed(std::string_view name) {
+  static const auto written = InfosOf<Written>();
+  for (const EffectInfo& info : written) {
+    if (info.name == name) return info;
+  }
   std::string all;
   for (const EffectInfo& info : Catalog()) {
     if (info.name == name) return info;

@@ -17,11 +17,14 @@ struct EffectInfo {
   std::vector<Param> params;
   std::vector<Choice> choices;
   bool servo = false;  ///< a Signal at the error of a position servo
+  std::string_view
+      text;  ///< key of the formula, of an effect whose law is written where it is used
 };
 
 /// Every effect of the list, in its order.
 const std::vector<EffectInfo>& Catalog();
-/// Throws Error, listing all, when there is none of this name.
+/// Of the list, or of those whose law is written where they are used. Throws Error, listing the
+/// former, when there is none of this name.
 const EffectInfo& EffectNamed(std::string_view name);
 
 /// "friction", "force", …

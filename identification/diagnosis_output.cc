@@ -76,8 +76,8 @@ nlohmann::json ParametersOf(const Hypothesis& h, const Fitted& fitted, Eigen::In
     const Eigen::Index at = begin + static_cast<Eigen::Index>(i);
     const double value = fitted.fit.x[at];
     const bool sure = std::isfinite(fitted.uncertainty.standard_error[at]);
-    std::string unit = "1";
-    for (const Param& p : EffectNamed(h.effect).params) {
+    std::string unit = h.extra[i].unit.empty() ? "1" : h.extra[i].unit;
+    for (const Param& p : EffectNamed(h.Card()).params) {
       if (p.name == h.extra[i].name) unit = p.unit;
     }
     parameters[h.extra[i].name] = {{"value", value},

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "binding/config.h"
+#include "binding/expression.h"
 #include "error.h"
 #include "sim/file.h"
 #include "sim/measurement.h"
@@ -305,6 +306,28 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
   return h;
 }
 
+// A law that the experiment writes. Its parameters are p1, p2, .. of the instance.
+Hypothesis WrittenCandidate(const EffectInfo& effect, const WrittenLaw& law, Place place,
+                            const std::vector<std::string>& names, const System& system) {
+  Hypothesis h{law.name, "", InWords(place, names), system, {}, {}, "", {}};
+  h.null = law.null;
+  EffectInstance added{std::string(effect.name),
+                       FreshInstance(system.model()),
+                       {{std::string(PlaceName(place)), Join(names)}}};
+  std::vector<std::string> from, to;
+  for (Parameter p : law.parameters) {
+    p.target = "plugin:" + added.name;
+    p.attribute = effect.params[h.extra.size()].name;
+    from.push_back(p.name), to.push_back(p.attribute);
+    added.config.emplace_back(p.attribute, Decimal(p.initial));
+    h.extra.push_back(std::move(p));
+  }
+  added.config.emplace_back(effect.text, Expression::Renamed(law.formula, from, to));
+  h.system = system.With({}, {{added}});
+  h.instance = added;
+  return h;
+}
+
 // The instances of soft segments that have all that an effect beside them takes from them: what has
 // no null on its card.
 std::vector<int> SegmentsFor(const mjModel& m, const EffectInfo& effect) {
@@ -441,8 +464,13 @@ std::string WhyNot(const EffectInfo& effect, Place place, const std::vector<std:
 }
 
 // One hypothesis, or one for each option of a friction's choice.
-void AddAt(const EffectInfo& effect, Place place, const std::vector<std::string>& names,
-           const System& system, const Sizes& sizes, std::vector<Hypothesis>& all) {
+void AddAt(const EffectInfo& effect, const Candidate& wanted, Place place,
+           const std::vector<std::string>& names, const System& system, const Sizes& sizes,
+           std::vector<Hypothesis>& all) {
+  if (wanted.law) {
+    all.push_back(WrittenCandidate(effect, *wanted.law, place, names, system));
+    return;
+  }
   if (effect.kind == EffectInfo::Kind::kEdit) {
     all.push_back(EditCandidate(effect, place, names, system, sizes));
     return;
@@ -474,9 +502,7 @@ std::string AddBeside(const EffectInfo& effect, const Experiment& e, const Syste
 void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
                const System& system, const Sizes& sizes, std::vector<Hypothesis>& all,
                std::vector<std::string>& skipped) {
-  const auto skip = [&](const std::string& why) {
-    skipped.push_back(std::string(effect.name) + ": " + why);
-  };
+  const auto skip = [&](const std::string& why) { skipped.push_back(wanted.Name() + ": " + why); };
   if (effect.kind == EffectInfo::Kind::kSegment) {
     const std::string why = AddBeside(effect, e, system, sizes, all);
     return why.empty() ? void() : skip(why);
@@ -494,16 +520,16 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
     const std::string glob = wanted.where.empty() ? "*" : wanted.where.substr(colon + 1);
     const auto names = PlacesFor(system.model(), effect, place, glob, e);
     if (names.empty()) continue;
-    const std::string why = WhyNot(effect, place, names, e, system.model());
+    const std::string why = wanted.law ? "" : WhyNot(effect, place, names, e, system.model());
     if (!why.empty()) return skip(why);
-    AddAt(effect, place, names, system, sizes, all);
+    AddAt(effect, wanted, place, names, system, sizes, all);
     const bool each = wanted.where.empty() && names.size() > 1 && names.size() <= kEach;
     for (std::size_t i = 0; each && i < names.size(); ++i)
-      AddAt(effect, place, {names[i]}, system, sizes, all);
+      AddAt(effect, wanted, place, {names[i]}, system, sizes, all);
     return;
   }
   if (!wanted.where.empty()) {
-    throw Error::Input(fmt::format("{}: candidates: {}", e.file.string(), effect.name),
+    throw Error::Input(fmt::format("{}: candidates: {}", e.file.string(), wanted.Name()),
                        "a place in the model where the effect can act", wanted.where);
   }
   skip("nothing in the model to bind it to");
@@ -542,7 +568,7 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system
   std::vector<Hypothesis> all;
   if (e.all_candidates) {
     for (const EffectInfo& effect : Catalog())
-      AddEffect(effect, {}, e, system, sizes, all, skipped);
+      AddEffect(effect, {std::string(effect.name), "", false}, e, system, sizes, all, skipped);
   } else {
     std::vector<Candidate> seen;
     for (const Candidate& c : e.candidates) {

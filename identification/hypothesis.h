@@ -12,7 +12,7 @@ namespace continuum {
 
 /// A model that may have made the data: the experiment's own, or that with one more effect.
 struct Hypothesis {
-  std::string effect;   ///< empty: the model as it is
+  std::string effect;   ///< empty: the model as it is; of a law of the experiment: its name
   std::string variant;  ///< of a choice: "load=actuator"
   std::string where;    ///< in words: "joint q"
   System system;
@@ -32,6 +32,8 @@ struct Hypothesis {
   std::size_t Main(std::span<const double> values) const;
   /// Those of extra that say whether the effect is there.
   std::vector<std::size_t> Amplitudes() const;
+  /// The effect on whose card its parameters are.
+  const std::string& Card() const { return instance.effect.empty() ? effect : instance.effect; }
   std::string Name() const { return variant.empty() ? effect : effect + " (" + variant + ")"; }
   std::string NameAtPlace() const { return Name() + " at " + where; }
 };

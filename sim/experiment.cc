@@ -12,6 +12,7 @@
 #include "sim/mat.h"
 #include "sim/table.h"
 #include "sim/units.h"
+#include "sim/written_law.h"
 
 namespace continuum {
 namespace {
@@ -247,10 +248,18 @@ Parameter ReadParameter(const Yaml& y) {
   return p;
 }
 
+// Every effect of the list, to be tried wherever it makes sense.
+std::vector<Candidate> AllCandidates() {
+  std::vector<Candidate> all;
+  All::ForEach([&]<class E>() { all.push_back({std::string(E::kName), "", false}); });
+  return all;
+}
+
 Candidate ReadCandidate(const Yaml& y) {
   Candidate c;
   const Yaml name = y.IsMap() ? y.At("effect") : y;
   c.effect = name.Text();
+  if (y.IsMap() && IsWritten(c.effect)) return ReadWrittenLaw(y, c.effect);
   bool known = false;
   std::string all;
   All::ForEach([&]<class E>() {
@@ -437,7 +446,11 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
   }
   if (const auto c = y.Find("candidates"); c && !(c->IsScalar() && c->Text() == "all")) {
     e.all_candidates = false;
-    for (const Yaml& item : c->Items()) e.candidates.push_back(ReadCandidate(item));
+    for (const Yaml& item : c->Items()) {
+      const bool all = item.IsScalar() && item.Text() == "all";
+      const auto more = all ? AllCandidates() : std::vector{ReadCandidate(item)};
+      e.candidates.insert(e.candidates.end(), more.begin(), more.end());
+    }
   }
   if (const auto folds = y.Find("folds")) e.folds = ReadFolds(*folds);
   if (const auto loss = y.Find("loss")) {

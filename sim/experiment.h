@@ -99,6 +99,15 @@ struct Parameter {
   bool frozen = false;
   Per per = Per::kAll;
   std::string where;  ///< file:line: key, for messages
+  std::string unit;   ///< empty: that of its target
+};
+
+/// A law that the experiment itself writes, as a formula.
+struct WrittenLaw {
+  std::string name;     ///< what results call it
+  std::string formula;  ///< of q, v (a dry friction: also load) and the names of the parameters
+  std::vector<Parameter> parameters;  ///< without target
+  std::vector<double> null;  ///< [parameter] at which the law does nothing; NaN: it has none
 };
 
 /// An effect the diagnosis may try.
@@ -106,7 +115,12 @@ struct Candidate {
   std::string effect;
   std::string where;  ///< "joint:GLOB", "tendon:GLOB", …; empty: everywhere it makes sense
   bool per_condition = false;
-  bool operator==(const Candidate&) const = default;
+  std::optional<WrittenLaw> law = {};
+
+  const std::string& Name() const { return law ? law->name : effect; }
+  bool operator==(const Candidate& o) const {
+    return Name() == o.Name() && where == o.where && per_condition == o.per_condition;
+  }
 };
 
 /// Everything a replay, a fit or a diagnosis needs, from one EXPERIMENT.yaml.

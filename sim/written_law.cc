@@ -1,0 +1,98 @@
+#include "sim/written_law.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "binding/expression.h"
+#include "effects/all.h"
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum {
+namespace {
+
+using Names = std::vector<std::string>;
+
+bool Holds(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// A parameter's null, NaN when it has none.
+double ReadNull(const Yaml& y, const Parameter& p) {
+  const auto null = y.Find("null");
+  return null ? null->Number(p.lower, p.upper) : std::numeric_limits<double>::quiet_NaN();
+}
+
+Parameter ReadOne(const Yaml& y, const Names& taken) {
+  y.Only({"name", "unit", "initial", "lower", "upper", "null"});
+  Parameter p;
+  p.where = y.Where();
+  p.name = y.At("name").Text();
+  if (!Expression::IsName(p.name) || Holds(taken, p.name)) {
+    throw Error::Input(y.At("name").Where(), "a name of letters and digits that means nothing else",
+                       "'" + p.name + "'");
+  }
+  const auto unit = y.Find("unit");
+  p.unit = unit ? unit->Text() : "1";
+  p.lower = y.At("lower").Number();
+  p.upper = y.At("upper").Number();
+  if (!(p.lower < p.upper)) {
+    throw Error::Input(y.At("upper").Where(), "upper above lower", y.At("upper").Text());
+  }
+  p.initial = y.At("initial").Number(p.lower, p.upper);
+  p.has_initial = true;
+  return p;
+}
+
+std::string ReadName(const Yaml& y) {
+  const std::string name = y.Text();
+  bool known = IsWritten(name) || !Expression::IsName(name);
+  All::ForEach([&]<class E>() { known |= name == E::kName; });
+  if (!known) return name;
+  throw Error::Input(y.Where(), "a name of letters and digits that no effect has",
+                     "'" + name + "'");
+}
+
+template <FormulaLaw E>
+Candidate Read(const Yaml& y) {
+  const std::string key(E::kText);
+  y.Only({"effect", "where", "name", key, "parameters"});
+  Candidate c{std::string(E::kName), y.Has("where") ? y.At("where").Text() : "", false, {}};
+  WrittenLaw law{ReadName(y.At("name")), y.At(key).Text(), {}, {}};
+  Names names(E::kVariables.begin(), E::kVariables.end());
+  for (const Yaml& item : y.At("parameters").Items()) {
+    law.parameters.push_back(ReadOne(item, names));
+    law.null.push_back(ReadNull(item, law.parameters.back()));
+    names.push_back(law.parameters.back().name);
+  }
+  if (law.parameters.size() > E::kParams.size()) {
+    throw Error::Input(y.At("parameters").Where(),
+                       "at most " + std::to_string(E::kParams.size()) + " parameters",
+                       std::to_string(law.parameters.size()));
+  }
+  if (std::all_of(law.null.begin(), law.null.end(), [](double x) { return std::isnan(x); })) {
+    throw Error::Input(y.At("parameters").Where(),
+                       "a parameter with null, the value at which the law does nothing", "none");
+  }
+  const Expression parsed(law.formula, names, y.At(key).Where());
+  c.law = std::move(law);
+  return c;
+}
+
+}  // namespace
+
+bool IsWritten(const std::string& effect) {
+  bool written = false;
+  Written::ForEach([&]<class E>() { written |= effect == E::kName; });
+  return written;
+}
+
+Candidate ReadWrittenLaw(const Yaml& y, const std::string& effect) {
+  Candidate c;
+  Written::ForEach([&]<class E>() {
+    if (effect == E::kName) c = Read<E>(y);
+  });
+  return c;
+}
+
+}  // namespace continuum
