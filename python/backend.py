@@ -25,6 +25,8 @@ PACKAGE = "mujoco_continuum"
 _CMAKE = (ROOT / "CMakeLists.txt").read_text()
 VERSION = re.search(r"^project\(mujoco_continuum VERSION ([\d.]+)", _CMAKE, re.M)[1]
 MUJOCO = re.search(r"^find_package\(MuJoCo ([\d.]+) EXACT", _CMAKE, re.M)[1]
+INFO = f"{PACKAGE}-{VERSION}.dist-info"
+TAG = "py3-none-" + re.sub(r"[-.]", "_", sysconfig.get_platform())  # any Python 3, this machine
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 
@@ -34,13 +36,17 @@ def get_requires_for_build_wheel(config_settings=None):
     return [] if built or _mujoco() else [f"mujoco-core=={MUJOCO}"]
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """What there is to know before anything is compiled."""
+    _write_metadata(pathlib.Path(metadata_directory, INFO))
+    return INFO
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     """Compiles, installs into a folder, and packs the folder. Returns the wheel's name."""
     build = (config_settings or {}).get("build-dir")
     folder = (ROOT / build).resolve() if build else _compile()
-    platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
-    tag = f"py3-none-{platform}"
-    name = f"{PACKAGE}-{VERSION}-{tag}.whl"
+    name = f"{PACKAGE}-{VERSION}-{TAG}.whl"
     with tempfile.TemporaryDirectory() as temporary:
         stage = pathlib.Path(temporary)
         shutil.copytree(ROOT / "python" / PACKAGE, stage / PACKAGE,
@@ -48,7 +54,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         (stage / PACKAGE / "_build.py").write_text(
             f'"""What this package was built as."""\nVERSION = "{VERSION}"\nMUJOCO = "{MUJOCO}"\n')
         _run("cmake", "--install", folder, "--prefix", stage / PACKAGE, "--strip")
-        _write_metadata(stage / f"{PACKAGE}-{VERSION}.dist-info", tag)
+        _write_metadata(stage / INFO)
         _pack(stage, pathlib.Path(wheel_directory) / name)
     return name
 
@@ -113,11 +119,11 @@ def _metadata():
     return "\n".join(lines)
 
 
-def _write_metadata(folder, tag):
+def _write_metadata(folder):
     folder.mkdir()
     (folder / "METADATA").write_text(_metadata())
     (folder / "WHEEL").write_text(
-        f"Wheel-Version: 1.0\nGenerator: backend.py\nRoot-Is-Purelib: false\nTag: {tag}\n")
+        f"Wheel-Version: 1.0\nGenerator: backend.py\nRoot-Is-Purelib: false\nTag: {TAG}\n")
     scripts = [f"{name} = {target}\n" for name, target in PROJECT["scripts"].items()]
     (folder / "entry_points.txt").write_text("[console_scripts]\n" + "".join(scripts))
     shutil.copy(ROOT / "LICENSE", folder)
@@ -126,7 +132,7 @@ def _write_metadata(folder, tag):
 def _pack(stage, wheel):
     """Zips a folder with the record of its files. Equal files give equal bytes."""
     files = sorted(file for file in stage.rglob("*") if file.is_file())
-    record = next(stage.glob("*.dist-info")).name + "/RECORD"
+    record = f"{INFO}/RECORD"
     lines = []
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
         def add(name, data, mode=0o644):

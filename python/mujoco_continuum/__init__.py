@@ -9,6 +9,8 @@ Importing this package loads its plugin into the MuJoCo of this Python, so that 
     diagnose   why it is off, and the extended model
     apply      the extension in another model
 
+force_law and friction_law make candidates of Python functions.
+
 An experiment is the path of an EXPERIMENT.yaml or a dict with the same keys. docs/python.md shows a
 whole example.
 """
@@ -17,8 +19,10 @@ from ._engine import load as _load
 from ._paths import EXECUTABLE, MODELS, PLUGIN
 from ._tool import Error, InputError, JobError
 from .commands import apply, check, diagnose, effects, identify, models, replay
+from .laws import force_law, friction_law
 
 __all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "Error", "InputError", "JobError", "apply",
-           "check", "diagnose", "effects", "identify", "models", "replay"]
+           "check", "diagnose", "effects", "force_law", "friction_law", "identify", "models",
+           "replay"]
 
 _load()

@@ -25,3 +25,5 @@ class Page(Bench):
         # 2 mrad of noise over 800 rows: 2.5 % standard error, four of them
         self.assertAlmostEqual(diagnosis["error"]["after"]["validate"], 2e-3, delta=2e-4)
         self.assertEqual(names["mended"].nplugin, 1)
+        tried = {candidate["effect"] for candidate in names["second"]["candidates"]}
+        self.assertLessEqual({"coulomb", "fading_friction"}, tried)
