@@ -40,12 +40,15 @@ def replay(experiment: Document, out: StrPath | None = None, *, video: bool = Fa
 
 
 def identify(experiment: Document, out: StrPath | None = None, *, method: str = "lm",
-             path: str = "stepped", iterations: int = 50, all: bool = False,
-             for_step: bool = False, folder: StrPath = ".",
-             progress: Progress | None = None) -> Json:
-    """Fits the parameters. Returns fit.json: parameters with intervals, correlation, errors."""
-    options = {"method": method, "path": path, "iterations": iterations, "all": all,
-               "for_step": for_step}
+             path: str = "auto", iterations: int | None = None, seed: int = 1,
+             cutoff: float | None = None, all: bool = False, for_step: bool = False,
+             folder: StrPath = ".", progress: Progress | None = None) -> Json:
+    """Fits the parameters. Returns fit.json: parameters with intervals, correlation, errors.
+
+    method: lm | pso | regressor. path: auto | smooth | stepped. seed belongs to pso, cutoff [Hz] to
+    regressor; None: what the method likes. all: the validate logs too."""
+    options = {"method": method, "path": path, "iterations": iterations, "seed": seed,
+               "cutoff": cutoff, "all": all, "for_step": for_step}
     return _job("identify", "fit.json", experiment, out, options, folder, progress)
 
 
