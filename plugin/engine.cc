@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <mutex>
 #include <set>
 #include <type_traits>
 #include <utility>
@@ -62,25 +63,37 @@ bool IsOurs(const mjModel& m, int i) {
 
 void Warn(const std::string& text) { mju_warning("%s", text.c_str()); }
 
+// For what is true of an instance as long as its model is: every mjData calls init, and so does the
+// compiler.
+void WarnOnce(const std::string& text) {
+  static std::mutex mutex;
+  static std::set<std::string> said;
+  {
+    const std::lock_guard lock(mutex);
+    if (!said.insert(text).second) return;
+  }
+  Warn(text);
+}
+
 // MuJoCo hands out the model as const, but rows and native damping must be in it before the first
 // step. Only constants are assigned, so that every mjData of the model finds the same.
 mjModel& Mutable(const mjModel& m) { return const_cast<mjModel&>(m); }
 
 void WarnOfSilence(const mjModel& m, const Instance& self, const Config& config) {
   if (self.bound->IsRow() && (m.opt.disableflags & mjDSBL_FRICTIONLOSS)) {
-    Warn(config.Who() + ": <flag frictionloss=\"disable\"> removes all dry friction");
+    WarnOnce(config.Who() + ": <flag frictionloss=\"disable\"> removes all dry friction");
   }
   if (self.bound->IsRow() && m.opt.integrator == mjINT_DISCRETE) {
-    Warn(config.Who() +
-         ": under integrator=\"discrete\" a joint at rest creeps by up to 2e-4 rad/s; "
-         "integrator=\"implicitfast\" holds it");
+    WarnOnce(config.Who() +
+             ": under integrator=\"discrete\" a joint at rest creeps by up to 2e-4 rad/s; "
+             "integrator=\"implicitfast\" holds it");
   }
   if (self.bound->GivesForce() && (m.opt.disableflags & mjDSBL_SPRING) &&
       (m.opt.disableflags & mjDSBL_DAMPER)) {
-    Warn(config.Who() + ": with springs and dampers disabled MuJoCo applies no passive forces");
+    WarnOnce(config.Who() + ": with springs and dampers disabled MuJoCo applies no passive forces");
   }
   if (const std::string why = self.bound->Silence(m); !why.empty()) {
-    Warn(config.Who() + ": " + why);
+    WarnOnce(config.Who() + ": " + why);
   }
 }
 

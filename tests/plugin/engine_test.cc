@@ -260,6 +260,31 @@ TEST_F(Configuration, AWrongJointTypeIsRefused) {
   }
 }
 
+// Of an instance, not of each compilation, mjData or copy.
+TEST_F(Configuration, WarnsOfTheDiscreteIntegratorOnce) {
+  static int warnings;
+  warnings = 0;
+  mju_user_warning = [](const char* text) {
+    warnings += std::string_view(text).find("creeps") != std::string_view::npos;
+  };
+  std::string xml =
+      Arm("coulomb", Key("joint", "q1") + Key("tau_c", ".05"), "integrator=\"discrete\"");
+  const auto named = [&](const std::string& name) {
+    std::string text = xml;
+    return text.replace(text.find("name=\"i\""), 8, "name=\"" + name + "\"");
+  };
+  for (int k = 0; k < 3; ++k) {
+    const auto m = Model(named("once"));
+    const auto d = Data(m), e = Data(m);
+    mj_resetData(m.get(), d.get());
+    const testing::Owned<mjData> copy(mj_copyData(nullptr, m.get(), d.get()));
+  }
+  EXPECT_EQ(warnings, 1);
+  Model(named("another"));
+  EXPECT_EQ(warnings, 2);
+  mju_user_warning = [](const char*) {};
+}
+
 TEST_F(Configuration, AnEditedConfigurationIsFollowed) {
   const auto m = Model(Arm("coulomb", Key("joint", "q1") + Key("tau_c", ".05"), ""));
   const auto d = Data(m);
