@@ -17,6 +17,7 @@
 #include "sim/output.h"
 #include "sim/registration.h"
 #include "sim/replay.h"
+#include "sim/stop.h"
 
 namespace continuum {
 namespace {
@@ -77,7 +78,7 @@ Fitting Run(const Options& o, const Problem& problem, const std::vector<bool>& u
     FitOptions options{.soft = soft, .progress = ShowProgress};
     options.iterations = o.iterations > 0 ? o.iterations : 50;
     all.fit = FitParameters(problem, problem.Start(), use, options);
-    if (problem.path() == Path::kSmooth && o.for_step)
+    if (problem.path() == Path::kSmooth && o.for_step && !StopRequested())
       all.for_step = ForStep(problem, all.fit, use, options);
   }
   return all;
@@ -94,8 +95,8 @@ void Print(const Problem& problem, const Fitting& all, const std::string& out) {
   const Fit& fit = all.fit;
   std::vector<ChannelScore> scores;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    const auto more = ScoreLog(e, e.logs[l], problem.Predict(fit.x, l));
-    scores.insert(scores.end(), more.begin(), more.end());
+    for (ChannelScore& s : ScoreLog(e, e.logs[l], problem.Predict(fit.x, l)))
+      scores.push_back(std::move(s));
   }
   for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
@@ -146,6 +147,7 @@ void RunIdentify(const Options& o) {
                                     all.regression ? &*all.regression : nullptr});
   Print(problem, all, o.out);
   for (const TradeOff& t : trade_offs) std::printf("%s\n", t.text.c_str());
+  StopIfRequested();  // the files hold the best so far
   if (!all.fit.converged) throw Error::Job("the fit did not converge: " + all.fit.message);
 }
 
