@@ -17,14 +17,14 @@ bool Holds(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// A parameter's null, NaN when it has none.
+// Where a parameter makes the law do nothing, NaN when it never does.
 double ReadNull(const Yaml& y, const Parameter& p) {
-  const auto null = y.Find("null");
+  const auto null = y.Find("absent");
   return null ? null->Number(p.lower, p.upper) : std::numeric_limits<double>::quiet_NaN();
 }
 
 Parameter ReadOne(const Yaml& y, const Names& taken) {
-  y.Only({"name", "unit", "initial", "lower", "upper", "null"});
+  y.Only({"name", "unit", "initial", "lower", "upper", "absent"});
   Parameter p;
   p.where = y.Where();
   p.name = y.At("name").Text();
@@ -72,7 +72,7 @@ Candidate Read(const Yaml& y) {
   }
   if (std::all_of(law.null.begin(), law.null.end(), [](double x) { return std::isnan(x); })) {
     throw Error::Input(y.At("parameters").Where(),
-                       "a parameter with null, the value at which the law does nothing", "none");
+                       "a parameter with absent, the value at which the law does nothing", "none");
   }
   const Expression parsed(law.formula, names, y.At(key).Where());
   c.law = std::move(law);

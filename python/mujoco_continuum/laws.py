@@ -7,7 +7,7 @@ and becomes a formula, which the tools and the extended model evaluate without P
         return b * v * abs(v)
 
     experiment["candidates"] = ["all", force_law(drag, b={"initial": 0.01, "lower": 0, "upper": 1,
-                                                          "null": 0, "unit": "N*m*s^2/rad^2"})]
+                                                          "absent": 0, "unit": "N*m*s^2/rad^2"})]
 
 The function may use arithmetic, other functions, loops of a known length and numpy's functions of
 numbers; a choice that depends on q, v, load or a parameter is numpy.where(condition, a, b) instead
@@ -24,7 +24,7 @@ def force_law(function: Callable[..., Any], where: str = "",
     """A candidate: a force on a joint [N*m] or tendon [N] that depends on q and v.
 
     force times v is power into the effect: b*v with b > 0 brakes. where: "joint:GLOB" or
-    "tendon:GLOB"; empty: all joints. Each parameter of the function has initial, lower, upper, null
+    "tendon:GLOB"; empty: all joints. Each parameter of the function has initial, lower, upper, absent
     (the value at which the law does nothing; not for those that only say how it acts) and unit."""
     return _law(function, where, parameters, "formula", "force", ("q", "v"))
 

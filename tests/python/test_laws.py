@@ -8,7 +8,7 @@ import mujoco
 import mujoco_continuum as mc
 import numpy as np
 
-ANY = {"initial": 0.1, "lower": 0, "upper": 1, "null": 0}
+ANY = {"initial": 0.1, "lower": 0, "upper": 1, "absent": 0}
 INERTIA = 0.02
 WHEEL = """<mujoco>
   <extension><plugin plugin="continuum.formula"><instance name="law">
