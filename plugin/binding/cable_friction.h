@@ -15,10 +15,9 @@ namespace continuum {
 /// MuJoCo finds the constraint forces afterwards, so those of the last step stand in for them. This
 /// costs where they change at once: contacts at rest may give way for that step. At 2 ms, 10 g to
 /// 1 kg pressed against a stop with 3 to 15 N more or less of load moved by less than 1e-6 m; at
-/// 0.5 and 1 ms some of these changes broke contacts away, by 1e-5 m and once by 1.2e-3 m (10 g). An
-/// arm of ten links of 5 g pulled against its joint limits is 3.5e-4 rad
-/// (rms) off at 2 ms against 50 us; 1.6e-4 without limits, 1.2e-4 without friction, and all shrink
-/// with the step.
+/// 0.5 and 1 ms some of these changes broke contacts away, by 1e-5 m and once by 1.2e-3 m (10 g).
+/// An arm of ten links of 5 g pulled against its joint limits is 3.5e-4 rad (rms) off at 2 ms
+/// against 50 us; 1.6e-4 without limits, 1.2e-4 without friction, and all shrink with the step.
 ///
 /// The order of RK4 is lost with cable friction: the answer for the end of a step, also in its
 /// stages, is of first order in the step. Against small steps of the five-link snake arm its rms
