@@ -114,8 +114,7 @@ class Session {
     SetProbabilities(round.candidates, records);
     const CandidateResult* const best = round.leading();
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
-    const bool numerical =
-        trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.lack, d_.noise);
+    const bool numerical = trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.noise);
     d_.verdict = JudgeLikelihoods(records, numerical ? 1 : d_.lack.smallest(), round.smallest_p());
     if (numerical && d_.lack.smallest() < LikelihoodRules{}.lack)
       d_.verdict.reason += "; what is left above the noise is within what the time step adds";

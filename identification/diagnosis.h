@@ -91,7 +91,6 @@ struct Dismissed {
 struct LackOfFit {
   double force = 1;    ///< p-value of smooth forces of angle, speed and load
   double channel = 1;  ///< of constants and shifts in time of the channels
-  double excess = 0;   ///< norm of what the one that explains more does beyond noise, whitened
   double smallest() const { return std::min(force, channel); }
 };
 

@@ -135,7 +135,7 @@ class Search {
     const Fitting& best = pairs[verdict.named.front()];
     const Round& round = tried_[best.base].round;
     const LackOfFit lack = round.LackOf(*best.b);
-    if (lack.smallest() < LikelihoodRules{}.lack && !WithinStep(*best.b, lack)) return {};
+    if (lack.smallest() < LikelihoodRules{}.lack && !WithinStep(*best.b)) return {};
     const auto equivalent = OthersForFirst(pairs, verdict);
     auto tried = List(pairs);
     std::vector<std::size_t> seconds;
@@ -152,8 +152,8 @@ class Search {
                 std::move(tried)};
   }
 
-  bool WithinStep(const CandidateResult& c, const LackOfFit& lack) const {
-    return trials_.WithinStep(c.ProblemOf(*trials_.experiment), c.fitted, lack, noise_);
+  bool WithinStep(const CandidateResult& c) const {
+    return trials_.WithinStep(c.ProblemOf(*trials_.experiment), c.fitted, noise_);
   }
 
   // Effects of pairs in the set that are neither of the best pair's, nor stand for its second.

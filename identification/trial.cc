@@ -14,15 +14,14 @@ namespace {
 using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
-// What unsigned columns explain of white noise of size 1: its p-value, and its norm beyond noise.
-std::pair<double, double> ChiSquared(const Matrix& columns, const Vector& z, double inflation) {
+// p-value of what unsigned columns explain of white noise of size 1.
+double ChiSquared(const Matrix& columns, const Vector& z, double inflation) {
   Probe probe{columns, std::vector<double>(columns.cols(), 0)};
   const double rank = static_cast<double>(
       std::min<Eigen::Index>(columns.cols(), (columns.colwise().norm().array() > 1e-9).count()));
-  if (rank < 1) return {1, 0};
-  const double amount = ExplainedBy(probe, z).amount / inflation;
-  return {boost::math::cdf(boost::math::complement(boost::math::chi_squared(rank), amount)),
-          std::sqrt(std::max(0.0, amount - rank))};
+  if (rank < 1) return 1;
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(rank),
+                                                  ExplainedBy(probe, z).amount / inflation));
 }
 
 // The value of a parameter that leaves the effect out: its null, or its bound toward one at
@@ -188,15 +187,10 @@ double Trials::StepEffect(const Problem& problem, const Fitted& fitted) const {
   return problem.PooledRms(column, train);
 }
 
-// The residuals may move along the step's effect as it is between h and h/4. What of its effect
-// goes another way is smaller.
-bool Trials::WithinStep(const Problem& problem, const Fitted& fitted, const LackOfFit& lack,
-                        const Noise& noise) const {
-  constexpr double kOtherWay = 0.25;
+bool Trials::WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const {
   const double left = fitted.error.train;
   const double excess = std::sqrt(std::max(0.0, left * left - noise.rms * noise.rms));
-  const double step = whitening.Stack(fitted.step, TrainLogs(*experiment)).col(0).norm();
-  return excess <= 1.25 * StepEffect(problem, fitted) && lack.excess <= kOtherWay * step;
+  return excess <= 1.25 * StepEffect(problem, fitted);
 }
 
 LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& extra,
@@ -207,16 +201,17 @@ LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& ext
   const Problem problem(*experiment, system, extra, terms);
   const Vector x = Append(fitted.fit.x, std::vector<double>(terms.count, 0.0));
   const Remainder left = LeftBy(fitted);
+  LackOfFit lack;
   auto J = problem.Jacobian(x, fitted.residuals, train, fitted.jacobian);
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = Matrix(J[l].rightCols(static_cast<Eigen::Index>(terms.count)));
   }
-  const auto [force, by_forces] = ChiSquared(left.Project(J), left.residual(), inflation);
+  lack.force = ChiSquared(left.Project(J), left.residual(), inflation);
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = ChannelColumns(problem, problem.Predict(x, l), experiment->logs[l]);
   }
-  const auto [channel, by_channels] = ChiSquared(left.Project(J), left.residual(), inflation);
-  return {force, channel, std::max(by_forces, by_channels)};
+  lack.channel = ChiSquared(left.Project(J), left.residual(), inflation);
+  return lack;
 }
 
 }  // namespace continuum

@@ -31,10 +31,9 @@ struct Trials {
                             const Probe& probe, const Explained& explained) const;
   /// How far the trajectories at the time step h and at h/4 are apart [pooled unit].
   double StepEffect(const Problem& problem, const Fitted& fitted) const;
-  /// Whether what a candidate leaves above the noise is no more than what its time step adds, and
-  /// what of it looks like a cause far less: then it is no sign of another one.
-  bool WithinStep(const Problem& problem, const Fitted& fitted, const LackOfFit& lack,
-                  const Noise& noise) const;
+  /// Whether what a candidate leaves above the noise is no more than what its time step adds: then
+  /// it is no sign of another cause.
+  bool WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const;
   /// Tests of what no candidate covers; inflation: of noise along any direction.
   LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
                    const Sizes& sizes, double inflation, std::uint64_t seed) const;

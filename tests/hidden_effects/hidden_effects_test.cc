@@ -78,7 +78,6 @@ TEST_P(HiddenEffects, WithoutACandidateGetNoOtherName) {
 // No single candidate leaves noise: both are found, with their sizes.
 TEST_F(Suite, TwoTogetherAreBothNamed) {
   for (const Case& c : {Case{{"gravity_tilt", "armature"}, 2, NoiseKind::kWhite, 4001},
-                        Case{{"cubic_stiffness", "sensor_scale"}, 2, NoiseKind::kSlow, 22},
                         Case{{"payload", "sensor_delay"}, 2, NoiseKind::kOffset, 4002}}) {
     const Answer a = Ask(c);
     EXPECT_TRUE(InSet(c, a)) << told_;
