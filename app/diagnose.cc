@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <sstream>
@@ -52,8 +51,7 @@ std::string OldComparison(const std::string& file) {
 
 // An effect, or a law that the experiment writes.
 void CheckCandidate(const std::string& name, const Experiment& e) {
-  const auto written = [&](const Candidate& c) { return c.law && c.law->name == name; };
-  if (std::any_of(e.candidates.begin(), e.candidates.end(), written)) return;
+  if (e.Written(name)) return;
   try {
     if (EffectNamed(name).text.empty()) return;
     throw Error::Input(name, "a law of the experiment by its own name", "none");

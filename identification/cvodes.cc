@@ -148,7 +148,6 @@ Cvodes::~Cvodes() = default;
 
 void Cvodes::Start(double t, std::span<const double> y, std::span<const double> s) {
   Solver& solver = *solver_;
-  solver.before = work();
   const std::size_t n = solver.ode.size;
   std::copy(y.begin(), y.end(), N_VGetArrayPointer(solver.y.get()));
   for (std::size_t k = 0; k < solver.s.size(); ++k) {
@@ -159,6 +158,12 @@ void Cvodes::Start(double t, std::span<const double> y, std::span<const double> 
       std::copy_n(s.data() + k * n, n, column);
     }
   }
+  Restart(t);
+}
+
+void Cvodes::Restart(double t) {
+  Solver& solver = *solver_;
+  solver.before = work();
   solver.t = t;
   Solver::Set(CVodeReInit(solver.memory.get(), t, solver.y.get()));
   if (!solver.s.empty())

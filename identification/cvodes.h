@@ -38,8 +38,10 @@ class Cvodes {
   Cvodes(const Ode& ode, const Solving& how);
   ~Cvodes();
 
-  /// Begins anew at t; s: [parameters × size], empty: zero.
+  /// Begins at t; s: [parameters × size], empty: zero.
   void Start(double t, std::span<const double> y, std::span<const double> s = {});
+  /// Begins anew from where it is, at t, as the equation changes there.
+  void Restart(double t);
   /// Goes on to a time; never beyond `stop`, where the equation may change. Returns false, with the
   /// solver's reason in failure(), when it cannot.
   bool Advance(double t, double stop);

@@ -115,7 +115,8 @@ class Session {
     const CandidateResult* const best = round.leading();
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
     const bool numerical = trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.noise);
-    d_.verdict = JudgeLikelihoods(records, numerical ? 1 : d_.lack.smallest(), round.smallest_p());
+    counted_ = numerical ? 1 : d_.lack.smallest();
+    d_.verdict = JudgeLikelihoods(records, counted_, round.smallest_p());
     if (numerical && d_.lack.smallest() < LikelihoodRules{}.lack)
       d_.verdict.reason += "; what is left above the noise is within what the time step adds";
   }
@@ -154,7 +155,7 @@ class Session {
     }
     if (!d_.partner) {
       d_.verdict.text = "named";
-      d_.verdict.reason = "it leaves " + LeftInWords(d_.lack.smallest());
+      d_.verdict.reason = "it leaves " + LeftInWords(counted_);
     } else if (d_.partner->equivalent.empty()) {
       d_.verdict.text = "named";
     }
@@ -208,12 +209,13 @@ class Session {
   Problem null_;
   Diagnosis d_;
   Trials trials_;
+  double counted_ = 1;  // lack of fit, without what the time step excuses
 };
 
 }  // namespace
 
 void DiagnosisOptions::Say(const std::string& text) const {
-  if (StopRequested()) throw Error::Job("interrupted");
+  StopIfRequested();
   if (progress) progress(text);
 }
 

@@ -78,22 +78,26 @@ HeatMapSpec CorrelationMap(const Problem& problem, const Uncertainty& u) {
   return spec;
 }
 
+std::vector<Replayed> Predicted(const Problem& problem, const Problem::Vector& x) {
+  const Experiment& e = problem.experiment();
+  std::vector<Replayed> logs;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    Trace trace = problem.Predict(x, l);
+    auto score = ScoreLog(e, e.logs[l], trace);
+    logs.push_back({std::move(trace), std::move(score)});
+  }
+  return logs;
+}
+
 // What the model gives at its own step, where the fit was one of its differential equation.
 nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x) {
   Problem stepped = problem;
   stepped.Follow(Path::kStepped);
-  const Experiment& e = problem.experiment();
-  std::vector<Replayed> logs;
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    Trace trace = stepped.Predict(x, l);
-    auto score = ScoreLog(e, e.logs[l], trace);
-    logs.push_back({std::move(trace), std::move(score)});
-  }
   auto parameters = nlohmann::json::object();
   for (Eigen::Index i = 0; i < x.size(); ++i) parameters[problem.parameters()[i].name] = x[i];
   return {{"timestep", problem.system().model().opt.timestep},
           {"parameters", parameters},
-          {"error", ErrorsJson(e, logs)}};
+          {"error", ErrorsJson(problem.experiment(), Predicted(stepped, x))}};
 }
 
 }  // namespace
@@ -144,13 +148,9 @@ std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
           ? record.regression->uncertainty
           : UncertaintyOf(problem, fit.x, r, problem.Jacobian(fit.x, r, problem.TrainLogs()));
   const auto trade_offs = TradeOffsOf(problem, fit.x, u);
-  std::vector<Replayed> logs;
+  const std::vector<Replayed> logs = Predicted(problem, fit.x);
   std::vector<Trace> traces;
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    Trace trace = problem.Predict(fit.x, l);
-    logs.push_back({trace, ScoreLog(e, e.logs[l], trace)});
-    traces.push_back(std::move(trace));
-  }
+  for (const Replayed& log : logs) traces.push_back(log.trace);
   const SplitError error = PooledError(e, logs);
   const std::string unit = Pool(e).unit();
 

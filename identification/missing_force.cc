@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 
+#include "sim/measurement.h"
+
 namespace continuum {
 namespace {
 
@@ -60,8 +62,7 @@ MissingForce FindMissingForce(const Problem& problem, const Problem::Vector& x) 
     std::map<int, Smooth> state;
     for (const auto& [joint, c] : channels) {
       auto y = log.measured[c];
-      const auto& how = e.outputs[e.channels[c].output].measurement;
-      for (double& value : y) value = (value - e.channels[c].factor * how.bias) / how.scale;
+      for (double& value : y) value = SignalOf(e, c, value);
       if (std::any_of(y.begin(), y.end(), [](double v) { return std::isnan(v); })) return {};
       state[joint] = Smoothed(log.time, y);
     }

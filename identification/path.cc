@@ -33,9 +33,8 @@ std::string SmoothObstacle(const Problem& problem) {
   if (e.quasi_static) return "the logs are quasi-static";
   Problem::Vector beside = problem.Start();
   for (Eigen::Index k = 0; k < beside.size(); ++k) {
-    const FreeParameter& p = problem.parameters()[k];
-    if (p.change.attribute == "skew") return "the clock is a parameter";
-    beside[k] += (beside[k] + kMove * p.scale > p.upper ? -1 : 1) * kMove * p.scale;
+    if (problem.parameters()[k].change.attribute == "skew") return "the clock is a parameter";
+    beside[k] += problem.StepOf(beside, k, kMove);
   }
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     std::string why = ObstacleOf(problem, beside, l);

@@ -364,7 +364,6 @@ bool Problem::Measures(std::size_t k) const {
   return IsMeasurement(c.target, c.attribute);
 }
 
-// A step of a parameter that stays within its bounds.
 double Problem::StepOf(const Vector& x, std::size_t k, double share) const {
   const double step = share * parameters_[k].scale;
   return x[k] + step > parameters_[k].upper ? -step : step;

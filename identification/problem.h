@@ -63,6 +63,8 @@ class Problem {
   const std::vector<FreeParameter>& parameters() const { return parameters_; }
   Vector Start() const;
   Vector Clamp(const Vector& x) const;
+  /// A step of one parameter by a share of its scale, downward where upward would leave its bounds.
+  double StepOf(const Vector& x, std::size_t k, double share) const;
 
   /// Residuals of the logs marked in use; other entries are empty. A diverged log gives NaN.
   std::vector<Vector> Residuals(const Vector& x, const std::vector<bool>& use) const;
@@ -105,7 +107,6 @@ class Problem {
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
   std::unique_ptr<Flow> FlowAt(std::size_t thread, const Vector& x, std::size_t log) const;
   bool Measures(std::size_t k) const;
-  double StepOf(const Vector& x, std::size_t k, double share) const;
   void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                          const std::vector<std::vector<std::size_t>>& motions, std::size_t first,
                          std::vector<Matrix>& J) const;

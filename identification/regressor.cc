@@ -11,6 +11,7 @@
 #include "error.h"
 #include "identification/lowpass.h"
 #include "sim/inputs.h"
+#include "sim/measurement.h"
 
 namespace continuum {
 namespace {
@@ -64,13 +65,6 @@ struct Motion {
   std::vector<std::pair<int, std::vector<double>>> pull;  // actuator, its measured force
 };
 
-std::vector<double> Unbiased(const Experiment& e, const Log& log, std::size_t channel) {
-  const Measurement& how = e.outputs[e.channels[channel].output].measurement;
-  std::vector<double> y = log.measured[channel];
-  for (double& value : y) value = (value - e.channels[channel].factor * how.bias) / how.scale;
-  return y;
-}
-
 Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double cutoff) {
   const Log& log = e.logs[index];
   Motion motion{index, EvenStep(log), 0, {}, {}, {}, {}};
@@ -84,8 +78,9 @@ Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double
     const bool joint =
         source.kind == Output::Kind::kSensor && m.sensor_type[source.sensor] == mjSENS_JOINTPOS;
     if (!force && !joint) continue;
-    std::vector<double> y = Unbiased(e, log, c);
+    std::vector<double> y = log.measured[c];
     for (std::size_t k = 0; k < y.size(); ++k) {
+      y[k] = SignalOf(e, c, y[k]);
       if (std::isnan(y[k])) {
         throw Error::Input("--method regressor",
                            "channel '" + e.channels[c].name + "' measured at every row",
@@ -189,7 +184,7 @@ Matrix Columns(const Problem& problem, const Motion& motion, const Vector& x, co
       Y.col(k).setZero();
       continue;
     }
-    const double step = (x[k] + 0.2 * p.scale > p.upper ? -0.1 : 0.1) * p.scale;
+    const double step = problem.StepOf(x, k, 0.2) / 2;
     const auto moved = [&](double by) -> Vector {
       Vector there = x;
       there[k] += by;

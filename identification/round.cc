@@ -12,14 +12,6 @@ namespace continuum {
 namespace {
 constexpr int kDraws = 399;  // of rounding errors
 constexpr const char kUnresolved[] = "the time step adds more to its fit than it removes";
-
-// An effect, or a law that the experiment writes.
-Candidate CandidateNamed(const Experiment& e, const std::string& name) {
-  for (const Candidate& c : e.candidates) {
-    if (c.law && c.law->name == name) return c;
-  }
-  return {name, "", false};
-}
 }  // namespace
 
 bool Contains(const CandidateResult& b, const CandidateResult& a) {
@@ -37,8 +29,10 @@ Round::Round(const Trials& trials, const Base& base, const Noise& noise, const S
   if (!options.candidates.empty()) {
     wanted.all_candidates = false;
     wanted.candidates.clear();
-    for (const auto& name : options.candidates)
-      wanted.candidates.push_back(CandidateNamed(*trials.experiment, name));
+    for (const auto& name : options.candidates) {
+      const Candidate* const written = trials.experiment->Written(name);
+      wanted.candidates.push_back(written ? *written : Candidate{name, "", false});
+    }
   }
   for (Hypothesis& h : MakeCandidates(wanted, *base.system, sizes, skipped, base.given)) {
     candidates.push_back({std::move(h)});

@@ -78,11 +78,11 @@ SmoothTraces FollowFlow(Flow& flow, const Flows& neighbours, const Experiment& e
 
   Cvodes solver(EquationOf(flow, neighbours), how);
   Observation observation(flow, neighbours, rows);
-  std::vector<double> y = flow.start(), s = FirstSensitivities(flow, neighbours);
+  solver.Start(log.time[0], flow.start(), FirstSensitivities(flow, neighbours));
   SmoothTraces traces;
   for (std::size_t row = 0; row < rows; ++row) {
     observation.Hold(row);
-    if (BreaksAt(e, log, row)) solver.Start(log.time[row], y, s);
+    if (row > 0 && breaks[row - 1] == log.time[row]) solver.Restart(log.time[row]);
     observation.See(solver);
     if (row + 1 == rows) break;
     if (!solver.Advance(log.time[row + 1], breaks[row])) {
@@ -91,9 +91,6 @@ SmoothTraces FollowFlow(Flow& flow, const Flows& neighbours, const Experiment& e
       traces.trace.why = "CVODES: " + solver.failure();
       break;
     }
-    std::copy_n(solver.y(), y.size(), y.begin());
-    for (std::size_t k = 0; k < neighbours.size(); ++k)
-      std::copy_n(solver.s(k), y.size(), s.begin() + static_cast<std::ptrdiff_t>(k * y.size()));
   }
   traces.work = solver.work();
   observation.Release(traces);

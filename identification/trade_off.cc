@@ -69,21 +69,17 @@ std::vector<TradeOff> TradeOffsOf(const Problem& problem, const Vector& x, const
     if (value >= kPoor) break;
     const Vector v = modes.eigenvectors().col(k);
     TradeOff found;
-    std::vector<double> move;
-    bool relative = true;
+    std::vector<Eigen::Index> part, whose;  // of inside, of all parameters
     for (Eigen::Index i = 0; i < v.size(); ++i) {
       if (std::abs(v[i]) < kTakesPart * v.cwiseAbs().maxCoeff()) continue;
+      part.push_back(i), whose.push_back(inside[i]);
       found.names.push_back(problem.parameters()[inside[i]].name);
-      relative &= x[inside[i]] != 0;
-      move.push_back(v[i] * one[i]);
     }
-    if (found.names.size() < 2) continue;
-    if (relative) {
-      for (std::size_t i = 0, j = 0; i < inside.size() && j < move.size(); ++i) {
-        if (problem.parameters()[inside[i]].name == found.names[j]) move[j++] /= x[inside[i]];
-      }
-    }
-    Vector shown = Vector::Map(move.data(), static_cast<Eigen::Index>(move.size()));
+    if (part.size() < 2) continue;
+    const Vector values = x(whose);
+    const bool relative = (values.array() != 0).all();
+    Vector shown = v.cwiseProduct(one)(part);
+    if (relative) shown = shown.cwiseQuotient(values);
     shown /= shown[0];
     found.freedom = value < kNone ? std::numeric_limits<double>::infinity() : 1 / std::sqrt(value);
     found.text = Sentence(found.names, shown, relative, found.freedom);

@@ -168,9 +168,9 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     bool last = true;
     for (int j = i + 1; j < m.nplugin; ++j) last &= !IsOurs(m, j);
     if (last) self->givers = Those(m, d, i, *self, &Bound::GivesForce);
-    if (last) self->forces = Less(self->givers, Those(m, d, i, *self, &Bound::IsRow));
     if (last) self->answers = Those(m, d, i, *self, &Bound::Answers);
     if (last) self->rows = Those(m, d, i, *self, &Bound::IsRow);
+    if (last) self->forces = Less(self->givers, self->rows);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
     self->sum = self->next = self->before;
     FindSensors(m, i, *self, config);

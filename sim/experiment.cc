@@ -393,6 +393,13 @@ void MakeLabelsUnique(std::vector<Log>& logs) {
 
 }  // namespace
 
+const Candidate* Experiment::Written(std::string_view name) const {
+  for (const Candidate& c : candidates) {
+    if (c.law && c.law->name == name) return &c;
+  }
+  return nullptr;
+}
+
 Experiment Experiment::Read(const std::filesystem::path& file) {
   const Yaml y = Yaml::Read(file);
   y.Only({"format", "model", "logs", "time", "start", "inputs", "outputs", "registration",

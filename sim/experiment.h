@@ -151,6 +151,8 @@ struct Experiment {
   };
   std::vector<Channel> channels;
 
+  /// The candidate with a law of this name that the experiment writes, or null.
+  const Candidate* Written(std::string_view name) const;
   /// Reads the file, its logs included. Throws Error with file:line and key.
   static Experiment Read(const std::filesystem::path& file);
 };

@@ -93,4 +93,10 @@ std::string MeasurementUnit(const Experiment& e, const std::string& target,
   return attribute == "rate" ? unit + "/s" : unit;
 }
 
+double SignalOf(const Experiment& e, std::size_t channel, double measured) {
+  const Experiment::Channel& c = e.channels[channel];
+  const Measurement& how = e.outputs[c.output].measurement;
+  return (measured - c.factor * how.bias) / how.scale;
+}
+
 }  // namespace continuum

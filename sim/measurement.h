@@ -15,6 +15,9 @@ bool IsMeasurement(const std::string& target, const std::string& attribute);
 double MeasurementValue(const Experiment& e, const std::string& target,
                         const std::string& attribute);
 
+/// What a measured value of a channel [SI] stands for in the model: without its scale and bias.
+double SignalOf(const Experiment& e, std::size_t channel, double measured);
+
 /// Changes the outputs (or the skew) of an experiment; its logs stay as they are.
 void ApplyMeasurement(Experiment& e, const Change& change);
 

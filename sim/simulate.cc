@@ -13,6 +13,7 @@
 #include "error.h"
 #include "sim/file.h"
 #include "sim/inputs.h"
+#include "sim/measurement.h"
 #include "sim/quasi_static.h"
 #include "sim/recorder.h"
 #include "sim/stop.h"
@@ -163,12 +164,6 @@ bool IsJoint(const mjModel& m, const Output& out, mjtSensor type, int& joint) {
   return true;
 }
 
-double FirstMeasured(const Experiment& e, const Log& log, std::size_t channel) {
-  const Output& out = e.outputs[e.channels[channel].output];
-  const double bias = e.channels[channel].factor * out.measurement.bias;
-  return (log.measured[channel][0] - bias) / out.measurement.scale;
-}
-
 }  // namespace
 
 Hooks Hooks::Stoppable() {
@@ -206,9 +201,9 @@ InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
             log.file.string() + ", column '" + e.channels[c].name + "'",
             "a joint position in the first row of '" + log.label + "' (start: measured)", "none");
       }
-      if (known) state.qpos[m.jnt_qposadr[joint]] = FirstMeasured(e, log, c);
+      if (known) state.qpos[m.jnt_qposadr[joint]] = SignalOf(e, c, log.measured[c][0]);
     } else if (known && IsJoint(m, out, mjSENS_JOINTVEL, joint)) {
-      state.qvel[m.jnt_dofadr[joint]] = FirstMeasured(e, log, c);
+      state.qvel[m.jnt_dofadr[joint]] = SignalOf(e, c, log.measured[c][0]);
     }
   }
   return state;
