@@ -41,8 +41,8 @@ class Session {
       round.Screen();
       round.Fit();
       Judge(round);
-      auto pair =
-          MayBeTwo(round) ? FindPair(trials_, round, d_.noise, d_.sizes, options_) : std::nullopt;
+      auto pair = MayBeTwo(round) ? FindPair(trials_, round, excused_, d_.noise, d_.sizes, options_)
+                                  : std::nullopt;
       d_.noise_limited = pair || round.BestLeaves() < Round::kModelLimited;
       if (pair) {
         JudgePair(*pair);
@@ -92,10 +92,11 @@ class Session {
     for (std::string& s : round.skipped) d_.skipped.push_back(std::move(s));
   }
 
-  // No single candidate leaves noise, and what the best leaves is not a hundred times the noise.
+  // No single candidate leaves noise, or only by the time step's leave; and what the best leaves is
+  // not a hundred times the noise.
   bool MayBeTwo(const Round& round) const {
     constexpr double kHopeless = 10;
-    return d_.verdict.text == "unexplained" && round.leading() &&
+    return (d_.verdict.text == "unexplained" || excused_) && round.leading() &&
            round.smallest_p() < LikelihoodRules{}.level && round.BestLeaves() < kHopeless;
   }
 
@@ -114,12 +115,15 @@ class Session {
     SetProbabilities(round.candidates, records);
     const CandidateResult* const best = round.leading();
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
-    const bool numerical = trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.noise);
-    counted_ = numerical ? 1 : d_.lack.smallest();
-    d_.verdict = JudgeLikelihoods(records, counted_, round.smallest_p());
-    if (numerical && d_.lack.smallest() < LikelihoodRules{}.lack)
+    excused_ = d_.lack.smallest() < LikelihoodRules{}.lack &&
+               trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.noise);
+    d_.verdict = JudgeLikelihoods(records, Counted(), round.smallest_p());
+    if (excused_)
       d_.verdict.reason += "; what is left above the noise is within what the time step adds";
   }
+
+  // Lack of fit, without what the time step excuses.
+  double Counted() const { return excused_ ? 1 : d_.lack.smallest(); }
 
   static void SetProbabilities(std::vector<CandidateResult>& candidates,
                                const std::vector<LikelihoodRecord>& records) {
@@ -155,7 +159,7 @@ class Session {
     }
     if (!d_.partner) {
       d_.verdict.text = "named";
-      d_.verdict.reason = "it leaves " + LeftInWords(counted_);
+      d_.verdict.reason = "it leaves " + LeftInWords(Counted());
     } else if (d_.partner->equivalent.empty()) {
       d_.verdict.text = "named";
     }
@@ -209,7 +213,7 @@ class Session {
   Problem null_;
   Diagnosis d_;
   Trials trials_;
-  double counted_ = 1;  // lack of fit, without what the time step excuses
+  bool excused_ = false;  // what is left is significant, but within what the time step adds
 };
 
 }  // namespace

@@ -10,7 +10,8 @@
 namespace continuum {
 namespace {
 
-constexpr std::size_t kBases = 4;  // single causes that are tried as one of two
+constexpr std::size_t kBases = 4;   // single causes that are tried as one of two
+constexpr double kPromising = 0.5;  // of what a first cause leaves, where that may be the time step
 
 std::string Key(const Hypothesis& h) { return h.Name() + " at " + h.where; }
 
@@ -34,9 +35,14 @@ struct Fitting {
 
 class Search {
  public:
-  Search(const Trials& trials, const Round& single, const Noise& noise, const Sizes& sizes,
-         const DiagnosisOptions& options)
-      : trials_(trials), single_(single), noise_(noise), sizes_(sizes), options_(options) {}
+  Search(const Trials& trials, const Round& single, bool excused, const Noise& noise,
+         const Sizes& sizes, const DiagnosisOptions& options)
+      : trials_(trials),
+        single_(single),
+        excused_(excused),
+        noise_(noise),
+        sizes_(sizes),
+        options_(options) {}
 
   std::optional<Pair> Run() {
     std::set<std::string> effects;
@@ -64,6 +70,7 @@ class Search {
     Round round(trials_, base, noise_, sizes_, options_);
     round.Screen();
     if (!(round.smallest_p() < LikelihoodRules{}.level)) return;
+    if (excused_ && round.Promise() < kPromising) return;
     round.Fit();
     if (!round.leading()) return;
     const std::string partner = Key(round.leading()->hypothesis);
@@ -135,7 +142,7 @@ class Search {
     const Fitting& best = pairs[verdict.named.front()];
     const Round& round = tried_[best.base].round;
     const LackOfFit lack = round.LackOf(*best.b);
-    if (lack.smallest() < LikelihoodRules{}.lack && !WithinStep(*best.b)) return {};
+    if (lack.smallest() < LikelihoodRules{}.lack && (excused_ || !WithinStep(*best.b))) return {};
     const auto equivalent = OthersForFirst(pairs, verdict);
     auto tried = List(pairs);
     std::vector<std::size_t> seconds;
@@ -182,6 +189,7 @@ class Search {
 
   const Trials& trials_;
   const Round& single_;
+  bool excused_;
   const Noise& noise_;
   const Sizes& sizes_;
   const DiagnosisOptions& options_;
@@ -193,9 +201,10 @@ class Search {
 
 }  // namespace
 
-std::optional<Pair> FindPair(const Trials& trials, const Round& single, const Noise& noise,
-                             const Sizes& sizes, const DiagnosisOptions& options) {
-  return Search(trials, single, noise, sizes, options).Run();
+std::optional<Pair> FindPair(const Trials& trials, const Round& single, bool excused,
+                             const Noise& noise, const Sizes& sizes,
+                             const DiagnosisOptions& options) {
+  return Search(trials, single, excused, noise, sizes, options).Run();
 }
 
 }  // namespace continuum

@@ -17,9 +17,11 @@ struct Pair {
 
 /// Looks for two causes when no single one leaves noise: forward from the best single candidates,
 /// and backward, since the first may have been taken for two that together do better: the partner
-/// that was found becomes the base, until nothing changes. single: a round that has been fitted.
-/// Nothing when no pair leaves noise.
-std::optional<Pair> FindPair(const Trials& trials, const Round& single, const Noise& noise,
-                             const Sizes& sizes, const DiagnosisOptions& options);
+/// that was found becomes the base, until nothing changes. single: a round that has been fitted;
+/// excused: what its best leaves may be the time step's doing, so that a second cause must explain
+/// nearly all of it. Nothing when no pair leaves noise.
+std::optional<Pair> FindPair(const Trials& trials, const Round& single, bool excused,
+                             const Noise& noise, const Sizes& sizes,
+                             const DiagnosisOptions& options);
 
 }  // namespace continuum

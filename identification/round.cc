@@ -84,11 +84,21 @@ bool Round::SomethingIsLeft() const {
          f.cost > kModelLimited * kModelLimited * f.freedom;
 }
 
+double Round::MostExplained() const {
+  double best = 0;
+  for (const CandidateResult& c : candidates) best = std::max(best, c.explained);
+  return best;
+}
+
+double Round::Promise() const {
+  const double left = base_.fitted->cost - base_.fitted->freedom;
+  return left > 0 ? MostExplained() / left : 0;
+}
+
 // Where little is to be explained first order is right to a few units, else wrong about sizes by
 // factors but not by orders of magnitude.
 double Round::HowMuchIsNeeded() const {
-  double best = 0;
-  for (const CandidateResult& c : candidates) best = std::max(best, c.explained);
+  const double best = MostExplained();
   return std::max(std::min(best - 15, 45.0), 0.02 * best);
 }
 

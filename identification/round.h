@@ -41,6 +41,8 @@ class Round {
   /// For JudgeLikelihoods, of the fitted candidates.
   std::vector<LikelihoodRecord> Records() const;
   double smallest_p() const;  ///< of all candidates that are not skipped, fitted or not
+  /// How much of what the base leaves above the noise the best candidate explains, to first order.
+  double Promise() const;
 
   std::vector<CandidateResult> candidates;   ///< after Fit: the fitted ones
   std::vector<CandidateResult> left_behind;  ///< by the screen, without a fit
@@ -50,6 +52,7 @@ class Round {
 
  private:
   bool SomethingIsLeft() const;
+  double MostExplained() const;
   double HowMuchIsNeeded() const;
   double Likelihood(const Fitted& fitted) const;
   void FitOne(CandidateResult& c, double rival) const;
