@@ -24,15 +24,14 @@ double ChiSquared(const Matrix& columns, const Vector& z, double inflation) {
                                                   ExplainedBy(probe, z).amount / inflation));
 }
 
-// The value of a parameter that leaves the effect out: its null, or its bound toward one at
-// infinity.
-double Absent(const Hypothesis& h, std::size_t i) {
-  return std::isinf(h.null[i]) ? h.extra[i].upper : h.null[i];
-}
+// A probe that does more than this many times what is left shows its own curvature.
+constexpr double kFar = 5;
+constexpr double kLeast = 20;  // of twice the log-likelihood: what is worth a look
 
-// What a coefficient of 1 stands for; a parameter that is absent at infinity has its start as 1.
-double Size(const Hypothesis& h, const std::vector<double>& start, std::size_t i) {
-  return std::isinf(h.null[i]) ? 1 : start[i] - h.null[i];
+// The value of a parameter at a share of what its start does; at none the effect is absent.
+double AtShare(const Hypothesis& h, const std::vector<double>& start, std::size_t i, double share) {
+  if (!std::isinf(h.null[i])) return h.null[i] + share * (start[i] - h.null[i]);
+  return share > 0 ? start[i] / share : h.extra[i].upper;
 }
 
 // Of each counted channel: a constant, and a shift in time.
@@ -119,63 +118,63 @@ Remainder Trials::LeftBy(const Fitted& fitted) const {
 
 std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                                   const Remainder& left) const {
-  const auto train = TrainLogs(*experiment);
-  const auto known = null.fit.x.size();
   const auto amplitudes = h.Amplitudes();
+  const double wanted = std::sqrt(std::max(kLeast, left.cost() - left.freedom()));
   std::vector<Probe> probes;
   for (const auto& start : h.starts) {
-    std::vector<Matrix> columns(train.size());
-    for (std::size_t l = 0; l < train.size(); ++l) {
-      columns[l] =
-          Matrix::Zero(null.residuals[l].size(), static_cast<Eigen::Index>(amplitudes.size()));
-    }
     Probe probe;
+    probe.columns.resize(left.residual().size(), static_cast<Eigen::Index>(amplitudes.size()));
     for (std::size_t a = 0; a < amplitudes.size(); ++a) {
-      Vector x = Append(null.fit.x, start);
-      for (const std::size_t i : amplitudes) x[known + static_cast<Eigen::Index>(i)] = Absent(h, i);
       const std::size_t i = amplitudes[a];
-      x[known + static_cast<Eigen::Index>(i)] = start[i];
-      const auto r = problem.Residuals(x, train);
-      for (std::size_t l = 0; l < train.size(); ++l) {
-        if (!train[l]) continue;
-        if (!r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
-        columns[l].col(static_cast<Eigen::Index>(a)) =
-            (r[l] - null.residuals[l]) / Size(h, start, i);
+      double share = 1;
+      Vector column = Direction(h, problem, null, left, start, i, share);
+      if (const double reach = column.norm(); reach > kFar * wanted) {
+        share = wanted / reach;
+        column = Direction(h, problem, null, left, start, i, share);
       }
-      const bool above = h.extra[i].lower >= h.null[i] || std::isinf(h.null[i]);
-      const bool below = h.extra[i].upper <= h.null[i] && !std::isinf(h.null[i]);
-      probe.sign.push_back(above ? 1 : below ? -1 : 0);
+      probe.columns.col(static_cast<Eigen::Index>(a)) = column;
+      probe.share.push_back(share);
+      const bool one_way = h.extra[i].lower >= h.null[i] || h.extra[i].upper <= h.null[i];
+      probe.sign.push_back(one_way ? 1 : 0);
     }
-    probe.columns = left.Project(columns);
     probes.push_back(std::move(probe));
   }
   return probes;
 }
 
+// What one amplitude does to what is left, from the fit without the effect; per share of its start.
+Vector Trials::Direction(const Hypothesis& h, const Problem& problem, const Fitted& null,
+                         const Remainder& left, const std::vector<double>& start, std::size_t one,
+                         double share) const {
+  const auto train = TrainLogs(*experiment);
+  std::vector<double> own = start;
+  for (const std::size_t i : h.Amplitudes()) own[i] = AtShare(h, start, i, i == one ? share : 0);
+  const auto r = problem.Residuals(Append(null.fit.x, own), train);
+  std::vector<Matrix> column(train.size());
+  for (std::size_t l = 0; l < train.size(); ++l) {
+    if (!train[l]) continue;
+    if (!r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
+    column[l] = (r[l] - null.residuals[l]) / share;
+  }
+  return left.Project(column);
+}
+
 Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
                          const Probe& probe, const Explained& explained) const {
-  const auto known = null.fit.x.size();
   const auto amplitudes = h.Amplitudes();
-  Vector x = Append(null.fit.x, h.starts[start]);
+  std::vector<double> own = h.starts[start];
   for (std::size_t a = 0; a < amplitudes.size(); ++a) {
-    const std::size_t i = amplitudes[a];
-    if (std::isinf(h.null[i])) continue;  // its start is as good as any
-    if (!(probe.columns.col(static_cast<Eigen::Index>(a)).squaredNorm() > 0)) {  // idle
-      x[known + static_cast<Eigen::Index>(i)] = h.null[i];
-      continue;
-    }
-    const double size = Size(h, h.starts[start], i);
-    const double wanted = explained.coefficients[static_cast<Eigen::Index>(a)];
+    const auto k = static_cast<Eigen::Index>(a);
+    const bool idle = !(probe.columns.col(k).squaredNorm() > 0);
     // Off the null, where a bound or a kink hides the slope.
-    const double least = 0.05 * std::abs(size);
-    const double moved = std::abs(wanted) > least ? wanted : std::copysign(least, size);
-    x[known + static_cast<Eigen::Index>(i)] = h.null[i] + moved;
+    const double least = 0.05 * probe.share[a];
+    const double wanted = explained.coefficients[k];
+    const double share = idle ? 0 : std::abs(wanted) > least ? wanted : least;
+    own[amplitudes[a]] = AtShare(h, h.starts[start], amplitudes[a], share);
   }
-  for (std::size_t i = 0; i < h.extra.size(); ++i) {
-    double& value = x[known + static_cast<Eigen::Index>(i)];
-    value = std::clamp(value, h.extra[i].lower, h.extra[i].upper);
-  }
-  return x;
+  for (std::size_t i = 0; i < own.size(); ++i)
+    own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);
+  return Append(null.fit.x, own);
 }
 
 double Trials::StepEffect(const Problem& problem, const Fitted& fitted) const {

@@ -23,7 +23,8 @@ struct Trials {
   void AddFolds(const Problem& problem, const std::vector<Fold>& folds, Fitted& fitted) const;
   /// What a fit leaves, to first order; needs the noise.
   Remainder LeftBy(const Fitted& fitted) const;
-  /// The starts of a candidate, each as directions from the null fit.
+  /// The starts of a candidate, each as directions from the null fit; probed at a share of the
+  /// start where that does far more than is left to explain.
   std::vector<Probe> Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                             const Remainder& left) const;
   /// Where to begin a candidate's fit: a start of its own, with sizes from its probe.
@@ -37,6 +38,11 @@ struct Trials {
   /// Tests of what no candidate covers; inflation: of noise along any direction.
   LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
                    const Sizes& sizes, double inflation, std::uint64_t seed) const;
+
+ private:
+  Problem::Vector Direction(const Hypothesis& h, const Problem& problem, const Fitted& null,
+                            const Remainder& left, const std::vector<double>& start,
+                            std::size_t one, double share) const;
 };
 
 /// Parameters that are known, and then those of a candidate.

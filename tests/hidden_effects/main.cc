@@ -150,30 +150,33 @@ nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool ver
 
 int Main(int argc, char** argv) {
   CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
-  std::string out, only;
+  std::string out, only, keep;
   int repeats = 1;
   bool verbose = false;
   app.add_option("--out", out, "one JSON line per case")->required();
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
+  app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
   app.add_flag("--verbose", verbose, "print each summary");
   CLI11_PARSE(app, argc, argv);
   std::set<std::string> done;
   for (const auto& line : ReadLines(out)) done.insert(line.at("case"));
-  const auto folder =
+  const auto temporary =
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
   const auto cases = Cases(repeats);
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const std::string name = cases[i].Name();
     if (done.contains(name) || name.find(only) == name.npos) continue;
-    std::filesystem::remove_all(folder);
+    std::filesystem::remove_all(temporary);
+    const auto folder =
+        keep.empty() ? temporary : std::filesystem::path(keep) / std::to_string(i + 1);
     const nlohmann::json line = Line(cases[i], folder, verbose);
     std::ofstream(out, std::ios::app) << line.dump() << std::endl;
     fmt::print(stderr, "{}/{} {}: {} {} {:.1f} s\n", i + 1, cases.size(), name,
                line.at("verdict").get<std::string>(),
                line.value("named", nlohmann::json::array()).dump(), line.value("seconds", 0.0));
   }
-  std::filesystem::remove_all(folder);
+  std::filesystem::remove_all(temporary);
   Report(ReadLines(out));
   return 0;
 }
