@@ -114,7 +114,7 @@ void Round::Fit() {
     if (!c.error.empty() || c.explained < needed) continue;
     options_.Say("fit " + c.hypothesis.Name());
     try {
-      FitOne(c, rival);
+      FitOne(c, rival + 0.5 * TakenOff(*base_.fitted));
       if (noise_.known()) rival = std::min(rival, c.fitted.fit.cost);
     } catch (const Error& error) {
       c.error = error.what();
@@ -159,6 +159,9 @@ Problem::Vector Round::BestStart(const CandidateResult& c, const Problem& proble
   return best;
 }
 
+// By what the time step leaves open: a fit that imitates it has less to spare than the others.
+double Round::TakenOff(const Fitted& f) { return 2 * f.fit.cost - f.cost; }
+
 // Sensitivities are dear: only those get theirs that may come near the best with them. What the
 // time step leaves open takes about as much off everybody's cost.
 void Round::CompleteTheBest() {
@@ -169,7 +172,7 @@ void Round::CompleteTheBest() {
   std::stable_sort(order.begin(), order.end(),
                    [](const auto* a, const auto* b) { return a->fitted.cost < b->fitted.cost; });
   constexpr double kNear = 50;
-  double best = std::numeric_limits<double>::infinity(), taken_off = 0;
+  double best = std::numeric_limits<double>::infinity(), taken_off = TakenOff(*base_.fitted);
   for (CandidateResult* const c : order) {
     const double plain = c->fitted.cost;
     if (!noise_.known() || plain - best < kNear + 2 * taken_off) {
@@ -182,7 +185,7 @@ void Round::CompleteTheBest() {
         continue;
       }
       best = std::min(best, c->fitted.cost);
-      taken_off = std::max(taken_off, plain - c->fitted.cost);
+      taken_off = std::max(taken_off, TakenOff(c->fitted));
     }
     c->likelihood = Likelihood(c->fitted);
   }

@@ -57,6 +57,7 @@ class Round {
   double Likelihood(const Fitted& fitted) const;
   void FitOne(CandidateResult& c, double rival) const;
   Problem::Vector BestStart(const CandidateResult& c, const Problem& problem) const;
+  static double TakenOff(const Fitted& fitted);
   void CompleteTheBest();
   bool Resolved(const Problem& problem, const Fitted& fitted) const;
   void Dismiss();

@@ -40,6 +40,7 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
     s.inertia = std::accumulate(m.dof_M0, m.dof_M0 + m.nv, 0.0) / static_cast<double>(m.nv);
   if (m.nbody > 1)
     s.mass = std::max(1e-6, m.body_subtreemass[0] / static_cast<double>(m.nbody - 1));
+  s.step = m.opt.timestep;
   std::vector<double> intervals;
   for (const Log& log : e.logs) {
     for (std::size_t k = 1; k < log.rows(); ++k) intervals.push_back(log.time[k] - log.time[k - 1]);

@@ -14,6 +14,7 @@ struct Sizes {
   double inertia = 1;    ///< inertia that a joint sees [kg*m^2]
   double length = 1;     ///< typical shift of a part [m]
   double period = 0.01;  ///< median sampling interval [s]
+  double step = 0.002;   ///< of the model [s]
 };
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
 
