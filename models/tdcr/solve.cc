@@ -99,7 +99,8 @@ void Draw(const std::filesystem::path& path, const Robot& robot, const std::stri
     solver::Shape shape;
     shape.label = s.name;
     shape.line.push_back({0, 0, 0});
-    for (const auto& p : Backbone(robot, s.solution).colwise()) shape.line.push_back(Point(p));
+    const Eigen::Matrix3Xd backbone = Backbone(robot, s.solution);
+    for (const auto& p : backbone.colwise()) shape.line.push_back(Point(p));
     for (const auto& p : s.solution.disks.colwise()) shape.markers.push_back(Point(p));
     if (s.measured != nullptr) {
       const Eigen::Matrix3Xd points = robot.MeasuringToBase() * s.measured->disks;
