@@ -203,8 +203,8 @@ double ShareReached(const Diagnosis& d, const TwoErrors& after) {
 
 double Share(const Diagnosis& d, const CandidateResult& c) {
   if (!d.noise_limited) return Median(Gains(c.record));
-  const double explainable = std::max(d.before.cost - d.before.freedom, 1e-300);
-  return std::min(1.0, c.likelihood / explainable);
+  const double explainable = std::max(d.before.cost - d.before.freedom, 1.0);
+  return std::clamp(c.likelihood / explainable, 0.0, 1.0);  // a fit cut short may be below the null
 }
 
 bool ModelLimited(const Diagnosis& d, const TwoErrors& after) {
@@ -359,6 +359,22 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
   return json;
 }
 
+namespace {
+
+std::string Ranking(const Diagnosis& d) {
+  constexpr std::size_t kShown = 6;
+  std::string text = "ranking  ";
+  for (std::size_t i = 0; i < std::min(kShown, d.candidates.size()); ++i) {
+    const CandidateResult& c = d.candidates[i];
+    text +=
+        fmt::format("{} {} {:.0f} %", i ? "," : "", c.hypothesis.NameAtPlace(), 100 * Share(d, c));
+  }
+  if (d.candidates.size() > kShown) text += fmt::format(" … ({} in all)", d.candidates.size());
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
   const Gain gain = GainOf(d, told.after);
   const std::string unit = d.pool.unit();
@@ -400,11 +416,7 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
     text +=
         fmt::format("wrong     {} {} at {}: the simulation {}\n", w.log, w.channel, w.when, w.what);
   }
-  text += "ranking  ";
-  for (const CandidateResult& c : d.candidates) {
-    text += fmt::format(" {} {:.0f} %,", c.hypothesis.NameAtPlace(), 100 * Share(d, c));
-  }
-  if (text.back() == ',') text.back() = '\n';
+  text += Ranking(d);
   if (d.verdict.named.size() > 1)
     text += fmt::format("next      {} (separation {:.3g})\n", d.next.input, d.next.separation);
   (void)e;

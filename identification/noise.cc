@@ -170,10 +170,13 @@ bool Rounded(const ChannelNoise& noise) {
   return noise.quantum > 0 && noise.before < noise.quantum / 2;
 }
 
+double Phase(const ChannelNoise& noise, std::mt19937_64& rng) {
+  return noise.quantum * std::uniform_real_distribution<double>()(rng);
+}
+
 std::vector<double> RoundingErrors(const ChannelNoise& noise, std::vector<double> values,
-                                   std::mt19937_64& rng) {
+                                   double phase, std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
-  const double phase = noise.quantum * std::uniform_real_distribution<double>()(rng);
   for (double& y : values) {
     const double noisy = y + phase + noise.before * normal(rng);
     y = noise.quantum * std::round(noisy / noise.quantum) - y - phase;
@@ -200,7 +203,8 @@ ChannelNoise RoundingNoise(const ChannelNoise& noise,
   if (!Rounded(noise)) return noise;
   std::mt19937_64 rng(1);
   std::vector<std::vector<double>> errors;
-  for (const auto& log : values) errors.push_back(RoundingErrors(noise, log, rng));
+  for (const auto& log : values)
+    errors.push_back(RoundingErrors(noise, log, Phase(noise, rng), rng));
   ChannelNoise out = NoiseFrom(errors);
   out.quantum = noise.quantum, out.before = noise.before;
   return out;

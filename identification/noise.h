@@ -45,10 +45,12 @@ ChannelNoise RoundingNoise(const ChannelNoise& noise,
 
 /// Whether a channel's values are rounded to steps larger than its noise.
 bool Rounded(const ChannelNoise& noise);
-/// One draw of a rounded channel's noise in one log, from values that a model gives: where they lie
-/// between two steps is as good as random.
+/// Where the values that a model gives lie between two steps of a sensor: as good as random.
+double Phase(const ChannelNoise& noise, std::mt19937_64& rng);
+/// One draw of a rounded channel's noise in one log; phase: the same in all logs of a sensor, so
+/// that repetitions of one motion share most of their errors.
 std::vector<double> RoundingErrors(const ChannelNoise& noise, std::vector<double> values,
-                                   std::mt19937_64& rng);
+                                   double phase, std::mt19937_64& rng);
 
 /// One draw of a channel's noise over so many rows, as its model says.
 std::vector<double> NoiseDraw(const ChannelNoise& noise, std::size_t rows, std::mt19937_64& rng);

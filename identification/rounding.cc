@@ -53,6 +53,8 @@ Problem::Matrix Rounding::Draws(const Remainder& left, int count, std::uint64_t 
 std::vector<Problem::Matrix> Rounding::Draw(std::mt19937_64& rng, bool all) const {
   const auto& channels = problem_->channels();
   std::vector<Problem::Matrix> draw;
+  std::vector<double> phase;
+  for (const std::size_t c : channels) phase.push_back(Phase(noise_->channel[c], rng));
   for (const Trace& trace : traces_) {
     const auto rows = static_cast<Eigen::Index>(trace.channel[channels.front()].size());
     Problem::Matrix log =
@@ -62,7 +64,7 @@ std::vector<Problem::Matrix> Rounding::Draw(std::mt19937_64& rng, bool all) cons
       if (!Rounded(n) && !all) continue;
       const auto& values = trace.channel[channels[c]];
       const auto errors =
-          Rounded(n) ? RoundingErrors(n, values, rng) : NoiseDraw(n, values.size(), rng);
+          Rounded(n) ? RoundingErrors(n, values, phase[c], rng) : NoiseDraw(n, values.size(), rng);
       for (Eigen::Index k = 0; k < rows; ++k)
         log(static_cast<Eigen::Index>(c) * rows + k, 0) = errors[k] / problem_->scale(c);
     }

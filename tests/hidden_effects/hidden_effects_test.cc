@@ -84,5 +84,23 @@ TEST_F(Suite, TwoTogetherAreBothNamed) {
   }
 }
 
+// What is hidden does less than a time step: neither is it taken for a delay, nor does a lag that
+// makes up for the step crowd it out.
+TEST_F(Suite, SmallOnesKeepTheirName) {
+  for (const Case& c : {Case{{"armature"}, 0.125, NoiseKind::kWhite, 5001},
+                        Case{{"armature"}, 0.5, NoiseKind::kOffset, 5002}}) {
+    const Answer a = Ask(c);
+    EXPECT_TRUE(InSet(c, a) && Unique(a)) << told_;
+  }
+}
+
+// The second does no more than the time step may, but explains all of what the first leaves. A case
+// of the large suite, where nine of nine of its kind are found.
+TEST_F(Suite, ASecondOneIsFoundWhereTheTimeStepWouldExcuseIt) {
+  const Case c{{"cubic_stiffness", "sensor_scale"}, 2, NoiseKind::kSlow, 22};
+  const Answer a = Ask(c);
+  EXPECT_TRUE(InSet(c, a)) << told_;
+}
+
 }  // namespace
 }  // namespace continuum::hidden
