@@ -96,8 +96,9 @@ class Session {
   // not a hundred times the noise.
   bool MayBeTwo(const Round& round) const {
     constexpr double kHopeless = 10;
-    return (d_.verdict.text == "unexplained" || excused_) && round.leading() &&
-           round.smallest_p() < LikelihoodRules{}.level && round.BestLeaves() < kHopeless;
+    return (d_.verdict.text == "unexplained" || (excused_ && d_.verdict.text != "adequate")) &&
+           round.leading() && round.smallest_p() < LikelihoodRules{}.level &&
+           round.BestLeaves() < kHopeless;
   }
 
   // Likelihoods have judged; the folds show what that is worth.
@@ -118,8 +119,17 @@ class Session {
     excused_ = d_.lack.smallest() < LikelihoodRules{}.lack &&
                trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.noise);
     d_.verdict = JudgeLikelihoods(records, Counted(), round.smallest_p());
-    if (excused_)
-      d_.verdict.reason += "; what is left above the noise is within what the time step adds";
+    if (!excused_) return;
+    const auto& named = d_.verdict.named;
+    if (!named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))
+      d_.verdict = {"adequate", {}, "no candidate does more than the time step; try a finer one"};
+    d_.verdict.reason += "; what is left above the noise is within what the time step adds";
+  }
+
+  // Whether a fit takes more off the error than the time step may have put there.
+  bool MoreThanStep(const Fitted& f) const {
+    const double before = d_.before.error.train, after = f.error.train;
+    return std::sqrt(std::max(0.0, before * before - after * after)) > d_.noise.step;
   }
 
   // Lack of fit, without what the time step excuses.

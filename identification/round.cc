@@ -70,8 +70,8 @@ void Round::Screen() {
     if (c.probes.empty()) continue;
     const std::size_t best = found.best[i];
     const Probe& probe = c.probes[best];
-    c.start = trials_.StartFrom(c.hypothesis, *base_.fitted, best, probe,
-                                ExplainedBy(probe, left.residual()));
+    c.start =
+        trials_.StartFrom(c.hypothesis, *base_.fitted, probe, ExplainedBy(probe, left.residual()));
     std::swap(c.probes[0], c.probes[best]);
   }
 }

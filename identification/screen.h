@@ -45,6 +45,7 @@ struct Probe {
   Eigen::MatrixXd columns;   ///< projected, per unit of the coefficients
   std::vector<double> sign;  ///< of each coefficient: +1 may only be positive, −1 negative, 0 both
   std::vector<double> share = {};  ///< the coefficients at which it was probed
+  std::size_t start = 0;           ///< of its hypothesis' starts
 };
 
 /// The part of |z|² that a probe explains with coefficients of allowed signs, and those.

@@ -24,7 +24,8 @@ double ChiSquared(const Matrix& columns, const Vector& z, double inflation) {
                                                   ExplainedBy(probe, z).amount / inflation));
 }
 
-// A probe that does more than this many times what is left shows its own curvature.
+// A probe that does this many times what is left shows its own curvature; one that does less by as
+// much may be a direction that free parameters follow for as long as it is short.
 constexpr double kFar = 5;
 constexpr double kLeast = 20;  // of twice the log-likelihood: what is worth a look
 
@@ -32,6 +33,14 @@ constexpr double kLeast = 20;  // of twice the log-likelihood: what is worth a l
 double AtShare(const Hypothesis& h, const std::vector<double>& start, std::size_t i, double share) {
   if (!std::isinf(h.null[i])) return h.null[i] + share * (start[i] - h.null[i]);
   return share > 0 ? start[i] / share : h.extra[i].upper;
+}
+
+// The share at which a parameter comes to its bound.
+double MostShare(const Hypothesis& h, const std::vector<double>& start, std::size_t i) {
+  const Parameter& p = h.extra[i];
+  if (std::isinf(h.null[i])) return start[i] / p.lower;
+  const double step = start[i] - h.null[i];
+  return ((step > 0 ? p.upper : p.lower) - h.null[i]) / step;
 }
 
 // Of each counted channel: a constant, and a shift in time.
@@ -118,28 +127,45 @@ Remainder Trials::LeftBy(const Fitted& fitted) const {
 
 std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                                   const Remainder& left) const {
-  const auto amplitudes = h.Amplitudes();
   const double wanted = std::sqrt(std::max(kLeast, left.cost() - left.freedom()));
+  const std::vector<double> whole(h.Amplitudes().size(), 1);
   std::vector<Probe> probes;
-  for (const auto& start : h.starts) {
-    Probe probe;
-    probe.columns.resize(left.residual().size(), static_cast<Eigen::Index>(amplitudes.size()));
-    for (std::size_t a = 0; a < amplitudes.size(); ++a) {
-      const std::size_t i = amplitudes[a];
-      double share = 1;
-      Vector column = Direction(h, problem, null, left, start, i, share);
-      if (const double reach = column.norm(); reach > kFar * wanted) {
-        share = wanted / reach;
-        column = Direction(h, problem, null, left, start, i, share);
-      }
-      probe.columns.col(static_cast<Eigen::Index>(a)) = column;
-      probe.share.push_back(share);
-      const bool one_way = h.extra[i].lower >= h.null[i] || h.extra[i].upper <= h.null[i];
-      probe.sign.push_back(one_way ? 1 : 0);
+  for (std::size_t start = 0; start < h.starts.size(); ++start) {
+    probes.push_back(ProbeAt(h, problem, null, left, start, whole));
+    Probe& first = probes.back();
+    std::vector<double> less = whole, more = whole;
+    for (std::size_t a = 0; a < whole.size(); ++a) {
+      const double reach = first.columns.col(static_cast<Eigen::Index>(a)).norm();
+      if (reach > kFar * wanted) less[a] = wanted / reach;
+      if (reach > 0 && kFar * reach < wanted)
+        more[a] = std::min(wanted / reach, MostShare(h, h.starts[start], h.Amplitudes()[a]));
     }
-    probes.push_back(std::move(probe));
+    if (less != whole) first = ProbeAt(h, problem, null, left, start, less);
+    if (more == whole) continue;
+    try {
+      probes.push_back(ProbeAt(h, problem, null, left, start, more));
+    } catch (const Error&) {
+      continue;  // too much for the simulation
+    }
   }
   return probes;
+}
+
+Probe Trials::ProbeAt(const Hypothesis& h, const Problem& problem, const Fitted& null,
+                      const Remainder& left, std::size_t start,
+                      const std::vector<double>& share) const {
+  const auto amplitudes = h.Amplitudes();
+  Probe probe;
+  probe.start = start, probe.share = share;
+  probe.columns.resize(left.residual().size(), static_cast<Eigen::Index>(amplitudes.size()));
+  for (std::size_t a = 0; a < amplitudes.size(); ++a) {
+    const std::size_t i = amplitudes[a];
+    probe.columns.col(static_cast<Eigen::Index>(a)) =
+        Direction(h, problem, null, left, h.starts[start], i, share[a]);
+    const bool one_way = h.extra[i].lower >= h.null[i] || h.extra[i].upper <= h.null[i];
+    probe.sign.push_back(one_way ? 1 : 0);
+  }
+  return probe;
 }
 
 // What one amplitude does to what is left, from the fit without the effect; per share of its start.
@@ -159,10 +185,11 @@ Vector Trials::Direction(const Hypothesis& h, const Problem& problem, const Fitt
   return left.Project(column);
 }
 
-Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
-                         const Probe& probe, const Explained& explained) const {
+Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,
+                         const Explained& explained) const {
   const auto amplitudes = h.Amplitudes();
-  std::vector<double> own = h.starts[start];
+  const std::vector<double>& start = h.starts[probe.start];
+  std::vector<double> own = start;
   for (std::size_t a = 0; a < amplitudes.size(); ++a) {
     const auto k = static_cast<Eigen::Index>(a);
     const bool idle = !(probe.columns.col(k).squaredNorm() > 0);
@@ -170,7 +197,7 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, std::size_t st
     const double least = 0.05 * probe.share[a];
     const double wanted = explained.coefficients[k];
     const double share = idle ? 0 : std::abs(wanted) > least ? wanted : least;
-    own[amplitudes[a]] = AtShare(h, h.starts[start], amplitudes[a], share);
+    own[amplitudes[a]] = AtShare(h, start, amplitudes[a], share);
   }
   for (std::size_t i = 0; i < own.size(); ++i)
     own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);

@@ -24,12 +24,12 @@ struct Trials {
   /// What a fit leaves, to first order; needs the noise.
   Remainder LeftBy(const Fitted& fitted) const;
   /// The starts of a candidate, each as directions from the null fit; probed at a share of the
-  /// start where that does far more than is left to explain.
+  /// start where that does far more than is left to explain, and once more where it does far less.
   std::vector<Probe> Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                             const Remainder& left) const;
   /// Where to begin a candidate's fit: a start of its own, with sizes from its probe.
-  Problem::Vector StartFrom(const Hypothesis& h, const Fitted& null, std::size_t start,
-                            const Probe& probe, const Explained& explained) const;
+  Problem::Vector StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,
+                            const Explained& explained) const;
   /// How far the trajectories at the time step h and at h/4 are apart [pooled unit].
   double StepEffect(const Problem& problem, const Fitted& fitted) const;
   /// Whether what a candidate leaves above the noise is no more than what its time step adds: then
@@ -40,6 +40,8 @@ struct Trials {
                    const Sizes& sizes, double inflation, std::uint64_t seed) const;
 
  private:
+  Probe ProbeAt(const Hypothesis& h, const Problem& problem, const Fitted& null,
+                const Remainder& left, std::size_t start, const std::vector<double>& share) const;
   Problem::Vector Direction(const Hypothesis& h, const Problem& problem, const Fitted& null,
                             const Remainder& left, const std::vector<double>& start,
                             std::size_t one, double share) const;
