@@ -99,6 +99,8 @@ class Comparison {
     Rules rules;
     // Replicates tell the noise whatever the model: then nothing above it may remain unexplained.
     if (d_.noise.source == "replicates") rules.noise_limited = kInfinity;
+    if (d_.noise.source == "differences" && d_.noise.rms > 0)
+      rules.over_scatter = d_.before.error.train / d_.noise.rms;
     d_.verdict = Judge(records, over, Median(Gains(ceiling)), rules);
   }
 

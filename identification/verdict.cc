@@ -91,6 +91,13 @@ Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, doub
     break;
   }
   if (best == candidates.size()) {
+    if (rules.over_scatter > rules.too_much) {
+      return {"unexplained",
+              {},
+              fmt::format("no candidate passes all rules, and the model leaves {:.0f} times what "
+                          "the measurement scatters from row to row",
+                          rules.over_scatter)};
+    }
     if (noise_over == 0 && ceiling_gain < rules.median_gain) {
       return {"adequate",
               {},

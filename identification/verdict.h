@@ -22,6 +22,9 @@ struct Rules {
   double placebo_share = 0.95;    ///< of placebos that it must beat
   double noise_reached = 1.25;    ///< error over noise up to which nothing is left to explain
   double noise_limited = 3;       ///< above it the data are model-limited: something always is left
+  /// Remaining error over the scatter from row to row, where the noise is not known better.
+  double over_scatter = 0;
+  double too_much = 10;  ///< times that scatter: plainly no noise
 };
 
 /// 1 − after/before per fold, and its median.

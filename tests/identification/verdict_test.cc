@@ -255,6 +255,9 @@ TEST(Judge, WithoutNoiseItIsAdequateOnlyWhenNoForceHelps) {
   bad.after = bad.before;
   EXPECT_EQ(Judge({bad}, 0, 0.05).text, "adequate");
   EXPECT_EQ(Judge({bad}, 0, 0.15).text, "unexplained");
+  Rules rough;
+  rough.over_scatter = 70;
+  EXPECT_EQ(Judge({bad}, 0, 0.05, rough).text, "unexplained");
   EXPECT_EQ(Judge({bad}, kNoisy, 0.05).text, "unexplained");
   EXPECT_EQ(Judge({Good()}, 0, 0.05).text, "named");
 }
