@@ -80,16 +80,24 @@ void WarnOnce(const std::string& text) {
 mjModel& Mutable(const mjModel& m) { return const_cast<mjModel&>(m); }
 
 void WarnOfSilence(const mjModel& m, const Instance& self, const Config& config) {
-  if (self.bound->IsRow() && (m.opt.disableflags & mjDSBL_FRICTIONLOSS)) {
-    WarnOnce(config.Who() + ": <flag frictionloss=\"disable\"> removes all dry friction");
+  const bool passive =
+      !(m.opt.disableflags & mjDSBL_SPRING) || !(m.opt.disableflags & mjDSBL_DAMPER);
+  if (self.bound->IsRow() && (m.opt.disableflags & (mjDSBL_FRICTIONLOSS | mjDSBL_CONSTRAINT))) {
+    const bool all = m.opt.disableflags & mjDSBL_CONSTRAINT;
+    WarnOnce(config.Who() + ": <flag " + (all ? "constraint" : "frictionloss") +
+             "=\"disable\"> removes all dry friction");
+  }
+  if (self.bound->IsRow() && !passive) {
+    WarnOnce(config.Who() +
+             ": with springs and dampers disabled dry friction keeps its level, but neither its "
+             "anchor nor its change with speed");
   }
   if (self.bound->IsRow() && m.opt.integrator == mjINT_DISCRETE) {
     WarnOnce(config.Who() +
-             ": under integrator=\"discrete\" a joint at rest creeps by up to 2e-4 rad/s; "
-             "integrator=\"implicitfast\" holds it");
+             ": under integrator=\"discrete\" a joint at rest creeps at 2e-4 of the speed that its "
+             "load would give it in one step; integrator=\"implicitfast\" holds it");
   }
-  if (self.bound->GivesForce() && (m.opt.disableflags & mjDSBL_SPRING) &&
-      (m.opt.disableflags & mjDSBL_DAMPER)) {
+  if (self.bound->GivesForce() && !passive) {
     WarnOnce(config.Who() + ": with springs and dampers disabled MuJoCo applies no passive forces");
   }
   if (const std::string why = self.bound->Silence(m); !why.empty()) {

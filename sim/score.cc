@@ -91,7 +91,9 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
       if (!(std::abs(error) <= std::abs(s.largest))) s.largest = error, s.when = log.time[row];
     }
     const double n = static_cast<double>(std::max<std::size_t>(s.rows, 1));
-    const double std = MomentsOf(log.measured[c]).std / channel.factor;
+    const Moments measured = MomentsOf(log.measured[c]);
+    const bool constant = measured.std <= 1e-12 * std::abs(measured.mean);  // but for rounding
+    const double std = constant ? 0 : measured.std / channel.factor;
     s.rmse = std::sqrt(squares / n);
     s.mae = absolute / n;
     s.nrmse = std > 0 ? s.rmse / std : 0;
