@@ -1,9 +1,11 @@
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <string>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
@@ -40,12 +42,14 @@ void ListEffects(bool json) {
                                     {"omitted", p.Omitted()}});
       parameters += " " + std::string(p.name) + " [" + std::string(p.unit) + "]";
     }
-    for (const Choice& c : e.choices) item["choices"][std::string(c.name)] = c.options;
+    for (const Choice& c : e.choices) {
+      item["choices"][std::string(c.name)] = c.options;
+      parameters += fmt::format(" {} [{}]", c.name, fmt::join(c.options, ", "));
+    }
     all.push_back(item);
     if (!json) {
-      std::printf("%-18s %-10s %-14s %s\n%-44s%s\n", std::string(e.name).c_str(),
-                  std::string(KindName(e.kind)).c_str(), places.c_str(),
-                  std::string(e.summary).c_str(), "", parameters.c_str());
+      fmt::print("{:<21} {:<10} {:<14} {}\n{:47}{}\n", e.name, KindName(e.kind), places, e.summary,
+                 "", parameters);
     }
   }
   if (json) std::printf("%s\n", all.dump(2).c_str());
@@ -60,23 +64,29 @@ std::filesystem::path ModelsFolder() {
   return fs::is_directory(installed, unknown) ? installed : fs::path(CONTINUUM_MODELS);
 }
 
-// <robot>/<robot>.xml of every robot.
-std::vector<std::filesystem::path> Models() {
-  std::vector<std::filesystem::path> found;
+// Name and file of every robot: <robot>/<robot>.xml, or all models of a robot with several.
+std::map<std::string, std::filesystem::path> Models() {
+  std::map<std::string, std::filesystem::path> found;
   if (!std::filesystem::is_directory(ModelsFolder())) return found;
-  for (const auto& entry : std::filesystem::directory_iterator(ModelsFolder())) {
-    const auto xml = entry.path() / (entry.path().filename().string() + ".xml");
-    if (std::filesystem::exists(xml)) found.push_back(xml);
+  for (const auto& robot : std::filesystem::directory_iterator(ModelsFolder())) {
+    if (!robot.is_directory()) continue;
+    const std::string name = robot.path().filename().string();
+    if (const auto own = robot.path() / (name + ".xml"); std::filesystem::exists(own)) {
+      found[name] = own;
+      continue;
+    }
+    for (const auto& file : std::filesystem::directory_iterator(robot)) {
+      if (file.path().extension() == ".xml") found[name + "/" + file.path().stem().string()] = file;
+    }
   }
-  std::sort(found.begin(), found.end());
   return found;
 }
 
 void ListModels(bool json) {
   auto all = nlohmann::json::array();
-  for (const auto& model : Models()) {
-    all.push_back({{"name", model.stem().string()}, {"file", model.string()}});
-    if (!json) std::printf("%-20s %s\n", model.stem().c_str(), model.c_str());
+  for (const auto& [name, file] : Models()) {
+    all.push_back({{"name", name}, {"file", file.string()}});
+    if (!json) fmt::print("{:<20} {}\n", name, file.string());
   }
   if (json) std::printf("%s\n", all.dump(2).c_str());
 }
@@ -87,6 +97,7 @@ void AddEffects(CLI::App& app) {
   const auto json = std::make_shared<bool>(false);
   CLI::App* const sub = app.add_subcommand("effects", "List every effect with its parameters");
   sub->add_flag("--json", *json, "as JSON");
+  sub->footer("Example:\n  continuum effects --json");
   sub->callback([json] { ListEffects(*json); });
 }
 
@@ -94,6 +105,7 @@ void AddModels(CLI::App& app) {
   const auto json = std::make_shared<bool>(false);
   CLI::App* const sub = app.add_subcommand("models", "List the robots that come with the project");
   sub->add_flag("--json", *json, "as JSON");
+  sub->footer("Example:\n  continuum models");
   sub->callback([json] { ListModels(*json); });
 }
 
