@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/console.h"
+#include "identification/hypothesis.h"
 #include "identification/problem.h"
 #include "sim/check.h"
 #include "sim/file.h"
@@ -78,6 +79,8 @@ void RunCheck(const CheckOptions& o) {
   const Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
   CheckAll(e, system);
+  std::vector<std::string> skipped;
+  MakeCandidates(e, system, {}, skipped);  // refuses places that the model has not
   auto findings = CheckLogs(e);
   const auto more = CheckAgainstModel(e, system);
   findings.insert(findings.end(), more.begin(), more.end());

@@ -33,6 +33,12 @@ TEST_F(BadFileOnceMore, IsRefusedByCheck) {
   ExpectRefused({"check", "experiment.yaml"}, {"yaml:5: outputs[0].unit", "'rad'", "'kg'"});
 }
 
+TEST_F(BadFileOnceMore, IsRefusedByCheckWhereACandidateHasNoPlace) {
+  Spoil("experiment.yaml", "format: 1",
+        "format: 1\ncandidates: [{effect: payload, where: \"joint:hinge\"}]");
+  ExpectRefused({"check", "experiment.yaml"}, {"candidates: payload", "joint:hinge"});
+}
+
 const std::string kJunk("\x7f\x45LF\0\1\2\3\xff\xfe\n\0;\t\x80", 16);
 
 INSTANTIATE_TEST_SUITE_P(
