@@ -1,6 +1,10 @@
 // What every law of the engine obeys as a plugin: state, copies, derivatives, configuration.
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
 
 #include "support/engine.h"
@@ -24,7 +28,8 @@ std::string Arm(const std::string& plugin, const std::string& config, const std:
           <site name="e" pos=".03 0 -.05"/><site name="f" pos=".03 0 -.15"/></body></body>
       <body name="base" pos="1 0 0"><body name="tip" pos="0 0 .1">
         <inertial pos="0 0 0" mass=".2" diaginertia="1e-4 1e-4 1e-4"/>
-        <joint name="stretch" type="slide" axis="0 0 1"/><joint name="bend" axis="0 1 0"/></body></body>
+        <joint name="stretch" type="slide" axis="0 0 1" stiffness="200" damping="2"/>
+        <joint name="bend" axis="0 1 0" stiffness=".5" damping=".01"/></body></body>
     </worldbody>
     <tendon><spatial name="cable"><site site="a"/><site site="b"/><site site="c"/><site site="e"/><site site="f"/></spatial>
       <spatial name="wire"><site site="a"/><site site="c"/></spatial></tendon>
@@ -32,6 +37,7 @@ std::string Arm(const std::string& plugin, const std::string& config, const std:
       <position name="winch" tendon="wire" gear="-1" kp="20" forcerange="0 3"/>
       <general name="p1" joint="stretch" gear="0"/><general name="p2" joint="stretch" gear="0"/>
       <general name="p3" joint="stretch" gear="0" dyntype="filterexact" dynprm="7e-3"/></actuator>
+    <keyframe><key name="bent" time="2" qpos=".2 -.1 .01 .05" qvel="1 -1 .02 .1" ctrl=".1 2 -.2 1e4 2e4 1e4"/></keyframe>
     </mujoco>)";
 }
 
@@ -64,8 +70,26 @@ const std::map<std::string, std::string>& Laws() {
                           key("k_dL1", "251.7274") + key("k_dL3", "-4.2e4")},
       {"braid", key("body", "base tip") + key("actuator", "p1 p2 p3") + key("cot2_gamma", ".3")},
       {"chamber_asymmetry", key("body", "base tip") + key("actuator", "p1 p2 p3") +
-                                key("x_m", "1e-3") + key("y_m", "-1e-3")}};
+                                key("x_m", "1e-3") + key("y_m", "-1e-3")},
+      {"formula", key("joint", "q1 q2") + key("force", "p1*q^3 + p2*v*abs(v)") + key("p1", ".2") +
+                      key("p2", ".01")},
+      {"formula_friction", key("joint", "q1") + key("level", "p1*(1 + q^2)") + key("p1", ".05")},
+      {"load_friction.actuator",
+       key("joint", "q1") + key("tau_c", ".01") + key("mu_l", ".2") + key("load", "actuator")},
+      {"capstan.coulomb", key("tendon", "cable") + key("mu", ".3") + key("law", "coulomb")}};
   return laws;
+}
+// A law by another choice is written LAW.CHOICE.
+std::string EffectOf(const std::string& law) { return law.substr(0, law.find('.')); }
+
+TEST(Laws, OfThePluginAreAllTested) {
+  mj_loadPluginLibrary(CONTINUUM_PLUGIN);
+  std::set<std::string> tested;
+  for (const auto& [law, config] : Laws()) tested.insert("continuum." + EffectOf(law));
+  for (int i = 0; i < mjp_pluginCount(); ++i) {
+    const std::string name = mjp_getPluginAtSlot(i)->name;
+    EXPECT_TRUE(!name.starts_with("continuum.") || tested.contains(name)) << name;
+  }
 }
 
 class EveryLaw : public testing::Engine,
@@ -73,7 +97,7 @@ class EveryLaw : public testing::Engine,
  protected:
   static testing::Owned<mjModel> Build() {
     const auto& [law, integrator] = GetParam();
-    return Model(Arm(law, Laws().at(law), "integrator=\"" + integrator + "\""));
+    return Model(Arm(EffectOf(law), Laws().at(law), "integrator=\"" + integrator + "\""));
   }
   static void Drive(const mjModel* m, mjData* d, int steps) {
     for (int k = 0; k < steps; ++k) {
@@ -83,6 +107,7 @@ class EveryLaw : public testing::Engine,
       for (int i = 0; i < 3; ++i) d->ctrl[3 + i] = 2e4 * (1 + std::sin(4 * d->time + i));
       mj_step(m, d);
     }
+    EXPECT_EQ(d->warning[mjWARN_BADQACC].number, 0);  // MuJoCo would have begun anew
   }
 };
 std::vector<std::tuple<std::string, std::string>> Cases() {
@@ -95,7 +120,9 @@ std::vector<std::tuple<std::string, std::string>> Cases() {
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(All, EveryLaw, ::testing::ValuesIn(Cases()), [](const auto& info) {
-  return std::get<0>(info.param) + "_" + std::get<1>(info.param);
+  std::string name = std::get<0>(info.param) + "_" + std::get<1>(info.param);
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
 });
 
 TEST_P(EveryLaw, ReplaysBitByBitFromASavedState) {
@@ -120,6 +147,17 @@ TEST_P(EveryLaw, ResetStartsAnew) {
   mj_resetData(m.get(), d.get());
   Drive(m.get(), d.get(), 200);
   EXPECT_EQ(State(m, d), end);
+}
+
+TEST_P(EveryLaw, AKeyframeStartsAnew) {
+  const auto m = Build();
+  const auto d = Data(m), used = Data(m);
+  mj_resetDataKeyframe(m.get(), d.get(), 0);
+  Drive(m.get(), d.get(), 200);
+  Drive(m.get(), used.get(), 150);
+  mj_resetDataKeyframe(m.get(), used.get(), 0);
+  Drive(m.get(), used.get(), 200);
+  EXPECT_EQ(State(m, used), State(m, d));
 }
 
 TEST_P(EveryLaw, ACopyRunsOnByItself) {
@@ -155,6 +193,8 @@ TEST_P(EveryLaw, InverseDynamicsSeesTheLaw) {
   mj_compareFwdInv(m.get(), d.get());
   EXPECT_LT(d->solver_fwdinv[0], 1e-7);
   EXPECT_LT(d->solver_fwdinv[1], 1e-7);
+  mj_inverse(m.get(), d.get());  // passive forces included
+  for (int i = 0; i < m->nv; ++i) EXPECT_NEAR(d->qfrc_inverse[i], d->qfrc_actuator[i], 1e-6);
 }
 
 TEST_P(EveryLaw, TransitionDerivativeEqualsDifferencesOfSteps) {
@@ -167,20 +207,30 @@ TEST_P(EveryLaw, TransitionDerivativeEqualsDifferencesOfSteps) {
   const double eps = 1e-6;
   mjd_transitionFD(m.get(), d.get(), eps, 1, A.data(), B.data(), nullptr, nullptr);
   const auto saved = State(m, d);
-  const auto next = [&](int control, double step) {
+  const auto rows = [&](const std::function<void(mjData&)>& move) {
     const auto e = Data(m);
     mj_setState(m.get(), e.get(), saved.data(), mjSTATE_INTEGRATION);
-    e->ctrl[control] += step;
+    move(*e);
     mj_step(m.get(), e.get());
-    return std::vector<double>(e->qvel, e->qvel + m->nv);
+    std::vector<double> next(e->qpos, e->qpos + m->nv);  // all joints have one axis
+    next.insert(next.end(), e->qvel, e->qvel + m->nv);
+    return next;
   };
-  for (int u = 0; u < m->nu; ++u) {
-    const auto plus = next(u, eps), minus = next(u, -eps);
-    for (int i = 0; i < m->nv; ++i) {
+  const auto expect = [&](const std::vector<double>& M, std::size_t columns, std::size_t column,
+                          const std::function<void(mjData&, double)>& move) {
+    const auto plus = rows([&](mjData& e) { move(e, eps); });
+    const auto minus = rows([&](mjData& e) { move(e, -eps); });
+    for (std::size_t i = 0; i < plus.size(); ++i) {
       const double expected = (plus[i] - minus[i]) / (2 * eps);
-      EXPECT_NEAR(B[(m->nv + i) * m->nu + u], expected, 1e-5 * (1 + std::abs(expected)));
+      EXPECT_NEAR(M[i * columns + column], expected, 1e-5 * (1 + std::abs(expected)));
     }
+  };
+  for (int j = 0; j < m->nv; ++j) {
+    expect(A, n, j, [j](mjData& e, double by) { e.qpos[j] += by; });
+    expect(A, n, m->nv + j, [j](mjData& e, double by) { e.qvel[j] += by; });
   }
+  for (int u = 0; u < m->nu; ++u)
+    expect(B, m->nu, u, [u](mjData& e, double by) { e.ctrl[u] += by; });
 }
 
 class Configuration : public testing::Engine {};
