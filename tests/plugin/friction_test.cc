@@ -100,6 +100,25 @@ TEST_P(Integrators, SlidesAsTheStiffReference) {
   }
 }
 
+// A spring k and dry friction τ_c take 2 τ_c/k off the amplitude in every half swing, and hold what
+// is left once it is within τ_c/k: 0.53 − 6·0.0826 rad.
+TEST_P(Integrators, HoldsTheOffsetThatIsLeftOfASwing) {
+  std::string xml = Wheel("coulomb", Key("tau_c", "0.0413"), "", "stiffness=\"1\"");
+  xml.replace(xml.find("integrator=\"implicitfast\""), 25, Option());
+  for (const auto& [h, tolerance] : {std::tuple{2e-3, 0.01}, std::tuple{5e-4, 0.0025}}) {
+    const auto m = Model(xml);
+    m->opt.timestep = h;
+    const auto d = Data(m);
+    d->qpos[0] = 0.53;
+    RunUntil(m, d, 10);
+    const double offset = 0.53 - 6 * 0.0826;
+    EXPECT_NEAR(d->qpos[0], offset, tolerance * offset) << h;
+    const double held = d->qpos[0];
+    RunUntil(m, d, 70);
+    EXPECT_NEAR(d->qpos[0], held, 1e-6);
+  }
+}
+
 TEST_F(Friction, HoldsWithoutAnyActuator) {
   const auto m = Model(Wheel("stribeck", TableThree(), "", "", /*motor=*/false));
   const auto d = Data(m);
