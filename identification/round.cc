@@ -16,7 +16,7 @@ constexpr const char kUnresolved[] = "the time step adds more to its fit than it
 
 bool Contains(const CandidateResult& b, const CandidateResult& a) {
   if (a.probes.empty() || b.probes.empty()) return false;
-  const Problem::Matrix &A = a.probes.front().columns, &B = b.probes.front().columns;
+  const Problem::Matrix &A = a.probes.front().AtStart(), &B = b.probes.front().AtStart();
   if (A.cols() >= B.cols()) return false;
   const Problem::Matrix rest = A - B * B.completeOrthogonalDecomposition().solve(A);
   return rest.squaredNorm() < 0.01 * A.squaredNorm();

@@ -46,6 +46,10 @@ struct Probe {
   std::vector<double> sign;  ///< of each coefficient: +1 may only be positive, −1 negative, 0 both
   std::vector<double> share = {};  ///< the coefficients at which it was probed
   std::size_t start = 0;           ///< of its hypothesis' starts
+  Eigen::MatrixXd whole = {};      ///< the columns at coefficients of 1, where those are others
+
+  /// Where all candidates can be compared: at the sizes of their starts.
+  const Eigen::MatrixXd& AtStart() const { return whole.size() > 0 ? whole : columns; }
 };
 
 /// The part of |z|² that a probe explains with coefficients of allowed signs, and those.

@@ -140,10 +140,15 @@ std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, c
       if (reach > 0 && kFar * reach < wanted)
         more[a] = std::min(wanted / reach, MostShare(h, h.starts[start], h.Amplitudes()[a]));
     }
-    if (less != whole) first = ProbeAt(h, problem, null, left, start, less);
+    const Matrix at_start = first.columns;
+    if (less != whole) {
+      first = ProbeAt(h, problem, null, left, start, less);
+      first.whole = at_start;
+    }
     if (more == whole) continue;
     try {
       probes.push_back(ProbeAt(h, problem, null, left, start, more));
+      probes.back().whole = at_start;
     } catch (const Error&) {
       continue;  // too much for the simulation
     }

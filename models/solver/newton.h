@@ -10,6 +10,8 @@
 #include <string>
 #include <type_traits>
 
+#include "sim/stop.h"
+
 /// Roots and least squares of small dense systems, shared by the static models.
 ///
 /// A *problem* is any object with
@@ -65,9 +67,11 @@ Outcome Timed(Solve&& solve) {
 }
 
 /// f and J = df/dx by dual numbers or by the problem's own Jacobian; false when x is out of the
-/// domain or a number is not finite. f and jacobian must have their sizes.
+/// domain or a number is not finite. f and jacobian must have their sizes. Throws Error when the
+/// user has asked to stop: no solver goes on without it.
 template <class Problem, class X, class F, class J>
 bool Linearize(const Problem& problem, const X& x, F& f, J& jacobian) {
+  StopIfRequested();
   if constexpr (requires { problem.Jacobian(x, f, jacobian); }) {
     return problem.Jacobian(x, f, jacobian) && f.allFinite() && jacobian.allFinite();
   } else {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
@@ -52,6 +53,20 @@ struct NoRoot {
 };
 
 using One = Eigen::Matrix<double, 1, 1>;
+
+TEST(NewtonDeathTest, EndsWhenTheUserAsksToStop) {
+  const auto solve = [] {
+    RequestStop();
+    One x(1);
+    try {
+      Newton(Logarithm{}, x);
+    } catch (const Error& error) {
+      std::_Exit(std::string(error.what()) == "interrupted" ? 7 : 8);
+    }
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(solve(), ::testing::ExitedWithCode(7), "");
+}
 
 TEST(Newton, FindsARootWithDualNumbers) {
   Eigen::Vector2d x(2, 0.3);
