@@ -115,12 +115,13 @@ class Search {
   }
 
   // A pair contains another when they share a cause and its other one contains the other's.
-  static bool Inside(const Fitting& outer, const Fitting& inner) {
-    return (outer.base == inner.base && Contains(*outer.b, *inner.b)) ||
-           (Key(outer.b->hypothesis) == Key(inner.b->hypothesis) && Contains(*outer.a, *inner.a));
+  bool Inside(const Fitting& outer, const Fitting& inner) const {
+    return (outer.base == inner.base && Contains(trials_, *outer.b, *inner.b)) ||
+           (Key(outer.b->hypothesis) == Key(inner.b->hypothesis) &&
+            Contains(trials_, *outer.a, *inner.a));
   }
 
-  static std::vector<LikelihoodRecord> RecordsOf(const std::vector<Fitting>& pairs) {
+  std::vector<LikelihoodRecord> RecordsOf(const std::vector<Fitting>& pairs) const {
     std::vector<LikelihoodRecord> records;
     for (const Fitting& p : pairs) {
       const Hypothesis &a = p.a->hypothesis, &b = p.b->hypothesis;

@@ -12,9 +12,24 @@ namespace continuum {
 namespace {
 constexpr int kDraws = 399;  // of rounding errors
 constexpr const char kUnresolved[] = "the time step adds more to its fit than it removes";
+
+// Nested fits are as far apart as the larger one gains; others that gain as much are farther.
+bool SaysTheSame(const Trials& trials, const CandidateResult& b, const CandidateResult& a) {
+  constexpr double kNoise = 10;  // of twice the log-likelihood
+  const double gain = b.likelihood - a.likelihood;
+  if (!a.fits || !b.fits || !trials.whitening.active() || std::abs(gain) > 3 * kNoise) return false;
+  const auto train = TrainLogs(*trials.experiment);
+  std::vector<Problem::Vector> between(train.size());
+  for (std::size_t l = 0; l < train.size(); ++l)
+    if (train[l]) between[l] = b.fitted.residuals[l] - a.fitted.residuals[l];
+  return trials.whitening.Stack(between, train).squaredNorm() < 2 * std::max(gain, 0.0) + kNoise;
+}
+
 }  // namespace
 
-bool Contains(const CandidateResult& b, const CandidateResult& a) {
+bool Contains(const Trials& trials, const CandidateResult& b, const CandidateResult& a) {
+  if (b.hypothesis.extra.size() > a.hypothesis.extra.size() && SaysTheSame(trials, b, a))
+    return true;
   if (a.probes.empty() || b.probes.empty()) return false;
   const Problem::Matrix &A = a.probes.front().AtStart(), &B = b.probes.front().AtStart();
   if (A.cols() >= B.cols()) return false;
@@ -260,7 +275,7 @@ std::vector<LikelihoodRecord> Round::Records() const {
   for (const CandidateResult& c : candidates) {
     LikelihoodRecord record{c.hypothesis.Name(), c.hypothesis.extra.size(), c.likelihood, {}};
     for (std::size_t a = 0; a < candidates.size(); ++a) {
-      if (&candidates[a] != &c && Contains(c, candidates[a])) record.contains.push_back(a);
+      if (&candidates[a] != &c && Contains(trials_, c, candidates[a])) record.contains.push_back(a);
     }
     records.push_back(std::move(record));
   }

@@ -11,8 +11,9 @@ struct Base {
   const Fitted* fitted;          ///< complete
 };
 
-/// Whether b can imitate whatever a does: its directions span a's.
-bool Contains(const CandidateResult& b, const CandidateResult& a);
+/// Whether b can imitate whatever a does: its directions span a's, or with more parameters it was
+/// fitted to the same motion.
+bool Contains(const Trials& trials, const CandidateResult& b, const CandidateResult& a);
 
 /// One search for one more cause where the noise is known: all candidates to first order, then fits
 /// of those that matter. Where it is not known, Screen is left out and every candidate fitted.
