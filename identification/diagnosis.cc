@@ -128,8 +128,7 @@ class Session {
 
   // Whether a fit takes more off the error than the time step may have put there.
   bool MoreThanStep(const Fitted& f) const {
-    const double before = d_.before.error.train, after = f.error.train;
-    return std::sqrt(std::max(0.0, before * before - after * after)) > d_.noise.step;
+    return Beyond(d_.before.error.train, f.error.train) > d_.noise.step;
   }
 
   // Lack of fit, without what the time step excuses.

@@ -213,8 +213,7 @@ double Round::Likelihood(const Fitted& fitted) const {
 
 // What the time step leaves open is free to vary: a fit that is mostly that explains anything.
 bool Round::Resolved(const Problem& problem, const Fitted& fitted) const {
-  const double before = base_.fitted->error.train, after = fitted.error.train;
-  const double removed = std::sqrt(std::max(0.0, before * before - after * after));
+  const double removed = Beyond(base_.fitted->error.train, fitted.error.train);
   return trials_.StepEffect(problem, fitted) <
          trials_.StepEffect(problem, *base_.fitted) + removed + 0.1 * noise_.rms;
 }

@@ -43,6 +43,82 @@ double MostShare(const Hypothesis& h, const std::vector<double>& start, std::siz
   return ((step > 0 ? p.upper : p.lower) - h.null[i]) / step;
 }
 
+// Tries the amplitudes of a candidate one by one, beside the fit without it.
+struct Prober {
+  const Hypothesis& h;
+  const Problem& problem;
+  const Fitted& null;
+  const Remainder& left;
+  std::vector<std::size_t> amplitudes = h.Amplitudes();
+  double wanted = std::sqrt(std::max(kLeast, left.cost() - left.freedom()));
+
+  Probe AtStart(std::size_t start) const {
+    Probe probe;
+    probe.start = start, probe.share.assign(amplitudes.size(), 1);
+    probe.columns.resize(left.residual().size(), static_cast<Eigen::Index>(amplitudes.size()));
+    for (std::size_t a = 0; a < amplitudes.size(); ++a) {
+      probe.columns.col(static_cast<Eigen::Index>(a)) = Direction(start, a, 1);
+      const std::size_t i = amplitudes[a];
+      const bool one_way = h.extra[i].lower >= h.null[i] || h.extra[i].upper <= h.null[i];
+      probe.sign.push_back(one_way ? 1 : 0);
+    }
+    return probe;
+  }
+
+  // The shares at which amplitudes that do far too much do what is wanted.
+  std::vector<double> Less(const Probe& whole) const {
+    std::vector<double> share = whole.share;
+    for (std::size_t a = 0; a < share.size(); ++a) {
+      const double reach = Reach(whole, a);
+      if (reach > kFar * wanted) share[a] = wanted / reach;
+    }
+    return share;
+  }
+  // And those that do far too little.
+  std::vector<double> More(const Probe& whole) const {
+    std::vector<double> share = whole.share;
+    for (std::size_t a = 0; a < share.size(); ++a) {
+      const double reach = Reach(whole, a);
+      if (reach > 0 && kFar * reach < wanted)
+        share[a] = std::min(wanted / reach, MostShare(h, h.starts[whole.start], amplitudes[a]));
+    }
+    return share;
+  }
+
+  // The same probe at other shares; simulates only what is other.
+  Probe At(const Probe& whole, const std::vector<double>& share) const {
+    Probe probe = whole;
+    for (std::size_t a = 0; a < share.size(); ++a) {
+      if (share[a] == whole.share[a]) continue;
+      probe.columns.col(static_cast<Eigen::Index>(a)) = Direction(whole.start, a, share[a]);
+      probe.whole = whole.columns;
+    }
+    probe.share = share;
+    return probe;
+  }
+
+ private:
+  static double Reach(const Probe& probe, std::size_t a) {
+    return probe.columns.col(static_cast<Eigen::Index>(a)).norm();
+  }
+
+  // What one amplitude does to what is left, per share of its start.
+  Vector Direction(std::size_t start, std::size_t one, double share) const {
+    const auto train = TrainLogs(problem.experiment());
+    std::vector<double> own = h.starts[start];
+    for (std::size_t a = 0; a < amplitudes.size(); ++a)
+      own[amplitudes[a]] = AtShare(h, h.starts[start], amplitudes[a], a == one ? share : 0);
+    const auto r = problem.Residuals(Append(null.fit.x, own), train);
+    std::vector<Matrix> column(train.size());
+    for (std::size_t l = 0; l < train.size(); ++l) {
+      if (!train[l]) continue;
+      if (!r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
+      column[l] = (r[l] - null.residuals[l]) / share;
+    }
+    return left.Project(column);
+  }
+};
+
 // Of each counted channel: a constant, and a shift in time.
 Matrix ChannelColumns(const Problem& problem, const Trace& trace, const Log& log) {
   const auto rows = static_cast<Eigen::Index>(log.rows());
@@ -67,6 +143,10 @@ Vector Append(const Vector& known, const std::vector<double>& own) {
   x.head(known.size()) = known;
   std::copy(own.begin(), own.end(), x.data() + known.size());
   return x;
+}
+
+double Beyond(double error, double part) {
+  return std::sqrt(std::max(0.0, error * error - part * part));
 }
 
 Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) const {
@@ -127,67 +207,20 @@ Remainder Trials::LeftBy(const Fitted& fitted) const {
 
 std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                                   const Remainder& left) const {
-  const double wanted = std::sqrt(std::max(kLeast, left.cost() - left.freedom()));
-  const std::vector<double> whole(h.Amplitudes().size(), 1);
+  const Prober prober{h, problem, null, left};
   std::vector<Probe> probes;
   for (std::size_t start = 0; start < h.starts.size(); ++start) {
-    probes.push_back(ProbeAt(h, problem, null, left, start, whole));
-    Probe& first = probes.back();
-    std::vector<double> less = whole, more = whole;
-    for (std::size_t a = 0; a < whole.size(); ++a) {
-      const double reach = first.columns.col(static_cast<Eigen::Index>(a)).norm();
-      if (reach > kFar * wanted) less[a] = wanted / reach;
-      if (reach > 0 && kFar * reach < wanted)
-        more[a] = std::min(wanted / reach, MostShare(h, h.starts[start], h.Amplitudes()[a]));
-    }
-    const Matrix at_start = first.columns;
-    if (less != whole) {
-      first = ProbeAt(h, problem, null, left, start, less);
-      first.whole = at_start;
-    }
-    if (more == whole) continue;
+    Probe whole = prober.AtStart(start);
+    const std::vector<double> less = prober.Less(whole), more = prober.More(whole);
+    probes.push_back(prober.At(whole, less));
+    if (more == whole.share) continue;
     try {
-      probes.push_back(ProbeAt(h, problem, null, left, start, more));
-      probes.back().whole = at_start;
+      probes.push_back(prober.At(whole, more));
     } catch (const Error&) {
       continue;  // too much for the simulation
     }
   }
   return probes;
-}
-
-Probe Trials::ProbeAt(const Hypothesis& h, const Problem& problem, const Fitted& null,
-                      const Remainder& left, std::size_t start,
-                      const std::vector<double>& share) const {
-  const auto amplitudes = h.Amplitudes();
-  Probe probe;
-  probe.start = start, probe.share = share;
-  probe.columns.resize(left.residual().size(), static_cast<Eigen::Index>(amplitudes.size()));
-  for (std::size_t a = 0; a < amplitudes.size(); ++a) {
-    const std::size_t i = amplitudes[a];
-    probe.columns.col(static_cast<Eigen::Index>(a)) =
-        Direction(h, problem, null, left, h.starts[start], i, share[a]);
-    const bool one_way = h.extra[i].lower >= h.null[i] || h.extra[i].upper <= h.null[i];
-    probe.sign.push_back(one_way ? 1 : 0);
-  }
-  return probe;
-}
-
-// What one amplitude does to what is left, from the fit without the effect; per share of its start.
-Vector Trials::Direction(const Hypothesis& h, const Problem& problem, const Fitted& null,
-                         const Remainder& left, const std::vector<double>& start, std::size_t one,
-                         double share) const {
-  const auto train = TrainLogs(*experiment);
-  std::vector<double> own = start;
-  for (const std::size_t i : h.Amplitudes()) own[i] = AtShare(h, start, i, i == one ? share : 0);
-  const auto r = problem.Residuals(Append(null.fit.x, own), train);
-  std::vector<Matrix> column(train.size());
-  for (std::size_t l = 0; l < train.size(); ++l) {
-    if (!train[l]) continue;
-    if (!r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
-    column[l] = (r[l] - null.residuals[l]) / share;
-  }
-  return left.Project(column);
 }
 
 Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,
@@ -219,9 +252,7 @@ double Trials::StepEffect(const Problem& problem, const Fitted& fitted) const {
 }
 
 bool Trials::WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const {
-  const double left = fitted.error.train;
-  const double excess = std::sqrt(std::max(0.0, left * left - noise.rms * noise.rms));
-  return excess <= 1.25 * StepEffect(problem, fitted);
+  return Beyond(fitted.error.train, noise.rms) <= 1.25 * StepEffect(problem, fitted);
 }
 
 LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& extra,

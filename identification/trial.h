@@ -38,14 +38,10 @@ struct Trials {
   /// Tests of what no candidate covers; inflation: of noise along any direction.
   LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
                    const Sizes& sizes, double inflation, std::uint64_t seed) const;
-
- private:
-  Probe ProbeAt(const Hypothesis& h, const Problem& problem, const Fitted& null,
-                const Remainder& left, std::size_t start, const std::vector<double>& share) const;
-  Problem::Vector Direction(const Hypothesis& h, const Problem& problem, const Fitted& null,
-                            const Remainder& left, const std::vector<double>& start,
-                            std::size_t one, double share) const;
 };
+
+/// What an error has beyond an independent part of it: √(a² − b²), 0 where the part is larger.
+double Beyond(double error, double part);
 
 /// Parameters that are known, and then those of a candidate.
 Problem::Vector Append(const Problem::Vector& known, const std::vector<double>& own);
