@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -11,6 +10,8 @@
 #include "binding/config.h"
 #include "binding/expression.h"
 #include "error.h"
+#include "identification/places.h"
+#include "identification/search_range.h"
 #include "sim/file.h"
 #include "sim/measurement.h"
 
@@ -24,81 +25,6 @@ std::string FreshInstance(const mjModel& m) {
     std::string one = i == 1 ? name : name + std::to_string(i);
     if (mj_name2id(&m, mjOBJ_PLUGIN, one.c_str()) < 0) return one;
   }
-}
-
-mjtObj TypeOf(Place place) {
-  switch (place) {
-    case Place::kJoint:
-      return mjOBJ_JOINT;
-    case Place::kTendon:
-      return mjOBJ_TENDON;
-    case Place::kActuator:
-      return mjOBJ_ACTUATOR;
-    default:
-      return mjOBJ_BODY;
-  }
-}
-
-int CountOf(const mjModel& m, Place place) {
-  switch (place) {
-    case Place::kJoint:
-      return static_cast<int>(m.njnt);
-    case Place::kTendon:
-      return static_cast<int>(m.ntendon);
-    case Place::kActuator:
-      return static_cast<int>(m.nu);
-    default:
-      return static_cast<int>(m.nbody);
-  }
-}
-
-// Whether an effect makes sense at one object of the model.
-bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
-          const Experiment& experiment) {
-  switch (place) {
-    case Place::kJoint:
-      return m.jnt_type[id] == mjJNT_HINGE || m.jnt_type[id] == mjJNT_SLIDE;
-    case Place::kTendon: {
-      if (effect.kind != EffectInfo::Kind::kPath) return true;
-      if (m.tendon_num[id] < 3) return false;  // no contact
-      for (int w = m.tendon_adr[id]; w < m.tendon_adr[id] + m.tendon_num[id]; ++w) {
-        if (m.wrap_type[w] != mjWRAP_SITE) return false;
-      }
-      return true;
-    }
-    case Place::kActuator: {
-      const double kp = m.actuator_gainprm[mjNGAIN * id];
-      const bool servo = m.actuator_gaintype[id] == mjGAIN_FIXED &&
-                         m.actuator_biastype[id] == mjBIAS_AFFINE && kp != 0 &&
-                         kp == -m.actuator_biasprm[mjNBIAS * id + 1];
-      if (effect.servo && !servo) return false;
-      const char* name = mj_id2name(&m, mjOBJ_ACTUATOR, id);
-      return std::any_of(experiment.inputs.begin(), experiment.inputs.end(), [&](const Input& in) {
-        return !in.column.empty() && name && in.actuator == name;
-      });
-    }
-    default: {  // bodies: the ends of the tree, or every one for what scales them
-      if (id == 0) return false;
-      if (effect.params.front().null == 1) return m.body_mass[id] > 0;
-      for (int b = id + 1; b < m.nbody; ++b) {
-        if (m.body_parentid[b] == id) return false;
-      }
-      return true;
-    }
-  }
-}
-
-std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
-                                   const std::string& glob, const Experiment& experiment) {
-  if (place == Place::kWorld) return {"world"};
-  std::vector<std::string> names;
-  for (int i = 0; i < CountOf(m, place); ++i) {
-    const char* name = mj_id2name(&m, TypeOf(place), i);
-    if (!name || !*name || !GlobMatches(glob, name)) continue;
-    const bool chosen = glob != "*" && place == Place::kBody;
-    if (chosen || Fits(m, effect, place, i, experiment)) names.emplace_back(name);
-  }
-  return names;
 }
 
 std::string Join(const std::vector<std::string>& names) {
@@ -134,61 +60,6 @@ Present FrictionOn(const mjModel& m, const std::vector<std::string>& joints) {
   return found;
 }
 
-// The size in which a parameter is looked for, from its unit.
-double SizeFor(const Param& p, Place place, const Sizes& s) {
-  const std::string_view u = p.unit;
-  const bool line = place == Place::kTendon;
-  if (u == "N*m") return line ? s.tension : s.torque;
-  if (u == "N") return line ? s.tension : s.torque;  // Dahl's f, on joints a torque
-  if (u == "rad") return s.angle;
-  if (u == "rad/s") return place == Place::kActuator ? 0.25 / s.period : s.velocity;
-  if (u == "N*m*s/rad") return s.torque / s.velocity;
-  if (u == "N*m/rad" || u == "N/m") return (line ? s.tension : s.torque) / (0.02 * s.angle);
-  if (u == "N*m/rad^3") return s.torque / std::pow(s.angle, 3);
-  if (u == "kg") return s.mass;
-  if (u == "kg*m^2") return s.inertia;
-  if (u == "1/rad") return 50 / s.angle;
-  if (u == "m/N") return 0.01 / s.tension;
-  if (u == "s") return 4 * s.period;
-  if (u == "input") return s.angle;
-  if (u == "m") return s.length;
-  return 1;
-}
-
-Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::string& target,
-                  const std::string& attribute, Change::Operation operation) {
-  const double size = SizeFor(p, place, sizes);
-  Parameter out;
-  out.name = p.name;
-  out.target = target;
-  out.attribute = attribute;
-  out.operation = operation;
-  out.has_initial = true;
-  out.where = "candidate";
-  const bool nuisance = std::isnan(p.null);
-  // The angle is a range over all joints, and its cube much larger than that of any one motion.
-  const double reach = p.unit == "kg"          ? 5
-                       : p.unit == "s"         ? 25
-                       : p.unit == "1"         ? 10
-                       : p.unit == "N*m/rad^3" ? 100
-                                               : 3;
-  if (std::isinf(p.null)) {  // a frequency, absent when it is large; no faster than the step
-    out.upper = 1 / sizes.step;
-    out.lower = std::max(p.lower, 0.02 * size), out.initial = std::min(size, 0.5 * out.upper);
-    return out;
-  }
-  out.upper = std::min(p.upper, (nuisance ? 100 : reach) * size);
-  out.lower = nuisance ? std::max(p.lower, 1e-3 * size) : std::max(p.lower, -reach * size);
-  const double typical = p.unit == "1"     ? 0.1
-                         : p.unit == "s"   ? 0.125
-                         : p.unit == "rad" ? 0.02
-                                           : 0.05;
-  out.initial = nuisance ? 0.3 * size : p.null + typical * size;
-  if (p.null == 1) out.lower = 0.1, out.upper = 10, out.initial = 1.02;  // a factor
-  out.initial = std::clamp(out.initial, out.lower, out.upper);
-  return out;
-}
-
 // Initial values, with every nuisance at three sizes.
 std::vector<std::vector<double>> StartsOf(const Hypothesis& h) {
   std::vector<double> first;
@@ -203,17 +74,6 @@ std::vector<std::vector<double>> StartsOf(const Hypothesis& h) {
     }
   }
   return starts;
-}
-
-std::string InWords(Place place, const std::vector<std::string>& names) {
-  if (place == Place::kWorld) return "world";
-  std::string text(PlaceName(place));
-  if (names.size() > 1) text = place == Place::kBody ? "bodies" : text + "s";
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i == 6) return text + fmt::format(" … ({} in all)", names.size());
-    text += (i ? ", " : " ") + names[i];
-  }
-  return text;
 }
 
 // How far the measured values of some outputs reach [their unit].

@@ -1,0 +1,100 @@
+#include "identification/places.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "binding/config.h"
+
+namespace continuum {
+namespace {
+
+mjtObj TypeOf(Place place) {
+  switch (place) {
+    case Place::kJoint:
+      return mjOBJ_JOINT;
+    case Place::kTendon:
+      return mjOBJ_TENDON;
+    case Place::kActuator:
+      return mjOBJ_ACTUATOR;
+    default:
+      return mjOBJ_BODY;
+  }
+}
+
+int CountOf(const mjModel& m, Place place) {
+  switch (place) {
+    case Place::kJoint:
+      return static_cast<int>(m.njnt);
+    case Place::kTendon:
+      return static_cast<int>(m.ntendon);
+    case Place::kActuator:
+      return static_cast<int>(m.nu);
+    default:
+      return static_cast<int>(m.nbody);
+  }
+}
+
+// Whether an effect makes sense at one object of the model.
+bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
+          const Experiment& experiment) {
+  switch (place) {
+    case Place::kJoint:
+      return m.jnt_type[id] == mjJNT_HINGE || m.jnt_type[id] == mjJNT_SLIDE;
+    case Place::kTendon: {
+      if (effect.kind != EffectInfo::Kind::kPath) return true;
+      if (m.tendon_num[id] < 3) return false;  // no contact
+      for (int w = m.tendon_adr[id]; w < m.tendon_adr[id] + m.tendon_num[id]; ++w) {
+        if (m.wrap_type[w] != mjWRAP_SITE) return false;
+      }
+      return true;
+    }
+    case Place::kActuator: {
+      const double kp = m.actuator_gainprm[mjNGAIN * id];
+      const bool servo = m.actuator_gaintype[id] == mjGAIN_FIXED &&
+                         m.actuator_biastype[id] == mjBIAS_AFFINE && kp != 0 &&
+                         kp == -m.actuator_biasprm[mjNBIAS * id + 1];
+      if (effect.servo && !servo) return false;
+      const char* name = mj_id2name(&m, mjOBJ_ACTUATOR, id);
+      return std::any_of(experiment.inputs.begin(), experiment.inputs.end(), [&](const Input& in) {
+        return !in.column.empty() && name && in.actuator == name;
+      });
+    }
+    default: {  // bodies: the ends of the tree, or every one for what scales them
+      if (id == 0) return false;
+      if (effect.params.front().null == 1) return m.body_mass[id] > 0;
+      for (int b = id + 1; b < m.nbody; ++b) {
+        if (m.body_parentid[b] == id) return false;
+      }
+      return true;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
+                                   const std::string& glob, const Experiment& experiment) {
+  if (place == Place::kWorld) return {"world"};
+  std::vector<std::string> names;
+  for (int i = 0; i < CountOf(m, place); ++i) {
+    const char* name = mj_id2name(&m, TypeOf(place), i);
+    if (!name || !*name || !GlobMatches(glob, name)) continue;
+    const bool chosen = glob != "*" && place == Place::kBody;
+    if (chosen || Fits(m, effect, place, i, experiment)) names.emplace_back(name);
+  }
+  return names;
+}
+
+std::string InWords(Place place, const std::vector<std::string>& names) {
+  if (place == Place::kWorld) return "world";
+  std::string text(PlaceName(place));
+  if (names.size() > 1) text = place == Place::kBody ? "bodies" : text + "s";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i == 6) return text + fmt::format(" … ({} in all)", names.size());
+    text += (i ? ", " : " ") + names[i];
+  }
+  return text;
+}
+
+}  // namespace continuum

@@ -1,0 +1,66 @@
+#include "identification/search_range.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace continuum {
+namespace {
+
+// The size in which a parameter is looked for, from its unit.
+double SizeFor(const Param& p, Place place, const Sizes& s) {
+  const std::string_view u = p.unit;
+  const bool line = place == Place::kTendon;
+  if (u == "N*m") return line ? s.tension : s.torque;
+  if (u == "N") return line ? s.tension : s.torque;  // Dahl's f, on joints a torque
+  if (u == "rad") return s.angle;
+  if (u == "rad/s") return place == Place::kActuator ? 0.25 / s.period : s.velocity;
+  if (u == "N*m*s/rad") return s.torque / s.velocity;
+  if (u == "N*m/rad" || u == "N/m") return (line ? s.tension : s.torque) / (0.02 * s.angle);
+  if (u == "N*m/rad^3") return s.torque / std::pow(s.angle, 3);
+  if (u == "kg") return s.mass;
+  if (u == "kg*m^2") return s.inertia;
+  if (u == "1/rad") return 50 / s.angle;
+  if (u == "m/N") return 0.01 / s.tension;
+  if (u == "s") return 4 * s.period;
+  if (u == "input") return s.angle;
+  if (u == "m") return s.length;
+  return 1;
+}
+
+}  // namespace
+
+Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::string& target,
+                  const std::string& attribute, Change::Operation operation) {
+  const double size = SizeFor(p, place, sizes);
+  Parameter out;
+  out.name = p.name;
+  out.target = target;
+  out.attribute = attribute;
+  out.operation = operation;
+  out.has_initial = true;
+  out.where = "candidate";
+  const bool nuisance = std::isnan(p.null);
+  // The angle is a range over all joints, and its cube much larger than that of any one motion.
+  const double reach = p.unit == "kg"          ? 5
+                       : p.unit == "s"         ? 25
+                       : p.unit == "1"         ? 10
+                       : p.unit == "N*m/rad^3" ? 100
+                                               : 3;
+  if (std::isinf(p.null)) {  // a frequency, absent when it is large; no faster than the step
+    out.upper = 1 / sizes.step;
+    out.lower = std::max(p.lower, 0.02 * size), out.initial = std::min(size, 0.5 * out.upper);
+    return out;
+  }
+  out.upper = std::min(p.upper, (nuisance ? 100 : reach) * size);
+  out.lower = nuisance ? std::max(p.lower, 1e-3 * size) : std::max(p.lower, -reach * size);
+  const double typical = p.unit == "1"     ? 0.1
+                         : p.unit == "s"   ? 0.125
+                         : p.unit == "rad" ? 0.02
+                                           : 0.05;
+  out.initial = nuisance ? 0.3 * size : p.null + typical * size;
+  if (p.null == 1) out.lower = 0.1, out.upper = 10, out.initial = 1.02;  // a factor
+  out.initial = std::clamp(out.initial, out.lower, out.upper);
+  return out;
+}
+
+}  // namespace continuum
