@@ -118,12 +118,10 @@ class Session {
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
     excused_ = d_.lack.smallest() < LikelihoodRules{}.lack &&
                trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.noise);
-    d_.verdict = JudgeLikelihoods(records, Counted(), round.smallest_p());
-    if (!excused_) return;
+    d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), round.smallest_p(), Rules());
     const auto& named = d_.verdict.named;
-    if (!named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))
+    if (excused_ && !named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))
       d_.verdict = {"adequate", {}, "no candidate does more than the time step; try a finer one"};
-    d_.verdict.reason += "; what is left above the noise is within what the time step adds";
   }
 
   // Whether a fit takes more off the error than the time step may have put there.
@@ -131,8 +129,11 @@ class Session {
     return Beyond(d_.before.error.train, f.error.train) > d_.noise.step;
   }
 
-  // Lack of fit, without what the time step excuses.
-  double Counted() const { return excused_ ? 1 : d_.lack.smallest(); }
+  LikelihoodRules Rules() const {
+    LikelihoodRules rules;
+    rules.excused = excused_;
+    return rules;
+  }
 
   static void SetProbabilities(std::vector<CandidateResult>& candidates,
                                const std::vector<LikelihoodRecord>& records) {
@@ -168,7 +169,7 @@ class Session {
     }
     if (!d_.partner) {
       d_.verdict.text = "named";
-      d_.verdict.reason = "it leaves " + LeftInWords(Counted());
+      d_.verdict.reason = "it leaves " + LeftInWords(d_.lack.smallest(), Rules());
     } else if (d_.partner->equivalent.empty()) {
       d_.verdict.text = "named";
     }

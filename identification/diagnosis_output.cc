@@ -74,17 +74,13 @@ nlohmann::json ParametersOf(const Hypothesis& h, const Fitted& fitted, Eigen::In
   nlohmann::json parameters = nlohmann::json::object();
   for (std::size_t i = 0; i < h.extra.size(); ++i) {
     const Eigen::Index at = begin + static_cast<Eigen::Index>(i);
-    const double value = fitted.fit.x[at];
-    const bool sure = std::isfinite(fitted.uncertainty.standard_error[at]);
     std::string unit = h.extra[i].unit.empty() ? "1" : h.extra[i].unit;
     for (const Param& p : EffectNamed(h.Card()).params) {
       if (p.name == h.extra[i].name) unit = p.unit;
     }
-    parameters[h.extra[i].name] = {{"value", value},
-                                   {"unit", unit},
-                                   {"ci95",
-                                    {sure ? fitted.uncertainty.lower[at] : value,
-                                     sure ? fitted.uncertainty.upper[at] : value}}};
+    const Uncertainty& u = fitted.uncertainty;
+    parameters[h.extra[i].name] = {
+        {"value", fitted.fit.x[at]}, {"unit", unit}, {"ci95", {u.lower[at], u.upper[at]}}};
   }
   return parameters;
 }

@@ -163,18 +163,20 @@ class Story {
   void LikelihoodTable() {
     std::vector<std::vector<std::string>> rows;
     for (const auto& c : d_.candidates) {
-      rows.push_back({c.hypothesis.Name(), c.hypothesis.where, fmt::format("{:.1f}", c.likelihood),
+      rows.push_back({c.hypothesis.Name(), c.hypothesis.where,
+                      c.fitted.complete ? fmt::format("{:.1f}", c.likelihood) : "",
                       std::to_string(c.hypothesis.extra.size()), fmt::format("{:.2g}", c.p),
                       fmt::format("{:.3f}", c.probability), fmt::format("{:.1f}", c.apart)});
     }
     for (const auto& c : d_.dismissed) {
-      rows.push_back({c.effect, c.where, "not fitted", "", fmt::format("{:.2g}", c.p), "", ""});
+      rows.push_back({c.effect, c.where, "", "", fmt::format("{:.2g}", c.p), "", ""});
     }
     page_.Table(
         {"candidate", "where", "2 ln L gained", "parameters", "p, family-wise", "posterior",
          "lambda"},
         rows,
-        {"Twice the log-likelihood over the model without it; p: how often noise alone lets "
+        {"Twice the log-likelihood over the model without it, empty for those left far behind; p: "
+         "how often noise alone lets "
          "one of all candidates do as well to first order; posterior: each candidate as "
          "likely before; lambda: what of the best candidate this one cannot imitate on these logs "
          "(below about 15 they are hard to tell apart). What the best one leaves has p = " +

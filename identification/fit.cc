@@ -320,8 +320,8 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
                             const std::vector<Scores>& blocks) {
   const Eigen::Index n = x.size();
   Uncertainty u;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  u.standard_error = u.lower = u.upper = Vector::Constant(n, nan);
+  u.standard_error = Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  u.lower = u.upper = x;
   u.correlation = Matrix::Identity(n, n);
   u.information = Matrix::Zero(n, n);
   std::vector<Eigen::Index> inside;
@@ -351,6 +351,10 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   for (Eigen::Index a = 0; a < k; ++a) {
     const Eigen::Index i = inside[a];
     const FreeParameter& p = problem.parameters()[i];
+    if (!(H(a, a) > 0)) {
+      u.lower[i] = p.lower, u.upper[i] = p.upper;
+      continue;
+    }
     u.standard_error[i] = std::sqrt(std::max(0.0, cov(a, a)));
     u.lower[i] = std::max(p.lower, x[i] - t * u.standard_error[i]);
     u.upper[i] = std::min(p.upper, x[i] + t * u.standard_error[i]);
@@ -360,6 +364,23 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
     }
   }
   return u;
+}
+
+void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
+                  const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
+  if (u.information.size() == 0) return;
+  Vector pull = Vector::Zero(u.information.rows());
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (!J[l].size()) continue;
+    pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
+  }
+  u.step = 4.0 / 3 * (u.information.completeOrthogonalDecomposition().pseudoInverse() * pull);
+  for (Eigen::Index i = 0; i < u.step.size(); ++i) {
+    if (u.at_bound[i]) continue;
+    const FreeParameter& p = problem.parameters()[i];
+    u.lower[i] = std::max(p.lower, u.lower[i] + std::min(0.0, u.step[i]));
+    u.upper[i] = std::min(p.upper, u.upper[i] + std::max(0.0, u.step[i]));
+  }
 }
 
 }  // namespace continuum

@@ -54,10 +54,12 @@ Problem::Vector RefitByChords(const Problem& problem, const Problem::Vector& x,
 ///   Cov = H⁻¹ S H⁻¹,   H = Σ JᵀJ,   S = Σ_logs Σ_lags w(lag) Σ_t s_t s_{t+lag}ᵀ,   s_t = Jᵀ_t r_t
 ///
 /// of whitened residuals, with Bartlett weights and Andrews' bandwidth for AR(1) scores
-/// (heteroskedasticity and autocorrelation consistent, newey1987, andrews1991). Parameters at a
-/// bound are left out (NaN).
+/// (heteroskedasticity and autocorrelation consistent, newey1987, andrews1991). A parameter at a
+/// bound is left out: no standard error (NaN), and its value for an interval. One without effect
+/// has none either, and all that its bounds allow.
 struct Uncertainty {
   Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
+  Problem::Vector step = {};  ///< what a fine time step would add to the value; empty: not known
   Problem::Matrix correlation;
   Problem::Matrix information;  ///< H; zero for parameters at a bound
   std::vector<bool> at_bound;
@@ -72,5 +74,15 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Problem::Vector& x,
 Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
                           const std::vector<Problem::Vector>& r,
                           const std::vector<Problem::Matrix>& J, const Whitening& whitening = {});
+
+/// The robot has no time step. With s, what the step h adds to the residuals (the first column of
+/// Problem::StepEffects, h against h/4), the same fit at a fine step ends to first order at
+///
+///   x + δ,   δ = 4/3 H⁻¹ Jᵀ s      (an error of order h: h/4 leaves a quarter of it)
+///
+/// which is kept, and the intervals reach over both fits.
+void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
+                  const std::vector<Problem::Matrix>& step, const Whitening& whitening,
+                  Uncertainty& u);
 
 }  // namespace continuum

@@ -113,12 +113,13 @@ nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
                    {"unit", p.unit},
                    {"value", x[i]},
                    {"standard_error", known ? u.standard_error[i] : 0},
-                   {"ci95", {known ? u.lower[i] : x[i], known ? u.upper[i] : x[i]}},
+                   {"ci95", {u.lower[i], u.upper[i]}},
                    {"lower", p.lower},
                    {"upper", p.upper},
                    {"start", p.initial},
                    {"at_bound", static_cast<bool>(u.at_bound[i])},
                    {"start_at_bound", p.initial <= p.lower + edge || p.initial >= p.upper - edge}});
+    if (u.step.size()) all.back()["fine_step"] = x[i] + u.step[i];
   }
   return all;
 }
@@ -129,13 +130,18 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
     const bool known = std::isfinite(u.standard_error[i]);
-    rows.push_back({p.name, fmt::format("{:.5g}", x[i]), p.unit,
-                    known ? fmt::format("{:.2g}", u.standard_error[i]) : "",
-                    known ? fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) : "",
-                    u.at_bound[i] ? "at its bound" : "", fmt::format("{:.5g}", p.initial)});
+    rows.push_back(
+        {p.name, fmt::format("{:.5g}", x[i]), p.unit,
+         known ? fmt::format("{:.2g}", u.standard_error[i]) : "",
+         u.at_bound[i] ? "at its bound" : fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]),
+         u.step.size() ? fmt::format("{:.5g}", x[i] + u.step[i]) : "",
+         fmt::format("{:.5g}", p.initial)});
   }
-  page.Table({"parameter", "value", "unit", "standard error", "95 % interval", "", "start"}, rows,
-             {"Intervals allow for residuals that are correlated in time."});
+  std::string note = "Intervals allow for residuals that are correlated in time";
+  if (u.step.size()) note += ", and reach over what a fine time step would give";
+  page.Table({"parameter", "value", "unit", "standard error", "95 % interval",
+              u.step.size() ? "at a fine step" : "", "start"},
+             rows, {note + "."});
 }
 
 std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,

@@ -23,8 +23,8 @@ struct FitRecord {
 std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
                                const std::filesystem::path& folder, const FitRecord& record = {});
 
-/// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}]; where no error can be
-/// given (at a bound) the interval is the value itself.
+/// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}], and fine_step, the value
+/// that a fine time step would give, where that is known; no standard error is written as 0.
 nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
                               const Uncertainty& uncertainty);
 

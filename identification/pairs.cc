@@ -15,6 +15,16 @@ constexpr double kPromising = 0.5;  // of what a first cause leaves, where that 
 
 std::string Key(const Hypothesis& h) { return h.Name() + " at " + h.where; }
 
+// Whether the interval of a size leaves out its absence. It reaches over what the time step does.
+bool IsThere(const Hypothesis& h, const Fitted& f, Eigen::Index begin) {
+  for (const std::size_t a : h.Amplitudes()) {
+    const Eigen::Index i = begin + static_cast<Eigen::Index>(a);
+    const double null = std::min(h.null[a], h.extra[a].upper);
+    if (null < f.uncertainty.lower[i] || null > f.uncertainty.upper[i]) return true;
+  }
+  return false;
+}
+
 // A first cause, and the round for a second beside it.
 struct Beside {
   const CandidateResult* first;
@@ -28,6 +38,12 @@ struct Fitting {
   const CandidateResult *a, *b;
 
   double likelihood() const { return a->likelihood + b->likelihood; }
+  bool BothAreThere() const {
+    if (!b->fitted.complete) return true;  // plainly behind
+    const auto first = static_cast<Eigen::Index>(a->hypothesis.extra.size());
+    return IsThere(a->hypothesis, b->fitted, b->own() - first) &&
+           IsThere(b->hypothesis, b->fitted, b->own());
+  }
   bool Has(const std::string& effect) const {
     return a->hypothesis.effect == effect || b->hypothesis.effect == effect;
   }
@@ -94,13 +110,14 @@ class Search {
     return nullptr;
   }
 
-  // Every pair that was fitted, once, best first.
+  // Every pair of causes that both are there, once, best first.
   std::vector<Fitting> All() const {
     std::map<std::set<std::string>, Fitting> all;
     for (std::size_t t = 0; t < tried_.size(); ++t) {
       const auto& candidates = tried_[t].round.candidates;
       for (std::size_t i = 0; i < candidates.size(); ++i) {
         const Fitting one{t, i, tried_[t].first, &candidates[i]};
+        if (!one.BothAreThere()) continue;
         const auto [at, fresh] =
             all.try_emplace({Key(one.a->hypothesis), Key(one.b->hypothesis)}, one);
         if (!fresh && at->second.likelihood() < one.likelihood()) at->second = one;
@@ -141,6 +158,7 @@ class Search {
     Verdict verdict = JudgeLikelihoods(RecordsOf(pairs), 1, 0);
     if (verdict.named.empty()) return {};
     const Fitting& best = pairs[verdict.named.front()];
+    if (!best.b->fitted.complete) return {};  // those before it were no two causes
     const Round& round = tried_[best.base].round;
     const LackOfFit lack = round.LackOf(*best.b);
     if (lack.smallest() < LikelihoodRules{}.lack && (excused_ || !WithinStep(*best.b))) return {};

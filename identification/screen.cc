@@ -16,6 +16,7 @@ using Matrix = Eigen::MatrixXd;
 // Standard deviations of the time step's effects: the difference to a finer step is not that to the
 // limit; when within a step a row was taken and an input came is a matter of convention.
 constexpr double kStepSpread[] = {3, 0.5};
+constexpr double kFarthest = 2;  // times that: more is a cause, as a delay of several steps
 
 // Orthonormal columns that span A, directions below 1e-9 of the largest left out.
 Matrix Basis(const Matrix& A) {
@@ -28,6 +29,26 @@ Matrix Basis(const Matrix& A) {
   Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
   qr.setThreshold(1e-9);
   return qr.householderQ() * Matrix::Identity(A.rows(), qr.rank());
+}
+
+// Takes columns that r wants more of than they can be, one after the other, out of A's last ones
+// and as much as they can be out of r.
+void Limit(Matrix& A, Vector& r, Eigen::Index free, std::vector<double> most) {
+  while (!most.empty()) {
+    const Vector wanted = -A.colPivHouseholderQr().solve(r);
+    Eigen::Index worst = -1;
+    double excess = 1;
+    for (std::size_t i = 0; i < most.size(); ++i) {
+      const double over = std::abs(wanted[free + static_cast<Eigen::Index>(i)]) / most[i];
+      if (over > excess) excess = over, worst = static_cast<Eigen::Index>(i);
+    }
+    if (worst < 0) return;
+    r += std::copysign(most[worst], wanted[free + worst]) * A.col(free + worst);
+    Matrix kept(A.rows(), A.cols() - 1);
+    kept << A.leftCols(free + worst), A.rightCols(A.cols() - free - worst - 1);
+    A = std::move(kept);
+    most.erase(most.begin() + worst);
+  }
 }
 
 class Normals {
@@ -77,9 +98,13 @@ Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
     A.col(free + i).head(n) = S.col(i);
     A(n + i, free + i) = 1 / kStepSpread[i];
   }
-  basis_ = Basis(A.leftCols(free + priors));
   Vector padded = Vector::Zero(n + priors);
   padded.head(n) = r;
+  A.conservativeResize(Eigen::NoChange, free + priors);
+  std::vector<double> most;
+  for (Eigen::Index i = 0; i < priors; ++i) most.push_back(kFarthest * kStepSpread[i]);
+  Limit(A, padded, free, std::move(most));
+  basis_ = Basis(A);
   residual_ = Out(padded).col(0);
   const double measured = static_cast<double>((r.array() != 0).count());
   freedom_ = measured - static_cast<double>(free);

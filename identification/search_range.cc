@@ -46,8 +46,8 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
                        : p.unit == "1"         ? 10
                        : p.unit == "N*m/rad^3" ? 100
                                                : 3;
-  if (std::isinf(p.null)) {  // a frequency, absent when it is large; no faster than the step
-    out.upper = 1 / sizes.step;
+  if (std::isinf(p.null)) {  // a frequency, absent when it is large; at least two steps long
+    out.upper = 0.5 / sizes.step;
     out.lower = std::max(p.lower, 0.02 * size), out.initial = std::min(size, 0.5 * out.upper);
     return out;
   }

@@ -175,6 +175,7 @@ void Trials::Complete(const Problem& problem, Fitted& f) const {
   f.jacobian = problem.Jacobian(f.fit.x, f.residuals, train);
   f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, f.jacobian, whitening);
   f.step = problem.StepEffects(f.fit.x, f.residuals, train);
+  AllowForStep(problem, f.jacobian, f.step, whitening, f.uncertainty);
   f.complete = true;
   if (!whitening.active()) return;
   const Remainder left = LeftBy(f);

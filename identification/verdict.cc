@@ -148,6 +148,7 @@ std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candida
 }
 
 std::string LeftInWords(double lack, const LikelihoodRules& rules) {
+  if (rules.excused) return "nothing beyond the noise and what the time step adds";
   constexpr double kPlain = 0.05;  // below it "noise" would say too much
   if (lack >= kPlain) return "nothing but noise";
   return fmt::format("nothing that is significant at the level {:g} (p = {:.2g})", rules.lack,
@@ -160,7 +161,8 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
   const bool kept = std::any_of(candidates.begin(), candidates.end(),
                                 [&](const auto& c) { return ScoreOf(c, rules) > rules.parameter; });
   const bool any = p < rules.level && kept;
-  if (!any && lack < rules.lack) {
+  const bool more = lack < rules.lack && !rules.excused;
+  if (!any && more) {
     return {"unexplained", {}, "something beside noise is left that no candidate explains"};
   }
   if (!any) {
@@ -177,7 +179,7 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto score = [&](std::size_t i) { return ScoreOf(candidates[i], rules); };
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return score(a) > score(b); });
-  if (lack < rules.lack) {
+  if (more) {
     return {"unexplained",
             {},
             fmt::format("the best candidate, {}, leaves more than noise (p = {:.2g}): another "

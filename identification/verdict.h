@@ -52,6 +52,7 @@ struct LikelihoodRules {
   double apart = 5;         ///< likelihood by which a rival must fall behind
   double deeper = 2.8;      ///< score by which a law must beat one that it contains (99 %)
   double parameter = 3.84;  ///< what another parameter must gain (95 % of chi-squared)
+  bool excused = false;     ///< what is left is no more than the time step adds: no sign of a cause
 };
 
 struct Verdict {

@@ -102,5 +102,13 @@ TEST_F(Suite, ASecondOneIsFoundWhereTheTimeStepWouldExcuseIt) {
   EXPECT_TRUE(InSet(c, a)) << told_;
 }
 
+// What a large first cause leaves by the time step is no second one. A case of the large suite.
+TEST_F(Suite, ALargeOneStaysAlone) {
+  const Case c{{"sensor_delay"}, 4, NoiseKind::kWhite, 146};
+  const Answer a = Ask(c);
+  EXPECT_TRUE(InSet(c, a) && Unique(a)) << told_;
+  EXPECT_TRUE(a.low <= a.truth && a.truth <= a.high) << told_;
+}
+
 }  // namespace
 }  // namespace continuum::hidden

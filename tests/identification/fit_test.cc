@@ -146,6 +146,42 @@ TEST_F(FitTest, StopsAtABoundAndGivesNoErrorThere) {
   EXPECT_GT(u.standard_error[1], 0);
 }
 
+// The pendulum that made the log has a step of its own, far finer.
+TEST_F(FitTest, ToldOfTheStepTheIntervalReachesOverTheValueOfAFineOne) {
+  const Pendulum truth;
+  AddTrials(truth, 2);
+  const System system = Model({}, "", 4e-3);
+  const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
+  const Problem problem(e, system);
+  const Problem::Vector x = FitAll(problem).x;
+  const auto use = problem.TrainLogs();
+  const auto r = problem.Residuals(x, use);
+  const auto J = problem.Jacobian(x, r, use);
+  Uncertainty u = UncertaintyOf(problem, x, r, J);
+  const double bias = x[0] - truth.damping;
+  EXPECT_GT(std::abs(bias), 0.05 * truth.damping);
+  EXPECT_FALSE(u.lower[0] <= truth.damping && truth.damping <= u.upper[0]);
+  AllowForStep(problem, J, problem.StepEffects(x, r, use), {}, u);
+  EXPECT_NEAR(u.step[0], -bias, 0.2 * std::abs(bias));
+  EXPECT_TRUE(u.lower[0] <= truth.damping && truth.damping <= u.upper[0]);
+}
+
+TEST_F(FitTest, WithoutEffectAParameterMayBeAnythingThatItsBoundsAllow) {
+  AddTrials({}, 1, 2e-4);
+  const System system = Model({});
+  const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
+  const Problem problem(e, system);
+  const Problem::Vector x = FitAll(problem).x;
+  const auto r = problem.Residuals(x, problem.AllLogs());
+  auto J = problem.Jacobian(x, r, problem.AllLogs());
+  J[0].col(1).setZero();
+  const Uncertainty u = UncertaintyOf(problem, x, r, J);
+  EXPECT_TRUE(std::isnan(u.standard_error[1]));
+  EXPECT_EQ(u.lower[1], 0.05);
+  EXPECT_EQ(u.upper[1], 1);
+  EXPECT_GT(u.standard_error[0], 0);
+}
+
 TEST_F(FitTest, NamesAParameterWithoutEffectBeforeItFits) {
   AddTrials({}, 1);
   const System system = Model({});
