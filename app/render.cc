@@ -4,7 +4,7 @@
 
 #include "app/console.h"
 #include "error.h"
-#include "sim/film.h"
+#include "sim/clip.h"
 
 namespace continuum {
 namespace {
@@ -25,14 +25,25 @@ void ReadSize(const std::string& text, FilmOptions& film) {
   throw Error::Input("--size", "WIDTHxHEIGHT, each from 64 to 16384 px", "'" + text + "'");
 }
 
+// What is filmed; a recipe also says how.
+Experiment Read(const Options& o, FilmOptions& film) {
+  if (!Clip::Is(o.experiment)) return Experiment::Read(o.experiment);
+  Clip clip = Clip::Read(o.experiment);
+  film = std::move(clip.film);
+  return std::move(clip.experiment);
+}
+
 void RunRender(const Options& o) {
   FilmOptions film;
+  Experiment e = Read(o, film);
   ReadSize(o.size, film);
   film.fps = o.fps;
-  film.camera = o.camera;
+  if (!o.camera.empty()) {
+    film.camera = o.camera;
+    film.view.reset();
+  }
   film.gl = ParseGl(o.gl);
   film.progress = ShowProgress;
-  Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
   const std::filesystem::path out = o.out;
   if (!o.log.empty()) {
@@ -51,8 +62,10 @@ void RunRender(const Options& o) {
 
 void AddRender(CLI::App& app) {
   const auto o = std::make_shared<Options>();
-  CLI::App* const sub = app.add_subcommand("render", "Film the logs of an experiment off-screen");
-  sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
+  CLI::App* const sub =
+      app.add_subcommand("render", "Film the logs of an experiment, or a recipe, off-screen");
+  sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml, or a recipe of renders/")
+      ->required();
   sub->add_option("--out", o->out, "OUT.mp4, or OUT.png for one frame")->required();
   sub->add_option("--size", o->size, "WIDTHxHEIGHT")->capture_default_str();
   sub->add_option("--fps", o->fps, "frames per second")

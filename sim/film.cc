@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "sim/file.h"
 #include "sim/video.h"
 
 namespace continuum {
@@ -56,11 +57,63 @@ std::string CameraOf(const mjModel& m, const std::string& wanted) {
   return "";
 }
 
-bool HasCables(const mjModel& m) {
+constexpr double kEffectFull = 20;  // the tension that effects draw red [N]
+
+// Whether a model has an effect.
+bool Has(const mjModel& m, const std::string& effect) {
   for (int i = 0; i < m.nplugin; ++i) {
-    if (std::string(mjp_getPluginAtSlot(m.plugin[i])->name) == "continuum.capstan") return true;
+    if (mjp_getPluginAtSlot(m.plugin[i])->name == effect) return true;
   }
   return false;
+}
+
+// What the colours of cables or chambers mean.
+std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
+  if (options.tension) {
+    const auto& [low, high] = *options.tension;
+    return ColorBar{"cable tension [N]", Decimal(low), Decimal(high)};
+  }
+  if (Has(m, "continuum.capstan")) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
+  if (!Has(m, "continuum.pcc_segment")) return std::nullopt;
+  double full = 0;  // all chambers are alike
+  for (int a = 0; a < m.nu; ++a) {
+    if (!m.actuator_ctrllimited[a]) return std::nullopt;
+    full = std::max(full, m.actuator_ctrlrange[2 * a + 1]);
+  }
+  return ColorBar{"chamber pressure [kPa]", "0", fmt::format("{:g}", 1e-3 * full)};
+}
+
+// Tendons from blue to red over a range [N]: by the actuators that pull them, or as an effect says.
+void ColorTendons(const mjModel& m, const mjData& d, const std::array<double, 2>& range,
+                  mjvScene& scene) {
+  std::vector<double> tension(m.ntendon, 0);
+  for (int a = 0; a < m.nu; ++a) {
+    if (m.actuator_trntype[a] != mjTRN_TENDON) continue;
+    tension[m.actuator_trnid[2 * a]] -= m.actuator_gear[6 * a] * d.actuator_force[a];
+  }
+  const ColorBar bar;
+  for (int g = 0; g < scene.ngeom; ++g) {
+    mjvGeom& geom = scene.geoms[g];
+    if (geom.objtype != mjOBJ_TENDON) continue;
+    if (geom.category == mjCAT_DECOR)  // by an effect, which knows the tension of each piece
+      tension[geom.objid] = kEffectFull * (geom.rgba[0] - bar.from[0]) / (bar.to[0] - bar.from[0]);
+    const auto share = static_cast<float>(
+        std::clamp((tension[geom.objid] - range[0]) / (range[1] - range[0]), 0.0, 1.0));
+    for (int c = 0; c < 3; ++c) geom.rgba[c] = std::lerp(bar.from[c], bar.to[c], share);
+  }
+}
+
+void Draw(const Arrow& arrow, const mjModel& m, const mjData& d, mjvScene& scene) {
+  const int sensor = arrow.SensorOf(m), site = m.sensor_objid[sensor];
+  double along[3], tip[3];
+  mju_mulMatVec3(along, d.site_xmat + 9 * site, d.sensordata + m.sensor_adr[sensor]);
+  mju_addScl3(tip, d.site_xpos + 3 * site, along, arrow.length);
+  if (scene.ngeom >= scene.maxgeom) return;
+  mjvGeom& geom = scene.geoms[scene.ngeom++];
+  const float rgba[4] = {arrow.color[0], arrow.color[1], arrow.color[2], 1};
+  mjv_initGeom(&geom, mjGEOM_ARROW, nullptr, nullptr, nullptr, rgba);
+  mjv_connector(&geom, mjGEOM_ARROW, 0.04 * m.stat.meansize, d.site_xpos + 3 * site, tip);
+  geom.category = mjCAT_DECOR;
 }
 
 // Draws one log's rows at the film's rate.
@@ -74,11 +127,14 @@ class Shot {
         renderer_(*machine_.model, options.width, options.height, options.gl),
         measured_(e, log, *machine_.model) {
     const std::string camera = CameraOf(*machine_.model, options.camera);
-    if (!camera.empty()) renderer_.SetCamera(camera);
+    if (options.view)
+      renderer_.SetView(*options.view);
+    else if (!camera.empty())
+      renderer_.SetCamera(camera);
   }
 
   void Film(const std::function<void(Image)>& take) {
-    const double frame = 1.0 / options_.fps;
+    const double frame = options_.speed / options_.fps;
     const auto due = [&](std::size_t row, double& next) {
       const double t = log_.time[row] - log_.time.front();
       if (t + 1e-9 < next) return false;
@@ -100,7 +156,11 @@ class Shot {
       overlay.time = log_.time[row] - log_.time.front();
       if (options_.ghost) overlay.ghost = measured_.At(row);
       if (overlay.ghost) overlay.caption += " (translucent: measured)";
-      if (HasCables(m)) overlay.bar = ColorBar{"cable tension [N]", "0", "20"};
+      overlay.bar = BarOf(m, options_);
+      overlay.geoms = [&](mjvScene& scene) {
+        if (options_.tension) ColorTendons(m, d, *options_.tension, scene);
+        for (const Arrow& arrow : options_.arrows) continuum::Draw(arrow, m, d, scene);
+      };
       take(renderer_.Draw(m, d, overlay));
     };
     Simulate(machine_, e_, log_, {}, draw);
@@ -117,6 +177,13 @@ class Shot {
 
 }  // namespace
 
+int Arrow::SensorOf(const mjModel& m) const {
+  const int id = mj_name2id(&m, mjOBJ_SENSOR, sensor.c_str());
+  if (id >= 0 && (m.sensor_type[id] == mjSENS_FORCE || m.sensor_type[id] == mjSENS_TORQUE))
+    return id;
+  throw Error::Input(where, "a sensor of force or torque", "'" + sensor + "'");
+}
+
 void FilmExperiment(const Experiment& e, const System& system, const std::vector<std::size_t>& logs,
                     const std::filesystem::path& file, const FilmOptions& options) {
   VideoWriter video(file, options.width, options.height, options.fps);
@@ -132,6 +199,7 @@ void PictureOf(const Experiment& e, const System& system, const std::filesystem:
   std::vector<Image> frames;
   FilmOptions few = options;
   const Log& log = e.logs.front();
+  few.speed = 1;
   few.fps = static_cast<int>(std::clamp(4 / (log.time.back() - log.time.front()), 1., 1000.));
   Shot(e, system, log, few).Film([&](Image image) { frames.push_back(std::move(image)); });
   WritePng(file, frames[frames.size() / 2]);

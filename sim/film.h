@@ -1,17 +1,36 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "sim/renderer.h"
 #include "sim/simulate.h"
 
 namespace continuum {
 
+/// A force or torque sensor as an arrow from its site, seen from the world.
+struct Arrow {
+  std::string sensor;
+  double length;  ///< [m] per N or N m
+  std::array<float, 3> color;
+  std::string where = {};  ///< file:line: key, for messages
+
+  /// Throws Error when the model has no such sensor of force or torque.
+  int SensorOf(const mjModel& m) const;
+};
+
 struct FilmOptions {
   int width = 960, height = 720, fps = 25;
   std::string camera;  ///< empty: "front" or "side" when the model has it, else framed by itself
+  std::optional<View> view = {};  ///< a camera that frames the robot by itself, whatever `camera`
+  double speed = 1;               ///< seconds of the robot per second of the film
+  /// Drawn blue and red [N], of tendons that actuators pull; else as the effects say.
+  std::optional<std::array<double, 2>> tension = {};
+  std::vector<Arrow> arrows = {};
   Gl gl = Gl::kOsmesa;
   std::string caption;
   bool ghost = true;  ///< the measured pose, translucent, where joint sensors measure all of it
@@ -19,7 +38,7 @@ struct FilmOptions {
 };
 
 /// Simulates the logs and films them one after the other; the simulation is drawn as it is, cables
-/// coloured by tension where a capstan effect knows it.
+/// coloured by tension where a capstan effect or options.tension says how, chambers by pressure.
 void FilmExperiment(const Experiment& experiment, const System& system,
                     const std::vector<std::size_t>& logs, const std::filesystem::path& file,
                     const FilmOptions& options = {});

@@ -86,6 +86,12 @@ class Renderer::Impl {
     camera_.fixedcamid = static_cast<int>(it - cameras_.begin());
   }
 
+  void SetView(const View& view) {
+    camera_ = free_;
+    camera_.azimuth = view.azimuth;
+    camera_.elevation = view.elevation;
+  }
+
   void Include(const mjModel& m, const mjData& d) {
     CheckModel(m);
     framing_.Include(m, d, option_);
@@ -200,6 +206,7 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 void Renderer::SetCamera(std::string_view name) { impl_->SetCamera(name); }
+void Renderer::SetView(const View& view) { impl_->SetView(view); }
 void Renderer::Include(const mjModel& m, const mjData& d) { impl_->Include(m, d); }
 Image Renderer::Draw(const mjModel& m, mjData& d, const Overlay& overlay) {
   return impl_->Draw(m, d, overlay);

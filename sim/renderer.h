@@ -11,6 +11,11 @@
 
 namespace continuum {
 
+/// Where a camera looks, as MuJoCo counts it [degree].
+struct View {
+  double azimuth, elevation;
+};
+
 /// Draws poses of one model off-screen: shadows, no mirroring floor, no multisampling.
 ///
 /// Unless SetCamera chose one of the model's cameras, a free camera frames the robot: everything
@@ -29,6 +34,9 @@ class Renderer {
 
   /// One of the model's cameras, or the free camera for "". Throws Error that lists the names.
   void SetCamera(std::string_view name);
+
+  /// The free camera, looking this way.
+  void SetView(const View& view);
 
   /// The free camera shall see this pose.
   void Include(const mjModel& m, const mjData& d);

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+
+#include "sim/experiment.h"
+#include "sim/film.h"
+
+namespace continuum {
+
+/// A recipe for a film of one model: what its actuators receive from rest, and how it is shown.
+///
+///     model: ../models/spa/spa.xml
+///     camera: side                 # of the model, or {azimuth, elevation} [degree]: frames itself
+///     seconds: 4
+///     caption: One chamber after the other
+///     speed: 0.5                   # optional: half as fast as it is
+///     tension: [0, 15]             # optional: of cables, blue and red [N]; of a capstan 0 .. 20
+///     arrows: [{sensor: base_force, length: 0.05, color: [0.1, 0.6, 0.3]}]  # [m] per N or N m
+///     inputs:                      # actuators that are not named: 0
+///       p1: [[0, 0], [1, 0], [1, 4e4]]                           # [s, control], straight between
+///       p2: {mean: 2e4, amplitude: 2e4, period: 2, delay: 0.5, rise: 1}
+///
+/// A wave is min(1, t/rise) (mean + amplitude sin(2 pi (t - delay)/period)), whatever the
+/// actuator's range leaves of it.
+struct Clip {
+  Experiment experiment;  ///< without outputs; its one log are the inputs
+  FilmOptions film;
+
+  /// Throws Error with file:line and key.
+  static Clip Read(const std::filesystem::path& file);
+  /// Whether a file is a recipe, not an experiment.
+  static bool Is(const std::filesystem::path& file);
+  /// Throws Error when the model lacks the camera, an actuator or a sensor.
+  void Check(const mjModel& m) const;
+};
+
+}  // namespace continuum
