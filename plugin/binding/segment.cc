@@ -159,17 +159,28 @@ void DrawChamber(const mjModel& m, const mjData& d, const Chain& chain, const Ve
       m.actuator_ctrllimited[actuator] ? m.actuator_ctrlrange[2 * actuator + 1] : 1e5;
   const float x = static_cast<float>(std::clamp(ChamberPressure(m, d, actuator) / full, 0.0, 1.0));
   const float rgba[4] = {0.13f + 0.80f * x, 0.40f - 0.25f * x, 0.85f - 0.75f * x, 1};
+  const double radius = std::sqrt(area / mjPI);
+  const std::size_t last = chain.links().size() - 1;
+  bool first = true;
   double from[3], to[3];
   chain.links()[0].Point(d, at, from);
-  for (std::size_t k = 1; k < chain.links().size() && scene.ngeom < scene.maxgeom; ++k) {
+  for (std::size_t k = 1; k <= last && scene.ngeom < scene.maxgeom; ++k) {
     chain.links()[k].Point(d, at, to);
+    double end[3], along[3];
+    mju_copy3(end, to);
+    mju_sub3(along, to, from);
+    const double length = mju_normalize3(along);
+    if (first && length < radius && k < last) continue;  // no room for its round end
+    if (first) mju_addToScl3(from, along, radius);
+    if (k == last) mju_addToScl3(to, along, -std::min(radius, 0.95 * length));
     mjvGeom* const geom = scene.geoms + scene.ngeom++;
     mjv_initGeom(geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, rgba);
-    mjv_connector(geom, mjGEOM_CAPSULE, std::sqrt(area / mjPI), from, to);
+    mjv_connector(geom, mjGEOM_CAPSULE, radius, from, to);
     geom->objtype = mjOBJ_ACTUATOR;
     geom->objid = actuator;
     geom->category = mjCAT_DECOR;
-    mju_copy3(from, to);
+    mju_copy3(from, end);
+    first = false;
   }
 }
 
