@@ -49,7 +49,7 @@ void AddScene(Mjcf& mjcf) {
   mjcf.AddMaterial("spring", {0.88F, 0.52F, 0.18F, 1});
   mjcf.AddMaterial("mount", {0.32F, 0.35F, 0.40F, 1});
   mjcf.AddStudio(-0.42, 0.6);
-  mjcf.AddCamera("side", {0.10, -0.95, -0.02}, {0, 0, -0.115}, 31);
+  mjcf.AddCamera("side", {0.10, -0.98, 0.10}, {0, 0, -0.15}, 33);
 }
 
 void AddPlate(Mjcf& mjcf, const AnnelidaParameters& p, mjsBody* body, double from, double to) {
@@ -90,7 +90,7 @@ mjsBody* AddLink(Mjcf& mjcf, const AnnelidaParameters& p, mjsBody* parent, int i
 void AddCables(Mjcf& mjcf, const AnnelidaParameters& p, const Holes& holes) {
   for (int j = 0; j < kCables; ++j) {
     const std::string name = Indexed("cable", j + 1);
-    mjcf.AddCable(name, holes.Of(j), 0.0009, {0.13F, 0.40F, 0.85F, 1});
+    mjcf.AddCable(name, holes.Of(j), 0.0014, {0.13F, 0.40F, 0.85F, 1});
     mjcf.AddTension(name, name, p.tension);
   }
 }

@@ -99,7 +99,7 @@ void Mjcf::AddStudio(double floor, double wall) {
   spec_->visual.global.offheight = 1080;
   auto& headlight = spec_->visual.headlight;
   std::fill_n(headlight.ambient, 3, 0.4F);
-  std::fill_n(headlight.diffuse, 3, 0.4F);
+  std::fill_n(headlight.diffuse, 3, 0.35F);
   mjsTexture* const sky = mjs_addTexture(spec_.get(), nullptr);
   Name(sky->element, "sky");
   sky->type = mjTEXTURE_SKYBOX;
@@ -111,9 +111,9 @@ void Mjcf::AddStudio(double floor, double wall) {
   AddMaterial("wall", {0.90F, 0.91F, 0.93F, 1}, 0);
 
   mjsLight* const light = mjs_addLight(world(), nullptr);
-  Copy(light->pos, Point{-0.3, -0.5, 1.5});
-  Copy(light->dir, Point{0.15, 0.3, -1});
-  Copy(light->diffuse, Point{0.7, 0.7, 0.7});
+  Copy(light->pos, Point{-0.5, -1.0, 1.5});
+  Copy(light->dir, Point{0.25, 0.6, -1});
+  Copy(light->diffuse, Point{0.5, 0.5, 0.5});
 
   mjsGeom* const ground = AddGeom(world(), mjGEOM_PLANE, "floor");
   Copy(ground->size, Point{2, 2, 0.1});

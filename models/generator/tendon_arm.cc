@@ -98,14 +98,14 @@ void Builder::AddScene() {
   mjcf_.AddMaterial("mount", {0.32F, 0.35F, 0.40F, 1});
   double length = 0;
   for (const auto& s : arm_.segments) length += s.length;
-  const double up = arm_.hangs ? -1 : 1;
-  mjcf_.AddStudio(arm_.hangs ? -1.4 * length : -0.1 * length, 1.5 * length);
-  mjcf_.AddCamera("side", {0.3 * length, -3.1 * length, up * 0.65 * length},
-                  {0, 0, up * 0.5 * length}, 28);
+  const double middle = arm_.hangs ? -0.55 * length : 0.5 * length;
+  mjcf_.AddStudio(arm_.hangs ? -1.3 * length : -0.1 * length, 1.5 * length);
+  mjcf_.AddCamera("side", {0.3 * length, -3.1 * length, middle + 0.4 * length}, {0, 0, middle}, 30);
 }
 
 mjsBody* Builder::AddBase() {
   mjsSite* const frame = mjcf_.AddSite(mjcf_.world(), "frame", arm_.frame, 0.001);
+  frame->group = 4;  // not drawn
   std::copy(arm_.frame_quaternion.begin(), arm_.frame_quaternion.end(), frame->quat);
   mjsBody* const base = mjcf_.AddBody(mjcf_.world(), "base", {0, 0, 0});
   const double down[] = {0, 1, 0, 0};  // half a turn about x
@@ -114,7 +114,7 @@ mjsBody* Builder::AddBase() {
   mjcf_.AddCylinder(base, {0, 0, -height}, {0, 0, 0}, 1.6 * arm_.guide_radius, "mount");
   AddPlate(base, "base", 0, 0);
   next_ = Interval(0) / 2;
-  mjcf_.AddCapsule(base, {0, 0, 0}, {0, 0, next_}, arm_.rod_radius, "rod");
+  mjcf_.AddCylinder(base, {0, 0, 0}, {0, 0, next_}, arm_.rod_radius, "rod");
   return base;
 }
 
@@ -163,7 +163,7 @@ void Builder::AddTendons() {
   for (const TendonArm::Tendon& t : arm_.tendons) {
     double length = 0;
     for (int s = 0; s < t.segment; ++s) length += arm_.segments[s].length;
-    mjcf_.AddCable(t.name, path_[t.name], arm_.guide_radius / 30, {0.13F, 0.40F, 0.85F, 1});
+    mjcf_.AddCable(t.name, path_[t.name], arm_.guide_radius / 20, {0.13F, 0.40F, 0.85F, 1});
     mjcf_.AddDrive(
         t.name, t.name,
         {t.travel, length, arm_.stiffness, arm_.damping, arm_.segments[t.segment - 1].pretension,

@@ -25,7 +25,7 @@ SoftSegment Actuator(const SpaFile& file, int links) {
 void AddScene(Mjcf& mjcf, double length) {
   AddSoftMaterials(mjcf);
   mjcf.AddStudio(-1.5 * length, 0.6);
-  mjcf.AddCamera("side", {0, -2.9 * length, -0.56 * length}, {0, 0, -0.56 * length}, 32);
+  mjcf.AddCamera("side", {0, -3.5 * length, 0}, {0, 0, -0.56 * length}, 33);
 }
 
 void Check(const SpaLayout& layout) {

@@ -64,7 +64,7 @@ class Builder {
     mjcf_.AddMaterial("mount", {0.32F, 0.35F, 0.40F, 1});
     const double L = robot_.length;
     mjcf_.AddStudio(-1.4 * L, 0.4);
-    mjcf_.AddCamera("side", {0, -2.6 * L, -0.3 * L}, {0, 0, -0.5 * L}, 35);
+    mjcf_.AddCamera("side", {0, -2.75 * L, 0}, {0, 0, -0.6 * L}, 35);
   }
 
   void AddHoles(mjsBody* body, const std::string& place, double z) {
@@ -122,7 +122,7 @@ class Builder {
   void AddTendons() {
     for (int k = 0; k < robot_.tendons; ++k) {
       const std::string name = fmt::format("cable{}", k + 1);
-      mjcf_.AddCable(name, holes_[static_cast<std::size_t>(k)], 0.25e-3, {0.13F, 0.40F, 0.85F, 1});
+      mjcf_.AddCable(name, holes_[static_cast<std::size_t>(k)], 0.4e-3, {0.13F, 0.40F, 0.85F, 1});
       mjcf_.AddTension(name, name, kLargestTension);
     }
     mjcf_.AddForce("tip", "base", kLargestForce);

@@ -82,8 +82,8 @@ class Builder {
     mjcf_.AddMaterial("disc", {0.66F, 0.69F, 0.73F, 1}, 0.5F);
     mjcf_.AddMaterial("rod", {0.88F, 0.52F, 0.18F, 1});
     mjcf_.AddStudio(-0.8 * Length(), 0.4);
-    mjcf_.AddCamera("side", {0.45 * Length(), -2.2 * Length(), 0.3 * Length()},
-                    {0.45 * Length(), 0, 0}, 40);
+    mjcf_.AddCamera("side", {0.45 * Length(), -2.2 * Length(), 0.45 * Length()},
+                    {0.45 * Length(), 0, -0.05 * Length()}, 40);
   }
 
   // Holes of the cables that run on at this place.
