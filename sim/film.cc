@@ -157,10 +157,7 @@ class Shot {
       if (options_.ghost) overlay.ghost = measured_.At(row);
       if (overlay.ghost) overlay.caption += " (translucent: measured)";
       overlay.bar = BarOf(m, options_);
-      overlay.geoms = [&](mjvScene& scene) {
-        if (options_.tension) ColorTendons(m, d, *options_.tension, scene);
-        for (const Arrow& arrow : options_.arrows) continuum::Draw(arrow, m, d, scene);
-      };
+      overlay.geoms = [&](mjvScene& scene) { Decorate(options_, m, d, scene); };
       take(renderer_.Draw(m, d, overlay));
     };
     Simulate(machine_, e_, log_, {}, draw);
@@ -182,6 +179,11 @@ int Arrow::SensorOf(const mjModel& m) const {
   if (id >= 0 && (m.sensor_type[id] == mjSENS_FORCE || m.sensor_type[id] == mjSENS_TORQUE))
     return id;
   throw Error::Input(where, "a sensor of force or torque", "'" + sensor + "'");
+}
+
+void Decorate(const FilmOptions& options, const mjModel& m, const mjData& d, mjvScene& scene) {
+  if (options.tension) ColorTendons(m, d, *options.tension, scene);
+  for (const Arrow& arrow : options.arrows) Draw(arrow, m, d, scene);
 }
 
 void FilmExperiment(const Experiment& e, const System& system, const std::vector<std::size_t>& logs,

@@ -37,6 +37,9 @@ struct FilmOptions {
   std::function<void(const std::string&)> progress = {};
 };
 
+/// What options add to the scene of a pose: arrows, colours of tendons.
+void Decorate(const FilmOptions& options, const mjModel& m, const mjData& d, mjvScene& scene);
+
 /// Simulates the logs and films them one after the other; the simulation is drawn as it is, cables
 /// coloured by tension where a capstan effect or options.tension says how, chambers by pressure.
 void FilmExperiment(const Experiment& experiment, const System& system,

@@ -1,0 +1,90 @@
+#include "sim/film.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/mujoco.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::FloatNear;
+
+// A ball of 2 kg on a slide turned a quarter about y, under a cable of 3 N; gravity pulls aside.
+constexpr char kModel[] = R"(<mujoco>
+  <option gravity="3 0 0"/>
+  <worldbody>
+    <site name="top" pos="0 0 1"/>
+    <body euler="0 90 0">
+      <joint type="slide" axis="-1 0 0"/>
+      <geom size="0.1" mass="2"/>
+      <site name="middle"/>
+    </body>
+  </worldbody>
+  <tendon><spatial name="cable" width="0.01"><site site="top"/><site site="middle"/></spatial></tendon>
+  <actuator><motor tendon="cable" gear="-1" ctrlrange="0 10"/></actuator>
+  <sensor><force name="force" site="middle"/></sensor>
+</mujoco>
+)";
+
+class Decorated : public ::testing::Test {
+ protected:
+  Decorated() {
+    mjVFS files;
+    mj_defaultVFS(&files);
+    mj_addBufferVFS(&files, "model.xml", kModel, sizeof kModel - 1);
+    char error[300] = "";
+    model_.reset(mj_loadXML("model.xml", &files, error, sizeof error));
+    mj_deleteVFS(&files);
+    EXPECT_TRUE(model_) << error;
+    data_.reset(mj_makeData(model_.get()));
+    data_->ctrl[0] = 3;
+    mj_forward(model_.get(), data_.get());
+    mjv_defaultScene(&scene_);
+    mjv_makeScene(model_.get(), &scene_, 100);
+    mjvOption option;
+    mjv_defaultOption(&option);
+    mjvCamera camera;
+    mjv_defaultCamera(&camera);
+    mjv_updateScene(model_.get(), data_.get(), &option, nullptr, &camera, mjCAT_ALL, &scene_);
+  }
+  ~Decorated() override { mjv_freeScene(&scene_); }
+
+  const mjvGeom* Find(auto&& wanted) const {
+    const mjvGeom *const begin = scene_.geoms, *const end = begin + scene_.ngeom;
+    const mjvGeom* const found = std::find_if(begin, end, wanted);
+    return found == end ? nullptr : found;
+  }
+
+  Owned<mjModel> model_;
+  Owned<mjData> data_;
+  mjvScene scene_;
+};
+
+TEST_F(Decorated, TendonsTakeTheColourOfTheirTension) {
+  FilmOptions options;
+  options.tension = {1, 5};
+  Decorate(options, *model_, *data_, scene_);
+  const mjvGeom* const cable = Find([](const mjvGeom& g) { return g.objtype == mjOBJ_TENDON; });
+  ASSERT_TRUE(cable);
+  const ColorBar bar;
+  for (int c = 0; c < 3; ++c)
+    EXPECT_THAT(cable->rgba[c], FloatNear((bar.from[c] + bar.to[c]) / 2, 1e-6F));
+}
+
+TEST_F(Decorated, AnArrowPointsAlongTheForceInTheWorld) {
+  ASSERT_NEAR(std::abs(data_->sensordata[2]), 6, 1e-9);  // z of the site is x of the world
+  FilmOptions options;
+  options.arrows = {{"force", 0.5, {0, 1, 0}}};
+  Decorate(options, *model_, *data_, scene_);
+  const mjvGeom* const arrow = Find([](const mjvGeom& g) { return g.type == mjGEOM_ARROW; });
+  ASSERT_TRUE(arrow);
+  EXPECT_NEAR(arrow->size[2], 3, 1e-6);
+  EXPECT_NEAR(arrow->mat[2], std::copysign(1, data_->sensordata[2]), 1e-6);
+}
+
+}  // namespace
+}  // namespace continuum
