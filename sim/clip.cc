@@ -94,6 +94,7 @@ Clip Clip::Read(const std::filesystem::path& file) {
   Clip clip;
   clip.experiment.file = file;
   clip.experiment.model = file.parent_path() / y.At("model").Text();
+  clip.film.whole = true;
   clip.film.caption = y.At("caption").Text();
   ReadCamera(y.At("camera"), clip.film);
   clip.film.speed = NumberOr(y, "speed", 1, kTiny, 100);

@@ -146,7 +146,9 @@ class Shot {
     look.row = [&](const mjModel& m, mjData& d, std::size_t row) {
       if (due(row, next)) renderer_.Include(m, d);
     };
-    Simulate(machine_, e_, log_, {}, look);
+    const Trace trace = Simulate(machine_, e_, log_, {}, look);
+    if (options_.whole && trace.diverged)
+      throw Error::Job(log_.file.string() + ": " + trace.Failure());
     next = 0;
     Hooks draw = Hooks::Stoppable();
     draw.row = [&](const mjModel& m, mjData& d, std::size_t row) {

@@ -31,6 +31,7 @@ struct FilmOptions {
   /// Drawn blue and red [N], of tendons that actuators pull; else as the effects say.
   std::optional<std::array<double, 2>> tension = {};
   std::vector<Arrow> arrows = {};
+  bool whole = false;  ///< throw when the simulation diverges; else the film ends there
   Gl gl = Gl::kOsmesa;
   std::string caption;
   bool ghost = true;  ///< the measured pose, translucent, where joint sensors measure all of it

@@ -23,7 +23,7 @@ mjsBody* SoftChain::Add(mjsBody* base, const std::string& base_name) {
 }
 
 void SoftChain::AddWrench(mjsBody* base) {
-  mjcf_.AddSite(base, prefix_ + "base", {0, 0, 0}, 0.003);
+  mjcf_.AddSite(base, prefix_ + "base", {0, 0, 0}, 0.001);
   mjcf_.AddSensor(mjSENS_FORCE, prefix_ + "base_force", mjOBJ_SITE, prefix_ + "base");
   mjcf_.AddSensor(mjSENS_TORQUE, prefix_ + "base_torque", mjOBJ_SITE, prefix_ + "base");
 }

@@ -63,7 +63,7 @@ void AddScene(Mjcf& mjcf, double length) {
   mjcf.AddStudio(-1.7 * length, 0.25);
   // The shadow map is too coarse for a module of 25 mm: stripes.
   mjs_asLight(mjs_firstElement(&mjcf.spec(), mjOBJ_LIGHT))->castshadow = 0;
-  mjcf.AddCamera("side", {0, -3.6 * length, -0.2 * length}, {0, 0, -0.65 * length}, 32);
+  mjcf.AddCamera("side", {0, -3.2 * length, -0.2 * length}, {0, 0, -0.65 * length}, 32);
 }
 
 void SetOptions(mjOption& option, const Eigen::Vector3d& gravity) {

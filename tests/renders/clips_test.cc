@@ -130,6 +130,15 @@ TEST_F(ClipFile, RefusesTimesThatGoBack) {
   ExpectRefused("inputs.push[2]", "0.005");
 }
 
+TEST_F(ClipFile, IsNotFilmedWhenItDiverges) {
+  Replace("[[0, 1], [0.01, 3], [0.01, 5]]", "[[0, 1e30]]");
+  const auto film = RunProcess({CONTINUUM_EXECUTABLE, "render", "clip.yaml", "--out", "clip.mp4"},
+                               files_.folder());
+  EXPECT_EQ(film.exit_code, 1);
+  EXPECT_THAT(film.err, AllOf(HasSubstr("clip.yaml"), HasSubstr("diverge")));
+  EXPECT_FALSE(fs::exists(files_ / "clip.mp4"));
+}
+
 TEST(Renders, MakeFilmsAClipOnce) {
   const Scratch files;
   const std::vector<std::string> command{(kRenders / "make").string(),
