@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -17,6 +18,7 @@ using Names = std::vector<std::string>;
 
 constexpr std::size_t kStack = 256;  ///< numbers on the stack at once
 constexpr int kDepth = 200;          ///< parentheses within parentheses
+constexpr double kVaries = std::numeric_limits<double>::quiet_NaN();  ///< no constant
 
 bool IsLetter(char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '_'; }
 bool IsDigit(char c) { return '0' <= c && c <= '9'; }
@@ -139,12 +141,30 @@ class Parser {
   }
 
   void Put(Step step) {
-    if (++size_ > kStack) Refuse("a shorter formula");
+    if (values_.size() == kStack) Refuse("a shorter formula");
     steps_.push_back(step);
+    const bool part = step.kind == Step::Kind::kPart;
+    const bool number = step.kind == Step::Kind::kNumber;
+    values_.push_back(part ? values_[step.index] : number ? step.number : kVaries);
   }
   void Call(const Function& f) {
-    size_ -= f.arguments - 1;
     steps_.push_back({Step::Kind::kFunction, 0, 0, f.run});
+    const auto arguments = values_.end() - static_cast<std::ptrdiff_t>(f.arguments);
+    const bool constant =
+        std::none_of(arguments, values_.end(), [](double x) { return std::isnan(x); });
+    double* top = values_.data() + values_.size();
+    f.run(top);
+    const double value = constant ? top[-1] : kVaries;
+    values_.resize(values_.size() - f.arguments + 1);
+    values_.back() = value;
+    if (constant && !std::isfinite(value)) RefuseConstant(f.name, value);
+  }
+  [[noreturn]] void RefuseConstant(std::string_view function, double value) const {
+    throw Error::Input(where_ + ", up to column " + std::to_string(at_),
+                       "a finite constant from '" + std::string(function) + "'",
+                       std::isnan(value) ? "none"
+                       : value > 0       ? "infinity"
+                                         : "-infinity");
   }
   void Deeper() {
     if (++depth_ > kDepth) Refuse("fewer parentheses within each other");
@@ -243,7 +263,8 @@ class Parser {
   const std::string& where_;
   std::vector<Step> steps_;
   Names parts_;
-  std::size_t at_ = 0, size_ = 0;
+  std::vector<double> values_;  ///< of what is on the stack, as far as it is constant
+  std::size_t at_ = 0;
   int depth_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace continuum {
 ///   atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
 ///
 /// Functions: abs sign sqrt exp log sin cos tan tanh atan, of two min max atan2 pow, and
-/// where(c, a, b): a where c > 0, else b. pi is 3.14159...
+/// where(c, a, b): a where c > 0, else b. pi is 3.14159... What is constant must be finite: no 1/0.
 class Expression {
  public:
   /// Throws Error (where, and the column) for anything else than a formula of these variables.

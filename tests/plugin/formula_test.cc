@@ -132,6 +132,25 @@ TEST_F(Formula, SaysWhereItIsWrong) {
   EXPECT_THAT(Compile(Wheel("formula", "")).error, HasSubstr("the key 'force'"));
 }
 
+TEST_F(Formula, RefusesConstantsThatAreNotFinite) {
+  const struct {
+    const char *text, *column, *found;
+  } cases[] = {
+      {"1/0", "column 3", "from '/', found infinity"},
+      {"q + -1/(2 - 2)*v", "column 14", "from '/', found -infinity"},
+      {"a = 0; q*log(a)", "column 15", "from 'log', found -infinity"},
+      {"where(q, 1, sqrt(-1))", "column 20", "from 'sqrt', found none"},
+      {"exp(1000)", "column 9", "from 'exp', found infinity"},
+  };
+  for (const auto& c : cases) {
+    EXPECT_THAT(Compile(Wheel("formula", Key("force", c.text))).error,
+                AllOf(HasSubstr("continuum.formula 'i': force"), HasSubstr(c.column),
+                      HasSubstr("a finite constant"), HasSubstr(c.found)))
+        << c.text;
+  }
+  EXPECT_NEAR(Value("q/(1 + 0)", 0.3, 0), 0.3, 1e-12);
+}
+
 TEST_F(Formula, RefusesWhatDoesNotFitItsStack) {
   const std::string deep = std::string(300, '(') + "q" + std::string(300, ')');
   EXPECT_THAT(Compile(Wheel("formula", Key("force", deep))).error,
