@@ -30,7 +30,10 @@ Cable MakeCable(const mjModel& m, int tendon, const std::string& who) {
     }
     cable.sites.push_back(m.wrap_objid[w]);
   }
-  if (cable.sites.size() < 2) throw Error::Input(where, "at least two sites", "fewer");
+  if (cable.sites.size() < 3) {
+    throw Error::Input(where, "a contact, which is a site between two others",
+                       std::to_string(cable.sites.size()) + " sites");
+  }
   for (int a = 0; a < m.nactuator; ++a) {
     if (m.actuator_trntype[a] == mjTRN_TENDON && m.actuator_trnid[2 * a] == tendon) {
       cable.actuators.push_back(a);

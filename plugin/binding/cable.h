@@ -28,7 +28,7 @@ struct Cable {
   bool Rigid(int k) const { return begin[k] == begin[k + 1]; }
 };
 
-/// Throws Error when the tendon is not a spatial tendon through at least two sites only.
+/// Throws Error when the tendon is not a spatial tendon through sites only, at least three.
 Cable MakeCable(const mjModel& m, int tendon, const std::string& who);
 
 /// Tension at the actuator's end [N]: −sum(gear · force), forces within their ranges.

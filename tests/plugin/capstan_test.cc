@@ -209,5 +209,16 @@ TEST_F(Capstan, NamesWhatItCannotUse) {
   EXPECT_THAT(Compile(xml).error, HasSubstr("spatial tendon through sites only"));
 }
 
+TEST_F(Capstan, NeedsAContact) {
+  const auto compiled = Compile("<mujoco>" + Instance("capstan", Key("tendon", "cable")) +
+                                R"(<worldbody><site name="a" pos="0 0 1"/>
+    <body><joint type="slide"/><geom size=".1"/><site name="b"/></body></worldbody>
+  <tendon><spatial name="cable"><site site="a"/><site site="b"/></spatial></tendon></mujoco>)");
+  EXPECT_FALSE(compiled.model);
+  EXPECT_THAT(compiled.error,
+              HasSubstr("continuum.capstan 'i': tendon 'cable': expected a contact"));
+  EXPECT_THAT(compiled.error, HasSubstr("found 2 sites"));
+}
+
 }  // namespace
 }  // namespace continuum
