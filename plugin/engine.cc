@@ -138,6 +138,13 @@ void OrderSignals(const mjModel& m, mjData& d, int last) {
   Get(d, first)->signals = signals;
 }
 
+// "site 'tip'"
+std::string ObjectName(const mjModel& m, mjtObj kind, int id) {
+  const char* const type = mju_type2Str(kind);
+  const char* const name = id < 0 ? nullptr : mj_id2name(&m, kind, id);
+  return type ? std::string(type) + " '" + (name ? name : "") + "'" : "no object";
+}
+
 void FindSensors(const mjModel& m, int i, Instance& self, const Config& config) {
   for (int s = 0; s < m.nsensor; ++s) {
     if (m.sensor_type[s] != mjSENS_PLUGIN || m.sensor_plugin[s] != i) continue;
@@ -146,9 +153,8 @@ void FindSensors(const mjModel& m, int i, Instance& self, const Config& config) 
     self.sensors.push_back(s);
     const std::string_view expected = self.bound->SensorPlace(m, kind, id);
     if (expected.empty()) continue;
-    const char* const name = id < 0 ? nullptr : mj_id2name(&m, kind, id);
     throw Error::Input(config.Who() + ": its sensor " + std::to_string(s), std::string(expected),
-                       name ? name : "another object");
+                       ObjectName(m, kind, id));
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <Eigen/Dense>
 
+#include "binding/actuator_type.h"
 #include "binding/config.h"
 #include "error.h"
 
@@ -259,7 +260,8 @@ void Element::Scale(std::string_view attribute, double factor) {
 mjsActuator& Element::Affine() {
   mjsActuator& a = *mjs_asActuator(element_);
   if (a.gaintype != mjGAIN_FIXED || (a.biastype != mjBIAS_NONE && a.biastype != mjBIAS_AFFINE)) {
-    throw Error::Input(Who(), "an actuator with a fixed gain and an affine bias", "another");
+    throw Error::Input(Who(), "an actuator with a fixed gain and an affine bias",
+                       ActuatorType(a.gaintype, a.biastype, a.dyntype));
   }
   a.type = mjACTUATOR_GENERAL;
   if (a.biastype == mjBIAS_NONE) {
@@ -273,7 +275,8 @@ void Element::SetLag(double lag) {
   mjsActuator& a = *mjs_asActuator(element_);
   const bool lagged = a.dyntype == mjDYN_FILTER || a.dyntype == mjDYN_FILTEREXACT;
   if (a.dyntype != mjDYN_NONE && !lagged) {
-    throw Error::Input(Who(), "an actuator without dynamics or with a first-order lag", "another");
+    throw Error::Input(Who(), "an actuator without dynamics or with a first-order lag",
+                       ActuatorType(a.gaintype, a.biastype, a.dyntype));
   }
   a.type = mjACTUATOR_GENERAL;
   if (lag <= 0) {

@@ -107,12 +107,14 @@ Measurement ReadMeasurement(const Yaml& y) {
   m.angle = NumberOr(y, "angle", 0);
   if (const auto axis = y.Find("axis")) {
     m.axis = axis->Numbers();
-    if (m.axis.size() != 3) throw Error::Input(axis->Where(), "three numbers", "another count");
+    if (m.axis.size() != 3)
+      throw Error::Input(axis->Where(), "three numbers", std::to_string(m.axis.size()));
   }
   if (m.angle != 0 && m.axis[0] == 0 && m.axis[1] == 0 && m.axis[2] == 0) {
     throw Error::Input(y.At("axis").Where(), "an axis with a direction", "zero");
   }
-  if (m.delay < 0) throw Error::Input(y.At("delay").Where(), "a delay >= 0 s", "a negative one");
+  if (m.delay < 0)
+    throw Error::Input(y.At("delay").Where(), "a delay >= 0 s", y.At("delay").Text());
   return m;
 }
 
@@ -183,7 +185,7 @@ Registration ReadRegistration(const Yaml& y) {
     r.frame = ReadPart(*frame, [&] {
       if (!frame->IsMap()) {
         throw Error::Input(frame->Where(), "estimate | {rotation: [x, y, z], translation: [..]}",
-                           "something else");
+                           frame->Found());
       }
       frame->Only({"rotation", "translation"});
       if (const auto v = frame->Find("rotation")) r.rotation = ReadVector(*v);
@@ -327,6 +329,12 @@ void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_u
   }
 }
 
+std::string Listed(const std::vector<double>& numbers) {
+  std::string text = "[";
+  for (const double x : numbers) text += (text.size() > 1 ? ", " : "") + Decimal(x);
+  return text + "]";
+}
+
 Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
   y.Only({"file", "variable", "trial", "use", "window", "condition", "set"});
   Log log;
@@ -348,7 +356,7 @@ Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
   if (const auto w = y.Find("window")) {
     log.window = w->Numbers();
     if (log.window.size() != 2 || !(log.window[0] < log.window[1])) {
-      throw Error::Input(w->Where(), "[begin, end] in s", "something else");
+      throw Error::Input(w->Where(), "[begin, end] in s", Listed(log.window));
     }
     log.label += "_" + w->Items()[0].Text() + "_" + w->Items()[1].Text();
   }

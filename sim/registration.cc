@@ -286,9 +286,9 @@ bool IsRegistration(const std::string& attribute) {
 
 double& RegistrationValue(Registration& r, const std::string& attribute) {
   if (!IsRegistration(attribute)) {
-    throw Error::Input(std::string(kTarget) + " '" + attribute + "'",
+    throw Error::Input(kTarget,
                        "rotation[i], translation[i], marker:SENSOR[i] (i = 0, 1, 2) or clock_shift",
-                       "something else");
+                       "'" + attribute + "'");
   }
   if (attribute == "clock_shift") return r.clock_shift;
   const auto [name, index] = Split(attribute);

@@ -77,7 +77,8 @@ std::vector<std::string> Yaml::Keys() const {
   std::vector<std::string> keys;
   std::set<std::string> seen;
   for (const auto& entry : node_) {
-    if (!entry.first.IsScalar()) throw Error::Input(Where(), "names as keys", "something else");
+    if (!entry.first.IsScalar())
+      throw Error::Input(Where(), "names as keys", entry.first.IsMap() ? "a map" : "a list");
     keys.push_back(entry.first.Scalar());
     if (!seen.insert(keys.back()).second) {
       throw Error::Input(Where(), "different keys", "'" + keys.back() + "' twice");

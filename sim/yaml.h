@@ -22,6 +22,8 @@ class Yaml {
   const std::string& file() const { return file_; }
   /// "file:line: a.b[2]"
   std::string Where() const;
+  /// What stands here, for messages: "nothing", "a map", "a list" or 'the text'.
+  std::string Found() const;
 
   bool Has(const std::string& key) const;
   /// Throws Error when this is no map or the key is missing.
@@ -51,7 +53,6 @@ class Yaml {
  private:
   Yaml(YAML::Node node, std::string file, std::string path)
       : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)) {}
-  std::string Found() const;
 
   YAML::Node node_;
   std::string file_, path_;

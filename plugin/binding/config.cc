@@ -16,8 +16,10 @@ std::string Short(double x) {
   return out.str();
 }
 
-std::string_view TypeOf(int joint) {
-  switch (joint) {
+}  // namespace
+
+std::string_view JointType(int type) {
+  switch (type) {
     case mjJNT_HINGE:
       return "a hinge joint";
     case mjJNT_SLIDE:
@@ -28,8 +30,6 @@ std::string_view TypeOf(int joint) {
       return "a free joint";
   }
 }
-
-}  // namespace
 
 bool GlobMatches(const std::string& glob, const std::string& name) {
   return fnmatch(glob.c_str(), name.c_str(), 0) == 0;
@@ -124,7 +124,7 @@ Lines Config::MatchLines(Joints types) const {
     if (type == mjJNT_HINGE || type == mjJNT_SLIDE || (ball && type == mjJNT_BALL)) continue;
     throw Error::Input(Who() + ": joint '" + mj_id2name(m_, mjOBJ_JOINT, j) + "'",
                        ball ? "a hinge, slide or ball joint" : "a hinge or slide joint",
-                       std::string(TypeOf(type)));
+                       std::string(JointType(type)));
   }
   return lines;
 }

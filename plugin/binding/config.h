@@ -46,6 +46,9 @@ class Config {
   int instance_;
 };
 
+/// The type of a joint in words: "a hinge joint".
+std::string_view JointType(int type);
+
 /// Whether a glob (* ? [..]) matches the whole name.
 bool GlobMatches(const std::string& glob, const std::string& name);
 

@@ -1,5 +1,7 @@
 #include "binding/filter.h"
 
+#include "binding/actuator_type.h"
+
 namespace continuum {
 namespace {
 
@@ -10,6 +12,13 @@ bool IsUsable(const mjModel& m, int a) {
   return m.actuator_ctrlnum[a] == 1 && m.actuator_outnum[a] == 1 &&
          m.actuator_gaintype[a] == mjGAIN_FIXED && !m.actuator_actearly[a] &&
          (dynamics == mjDYN_NONE || dynamics == mjDYN_INTEGRATOR || IsLag(dynamics));
+}
+
+std::string Found(const mjModel& m, int a) {
+  if (m.actuator_ctrlnum[a] != 1) return std::to_string(m.actuator_ctrlnum[a]) + " controls";
+  if (m.actuator_outnum[a] != 1) return std::to_string(m.actuator_outnum[a]) + " outputs";
+  if (m.actuator_actearly[a]) return "actearly=\"true\"";
+  return ActuatorType(m.actuator_gaintype[a], m.actuator_biastype[a], m.actuator_dyntype[a]);
 }
 
 }  // namespace
@@ -41,7 +50,7 @@ std::vector<ActuatorInput> MatchInputs(const mjModel& m, const Config& config) {
       throw Error::Input(config.Who() + ": actuator '" + mj_id2name(&m, mjOBJ_ACTUATOR, a) + "'",
                          "one control with a fixed gain, without dynamics or through a lag or an "
                          "integrator",
-                         "another actuator");
+                         Found(m, a));
     }
     inputs.push_back({a});
   }

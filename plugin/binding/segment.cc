@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <set>
+#include <span>
+#include <sstream>
 
 namespace continuum {
 namespace {
@@ -33,17 +35,23 @@ std::vector<int> Named(const mjModel& m, const Config& config, const std::string
 // Bodies beyond base up to tip, in this order.
 std::vector<int> Path(const mjModel& m, const Config& config, int base, int tip) {
   std::vector<int> path;
-  for (int b = tip; b != base; b = m.body_parentid[b]) {
+  for (int b = tip, below = tip; b != base; below = b, b = m.body_parentid[b]) {
     if (b == 0) {
-      throw Error::Input(config.Who() + ": body",
-                         std::string("'") + mj_id2name(&m, mjOBJ_BODY, tip) +
-                             "' on a chain of bodies that begins at '" +
-                             mj_id2name(&m, mjOBJ_BODY, base) + "'",
-                         "another branch");
+      throw Error::Input(
+          config.Who() + ": body",
+          std::string("'") + mj_id2name(&m, mjOBJ_BODY, tip) +
+              "' on a chain of bodies that begins at '" + mj_id2name(&m, mjOBJ_BODY, base) + "'",
+          std::string("one that begins at '") + mj_id2name(&m, mjOBJ_BODY, below) + "'");
     }
     path.insert(path.begin(), b);
   }
   return path;
+}
+
+std::string Listed(std::span<const double> numbers) {
+  std::ostringstream out;
+  for (const double x : numbers) out << (out.tellp() > 0 ? " " : "") << x;
+  return "'" + out.str() + "'";
 }
 
 bool HasGear(const mjModel& m, int actuator) {
@@ -88,7 +96,8 @@ void Chain::AddJoint(const mjModel& m, const Config& config, int id, const doubl
   if (!hinge && !slide) {
     const char* const name = mj_id2name(&m, mjOBJ_JOINT, id);
     throw Error::Input(config.Who() + ": joint '" + (name ? name : std::to_string(id)) + "'",
-                       "a hinge across or a slide along the z axis of the base body", "another");
+                       "a hinge across or a slide along the z axis of the base body",
+                       std::string(JointType(m.jnt_type[id])) + " along " + Listed(axis));
   }
   if (hinge) {
     joint.u = axis[1];
@@ -138,7 +147,8 @@ Vec<int, 3> MatchChambers(const mjModel& m, const Config& config) {
     const std::string where =
         config.Who() + ": actuator '" + mj_id2name(&m, mjOBJ_ACTUATOR, a) + "'";
     if (HasGear(m, a)) {
-      throw Error::Input(where, "gear=\"0\", because its force is a pressure", "another gear");
+      throw Error::Input(where, "gear=\"0\", because its force is a pressure",
+                         Listed({m.actuator_gear + 6 * a, 6}));
     }
     CheckSupply(where, "a ctrlrange", m.actuator_ctrllimited[a], m.actuator_ctrlrange + 2 * a);
     CheckSupply(where, "a forcerange", m.actuator_forcelimited[a], m.actuator_forcerange + 2 * a);

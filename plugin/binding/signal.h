@@ -1,5 +1,6 @@
 #pragma once
 
+#include "binding/actuator_type.h"
 #include "binding/bound.h"
 
 namespace continuum {
@@ -17,13 +18,16 @@ class BoundSignal : public Bound {
   BoundSignal(const mjModel& m, const Config& config)
       : Bound(ReadParams<E>(config)), actuators_(config.Match("actuator", mjOBJ_ACTUATOR)) {
     for (const int a : actuators_) {
-      const double kp = m.actuator_gainprm[mjNGAIN * a];
-      if (m.actuator_gaintype[a] == mjGAIN_FIXED && m.actuator_biastype[a] == mjBIAS_AFFINE &&
-          kp == -m.actuator_biasprm[mjNBIAS * a + 1]) {
-        continue;
-      }
+      const double kp = m.actuator_gainprm[mjNGAIN * a], k = -m.actuator_biasprm[mjNBIAS * a + 1];
+      const bool servo =
+          m.actuator_gaintype[a] == mjGAIN_FIXED && m.actuator_biastype[a] == mjBIAS_AFFINE;
+      if (servo && kp == k) continue;
       throw Error::Input(config.Who() + ": actuator '" + mj_id2name(&m, mjOBJ_ACTUATOR, a) + "'",
-                         "a position servo", "another actuator");
+                         "a position servo",
+                         servo ? "a gain of " + std::to_string(kp) + " on the control and of " +
+                                     std::to_string(k) + " on the position"
+                               : ActuatorType(m.actuator_gaintype[a], m.actuator_biastype[a],
+                                              m.actuator_dyntype[a]));
     }
   }
   static int StateSize(const mjModel&, const Config&) { return 0; }

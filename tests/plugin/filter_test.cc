@@ -7,6 +7,7 @@
 namespace continuum {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class Filter : public testing::Engine {
@@ -92,7 +93,8 @@ TEST_F(Filter, WithoutLagIsExactlyTheNativeModel) {
 
 TEST_F(Filter, NamesActuatorsThatItCannotLag) {
   EXPECT_THAT(Compile(Slide("<muscle name=\"u\" joint=\"x\" lengthrange=\"0 1\"/>")).error,
-              HasSubstr("actuator 'u': expected one control with a fixed gain"));
+              AllOf(HasSubstr("actuator 'u': expected one control with a fixed gain"),
+                    HasSubstr("found gaintype=\"muscle\" biastype=\"muscle\" dyntype=\"muscle\"")));
 }
 
 }  // namespace
