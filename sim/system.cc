@@ -10,6 +10,7 @@
 #include "error.h"
 #include "sim/asset_folders.h"
 #include "sim/element.h"
+#include "sim/empty_config.h"
 #include "sim/file.h"
 #include "sim/native_effect.h"
 
@@ -139,7 +140,7 @@ std::size_t ParameterIndex(const std::string& plugin, const std::string& paramet
 
 System System::Load(const std::filesystem::path& model) {
   RegisterOnce();
-  ReadFile(model);  // a clear message when it cannot be read
+  RefuseEmptyConfig(ReadFile(model), model.string());
   System system;
   system.name_ = model.string();
   system.folder_ = std::filesystem::absolute(model).parent_path().string() + "/";

@@ -228,6 +228,14 @@ INSTANTIATE_TEST_SUITE_P(
             "<extension><plugin plugin='continuum.coulomb'><instance name='dry'><config "
             "key='joint' value='elbow'/></instance></plugin></extension><worldbody>",
             {"elbow"}},
+        Bad{"PluginWithoutAValue",
+            "model.xml",
+            "<worldbody>",
+            "<extension><plugin plugin='continuum.coulomb'><instance name='dry'><config "
+            "key='joint' value='hinge'/>\n<!-- <config key='joint' value=''/> --><config value = "
+            "'' "
+            "key='tau_c'/></instance></plugin></extension><worldbody>",
+            {"model.xml:4: config 'tau_c'", "a value", "''"}},
         Bad{"PluginOutOfRange",
             "model.xml",
             "<worldbody>",
