@@ -21,8 +21,6 @@
 namespace continuum {
 namespace {
 
-constexpr double kSteps = 1e9;  // hours of computing for the smallest model; and an int counts them
-
 std::string NamesOf(const mjModel& m, mjtObj type, int count) {
   std::string all;
   for (int i = 0; i < count; ++i) {
@@ -277,7 +275,7 @@ InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log) 
 
 void CheckLength(const Log& log, double timestep) {
   const double span = log.time.back() - log.time.front();
-  if (span / timestep <= kSteps) return;
+  if (span / timestep <= kMostSteps) return;
   throw Error::Input(log.file.empty() ? log.label : log.file.string(),
                      "at most 1e9 time steps of " + Decimal(timestep) + " s", Decimal(span) + " s");
 }
@@ -305,14 +303,15 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
   // The stages of RK4 overwrite the forces of the first: evaluate the row before its step.
   const bool staged = m.opt.integrator == mjINT_RK4;
   std::vector<double> qpos(m.nq), qvel(m.nv);
+  const auto evaluated = [&](std::size_t row) {
+    mj_forward(&m, &d);
+    recorder.Take(d, row);
+    if (hooks.row) hooks.row(m, d, row);
+  };
   const auto stepped = [&](std::size_t row) {  // a row's step; what the row sees is recorded
     std::copy(d.qpos, d.qpos + m.nq, qpos.begin());
     std::copy(d.qvel, d.qvel + m.nv, qvel.begin());
-    if (staged) {
-      mj_forward(&m, &d);
-      recorder.Take(d, row);
-      if (hooks.row) hooks.row(m, d, row);
-    }
+    if (staged) evaluated(row);
     mj_step(&m, &d);  // its sensors and forces are those of the state it starts from
     if (staged) return;
     recorder.Take(d, row);
@@ -330,6 +329,7 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
     const auto steps = static_cast<int>(std::floor(span / h + 1e-9));
     const double rest = span - steps * h;
     const int all = steps + (rest > 1e-9 * h ? 1 : 0);
+    if (all == 0) evaluated(row);  // the next row is at the same time but for rounding
     for (int step = 0; step < all; ++step) {
       m.opt.timestep = step < steps ? h : rest;
       if (step > 0) inputs.Between(d, row, begin + step * h);
@@ -349,9 +349,7 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
   m.opt.timestep = h;
   if (!trace.diverged) {
     inputs.AtRow(d, log.rows() - 1);
-    mj_forward(&m, &d);
-    recorder.Take(d, log.rows() - 1);
-    if (hooks.row) hooks.row(m, d, log.rows() - 1);
+    evaluated(log.rows() - 1);
   }
   inputs.AllOn();
 

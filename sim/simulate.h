@@ -58,6 +58,9 @@ struct Wiring {
   Wiring(const Experiment& e, const mjModel& m);
 };
 
+/// Hours of computing for the smallest model; and an int counts them.
+inline constexpr double kMostSteps = 1e9;
+
 /// Throws Error when a log has more steps than anybody can wait for (times in a wrong unit).
 void CheckLength(const Log& log, double timestep);
 
