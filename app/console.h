@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <CLI/App.hpp>
@@ -14,6 +15,8 @@ void EndProgress();
 
 /// Accepts a finite number from lower to upper.
 CLI::Validator NumberWithin(double lower, double upper);
+/// Accepts a whole number from lower to upper.
+CLI::Validator WholeNumberWithin(std::uint64_t lower, std::uint64_t upper);
 
 /// Subcommands; each sets exit_code when it runs and throws Error otherwise.
 void AddRun(CLI::App& app);

@@ -74,8 +74,11 @@ void RunDiagnose(const Options& o) {
   options.seed = o.seed;
   options.progress = ShowProgress;
   CheckNames(read, system);
+  std::vector<std::string> outputs{"diagnosis.json", "extended.xml", "extended.yaml", "simulated/",
+                                   "report.html"};
+  if (o.video) outputs.push_back("extended.mp4");
+  const OutFolder made(o.out, outputs);
   const Experiment e = Registered(read, system);
-  const OutFolder made(o.out);
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress("files");
   const Told told = WriteDiagnosis(e, d, o.out);
@@ -106,6 +109,7 @@ struct ApplyOptions {
 };
 
 void RunApply(const ApplyOptions& o) {
+  RequireWritable(o.out);
   const auto json = ReadJson(o.diagnosis);
   const auto folder = std::filesystem::absolute(ThroughLinks(o.out)).parent_path();
   const std::string xml = ApplyJson(System::Load(o.model), json, o.diagnosis, folder);
@@ -126,10 +130,10 @@ void AddDiagnose(CLI::App& app) {
   sub->add_option("--candidates", o->candidates, "effects to try, separated by commas");
   sub->add_option("--compare", o->compare, "an earlier diagnosis.json");
   sub->add_option("--placebos", o->placebos, "random forces to compare with")
-      ->check(CLI::Range(0, 1000))
+      ->check(WholeNumberWithin(0, 1000))
       ->capture_default_str();
   sub->add_option("--seed", o->seed, "of the random forces")
-      ->check(CLI::NonNegativeNumber)
+      ->check(WholeNumberWithin(0, UINT64_MAX))
       ->capture_default_str();
   sub->add_flag("--video", o->video,
                 "also extended.mp4: the extended model beside the measured pose");

@@ -123,6 +123,7 @@ void RunIdentify(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
   const System system = System::Load(read.model);
   CheckNames(read, system);
+  const OutFolder made(o.out, {"fit.json", "fitted.xml", "simulated/", "report.html"});
   const Experiment e = Registered(read, system);
   Problem problem(e, system);
   if (problem.parameters().empty())
@@ -131,7 +132,6 @@ void RunIdentify(const Options& o) {
   if (std::find(use.begin(), use.end(), true) == use.end()) {
     throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");
   }
-  const OutFolder made(o.out);
   problem.Follow(Choose(o, problem));
   std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n", Way(o, problem),
                problem.parameters().size(), e.logs.size());
@@ -168,12 +168,14 @@ void AddIdentify(CLI::App& app) {
       ->check(CLI::IsMember({"auto", "smooth", "stepped"}))
       ->capture_default_str();
   sub->add_option("--iterations", o->iterations, "at most; default: 50 (lm), 40 (pso)")
-      ->check(CLI::Range(1, 1000));
-  sub->add_option("--seed", o->seed, "of the particle swarm")->capture_default_str();
+      ->check(WholeNumberWithin(1, 1000));
+  sub->add_option("--seed", o->seed, "of the particle swarm")
+      ->check(WholeNumberWithin(0, UINT64_MAX))
+      ->capture_default_str();
   sub->add_option(
          "--cutoff", o->cutoff,
          "of the regressor's low-pass [Hz]; default: 50, at most a fifth of the rows' rate")
-      ->check(CLI::PositiveNumber);
+      ->check(NumberWithin(1e-9, 1e9));
   sub->add_flag("--all", o->all, "fit the validate logs too");
   sub->add_flag("--for-step", o->for_step,
                 "fit at the model's own step (the stepped path always does)");

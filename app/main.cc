@@ -20,6 +20,18 @@ bool IsSubcommand(const CLI::App& app, const std::string& name) {
   return !known.empty();
 }
 
+// A value that is empty says nothing, whatever the option.
+void RefuseEmptyValues(CLI::App& app) {
+  const auto check = [](const std::string& text) {
+    return text.empty() ? "expected a value, found ''" : "";
+  };
+  for (CLI::App* const sub : app.get_subcommands({})) {
+    for (CLI::Option* const option : sub->get_options()) {
+      if (option->get_expected_min() > 0) option->check(check);
+    }
+  }
+}
+
 // CLI11 has exit codes of its own; ours are 0 done, 1 failed, 2 wrong use.
 int Parse(CLI::App& app, int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-' && !IsSubcommand(app, argv[1])) {
@@ -71,6 +83,7 @@ int main(int argc, char** argv) {
   continuum::AddSolve(app, exit_code);
   continuum::AddEffects(app);
   continuum::AddModels(app);
+  RefuseEmptyValues(app);
   try {
     const int parsed = Parse(app, argc, argv);
     continuum::EndProgress();

@@ -5,6 +5,7 @@
 #include "app/console.h"
 #include "error.h"
 #include "sim/clip.h"
+#include "sim/output.h"
 
 namespace continuum {
 namespace {
@@ -50,9 +51,11 @@ void RunRender(const Options& o) {
     std::erase_if(e.logs, [&](const Log& log) { return log.label != o.log; });
     if (e.logs.empty()) throw Error::Input("--log", "a log of the experiment", "'" + o.log + "'");
   }
-  if (out.extension() == ".png") return PictureOf(e, system, out, film);
-  if (out.extension() != ".mp4")
+  const bool picture = out.extension() == ".png";
+  if (!picture && out.extension() != ".mp4")
     throw Error::Input("--out", "a name that ends in .mp4 or .png", "'" + o.out + "'");
+  RequireWritable(out);
+  if (picture) return PictureOf(e, system, out, film);
   std::vector<std::size_t> logs(e.logs.size());
   std::iota(logs.begin(), logs.end(), 0);
   FilmExperiment(e, system, logs, out, film);
@@ -69,7 +72,7 @@ void AddRender(CLI::App& app) {
   sub->add_option("--out", o->out, "OUT.mp4, or OUT.png for one frame")->required();
   sub->add_option("--size", o->size, "WIDTHxHEIGHT")->capture_default_str();
   sub->add_option("--fps", o->fps, "frames per second")
-      ->check(CLI::Range(1, 1000))
+      ->check(WholeNumberWithin(1, 1000))
       ->capture_default_str();
   sub->add_option("--camera", o->camera, "a camera of the model");
   sub->add_option("--gl", o->gl, "osmesa or egl")->capture_default_str();

@@ -32,7 +32,9 @@ void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
   CheckAll(e, system);
-  const OutFolder made(o.out);
+  std::vector<std::string> outputs{"errors.json", "simulated/", "report.html"};
+  if (o.video) outputs.push_back("replay.mp4");
+  const OutFolder made(o.out, outputs);
   const std::filesystem::path folder = o.out;
   const auto logs = Replay(e, system, ShowProgress);
   EndProgress();

@@ -11,6 +11,7 @@
 #include "error.h"
 #include "sim/file.h"
 #include "sim/film.h"
+#include "sim/output.h"
 #include "sim/table.h"
 
 namespace continuum {
@@ -93,6 +94,16 @@ Controls ReadControls(const Options& o, const mjModel& m) {
   return c;
 }
 
+// What makes a run too long: the options that were given, else what stands in for them.
+std::string Blame(const std::vector<std::pair<std::string, double>>& options,
+                  const std::string& otherwise) {
+  std::string all;
+  for (const auto& [name, value] : options) {
+    if (value > 0) all += (all.empty() ? "" : " and ") + name;
+  }
+  return all.empty() ? otherwise : all;
+}
+
 double EndOf(const Options& o, const Controls& c) {
   const double end = o.until > 0 ? o.until : o.input.empty() ? kDefaultEnd : c.time.back();
   if (end >= c.time.front()) return end;
@@ -102,14 +113,25 @@ double EndOf(const Options& o, const Controls& c) {
       Decimal(end) + " s");
 }
 
-// When rows are written: at multiples of a period, or at the input's own rows.
-std::set<double> Written(const Options& o, const Controls& c, double end, double timestep) {
-  if (o.every == 0 && !o.input.empty()) return {c.time.begin(), c.time.end()};
-  const double begin = c.time.front(), period = o.every > 0 ? o.every : timestep;
-  const double count = (end - begin) / period;
+void CheckSteps(const Options& o, double begin, double end, double timestep) {
+  if ((end - begin) / timestep <= kMostSteps) return;
+  throw Error::Input(Blame({{"--until", o.until}, {"--timestep", o.timestep}},
+                           o.input.empty() ? o.model : o.input),
+                     fmt::format("at most {:g} time steps of {} s", kMostSteps, Decimal(timestep)),
+                     Decimal(end - begin) + " s");
+}
+
+// When rows are written: at multiples of a period, or (0) at the input's own rows.
+std::set<double> Written(const Options& o, const Controls& c, double end, double period) {
+  if (period == 0) return {c.time.begin(), c.time.end()};
+  const double begin = c.time.front(), count = (end - begin) / period;
   if (!(count < kMostRows)) {
     throw Error::Input(
-        "--every", fmt::format("a period that gives at most {:g} rows", kMostRows),
+        Blame({{"--until", o.until},
+               {"--every", o.every},
+               {"--timestep", o.every > 0 ? 0 : o.timestep}},
+              o.input.empty() ? o.model : o.input),
+        fmt::format("an end and a period that give at most {:g} rows", kMostRows),
         fmt::format("{} s from {} s to {} s", Decimal(period), Decimal(begin), Decimal(end)));
   }
   std::set<double> rows;
@@ -117,14 +139,15 @@ std::set<double> Written(const Options& o, const Controls& c, double end, double
   return rows;
 }
 
-Run Plan(const Options& o, const mjModel& m) {
+Run Plan(const Options& o, const mjModel& m, double period) {
   Run run;
   Log log;
   log.label = std::filesystem::path(o.model).stem().string();
   log.file = o.input.empty() ? o.model : o.input;
   const Controls controls = ReadControls(o, m);
   const double end = EndOf(o, controls);
-  const std::set<double> written = Written(o, controls, end, m.opt.timestep);
+  CheckSteps(o, controls.time.front(), end, m.opt.timestep);
+  const std::set<double> written = Written(o, controls, end, period);
   std::set<double> rows(controls.time.begin(), controls.time.end());
   rows.insert(written.begin(), written.end());
   rows.insert(end);
@@ -172,10 +195,12 @@ void RunModel(const Options& o) {
   std::vector<Change> changes;
   if (o.timestep > 0) changes.push_back({"option", "timestep", o.timestep});
   Machine machine = system.Build(changes);
-  const Run run = Plan(o, *machine.model);
-  Options frames = o;
-  if (frames.every == 0) frames.every = kFramePeriod;
-  const Run shown = o.video.empty() ? Run{} : Plan(frames, *machine.model);
+  const mjModel& m = *machine.model;
+  const double period = o.input.empty() ? m.opt.timestep : 0;
+  const Run run = Plan(o, m, o.every > 0 ? o.every : period);
+  const Run shown = o.video.empty() ? Run{} : Plan(o, m, o.every > 0 ? o.every : kFramePeriod);
+  if (!o.out.empty()) RequireWritable(o.out);
+  if (!o.video.empty()) RequireWritable(o.video);
   std::string csv = Header(*machine.model);
   Hooks hooks = Hooks::Stoppable();
   hooks.row = [&](const mjModel& m, mjData& d, std::size_t row) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "models/solver/solve.h"
+#include "sim/output.h"
 
 namespace continuum {
 
@@ -35,7 +36,11 @@ void AddSolve(CLI::App& app, int& exit_code) {
       "Example:\n"
       "  continuum solve models/tdcr/tdcr.yaml --method eas --input models/tdcr/cases.csv "
       "--out shapes.csv --plot shapes.png");
-  solve->callback([request, &exit_code] { exit_code = Solve(*request); });
+  solve->callback([request, &exit_code] {
+    RequireWritable(request->out);
+    if (!request->plot.empty()) RequireWritable(request->plot);
+    exit_code = Solve(*request);
+  });
 }
 
 }  // namespace continuum

@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -23,11 +24,36 @@ void WriteInPlace(const fs::path& path, std::string_view content) {
   if (!out) throw Error::Input(path.string(), "a writable file", std::strerror(errno));
 }
 
+const char* KindName(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::directory:
+      return "a folder";
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    default:
+      return "a device";
+  }
+}
+
 }  // namespace
 
+void RequireFile(const fs::path& path) {
+  std::error_code failed;
+  const fs::file_status status = fs::status(path, failed);
+  if (!fs::exists(status)) return;
+  if (!fs::is_regular_file(status)) {
+    throw Error::Input(path.string(), "a regular file", KindName(status.type()));
+  }
+  constexpr std::uintmax_t kLargest = 4'000'000'000;
+  const std::uintmax_t size = fs::file_size(path, failed);
+  if (failed || size <= kLargest) return;
+  throw Error::Input(path.string(), "a file of at most 4 GB", std::to_string(size) + " bytes");
+}
+
 std::string ReadFile(const fs::path& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw Error::Input(path.string(), "a file", "a folder");
+  RequireFile(path);
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error::Input(path.string(), "a readable file", std::strerror(errno));
   std::string text(std::istreambuf_iterator<char>(in), {});

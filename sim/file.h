@@ -6,6 +6,10 @@
 
 namespace continuum {
 
+/// Throws Error for a file that may never end (a pipe, a device), a folder and what memory cannot
+/// hold. One that does not exist is left to its reader.
+void RequireFile(const std::filesystem::path& path);
+
 /// The whole file as text. Throws Error when it cannot be read.
 std::string ReadFile(const std::filesystem::path& path);
 

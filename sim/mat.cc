@@ -5,6 +5,7 @@
 #include <matio.h>
 
 #include "error.h"
+#include "sim/file.h"
 
 namespace continuum {
 namespace {
@@ -14,12 +15,33 @@ struct Close {
   void operator()(matvar_t* v) const { Mat_VarFree(v); }
 };
 
+const char* ClassName(matio_classes type) {
+  switch (type) {
+    case MAT_C_CELL:
+      return "a cell array";
+    case MAT_C_STRUCT:
+      return "a structure";
+    case MAT_C_OBJECT:
+    case MAT_C_OPAQUE:
+      return "an object";
+    case MAT_C_CHAR:
+      return "text";
+    case MAT_C_SPARSE:
+      return "a sparse matrix";
+    case MAT_C_FUNCTION:
+      return "a function";
+    default:
+      return "integers of another width";
+  }
+}
+
 std::vector<double> Numbers(const matvar_t& v, const std::string& where) {
   std::size_t n = 1;
   for (int i = 0; i < v.rank; ++i) n *= v.dims[i];
   std::vector<double> out(n);
   const auto convert = [&](auto* data) { out.assign(data, data + n); };
-  if (!v.data || v.isComplex) throw Error::Input(where, "real numbers", "something else");
+  if (!v.data) throw Error::Input(where, "real numbers", "no data");
+  if (v.isComplex) throw Error::Input(where, "real numbers", "complex numbers");
   switch (v.class_type) {
     case MAT_C_DOUBLE:
       convert(static_cast<const double*>(v.data));
@@ -37,7 +59,7 @@ std::vector<double> Numbers(const matvar_t& v, const std::string& where) {
       convert(static_cast<const unsigned char*>(v.data));
       break;
     default:
-      throw Error::Input(where, "a numeric matrix", "another type");
+      throw Error::Input(where, "a numeric matrix", ClassName(v.class_type));
   }
   return out;
 }
@@ -45,6 +67,7 @@ std::vector<double> Numbers(const matvar_t& v, const std::string& where) {
 }  // namespace
 
 Columns ReadMat(const std::filesystem::path& file, const std::string& variable) {
+  RequireFile(file);
   const std::unique_ptr<mat_t, Close> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
   if (!mat) throw Error::Input(file.string(), "a MATLAB file", "none");
   Columns columns;
@@ -52,7 +75,8 @@ Columns ReadMat(const std::filesystem::path& file, const std::string& variable) 
     const std::unique_ptr<matvar_t, Close> v(Mat_VarRead(mat.get(), variable.c_str()));
     const std::string where = file.string() + ": " + variable;
     if (!v) throw Error::Input(where, "a variable of this name", "none");
-    if (v->rank != 2) throw Error::Input(where, "a matrix", "another shape");
+    if (v->rank != 2)
+      throw Error::Input(where, "a matrix", std::to_string(v->rank) + " dimensions");
     const auto all = Numbers(*v, where);
     const std::size_t rows = v->dims[0];
     for (std::size_t c = 0; c < v->dims[1]; ++c) {

@@ -1,7 +1,11 @@
 #include "sim/output.h"
 
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <system_error>
 
+#include "error.h"
 #include "sim/file.h"
 
 namespace continuum {
@@ -10,6 +14,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kLinks = 40;  // as many as Linux follows
+
+void RequireOutput(const fs::path& folder, const std::string& name) {
+  if (!name.ends_with('/')) return RequireWritable(folder / name);
+  const fs::path inner = folder / name.substr(0, name.size() - 1);
+  std::error_code failed;
+  if (!fs::exists(inner, failed)) return;
+  if (!fs::is_directory(inner, failed)) throw Error::Input(inner.string(), "a folder", "a file");
+  RequireWritable(inner / "log.csv");
+}
 
 // Standard output and its like, also when it happens to be a file.
 bool IsStandardStream(const fs::path& path) {
@@ -38,7 +51,21 @@ bool IsStream(const fs::path& path) {
   return IsStandardStream(path) || fs::is_other(path, failed);
 }
 
-OutFolder::OutFolder(const fs::path& path) {
+void RequireWritable(const fs::path& path) {
+  const fs::path target = ThroughLinks(path);
+  if (IsStream(target)) return;
+  std::error_code failed;
+  if (fs::is_directory(target, failed)) {
+    throw Error::Input(path.string(), "a writable file", "a folder");
+  }
+  const fs::path aside = Aside(target);
+  std::ofstream probe(aside);
+  if (!probe) throw Error::Input(path.string(), "a writable file", std::strerror(errno));
+  probe.close();
+  fs::remove(aside, failed);
+}
+
+OutFolder::OutFolder(const fs::path& path, const std::vector<std::string>& outputs) {
   std::error_code ignored;
   for (fs::path p = fs::absolute(path, ignored).lexically_normal();
        p.has_relative_path() && !fs::exists(p, ignored); p = p.parent_path()) {
@@ -46,6 +73,7 @@ OutFolder::OutFolder(const fs::path& path) {
   }
   try {
     MakeFolder(path);
+    for (const std::string& output : outputs) RequireOutput(path, output);
   } catch (...) {
     RemoveEmpty();
     throw;

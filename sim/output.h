@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace continuum {
@@ -11,11 +12,16 @@ std::filesystem::path ThroughLinks(const std::filesystem::path& path);
 /// Pipes, terminals and other devices; and standard output, also when it happens to be a file.
 bool IsStream(const std::filesystem::path& path);
 
+/// Throws Error where WriteFile would: to be asked before long work, not after it.
+void RequireWritable(const std::filesystem::path& path);
+
 /// A folder for the outputs of a job, made before it starts. Folders that it made and that are
 /// still empty when it ends are taken away again.
 class OutFolder {
  public:
-  explicit OutFolder(const std::filesystem::path& path);  ///< Throws Error as MakeFolder.
+  /// outputs: what the job will write there, folders with a "/" at their end. Throws Error when the
+  /// folder cannot be made or one of them not be written.
+  OutFolder(const std::filesystem::path& path, const std::vector<std::string>& outputs);
   OutFolder(const OutFolder&) = delete;
   ~OutFolder();
 

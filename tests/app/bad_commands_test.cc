@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include "bench.h"
 
 namespace continuum {
@@ -5,6 +7,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Scratch;
 
 // A wrong command line among good files.
@@ -41,6 +44,12 @@ INSTANTIATE_TEST_SUITE_P(
             {"run", kM, "--until", "0.1", "--out", "/proc/none/x.csv"},
             {"/proc/none/x.csv", "writable"}},
         Bad{"RunFilmOfAnotherKind", {"run", kM, "--until", "0.1", "--video", "x.avi"}, {"--video"}},
+        Bad{"RunFilmBelowAFile",
+            {"run", kM, "--until", "0.1", "--video", "log.csv/x.mp4"},
+            {"log.csv/x.mp4", "writable"}},
+        Bad{"RunEndlessModel", {"run", "/dev/zero"}, {"/dev/zero", "a regular file", "a device"}},
+        Bad{"RunEndlessInput", {"run", kM, "--input", "/dev/zero"}, {"/dev/zero", "a device"}},
+        Bad{"CheckEndless", {"check", "/dev/zero"}, {"/dev/zero", "a regular file", "a device"}},
         Bad{"CheckNoSuchFile", {"check", "none.yaml"}, {"none.yaml"}},
         Bad{"CheckFolder", {"check", "."}, {"a folder"}}, Bad{"CheckModel", {"check", kM}, {kM}},
         Bad{"ReplayNoOut", {"replay", kE}, {"--out"}},
@@ -62,6 +71,9 @@ INSTANTIATE_TEST_SUITE_P(
             {"render", kE, "--out", "x.png", "--camera", "mine"},
             {"camera", "mine"}},
         Bad{"RenderUnknownGl", {"render", kE, "--out", "x.png", "--gl", "vulkan"}, {"vulkan"}},
+        Bad{"RenderBelowAFile",
+            {"render", kE, "--out", "log.csv/x.mp4"},
+            {"log.csv/x.mp4", "writable"}},
         Bad{"RenderNoFrames", {"render", kE, "--out", "x.mp4", "--fps", "0"}, {"--fps"}},
         Bad{"IdentifyMethod", {"identify", kE, "--out", "out", "--method", "luck"}, {"--method"}},
         Bad{"IdentifyPath",
@@ -79,6 +91,15 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"DiagnoseCompareAnother",
             {"diagnose", kE, "--out", "out", "--compare", "diagnosis.json"},
             {"diagnosis.json"}},
+        Bad{"DiagnoseNoCandidates",
+            {"diagnose", kE, "--out", "out", "--candidates", ""},
+            {"--candidates", "a value", "''"}},
+        Bad{"DiagnoseLongSeed",
+            {"diagnose", kE, "--out", "out", "--seed", "99999999999999999999999"},
+            {"--seed", "[0, 18446744073709551615]", "99999999999999999999999"}},
+        Bad{"IdentifyLongSeed",
+            {"identify", kE, "--out", "out", "--seed", "99999999999999999999999"},
+            {"--seed", "[0, 18446744073709551615]", "99999999999999999999999"}},
         Bad{"DiagnoseSeed", {"diagnose", kE, "--out", "out", "--seed", "-1"}, {"--seed"}},
         Bad{"ApplyNoSuchDiagnosis",
             {"apply", "none.json", kM, "--out", "x.xml"},
@@ -88,9 +109,64 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"ApplyIntoNoFolder",
             {"apply", "diagnosis.json", kM, "--out", "none/x.xml"},
             {"none/x.xml", "writable"}},
+        Bad{"ApplyIntoAFolder",
+            {"apply", "diagnosis.json", kM, "--out", "."},
+            {"expected a writable file, found a folder"}},
+        Bad{"SolvePictureBelowAFile",
+            {"solve", CONTINUUM_SOURCE "/models/tdcr/tdcr.yaml", "--input",
+             CONTINUUM_SOURCE "/models/tdcr/cases.csv", "--out", "x.csv", "--plot",
+             "log.csv/x.png"},
+            {"log.csv/x.png", "writable"}},
         Bad{"SolveNoSuchRobot", {"solve", "none.yaml", "--out", "x.csv"}, {"none.yaml"}},
         Bad{"SolveExperiment", {"solve", kE, "--out", "x.csv"}, {"experiment.yaml:2", "tdcr"}}),
     testing::kCaseName);
+
+class Unwritable : public testing::AppBench {
+ protected:
+  // Refused without a word of progress: before the work.
+  void ExpectRefusedAtOnce(const std::string& command, const std::string& place) const {
+    SCOPED_TRACE(command);
+    ExpectRefused({command, kE, "--out", "out"}, {place});
+    EXPECT_THAT(Run({command, kE, "--out", "out"}).err, ::testing::StartsWith("continuum: "));
+  }
+};
+
+TEST_F(Unwritable, OutputsAreNoticedBeforeTheWork) {
+  for (const char* file : {"errors.json", "fit.json", "diagnosis.json"})
+    fs::create_directories(files_ / "out" / file);
+  ExpectRefusedAtOnce("replay", "out/errors.json");
+  ExpectRefusedAtOnce("identify", "out/fit.json");
+  ExpectRefusedAtOnce("diagnose", "out/diagnosis.json");
+}
+
+TEST_F(Unwritable, FileInThePlaceOfTheFolderOfSimulationsIsNoticed) {
+  fs::create_directory(files_ / "out");
+  files_.Write("out/simulated", "precious");
+  ExpectRefusedAtOnce("replay", "out/simulated: expected a folder, found a file");
+}
+
+class Pipe : public testing::AppBench {};
+
+TEST_F(Pipe, IsRefusedWithoutWaitingForItsOtherEnd) {
+  ASSERT_EQ(mkfifo((files_ / "pipe").c_str(), 0600), 0);
+  const std::vector<std::vector<std::string>> commands{
+      {"check", "pipe"},
+      {"replay", "pipe", "--out", "out"},
+      {"identify", "pipe", "--out", "out"},
+      {"diagnose", "pipe", "--out", "out"},
+      {"render", "pipe", "--out", "x.png"},
+      {"run", "pipe"},
+      {"run", kM, "--input", "pipe"},
+      {"apply", "pipe", kM, "--out", "x.xml"},
+      {"apply", "diagnosis.json", "pipe", "--out", "x.xml"},
+      {"solve", "pipe", "--out", "x.csv"}};
+  for (const auto& command : commands) {
+    SCOPED_TRACE(command.front());
+    ExpectRefused(command, {"pipe", "a regular file", "a pipe"});
+  }
+  Spoil(kE, "model.xml", "pipe");
+  ExpectRefused({"check", kE}, {"pipe", "a regular file"});
+}
 
 class GoodFile : public testing::AppBench {
  protected:
@@ -122,6 +198,12 @@ TEST_F(GoodFile, MayLieInAFolderWithSpacesAndUmlauts) {
 TEST_F(GoodFile, MayUseAnchors) {
   Spoil("experiment.yaml", "[{file: log.csv}]", "\n  - &log {file: log.csv, trial: a}\n  - *log\n");
   ExpectReplayed();
+}
+
+TEST_F(GoodFile, MayHaveRowsAtOneTimeButForRounding) {
+  Spoil("log.csv", "0.1,0.1,0.01\n", "0.1,0.1,0.01\n0.100000000001,0.1,0.01\n");
+  ExpectReplayed();
+  EXPECT_THAT(Scratch::Text(files_ / "out/errors.json"), Not(HasSubstr("null")));
 }
 
 TEST_F(GoodFile, NeedsItsModel) {

@@ -42,9 +42,28 @@ TEST_F(RunCommand, RefusesNumbersThatAreNoneOrNeverEnd) {
       ExpectRefused({"run", "model.xml", option, value}, {option, std::string("'") + value + "'"});
     }
   }
-  ExpectRefused({"run", "model.xml", "--every", "1e-8"}, {"--every", "1e+07 rows"});
-  ExpectRefused({"run", "model.xml", "--timestep", "1e-9", "--every", "1", "--until", "10"},
-                {"model.xml", "time steps"});
+}
+
+TEST_F(RunCommand, BlamesTheOptionsThatMakeItTooLong) {
+  const std::string rows = ": expected an end and a period that give at most 1e+07 rows";
+  const std::string steps = ": expected at most 1e+09 time steps";
+  const struct {
+    std::vector<std::string> options;
+    std::string blamed;
+  } cases[] = {
+      {{"--every", "1e-8"}, "--every" + rows},
+      {{"--until", "1e6"}, "--until" + rows},
+      {{"--until", "1e6", "--every", "1e-3"}, "--until and --every" + rows},
+      {{"--timestep", "1e-7"}, "--timestep" + rows},
+      {{"--until", "1e9", "--input", "input.csv"}, "--until" + steps},
+      {{"--timestep", "1e-9", "--every", "1"}, "--timestep" + steps},
+      {{"--timestep", "1e-9", "--every", "1", "--until", "10"}, "--until and --timestep" + steps},
+  };
+  for (const auto& c : cases) {
+    std::vector<std::string> arguments{"run", "model.xml"};
+    arguments.insert(arguments.end(), c.options.begin(), c.options.end());
+    ExpectRefused(arguments, {"continuum: " + c.blamed});
+  }
 }
 
 TEST_F(RunCommand, NeedsNamesOnlyForActuatorsThatColumnsDrive) {

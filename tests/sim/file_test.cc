@@ -50,18 +50,36 @@ TEST_F(Written, LeavesNothingWhereItFails) {
 
 TEST_F(Written, FoldersGoAgainWhileTheyAreEmpty) {
   {
-    const OutFolder made(scratch_ / "a/b/c");
+    const OutFolder made(scratch_ / "a/b/c", {"file", "folder/"});
     EXPECT_TRUE(Exists("a/b/c"));
   }
   EXPECT_FALSE(Exists("a"));
   {
-    const OutFolder made(scratch_ / "a/b/c");
+    const OutFolder made(scratch_ / "a/b/c", {"file", "folder/"});
     scratch_.Write("a/b/file", "");
   }
   EXPECT_FALSE(Exists("a/b/c"));
   EXPECT_TRUE(Exists("a/b/file"));
-  { const OutFolder old(scratch_ / "a"); }
+  { const OutFolder old(scratch_ / "a", {}); }
   EXPECT_TRUE(Exists("a/b/file"));
+}
+
+TEST_F(Written, OutputsMustBePossibleInTheirFolder) {
+  fs::create_directories(scratch_ / "out/there");
+  scratch_.Write("out/file", "precious");
+  EXPECT_NO_THROW(OutFolder(scratch_ / "out", {"file", "new", "there/", "not_yet/"}));
+  EXPECT_EQ(Scratch::Text(scratch_ / "out/file"), "precious");
+  EXPECT_FALSE(Exists("out/new"));
+  EXPECT_THROW(OutFolder(scratch_ / "out", {"there"}), Error);
+  EXPECT_THROW(OutFolder(scratch_ / "out", {"file/"}), Error);
+  EXPECT_THROW(OutFolder(scratch_ / "out/file", {}), Error);
+  EXPECT_THROW(RequireWritable(scratch_ / "out/file/below"), Error);
+}
+
+TEST_F(Written, FilesBeyondMemoryAreNotRead) {
+  scratch_.Write("large", "");
+  fs::resize_file(scratch_ / "large", 1'000'000'000'000);  // without blocks on the disk
+  EXPECT_THROW(ReadFile(scratch_ / "large"), Error);
 }
 
 }  // namespace
