@@ -4,6 +4,7 @@
 #include <CLI/Formatter.hpp>
 #include <memory>
 
+#include "app/console.h"
 #include "models/solver/solve.h"
 #include "sim/output.h"
 
@@ -31,7 +32,8 @@ void AddSolve(CLI::App& app, int& exit_code) {
                     "tdcr: train a linear correction on measured shapes, or apply one");
   solve->add_flag("--sensitivity", request->sensitivity,
                   "stiff_flop: derivatives by fibre angle and by E");
-  solve->add_option("--lambda", request->lambda, "tdcr fit: weight of the curvatures (1e-7)");
+  solve->add_option("--lambda", request->lambda, "tdcr fit: weight of the curvatures (1e-7)")
+      ->check(NumberWithin(0, 1e9));
   solve->footer(
       "Example:\n"
       "  continuum solve models/tdcr/tdcr.yaml --method eas --input models/tdcr/cases.csv "

@@ -4,12 +4,16 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "error.h"
 #include "sim/file.h"
+#include "sim/shown.h"
 
 namespace continuum {
 namespace {
+
+constexpr std::size_t kShown = 500;  // characters of a list of columns
 
 std::string_view Trim(std::string_view s) {
   const auto blank = " \t\r";
@@ -73,10 +77,11 @@ Table Table::Parse(std::string_view text, std::string name) {
     auto cells = Split(row, where);
     if (t.columns_.empty()) {
       t.columns_ = std::move(cells);
-      for (auto c = t.columns_.begin(); c != t.columns_.end(); ++c) {
-        if (c->empty()) throw Error::Input(where, "a name for every column", "an empty one");
-        if (std::find(t.columns_.begin(), c, *c) != c) {
-          throw Error::Input(where, "different column names", "'" + *c + "' twice");
+      std::set<std::string_view> names;
+      for (const std::string& name : t.columns_) {
+        if (name.empty()) throw Error::Input(where, "a name for every column", "an empty one");
+        if (!names.insert(name).second) {
+          throw Error::Input(where, "different column names", "'" + Shown(name) + "' twice");
         }
       }
     } else if (cells.size() != t.columns_.size()) {
@@ -100,7 +105,7 @@ std::size_t Table::Column(std::string_view column) const {
   if (c != columns_.end()) return static_cast<std::size_t>(c - columns_.begin());
   std::string all;
   for (const auto& name : columns_) all += (all.empty() ? "" : ", ") + name;
-  throw Error::Input(name_ + ":1", "a column '" + std::string(column) + "'", all);
+  throw Error::Input(name_ + ":1", "a column '" + std::string(column) + "'", Shown(all, kShown));
 }
 
 std::string Table::Where(std::size_t row) const {
@@ -130,7 +135,7 @@ double Table::Number(std::size_t row, std::string_view column) const {
   if (read && std::abs(value) <= kLargest) return value;
   throw Error::Input(Where(row) + ", column '" + std::string(column) + "'",
                      read ? "a number within +-1e100" : "a finite number",
-                     cell.empty() ? "an empty cell" : "'" + cell + "'");
+                     cell.empty() ? "an empty cell" : "'" + Shown(cell) + "'");
 }
 
 bool Table::Flag(std::size_t row, std::string_view column) const {

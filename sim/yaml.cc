@@ -8,21 +8,9 @@
 
 #include "error.h"
 #include "sim/file.h"
+#include "sim/shown.h"
 
 namespace continuum {
-
-namespace {
-
-// The beginning of a text, in one line.
-std::string Shown(std::string text) {
-  std::size_t length = 60;
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  if (text.size() <= length) return text;
-  while (length > 0 && (text[length] & 0xC0) == 0x80) --length;  // not within a character
-  return text.substr(0, length) + "...";
-}
-
-}  // namespace
 
 Yaml Yaml::Read(const std::filesystem::path& file) { return Parse(ReadFile(file), file.string()); }
 

@@ -117,6 +117,9 @@ INSTANTIATE_TEST_SUITE_P(
              CONTINUUM_SOURCE "/models/tdcr/cases.csv", "--out", "x.csv", "--plot",
              "log.csv/x.png"},
             {"log.csv/x.png", "writable"}},
+        Bad{"SolveLambda",
+            {"solve", "none.yaml", "--out", "x.csv", "--lambda", "nan"},
+            {"--lambda", "[0, 1e+09]", "'nan'"}},
         Bad{"SolveNoSuchRobot", {"solve", "none.yaml", "--out", "x.csv"}, {"none.yaml"}},
         Bad{"SolveExperiment", {"solve", kE, "--out", "x.csv"}, {"experiment.yaml:2", "tdcr"}}),
     testing::kCaseName);
