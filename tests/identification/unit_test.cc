@@ -16,11 +16,12 @@ constexpr char kModel[] = R"(<mujoco>
       <config key="tendon" value="cable"/></instance></plugin>
   </extension>
   <worldbody>
-    <site name="a"/>
+    <site name="a"/><site name="corner" pos="0 1 0"/>
     <body><joint name="turn"/><joint name="slide1" type="slide"/><joint name="slide2" type="slide"/>
       <geom size="0.1"/><site name="b" pos="0 0 1"/></body>
   </worldbody>
-  <tendon><spatial name="cable"><site site="a"/><site site="b"/></spatial></tendon>
+  <tendon><spatial name="cable"><site site="a"/><site site="corner"/><site site="b"/></spatial>
+  </tendon>
 </mujoco>)";
 
 struct Case {
