@@ -92,7 +92,10 @@ std::string Case::Name() const {
   for (const auto& e : effects) text += (text.empty() ? "" : "+") + e;
   if (text.empty()) text = "none";
   return fmt::format("{} x{:g} {} seed {}{}", text, factor, kNoiseNames[static_cast<int>(noise)],
-                     seed, listed ? "" : " unlisted");
+                     seed,
+                     told     ? " told"
+                     : listed ? ""
+                              : " unlisted");
 }
 
 std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& folder) {
@@ -121,7 +124,7 @@ std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& fold
   std::string candidates;
   for (const EffectInfo& info : Catalog()) {
     const bool hidden = std::find(c.effects.begin(), c.effects.end(), info.name) != c.effects.end();
-    if (hidden && !c.listed) continue;
+    if (hidden ? !c.listed : c.told) continue;
     candidates += (candidates.empty() ? "" : ", ") + std::string(info.name);
   }
   WriteFile(folder / "experiment.yaml", R"(format: 1

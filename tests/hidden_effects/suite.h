@@ -30,6 +30,7 @@ struct Case {
   NoiseKind noise = NoiseKind::kWhite;
   std::uint64_t seed = 1;
   bool listed = true;  ///< whether the hidden effects are among the candidates
+  bool told = false;   ///< whether nothing else is
 
   std::string Name() const;
 };
