@@ -176,10 +176,10 @@ class Story {
          "lambda"},
         rows,
         {"Twice the log-likelihood over the model without it, empty for those left far behind; p: "
-         "how often noise alone lets "
-         "one of all candidates do as well to first order; posterior: each candidate as "
-         "likely before; lambda: what of the best candidate this one cannot imitate on these logs "
-         "(below about 15 they are hard to tell apart). What the best one leaves has p = " +
+         "how often noise alone lets one of all candidates do as well to first order; posterior: "
+         "each candidate as likely before; lambda: what of the best candidate this one cannot "
+         "imitate on these logs (below about 15 they are hard to tell apart). What the best one "
+         "leaves has p = " +
          fmt::format("{:.2g} against smooth forces and {:.2g} against shifts of the channels.",
                      d_.lack.force, d_.lack.channel)});
   }

@@ -14,6 +14,7 @@
 #include "identification/search_range.h"
 #include "sim/file.h"
 #include "sim/measurement.h"
+#include "sim/mujoco.h"
 
 namespace continuum {
 namespace {
@@ -346,10 +347,7 @@ void AddAt(const EffectInfo& effect, const Candidate& wanted, Place place,
 std::string AddBeside(const EffectInfo& effect, const Experiment& e, const System& system,
                       const Sizes& sizes, std::vector<Hypothesis>& all) {
   const mjModel& m = system.model();
-  for (int i = 0; i < m.nplugin; ++i) {
-    if (mjp_getPluginAtSlot(m.plugin[i])->name == "continuum." + std::string(effect.name))
-      return "the model has it already";
-  }
+  if (HasEffect(m, effect.name)) return "the model has it already";
   const auto segments = SegmentsFor(m, effect);
   if (segments.empty()) return "no soft segment in the model";
   for (const Param& p : effect.params) {

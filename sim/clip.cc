@@ -14,12 +14,6 @@ namespace {
 constexpr double kRow = 5e-3;  // of the film, inputs are straight between [s]
 constexpr double kLongest = 600, kTiny = 1e-3;
 
-double NumberOr(const Yaml& y, const std::string& key, double fallback, double lower,
-                double upper) {
-  const auto found = y.Find(key);
-  return found ? found->Number(lower, upper) : fallback;
-}
-
 std::vector<double> Count(const Yaml& y, std::size_t count, const char* expected) {
   const auto numbers = y.Numbers();
   if (numbers.size() == count) return numbers;
@@ -51,10 +45,10 @@ std::vector<double> ReadPoints(const Yaml& y, const std::vector<double>& time) {
 
 std::vector<double> ReadWave(const Yaml& y, const std::vector<double>& time) {
   y.Only({"mean", "amplitude", "period", "delay", "rise"});
-  const double mean = NumberOr(y, "mean", 0, -1e12, 1e12), amplitude = y.At("amplitude").Number();
+  const double mean = y.NumberOr("mean", 0, -1e12, 1e12), amplitude = y.At("amplitude").Number();
   const double period = y.At("period").Number(kTiny, kLongest);
-  const double delay = NumberOr(y, "delay", 0, -kLongest, kLongest);
-  const double rise = NumberOr(y, "rise", 0, 0, kLongest);
+  const double delay = y.NumberOr("delay", 0, -kLongest, kLongest);
+  const double rise = y.NumberOr("rise", 0, 0, kLongest);
   std::vector<double> values;
   for (const double t : time) {
     const double share = t < rise ? t / rise : 1;
@@ -97,7 +91,7 @@ Clip Clip::Read(const std::filesystem::path& file) {
   clip.film.whole = true;
   clip.film.caption = y.At("caption").Text();
   ReadCamera(y.At("camera"), clip.film);
-  clip.film.speed = NumberOr(y, "speed", 1, kTiny, 100);
+  clip.film.speed = y.NumberOr("speed", 1, kTiny, 100);
   if (const auto tension = y.Find("tension")) {
     const auto range = Count(*tension, 2, "[blue, red]");
     if (!(range[0] < range[1])) throw Error::Input(tension->Where(), "rising numbers", "none");

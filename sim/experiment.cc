@@ -75,10 +75,6 @@ std::string TextOr(const Yaml& y, const std::string& key, const std::string& fal
   const auto found = y.Find(key);
   return found ? found->Text() : fallback;
 }
-double NumberOr(const Yaml& y, const std::string& key, double fallback) {
-  const auto found = y.Find(key);
-  return found ? found->Number() : fallback;
-}
 
 Input ReadInput(const Yaml& y) {
   y.Only({"column", "unit", "actuator", "interpolate", "enable"});
@@ -100,11 +96,11 @@ Input ReadInput(const Yaml& y) {
 
 Measurement ReadMeasurement(const Yaml& y) {
   Measurement m;
-  m.bias = NumberOr(y, "bias", 0);
-  m.scale = NumberOr(y, "scale", 1);
-  m.delay = NumberOr(y, "delay", 0);
-  m.rate = NumberOr(y, "rate", 0);
-  m.angle = NumberOr(y, "angle", 0);
+  m.bias = y.NumberOr("bias", 0);
+  m.scale = y.NumberOr("scale", 1);
+  m.delay = y.NumberOr("delay", 0);
+  m.rate = y.NumberOr("rate", 0);
+  m.angle = y.NumberOr("angle", 0);
   if (const auto axis = y.Find("axis")) {
     m.axis = axis->Numbers();
     if (m.axis.size() != 3)
@@ -428,7 +424,7 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
       time_unit = UnitFactor(e.time_unit, unit->Where());
       RequireUnitLike("s", e.time_unit, unit->Where());
     }
-    e.skew = NumberOr(*time, "skew", 0);
+    e.skew = time->NumberOr("skew", 0);
     if (e.skew <= -1) throw Error::Input(time->At("skew").Where(), "a skew above -1", "less");
   }
   if (const auto start = y.Find("start")) {

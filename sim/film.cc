@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "sim/file.h"
+#include "sim/mujoco.h"
 #include "sim/video.h"
 
 namespace continuum {
@@ -59,22 +60,14 @@ std::string CameraOf(const mjModel& m, const std::string& wanted) {
 
 constexpr double kEffectFull = 20;  // the tension that effects draw red [N]
 
-// Whether a model has an effect.
-bool Has(const mjModel& m, const std::string& effect) {
-  for (int i = 0; i < m.nplugin; ++i) {
-    if (mjp_getPluginAtSlot(m.plugin[i])->name == effect) return true;
-  }
-  return false;
-}
-
 // What the colours of cables or chambers mean.
 std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
   if (options.tension) {
     const auto& [low, high] = *options.tension;
     return ColorBar{"cable tension [N]", Decimal(low), Decimal(high)};
   }
-  if (Has(m, "continuum.capstan")) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
-  if (!Has(m, "continuum.pcc_segment")) return std::nullopt;
+  if (HasEffect(m, "capstan")) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
+  if (!HasEffect(m, "pcc_segment")) return std::nullopt;
   double full = 0;  // all chambers are alike
   for (int a = 0; a < m.nu; ++a) {
     if (!m.actuator_ctrllimited[a]) return std::nullopt;

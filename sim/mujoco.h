@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include <mujoco/mujoco.h>
 
@@ -13,5 +15,14 @@ struct MujocoDeleter {
 };
 template <class T>
 using Owned = std::unique_ptr<T, MujocoDeleter>;
+
+/// Whether a model has an instance of an effect ("capstan").
+inline bool HasEffect(const mjModel& m, std::string_view effect) {
+  const std::string plugin = "continuum." + std::string(effect);
+  for (int i = 0; i < m.nplugin; ++i) {
+    if (mjp_getPluginAtSlot(m.plugin[i])->name == plugin) return true;
+  }
+  return false;
+}
 
 }  // namespace continuum

@@ -103,6 +103,16 @@ double Yaml::Number() const {
   throw Error::Input(Where(), "a finite number", Found());
 }
 
+double Yaml::NumberOr(const std::string& key, double fallback) const {
+  const auto found = Find(key);
+  return found ? found->Number() : fallback;
+}
+
+double Yaml::NumberOr(const std::string& key, double fallback, double lower, double upper) const {
+  const auto found = Find(key);
+  return found ? found->Number(lower, upper) : fallback;
+}
+
 double Yaml::Number(double lower, double upper) const {
   const double value = Number();
   if (lower <= value && value <= upper) return value;

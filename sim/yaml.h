@@ -42,6 +42,9 @@ class Yaml {
   std::string Text() const;
   double Number() const;  ///< finite
   double Number(double lower, double upper) const;
+  /// The number at a key of a map, or the fallback where the key is absent.
+  double NumberOr(const std::string& key, double fallback) const;
+  double NumberOr(const std::string& key, double fallback, double lower, double upper) const;
   int Integer() const;
   bool Bool() const;
   std::vector<double> Numbers() const;
