@@ -55,6 +55,7 @@ class Session {
     }
     if (d_.noise_limited) {
       NameOnce();
+      FitFinely();
       ScoreFolds();
     } else {
       CompareFolds();
@@ -175,6 +176,14 @@ class Session {
     }
     d_.verdict.reason += "; the data do not tell " + places + " apart";
     named.resize(1);
+  }
+
+  void FitFinely() {
+    for (const std::size_t i : d_.verdict.named) {
+      CandidateResult& c = d_.candidates[i];
+      options_.Say("at a fine step " + c.hypothesis.Name());
+      trials_.FitFinely(c.ProblemOf(e_), c.fitted);
+    }
   }
 
   void CompareFolds() {

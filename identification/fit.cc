@@ -366,6 +366,16 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   return u;
 }
 
+void ReachOver(const Problem& problem, const Vector& step, Uncertainty& u) {
+  u.step = step;
+  for (Eigen::Index i = 0; i < u.step.size(); ++i) {
+    if (u.at_bound[i]) continue;
+    const FreeParameter& p = problem.parameters()[i];
+    u.lower[i] = std::max(p.lower, u.lower[i] + std::min(0.0, u.step[i]));
+    u.upper[i] = std::min(p.upper, u.upper[i] + std::max(0.0, u.step[i]));
+  }
+}
+
 void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
                   const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
   if (u.information.size() == 0) return;
@@ -374,13 +384,8 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
     if (!J[l].size()) continue;
     pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
   }
-  u.step = 4.0 / 3 * (u.information.completeOrthogonalDecomposition().pseudoInverse() * pull);
-  for (Eigen::Index i = 0; i < u.step.size(); ++i) {
-    if (u.at_bound[i]) continue;
-    const FreeParameter& p = problem.parameters()[i];
-    u.lower[i] = std::max(p.lower, u.lower[i] + std::min(0.0, u.step[i]));
-    u.upper[i] = std::min(p.upper, u.upper[i] + std::max(0.0, u.step[i]));
-  }
+  ReachOver(problem,
+            4.0 / 3 * (u.information.completeOrthogonalDecomposition().pseudoInverse() * pull), u);
 }
 
 }  // namespace continuum

@@ -75,12 +75,13 @@ Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
                           const std::vector<Problem::Vector>& r,
                           const std::vector<Problem::Matrix>& J, const Whitening& whitening = {});
 
-/// The robot has no time step. With s, what the step h adds to the residuals (the first column of
-/// Problem::StepEffects, h against h/4), the same fit at a fine step ends to first order at
+/// The robot has no time step, a simulation has. Intervals reach over x + step too, what the same
+/// fit gives at a fine one, which is kept.
+void ReachOver(const Problem& problem, const Problem::Vector& step, Uncertainty& u);
+/// The same to first order. With s, what the step h adds to the residuals (the first column of
+/// Problem::StepEffects, h against h/4):
 ///
-///   x + δ,   δ = 4/3 H⁻¹ Jᵀ s      (an error of order h: h/4 leaves a quarter of it)
-///
-/// which is kept, and the intervals reach over both fits.
+///   step = 4/3 H⁻¹ Jᵀ s      (an error of order h: h/4 leaves a quarter of it)
 void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
                   const std::vector<Problem::Matrix>& step, const Whitening& whitening,
                   Uncertainty& u);

@@ -89,6 +89,17 @@ std::vector<Replayed> Predicted(const Problem& problem, const Problem::Vector& x
   return logs;
 }
 
+// With what the time step adds, where there is one.
+Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
+                        const std::vector<Problem::Vector>& r) {
+  const auto train = problem.TrainLogs();
+  const auto J = problem.Jacobian(x, r, train);
+  Uncertainty u = UncertaintyOf(problem, x, r, J);
+  if (problem.path() == Path::kStepped)
+    AllowForStep(problem, J, problem.StepEffects(x, r, train), {}, u);
+  return u;
+}
+
 // What the model gives at its own step, where the fit was one of its differential equation.
 nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x) {
   Problem stepped = problem;
@@ -150,9 +161,7 @@ std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
   MakeFolder(folder);
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
   const Uncertainty u =
-      record.regression
-          ? record.regression->uncertainty
-          : UncertaintyOf(problem, fit.x, r, problem.Jacobian(fit.x, r, problem.TrainLogs()));
+      record.regression ? record.regression->uncertainty : IntervalsOf(problem, fit.x, r);
   const auto trade_offs = TradeOffsOf(problem, fit.x, u);
   const std::vector<Replayed> logs = Predicted(problem, fit.x);
   std::vector<Trace> traces;

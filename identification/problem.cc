@@ -96,6 +96,11 @@ void Problem::Follow(Path path) {
   solving_.stiff = rates[true] <= rates[false];
 }
 
+void Problem::StepBy(double h) {
+  step_ = h;
+  memory_.assign(memory_.size(), {});
+}
+
 void Problem::Expand(const Parameter& p) {
   const auto& logs = experiment_->logs;
   const auto at = [&](const std::function<double()>& read) {
@@ -220,12 +225,11 @@ std::vector<Change> Problem::CommonChanges(const Vector& x) const {
 Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double step) const {
   const Experiment setup = MeasuredBy(x, log);
   auto changes = ChangesFor(x, log);
-  if (step > 0) changes.push_back({"option", "timestep", step});
   const Vector theta = x.tail(static_cast<Eigen::Index>(terms_.count));
   const Memory& memory = memory_[motion_[log]];
   const Log& logged = experiment_->logs[log];
-  if (!memory.trace.raw.empty() && memory.changes == changes && memory.theta == theta &&
-      memory.skew == setup.skew) {
+  if (step == 0 && !memory.trace.raw.empty() && memory.changes == changes &&
+      memory.theta == theta && memory.skew == setup.skew) {
     Trace trace = memory.trace;
     MeasureTrace(setup, Wiring(setup, system().model()), logged, trace);
     return trace;
@@ -234,6 +238,7 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
     const auto flow = FlowAt(thread, x, log);
     return FollowFlow(*flow, {}, setup, logged, solving_).trace;
   }
+  if (const double h = step > 0 ? step : step_; h > 0) changes.push_back({"option", "timestep", h});
   Machine machine = systems_[thread].Build(changes);
   Hooks hooks;
   if (terms_.count > 0) {

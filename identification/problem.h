@@ -57,6 +57,8 @@ class Problem {
           ForceTerms terms = {});
   /// From now on along this path (SmoothObstacle says where the smooth one cannot go).
   void Follow(Path path);
+  /// From now on with this time step [s] instead of the model's.
+  void StepBy(double h);
 
   const Experiment& experiment() const { return *experiment_; }
   const System& system() const { return systems_.front(); }
@@ -135,6 +137,7 @@ class Problem {
   std::vector<double> pooled_;  ///< pooled units per residual unit
   ForceTerms terms_;
   Path path_ = Path::kStepped;
+  double step_ = 0;  ///< 0: the model's
   Solving solving_;  ///< on the smooth path
   mutable std::size_t evaluations_ = 0;
 };

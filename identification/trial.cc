@@ -149,14 +149,19 @@ double Beyond(double error, double part) {
   return std::sqrt(std::max(0.0, error * error - part * part));
 }
 
+FitOptions Trials::Options() const {
+  FitOptions options{iterations, 1e-4};  // first order does the rest
+  options.whitening = &whitening;
+  options.idle = true;
+  return options;
+}
+
 Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) const {
   const auto train = TrainLogs(*experiment);
   auto validate = train;
   validate.flip();
   Fitted f;
-  FitOptions options{iterations, 1e-4};  // first order does the rest
-  options.whitening = &whitening;
-  options.idle = true;
+  FitOptions options = Options();
   options.hopeless = 1.1 * rival + 50;
   f.fit = FitParameters(problem, start, train, options);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
@@ -181,6 +186,23 @@ void Trials::Complete(const Problem& problem, Fitted& f) const {
   const Remainder left = LeftBy(f);
   f.cost = left.cost();
   f.freedom = left.freedom();
+}
+
+void Trials::FitFinely(const Problem& problem, Fitted& f) const {
+  const Uncertainty& u = f.uncertainty;
+  if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
+  Problem fine = problem;
+  fine.StepBy(problem.system().model().opt.timestep / 4);
+  FitOptions options = Options();
+  options.iterations = 5;
+  Vector x;
+  try {
+    x = FitParameters(fine, f.fit.x, TrainLogs(*experiment), options).x;
+  } catch (const Error&) {
+    return;  // it diverges at the finer step: first order has to do
+  }
+  f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, f.jacobian, whitening);
+  ReachOver(problem, 4.0 / 3 * (x - f.fit.x), f.uncertainty);
 }
 
 Fitted Trials::FitAll(const Problem& problem, const Vector& start) const {

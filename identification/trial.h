@@ -17,7 +17,10 @@ struct Trials {
   /// What else there is to know of a fit: sensitivities and intervals, what the time step leaves
   /// open, and with these the cost to first order.
   void Complete(const Problem& problem, Fitted& fitted) const;
-  /// Both.
+  /// Where the time step moves a value by more than its error, a fit at a quarter of the step tells
+  /// what a fine one gives: joints that stick and slip follow no first order. For complete fits.
+  void FitFinely(const Problem& problem, Fitted& fitted) const;
+  /// Fit and Complete.
   Fitted FitAll(const Problem& problem, const Problem::Vector& start) const;
   /// Leaves out each fold in turn.
   void AddFolds(const Problem& problem, const std::vector<Fold>& folds, Fitted& fitted) const;
@@ -38,6 +41,9 @@ struct Trials {
   /// Tests of what no candidate covers; inflation: of noise along any direction.
   LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
                    const Sizes& sizes, double inflation, std::uint64_t seed) const;
+
+ private:
+  FitOptions Options() const;
 };
 
 /// What an error has beyond an independent part of it: √(a² − b²), 0 where the part is larger.

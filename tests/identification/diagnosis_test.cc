@@ -186,6 +186,25 @@ TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
   EXPECT_THAT(same.input, HasSubstr("no change of these inputs"));
 }
 
+// The pendulum that made the logs has a far finer step.
+TEST_F(DiagnosisTest, AFitAtAFineStepTellsHowFarTheStepMovesAValue) {
+  const Pendulum truth;
+  AddTrials(truth);
+  const Experiment e = ReadWith("payload");
+  const System coarse = System::Load(Write("model.xml", Pendulum().Xml("", 4e-3)));
+  const Problem problem(e, coarse);
+  Trials trials;
+  trials.experiment = &e;
+  Fitted fitted = trials.FitAll(problem, problem.Start());
+  fitted.uncertainty.step *= 2;  // a first order that is no good
+  trials.FitFinely(problem, fitted);
+  const double x = fitted.fit.x[0], off = truth.damping - x;
+  EXPECT_GT(std::abs(off), 5 * fitted.uncertainty.standard_error[0]);
+  EXPECT_NEAR(fitted.uncertainty.step[0], off, 0.1 * std::abs(off));
+  EXPECT_LE(fitted.uncertainty.lower[0], std::min(x, truth.damping));
+  EXPECT_GE(fitted.uncertainty.upper[0], std::max(x, truth.damping));
+}
+
 TEST_F(DiagnosisTest, AsksForTwoGroupsToLeaveOut) {
   const auto u = Command(0, kRows);
   AddLog("only", "use: train", u, Pendulum().Run(u, testing::kPeriod));
