@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "error.h"
 #include "identification/fit_output.h"
+#include "identification/multi_start.h"
 #include "identification/path.h"
 #include "identification/regressor.h"
 #include "identification/swarm.h"
@@ -25,6 +26,7 @@ namespace {
 struct Options {
   std::string experiment, out, method = "lm", path = "auto";
   int iterations = 0;  // as the method likes
+  int starts = 1;
   double cutoff = 0;
   std::uint64_t seed = 1;
   bool all = false, for_step = false;
@@ -58,6 +60,7 @@ struct Fitting {
   Fit fit;
   std::optional<Problem::Vector> for_step;
   std::optional<Regression> regression;
+  std::optional<MultiStart> starts;
 };
 
 Fitting Run(const Options& o, const Problem& problem, const std::vector<bool>& use) {
@@ -77,7 +80,12 @@ Fitting Run(const Options& o, const Problem& problem, const std::vector<bool>& u
   } else {
     FitOptions options{.soft = soft, .progress = ShowProgress};
     options.iterations = o.iterations > 0 ? o.iterations : 50;
-    all.fit = FitParameters(problem, problem.Start(), use, options);
+    if (o.starts > 1) {
+      all.starts = FitFromMany(problem, use, o.starts, o.seed, options);
+      all.fit = all.starts->best;
+    } else {
+      all.fit = FitParameters(problem, problem.Start(), use, options);
+    }
     if (problem.path() == Path::kSmooth && o.for_step && !StopRequested())
       all.for_step = ForStep(problem, all.fit, use, options);
   }
@@ -115,6 +123,9 @@ void Print(const Problem& problem, const Fitting& all, const std::string& out) {
     std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
                 all.regression->train, all.regression->validate);
   }
+  if (all.starts)
+    std::printf("%zu of %zu starts end within 0.1 %% of the best cost\n", all.starts->Reached(),
+                all.starts->starts.size());
   std::printf("%d iterations, %zu simulations, %.1f s; report: %s/report.html\n", fit.iterations,
               fit.evaluations, fit.seconds, out.c_str());
 }
@@ -128,6 +139,7 @@ void RunIdentify(const Options& o) {
   Problem problem(e, system);
   if (problem.parameters().empty())
     throw Error::Input(o.experiment, "the key 'parameters'", "none");
+  if (o.starts > 1 && o.method != "lm") throw Error::Input("--starts", "--method lm", o.method);
   const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
   if (std::find(use.begin(), use.end(), true) == use.end()) {
     throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");
@@ -142,9 +154,10 @@ void RunIdentify(const Options& o) {
   }
   const Fitting all = Run(o, problem, use);
   EndProgress();
-  const auto trade_offs = WriteFit(problem, all.fit, o.out,
-                                   {o.method, all.for_step ? &*all.for_step : nullptr,
-                                    all.regression ? &*all.regression : nullptr});
+  const auto trade_offs =
+      WriteFit(problem, all.fit, o.out,
+               {o.method, all.for_step ? &*all.for_step : nullptr,
+                all.regression ? &*all.regression : nullptr, all.starts ? &*all.starts : nullptr});
   Print(problem, all, o.out);
   for (const TradeOff& t : trade_offs) std::printf("%s\n", t.text.c_str());
   StopIfRequested();  // the files hold the best so far
@@ -169,7 +182,11 @@ void AddIdentify(CLI::App& app) {
       ->capture_default_str();
   sub->add_option("--iterations", o->iterations, "at most; default: 50 (lm), 40 (pso)")
       ->check(WholeNumberWithin(1, 1000));
-  sub->add_option("--seed", o->seed, "of the particle swarm")
+  sub->add_option("--starts", o->starts,
+                  "lm: fit from the experiment's start and from random ones, keep the best")
+      ->check(WholeNumberWithin(1, 10000))
+      ->capture_default_str();
+  sub->add_option("--seed", o->seed, "of the random starts and of the particle swarm")
       ->check(WholeNumberWithin(0, UINT64_MAX))
       ->capture_default_str();
   sub->add_option(

@@ -39,11 +39,12 @@ class Comparison {
     if (error) {
       auto validate = problem.TrainLogs();
       validate.flip();
-      const Vector fitted = RefitByChords(problem, x, J, problem.TrainLogs(), 5);
+      const Vector fitted =
+          RefitByChords(problem, x, d_.before.residuals, J, problem.TrainLogs(), 5);
       const auto r = problem.Residuals(fitted, problem.AllLogs());
       *error = {problem.PooledRms(r, problem.TrainLogs()), problem.PooledRms(r, validate)};
     }
-    return CrossValidate(problem, x, J, d_.folds);
+    return CrossValidate(problem, x, d_.before.residuals, J, d_.folds);
   }
 
   void RunCeiling() {
@@ -51,32 +52,43 @@ class Comparison {
     d_.ceiling = TryForce(RandomForce(16, true, d_.sizes, options_.seed), &d_.ceiling_error);
   }
 
-  // Placebos with one and with two parameters, as many as the candidates have.
+  // Placebos with one and with two parameters, as many as the candidates have; as long as one of
+  // these passes every other rule and may still pass this one.
   void RunPlacebos() {
     for (const std::size_t count : {std::size_t{1}, std::size_t{2}}) {
-      const auto size = [](const CandidateResult& c) {
-        return std::min<std::size_t>(2, c.hypothesis.extra.size());
-      };
-      const bool needed = std::any_of(d_.candidates.begin(), d_.candidates.end(),
-                                      [&](const auto& c) { return size(c) == count; });
-      if (!needed) continue;
+      std::vector<CandidateResult*> alike;
+      for (CandidateResult& c : d_.candidates) {
+        if (std::min<std::size_t>(2, c.hypothesis.extra.size()) == count) alike.push_back(&c);
+      }
+      std::vector<CandidateResult*> open = alike;
       std::vector<double> gains;
+      const auto done = [&](const CandidateResult* c) {
+        return !Failures(c->record).empty() || LostTooOften(*c, gains);
+      };
       for (int k = 0; k < options_.placebos; ++k) {
+        std::erase_if(open, done);
+        if (open.empty()) break;
         options_.Say(fmt::format("random force {} of {} with {} parameter(s)", k + 1,
                                  options_.placebos, count));
-        FoldRecord record;
-        record.before = d_.before.folds.error;
-        record.after =
-            TryForce(RandomForce(count, k % 2 == 1, d_.sizes,
-                                 options_.seed + 1000 * count + static_cast<unsigned>(k)),
-                     nullptr)
-                .error;
-        gains.push_back(Median(Gains(record)));
+        gains.push_back(GainOfPlacebo(count, k));
       }
-      for (CandidateResult& c : d_.candidates) {
-        if (size(c) == count) c.record.placebo_gains = gains;
-      }
+      for (CandidateResult* const c : alike) c->record.placebo_gains = gains;
     }
+  }
+
+  double GainOfPlacebo(std::size_t count, int k) const {
+    FoldRecord record;
+    record.before = d_.before.folds.error;
+    const std::uint64_t seed = options_.seed + 1000 * count + static_cast<unsigned>(k);
+    record.after = TryForce(RandomForce(count, k % 2 == 1, d_.sizes, seed), nullptr).error;
+    return Median(Gains(record));
+  }
+
+  bool LostTooOften(const CandidateResult& c, const std::vector<double>& placebos) const {
+    const double own = Median(Gains(c.record));
+    const auto lost = std::count_if(placebos.begin(), placebos.end(),
+                                    [own](double placebo) { return placebo >= own; });
+    return static_cast<double>(lost) > (1 - Rules{}.placebo_share) * options_.placebos + 1e-9;
   }
 
   bool Known() const { return d_.noise.known() && d_.noise.rms > 0; }

@@ -249,15 +249,17 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   return fit;
 }
 
-Vector RefitByChords(const Problem& problem, const Vector& x, const std::vector<Matrix>& J,
-                     const std::vector<bool>& use, int iterations) {
+Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector> r,
+                     const std::vector<Matrix>& J, const std::vector<bool>& use, int iterations) {
   const Eigen::Index n = x.size();
   Matrix H = Matrix::Zero(n, n);
   for (std::size_t l = 0; l < use.size(); ++l) {
     if (use[l]) H += J[l].transpose() * J[l];
   }
   Vector best = x;
-  auto r = problem.Residuals(best, use);
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) r[l].resize(0);
+  }
   double cost = SumOfSquares(r);
   for (int k = 0; k < iterations && !StopRequested(); ++k) {
     Vector g = Vector::Zero(n);

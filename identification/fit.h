@@ -42,12 +42,13 @@ struct Fit {
 Fit FitParameters(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,
                   const FitOptions& options = {});
 
-/// Gauss-Newton with a fixed Jacobian (per log, at some nearby x): each iteration is one simulation
-/// of the logs in use, steps that do not lower the cost are halved. For refits close to a known
-/// optimum. Returns the refitted x; never worse than the start on the logs in use.
+/// Gauss-Newton from x, where the residuals are r, with a fixed Jacobian (per log, at some nearby
+/// x): each iteration is one simulation of the logs in use, steps that do not lower the cost are
+/// halved. For refits close to a known optimum. Returns the refitted x; never worse than the start
+/// on the logs in use.
 Problem::Vector RefitByChords(const Problem& problem, const Problem::Vector& x,
-                              const std::vector<Problem::Matrix>& J, const std::vector<bool>& use,
-                              int iterations = 3);
+                              std::vector<Problem::Vector> r, const std::vector<Problem::Matrix>& J,
+                              const std::vector<bool>& use, int iterations = 3);
 
 /// Standard errors and correlations of a fit, allowing for residuals that are correlated in time:
 ///

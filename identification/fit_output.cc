@@ -89,6 +89,23 @@ std::vector<Replayed> Predicted(const Problem& problem, const Problem::Vector& x
   return logs;
 }
 
+std::string StartsInWords(const FitRecord& record) {
+  if (!record.starts) return "";
+  return fmt::format(" {} of {} starts end within 0.1 % of the best cost.",
+                     record.starts->Reached(), record.starts->starts.size());
+}
+
+// In the order in which they were tried; a start that diverges has no cost (null).
+nlohmann::json StartsJson(const Problem& problem, const MultiStart& all) {
+  auto json = nlohmann::json::array();
+  for (const Start& start : all.starts) {
+    json.push_back({{"cost", start.cost}, {"parameters", nlohmann::json::object()}});
+    for (Eigen::Index i = 0; i < start.x.size(); ++i)
+      json.back()["parameters"][problem.parameters()[i].name] = start.x[i];
+  }
+  return json;
+}
+
 // With what the time step adds, where there is one.
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r) {
@@ -193,6 +210,7 @@ std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
     json["force_error"] = {
         {"unit", "%"}, {"train", inverse->train}, {"validate", inverse->validate}};
   if (problem.path() == Path::kSmooth) json["at_step"] = AtStep(problem, x);
+  if (record.starts) json["starts"] = StartsJson(problem, *record.starts);
   WriteFile(folder / "fit.json", json.dump(2) + "\n");
   WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(x), {}, folder));
   WriteSimulated(e, traces, folder / "simulated");
@@ -203,7 +221,8 @@ std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
   if (held_out) title += fmt::format(", {:.4g} {} on validate", error.validate, unit);
   page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, title,
              fmt::format("{} iterations, {} simulations, {:.1f} s. {}", fit.iterations,
-                         fit.evaluations, fit.seconds, fit.message));
+                         fit.evaluations, fit.seconds, fit.message) +
+                 StartsInWords(record));
   page.Heading("Parameters");
   AddParameterTable(page, problem, fit.x, u);
   for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);

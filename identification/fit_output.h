@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "identification/multi_start.h"
 #include "identification/regressor.h"
 #include "identification/trade_off.h"
 
@@ -16,6 +17,7 @@ struct FitRecord {
   /// gets these.
   const Problem::Vector* for_step = nullptr;
   const Regression* regression = nullptr;  ///< of the inverse model
+  const MultiStart* starts = nullptr;      ///< where there were several
 };
 
 /// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder. Returns

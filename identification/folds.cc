@@ -25,14 +25,15 @@ std::vector<Fold> FoldsOf(const Experiment& e) {
 }
 
 FoldScores CrossValidate(const Problem& problem, const Problem::Vector& x,
+                         const std::vector<Problem::Vector>& r,
                          const std::vector<Problem::Matrix>& J, const std::vector<Fold>& folds) {
   FoldScores scores;
   for (const Fold& fold : folds) {
     std::vector<bool> kept = fold.left_out;
     kept.flip();
-    scores.x.push_back(RefitByChords(problem, x, J, kept));
-    const auto r = problem.Residuals(scores.x.back(), fold.left_out);
-    scores.error.push_back(problem.PooledRms(r, fold.left_out));
+    scores.x.push_back(RefitByChords(problem, x, r, J, kept));
+    const auto there = problem.Residuals(scores.x.back(), fold.left_out);
+    scores.error.push_back(problem.PooledRms(there, fold.left_out));
   }
   return scores;
 }

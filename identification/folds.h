@@ -21,9 +21,10 @@ struct FoldScores {
   std::vector<double> error;       ///< pooled RMS on what was left out
   std::vector<Problem::Vector> x;  ///< the refitted parameters
 };
-/// x, J: an optimum and the Jacobian of every log there. Each fold is refitted by Gauss-Newton from
-/// x and scored by a free simulation of the logs it left out.
+/// x, r, J: an optimum, and residuals and Jacobian of every log there. Each fold is refitted by
+/// Gauss-Newton from x and scored by a free simulation of the logs it left out.
 FoldScores CrossValidate(const Problem& problem, const Problem::Vector& x,
+                         const std::vector<Problem::Vector>& r,
                          const std::vector<Problem::Matrix>& J, const std::vector<Fold>& folds);
 
 }  // namespace continuum

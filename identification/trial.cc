@@ -220,7 +220,7 @@ void Trials::AddFolds(const Problem& problem, const std::vector<Fold>& folds,
     if (!validate[l]) J[l] = fitted.jacobian[l];
   }
   fitted.jacobian = std::move(J);
-  fitted.folds = CrossValidate(problem, fitted.fit.x, fitted.jacobian, folds);
+  fitted.folds = CrossValidate(problem, fitted.fit.x, fitted.residuals, fitted.jacobian, folds);
 }
 
 Remainder Trials::LeftBy(const Fitted& fitted) const {

@@ -49,5 +49,15 @@ TEST_F(IdentifyPath, IsRefusedWhereItCannotGo) {
                 {"--path smooth", "'hinge' rubs"});
 }
 
+TEST_F(IdentifyPath, FromSeveralStartsSaysWhereEachEnds) {
+  const auto fit = Identify({"--starts", "3", "--seed", "5"}, "start 3 of 3");
+  ASSERT_EQ(fit["starts"].size(), 3u);
+  for (const auto& start : fit["starts"])
+    EXPECT_GE(start["cost"].get<double>(), fit["cost"].get<double>());
+  EXPECT_NE(fit["starts"][1]["parameters"]["b"], fit["starts"][2]["parameters"]["b"]);
+  ExpectRefused({"identify", "experiment.yaml", "--starts", "3", "--method", "pso", "--out", "no"},
+                {"--starts", "--method lm", "pso"});
+}
+
 }  // namespace
 }  // namespace continuum

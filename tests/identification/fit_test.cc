@@ -383,7 +383,7 @@ TEST_F(FitTest, ChordsReachTheSameOptimumFromNearby) {
   const Fit fit = FitAll(problem);
   const auto J = problem.Jacobian(fit.x, problem.Residuals(fit.x, all), all);
   const std::vector<bool> two{true, true, false};
-  const auto chords = RefitByChords(problem, fit.x, J, two);
+  const auto chords = RefitByChords(problem, fit.x, problem.Residuals(fit.x, all), J, two);
   const Fit full = FitParameters(problem, fit.x, two);
   EXPECT_LE(SumOfSquares(problem.Residuals(chords, two)),
             SumOfSquares(problem.Residuals(fit.x, two)));

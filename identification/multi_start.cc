@@ -1,0 +1,70 @@
+#include "identification/multi_start.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "sim/stop.h"
+
+namespace continuum {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The same on every library.
+double Uniform(std::mt19937_64& rng) { return (static_cast<double>(rng() >> 11) + 0.5) * 0x1p-53; }
+
+double Drawn(const FreeParameter& p, double share) {
+  constexpr double kWide = 10;  // of the bounds: their sizes matter, not their difference
+  if (p.lower > 0 && p.upper > kWide * p.lower) return p.lower * std::pow(p.upper / p.lower, share);
+  return p.lower + share * (p.upper - p.lower);
+}
+
+Problem::Vector RandomStart(const Problem& problem, std::mt19937_64& rng) {
+  Problem::Vector x = problem.Start();
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = Drawn(problem.parameters()[i], Uniform(rng));
+  return problem.Clamp(x);
+}
+
+}  // namespace
+
+std::size_t MultiStart::Reached(double share) const {
+  return static_cast<std::size_t>(std::count_if(starts.begin(), starts.end(), [&](const Start& s) {
+    return s.cost <= best.cost * (1 + share);
+  }));
+}
+
+MultiStart FitFromMany(const Problem& problem, const std::vector<bool>& use, int starts,
+                       std::uint64_t seed, const FitOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::size_t before = problem.evaluations();
+  std::mt19937_64 rng(seed);
+  MultiStart all;
+  all.best.cost = kInfinity;
+  for (int k = 0; k < starts && !StopRequested(); ++k) {
+    if (options.progress) options.progress(fmt::format("start {} of {}", k + 1, starts));
+    all.starts.push_back({k == 0 ? problem.Start() : RandomStart(problem, rng), kInfinity});
+    FitOptions own = options;
+    own.hopeless = all.best.cost;
+    own.idle |= k > 0;  // far away a parameter may have none
+    try {
+      Fit fit = FitParameters(problem, all.starts.back().x, use, own);
+      all.starts.back().cost = fit.cost;
+      if (fit.cost < all.best.cost) all.best = std::move(fit);
+    } catch (const Error& error) {
+      if (error.kind() != Error::Kind::kJob) throw;
+    }
+  }
+  if (all.best.x.size() == 0) throw Error::Job("the simulation diverges from every start");
+  all.best.evaluations = problem.evaluations() - before;
+  all.best.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return all;
+}
+
+}  // namespace continuum
