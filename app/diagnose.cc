@@ -11,6 +11,7 @@
 #include "identification/extension.h"
 #include "sim/file.h"
 #include "sim/film.h"
+#include "sim/json.h"
 #include "sim/output.h"
 #include "sim/registration.h"
 #include "sim/replay.h"
@@ -24,14 +25,6 @@ struct Options {
   std::uint64_t seed = 1;
   bool video = false;
 };
-
-nlohmann::json ReadJson(const std::string& file) {
-  try {
-    return nlohmann::json::parse(ReadFile(file));
-  } catch (const nlohmann::json::exception& e) {
-    throw Error::Input(file, "JSON", e.what());
-  }
-}
 
 std::string ComparisonLine(const char* when, const nlohmann::json& d) {
   return fmt::format("{:<6} {:<12} validate {:.4g} -> {:.4g}\n", when,

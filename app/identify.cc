@@ -24,7 +24,7 @@ namespace continuum {
 namespace {
 
 struct Options {
-  std::string experiment, out, method = "lm", path = "auto";
+  std::string experiment, out, from, method = "lm", path = "auto";
   int iterations = 0;  // as the method likes
   int starts = 1;
   double cutoff = 0;
@@ -63,7 +63,8 @@ struct Fitting {
   std::optional<MultiStart> starts;
 };
 
-Fitting Run(const Options& o, const Problem& problem, const std::vector<bool>& use) {
+Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& start,
+            const std::vector<bool>& use) {
   const double soft = problem.experiment().soft;
   Fitting all;
   if (o.method == "pso") {
@@ -81,10 +82,10 @@ Fitting Run(const Options& o, const Problem& problem, const std::vector<bool>& u
     FitOptions options{.soft = soft, .progress = ShowProgress};
     options.iterations = o.iterations > 0 ? o.iterations : 50;
     if (o.starts > 1) {
-      all.starts = FitFromMany(problem, use, o.starts, o.seed, options);
+      all.starts = FitFromMany(problem, start, use, o.starts, o.seed, options);
       all.fit = all.starts->best;
     } else {
-      all.fit = FitParameters(problem, problem.Start(), use, options);
+      all.fit = FitParameters(problem, start, use, options);
     }
     if (problem.path() == Path::kSmooth && o.for_step && !StopRequested())
       all.for_step = ForStep(problem, all.fit, use, options);
@@ -139,11 +140,14 @@ void RunIdentify(const Options& o) {
   Problem problem(e, system);
   if (problem.parameters().empty())
     throw Error::Input(o.experiment, "the key 'parameters'", "none");
-  if (o.starts > 1 && o.method != "lm") throw Error::Input("--starts", "--method lm", o.method);
+  for (const auto& [option, given] :
+       {std::pair{"--starts", o.starts > 1}, {"--from", !o.from.empty()}})
+    if (given && o.method != "lm") throw Error::Input(option, "--method lm", o.method);
   const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
   if (std::find(use.begin(), use.end(), true) == use.end()) {
     throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");
   }
+  const Problem::Vector start = o.from.empty() ? problem.Start() : ValuesIn(o.from, problem);
   problem.Follow(Choose(o, problem));
   std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n", Way(o, problem),
                problem.parameters().size(), e.logs.size());
@@ -152,7 +156,7 @@ void RunIdentify(const Options& o) {
       std::fprintf(stderr, "log check: %s %s: %s\n", f.log.c_str(), f.channel.c_str(),
                    f.text.c_str());
   }
-  const Fitting all = Run(o, problem, use);
+  const Fitting all = Run(o, problem, start, use);
   EndProgress();
   const auto trade_offs =
       WriteFit(problem, all.fit, o.out,
@@ -172,6 +176,9 @@ void AddIdentify(CLI::App& app) {
   sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
   sub->add_option("--out", o->out, "folder for fit.json, fitted.xml, simulated/, report.html")
       ->required();
+  sub->add_option("--from", o->from,
+                  "fit.json to start from: go on with a fit that was interrupted, or was made "
+                  "with other logs");
   sub->add_option("--method", o->method,
                   "lm (Levenberg-Marquardt), pso (particle swarm, 20 x 40) or regressor (least "
                   "squares on the inverse model, where all joints are measured)")

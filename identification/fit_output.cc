@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "error.h"
 #include "sim/file.h"
+#include "sim/json.h"
 #include "sim/replay.h"
 
 namespace continuum {
@@ -129,6 +131,24 @@ nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x) {
 }
 
 }  // namespace
+
+Problem::Vector ValuesIn(const std::filesystem::path& fit, const Problem& problem) {
+  const nlohmann::json json = ReadJson(fit);
+  Problem::Vector x = problem.Start();
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const std::string& name = problem.parameters()[i].name;
+    bool found = false;
+    try {
+      for (const auto& p : json.at("parameters")) {
+        if (p.at("name") == name) x[i] = p.at("value").get<double>(), found = true;
+      }
+    } catch (const nlohmann::json::exception& e) {
+      throw Error::Input(fit.string(), "a fit.json", e.what());
+    }
+    if (!found) throw Error::Input(fit.string(), "a value of the parameter '" + name + "'", "none");
+  }
+  return problem.Clamp(x);
+}
 
 nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
                               const Uncertainty& u) {

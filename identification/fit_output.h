@@ -25,6 +25,10 @@ struct FitRecord {
 std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
                                const std::filesystem::path& folder, const FitRecord& record = {});
 
+/// The values that a fit.json has for the parameters of a problem, within their bounds. Throws
+/// Error when it is none or lacks one.
+Problem::Vector ValuesIn(const std::filesystem::path& fit, const Problem& problem);
+
 /// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}], and fine_step, the value
 /// that a fine time step would give, where that is known; no standard error is written as 0.
 nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,

@@ -39,8 +39,9 @@ std::size_t MultiStart::Reached(double share) const {
   }));
 }
 
-MultiStart FitFromMany(const Problem& problem, const std::vector<bool>& use, int starts,
-                       std::uint64_t seed, const FitOptions& options) {
+MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
+                       const std::vector<bool>& use, int starts, std::uint64_t seed,
+                       const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t before = problem.evaluations();
   std::mt19937_64 rng(seed);
@@ -48,7 +49,7 @@ MultiStart FitFromMany(const Problem& problem, const std::vector<bool>& use, int
   all.best.cost = kInfinity;
   for (int k = 0; k < starts && !StopRequested(); ++k) {
     if (options.progress) options.progress(fmt::format("start {} of {}", k + 1, starts));
-    all.starts.push_back({k == 0 ? problem.Start() : RandomStart(problem, rng), kInfinity});
+    all.starts.push_back({k == 0 ? x : RandomStart(problem, rng), kInfinity});
     FitOptions own = options;
     own.hopeless = all.best.cost;
     own.idle |= k > 0;  // far away a parameter may have none

@@ -13,7 +13,7 @@ struct Start {
   double cost = 0;  ///< infinite where the simulation diverges at the start
 };
 
-/// A fit from several starts: the problem's own, then random points within the bounds, in equal
+/// A fit from several starts: x, then random points within the bounds, in equal
 /// ratios where these span more than a factor of ten. Those that cannot come near the best any more
 /// give up.
 struct MultiStart {
@@ -24,7 +24,8 @@ struct MultiStart {
   std::size_t Reached(double share = 1e-3) const;
 };
 /// Repeats exactly for a seed. Throws Error as FitParameters, and when every start diverges.
-MultiStart FitFromMany(const Problem& problem, const std::vector<bool>& use, int starts,
-                       std::uint64_t seed, const FitOptions& options = {});
+MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
+                       const std::vector<bool>& use, int starts, std::uint64_t seed,
+                       const FitOptions& options = {});
 
 }  // namespace continuum

@@ -59,5 +59,18 @@ TEST_F(IdentifyPath, FromSeveralStartsSaysWhereEachEnds) {
                 {"--starts", "--method lm", "pso"});
 }
 
+TEST_F(IdentifyPath, GoesOnFromAnEarlierFit) {
+  const auto short_one = Identify({"--iterations", "50"}, "iteration");
+  const auto on = Identify({"--from", "out/fit.json"}, "iteration");
+  EXPECT_EQ(on["trace"][0], short_one["cost"]);
+  EXPECT_LE(on["iterations"].get<int>(), 2);
+  files_.Write("other.json", R"({"parameters": [{"name": "mass", "value": 1}]})");
+  ExpectRefused({"identify", "experiment.yaml", "--from", "other.json", "--out", "no"},
+                {"other.json", "parameter 'b'"});
+  files_.Write("broken.json", "{");
+  ExpectRefused({"identify", "experiment.yaml", "--from", "broken.json", "--out", "no"},
+                {"broken.json", "JSON"});
+}
+
 }  // namespace
 }  // namespace continuum

@@ -39,7 +39,7 @@ TEST_F(MultiStartTest, FindsWhatOneStartMisses) {
   const Problem problem = Ringing();
   const Fit one = FitParameters(problem, problem.Start(), problem.TrainLogs());
   EXPECT_GT(std::abs(one.x[0] - truth_.bob), 0.5 * truth_.bob);
-  const MultiStart many = FitFromMany(problem, problem.TrainLogs(), 12, 1);
+  const MultiStart many = FitFromMany(problem, problem.Start(), problem.TrainLogs(), 12, 1);
   EXPECT_NEAR(many.best.x[0], truth_.bob, 0.02 * truth_.bob);
   EXPECT_LT(many.best.cost, 0.05 * one.cost);
   ASSERT_EQ(many.starts.size(), 12u);
@@ -50,9 +50,9 @@ TEST_F(MultiStartTest, FindsWhatOneStartMisses) {
 
 TEST_F(MultiStartTest, RepeatsForASeedAndOtherwiseNot) {
   const Problem problem = Ringing();
-  const auto first = FitFromMany(problem, problem.TrainLogs(), 3, 7);
-  const auto again = FitFromMany(problem, problem.TrainLogs(), 3, 7);
-  const auto other = FitFromMany(problem, problem.TrainLogs(), 3, 8);
+  const auto first = FitFromMany(problem, problem.Start(), problem.TrainLogs(), 3, 7);
+  const auto again = FitFromMany(problem, problem.Start(), problem.TrainLogs(), 3, 7);
+  const auto other = FitFromMany(problem, problem.Start(), problem.TrainLogs(), 3, 8);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(first.starts[k].x, again.starts[k].x);
     EXPECT_EQ(first.starts[k].cost, again.starts[k].cost);
@@ -66,7 +66,8 @@ TEST_F(MultiStartTest, StartsSpreadInEqualRatiosOverWideBounds) {
   FitOptions options;
   options.iterations = 1;
   int small = 0;
-  for (const Start& start : FitFromMany(problem, problem.TrainLogs(), 40, 3, options).starts) {
+  for (const Start& start :
+       FitFromMany(problem, problem.Start(), problem.TrainLogs(), 40, 3, options).starts) {
     EXPECT_GE(start.x[0], 0.1);
     EXPECT_LE(start.x[0], 3);
     small += start.x[0] < 0.55;  // the middle of the ratios
@@ -78,7 +79,7 @@ TEST_F(MultiStartTest, AParameterWithoutEffectIsRefusedAsFromOneStart) {
   const Problem problem = Ringing(
       "  - {name: east, target: option, attribute: 'gravity[1]', initial: 0, lower: -1, upper: "
       "1}\n");
-  EXPECT_THROW(FitFromMany(problem, problem.TrainLogs(), 3, 1), Error);
+  EXPECT_THROW(FitFromMany(problem, problem.Start(), problem.TrainLogs(), 3, 1), Error);
 }
 
 }  // namespace

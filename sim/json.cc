@@ -1,0 +1,16 @@
+#include "sim/json.h"
+
+#include "error.h"
+#include "sim/file.h"
+
+namespace continuum {
+
+nlohmann::json ReadJson(const std::filesystem::path& file) {
+  try {
+    return nlohmann::json::parse(ReadFile(file));
+  } catch (const nlohmann::json::exception& e) {
+    throw Error::Input(file.string(), "JSON", e.what());
+  }
+}
+
+}  // namespace continuum
