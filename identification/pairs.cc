@@ -155,13 +155,17 @@ class Search {
   std::optional<Pair> Best() {
     const auto pairs = All();
     if (pairs.empty()) return {};
-    Verdict verdict = JudgeLikelihoods(RecordsOf(pairs), 1, 0);
+    const auto records = RecordsOf(pairs);
+    Verdict verdict = JudgeLikelihoods(records, 1, 0);
     if (verdict.named.empty()) return {};
     const Fitting& best = pairs[verdict.named.front()];
     if (!best.b->fitted.complete) return {};  // those before it were no two causes
     const Round& round = tried_[best.base].round;
     const LackOfFit lack = round.LackOf(*best.b);
-    if (lack.smallest() < LikelihoodRules{}.lack && (excused_ || !WithinStep(*best.b))) return {};
+    LikelihoodRules rules;
+    rules.excused = lack.smallest() < rules.lack && !excused_ && WithinStep(*best.b);
+    verdict = JudgeLikelihoods(records, lack.smallest(), 0, rules);
+    if (verdict.named.empty()) return {};
     const auto equivalent = OthersForFirst(pairs, verdict);
     auto tried = List(pairs);
     std::vector<std::size_t> seconds;

@@ -265,17 +265,24 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& p
   return Append(null.fit.x, own);
 }
 
-double Trials::StepEffect(const Problem& problem, const Fitted& fitted) const {
+std::vector<Vector> Trials::StepColumn(const Fitted& fitted) const {
   const auto train = TrainLogs(*experiment);
   std::vector<Vector> column(train.size());
   for (std::size_t l = 0; l < column.size(); ++l) {
     if (train[l]) column[l] = fitted.step[l].col(0);
   }
-  return problem.PooledRms(column, train);
+  return column;
+}
+
+double Trials::StepEffect(const Problem& problem, const Fitted& fitted) const {
+  return problem.PooledRms(StepColumn(fitted), TrainLogs(*experiment));
 }
 
 bool Trials::WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const {
-  return Beyond(fitted.error.train, noise.rms) <= 1.25 * StepEffect(problem, fitted);
+  constexpr double kSeen = 15;  // twice the log-likelihood: less could not be told from noise
+  const double seen = whitening.Stack(StepColumn(fitted), TrainLogs(*experiment)).squaredNorm();
+  return seen > kSeen &&
+         Beyond(fitted.error.train, noise.rms) <= 1.25 * StepEffect(problem, fitted);
 }
 
 LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& extra,

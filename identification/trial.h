@@ -35,8 +35,8 @@ struct Trials {
                             const Explained& explained) const;
   /// How far the trajectories at the time step h and at h/4 are apart [pooled unit].
   double StepEffect(const Problem& problem, const Fitted& fitted) const;
-  /// Whether what a candidate leaves above the noise is no more than what its time step adds: then
-  /// it is no sign of another cause.
+  /// Whether what a candidate leaves above the noise is no more than what its time step adds, and
+  /// that is enough to be seen in the noise: then it is no sign of another cause.
   bool WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const;
   /// Tests of what no candidate covers; inflation: of noise along any direction.
   LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
@@ -44,6 +44,7 @@ struct Trials {
 
  private:
   FitOptions Options() const;
+  std::vector<Problem::Vector> StepColumn(const Fitted& fitted) const;
 };
 
 /// What an error has beyond an independent part of it: √(a² − b²), 0 where the part is larger.

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+
+#include "models/annelida/demo.h"
+
+namespace continuum {
+
+/// The paper's identification: eight repetitions of bending in the plane, four to the left and four
+/// to the right, of which 1, 2, 5 and 8 are for fitting. Each pulls one cable to about 90 degrees
+/// in 1 s, holds it for 0.5 s, and lets go for 2 s; joint rates are measured too. Made by the chain
+/// written out with the robot's own parameters.
+std::vector<DemoLog> RecordReleases(const AnnelidaParameters& p);
+
+/// Their experiment: stiffness, joint friction and cable friction, which start 30 to 60 % off.
+std::string ReleasesExperiment(const std::filesystem::path& model);
+
+}  // namespace continuum
