@@ -39,6 +39,7 @@ int Main(int argc, char** argv) {
       {"stiff_flop",
        [](const auto& file) { return stiff_flop::ModuleMjcf(stiff_flop::Robot::Read(file)); }},
       {"spa", [](const auto& file) { return SpaMjcf(ReadSpa(file)); }},
+      {"spa_free", [](const auto& file) { return SpaMjcf(ReadSpa(file), {.evenness = 1}); }},
       {"spa_series", [](const auto& file) { return SpaMjcf(ReadSpa(file), {.series = 2}); }}};
 
   CLI::App app{"Writes the MJCF of a robot from its parameters"};

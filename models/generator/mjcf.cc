@@ -203,6 +203,16 @@ void Mjcf::AddCoupling(const std::string& joint, const std::string& leader, doub
   equality->solimp[0] = equality->solimp[1] = 0.9999;
 }
 
+void Mjcf::AddSpring(const std::vector<std::pair<std::string, double>>& joints, double stiffness,
+                     double damping) {
+  mjsTendon* const tendon = mjs_addTendon(spec_.get(), nullptr);
+  tendon->stiffness[0] = Rounded(stiffness);
+  tendon->damping[0] = Rounded(damping);
+  for (const auto& [joint, factor] : joints) {
+    mjs_wrapJoint(tendon, joint.c_str(), Rounded(factor));
+  }
+}
+
 mjsSite* Mjcf::AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius) {
   mjsSite* const site = mjs_addSite(body, nullptr);
   Name(site->element, name);

@@ -3,6 +3,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/mujoco.h"
@@ -62,6 +63,9 @@ class Mjcf {
                     double armature);
   /// Keeps joint = ratio * leader, as hard as the step allows.
   void AddCoupling(const std::string& joint, const std::string& leader, double ratio);
+  /// A spring and a damper on Σ c q over joints and their factors c, at rest where the sum is zero.
+  void AddSpring(const std::vector<std::pair<std::string, double>>& joints, double stiffness,
+                 double damping);
   mjsSite* AddSite(mjsBody* body, const std::string& name, const Point& pos, double radius);
   void AddCylinder(mjsBody* body, const Point& from, const Point& to, double radius,
                    const std::string& material);

@@ -1,5 +1,7 @@
 #include "models/generator/soft_segment.h"
 
+#include <cmath>
+
 #include "sim/file.h"
 
 namespace continuum {
@@ -14,7 +16,7 @@ mjsBody* SoftChain::Add(mjsBody* base, const std::string& base_name) {
   mjsBody* link = base;
   for (int k = 0; k <= n_; ++k) link = AddLink(link, k);
   mjcf_.AddSite(link, prefix_ + "tip", {0, 0, 0}, 0.003);
-  Couple();
+  std::isinf(s_.evenness) ? Couple() : Spread();
   for (int i = 1; i <= 3; ++i) {
     mjcf_.AddPressure(Named("p", i), Named("stretch", 1), s_.lag, s_.supply);
   }
@@ -71,6 +73,26 @@ void SoftChain::Couple() {
       mjcf_.AddCoupling(Named("bend", k, axis), Named("bend", 1, axis), AtEnd(k) ? 0.5 : 1);
     }
     if (k > 1) mjcf_.AddCoupling(Named("stretch", k), Named("stretch", 1), 1);
+  }
+}
+
+void SoftChain::Spread() {
+  const auto& [L0, d, r_ch, x_m, y_m, A, d_theta, d_dL, k_theta, k_theta3, k_dL1, k_dL3] = s_.law;
+  Spread("bend", "_x", 0, k_theta * d * d, d_theta * d * d);
+  Spread("bend", "_y", 0, k_theta * d * d, d_theta * d * d);
+  Spread("stretch", "", 1, k_dL1, d_dL);
+}
+
+void SoftChain::Spread(const std::string& stem, const std::string& axis, int first,
+                       double stiffness, double damping) {
+  const auto share = [&](int k) { return (first == 0 && AtEnd(k) ? 0.5 : 1.0) / n_; };
+  for (int k = first; k <= n_; ++k) {
+    std::vector<std::pair<std::string, double>> uneven;
+    for (int j = first; j <= n_; ++j) {
+      uneven.emplace_back(Named(stem, j, axis), (j == k ? 1 : 0) - share(k));
+    }
+    const double times = s_.evenness / share(k);
+    mjcf_.AddSpring(uneven, times * stiffness, times * damping);
   }
 }
 

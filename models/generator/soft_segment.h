@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "effects/pcc_segment.h"
@@ -16,6 +17,8 @@ struct SoftSegment {
   double supply;          ///< largest pressure [Pa]
   int links;              ///< N, even
   double rim, fibre;      ///< half thickness of the end plates and rings, only drawn [m]
+  /// s: how many times the body's own stiffness keeps the shares equal; infinite: they are equal.
+  double evenness = std::numeric_limits<double>::infinity();
 
   double length() const { return law[0]; }
   double radius() const { return law[1]; }  ///< drawn, the law's d
@@ -30,7 +33,19 @@ struct SoftSegment {
 /// Simpson's weights, m/(3N) (1, 4, 2, .., 4, 1), so that a straight chain has the mass, centre and
 /// stretching inertia of a uniform line, and its bending inertia m L²/20 up to 0.7/N⁴. Hinges have
 /// the armature (m/N)(L0/N)²/12, which adds 1.7/N⁴ to it; without any, links of point masses could
-/// turn freely. Linear joint equalities keep the shares equal.
+/// turn freely.
+///
+/// Constant curvature is enforced, s = ∞: linear joint equalities keep the shares equal. Or it is
+/// free, s > 0: with the share w_k of link k in the sum X = Σ x_k of a coordinate (u, v or δL),
+///
+///   V = V_law(X) + s (k/2) Σ_k (x_k − w_k X)²/w_k,   damping alike with d, Σ_k w_k = 1         (1)
+///
+/// by fixed tendons over the joints; k, d: the law's k_theta d², d_theta d² or k_dL1, d_dL. Equal
+/// shares cost nothing, so that s leaves the law alone. Because Σ x_k²/w_k = X² + Σ (x_k − w_k
+/// X)²/w_k, s = 1 is the uniform elastic body: springs k/w_k in a row. The law's own cubic terms
+/// stay on X. Uneven shares have the body's lag d/k at any s, and implicitfast takes dampers of
+/// tendons implicitly: it is stable up to steps near 2 d/k, for s = 1 and many links somewhat
+/// below.
 ///
 /// Names begin with the prefix: link<k>, p1 .. p3, tip (a site at the end), tip_pos (sensor).
 class SoftChain {
@@ -56,6 +71,9 @@ class SoftChain {
   mjsBody* AddLink(mjsBody* parent, int k);
   void Draw(mjsBody* link, int k, double pitch);
   void Couple();
+  void Spread();
+  void Spread(const std::string& stem, const std::string& axis, int first, double stiffness,
+              double damping);
 
   Mjcf& mjcf_;
   const SoftSegment& s_;

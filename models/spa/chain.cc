@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "models/generator/soft_segment.h"
+#include "sim/file.h"
 
 namespace continuum {
 namespace {
@@ -13,13 +14,15 @@ constexpr double kSupply = 75e3;   // [Pa]
 constexpr double kSpacing = 0.16;  // of arms in a row [m]
 
 const char* const kComment =
-    "Written by: continuum_generate spa (or spa_series) models/spa/spa.yaml. Values, their sources "
+    "Written by: continuum_generate spa (or spa_free, spa_series) models/spa/spa.yaml. Values, "
+    "their sources "
     "and conventions: spa.yaml and README.md";
 
-SoftSegment Actuator(const SpaFile& file, int links) {
+SoftSegment Actuator(const SpaFile& file, const SpaLayout& layout) {
   const SpaParameters<double>& p = file.parameters;
   const bool tip = file.options.actuation == SpaActuation::kTip;
-  return {p.Law(), tip ? "tip" : "volume", p.m, p.T_PT1, kSupply, links, 0.003, 0.0012};
+  return {p.Law(), tip ? "tip" : "volume", p.m, p.T_PT1, kSupply, layout.links, 0.003,
+          0.0012,  layout.evenness};
 }
 
 void AddScene(Mjcf& mjcf, double length) {
@@ -37,6 +40,9 @@ void Check(const SpaLayout& layout) {
     throw Error::Input("soft actuator", "at least one in series and row",
                        std::to_string(std::min(layout.series, layout.row)));
   }
+  if (!(layout.evenness > 0)) {
+    throw Error::Input("soft actuator: evenness", "above 0", Decimal(layout.evenness));
+  }
 }
 
 }  // namespace
@@ -44,7 +50,7 @@ void Check(const SpaLayout& layout) {
 std::string SpaMjcf(const SpaFile& file, const SpaLayout& layout) {
   Check(layout);
   const SpaParameters<double>& p = file.parameters;
-  const SoftSegment actuator = Actuator(file, layout.links);
+  const SoftSegment actuator = Actuator(file, layout);
   const bool alone = layout.series * layout.row == 1;
   Mjcf mjcf("spa", kComment);
   mjcf.spec().option.timestep = 0.002;

@@ -5,10 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "engine.h"
 #include "error.h"
 #include "sim/file.h"
-#include "sim/mujoco.h"
+#include "sim/system.h"
 
 namespace continuum {
 namespace {
@@ -39,26 +38,9 @@ std::string Swinging(std::string xml) {
   return xml;
 }
 
-struct Machine {
-  Owned<mjModel> model;
-  Owned<mjData> data;
-};
-
-Machine Compile(const std::string& xml) {
-  static const bool once = (RegisterEffects(), true);
-  (void)once;
-  char error[1000] = "";
-  const Owned<mjSpec> spec(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
-  if (!spec) throw Error::Input("soft actuator", error);
-  Machine machine{Owned<mjModel>(mj_compile(spec.get(), nullptr)), nullptr};
-  if (!machine.model) throw Error::Input("soft actuator", mjs_getError(spec.get()));
-  machine.data.reset(mj_makeData(machine.model.get()));
-  return machine;
-}
-
 Machine Build(const SpaFile& file, const SpaTrial& trial) {
-  const std::string xml = SpaMjcf(file, {.links = trial.links});
-  Machine machine = Compile(trial.moving ? Swinging(xml) : xml);
+  const std::string xml = SpaMjcf(file, {.links = trial.links, .evenness = trial.evenness});
+  Machine machine = System::Parse(trial.moving ? Swinging(xml) : xml).Build();
   mjModel& m = *machine.model;
   m.opt.timestep = trial.timestep;
   m.opt.tolerance = 0;  // it is scaled by the mean inertia, which the base's armature spoils
@@ -103,11 +85,15 @@ struct Distance {
 };
 
 void StepTo(const Machine& machine, double time) {
-  while (machine.data->time < time - 1e-9) mj_step(machine.model.get(), machine.data.get());
-  const bool bad = machine.data->warning[mjWARN_BADQACC].number > 0 ||
-                   machine.data->warning[mjWARN_BADQPOS].number > 0 ||
-                   machine.data->warning[mjWARN_BADQVEL].number > 0;
-  if (bad) throw Error::Job(fmt::format("soft actuator: the chain diverged at {:.4g} s", time));
+  const mjData& d = *machine.data;
+  while (d.time < time - 1e-9) {
+    mj_step(machine.model.get(), machine.data.get());
+    // MuJoCo then starts anew at time zero.
+    const bool bad = d.warning[mjWARN_BADQACC].number > 0 || d.warning[mjWARN_BADQPOS].number > 0 ||
+                     d.warning[mjWARN_BADQVEL].number > 0;
+    if (bad)
+      throw Error::Job(fmt::format("soft actuator: the chain diverged before {:.4g} s", time));
+  }
 }
 
 }  // namespace

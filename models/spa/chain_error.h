@@ -13,6 +13,7 @@ struct SpaTrial {
   double timestep = 2e-4;  ///< at most 1 ms or one or two of them [s]
   bool rk4 = true;         ///< else as the MJCF says
   double duration = 1;     ///< [s]
+  double evenness = std::numeric_limits<double>::infinity();  ///< SoftChain's s
 };
 
 /// Largest distance between the two over the trial, as a share of the range that the quantity's
