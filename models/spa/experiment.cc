@@ -4,8 +4,6 @@
 
 #include <Eigen/LU>
 
-#include "models/spa/filter.h"
-
 namespace continuum {
 namespace {
 
@@ -28,8 +26,8 @@ Series<N> PerChannel(const Series<N>& series, Fn&& fn) {
 }
 
 template <int N>
-Series<N> Filtered(const Series<N>& series, double cutoff, double period) {
-  return PerChannel<N>(series, [&](const auto& x) { return ZeroPhase(x, cutoff, period); });
+Series<N> Filtered(const Series<N>& series, const SpaFilter& filter, double period) {
+  return PerChannel<N>(series, [&](const auto& x) { return filter(x, period); });
 }
 
 Series<3> Rate(const Series<3>& series, double period) {
@@ -62,12 +60,12 @@ SpaRecording SpaRecordStep(const Spa<double>& spa, const Vector3d& pressure, con
 }
 
 SpaMotion SpaRegain(const PccSegment<double>& segment, const SpaRecording& recording,
-                    double cutoff) {
+                    const SpaFilter& filter) {
   const double period = recording.period;
-  const Series<3> tip = Filtered<3>(recording.tip, cutoff, period);
-  const Series<3> velocity = Filtered<3>(Rate(tip, period), cutoff, period);
+  const Series<3> tip = Filtered<3>(recording.tip, filter, period);
+  const Series<3> velocity = Filtered<3>(Rate(tip, period), filter, period);
   const Series<3> acceleration = Rate(velocity, period);
-  const Series<6> wrench = Filtered<6>(recording.wrench, cutoff, period);
+  const Series<6> wrench = Filtered<6>(recording.wrench, filter, period);
   SpaMotion motion;
   for (std::size_t k = kSpaTrim; k + kSpaTrim < tip.size(); ++k) {
     const Vec<double, 3> delta = PccFromTip(segment, {tip[k][0], tip[k][1], tip[k][2]});
@@ -87,7 +85,8 @@ SpaMotion SpaRegain(const PccSegment<double>& segment, const SpaRecording& recor
   return motion;
 }
 
-std::vector<Vector3d> SpaChamberPressure(const SpaRecording& recording, double lag, double cutoff) {
+std::vector<Vector3d> SpaChamberPressure(const SpaRecording& recording, double lag,
+                                         const SpaFilter& filter) {
   Series<3> chamber{recording.pressure[0]};
   for (std::size_t k = 0; k + 1 < recording.pressure.size(); ++k) {
     Vector3d next;
@@ -96,7 +95,7 @@ std::vector<Vector3d> SpaChamberPressure(const SpaRecording& recording, double l
     }
     chamber.push_back(next);
   }
-  const Series<3> smooth = Filtered<3>(chamber, cutoff, recording.period);
+  const Series<3> smooth = Filtered<3>(chamber, filter, recording.period);
   return {smooth.begin() + kSpaTrim, smooth.end() - kSpaTrim};
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "models/spa/filter.h"
 #include "models/spa/response.h"
 
 namespace continuum {
@@ -39,13 +40,13 @@ SpaRecording SpaRecordStep(const Spa<double>& spa, const Eigen::Vector3d& pressu
 
 /// Filters the tip without phase shift, differentiates, filters and differentiates again, and maps
 /// position, velocity and acceleration to δ. The shape coordinates are regular when straight, so
-/// nothing near there is left out. cutoff [Hz].
+/// nothing near there is left out.
 SpaMotion SpaRegain(const PccSegment<double>& segment, const SpaRecording& recording,
-                    double cutoff);
+                    const SpaFilter& filter);
 
 /// Pressures in the chambers [Pa] from those in the lines, lagging by lag [s] and then filtered and
 /// cut as the motion is.
 std::vector<Eigen::Vector3d> SpaChamberPressure(const SpaRecording& recording, double lag,
-                                                double cutoff);
+                                                const SpaFilter& filter);
 
 }  // namespace continuum

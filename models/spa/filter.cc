@@ -33,28 +33,55 @@ struct Butterworth {
   }
 };
 
-}  // namespace
-
-std::vector<double> ZeroPhase(const std::vector<double>& signal, double cutoff, double period) {
+void Check(const std::vector<double>& signal, double cutoff, double period) {
   if (!(cutoff > 0 && cutoff < 0.5 / period)) {
     throw Error::Input("filter", "a cutoff in (0, " + Decimal(0.5 / period) + ") Hz",
                        Decimal(cutoff));
   }
+  if (signal.size() < 2) {
+    throw Error::Input("filter", "at least 2 samples", std::to_string(signal.size()));
+  }
+}
+
+// Continued at both ends by point reflection.
+std::vector<double> Padded(const std::vector<double>& signal, std::size_t padding) {
   const std::size_t n = signal.size();
-  if (n < 2) throw Error::Input("filter", "at least 2 samples", std::to_string(n));
-  const auto padding = std::min(n - 1, static_cast<std::size_t>(std::ceil(3 / (cutoff * period))));
   std::vector<double> x;
   x.reserve(n + 2 * padding);
   for (std::size_t i = padding; i > 0; --i) x.push_back(2 * signal[0] - signal[i]);
   x.insert(x.end(), signal.begin(), signal.end());
   for (std::size_t i = 1; i <= padding; ++i) x.push_back(2 * signal[n - 1] - signal[n - 1 - i]);
+  return x;
+}
 
+}  // namespace
+
+std::vector<double> ZeroPhase(const std::vector<double>& signal, double cutoff, double period) {
+  Check(signal, cutoff, period);
+  const auto padding =
+      std::min(signal.size() - 1, static_cast<std::size_t>(std::ceil(3 / (cutoff * period))));
+  std::vector<double> x = Padded(signal, padding);
   const Butterworth filter(cutoff, period);
   for (int pass = 0; pass < 2; ++pass) {
     filter.Run(x);
     std::reverse(x.begin(), x.end());
   }
   return {x.begin() + static_cast<long>(padding), x.end() - static_cast<long>(padding)};
+}
+
+std::vector<double> MovingAverage(const std::vector<double>& signal, double cutoff, double period) {
+  Check(signal, cutoff, period);
+  constexpr double kHalf = 0.6033545644;  // sin(π x)/(π x) = 1/2
+  const double around = std::round((kHalf / (cutoff * period) - 1) / 2);
+  const auto side = std::min(signal.size() - 1, static_cast<std::size_t>(std::max(around, 0.0)));
+  const std::vector<double> x = Padded(signal, side);
+  std::vector<double> mean(signal.size());
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    double sum = 0;
+    for (std::size_t i = 0; i <= 2 * side; ++i) sum += x[k + i];
+    mean[k] = sum / double(2 * side + 1);
+  }
+  return mean;
 }
 
 std::vector<double> Differentiate(const std::vector<double>& signal, double period) {

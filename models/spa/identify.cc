@@ -30,8 +30,8 @@ double Mass(const Spa<double>& spa, const std::vector<SpaTrial>& trials) {
 class Inner {
  public:
   Inner(const SpaParameters<double>& known, const SpaOptions& options,
-        const std::vector<SpaTrial>& trials, double mass, double cutoff)
-      : known_(known), options_(options), trials_(trials), cutoff_(cutoff) {
+        const std::vector<SpaTrial>& trials, double mass, const SpaFilter& filter)
+      : known_(known), options_(options), trials_(trials), filter_(filter) {
     known_.A = 1;
     const Spa<double> spa(known_, options_);
     const SpaBase<double> base = SpaBase<double>::Hanging();
@@ -71,7 +71,7 @@ class Inner {
     Vector6 right = Vector6::Zero();
     double square = 0;
     for (std::size_t i = 0; i < trials_.size(); ++i) {
-      const auto pressure = SpaChamberPressure(trials_[i].recording, p[2], cutoff_);
+      const auto pressure = SpaChamberPressure(trials_[i].recording, p[2], filter_);
       for (std::size_t k = 0; k < columns_[i].size(); ++k) {
         const Eigen::Vector3d force = spa.Actuation(trials_[i].motion.state[k].delta, pressure[k]);
         right += columns_[i][k].transpose() * force;
@@ -98,7 +98,7 @@ class Inner {
   SpaParameters<double> known_;
   SpaOptions options_;
   const std::vector<SpaTrial>& trials_;
-  double cutoff_;
+  SpaFilter filter_;
   std::vector<std::vector<Columns>> columns_;
   Vector6 scale_;
   Eigen::LLT<Matrix6> factor_;
@@ -109,12 +109,12 @@ bool Feasible(const Vector6& beta) { return beta.head<5>().minCoeff() > 0; }
 }  // namespace
 
 SpaParameters<double> SpaIdentify(const SpaParameters<double>& known, const SpaOptions& options,
-                                  const std::vector<SpaTrial>& trials, double cutoff,
+                                  const std::vector<SpaTrial>& trials, const SpaFilter& filter,
                                   const SwarmOptions& swarm) {
   SpaParameters<double> found = known;
   found.m = Mass(Spa<double>(known, options), trials);  // step 1
 
-  const Inner inner(known, options, trials, found.m, cutoff);
+  const Inner inner(known, options, trials, found.m, filter);
   const double penalty = inner.Penalty();
   const auto best = Swarm<3>(  // step 2
       {-5e-3, -5e-3, 0}, {5e-3, 5e-3, 30e-3},

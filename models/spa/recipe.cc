@@ -36,7 +36,7 @@ std::vector<SpaTrial> Record(const Spa<double>& spa, const std::vector<Vector3d>
   for (const Vector3d& step : steps) {
     const SpaRecording recording =
         SpaRecordStep(spa, step, recipe.noise, first_seed + unsigned(trials.size()));
-    trials.push_back({recording, SpaRegain(spa.parameters().Segment(), recording, recipe.cutoff)});
+    trials.push_back({recording, SpaRegain(spa.parameters().Segment(), recording, recipe.filter)});
   }
   return trials;
 }
@@ -83,14 +83,14 @@ std::vector<SpaError> Errors(const std::vector<Channel>& channels) {
 // The nine rows of (16): the base wrench against the sensor, the forces on δ against the actuation
 // by the measured pressures.
 std::vector<SpaError> InverseErrors(const Spa<double>& model, const std::vector<SpaTrial>& trials,
-                                    double cutoff) {
+                                    const SpaFilter& filter) {
   std::vector<Channel> channels;
   for (const char* name : {"f_x", "f_y", "f_z"}) channels.emplace_back(name, "N²", 1);
   for (const char* name : {"m_x", "m_y", "m_z"}) channels.emplace_back(name, "(N mm)²", 1e3);
   for (const char* name : {"τ_Δx", "τ_Δy", "τ_δL"}) channels.emplace_back(name, "N²", 1);
   const SpaBase<double> base = SpaBase<double>::Hanging();
   for (const auto& [recording, motion] : trials) {
-    const auto pressure = SpaChamberPressure(recording, model.parameters().T_PT1, cutoff);
+    const auto pressure = SpaChamberPressure(recording, model.parameters().T_PT1, filter);
     for (std::size_t k = 0; k < motion.state.size(); ++k) {
       const auto left = model.InverseDynamics(motion.state[k], motion.acceleration[k], base);
       const Vector3d actuation = model.Actuation(motion.state[k].delta, pressure[k]);
@@ -204,13 +204,13 @@ SpaRecipeResult RunSpaRecipe(const SpaFile& truth, const SpaRecipe& recipe) {
   swarm.progress = recipe.progress;
   SpaRecipeResult result;
   result.truth = truth.parameters;
-  result.found = SpaIdentify(truth.parameters, truth.options, train, recipe.cutoff, swarm);
+  result.found = SpaIdentify(truth.parameters, truth.options, train, recipe.filter, swarm);
 
   const Spa<double> model(result.found, truth.options);
-  const auto on_train = InverseErrors(model, train, recipe.cutoff);
+  const auto on_train = InverseErrors(model, train, recipe.filter);
   // As in the paper, only what the identification used is shown on its data.
   for (const std::size_t i : {2, 6, 7, 8}) result.identification.push_back(on_train[i]);
-  result.validation = InverseErrors(model, validate, recipe.cutoff);
+  result.validation = InverseErrors(model, validate, recipe.filter);
   result.simulation = SimulationErrors(model, validate);
   result.differences = Differences(truth);
   return result;

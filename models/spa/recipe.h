@@ -11,7 +11,7 @@ namespace continuum {
 struct SpaRecipe {
   SpaNoise noise;
   unsigned seed = 1;
-  double cutoff = 60;  ///< of the zero-phase filter [Hz]
+  SpaFilter filter = 60;
   std::function<void(int done, int of)> progress = [](int, int) {};
 };
 

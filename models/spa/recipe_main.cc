@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -28,9 +29,12 @@ int Main(int argc, char** argv) {
   SpaRecipe recipe;
   app.add_option("--parameters", file, "parameters of the true model")->capture_default_str();
   app.add_option("--seed", recipe.seed, "seed of noise and swarm")->capture_default_str();
-  app.add_option("--cutoff", recipe.cutoff, "of the zero-phase filter [Hz]")
+  app.add_option("--cutoff", recipe.filter.cutoff, "of the zero-phase filter [Hz]")
       ->check(CLI::Range(20.0, 400.0))
       ->capture_default_str();
+  app.add_option("--filter", recipe.filter.kind, "butterworth, or average as in the paper")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SpaFilter::Kind>{
+          {"butterworth", SpaFilter::Kind::kButterworth}, {"average", SpaFilter::Kind::kAverage}}));
   app.add_option("--out", out, "write the tables to this file instead of stdout");
   try {
     app.parse(argc, argv);

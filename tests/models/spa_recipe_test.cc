@@ -40,6 +40,26 @@ TEST(ZeroPhase, KeepsAConstant) {
   }
 }
 
+TEST(MovingAverage, ScalesASineByTheMeanOfItsElevenSamplesWithoutShift) {
+  const double period = 1e-3;
+  for (const double f : {5.0, 60.0, 150.0}) {
+    std::vector<double> x;
+    for (int k = 0; k < 400; ++k) x.push_back(std::sin(2 * std::numbers::pi * f * period * k + 1));
+    const auto y = MovingAverage(x, 60, period);
+    const double half = std::numbers::pi * f * period;
+    const double gain = std::sin(11 * half) / (11 * std::sin(half));
+    EXPECT_NEAR(y[200], gain * x[200], 1e-12) << f;
+    EXPECT_NEAR(y[203], gain * x[203], 1e-12) << f;
+  }
+  EXPECT_THROW(MovingAverage({1, 2, 3}, 600, period), Error);
+}
+
+TEST(MovingAverage, KeepsALineToItsEnds) {
+  const std::vector<double> line{1, 1.5, 2, 2.5, 3, 3.5};
+  const auto mean = MovingAverage(line, 100, 1e-3);
+  for (std::size_t k = 0; k < line.size(); ++k) EXPECT_NEAR(mean[k], line[k], 1e-15);
+}
+
 TEST(ZeroPhase, RefusesACutoffBeyondHalfTheSampleRate) {
   EXPECT_THAT(
       [] {
