@@ -49,7 +49,8 @@ class Chain {
 };
 
 /// The actuators of the three chambers, in the order of the key "actuator". Throws Error unless
-/// they are three, act on nothing else (gear 0) and cannot be told a pressure below zero.
+/// they are three, act on nothing else (gear 0) and what ranges they have are of finite pressures
+/// from zero on. Without a range suction is a pressure like others.
 Vec<int, 3> MatchChambers(const mjModel& m, const Config& config);
 
 /// What is in a chamber [Pa]: the actuator's force within its range.
