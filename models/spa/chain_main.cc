@@ -63,6 +63,10 @@ void PrintTimeSteps(const SpaFile& file) {
   for (const double step : {2e-3, 1e-3, 5e-4, 2e-4}) {
     PrintRow(fmt::format("implicitfast {:g} ms", 1e3 * step), file, {kTwo, false, 10, step, false});
   }
+  for (const bool moving : {false, true}) {
+    PrintRow(fmt::format("one chamber, base {}, implicitfast 2 ms", moving ? "moving" : "fixed"),
+             file, {kOne, moving, 10, 2e-3, false});
+  }
 }
 
 void PrintFree(const SpaFile& file) {
