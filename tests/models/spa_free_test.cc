@@ -106,6 +106,36 @@ TEST(SpaFree, IsStableAtTheStepOfTheFileHoweverStiff) {
   }
 }
 
+// The largest eigenvalue of one step, straight without gravity.
+double Growth(int links, double evenness, double timestep) {
+  const Machine machine =
+      System::Parse(SpaMjcf(File(), {.links = links, .evenness = evenness})).Build();
+  mjModel& m = *machine.model;
+  std::fill_n(m.opt.gravity, 3, 0.0);
+  m.opt.timestep = timestep;
+  mj_forward(&m, machine.data.get());
+  const auto n = static_cast<Eigen::Index>(2 * m.nv + m.na);
+  Eigen::MatrixXd step(n, n);
+  mjd_transitionFD(&m, machine.data.get(), 1e-6, 1, step.data(), nullptr, nullptr, nullptr);
+  return step.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+TEST(SpaFree, NothingGrowsUpToTheStepsThatTheReadmeNames) {
+  EXPECT_LT(Growth(10, 1, 2e-3), 1);
+  EXPECT_LT(Growth(10, 1000, 2e-3), 1);
+  EXPECT_LT(Growth(16, 10, 2e-3), 1);
+  EXPECT_LT(Growth(30, 1, 1e-3), 1);
+  EXPECT_GT(Growth(16, 1, 2e-3), 1);
+}
+
+TEST(SpaFree, AtRestTheMountCarriesTheWeight) {
+  const Machine machine = System::Load(kFolder + "spa_free.xml").Build();
+  for (int k = 0; k < 6000; ++k) mj_step(machine.model.get(), machine.data.get());
+  mj_forward(machine.model.get(), machine.data.get());
+  const int id = mj_name2id(machine.model.get(), mjOBJ_SENSOR, "base_force");
+  EXPECT_NEAR(machine.data->sensordata[machine.model->sensor_adr[id] + 2], -0.1806 * 9.81, 1e-8);
+}
+
 TEST(SpaFree, RefusesAnEvennessThatIsNone) {
   for (const double s : {0.0, -1.0, std::nan("")}) {
     EXPECT_THAT([&] { SpaMjcf(File(), {.evenness = s}); },
