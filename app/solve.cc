@@ -30,9 +30,14 @@ void AddSolve(CLI::App& app, int& exit_code) {
                   "Fit the robot's parameters to the data instead of solving cases");
   solve->add_option("--hybrid", request->hybrid,
                     "tdcr: train a linear correction on measured shapes, or apply one");
+  solve->add_flag("--cross-validate", request->cross_validate,
+                  "tdcr --hybrid train: the penalty that does best on cases left out");
   solve->add_flag("--sensitivity", request->sensitivity,
                   "stiff_flop: derivatives by fibre angle and by E");
-  solve->add_option("--lambda", request->lambda, "tdcr fit: weight of the curvatures (1e-7)")
+  solve
+      ->add_option("--lambda", request->lambda,
+                   "tdcr fit: weight of the curvatures (1e-7); --hybrid train: penalty on the "
+                   "weights (0, as the paper)")
       ->check(NumberWithin(0, 1e9));
   solve->footer(
       "Example:\n"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace continuum {
@@ -15,8 +16,9 @@ struct SolveRequest {
   std::string method;
   std::string hybrid;  ///< train or apply
   bool calibrate = false;
+  bool cross_validate = false;  ///< tdcr: choose the training's penalty
   bool sensitivity = false;
-  double lambda = 1e-7;
+  std::optional<double> lambda;  ///< tdcr: penalty of the fit or of the hybrid's training
 };
 
 /// One static model each. @returns 0 when every case was solved, 1 when the results were written

@@ -20,6 +20,8 @@ void RefuseOptions(const SolveRequest& request) {
   const std::initializer_list<std::pair<const char*, bool>> foreign = {
       {"--calibrate", request.calibrate},
       {"--hybrid", !request.hybrid.empty()},
+      {"--lambda", request.lambda.has_value()},
+      {"--cross-validate", request.cross_validate},
       {"--measured", !request.measured.empty()}};
   for (const auto& [option, given] : foreign) {
     if (given) throw Error::Input(option, "no such option for a stiff_flop robot");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace continuum::tdcr {
 struct Hybrid {
   std::vector<std::string> features;  ///< among FeatureNames
   Eigen::MatrixXd weights;            ///< p x 6: kappa_x_1, kappa_y_1, tau_1, kappa_x_n, ..
+  double penalty = 0;                 ///< on the weights, see FitWeights
   TipErrors tips;                     ///< of the corrected model
   std::vector<double> left_out;       ///< tip errors [%] of training cases by five-fold validation
 };
@@ -21,11 +23,13 @@ struct Hybrid {
 /// tau_1, tau_1^2, tau_n, tau_n^2, fx, fy, fz, T1..Tm.
 std::vector<std::string> FeatureNames(int tendons);
 
-/// Weights that minimise sum |R^c x_i - O_i|^2 over measured disks of the cases for training, from
-/// zero weights by Levenberg-Marquardt. A feature that is constant over them is left out.
+/// Weights that minimise (30) over measured disks of the cases for training, plus a penalty on the
+/// weights (FitWeights): 0 is the paper's training; nothing: the one that cross-validation over
+/// these cases prefers. A feature that is constant over them is left out.
 /// @throws Error (input) when there are fewer residuals than weights; (job) without convergence or
 /// when a case has no equilibrium.
-Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::string& file);
+Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::string& file,
+             std::optional<double> penalty = 0.0);
 
 /// The `hybrid` map of a robot's file. @throws Error with file, line and key.
 Hybrid ReadHybrid(const Yaml& file, const Robot& robot);

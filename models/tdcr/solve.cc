@@ -143,6 +143,24 @@ std::vector<Measured> ReadMeasurements(const SolveRequest& request, const Robot&
   return ReadMeasured(Table::Read(request.measured), robot.disks);
 }
 
+// --lambda: weight of the fit's curvatures, penalty of the training; no other job has one.
+void CheckLambda(const SolveRequest& request, const std::string& method) {
+  const bool training = request.hybrid == "train";
+  Refuse(request.cross_validate && !training, "--cross-validate", "other jobs than --hybrid train");
+  if (!request.lambda) return;
+  Refuse(!training && method != "fit", "--lambda", "other jobs than fit and --hybrid train");
+  Refuse(request.cross_validate, "--lambda", "--cross-validate");
+  if (!(*request.lambda >= 0 && std::isfinite(*request.lambda))) {
+    throw Error::Input("--lambda", "a number of at least 0", fmt::format("{}", *request.lambda));
+  }
+}
+
+// Nothing: to be chosen by cross-validation.
+std::optional<double> Penalty(const SolveRequest& request) {
+  if (request.cross_validate) return std::nullopt;
+  return request.lambda.value_or(0);
+}
+
 int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
                const Hybrid* hybrid) {
   const auto cases = ReadCases(Table::Read(request.input), robot);
@@ -159,14 +177,11 @@ int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
 int FitShapes(const SolveRequest& request, const Robot& robot) {
   Need(request.measured, "--measured", "--method fit");
   Refuse(!request.input.empty(), "--input", "--method fit");
-  if (!(request.lambda >= 0 && std::isfinite(request.lambda))) {
-    throw Error::Input("--lambda", "a number of at least 0", fmt::format("{}", request.lambda));
-  }
   const auto measured = ReadMeasurements(request, robot);
+  const double lambda = request.lambda.value_or(1e-7);
   std::vector<Solved> solved;
   for (const Measured& m : measured) {
-    solved.push_back(
-        {m.name, FitShape(robot, robot.MeasuringToBase() * m.disks, request.lambda), &m});
+    solved.push_back({m.name, FitShape(robot, robot.MeasuringToBase() * m.disks, lambda), &m});
   }
   return Report(request, robot, solved);
 }
@@ -216,7 +231,8 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
   solver::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
   const auto cases = ReadCases(Table::Read(request.input), robot);
   const auto measured = ReadMeasurements(request, robot);
-  const Hybrid h = Train(robot, ReadPairs(request, cases, measured), request.measured.string());
+  const Hybrid h = Train(robot, ReadPairs(request, cases, measured), request.measured.string(),
+                         Penalty(request));
 
   YAML::Node node;
   node["features"] = List(h.features);
@@ -225,6 +241,7 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
     weights.push_back(List(Eigen::VectorXd(h.weights.row(i).transpose())));
   }
   node["weights"] = weights;
+  node["penalty"] = Number(h.penalty);
   node["tip_error_percent"] = Document(h.tips);
   if (const auto spread = Statistics(h.left_out)) {
     node["tip_error_percent"]["five_fold"] = Document(*spread);
@@ -243,6 +260,7 @@ int SolveTdcr(const SolveRequest& request) {
   const std::string method = request.method.empty() ? "eas" : request.method;
   Refuse(request.sensitivity, "--sensitivity", "the robot tdcr");
   Need(request.out, "--out", "the results");
+  CheckLambda(request, method);
   if (!request.hybrid.empty()) {
     Refuse(request.calibrate, "--calibrate", "--hybrid");
     if (method != "eas") throw Error::Input("--method", "eas with --hybrid", "'" + method + "'");

@@ -23,6 +23,8 @@ using twin_pivot::Solution;
 void RefuseOptions(const SolveRequest& request) {
   const std::initializer_list<std::pair<const char*, bool>> foreign = {
       {"--hybrid", !request.hybrid.empty()},
+      {"--lambda", request.lambda.has_value()},
+      {"--cross-validate", request.cross_validate},
       {"--sensitivity", request.sensitivity},
       {"--measured", !request.measured.empty()},
       {"--plot with --calibrate", request.calibrate && !request.plot.empty()},

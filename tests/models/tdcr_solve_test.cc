@@ -155,6 +155,18 @@ TEST_F(TdcrSolve, WrongUseIsRefused) {
   request_.sensitivity = true;
   EXPECT_THAT(Message(), HasSubstr("--sensitivity"));
   request_.sensitivity = false;
+  request_.lambda = 1e-6;
+  EXPECT_THAT(Message(), HasSubstr("--lambda"));
+  request_.hybrid = "train";
+  request_.lambda = -1;
+  EXPECT_THAT(Message(), HasSubstr("--lambda: expected a number of at least 0"));
+  request_.lambda = 1e-3;
+  request_.cross_validate = true;
+  EXPECT_THAT(Message(), HasSubstr("--lambda: not with --cross-validate"));
+  request_.hybrid = "";
+  request_.lambda.reset();
+  EXPECT_THAT(Message(), HasSubstr("--cross-validate"));
+  request_.cross_validate = false;
   request_.out = folder_ / "out.txt";
   EXPECT_THAT(Message(), HasSubstr("--out"));
 }

@@ -213,6 +213,9 @@ TEST_F(TwinPivotSolve, OptionsOfOtherModelsAreRefused) {
   request_.hybrid = "train";
   EXPECT_THAT(Refusal(), HasSubstr("--hybrid"));
   request_ = good;
+  request_.lambda = 1e-6;
+  EXPECT_THAT(Refusal(), HasSubstr("--lambda"));
+  request_ = good;
   request_.out = folder_ / "out.txt";
   EXPECT_THAT(Refusal(), HasSubstr("--out"));
   request_ = good;

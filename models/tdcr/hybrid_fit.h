@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "models/tdcr/measured.h"
+
+namespace continuum::tdcr {
+
+/// (kappa_x, kappa_y, tau) of the first and the last arc [1/m].
+using Ends = Eigen::Matrix<double, 6, 1>;
+
+/// One modelled case with its measured disks.
+struct Sample {
+  Ends ends;                 ///< of the uncorrected model
+  Eigen::VectorXd features;  ///< those that are used
+  Eigen::Matrix3Xd points;   ///< base frame; NaN: not measured
+  const Pair* pair;
+};
+using Samples = std::vector<const Sample*>;
+
+/// Residuals of (30): coordinates of the measured disks.
+Eigen::Index Residuals(const Samples& samples);
+
+/// Ends and disks with the correction W^T features.
+Ends Corrected(const Eigen::MatrixXd& weights, const Sample& sample);
+Eigen::Matrix3Xd Disks(const Robot& robot, const Ends& ends);
+
+/// Weights W (p x 6) that minimise the mean over the samples of sum_i |x_i - O_i|^2/L^2, plus
+/// penalty |V|^2, where V_jc = L W_jc max|feature j| is what feature j bends or twists the rod by
+/// where it is largest [rad]: without it, forces and twists that the samples hardly tell apart get
+/// large weights of opposite signs, which another load does not cancel. Penalty 0 is (30) alone.
+/// Levenberg-Marquardt from zero weights; nothing when it does not converge.
+std::optional<Eigen::MatrixXd> FitWeights(const Robot& robot, const Samples& samples,
+                                          double penalty);
+
+/// What weights do to samples that they have not seen, each sample once, by five folds.
+struct LeftOut {
+  double objective = 0;      ///< sum of |x_i - O_i|^2 [m^2]
+  std::vector<double> tips;  ///< tip errors [% of L]
+};
+/// Nothing with a single sample, and when a fold has fewer residuals than weights and no penalty.
+std::optional<LeftOut> CrossValidate(const Robot& robot, const Samples& samples, double penalty);
+
+/// The penalty among 0 and 1e-6 .. 10 whose left out objective is the smallest; 0 when none can be
+/// validated.
+double ChoosePenalty(const Robot& robot, const Samples& samples);
+
+}  // namespace continuum::tdcr

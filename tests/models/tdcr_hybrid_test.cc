@@ -1,0 +1,86 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "models/tdcr/calibrate.h"
+#include "models/tdcr/disks.h"
+#include "models/tdcr/hybrid.h"
+#include "models/tdcr/synthetic.h"
+
+namespace continuum::tdcr {
+namespace {
+
+Robot Nominal() {
+  Robot robot;
+  robot.density = 6450;
+  robot.disk_mass = 0.6e-3;
+  robot.mu = 0.2;
+  return robot;
+}
+
+// A set of the paper's kind, calibrated as before every training.
+struct Calibrated {
+  Calibrated(int set, unsigned seed)
+      : experiment(Synthesize(Nominal(), set, seed)),
+        calibration(Calibrate(experiment.nominal, Method::kEas, Pairs())) {
+    for (Case& c : experiment.cases) c.loads.mu = calibration.robot.mu;
+  }
+  std::vector<Pair> Pairs() const {
+    return Match(experiment.cases, experiment.measured, "synthetic");
+  }
+  Hybrid Train(std::optional<double> penalty) const {
+    return tdcr::Train(calibration.robot, Pairs(), "synthetic", penalty);
+  }
+  Experiment experiment;
+  Calibration calibration;
+};
+
+TEST(TdcrHybrid, CrossValidationKeepsTheHangingSetFromBeingLearntByHeart) {
+  for (const unsigned seed : {2u, 3u, 2021u}) {
+    const Calibrated set(1, seed);
+    const Hybrid printed = set.Train(0), hybrid = set.Train(std::nullopt);
+    const Spread before = *Statistics(set.calibration.tips.test);
+    const Spread after = *Statistics(hybrid.tips.test);
+    EXPECT_GT(hybrid.penalty, 0) << seed;
+    EXPECT_LT(Statistics(printed.tips.train)->mean, Statistics(hybrid.tips.train)->mean) << seed;
+    EXPECT_LT(Statistics(hybrid.left_out)->mean, Statistics(printed.left_out)->mean) << seed;
+    EXPECT_LT(after.mean, 0.9 * before.mean) << seed;
+    EXPECT_LT(after.max, before.max) << seed;
+  }
+}
+
+// Shapes that are what the correction can say: nothing is to be held back then.
+TEST(TdcrHybrid, ATrueLinearCorrectionIsFoundAgain) {
+  Experiment e = Synthesize(Nominal(), 1, 7);
+  Hybrid truth;
+  truth.features = {"tau_1", "fx", "T1", "T2"};
+  truth.weights.resize(4, 6);
+  truth.weights << 0.1, 0, 0.2, 0, 0.1, 0, 2, 0, 1, 0, 0, 3, 0.3, 0.1, 0, 0.2, 0, 0.5, 0, -0.2, 0.4,
+      0, 0.1, 0;
+  for (std::size_t i = 0; i < e.cases.size(); ++i) {
+    Solution s = SolveCase(e.nominal, e.cases[i].loads, Method::kEas);
+    Apply(truth, e.nominal, e.cases[i].loads, s);
+    e.measured[i].disks = s.disks;
+  }
+  const Hybrid hybrid =
+      Train(e.nominal, Match(e.cases, e.measured, "synthetic"), "synthetic", std::nullopt);
+  EXPECT_LT(Statistics(hybrid.tips.test)->max, 0.01);  // % of L; uncorrected some 10
+  for (std::size_t i = 0; i < truth.features.size(); ++i) {
+    const auto at = std::find(hybrid.features.begin(), hybrid.features.end(), truth.features[i]);
+    ASSERT_NE(at, hybrid.features.end());
+    const auto row = at - hybrid.features.begin();
+    const auto difference = hybrid.weights.row(row) - truth.weights.row(static_cast<int>(i));
+    EXPECT_LT(difference.norm(), 0.01 * truth.weights.row(static_cast<int>(i)).norm());
+  }
+}
+
+TEST(TdcrHybrid, AHeavyPenaltyLeavesTheModelAsItWas) {
+  const Calibrated set(2, 5);
+  const Hybrid hybrid = set.Train(1e6);
+  EXPECT_LT(hybrid.weights.cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_NEAR(Statistics(hybrid.tips.train)->mean, Statistics(set.calibration.tips.train)->mean,
+              1e-3);
+}
+
+}  // namespace
+}  // namespace continuum::tdcr
