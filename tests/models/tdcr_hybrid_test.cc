@@ -10,13 +10,7 @@
 namespace continuum::tdcr {
 namespace {
 
-Robot Nominal() {
-  Robot robot;
-  robot.density = 6450;
-  robot.disk_mass = 0.6e-3;
-  robot.mu = 0.2;
-  return robot;
-}
+Robot Nominal() { return ReadRobot(Yaml::Read(CONTINUUM_SOURCE "/models/tdcr/tdcr.yaml")); }
 
 // A set of the paper's kind, calibrated as before every training.
 struct Calibrated {
