@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -189,6 +190,10 @@ Eigen::Vector3d PulledTip(const System& mjcf, const Load& load) {
   const Change payload{"body:tip", "mass", load.condition == Condition::kV ? load.payload : 0};
   const Machine machine = mjcf.Build(std::span(&payload, 1));
   SlowPull pull;
+  // A chain sways the slower the longer it is, with the square: what is slow for six joints swings
+  // twelve, and friction keeps where they swung to.
+  const double joints = static_cast<double>(machine.model->nv) / 2;
+  pull.rise *= std::max(1.0, joints * joints / 36);
   pull.gravity = {load.gravity.x(), -load.gravity.z(), load.gravity.y()};
   for (std::size_t j = 0; j < load.tension.size(); ++j) {
     pull.control[fmt::format("cable{}", j + 1)] = load.tension[j];

@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "error.h"
 #include "models/generator/pull.h"
@@ -14,31 +15,48 @@
 namespace continuum::twin_pivot {
 namespace {
 
-/// First and last number of cases in Tab 4.
+/// Cases under condition V that are one row of the table: numbers first to last of Tab 4.
 struct Sweep {
   const char* name;
   int first, last;
+
+  bool Has(const Case& c) const {
+    const int number = std::stoi(c.label);
+    return number >= first && number <= last && c.load.condition == Condition::kV;
+  }
 };
 
-void Print(const Robot& robot, const std::filesystem::path& cases,
-           std::initializer_list<Sweep> sweeps) {
-  const System mjcf = System::Parse(RobotMjcf(robot));
-  for (const Sweep& sweep : sweeps) {
-    double sum = 0, worst = 0, bent = 0;
-    int count = 0;
-    for (const Case& c : ReadCases(cases, robot)) {
-      const int number = std::stoi(c.label);
-      if (number < sweep.first || number > sweep.last) continue;
-      if (c.load.condition != Condition::kV) continue;
-      const Solution solution = Solve(robot, c.load);
-      if (!solution.outcome.ok()) throw Error::Job(c.label + ": " + solution.outcome.why);
-      const double off = 1e3 * (PulledTip(mjcf, c.load) - solution.tip).norm();
-      sum += off, worst = std::max(worst, off), ++count;
-      bent = std::max(bent, 1e3 * std::hypot(solution.tip.y(), solution.tip.z()));
-    }
-    fmt::print("| {} | {} | {:.0f} | {:.3f} | {:.3f} |\n", sweep.name, count, bent, sum / count,
-               worst);
+/// Every tenth point of a trajectory, each pulled from straight.
+struct Loop {
+  const char* name;
+
+  bool Has(const Case& c) const { return std::stoi(c.label.substr(1)) % 10 == 0; }
+};
+
+template <class Choice>
+void Print(const Robot& robot, const System& mjcf, const std::vector<Case>& cases,
+           const Choice& choice) {
+  double sum = 0, worst = 0, bent = 0;
+  int count = 0;
+  for (const Case& c : cases) {
+    if (!choice.Has(c)) continue;
+    const Solution solution = Solve(robot, c.load);
+    if (!solution.outcome.ok()) throw Error::Job(c.label + ": " + solution.outcome.why);
+    const double off = 1e3 * (PulledTip(mjcf, c.load) - solution.tip).norm();
+    sum += off, worst = std::max(worst, off), ++count;
+    bent = std::max(bent, 1e3 * std::hypot(solution.tip.y(), solution.tip.z()));
   }
+  fmt::print("| {} | {} | {:.0f} | {:.3f} | {:.3f} |\n", choice.name, count, bent, sum / count,
+             worst);
+}
+
+template <class Choice>
+void Print(const std::filesystem::path& file, const std::filesystem::path& input,
+           std::initializer_list<Choice> choices) {
+  const Robot robot = Robot::Read(file);
+  const System mjcf = System::Parse(RobotMjcf(robot));
+  const auto cases = ReadCases(input, robot);
+  for (const Choice& choice : choices) Print(robot, mjcf, cases, choice);
 }
 
 void Print(const std::filesystem::path& folder) {
@@ -46,10 +64,11 @@ void Print(const std::filesystem::path& folder) {
       "| distance of tips [mm] | cases | tip aside, largest | mean | max "
       "|\n|---|---|---|---|---|\n");
   const auto cases = folder / "cases.csv";
-  Print(Robot::Read(folder / "a.yaml"), cases,
-        {{"A, in plane", 1, 11}, {"A, out of plane", 12, 15}, {"A, payload 20 g", 31, 36}});
-  Print(Robot::Read(folder / "b.yaml"), cases,
-        {{"B, in plane", 16, 26}, {"B, out of plane", 27, 30}, {"B, payload 20 g", 37, 42}});
+  Print<Sweep>(folder / "a.yaml", cases,
+               {{"A, in plane", 1, 11}, {"A, out of plane", 12, 15}, {"A, payload 20 g", 31, 36}});
+  Print<Sweep>(folder / "b.yaml", cases,
+               {{"B, in plane", 16, 26}, {"B, out of plane", 27, 30}, {"B, payload 20 g", 37, 42}});
+  Print<Loop>(folder / "c.yaml", folder / "trajectory.csv", {{"C, loop"}});
 }
 
 }  // namespace
