@@ -16,7 +16,7 @@ namespace continuum::solver {
 namespace {
 
 constexpr double kWidth = 1260, kHeight = 540, kMargin = 70, kLegend = 250;
-constexpr std::size_t kNamed = 20;  // so many cases fit into the legend
+constexpr std::size_t kNamed = 18;  // so many cases fit into the legend, and a line about the rest
 constexpr double kLetter = 2;       // pixels per dot of a letter
 
 using Colour = std::array<std::uint8_t, 3>;
@@ -150,6 +150,13 @@ void AddShapes(const Picture& picture, const View& view, std::vector<Mark>& mark
   }
 }
 
+// As much of a label as the legend has room for, no letter of UTF-8 cut in two.
+std::string Short(const std::string& label) {
+  std::size_t length = std::min<std::size_t>(label.size(), 18);
+  while (length < label.size() && length > 0 && (label[length] & 0xc0) == 0x80) --length;
+  return label.substr(0, length);
+}
+
 void AddLegend(const Picture& picture, std::vector<Mark>& marks) {
   const std::size_t shown = std::min(picture.shapes.size(), kNamed);
   const double x = kWidth - kLegend;
@@ -157,7 +164,7 @@ void AddLegend(const Picture& picture, std::vector<Mark>& marks) {
     const double y = kMargin + 24 * static_cast<double>(i);
     marks.push_back(
         {Mark::Kind::kLine, {{x, y + 7}, {x + 18, y + 7}}, 3, Hue(i, picture.shapes.size())});
-    AddText(marks, x + 24, y, picture.shapes[i].label.substr(0, 18));
+    AddText(marks, x + 24, y, Short(picture.shapes[i].label));
   }
   if (shown < picture.shapes.size()) {
     AddText(marks, x, kMargin + 24 * static_cast<double>(shown),
@@ -266,7 +273,7 @@ class Raster {
     double left = mark.points[0][0];
     for (const char letter : mark.text) {
       const Glyph* const glyph = FindGlyph(letter);
-      for (int row = 0; glyph != nullptr && row < 7; ++row) {
+      for (int row = 0; glyph != nullptr && row < kGlyphRows; ++row) {
         for (int column = 0; column < 5; ++column) {
           if (!(glyph->rows[row] >> (4 - column) & 1)) continue;
           const std::array dot{left + mark.size * (column + 0.5),

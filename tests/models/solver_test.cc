@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "error.h"
+#include "models/solver/font.h"
 #include "models/solver/newton.h"
 #include "models/solver/plot.h"
 #include "models/solver/results.h"
@@ -224,6 +225,36 @@ TEST(Plot, DrawsSvgAndPngOfAShape) {
   EXPECT_THROW(WritePicture("shape.jpg", picture), Error);
   picture.shapes.clear();
   EXPECT_NO_THROW(Svg(picture));
+}
+
+TEST(Plot, TheLegendSaysHowManyCasesItLeavesOut) {
+  Picture picture{"", {{{0, 2}, {1, 2}}}, {}};
+  picture.shapes.assign(30, {{{0, 0, 0}, {0.01, 0, 0.1}}, {}, {}, "case"});
+  const std::string svg = Svg(picture);
+  const auto at = svg.find(">and 12 more<");
+  ASSERT_NE(at, std::string::npos);
+  const auto number = [](const std::string& text, std::size_t where) {
+    return std::stod(text.substr(text.find('"', where) + 1));
+  };
+  EXPECT_LT(number(svg, svg.rfind("y=", at)), number(svg, svg.find("height=")));
+}
+
+TEST(Plot, LongLabelsAreCutBetweenLetters) {
+  Picture picture{"", {{{0, 2}, {1, 2}}}, {}};
+  picture.shapes.push_back({{{0, 0, 0}, {0.01, 0, 0.1}},
+                            {},
+                            {},
+                            "x\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9"});
+  EXPECT_THAT(Svg(picture), HasSubstr("\u00e9\u00e9<"));
+}
+
+TEST(Font, TellsCapitalsFromSmallLetters) {
+  for (char small = 'a'; small <= 'z'; ++small) {
+    const Glyph* const one = FindGlyph(small);
+    const Glyph* const other = FindGlyph(static_cast<char>(small - 'a' + 'A'));
+    ASSERT_TRUE(one != nullptr && other != nullptr) << small;
+    EXPECT_FALSE(std::equal(std::begin(one->rows), std::end(one->rows), other->rows)) << small;
+  }
 }
 
 }  // namespace
