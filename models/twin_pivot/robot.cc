@@ -27,14 +27,25 @@ std::vector<Yaml> List(const Yaml& node, std::size_t count, const std::string& w
                      std::to_string(items.size()));
 }
 
+// What is solved in seconds: Jacobians are dense.
+constexpr int kMostDiscs = 400;
+
 std::vector<int> Discs(const Yaml& node) {
   std::vector<int> discs;
+  int all = 0;
   const Yaml list = node.IsMap() ? node.At("value") : node;
   for (const Yaml& item : list.Items()) {
-    discs.push_back(item.Integer());
-    if (discs.back() > 0 && discs.back() % 2 == 0) continue;
-    throw Error::Input(item.Where(), "an even number > 0, two discs per segment",
-                       std::to_string(discs.back()));
+    const int count = item.Integer();
+    if (count <= 0 || count % 2 != 0) {
+      throw Error::Input(item.Where(), "an even number > 0, two discs per segment",
+                         std::to_string(count));
+    }
+    if (count > kMostDiscs - all) {
+      throw Error::Input(item.Where(), "at most " + std::to_string(kMostDiscs) + " discs in all",
+                         std::to_string(count) + " more than " + std::to_string(all));
+    }
+    discs.push_back(count);
+    all += count;
   }
   if (discs.empty()) throw Error::Input(node.Where(), "one section or more", "none");
   return discs;

@@ -181,6 +181,7 @@ TEST_F(TwinPivotSolve, BadRobotsAreRefusedWithLineAndKey) {
       {"format: 1", "format: 2", "format"},
       {"[6]", "[5]", "discs"},
       {"[6]", "[]", "discs"},
+      {"[6]", "[100000000]", "at most 400 discs"},
       {"[6]", "[6, 6]", "r"},
       {"value: 6.1666667e-3", "value: 0", ": L"},
       {"value: 60.6e9", "value: -1", ": E"},

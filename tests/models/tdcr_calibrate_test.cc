@@ -1,0 +1,74 @@
+#include "models/tdcr/calibrate.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "models/tdcr/model.h"
+
+namespace continuum::tdcr {
+namespace {
+
+constexpr int kSets = 60, kCases = 20;
+constexpr double kNoise = 0.5e-3;
+
+std::vector<Case> RandomCases(const Robot& robot) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> normal;
+  std::vector<Case> cases;
+  for (int i = 0; i < kCases; ++i) {
+    Case c{std::to_string(i), NoLoads(robot)};
+    for (double& t : c.loads.tension) t = 5 * share(random);
+    for (double& f : c.loads.tip_force) f = 0.2 * normal(random);
+    cases.push_back(c);
+  }
+  return cases;
+}
+
+// Only the tip is measured, with noise.
+std::vector<Measured> Tips(const Robot& truth, const std::vector<Eigen::Vector3d>& tips,
+                           std::mt19937_64& random) {
+  std::normal_distribution<double> noise(0, kNoise);
+  std::vector<Measured> measured;
+  for (const Eigen::Vector3d& tip : tips) {
+    Measured m{std::to_string(measured.size()), false,
+               Eigen::Matrix3Xd::Constant(3, truth.disks, NAN)};
+    m.disks.rightCols<1>() = truth.MeasuringToBase().transpose() * tip;
+    for (double& x : m.disks.rightCols<1>().reshaped()) x += noise(random);
+    measured.push_back(m);
+  }
+  return measured;
+}
+
+// E, the base's rotation and mu lie within two standard errors about as often as 95 in 100: over 60
+// sets chance alone leaves less than 50 of them only once in 2000 times.
+TEST(TdcrCalibrate, StandardErrorsCoverTheTruthOfNoisyTips) {
+  const Robot nominal = ReadRobot(Yaml::Read(CONTINUUM_SOURCE "/models/tdcr/tdcr.yaml"));
+  Robot truth = nominal;
+  truth.E = 52e9;
+  truth.mu = 0.13;
+  truth.base_rotation = {0.02, -0.03, 0.05};
+  const std::vector<Case> cases = RandomCases(nominal);
+  std::vector<Eigen::Vector3d> tips;
+  for (const Case& c : cases) {
+    Loads loads = c.loads;
+    loads.mu = truth.mu;
+    tips.push_back(SolveCase(truth, loads, Method::kEas).disks.rightCols<1>());
+  }
+  Eigen::Matrix<double, 5, 1> target, covered = Eigen::Matrix<double, 5, 1>::Zero();
+  target << truth.E, truth.base_rotation, truth.mu;
+  std::mt19937_64 random(100);
+  for (int i = 0; i < kSets; ++i) {
+    const auto measured = Tips(truth, tips, random);
+    const Calibration c = Calibrate(nominal, Method::kEas, Match(cases, measured, "synthetic"));
+    Eigen::Matrix<double, 5, 1> found;
+    found << c.robot.E, c.robot.base_rotation, c.robot.mu;
+    covered.array() += ((found - target).array().abs() < 2 * c.standard.array()).cast<double>();
+  }
+  for (const double count : covered) EXPECT_GE(count, 50);
+}
+
+}  // namespace
+}  // namespace continuum::tdcr
