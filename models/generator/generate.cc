@@ -38,6 +38,10 @@ int Main(int argc, char** argv) {
        [](const auto& file) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }},
       {"stiff_flop",
        [](const auto& file) { return stiff_flop::ModuleMjcf(stiff_flop::Robot::Read(file)); }},
+      {"stiff_flop_braid",
+       [](const auto& file) {
+         return stiff_flop::ModuleMjcf(stiff_flop::Robot::Read(file), stiff_flop::Threads::kBraid);
+       }},
       {"spa", [](const auto& file) { return SpaMjcf(ReadSpa(file)); }},
       {"spa_free", [](const auto& file) { return SpaMjcf(ReadSpa(file), {.evenness = 1}); }},
       {"spa_series", [](const auto& file) { return SpaMjcf(ReadSpa(file), {.series = 2}); }}};

@@ -1,10 +1,14 @@
 #include "models/stiff_flop/mjcf.h"
 
 #include <ceres/jet.h>
+#include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
+#include <string>
 #include <vector>
 
+#include "effects/braid.h"
 #include "models/stiff_flop/elastic.h"
 #include "sim/file.h"
 
@@ -15,9 +19,12 @@ constexpr int kLinks = 6;
 constexpr double kSupply = 150e3;  // [Pa]
 constexpr double kStep = 2e-3;     // [s]
 
-const char* const kComment =
-    "Written by: continuum_generate stiff_flop models/stiff_flop/no_load.yaml. Values, their "
-    "sources and conventions: no_load.yaml and README.md";
+std::string Comment(Threads threads) {
+  return fmt::format(
+      "Written by: continuum_generate {} models/stiff_flop/no_load.yaml. Values, their "
+      "sources and conventions: no_load.yaml and README.md",
+      threads == Threads::kRings ? "stiff_flop" : "stiff_flop_braid");
+}
 
 // E a [N] and E K [N m^2] of the unloaded straight section.
 struct Stiffness {
@@ -74,6 +81,21 @@ void SetOptions(mjOption& option, const Eigen::Vector3d& gravity) {
   std::copy(world, world + 3, option.gravity);
 }
 
+// The threads beside the segment, on its bodies and lines and with its measures.
+EffectInstance BraidBeside(const EffectInstance& beside, const SoftSegment& segment, double gamma) {
+  EffectInstance braid{std::string(Braid::kName), "threads", {}};
+  for (const auto& setting : beside.config) {
+    if (setting.first == "body" || setting.first == "actuator") braid.config.push_back(setting);
+  }
+  const double cot = std::tan(std::numbers::pi / 2 - gamma);
+  for (std::size_t i = 0; i < Braid::kParams.size(); ++i) {
+    const std::string name(Braid::kParams[i].name);
+    const double value = name == "cot2_gamma" ? cot * cot : segment.law[i];
+    braid.config.emplace_back(name, Decimal(value));
+  }
+  return braid;
+}
+
 }  // namespace
 
 SoftSegment SegmentOf(const Module& module) {
@@ -95,9 +117,9 @@ SoftSegment SegmentOf(const Module& module) {
           0.0004};
 }
 
-std::string ModuleMjcf(const Robot& robot) {
+std::string ModuleMjcf(const Robot& robot, Threads threads) {
   const SoftSegment segment = SegmentOf(robot.module);
-  Mjcf mjcf("stiff_flop", kComment);
+  Mjcf mjcf("stiff_flop", Comment(threads));
   SetOptions(mjcf.spec().option, robot.gravity);
   AddScene(mjcf, robot.module.l + robot.module.l_fs);
   mjsBody* const base = mjcf.AddBody(mjcf.world(), "base", {0, 0, 0});
@@ -111,7 +133,11 @@ std::string ModuleMjcf(const Robot& robot) {
   AddMarkerSensors(mjcf);
   const EffectInstance creep{
       "maxwell", "creep", {{"joint", "bend1_x bend1_y"}, {"k_m", "0"}, {"tau_m", "2"}}};
-  return mjcf.Text(std::vector{chain.Effect(), creep}, std::vector{chain.Delta()});
+  std::vector<EffectInstance> effects{chain.Effect(), creep};
+  if (threads == Threads::kBraid) {
+    effects.push_back(BraidBeside(effects.front(), segment, robot.module.gamma));
+  }
+  return mjcf.Text(effects, std::vector{chain.Delta()});
 }
 
 }  // namespace continuum::stiff_flop

@@ -27,6 +27,10 @@ SoftSegment SegmentOf(const Module& module);
 /// marker_pos and marker_quat in the frame of the site `frame` at the base; delta, tip_pos,
 /// base_force, base_torque as of the soft actuator. Chamber i is line i: x of `base` is -x of
 /// Robot's frame, its z is y.
-std::string ModuleMjcf(const Robot& robot);
+///
+/// kBraid adds the effect `braid` as the instance `threads` with the file's gamma: pressure then
+/// acts on the segment through the law of the braid. kRings leaves it out, gamma = pi/2.
+enum class Threads { kRings, kBraid };
+std::string ModuleMjcf(const Robot& robot, Threads threads = Threads::kRings);
 
 }  // namespace continuum::stiff_flop

@@ -35,6 +35,13 @@ void Settle(const Machine& machine, const Vector3d& pressure) {
 
 TEST(StiffFlopMjcf, TheCommittedFileIsTheGeneratedOne) {
   EXPECT_EQ(ReadFile(kFolder + "stiff_flop.xml"), ModuleMjcf(NoLoad()));
+  EXPECT_EQ(ReadFile(kFolder + "stiff_flop_braid.xml"), ModuleMjcf(NoLoad(), Threads::kBraid));
+}
+
+TEST(StiffFlopMjcf, ItsThreadsHaveTheAngleOfTheFile) {
+  const double cot = std::tan(std::numbers::pi / 2 - NoLoad().module.gamma);
+  const System system = System::Load(kFolder + "stiff_flop_braid.xml");
+  EXPECT_NEAR(system.Value("plugin:threads", "cot2_gamma"), cot * cot, 1e-12);
 }
 
 TEST(StiffFlopMjcf, HasTheNamesOfTheSoftActuator) {
@@ -83,6 +90,23 @@ TEST(StiffFlopMjcf, BendsAsTheStaticSolverAtSmallStrains) {
     const Vector3d tip = Sensor(machine, "tip_pos");  // world: x, -y, -z of the base
     const Vector3d expected(-rod.tip.x(), -rod.tip.z(), -rod.tip.y());
     EXPECT_LT((tip - expected).norm(), 0.03 * expected.head<2>().norm()) << "line " << line + 1;
+  }
+}
+
+// All lines alike stretch the module by k_dL1 dL = 3 p A (1 + cot^2 (1 - 3 lambda^2)); pressures so
+// small that a wrong sign would already show at 75 deg.
+TEST(StiffFlopMjcf, ThreadsTakeFromThePressureWhatTheBraidSays) {
+  const SoftSegment segment = SegmentOf(NoLoad().module);
+  const double L0 = segment.law[0], A = segment.law[5], k = segment.law[10], pressure = 3e4;
+  const System system = System::Load(kFolder + "stiff_flop_braid.xml");
+  for (const double gamma : {NoLoad().module.gamma, 75 * std::numbers::pi / 180}) {
+    const double cot2 = std::pow(std::tan(std::numbers::pi / 2 - gamma), 2);
+    const Change changes[] = {{"option", "gravity[2]", 0}, {"plugin:threads", "cot2_gamma", cot2}};
+    const Machine machine = system.Build(changes);
+    Settle(machine, Vector3d::Constant(pressure));
+    const double stretch = Sensor(machine, "delta")[2], lambda = 1 + stretch / L0;
+    const double push = 3 * pressure * A * (1 + cot2 * (1 - 3 * lambda * lambda));
+    EXPECT_NEAR(k * stretch, push, 2e-3 * push) << gamma;
   }
 }
 
