@@ -20,6 +20,7 @@
 #include "binding/segment.h"
 #include "binding/signal.h"
 #include "effects/all.h"
+#include "owned.h"
 
 namespace continuum {
 namespace {
@@ -45,7 +46,10 @@ struct Instance {
   std::vector<double> next;         ///< our share, while it is summed up
 };
 
-Instance* Get(const mjData& d, int i) { return reinterpret_cast<Instance*>(d.plugin_data[i]); }
+// Never destroyed: an mjData may outlive what the process destroys at its end.
+Owned<Instance>& instances = *new Owned<Instance>;
+
+Instance* Get(const mjData& d, int i) { return instances.Find(d.plugin_data[i]); }
 
 std::string_view ConfigBytes(const mjModel& m, int i) {
   const int begin = m.plugin_attradr[i];
@@ -189,7 +193,7 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     self->sum = self->next = self->before;
     FindSensors(m, i, *self, config);
     WarnOfSilence(m, *self, config);
-    d.plugin_data[i] = reinterpret_cast<uintptr_t>(self.release());
+    instances.Put(d.plugin_data[i], std::move(self));
     if (last) OrderSignals(m, d, i);
     return 0;
   } catch (const std::exception& e) {
@@ -396,10 +400,7 @@ void Register() {
   plugin.nstate = +[](const mjModel* m, int i) noexcept { return StateSize<E>(*m, i); };
   plugin.init =
       +[](const mjModel* m, mjData* d, int i) noexcept { return Init(*m, *d, i, &BindEffect<E>); };
-  plugin.destroy = +[](mjData* d, int i) noexcept {
-    delete Get(*d, i);
-    d->plugin_data[i] = 0;
-  };
+  plugin.destroy = +[](mjData* d, int i) noexcept { instances.Erase(d->plugin_data[i]); };
   plugin.copy = +[](mjData* to, const mjModel* m, const mjData* from, int i) noexcept {
     Copy(*to, *m, *from, i);
   };
