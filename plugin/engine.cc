@@ -1,8 +1,5 @@
 #include "engine.h"
 
-#include <dlfcn.h>
-#include <link.h>
-
 #include <algorithm>
 #include <cstring>
 #include <iterator>
@@ -20,6 +17,7 @@
 #include "binding/segment.h"
 #include "binding/signal.h"
 #include "effects/all.h"
+#include "one_mujoco.h"
 #include "owned.h"
 
 namespace continuum {
@@ -426,33 +424,10 @@ void Register() {
   mjp_registerPlugin(&plugin);
 }
 
-// Paths of all MuJoCo libraries in the process.
-std::set<std::string> MujocoLibraries() {
-  std::set<std::string> found;
-  dl_iterate_phdr(
-      [](dl_phdr_info* info, std::size_t, void* out) {
-        const std::string path = info->dlpi_name ? info->dlpi_name : "";
-        if (path.find("libmujoco.so.") != path.npos)
-          static_cast<std::set<std::string>*>(out)->insert(path);
-        return 0;
-      },
-      &found);
-  return found;
-}
-
 }  // namespace
 
 void RegisterEffects() {
-  const auto libraries = MujocoLibraries();
-  if (libraries.size() > 1) {
-    std::string all;
-    for (const auto& path : libraries) all += (all.empty() ? "" : " and ") + path;
-    throw Error::Input("mujoco_continuum", "one MuJoCo in the process", all);
-  }
-  if (mj_version() != mjVERSION_HEADER) {
-    throw Error::Input("mujoco_continuum", "MuJoCo " + std::to_string(mjVERSION_HEADER),
-                       std::to_string(mj_version()));
-  }
+  RequireOneMujoco();
   const auto add = []<class E>() {
     if constexpr (kInEngine<E>) Register<E>();
   };

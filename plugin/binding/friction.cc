@@ -88,8 +88,11 @@ double AppliedTorque(const mjModel& m, const mjData& d, int dof) {
 void Harden(mjModel& m, const Row& row) {
   double* const solref = (row.joint ? m.dof_solref : m.tendon_solref_fri) + mjNREF * row.index;
   double* const solimp = (row.joint ? m.dof_solimp : m.tendon_solimp_fri) + mjNIMP * row.index;
-  solref[0] = 2 * m.opt.timestep, solref[1] = 1;
-  solimp[0] = solimp[1] = 0.9999;
+  const auto assign = [](double& to, double value) {
+    if (to != value) to = value;  // another thread may be reading it
+  };
+  assign(solref[0], 2 * m.opt.timestep), assign(solref[1], 1);
+  assign(solimp[0], 0.9999), assign(solimp[1], 0.9999);
 }
 
 bool Saturated(const mjData& d, int r) {
