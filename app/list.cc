@@ -18,6 +18,8 @@ nlohmann::json Bound(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
+void Print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
 void ListEffects(bool json) {
   auto all = nlohmann::json::array();
   for (const EffectInfo& e : Catalog()) {
@@ -48,11 +50,11 @@ void ListEffects(bool json) {
     }
     all.push_back(item);
     if (!json) {
-      fmt::print("{:<21} {:<10} {:<14} {}\n{:47}{}\n", e.name, KindName(e.kind), places, e.summary,
-                 "", parameters);
+      Print(fmt::format("{:<21} {:<10} {:<14} {}\n{:47}{}\n", e.name, KindName(e.kind), places,
+                        e.summary, "", parameters));
     }
   }
-  if (json) std::printf("%s\n", all.dump(2).c_str());
+  if (json) Print(all.dump(2) + "\n");
 }
 
 // The folder models/ of the installation that this executable belongs to, or of the sources.
@@ -86,9 +88,9 @@ void ListModels(bool json) {
   auto all = nlohmann::json::array();
   for (const auto& [name, file] : Models()) {
     all.push_back({{"name", name}, {"file", file.string()}});
-    if (!json) fmt::print("{:<20} {}\n", name, file.string());
+    if (!json) Print(fmt::format("{:<20} {}\n", name, file.string()));
   }
-  if (json) std::printf("%s\n", all.dump(2).c_str());
+  if (json) Print(all.dump(2) + "\n");
 }
 
 }  // namespace

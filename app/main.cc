@@ -1,7 +1,9 @@
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <string>
 
@@ -53,6 +55,14 @@ int Parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
+// What was printed may only now turn out to be lost.
+void RequirePrinted() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return;
+  throw continuum::Error::Input("standard output", "a writable file",
+                                errno ? std::strerror(errno) : "one that failed");
+}
+
 // Asks the work to end with whole files; who asks again does not want to wait for them.
 void Stop(int) {
   if (continuum::StopRequested()) std::_Exit(1);
@@ -65,6 +75,7 @@ void Stop(int) {
 
 int main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, Stop);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit fails where it is written
   CLI::App app{
       "Continuum robots in MuJoCo: run, fit, and find out what the simulation gets wrong."};
   app.set_version_flag("--version", CONTINUUM_VERSION);
@@ -87,6 +98,7 @@ int main(int argc, char** argv) {
   try {
     const int parsed = Parse(app, argc, argv);
     continuum::EndProgress();
+    RequirePrinted();
     return parsed ? parsed : exit_code;
   } catch (const continuum::Error& e) {
     continuum::EndProgress();

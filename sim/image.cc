@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 
 #include "error.h"
 #include "sim/file.h"
@@ -31,6 +33,13 @@ std::string Reason(int code) {
 int Check(int code, const std::string& what) {
   if (code < 0) throw Error::Job(what + ": " + Reason(code));
   return code;
+}
+
+int CheckWritten(int code, const std::string& what) {
+  for (const int file : {EACCES, EDQUOT, EFBIG, EIO, ENOENT, ENOSPC, EROFS}) {
+    if (code == AVERROR(file)) throw Error::Input("", std::strerror(file));
+  }
+  return Check(code, what);
 }
 
 template <class T>

@@ -35,6 +35,10 @@ using Owned = std::unique_ptr<T, Deleter>;
 /// code, unless it is negative: then throws Error (kJob) with libav's own text.
 int Check(int code, const std::string& what);
 
+/// As Check, for what writes a file: throws Error (kInput) with the bare reason where the file, not
+/// libav, is to blame (full, too large, gone).
+int CheckWritten(int code, const std::string& what);
+
 /// libav's text for a negative return code.
 std::string Reason(int code);
 

@@ -72,7 +72,7 @@ class Film {
     int code = av_dict_set(&options, "movflags", "+faststart", 0);
     if (code >= 0) code = avformat_write_header(muxer_.get(), &options);
     av_dict_free(&options);
-    av::Check(code, "MP4 header");
+    av::CheckWritten(code, "MP4 header");
   }
 
   void Add(const Image& image) {
@@ -89,8 +89,8 @@ class Film {
   void Finish() {
     if (frames_ == 0) throw Error::Job("a film needs at least one frame");
     Write(nullptr);
-    av::Check(av_write_trailer(muxer_.get()), "MP4 index");
-    av::Check(avio_closep(&muxer_->pb), "closing the film");
+    av::CheckWritten(av_write_trailer(muxer_.get()), "MP4 index");
+    av::CheckWritten(avio_closep(&muxer_->pb), "closing the film");
   }
 
  private:
@@ -134,7 +134,7 @@ class Film {
       packet.duration = 1;
       packet.stream_index = stream_->index;
       av_packet_rescale_ts(&packet, encoder_->time_base, stream_->time_base);
-      av::Check(av_interleaved_write_frame(muxer_.get(), &packet), "writing a frame");
+      av::CheckWritten(av_interleaved_write_frame(muxer_.get(), &packet), "writing a frame");
     });
   }
 
@@ -175,8 +175,7 @@ class VideoWriter::Impl {
     try {
       film_ = std::make_unique<Film>(partial_.path(), width, height, fps);
     } catch (const Error& e) {
-      if (e.kind() == Error::Kind::kJob) throw Error::Job(path.string() + ": " + e.what());
-      throw Error::Input(path.string(), "a writable file", e.what());
+      throw Named(e);
     }
     thread_ = std::thread([this] { Work(); });
   }
@@ -204,7 +203,7 @@ class VideoWriter::Impl {
     try {
       film_->Finish();
     } catch (const Error& e) {
-      throw Error::Job(path_.string() + ": " + e.what());
+      throw Named(e);
     }
     std::error_code failed;
     fs::rename(partial_.path(), target_, failed);
@@ -212,6 +211,12 @@ class VideoWriter::Impl {
   }
 
  private:
+  Error Named(const Error& e) const {
+    if (e.kind() == Error::Kind::kInput)
+      return Error::Input(path_.string(), "a writable file", e.what());
+    return Error::Job(path_.string() + ": " + e.what());
+  }
+
   void Work() {
     for (;;) {
       std::unique_lock lock(mutex_);
@@ -224,8 +229,9 @@ class VideoWriter::Impl {
       try {
         film_->Add(image);
       } catch (const std::exception& e) {
+        const auto* const error = dynamic_cast<const Error*>(&e);
         lock.lock();
-        failure_ = path_.string() + ": " + e.what();
+        failure_ = Named(error ? *error : Error::Job(e.what()));
         changed_.notify_all();
         return;
       }
@@ -243,7 +249,7 @@ class VideoWriter::Impl {
   }
 
   void Rethrow() {
-    if (failure_) throw Error::Job(*failure_);
+    if (failure_) throw *failure_;
   }
 
   fs::path path_, target_;
@@ -254,7 +260,7 @@ class VideoWriter::Impl {
   std::condition_variable changed_;
   std::deque<Image> queue_;
   bool stop_ = false;
-  std::optional<std::string> failure_;
+  std::optional<Error> failure_;
   std::thread thread_;
 };
 
