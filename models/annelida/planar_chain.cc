@@ -38,7 +38,7 @@ PlanarChain::Equations PlanarChain::At(const Joints& q, const Joints& v) const {
   Equations e{Eigen::Matrix<double, kN, kN>::Zero(), Joints::Zero()};
   Eigen::Matrix<double, 2, kN> joint;  // velocity of link k's joint per unit velocity of joint i
   joint.setZero();
-  Vector2d acceleration{0, -p_.gravity};
+  Vector2d acceleration = p_.gravity * Vector2d(std::sin(tilt_), -std::cos(tilt_));
   double phi = 0, rate = 0;
   const auto add = [&](double mass, double distance, int k) {
     Eigen::Matrix<double, 2, kN> J = joint;

@@ -28,9 +28,10 @@ struct PlanarState {
 /// eqs. 6-8.
 class PlanarChain {
  public:
-  /// payload: point mass at the tip [kg].
-  explicit PlanarChain(const AnnelidaParameters& p, double payload = 0)
-      : p_(p), payload_(payload) {}
+  /// payload: point mass at the tip [kg]; tilt: pitch of gravity [rad], R_y of it as the world
+  /// sees.
+  explicit PlanarChain(const AnnelidaParameters& p, double payload = 0, double tilt = 0)
+      : p_(p), payload_(payload), tilt_(tilt) {}
 
   /// tension: of cables 1 and 3 at the base [N].
   void Step(PlanarState& state, const std::array<double, 2>& tension, double h) const;
@@ -39,7 +40,7 @@ class PlanarChain {
   Eigen::Vector2d Tip(const Joints& q) const;
   /// World x and z of base, joints 1 .. 5 and tip [m].
   Eigen::Matrix<double, 2, kAnnelidaLinks + 2> Points(const Joints& q) const;
-  /// Kinetic, potential and spring energy [J].
+  /// Kinetic, potential and spring energy [J]; without tilt.
   double Energy(const PlanarState& state) const;
 
  private:
@@ -52,7 +53,7 @@ class PlanarChain {
   Joints Friction(PlanarState& state, double h) const;
 
   AnnelidaParameters p_;
-  double payload_;
+  double payload_, tilt_;
 };
 
 }  // namespace continuum

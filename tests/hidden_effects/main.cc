@@ -31,25 +31,40 @@ bool Known(const std::string& effect) {
   return false;
 }
 
+void AddNone(const std::string& robot, NoiseKind noise, int times, std::vector<Case>& all) {
+  for (int n = 0; n < times; ++n) all.push_back({{}, 1, noise, all.size() + 1, true, false, robot});
+}
+
 // The large suite: every effect at six sizes, nothing hidden, effects that are not listed; noise of
 // five kinds in turn.
-std::vector<Case> Cases(int repeats) {
+std::vector<Case> Cases(const std::string& robot, int repeats) {
   std::vector<Case> all;
-  std::uint64_t seed = 1;
   for (int r = 0; r < repeats; ++r) {
-    for (int kind = 0; kind < 5; ++kind) {
-      const auto noise = static_cast<NoiseKind>(kind);
-      for (int n = 0; n < 4; ++n) all.push_back({{}, 1, noise, seed++});
-    }
+    for (int kind = 0; kind < 5; ++kind) AddNone(robot, static_cast<NoiseKind>(kind), 4, all);
     int turn = r;
-    for (const auto& pair : kPairs)
-      all.push_back({{pair[0], pair[1]}, 2, static_cast<NoiseKind>(turn++ % 5), seed++});
-    for (const Hidden& h : HiddenEffects()) {
-      if (!Known(h.name)) continue;
-      for (const double factor : kFactors)
-        all.push_back({{h.name}, factor, static_cast<NoiseKind>(turn++ % 5), seed++});
-      all.push_back({{h.name}, 2, static_cast<NoiseKind>(turn++ % 5), seed++, false});
+    const auto add = [&](std::vector<std::string> effects, double factor, bool listed) {
+      const auto noise = static_cast<NoiseKind>(turn++ % 5);
+      all.push_back({std::move(effects), factor, noise, all.size() + 1, listed, false, robot});
+    };
+    if (robot == "arm") {
+      for (const auto& pair : kPairs) add({pair[0], pair[1]}, 2, true);
     }
+    for (const Hidden& h : RobotNamed(robot).effects) {
+      if (!Known(h.name)) continue;
+      for (const double factor : kFactors) add({h.name}, factor, true);
+      add({h.name}, 2, false);
+    }
+  }
+  return all;
+}
+
+// White noise, two sizes of every effect, and nothing hidden twice.
+std::vector<Case> QuickCases(const std::string& robot) {
+  std::vector<Case> all;
+  AddNone(robot, NoiseKind::kWhite, 2, all);
+  for (const Hidden& h : RobotNamed(robot).effects) {
+    for (const double factor : {1.0, 2.0})
+      all.push_back({{h.name}, factor, NoiseKind::kWhite, all.size() + 1, true, false, robot});
   }
   return all;
 }
@@ -157,10 +172,13 @@ nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool ver
 
 int Main(int argc, char** argv) {
   CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
-  std::string out, only, keep;
+  std::string out, only, keep, robot = "arm";
   int repeats = 1;
-  bool verbose = false, told = false;
+  bool verbose = false, told = false, quick = false;
   app.add_option("--out", out, "one JSON line per case")->required();
+  app.add_option("--robot", robot, "arm, servo, silverbox, bouc_wen, spa or annelida")
+      ->capture_default_str();
+  app.add_flag("--quick", quick, "white noise, two sizes of every effect, nothing hidden twice");
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
   app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
@@ -171,7 +189,8 @@ int Main(int argc, char** argv) {
   for (const auto& line : ReadLines(out)) done.insert(line.at("case"));
   const auto temporary =
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
-  const auto cases = told ? Told(Cases(repeats)) : Cases(repeats);
+  auto cases = quick ? QuickCases(robot) : Cases(robot, repeats);
+  if (told) cases = Told(std::move(cases));
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const std::string name = cases[i].Name();
     if (done.contains(name) || name.find(only) == name.npos) continue;

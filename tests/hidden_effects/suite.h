@@ -2,26 +2,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "hidden_effects/arm.h"
 #include "hidden_effects/noise.h"
+#include "hidden_effects/robot.h"
 
 namespace continuum::hidden {
-
-/// One effect that the logs may have and the model has not.
-struct Hidden {
-  std::string name;       ///< of the effect as the diagnosis calls it
-  std::string parameter;  ///< whose value is the truth
-  double size;            ///< a moderate one
-  std::function<void(Arm&, double)> add;
-  double null = 0;
-  std::vector<std::string> siblings = {};  ///< names that mean the same on these logs
-};
-const std::vector<Hidden>& HiddenEffects();
-const Hidden& HiddenNamed(const std::string& name);  ///< throws std::out_of_range
 
 /// What one run of the suite is about; its logs follow from it and repeat exactly.
 struct Case {
@@ -31,6 +18,7 @@ struct Case {
   std::uint64_t seed = 1;
   bool listed = true;  ///< whether the hidden effects are among the candidates
   bool told = false;   ///< whether nothing else is
+  std::string robot = "arm";
 
   std::string Name() const;
 };

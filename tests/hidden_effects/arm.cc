@@ -1,12 +1,13 @@
-#pragma once
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-#include <vector>
+
+#include "hidden_effects/robots.h"
 
 namespace continuum::hidden {
+namespace {
+
+constexpr double kPeriod = 0.01;  // s
 
 /// A two-link arm in a vertical plane with springs and motors at its joints, by hand, as the source
 /// of logs that MuJoCo had no part in. Angles q1, q2 [rad] from hanging, each link's own against
@@ -38,20 +39,19 @@ struct Arm {
   double bias = 0, scale = 1, late = 0, drift = 0;  // rad, 1, s, rad/s
 
   /// Angles and tip positions (x, z) [rad, m] at every row, from rest; inputs held between rows.
-  std::array<std::vector<double>, 4> Run(const std::array<std::vector<double>, 2>& u,
-                                         double period) const {
+  Columns Run(const Columns& u, int) const {
     constexpr double h = 2e-5;
-    const int steps = static_cast<int>(std::lround(period / h));
+    const int steps = static_cast<int>(std::lround(kPeriod / h));
     const auto behind = static_cast<std::size_t>(std::lround(dead_time / h));
     std::vector<Pair> given;  // what the motors get, step by step
     Pair lagged{gain * u[0][0] + offset, gain * u[1][0] + offset};
     Pair q{0, 0}, v{0, 0}, creep{0, 0}, bristle{0, 0};
-    std::array<std::vector<double>, 4> out;
+    Columns out(4);
     std::vector<Pair> angles;  // every step, for sensors that are late
     for (std::size_t row = 0; row < u[0].size(); ++row) {
       angles.push_back(q);
       const auto& seen = angles[angles.size() - 1 - std::min(angles.size() - 1, Steps(late, h))];
-      const double t = period * static_cast<double>(row);
+      const double t = kPeriod * static_cast<double>(row);
       for (int j = 0; j < 2; ++j) out[j].push_back(scale * seen[j] + bias + drift * t);
       out[2].push_back(l1 * std::sin(q[0]) + l2 * std::sin(q[0] + q[1]));
       out[3].push_back(-l1 * std::cos(q[0]) - l2 * std::cos(q[0] + q[1]));
@@ -133,9 +133,8 @@ struct Arm {
   }
 };
 
-/// The same arm as MJCF, with nothing hidden.
-inline std::string ArmXml() {
-  return R"(<mujoco model="two-link arm">
+// The same arm as MJCF, with nothing hidden.
+constexpr const char* kModel = R"(<mujoco model="two-link arm">
   <option timestep="0.002" integrator="implicitfast"/>
   <worldbody>
     <body name="upper">
@@ -162,6 +161,55 @@ inline std::string ArmXml() {
   </sensor>
 </mujoco>
 )";
+
+constexpr const char* kExperiment = R"(inputs:
+  - {column: u1, unit: N*m, actuator: u1}
+  - {column: u2, unit: N*m, actuator: u2}
+outputs:
+  - {column: q1, unit: rad, sensor: q1}
+  - {column: q2, unit: rad, sensor: q2}
+  - {column: x, unit: m, sensor: "tip[0]"}
+  - {column: z, unit: m, sensor: "tip[2]"}
+parameters:
+  - {name: stiffness, target: "joint:*", attribute: stiffness, initial: 1.9, lower: 0.2, upper: 20}
+  - {name: damping, target: "joint:*", attribute: damping, initial: 0.06, lower: 0, upper: 1}
+)";
+
+const std::vector<Part<Arm>> kParts{
+    {{"payload", "mass", 0.004, 0, {"link_mass"}}, [](Arm& a, double v) { a.payload = v; }},
+    {{"armature", "armature", 0.0005}, [](Arm& a, double v) { a.armature = v; }},
+    {{"coulomb", "tau_c", 0.005}, [](Arm& a, double v) { a.tau_c = v; }},
+    {{"load_friction", "mu_l", 0.01}, [](Arm& a, double v) { a.load = v; }},
+    {{"dahl", "f", 0.01}, [](Arm& a, double v) { a.dahl = v; }},
+    {{"input_gain", "gain", 0.006, 1}, [](Arm& a, double v) { a.gain = 1 + v; }},
+    {{"input_offset", "offset", 0.006}, [](Arm& a, double v) { a.offset = v; }},
+    {{"dead_time", "delay", 0.004}, [](Arm& a, double v) { a.dead_time = v; }},
+    {{"pt1", "T", 0.004}, [](Arm& a, double v) { a.lag = v; }},
+    {{"cubic_stiffness", "k3", 0.06}, [](Arm& a, double v) { a.k3 = v; }},
+    {{"maxwell", "k_m", 0.05}, [](Arm& a, double v) { a.k_m = v; }},
+    {{"link_mass", "scale", 0.01, 1}, [](Arm& a, double v) { a.link = 1 + v; }},
+    {{"gravity_tilt", "pitch", 0.004}, [](Arm& a, double v) { a.tilt = -v; }},
+    {{"external_force", "fx", 0.02}, [](Arm& a, double v) { a.push = v; }},
+    {{"sensor_bias", "bias", 0.001}, [](Arm& a, double v) { a.bias = v; }},
+    {{"sensor_scale", "scale", 0.004, 1}, [](Arm& a, double v) { a.scale = 1 + v; }},
+    {{"sensor_delay", "delay", 0.002}, [](Arm& a, double v) { a.late = v; }},
+    {{"sensor_drift", "rate", 0.0006}, [](Arm& a, double v) { a.drift = v; }},
+};
+
+}  // namespace
+
+Robot ArmRobot() {
+  Robot robot{
+      "arm",  kModel, kExperiment, {"u1", "u2"}, {"q1", "q2", "x", "z"}, {1e-3, 1e-3, 3e-4, 3e-4},
+      kPeriod};
+  robot.drive = [rows = robot.rows](int trial, std::mt19937_64& rng) {
+    Columns u;
+    for (const double high : {1.0, 0.5})
+      u.push_back(StepsAndSines(trial, high, rows, kPeriod, rng));
+    return u;
+  };
+  Equip(robot, kParts);
+  return robot;
 }
 
 }  // namespace continuum::hidden
