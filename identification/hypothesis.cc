@@ -101,8 +101,9 @@ bool AlreadyFitted(const Experiment& e, const std::string& kind, const std::stri
 }
 
 Hypothesis EditCandidate(const EffectInfo& effect, Place place,
-                         const std::vector<std::string>& names, const System& system,
-                         const Sizes& sizes) {
+                         const std::vector<std::string>& names, const Experiment& e,
+                         const System& system, Sizes sizes) {
+  if (place == Place::kActuator) sizes.input = InputSize(e, names);
   Hypothesis h{std::string(effect.name), "", InWords(place, names), system, {}, {}, "", {}};
   const std::string target =
       place == Place::kWorld ? "world" : std::string(PlaceName(place)) + ":" + Join(names);
@@ -327,14 +328,14 @@ std::string WhyNot(const EffectInfo& effect, Place place, const std::vector<std:
 
 // One hypothesis, or one for each option of a friction's choice.
 void AddAt(const EffectInfo& effect, const Candidate& wanted, Place place,
-           const std::vector<std::string>& names, const System& system, const Sizes& sizes,
-           std::vector<Hypothesis>& all) {
+           const std::vector<std::string>& names, const Experiment& e, const System& system,
+           const Sizes& sizes, std::vector<Hypothesis>& all) {
   if (wanted.law) {
     all.push_back(WrittenCandidate(effect, *wanted.law, place, names, system));
     return;
   }
   if (effect.kind == EffectInfo::Kind::kEdit) {
-    all.push_back(EditCandidate(effect, place, names, system, sizes));
+    all.push_back(EditCandidate(effect, place, names, e, system, sizes));
     return;
   }
   const bool choice = effect.kind == EffectInfo::Kind::kFriction && !effect.choices.empty();
@@ -381,10 +382,10 @@ void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experime
     if (names.empty()) continue;
     const std::string why = wanted.law ? "" : WhyNot(effect, place, names, e, system.model());
     if (!why.empty()) return skip(why);
-    AddAt(effect, wanted, place, names, system, sizes, all);
+    AddAt(effect, wanted, place, names, e, system, sizes, all);
     const bool each = wanted.where.empty() && names.size() > 1 && names.size() <= kEach;
     for (std::size_t i = 0; each && i < names.size(); ++i)
-      AddAt(effect, wanted, place, {names[i]}, system, sizes, all);
+      AddAt(effect, wanted, place, {names[i]}, e, system, sizes, all);
     return;
   }
   if (!wanted.where.empty()) {

@@ -22,7 +22,7 @@ double SizeFor(const Param& p, Place place, const Sizes& s) {
   if (u == "1/rad") return 50 / s.angle;
   if (u == "m/N") return 0.01 / s.tension;
   if (u == "s") return 4 * s.period;
-  if (u == "input") return s.angle;
+  if (u == "input") return s.input;
   if (u == "m") return s.length;
   return 1;
 }

@@ -50,4 +50,18 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
   return s;
 }
 
+double InputSize(const Experiment& e, const std::vector<std::string>& actuators) {
+  double size = 0;
+  for (std::size_t i = 0; i < e.inputs.size(); ++i) {
+    const Input& in = e.inputs[i];
+    if (in.column.empty() ||
+        std::find(actuators.begin(), actuators.end(), in.actuator) == actuators.end())
+      continue;
+    for (const Log& log : e.logs) {
+      for (const double u : log.input[i]) size = std::max(size, std::abs(u));
+    }
+  }
+  return size > 0 ? size : 1;
+}
+
 }  // namespace continuum

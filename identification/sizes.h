@@ -13,9 +13,13 @@ struct Sizes {
   double mass = 1;       ///< mass of the moving bodies [kg]
   double inertia = 1;    ///< inertia that a joint sees [kg*m^2]
   double length = 1;     ///< typical shift of a part [m]
+  double input = 1;      ///< largest control of the actuators in question [their unit]
   double period = 0.01;  ///< median sampling interval [s]
   double step = 0.002;   ///< of the model [s]
 };
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
+
+/// Largest control that the logs give to some actuators [their unit]; 1 where they give none.
+double InputSize(const Experiment& experiment, const std::vector<std::string>& actuators);
 
 }  // namespace continuum

@@ -191,6 +191,23 @@ TEST_F(ExtensionTest, ACandidateThatIsListedTwiceIsTriedOnce) {
   EXPECT_GT(count("payload, backlash"), count("payload"));
 }
 
+TEST_F(ExtensionTest, AnInputIsLookedForInItsOwnUnit) {
+  AddTrials(0.05);
+  const System system = Model(CoulombInstance(0.1));
+  const Experiment e = ReadExperiment(kScaled + "candidates: [input_offset]\n");
+  Experiment pascal = e;
+  for (Log& log : pascal.logs) {
+    for (double& u : log.input.front()) u *= 1e5;
+  }
+  const Problem null(e, system);
+  const Sizes sizes = SizesOf(null, null.Start());
+  std::vector<std::string> skipped;
+  const auto reach = [&](const Experiment& one) {
+    return MakeCandidates(one, system, sizes, skipped).at(0).extra.at(0).upper;
+  };
+  EXPECT_NEAR(reach(pascal), 1e5 * reach(e), 1e-6 * reach(pascal));
+}
+
 TEST_F(ExtensionTest, ApplyNamesWhatIsMissing) {
   const System system = Model();
   for (const char* text : {"{}", R"({"extension": {"changes": []}})"}) {
