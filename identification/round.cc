@@ -272,7 +272,11 @@ LackOfFit Round::LackOfBase() const {
 std::vector<LikelihoodRecord> Round::Records() const {
   std::vector<LikelihoodRecord> records;
   for (const CandidateResult& c : candidates) {
-    LikelihoodRecord record{c.hypothesis.Name(), c.hypothesis.extra.size(), c.likelihood, {}};
+    LikelihoodRecord record{c.hypothesis.Name(),
+                            c.hypothesis.extra.size(),
+                            c.likelihood,
+                            {},
+                            std::max(0.0, TakenOff(c.fitted)) / inflation_};
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(trials_, c, candidates[a])) record.contains.push_back(a);
     }

@@ -186,6 +186,11 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
                         "cause is at work, or one more",
                         candidates[order.front()].name, lack)};
   }
+  // The smaller: one that leans on the time step far more than the other is not excused by it.
+  const auto behind = [&](std::size_t i, std::size_t j, double least) {
+    const double open = rules.step * std::min(candidates[i].step, candidates[j].step);
+    return score(i) - score(j) >= std::max(least, open);
+  };
   // Only as deep as the data allow: a law that contains another must clearly beat it.
   const auto contains = [&](std::size_t a, std::size_t b) {
     const auto& inner = candidates[a].contains;
@@ -193,18 +198,29 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
   };
   const std::size_t first = order.front();
   const auto plain = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
-    return contains(first, i) && score(first) - score(i) < rules.deeper;
+    return contains(first, i) && !behind(first, i, rules.deeper);
   });
   const std::size_t best = plain == order.end() ? first : *plain;
   Verdict verdict{"named", {best}, ""};
+  bool close = true;
   for (const std::size_t i : order) {
     if (i == best || contains(i, best)) continue;
-    if (score(best) - score(i) < rules.apart) verdict.named.push_back(i);
+    if (behind(best, i, rules.apart)) continue;
+    verdict.named.push_back(i);
+    close = close && score(best) - score(i) < rules.apart;
   }
+  // Of a law and one that it contains the plain one says it.
+  const auto near = verdict.named;
+  std::erase_if(verdict.named, [&](std::size_t i) {
+    return std::any_of(near.begin(), near.end(), [&](std::size_t k) {
+      return k != i && contains(i, k) && !behind(i, k, rules.deeper);
+    });
+  });
   if (verdict.named.size() > 1) {
     verdict.text = "ambiguous";
-    verdict.reason = fmt::format("the likelihoods of {} candidates are within {:g}",
-                                 verdict.named.size(), rules.apart);
+    verdict.reason =
+        fmt::format("the likelihoods of {} candidates are within {:g}{}", verdict.named.size(),
+                    rules.apart, close ? "" : " or what the time step leaves open");
   } else {
     verdict.reason =
         fmt::format("it leaves {}, and the next candidate is {:.1f} behind in likelihood",

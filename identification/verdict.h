@@ -44,13 +44,17 @@ struct LikelihoodRecord {
   std::size_t parameters = 0;
   double likelihood = 0;                   ///< twice the logarithm gained over the model without it
   std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
+  double step = 0;  ///< how much of its misfit is put down to the time step, in the same unit
 };
 
 struct LikelihoodRules {
-  double level = 0.045;     ///< family-wise, of any name at all
-  double lack = 0.002;      ///< below it something is left that no name covers; each of two tests
-  double apart = 5;         ///< likelihood by which a rival must fall behind
-  double deeper = 2.8;      ///< score by which a law must beat one that it contains (99 %)
+  double level = 0.045;  ///< family-wise, of any name at all
+  double lack = 0.002;   ///< below it something is left that no name covers; each of two tests
+  double apart = 5;      ///< likelihood by which a rival must fall behind
+  double deeper = 2.8;   ///< score by which a law must beat one that it contains (99 %)
+  /// Share of what is put down to the time step that its first order may miss: names that are
+  /// closer are not told apart.
+  double step = 0.005;
   double parameter = 3.84;  ///< what another parameter must gain (95 % of chi-squared)
   bool excused = false;     ///< what is left is no more than the time step adds: no sign of a cause
 };

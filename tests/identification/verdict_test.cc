@@ -315,6 +315,25 @@ TEST(Likelihoods, ALawThatContainsAnotherIsNamedOnlyWhenItClearlyBeatsIt) {
               ElementsAre(1));
 }
 
+TEST(Likelihoods, OnesWithinAShareOfWhatTheTimeStepLeavesOpenAreKept) {
+  const auto named = [](double step) {
+    return JudgeLikelihoods(
+               {{"a", 1, 300, {}, 9000}, {"b", 1, 330, {}, step}, {"c", 1, 50, {}, 9000}}, 0.5,
+               1e-3)
+        .named;
+  };
+  EXPECT_THAT(named(1000), ElementsAre(1));
+  EXPECT_THAT(named(10000), ElementsAre(1, 0));
+}
+
+TEST(Likelihoods, OfALawAndOneThatItContainsThePlainOneIsKeptBesideAnother) {
+  const std::vector<std::size_t> inner{0};
+  EXPECT_THAT(
+      JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 44, inner}, {"other", 1, 42}}, 0.5, 1e-3)
+          .named,
+      ElementsAre(2, 0));
+}
+
 TEST(Likelihoods, NoNameWhenTheBestLeavesMoreThanNoise) {
   EXPECT_EQ(JudgeLikelihoods({{"a", 1, 4000}}, 1e-6, 1e-3).text, "unexplained");
 }
