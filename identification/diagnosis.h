@@ -47,7 +47,8 @@ struct CandidateResult {
   Hypothesis hypothesis;
   std::vector<Probe> probes = {};  ///< one for each start: directions from the fit without it
   Problem::Vector start = {};      ///< of its fit, when the screen found one
-  bool fits = false;               ///< whether it was fitted
+  std::vector<Problem::Vector> rivals = {};  ///< starts that the screen finds as good
+  bool fits = false;                         ///< whether it was fitted
   Fitted fitted = {};
   FoldRecord record = {};
   std::vector<std::string> failures = {};

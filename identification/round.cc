@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <Eigen/Dense>
 
@@ -87,8 +88,30 @@ void Round::Screen() {
     const Probe& probe = c.probes[best];
     c.start =
         trials_.StartFrom(c.hypothesis, *base_.fitted, probe, ExplainedBy(probe, left.residual()));
+    c.rivals = StartsAsGood(c, best, left);
     std::swap(c.probes[0], c.probes[best]);
   }
+}
+
+// First order says little of what acts on top of another amplitude, as a Stribeck excess, nor of
+// what belongs to it, as its speed: starts that explain as much as the best, with little and much
+// of it.
+std::vector<Problem::Vector> Round::StartsAsGood(const CandidateResult& c, std::size_t best,
+                                                 const Remainder& left) const {
+  constexpr double kAsGood = 0.99;
+  std::set<std::size_t> seen;
+  std::vector<Problem::Vector> starts;
+  for (const Probe& probe : c.probes) {
+    const auto& on_top = probe.on_top;
+    if (std::find(on_top.begin(), on_top.end(), true) == on_top.end()) continue;
+    const Explained e = ExplainedBy(probe, left.residual());
+    if (e.amount < kAsGood * c.explained || !seen.insert(probe.start).second) continue;
+    for (const double excess : {1.0, 10.0}) {
+      if (&probe == &c.probes[best] && excess == 1) continue;  // where the fit begins anyway
+      starts.push_back(trials_.StartFrom(c.hypothesis, *base_.fitted, probe, e, excess));
+    }
+  }
+  return starts;
 }
 
 double Round::smallest_p() const { return smallest_p_; }
@@ -140,10 +163,16 @@ void Round::Fit() {
   TellApart();
 }
 
-// From the screen's start, or the best of several after a few iterations.
+// From the start that is best after a few iterations, of the screen or of the hypothesis.
 void Round::FitOne(CandidateResult& c, double rival) const {
   const Problem problem = c.ProblemOf(*trials_.experiment);
-  c.fitted = trials_.Fit(problem, c.start.size() ? c.start : BestStart(c, problem), rival);
+  std::vector<Problem::Vector> starts = c.rivals;
+  if (c.start.size() > 0) {
+    starts.insert(starts.begin(), c.start);
+  } else {
+    for (const auto& own : c.hypothesis.starts) starts.push_back(Append(base_.fitted->fit.x, own));
+  }
+  c.fitted = trials_.Fit(problem, BestOf(problem, starts), rival);
   c.fits = true;
 }
 
@@ -156,15 +185,16 @@ CandidateResult Round::FitAlone(CandidateResult c) const {
   return c;
 }
 
-Problem::Vector Round::BestStart(const CandidateResult& c, const Problem& problem) const {
-  const auto& starts = c.hypothesis.starts;
-  if (starts.size() == 1) return Append(base_.fitted->fit.x, starts.front());
+Problem::Vector Round::BestOf(const Problem& problem,
+                              const std::vector<Problem::Vector>& starts) const {
+  if (starts.size() == 1) return starts.front();
+  FitOptions options{4, 1e-3};
+  if (trials_.whitening.active()) options.whitening = &trials_.whitening;
   double best_cost = std::numeric_limits<double>::infinity();
   Problem::Vector best;
   for (const auto& start : starts) {
     try {
-      const continuum::Fit fit = FitParameters(problem, Append(base_.fitted->fit.x, start),
-                                               problem.TrainLogs(), {4, 1e-3});
+      const continuum::Fit fit = FitParameters(problem, start, problem.TrainLogs(), options);
       if (fit.cost < best_cost) best_cost = fit.cost, best = fit.x;
     } catch (const Error&) {
       continue;  // this start diverges; another may not

@@ -57,7 +57,9 @@ class Round {
   double HowMuchIsNeeded() const;
   double Likelihood(const Fitted& fitted) const;
   void FitOne(CandidateResult& c, double rival) const;
-  Problem::Vector BestStart(const CandidateResult& c, const Problem& problem) const;
+  std::vector<Problem::Vector> StartsAsGood(const CandidateResult& c, std::size_t best,
+                                            const Remainder& left) const;
+  Problem::Vector BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;
   static double TakenOff(const Fitted& fitted);
   void CompleteTheBest();
   bool Resolved(const Problem& problem, const Fitted& fitted) const;

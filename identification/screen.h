@@ -48,6 +48,7 @@ struct Probe {
   std::vector<double> share = {};  ///< the coefficients at which it was probed
   std::size_t start = 0;           ///< of its hypothesis' starts
   Eigen::MatrixXd whole = {};      ///< the columns at coefficients of 1, where those are others
+  std::vector<bool> on_top = {};   ///< coefficients that do nothing without the others
 
   /// Where all candidates can be compared: at the sizes of their starts.
   const Eigen::MatrixXd& AtStart() const { return whole.size() > 0 ? whole : columns; }

@@ -85,6 +85,26 @@ struct Prober {
     return share;
   }
 
+  // An amplitude that does nothing alone, as the excess of a friction that is not there, on top of
+  // the others.
+  Probe OnTop(Probe probe) const {
+    probe.on_top.assign(amplitudes.size(), false);
+    if (amplitudes.size() < 2) return probe;
+    for (std::size_t a = 0; a < amplitudes.size(); ++a) {
+      if (Reach(probe, a) > 0) continue;
+      std::vector<double> others = probe.share;
+      others[a] = 0;
+      try {
+        probe.columns.col(static_cast<Eigen::Index>(a)) = Between(
+            Residuals(probe.start, others), Residuals(probe.start, probe.share), probe.share[a]);
+        probe.on_top[a] = Reach(probe, a) > 0;
+      } catch (const Error&) {
+        continue;  // all of them are too much for the simulation
+      }
+    }
+    return probe;
+  }
+
   // The same probe at other shares; simulates only what is other.
   Probe At(const Probe& whole, const std::vector<double>& share) const {
     Probe probe = whole;
@@ -104,16 +124,28 @@ struct Prober {
 
   // What one amplitude does to what is left, per share of its start.
   Vector Direction(std::size_t start, std::size_t one, double share) const {
+    std::vector<double> shares(amplitudes.size(), 0);
+    shares[one] = share;
+    return Between(null.residuals, Residuals(start, shares), share);
+  }
+
+  std::vector<Vector> Residuals(std::size_t start, const std::vector<double>& share) const {
     const auto train = TrainLogs(problem.experiment());
     std::vector<double> own = h.starts[start];
     for (std::size_t a = 0; a < amplitudes.size(); ++a)
-      own[amplitudes[a]] = AtShare(h, h.starts[start], amplitudes[a], a == one ? share : 0);
-    const auto r = problem.Residuals(Append(null.fit.x, own), train);
+      own[amplitudes[a]] = AtShare(h, h.starts[start], amplitudes[a], share[a]);
+    auto r = problem.Residuals(Append(null.fit.x, own), train);
+    for (std::size_t l = 0; l < train.size(); ++l) {
+      if (train[l] && !r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
+    }
+    return r;
+  }
+  Vector Between(const std::vector<Vector>& from, const std::vector<Vector>& to,
+                 double share) const {
+    const auto train = TrainLogs(problem.experiment());
     std::vector<Matrix> column(train.size());
     for (std::size_t l = 0; l < train.size(); ++l) {
-      if (!train[l]) continue;
-      if (!r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
-      column[l] = (r[l] - null.residuals[l]) / share;
+      if (train[l]) column[l] = (to[l] - from[l]) / share;
     }
     return left.Project(column);
   }
@@ -235,10 +267,10 @@ std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, c
   for (std::size_t start = 0; start < h.starts.size(); ++start) {
     Probe whole = prober.AtStart(start);
     const std::vector<double> less = prober.Less(whole), more = prober.More(whole);
-    probes.push_back(prober.At(whole, less));
+    probes.push_back(prober.OnTop(prober.At(whole, less)));
     if (more == whole.share) continue;
     try {
-      probes.push_back(prober.At(whole, more));
+      probes.push_back(prober.OnTop(prober.At(whole, more)));
     } catch (const Error&) {
       continue;  // too much for the simulation
     }
@@ -247,7 +279,7 @@ std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, c
 }
 
 Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,
-                         const Explained& explained) const {
+                         const Explained& explained, double excess) const {
   const auto amplitudes = h.Amplitudes();
   const std::vector<double>& start = h.starts[probe.start];
   std::vector<double> own = start;
@@ -257,7 +289,10 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& p
     // Off the null, where a bound or a kink hides the slope.
     const double least = 0.05 * probe.share[a];
     const double wanted = explained.coefficients[k];
-    const double share = idle ? 0 : std::abs(wanted) > least ? wanted : least;
+    const double share = idle                       ? 0
+                         : probe.on_top[a]          ? excess * probe.share[a]
+                         : std::abs(wanted) > least ? wanted
+                                                    : least;
     own[amplitudes[a]] = AtShare(h, start, amplitudes[a], share);
   }
   for (std::size_t i = 0; i < own.size(); ++i)

@@ -30,9 +30,10 @@ struct Trials {
   /// start where that does far more than is left to explain, and once more where it does far less.
   std::vector<Probe> Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                             const Remainder& left) const;
-  /// Where to begin a candidate's fit: a start of its own, with sizes from its probe.
+  /// Where to begin a candidate's fit: a start of its own, with sizes from its probe. What does
+  /// nothing without the others begins at excess times its start: first order says little of it.
   Problem::Vector StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,
-                            const Explained& explained) const;
+                            const Explained& explained, double excess = 1) const;
   /// How far the trajectories at the time step h and at h/4 are apart [pooled unit].
   double StepEffect(const Problem& problem, const Fitted& fitted) const;
   /// Whether what a candidate leaves above the noise is no more than what its time step adds, and
