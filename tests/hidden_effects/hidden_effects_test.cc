@@ -110,5 +110,40 @@ TEST_F(Suite, ALargeOneStaysAlone) {
   EXPECT_TRUE(a.low <= a.truth && a.truth <= a.high) << told_;
 }
 
+Case White(const std::string& robot, const std::string& effect, double factor, std::uint64_t seed) {
+  return {{effect}, factor, NoiseKind::kWhite, seed, true, false, robot};
+}
+
+// The published benchmark with a known cause, from a linear null model.
+TEST_F(Suite, TheSilverboxIsACubicSpring) {
+  const Case c = White("silverbox", "cubic_stiffness", 1, 3);
+  const Answer a = Ask(c);
+  EXPECT_TRUE(InSet(c, a) && Unique(a)) << told_;
+  EXPECT_TRUE(a.low <= a.truth && a.truth <= a.high) << told_;
+}
+
+// A Stribeck excess does nothing without its Coulomb level, and its speed nothing without it: from
+// one start the fit ends far off, and a second cause is called in.
+TEST_F(Suite, AServoShowsItsStribeckFriction) {
+  const Case c = White("servo", "stribeck", 1, 5);
+  const Answer a = Ask(c);
+  EXPECT_TRUE(InSet(c, a) && Unique(a)) << told_;
+}
+
+TEST_F(Suite, AServoShowsItsBacklash) {
+  const Case c = White("servo", "backlash", 1, 13);
+  const Answer a = Ask(c);
+  EXPECT_TRUE(InSet(c, a) && Unique(a)) << told_;
+  EXPECT_TRUE(a.low <= a.truth && a.truth <= a.high) << told_;
+}
+
+// From rest a late input and a late sensor show the same; what tells them apart here is the time
+// step alone.
+TEST_F(Suite, ALateInputIsNotOnlyALateSensor) {
+  const Case c = White("servo", "dead_time", 2, 16);
+  const Answer a = Ask(c);
+  EXPECT_TRUE(InSet(c, a)) << told_;
+}
+
 }  // namespace
 }  // namespace continuum::hidden
