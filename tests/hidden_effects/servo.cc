@@ -107,7 +107,7 @@ const std::vector<Part<Servo>> kParts{
     {{"dead_time", "delay", 0.005}, [](Servo& s, double v) { s.dead_time = v; }},
     {{"pt1", "T", 0.005}, [](Servo& s, double v) { s.lag = v; }},
     {{"payload", "mass", 0.01}, [](Servo& s, double v) { s.payload = v; }},
-    {{"armature", "armature", 0.0002}, [](Servo& s, double v) { s.armature = v; }},
+    {{"armature", "armature", 0.0002, 0.00173}, [](Servo& s, double v) { s.armature = v; }},
     {{"viscous", "b", 0.002}, [](Servo& s, double v) { s.viscous = v; }},
     {{"input_gain", "gain", 0.01, 1}, [](Servo& s, double v) { s.gain = 1 + v; }},
     {{"input_offset", "offset", 0.005}, [](Servo& s, double v) { s.offset = v; }},
