@@ -29,7 +29,8 @@ const std::map<std::string, Unit>& Units() {
     add(force, {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}});
     add(energy, {{"Nm", 1}, {"mNm", 1e-3}, {"Nmm", 1e-3}, {"J", 1}});
     add(power, {{"W", 1}});
-    add(pressure, {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"mbar", 100}, {"bar", 1e5}});
+    add(pressure,
+        {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}, {"mbar", 100}, {"bar", 1e5}});
     add(voltage, {{"V", 1}, {"mV", 1e-3}});
     add(current, {{"A", 1}, {"mA", 1e-3}});
     return all;

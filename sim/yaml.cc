@@ -9,6 +9,7 @@
 #include "error.h"
 #include "sim/file.h"
 #include "sim/shown.h"
+#include "sim/units.h"
 
 namespace continuum {
 
@@ -140,14 +141,24 @@ std::vector<double> Yaml::Numbers() const {
   return values;
 }
 
-double Yaml::Parameter() const { return node_.IsMap() ? At("value").Number() : Number(); }
-
-double Yaml::Parameter(double lower, double upper) const {
-  return node_.IsMap() ? At("value").Number(lower, upper) : Number(lower, upper);
+Yaml Yaml::Quantity() const {
+  if (!node_.IsMap()) return *this;
+  if (const auto unit = Find("unit")) {
+    const std::string text = unit->Text();
+    double factor = 1;
+    try {
+      factor = UnitFactor(text, "");
+    } catch (const Error&) {  // no unit that we know: a remark
+    }
+    if (factor != 1) throw Error::Input(unit->Where(), "a unit of the SI", "'" + text + "'");
+  }
+  return At("value");
 }
 
-std::vector<double> Yaml::Parameters() const {
-  return node_.IsMap() ? At("value").Numbers() : Numbers();
-}
+double Yaml::Parameter() const { return Quantity().Number(); }
+
+double Yaml::Parameter(double lower, double upper) const { return Quantity().Number(lower, upper); }
+
+std::vector<double> Yaml::Parameters() const { return Quantity().Numbers(); }
 
 }  // namespace continuum

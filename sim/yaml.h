@@ -49,6 +49,8 @@ class Yaml {
   bool Bool() const;
   std::vector<double> Numbers() const;
   /// A parameter of a robot's file: a number, or a map {value, unit, uncertainty, source}.
+  Yaml Quantity()
+      const;  ///< `value` of a map that has one, whose `unit` must be of the SI; else this
   double Parameter() const;
   double Parameter(double lower, double upper) const;
   std::vector<double> Parameters() const;

@@ -40,8 +40,7 @@ Eigen::Vector3d Vector(const Yaml& node) {
 }
 
 Eigen::Vector3d Gravity(const Yaml& node) {
-  const bool list = node.IsList() || (node.IsMap() && node.At("value").IsList());
-  if (list) return Vector(node);
+  if (node.Quantity().IsList()) return Vector(node);
   if (node.Parameter() == 0) return Eigen::Vector3d::Zero();
   throw Error::Input(node.Where(), "three numbers or 0", Decimal(node.Parameter()));
 }

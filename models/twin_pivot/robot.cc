@@ -20,8 +20,7 @@ double AtLeast(const Yaml& node, double lower) {
 }
 
 std::vector<Yaml> List(const Yaml& node, std::size_t count, const std::string& what) {
-  const Yaml list = node.IsMap() ? node.At("value") : node;
-  std::vector<Yaml> items = list.Items();
+  std::vector<Yaml> items = node.Quantity().Items();
   if (items.size() == count) return items;
   throw Error::Input(node.Where(), std::to_string(count) + " numbers, " + what,
                      std::to_string(items.size()));
@@ -33,8 +32,7 @@ constexpr int kMostDiscs = 400;
 std::vector<int> Discs(const Yaml& node) {
   std::vector<int> discs;
   int all = 0;
-  const Yaml list = node.IsMap() ? node.At("value") : node;
-  for (const Yaml& item : list.Items()) {
+  for (const Yaml& item : node.Quantity().Items()) {
     const int count = item.Integer();
     if (count <= 0 || count % 2 != 0) {
       throw Error::Input(item.Where(), "an even number > 0, two discs per segment",
