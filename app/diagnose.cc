@@ -70,7 +70,7 @@ void RunDiagnose(const Options& o) {
   std::vector<std::string> outputs{"diagnosis.json", "extended.xml", "extended.yaml", "simulated/",
                                    "report.html"};
   if (o.video) outputs.push_back("extended.mp4");
-  const OutFolder made(o.out, outputs);
+  const OutFolder made(o.out, outputs, {read.file, read.model});
   const Experiment e = Registered(read, system);
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress("files");
@@ -102,7 +102,7 @@ struct ApplyOptions {
 };
 
 void RunApply(const ApplyOptions& o) {
-  RequireWritable(o.out);
+  RequireWritable(o.out, {o.diagnosis, o.model});
   const auto json = ReadJson(o.diagnosis);
   const auto folder = std::filesystem::absolute(ThroughLinks(o.out)).parent_path();
   const std::string xml = ApplyJson(System::Load(o.model), json, o.diagnosis, folder);

@@ -135,7 +135,8 @@ void RunIdentify(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
   const System system = System::Load(read.model);
   CheckNames(read, system);
-  const OutFolder made(o.out, {"fit.json", "fitted.xml", "simulated/", "report.html"});
+  const OutFolder made(o.out, {"fit.json", "fitted.xml", "simulated/", "report.html"},
+                       {read.file, read.model});
   const Experiment e = Registered(read, system);
   Problem problem(e, system);
   if (problem.parameters().empty())

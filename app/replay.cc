@@ -34,7 +34,7 @@ void RunReplay(const Options& o) {
   CheckAll(e, system);
   std::vector<std::string> outputs{"errors.json", "simulated/", "report.html"};
   if (o.video) outputs.push_back("replay.mp4");
-  const OutFolder made(o.out, outputs);
+  const OutFolder made(o.out, outputs, {e.file, e.model});
   const std::filesystem::path folder = o.out;
   const auto logs = Replay(e, system, ShowProgress);
   EndProgress();

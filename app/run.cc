@@ -199,8 +199,8 @@ void RunModel(const Options& o) {
   const double period = o.input.empty() ? m.opt.timestep : 0;
   const Run run = Plan(o, m, o.every > 0 ? o.every : period);
   const Run shown = o.video.empty() ? Run{} : Plan(o, m, o.every > 0 ? o.every : kFramePeriod);
-  if (!o.out.empty()) RequireWritable(o.out);
-  if (!o.video.empty()) RequireWritable(o.video);
+  if (!o.out.empty()) RequireWritable(o.out, {o.model, o.input});
+  if (!o.video.empty()) RequireWritable(o.video, {o.model, o.input});
   std::string csv = Header(*machine.model);
   Hooks hooks = Hooks::Stoppable();
   hooks.row = [&](const mjModel& m, mjData& d, std::size_t row) {

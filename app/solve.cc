@@ -44,8 +44,10 @@ void AddSolve(CLI::App& app, int& exit_code) {
       "  continuum solve models/tdcr/tdcr.yaml --method eas --input models/tdcr/cases.csv "
       "--out shapes.csv --plot shapes.png");
   solve->callback([request, &exit_code] {
-    RequireWritable(request->out);
-    if (!request->plot.empty()) RequireWritable(request->plot);
+    const std::vector<std::filesystem::path> inputs{request->robot, request->input,
+                                                    request->measured};
+    RequireWritable(request->out, inputs);
+    if (!request->plot.empty()) RequireWritable(request->plot, inputs);
     exit_code = Solve(*request);
   });
 }

@@ -244,6 +244,8 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   fit.cost = summary.final_cost;
   fit.converged = summary.termination_type == ceres::CONVERGENCE;
   fit.message = summary.message;
+  if (summary.termination_type == ceres::USER_SUCCESS)
+    fit.message = StopRequested() ? "interrupted" : "given up: it cannot come near a better one";
   fit.evaluations = problem.evaluations() - before;
   fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return fit;

@@ -15,13 +15,14 @@ namespace fs = std::filesystem;
 
 constexpr int kLinks = 40;  // as many as Linux follows
 
-void RequireOutput(const fs::path& folder, const std::string& name) {
-  if (!name.ends_with('/')) return RequireWritable(folder / name);
+void RequireOutput(const fs::path& folder, const std::string& name,
+                   const std::vector<fs::path>& inputs) {
+  if (!name.ends_with('/')) return RequireWritable(folder / name, inputs);
   const fs::path inner = folder / name.substr(0, name.size() - 1);
   std::error_code failed;
   if (!fs::exists(inner, failed)) return;
   if (!fs::is_directory(inner, failed)) throw Error::Input(inner.string(), "a folder", "a file");
-  RequireWritable(inner / "log.csv");
+  RequireWritable(inner / "log.csv", inputs);
 }
 
 // Standard output and its like, also when it happens to be a file.
@@ -51,10 +52,14 @@ bool IsStream(const fs::path& path) {
   return IsStandardStream(path) || fs::is_other(path, failed);
 }
 
-void RequireWritable(const fs::path& path) {
+void RequireWritable(const fs::path& path, const std::vector<fs::path>& inputs) {
   const fs::path target = ThroughLinks(path);
   if (IsStream(target)) return;
   std::error_code failed;
+  for (const fs::path& input : inputs) {
+    if (fs::equivalent(target, input, failed))
+      throw Error::Input(path.string(), "an output beside the inputs", "the input itself");
+  }
   if (fs::is_directory(target, failed)) {
     throw Error::Input(path.string(), "a writable file", "a folder");
   }
@@ -65,7 +70,8 @@ void RequireWritable(const fs::path& path) {
   fs::remove(aside, failed);
 }
 
-OutFolder::OutFolder(const fs::path& path, const std::vector<std::string>& outputs) {
+OutFolder::OutFolder(const fs::path& path, const std::vector<std::string>& outputs,
+                     const std::vector<fs::path>& inputs) {
   std::error_code ignored;
   for (fs::path p = fs::absolute(path, ignored).lexically_normal();
        p.has_relative_path() && !fs::exists(p, ignored); p = p.parent_path()) {
@@ -73,7 +79,7 @@ OutFolder::OutFolder(const fs::path& path, const std::vector<std::string>& outpu
   }
   try {
     MakeFolder(path);
-    for (const std::string& output : outputs) RequireOutput(path, output);
+    for (const std::string& output : outputs) RequireOutput(path, output, inputs);
   } catch (...) {
     RemoveEmpty();
     throw;

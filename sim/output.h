@@ -12,16 +12,20 @@ std::filesystem::path ThroughLinks(const std::filesystem::path& path);
 /// Pipes, terminals and other devices; and standard output, also when it happens to be a file.
 bool IsStream(const std::filesystem::path& path);
 
-/// Throws Error where WriteFile would: to be asked before long work, not after it.
-void RequireWritable(const std::filesystem::path& path);
+/// Throws Error where WriteFile would, and where it would write over one of the job's own inputs:
+/// to be asked before long work, not after it.
+void RequireWritable(const std::filesystem::path& path,
+                     const std::vector<std::filesystem::path>& inputs = {});
 
 /// A folder for the outputs of a job, made before it starts. Folders that it made and that are
 /// still empty when it ends are taken away again.
 class OutFolder {
  public:
-  /// outputs: what the job will write there, folders with a "/" at their end. Throws Error when the
-  /// folder cannot be made or one of them not be written.
-  OutFolder(const std::filesystem::path& path, const std::vector<std::string>& outputs);
+  /// outputs: what the job will write there, folders with a "/" at their end; inputs: what it
+  /// reads. Throws Error when the folder cannot be made, or one of the outputs not be written or is
+  /// an input.
+  OutFolder(const std::filesystem::path& path, const std::vector<std::string>& outputs,
+            const std::vector<std::filesystem::path>& inputs = {});
   OutFolder(const OutFolder&) = delete;
   ~OutFolder();
 

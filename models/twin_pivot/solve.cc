@@ -1,5 +1,6 @@
 #include "models/solver/solve.h"
 
+#include <algorithm>
 #include <initializer_list>
 #include <optional>
 #include <utility>
@@ -73,7 +74,7 @@ void WriteRow(const Robot& robot, const Case& row, const Solution& solution,
   results.Set("condition",
               std::string(twin_pivot::kConditions[static_cast<int>(row.load.condition)]));
   results.Set(solution.outcome, solution.outcome.ok() ? "ok" : "no_convergence");
-  if (!solution.outcome.ok()) return;
+  if (!solution.outcome.ok()) return results.Set("why", solution.outcome.why);
   for (int i = 0; i < 3; ++i) results.Set(std::string(1, "xyz"[i]), solution.tip[i]);
   for (int m = 0; m < robot.Joints(); ++m) {
     results.Set("beta_" + std::to_string(m + 1), solution.beta[m]);
@@ -91,6 +92,9 @@ void WriteResults(const SolveRequest& request, const Robot& robot, const std::ve
        {std::pair{"beta_", robot.Joints()}, std::pair{"F_end_", robot.Cables()}}) {
     for (const std::string& name : solver::Numbered(prefix, count)) columns.push_back(name);
   }
+  const bool all =
+      std::all_of(solved.begin(), solved.end(), [](const Solution& s) { return s.outcome.ok(); });
+  if (!all) columns.emplace_back("why");
   solver::Results results(columns);
   for (std::size_t i = 0; i < cases.size(); ++i) WriteRow(robot, cases[i], solved[i], results);
   results.Write(request.out);

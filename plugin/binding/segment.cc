@@ -65,6 +65,15 @@ void CheckSupply(const std::string& where, const char* range, bool limited, cons
                      std::to_string(limits[0]) + " " + std::to_string(limits[1]));
 }
 
+// Pressure is the control times a gain, later by a lag.
+void CheckLine(const std::string& where, const mjModel& m, int a) {
+  const double gain = m.actuator_gainprm[mjNGAIN * a], bias = m.actuator_biasprm[mjNBIAS * a],
+               lag = m.actuator_dynprm[mjNDYN * a];
+  if (gain >= 0 && lag >= 0 && std::isfinite(gain + bias + lag)) return;
+  throw Error::Input(where, "a finite gain and lag from 0 on and a finite bias",
+                     std::to_string(gain) + " " + std::to_string(lag) + " " + std::to_string(bias));
+}
+
 }  // namespace
 
 Chain::Chain(const mjModel& m, const Config& config) {
@@ -152,6 +161,7 @@ Vec<int, 3> MatchChambers(const mjModel& m, const Config& config) {
     }
     CheckSupply(where, "a ctrlrange", m.actuator_ctrllimited[a], m.actuator_ctrlrange + 2 * a);
     CheckSupply(where, "a forcerange", m.actuator_forcelimited[a], m.actuator_forcerange + 2 * a);
+    CheckLine(where, m, a);
   }
   return {ids[0], ids[1], ids[2]};
 }

@@ -141,8 +141,11 @@ TEST_F(TwinPivotSolve, FailedCaseAndThoseThatReferToItDoNotStopTheOthers) {
   EXPECT_FALSE(table.Text(0, "iterations").empty());
   EXPECT_TRUE(table.Text(0, "x").empty());
   EXPECT_TRUE(table.Text(0, "F_end_1").empty());
+  EXPECT_FALSE(table.Text(0, "why").empty());
   EXPECT_EQ(table.Text(1, "status"), "no_convergence");
+  EXPECT_EQ(table.Text(1, "why"), "its reference 'bad' failed");
   EXPECT_EQ(table.Text(2, "status"), "ok");
+  EXPECT_TRUE(table.Text(2, "why").empty());
 }
 
 TEST_F(TwinPivotSolve, ReferenceIsTheSolutionOfAnEarlierRow) {

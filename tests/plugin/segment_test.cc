@@ -216,6 +216,18 @@ TEST_F(Segment, BadInputSaysWhichKeyAndWhatWasFound) {
   EXPECT_THAT(Error(body + chambers + Key("k_dL3", "inf")), HasSubstr("k_dL3: expected a finite"));
 }
 
+TEST_F(Segment, AGainOrLagBelowZeroOrOfNoNumberIsRefused) {
+  for (const std::string line :
+       {"gainprm=\"nan\"", "gainprm=\"-1\"", "dyntype=\"filter\" dynprm=\"-0.007\"",
+        "dyntype=\"filter\" dynprm=\"nan\"", "biastype=\"affine\" biasprm=\"inf\""}) {
+    Options options;
+    options.p1 = "<general name=\"p1\" joint=\"l1\" gear=\"0\" " + line + "/>";
+    const auto [model, error] = Compile(Arm(options));
+    EXPECT_FALSE(model) << line;
+    EXPECT_THAT(error, HasSubstr("actuator 'p1'")) << line;
+  }
+}
+
 TEST_F(Segment, ASupplyBelowZeroOrWithoutEndIsRefused) {
   for (const std::string range : {"ctrllimited=\"true\" ctrlrange=\"-100 75000\"",
                                   "forcelimited=\"true\" forcerange=\"-1 75000\"",

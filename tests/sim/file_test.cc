@@ -76,6 +76,16 @@ TEST_F(Written, OutputsMustBePossibleInTheirFolder) {
   EXPECT_THROW(RequireWritable(scratch_ / "out/file/below"), Error);
 }
 
+TEST_F(Written, AnOutputIsNoInputOfItsJob) {
+  const auto model = scratch_.Write("model.xml", "precious");
+  fs::create_symlink("model.xml", scratch_ / "link.xml");
+  for (const char* name : {"model.xml", "./model.xml", "link.xml"})
+    EXPECT_THROW(RequireWritable(scratch_ / name, {model}), Error) << name;
+  EXPECT_NO_THROW(RequireWritable(scratch_ / "other.xml", {model, ""}));
+  EXPECT_THROW(OutFolder(scratch_.folder(), {"other.xml", "model.xml"}, {model}), Error);
+  EXPECT_EQ(Scratch::Text(model), "precious");
+}
+
 TEST_F(Written, FilesBeyondMemoryAreNotRead) {
   scratch_.Write("large", "");
   fs::resize_file(scratch_ / "large", 1'000'000'000'000);  // without blocks on the disk
