@@ -114,7 +114,7 @@ Case White(const std::string& robot, const std::string& effect, double factor, s
   return {{effect}, factor, NoiseKind::kWhite, seed, true, false, robot};
 }
 
-// The published benchmark with a known cause, from a linear null model.
+// The equation of the published benchmark at values of its kind, from a linear null model.
 TEST_F(Suite, TheSilverboxIsACubicSpring) {
   const Case c = White("silverbox", "cubic_stiffness", 1, 3);
   const Answer a = Ask(c);
