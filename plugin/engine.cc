@@ -17,8 +17,8 @@
 #include "binding/segment.h"
 #include "binding/signal.h"
 #include "effects/all.h"
+#include "entry_objects.h"
 #include "one_mujoco.h"
-#include "owned.h"
 
 namespace continuum {
 namespace {
@@ -45,7 +45,7 @@ struct Instance {
 };
 
 // Never destroyed: an mjData may outlive what the process destroys at its end.
-Owned<Instance>& instances = *new Owned<Instance>;
+EntryObjects<Instance>& instances = *new EntryObjects<Instance>;
 
 Instance* Get(const mjData& d, int i) { return instances.Find(d.plugin_data[i]); }
 

@@ -83,16 +83,23 @@ double AppliedTorque(const mjModel& m, const mjData& d, int dof) {
   return torque;
 }
 
-// Under the discrete integrator the anchor does not act. A row as hard as the solver carries then
-// keeps the creep low.
+// Impedance of a row, unless the model says how hard it is; under the discrete integrator, where
+// the anchor does not act, whatever it says: as hard as the solver carries keeps the creep low.
+constexpr double kImpedance = 0.99, kDiscreteImpedance = 0.9999;
+
 void Harden(mjModel& m, const Row& row) {
   double* const solref = (row.joint ? m.dof_solref : m.tendon_solref_fri) + mjNREF * row.index;
   double* const solimp = (row.joint ? m.dof_solimp : m.tendon_solimp_fri) + mjNIMP * row.index;
   const auto assign = [](double& to, double value) {
     if (to != value) to = value;  // another thread may be reading it
   };
-  assign(solref[0], 2 * m.opt.timestep), assign(solref[1], 1);
-  assign(solimp[0], 0.9999), assign(solimp[1], 0.9999);
+  double usual[mjNREF], soft[mjNIMP];
+  mj_defaultSolRefImp(usual, soft);
+  const bool discrete = m.opt.integrator == mjINT_DISCRETE;
+  if (discrete) assign(solref[0], 2 * m.opt.timestep), assign(solref[1], 1);
+  if (!discrete && !std::equal(soft, soft + mjNIMP, solimp)) return;
+  const double impedance = discrete ? kDiscreteImpedance : kImpedance;
+  assign(solimp[0], impedance), assign(solimp[1], impedance);
 }
 
 bool Saturated(const mjData& d, int r) {
@@ -142,7 +149,7 @@ void Rows::Impose(mjModel& m) const {
   for (const Row& row : rows_) {
     double& loss = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
     if (loss == 0) loss = kRowMarker;
-    if (m.opt.integrator == mjINT_DISCRETE) Harden(m, row);
+    Harden(m, row);
   }
 }
 

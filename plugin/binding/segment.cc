@@ -5,10 +5,13 @@
 #include <span>
 #include <sstream>
 
+#include "binding/actuator_type.h"
+
 namespace continuum {
 namespace {
 
 constexpr double kAligned = 1e-9;  // of axes, whose quaternions are rounded
+constexpr double kLength = 0.01;   // of a length, which may have been measured
 
 // Ids of the objects named under key, in the order given.
 std::vector<int> Named(const mjModel& m, const Config& config, const std::string& key, mjtObj type,
@@ -67,6 +70,12 @@ void CheckSupply(const std::string& where, const char* range, bool limited, cons
 
 // Pressure is the control times a gain, later by a lag.
 void CheckLine(const std::string& where, const mjModel& m, int a) {
+  const int dynamics = m.actuator_dyntype[a];
+  if (dynamics != mjDYN_NONE && dynamics != mjDYN_FILTER && dynamics != mjDYN_FILTEREXACT) {
+    throw Error::Input(where,
+                       "dyntype none, filter or filterexact, because its control is a pressure",
+                       ActuatorType(m.actuator_gaintype[a], m.actuator_biastype[a], dynamics));
+  }
   const double gain = m.actuator_gainprm[mjNGAIN * a], bias = m.actuator_biasprm[mjNBIAS * a],
                lag = m.actuator_dynprm[mjNDYN * a];
   if (gain >= 0 && lag >= 0 && std::isfinite(gain + bias + lag)) return;
@@ -74,14 +83,25 @@ void CheckLine(const std::string& where, const mjModel& m, int a) {
                      std::to_string(gain) + " " + std::to_string(lag) + " " + std::to_string(bias));
 }
 
+void CheckDirection(const mjModel& m, const Config& config, int body, const double* step) {
+  if (step[2] >= -kAligned) return;
+  const char* const name = mj_id2name(&m, mjOBJ_BODY, body);
+  throw Error::Input(config.Who() + ": body '" + (name ? name : std::to_string(body)) + "'",
+                     "a place beyond its parent along the z axis of the base body",
+                     Listed({step, 3}) + " from it");
+}
+
 }  // namespace
 
 Chain::Chain(const mjModel& m, const Config& config) {
   const auto ends = Named(m, config, "body", mjOBJ_BODY, 2);
   links_.push_back({ends[0], {1, 0, 0}, {0, 1, 0}});
-  double to_base[4] = {1, 0, 0, 0};
+  double to_base[4] = {1, 0, 0, 0}, tip[3] = {0, 0, 0};
   for (const int body : Path(m, config, ends[0], ends[1])) {
-    double turned[4], back[4];
+    double turned[4], back[4], step[3];
+    mju_rotVecQuat(step, m.body_pos + 3 * body, to_base);
+    CheckDirection(m, config, body, step);
+    mju_addTo3(tip, step);
     mju_mulQuat(turned, to_base, m.body_quat + 4 * body);
     mju_copy4(to_base, turned);
     for (int j = 0; j < m.body_jntnum[body]; ++j) {
@@ -94,6 +114,34 @@ Chain::Chain(const mjModel& m, const Config& config) {
     links_.push_back(link);
   }
   if (joints_.empty()) throw Error::Input(config.Who() + ": body", "joints between them", "none");
+  length_ = mju_norm3(tip);
+  if (tip[2] > kAligned) return;
+  throw Error::Input(config.Who() + ": body", "a tip that is beyond its base along the base's z",
+                     "one at " + Listed(tip));
+}
+
+void Chain::RequireLength(const Config& config, std::string_view key, double length) const {
+  if (config.Get(key).empty() || std::abs(length - length_) <= kLength * length_) return;
+  throw Error::Input(
+      config.Who() + ": " + std::string(key),
+      "the length of the chain at rest, " + std::to_string(length_) + " m, within 1 %",
+      "'" + std::string(config.Get(key)) + "'");
+}
+
+// Chains of the same law in series share a body, not a joint.
+void Chain::RequireItsOwn(const mjModel& m, const Config& config) const {
+  for (int i = 0; i < config.instance(); ++i) {
+    if (m.plugin[i] != m.plugin[config.instance()]) continue;
+    const Config other(m, i);
+    for (const Joint& theirs : Chain(m, other).joints_) {
+      for (const Joint& ours : joints_) {
+        if (ours.dof != theirs.dof) continue;
+        throw Error::Input(config.Who() + ": body", "a chain that no other instance acts on",
+                           "'" + std::string(config.Get("body")) + "', of which " + other.Who() +
+                               " has '" + std::string(other.Get("body")) + "'");
+      }
+    }
+  }
 }
 
 void Chain::AddJoint(const mjModel& m, const Config& config, int id, const double* to_base) {

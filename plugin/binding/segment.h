@@ -17,9 +17,14 @@ namespace continuum {
 /// about two they differ from the tip's rotation vector by second order in the bend of one link.
 class Chain {
  public:
-  /// The chain named by body="BASE TIP". Throws Error when TIP is not beyond BASE, or for joints
-  /// that are not hinges across or slides along the arm.
+  /// The chain named by body="BASE TIP". Throws Error when TIP is not beyond BASE along its z, or
+  /// for joints that are not hinges across or slides along the arm.
   Chain(const mjModel& m, const Config& config);
+
+  /// Throws Error unless a length [m] under the key is that of the chain at rest.
+  void RequireLength(const Config& config, std::string_view key, double length) const;
+  /// Throws Error when another instance of the same law has a joint of this chain.
+  void RequireItsOwn(const mjModel& m, const Config& config) const;
 
   /// (reference u, reference v, δL) [m] and its rate [m/s].
   Vec<double, 3> Positions(const mjModel& m, const mjData& d, double reference) const;
@@ -46,11 +51,13 @@ class Chain {
 
   std::vector<Joint> joints_;
   std::vector<Link> links_;
+  double length_ = 0;  ///< from BASE to TIP at rest [m]
 };
 
 /// The actuators of the three chambers, in the order of the key "actuator". Throws Error unless
-/// they are three, act on nothing else (gear 0) and what ranges they have are of finite pressures
-/// from zero on. Without a range suction is a pressure like others.
+/// they are three, act on nothing else (gear 0), what ranges they have are of finite pressures from
+/// zero on, gain and lag are no less than zero, and the control is a pressure (dyntype none or a
+/// filter). Without a range suction is a pressure like others.
 Vec<int, 3> MatchChambers(const mjModel& m, const Config& config);
 
 /// What is in a chamber [Pa]: the actuator's force within its range.
@@ -75,7 +82,12 @@ class BoundSegment : public Bound {
       : Bound(ReadParams<E>(config)),
         choice_(ChoiceOf(config)),
         chain_(m, config),
-        chambers_(MatchChambers(m, config)) {}
+        chambers_(MatchChambers(m, config)) {
+    chain_.RequireItsOwn(m, config);
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+      if (E::kParams[i].name == "L0") chain_.RequireLength(config, "L0", p_[i]);
+    }
+  }
   static int StateSize(const mjModel&, const Config&) { return 0; }
 
   bool GivesForce() const override { return true; }

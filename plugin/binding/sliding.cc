@@ -10,7 +10,7 @@ constexpr double kGiveWay = 1e-3, kGiveWayMost = 20, kEasier = 3;  // v_c of (4)
 constexpr double kStart = 1e-3;  // slower bends begin as they were in the last step [m/s]
 constexpr double kCreep = 1e-6, kNearly = 0.99;  // ... but these slid, and do [m/s]
 constexpr double kMoving = 0.02;                 // fresh bends that are faster slide [m/s]
-constexpr double kGentle = 0.1;       // ... when no speed changes by more than that [m/s]
+constexpr double kThrownBack = 0.2;   // ... unless that gives one a speed like this [m/s]
 constexpr double kSpeedError = 1e-9;  // of v⁺ [m/s]
 constexpr double kRelativeError = 1e-12;
 constexpr int kPatience = 5, kRounds = 30;
@@ -41,7 +41,7 @@ Sliding::Sliding(const mjModel& m, const CableGeometry& geometry) : inertia_(m, 
       least_[s] = least;
     }
   }
-  follow_.resize(n), velocity_.resize(n), work_.resize(m.nv);
+  follow_.resize(n), velocity_.resize(n), work_.resize(m.nv), none_.resize(m.nv);
 }
 
 void Sliding::Solve(const World& w, std::span<Bend> bends) {
@@ -90,9 +90,10 @@ void Sliding::Guess(const World& w, std::span<Bend> bends) {
   }
 }
 
-// Of the speeds, if every bend slides as guessed. Damping, left out here, only makes them smaller.
-void Sliding::Changes(const World& w, std::span<const Bend> bends) {
-  std::copy(w.force.begin(), w.force.end(), work_.begin());
+// Of the speeds by this force and friction, if every bend slides as guessed. Damping, left out
+// here, only makes them smaller.
+void Sliding::Changes(const World& w, std::span<const Bend> bends, std::span<const double> force) {
+  std::copy(force.begin(), force.end(), work_.begin());
   for (const Bend& bend : bends) {
     w.geometry.Add(bend.segment, w.base[bend.cable] - bend.tension, work_.data());
   }
@@ -109,10 +110,11 @@ void Sliding::Changes(const World& w, std::span<const Bend> bends) {
 void Sliding::GiveFresh(const World& w, std::span<Bend> bends) {
   const auto moves = [](const Bend& b) { return b.fresh && std::abs(b.speed) >= kMoving; };
   if (std::none_of(bends.begin(), bends.end(), moves)) return;
-  Changes(w, bends);
-  const auto gentle = [](double change) { return std::abs(change) <= kGentle; };
-  if (!std::all_of(change_.begin(), change_.end(), gentle)) return;
-  for (Bend& bend : bends) bend.given = moves(bend);
+  Changes(w, bends, none_);
+  for (std::size_t g = 0; g < bends.size(); ++g) {
+    const double back = bends[g].side * (bends[g].speed + change_[g]);
+    bends[g].given = moves(bends[g]) && back <= kThrownBack;
+  }
 }
 
 // Whether nothing comes near to rest in this step.
@@ -123,7 +125,7 @@ bool Sliding::AllSlide(const World& w, std::span<const Bend> bends) {
   for (const Bend& bend : bends) {
     if (!slides(bend, bend.speed)) return false;
   }
-  Changes(w, bends);
+  Changes(w, bends, w.force);
   for (std::size_t g = 0; g < bends.size(); ++g) {
     if (!slides(bends[g], bends[g].speed + change_[g])) return false;
   }

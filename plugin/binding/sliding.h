@@ -43,9 +43,9 @@ struct Bend {
 /// so that nothing changes without need. A step takes what gave way as the new memory: a bend at
 /// rest is a spring that reaches its band after h v_c, with a damper of v_c, and does not creep.
 ///
-/// Where no step has gone before, bends faster than 20 mm/s slide as their speed says, provided
-/// that the step then changes no bend's speed by more than 0.1 m/s: one mj_forward on fresh data
-/// gives the law at that state.
+/// Where no step has gone before, bends faster than 20 mm/s slide as their speed says, whatever it
+/// is at the step's end: one mj_forward on fresh data gives the law at that state. Not so where
+/// friction as large as that would throw a bend back, beyond rest by more than 0.2 m/s in the step.
 ///
 /// Once it is known who slides which way, (1) is linear in q̇⁺, with a linear ρ in (4): ρ − memory =
 /// (t_g − e^memory t_{g−1})/t, t what t_g would be by the memories or was, if that is more. Bends
@@ -75,8 +75,8 @@ class Sliding {
     int better;    // side it should have
   };
   void Guess(const World& w, std::span<Bend> bends);
-  void Changes(const World& w, std::span<const Bend> bends);
   void GiveFresh(const World& w, std::span<Bend> bends);
+  void Changes(const World& w, std::span<const Bend> bends, std::span<const double> force);
   bool AllSlide(const World& w, std::span<const Bend> bends);
   bool Settle(const World& w, std::span<Bend> bends);
   void Assign(const World& w, std::span<const Bend> bends);
@@ -95,8 +95,8 @@ class Sliding {
   std::vector<Bend> found_;
   std::vector<double> follow_;          ///< [dofs]
   std::vector<double> velocity_;        ///< [dofs] q̇⁺ − q̇
-  std::vector<double> change_, speed_;  ///< [bends] of v in the step, if all slide as guessed; v⁺
-  std::vector<double> work_;
+  std::vector<double> change_, speed_;  ///< [bends] of v in the step; v⁺
+  std::vector<double> work_, none_;     ///< [nv]
 };
 
 }  // namespace continuum

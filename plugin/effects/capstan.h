@@ -22,7 +22,7 @@ struct Capstan {
   static constexpr std::string_view kName = "capstan", kSource = "eytelwein1808",
                                     kSummary = "friction of a cable along its route";
   static constexpr std::array kPlaces{Place::kTendon};
-  static constexpr std::array kParams{Magnitude("mu", "1", 0.1), Signed("mu1", "1/rad", 0),
+  static constexpr std::array kParams{Param{"mu", "1", 0, 100, 0.1, 0}, Signed("mu1", "1/rad", 0),
                                       Signed("mu2", "1/rad^2", 0)};
   static constexpr std::array kChoices{Choice{"law", kCapstanOptions}};
 

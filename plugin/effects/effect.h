@@ -33,6 +33,7 @@ struct Param {
   double lower, upper;  ///< closed bounds; anything else is an error
   double initial;       ///< where a search starts
   double null;          ///< value at which the law does nothing; kAsIs: what the model has
+  double held = kAsIs;  ///< where a search leaves it, as the others can say the same; kAsIs: free
 
   /// Value when the MJCF gives none: the null, so that what is not written does not act. initial,
   /// where no finite value is one.

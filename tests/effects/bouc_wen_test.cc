@@ -1,6 +1,7 @@
 #include "effects/bouc_wen.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -59,7 +60,7 @@ TEST(BoucWen, IsDahlForTheKneeOne) {
 // 2 κ_w (2X − 5/(2ρ)).
 TEST(BoucWen, LosesTheEnergyOfTheClosedFormPerCycle) {
   const double X = 1, kappa = 0.3, h = 1e-3, v = 0.2;
-  const Vec<double, 4> p{kappa, kRho, 0.5, 1};
+  const Vec<double, 5> p{kappa, kRho, 0.5, 1};
   Vec<double, 1> w{0};
   double loss = 0;
   const int stroke = 10000;  // of h · v each: 2 X
@@ -72,6 +73,65 @@ TEST(BoucWen, LosesTheEnergyOfTheClosedFormPerCycle) {
   // Trapezoids on a curve with slope ρ: relative error (ρ v h)²/12 of 1/ρ.
   const double exact = 2 * kappa * (2 * X - 2.5 / kRho);
   EXPECT_NEAR(loss, exact, 1e-5 * exact);
+}
+
+double Hardening(double w, double path, double n, double eta, double sigma = 0.5) {
+  const double v = path < 0 ? -0.1 : 0.1;
+  return BoucWen::Step<double>({w}, {0, v}, path / v, {1, kRho, sigma, n, eta})[0];
+}
+
+TEST(BoucWen, StiffensAlongTheClosedForms) {
+  for (const double x : {1e-3, 0.01, 0.03}) {
+    const double path = kRho * x;
+    EXPECT_NEAR(Hardening(0, x, 1.7, 1), path, 1e-12);
+    EXPECT_NEAR(Hardening(0, x, 1, 1.4), std::expm1(0.4 * path) / 0.4, 1e-7);
+    EXPECT_NEAR(Hardening(0, -x, 2, 2), -std::tan(path), 1e-6);
+    EXPECT_NEAR(Hardening(0, x, 2, 0.75), 2 * std::tanh(0.5 * path), 1e-7);
+  }
+  EXPECT_TRUE(std::isinf(Hardening(0, 1.01 * std::numbers::pi / 2 / kRho, 2, 2)));
+}
+
+// With σ = ½ and n = 1 unloading is u' = 1 − ηu: from u = 1/η − (1 + 1/η) e^{ηx} to −1 over x.
+TEST(BoucWen, UnloadsAlongTheClosedFormWhateverItsHardening) {
+  for (const double eta : {0.3, 1.0, 1.2}) {
+    const double path = 0.4;
+    const double exact = (1 + eta) / eta * -std::exp(eta * path) + 1 / eta;
+    EXPECT_NEAR(Hardening(exact, path / kRho, 1, eta), -1, 1e-7) << eta;
+  }
+}
+
+// Across η = 1, where the plateau goes to infinity, and where the way of computing changes.
+TEST(BoucWen, IsContinuousInItsHardening) {
+  for (const double n : {1.0, 1.6, 3.0}) {
+    for (const double eta : {0.0, 0.95, 1.0}) {
+      const double below = Hardening(-0.5, 0.05, n, std::max(0.0, eta - 1e-7));
+      EXPECT_NEAR(below, Hardening(-0.5, 0.05, n, eta + 1e-7), 1e-5) << n << " " << eta;
+    }
+  }
+}
+
+// The same loop in other units of its state.
+TEST(BoucWen, SigmaAndEtaSayTheSameInAnotherUnitOfTheState) {
+  const double n = 1.5, sigma = 1.3, eta = 0.4, z = 1.7;
+  const double scaled = std::pow(z, n);
+  for (const double path : {0.01, -0.08, 0.3}) {
+    const double v = path < 0 ? -0.1 : 0.1;
+    const auto step = [&](double w, const Vec<double, 5>& p) {
+      return BoucWen::Step<double>({w}, {0, v}, path / v, p)[0];
+    };
+    EXPECT_NEAR(z * step(0.2 / z, {1, kRho / z, sigma * scaled, n, 1 - (1 - eta) * scaled}),
+                step(0.2, {1, kRho, sigma, n, eta}), 1e-6);
+  }
+}
+
+// ψ is the work of the closed curve that its slope g gives: ∫ w/(1 + cw) dw for n = 1.
+TEST(BoucWen, StoresWhatItsDocumentationSays) {
+  const double eta = 1.6, c = 0.6 + 0.6 / 1.6;
+  for (const double w : {0.1, 1.0, -30.0}) {
+    const double a = std::abs(w), exact = 0.3 / kRho * (a / c - std::log1p(c * a) / (c * c));
+    EXPECT_NEAR(BoucWen::Eval<double>({0, 0.1}, {w}, {0.3, kRho, 0.5, 1, eta}).stored, exact,
+                1e-9 * exact);
+  }
 }
 
 }  // namespace

@@ -30,14 +30,13 @@ class Breakaway : public testing::Engine {
   }
 };
 
-// The elastic deflection of a held row is fast where the inertia is small; it is no sliding. A
-// sudden load overshoots on the row by up to 7 %, as the solver's impedance grows from 0.9 to 0.95.
+// The elastic deflection of a held row is fast where the inertia is small; it is no sliding.
 TEST_F(Breakaway, ASuddenLoadBreaksAwayAtTheStaticLevelWhateverTheInertia) {
   for (const double inertia : {0.02, 0.002, 2.3e-4, 1e-5}) {
     for (const double h : {2e-3, 5e-4}) {
       const auto m = Body("hinge", inertia, h);
       for (const double sign : {1.0, -1.0}) {
-        EXPECT_FALSE(Lets(m, {sign * 0.95 * kLevel})) << inertia << " " << h;
+        EXPECT_FALSE(Lets(m, {sign * 0.98 * kLevel})) << inertia << " " << h;
         EXPECT_TRUE(Lets(m, {sign * 1.02 * kLevel})) << inertia << " " << h;
       }
     }

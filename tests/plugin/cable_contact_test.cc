@@ -97,6 +97,37 @@ TEST_F(CableContact, SlidesAtTheLimitOrRests) {
   }
 }
 
+// Fresh data: whatever the step does to it, a contact that moves carries the law at its own speed.
+TEST_F(CableContact, OneForwardOnFreshDataGivesFullSliding) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Arm arm{.links = 10, .mass = 0.1, .mu = 0.2, .radius = 0.03, .pitch = 0.1};
+  const auto m = Model(arm.Mjcf("implicitfast"));
+  const int cables = static_cast<int>(arm.bearings.size());
+  int sliding = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    const auto d = Data(m);
+    for (int i = 0; i < m->nv; ++i) d->qpos[i] = 0.15 * uniform(random);
+    for (int i = 0; i < m->nv; ++i) d->qvel[i] = 2 * uniform(random);
+    for (int c = 0; c < cables; ++c) d->ctrl[c] = 8 + 7 * uniform(random);
+    mj_forward(m.get(), d.get());
+    for (int c = 0; c < cables; ++c) {
+      const auto segments =
+          Segments(m.get(), d.get(), c, std::vector<double>(d->qvel, d->qvel + m->nv));
+      double rate = 0;
+      for (std::size_t k = segments.size(); k-- > 1;) {
+        rate -= segments[k].rate;
+        if (std::abs(rate) < 0.02) continue;
+        const double full = std::exp(-std::copysign(arm.mu, rate) * segments[k].theta);
+        EXPECT_NEAR(d->sensordata[k * cables + c], full * d->sensordata[(k - 1) * cables + c],
+                    1e-6);
+        ++sliding;
+      }
+    }
+  }
+  EXPECT_GT(sliding, 1000);
+}
+
 TEST_F(CableContact, ASlackCableIsNone) {
   const auto pair = Model(Arm{.bearings = {0, 2}}.Mjcf("implicitfast")),
              one = Model(Arm{.bearings = {0}}.Mjcf("implicitfast"));

@@ -72,13 +72,14 @@ TEST_P(Integrators, BreaksAwayAtTheStaticLevel) {
   EXPECT_NEAR(d->ctrl[0], kBreakaway, 0.01 * kBreakaway);
 }
 
+const Vec<double, 5> kTableThree{kTauMu, kTauC, kS, kVd, 1};
+
 // Reference: the same wheel with sgn(v), by classical Runge-Kutta at 10 us; it never reverses.
 double Reference(double torque, double t_end) {
   double v = 0, q = 0;
   const double h = 1e-5;
-  const auto p = Vec<double, 5>{kTauMu, kTauC, kS, kVd, 1};
   const auto f = [&](double w) {
-    return (torque - kTauMu * w - Stribeck::Level(Rubbing<double>{0, w, 0}, p)) / 0.02;
+    return (torque - kTauMu * w - Stribeck::Level(Rubbing<double>{0, w, 0}, kTableThree)) / 0.02;
   };
   for (double t = 0; t < t_end - h / 2; t += h) {
     const double a = f(v), b = f(v + h / 2 * a), c = f(v + h / 2 * b), e = f(v + h * c);
@@ -97,6 +98,31 @@ TEST_P(Integrators, SlidesAsTheStiffReference) {
     RunUntil(m, d, 2);
     const double exact = Reference(1.2 * kBreakaway, 2);
     EXPECT_NEAR(d->qpos[0], exact, tolerance * exact);
+  }
+}
+
+// The torque changes with the model's steps. Reference: steps of 5 us in which friction stops the
+// wheel or takes off what it can.
+TEST_P(Integrators, ReversesAsTheStiffReference) {
+  constexpr double kFine = 5e-6, kInertia = 0.02;
+  for (const auto& [h, tolerance] : {std::tuple{2e-3, 0.02}, std::tuple{5e-4, 0.005}}) {
+    const auto m = Model(Model1());
+    m->opt.timestep = h;
+    const auto d = Data(m);
+    double q = 0, v = 0, worst = 0, most = 0;
+    while (d->time < 2) {
+      d->ctrl[0] = 3 * kBreakaway * std::sin(2 * M_PI * d->time);
+      for (double t = 0; t < h - kFine / 2; t += kFine) {
+        const double level = Stribeck::Level(Rubbing<double>{0, v, 0}, kTableThree),
+                     free = v + kFine / kInertia * (d->ctrl[0] - kTauMu * v),
+                     stop = level * kFine / kInertia,
+                     after = std::copysign(std::max(0.0, std::abs(free) - stop), free);
+        q += kFine * (v + after) / 2, v = after;
+      }
+      mj_step(m.get(), d.get());
+      worst = std::max(worst, std::abs(d->qpos[0] - q)), most = std::max(most, std::abs(q));
+    }
+    EXPECT_LT(worst, tolerance * most) << h;
   }
 }
 

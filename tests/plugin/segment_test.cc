@@ -23,6 +23,8 @@ class Segment : public testing::Engine {
     std::string flags;    // in <option>
     bool turned = false;  // link frames a quarter turn about z from their parents
     bool delta = true;    // the sensor
+    std::string place = "0 0 .043333333333";  // of a link on the one before; in all L0
+    std::string more;                         // instances
   };
 
   // The segment's own numbers, where the configuration has no others.
@@ -42,7 +44,7 @@ class Segment : public testing::Engine {
     std::string bodies, close;
     for (int k = 1; k <= kLinks; ++k) {
       const std::string i = std::to_string(k);
-      bodies += "<body name=\"link" + i + "\" pos=\"0 0 .04\"" +
+      bodies += "<body name=\"link" + i + "\" pos=\"" + o.place + "\"" +
                 (o.turned ? " quat=\"1 0 0 1\"" : "") +
                 "><inertial pos=\"0 0 0\" mass=\".05\" diaginertia=\"1e-4 1e-4 1e-4\"/>"
                 "<joint name=\"l" +
@@ -51,7 +53,7 @@ class Segment : public testing::Engine {
       close += "</body>";
     }
     return "<mujoco><option timestep=\"1e-3\">" + o.flags + "</option>" +
-           Instance("pcc_segment", Complete(o.config)) +
+           Instance("pcc_segment", Complete(o.config)) + o.more +
            "<worldbody><body name=\"base\" quat=\"0 1 0 0\">" + bodies + close +
            "</body><body name=\"aside\"/></worldbody><actuator>" + o.p1 +
            R"(<general name="p2" joint="l1" gear="0" forcelimited="true" forcerange="0 50000"/>
@@ -214,6 +216,65 @@ TEST_F(Segment, BadInputSaysWhichKeyAndWhatWasFound) {
               HasSubstr("d: expected a finite number in ]0"));
   EXPECT_THAT(Error(body + chambers + Key("A", "-1e-6")), HasSubstr("A: expected"));
   EXPECT_THAT(Error(body + chambers + Key("k_dL3", "inf")), HasSubstr("k_dL3: expected a finite"));
+}
+
+TEST_F(Segment, LinksThatPointAgainstTheBaseAreRefused) {
+  Options options;
+  options.place = "0 0 -.043333333333";
+  const auto [model, error] = Compile(Arm(options));
+  EXPECT_FALSE(model);
+  EXPECT_THAT(error,
+              AllOf(HasSubstr("body 'link1': expected a place beyond its parent along the z"),
+                    HasSubstr("found '0 0 -0.0433333' from it")));
+}
+
+TEST_F(Segment, AChainThatLeadsNowhereIsRefused) {
+  for (const char* place : {"0 0 0", ".013 0 0"}) {
+    Options options;
+    options.place = place;
+    EXPECT_THAT(Compile(Arm(options)).error, HasSubstr("a tip that is beyond its base along"));
+  }
+}
+
+TEST_F(Segment, ALengthThatIsNotTheChainsIsRefused) {
+  const std::string chambers = Key("actuator", "p1 p2 p3");
+  EXPECT_THAT(
+      Error(Key("body", "base link3") + chambers + Key("L0", ".132")),
+      HasSubstr("L0: expected the length of the chain at rest, 0.130000 m, within 1 %, found "
+                "'.132'"));
+  EXPECT_THAT(Error(Key("body", "base link2") + chambers + Key("L0", ".13")),
+              HasSubstr("the chain at rest, 0.086667 m, within 1 %, found '.13'"));
+  Options options;
+  options.config += Key("L0", ".1312");
+  Model(Arm(options));
+}
+
+TEST_F(Segment, AChainOfAnotherInstanceIsRefused) {
+  Options options;
+  options.more = "<extension><plugin plugin=\"continuum.pcc_segment\"><instance name=\"j\">" +
+                 Key("body", "link1 link3") + Key("actuator", "p1 p2 p3") +
+                 "</instance></plugin></extension>";
+  const auto [model, error] = Compile(Arm(options));
+  EXPECT_FALSE(model);
+  EXPECT_THAT(error, HasSubstr("continuum.pcc_segment 'j': body: expected a chain that no other "
+                               "instance acts on, found 'link1 link3', of which "
+                               "continuum.pcc_segment 'i' has 'base link3'"));
+  Options series;
+  series.config = Key("body", "base link1") + Key("actuator", "p1 p2 p3") + Key("L0", ".0433");
+  series.more = options.more;
+  Model(Arm(series));
+}
+
+TEST_F(Segment, AControlThatIsNoPressureIsRefused) {
+  for (const std::string type : {"integrator", "muscle"}) {
+    Options options;
+    options.p1 = "<general name=\"p1\" joint=\"l1\" gear=\"0\" dyntype=\"" + type + "\"/>";
+    const auto [model, error] = Compile(Arm(options));
+    EXPECT_FALSE(model) << type;
+    EXPECT_THAT(error,
+                AllOf(HasSubstr("actuator 'p1': expected dyntype none, filter or filterexact"),
+                      HasSubstr("dyntype=\"" + type + "\"")));
+  }
 }
 
 TEST_F(Segment, AGainOrLagBelowZeroOrOfNoNumberIsRefused) {
