@@ -13,8 +13,24 @@ using Severity = Finding::Severity;
 
 const char* Plural(std::size_t n) { return n == 1 ? "" : "s"; }
 
-void CheckMissing(const CheckedColumn& c, const Log& log, Findings& out) {
+// The columns that miss the same rows as one: a tracker that is lost loses all at once.
+std::vector<std::size_t> Together(const CheckedLog& log, std::size_t column) {
+  std::vector<std::size_t> together;
+  for (std::size_t i = 0; i < log.columns.size(); ++i) {
+    if (log.columns[i].row == log.columns[column].row) together.push_back(i);
+  }
+  return together;
+}
+
+void CheckMissing(const CheckedLog& checked, std::size_t column, Findings& out) {
+  const CheckedColumn& c = checked.columns[column];
+  const Log& log = *checked.log;
   if (c.missing == 0) return;
+  const auto together = Together(checked, column);
+  if (together.front() < column) return;  // told beside that one
+  std::string others;
+  for (std::size_t i = 1; i < together.size(); ++i)
+    others += (i == 1 ? "; so it is with " : ", ") + checked.columns[together[i]].name;
   std::size_t longest = 0, begin = 0;
   for (std::size_t i = 0; i <= c.row.size(); ++i) {
     const std::size_t from = i == 0 ? 0 : c.row[i - 1] + 1;
@@ -24,8 +40,8 @@ void CheckMissing(const CheckedColumn& c, const Log& log, Findings& out) {
   const double share = 100 * static_cast<double>(c.missing) / static_cast<double>(log.rows());
   out.Add(share > 5 ? Severity::kWarning : Severity::kInfo, c.name, "nan",
           fmt::format("{:.3g} % of the values are missing ({} of {} rows); the longest stretch has "
-                      "{} rows from t = {}",
-                      share, c.missing, log.rows(), longest, Clock(log.time[begin])),
+                      "{} rows from t = {}{}",
+                      share, c.missing, log.rows(), longest, Clock(log.time[begin]), others),
           log.time[begin], log.time[begin + longest - 1]);
 }
 
@@ -208,7 +224,7 @@ void CheckColumns(const CheckedLog& log, Findings& out) {
 
   for (std::size_t i = 0; i < log.columns.size(); ++i) {
     const CheckedColumn& c = log.columns[i];
-    CheckMissing(c, *log.log, out);
+    CheckMissing(log, i, out);
     if (!CheckVariance(c, out)) continue;
     CheckQuantum(c, out);
     CheckClipping(c, out);

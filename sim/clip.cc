@@ -59,12 +59,17 @@ std::vector<double> ReadWave(const Yaml& y, const std::vector<double>& time) {
 }
 
 Arrow ReadArrow(const Yaml& y) {
-  y.Only({"sensor", "length", "color"});
+  y.Only({"sensor", "length", "color", "radius"});
   Arrow arrow{y.At("sensor").Text(), y.At("length").Number(), {0.1F, 0.6F, 0.3F}, y.Where()};
   if (const auto color = y.Find("color")) {
     const auto rgb = Count(*color, 3, "[red, green, blue]");
     std::transform(rgb.begin(), rgb.end(), arrow.color.begin(),
                    [](double c) { return static_cast<float>(c); });
+  }
+  if (const auto radius = y.Find("radius")) {
+    arrow.radius = radius->Number();
+    if (!(arrow.radius > 0))
+      throw Error::Input(radius->Where(), "a radius above 0", radius->Text());
   }
   return arrow;
 }

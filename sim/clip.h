@@ -15,7 +15,9 @@ namespace continuum {
 ///     caption: One chamber after the other
 ///     speed: 0.5                   # optional: half as fast as it is
 ///     tension: [0, 15]             # optional: of cables, blue and red [N]; of a capstan 0 .. 20
-///     arrows: [{sensor: base_force, length: 0.05, color: [0.1, 0.6, 0.3]}]  # [m] per N or N m
+///     arrows:                      # optional, length: [m] per N or N m
+///       - {sensor: base_force, length: 0.05, color: [0.1, 0.6, 0.3]}
+///       - {sensor: base_torque, length: 4, radius: 0.07}             # bent around the torque
 ///     inputs:                      # actuators that are not named: 0
 ///       p1: [[0, 0], [1, 0], [1, 4e4]]                           # [s, control], straight between
 ///       p2: {mean: 2e4, amplitude: 2e4, period: 2, delay: 0.5, rise: 1}

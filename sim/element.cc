@@ -376,8 +376,10 @@ void Element::AddPointMass(double added) {
   inertia += steiner(body.mass, centre - moved) + steiner(added, moved);
   body.mass = total;
   for (int i = 0; i < 3; ++i) body.ipos[i] = moved[i];
-  // A point alone has no inertia; the compiler asks for some: that of a ball of 0.1 mm.
-  if (inertia.eigenvalues().real().minCoeff() <= 1e-12) inertia.diagonal().array() += 4e-9 * total;
+  // A point alone has no inertia; the compiler asks for some: that of a ball of 0.1 mm, however
+  // light.
+  if (inertia.eigenvalues().real().minCoeff() <= 1e-12)
+    inertia.diagonal().array() += std::max(4e-9 * total, 1e-13);
   const double full[6] = {inertia(0, 0), inertia(1, 1), inertia(2, 2),
                           inertia(0, 1), inertia(0, 2), inertia(1, 2)};
   std::copy(full, full + 6, body.fullinertia);

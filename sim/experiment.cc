@@ -446,6 +446,8 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
     }
   }
   if (e.outputs.empty()) throw Error::Input(y.At("outputs").Where(), "at least one output", "none");
+  if (std::none_of(e.outputs.begin(), e.outputs.end(), [](auto& o) { return o.weight > 0; }))
+    throw Error::Input(y.At("outputs").Where(), "an output with a weight above 0", "none");
   if (const auto r = y.Find("registration")) e.registration = ReadRegistration(*r);
   if (const auto parameters = y.Find("parameters")) {
     for (const Yaml& item : parameters->Items()) {

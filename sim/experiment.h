@@ -98,8 +98,9 @@ struct Parameter {
       Change::Operation::kSet;  ///< kScale: of what the model or `set` has
   bool frozen = false;
   Per per = Per::kAll;
-  std::string where;  ///< file:line: key, for messages
-  std::string unit;   ///< empty: that of its target
+  std::string condition = {};  ///< acts on the logs of this one only; empty: on all
+  std::string where;           ///< file:line: key, for messages
+  std::string unit;            ///< empty: that of its target
 };
 
 /// A law that the experiment itself writes, as a formula.

@@ -1,7 +1,9 @@
 #include "sim/film.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -96,17 +98,53 @@ void ColorTendons(const mjModel& m, const mjData& d, const std::array<double, 2>
   }
 }
 
-void Draw(const Arrow& arrow, const mjModel& m, const mjData& d, mjvScene& scene) {
-  const int sensor = arrow.SensorOf(m), site = m.sensor_objid[sensor];
-  double along[3], tip[3];
-  mju_mulMatVec3(along, d.site_xmat + 9 * site, d.sensordata + m.sensor_adr[sensor]);
-  mju_addScl3(tip, d.site_xpos + 3 * site, along, arrow.length);
+// MuJoCo draws an arrow half as long as its size says: its end goes twice as far.
+void Connect(const Arrow& arrow, const mjModel& m, int type, const double* from, const double* to,
+             mjvScene& scene) {
   if (scene.ngeom >= scene.maxgeom) return;
   mjvGeom& geom = scene.geoms[scene.ngeom++];
   const float rgba[4] = {arrow.color[0], arrow.color[1], arrow.color[2], 1};
-  mjv_initGeom(&geom, mjGEOM_ARROW, nullptr, nullptr, nullptr, rgba);
-  mjv_connector(&geom, mjGEOM_ARROW, 0.04 * m.stat.meansize, d.site_xpos + 3 * site, tip);
+  mjv_initGeom(&geom, type, nullptr, nullptr, nullptr, rgba);
+  double end[3];
+  mju_sub3(end, to, from);
+  mju_addScl3(end, from, end, type == mjGEOM_ARROW ? 2 : 1);
+  mjv_connector(&geom, type, 0.04 * m.stat.meansize, from, end);
   geom.category = mjCAT_DECOR;
+}
+
+void DrawAround(const Arrow& arrow, const mjModel& m, const double* center, const double* torque,
+                mjvScene& scene) {
+  constexpr int kPieces = 24, kHead = 6;
+  double axis[3], side[3], top[3] = {0, 0, 1};
+  mju_copy3(axis, torque);
+  const double size = mju_normalize3(axis);
+  if (std::abs(axis[2]) > 0.99) mju_copy3(top, std::array{1.0, 0.0, 0.0}.data());
+  mju_cross(side, axis, top);
+  mju_normalize3(side);
+  mju_cross(top, side, axis);
+  const double angle = std::min(arrow.length * size / arrow.radius, 1.8 * std::numbers::pi);
+  const auto at = [&](int piece, double* point) {
+    const double turn = angle * (static_cast<double>(piece) / kPieces - 0.5);
+    mju_addScl3(point, center, top, arrow.radius * std::cos(turn));
+    mju_addToScl3(point, side, arrow.radius * std::sin(turn));
+  };
+  double from[3], to[3];
+  for (int piece = 0; piece < kPieces - kHead; ++piece) {
+    at(piece, from), at(piece + 1, to);
+    Connect(arrow, m, mjGEOM_CAPSULE, from, to, scene);
+  }
+  at(kPieces - kHead, from), at(kPieces, to);
+  Connect(arrow, m, mjGEOM_ARROW, from, to, scene);
+}
+
+void Draw(const Arrow& arrow, const mjModel& m, const mjData& d, mjvScene& scene) {
+  const int sensor = arrow.SensorOf(m), site = m.sensor_objid[sensor];
+  const double* const center = d.site_xpos + 3 * site;
+  double along[3], tip[3];
+  mju_mulMatVec3(along, d.site_xmat + 9 * site, d.sensordata + m.sensor_adr[sensor]);
+  if (arrow.radius > 0) return DrawAround(arrow, m, center, along, scene);
+  mju_addScl3(tip, center, along, arrow.length);
+  Connect(arrow, m, mjGEOM_ARROW, center, tip, scene);
 }
 
 // Draws one log's rows at the film's rate.

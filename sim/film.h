@@ -12,12 +12,14 @@
 
 namespace continuum {
 
-/// A force or torque sensor as an arrow from its site, seen from the world.
+/// A force or torque sensor as an arrow from its site, seen from the world; with a radius as a bent
+/// one around its axis, by the right hand and with its middle on top.
 struct Arrow {
   std::string sensor;
   double length;  ///< [m] per N or N m
   std::array<float, 3> color;
   std::string where = {};  ///< file:line: key, for messages
+  double radius = 0;       ///< [m]
 
   /// Throws Error when the model has no such sensor of force or torque.
   int SensorOf(const mjModel& m) const;

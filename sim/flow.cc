@@ -3,14 +3,10 @@
 #include <algorithm>
 
 #include "engine.h"
+#include "sim/mujoco.h"
 
 namespace continuum {
 namespace {
-
-std::string Called(const mjModel& m, mjtObj kind, int id) {
-  const char* const name = mj_id2name(&m, kind, id);
-  return name ? "'" + std::string(name) + "'" : std::to_string(id);
-}
 
 std::string Rubs(const mjModel& m) {
   for (int i = 0; i < m.nv; ++i) {
@@ -84,7 +80,7 @@ std::string Flow::Obstacle(const mjModel& m, const mjData& d) {
   for (const std::string& why : {Rubs(m), Delayed(m), Switches(m, d)}) {
     if (!why.empty()) return why;
   }
-  return m.neq > 0 ? "there are equality constraints" : "";
+  return Ties(m).obstacle();
 }
 
 Flow::Flow(Machine machine, const Experiment& e, const Log& log)
@@ -92,6 +88,7 @@ Flow::Flow(Machine machine, const Experiment& e, const Log& log)
       e_(e),
       log_(log),
       wiring_(e, *machine_.model),
+      ties_(*machine_.model),
       inputs_(*machine_.model, e, log, wiring_) {
   mjModel& m = *machine_.model;
   mjData& d = *machine_.data;
@@ -101,8 +98,10 @@ Flow::Flow(Machine machine, const Experiment& e, const Log& log)
   mj_resetData(&m, &d);
   inputs_.AtRow(d, 0);
   Settle(m, d);
-  start_.insert(start_.end(), start.qpos.begin(), start.qpos.end());
-  start_.insert(start_.end(), start.qvel.begin(), start.qvel.end());
+  start_.resize(ties_.positions() + ties_.velocities());
+  ties_.FreePositions(start.qpos.data(), start_.data());
+  ties_.FreeVelocities(start.qvel.data(), start_.data() + ties_.positions());
+  moving_.resize(m.nq);
   start_.insert(start_.end(), d.act, d.act + m.na);
   start_.insert(start_.end(), d.plugin_state, d.plugin_state + m.npluginstate);
   for (const Input& in : e.inputs) linear_ |= in.linear;
@@ -141,9 +140,8 @@ void Flow::Hold(std::size_t row) {
 void Flow::Load(const double* y) {
   const mjModel& m = *machine_.model;
   mjData& d = *machine_.data;
-  std::copy_n(y, m.nq, d.qpos);
-  std::copy_n(y += m.nq, m.nv, d.qvel);
-  std::copy_n(y += m.nv, m.na, d.act);
+  ties_.Spread(m, y, y + ties_.positions(), d);
+  std::copy_n(y += ties_.positions() + ties_.velocities(), m.na, d.act);
   std::copy_n(y += m.na, m.npluginstate, d.plugin_state);
 }
 
@@ -153,22 +151,24 @@ void Flow::Rate(double t, const double* y, double* rate) {
   Load(y);
   if (linear_ && row_ + 1 < log_.rows()) inputs_.Between(d, row_, t);
   mj_forwardSkip(&m, &d, mjSTAGE_NONE, 1);
+  if (!ties_.none()) ties_.Accelerate(m, d);
   for (int j = 0; j < m.njnt; ++j) {
     const int q = m.jnt_qposadr[j], v = m.jnt_dofadr[j];
     switch (m.jnt_type[j]) {
       case mjJNT_FREE:
-        std::copy_n(d.qvel + v, 3, rate + q);
-        Turn(d.qpos + q + 3, d.qvel + v + 3, rate + q + 3);
+        std::copy_n(d.qvel + v, 3, &moving_[q]);
+        Turn(d.qpos + q + 3, d.qvel + v + 3, &moving_[q + 3]);
         break;
       case mjJNT_BALL:
-        Turn(d.qpos + q, d.qvel + v, rate + q);
+        Turn(d.qpos + q, d.qvel + v, &moving_[q]);
         break;
       default:
-        rate[q] = d.qvel[v];
+        moving_[q] = d.qvel[v];
     }
   }
-  std::copy_n(d.qacc, m.nv, rate += m.nq);
-  std::copy_n(d.act_dot, m.na, rate += m.nv);
+  ties_.FreePositions(moving_.data(), rate);
+  ties_.FreeVelocities(d.qacc, rate += ties_.positions());
+  std::copy_n(d.act_dot, m.na, rate += ties_.velocities());
   rate += m.na;
   for (int i = 0; i < m.nplugin; ++i) {
     const int z = m.plugin_stateadr[i];
@@ -183,6 +183,11 @@ void Flow::Observe(const double* y, Recorder& recorder) {
   if (linear_) inputs_.AtRow(d, row_);
   if (needs_ == Needs::kAll) {
     mj_forward(&m, &d);
+    if (!ties_.none()) {  // sensors of acceleration and of forces between bodies
+      ties_.Accelerate(m, d);
+      mj_rnePostConstraint(&m, &d);
+      mj_sensorAcc(&m, &d);
+    }
   } else {
     if (needs_ >= Needs::kFrames) mj_kinematics(&m, &d);
     if (needs_ >= Needs::kPosition) {

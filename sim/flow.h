@@ -5,6 +5,7 @@
 
 #include "sim/inputs.h"
 #include "sim/recorder.h"
+#include "sim/ties.h"
 
 namespace continuum {
 
@@ -17,7 +18,8 @@ bool BreaksAt(const Experiment& e, const Log& log, std::size_t row);
 ///
 /// with τ all forces and c the bias of MuJoCo's forward dynamics, a the activations of actuators
 /// and z the states of our laws. The state y holds qpos (a quaternion p moves by ½ p ω), qvel, act
-/// and plugin_state, in SI. No constraint acts: a model that needs one is refused by Obstacle.
+/// and plugin_state, in SI. Joints that linear equalities tie to others are taken out of q and v
+/// (Ties). No other constraint acts: a model that needs one is refused by Obstacle.
 class Flow {
  public:
   /// What keeps a model from being such an equation ("joint 'j1' rubs"); empty: nothing does.
@@ -48,8 +50,9 @@ class Flow {
   const Experiment& e_;
   const Log& log_;
   Wiring wiring_;
+  Ties ties_;
   Inputs inputs_;
-  std::vector<double> start_;
+  std::vector<double> start_, moving_;  // moving_: rate of qpos
   Needs needs_ = Needs::kState;
   bool linear_ = false;
   std::size_t row_ = 0;

@@ -25,4 +25,10 @@ inline bool HasEffect(const mjModel& m, std::string_view effect) {
   return false;
 }
 
+/// An object of a model as messages name it: 'name', or its number where it has none.
+inline std::string Called(const mjModel& m, mjtObj kind, int id) {
+  const char* const name = mj_id2name(&m, kind, id);
+  return name ? "'" + std::string(name) + "'" : std::to_string(id);
+}
+
 }  // namespace continuum

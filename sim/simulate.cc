@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <string_view>
@@ -162,6 +163,20 @@ bool IsJoint(const mjModel& m, const Output& out, mjtSensor type, int& joint) {
   return true;
 }
 
+// By least squares through up to two rows on each side; NaN where fewer than two are measured.
+double SlopeAt(const std::vector<double>& time, const std::vector<double>& y, std::size_t row) {
+  constexpr std::size_t kReach = 2;
+  const std::size_t first = row - std::min(row, kReach),
+                    last = std::min(row + kReach, time.size() - 1);
+  double n = 0, t = 0, q = 0, tt = 0, tq = 0;
+  for (std::size_t k = first; k <= last; ++k) {
+    if (std::isnan(y[k])) continue;
+    const double at = time[k] - time[row];
+    n += 1, t += at, q += y[k], tt += at * at, tq += at * y[k];
+  }
+  return n < 2 ? std::numeric_limits<double>::quiet_NaN() : (n * tq - t * q) / (n * tt - t * t);
+}
+
 }  // namespace
 
 Hooks Hooks::Stoppable() {
@@ -203,6 +218,32 @@ InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
     } else if (known && IsJoint(m, out, mjSENS_JOINTVEL, joint)) {
       state.qvel[m.jnt_dofadr[joint]] = SignalOf(e, c, log.measured[c][0]);
     }
+  }
+  return state;
+}
+
+std::optional<InitialState> StateAt(const mjModel& m, const Experiment& e, const Log& log,
+                                    std::size_t row) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (m.nq != m.nv) return {};
+  InitialState state{std::vector<double>(m.nq, unknown), std::vector<double>(m.nv, unknown)};
+  std::vector<bool> sensed(m.nv);
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const Output& out = e.outputs[e.channels[c].output];
+    int joint = -1;
+    if (IsJoint(m, out, mjSENS_JOINTVEL, joint)) {
+      state.qvel[m.jnt_dofadr[joint]] = SignalOf(e, c, log.measured[c][row]);
+      sensed[m.jnt_dofadr[joint]] = true;
+    }
+    if (!IsJoint(m, out, mjSENS_JOINTPOS, joint)) continue;
+    std::vector<double> q = log.measured[c];
+    for (double& y : q) y = SignalOf(e, c, y);
+    const int dof = m.jnt_dofadr[joint];
+    state.qpos[dof] = q[row];
+    if (!sensed[dof]) state.qvel[dof] = SlopeAt(log.time, q, row);
+  }
+  for (const auto* const all : {&state.qpos, &state.qvel}) {
+    if (std::any_of(all->begin(), all->end(), [](double x) { return std::isnan(x); })) return {};
   }
   return state;
 }

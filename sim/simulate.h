@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "sim/experiment.h"
@@ -77,6 +78,12 @@ void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Tra
 
 /// The state in which the experiment's start leaves a log's trial.
 InitialState StartOf(Machine& machine, const Experiment& e, const Log& log);
+
+/// The state at a row as it was measured: positions of the row, speeds those of a joint velocity's
+/// output, else the slope of a line through the row and its next two neighbours to each side.
+/// None where some joint is not measured there, or is no hinge or slide.
+std::optional<InitialState> StateAt(const mjModel& m, const Experiment& e, const Log& log,
+                                    std::size_t row);
 
 /// Static equilibrium under the first inputs, without friction, lags settled. Throws Error (kJob)
 /// when there is none near qpos0.

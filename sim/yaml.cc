@@ -4,10 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "error.h"
 #include "sim/file.h"
+#include "sim/repeated_keys.h"
 #include "sim/shown.h"
 #include "sim/units.h"
 
@@ -18,6 +18,7 @@ Yaml Yaml::Read(const std::filesystem::path& file) { return Parse(ReadFile(file)
 Yaml Yaml::Parse(const std::string& text, std::string name) {
   try {
     Yaml root(YAML::Load(text), name, "");
+    RefuseRepeatedKeys(text, name);
     if (!root.node_.IsMap()) throw Error::Input(name, "a map of keys", root.Found());
     return root;
   } catch (const YAML::Exception& e) {
@@ -64,14 +65,10 @@ std::vector<Yaml> Yaml::Items() const {
 std::vector<std::string> Yaml::Keys() const {
   if (!node_.IsMap()) throw Error::Input(Where(), "a map", Found());
   std::vector<std::string> keys;
-  std::set<std::string> seen;
   for (const auto& entry : node_) {
     if (!entry.first.IsScalar())
       throw Error::Input(Where(), "names as keys", entry.first.IsMap() ? "a map" : "a list");
     keys.push_back(entry.first.Scalar());
-    if (!seen.insert(keys.back()).second) {
-      throw Error::Input(Where(), "different keys", "'" + keys.back() + "' twice");
-    }
   }
   return keys;
 }
@@ -143,6 +140,7 @@ std::vector<double> Yaml::Numbers() const {
 
 Yaml Yaml::Quantity() const {
   if (!node_.IsMap()) return *this;
+  Only({"value", "unit", "uncertainty", "source"});
   if (const auto unit = Find("unit")) {
     const std::string text = unit->Text();
     double factor = 1;

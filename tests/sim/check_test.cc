@@ -324,6 +324,18 @@ TEST(Check, MissingValuesAreCountedAndLocated) {
   EXPECT_NEAR(f.end, 2.59, 1e-9);
 }
 
+TEST(Check, ColumnsThatMissTheSameRowsAreToldAtOnce) {
+  Log log = Record({});
+  for (const char* const column : {"q1", "v1"}) {
+    for (std::size_t k = 200; k < 260; ++k) Column(log, column)[k] = NAN;
+  }
+  EXPECT_THAT(Only(log, "nan", "q1").text, HasSubstr("from t = 2 s; so it is with v1"));
+  Column(log, "v1")[500] = NAN;
+  const auto all = CheckLogs(With(log));
+  EXPECT_NE(Find(all, "nan", "q1"), nullptr);
+  EXPECT_NE(Find(all, "nan", "v1"), nullptr);
+}
+
 TEST(Check, QuantisationGivesTheNoiseFloor) {
   const auto all = CheckLogs(With(Record({Steps, Sines, 1000, 0, 0.00153})));
   const Finding* const f = Find(all, "quantisation", "q1");

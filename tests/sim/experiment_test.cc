@@ -141,6 +141,7 @@ TEST_F(ExperimentFile, ErrorsNameLineAndKey) {
   EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, actuator: a"), HasSubstr("both"));
   EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, sigma: -1"), HasSubstr("sigma"));
   EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, weight: .nan"), HasSubstr("weight"));
+  EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, weight: 0"), HasSubstr("weight above 0"));
   EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, delay: -1"), HasSubstr("delay"));
   EXPECT_THAT(Wrong("sensor: bend1", "sensor: bend1, scale: two"), HasSubstr("'two'"));
   EXPECT_THAT(Wrong("column: q1,", "columns: [a, b, c],"), HasSubstr("quaternion"));

@@ -22,11 +22,12 @@ constexpr char kModel[] = R"(<mujoco>
       <joint type="slide" axis="-1 0 0"/>
       <geom size="0.1" mass="2"/>
       <site name="middle"/>
+      <site name="beside" pos="0 0.2 0.1"/>
     </body>
   </worldbody>
   <tendon><spatial name="cable" width="0.01"><site site="top"/><site site="middle"/></spatial></tendon>
   <actuator><motor tendon="cable" gear="-1" ctrlrange="0 10"/></actuator>
-  <sensor><force name="force" site="middle"/></sensor>
+  <sensor><force name="force" site="middle"/><torque name="torque" site="beside"/></sensor>
 </mujoco>
 )";
 
@@ -82,8 +83,39 @@ TEST_F(Decorated, AnArrowPointsAlongTheForceInTheWorld) {
   Decorate(options, *model_, *data_, scene_);
   const mjvGeom* const arrow = Find([](const mjvGeom& g) { return g.type == mjGEOM_ARROW; });
   ASSERT_TRUE(arrow);
-  EXPECT_NEAR(arrow->size[2], 3, 1e-6);
+  EXPECT_NEAR(arrow->size[2], 2 * 3, 1e-6);  // drawn half as long: seen beside boxes
   EXPECT_NEAR(arrow->mat[2], std::copysign(1, data_->sensordata[2]), 1e-6);
+}
+
+// By the right hand: seen against the axis it runs counter-clockwise, as long as the torque.
+TEST_F(Decorated, ABentArrowRunsAroundTheTorqueInTheWorld) {
+  const int sensor = mj_name2id(model_.get(), mjOBJ_SENSOR, "torque");
+  const int site = model_->sensor_objid[sensor];
+  const double* const torque = data_->sensordata + model_->sensor_adr[sensor];
+  double axis[3];
+  mju_mulMatVec3(axis, data_->site_xmat + 9 * site, torque);
+  const double size = mju_normalize3(axis);
+  ASSERT_GT(size, 0.1);
+  FilmOptions options;
+  options.arrows = {{"torque", 0.2 / size, {0, 1, 0}, "", 0.1}};
+  const int before = scene_.ngeom;
+  Decorate(options, *model_, *data_, scene_);
+  double length = 0;
+  for (int g = before; g < scene_.ngeom; ++g) {
+    const mjvGeom& geom = scene_.geoms[g];
+    const bool head = geom.type == mjGEOM_ARROW;
+    length += (head ? 0.5 : 2) * geom.size[2];
+    double out[3], along[3], around[3];
+    for (int i = 0; i < 3; ++i) {
+      out[i] = geom.pos[i] - data_->site_xpos[3 * site + i];
+      along[i] = geom.mat[3 * i + 2];
+    }
+    EXPECT_NEAR(mju_norm3(out), 0.1, 2e-3);
+    EXPECT_NEAR(mju_dot3(out, axis), 0, 1e-6);
+    mju_cross(around, axis, out);
+    EXPECT_GT(mju_dot3(around, along), 0.096);
+  }
+  EXPECT_NEAR(length, 0.2, 2e-3);
 }
 
 }  // namespace

@@ -86,6 +86,15 @@ TEST_F(Changed, AnInertialWithAnglesTakesAPointMass) {
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(found[i], expected[i], 1e-12) << i;
 }
 
+TEST_F(Changed, APointMassMayBeAsSmallAsADifferenceTakesIt) {
+  std::string xml = kArm;
+  xml.insert(xml.find("</body>"), "<body name=\"tip\"><inertial pos=\"0 0 0\" mass=\"0\"/></body>");
+  for (const double mass : {1e-12, 1e-8, 1e-4}) {
+    const Machine loaded = Arm(xml).Build({{{"body:tip", "effect:payload", mass}}});
+    EXPECT_DOUBLE_EQ(Mass(loaded, "tip"), mass);
+  }
+}
+
 TEST_F(Changed, AMassThatTheCompilerOverridesIsRefused) {
   std::string xml = kArm;
   xml.insert(xml.find("<option"), "<compiler settotalmass=\"5\"/>");
