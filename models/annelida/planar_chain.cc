@@ -7,8 +7,8 @@ namespace continuum {
 namespace {
 
 constexpr int kN = kAnnelidaLinks;
-constexpr double kJointBristle = 2e-5;  // [rad]
-constexpr double kCableBristle = 5e-6;  // [m]
+constexpr double kJointBristle = 5e-6;  // [rad]
+constexpr double kCableBristle = 1e-6;  // [m]
 
 using Eigen::Vector2d;
 

@@ -23,7 +23,7 @@ struct PlanarState {
 ///   ℓ_ji = 2 (b1 cos(q_i/2) ∓ a sin(q_i/2))
 ///
 /// F is Stribeck friction and T_ji the tension after capstan friction, both elasto-plastic: a
-/// bristle of 20 µrad (joint) or 5 µm (cable in a hole) deflects until it carries the friction of
+/// bristle of 5 µrad (joint) or 1 µm (cable in a hole) deflects until it carries the friction of
 /// sliding. Integrated by semi-implicit Euler; meant for steps of 20 µs or less. Source: snake_arm,
 /// eqs. 6-8.
 class PlanarChain {

@@ -37,12 +37,18 @@ folds: window
 """
 
 
+def refuse(message):
+    print(f"import.py: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
 def main():
     if len(sys.argv) != 3:
-        sys.exit(__doc__)
+        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
+               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
     source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     if not (source / RECORDING).is_file():
-        sys.exit(f"{source}: expected {RECORDING}, found none")
+        refuse(f"{source}: expected {RECORDING}, found none")
     target.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(source / RECORDING, target / RECORDING)
     model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "emps.xml", target.resolve())
@@ -51,4 +57,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except OSError as error:
+        refuse(f"{error.filename}: {error.strerror}")

@@ -19,6 +19,11 @@ COLUMNS = {"t": "timestamp", "q": "position", "w": "speed", "goal": "goal_positi
            "on": "torque_enable"}
 
 
+def refuse(message):
+    print(f"import.py: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
 def servo_stiffness(firmware_gain, volts):
     """Torque per rad of error [N m/rad]: k_t/R * V * duty per rad."""
     return K_T / RESISTANCE * volts * firmware_gain * TICKS_PER_RAD / DUTY_DIVISOR
@@ -73,17 +78,22 @@ def experiment(logs, model):
 
 def main():
     if len(sys.argv) != 3:
-        sys.exit(__doc__)
+        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
+               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
     source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     files = sorted(source.glob("*.json"))
     if not files:
-        sys.exit(f"{source}: expected recordings (*.json), found none")
+        refuse(f"{source}: expected recordings (*.json), found none")
     target.mkdir(parents=True, exist_ok=True)
     logs = []
     for file in files:
-        log = json.loads(file.read_text())
-        name = f"kp{log['kp']}_{log['trajectory']}"
-        write_log(log, target / f"{name}.csv")
+        try:
+            log = json.loads(file.read_text())
+            name = f"kp{log['kp']}_{log['trajectory']}"
+            servo_stiffness(log["kp"], log["vin"])
+            write_log(log, target / f"{name}.csv")
+        except (ValueError, LookupError, TypeError) as error:
+            refuse(f"{file}: expected a recording with kp, vin, trajectory and entries, found {error!r}")
         logs.append((name, log))
     logs.sort(key=lambda item: (item[1]["kp"], item[0]))
     model = os.path.relpath(pathlib.Path(__file__).parent / "servo_pendulum.xml", target)
@@ -92,4 +102,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except OSError as error:
+        refuse(f"{error.filename}: {error.strerror}")

@@ -76,7 +76,9 @@ bool Linearize(const Problem& problem, const X& x, F& f, J& jacobian) {
     return problem.Jacobian(x, f, jacobian) && f.allFinite() && jacobian.allFinite();
   } else {
     constexpr bool kFixed = X::RowsAtCompileTime != Eigen::Dynamic;
-    constexpr int kBlock = kFixed ? X::RowsAtCompileTime : 8;
+    // An even number of derivatives fills vector registers: of three, one more costs less than
+    // none.
+    constexpr int kBlock = kFixed ? X::RowsAtCompileTime + X::RowsAtCompileTime % 2 : 8;
     using Dual = ceres::Jet<double, kBlock>;
     Eigen::Matrix<Dual, X::RowsAtCompileTime, 1> dual_x(x.size());
     Eigen::Matrix<Dual, F::RowsAtCompileTime, 1> dual_f(f.size());
@@ -306,6 +308,7 @@ struct PathOptions {
   double smallest_step = 1e-5;
   double largest_step = 1;
   int max_steps = 2000;
+  double tolerance = 0;  ///< |f| on the way, where it is above that of the end
 };
 
 struct Anywhere {
@@ -337,6 +340,8 @@ Outcome Continue(const ProblemAt& problem_at, Eigen::Matrix<double, N, 1>& x,
   for (int i = 0; i < path.max_steps && load < 1; ++i) {
     const double next = load + step > 1 - 1e-9 ? 1 : load + step;
     Vector trial = x + (next - load) * slope;
+    corrector.tolerance =
+        next < 1 ? std::max(path.tolerance, options.tolerance) : options.tolerance;
     const Outcome outcome = Newton(problem_at(next), trial, corrector);
     total.iterations += outcome.iterations;
     if (outcome.ok() && on_branch(trial)) {

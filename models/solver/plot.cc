@@ -264,7 +264,8 @@ class Raster {
       for (int x = columns[0]; x <= columns[1]; ++x) {
         const double px = x + 0.5 - a[0], py = y + 0.5 - a[1];
         const double t = square > 0 ? std::clamp((px * dx + py * dy) / square, 0., 1.) : 0;
-        if (std::hypot(px - t * dx, py - t * dy) <= r) fine_[Index(x, y)] = colour;
+        const double aside = px - t * dx, along = py - t * dy;
+        if (aside * aside + along * along <= r * r) fine_[Index(x, y)] = colour;
       }
     }
   }

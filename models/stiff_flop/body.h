@@ -6,6 +6,7 @@
 #include <numbers>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 #include "models/stiff_flop/even.h"
 #include "models/stiff_flop/module.h"
@@ -17,6 +18,32 @@ template <class T>
 struct Section {
   T area, x2, z2;
 };
+
+/// Point j of n of the integral over a disk. Sines and cosines would take most of the time of a
+/// section: they are kept for rules of up to kKeptPoints, as many as any section needs that is not
+/// about to fold.
+struct DiskPoint {
+  double cosine, sine2;
+
+  DiskPoint(int j, int n) {
+    const double angle = std::numbers::pi * j / (n + 1);
+    cosine = std::cos(angle);
+    sine2 = std::pow(std::sin(angle), 2);
+  }
+};
+
+inline constexpr int kKeptPoints = 96;
+
+inline const std::vector<DiskPoint>& KeptPoints(int n) {
+  static const std::vector<std::vector<DiskPoint>> kTables = [] {
+    std::vector<std::vector<DiskPoint>> tables(kKeptPoints + 1);
+    for (int count = 1; count <= kKeptPoints; ++count) {
+      for (int j = 1; j <= count; ++j) tables[count].emplace_back(j, count);
+    }
+    return tables;
+  }();
+  return kTables[n];
+}
 
 /// A solid cylinder that is stretched by lambda and bent to curvature kappa of its deformed axis; x
 /// of the undeformed section points to the centre of bending, u = 1 - kappa x, A = 1/sqrt(lambda).
@@ -187,10 +214,14 @@ class Body {
   template <class F>
   void Disk(double r, const F& f) const {
     const int n = Points(r);
-    for (int j = 1; j <= n; ++j) {
-      const double angle = std::numbers::pi * j / (n + 1);
-      const double sine2 = std::pow(std::sin(angle), 2);
-      f(r * std::cos(angle), r * r * sine2, 2 * std::numbers::pi / (n + 1) * r * r * sine2);
+    const auto add = [&](const DiskPoint& at) {
+      const double width2 = r * r * at.sine2;
+      f(r * at.cosine, width2, 2 * std::numbers::pi / (n + 1) * width2);
+    };
+    if (n <= kKeptPoints) {
+      for (const DiskPoint& at : KeptPoints(n)) add(at);
+    } else {
+      for (int j = 1; j <= n; ++j) add(DiskPoint(j, n));
     }
   }
 

@@ -9,27 +9,69 @@ train, cycle 3 validates. The regression maps the three pressures by least squar
 from the train rows alone, and once more from all rows, as the published one.
 """
 import csv
+import math
 import pathlib
 import sys
 
-import numpy as np
+try:
+    import numpy as np
+except ImportError:
+    np = None
 
+LOGS = 9
 PRESSURES, PLACE, TURN = ("p1", "p2", "p3"), ("x", "y", "z"), ("qw", "qx", "qy", "qz")
 
 
-def numbers(row, names):
-    return [float(row[name]) for name in names]
+def refuse(message):
+    print(f"compare.py: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
+def numbers(path, row, names):
+    try:
+        values = [float(row[name]) for name in names]
+        if not all(map(math.isfinite, values)):
+            raise ValueError
+        if names == TURN and not any(values):
+            refuse(f"{path}: expected a quaternion under {' '.join(names)}, found zeros")
+        return values
+    except KeyError as name:
+        refuse(f"{path}: expected a column {name}, found none")
+    except (TypeError, ValueError):
+        refuse(f"{path}: expected numbers under {' '.join(names)}, found {[row[name] for name in names]}")
+
+
+def rows_of(path):
+    try:
+        with open(path, newline="") as file:
+            return list(csv.DictReader(file))
+    except OSError as error:
+        refuse(f"{path}: {error.strerror}")
+    except (csv.Error, UnicodeDecodeError) as error:
+        refuse(f"{path}: expected a table, found {error}")
 
 
 def read(folder, result):
     """For 'train' and 'validate': pressures, measured and simulated places and turns, a row each."""
     found = {use: [] for use in ("train", "validate")}
-    for path in sorted(pathlib.Path(folder).glob("line*_cycle*.csv")):
+    logs = sorted(pathlib.Path(folder).glob("line*_cycle*.csv"))
+    if len(logs) != LOGS:
+        refuse(f"{folder}: expected {LOGS} logs line*_cycle*.csv, found {len(logs)}")
+    for path in logs:
         use = "validate" if path.stem.endswith("3") else "train"
-        with open(path) as log, open(pathlib.Path(result) / "simulated" / path.name) as simulated:
-            for row, ours in zip(csv.DictReader(log), csv.DictReader(simulated)):
-                if row["x"]:
-                    found[use].append(numbers(row, PRESSURES + PLACE + TURN) + numbers(ours, PLACE + TURN))
+        simulated = pathlib.Path(result) / "simulated" / path.name
+        log, ours = rows_of(path), rows_of(simulated)
+        if len(log) != len(ours):
+            refuse(f"{simulated}: expected {len(log)} rows as in {path}, found {len(ours)}")
+        for row, our in zip(log, ours):
+            if row.get("x") != "":
+                found[use].append(numbers(path, row, PRESSURES + PLACE) + numbers(path, row, TURN) +
+                                  numbers(simulated, our, PLACE) + numbers(simulated, our, TURN))
+    for use, rows in found.items():
+        if not rows:
+            refuse(f"{folder}: expected logs line*_cycle*.csv with samples to {use}, found none")
+    if np is None:
+        refuse("numpy is missing (pip install numpy)")
     return {use: np.split(np.array(rows), [3, 6, 10, 13], axis=1) for use, rows in found.items()}
 
 
@@ -59,7 +101,8 @@ def row(name, of_uses):
 
 def main():
     if len(sys.argv) != 3:
-        sys.exit(__doc__.strip())
+        refuse("expected EXPERIMENT_FOLDER RESULT_FOLDER, found "
+               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
     train, validate = read(*sys.argv[1:]).values()
     print("| mean | train | validate | all |\n|---|---|---|---|")
     row("model, distance [mm]", [distance(use[1], use[3]) for use in (train, validate)])

@@ -207,11 +207,11 @@ void Read(const Balance& balance, Solution& solution) {
 
 }  // namespace
 
-Solution SolveForward(const Module& module, const Method& method, const Case& row,
-                      bool sensitivity) {
+Solution SolveForward(const Module& module, const Method& method, const Case& row, bool sensitivity,
+                      std::vector<Vector3d>* line) {
   Solution solution;
+  Balance balance(module, method, row);
   solution.outcome = solver::Timed([&] {
-    Balance balance(module, method, row);
     const solver::Outcome outcome = balance.Solve();
     if (!outcome.ok()) {
       solution.status = balance.Reason();
@@ -227,13 +227,19 @@ Solution SolveForward(const Module& module, const Method& method, const Case& ro
     solution.section = Describe(module, method, balance.base());
     return outcome;
   });
+  if (line == nullptr) return solution;
+  line->clear();
+  if (!solution.outcome.ok()) return solution;
+  Rod rod(module, method, row, 1, kPiecesOfLine);
+  rod.StartFrom(balance.base());
+  *line = rod.Line(balance.moment());
   return solution;
 }
 
 std::vector<Vector3d> ForwardLine(const Module& module, const Method& method, const Case& row) {
-  Balance balance(module, method, row);
-  if (!balance.Solve().ok()) return {};
-  return Rod(module, method, row, 1, kPiecesOfLine).Line(balance.moment());
+  std::vector<Vector3d> line;
+  SolveForward(module, method, row, false, &line);
+  return line;
 }
 
 Vector3d BaseMoment(const Module& module, const Method& method, const Case& row) {

@@ -16,10 +16,12 @@ namespace continuum::stiff_flop {
 /// components of M(0), derivatives by dual numbers through an integrator of eighth order whose
 /// steps are halved until tip and moment move by less than 1e-10. A solution must be on the branch
 /// that starts unloaded; if Newton misses it, all loads are raised together.
-Solution SolveForward(const Module& module, const Method& method, const Case& row,
-                      bool sensitivity);
+///
+/// line: filled with points of the axis from base to tip, for pictures; empty without an answer.
+Solution SolveForward(const Module& module, const Method& method, const Case& row, bool sensitivity,
+                      std::vector<Eigen::Vector3d>* line = nullptr);
 
-/// Points of the axis from base to tip, for pictures; empty when the case has no answer.
+/// The line of SolveForward alone.
 std::vector<Eigen::Vector3d> ForwardLine(const Module& module, const Method& method,
                                          const Case& row);
 

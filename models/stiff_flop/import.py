@@ -54,6 +54,15 @@ EFFECTS = [
 EXPERIMENTS = {"experiment.yaml": SEGMENT, "with_effects.yaml": SEGMENT + EFFECTS}
 
 
+class BadFile(Exception):
+    """What was found instead."""
+
+
+def refuse(message):
+    print(f"import.py: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
 # ---- MAT version 5 ---------------------------------------------------------------------------------
 
 def elements(data, at=0):
@@ -68,20 +77,22 @@ def elements(data, at=0):
             at += 8 + size + (0 if kind == 15 else -size % 8)
 
 
-def read_rows(path):
-    """The rows of the one matrix, doubles, of a little-endian file."""
-    for kind, data in elements(path.read_bytes(), 128):
+def read_rows(data):
+    """The rows of the one matrix, doubles, of a little-endian file. Raises BadFile and what unpacking raises."""
+    for kind, part in elements(data, 128):
         if kind == 15:
-            kind, data = next(elements(zlib.decompress(data)))
+            kind, part = next(elements(zlib.decompress(part)))
         if kind != 14:
             continue
-        parts = list(elements(data))
+        parts = list(elements(part))
         rows, columns = struct.unpack("<2i", parts[1][1])
         if (rows, columns, parts[3][0]) != (ROWS, COLUMNS, 9):
-            sys.exit(f"{path}: expected {ROWS} x {COLUMNS} doubles, found {rows} x {columns}")
+            raise BadFile(f"{rows} x {columns}")
         values = struct.unpack(f"<{rows * columns}d", parts[3][1])
+        if not all(map(math.isfinite, values)):
+            raise BadFile("numbers that are not finite")
         return [values[row::rows] for row in range(rows)]
-    sys.exit(f"{path}: expected a matrix, found none")
+    raise BadFile("no matrix")
 
 
 # ---- vectors, quaternions (w, x, y, z), least squares ----------------------------------------------
@@ -262,21 +273,43 @@ def experiment(recording, model, marker, parameters):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    if not (source / RECORDING).is_file():
-        sys.exit(f"{source}: expected {RECORDING}, found none")
+def read(path):
+    expected = f"{path}: expected a MATLAB file (version 5) of {ROWS} x {COLUMNS} doubles, found"
+    try:
+        return read_rows(path.read_bytes())
+    except OSError as error:
+        refuse(f"{path}: {error.strerror}")
+    except BadFile as found:
+        refuse(f"{expected} {found}")
+    except (struct.error, zlib.error, LookupError, StopIteration):
+        refuse(f"{expected} a damaged or another one")
+
+
+def write(target, recording, position, turn, marker):
     target.mkdir(parents=True, exist_ok=True)
-    recording = Recording(read_rows(source / RECORDING))
-    position, turn, marker, left = register(recording, frame_of(recording))
     for name, _, rows in windows_of(recording):
         write_log(recording, position, turn, rows, target / f"{name}.csv")
     model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "stiff_flop.xml",
                             target.resolve())
     for name, parameters in EXPERIMENTS.items():
         (target / name).write_text(experiment(recording, model, marker, parameters))
+
+
+def main():
+    if len(sys.argv) != 3:
+        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
+               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
+    source, target = pathlib.Path(sys.argv[1]) / RECORDING, pathlib.Path(sys.argv[2])
+    rows = read(source)
+    try:
+        recording = Recording(rows)
+        position, turn, marker, left = register(recording, frame_of(recording))
+    except ArithmeticError:  # a line that never goes up, a tip that never turns
+        refuse(f"{source}: expected three lines that bend the module one after another, found none")
+    try:
+        write(target, recording, position, turn, marker)
+    except OSError as error:
+        refuse(f"{error.filename}: {error.strerror}")
     place = ", ".join(f"{1e3 * x:.1f}" for x in marker)
     print(f"nine logs, {' and '.join(EXPERIMENTS)} in {target}; {sum(recording.repeats)} repeated samples left "
           f"out; marker at {place} mm from the tip, mean distance from constant curvature "

@@ -39,6 +39,10 @@ struct SectionProblem {
     f[2] = (reaction.M_z - fraction * load[2]) / (unit * module.r_2);
     return true;
   }
+
+  Eigen::Vector3d Scaled(const Eigen::Vector3d& v) const {
+    return v.cwiseQuotient(Eigen::Vector3d(1, module.r_2, module.r_2)) / (module.E * module.Area());
+  }
 };
 
 // Seeds: lambda, k_1, k_2, gamma, E.
@@ -107,21 +111,69 @@ bool Rod::Raise(const Eigen::Vector3d& load, Eigen::Vector3d& x,
   return solver::Continue(at, x, options, {}, on_branch).ok();
 }
 
-bool Rod::SolveSection(const Eigen::Vector3d& load) {
+bool Rod::SearchSection(const Eigen::Vector3d& load) {
   solver::Options options;
   options.tolerance = 1e-14;
   options.accept = 1e-12;
   options.max_iterations = 20;
   const double r = module_.r_2;
   Eigen::Vector3d x(section_.lambda, section_.k_1 * r, section_.k_2 * r);
-  bool solved = false;
-  if (cold_) {
-    solved = Raise(load, x, options);
-  } else {
-    solved = solver::Newton(SectionProblem{module_, method_, p_, load}, x, options).ok();
-  }
+  const SectionProblem problem{module_, method_, p_, load};
+  const bool solved = cold_ ? Raise(load, x, options) : solver::Newton(problem, x, options).ok();
   if (!solved) return false;
-  section_ = {x[0], x[1] / r, x[2] / r};
+  Eigen::Vector3d f;
+  Eigen::Matrix3d tangent;
+  if (!solver::Linearize(problem, x, f, tangent)) return false;
+  solved_[next_] = {x, problem.Scaled(load), tangent.inverse()};
+  return true;
+}
+
+// From the section solved last or from this one in the integration before, whichever had the load
+// more like this one: a step along the tangent, then Broyden's method, which needs no derivatives.
+// Its last step is not looked at when the one before has shown where it ends.
+bool Rod::FollowNeighbour(const Eigen::Vector3d& load) {
+  constexpr int kMostRounds = 8;
+  constexpr double kTolerance = 1e-14;
+  const SectionProblem problem{module_, method_, p_, load};
+  const Eigen::Vector3d target = problem.Scaled(load);
+  SolvedSection at = solved_[next_];
+  const auto distance = [&](const SolvedSection& s) {
+    return s.inverse.isZero(0) ? std::numeric_limits<double>::infinity()
+                               : (s.load - target).squaredNorm();
+  };
+  if (next_ > 0 && distance(solved_[next_ - 1]) < distance(at)) at = solved_[next_ - 1];
+  if (at.inverse.isZero(0)) return false;
+  Eigen::Vector3d step = at.inverse * (target - at.load), f, before;
+  at.x += step;
+  double last = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double norm = solver::NormAt(problem, at.x, f);
+    if (!(norm < 0.5 * last)) return false;
+    if (round > 0) {
+      const Eigen::Vector3d moved = at.inverse * (f - before);
+      const double along = step.dot(moved);
+      if (along == 0) return false;
+      at.inverse += (step - moved) * (step.transpose() * at.inverse) / along;
+    }
+    step = -at.inverse * f;
+    at.x += step;
+    const bool done = norm <= kTolerance || (round > 0 && norm * (norm / last) <= kTolerance);
+    if (done) {
+      at.load = target;
+      solved_[next_] = at;
+      return true;
+    }
+    before = f;
+    last = norm;
+  }
+  return false;
+}
+
+bool Rod::SolveSection(const Eigen::Vector3d& load) {
+  if (solved_.size() <= next_) solved_.resize(next_ + 1);
+  if ((cold_ || !FollowNeighbour(load)) && !SearchSection(load)) return false;
+  const Eigen::Vector3d& x = solved_[next_++].x;
+  section_ = {x[0], x[1] / module_.r_2, x[2] / module_.r_2};
   cold_ = false;
   return true;
 }
@@ -148,7 +200,9 @@ bool Rod::Strains(const Eigen::Matrix<Dual, 3, 1>& n, const Eigen::Matrix<Dual, 
   load << n[1].v.transpose(), M[0].v.transpose(), M[2].v.transpose();
   load.rightCols<2>() -= rows.rightCols<2>();
   Eigen::Matrix<double, 5, 5> seeds = Eigen::Matrix<double, 5, 5>::Identity();
-  seeds.topRows<3>() = rows.leftCols<3>().fullPivLu().solve(load);
+  const Eigen::FullPivLU<Eigen::Matrix3d> tangent(rows.leftCols<3>());
+  seeds.topRows<3>() = tangent.solve(load);
+  Keep(tangent.inverse());
   const auto chain = [&](const Dual& value) {
     return Dual(value.a, (value.v.transpose() * seeds).transpose());
   };
@@ -160,6 +214,14 @@ bool Rod::Strains(const Eigen::Matrix<Dual, 3, 1>& n, const Eigen::Matrix<Dual, 
   strain.xi << n[0] / shear, lambda - 1.0, n[2] / shear;
   strain.zeta << -lambda * k_2, M[1] / (G * chain(reaction.polar)), -lambda * k_1;
   return true;
+}
+
+// The exact tangent of the section solved last.
+void Rod::Keep(const Eigen::Matrix3d& inverse) {
+  const double r = module_.r_2;
+  const Eigen::Vector3d size(1, r, r);
+  solved_[next_ - 1].inverse =
+      size.asDiagonal() * inverse * size.asDiagonal() * (module_.E * module_.Area());
 }
 
 void Rod::Watch(const Eigen::Matrix3d& tangent) {
@@ -204,6 +266,7 @@ template <class T>
 bool Rod::Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<Eigen::Vector3d>* line) {
   reserve_ = {};
   section_ = base_;
+  next_ = 0;
   state.setZero();
   state[3] = T(1.0);
   for (int i = 0; i < 3; ++i) {

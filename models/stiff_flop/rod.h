@@ -23,6 +23,14 @@ struct Reserve {
   bool plain = true;
 };
 
+/// A section that has been solved, in the unknowns and scaled loads of its equations: where to
+/// start a section under a similar load.
+struct SolvedSection {
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  Eigen::Vector3d load = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();  ///< of the tangent; 0: not known
+};
+
 /// Whether two sections are too far apart to be neighbours on a path of rising load: a fifth of the
 /// stretch or of the curvature that folds.
 bool IsJump(const Module& module, const Axis<double>& from, const Axis<double>& to);
@@ -84,6 +92,9 @@ class Rod {
                Strain<Dual>& strain);
   bool Raise(const Eigen::Vector3d& load, Eigen::Vector3d& x, const solver::Options& options) const;
   bool SolveSection(const Eigen::Vector3d& load);
+  bool FollowNeighbour(const Eigen::Vector3d& load);
+  bool SearchSection(const Eigen::Vector3d& load);
+  void Keep(const Eigen::Matrix3d& inverse);
   void Watch(const Eigen::Matrix3d& tangent);
   Eigen::Vector3d Force(double s) const;
 
@@ -94,7 +105,9 @@ class Rod {
   double unit_;
   double at_rest_;  // determinant of the tangent of the unloaded section
   bool cold_ = true;
-  Axis<double> section_ = {1, 0, 0};  // the last one that was solved
+  std::vector<SolvedSection> solved_;  // of this integration or the one before, in order
+  std::size_t next_ = 0;               // the one to come
+  Axis<double> section_ = {1, 0, 0};   // the last one that was solved
   Axis<double> base_ = {1, 0, 0};
   Reserve reserve_;
 };

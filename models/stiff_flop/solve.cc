@@ -85,8 +85,9 @@ void WriteRow(const Case& row, Direction direction, bool sensitivity, const Solu
   Set(results, {names.begin() + 3, names.end()}, solution.by_E);
 }
 
-void Plot(const SolveRequest& request, const Robot& robot, const Method& method, const Cases& cases,
-          const std::vector<Solution>& solved) {
+void Plot(const SolveRequest& request, const Robot& robot, const Cases& cases,
+          const std::vector<Solution>& solved,
+          const std::vector<std::vector<Eigen::Vector3d>>& lines) {
   solver::Picture picture;
   picture.title = "stiff_flop, module " + robot.name;
   picture.views = {{{0, 1}, {2, 1}}};
@@ -94,10 +95,7 @@ void Plot(const SolveRequest& request, const Robot& robot, const Method& method,
     if (solved[i].status != Status::kOk) continue;
     solver::Shape shape;
     shape.label = cases.rows[i].label;
-    const auto points = cases.direction == Direction::kInverse
-                            ? InverseLine(robot.module, cases.rows[i])
-                            : ForwardLine(robot.module, method, cases.rows[i]);
-    for (const Eigen::Vector3d& point : points) {
+    for (const Eigen::Vector3d& point : lines[i]) {
       shape.line.push_back({point.x(), point.y(), point.z()});
     }
     picture.shapes.push_back(std::move(shape));
@@ -119,15 +117,22 @@ int SolveStiffFlop(const SolveRequest& request) {
   std::vector<Solution> solved;
   solver::Results results(Columns(cases.direction, request.sensitivity));
   int failed = 0;
-  for (const Case& row : cases.rows) {
-    solved.push_back(cases.direction == Direction::kInverse
-                         ? SolveInverse(robot.module, method, row, request.sensitivity)
-                         : SolveForward(robot.module, method, row, request.sensitivity));
+  const bool draw = !request.plot.empty();
+  std::vector<std::vector<Eigen::Vector3d>> lines(draw ? cases.rows.size() : 0);
+  for (std::size_t i = 0; i < cases.rows.size(); ++i) {
+    const Case& row = cases.rows[i];
+    if (cases.direction == Direction::kInverse) {
+      solved.push_back(SolveInverse(robot.module, method, row, request.sensitivity));
+      if (draw && solved.back().status == Status::kOk) lines[i] = InverseLine(robot.module, row);
+    } else {
+      solved.push_back(
+          SolveForward(robot.module, method, row, request.sensitivity, draw ? &lines[i] : nullptr));
+    }
     WriteRow(row, cases.direction, request.sensitivity, solved.back(), results);
     failed += solved.back().status != Status::kOk;
   }
   results.Write(request.out);
-  if (!request.plot.empty()) Plot(request, robot, method, cases, solved);
+  if (draw) Plot(request, robot, cases, solved, lines);
   return failed == 0 ? 0 : 1;
 }
 

@@ -224,7 +224,7 @@ Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>
                      (problem.failure().empty() ? "" : "; " + problem.failure()));
   }
 
-  Calibration calibration{problem.At(best), {}, {}, problem.cases(), {}};
+  Calibration calibration{problem.At(best), {}, {}, problem.cases(), {}, {}};
   const char* const names[] = {"E", "base_rotation", "base_rotation", "base_rotation", "mu"};
   std::vector<bool> bound;
   for (Eigen::Index i = 0; i < best.size(); ++i) {
@@ -244,6 +244,9 @@ Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>
       throw Error::Job("case '" + pair.loads->name + "': " + solution.outcome.why);
     }
     calibration.tips.Add(calibration.robot, *pair.measured, solution.disks);
+    if (!pair.measured->test) {
+      calibration.explained.Add(calibration.robot, *pair.measured, solution.disks);
+    }
   }
   return calibration;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "models/tdcr/explained.h"
 #include "models/tdcr/measured.h"
 #include "models/tdcr/model.h"
 
@@ -16,6 +17,7 @@ struct Calibration {
   std::vector<std::string> at_bound;
   int cases = 0;  ///< used for fitting
   TipErrors tips;
+  Explained explained;  ///< of the cases for fitting
 };
 
 /// Minimises sum |R^c x_i - O_i|^2 over E, base_rotation and, unless the method is crt, mu; over

@@ -4,19 +4,33 @@
 #include <array>
 #include <type_traits>
 
+#include "models/tdcr/rubbing.h"
+
 namespace continuum::tdcr {
 namespace {
 
 struct NoTensions {};
 
+constexpr int kFewTendons = 4;  // more of them need larger states, which cost time to copy
+
+double ValueOf(double x) { return x; }
+template <int N>
+double ValueOf(const ceres::Jet<double, N>& x) {
+  return x.a;
+}
+template <class Matrix>
+auto Values(const Matrix& m) {
+  return m.unaryExpr([](const auto& x) { return ValueOf(x); }).eval();
+}
+
 }  // namespace
 
 // Rotation as a quaternion (w first), curvature, position and, with friction, tensions.
-template <class T, bool kFriction>
+template <class T, int kRubbing>
 struct RodBalance::State {
   using Vector3 = Eigen::Matrix<T, 3, 1>;
   using Tensions =
-      std::conditional_t<kFriction, Eigen::Matrix<T, Eigen::Dynamic, 1, 0, kMaxTendons, 1>,
+      std::conditional_t<kRubbing != 0, Eigen::Matrix<T, Eigen::Dynamic, 1, 0, kRubbing, 1>,
                          NoTensions>;
   static constexpr bool kPosition = std::is_same_v<T, double>;  // the residual needs none
 
@@ -28,7 +42,7 @@ struct RodBalance::State {
     q += T(h) * slope.q;
     u += T(h) * slope.u;
     if constexpr (kPosition) p += T(h) * slope.p;
-    if constexpr (kFriction) tension += T(h) * slope.tension;
+    if constexpr (kRubbing > 0) tension += T(h) * slope.tension;
   }
 };
 
@@ -38,12 +52,14 @@ RodBalance::RodBalance(const Robot& robot, const Loads& loads, bool friction, in
       mu_(friction ? loads.mu : 0),
       friction_(friction && loads.mu > 0),
       disks_(robot.disks),
-      steps_(steps),
-      direction_(loads.direction) {
+      steps_(steps) {
   const double unit = robot.length / robot.moment();  // L^2/EI
   for (int k = 0; k < robot.tendons; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (loads.tension[i] == 0) continue;  // a slack tendon does nothing
     holes_.push_back(robot.Hole(k) / robot.length);
-    tension_.push_back(unit * loads.tension[static_cast<std::size_t>(k)]);
+    tension_.push_back(unit * loads.tension[i]);
+    direction_.push_back(loads.direction[i]);
   }
   natural_ =
       robot.length * Eigen::Vector3d(-robot.natural.y(), robot.natural.x(), robot.natural.z());
@@ -56,8 +72,8 @@ Eigen::Vector3d RodBalance::DeadForce(int piece, double s) const {
   return load_ * (tip_force_ + (disks_ - piece) * disk_weight_ + (1 - s) * rod_weight_);
 }
 
-template <class T, bool kFriction>
-Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kFriction>& y) const {
+template <class T, int kRubbing>
+Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kRubbing>& y) const {
   using std::sqrt;
   Eigen::Matrix<T, 3, 1> moment(y.u.x() - natural_.x(), y.u.y() - natural_.y(),
                                 twist_ * (y.u.z() - natural_.z()));
@@ -65,7 +81,7 @@ Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kFriction>& y) const {
     const double ax = holes_[k].x(), ay = holes_[k].y(), r2 = holes_[k].squaredNorm();
     const T wz = 1.0 + y.u.x() * ay - y.u.y() * ax;
     T pull = T(load_ * tension_[k]);
-    if constexpr (kFriction) pull = y.tension[static_cast<Eigen::Index>(k)];
+    if constexpr (kRubbing > 0) pull = y.tension[static_cast<Eigen::Index>(k)];
     pull /= sqrt(wz * wz + r2 * y.u.z() * y.u.z());
     moment.x() += pull * wz * ay;
     moment.y() -= pull * wz * ax;
@@ -74,9 +90,10 @@ Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kFriction>& y) const {
   return moment;
 }
 
-template <class T, bool kFriction>
-bool RodBalance::Slope(const State<T, kFriction>& y, const Eigen::Vector3d& force,
-                       State<T, kFriction>& dy) const {
+// Flattened, as Rub is: dual numbers are so short that calls would cost as much as the work.
+template <class T, int kRubbing>
+[[gnu::flatten]] bool RodBalance::Slope(const State<T, kRubbing>& y, const Eigen::Vector3d& force,
+                                        State<T, kRubbing>& dy) const {
   using std::sqrt;
   using Vector3 = Eigen::Matrix<T, 3, 1>;
   const Vector3& u = y.u;
@@ -85,7 +102,7 @@ bool RodBalance::Slope(const State<T, kFriction>& y, const Eigen::Vector3d& forc
   for (std::size_t k = 0; k < holes_.size(); ++k) {
     const double ax = holes_[k].x(), ay = holes_[k].y(), r2 = holes_[k].squaredNorm();
     T pull = T(load_ * tension_[k]);
-    if constexpr (kFriction) pull = y.tension[static_cast<Eigen::Index>(k)];
+    if constexpr (kRubbing > 0) pull = y.tension[static_cast<Eigen::Index>(k)];
     const T wz = 1.0 + u.x() * ay - u.y() * ax;
     if (!(wz > T(0))) return false;
     const T side = r2 * u.z() * u.z();
@@ -125,35 +142,66 @@ bool RodBalance::Slope(const State<T, kFriction>& y, const Eigen::Vector3d& forc
                    (cxz * b.x() + cyz * b.y() + czz * b.z()) * determinant);
   };
   dy.u = solve(right);
-  if constexpr (kFriction) {
-    // T' needs u' and u' needs T': their coupling is about mu T r^2/EI, so a few rounds are exact.
-    dy.tension.resize(y.tension.size());
-    for (int round = 0; round < 8; ++round) {
-      Vector3 rest = right;
-      for (std::size_t k = 0; k < holes_.size(); ++k) {
-        const auto i = static_cast<Eigen::Index>(k);
-        const double ax = holes_[k].x(), ay = holes_[k].y();
-        const Vector3 w(-u.z() * ay, u.z() * ax, 1.0 + u.x() * ay - u.y() * ax);
-        const T inverse = 1.0 / sqrt(w.squaredNorm());
-        const Vector3 t = w * inverse;
-        const Vector3 dw(-dy.u.z() * ay, dy.u.z() * ax, dy.u.x() * ay - dy.u.y() * ax);
-        const Vector3 turn = u.cross(t) + (dw - t * t.dot(dw)) * inverse;
-        const T rate = sqrt(turn.squaredNorm() + 1e-24);  // the kink at a straight tendon
-        dy.tension[i] = -double(direction_[k]) * mu_ * y.tension[i] * rate;
-        rest -= dy.tension[i] * Vector3(t.z() * ay, -t.z() * ax, t.y() * ax - t.x() * ay);
-      }
-      dy.u = solve(rest);
-    }
+  if constexpr (kRubbing > 0) {
+    Eigen::Matrix<T, 3, 3> hessian;
+    hessian << hxx, hxy, hxz, hxy, hyy, hyz, hxz, hyz, hzz;
+    Rub(y, hessian, right, dy);
   }
-  if constexpr (State<T, kFriction>::kPosition) dy.p = tangent;
+  if constexpr (State<T, kRubbing>::kPosition) dy.p = tangent;
   dy.q = 0.5 * Eigen::Matrix<T, 4, 1>(
                    -q1 * u.x() - q2 * u.y() - q3 * u.z(), q0 * u.x() + q2 * u.z() - q3 * u.y(),
                    q0 * u.y() + q3 * u.x() - q1 * u.z(), q0 * u.z() + q1 * u.y() - q2 * u.x());
   return true;
 }
 
+// u' with friction: H u' + sum_k T_k'(u') a_k x t_k = right, from the u' without it. Steps along
+// the first tangent, off by a thousandth, in plain numbers; one more in T has the derivatives too.
+template <class T, int kRubbing>
+[[gnu::flatten]] void RodBalance::Rub(const State<T, kRubbing>& y,
+                                      const Eigen::Matrix<T, 3, 3>& hessian,
+                                      const Eigen::Matrix<T, 3, 1>& right,
+                                      State<T, kRubbing>& dy) const {
+  using Vector3 = Eigen::Matrix<T, 3, 1>;
+  constexpr int kMostRounds = 12;
+  constexpr double kLastStep = 1e-7;
+  const auto count = static_cast<std::size_t>(y.tension.size());
+  std::array<Rubbing<double>, kRubbing> plain;
+  const Eigen::Matrix3d elastic = Values(hessian);
+  const Vector known = Values(right);
+  Vector du = Values(dy.u);
+  Eigen::Matrix3d tangent = elastic;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double tension = ValueOf(y.tension[static_cast<Eigen::Index>(k)]);
+    plain[k] = Rubbing<double>(holes_[k], Values(y.u), direction_[k] * mu_ * tension);
+    tangent += plain[k].Lever() * plain[k].Gradient(du).transpose();
+  }
+  const Eigen::Matrix3d inverse = tangent.inverse();
+  for (int round = 0; round < kMostRounds; ++round) {
+    Vector rest = known - elastic * du;
+    for (std::size_t k = 0; k < count; ++k) rest -= plain[k].Slope(du) * plain[k].Lever();
+    const Vector step = inverse * rest;
+    du += step;
+    if (step.squaredNorm() <= kLastStep * kLastStep * (1 + du.squaredNorm())) break;
+  }
+  const Vector3 at = du.cast<T>();
+  Vector3 rest = right - hessian * at;
+  dy.tension.resize(y.tension.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const Rubbing<T> rubbing(holes_[k], y.u, T(direction_[k] * mu_) * y.tension[i]);
+    dy.tension[i] = rubbing.Slope(at);
+    rest -= dy.tension[i] * rubbing.Lever();
+  }
+  const Vector3 step = inverse.cast<T>() * rest;
+  dy.u = at + step;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vector gradient = plain[k].Gradient(du);
+    for (int i = 0; i < 3; ++i) dy.tension[static_cast<Eigen::Index>(k)] += gradient[i] * step[i];
+  }
+}
+
 // Dormand-Prince's fifth-order formula, `steps_` equal steps per piece.
-template <class T, bool kFriction, class AtNode>
+template <class T, int kRubbing, class AtNode>
 bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const {
   static constexpr double kNodes[6] = {0, 0.2, 0.3, 0.8, 8. / 9, 1};
   static constexpr double kA[7][6] = {
@@ -164,12 +212,12 @@ bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node)
       {19372. / 6561, -25360. / 2187, 64448. / 6561, -212. / 729},
       {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656},
       {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84}};
-  using S = State<T, kFriction>;
+  using S = State<T, kRubbing>;
   S y;
   y.q << T(1), T(0), T(0), T(0);
   y.u << x[0], x[1], x[2];
   y.p.setZero();
-  if constexpr (kFriction) {
+  if constexpr (kRubbing > 0) {
     y.tension.resize(static_cast<Eigen::Index>(tension_.size()));
     for (std::size_t k = 0; k < tension_.size(); ++k) {
       y.tension[static_cast<Eigen::Index>(k)] = T(load_ * tension_[k]);
@@ -199,30 +247,34 @@ bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node)
   return true;
 }
 
+template <class T, class AtNode>
+bool RodBalance::WalkAny(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const {
+  if (!friction_) return Walk<T, 0>(x, end, at_node);
+  if (tension_.size() <= kFewTendons) return Walk<T, kFewTendons>(x, end, at_node);
+  return Walk<T, kMaxTendons>(x, end, at_node);
+}
+
 template <class T>
 bool RodBalance::operator()(const T* x, T* f) const {
   Eigen::Matrix<T, 3, 1> end;
-  const auto nothing = [](int, const auto&) {};
-  const bool ok = friction_ ? Walk<T, true>(x, end, nothing) : Walk<T, false>(x, end, nothing);
-  if (!ok) return false;
+  if (!WalkAny(x, end, [](int, const auto&) {})) return false;
   for (int i = 0; i < 3; ++i) f[i] = end[i];
   return true;
 }
 
 template bool RodBalance::operator()(const double* x, double* f) const;
-template bool RodBalance::operator()(const ceres::Jet<double, 3>* x,
-                                     ceres::Jet<double, 3>* f) const;
+template bool RodBalance::operator()(const ceres::Jet<double, 4>* x,
+                                     ceres::Jet<double, 4>* f) const;
 
 RodBalance::Shape RodBalance::Integrate(const Vector& x) const {
-  Shape shape{Eigen::Matrix3Xd(3, disks_), Eigen::Matrix3Xd(3, disks_), Vector::Zero()};
+  Shape shape{Eigen::Matrix3Xd(3, disks_), Eigen::Matrix3Xd::Zero(3, disks_), Vector::Zero()};
   const auto keep = [&](int step, const auto& y) {
     const int piece = (step - 1) / steps_, within = step - piece * steps_;
     if (2 * within == steps_)
       shape.middles.col(piece) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
     if (within == steps_) shape.disks.col(piece) = y.p * length_;
   };
-  shape.valid = friction_ ? Walk<double, true>(x.data(), shape.residual, keep)
-                          : Walk<double, false>(x.data(), shape.residual, keep);
+  shape.valid = WalkAny(x.data(), shape.residual, keep);
   return shape;
 }
 

@@ -24,12 +24,12 @@ namespace continuum::tdcr {
 /// i/n, where N jumps and u does not.
 ///
 /// With friction (beyond the paper) the tension falls along the channel, T_k' = -dir_k mu T_k
-/// |t_k'| with t_k the unit vector of w_k, and T_k' a_k x t_k joins H u' on the left.
+/// |t_k'| with t_k the unit vector of w_k, and T_k' a_k x t_k joins H u' on the left (rubbing.h).
 class RodBalance {
  public:
   using Vector = Eigen::Vector3d;
 
-  /// steps: of the integrator per piece between disks, even.
+  /// steps: of the integrator per piece between disks.
   RodBalance(const Robot& robot, const Loads& loads, bool friction, int steps);
 
   /// All loads are multiplied by this from here on.
@@ -48,23 +48,31 @@ class RodBalance {
   }
 
   struct Shape {
-    Eigen::Matrix3Xd disks;    ///< O_1..O_n [m]
-    Eigen::Matrix3Xd middles;  ///< kappa_x = u_y, kappa_y = -u_x, tau in the middles [1/m]
+    Eigen::Matrix3Xd disks;  ///< O_1..O_n [m]
+    /// kappa_x = u_y, kappa_y = -u_x, tau in the middles [1/m]; for an even number of steps.
+    Eigen::Matrix3Xd middles;
     Eigen::Vector3d residual;  ///< R nu(1)
     bool valid = false;
   };
   Shape Integrate(const Vector& x) const;
 
  private:
-  template <class T, bool kFriction>
+  // kRubbing: tendons whose tension falls along the rod, at most; 0 without friction.
+  template <class T, int kRubbing>
   struct State;
-  template <class T, bool kFriction>
-  bool Slope(const State<T, kFriction>& y, const Eigen::Vector3d& force,
-             State<T, kFriction>& dy) const;
-  template <class T, bool kFriction>
-  Eigen::Matrix<T, 3, 1> Moment(const State<T, kFriction>& y) const;
-  template <class T, bool kFriction, class AtNode>
+  template <class T, int kRubbing>
+  bool Slope(const State<T, kRubbing>& y, const Eigen::Vector3d& force,
+             State<T, kRubbing>& dy) const;
+  template <class T, int kRubbing>
+  void Rub(const State<T, kRubbing>& y, const Eigen::Matrix<T, 3, 3>& hessian,
+           const Eigen::Matrix<T, 3, 1>& right, State<T, kRubbing>& dy) const;
+  template <class T, int kRubbing>
+  Eigen::Matrix<T, 3, 1> Moment(const State<T, kRubbing>& y) const;
+  template <class T, int kRubbing, class AtNode>
   bool Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const;
+  // Walk with room for as many tensions as there are.
+  template <class T, class AtNode>
+  bool WalkAny(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const;
   Eigen::Vector3d DeadForce(int piece, double s) const;
 
   double length_, twist_;  ///< twist_: GJ/EI
@@ -72,7 +80,7 @@ class RodBalance {
   bool friction_;
   int disks_, steps_;
   double load_ = 1;
-  std::vector<Eigen::Vector2d> holes_;  ///< over L
+  std::vector<Eigen::Vector2d> holes_;  ///< over L, of the tendons that pull
   std::vector<double> tension_;         ///< times L^2/EI, as the forces below
   std::vector<int> direction_;
   Eigen::Vector3d natural_;  ///< u of the rod when nothing acts

@@ -24,12 +24,16 @@ YAML::Node List(const std::vector<std::string>& values) {
   return list;
 }
 
-void SetParameter(YAML::Node& robot, const std::string& key, const YAML::Node& value) {
-  if (robot[key].IsDefined() && robot[key].IsMap()) {
-    robot[key]["value"] = value;
-  } else {
+void SetParameter(YAML::Node& robot, const std::string& key, const YAML::Node& value,
+                  const YAML::Node& uncertainty, const std::string& source) {
+  if (!robot[key].IsDefined() || !robot[key].IsMap()) {
     robot[key] = value;
+    return;
   }
+  YAML::Node parameter = robot[key];
+  parameter["value"] = value;
+  parameter["uncertainty"] = uncertainty;
+  parameter["source"] = source;
 }
 
 YAML::Node Document(const Spread& spread) {

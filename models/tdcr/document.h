@@ -15,8 +15,10 @@ YAML::Node Number(double value);
 YAML::Node List(const Eigen::VectorXd& values);
 YAML::Node List(const std::vector<std::string>& values);
 
-/// Replaces the value of a parameter, whether it stands alone or in a map with its unit.
-void SetParameter(YAML::Node& robot, const std::string& key, const YAML::Node& value);
+/// Replaces the value of a parameter, whether it stands alone or in a map with its unit. What such
+/// a map said of the old value's uncertainty and source goes with it.
+void SetParameter(YAML::Node& robot, const std::string& key, const YAML::Node& value,
+                  const YAML::Node& uncertainty, const std::string& source);
 
 /// {mean, std, min, max}
 YAML::Node Document(const Spread& spread);

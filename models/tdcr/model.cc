@@ -52,6 +52,8 @@ bool Stable(const Balance& balance, const Eigen::Matrix<double, N, 1>& x) {
   return solver::LeastRealEigenvalue(balance.RelativeToUnloaded(jacobian)) > -0.01;
 }
 
+constexpr double kOnTheWay = 1e-6;  // of EI/L: enough to tell branches apart
+
 // The path of equilibria from zero load. Corrector steps can cross to an unstable branch where a
 // pitchfork is close: then again with a look at every step.
 template <class Balance, int N>
@@ -61,11 +63,12 @@ Outcome FollowLoads(Balance& balance, Eigen::Matrix<double, N, 1>& x) {
     return balance;
   };
   const auto stable = [&](const auto& trial) { return Stable(balance, trial); };
-  Outcome outcome = solver::Continue(at, x, Limits());
+  solver::PathOptions path;
+  path.tolerance = kOnTheWay;
+  Outcome outcome = solver::Continue(at, x, Limits(), path);
   if (!outcome.ok() || !stable(x)) {
     const int spent = outcome.iterations;
     x.setZero();
-    solver::PathOptions path;
     path.first_step = path.largest_step = 0.05;
     outcome = solver::Continue(at, x, Limits(), path, stable);
     outcome.iterations += spent;
@@ -129,8 +132,9 @@ Solution SolveDisks(const Robot& robot, const Loads& loads, const Eigen::VectorX
   return solution;
 }
 
-// Steps of the integrator: about 18 along the rod, an even number in every piece.
-int Steps(int disks) { return 2 * std::max(1, (9 + disks - 1) / disks); }
+// Steps of the integrator: about 9 along the rod, a whole number in every piece. The shape is
+// taken from twice as many, so that every piece has a middle.
+int Steps(int disks) { return std::max(1, (9 + disks - 1) / disks); }
 
 Solution SolveRod(const Robot& robot, const Loads& loads, bool friction,
                   const Eigen::VectorXd* start) {
@@ -147,10 +151,10 @@ Solution SolveRod(const Robot& robot, const Loads& loads, bool friction,
       const auto fine = balance.Integrate(x);
       const double error = (fine.disks - coarse.disks).colwise().norm().maxCoeff() / robot.length +
                            (fine.residual - coarse.residual).norm();
-      solution.u = coarse.middles;
-      solution.disks = coarse.disks;
+      solution.u = fine.middles;
+      solution.disks = fine.disks;
       if (error <= kAccuracy) break;
-      if (refinement == 6) {
+      if (refinement == 7) {
         outcome.status = solver::Status::kNoConvergence;
         outcome.why = "the rod is too strongly bent for the integrator";
         break;

@@ -1,9 +1,9 @@
 #include "models/tdcr/robot.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "error.h"
+#include "models/tdcr/columns.h"
 #include "sim/file.h"
 
 namespace continuum::tdcr {
@@ -48,43 +48,6 @@ Eigen::Vector3d Gravity(const Yaml& node) {
 double Friction(double mu, const std::string& where) {
   if (mu >= 0 && mu < 1) return mu;
   throw Error::Input(where, "0 <= mu < 1", Decimal(mu));
-}
-
-std::string Lowered(const std::string& name) {
-  std::string plain;
-  for (const char c : name) {
-    if (c != '_' && c != ' ') plain += static_cast<char>(std::tolower(c));
-  }
-  return plain;
-}
-
-std::vector<std::string> KnownColumns(int tendons) {
-  std::vector<std::string> known{"case", "fx", "fy", "fz", "gx", "gy", "gz", "mu"};
-  for (const char* prefix : {"T", "dir"}) {
-    for (int k = 1; k <= tendons; ++k) known.push_back(prefix + std::to_string(k));
-  }
-  return known;
-}
-
-// Columns of other readers are welcome, but a slip in the name of an optional one must not be
-// passed over in silence.
-void RejectMisspelt(const Table& table, int tendons) {
-  const auto known = KnownColumns(tendons);
-  for (const auto& column : table.columns()) {
-    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    const std::string plain = Lowered(column);
-    const std::size_t letters = plain.find_first_of("0123456789");
-    const bool numbered = letters != plain.npos &&
-                          plain.find_first_not_of("0123456789", letters) == plain.npos &&
-                          (plain.substr(0, letters) == "t" || plain.substr(0, letters) == "dir");
-    const bool other_case = std::any_of(known.begin(), known.end(), [&](const std::string& name) {
-      return Lowered(name) == plain;
-    });
-    if (!numbered && !other_case) continue;
-    std::string all;
-    for (const auto& name : known) all += (all.empty() ? "" : ", ") + name;
-    throw Error::Input(table.name() + ":1", "columns among " + all, "'" + column + "'");
-  }
 }
 
 int Direction(const Table& table, std::size_t row, const std::string& column) {

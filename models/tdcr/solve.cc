@@ -11,6 +11,7 @@
 #include "models/solver/plot.h"
 #include "models/solver/results.h"
 #include "models/tdcr/calibrate.h"
+#include "models/tdcr/columns.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/document.h"
 #include "models/tdcr/fit.h"
@@ -138,9 +139,23 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
   return all ? 0 : 1;
 }
 
+void Warn(const SolveRequest& request, const std::vector<std::string>& sentences) {
+  for (const auto& sentence : sentences) request.warn(sentence);
+}
+
+std::vector<Case> ReadInput(const SolveRequest& request, const Robot& robot) {
+  const Table table = Table::Read(request.input);
+  auto cases = ReadCases(table, robot);
+  Warn(request, UnusedCaseColumns(table, robot.tendons));
+  return cases;
+}
+
 std::vector<Measured> ReadMeasurements(const SolveRequest& request, const Robot& robot) {
   if (request.measured.empty()) return {};
-  return ReadMeasured(Table::Read(request.measured), robot.disks);
+  const Table table = Table::Read(request.measured);
+  auto measured = ReadMeasured(table, robot.disks);
+  Warn(request, UnusedMeasuredColumns(table, robot.disks));
+  return measured;
 }
 
 // --lambda: weight of the fit's curvatures, penalty of the training; no other job has one.
@@ -163,7 +178,7 @@ std::optional<double> Penalty(const SolveRequest& request) {
 
 int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
                const Hybrid* hybrid) {
-  const auto cases = ReadCases(Table::Read(request.input), robot);
+  const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
   std::vector<Solved> solved;
   for (const Case& c : cases) {
@@ -191,37 +206,57 @@ std::vector<Pair> ReadPairs(const SolveRequest& request, const std::vector<Case>
   return Match(cases, measured, request.measured.string());
 }
 
+// R.yaml with the values found.
+YAML::Node CalibrationDocument(const SolveRequest& request, const Yaml& file,
+                               const Calibration& c) {
+  const std::string method = request.method.empty() ? "eas" : request.method;
+  const bool friction = c.standard.size() > 4;
+  const YAML::Node base = List(c.robot.base_rotation);
+  YAML::Node standard;
+  standard["E"] = Number(c.standard[0]);
+  if (friction) standard["mu"] = Number(c.standard[4]);
+  standard["base_rotation"] = List(Eigen::VectorXd(c.standard.segment<3>(1)));
+
+  YAML::Node document = YAML::Clone(file.node());
+  const auto set = [&](const char* key, const YAML::Node& value) {
+    SetParameter(document, key, value, YAML::Clone(standard[key]),
+                 fmt::format("calibrated by {} on {} cases of {}", method, c.cases,
+                             request.measured.filename().string()));
+  };
+  set("E", Number(c.robot.E));
+  if (friction) set("mu", Number(c.robot.mu));
+  set("base_rotation", base);
+
+  YAML::Node node;
+  node["method"] = method;
+  node["status"] = c.explained.poor() ? "poor" : "ok";
+  node["cases"] = c.cases;
+  node["E"] = Number(c.robot.E);
+  if (friction) node["mu"] = Number(c.robot.mu);
+  node["base_rotation"] = YAML::Clone(base);
+  node["standard_error"] = standard;
+  node["at_bound"] = List(c.at_bound);
+  node["rmse"] = Number(c.explained.rmse());
+  node["deflection"] = Number(c.explained.deflection());
+  node["scatter"] = Number(c.explained.scatter());
+  node["tip_error_percent"] = Document(c.tips);
+  document["calibration"] = node;
+  return document;
+}
+
 int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& robot,
                    Method method) {
   Need(request.input, "--input", "--calibrate");
   Need(request.measured, "--measured", "--calibrate");
   Refuse(!request.plot.empty(), "--plot", "--calibrate");
   solver::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
-  const auto cases = ReadCases(Table::Read(request.input), robot);
+  const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
   const Calibration c = Calibrate(robot, method, ReadPairs(request, cases, measured));
-  const bool friction = method != Method::kCrt;
-
-  YAML::Node document = YAML::Clone(file.node());
-  SetParameter(document, "E", Number(c.robot.E));
-  if (friction) SetParameter(document, "mu", Number(c.robot.mu));
-  SetParameter(document, "base_rotation", List(c.robot.base_rotation));
-  YAML::Node standard;
-  standard["E"] = Number(c.standard[0]);
-  if (friction) standard["mu"] = Number(c.standard[4]);
-  standard["base_rotation"] = List(Eigen::VectorXd(c.standard.segment<3>(1)));
-  YAML::Node node;
-  node["method"] = request.method.empty() ? "eas" : request.method;
-  node["cases"] = c.cases;
-  node["E"] = Number(c.robot.E);
-  if (friction) node["mu"] = Number(c.robot.mu);
-  node["base_rotation"] = List(c.robot.base_rotation);
-  node["standard_error"] = standard;
-  node["at_bound"] = List(c.at_bound);
-  node["tip_error_percent"] = Document(c.tips);
-  document["calibration"] = node;
-  WriteDocument(request.out, document);
-  return 0;
+  WriteDocument(request.out, CalibrationDocument(request, file, c));
+  if (!c.explained.poor()) return 0;
+  request.warn(request.measured.string() + ": the calibration is poor: " + c.explained.Sentence());
+  return 1;
 }
 
 int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot) {
@@ -229,7 +264,7 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
   Need(request.measured, "--measured", "--hybrid train");
   Refuse(!request.plot.empty(), "--plot", "--hybrid train");
   solver::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
-  const auto cases = ReadCases(Table::Read(request.input), robot);
+  const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
   const Hybrid h = Train(robot, ReadPairs(request, cases, measured), request.measured.string(),
                          Penalty(request));
@@ -257,6 +292,7 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
 int SolveTdcr(const SolveRequest& request) {
   const Yaml file = Yaml::Read(request.robot);
   const Robot robot = ReadRobot(file);
+  Warn(request, UnusedKeys(file));
   const std::string method = request.method.empty() ? "eas" : request.method;
   Refuse(request.sensitivity, "--sensitivity", "the robot tdcr");
   Need(request.out, "--out", "the results");

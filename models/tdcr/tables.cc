@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <exception>
+#include <filesystem>
 #include <string>
 
 #include "models/solver/results.h"
@@ -8,6 +10,7 @@
 #include "models/tdcr/fit.h"
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/synthetic.h"
+#include "sim/file.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -78,17 +81,42 @@ void Print(const Robot& robot, int set, unsigned seed) {
   PrintHybrid("hybrid", Train(eas.robot, trained, "synthetic", std::nullopt), hybrids[set - 1][1]);
 }
 
+// Set 1 as the files that `continuum solve` reads, tensions and forces to 0.1 mN, points to 1 um.
+void WriteSample(const Robot& robot, const std::filesystem::path& folder) {
+  Experiment experiment = Synthesize(robot, 1, kSeed + 1);
+  std::string cases = "case,T1,T2,T3,fx,fy,fz\n", measured = "case,use";
+  for (int i = 1; i <= robot.disks; ++i) measured += fmt::format(",x_{0},y_{0},z_{0}", i);
+  measured += '\n';
+  for (std::size_t i = 0; i < experiment.cases.size(); ++i) {
+    const Case& c = experiment.cases[i];
+    const Measured& m = experiment.measured[i];
+    const auto& f = c.loads.tip_force;
+    cases += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f}\n", c.name,
+                         fmt::join(c.loads.tension, ","), f.x(), f.y(), f.z());
+    measured += fmt::format("{},{}", m.name, m.test ? "test" : "train");
+    for (const double x : m.disks.reshaped()) measured += fmt::format(",{:.6f}", x);
+    measured += '\n';
+  }
+  WriteFile(folder / "cases.csv", cases);
+  WriteFile(folder / "measured.csv", measured);
+}
+
 }  // namespace
 }  // namespace continuum::tdcr
 
 int main(int count, char** arguments) {
   using namespace continuum;
-  if (count != 2 && count != 3) {
-    fmt::print(stderr, "usage: tdcr_tables models/tdcr/tdcr.yaml [SEED]\n");
+  const bool sample = count == 4 && std::string(arguments[2]) == "--sample";
+  if (count != 2 && count != 3 && !sample) {
+    fmt::print(stderr, "usage: tdcr_tables models/tdcr/tdcr.yaml [SEED | --sample FOLDER]\n");
     return 2;
   }
   try {
     const tdcr::Robot robot = tdcr::ReadRobot(Yaml::Read(arguments[1]));
+    if (sample) {
+      tdcr::WriteSample(robot, arguments[3]);
+      return 0;
+    }
     const unsigned seed =
         count == 3 ? static_cast<unsigned>(std::stoul(arguments[2])) : tdcr::kSeed;
     for (const int set : {1, 2}) tdcr::Print(robot, set, seed);

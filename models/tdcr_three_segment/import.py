@@ -23,6 +23,11 @@ PARAMETERS = [
 ]
 
 
+def refuse(message):
+    print(f"import.py: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
 def family(label):
     """rep1_pair12_same_dir60_hold -> pair12_same; rep1_tendon0_id4_pull -> tendon_pull."""
     words = label.split("_")[1:]
@@ -68,13 +73,17 @@ def experiment(families, model):
 
 def main():
     if len(sys.argv) != 3:
-        sys.exit(__doc__)
+        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
+               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
     source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     files = sorted(source.glob("*_train.csv"))
     if len(files) != 1:
-        sys.exit(f"{source}: expected one recording (*_train.csv), found {len(files)}")
+        refuse(f"{source}: expected one recording (*_train.csv), found {len(files)}")
     target.mkdir(parents=True, exist_ok=True)
-    families = read_families(files[0])
+    try:
+        families = read_families(files[0])
+    except (ValueError, LookupError, TypeError, csv.Error) as error:
+        refuse(f"{files[0]}: expected rows with timestamp and pattern_label, found {error!r}")
     for name, rows in families.items():
         with (target / f"{name}.csv").open("w", newline="") as log:
             out = csv.DictWriter(log, rows[0], lineterminator="\n")
@@ -87,4 +96,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except OSError as error:
+        refuse(f"{error.filename}: {error.strerror}")

@@ -31,6 +31,11 @@ PARAMETERS = [
 ]
 
 
+def refuse(message):
+    print(f"import.py: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
 def write_log(source, target):
     """Copies the rows behind their time."""
     with source.open(newline="") as recording, target.open("w", newline="") as log:
@@ -68,18 +73,25 @@ def experiment(model):
 
 def main():
     if len(sys.argv) != 3:
-        sys.exit(__doc__)
+        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
+               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
     source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     for name in RECORDINGS:
         if not (source / f"{name}.csv").is_file():
-            sys.exit(f"{source}: expected {name}.csv, found none")
+            refuse(f"{source}: expected {name}.csv, found none")
     target.mkdir(parents=True, exist_ok=True)
     for name in RECORDINGS:
-        write_log(source / f"{name}.csv", target / f"{name}.csv")
+        try:
+            write_log(source / f"{name}.csv", target / f"{name}.csv")
+        except (ValueError, LookupError, StopIteration, csv.Error) as error:
+            refuse(f"{source / name}.csv: expected a header and rows that begin with a number, found {error!r}")
     model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "trunk.xml", target.resolve())
     (target / "experiment.yaml").write_text(experiment(model))
     print(f"{len(RECORDINGS)} logs and experiment.yaml in {target}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except OSError as error:
+        refuse(f"{error.filename}: {error.strerror}")

@@ -63,11 +63,21 @@ BENCHMARK_CAPTURE(Solve, pcca_non_planar, Method::kPcca, kNonPlanar)->Unit(bench
 BENCHMARK_CAPTURE(Solve, crt_planar, Method::kCrt, kPlanar)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(Solve, crt_non_planar, Method::kCrt, kNonPlanar)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(Solve, crt_range, Method::kCrt, kRange)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(Solve, crt_friction_planar, Method::kCrtFriction, kPlanar)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(Solve, crt_friction_non_planar, Method::kCrtFriction, kNonPlanar)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(Solve, crt_friction_range, Method::kCrtFriction, kRange)
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(Solve, eas_two_cores, Method::kEas, kNonPlanar)
     ->Unit(benchmark::kMicrosecond)
     ->Threads(2)
     ->UseRealTime();
 BENCHMARK_CAPTURE(Solve, crt_two_cores, Method::kCrt, kNonPlanar)
+    ->Unit(benchmark::kMicrosecond)
+    ->Threads(2)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(Solve, crt_friction_two_cores, Method::kCrtFriction, kNonPlanar)
     ->Unit(benchmark::kMicrosecond)
     ->Threads(2)
     ->UseRealTime();

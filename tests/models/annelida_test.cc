@@ -124,6 +124,17 @@ TEST(Annelida, StaysStableUnderTensionStepsOf60N) {
   }
 }
 
+// Every joint loaded at once, suddenly.
+TEST(Annelida, GivesWayLittleBeforeItBreaksAway) {
+  const AnnelidaParameters p = Parameters();
+  const Machine machine = Robot().Build();
+  const auto joints = static_cast<int>(machine.model->nv);
+  for (int i = 0; i < joints; ++i)
+    machine.data->qfrc_applied[i] = (i % 2 ? -0.95 : 0.95) * p.tau_c * (1 + p.S);
+  StepUntil(machine, 1);
+  for (int i = 0; i < joints; ++i) EXPECT_LT(std::abs(machine.data->qpos[i]), 2e-3) << i;
+}
+
 TEST(Annelida, PulledSlowlyItsSpansCarryThePapersTensions) {
   const AnnelidaParameters p = Parameters();
   const Machine machine = System::Load(kFolder + "annelida_tensions.xml").Build();

@@ -141,6 +141,32 @@ TEST_F(TdcrSolve, BadRobotsAreNamedWithLineAndKey) {
   EXPECT_THAT(MessageOfRobot("nu: 0.3\n", ""), HasSubstr("'nu'"));
 }
 
+TEST_F(TdcrSolve, RepeatedAndMisplacedKeysAreNamedWithTheirLine) {
+  EXPECT_THAT(
+      MessageOfRobot("mu: 0.2\n", "mu: 0.2\nmu: 0.3\n"),
+      testing::AllOf(HasSubstr("robot.yaml:13"), HasSubstr("'mu' twice"), HasSubstr("line 12")));
+  EXPECT_THAT(MessageOfRobot("value: 60.0e9", "value: 60.0e9, value: 50.0e9"),
+              testing::AllOf(HasSubstr("robot.yaml:8"), HasSubstr("'value' twice")));
+  EXPECT_THAT(MessageOfRobot("unit: Pa", "unti: Pa"),
+              testing::AllOf(HasSubstr("robot.yaml:8"), HasSubstr("'unti'")));
+}
+
+// The format allows more of them, for other readers; nobody should believe that they act.
+TEST_F(TdcrSolve, KeysAndColumnsThatAreNotUsedAreNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  request_.input = Write("cases.csv", "case,T1,T2,T3,fx,fy,fz\na,1,0,0,0,0,0\n");
+  EXPECT_EQ(SolveTdcr(request_), 0);
+  EXPECT_THAT(heard, testing::IsEmpty());
+  request_.robot = Write("robot.yaml", std::string(kRobot) + "colour: red\n");
+  request_.input = Write("cases.csv", "case,T1,T2,T3,fx,fy,fz,note,day\na,1,0,0,0,0,0,x,1\n");
+  request_.measured = Write("measured.csv", "case,x_9,y_9,z_9,who\na,0,0,0.13,me\n");
+  EXPECT_EQ(SolveTdcr(request_), 0);
+  EXPECT_THAT(heard, testing::ElementsAre(HasSubstr("robot.yaml:15: colour: not used"),
+                                          HasSubstr("cases.csv:1: not used: 'note', 'day'"),
+                                          HasSubstr("measured.csv:1: not used: 'who'")));
+}
+
 TEST_F(TdcrSolve, WrongUseIsRefused) {
   EXPECT_THAT(Message(), HasSubstr("--input"));
   request_.input = Write("cases.csv", std::string(kHeader) + "a,1,0,0,0,0,0\n");
@@ -246,6 +272,50 @@ TEST_F(TdcrSolve, CalibrationFindsTheParametersThatMadeTheShapes) {
     again.out = folder_ / "errors.csv";
     ASSERT_EQ(SolveTdcr(again), 0);
     EXPECT_LT(Table::Read(again.out).Number(3, "error_9"), 1e-6 * truth.length);
+  }
+}
+
+TEST_F(TdcrSolve, ACalibratedValueSaysWhereItIsFrom) {
+  std::string robot = kRobot;
+  robot.replace(robot.find("unit: Pa"), 8, "unit: Pa, uncertainty: 15e9, source: a guess");
+  request_.robot = Write("robot.yaml", robot);
+  request_.input = Write("cases.csv", CasesText(12));
+  Robot truth = ReadRobot(Yaml::Read(request_.robot));
+  truth.natural = {0.3, 0, 0.5};
+  const auto cases = ReadCases(Table::Read(request_.input), truth);
+  request_.measured = Write("measured.csv", MeasuredText(truth, cases, Method::kCrt));
+  request_.calibrate = true;
+  request_.out = folder_ / "calibrated.yaml";
+  ASSERT_EQ(SolveTdcr(request_), 0);
+  const Yaml file = Yaml::Read(request_.out);
+  EXPECT_EQ(file.At("calibration").At("status").Text(), "ok");
+  EXPECT_EQ(file.At("E").At("source").Text(), "calibrated by eas on 9 cases of measured.csv");
+  EXPECT_EQ(file.At("E").At("uncertainty").Number(),
+            file.At("calibration").At("standard_error").At("E").Number());
+}
+
+TEST_F(TdcrSolve, ACalibrationThatExplainsNothingIsCalledPoor) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  request_.input = Write("cases.csv", CasesText(12));
+  request_.calibrate = true;
+  request_.out = folder_ / "calibrated.yaml";
+  std::mt19937 random(5);
+  for (const double size : {0.1, 0.02}) {  // tips anywhere in a ball around the straight tip
+    std::uniform_real_distribution<double> place(-size, size);
+    std::string text = "case,x_9,y_9,z_9\n";
+    for (int i = 1; i <= 12; ++i) {
+      text += fmt::format("c{},{},{},{}\n", i, place(random), place(random), 0.1 + place(random));
+    }
+    request_.measured = Write("measured.csv", text);
+    heard.clear();
+    EXPECT_EQ(SolveTdcr(request_), 1) << size;
+    ASSERT_EQ(heard.size(), 1u);
+    EXPECT_THAT(heard[0], testing::AllOf(HasSubstr("measured.csv"), HasSubstr("poor"),
+                                         HasSubstr("not explained")));
+    const Yaml calibration = Yaml::Read(request_.out).At("calibration");
+    EXPECT_EQ(calibration.At("status").Text(), "poor");
+    EXPECT_GT(calibration.At("rmse").Number(), 0.5 * size);
   }
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/table.h"
+#include "sim/yaml.h"
+
+namespace continuum::tdcr {
+
+/// The format lets a file carry keys and columns beside its own, so these are not refused, but
+/// whoever meant one of the optional names has to hear of it: one sentence each, with file and
+/// line.
+std::vector<std::string> UnusedKeys(const Yaml& robot);
+std::vector<std::string> UnusedCaseColumns(const Table& cases, int tendons);
+std::vector<std::string> UnusedMeasuredColumns(const Table& measured, int disks);
+
+/// @throws Error for a column of CASES.csv that is one of its names but for case, blanks and
+/// underscores, or a tendon's number.
+void RejectMisspelt(const Table& cases, int tendons);
+
+}  // namespace continuum::tdcr
