@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "app/console.h"
 #include "error.h"
 #include "identification/fit_output.h"
@@ -99,7 +101,16 @@ const char* Way(const Options& o, const Problem& problem) {
                                          : "stepped, by differences of MuJoCo's own steps";
 }
 
-void Print(const Problem& problem, const Fitting& all, const std::string& out) {
+void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, Eigen::Index i) {
+  const std::string bound =
+      value - p.lower < p.upper - value ? "its lower bound" : "its upper bound";
+  const std::string range =
+      u.at_bound[i] ? "at " + bound : fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  std::printf("%-24s %.6g %s (%s)\n", p.name.c_str(), value, p.unit.c_str(), range.c_str());
+}
+
+void Print(const Problem& problem, const Fitting& all, const Uncertainty& u,
+           const std::string& out) {
   const Experiment& e = problem.experiment();
   const Fit& fit = all.fit;
   std::vector<ChannelScore> scores;
@@ -108,8 +119,7 @@ void Print(const Problem& problem, const Fitting& all, const std::string& out) {
       scores.push_back(std::move(s));
   }
   for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    std::printf("%-24s %.6g %s\n", p.name.c_str(), fit.x[i], p.unit.c_str());
+    PrintParameter(problem.parameters()[i], fit.x[i], u, i);
   }
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
   const std::string unit = Pool(e).unit();
@@ -124,9 +134,7 @@ void Print(const Problem& problem, const Fitting& all, const std::string& out) {
     std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
                 all.regression->train, all.regression->validate);
   }
-  if (all.starts)
-    std::printf("%zu of %zu starts end within 0.1 %% of the best cost\n", all.starts->Reached(),
-                all.starts->starts.size());
+  if (all.starts) std::printf("%s\n", all.starts->InWords().c_str());
   std::printf("%d iterations, %zu simulations, %.1f s; report: %s/report.html\n", fit.iterations,
               fit.evaluations, fit.seconds, out.c_str());
 }
@@ -159,12 +167,12 @@ void RunIdentify(const Options& o) {
   }
   const Fitting all = Run(o, problem, start, use);
   EndProgress();
-  const auto trade_offs =
+  const Determined determined =
       WriteFit(problem, all.fit, o.out,
                {o.method, all.for_step ? &*all.for_step : nullptr,
                 all.regression ? &*all.regression : nullptr, all.starts ? &*all.starts : nullptr});
-  Print(problem, all, o.out);
-  for (const TradeOff& t : trade_offs) std::printf("%s\n", t.text.c_str());
+  Print(problem, all, determined.uncertainty, o.out);
+  for (const TradeOff& t : determined.trade_offs) std::printf("%s\n", t.text.c_str());
   StopIfRequested();  // the files hold the best so far
   if (!all.fit.converged) throw Error::Job("the fit did not converge: " + all.fit.message);
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <iostream>
 #include <memory>
 
 #include "app/console.h"
@@ -48,6 +49,7 @@ void AddSolve(CLI::App& app, int& exit_code) {
                                                     request->measured};
     RequireWritable(request->out, inputs);
     if (!request->plot.empty()) RequireWritable(request->plot, inputs);
+    request->warn = [](const std::string& text) { std::cerr << "warning: " << text << '\n'; };
     exit_code = Solve(*request);
   });
 }

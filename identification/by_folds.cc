@@ -85,10 +85,8 @@ class Comparison {
   }
 
   bool LostTooOften(const CandidateResult& c, const std::vector<double>& placebos) const {
-    const double own = Median(Gains(c.record));
-    const auto lost = std::count_if(placebos.begin(), placebos.end(),
-                                    [own](double placebo) { return placebo >= own; });
-    return static_cast<double>(lost) > (1 - Rules{}.placebo_share) * options_.placebos + 1e-9;
+    const double lost = static_cast<double>(placebos.size()) - Beaten(c.record, placebos);
+    return lost > (1 - Rules{}.placebo_share) * options_.placebos + 1e-9;
   }
 
   bool Known() const { return d_.noise.known() && d_.noise.rms > 0; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <random>
 
 #include <fmt/format.h>
@@ -195,12 +196,11 @@ class Session {
     CompareByFolds(trials_, options_, d_);
   }
 
-  // Resamples whole trials of the held-out logs.
-  void BootstrapGain() {
-    const CandidateResult* chosen = d_.chosen();
-    if (!chosen) return;
-    std::vector<std::pair<double, double>>
-        squares;  // per validation log, over its rows: before, after
+  // Of each held-out trial, replicates together: squared errors before and after. Where they are
+  // too few to say how the gain varies, of the folds.
+  std::vector<std::pair<double, double>> HeldOut(const CandidateResult& chosen) const {
+    constexpr std::size_t kEnough = 3;
+    std::map<std::string, std::pair<double, double>> trials;
     for (std::size_t l = 0; l < e_.logs.size(); ++l) {
       if (e_.logs[l].train) continue;
       std::vector<bool> one(e_.logs.size(), false);
@@ -209,8 +209,25 @@ class Session {
         return std::pow(null_.PooledRms(f.residuals, one), 2) *
                static_cast<double>(e_.logs[l].rows());
       };
-      squares.emplace_back(sum(d_.before), sum(chosen->fitted));
+      auto& [before, after] = trials[e_.logs[l].trial];
+      before += sum(d_.before), after += sum(chosen.fitted);
     }
+    std::vector<std::pair<double, double>> squares;
+    for (const auto& [name, pair] : trials) squares.push_back(pair);
+    const auto &before = d_.before.folds.error, &after = chosen.fitted.folds.error;
+    if (squares.size() >= kEnough || after.size() <= squares.size() ||
+        before.size() != after.size())
+      return squares;
+    squares.clear();
+    for (std::size_t f = 0; f < after.size(); ++f)
+      squares.emplace_back(before[f] * before[f], after[f] * after[f]);
+    return squares;
+  }
+
+  void BootstrapGain() {
+    const CandidateResult* chosen = d_.chosen();
+    if (!chosen) return;
+    const auto squares = HeldOut(*chosen);
     if (squares.empty()) return;
     std::mt19937_64 rng(options_.seed);
     std::vector<double> gains;

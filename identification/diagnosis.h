@@ -121,7 +121,7 @@ struct Diagnosis {
   FoldScores ceiling;       ///< what a smooth force without a name reaches; empty: noise-limited
   TwoErrors ceiling_error;  ///< of the same; the noise where that is all that is left
   NextExperiment next;
-  double gain_low = 0, gain_high = 0;  ///< 95 % interval of the held-out error removed
+  double gain_low = 0, gain_high = 0;  ///< 95 % interval, over held-out trials or the folds
   double seconds = 0;
 
   /// The model to extend to, if any: the one that is named, or the best of an ambiguous set.

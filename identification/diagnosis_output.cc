@@ -401,8 +401,9 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
                   d.noise.rms > 0 ? told.after.train / std::hypot(d.noise.rms, d.noise.step) : 0);
   if (d.noise_limited) {
     text += fmt::format(
-        "left      p = {:.2g} (smooth forces), {:.2g} (channels); significant below {:g}\n",
-        d.lack.force, d.lack.channel, LikelihoodRules{}.lack);
+        "left      p = {:.2g} (smooth forces), {:.2g} (channels); significant below {:g}{}\n",
+        d.lack.force, d.lack.channel, LikelihoodRules{}.lack,
+        d.noise.step > 0 ? ", without what the time step adds" : "");
   } else {
     text += fmt::format("ceiling   {:.4g} {} on validate with a smooth force without a name\n",
                         d.ceiling_error.validate, unit);

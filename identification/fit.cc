@@ -176,6 +176,16 @@ double Bandwidth(const Matrix& scores) {
                   static_cast<double>(n) / 3);
 }
 
+// Moves the ends of the intervals by low ≤ 0 and high ≥ 0, within the bounds.
+void Reach(const Problem& problem, const Vector& low, const Vector& high, Uncertainty& u) {
+  for (Eigen::Index i = 0; i < low.size(); ++i) {
+    if (u.at_bound[i]) continue;
+    const FreeParameter& p = problem.parameters()[i];
+    u.lower[i] = std::max(p.lower, u.lower[i] + low[i]);
+    u.upper[i] = std::min(p.upper, u.upper[i] + high[i]);
+  }
+}
+
 }  // namespace
 
 Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<bool>& use,
@@ -370,14 +380,9 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   return u;
 }
 
-void ReachOver(const Problem& problem, const Vector& step, Uncertainty& u) {
-  u.step = step;
-  for (Eigen::Index i = 0; i < u.step.size(); ++i) {
-    if (u.at_bound[i]) continue;
-    const FreeParameter& p = problem.parameters()[i];
-    u.lower[i] = std::max(p.lower, u.lower[i] + std::min(0.0, u.step[i]));
-    u.upper[i] = std::min(p.upper, u.upper[i] + std::max(0.0, u.step[i]));
-  }
+void ReachOver(const Problem& problem, const Vector& quarter, Uncertainty& u) {
+  u.step = kWholeStep * quarter;
+  Reach(problem, u.step.cwiseMin(0), u.step.cwiseMax(0), u);
 }
 
 void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
@@ -388,8 +393,17 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
     if (!J[l].size()) continue;
     pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
   }
-  ReachOver(problem,
-            4.0 / 3 * (u.information.completeOrthogonalDecomposition().pseudoInverse() * pull), u);
+  ReachOver(problem, u.information.completeOrthogonalDecomposition().pseudoInverse() * pull, u);
+}
+
+void ReachFurther(const Problem& problem, const Vector& x, const std::vector<Matrix>& J,
+                  const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
+  std::vector<Vector> effect(step.size());
+  for (std::size_t l = 0; l < step.size(); ++l) {
+    if (step[l].size()) effect[l] = kWholeStep * step[l].col(0);
+  }
+  const Uncertainty by = UncertaintyOf(problem, x, effect, J, whitening);
+  Reach(problem, by.lower - x, by.upper - x, u);
 }
 
 }  // namespace continuum

@@ -76,15 +76,26 @@ Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
                           const std::vector<Problem::Vector>& r,
                           const std::vector<Problem::Matrix>& J, const Whitening& whitening = {});
 
-/// The robot has no time step, a simulation has. Intervals reach over x + step too, what the same
-/// fit gives at a fine one, which is kept.
-void ReachOver(const Problem& problem, const Problem::Vector& step, Uncertainty& u);
+/// Whole effect of a step, of order h, over what a quarter of it shows.
+inline constexpr double kWholeStep = 4.0 / 3;
+
+/// The robot has no time step, a simulation has. Intervals reach over what the same fit gives at a
+/// fine one too, x + step, which is kept. quarter: what a quarter of the step h changes of x:
+///
+///   step = 4/3 quarter
+void ReachOver(const Problem& problem, const Problem::Vector& quarter, Uncertainty& u);
 /// The same to first order. With s, what the step h adds to the residuals (the first column of
 /// Problem::StepEffects, h against h/4):
 ///
-///   step = 4/3 H⁻¹ Jᵀ s      (an error of order h: h/4 leaves a quarter of it)
+///   quarter = H⁻¹ Jᵀ s
 void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
                   const std::vector<Problem::Matrix>& step, const Whitening& whitening,
                   Uncertainty& u);
+/// Where first order did not foretell that (machines stick and slip, and the cost has many
+/// valleys), s says how large the step's effect is, not where it pulls: intervals reach further to
+/// both sides, by those of UncertaintyOf with 4/3 s for residuals.
+void ReachFurther(const Problem& problem, const Problem::Vector& x,
+                  const std::vector<Problem::Matrix>& J, const std::vector<Problem::Matrix>& step,
+                  const Whitening& whitening, Uncertainty& u);
 
 }  // namespace continuum

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "identification/ahead.h"
 #include "sim/file.h"
 #include "sim/json.h"
 #include "sim/replay.h"
@@ -91,12 +92,6 @@ std::vector<Replayed> Predicted(const Problem& problem, const Problem::Vector& x
   return logs;
 }
 
-std::string StartsInWords(const FitRecord& record) {
-  if (!record.starts) return "";
-  return fmt::format(" {} of {} starts end within 0.1 % of the best cost.",
-                     record.starts->Reached(), record.starts->starts.size());
-}
-
 // In the order in which they were tried; a start that diverges has no cost (null).
 nlohmann::json StartsJson(const Problem& problem, const MultiStart& all) {
   auto json = nlohmann::json::array();
@@ -128,6 +123,36 @@ nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x) {
   return {{"timestep", problem.system().model().opt.timestep},
           {"parameters", parameters},
           {"error", ErrorsJson(problem.experiment(), Predicted(stepped, x))}};
+}
+
+constexpr std::size_t kAhead = 10;  // rows
+
+nlohmann::json AheadJson(const Experiment& e, const Ahead& ahead) {
+  nlohmann::json json{{"rows", ahead.rows}, {"seconds", ahead.seconds}};
+  for (const auto& [use, errors] :
+       {std::pair{"train", &ahead.train}, {"validate", &ahead.validate}}) {
+    for (std::size_t c = 0; c < errors->size(); ++c) {
+      if (!std::isnan((*errors)[c]))
+        json[use][e.channels[c].name] = (*errors)[c] / e.channels[c].factor;
+    }
+  }
+  return json;
+}
+
+// Beside the errors of free simulation.
+void AddAhead(Page& page, const Experiment& e, const Ahead& ahead) {
+  std::vector<std::vector<std::string>> rows;
+  const auto shown = [&](double error, std::size_t c) {
+    return std::isnan(error) ? "" : fmt::format("{:.4g}", error / e.channels[c].factor);
+  };
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    rows.push_back({e.channels[c].name, e.channels[c].unit, shown(ahead.train[c], c),
+                    shown(ahead.validate[c], c)});
+  }
+  page.Table({"channel", "unit", "RMSE on train", "on validate"}, rows,
+             {fmt::format("{} rows ({:.3g} s) ahead, from states as measured; beside them stand "
+                          "the errors of free simulation above.",
+                          ahead.rows, ahead.seconds)});
 }
 
 }  // namespace
@@ -192,8 +217,8 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
              rows, {note + "."});
 }
 
-std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
-                               const std::filesystem::path& folder, const FitRecord& record) {
+Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
+                    const FitRecord& record) {
   const Experiment& e = problem.experiment();
   MakeFolder(folder);
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
@@ -230,6 +255,8 @@ std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
     json["force_error"] = {
         {"unit", "%"}, {"train", inverse->train}, {"validate", inverse->validate}};
   if (problem.path() == Path::kSmooth) json["at_step"] = AtStep(problem, x);
+  const auto ahead = PredictAhead(problem, fit.x, kAhead);
+  if (ahead) json["ahead"] = AheadJson(e, *ahead);
   if (record.starts) json["starts"] = StartsJson(problem, *record.starts);
   WriteFile(folder / "fit.json", json.dump(2) + "\n");
   WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(x), {}, folder));
@@ -242,7 +269,7 @@ std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
   page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, title,
              fmt::format("{} iterations, {} simulations, {:.1f} s. {}", fit.iterations,
                          fit.evaluations, fit.seconds, fit.message) +
-                 StartsInWords(record));
+                 (record.starts ? " " + record.starts->InWords() + "." : ""));
   page.Heading("Parameters");
   AddParameterTable(page, problem, fit.x, u);
   for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);
@@ -266,12 +293,13 @@ std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
     }
   }
   page.Table({"log", "use", "channel", "unit", "RMSE", "mean abs.", "NRMSE", "fit %"}, rows);
+  if (ahead) AddAhead(page, e, *ahead);
   page.Heading("Logs");
   for (std::size_t l = 0; l < logs.size(); ++l) {
     AddOverlay(page, e, e.logs[l], {{"fitted", Style::kAfter, &traces[l]}}, true);
   }
   page.Write(folder / "report.html");
-  return trade_offs;
+  return {u, trade_offs};
 }
 
 }  // namespace continuum

@@ -20,10 +20,16 @@ struct FitRecord {
   const MultiStart* starts = nullptr;      ///< where there were several
 };
 
+/// How well the logs determine the parameters.
+struct Determined {
+  Uncertainty uncertainty;
+  std::vector<TradeOff> trade_offs;  ///< what they do not determine alone
+};
+
 /// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder. Returns
-/// what the logs do not determine alone, which stands in them too.
-std::vector<TradeOff> WriteFit(const Problem& problem, const Fit& fit,
-                               const std::filesystem::path& folder, const FitRecord& record = {});
+/// what they say of the parameters.
+Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
+                    const FitRecord& record = {});
 
 /// The values that a fit.json has for the parameters of a problem, within their bounds. Throws
 /// Error when it is none or lacks one.

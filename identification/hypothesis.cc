@@ -157,6 +157,10 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
       if (!literal) added.config.emplace_back(p.name, "0");
       continue;
     }
+    if (!std::isnan(p.held)) {
+      added.config.emplace_back(p.name, Decimal(p.held));
+      continue;
+    }
     Parameter free = FreeOne(p, place, sizes, "plugin:" + added.name, std::string(p.name),
                              Change::Operation::kSet);
     added.config.emplace_back(p.name, Decimal(free.initial));
@@ -422,6 +426,44 @@ std::vector<Parameter> Hypothesis::Free() const {
   return all;
 }
 
+namespace {
+
+// The conditions of an experiment, all of which it can be trained on.
+std::set<std::string> Conditions(const Experiment& e, const std::string& candidate) {
+  const std::string where = fmt::format("{}: candidates: {}: per", e.file.string(), candidate);
+  std::set<std::string> all, trained;
+  for (const Log& log : e.logs) {
+    if (log.condition.empty()) continue;
+    all.insert(log.condition);
+    if (log.train) trained.insert(log.condition);
+  }
+  if (all.size() < 2)
+    throw Error::Input(where, "logs of two conditions or more", std::to_string(all.size()));
+  for (const std::string& name : all) {
+    if (!trained.contains(name))
+      throw Error::Input(where, "a train log of every condition", "none of '" + name + "'");
+  }
+  return all;
+}
+
+// The same effect with values of its own under each condition.
+void Multiply(Hypothesis& h, const std::set<std::string>& conditions) {
+  std::vector<Parameter> extra;
+  std::vector<double> null;
+  for (std::size_t i = 0; i < h.extra.size(); ++i) {
+    for (const std::string& name : conditions) {
+      extra.push_back(h.extra[i]);
+      extra.back().name += "[" + name + "]";
+      extra.back().condition = name;
+      null.push_back(h.null[i]);
+    }
+  }
+  h.extra = std::move(extra), h.null = std::move(null);
+  h.where += ", per condition";
+}
+
+}  // namespace
+
 std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
                                        const std::vector<Parameter>& given) {
@@ -434,7 +476,14 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system
     for (const Candidate& c : e.candidates) {
       if (std::find(seen.begin(), seen.end(), c) != seen.end()) continue;
       seen.push_back(c);
-      AddEffect(EffectNamed(c.effect), c, e, system, sizes, all, skipped);
+      const EffectInfo& effect = EffectNamed(c.effect);
+      if (c.per_condition && effect.kind == EffectInfo::Kind::kMeasure)
+        throw Error::Input(fmt::format("{}: candidates: {}: per", e.file.string(), c.Name()),
+                           "an effect of the model", "one of the measurement");
+      const std::size_t first = all.size();
+      AddEffect(effect, c, e, system, sizes, all, skipped);
+      for (std::size_t i = first; c.per_condition && i < all.size(); ++i)
+        Multiply(all[i], Conditions(e, c.Name()));
     }
   }
   for (Hypothesis& h : all) h.starts = StartsOf(h), h.given = given;

@@ -39,6 +39,10 @@ std::size_t MultiStart::Reached(double share) const {
   }));
 }
 
+std::string MultiStart::InWords() const {
+  return fmt::format("{} of {} starts end within 0.1 % of the best cost", Reached(), starts.size());
+}
+
 MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
                        const std::vector<bool>& use, int starts, std::uint64_t seed,
                        const FitOptions& options) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "identification/fit.h"
@@ -22,6 +23,8 @@ struct MultiStart {
 
   /// How many ended within a share of the best cost.
   std::size_t Reached(double share = 1e-3) const;
+  /// "3 of 5 starts end within 0.1 % of the best cost"
+  std::string InWords() const;
 };
 /// Repeats exactly for a seed. Throws Error as FitParameters, and when every start diverges.
 MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,

@@ -13,13 +13,13 @@ std::string ObstacleOf(const Problem& problem, const Problem::Vector& x, std::si
   return Flow::Obstacle(*machine.model, *machine.data);
 }
 
-// Whether a contact or a limit acts on the way.
+// Whether a contact or a limit acts on the way; of the rows the first d.ne are equalities.
 std::string Touches(const Problem& problem, std::size_t log) {
   Machine machine = problem.system().Build(problem.ChangesFor(problem.Start(), log));
   double when = -1;
   Hooks hooks;
   hooks.step = [&](const mjModel&, const mjData& d) {
-    if (d.nefc > 0 && when < 0) when = d.time;
+    if (d.nefc > d.ne && when < 0) when = d.time;
   };
   const Log& logged = problem.experiment().logs[log];
   Simulate(machine, problem.experiment(), logged, {}, hooks);

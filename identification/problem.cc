@@ -138,7 +138,8 @@ void Problem::Expand(const Parameter& p) {
   }
   free.scale = TypicalSize(free.initial, free.lower, free.upper);
   if (p.per == Parameter::Per::kAll) {
-    free.log.assign(logs.size(), true);
+    for (const Log& log : logs)
+      free.log.push_back(p.condition.empty() || p.condition == log.condition);
     parameters_.push_back(free);
     return;
   }

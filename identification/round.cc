@@ -158,9 +158,38 @@ void Round::Fit() {
       c.error = error.what();
     }
   }
+  SecondChances();
   CompleteTheBest();
   Dismiss();
   TellApart();
+}
+
+// Where no fit comes near the noise and what the time step adds, those that were given up as too
+// far behind go on to their end, the likeliest first: what a fit gains early says little where a
+// swing is out of phase with the measured one. Until one comes near.
+void Round::SecondChances() {
+  constexpr std::size_t kMost = 6;
+  constexpr double kWorth = 0.1;                // of what the best explains to first order
+  constexpr double kNoise = 1.1, kStep = 1.25;  // of their errors: more is plainly another cause
+  if (!noise_.known()) return;
+  double best = std::numeric_limits<double>::infinity();
+  for (const CandidateResult& c : candidates) {
+    if (c.fits) best = std::min(best, c.fitted.error.train);
+  }
+  const double near = std::hypot(kNoise * noise_.rms, kStep * noise_.step);
+  std::size_t tried = 0;
+  for (CandidateResult& c : candidates) {
+    if (best < near || tried == kMost || c.explained < kWorth * MostExplained()) return;
+    if (!c.fits || c.fitted.fit.converged) continue;
+    options_.Say("fit to the end " + c.hypothesis.Name());
+    ++tried;
+    try {
+      FitOne(c, std::numeric_limits<double>::infinity());
+      best = std::min(best, c.fitted.error.train);
+    } catch (const Error&) {
+      continue;  // the fit that was given up stands
+    }
+  }
 }
 
 // From the start that is best after a few iterations, of the screen or of the hypothesis.
@@ -174,6 +203,23 @@ void Round::FitOne(CandidateResult& c, double rival) const {
   }
   c.fitted = trials_.Fit(problem, BestOf(problem, starts), rival);
   c.fits = true;
+  GoOn(problem, c, rival);
+}
+
+// A fit that is out of iterations while every one of them still gains goes on, as along a valley
+// in which a stiffness of the model makes room for one of the candidate.
+void Round::GoOn(const Problem& problem, CandidateResult& c, double rival) const {
+  constexpr int kTimes = 3;
+  constexpr double kGain = 0.5;  // of half the whitened squares, by the last iteration
+  for (int i = 0; i < kTimes; ++i) {
+    const continuum::Fit& f = c.fitted.fit;
+    const std::size_t n = f.trace.size();
+    const bool gains = n > 1 && f.trace[n - 2] - f.trace[n - 1] > kGain;
+    if (!trials_.whitening.active() || f.iterations < trials_.iterations || !gains) return;
+    Fitted next = trials_.Fit(problem, f.x, rival);
+    if (!(next.fit.cost < f.cost)) return;
+    c.fitted = std::move(next);
+  }
 }
 
 CandidateResult Round::FitAlone(CandidateResult c) const {

@@ -57,6 +57,8 @@ class Round {
   double HowMuchIsNeeded() const;
   double Likelihood(const Fitted& fitted) const;
   void FitOne(CandidateResult& c, double rival) const;
+  void GoOn(const Problem& problem, CandidateResult& c, double rival) const;
+  void SecondChances();
   std::vector<Problem::Vector> StartsAsGood(const CandidateResult& c, std::size_t best,
                                             const Remainder& left) const;
   Problem::Vector BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;

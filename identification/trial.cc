@@ -168,6 +168,12 @@ Matrix ChannelColumns(const Problem& problem, const Trace& trace, const Log& log
   return columns;
 }
 
+// Whether first order said, to half of it, what a quarter of the step changes.
+bool Foretold(const Uncertainty& u, const Vector& moved) {
+  const Vector told = u.step / kWholeStep, wrong = moved - told;
+  return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
+}
+
 }  // namespace
 
 Vector Append(const Vector& known, const std::vector<double>& own) {
@@ -227,14 +233,16 @@ void Trials::FitFinely(const Problem& problem, Fitted& f) const {
   fine.StepBy(problem.system().model().opt.timestep / 4);
   FitOptions options = Options();
   options.iterations = 5;
-  Vector x;
+  Vector moved;
   try {
-    x = FitParameters(fine, f.fit.x, TrainLogs(*experiment), options).x;
+    moved = FitParameters(fine, f.fit.x, TrainLogs(*experiment), options).x - f.fit.x;
   } catch (const Error&) {
     return;  // it diverges at the finer step: first order has to do
   }
+  const bool foretold = Foretold(u, moved);
   f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, f.jacobian, whitening);
-  ReachOver(problem, 4.0 / 3 * (x - f.fit.x), f.uncertainty);
+  ReachOver(problem, moved, f.uncertainty);
+  if (!foretold) ReachFurther(problem, f.fit.x, f.jacobian, f.step, whitening, f.uncertainty);
 }
 
 Fitted Trials::FitAll(const Problem& problem, const Vector& start) const {

@@ -22,6 +22,12 @@ std::vector<double> Gains(const FoldRecord& record) {
   return gains;
 }
 
+double Beaten(const FoldRecord& candidate, const std::vector<double>& placebo_gains) {
+  const double own = Median(Gains(candidate));
+  return static_cast<double>(std::count_if(placebo_gains.begin(), placebo_gains.end(),
+                                           [own](double placebo) { return placebo < own; }));
+}
+
 std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules) {
   std::vector<std::string> failures;
   const auto gains = Gains(record);
@@ -45,9 +51,7 @@ std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules) 
     break;
   }
   if (!record.placebo_gains.empty()) {
-    const double beaten =
-        static_cast<double>(std::count_if(record.placebo_gains.begin(), record.placebo_gains.end(),
-                                          [&](double g) { return g < Median(gains); }));
+    const double beaten = Beaten(record, record.placebo_gains);
     const double all = static_cast<double>(record.placebo_gains.size());
     if (beaten < rules.placebo_share * all) {
       failures.push_back(

@@ -31,6 +31,9 @@ struct Rules {
 std::vector<double> Gains(const FoldRecord& record);
 double Median(std::vector<double> values);
 
+/// How many placebos a candidate beats.
+double Beaten(const FoldRecord& candidate, const std::vector<double>& placebo_gains);
+
 /// Which rules a candidate fails, in words; empty when it may be named.
 std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules = {});
 

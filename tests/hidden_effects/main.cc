@@ -92,6 +92,8 @@ nlohmann::json ToJson(const Case& c, const Answer& a) {
           {"low", a.low},
           {"high", a.high},
           {"explained", a.explained},
+          {"p", a.p},
+          {"lack", a.lack},
           {"next", a.next},
           {"seconds", a.seconds}};
 }

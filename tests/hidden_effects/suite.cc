@@ -113,6 +113,9 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
   a.seconds = d.seconds;
   a.explained = GainOf(d, d.after()).explainable;
   a.next = Separation(d);
+  for (const CandidateResult& one : d.candidates) a.p = std::min(a.p, one.p);
+  for (const Dismissed& one : d.dismissed) a.p = std::min(a.p, one.p);
+  a.lack = d.lack.smallest();
   Told told;
   told.after = d.after();
   a.detail = Summary(e, d, told);

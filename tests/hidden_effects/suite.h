@@ -30,6 +30,8 @@ struct Answer {
   std::vector<std::string> partner = {};           ///< of a second cause beside those
   double truth = 0, value = 0, low = 0, high = 0;  ///< of the first effect, when it is in named
   double explained = 0;  ///< explainable error removed on the validate logs
+  double p = 1;          ///< family-wise, of the best candidate to first order
+  double lack = 1;       ///< p-value of what the model that is left standing leaves
   double next = 0;       ///< likelihood between the two best
   double seconds = 0;
   std::string detail;  ///< the summary

@@ -226,6 +226,57 @@ TEST_F(DiagnosisTest, APlaceThatIsNotThereIsAnError) {
   EXPECT_THROW(Ask(e), Error);
 }
 
+// Two conditions, of which each has a load of its own, trained on two trials and held out on one.
+class PerCondition : public DiagnosisTest {
+ protected:
+  void AddConditions() {
+    for (const auto& [name, payload] : {std::pair{"empty", 0.02}, {"loaded", 0.08}}) {
+      Pendulum truth;
+      truth.payload = payload;
+      for (int t = 0; t < 3; ++t) {
+        const auto u = Command(t, kRows);
+        const auto q = truth.Run(u, testing::kPeriod);
+        const std::string log = name + std::to_string(t);
+        for (int replicate = 0; replicate < 2; ++replicate) {
+          AddLog(
+              log + "_" + std::to_string(replicate),
+              "trial: " + log + ", use: " + (t < 2 ? "train" : "validate") + ", condition: " + name,
+              u, Noisy(q, kNoise, 0, static_cast<unsigned>(10 * t + replicate)));
+        }
+      }
+    }
+  }
+};
+
+TEST_F(PerCondition, EachGetsItsOwnValue) {
+  AddConditions();
+  const Experiment e = ReadWith("payload, {effect: payload, per: condition}, input_gain");
+  const Diagnosis d = Ask(e);
+  ASSERT_EQ(d.verdict.text, "named") << Told(d);
+  const CandidateResult& c = *d.chosen();
+  EXPECT_THAT(c.hypothesis.where, HasSubstr("per condition"));
+  ASSERT_THAT(c.hypothesis.extra, SizeIs(2));
+  EXPECT_EQ(c.hypothesis.extra[1].name, "mass[loaded]");
+  EXPECT_NEAR(c.fitted.fit.x[c.own()], 0.02, 0.002);
+  EXPECT_NEAR(c.fitted.fit.x[c.own() + 1], 0.08, 0.002);
+  const auto told = WriteDiagnosis(e, d, folder_ / "out");  // by extended.yaml
+  EXPECT_NEAR(told.after.validate, d.after().validate, 0.02 * d.after().validate);
+}
+
+TEST_F(PerCondition, AreNeededAndAreOfTheModel) {
+  AddTrials(Pendulum());
+  const auto wrong = [&](const std::string& effect) {
+    try {
+      Ask(ReadWith("{effect: " + effect + ", per: condition}"));
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(wrong("payload"), HasSubstr("logs of two conditions or more"));
+  EXPECT_THAT(wrong("sensor_bias"), HasSubstr("an effect of the model"));
+}
+
 TEST_F(DiagnosisTest, WritesFilesThatReproduceTheNamedModel) {
   Pendulum truth;
   truth.payload = 0.05;

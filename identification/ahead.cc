@@ -1,0 +1,75 @@
+#include "identification/ahead.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/score.h"
+
+namespace continuum {
+namespace {
+
+constexpr std::size_t kMost = 100;  // starts in a log
+
+Log Piece(const Log& log, std::size_t first, std::size_t last) {
+  Log piece = log;
+  const auto cut = [&](auto& column) {
+    using Column = std::remove_reference_t<decltype(column)>;
+    if (!column.empty()) column = Column(column.begin() + first, column.begin() + last + 1);
+  };
+  cut(piece.time);
+  for (auto* const columns : {&piece.input, &piece.measured}) {
+    for (auto& column : *columns) cut(column);
+  }
+  for (auto& column : piece.enable) cut(column);
+  return piece;
+}
+
+struct Sum {
+  double squares = 0;
+  std::size_t count = 0;
+
+  void Add(double error) {
+    if (!std::isnan(error)) squares += error * error, ++count;
+  }
+  double Root() const {
+    return count > 0 ? std::sqrt(squares / static_cast<double>(count))
+                     : std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+}  // namespace
+
+std::optional<Ahead> PredictAhead(const Problem& problem, const Problem::Vector& x,
+                                  std::size_t rows) {
+  const Experiment& e = problem.experiment();
+  if (e.quasi_static) return {};  // its rows know no time
+  std::vector<Sum> sums[2] = {std::vector<Sum>(e.channels.size()),
+                              std::vector<Sum>(e.channels.size())};
+  std::vector<double> seconds;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    const Log& log = e.logs[l];
+    const Experiment measured = problem.MeasuredBy(x, l);
+    const auto changes = problem.ChangesFor(x, l);
+    const std::size_t stride = std::max(rows, log.rows() / kMost);
+    for (std::size_t first = 0; first + rows < log.rows(); first += stride) {
+      const auto state = StateAt(problem.system().model(), measured, log, first);
+      if (!state) continue;
+      Machine machine = problem.system().Build(changes);
+      const Log piece = Piece(log, first, first + rows);
+      const Trace trace = Simulate(machine, measured, piece, *state);
+      const auto residuals = Residuals(measured, piece, trace);
+      for (std::size_t c = 0; c < residuals.size(); ++c)
+        sums[log.train ? 0 : 1][c].Add(residuals[c].back());
+      seconds.push_back(piece.time.back() - piece.time.front());
+    }
+  }
+  if (seconds.empty()) return {};
+  std::nth_element(seconds.begin(), seconds.begin() + seconds.size() / 2, seconds.end());
+  Ahead ahead{rows, seconds[seconds.size() / 2], {}, {}};
+  for (const Sum& sum : sums[0]) ahead.train.push_back(sum.Root());
+  for (const Sum& sum : sums[1]) ahead.validate.push_back(sum.Root());
+  return ahead;
+}
+
+}  // namespace continuum

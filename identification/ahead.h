@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "identification/problem.h"
+
+namespace continuum {
+
+/// How well a model goes on with a measured motion: it starts anew at every rows-th row (in long
+/// logs at a hundred rows), from the state measured there (StateAt), and is compared with the
+/// measurement so many rows later. What the state does not tell begins as at the start of a log:
+/// lags settled under the inputs, friction and hysteresis without memory.
+struct Ahead {
+  std::size_t rows;
+  double seconds;                       ///< so long, in the median
+  std::vector<double> train, validate;  ///< [channel] root mean square error [SI]; NaN: none
+};
+
+/// None where the outputs do not give the state, or no log is as long.
+std::optional<Ahead> PredictAhead(const Problem& problem, const Problem::Vector& x,
+                                  std::size_t rows);
+
+}  // namespace continuum
