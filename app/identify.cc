@@ -92,6 +92,9 @@ Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& sta
     if (problem.path() == Path::kSmooth && o.for_step && !StopRequested())
       all.for_step = ForStep(problem, all.fit, use, options);
   }
+  auto unseen = use;
+  unseen.flip();
+  all.fit.x = FitStarts(problem, all.fit.x, unseen);
   return all;
 }
 
@@ -119,7 +122,7 @@ void Print(const Problem& problem, const Fitting& all, const Uncertainty& u,
       scores.push_back(std::move(s));
   }
   for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
-    PrintParameter(problem.parameters()[i], fit.x[i], u, i);
+    if (!problem.parameters()[i].IsStart()) PrintParameter(problem.parameters()[i], fit.x[i], u, i);
   }
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
   const std::string unit = Pool(e).unit();

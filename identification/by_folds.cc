@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "identification/placebo.h"
+#include "identification/round.h"
 
 namespace continuum {
 namespace {
@@ -21,6 +22,7 @@ class Comparison {
     options_.Say("folds");
     trials_.AddFolds(Problem(e_, d_.system), d_.folds, d_.before);
     for (CandidateResult& c : d_.candidates) {
+      if (c.fitted.error.train > (1 - Rules{}.fit_gain) * d_.before.error.train) continue;
       options_.Say("folds of " + c.hypothesis.Name());
       RecordFolds(trials_, d_, c);
     }
@@ -100,6 +102,11 @@ class Comparison {
     for (CandidateResult& c : d_.candidates) {
       c.failures = Failures(c.record);
       if (Known()) c.record.remaining = c.fitted.error.train / Floor();
+      c.record.contains.clear();
+      for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
+        const CandidateResult& other = d_.candidates[i];
+        if (&other != &c && Contains(trials_, c, other)) c.record.contains.push_back(i);
+      }
       records.push_back(c.record);
     }
     FoldRecord ceiling;

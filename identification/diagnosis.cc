@@ -38,9 +38,9 @@ class Session {
     d_.sizes = SizesOf(null_, d_.before.fit.x);
     d_.noise.step = trials_.StepEffect(null_, d_.before);
     Round round(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_);
+    round.Screen();
+    round.Fit();
     if (d_.noise.known()) {
-      round.Screen();
-      round.Fit();
       Judge(round);
       auto pair = MayBeTwo(round) ? FindPair(trials_, round, excused_, d_.noise, d_.sizes, options_)
                                   : std::nullopt;
@@ -51,7 +51,6 @@ class Session {
         Take(round);
       }
     } else {
-      round.Fit();
       Take(round);
     }
     if (d_.noise_limited) {

@@ -62,7 +62,7 @@ double FoldsWon(const Diagnosis& d, const CandidateResult& c) {
   std::size_t won = 0;
   for (std::size_t f = 0; f < c.record.after.size(); ++f) {
     won += std::all_of(d.candidates.begin(), d.candidates.end(), [&](const CandidateResult& other) {
-      return other.record.after[f] >= c.record.after[f];
+      return other.record.after.empty() || other.record.after[f] >= c.record.after[f];
     });
   }
   return static_cast<double>(won) /

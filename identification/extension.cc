@@ -32,7 +32,7 @@ std::string SettingsYaml(const Problem& problem, const Problem::Vector& x, std::
   for (const Change& c : problem.experiment().logs[log].set) read(c);
   for (const FreeParameter& p : problem.parameters()) {
     const bool common = std::find(p.log.begin(), p.log.end(), false) == p.log.end();
-    if (!common && p.log[log]) read(p.change);
+    if (!common && p.log[log] && !p.IsStart()) read(p.change);
   }
   if (settings.empty()) return "";
   std::string text = ",\n     set: {";
@@ -46,6 +46,23 @@ std::string SettingsYaml(const Problem& problem, const Problem::Vector& x, std::
     text += "}";
   }
   return text + "}";
+}
+
+// Where the trial begins, where that is known or was fitted.
+std::string StartYaml(const Problem& problem, const Problem::Vector& x, std::size_t log) {
+  auto start = problem.experiment().logs[log].start;
+  for (std::size_t i = 0; i < problem.parameters().size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    if (!p.IsStart() || !p.log[log]) continue;
+    start[p.change.target.substr(6)][p.change.attribute == "speed"] =
+        x[static_cast<Eigen::Index>(i)];
+  }
+  std::string text;
+  for (const auto& [joint, state] : start) {
+    text += fmt::format("{}{}: [{}, {}]", text.empty() ? "" : ", ", Quoted(joint),
+                        Decimal(state[0]), Decimal(state[1]));
+  }
+  return text.empty() ? "" : ",\n     start: {" + text + "}";
 }
 
 std::string MeasurementYaml(const Measurement& m) {
@@ -119,7 +136,7 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
       y += fmt::format(", window: [{}, {}]", Decimal(log.window[0]), Decimal(log.window[1]));
     }
     if (!log.condition.empty()) y += ", condition: " + Quoted(log.condition);
-    y += SettingsYaml(problem, x, l) + "}\n";
+    y += SettingsYaml(problem, x, l) + StartYaml(problem, x, l) + "}\n";
   }
   y += fmt::format("time: {{column: {}, unit: {}, skew: {}}}\n", Quoted(e.time_column),
                    Quoted(e.time_unit), Decimal(measured.skew));
@@ -141,7 +158,7 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
   for (std::size_t i = 0; i < problem.parameters().size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
     const bool common = std::find(p.log.begin(), p.log.end(), false) == p.log.end();
-    if (common && !p.change.target.empty())
+    if (common && !p.change.target.empty() && !p.IsStart())
       parameters += ParameterYaml(problem, p, x[static_cast<Eigen::Index>(i)], names);
   }
   if (!parameters.empty()) y += "parameters:\n" + parameters;

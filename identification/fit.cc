@@ -140,7 +140,7 @@ void RequireEffect(const Problem& problem, const Vector& x, const std::vector<Ma
     for (const Matrix& part : J) {
       if (part.size()) norm += part.col(i).squaredNorm();
     }
-    if (norm * p.scale * p.scale > 0) continue;
+    if (norm * p.scale * p.scale > 0 || p.IsStart()) continue;  // of a log that is not in use
     throw Error::Input(
         "parameter '" + p.name + "' (" + p.change.target + ", " + p.change.attribute + ")",
         "an effect on some output at its start " + fmt::format("{:g}", x[i]), "none");
@@ -313,6 +313,12 @@ Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector
     if (!lower) break;
   }
   return best;
+}
+
+Vector FitStarts(const Problem& problem, const Vector& x, const std::vector<bool>& use) {
+  if (problem.experiment().start != Experiment::Start::kEstimate) return x;
+  const auto r = problem.Residuals(x, use);
+  return RefitByChords(problem, x, r, problem.StartJacobian(x, r, use), use);
 }
 
 Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,

@@ -50,6 +50,11 @@ Problem::Vector RefitByChords(const Problem& problem, const Problem::Vector& x,
                               std::vector<Problem::Vector> r, const std::vector<Problem::Matrix>& J,
                               const std::vector<bool>& use, int iterations = 3);
 
+/// Where the trials of the logs in use begin (identification/starts.h), each fitted to its own log
+/// while all else stays: a log that no fit has seen begins somewhere too. Returns x with them.
+Problem::Vector FitStarts(const Problem& problem, const Problem::Vector& x,
+                          const std::vector<bool>& use);
+
 /// Standard errors and correlations of a fit, allowing for residuals that are correlated in time:
 ///
 ///   Cov = H⁻¹ S H⁻¹,   H = Σ JᵀJ,   S = Σ_logs Σ_lags w(lag) Σ_t s_t s_{t+lag}ᵀ,   s_t = Jᵀ_t r_t

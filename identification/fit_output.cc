@@ -72,11 +72,14 @@ void AddResidualAgainstInput(Page& page, const Problem& problem,
 
 HeatMapSpec CorrelationMap(const Problem& problem, const Uncertainty& u) {
   HeatMapSpec spec{"Correlation of the parameters", {}, {}, {}};
-  for (const FreeParameter& p : problem.parameters()) spec.rows.push_back(p.name);
-  for (Eigen::Index a = 0; a < u.correlation.rows(); ++a) {
+  std::vector<Eigen::Index> shown;
+  for (Eigen::Index i = 0; i < u.correlation.rows(); ++i) {
+    if (!problem.parameters()[i].IsStart()) shown.push_back(i);
+  }
+  for (const Eigen::Index a : shown) {
+    spec.rows.push_back(problem.parameters()[a].name);
     spec.values.emplace_back();
-    for (Eigen::Index b = 0; b < u.correlation.cols(); ++b)
-      spec.values.back().push_back(u.correlation(a, b));
+    for (const Eigen::Index b : shown) spec.values.back().push_back(u.correlation(a, b));
   }
   return spec;
 }
@@ -202,6 +205,7 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
   std::vector<std::vector<std::string>> rows;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
+    if (p.IsStart()) continue;
     const bool known = std::isfinite(u.standard_error[i]);
     rows.push_back(
         {p.name, fmt::format("{:.5g}", x[i]), p.unit,

@@ -31,7 +31,8 @@ FoldScores CrossValidate(const Problem& problem, const Problem::Vector& x,
   for (const Fold& fold : folds) {
     std::vector<bool> kept = fold.left_out;
     kept.flip();
-    scores.x.push_back(RefitByChords(problem, x, r, J, kept));
+    const auto refitted = RefitByChords(problem, x, r, J, kept);
+    scores.x.push_back(FitStarts(problem, refitted, fold.left_out));
     const auto there = problem.Residuals(scores.x.back(), fold.left_out);
     scores.error.push_back(problem.PooledRms(there, fold.left_out));
   }

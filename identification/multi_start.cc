@@ -27,7 +27,10 @@ double Drawn(const FreeParameter& p, double share) {
 
 Problem::Vector RandomStart(const Problem& problem, std::mt19937_64& rng) {
   Problem::Vector x = problem.Start();
-  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = Drawn(problem.parameters()[i], Uniform(rng));
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    if (!p.IsStart()) x[i] = Drawn(p, Uniform(rng));
+  }
   return problem.Clamp(x);
 }
 

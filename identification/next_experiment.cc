@@ -133,16 +133,19 @@ class Proposal {
   double Separation(const Log& log, const CandidateResult& truth,
                     const CandidateResult& rival) const {
     Experiment e = e_;
+    if (e.start == Experiment::Start::kEstimate) e.start = Experiment::Start::kRest;
     e.logs = {log};
     e.logs[0].train = true;
+    e.logs[0].start.clear();
     e.logs[0].measured = Moves(e, truth);
+    const Problem::Vector x = ValuesOf(rival);
     const Problem problem = ProblemOf(e, rival);
     const auto all = problem.AllLogs();
-    const auto r = problem.Residuals(rival.fitted.fit.x, all);
+    const auto r = problem.Residuals(x, all);
     if (!r[0].allFinite()) throw Error::Job("diverged");
-    const auto J = problem.Jacobian(rival.fitted.fit.x, r, all);
+    const auto J = problem.Jacobian(x, r, all);
     const Whitening whitening = d_.noise.known() ? Whitening(problem, d_.noise) : Whitening();
-    const std::vector<bool> free(static_cast<std::size_t>(rival.fitted.fit.x.size()), false);
+    const std::vector<bool> free(static_cast<std::size_t>(x.size()), false);
     const Remainder left(whitening, all, r, J, free, {Problem::Matrix(r[0].size(), 0)});
     if (d_.noise.known()) return left.cost();
     // In pooled units, which are those of the experiment's error.
@@ -150,14 +153,19 @@ class Proposal {
   }
 
   std::vector<Signal> Moves(const Experiment& e, const CandidateResult& c) const {
-    Trace trace = ProblemOf(e, c).Predict(c.fitted.fit.x, 0);
+    Trace trace = ProblemOf(e, c).Predict(ValuesOf(c), 0);
     if (trace.diverged) throw Error::Job("diverged");
     return std::move(trace.channel);
   }
 
-  static Problem ProblemOf(const Experiment& e, const CandidateResult& c) {
+  // A new log begins at rest.
+  Problem::Vector ValuesOf(const CandidateResult& c) const {
+    return c.ProblemOf(e_).WithoutStarts(c.fitted.fit.x);
+  }
+
+  Problem ProblemOf(const Experiment& e, const CandidateResult& c) const {
     Problem problem = c.ProblemOf(e);
-    if (problem.Start().size() != c.fitted.fit.x.size())
+    if (problem.Start().size() != ValuesOf(c).size())
       throw Error::Job("parameters of single logs say nothing about a new one");
     return problem;
   }

@@ -31,6 +31,7 @@ std::string Touches(const Problem& problem, std::size_t log) {
 std::string SmoothObstacle(const Problem& problem) {
   const Experiment& e = problem.experiment();
   if (e.quasi_static) return "the logs are quasi-static";
+  if (e.start == Experiment::Start::kEstimate) return "where the trials begin is a parameter";
   Problem::Vector beside = problem.Start();
   for (Eigen::Index k = 0; k < beside.size(); ++k) {
     if (problem.parameters()[k].change.attribute == "skew") return "the clock is a parameter";

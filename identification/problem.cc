@@ -12,6 +12,7 @@
 #include "error.h"
 #include "identification/parallel.h"
 #include "identification/smooth.h"
+#include "identification/starts.h"
 #include "identification/unit.h"
 #include "sim/measurement.h"
 #include "sim/registration.h"
@@ -51,6 +52,7 @@ Problem::Problem(const Experiment& experiment, const System& system, std::vector
   for (const Parameter& p : experiment.parameters) Expand(p);
   const Wiring wiring(experiment, system.model());
   for (const Parameter& p : RegistrationParameters(experiment, wiring, system.model())) Expand(p);
+  for (FreeParameter& p : StartParameters(experiment, system)) parameters_.push_back(std::move(p));
   for (const Parameter& p : extra) Expand(p);
   for (std::size_t k = 0; k < terms_.count; ++k) {
     parameters_.push_back({"force term " + std::to_string(k + 1),
@@ -179,11 +181,24 @@ Problem::Vector Problem::Clamp(const Vector& x) const {
   return out;
 }
 
-// Those of the model, or those of the measurement, in the order in which they apply.
-std::vector<Change> Problem::ChangesAt(const Vector& x, std::size_t log, bool measurement) const {
+Problem::Vector Problem::WithoutStarts(const Vector& x) const {
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (!parameters_[i].IsStart()) others.push_back(i);
+  }
+  return x(others);
+}
+
+Problem::Side Problem::SideOf(const Change& c) {
+  if (c.target.starts_with("start:")) return Side::kStart;
+  return IsMeasurement(c.target, c.attribute) ? Side::kMeasurement : Side::kModel;
+}
+
+// Those of one side, in the order in which they apply.
+std::vector<Change> Problem::ChangesAt(const Vector& x, std::size_t log, Side side) const {
   std::vector<Change> changes;
   const auto add = [&](const Change& c) {
-    if (IsMeasurement(c.target, c.attribute) == measurement) changes.push_back(c);
+    if (SideOf(c) == side) changes.push_back(c);
   };
   for (const Change& c : experiment_->logs[log].set) add(c);
   for (const Change& c : frozen_) add(c);
@@ -197,25 +212,25 @@ std::vector<Change> Problem::ChangesAt(const Vector& x, std::size_t log, bool me
 }
 
 std::vector<Change> Problem::ChangesFor(const Vector& x, std::size_t log) const {
-  return ChangesAt(x, log, false);
+  return ChangesAt(x, log, Side::kModel);
 }
 
 Experiment Problem::MeasuredBy(const Vector& x, std::size_t log) const {
   Experiment e = setup_;
-  for (const Change& c : ChangesAt(x, log, true)) ApplyMeasurement(e, c);
+  for (const Change& c : ChangesAt(x, log, Side::kMeasurement)) ApplyMeasurement(e, c);
   return e;
 }
 
 std::vector<Change> Problem::CommonChanges(const Vector& x) const {
   std::vector<Change> changes;
   for (const Change& c : frozen_) {
-    if (!IsMeasurement(c.target, c.attribute)) changes.push_back(c);
+    if (SideOf(c) == Side::kModel) changes.push_back(c);
   }
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const auto& acts = parameters_[i].log;
     if (std::find(acts.begin(), acts.end(), false) != acts.end()) continue;
     const Change& change = parameters_[i].change;
-    if (change.target.empty() || IsMeasurement(change.target, change.attribute)) continue;
+    if (change.target.empty() || SideOf(change) != Side::kModel) continue;
     changes.push_back(parameters_[i].change);
     changes.back().value = x[i];
   }
@@ -226,11 +241,12 @@ std::vector<Change> Problem::CommonChanges(const Vector& x) const {
 Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double step) const {
   const Experiment setup = MeasuredBy(x, log);
   auto changes = ChangesFor(x, log);
+  const auto starts = ChangesAt(x, log, Side::kStart);
   const Vector theta = x.tail(static_cast<Eigen::Index>(terms_.count));
   const Memory& memory = memory_[motion_[log]];
   const Log& logged = experiment_->logs[log];
   if (step == 0 && !memory.trace.raw.empty() && memory.changes == changes &&
-      memory.theta == theta && memory.skew == setup.skew) {
+      memory.starts == starts && memory.theta == theta && memory.skew == setup.skew) {
     Trace trace = memory.trace;
     MeasureTrace(setup, Wiring(setup, system().model()), logged, trace);
     return trace;
@@ -241,6 +257,7 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
   }
   if (const double h = step > 0 ? step : step_; h > 0) changes.push_back({"option", "timestep", h});
   Machine machine = systems_[thread].Build(changes);
+  const InitialState start = StartAt(machine, x, log);
   Hooks hooks;
   if (terms_.count > 0) {
     const std::span<const double> weights(theta.data(), terms_.count);
@@ -249,10 +266,18 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
       terms.add(m, d, weights);
     };
   }
-  if (setup.skew == experiment_->skew) return Simulate(machine, setup, logged, {}, hooks);
+  if (setup.skew == experiment_->skew) return Simulate(machine, setup, logged, start, hooks);
   Log stretched = logged;
   for (double& t : stretched.time) t *= (1 + setup.skew) / (1 + experiment_->skew);
-  return Simulate(machine, setup, stretched, {}, hooks);
+  return Simulate(machine, setup, stretched, start, hooks);
+}
+
+InitialState Problem::StartAt(Machine& machine, const Vector& x, std::size_t log) const {
+  const auto changes = ChangesAt(x, log, Side::kStart);
+  if (changes.empty()) return {};
+  InitialState state = StartOf(machine, setup_, experiment_->logs[log]);
+  for (const Change& c : changes) PutStart(*machine.model, c, state);
+  return state;
 }
 
 std::unique_ptr<Flow> Problem::FlowAt(std::size_t thread, const Vector& x, std::size_t log) const {
@@ -284,7 +309,7 @@ bool Problem::SameMotion(std::size_t a, std::size_t b) const {
   const bool known = experiment_->start == Experiment::Start::kRest ||
                      experiment_->start == Experiment::Start::kEquilibrium;
   return known && x.time == y.time && x.input == y.input && x.enable == y.enable &&
-         x.set == y.set &&
+         x.set == y.set && x.start == y.start &&
          std::all_of(parameters_.begin(), parameters_.end(),
                      [&](const FreeParameter& p) { return p.log[a] == p.log[b]; });
 }
@@ -308,7 +333,7 @@ std::vector<Problem::Vector> Problem::Residuals(const Vector& x,
     const std::size_t first = motions[i].front();
     Trace trace = Run(thread, x, first);
     for (const std::size_t l : motions[i]) out[l] = ResidualOf(l, trace);
-    memory_[motion_[first]] = {ChangesFor(x, first),
+    memory_[motion_[first]] = {ChangesFor(x, first), ChangesAt(x, first, Side::kStart),
                                x.tail(static_cast<Eigen::Index>(terms_.count)),
                                MeasuredBy(x, first).skew, std::move(trace)};
   });
@@ -359,15 +384,32 @@ std::vector<Problem::Matrix> Problem::Jacobian(const Vector& x, const std::vecto
     first = static_cast<std::size_t>(known[l].cols());
     J[l].leftCols(known[l].cols()) = known[l];
   }
-  DifferenceColumns(x, r, motions, first, J);
+  std::vector<std::size_t> columns;
+  for (std::size_t k = first; k < parameters_.size(); ++k) {
+    if (path_ == Path::kStepped || Measures(k)) columns.push_back(k);
+  }
+  DifferenceColumns(x, r, motions, columns, J);
   if (path_ == Path::kSmooth) SensitivityColumns(x, motions, first, rough, J);
+  return J;
+}
+
+std::vector<Problem::Matrix> Problem::StartJacobian(const Vector& x, const std::vector<Vector>& r,
+                                                    const std::vector<bool>& use) const {
+  std::vector<Matrix> J(use.size());
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (use[l]) J[l] = Matrix::Zero(r[l].size(), x.size());
+  }
+  std::vector<std::size_t> columns;
+  for (std::size_t k = 0; k < parameters_.size(); ++k) {
+    if (parameters_[k].IsStart()) columns.push_back(k);
+  }
+  DifferenceColumns(x, r, Motions(use), columns, J);
   return J;
 }
 
 // Whether a parameter changes how a motion is measured, not the motion.
 bool Problem::Measures(std::size_t k) const {
-  const Change& c = parameters_[k].change;
-  return IsMeasurement(c.target, c.attribute);
+  return SideOf(parameters_[k].change) == Side::kMeasurement;
 }
 
 double Problem::StepOf(const Vector& x, std::size_t k, double share) const {
@@ -377,12 +419,12 @@ double Problem::StepOf(const Vector& x, std::size_t k, double share) const {
 
 void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                                 const std::vector<std::vector<std::size_t>>& motions,
-                                std::size_t first, std::vector<Matrix>& J) const {
+                                const std::vector<std::size_t>& columns,
+                                std::vector<Matrix>& J) const {
   std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    for (std::size_t k = first; k < parameters_.size(); ++k) {
-      const bool ours = path_ == Path::kStepped || Measures(k);
-      if (ours && parameters_[k].log[motions[i].front()]) tasks.emplace_back(i, k);
+    for (const std::size_t k : columns) {
+      if (parameters_[k].log[motions[i].front()]) tasks.emplace_back(i, k);
     }
   }
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {

@@ -23,6 +23,9 @@ struct FreeParameter {
   double scale;           ///< a typical size, for scaling and finite differences
   Change change;          ///< value is filled in
   std::vector<bool> log;  ///< which logs it acts on
+
+  /// Whether it is where a trial begins (identification/starts.h).
+  bool IsStart() const { return change.target.starts_with("start:"); }
 };
 
 /// A force on the joints that is linear in parameters of its own: a placebo, or the best that any
@@ -68,6 +71,9 @@ class Problem {
   /// A step of one parameter by a share of its scale, downward where upward would leave its bounds.
   double StepOf(const Vector& x, std::size_t k, double share) const;
 
+  /// Parameters without where the trials begin.
+  Vector WithoutStarts(const Vector& x) const;
+
   /// Residuals of the logs marked in use; other entries are empty. A diverged log gives NaN.
   std::vector<Vector> Residuals(const Vector& x, const std::vector<bool>& use) const;
   /// What the time step h leaves open, one column each: residuals at h less those at h/4, and what
@@ -81,6 +87,9 @@ class Problem {
   std::vector<Matrix> Jacobian(const Vector& x, const std::vector<Vector>& r,
                                const std::vector<bool>& use, const std::vector<Matrix>& known = {},
                                bool rough = false) const;
+  /// The same, but only with respect to where the trials begin; other columns are zero.
+  std::vector<Matrix> StartJacobian(const Vector& x, const std::vector<Vector>& r,
+                                    const std::vector<bool>& use) const;
   /// Pooled RMS (unit: see Pool) of residuals over all measured samples of the logs in use.
   double PooledRms(const std::vector<Vector>& r, const std::vector<bool>& use) const;
   /// What the model says about one log.
@@ -110,11 +119,14 @@ class Problem {
   std::unique_ptr<Flow> FlowAt(std::size_t thread, const Vector& x, std::size_t log) const;
   bool Measures(std::size_t k) const;
   void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
-                         const std::vector<std::vector<std::size_t>>& motions, std::size_t first,
-                         std::vector<Matrix>& J) const;
+                         const std::vector<std::vector<std::size_t>>& motions,
+                         const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
   void SensitivityColumns(const Vector& x, const std::vector<std::vector<std::size_t>>& motions,
                           std::size_t first, bool rough, std::vector<Matrix>& J) const;
-  std::vector<Change> ChangesAt(const Vector& x, std::size_t log, bool measurement) const;
+  enum class Side { kModel, kMeasurement, kStart };
+  static Side SideOf(const Change& change);
+  std::vector<Change> ChangesAt(const Vector& x, std::size_t log, Side side) const;
+  InitialState StartAt(Machine& machine, const Vector& x, std::size_t log) const;
   Vector ResidualOf(std::size_t log, const Trace& trace) const;
   Trace Later(const Trace& trace, const Vector& x, std::size_t log, double delay) const;
 
@@ -123,7 +135,7 @@ class Problem {
   Experiment setup_;             ///< without logs
   /// [log] the last simulation and what it was made of, as only the measurement may change.
   struct Memory {
-    std::vector<Change> changes;
+    std::vector<Change> changes, starts;
     Vector theta;
     double skew = 0;
     Trace trace;

@@ -11,7 +11,8 @@
 
 namespace continuum {
 namespace {
-constexpr int kDraws = 399;  // of rounding errors
+constexpr int kDraws = 399;          // of rounding errors
+constexpr double kWorthAFit = 0.04;  // of the squares, where 0.19 of them would make a name
 constexpr const char kUnresolved[] = "the time step adds more to its fit than it removes";
 
 // Nested fits are as far apart as the larger one gains; others that gain as much are farther.
@@ -58,6 +59,7 @@ Round::Round(const Trials& trials, const Base& base, const Noise& noise, const S
 
 void Round::Screen() {
   const Remainder left = trials_.LeftBy(*base_.fitted);
+  left_ = left.cost();
   std::vector<std::vector<Probe>> probes;
   for (CandidateResult& c : candidates) {
     options_.Say("screen " + c.hypothesis.Name());
@@ -69,14 +71,8 @@ void Round::Screen() {
       c.error = error.what();
     }
   }
-  const Problem base(*trials_.experiment, *base_.system, base_.given);
-  const Rounding rounding(base, noise_, base_.fitted->fit.x);
-  Problem::Matrix draws;
-  if (rounding.any()) {
-    inflation_ = rounding.Inflation(left, probes, options_.seed);
-    draws = rounding.Draws(left, kDraws, options_.seed);
-  }
-  const Significance found = SignificanceOf(probes, left.residual(), options_.seed, draws);
+  const Significance found =
+      noise_.known() ? Significant(left, probes) : BestOfProbes(probes, left.residual());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     CandidateResult& c = candidates[i];
     c.explained = found.explained[i];
@@ -91,6 +87,18 @@ void Round::Screen() {
     c.rivals = StartsAsGood(c, best, left);
     std::swap(c.probes[0], c.probes[best]);
   }
+}
+
+Significance Round::Significant(const Remainder& left,
+                                const std::vector<std::vector<Probe>>& probes) {
+  const Problem base(*trials_.experiment, *base_.system, base_.given);
+  const Rounding rounding(base, noise_, base_.fitted->fit.x);
+  Problem::Matrix draws;
+  if (rounding.any()) {
+    inflation_ = rounding.Inflation(left, probes, options_.seed);
+    draws = rounding.Draws(left, kDraws, options_.seed);
+  }
+  return SignificanceOf(probes, left.residual(), options_.seed, draws);
 }
 
 // First order says little of what acts on top of another amplitude, as a Stribeck excess, nor of
@@ -136,6 +144,7 @@ double Round::Promise() const {
 // Where little is to be explained first order is right to a few units, else wrong about sizes by
 // factors but not by orders of magnitude.
 double Round::HowMuchIsNeeded() const {
+  if (!noise_.known()) return kWorthAFit * left_;
   const double best = MostExplained();
   return std::max(std::min(best - 15, 45.0), 0.02 * best);
 }
@@ -144,9 +153,9 @@ double Round::HowMuchIsNeeded() const {
 void Round::Fit() {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.explained > b.explained; });
-  const double needed = !noise_.known()     ? 0
-                        : SomethingIsLeft() ? HowMuchIsNeeded()
-                                            : std::numeric_limits<double>::infinity();
+  const double needed = !noise_.known() || SomethingIsLeft()
+                            ? HowMuchIsNeeded()
+                            : std::numeric_limits<double>::infinity();
   double rival = std::numeric_limits<double>::infinity();
   for (CandidateResult& c : candidates) {
     if (!c.error.empty() || c.explained < needed) continue;
@@ -196,9 +205,8 @@ void Round::SecondChances() {
 void Round::FitOne(CandidateResult& c, double rival) const {
   const Problem problem = c.ProblemOf(*trials_.experiment);
   std::vector<Problem::Vector> starts = c.rivals;
-  if (c.start.size() > 0) {
-    starts.insert(starts.begin(), c.start);
-  } else {
+  if (c.start.size() > 0) starts.insert(starts.begin(), c.start);
+  if (!noise_.known() || starts.empty()) {
     for (const auto& own : c.hypothesis.starts) starts.push_back(Append(base_.fitted->fit.x, own));
   }
   c.fitted = trials_.Fit(problem, BestOf(problem, starts), rival);
@@ -210,12 +218,14 @@ void Round::FitOne(CandidateResult& c, double rival) const {
 // in which a stiffness of the model makes room for one of the candidate.
 void Round::GoOn(const Problem& problem, CandidateResult& c, double rival) const {
   constexpr int kTimes = 3;
-  constexpr double kGain = 0.5;  // of half the whitened squares, by the last iteration
+  // By the last iteration: of half the whitened squares, or of any in parts of them.
+  constexpr double kGain = 0.5, kShare = 1e-3;
   for (int i = 0; i < kTimes; ++i) {
     const continuum::Fit& f = c.fitted.fit;
     const std::size_t n = f.trace.size();
-    const bool gains = n > 1 && f.trace[n - 2] - f.trace[n - 1] > kGain;
-    if (!trials_.whitening.active() || f.iterations < trials_.iterations || !gains) return;
+    const double least = noise_.known() ? kGain : kShare * f.cost;
+    const bool gains = n > 1 && f.trace[n - 2] - f.trace[n - 1] > least;
+    if (f.iterations < trials_.iterations || !gains) return;
     Fitted next = trials_.Fit(problem, f.x, rival);
     if (!(next.fit.cost < f.cost)) return;
     c.fitted = std::move(next);
@@ -266,11 +276,11 @@ void Round::CompleteTheBest() {
   double best = std::numeric_limits<double>::infinity(), taken_off = TakenOff(*base_.fitted);
   for (CandidateResult* const c : order) {
     const double plain = c->fitted.cost;
-    if (!noise_.known() || plain - best < kNear + 2 * taken_off) {
+    if (noise_.known() && plain - best < kNear + 2 * taken_off) {
       options_.Say("sensitivities of " + c->hypothesis.Name());
       const Problem problem = c->ProblemOf(*trials_.experiment);
       trials_.Complete(problem, c->fitted);
-      if (noise_.known() && !Resolved(problem, c->fitted)) {
+      if (!Resolved(problem, c->fitted)) {
         c->fits = false;
         c->error = kUnresolved;
         continue;
@@ -316,7 +326,7 @@ void Round::Dismiss() {
 
 // |v − P v|², v what the leading candidate's directions explain, P onto the other's directions.
 void Round::TellApart() {
-  if (candidates.empty() || candidates.front().probes.empty()) return;
+  if (!noise_.known() || candidates.empty() || candidates.front().probes.empty()) return;
   const Remainder left = trials_.LeftBy(*base_.fitted);
   const Probe& lead = candidates.front().probes.front();
   const Problem::Vector v = lead.columns * ExplainedBy(lead, left.residual()).coefficients;

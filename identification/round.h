@@ -15,8 +15,8 @@ struct Base {
 /// fitted to the same motion.
 bool Contains(const Trials& trials, const CandidateResult& b, const CandidateResult& a);
 
-/// One search for one more cause where the noise is known: all candidates to first order, then fits
-/// of those that matter. Where it is not known, Screen is left out and every candidate fitted.
+/// One search for one more cause: all candidates to first order, then fits of those that matter.
+/// Where the noise is not known nothing is significant, and first order is taken less literally.
 class Round {
  public:
   Round(const Trials& trials, const Base& base, const Noise& noise, const Sizes& sizes,
@@ -52,6 +52,7 @@ class Round {
   static constexpr double kModelLimited = 3;  ///< times the noise: more is plainly not noise
 
  private:
+  Significance Significant(const Remainder& left, const std::vector<std::vector<Probe>>& probes);
   bool SomethingIsLeft() const;
   double MostExplained() const;
   double HowMuchIsNeeded() const;
@@ -75,6 +76,7 @@ class Round {
   const DiagnosisOptions& options_;
   double smallest_p_ = 1;
   double inflation_ = 1;  // of what rounding errors explain over whitened noise
+  double left_ = 0;       // squares that the base leaves
 };
 
 }  // namespace continuum

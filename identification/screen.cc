@@ -150,6 +150,16 @@ Explained ExplainedBy(const Probe& probe, const Vector& z) {
   }
 }
 
+Significance BestOfProbes(const std::vector<std::vector<Probe>>& candidates, const Vector& z) {
+  Significance out;
+  for (const auto& probes : candidates) {
+    out.best.push_back(0);
+    out.explained.push_back(Small{probes}.Best(z, &out.best.back()));
+    out.p.push_back(1);
+  }
+  return out;
+}
+
 // Everything happens in the span of all probes: z and draws of noise are projected into it once.
 Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, const Vector& z,
                             std::uint64_t seed, const Matrix& given) {

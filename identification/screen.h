@@ -61,15 +61,18 @@ struct Explained {
 };
 Explained ExplainedBy(const Probe& probe, const Eigen::VectorXd& z);
 
-/// Family-wise significance of several candidates, each with one or more probes (the best counts):
-/// the share of draws of white noise in which some candidate reaches as small a p-value of its own
-/// as this one did with z. Repeats exactly for a seed. draws: of the noise where it is not white,
-/// one column each, instead.
+/// What several candidates explain, each with one or more probes (the best counts), and their
+/// family-wise significance: the share of draws of white noise in which some candidate reaches as
+/// small a p-value of its own as this one did with z. Repeats exactly for a seed. draws: of the
+/// noise where it is not white, one column each, instead.
 struct Significance {
   std::vector<double> explained;  ///< [candidate] of its best probe
   std::vector<std::size_t> best;  ///< [candidate] its best probe
-  std::vector<double> p;          ///< [candidate] family-wise
+  std::vector<double> p;          ///< [candidate] family-wise; 1 where the noise is not known
 };
+/// Without significance, as the noise is not known.
+Significance BestOfProbes(const std::vector<std::vector<Probe>>& candidates,
+                          const Eigen::VectorXd& z);
 Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates,
                             const Eigen::VectorXd& z, std::uint64_t seed,
                             const Eigen::MatrixXd& draws = {});

@@ -50,7 +50,9 @@ struct Prober {
   const Fitted& null;
   const Remainder& left;
   std::vector<std::size_t> amplitudes = h.Amplitudes();
-  double wanted = std::sqrt(std::max(kLeast, left.cost() - left.freedom()));
+  bool calibrated;  // whether residuals are in units of the noise
+  double wanted = calibrated ? std::sqrt(std::max(kLeast, left.cost() - left.freedom()))
+                             : std::sqrt(0.5 * left.cost());
 
   Probe AtStart(std::size_t start) const {
     Probe probe;
@@ -202,6 +204,7 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) co
   FitOptions options = Options();
   options.hopeless = 1.1 * rival + 50;
   f.fit = FitParameters(problem, start, train, options);
+  f.fit.x = FitStarts(problem, f.fit.x, validate);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
   for (std::size_t l = 0; l < train.size(); ++l) {
     if (f.residuals[l].allFinite()) continue;
@@ -270,7 +273,7 @@ Remainder Trials::LeftBy(const Fitted& fitted) const {
 
 std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
                                   const Remainder& left) const {
-  const Prober prober{h, problem, null, left};
+  const Prober prober{h, problem, null, left, h.Amplitudes(), whitening.active()};
   std::vector<Probe> probes;
   for (std::size_t start = 0; start < h.starts.size(); ++start) {
     Probe whole = prober.AtStart(start);

@@ -16,7 +16,7 @@ double Median(std::vector<double> values) {
 
 std::vector<double> Gains(const FoldRecord& record) {
   std::vector<double> gains;
-  for (std::size_t f = 0; f < record.before.size(); ++f) {
+  for (std::size_t f = 0; f < record.after.size(); ++f) {
     gains.push_back(record.before[f] > 0 ? 1 - record.after[f] / record.before[f] : 0);
   }
   return gains;
@@ -31,6 +31,10 @@ double Beaten(const FoldRecord& candidate, const std::vector<double>& placebo_ga
 std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules) {
   std::vector<std::string> failures;
   const auto gains = Gains(record);
+  if (record.after.empty()) {
+    return {fmt::format("its fit lowers the error by less than {:.0f} % where it was fitted",
+                        100 * rules.fit_gain)};
+  }
   const double n = static_cast<double>(gains.size());
   const double better = static_cast<double>(
       std::count_if(gains.begin(), gains.end(), [](double g) { return g > 0; }));
@@ -61,21 +65,48 @@ std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules) 
   return failures;
 }
 
-bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b) {
+bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin) {
   const std::size_t n = a.after.size();
   if (n < 2) return false;
   double mean = 0, squares = 0;
   std::size_t wins = 0;
+  std::vector<double> removed;     // of b's error
   std::vector<double> difference;  // in units of the fold's error, so that no fold dominates
   for (std::size_t f = 0; f < n; ++f) {
+    removed.push_back(1 - a.after[f] / std::max(1e-300, b.after[f]));
     difference.push_back((b.after[f] - a.after[f]) / std::max(1e-300, a.before[f]));
     mean += difference.back() / static_cast<double>(n);
     wins += difference.back() > 0;
   }
   for (const double d : difference) squares += (d - mean) * (d - mean);
   const double error = std::sqrt(squares / static_cast<double>(n - 1) / static_cast<double>(n));
-  return mean > error && 2 * wins > n;
+  return mean > error && 2 * wins > n && Median(removed) > margin;
 }
+
+namespace {
+
+// What the best random force but the luckiest few removes of the error.
+double OfPlacebos(std::vector<double> gains, const Rules& rules) {
+  if (gains.empty()) return 0;
+  std::sort(gains.begin(), gains.end());
+  const double last = static_cast<double>(gains.size() - 1);
+  return gains[static_cast<std::size_t>(rules.placebo_share * last)];
+}
+
+// Only as deep as the folds allow: the plainest of those that each other's better contains, unless
+// it is clearly worse.
+std::size_t Plainest(const std::vector<FoldRecord>& candidates,
+                     const std::vector<std::size_t>& passing, double margin) {
+  std::size_t best = passing.front();
+  for (const std::size_t i : passing) {
+    const auto& inner = candidates[best].contains;
+    const bool inside = std::find(inner.begin(), inner.end(), i) != inner.end();
+    if (inside && !ClearlyBetter(candidates[passing.front()], candidates[i], margin)) best = i;
+  }
+  return best;
+}
+
+}  // namespace
 
 Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, double ceiling_gain,
               const Rules& rules) {
@@ -88,13 +119,11 @@ Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, doub
     return {
         "adequate", {}, fmt::format("what the model leaves is {:.2f} times the noise", noise_over)};
   }
-  std::size_t best = candidates.size();
+  std::vector<std::size_t> passing;
   for (const std::size_t i : order) {
-    if (!Failures(candidates[i], rules).empty()) continue;
-    best = i;
-    break;
+    if (Failures(candidates[i], rules).empty()) passing.push_back(i);
   }
-  if (best == candidates.size()) {
+  if (passing.empty()) {
     if (rules.over_scatter > rules.too_much) {
       return {"unexplained",
               {},
@@ -111,6 +140,9 @@ Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, doub
     }
     return {"unexplained", {}, "no candidate passes all rules"};
   }
+  const double margin =
+      std::max(rules.apart, OfPlacebos(candidates[passing.front()].placebo_gains, rules));
+  const std::size_t best = Plainest(candidates, passing, margin);
   const double left = candidates[best].remaining;
   if (left > rules.noise_reached && left < rules.noise_limited) {
     return {
@@ -122,8 +154,10 @@ Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, doub
   }
   Verdict verdict{"named", {best}, ""};
   for (const std::size_t i : order) {
-    if (i == best || ClearlyBetter(candidates[best], candidates[i])) continue;
-    if (gain(i) < 0.5 * gain(best)) continue;
+    if (i == best || gain(i) < 0.5 * gain(best)) continue;
+    if (ClearlyBetter(candidates[best], candidates[i], margin)) continue;
+    const auto& inner = candidates[i].contains;
+    if (std::find(inner.begin(), inner.end(), best) != inner.end()) continue;  // says no more
     verdict.named.push_back(i);
   }
   if (verdict.named.size() > 1) {

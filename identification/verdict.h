@@ -8,20 +8,26 @@ namespace continuum {
 /// One candidate's record over the folds, and what random forces with as many parameters reached.
 struct FoldRecord {
   std::string name;
-  std::vector<double> before, after;  ///< error left out, per fold, without and with the candidate
-  std::vector<double> amplitude;      ///< of its main parameter, per fold
-  std::vector<double> placebo_gains;  ///< median gain of each placebo
-  double remaining = 0;               ///< error of its fit over the noise; 0: noise not known
+  /// Error left out, per fold, without and with the candidate; after: empty for a hopeless one.
+  std::vector<double> before, after;
+  std::vector<double> amplitude;           ///< of its main parameter, per fold
+  std::vector<double> placebo_gains;       ///< median gain of each placebo
+  double remaining = 0;                    ///< error of its fit over the noise; 0: noise not known
+  std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
 };
 
 /// The rules of a name on model-limited data.
 struct Rules {
   double folds_better = 0.8;      ///< share of folds in which the error must fall
   double median_gain = 0.10;      ///< and by how much in the median
+  double fit_gain = 0.05;         ///< and where it was fitted, to be worth the folds
   double amplitude_spread = 0.3;  ///< over the folds, about its median, with one sign
   double placebo_share = 0.95;    ///< of placebos that it must beat
-  double noise_reached = 1.25;    ///< error over noise up to which nothing is left to explain
-  double noise_limited = 3;       ///< above it the data are model-limited: something always is left
+  /// Of a rival's error a better one must remove at least this in the median, and what that share
+  /// of the placebos removes of the error without any: what else is wrong favours one or the other.
+  double apart = 0.05;
+  double noise_reached = 1.25;  ///< error over noise up to which nothing is left to explain
+  double noise_limited = 3;     ///< above it the data are model-limited: something always is left
   /// Remaining error over the scatter from row to row, where the noise is not known better.
   double over_scatter = 0;
   double too_much = 10;  ///< times that scatter: plainly no noise
@@ -38,8 +44,8 @@ double Beaten(const FoldRecord& candidate, const std::vector<double>& placebo_ga
 std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules = {});
 
 /// Whether a is better than b in paired folds: by more than one standard error of the mean
-/// difference, and in most of them.
-bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b);
+/// difference, in most of them, and by more than a margin in the median.
+bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin = 0);
 
 /// One candidate where noise is all that its fit leaves.
 struct LikelihoodRecord {

@@ -213,6 +213,23 @@ std::vector<Change> ReadSettings(const Yaml& y) {
   return settings;
 }
 
+std::string Listed(const std::vector<double>& numbers) {
+  std::string text = "[";
+  for (const double x : numbers) text += (text.size() > 1 ? ", " : "") + Decimal(x);
+  return text + "]";
+}
+
+std::map<std::string, std::array<double, 2>> ReadStart(const Yaml& y) {
+  std::map<std::string, std::array<double, 2>> start;
+  for (const auto& joint : y.Keys()) {
+    const auto numbers = y.At(joint).Numbers();
+    if (numbers.size() != 2)
+      throw Error::Input(y.At(joint).Where(), "[position, speed]", Listed(numbers));
+    start[joint] = {numbers[0], numbers[1]};
+  }
+  return start;
+}
+
 Parameter ReadParameter(const Yaml& y) {
   y.Only(
       {"name", "target", "attribute", "initial", "lower", "upper", "operation", "frozen", "per"});
@@ -325,14 +342,8 @@ void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_u
   }
 }
 
-std::string Listed(const std::vector<double>& numbers) {
-  std::string text = "[";
-  for (const double x : numbers) text += (text.size() > 1 ? ", " : "") + Decimal(x);
-  return text + "]";
-}
-
 Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
-  y.Only({"file", "variable", "trial", "use", "window", "condition", "set"});
+  y.Only({"file", "variable", "trial", "use", "window", "condition", "set", "start"});
   Log log;
   log.file = e.file.parent_path() / y.At("file").Text();
   std::error_code ignored;
@@ -357,6 +368,7 @@ Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
     log.label += "_" + w->Items()[0].Text() + "_" + w->Items()[1].Text();
   }
   if (const auto set = y.Find("set")) log.set = ReadSettings(*set);
+  if (const auto start = y.Find("start")) log.start = ReadStart(*start);
   ReadRows(log, e, Recording(log.file, log.variable), time_unit);
   return log;
 }

@@ -79,6 +79,8 @@ struct Log {
   std::string trial, condition;
   bool train = true;
   std::vector<Change> set;  ///< known values of this log
+  /// [joint] position and speed at the first row, where they are known: of hinges and slides.
+  std::map<std::string, std::array<double, 2>> start;
 
   std::vector<double> time;                   ///< [s] in model time, increasing
   std::vector<std::vector<double>> input;     ///< [input][row]

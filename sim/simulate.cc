@@ -199,11 +199,11 @@ Wiring::Wiring(const Experiment& e, const mjModel& m) {
   marked = e.registration.has_marker();
 }
 
-InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
-  const mjModel& m = *machine.model;
+namespace {
+
+// Of what the first rows measure; the rest is at rest.
+InitialState FirstMeasured(const mjModel& m, const Experiment& e, const Log& log) {
   InitialState state{{m.qpos0, m.qpos0 + m.nq}, std::vector<double>(m.nv, 0)};
-  if (e.start == Experiment::Start::kRest) return state;
-  if (e.start == Experiment::Start::kEquilibrium) return Equilibrium(machine, e, log);
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const Output& out = e.outputs[e.channels[c].output];
     int joint = -1;
@@ -215,9 +215,43 @@ InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
             "a joint position in the first row of '" + log.label + "' (start: measured)", "none");
       }
       if (known) state.qpos[m.jnt_qposadr[joint]] = SignalOf(e, c, log.measured[c][0]);
+      if (e.start != Experiment::Start::kEstimate) continue;
+      std::vector<double> q = log.measured[c];
+      for (double& y : q) y = SignalOf(e, c, y);
+      if (const double slope = SlopeAt(log.time, q, 0); !std::isnan(slope))
+        state.qvel[m.jnt_dofadr[joint]] = slope;
     } else if (known && IsJoint(m, out, mjSENS_JOINTVEL, joint)) {
       state.qvel[m.jnt_dofadr[joint]] = SignalOf(e, c, log.measured[c][0]);
     }
+  }
+  return state;
+}
+
+InitialState ByKind(Machine& machine, const Experiment& e, const Log& log) {
+  const mjModel& m = *machine.model;
+  switch (e.start) {
+    case Experiment::Start::kRest:
+      return {{m.qpos0, m.qpos0 + m.nq}, std::vector<double>(m.nv, 0)};
+    case Experiment::Start::kEquilibrium:
+      return Equilibrium(machine, e, log);
+    default:
+      return FirstMeasured(m, e, log);
+  }
+}
+
+}  // namespace
+
+InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
+  const mjModel& m = *machine.model;
+  InitialState state = ByKind(machine, e, log);
+  for (const auto& [name, known] : log.start) {
+    const int joint = mj_name2id(&m, mjOBJ_JOINT, name.c_str());
+    const int type = joint < 0 ? -1 : m.jnt_type[joint];
+    if (type != mjJNT_HINGE && type != mjJNT_SLIDE)
+      throw Error::Input("the start of log '" + log.label + "'", "hinge or slide joints",
+                         "'" + name + "'");
+    state.qpos[m.jnt_qposadr[joint]] = known[0];
+    state.qvel[m.jnt_dofadr[joint]] = known[1];
   }
   return state;
 }

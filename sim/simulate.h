@@ -76,7 +76,9 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log,
 /// The channels anew from raw, as this experiment's registration and outputs measure them.
 void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Trace& trace);
 
-/// The state in which the experiment's start leaves a log's trial.
+/// The state in which the experiment's start, and the log's own, leaves a log's trial: qpos0 at
+/// rest, the equilibrium, what joint sensors measure in the first row, or (estimate) also their
+/// slope there. Throws Error for joints that the log's start names and that are no hinge or slide.
 InitialState StartOf(Machine& machine, const Experiment& e, const Log& log);
 
 /// The state at a row as it was measured: positions of the row, speeds those of a joint velocity's

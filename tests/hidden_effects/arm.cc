@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "hidden_effects/robots.h"
 
@@ -35,6 +36,10 @@ struct Arm {
   double gain = 1, offset = 0, dead_time = 0, lag = 0;  // 1, N m, s, s
   double tilt = 0, push = 0;             // rad about the joints' axis, N at the tip along x
   double dahl = 0, dahl_stiffness = 20;  // N m, N m/rad
+  // What no effect of the list is.
+  double cogging = 0, drag = 0;        // N m at ten a turn, N m s²/rad²
+  double coupling = 0, crosstalk = 0;  // N m/rad between the joints, 1: of u1 at joint 2
+  double wander = 0, one_sided = 0;    // N m at 0.23 Hz, N m/rad more where q > 0
   // At the sensors of the joint angles.
   double bias = 0, scale = 1, late = 0, drift = 0;  // rad, 1, s, rad/s
 
@@ -67,7 +72,8 @@ struct Arm {
               lag > 0 ? lagged[j] + (1 - std::exp(-h / lag)) * (wanted - lagged[j]) : wanted;
           motor[j] = lagged[j];
         }
-        Step(q, v, creep, bristle, motor, h);
+        motor[1] += crosstalk * motor[0];
+        Step(q, v, creep, bristle, motor, t + h * s, h);
       }
     }
     return out;
@@ -78,7 +84,8 @@ struct Arm {
     return static_cast<std::size_t>(std::lround(t / h));
   }
 
-  void Step(Pair& q, Pair& v, Pair& creep, Pair& bristle, const Pair& motor, double h) const {
+  void Step(Pair& q, Pair& v, Pair& creep, Pair& bristle, const Pair& motor, double t,
+            double h) const {
     const double a1 = link * m1, a2 = link * m2, j1 = link * i1, j2 = link * i2;
     const double tip = payload, c2 = std::cos(q[1]), s2 = std::sin(q[1]);
     const double r1 = l1 / 2, r2 = l2 / 2;
@@ -97,9 +104,14 @@ struct Arm {
     outer[1] = -far * (gz * s_12 - gx * c_12) + push * l2 * c_12 - coriolis * v[0] * v[0];
     outer[0] = -near * (gz * s_1 - gx * c_1) - far * (gz * s_12 - gx * c_12) +
                push * (l1 * c_1 + l2 * c_12) + coriolis * (2 * v[0] + v[1]) * v[1];
+    const double sway = wander * std::sin(2 * std::numbers::pi * 0.23 * t);
+    outer[0] -= sway + coupling * (q[0] - q[1]);
+    outer[1] += sway + coupling * (q[0] - q[1]);
     Pair torque, level;
     for (int j = 0; j < 2; ++j) {
       outer[j] -= k * q[j] + k3 * q[j] * q[j] * q[j];
+      outer[j] += cogging * std::sin(10 * q[j]) - drag * v[j] * std::abs(v[j]) -
+                  one_sided * std::max(0.0, q[j]);
       if (k_m > 0) {
         outer[j] -= k_m * (q[j] - creep[j]);
         creep[j] += (1 - std::exp(-h / tau_m)) * (q[j] - creep[j]);
@@ -194,6 +206,14 @@ const std::vector<Part<Arm>> kParts{
     {{"sensor_scale", "scale", 0.004, 1}, [](Arm& a, double v) { a.scale = 1 + v; }},
     {{"sensor_delay", "delay", 0.002}, [](Arm& a, double v) { a.late = v; }},
     {{"sensor_drift", "rate", 0.0006}, [](Arm& a, double v) { a.drift = v; }},
+    {{"long upper link", "", 0.03}, [](Arm& a, double v) { a.l1 *= 1 + v; }},
+    {{"long lower link", "", 0.03}, [](Arm& a, double v) { a.l2 *= 1 + v; }},
+    {{"cogging", "", 0.02}, [](Arm& a, double v) { a.cogging = v; }},
+    {{"drag", "", 0.02}, [](Arm& a, double v) { a.drag = v; }},
+    {{"coupling", "", 0.05}, [](Arm& a, double v) { a.coupling = v; }},
+    {{"crosstalk", "", 0.02}, [](Arm& a, double v) { a.crosstalk = v; }},
+    {{"wander", "", 0.02}, [](Arm& a, double v) { a.wander = v; }},
+    {{"one-sided spring", "", 0.05}, [](Arm& a, double v) { a.one_sided = v; }},
 };
 
 }  // namespace

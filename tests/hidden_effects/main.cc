@@ -63,8 +63,26 @@ std::vector<Case> QuickCases(const std::string& robot) {
   std::vector<Case> all;
   AddNone(robot, NoiseKind::kWhite, 2, all);
   for (const Hidden& h : RobotNamed(robot).effects) {
+    if (!Known(h.name)) continue;
     for (const double factor : {1.0, 2.0})
       all.push_back({{h.name}, factor, NoiseKind::kWhite, all.size() + 1, true, false, robot});
+  }
+  return all;
+}
+
+// The background suite: every effect, and nothing beside the background as often.
+std::vector<Case> BackgroundCases(int repeats) {
+  std::vector<Case> all;
+  for (int r = 0; r < repeats; ++r) {
+    for (const Hidden& h : RobotNamed("arm").effects) {
+      if (!Known(h.name)) continue;
+      for (const bool hidden : {true, false}) {
+        Case c{{}, 1, NoiseKind::kWhite, 1000 * all.size() + 17};
+        if (hidden) c.effects = {h.name};
+        c.background = true;
+        all.push_back(std::move(c));
+      }
+    }
   }
   return all;
 }
@@ -176,14 +194,17 @@ int Main(int argc, char** argv) {
   CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
   std::string out, only, keep, robot = "arm";
   int repeats = 1;
-  bool verbose = false, told = false, quick = false;
+  bool write = false, verbose = false, told = false, quick = false, background = false;
   app.add_option("--out", out, "one JSON line per case")->required();
   app.add_option("--robot", robot, "arm, servo, silverbox, bouc_wen, spa or annelida")
       ->capture_default_str();
   app.add_flag("--quick", quick, "white noise, two sizes of every effect, nothing hidden twice");
+  app.add_flag("--background", background,
+               "one log in windows, in which much else is wrong too, of the arm");
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
   app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
+  app.add_flag("--write", write, "write the cases (--keep), without a diagnosis");
   app.add_flag("--told", told, "only cases of one effect, as the only candidate: for intervals");
   app.add_flag("--verbose", verbose, "print each summary");
   CLI11_PARSE(app, argc, argv);
@@ -191,7 +212,9 @@ int Main(int argc, char** argv) {
   for (const auto& line : ReadLines(out)) done.insert(line.at("case"));
   const auto temporary =
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
-  auto cases = quick ? QuickCases(robot) : Cases(robot, repeats);
+  auto cases = background ? BackgroundCases(repeats)
+               : quick    ? QuickCases(robot)
+                          : Cases(robot, repeats);
   if (told) cases = Told(std::move(cases));
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const std::string name = cases[i].Name();
@@ -199,6 +222,10 @@ int Main(int argc, char** argv) {
     std::filesystem::remove_all(temporary);
     const auto folder =
         keep.empty() ? temporary : std::filesystem::path(keep) / std::to_string(i + 1);
+    if (write) {
+      WriteCase(cases[i], folder);
+      continue;
+    }
     const nlohmann::json line = Line(cases[i], folder, verbose);
     std::ofstream(out, std::ios::app) << line.dump() << std::endl;
     fmt::print(stderr, "{}/{} {}: {} {} {:.1f} s\n", i + 1, cases.size(), name,

@@ -14,18 +14,6 @@ namespace {
 
 constexpr int kReplicates = 2;
 
-std::string Csv(const Robot& robot, const Columns& u, const Columns& y) {
-  std::string text = "time";
-  for (const auto& name : robot.inputs) text += "," + name;
-  for (const auto& name : robot.outputs) text += "," + name;
-  for (std::size_t k = 0; k < robot.rows; ++k) {
-    text += "\n" + Decimal(robot.period * static_cast<double>(k));
-    for (const auto& c : u) text += "," + Decimal(c[k]);
-    for (const auto& c : y) text += "," + Decimal(c[k]);
-  }
-  return text + "\n";
-}
-
 // The line of a log in the experiment.
 std::string LogLine(const Robot& robot, int trial, const std::string& name) {
   const std::string set = robot.conditions.empty() ? "" : ", " + robot.conditions[trial];
@@ -33,7 +21,25 @@ std::string LogLine(const Robot& robot, int trial, const std::string& name) {
                      trial + 1 < robot.trials ? "train" : "validate", set);
 }
 
-// Every effect that the diagnosis knows, but the hidden ones if they are not to be listed.
+// Whether a name is in both.
+bool Share(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
+}  // namespace
+
+std::string Csv(const Robot& robot, const Columns& u, const Columns& y) {
+  std::string text = "time";
+  for (const auto& name : robot.inputs) text += "," + name;
+  for (const auto& name : robot.outputs) text += "," + name;
+  for (std::size_t k = 0; k < u[0].size(); ++k) {
+    text += "\n" + Decimal(robot.period * static_cast<double>(k));
+    for (const auto& c : u) text += "," + Decimal(c[k]);
+    for (const auto& c : y) text += "," + Decimal(c[k]);
+  }
+  return text + "\n";
+}
+
 std::string CandidatesOf(const Case& c) {
   std::string text;
   for (const EffectInfo& info : Catalog()) {
@@ -43,13 +49,6 @@ std::string CandidatesOf(const Case& c) {
   }
   return text;
 }
-
-// Whether a name is in both.
-bool Share(const std::vector<std::string>& a, const std::vector<std::string>& b) {
-  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
-}
-
-}  // namespace
 
 const Robot& RobotNamed(const std::string& name) {
   static const std::vector<Robot> all{ArmRobot(),     ServoRobot(),        SilverboxRobot(),
@@ -72,6 +71,7 @@ std::string Case::Name() const {
   for (const auto& e : effects) text += (text.empty() ? "" : "+") + e;
   if (text.empty()) text = "none";
   if (robot != "arm") text = robot + " " + text;
+  if (background) text = "background " + text;
   return fmt::format("{} x{:g} {} seed {}{}", text, factor, kNoiseNames[static_cast<int>(noise)],
                      seed,
                      told     ? " told"
@@ -80,6 +80,7 @@ std::string Case::Name() const {
 }
 
 std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& folder) {
+  if (c.background) return WriteBackground(c, folder);
   std::mt19937_64 rng(c.seed);
   const Robot& robot = RobotNamed(c.robot);
   Amounts hidden;
@@ -123,7 +124,8 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
     const CandidateResult& one = d.candidates[i];
     if (std::find(a.named.begin(), a.named.end(), one.hypothesis.effect) == a.named.end())
       a.named.push_back(one.hypothesis.effect);
-    if (c.effects.empty() || one.hypothesis.effect != c.effects.front()) continue;
+    if (c.effects.empty() || c.background) continue;  // its size is not c's
+    if (one.hypothesis.effect != c.effects.front()) continue;
     const Hidden& h = RobotNamed(c.robot).Named(c.effects.front());
     a.truth = h.null + h.size * c.factor;
     for (std::size_t k = 0; k < one.hypothesis.extra.size(); ++k) {

@@ -19,6 +19,7 @@ struct Case {
   bool listed = true;  ///< whether the hidden effects are among the candidates
   bool told = false;   ///< whether nothing else is
   std::string robot = "arm";
+  bool background = false;  ///< of the background suite (WriteBackground)
 
   std::string Name() const;
 };
@@ -39,7 +40,15 @@ struct Answer {
 
 /// Writes model, logs and experiment of a case into a folder, and returns the experiment's path.
 std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& folder);
-/// The same, diagnosed.
+/// A case of the background suite: one log in windows, without replicates; beside the hidden effect
+/// every length is 3 % wrong, three small forces act that no candidate is, and what these leave is
+/// 10 to 100 times the noise.
+std::filesystem::path WriteBackground(const Case& c, const std::filesystem::path& folder);
+/// Inputs and outputs as a log.
+std::string Csv(const Robot& robot, const Columns& u, const Columns& y);
+/// Every effect that the diagnosis knows, but the hidden ones if they are not to be listed.
+std::string CandidatesOf(const Case& c);
+/// A case, diagnosed.
 Answer Solve(const Case& c, const std::filesystem::path& folder);
 
 /// Whether the answer holds the truth (of two effects: both), and whether it is one name.

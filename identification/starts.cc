@@ -1,0 +1,83 @@
+#include "identification/starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "error.h"
+
+namespace continuum {
+namespace {
+
+constexpr const char* kPosition = "position";
+constexpr const char* kSpeed = "speed";
+
+// How far a joint moves in a log, by what is measured of it; some size where nothing is.
+double Travel(const mjModel& m, int joint, const Experiment& e, const Log& log) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const Output& out = e.outputs[e.channels[c].output];
+    if (out.kind != Output::Kind::kSensor) continue;
+    const int id = mj_name2id(&m, mjOBJ_SENSOR, out.source.c_str());
+    if (id < 0 || m.sensor_type[id] != mjSENS_JOINTPOS || m.sensor_objid[id] != joint) continue;
+    double low = kInfinity, high = -kInfinity;
+    for (const double y : log.measured[c]) {
+      if (!std::isnan(y)) low = std::min(low, y), high = std::max(high, y);
+    }
+    if (high > low) return high - low;
+  }
+  return m.jnt_type[joint] == mjJNT_SLIDE ? 0.1 : 1;  // m, rad
+}
+
+std::string JointName(const mjModel& m, int joint) {
+  const char* const name = mj_id2name(&m, mjOBJ_JOINT, joint);
+  if (name) return name;
+  throw Error::Input("start: estimate", "joints with names", "one without");
+}
+
+}  // namespace
+
+std::vector<FreeParameter> StartParameters(const Experiment& e, const System& system) {
+  std::vector<FreeParameter> all;
+  if (e.start != Experiment::Start::kEstimate) return all;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    const Log& log = e.logs[l];
+    Machine machine = system.Build(log.set);
+    const mjModel& m = *machine.model;
+    const InitialState start = StartOf(machine, e, log);
+    std::vector<bool> own(e.logs.size(), false);
+    own[l] = true;
+    for (int j = 0; j < m.njnt; ++j) {
+      const std::string joint = JointName(m, j);
+      if (m.jnt_type[j] != mjJNT_HINGE && m.jnt_type[j] != mjJNT_SLIDE)
+        throw Error::Input("start: estimate", "hinge and slide joints", "'" + joint + "'");
+      const double travel = Travel(m, j, e, log);
+      const double fast = 10 * travel;  // 1/s: back and forth three times a second
+      const bool slide = m.jnt_type[j] == mjJNT_SLIDE;
+      const auto add = [&](const char* what, const char* unit, double value, double size) {
+        all.push_back({joint + " " + what + "[" + log.label + "]",
+                       unit,
+                       value,
+                       value - size,
+                       value + size,
+                       size,
+                       {"start:" + joint, what, 0},
+                       own});
+      };
+      add(kPosition, slide ? "m" : "rad", start.qpos[m.jnt_qposadr[j]], travel);
+      add(kSpeed, slide ? "m/s" : "rad/s", start.qvel[m.jnt_dofadr[j]], fast);
+    }
+  }
+  return all;
+}
+
+void PutStart(const mjModel& m, const Change& change, InitialState& state) {
+  const int joint = mj_name2id(&m, mjOBJ_JOINT, change.target.substr(6).c_str());
+  if (change.attribute == kPosition) {
+    state.qpos[m.jnt_qposadr[joint]] = change.value;
+  } else {
+    state.qvel[m.jnt_dofadr[joint]] = change.value;
+  }
+}
+
+}  // namespace continuum
