@@ -15,16 +15,21 @@ constexpr int kDraws = 399;          // of rounding errors
 constexpr double kWorthAFit = 0.04;  // of the squares, where 0.19 of them would make a name
 constexpr const char kUnresolved[] = "the time step adds more to its fit than it removes";
 
-// Nested fits are as far apart as the larger one gains; others that gain as much are farther.
+// Nested fits are as far apart as the larger one gains; others that gain as much are farther. Where
+// the noise is not known: they are as near as nothing to what either changes.
 bool SaysTheSame(const Trials& trials, const CandidateResult& b, const CandidateResult& a) {
-  constexpr double kNoise = 10;  // of twice the log-likelihood
+  constexpr double kNoise = 10;      // of twice the log-likelihood
+  constexpr double kNothing = 0.02;  // of the squares that one takes off
+  if (!a.fits || !b.fits) return false;
   const double gain = b.likelihood - a.likelihood;
-  if (!a.fits || !b.fits || !trials.whitening.active() || std::abs(gain) > 3 * kNoise) return false;
+  const bool known = trials.whitening.active();
+  if (known && std::abs(gain) > 3 * kNoise) return false;
   const auto train = TrainLogs(*trials.experiment);
   std::vector<Problem::Vector> between(train.size());
   for (std::size_t l = 0; l < train.size(); ++l)
     if (train[l]) between[l] = b.fitted.residuals[l] - a.fitted.residuals[l];
-  return trials.whitening.Stack(between, train).squaredNorm() < 2 * std::max(gain, 0.0) + kNoise;
+  const double apart = trials.whitening.Stack(between, train).squaredNorm();
+  return apart < (known ? 2 * std::max(gain, 0.0) + kNoise : kNothing * a.likelihood);
 }
 
 }  // namespace
@@ -206,7 +211,8 @@ void Round::FitOne(CandidateResult& c, double rival) const {
   const Problem problem = c.ProblemOf(*trials_.experiment);
   std::vector<Problem::Vector> starts = c.rivals;
   if (c.start.size() > 0) starts.insert(starts.begin(), c.start);
-  if (!noise_.known() || starts.empty()) {
+  const bool crooked = !noise_.known() && c.hypothesis.extra.size() > 1;  // first order may mislead
+  if (crooked || starts.empty()) {
     for (const auto& own : c.hypothesis.starts) starts.push_back(Append(base_.fitted->fit.x, own));
   }
   c.fitted = trials_.Fit(problem, BestOf(problem, starts), rival);
