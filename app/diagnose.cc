@@ -67,7 +67,8 @@ void RunDiagnose(const Options& o) {
   options.seed = o.seed;
   options.progress = ShowProgress;
   CheckNames(read, system);
-  std::vector<std::string> outputs{"diagnosis.json", "extended.xml", "extended.yaml", "simulated/",
+  std::vector<std::string> outputs{"diagnosis.json", "extended.xml",  "extended.yaml",
+                                   "fallback.xml",   "fallback.yaml", "simulated/",
                                    "report.html"};
   if (o.video) outputs.push_back("extended.mp4");
   const OutFolder made(o.out, outputs, {read.file, read.model});

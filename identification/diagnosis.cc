@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "identification/by_folds.h"
+#include "identification/fallback.h"
 #include "identification/next_experiment.h"
 #include "identification/pairs.h"
 #include "identification/parallel.h"
@@ -59,8 +60,10 @@ class Session {
       ScoreFolds();
     } else {
       CompareFolds();
+      NameOnce();
     }
     BootstrapGain();
+    if (d_.verdict.text == "unexplained") d_.fallback = FindFallback(trials_, d_, options_);
     options_.Say("next experiment");
     d_.next = ProposeNext(trials_, d_);
     d_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -165,12 +168,15 @@ class Session {
     const std::string& effect = d_.candidates[named.front()].hypothesis.effect;
     std::string places;
     for (const std::size_t i : named) {
-      if (d_.candidates[i].hypothesis.effect != effect) return;
-      places += (places.empty() ? "" : " or ") + d_.candidates[i].hypothesis.where;
+      const Hypothesis& h = d_.candidates[i].hypothesis;
+      if (h.effect != effect) return;
+      places += (places.empty() ? "" : " or ") + (h.variant.empty() ? h.where : h.NameAtPlace());
     }
     if (!d_.partner) {
       d_.verdict.text = "named";
-      d_.verdict.reason = "it leaves " + LeftInWords(d_.lack.smallest(), Rules());
+      d_.verdict.reason = d_.noise_limited
+                              ? "it leaves " + LeftInWords(d_.lack.smallest(), Rules())
+                              : "it passes all rules and is clearly better than every other effect";
     } else if (d_.partner->equivalent.empty()) {
       d_.verdict.text = "named";
     }

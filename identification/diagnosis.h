@@ -120,6 +120,8 @@ struct Diagnosis {
   Verdict verdict;          ///< indices into candidates
   FoldScores ceiling;       ///< what a smooth force without a name reaches; empty: noise-limited
   TwoErrors ceiling_error;  ///< of the same; the noise where that is all that is left
+  std::optional<CandidateResult>
+      fallback;  ///< where nothing explains it (identification/fallback.h)
   NextExperiment next;
   double gain_low = 0, gain_high = 0;  ///< 95 % interval, over held-out trials or the folds
   double seconds = 0;

@@ -107,6 +107,17 @@ nlohmann::json PartnerJson(const Diagnosis& d) {
           {"evidence", "consistent with the data: " + d.verdict.reason}};
 }
 
+nlohmann::json FallbackJson(const Diagnosis& d) {
+  if (!d.fallback) return nullptr;
+  const CandidateResult& c = *d.fallback;
+  return {{"label", "no cause: a smooth force that was fitted to what is left"},
+          {"where", c.hypothesis.where},
+          {"model", kFallbackModel},
+          {"experiment", kFallbackExperiment},
+          {"folds", c.record.after},
+          {"error", {{"train", c.fitted.error.train}, {"validate", c.fitted.error.validate}}}};
+}
+
 nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
                          const std::vector<std::string>& equivalent) {
   const auto falls = std::count_if(
@@ -138,6 +149,13 @@ nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
 }
 
 }  // namespace
+
+std::string FallbackInWords(const Diagnosis& d) {
+  const CandidateResult& c = *d.fallback;
+  return fmt::format(
+      "no cause, but a smooth force at {} takes {:.0f} % off the error in the median of the folds",
+      c.hypothesis.where, 100 * Median(Gains(c.record)));
+}
 
 std::vector<Wrong> FindWrong(const Experiment& e, const std::vector<Trace>& before) {
   struct Item {
@@ -212,6 +230,7 @@ double Separation(const Diagnosis& d) {
   if (d.noise_limited) return std::abs(d.candidates[0].likelihood - d.candidates[1].likelihood);
   const auto& a = d.candidates[0].record;
   const auto& b = d.candidates[1].record;
+  if (b.after.empty()) return 0;
   const double n = static_cast<double>(a.after.size());
   double mean = 0, squares = 0;
   for (std::size_t f = 0; f < a.after.size(); ++f) mean += (b.after[f] - a.after[f]) / n;
@@ -220,6 +239,23 @@ double Separation(const Diagnosis& d) {
   }
   return squares > 0 ? std::abs(mean) / std::sqrt(squares / (n - 1) / n) : 0;
 }
+
+namespace {
+
+// Or takes away what an earlier diagnosis left there.
+void WriteFallback(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder) {
+  if (!d.fallback) {
+    std::filesystem::remove(folder / kFallbackModel);
+    std::filesystem::remove(folder / kFallbackExperiment);
+    return;
+  }
+  const CandidateResult& c = *d.fallback;
+  const Extension files = Extend(c.ProblemOf(e), c.fitted.fit.x, folder, kFallbackModel);
+  WriteFile(folder / kFallbackModel, files.xml);
+  WriteFile(folder / kFallbackExperiment, files.yaml);
+}
+
+}  // namespace
 
 Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder) {
   MakeFolder(folder);
@@ -231,6 +267,7 @@ Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesyst
   const Extension extension = Extend(problem, x, folder);
   WriteFile(folder / "extended.xml", extension.xml);
   WriteFile(folder / "extended.yaml", extension.yaml);
+  WriteFallback(e, d, folder);
   told.difference = LineDiff(d.system.Xml({}, {}, folder), extension.xml);
 
   Experiment extended = Experiment::Read(folder / "extended.yaml");
@@ -351,6 +388,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
   json["extension"] = ChangesJson(problem, fitted.fit.x, AddedBy(d));
   json["extended_model"] = "extended.xml";
   json["extended_experiment"] = "extended.yaml";
+  json["fallback"] = FallbackJson(d);
   json["seconds"] = d.seconds;
   return json;
 }
@@ -412,6 +450,9 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
     const Wrong& w = told.wrong[i];
     text +=
         fmt::format("wrong     {} {} at {}: the simulation {}\n", w.log, w.channel, w.when, w.what);
+  }
+  if (d.fallback) {
+    text += fmt::format("fallback  {}, in {}\n", FallbackInWords(d), kFallbackModel);
   }
   text += Ranking(d);
   if (d.verdict.named.size() > 1)

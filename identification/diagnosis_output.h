@@ -17,6 +17,11 @@ struct Wrong {
 };
 std::vector<Wrong> FindWrong(const Experiment& experiment, const std::vector<Trace>& before);
 
+/// Files of the fallback, where there is one.
+inline constexpr char kFallbackModel[] = "fallback.xml", kFallbackExperiment[] = "fallback.yaml";
+/// What the fallback reaches: "no cause, but ...".
+std::string FallbackInWords(const Diagnosis& d);
+
 /// What the files of a diagnosis need beyond it.
 struct Told {
   TwoErrors after;  ///< of extended.xml with extended.yaml, as written

@@ -246,6 +246,12 @@ class Story {
         over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited",
         100 * ShareReached(d_, told_.after),
         d_.noise_limited ? "lies above the noise" : "a smooth force without a name reaches"));
+    if (d_.fallback) {
+      page_.Paragraph(
+          "There is " + FallbackInWords(d_) + ". `" + kFallbackModel +
+          "` has it as a formula: something to simulate with where these logs went, and "
+          "no explanation. It remembers nothing.");
+    }
     page_.Details("All logs", [&] {
       for (std::size_t l = 0; l < e_.logs.size(); ++l) Overlay(l);
     });
@@ -262,7 +268,11 @@ class Story {
             : "A cause is named when the error falls in at least 80 % of the folds and by at least "
               "10 % in the median, its size agrees over the folds within 30 %, it beats 95 % of "
               "random smooth forces with as many parameters, and it is clearly better than every "
-              "other candidate in paired folds. No probability is given: on such data none would "
+              "other candidate in paired folds: by more than one standard error and by more than 5 "
+              "% "
+              "of the other's error, or what 95 % of those forces take off. Of a law and one that "
+              "contains it the plainer is named, unless it is clearly worse. No probability is "
+              "given: on such data none would "
               "be calibrated.",
         fmt::format("The model's own time step moves the trajectories by {:.3g} {} (h against "
                     "h/4); nothing smaller is "

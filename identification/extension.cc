@@ -123,10 +123,10 @@ std::string ParameterYaml(const Problem& problem, const FreeParameter& p, double
 }  // namespace
 
 Extension Extend(const Problem& problem, const Problem::Vector& x,
-                 const std::filesystem::path& folder) {
+                 const std::filesystem::path& folder, const std::string& model) {
   const Experiment& e = problem.experiment();
   const Experiment measured = problem.MeasuredBy(x, 0);
-  std::string y = "format: 1\nmodel: extended.xml\nlogs:\n";
+  std::string y = "format: 1\nmodel: " + model + "\nlogs:\n";
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     const Log& log = e.logs[l];
     y += fmt::format("  - {{file: {}", Quoted(RelativePath(log.file, folder).string()));

@@ -9,14 +9,14 @@
 
 namespace continuum {
 
-/// The extended model as files: extended.xml (the hypothesis' system with its fitted values) and
-/// extended.yaml, the experiment that belongs to it. Values that logs set themselves are written as
+/// The extended model as files: model (the hypothesis' system with its fitted values) and the
+/// experiment that belongs to it. Values that logs set themselves are written as
 /// they are after the fit, so that both files together simulate what was fitted.
 struct Extension {
   std::string xml, yaml;
 };
 Extension Extend(const Problem& problem, const Problem::Vector& x,
-                 const std::filesystem::path& folder);
+                 const std::filesystem::path& folder, const std::string& model = "extended.xml");
 
 /// A plugin instance that an extension adds (native effects have none: no effect), and the name of
 /// the one whose place it takes, if any.

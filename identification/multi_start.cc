@@ -4,11 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include <fmt/format.h>
 
 #include "error.h"
+#include "identification/random.h"
 #include "sim/stop.h"
 
 namespace continuum {
@@ -16,20 +16,17 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The same on every library.
-double Uniform(std::mt19937_64& rng) { return (static_cast<double>(rng() >> 11) + 0.5) * 0x1p-53; }
-
 double Drawn(const FreeParameter& p, double share) {
   constexpr double kWide = 10;  // of the bounds: their sizes matter, not their difference
   if (p.lower > 0 && p.upper > kWide * p.lower) return p.lower * std::pow(p.upper / p.lower, share);
   return p.lower + share * (p.upper - p.lower);
 }
 
-Problem::Vector RandomStart(const Problem& problem, std::mt19937_64& rng) {
+Problem::Vector RandomStart(const Problem& problem, Random& random) {
   Problem::Vector x = problem.Start();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
-    if (!p.IsStart()) x[i] = Drawn(p, Uniform(rng));
+    if (!p.IsStart()) x[i] = Drawn(p, random.Uniform());
   }
   return problem.Clamp(x);
 }
@@ -51,12 +48,12 @@ MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
                        const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t before = problem.evaluations();
-  std::mt19937_64 rng(seed);
+  Random random(seed);
   MultiStart all;
   all.best.cost = kInfinity;
   for (int k = 0; k < starts && !StopRequested(); ++k) {
     if (options.progress) options.progress(fmt::format("start {} of {}", k + 1, starts));
-    all.starts.push_back({k == 0 ? x : RandomStart(problem, rng), kInfinity});
+    all.starts.push_back({k == 0 ? x : RandomStart(problem, random), kInfinity});
     FitOptions own = options;
     own.hopeless = all.best.cost;
     own.idle |= k > 0;  // far away a parameter may have none

@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
+
+#include "identification/random.h"
 
 namespace continuum {
 
@@ -11,17 +12,13 @@ ForceTerms RandomForce(std::size_t count, bool loaded, const Sizes& sizes, std::
   struct Term {
     double angle, speed, load, phase;
   };
-  std::mt19937_64 rng(seed);
-  const auto uniform = [&] { return (static_cast<double>(rng() >> 11) + 0.5) * 0x1p-53; };
-  const auto normal = [&] {  // Box-Muller, so that every library gives the same numbers
-    return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform());
-  };
+  Random random(seed);
   std::vector<Term> terms(count);
   for (Term& t : terms) {
-    t.angle = 2 * normal() / (0.5 * sizes.angle);
-    t.speed = normal() / sizes.velocity;
-    t.load = loaded ? normal() / sizes.torque : 0;
-    t.phase = 2 * std::numbers::pi * uniform();
+    t.angle = 2 * random.Normal() / (0.5 * sizes.angle);
+    t.speed = random.Normal() / sizes.velocity;
+    t.load = loaded ? random.Normal() / sizes.torque : 0;
+    t.phase = 2 * std::numbers::pi * random.Uniform();
   }
   const auto add = [terms](const mjModel& m, mjData& d, std::span<const double> theta) {
     for (int j = 0; j < m.njnt; ++j) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <random>
 
 #include <Eigen/Dense>
+
+#include "identification/random.h"
 
 namespace continuum {
 namespace {
@@ -50,18 +50,6 @@ void Limit(Matrix& A, Vector& r, Eigen::Index free, std::vector<double> most) {
     most.erase(most.begin() + worst);
   }
 }
-
-class Normals {
- public:
-  explicit Normals(std::uint64_t seed) : rng_(seed) {}
-  double Next() {  // Box-Muller, so that every library gives the same numbers
-    return std::sqrt(-2 * std::log(Uniform())) * std::cos(2 * std::numbers::pi * Uniform());
-  }
-
- private:
-  double Uniform() { return (static_cast<double>(rng_() >> 11) + 0.5) * 0x1p-53; }
-  std::mt19937_64 rng_;
-};
 
 // A candidate in the few dimensions that any candidate reaches.
 struct Small {
@@ -191,14 +179,14 @@ Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, c
   for (std::size_t c = 0; c < small.size(); ++c)
     out.explained[c] = small[c].Best(here, &out.best[c]);
 
-  Normals normals(seed);
+  Random random(seed);
   Matrix draws(static_cast<Eigen::Index>(small.size()), count);
   for (int d = 0; d < count; ++d) {
     Vector noise(Q.cols());
     if (given.cols() > 0) {
       noise = Q.transpose() * given.col(d);
     } else {
-      for (double& v : noise) v = normals.Next();
+      for (double& v : noise) v = random.Normal();
     }
     for (std::size_t c = 0; c < small.size(); ++c) draws(c, d) = small[c].Best(noise);
   }
