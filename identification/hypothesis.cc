@@ -271,7 +271,7 @@ Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
   return h;
 }
 
-// All outputs of one unit together, and each alone.
+// All outputs of one unit together, and each alone. Late ones also all together: as the input is.
 void AddMeasure(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
                 const System& system, const Sizes& sizes, std::vector<Hypothesis>& all) {
   if (effect.params.front().name == "skew") {
@@ -292,6 +292,10 @@ void AddMeasure(const EffectInfo& effect, const Candidate& wanted, const Experim
     const std::string& name = turned ? sensor : out.name();
     if (std::find(group.begin(), group.end(), name) == group.end()) group.push_back(name);
   }
+  std::vector<std::string> every;
+  for (const auto& [unit, names] : groups) every.insert(every.end(), names.begin(), names.end());
+  if (groups.size() > 1 && effect.params.front().name == "delay")
+    all.push_back(MeasureCandidate(effect, "sensor:" + Join(every), every, e, system, sizes));
   for (const auto& [unit, names] : groups) {
     if (names.size() > 1)
       all.push_back(MeasureCandidate(effect, "sensor:" + Join(names), names, e, system, sizes));

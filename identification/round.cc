@@ -251,6 +251,7 @@ Problem::Vector Round::BestOf(const Problem& problem,
                               const std::vector<Problem::Vector>& starts) const {
   if (starts.size() == 1) return starts.front();
   FitOptions options{4, 1e-3};
+  options.idle = true;
   if (trials_.whitening.active()) options.whitening = &trials_.whitening;
   double best_cost = std::numeric_limits<double>::infinity();
   Problem::Vector best;

@@ -113,6 +113,21 @@ TEST_F(Suite, ALargeOneStaysAlone) {
   ExpectNamedWithItsSize({{"sensor_delay"}, 4, NoiseKind::kWhite, 146});
 }
 
+Case Background(const std::vector<std::string>& effects, std::uint64_t seed) {
+  Case c{effects, 1, NoiseKind::kWhite, seed};
+  c.background = true;
+  return c;
+}
+
+// Much is a little wrong, and one thing more so. Of eighteen effects the large run says how many.
+TEST_F(Suite, OneCauseStandsOutOfMuchThatIsWrong) {
+  const Answer a = Ask(Background({"armature"}, 6001));
+  EXPECT_TRUE(InSet(Background({"armature"}, 6001), a)) << told_;
+}
+TEST_F(Suite, MuchThatIsWrongIsNoCause) {
+  EXPECT_FALSE(Unique(Ask(Background({}, 6002)))) << told_;
+}
+
 Case White(const std::string& robot, const std::string& effect, double factor, std::uint64_t seed) {
   return {{effect}, factor, NoiseKind::kWhite, seed, true, false, robot};
 }

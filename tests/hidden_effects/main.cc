@@ -87,6 +87,21 @@ std::vector<Case> BackgroundCases(int repeats) {
   return all;
 }
 
+// Logs that are wrong themselves, with nothing hidden.
+std::vector<Case> SpoiltCases(int repeats) {
+  std::vector<Case> all;
+  for (int r = 0; r < repeats; ++r) {
+    for (const char* const how : {"turned", "late", "flipped", "exchanged"}) {
+      for (int kind = 0; kind < 5; ++kind) {
+        Case c{{}, 1, static_cast<NoiseKind>(kind), 7000 + all.size()};
+        c.spoilt = how;
+        all.push_back(std::move(c));
+      }
+    }
+  }
+  return all;
+}
+
 // Those with one hidden effect, which alone is tried: for its size and interval, at little cost.
 std::vector<Case> Told(std::vector<Case> cases) {
   std::erase_if(cases, [](const Case& c) { return c.effects.size() != 1 || !c.listed; });
@@ -194,13 +209,16 @@ int Main(int argc, char** argv) {
   CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
   std::string out, only, keep, robot = "arm";
   int repeats = 1;
-  bool write = false, verbose = false, told = false, quick = false, background = false;
+  bool write = false, verbose = false, told = false, quick = false, background = false,
+       spoilt = false;
   app.add_option("--out", out, "one JSON line per case")->required();
   app.add_option("--robot", robot, "arm, servo, silverbox, bouc_wen, spa or annelida")
       ->capture_default_str();
   app.add_flag("--quick", quick, "white noise, two sizes of every effect, nothing hidden twice");
   app.add_flag("--background", background,
                "one log in windows, in which much else is wrong too, of the arm");
+  app.add_flag("--spoilt", spoilt,
+               "logs of the arm that are turned, late, of flipped or of other inputs");
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
   app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
@@ -213,6 +231,7 @@ int Main(int argc, char** argv) {
   const auto temporary =
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
   auto cases = background ? BackgroundCases(repeats)
+               : spoilt   ? SpoiltCases(repeats)
                : quick    ? QuickCases(robot)
                           : Cases(robot, repeats);
   if (told) cases = Told(std::move(cases));

@@ -1,6 +1,8 @@
 #include "hidden_effects/suite.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -19,6 +21,26 @@ std::string LogLine(const Robot& robot, int trial, const std::string& name) {
   const std::string set = robot.conditions.empty() ? "" : ", " + robot.conditions[trial];
   return fmt::format("  - {{file: {}.csv, trial: trial{}, use: {}{}}}\n", name, trial,
                      trial + 1 < robot.trials ? "train" : "validate", set);
+}
+
+void Spoil(const std::string& how, Columns& u, Columns& y) {
+  constexpr double kTurn = 5 * std::numbers::pi / 180;
+  if (how == "flipped") {
+    for (auto& column : u) {
+      for (double& value : column) value = -value;
+    }
+  } else if (how == "late") {  // a row
+    for (auto& column : y) {
+      column.insert(column.begin(), column.front());
+      column.pop_back();
+    }
+  } else if (how == "turned") {
+    for (std::size_t k = 0; k < y[2].size(); ++k) {
+      const double x = y[2][k], z = y[3][k];
+      y[2][k] = std::cos(kTurn) * x - std::sin(kTurn) * z;
+      y[3][k] = std::sin(kTurn) * x + std::cos(kTurn) * z;
+    }
+  }
 }
 
 // Whether a name is in both.
@@ -72,6 +94,7 @@ std::string Case::Name() const {
   if (text.empty()) text = "none";
   if (robot != "arm") text = robot + " " + text;
   if (background) text = "background " + text;
+  if (!spoilt.empty()) text = spoilt + " " + text;
   return fmt::format("{} x{:g} {} seed {}{}", text, factor, kNoiseNames[static_cast<int>(noise)],
                      seed,
                      told     ? " told"
@@ -88,9 +111,12 @@ std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& fold
   MakeFolder(folder);
   WriteFile(folder / "robot.xml", robot.model);
   std::string logs;
+  std::mt19937_64 elsewhere(~c.seed);
   for (int trial = 0; trial < robot.trials; ++trial) {
-    const Columns u = robot.drive(trial, rng);
-    const Columns y = robot.run(hidden, trial, u);
+    Columns u = robot.drive(trial, rng);
+    Columns y = robot.run(hidden, trial, u);
+    if (c.spoilt == "exchanged") u = robot.drive(trial, elsewhere);
+    Spoil(c.spoilt, u, y);
     for (int replicate = 0; replicate < kReplicates; ++replicate) {
       Columns noisy = y;
       for (std::size_t i = 0; i < noisy.size(); ++i)

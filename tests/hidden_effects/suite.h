@@ -20,6 +20,9 @@ struct Case {
   bool told = false;   ///< whether nothing else is
   std::string robot = "arm";
   bool background = false;  ///< of the background suite (WriteBackground)
+  /// What is wrong with the logs, of the arm: "turned" by 5 deg as its tip is seen, "late" by 10
+  /// ms, inputs "flipped" in sign or "exchanged" for others; empty: nothing.
+  std::string spoilt = "";
 
   std::string Name() const;
 };
