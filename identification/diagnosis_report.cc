@@ -268,9 +268,10 @@ class Story {
             : "A cause is named when the error falls in at least 80 % of the folds and by at least "
               "10 % in the median, its size agrees over the folds within 30 %, it beats 95 % of "
               "random smooth forces with as many parameters, and it is clearly better than every "
-              "other candidate in paired folds: by more than one standard error and by more than 5 "
-              "% "
-              "of the other's error, or what 95 % of those forces take off. Of a law and one that "
+              "other candidate in paired folds: in 80 % of them, by more than one standard error "
+              "and "
+              "by more than 5 % of the other's error, or what 95 % of those forces take off. Of a "
+              "law and one that "
               "contains it the plainer is named, unless it is clearly worse. No probability is "
               "given: on such data none would "
               "be calibrated.",

@@ -80,7 +80,9 @@ bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin) {
   }
   for (const double d : difference) squares += (d - mean) * (d - mean);
   const double error = std::sqrt(squares / static_cast<double>(n - 1) / static_cast<double>(n));
-  return mean > error && 2 * wins > n && Median(removed) > margin;
+  const bool mostly =
+      static_cast<double>(wins) >= Rules{}.folds_better * static_cast<double>(n) - 1e-9;
+  return mean > error && mostly && Median(removed) > margin;
 }
 
 namespace {

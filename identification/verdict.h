@@ -18,7 +18,7 @@ struct FoldRecord {
 
 /// The rules of a name on model-limited data.
 struct Rules {
-  double folds_better = 0.8;      ///< share of folds in which the error must fall
+  double folds_better = 0.8;      ///< share of folds in which the error must fall, or be less
   double median_gain = 0.10;      ///< and by how much in the median
   double fit_gain = 0.05;         ///< and where it was fitted, to be worth the folds
   double amplitude_spread = 0.3;  ///< over the folds, about its median, with one sign
@@ -44,7 +44,7 @@ double Beaten(const FoldRecord& candidate, const std::vector<double>& placebo_ga
 std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules = {});
 
 /// Whether a is better than b in paired folds: by more than one standard error of the mean
-/// difference, in most of them, and by more than a margin in the median.
+/// difference, in four of five of them, and by more than a margin in the median.
 bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin = 0);
 
 /// One candidate where noise is all that its fit leaves.

@@ -164,8 +164,10 @@ TEST(ClearlyBetter, NeedsMoreThanOneStandardErrorOfThePairedDifference) {
   };
   shift(0.034, 0.1);
   EXPECT_FALSE(ClearlyBetter(a, b));  // five wins of ten
-  b.after[0] += 0.2;                  // sixth win
-  EXPECT_TRUE(ClearlyBetter(a, b));
+  b.after[0] += 0.2, b.after[2] += 0.2;
+  EXPECT_FALSE(ClearlyBetter(a, b));  // seven
+  b.after[4] += 0.2;
+  EXPECT_TRUE(ClearlyBetter(a, b));  // eight
   EXPECT_FALSE(ClearlyBetter(b, a));
   shift(0.1, 0.05);
   EXPECT_TRUE(ClearlyBetter(a, b));
