@@ -149,6 +149,13 @@ class Story {
       for (const auto& f : c.failures) why += (why.empty() ? "" : "; ") + f;
       if (!why.empty()) items.push_back("**" + c.hypothesis.NameAtPlace() + "**: " + why + ".");
     }
+    for (const Dismissed& c : d_.dismissed) {
+      if (d_.noise_limited) break;  // in the table of likelihoods
+      items.push_back(
+          fmt::format("**{} at {}**: explains {:.1f} % of the squared error to first order, and "
+                      "was not fitted.",
+                      c.effect, c.where, 100 * c.explained / d_.before.cost));
+    }
     page_.Details("Why the others are not named", [&] { page_.List(items); });
     if (d_.verdict.named.size() > 1) {
       page_.Heading("The next experiment", 3);
