@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "identification/between.h"
 #include "identification/extension.h"
 #include "identification/fit_output.h"
 #include "sim/file.h"
@@ -107,6 +108,12 @@ nlohmann::json PartnerJson(const Diagnosis& d) {
           {"evidence", "consistent with the data: " + d.verdict.reason}};
 }
 
+// Of one fit; null where no trial was run under two conditions.
+nlohmann::json BetweenJson(const Experiment& e, const Diagnosis& d, const Fitted& fitted) {
+  const double between = BetweenConditions(Problem(e, d.system), fitted.residuals);
+  return std::isnan(between) ? nlohmann::json(nullptr) : nlohmann::json(between);
+}
+
 nlohmann::json FallbackJson(const Diagnosis& d) {
   if (!d.fallback) return nullptr;
   const CandidateResult& c = *d.fallback;
@@ -149,6 +156,24 @@ nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
 }
 
 }  // namespace
+
+std::string BetweenInWords(const Experiment& e, const Diagnosis& d) {
+  const Problem problem(e, d.system);
+  const double before = BetweenConditions(problem, d.before.residuals);
+  if (std::isnan(before)) return "";
+  const auto after = [&](const CandidateResult& c) {
+    return BetweenConditions(problem, c.fitted.residuals);
+  };
+  std::string text = fmt::format("the conditions' runs are {:.4g} {} apart beyond the model",
+                                 before, d.pool.unit());
+  const auto best =
+      std::min_element(d.candidates.begin(), d.candidates.end(),
+                       [&](const auto& a, const auto& b) { return after(a) < after(b); });
+  if (best != d.candidates.end()) {
+    text += fmt::format(", {:.4g} with {}", after(*best), best->hypothesis.NameAtPlace());
+  }
+  return text + "; what it gets wrong in both cancels";
+}
 
 std::string FallbackInWords(const Diagnosis& d) {
   const CandidateResult& c = *d.fallback;
@@ -312,6 +337,9 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
   json["gain"] = {{"validate_error_removed", gain.removed},
                   {"ci95", {d.gain_low, d.gain_high}},
                   {"explainable_error_removed", gain.explainable}};
+  const Fitted& standing = d.chosen() ? d.chosen()->fitted : d.before;
+  json["between_conditions"] = {{"before", BetweenJson(e, d, d.before)},
+                                {"after", BetweenJson(e, d, standing)}};
   json["wrong"] = nlohmann::json::array();
   for (const Wrong& w : told.wrong) {
     json["wrong"].push_back(
@@ -364,6 +392,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
          {"amplitude", c.record.amplitude},
          {"placebos", p},
          {"fails", c.failures},
+         {"between_conditions", BetweenJson(e, d, c.fitted)},
          {"error", {{"train", c.fitted.error.train}, {"validate", c.fitted.error.validate}}}});
   }
   for (const Dismissed& c : d.dismissed) {
@@ -451,6 +480,8 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
     text +=
         fmt::format("wrong     {} {} at {}: the simulation {}\n", w.log, w.channel, w.when, w.what);
   }
+  if (const std::string between = BetweenInWords(e, d); !between.empty())
+    text += "between   " + between + "\n";
   if (d.fallback) {
     text += fmt::format("fallback  {}, in {}\n", FallbackInWords(d), kFallbackModel);
   }

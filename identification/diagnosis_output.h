@@ -22,6 +22,10 @@ inline constexpr char kFallbackModel[] = "fallback.xml", kFallbackExperiment[] =
 /// What the fallback reaches: "no cause, but ...".
 std::string FallbackInWords(const Diagnosis& d);
 
+/// How far runs under different conditions are apart before, and with the candidate that does best
+/// there; empty where no trial was run under two.
+std::string BetweenInWords(const Experiment& experiment, const Diagnosis& d);
+
 /// What the files of a diagnosis need beyond it.
 struct Told {
   TwoErrors after;  ///< of extended.xml with extended.yaml, as written

@@ -242,6 +242,8 @@ class Story {
             "explainable above the noise.",
             d_.noise.rms, unit_, d_.noise.source, 100 * gain.removed, 100 * d_.gain_low,
             100 * d_.gain_high, 100 * gain.explainable)});
+    if (const std::string between = BetweenInWords(e_, d_); !between.empty())
+      page_.Paragraph("Between conditions: " + between + ".");
   }
 
   void WhatIsLeft() {

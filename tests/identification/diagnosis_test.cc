@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "error.h"
+#include "identification/between.h"
 #include "identification/diagnosis_output.h"
 #include "identification/next_experiment.h"
 #include "pendulum.h"
@@ -230,6 +232,7 @@ TEST_F(DiagnosisTest, APlaceThatIsNotThereIsAnError) {
 class PerCondition : public DiagnosisTest {
  protected:
   void AddConditions() {
+    unsigned seed = 0;
     for (const auto& [name, payload] : {std::pair{"empty", 0.02}, {"loaded", 0.08}}) {
       Pendulum truth;
       truth.payload = payload;
@@ -238,10 +241,10 @@ class PerCondition : public DiagnosisTest {
         const auto q = truth.Run(u, testing::kPeriod);
         const std::string log = name + std::to_string(t);
         for (int replicate = 0; replicate < 2; ++replicate) {
-          AddLog(
-              log + "_" + std::to_string(replicate),
-              "trial: " + log + ", use: " + (t < 2 ? "train" : "validate") + ", condition: " + name,
-              u, Noisy(q, kNoise, 0, static_cast<unsigned>(10 * t + replicate)));
+          AddLog(log + "_" + std::to_string(replicate),
+                 fmt::format("trial: t{}, use: {}, condition: {}", t, t < 2 ? "train" : "validate",
+                             name),
+                 u, Noisy(q, kNoise, 0, seed++));
         }
       }
     }
@@ -259,7 +262,11 @@ TEST_F(PerCondition, EachGetsItsOwnValue) {
   EXPECT_EQ(c.hypothesis.extra[1].name, "mass[loaded]");
   EXPECT_NEAR(c.fitted.fit.x[c.own()], 0.02, 0.002);
   EXPECT_NEAR(c.fitted.fit.x[c.own() + 1], 0.08, 0.002);
+  const Problem problem(e, d.system);
+  EXPECT_NEAR(BetweenConditions(problem, c.fitted.residuals), kNoise, 0.2 * kNoise);
+  EXPECT_GT(BetweenConditions(problem, d.before.residuals), 5 * kNoise);
   const auto told = WriteDiagnosis(e, d, folder_ / "out");  // by extended.yaml
+  EXPECT_THAT(Summary(e, d, told), HasSubstr("between   the conditions' runs are"));
   EXPECT_NEAR(told.after.validate, d.after().validate, 0.02 * d.after().validate);
 }
 
