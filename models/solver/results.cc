@@ -79,7 +79,8 @@ std::string Results::Json() const {
     for (std::size_t i = 0; i < row.size(); ++i) object[columns_[i]] = JsonCell(row[i]);
     rows.push_back(std::move(object));
   }
-  return rows.dump(1) + "\n";
+  // A name may be of any bytes; JSON is UTF-8.
+  return rows.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 void Results::Write(const std::filesystem::path& path) const {

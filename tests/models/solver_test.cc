@@ -206,6 +206,9 @@ TEST(Results, KeepEveryDigitAndLeaveFailuresEmpty) {
             "\"a, \"\"b\"\"\",ok,3,1e-13,2.5,0.3333333333333333\n"
             "c,no_convergence,60,,9,\n");
   EXPECT_THAT(results.Json(), HasSubstr("\"x\": null"));
+  results.Set("case", "F\xE4lle");  // Latin-1
+  EXPECT_THAT(results.Csv(), HasSubstr("F\xE4lle"));
+  EXPECT_THAT(results.Json(), HasSubstr("F\xEF\xBF\xBDlle"));
   EXPECT_THROW(results.Set("y", 1.0), Error);
   EXPECT_THROW(results.Write("results.txt"), Error);
 }
