@@ -100,6 +100,10 @@ bool Table::Has(std::string_view column) const {
   return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
 }
 
+void Table::RequireRows() const {
+  if (rows() == 0) throw Error::Input(name_, "one row or more", "only a header");
+}
+
 std::size_t Table::Column(std::string_view column) const {
   const auto c = std::find(columns_.begin(), columns_.end(), column);
   if (c != columns_.end()) return static_cast<std::size_t>(c - columns_.begin());

@@ -23,6 +23,8 @@ class Table {
   const std::vector<std::string>& columns() const { return columns_; }
   std::size_t rows() const { return cells_.size(); }
   bool Has(std::string_view column) const;
+  /// Throws Error when there is only a header.
+  void RequireRows() const;
 
   /// "file:line" of a row, for messages.
   std::string Where(std::size_t row) const;

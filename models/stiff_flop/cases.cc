@@ -75,6 +75,7 @@ std::string Name(Status status) {
 Cases Cases::Read(const std::filesystem::path& file, const Eigen::Vector3d& gravity) {
   const Table table = Table::Read(file);
   RefuseUnknown(table);
+  table.RequireRows();
   Cases cases{DirectionOf(table), {}};
   const bool inverse = cases.direction == Direction::kInverse;
   for (std::size_t row = 0; row < table.rows(); ++row) {

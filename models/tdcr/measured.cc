@@ -60,6 +60,7 @@ int Measured::count() const {
 
 std::vector<Measured> ReadMeasured(const Table& table, int disks) {
   RejectUnknownDisks(table, disks);
+  table.RequireRows();
   std::vector<bool> present;
   for (int i = 1; i <= disks; ++i) {
     present.push_back(

@@ -134,6 +134,7 @@ std::vector<Case> ReadCases(const Table& table, const Robot& robot) {
   std::vector<std::string> needed{"case", "fx", "fy", "fz"};
   for (int k = 1; k <= robot.tendons; ++k) needed.push_back("T" + std::to_string(k));
   HasVector(table, needed);
+  table.RequireRows();
   const bool gravity = HasVector(table, {"gx", "gy", "gz"});
   const bool mu = table.Has("mu");
   std::vector<Case> cases(table.rows());

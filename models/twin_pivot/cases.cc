@@ -100,7 +100,7 @@ std::vector<Case> ReadCases(const std::filesystem::path& file, const Robot& robo
   const Table table = Table::Read(file);
   const std::vector<std::string> columns = LoadColumns(table, robot.Cables());
   RequireColumns(table, columns);
-  if (table.rows() == 0) throw Error::Input(table.name(), "one case or more", "only a header");
+  table.RequireRows();
   std::vector<Case> cases;
   std::map<std::string, int> earlier;
   for (std::size_t row = 0; row < table.rows(); ++row) {

@@ -150,6 +150,8 @@ TEST_F(StiffFlopSolve, BadCellsAreNamed) {
   EXPECT_THAT(Refusal(), HasSubstr("cases.csv:2, column 'kappa': expected a number >= 0"));
   Cases("kappa,phi,lambda_l\n1,0,0\n");
   EXPECT_THAT(Refusal(), HasSubstr("'lambda_l': expected a number > 0"));
+  Cases("p1,p2,p3\n");
+  EXPECT_THAT(Refusal(), HasSubstr("cases.csv: expected one row or more"));
 }
 
 TEST_F(StiffFlopSolve, BadRobotsAreRefused) {

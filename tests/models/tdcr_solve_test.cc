@@ -121,6 +121,7 @@ TEST_F(TdcrSolve, BadCasesAreNamedWithLineAndColumn) {
               HasSubstr("cases.csv:3, column 'T3'"));
   EXPECT_THAT(MessageOfCases(header + "a,1,0,0,nan,0,0\n"), HasSubstr("a finite number"));
   EXPECT_THAT(MessageOfCases(header + "a,1e300,0,0,0,0,0\n"), HasSubstr("column 'T1'"));
+  EXPECT_THAT(MessageOfCases(header), HasSubstr("cases.csv: expected one row or more"));
   EXPECT_THAT(MessageOfCases("case,T1,T2,fx,fy,fz\na,1,1,0,0,0\n"), HasSubstr("'T3'"));
   EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,mu\na,1,1,0,0,0,0,1\n"),
               HasSubstr("0 <= mu < 1"));
