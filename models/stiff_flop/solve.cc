@@ -1,5 +1,7 @@
 #include "models/solver/solve.h"
 
+#include <fmt/format.h>
+
 #include <initializer_list>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "models/solver/results.h"
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
+#include "sim/yaml.h"
 
 namespace continuum {
 namespace {
@@ -31,6 +34,16 @@ void RefuseOptions(const SolveRequest& request) {
 
 void Append(Names& names, std::initializer_list<const char*> more) {
   names.insert(names.end(), more.begin(), more.end());
+}
+
+// The radius where it is a diameter, for one.
+void WarnOfTubesOutsideTheWall(const SolveRequest& request, const Robot& robot) {
+  const Module& m = robot.module;
+  if (m.r_o + m.r_c2 <= m.r_2 && m.r_o - m.r_c2 >= m.r_1) return;
+  const Yaml r_o = Yaml::Read(request.robot).At("modules").At(robot.name).At("r_o");
+  request.warn(
+      fmt::format("{}: tubes from {:.3g} to {:.3g} m, not within the wall, {:.3g} to {:.3g} m",
+                  r_o.Where(), m.r_o - m.r_c2, m.r_o + m.r_c2, m.r_1, m.r_2));
 }
 
 Names SensitivityColumns(Direction direction) {
@@ -109,6 +122,7 @@ int SolveStiffFlop(const SolveRequest& request) {
   RefuseOptions(request);
   const Robot robot = Robot::Read(request.robot);
   const Cases cases = Cases::Read(request.input, robot.gravity);
+  WarnOfTubesOutsideTheWall(request, robot);
   const Method method = Method::Parse(request.method, cases.direction);
   solver::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) {

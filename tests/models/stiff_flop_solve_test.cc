@@ -165,6 +165,21 @@ TEST_F(StiffFlopSolve, BadRobotsAreRefused) {
   EXPECT_THAT(RobotRefusal("    l_fs:", "    length: 3\n    l_fs:"), HasSubstr("length"));
 }
 
+// Table 1 prints the diameter of the circle, 18 mm.
+TEST_F(StiffFlopSolve, TubesOutsideTheWallAreNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  Cases("p1,p2,p3\n0,0,0\n");
+  Solved(0);
+  EXPECT_THAT(heard, testing::IsEmpty());
+  std::string text = ReadFile(kRobot);
+  WriteFile(folder_ / "robot.yaml", text.replace(text.find("value: 9.0e-3"), 13, "value: 18.0e-3"));
+  request_.robot = folder_ / "robot.yaml";
+  Solved(0);
+  EXPECT_THAT(heard, ElementsAre(testing::AllOf(HasSubstr("robot.yaml:11: modules.a.r_o"),
+                                                HasSubstr("0.015 to 0.021 m"))));
+}
+
 TEST_F(StiffFlopSolve, PlainNumbersAreReadToo) {
   WriteFile(folder_ / "plain.yaml",
             "format: 1\nmodel: stiff_flop\nmodule: a\ngravity: [0, 9.81, 0]\nmodules:\n"
