@@ -1,5 +1,7 @@
 #include "models/tdcr/calibrate.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <limits>
 #include <map>
@@ -196,14 +198,21 @@ Eigen::VectorXd StandardErrors(const Eigen::MatrixXd& jacobian, double squares,
 
 }  // namespace
 
-Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>& pairs) {
+Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>& pairs,
+                      const std::string& file) {
   const CalibrationProblem problem(robot, method, pairs);
+  if (problem.equations() < problem.unknowns()) {
+    throw Error::Input(
+        file,
+        fmt::format("at least {} measured coordinates for as many unknowns", problem.unknowns()),
+        fmt::format("{}", problem.equations()));
+  }
   const auto bounds = Limits(problem.unknowns());
   solver::Options options;
   options.tolerance = 0;
   options.gradient = 1e-9;  // of the differences in E and mu
   options.step = 1e-10;
-  options.max_iterations = 200;
+  options.max_iterations = 2000;  // shapes of other cases: flat valleys
   Eigen::VectorXd best;
   solver::Outcome outcome;
   std::vector<Eigen::VectorXd> starts{problem.Start()};

@@ -25,7 +25,9 @@ struct Calibration {
 /// again from the rotation that best lays the measured points on the modelled ones.
 ///
 /// Bounds: E within a factor 100 of the robot's, 0 <= mu <= 0.999, angles within pi.
-/// @throws Error (job) when a case has no equilibrium or the fit does not converge.
-Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>& pairs);
+/// @throws Error (input, naming the file of the shapes) when there are fewer coordinates than
+/// unknowns; (job) when a case has no equilibrium or the fit does not converge.
+Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>& pairs,
+                      const std::string& file);
 
 }  // namespace continuum::tdcr

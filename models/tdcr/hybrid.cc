@@ -90,7 +90,10 @@ Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::stri
   if (!fitted) throw Error::Job("hybrid training did not converge");
   hybrid.weights = *fitted;
   for (const Sample& s : samples) {
-    hybrid.tips.Add(robot, *s.pair->measured, Disks(robot, Corrected(hybrid.weights, s)));
+    const Eigen::Matrix3Xd disks = Disks(robot, Corrected(hybrid.weights, s));
+    const Measured& measured = *s.pair->measured;
+    hybrid.tips.Add(robot, measured, disks);
+    if (!measured.test) hybrid.explained.Add(robot, measured, disks);
   }
   if (const auto left_out = CrossValidate(robot, train, hybrid.penalty)) {
     hybrid.left_out = left_out->tips;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "models/tdcr/explained.h"
 #include "models/tdcr/measured.h"
 #include "models/tdcr/model.h"
 
@@ -17,6 +18,7 @@ struct Hybrid {
   Eigen::MatrixXd weights;            ///< p x 6: kappa_x_1, kappa_y_1, tau_1, kappa_x_n, ..
   double penalty = 0;                 ///< on the weights, see FitWeights
   TipErrors tips;                     ///< of the corrected model
+  Explained explained;                ///< of the cases for training, by the corrected model
   std::vector<double> left_out;       ///< tip errors [%] of training cases by five-fold validation
 };
 

@@ -112,8 +112,16 @@ void TipErrors::Add(const Robot& robot, const Measured& measured, const Eigen::M
   (measured.test ? test : train).push_back(100 * error / robot.length);
 }
 
+void RequireShared(const std::vector<Case>& cases, const std::vector<Measured>& measured,
+                   const std::string& file) {
+  const auto is_measured = [&](const Case& c) { return Find(measured, c.name) != nullptr; };
+  if (std::any_of(cases.begin(), cases.end(), is_measured)) return;
+  throw Error::Input(file, "a measured shape of one of the cases", "none");
+}
+
 std::vector<Pair> Match(const std::vector<Case>& cases, const std::vector<Measured>& measured,
                         const std::string& file) {
+  RequireShared(cases, measured, file);
   std::vector<Pair> pairs;
   bool train = false;
   for (const Case& c : cases) {
@@ -122,7 +130,6 @@ std::vector<Pair> Match(const std::vector<Case>& cases, const std::vector<Measur
     pairs.push_back({&c, m});
     train = train || !m->test;
   }
-  if (pairs.empty()) throw Error::Input(file, "a measured shape of one of the cases", "none");
   if (!train) throw Error::Input(file, "a measured case with 'use' train", "only test");
   return pairs;
 }

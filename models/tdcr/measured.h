@@ -45,6 +45,10 @@ struct TipErrors {
   void Add(const Robot& robot, const Measured& measured, const Eigen::Matrix3Xd& disks);
 };
 
+/// @throws Error when no case was measured.
+void RequireShared(const std::vector<Case>& cases, const std::vector<Measured>& measured,
+                   const std::string& file);
+
 /// A case with its measurement.
 struct Pair {
   const Case* loads;

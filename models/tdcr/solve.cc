@@ -14,6 +14,7 @@
 #include "models/tdcr/columns.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/document.h"
+#include "models/tdcr/explained.h"
 #include "models/tdcr/fit.h"
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/model.h"
@@ -150,11 +151,26 @@ std::vector<Case> ReadInput(const SolveRequest& request, const Robot& robot) {
   return cases;
 }
 
+// Millimetres, or another origin: no disk is farther from the base than the rod is long.
+void WarnOfFarPoints(const SolveRequest& request, const Robot& robot,
+                     const std::vector<Measured>& measured) {
+  double farthest = 0;
+  for (const Measured& m : measured) {
+    for (int i = 0; i < robot.disks; ++i) {
+      if (m.Has(i)) farthest = std::max(farthest, m.disks.col(i).norm());
+    }
+  }
+  if (farthest <= 2 * robot.length) return;
+  request.warn(fmt::format("{}: points up to {:.3g} m from the base of a rod of {:.3g} m",
+                           request.measured.string(), farthest, robot.length));
+}
+
 std::vector<Measured> ReadMeasurements(const SolveRequest& request, const Robot& robot) {
   if (request.measured.empty()) return {};
   const Table table = Table::Read(request.measured);
   auto measured = ReadMeasured(table, robot.disks);
   Warn(request, UnusedMeasuredColumns(table, robot.disks));
+  WarnOfFarPoints(request, robot, measured);
   return measured;
 }
 
@@ -180,6 +196,7 @@ int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
                const Hybrid* hybrid) {
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
+  if (!request.measured.empty()) RequireShared(cases, measured, request.measured.string());
   std::vector<Solved> solved;
   for (const Case& c : cases) {
     Solved s{c.name, SolveCase(robot, c.loads, method), Find(measured, c.name)};
@@ -206,6 +223,20 @@ std::vector<Pair> ReadPairs(const SolveRequest& request, const std::vector<Case>
   return Match(cases, measured, request.measured.string());
 }
 
+void AddExplained(const Explained& explained, YAML::Node& node) {
+  node["status"] = explained.poor() ? "poor" : "ok";
+  node["rmse"] = Number(explained.rmse());
+  node["deflection"] = Number(explained.deflection());
+  node["scatter"] = Number(explained.scatter());
+}
+
+// The exit code of a calibration or training.
+int Judge(const SolveRequest& request, const Explained& explained, const std::string& job) {
+  if (!explained.poor()) return 0;
+  request.warn(request.measured.string() + ": the " + job + " is poor: " + explained.Sentence());
+  return 1;
+}
+
 // R.yaml with the values found.
 YAML::Node CalibrationDocument(const SolveRequest& request, const Yaml& file,
                                const Calibration& c) {
@@ -229,16 +260,13 @@ YAML::Node CalibrationDocument(const SolveRequest& request, const Yaml& file,
 
   YAML::Node node;
   node["method"] = method;
-  node["status"] = c.explained.poor() ? "poor" : "ok";
   node["cases"] = c.cases;
   node["E"] = Number(c.robot.E);
   if (friction) node["mu"] = Number(c.robot.mu);
   node["base_rotation"] = YAML::Clone(base);
   node["standard_error"] = standard;
   node["at_bound"] = List(c.at_bound);
-  node["rmse"] = Number(c.explained.rmse());
-  node["deflection"] = Number(c.explained.deflection());
-  node["scatter"] = Number(c.explained.scatter());
+  AddExplained(c.explained, node);
   node["tip_error_percent"] = Document(c.tips);
   document["calibration"] = node;
   return document;
@@ -252,11 +280,10 @@ int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& r
   solver::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
-  const Calibration c = Calibrate(robot, method, ReadPairs(request, cases, measured));
+  const Calibration c =
+      Calibrate(robot, method, ReadPairs(request, cases, measured), request.measured.string());
   WriteDocument(request.out, CalibrationDocument(request, file, c));
-  if (!c.explained.poor()) return 0;
-  request.warn(request.measured.string() + ": the calibration is poor: " + c.explained.Sentence());
-  return 1;
+  return Judge(request, c.explained, "calibration");
 }
 
 int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot) {
@@ -277,6 +304,7 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
   }
   node["weights"] = weights;
   node["penalty"] = Number(h.penalty);
+  AddExplained(h.explained, node);
   node["tip_error_percent"] = Document(h.tips);
   if (const auto spread = Statistics(h.left_out)) {
     node["tip_error_percent"]["five_fold"] = Document(*spread);
@@ -284,7 +312,7 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
   YAML::Node document = YAML::Clone(file.node());
   document["hybrid"] = node;
   WriteDocument(request.out, document);
-  return 0;
+  return Judge(request, h.explained, "training");
 }
 
 }  // namespace

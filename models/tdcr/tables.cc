@@ -69,7 +69,7 @@ void Print(const Robot& robot, int set, unsigned seed) {
   const char* const names[] = {"eas", "pcca", "crt"};
   Calibration eas{};
   for (int i = 0; i < 3; ++i) {
-    const Calibration c = Calibrate(experiment.nominal, methods[i], pairs);
+    const Calibration c = Calibrate(experiment.nominal, methods[i], pairs, "synthetic");
     PrintCalibration(names[i], c, published[set - 1][i]);
     if (i == 0) eas = c;
   }

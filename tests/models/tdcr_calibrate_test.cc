@@ -62,7 +62,8 @@ TEST(TdcrCalibrate, StandardErrorsCoverTheTruthOfNoisyTips) {
   std::mt19937_64 random(100);
   for (int i = 0; i < kSets; ++i) {
     const auto measured = Tips(truth, tips, random);
-    const Calibration c = Calibrate(nominal, Method::kEas, Match(cases, measured, "synthetic"));
+    const Calibration c =
+        Calibrate(nominal, Method::kEas, Match(cases, measured, "synthetic"), "synthetic");
     Eigen::Matrix<double, 5, 1> found;
     found << c.robot.E, c.robot.base_rotation, c.robot.mu;
     covered.array() += ((found - target).array().abs() < 2 * c.standard.array()).cast<double>();

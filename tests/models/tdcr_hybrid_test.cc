@@ -16,7 +16,7 @@ Robot Nominal() { return ReadRobot(Yaml::Read(CONTINUUM_SOURCE "/models/tdcr/tdc
 struct Calibrated {
   Calibrated(int set, unsigned seed)
       : experiment(Synthesize(Nominal(), set, seed)),
-        calibration(Calibrate(experiment.nominal, Method::kEas, Pairs())) {
+        calibration(Calibrate(experiment.nominal, Method::kEas, Pairs(), "synthetic")) {
     for (Case& c : experiment.cases) c.loads.mu = calibration.robot.mu;
   }
   std::vector<Pair> Pairs() const {

@@ -212,6 +212,23 @@ TEST_F(TdcrSolve, BadMeasurementsAreNamedWithLine) {
   EXPECT_THAT(message("case,x_1,y_1,z_1\na,,,\n"), HasSubstr("at least one"));
   EXPECT_THAT(message("case,x_1,y_1,z_1\na,0,0,1\na,0,0,1\n"), HasSubstr("measured.csv:3"));
   EXPECT_THAT(message("case,use,x_1,y_1,z_1\na,maybe,0,0,1\n"), HasSubstr("train or test"));
+  EXPECT_THAT(message("case,x_1,y_1,z_1\n"), HasSubstr("one row or more"));
+  EXPECT_THAT(message("case,x_1,y_1,z_1\nA,0,0,0.01\n"), HasSubstr("shape of one of the cases"));
+  request_.calibrate = true;
+  request_.out = folder_ / "calibrated.yaml";
+  EXPECT_THAT(message("case,x_9,y_9,z_9\na,0,0,0.13\n"), HasSubstr("at least 5"));
+  request_.method = "crt";
+  EXPECT_THAT(message("case,x_9,y_9,z_9\na,0,0,0.13\n"), HasSubstr("at least 4"));
+}
+
+TEST_F(TdcrSolve, PointsThatNoDiskReachesAreNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  request_.input = Write("cases.csv", std::string(kHeader) + "a,1,0,0,0,0,0\n");
+  request_.measured = Write("measured.csv", "case,x_9,y_9,z_9\na,21,0,132\n");
+  EXPECT_EQ(SolveTdcr(request_), 0);
+  EXPECT_THAT(heard,
+              testing::ElementsAre(HasSubstr("up to 134 m from the base of a rod of 0.134")));
 }
 
 // Shapes of a robot by one of the methods, as a table in its measuring frame.
@@ -320,6 +337,36 @@ TEST_F(TdcrSolve, ACalibrationThatExplainsNothingIsCalledPoor) {
   }
 }
 
+// Shapes moved on by two cases: the least squares end in a valley, flat as that of a rigid rod.
+TEST_F(TdcrSolve, ShapesOfOtherCasesGiveAPoorCalibrationAndTraining) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  request_.robot = CONTINUUM_SOURCE "/models/tdcr/tdcr.yaml";
+  request_.input = CONTINUUM_SOURCE "/models/tdcr/sample/cases.csv";
+  const std::string text = ReadFile(CONTINUUM_SOURCE "/models/tdcr/sample/measured.csv");
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
+    lines.push_back(text.substr(at, text.find('\n', at) - at));
+  }
+  std::string moved = lines[0] + "\n";
+  const std::size_t count = lines.size() - 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& name = lines[1 + (i + 2) % count];
+    const std::string& shape = lines[1 + i];
+    moved += name.substr(0, name.find(',')) + shape.substr(shape.find(',')) + "\n";
+  }
+  request_.measured = Write("measured.csv", moved);
+  request_.out = folder_ / "out.yaml";
+  request_.calibrate = true;
+  EXPECT_EQ(SolveTdcr(request_), 1);
+  request_.calibrate = false;
+  request_.hybrid = "train";
+  EXPECT_EQ(SolveTdcr(request_), 1);
+  EXPECT_THAT(heard, testing::ElementsAre(HasSubstr("the calibration is poor"),
+                                          HasSubstr("the training is poor")));
+  EXPECT_EQ(Yaml::Read(request_.out).At("hybrid").At("status").Text(), "poor");
+}
+
 TEST_F(TdcrSolve, FitFindsAnEulerArcSplineAgain) {
   request_.input = Write("cases.csv", CasesText(8));
   const Robot robot = ReadRobot(Yaml::Read(request_.robot));
@@ -412,7 +459,8 @@ TEST(TdcrSynthetic, HybridHalvesTheErrorOfTheLevelSet) {
   nominal.mu = 0.2;
   const Experiment e = Synthesize(nominal, 2, 2022);
   EXPECT_EQ(e.cases.size(), 30u);
-  const Calibration c = Calibrate(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"));
+  const Calibration c =
+      Calibrate(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"), "synthetic");
   std::vector<Case> cases = e.cases;
   for (Case& each : cases) each.loads.mu = c.robot.mu;
   const Hybrid h = Train(c.robot, Match(cases, e.measured, "synthetic"), "synthetic");
