@@ -402,6 +402,17 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
   ReachOver(problem, u.information.completeOrthogonalDecomposition().pseudoInverse() * pull, u);
 }
 
+Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r) {
+  const auto train = problem.TrainLogs();
+  Problem centered = problem;
+  centered.Center();
+  const auto J = centered.Jacobian(x, r, train);
+  Uncertainty u = UncertaintyOf(problem, x, r, J);
+  if (problem.path() == Path::kStepped)
+    AllowForStep(problem, J, problem.StepEffects(x, r, train), {}, u);
+  return u;
+}
+
 void ReachFurther(const Problem& problem, const Vector& x, const std::vector<Matrix>& J,
                   const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
   std::vector<Vector> effect(step.size());

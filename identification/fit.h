@@ -96,6 +96,10 @@ void ReachOver(const Problem& problem, const Problem::Vector& quarter, Uncertain
 void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
                   const std::vector<Problem::Matrix>& step, const Whitening& whitening,
                   Uncertainty& u);
+/// UncertaintyOf and AllowForStep in one, from the train logs: what a fit.json states. r: residuals
+/// at x. Derivatives are central differences: one-sided ones bend what the step is said to change.
+Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
+                        const std::vector<Problem::Vector>& r);
 /// Where first order did not foretell that (machines stick and slip, and the cost has many
 /// valleys), s says how large the step's effect is, not where it pulls: intervals reach further to
 /// both sides, by those of UncertaintyOf with 4/3 s for residuals.

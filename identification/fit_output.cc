@@ -106,17 +106,6 @@ nlohmann::json StartsJson(const Problem& problem, const MultiStart& all) {
   return json;
 }
 
-// With what the time step adds, where there is one.
-Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
-                        const std::vector<Problem::Vector>& r) {
-  const auto train = problem.TrainLogs();
-  const auto J = problem.Jacobian(x, r, train);
-  Uncertainty u = UncertaintyOf(problem, x, r, J);
-  if (problem.path() == Path::kStepped)
-    AllowForStep(problem, J, problem.StepEffects(x, r, train), {}, u);
-  return u;
-}
-
 // What the model gives at its own step, where the fit was one of its differential equation.
 nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x) {
   Problem stepped = problem;

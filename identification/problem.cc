@@ -412,6 +412,10 @@ bool Problem::Measures(std::size_t k) const {
   return SideOf(parameters_[k].change) == Side::kMeasurement;
 }
 
+bool Problem::Allows(std::size_t k, double value) const {
+  return value >= parameters_[k].lower && value <= parameters_[k].upper;
+}
+
 double Problem::StepOf(const Vector& x, std::size_t k, double share) const {
   const double step = share * parameters_[k].scale;
   return x[k] + step > parameters_[k].upper ? -step : step;
@@ -430,12 +434,18 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
     const auto [i, k] = tasks[t];
     const double step = StepOf(x, k, 1e-3);  // stick and slip are decided step by step: average
-    Vector moved = x;
-    moved[k] += step;
-    const Trace there = Run(thread, moved, motions[i].front());
-    for (const std::size_t l : motions[i]) J[l].col(k) = (ResidualOf(l, there) - r[l]) / step;
+    const auto moved = [&](double by) {
+      Vector beside = x;
+      beside[k] += by;
+      return Run(thread, beside, motions[i].front());
+    };
+    const bool both = central_ && Allows(k, x[k] - step);
+    const Trace there = moved(step), back = both ? moved(-step) : Trace{};
+    for (const std::size_t l : motions[i])
+      J[l].col(k) = both ? (ResidualOf(l, there) - ResidualOf(l, back)) / (2 * step)
+                         : (ResidualOf(l, there) - r[l]) / step;
   });
-  evaluations_ += tasks.size();
+  evaluations_ += (central_ ? 2 : 1) * tasks.size();
 }
 
 // Parameters of a motion are shared out so that no core waits for another.

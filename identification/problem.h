@@ -62,6 +62,8 @@ class Problem {
   void Follow(Path path);
   /// From now on with this time step [s] instead of the model's.
   void StepBy(double h);
+  /// From now on with central differences, at twice the cost; one-sided where a bound is near.
+  void Center() { central_ = true; }
 
   const Experiment& experiment() const { return *experiment_; }
   const System& system() const { return systems_.front(); }
@@ -118,6 +120,8 @@ class Problem {
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
   std::unique_ptr<Flow> FlowAt(std::size_t thread, const Vector& x, std::size_t log) const;
   bool Measures(std::size_t k) const;
+  /// Within the parameter's bounds.
+  bool Allows(std::size_t k, double value) const;
   void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                          const std::vector<std::vector<std::size_t>>& motions,
                          const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
@@ -150,6 +154,7 @@ class Problem {
   ForceTerms terms_;
   Path path_ = Path::kStepped;
   double step_ = 0;  ///< 0: the model's
+  bool central_ = false;
   Solving solving_;  ///< on the smooth path
   mutable std::size_t evaluations_ = 0;
 };

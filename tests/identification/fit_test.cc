@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
+#include "benchmark/stick_slip/experiment.h"
 #include "error.h"
 #include "identification/trade_off.h"
 #include "pendulum.h"
@@ -144,6 +145,25 @@ TEST_F(FitTest, StopsAtABoundAndGivesNoErrorThere) {
   EXPECT_THAT(u.at_bound, ElementsAre(true, false));
   EXPECT_TRUE(std::isnan(u.standard_error[0]));
   EXPECT_GT(u.standard_error[1], 0);
+}
+
+// Exact logs of a slider that is stuck at two rows of three: what the step of 2 ms does to the
+// values is known, to first order, by central differences (by one-sided ones the mass is 0.2 %
+// off).
+TEST_F(FitTest, WhereASliderSticksTheIntervalReachesOverTheTruth) {
+  const Experiment e = stick_slip::Clean(folder_, 2e-3, 2e-4);
+  const System system = System::Load(e.model);
+  const Problem problem(e, system);
+  const Fit fit = FitAll(problem);
+  const auto u = IntervalsOf(problem, fit.x, problem.Residuals(fit.x, problem.AllLogs()));
+  for (std::size_t i = 0; i < stick_slip::kTrue.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double truth = stick_slip::kTrue[i];
+    EXPECT_NEAR(fit.x[k], truth, 0.02 * truth) << stick_slip::kNames[i];
+    EXPECT_NEAR(fit.x[k] + u.step[k], truth, 1e-3 * truth) << stick_slip::kNames[i];
+    EXPECT_LT(u.lower[k], truth) << stick_slip::kNames[i];
+    EXPECT_GT(u.upper[k], truth) << stick_slip::kNames[i];
+  }
 }
 
 // The pendulum that made the log has a step of its own, far finer.
