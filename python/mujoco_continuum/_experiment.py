@@ -15,7 +15,7 @@ Document = StrPath | Mapping[str, Any]
 def as_file(document: Document, name: str) -> Iterator[tuple[str, dict[str, str]]]:
     """The document's file, and how messages should name it: a dict becomes a file for as long."""
     if not isinstance(document, Mapping):
-        yield os.fspath(document), {}
+        yield as_argument(document), {}
         return
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
         file = pathlib.Path(folder, name)
@@ -23,6 +23,12 @@ def as_file(document: Document, name: str) -> Iterator[tuple[str, dict[str, str]
         text = json.dumps(dict(document), indent=1, ensure_ascii=False, default=_convert)
         file.write_text(text, encoding="utf-8")
         yield str(file), {f"{folder}/": ""}
+
+
+def as_argument(path: StrPath) -> str:
+    """A path that the tool takes for one, also when it begins like an option."""
+    text = os.fsdecode(path)
+    return os.path.join(".", text) if text.startswith("-") else text
 
 
 def with_absolute_paths(experiment: Document, folder: StrPath) -> Document:

@@ -11,13 +11,12 @@ tool, which leaves no half-written output, and raises KeyboardInterrupt.
 """
 import contextlib
 import json
-import os
 import pathlib
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ._experiment import Document, StrPath, as_file, with_absolute_paths
+from ._experiment import Document, StrPath, as_argument, as_file, with_absolute_paths
 from ._tool import Progress, run
 
 Json = dict[str, Any]
@@ -73,7 +72,7 @@ def apply(diagnosis: Document, model: StrPath, out: StrPath) -> pathlib.Path:
 
     diagnosis: path of a diagnosis.json, or what diagnose() returned."""
     with as_file(diagnosis, "diagnosis") as (file, rename):
-        run(["apply", file, os.fspath(model), "--out", os.fspath(out)], rename=rename)
+        run(["apply", file, as_argument(model), "--out", as_argument(out)], rename=rename)
     return pathlib.Path(out)
 
 
@@ -114,7 +113,7 @@ def _options(options: Json) -> list[str]:
 @contextlib.contextmanager
 def _folder(out: StrPath | None) -> Iterator[str]:
     if out is not None:
-        yield os.fspath(out)
+        yield as_argument(out)
         return
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
         yield str(pathlib.Path(folder, "out"))

@@ -23,6 +23,11 @@ class Experiment(bench.Bench):
         self.assertEqual(mc.replay(self.experiment), mc.replay("experiment.yaml"))
         self.assertEqual(mc.check(self.experiment), mc.check(pathlib.Path("experiment.yaml")))
 
+    def test_a_path_may_begin_like_an_option(self):
+        (self.folder / "--help").write_text(json.dumps(self.experiment))
+        self.assertEqual(mc.replay("--help", "-out"), mc.replay(self.experiment))
+        self.assertTrue((self.folder / "-out" / "report.html").exists())
+
     def test_a_dict_finds_its_files_from_a_folder(self):
         (self.folder / "logs").mkdir()
         (self.folder / "log.csv").rename(self.folder / "logs" / "log.csv")
