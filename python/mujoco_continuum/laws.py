@@ -38,6 +38,9 @@ def friction_law(function: Callable[..., Any], where: str = "",
 
 
 def _law(function, where, parameters, effect, key, variables):
+    if not function.__name__.isidentifier():
+        raise TypeError(f"a law has the name of its function, and {function.__name__} is none: "
+                        "write it with def")
     names = list(inspect.signature(function).parameters)
     wanted = [name for name in names if name not in variables]
     if set(wanted) != set(parameters):

@@ -167,6 +167,10 @@ class Candidate(bench.Bench):
         with self.assertRaisesRegex(mc.InputError, "grap"):
             mc.diagnose(self.experiment, candidates=["grap"])
 
+    def test_needs_the_name_of_its_function(self):
+        with self.assertRaisesRegex(TypeError, "<lambda> is none: write it with def"):
+            mc.force_law(lambda q, v, b: b * v, b=ANY)
+
     def test_is_refused_with_the_key_that_is_wrong(self):
         def grip(q, v, level):
             return level
