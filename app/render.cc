@@ -6,6 +6,7 @@
 #include "error.h"
 #include "sim/clip.h"
 #include "sim/output.h"
+#include "sim/registration.h"
 
 namespace continuum {
 namespace {
@@ -46,6 +47,7 @@ void RunRender(const Options& o) {
   film.gl = ParseGl(o.gl);
   film.progress = ShowProgress;
   const System system = System::Load(e.model);
+  e = Registered(e, system);
   const std::filesystem::path out = o.out;
   if (!o.log.empty()) {
     std::erase_if(e.logs, [&](const Log& log) { return log.label != o.log; });

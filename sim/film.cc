@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "sim/file.h"
+#include "sim/measured_points.h"
 #include "sim/mujoco.h"
 #include "sim/video.h"
 
@@ -147,6 +148,28 @@ void Draw(const Arrow& arrow, const mjModel& m, const mjData& d, mjvScene& scene
   Connect(arrow, m, mjGEOM_ARROW, center, tip, scene);
 }
 
+// What was measured as a green ball, and a line to where the simulation has it. Both lie within the
+// robot as a rule: drawn nearer to the camera and smaller they look the same, and are in front.
+void Draw(const MeasuredPoint& point, const mjModel& m, mjvScene& scene) {
+  constexpr float kGreen[4] = {0.10f, 0.65f, 0.25f, 1};
+  constexpr double kNearer = 0.6;  // of the distance; what is nearer than half may be clipped
+  if (scene.ngeom + 2 > scene.maxgeom) return;
+  double from[3], to[3];
+  for (int i = 0; i < 3; ++i) {
+    const double eye = (scene.camera[0].pos[i] + scene.camera[1].pos[i]) / 2;
+    from[i] = std::lerp(eye, point.measured[i], kNearer);
+    to[i] = std::lerp(eye, point.simulated[i], kNearer);
+  }
+  const double radius = kNearer * 0.25 * m.stat.meansize, size[3] = {radius, radius, radius};
+  mjvGeom& ball = scene.geoms[scene.ngeom++];
+  mjv_initGeom(&ball, mjGEOM_SPHERE, size, from, nullptr, kGreen);
+  ball.category = mjCAT_DECOR;
+  mjvGeom& line = scene.geoms[scene.ngeom++];
+  mjv_initGeom(&line, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, kGreen);
+  mjv_connector(&line, mjGEOM_CAPSULE, 0.3 * radius, from, to);
+  line.category = mjCAT_DECOR;
+}
+
 // Draws one log's rows at the film's rate.
 class Shot {
  public:
@@ -155,6 +178,7 @@ class Shot {
         log_(log),
         options_(options),
         machine_(system.Build(log.set)),
+        wiring_(e, *machine_.model),
         renderer_(*machine_.model, options.width, options.height, options.gl),
         measured_(e, log, *machine_.model) {
     const std::string camera = CameraOf(*machine_.model, options.camera);
@@ -175,7 +199,9 @@ class Shot {
     double next = 0;
     Hooks look = Hooks::Stoppable();
     look.row = [&](const mjModel& m, mjData& d, std::size_t row) {
-      if (due(row, next)) renderer_.Include(m, d);
+      if (!due(row, next)) return;
+      renderer_.Include(m, d);
+      marked_ = marked_ || !MeasuredPoints(e_, wiring_, log_, row, m, d).empty();
     };
     const Trace trace = Simulate(machine_, e_, log_, {}, look);
     if (options_.whole && trace.diverged)
@@ -189,8 +215,15 @@ class Shot {
       overlay.time = log_.time[row] - log_.time.front();
       if (options_.ghost) overlay.ghost = measured_.At(row);
       if (overlay.ghost) overlay.caption += " (translucent: measured)";
+      const bool marks = options_.ghost && !overlay.ghost && marked_;
+      std::vector<MeasuredPoint> points;
+      if (marks) points = MeasuredPoints(e_, wiring_, log_, row, m, d);
+      if (marks) overlay.caption += " (green: measured)";
       overlay.bar = BarOf(m, options_);
-      overlay.geoms = [&](mjvScene& scene) { Decorate(options_, m, d, scene); };
+      overlay.geoms = [&](mjvScene& scene) {
+        Decorate(options_, m, d, scene);
+        for (const MeasuredPoint& point : points) Draw(point, m, scene);
+      };
       take(renderer_.Draw(m, d, overlay));
     };
     Simulate(machine_, e_, log_, {}, draw);
@@ -201,8 +234,10 @@ class Shot {
   const Log& log_;
   const FilmOptions& options_;
   Machine machine_;
+  Wiring wiring_;
   Renderer renderer_;
   MeasuredPose measured_;
+  bool marked_ = false;  // whether positions are measured in some frame
 };
 
 }  // namespace

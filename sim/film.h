@@ -36,7 +36,9 @@ struct FilmOptions {
   bool whole = false;  ///< throw when the simulation diverges; else the film ends there
   Gl gl = Gl::kOsmesa;
   std::string caption;
-  bool ghost = true;  ///< the measured pose, translucent, where joint sensors measure all of it
+  /// The measured pose, translucent, where joint sensors measure all of it; else green balls where
+  /// positions are measured.
+  bool ghost = true;
   std::function<void(const std::string&)> progress = {};
 };
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/object_frame.h"
 #include "sim/registration.h"
 #include "sim/units.h"
 
@@ -23,22 +24,6 @@ double At(const std::vector<double>& time, const std::vector<double>& y, double 
 }
 
 using Seen = Wiring::Source::Seen;
-
-// Axes of an object [9], row by row.
-const double* AxesOf(const mjData& d, int type, int id) {
-  switch (type) {
-    case mjOBJ_BODY:  // its inertial frame
-      return d.ximat + 9 * id;
-    case mjOBJ_GEOM:
-      return d.geom_xmat + 9 * id;
-    case mjOBJ_SITE:
-      return d.site_xmat + 9 * id;
-    case mjOBJ_CAMERA:
-      return d.cam_xmat + 9 * id;
-    default:
-      return d.xmat + 9 * id;
-  }
-}
 
 // R (p + Q o) + T, R v or R q.
 void Register(Record& record, const Registration& r, Seen seen, const Record& axes,
@@ -124,9 +109,9 @@ void Recorder::Take(const mjData& d, std::size_t row) {
     if (axes_[o].empty()) continue;
     const int s = source.sensor;
     double axes[9];
-    mju_copy(axes, AxesOf(d, m_.sensor_objtype[s], m_.sensor_objid[s]), 9);
+    mju_copy(axes, FrameOf(d, m_.sensor_objtype[s], m_.sensor_objid[s]).axes, 9);
     if (m_.sensor_refid[s] >= 0) {
-      const double* const reference = AxesOf(d, m_.sensor_reftype[s], m_.sensor_refid[s]);
+      const double* const reference = FrameOf(d, m_.sensor_reftype[s], m_.sensor_refid[s]).axes;
       double absolute[9];
       mju_copy(absolute, axes, 9);
       mju_mulMatTMat(axes, reference, absolute, 3, 3, 3);

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+namespace continuum {
+
+/// Where an object of a sensor is in the world: position [3] and axes [9], row by row.
+struct ObjectFrame {
+  const double *position, *axes;
+};
+
+/// type: mjtObj of a frame sensor; mjOBJ_BODY is the body's inertial frame.
+inline ObjectFrame FrameOf(const mjData& d, int type, int id) {
+  switch (type) {
+    case mjOBJ_BODY:
+      return {d.xipos + 3 * id, d.ximat + 9 * id};
+    case mjOBJ_GEOM:
+      return {d.geom_xpos + 3 * id, d.geom_xmat + 9 * id};
+    case mjOBJ_SITE:
+      return {d.site_xpos + 3 * id, d.site_xmat + 9 * id};
+    case mjOBJ_CAMERA:
+      return {d.cam_xpos + 3 * id, d.cam_xmat + 9 * id};
+    default:
+      return {d.xpos + 3 * id, d.xmat + 9 * id};
+  }
+}
+
+}  // namespace continuum

@@ -1,0 +1,85 @@
+#include "sim/measured_points.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim/file.h"
+#include "support/measured_arm.h"
+
+namespace continuum {
+namespace {
+
+using testing::MeasuredArm;
+
+// Commands are straight between rows, the camera sees what sines do [m].
+constexpr double kStraight = 1e-4;
+
+// A camera that looks from the side at a marker beside the tip, 50 ms late.
+Registration Camera() {
+  Registration r;
+  r.rotation = {1.2, -2.0, 0.7};
+  r.translation = {0.3, -0.1, 1.5};
+  r.offset[""] = {0.01, -0.02, 0.03};
+  r.clock_shift = 0.05;
+  return r;
+}
+
+// How many points the log's rows have, and how far the measured ones are from the simulated [m].
+struct Seen {
+  std::size_t points = 0;
+  double apart = 0;
+};
+Seen PointsOf(const Experiment& e, const System& system) {
+  const Log& log = e.logs.front();
+  Machine machine = system.Build();
+  const Wiring wiring(e, *machine.model);
+  Seen seen;
+  Hooks hooks;
+  hooks.row = [&](const mjModel& m, mjData& d, std::size_t row) {
+    for (const MeasuredPoint& p : MeasuredPoints(e, wiring, log, row, m, d)) {
+      ++seen.points;
+      const double apart = mju_dist3(p.measured.data(), p.simulated.data());
+      if (row + 6 < log.rows()) seen.apart = std::max(seen.apart, apart);  // the log ends earlier
+    }
+  };
+  Simulate(machine, e, log, {}, hooks);
+  return seen;
+}
+
+TEST(MeasuredPoints, LieWhereARightModelHasThem) {
+  const MeasuredArm arm;
+  Experiment e = arm.Read("");
+  const System system = System::Load(e.model);
+  MeasuredArm::Measure(e, system, Camera());
+  e.registration = Camera();
+  const Seen seen = PointsOf(e, system);
+  EXPECT_EQ(seen.points, e.logs.front().rows());
+  EXPECT_LT(seen.apart, kStraight);
+}
+
+TEST(MeasuredPoints, AreInTheWorldWhereTheSensorIsInAnotherFrame) {
+  const MeasuredArm arm;
+  Experiment e = arm.Read("");
+  std::string model = ReadFile(e.model);
+  const auto insert = [&](const std::string& after, const std::string& text) {
+    model.insert(model.find(after) + after.size(), text);
+  };
+  insert("<worldbody>", "<site name=\"base\" pos=\".1 .2 .3\" euler=\"20 30 40\"/>");
+  insert("objname=\"tip\"", " reftype=\"site\" refname=\"base\"");
+  arm.folder().Write("arm.xml", model);
+  const System system = System::Load(e.model);
+  MeasuredArm::Measure(e, system, Camera());
+  e.registration = Camera();
+  EXPECT_LT(PointsOf(e, system).apart, kStraight);
+}
+
+TEST(MeasuredPoints, NeedAllThreeDirections) {
+  const MeasuredArm arm;
+  Experiment e = arm.Read("");
+  for (double& z : e.logs.front().measured[2]) z = std::nan("");
+  EXPECT_EQ(PointsOf(e, System::Load(e.model)).points, 0);
+}
+
+}  // namespace
+}  // namespace continuum
