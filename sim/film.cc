@@ -219,6 +219,7 @@ class Shot {
       std::vector<MeasuredPoint> points;
       if (marks) points = MeasuredPoints(e_, wiring_, log_, row, m, d);
       if (marks) overlay.caption += " (green: measured)";
+      overlay.scale = true;
       overlay.bar = BarOf(m, options_);
       overlay.geoms = [&](mjvScene& scene) {
         Decorate(options_, m, d, scene);

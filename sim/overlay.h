@@ -22,6 +22,7 @@ struct ColorBar {
 struct Overlay {
   std::string caption = {};                   ///< top left, wrapped to the frame
   std::optional<double> time = {};            ///< [s], bottom left
+  bool scale = false;                         ///< a bar of round length, right of the time
   std::optional<ColorBar> bar = {};           ///< bottom right
   std::function<void(mjvScene&)> geoms = {};  ///< adds markers to the scene
   mjData* ghost = nullptr;                    ///< a second pose of the model, drawn translucent

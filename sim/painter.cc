@@ -9,6 +9,19 @@
 namespace continuum {
 namespace {
 
+// The longest of 1, 2, 5 times a power of ten.
+double RoundLength(double most) {
+  const double power = std::pow(10, std::floor(std::log10(most)));
+  for (const double digit : {5, 2}) {
+    if (digit * power <= most) return digit * power;
+  }
+  return power;
+}
+
+std::string LengthText(double metres) {
+  return metres < 1 ? fmt::format("{:g} mm", 1e3 * metres) : fmt::format("{:g} m", metres);
+}
+
 // MuJoCo's fonts have the printable ASCII characters only.
 std::string Ascii(const std::string& text) {
   static const std::vector<std::pair<std::string, std::string>> kSpelled = {
@@ -57,6 +70,23 @@ class Painter {
     const int top = image_.height - 2 * pad_ - line_;
     Plate(pad_, top, font_.Width(text) + 2 * pad_, line_ + pad_);
     Line(text, 2 * pad_, top + pad_ / 2);
+    free_ = 3 * pad_ + font_.Width(text);
+  }
+
+  // A length and its text, in the left half.
+  void Scale(double pixel) {
+    const double length = RoundLength(pixel * image_.width / 8);
+    const std::string text = LengthText(length);
+    const int bar = static_cast<int>(std::lround(length / pixel));
+    const int left = free_ + pad_, width = bar + font_.Width(text) + 3 * pad_;
+    if (left + width > image_.width / 2) return;
+    const int top = image_.height - 2 * pad_ - line_, middle = top + (line_ + pad_) / 2;
+    const int thick = std::max(2, line_ / 8), tick = line_ / 4, from = left + pad_;
+    Plate(left, top, width, line_ + pad_);
+    Fill(from, middle - thick / 2, bar, thick);
+    Fill(from, middle - tick, thick, 2 * tick);
+    Fill(from + bar - thick, middle - tick, thick, 2 * tick);
+    Line(text, from + bar + pad_, top + pad_ / 2);
   }
 
   // The label, and below it: low, the colours, high.
@@ -88,6 +118,11 @@ class Painter {
   void Plate(int left, int top, int width, int height) {
     for (int y = top; y < top + height; ++y) {
       for (int x = left; x < left + width; ++x) Blend(x, y, {0.05f, 0.07f, 0.10f}, 0.62f);
+    }
+  }
+  void Fill(int left, int top, int width, int height) {
+    for (int y = top; y < top + height; ++y) {
+      for (int x = left; x < left + width; ++x) Blend(x, y, {1, 1, 1}, 1);
     }
   }
   void Line(const std::string& text, int left, int top) {
@@ -138,6 +173,7 @@ class Painter {
   const Font& font_;
   Image& image_;
   int pad_, line_;
+  int free_ = 0;  // of the lowest line, from here on [px]
 };
 
 }  // namespace
@@ -162,10 +198,11 @@ int Font::Width(const std::string& text) const {
   return sum;
 }
 
-void Paint(const Overlay& overlay, const Font& font, Image& image) {
+void Paint(const Overlay& overlay, const Font& font, double pixel, Image& image) {
   Painter painter(font, image);
   if (!overlay.caption.empty()) painter.Caption(overlay.caption);
   if (overlay.time) painter.Time(*overlay.time);
+  if (overlay.scale && pixel > 0) painter.Scale(pixel);
   if (overlay.bar) painter.Bar(*overlay.bar);
 }
 

@@ -22,7 +22,8 @@ struct Font {
   int Width(const std::string& text) const;
 };
 
-/// Lays an overlay's caption, time and bar over a finished picture, on dark translucent plates.
-void Paint(const Overlay& overlay, const Font& font, Image& image);
+/// Lays an overlay's caption, time, scale and bar over a finished picture, on dark translucent
+/// plates. pixel: length [m] of one where the model is; 0: not known, no scale.
+void Paint(const Overlay& overlay, const Font& font, double pixel, Image& image);
 
 }  // namespace continuum

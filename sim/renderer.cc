@@ -105,7 +105,7 @@ class Renderer::Impl {
     UpdateScene(m, d, overlay);
     mjr_render({0, 0, width_, height_}, scene_.get(), context_.get());
     Image image = Read();
-    Paint(overlay, *font_, image);
+    Paint(overlay, *font_, PixelAt(d), image);
     return image;
   }
 
@@ -160,6 +160,16 @@ class Renderer::Impl {
     if (scene_->status != 0) {
       throw Error::Job(fmt::format("a frame has more than {} geoms", scene_->maxgeom));
     }
+  }
+
+  // Length of a pixel [m] at the depth of the model's centre of mass; 0 behind the camera.
+  double PixelAt(const mjData& d) const {
+    const mjvGLCamera& eye = scene_->camera[0];  // both eyes are as far away
+    double depth = 0;
+    for (int i = 0; i < 3; ++i) depth += eye.forward[i] * (d.subtree_com[i] - eye.pos[i]);
+    if (depth <= 0) return 0;
+    const double height = eye.frustum_top - eye.frustum_bottom;
+    return (eye.orthographic ? height : height * depth / eye.frustum_near) / height_;
   }
 
   void AddGhost(const mjModel& m, mjData& ghost) {

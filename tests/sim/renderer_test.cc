@@ -212,6 +212,24 @@ TEST_F(RendererTest, SpellsSignsThatTheFontLacks) {
   EXPECT_EQ(renderer_.Draw(*model_, *data_, {.caption = "30° – 2×5 ☃"}).rgb, spelled.rgb);
 }
 
+// Camera "front" is 2 m from the boxes' centres: 640 / 8 pixels are 0.276 m there.
+TEST_F(RendererTest, DrawsARoundLengthToScaleRightOfTheTime) {
+  renderer_.SetCamera("front");
+  const Image bare = renderer_.Draw(*model_, *data_);
+  const Image timed = renderer_.Draw(*model_, *data_, {.time = 1.5});
+  const Image image = renderer_.Draw(*model_, *data_, {.time = 1.5, .scale = true});
+  const Extent plate = Difference(timed, image);
+  EXPECT_GT(plate.left, Difference(bare, timed).right);
+  EXPECT_LT(plate.right, 320);
+  const int middle = (plate.top + plate.bottom) / 2;
+  int bar = 0;
+  while (Pixel(image, plate.left + bar, middle) != Rgb{255, 255, 255}) ++bar;
+  const int left = plate.left + bar;
+  for (bar = 0; Pixel(image, left + bar, middle) == Rgb{255, 255, 255};) ++bar;
+  const double focal = 240 / std::tan(22.5 * std::numbers::pi / 180);
+  EXPECT_NEAR(bar, 0.2 * focal / 2, 1);
+}
+
 TEST_F(RendererTest, DrawsAColourBarBottomRight) {
   const Image bare = renderer_.Draw(*model_, *data_);
   const Overlay overlay{.bar = ColorBar{.label = "cable tension [N]",
