@@ -1,7 +1,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 
@@ -12,6 +11,7 @@
 #include "hidden_effects/suite.h"
 #include "identification/catalog.h"
 #include "sim/file.h"
+#include "support/json_lines.h"
 
 namespace continuum::hidden {
 namespace {
@@ -185,16 +185,6 @@ void Report(const std::vector<nlohmann::json>& lines) {
     fmt::print("  {:<18} {:3} of {:3}\n", name, c.unique_wrong, c.n);
 }
 
-std::vector<nlohmann::json> ReadLines(const std::filesystem::path& file) {
-  std::vector<nlohmann::json> lines;
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) {
-    auto json = nlohmann::json::parse(line, nullptr, false);
-    if (json.is_object()) lines.push_back(std::move(json));  // the last may be cut short
-  }
-  return lines;
-}
-
 nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool verbose) {
   try {
     const Answer a = Solve(c, folder);
@@ -227,7 +217,7 @@ int Main(int argc, char** argv) {
   app.add_flag("--verbose", verbose, "print each summary");
   CLI11_PARSE(app, argc, argv);
   std::set<std::string> done;
-  for (const auto& line : ReadLines(out)) done.insert(line.at("case"));
+  for (const auto& line : testing::ReadJsonLines(out)) done.insert(line.at("case"));
   const auto temporary =
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
   auto cases = background ? BackgroundCases(repeats)
@@ -246,13 +236,13 @@ int Main(int argc, char** argv) {
       continue;
     }
     const nlohmann::json line = Line(cases[i], folder, verbose);
-    std::ofstream(out, std::ios::app) << line.dump() << std::endl;
+    testing::AppendJsonLine(out, line);
     fmt::print(stderr, "{}/{} {}: {} {} {:.1f} s\n", i + 1, cases.size(), name,
                line.at("verdict").get<std::string>(),
                line.value("named", nlohmann::json::array()).dump(), line.value("seconds", 0.0));
   }
   std::filesystem::remove_all(temporary);
-  Report(ReadLines(out));
+  Report(testing::ReadJsonLines(out));
   return 0;
 }
 

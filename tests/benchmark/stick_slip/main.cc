@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <random>
 #include <set>
@@ -17,6 +16,7 @@
 #include "identification/noise.h"
 #include "identification/path.h"
 #include "sim/file.h"
+#include "support/json_lines.h"
 
 namespace continuum::stick_slip {
 namespace {
@@ -104,16 +104,6 @@ void Report(const std::vector<nlohmann::json>& lines) {
   }
 }
 
-std::vector<nlohmann::json> ReadLines(const std::filesystem::path& file) {
-  std::vector<nlohmann::json> lines;
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) {
-    auto json = nlohmann::json::parse(line, nullptr, false);
-    if (json.is_object()) lines.push_back(std::move(json));  // the last may be cut short
-  }
-  return lines;
-}
-
 int Main(int argc, char** argv) {
   CLI::App app{"Fits a slider that sticks and slips; goes on where an earlier run stopped"};
   std::string out, only;
@@ -127,7 +117,8 @@ int Main(int argc, char** argv) {
   app.add_option("--only", only, "kinds whose name holds this");
   CLI11_PARSE(app, argc, argv);
   std::set<std::pair<std::string, int>> done;
-  for (const auto& line : ReadLines(out)) done.insert({line.at("group"), line.at("seed")});
+  for (const auto& line : testing::ReadJsonLines(out))
+    done.insert({line.at("group"), line.at("seed")});
   const auto folder =
       std::filesystem::temp_directory_path() / ("stick_slip_" + std::to_string(getpid()));
   MakeFolder(folder);
@@ -144,12 +135,12 @@ int Main(int argc, char** argv) {
       for (const double rho : {0.0, 0.9}) {
         const Case c{rho, sigma, step, seed};
         if (done.contains({c.Group(), seed}) || c.Group().find(only) == std::string::npos) continue;
-        std::ofstream(out, std::ios::app) << Solve(c, e, system, starts).dump() << std::endl;
+        testing::AppendJsonLine(out, Solve(c, e, system, starts));
       }
     }
   }
   std::filesystem::remove_all(folder);
-  Report(ReadLines(out));
+  Report(testing::ReadJsonLines(out));
   return 0;
 }
 

@@ -1,0 +1,136 @@
+// How the residuals of a problem follow its parameters.
+#include <memory>
+#include <numeric>
+
+#include "identification/parallel.h"
+#include "identification/problem.h"
+#include "identification/smooth.h"
+
+namespace continuum {
+
+std::vector<Problem::Matrix> Problem::Jacobian(const Vector& x, const std::vector<Vector>& r,
+                                               const std::vector<bool>& use,
+                                               const std::vector<Matrix>& known, bool rough) const {
+  std::vector<Matrix> J(use.size());
+  const auto motions = Motions(use);
+  std::size_t first = 0;
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) continue;
+    J[l] = Matrix::Zero(r[l].size(), x.size());
+    if (known.empty()) continue;
+    first = static_cast<std::size_t>(known[l].cols());
+    J[l].leftCols(known[l].cols()) = known[l];
+  }
+  std::vector<std::size_t> columns;
+  for (std::size_t k = first; k < parameters_.size(); ++k) {
+    if (path_ == Path::kStepped || Measures(k)) columns.push_back(k);
+  }
+  DifferenceColumns(x, r, motions, columns, J);
+  if (path_ == Path::kSmooth) SensitivityColumns(x, motions, first, rough, J);
+  return J;
+}
+
+std::vector<Problem::Matrix> Problem::StartJacobian(const Vector& x, const std::vector<Vector>& r,
+                                                    const std::vector<bool>& use) const {
+  std::vector<Matrix> J(use.size());
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (use[l]) J[l] = Matrix::Zero(r[l].size(), x.size());
+  }
+  std::vector<std::size_t> columns;
+  for (std::size_t k = 0; k < parameters_.size(); ++k) {
+    if (parameters_[k].IsStart()) columns.push_back(k);
+  }
+  DifferenceColumns(x, r, Motions(use), columns, J);
+  return J;
+}
+
+// Whether a parameter changes how a motion is measured, not the motion.
+bool Problem::Measures(std::size_t k) const {
+  return SideOf(parameters_[k].change) == Side::kMeasurement;
+}
+
+bool Problem::Allows(std::size_t k, double value) const {
+  return value >= parameters_[k].lower && value <= parameters_[k].upper;
+}
+
+double Problem::StepOf(const Vector& x, std::size_t k, double share) const {
+  const double step = share * parameters_[k].scale;
+  return x[k] + step > parameters_[k].upper ? -step : step;
+}
+
+void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
+                                const std::vector<std::vector<std::size_t>>& motions,
+                                const std::vector<std::size_t>& columns,
+                                std::vector<Matrix>& J) const {
+  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    for (const std::size_t k : columns) {
+      if (parameters_[k].log[motions[i].front()]) tasks.emplace_back(i, k);
+    }
+  }
+  ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
+    const auto [i, k] = tasks[t];
+    const double step = StepOf(x, k, 1e-3);  // stick and slip are decided step by step: average
+    const auto moved = [&](double by) {
+      Vector beside = x;
+      beside[k] += by;
+      return Run(thread, beside, motions[i].front());
+    };
+    const bool both = central_ && Allows(k, x[k] - step);
+    const Trace there = moved(step), back = both ? moved(-step) : Trace{};
+    for (const std::size_t l : motions[i])
+      J[l].col(k) = both ? (ResidualOf(l, there) - ResidualOf(l, back)) / (2 * step)
+                         : (ResidualOf(l, there) - r[l]) / step;
+  });
+  evaluations_ += (central_ ? 2 : 1) * tasks.size();
+}
+
+// Parameters of a motion are shared out so that no core waits for another.
+void Problem::SensitivityColumns(const Vector& x,
+                                 const std::vector<std::vector<std::size_t>>& motions,
+                                 std::size_t first, bool rough, std::vector<Matrix>& J) const {
+  struct Task {
+    std::size_t motion;
+    std::vector<std::size_t> moving;
+  };
+  std::vector<Task> tasks;
+  const std::size_t shares = ThreadCount() / std::gcd(motions.size(), ThreadCount());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    std::vector<std::size_t> moving;
+    for (std::size_t k = first; k < parameters_.size(); ++k) {
+      if (!Measures(k) && parameters_[k].log[motions[i].front()]) moving.push_back(k);
+    }
+    for (std::size_t s = 0; s < shares; ++s) {
+      const auto at = [&](std::size_t share) {
+        return moving.begin() + static_cast<std::ptrdiff_t>(share * moving.size() / shares);
+      };
+      if (at(s) != at(s + 1)) tasks.push_back({i, {at(s), at(s + 1)}});
+    }
+  }
+  Solving how = solving_;
+  if (rough) how.relative = 1e-4, how.absolute = 1e-6;
+  ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
+    const auto& [i, moving] = tasks[t];
+    const std::size_t log = motions[i].front();
+    std::vector<std::unique_ptr<Flow>> neighbours;
+    for (const std::size_t k : moving) {
+      Vector moved = x;
+      moved[k] += StepOf(x, k, kMove);
+      neighbours.push_back(FlowAt(thread, moved, log));
+    }
+    const auto flow = FlowAt(thread, x, log);
+    const Log& logged = experiment_->logs[log];
+    const Experiment measured = MeasuredBy(x, log);
+    SmoothTraces traces = FollowFlow(*flow, neighbours, measured, logged, how);
+    for (std::size_t j = 0; j < moving.size(); ++j) {
+      MeasureTrace(measured, flow->wiring(), logged, traces.moved[j]);
+      for (const std::size_t l : motions[i]) {
+        J[l].col(moving[j]) = (ResidualOf(l, traces.moved[j]) - ResidualOf(l, traces.trace)) /
+                              StepOf(x, moving[j], kMove);
+      }
+    }
+  });
+  evaluations_ += tasks.size();
+}
+
+}  // namespace continuum
