@@ -118,7 +118,7 @@ int Main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   std::set<std::pair<std::string, int>> done;
   for (const auto& line : testing::ReadJsonLines(out))
-    done.insert({line.at("group"), line.at("seed")});
+    done.emplace(line.at("group").get<std::string>(), line.at("seed").get<int>());
   const auto folder =
       std::filesystem::temp_directory_path() / ("stick_slip_" + std::to_string(getpid()));
   MakeFolder(folder);
