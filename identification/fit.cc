@@ -33,8 +33,6 @@ class Cost : public ceres::CostFunction {
     x_ = x, r_ = std::move(r), J_ = std::move(J);
     derived_ = {x_, r_};
   }
-  // From now on the derivatives that a pass begins with are not rough.
-  void Sharpen() { rough_ = false, J_.clear(); }
 
   bool Evaluate(const double* const* y, double* residuals, double** jacobians) const override {
     const auto& parameters = problem_.parameters();
@@ -69,7 +67,7 @@ class Cost : public ceres::CostFunction {
   void Derive() const {
     if (!J_.empty() && derived_.x == x_) return;
     if (J_.empty() || problem_.path() == Path::kStepped || !Updated())
-      J_ = problem_.Jacobian(x_, r_, use_, {}, rough_);
+      J_ = problem_.Jacobian(x_, r_, use_, {}, true);
     derived_ = {x_, r_};
   }
   bool Updated() const {
@@ -106,7 +104,6 @@ class Cost : public ceres::CostFunction {
     std::vector<Vector> r;
   };
   mutable Derived derived_;  // where J_ is known
-  bool rough_ = true;
 };
 
 class Watch : public ceres::IterationCallback {
@@ -244,12 +241,6 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &ceres, &summary);
   fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
-  if (problem.path() == Path::kSmooth && summary.termination_type == ceres::CONVERGENCE) {
-    cost.Sharpen();
-    solver.initial_trust_region_radius = 1e6;
-    ceres::Solve(solver, &ceres, &summary);
-    fit.iterations += static_cast<int>(summary.iterations.size()) - 1;
-  }
   fit.x = unscaled();
   fit.cost = summary.final_cost;
   fit.converged = summary.termination_type == ceres::CONVERGENCE;

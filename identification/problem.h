@@ -85,7 +85,7 @@ class Problem {
                                   const std::vector<bool>& use) const;
   /// d residual / d parameter [per unit of the parameter] of each log, by one-sided differences or
   /// sensitivities; r: the residuals at x; known: its leading columns, when they are known already;
-  /// rough: to three digits are enough.
+  /// rough: to two digits, on the smooth path: enough to search with, as residuals stay exact.
   std::vector<Matrix> Jacobian(const Vector& x, const std::vector<Vector>& r,
                                const std::vector<bool>& use, const std::vector<Matrix>& known = {},
                                bool rough = false) const;

@@ -108,7 +108,7 @@ void Problem::SensitivityColumns(const Vector& x,
     }
   }
   Solving how = solving_;
-  if (rough) how.relative = 1e-4, how.absolute = 1e-6;
+  if (rough) how.relative = 1e-3, how.absolute = 1e-5;
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
     const auto& [i, moving] = tasks[t];
     const std::size_t log = motions[i].front();
