@@ -64,6 +64,9 @@ class Problem {
   void StepBy(double h);
   /// From now on with central differences, at twice the cost; one-sided where a bound is near.
   void Center() { central_ = true; }
+  /// From now on with differences over this share of a parameter's scale. The default averages over
+  /// the kinks of joints that stick and slip step by step; 1e-6 gives the derivative itself.
+  void DifferBy(double share) { share_ = share; }
 
   const Experiment& experiment() const { return *experiment_; }
   const System& system() const { return systems_.front(); }
@@ -155,6 +158,7 @@ class Problem {
   Path path_ = Path::kStepped;
   double step_ = 0;  ///< 0: the model's
   bool central_ = false;
+  double share_ = 1e-3;
   Solving solving_;  ///< on the smooth path
   mutable std::size_t evaluations_ = 0;
 };

@@ -70,7 +70,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
   }
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
     const auto [i, k] = tasks[t];
-    const double step = StepOf(x, k, 1e-3);  // stick and slip are decided step by step: average
+    const double step = StepOf(x, k, share_);
     const auto moved = [&](double by) {
       Vector beside = x;
       beside[k] += by;

@@ -26,6 +26,7 @@ struct SmoothTraces {
 SmoothTraces FollowFlow(Flow& flow, const std::vector<std::unique_ptr<Flow>>& neighbours,
                         const Experiment& e, const Log& log, const Solving& how);
 
-inline constexpr double kMove = 1e-6;
+/// Below, rounding shows in sensitivities; above, curvature does.
+inline constexpr double kMove = 5e-7;
 
 }  // namespace continuum

@@ -57,6 +57,32 @@ TEST_P(CvodesTest, FollowsAnOscillatorAndItsSensitivities) {
   }
 }
 
+// ∂f/∂y s and ∂f/∂p both matter, and so do their signs: what the test above has to see.
+TEST_P(CvodesTest, SensitivitiesNeedEveryTerm) {
+  constexpr double k = 9, c = 0.4, t = 2, kStep = 1e-5;
+  const double expected = (Position(k, c + kStep, t) - Position(k, c - kStep, t)) / (2 * kStep);
+  const auto found = [&](double own, double spring, double damper) {
+    Ode ode = Oscillator(k, c);
+    ode.sensitivity = [=](double, const double* y, const double*, const Ode::States& s,
+                          const Ode::States& rates) {
+      for (int p = 0; p < 2; ++p) {
+        rates[p][0] = s[p][1];
+        rates[p][1] = -spring * k * s[p][0] - damper * c * s[p][1] - own * y[p];
+      }
+    };
+    Cvodes solver(ode, how_);
+    solver.Start(0, std::vector<double>{1, 0});
+    EXPECT_TRUE(solver.Advance(t, t));
+    return solver.s(1)[0];
+  };
+  EXPECT_NEAR(found(1, 1, 1), expected, 1e-6);
+  for (const double changed : {0.0, -1.0}) {
+    EXPECT_GT(std::abs(found(changed, 1, 1) - expected), 0.05);
+    EXPECT_GT(std::abs(found(1, changed, 1) - expected), 0.05);
+    EXPECT_GT(std::abs(found(1, 1, changed) - expected), 0.05);
+  }
+}
+
 TEST_P(CvodesTest, GoesOnFromWhereItWasStartedAnew) {
   Cvodes once(Oscillator(4, 0.1), how_), twice(Oscillator(4, 0.1), how_);
   once.Start(0, std::vector<double>{1, 0});

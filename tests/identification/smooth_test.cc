@@ -19,9 +19,12 @@ namespace continuum {
 namespace {
 
 using testing::Apart;
+using testing::CentralDifferences;
 using testing::Gradient;
 using ::testing::HasSubstr;
 using testing::kSmoothExperiment;
+using testing::SlopeError;
+using testing::Slopes;
 using testing::SmoothArm;
 using testing::SmoothLog;
 
@@ -63,8 +66,8 @@ const std::string kCreep = Law("maxwell",
 
 TEST_P(GradientTest, AgreesWithTightCentralDifferences) {
   const Gradient& g = GetParam();
-  testing::ExpectCentralDifferences(Read(SmoothArm(g.target.starts_with("plugin:") ? kCreep : "")),
-                                    g);
+  const Experiment e = Read(SmoothArm(g.target.starts_with("plugin:") ? kCreep : ""));
+  EXPECT_LT(SlopeError(Slopes(e, g), CentralDifferences(e, g)), 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Attribute, GradientTest,

@@ -35,7 +35,7 @@ struct Case {
 
 std::vector<double> Values(const Problem::Vector& x) { return {x.begin(), x.end()}; }
 
-nlohmann::json Solve(const Case& c, Experiment e, const System& system, int starts) {
+nlohmann::json Solve(const Case& c, Experiment e, const System& system, int starts, double share) {
   std::mt19937_64 rng(static_cast<std::uint64_t>(c.seed));
   const ChannelNoise noise{{c.rho}, c.sigma * std::sqrt(1 - c.rho * c.rho), 0, c.sigma};
   for (Log& log : e.logs) {
@@ -43,6 +43,7 @@ nlohmann::json Solve(const Case& c, Experiment e, const System& system, int star
     for (std::size_t k = 0; k < kRows; ++k) log.measured[0][k] += errors[k];
   }
   Problem problem(e, system);
+  problem.DifferBy(share);
   const auto use = problem.AllLogs();
   const Fit fit = FitParameters(problem, problem.Start(), use, {.iterations = 50});
   const auto r = problem.Residuals(fit.x, use);
@@ -108,12 +109,14 @@ int Main(int argc, char** argv) {
   CLI::App app{"Fits a slider that sticks and slips; goes on where an earlier run stopped"};
   std::string out, only;
   int first = 1, seeds = 100, starts = 0;
-  double sigma = 2e-4;
+  double sigma = 2e-4, share = 1e-3;
   app.add_option("--out", out, "one JSON line per fit")->required();
   app.add_option("--first", first, "seed of the noise")->capture_default_str();
   app.add_option("--seeds", seeds, "of each kind")->capture_default_str();
   app.add_option("--starts", starts, "random ones beside each fit")->capture_default_str();
   app.add_option("--sigma", sigma, "of the noise [m]")->capture_default_str();
+  app.add_option("--differences", share, "over this share of a parameter's scale")
+      ->capture_default_str();
   app.add_option("--only", only, "kinds whose name holds this");
   CLI11_PARSE(app, argc, argv);
   std::set<std::pair<std::string, int>> done;
@@ -135,7 +138,7 @@ int Main(int argc, char** argv) {
       for (const double rho : {0.0, 0.9}) {
         const Case c{rho, sigma, step, seed};
         if (done.contains({c.Group(), seed}) || c.Group().find(only) == std::string::npos) continue;
-        testing::AppendJsonLine(out, Solve(c, e, system, starts));
+        testing::AppendJsonLine(out, Solve(c, e, system, starts, share));
       }
     }
   }
