@@ -49,13 +49,12 @@ struct Swing {
 // m₁ x₁'' = G a − k₁ x₁ − k (x₁ − x₂),  m₂ x₂'' = k (x₁ − x₂) − c x₂',  T a' = u − a.
 struct Train {
   static constexpr int kStates = 5, kParameters = 4;
-  static constexpr std::array<double, kStates> kStart{0, 0, 0, 0, Held(0)};  // a lag is settled
+  static constexpr std::array<double, kStates> kStart{0, 0, 0, 0, Held(0)};    // a lag is settled
   static constexpr std::array<double, kParameters> kValues{12, 0.05, 3, 0.7};  // k, T, G, m₂
-  inline static const std::vector<Gradient> kGradients{
-      {"k", "tendon:link", "stiffness", 12},
-      {"T", "actuator:u", "dynprm[0]", 0.05},
-      {"G", "actuator:u", "gainprm[0]", 3},
-      {"m2", "body:second", "mass", 0.7}};
+  inline static const std::vector<Gradient> kGradients{{"k", "tendon:link", "stiffness", 12},
+                                                       {"T", "actuator:u", "dynprm[0]", 0.05},
+                                                       {"G", "actuator:u", "gainprm[0]", 3},
+                                                       {"m2", "body:second", "mass", 0.7}};
 
   template <class T>
   static std::array<T, kStates> Rate(const std::array<T, kStates>& y,
@@ -120,9 +119,10 @@ class DualsTest : public testing::Bench {
     for (int k = 0; k < kRows; ++k) csv += fmt::format("{:.2f},{},0\n", 0.01 * k, Held(k));
     Write("log.csv", csv);
     const Experiment e = Experiment::Read(
-        Write("e.yaml", "format: 1\nmodel: model.xml\nstart: rest\ninputs: [{column: u, unit: '1', "
-                        "actuator: u}]\noutputs: [{column: q, unit: '1', sensor: q}]\n"
-                        "logs: [{file: log.csv}]\n"));
+        Write("e.yaml",
+              "format: 1\nmodel: model.xml\nstart: rest\ninputs: [{column: u, unit: '1', "
+              "actuator: u}]\noutputs: [{column: q, unit: '1', sensor: q}]\n"
+              "logs: [{file: log.csv}]\n"));
     const auto expected = ByDuals<System>();
     double worst = 0;
     for (int i = 0; i < System::kParameters; ++i) {
