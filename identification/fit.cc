@@ -63,7 +63,8 @@ class Cost : public ceres::CostFunction {
   }
 
   // J_ at x_: updated (Broyden) along the step from where it was known, if the residuals changed
-  // almost as it said; else anew. By differences it is always made anew: they see stick and slip.
+  // almost as it said; as it was, if they hardly changed; else anew. By differences it is always
+  // made anew: they see stick and slip.
   void Derive() const {
     if (!J_.empty() && derived_.x == x_) return;
     if (J_.empty() || problem_.path() == Path::kStepped || !Updated())
@@ -85,7 +86,8 @@ class Cost : public ceres::CostFunction {
       bent += lack[l].squaredNorm(), change += difference.squaredNorm();
       all += r_[l].squaredNorm();
     }
-    if (bent > kBent * kBent * change && bent > kNothing * kNothing * all) return false;
+    // A short step changes less than the simulation's own errors: nothing to learn from it.
+    if (bent > kBent * kBent * change) return bent < kNothing * kNothing * all;
     for (std::size_t l = 0; l < J_.size(); ++l) {
       if (use_[l]) J_[l] += lack[l] * scaled.transpose() / scaled.dot(step);
     }
@@ -118,16 +120,25 @@ class Watch : public ceres::IterationCallback {
     }
     const bool hopeless = s.step_is_successful && s.iteration >= 2 &&
                           s.cost > options_.hopeless + kMore * s.cost_change;
-    return StopRequested() || hopeless ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                                       : ceres::SOLVER_CONTINUE;
+    settled_ = Settled(s);
+    return StopRequested() || hopeless || settled_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                                   : ceres::SOLVER_CONTINUE;
   }
+  bool settled() const { return settled_; }
 
  private:
+  // Whether a step failed from which little was expected: then the simulation's own errors decide.
+  bool Settled(const ceres::IterationSummary& s) const {
+    if (s.step_is_successful || !s.step_is_valid || !(s.relative_decrease < 0)) return false;
+    return s.cost_change / s.relative_decrease < options_.tolerance * s.cost;
+  }
+
   static constexpr double kMore = 4;  // steps as good as the last that a fit may still hope for
 
   const Problem& problem_;
   const FitOptions& options_;
   Fit& fit_;
+  bool settled_ = false;
 };
 
 void RequireEffect(const Problem& problem, const Vector& x, const std::vector<Matrix>& J) {
@@ -171,6 +182,15 @@ double Bandwidth(const Matrix& scores) {
   if (!(bottom > 0)) return 1;
   return std::min(1.1447 * std::cbrt(top / bottom * static_cast<double>(n)) + 1,
                   static_cast<double>(n) / 3);
+}
+
+// Of a symmetric matrix whose rows have units of their own.
+Matrix PseudoInverse(const Matrix& H) {
+  const Vector scale =
+      H.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 1; });
+  const Matrix even = scale.asDiagonal() * H * scale.asDiagonal();
+  const Matrix inverse = even.completeOrthogonalDecomposition().pseudoInverse();
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
 // Moves the ends of the intervals by low ≤ 0 and high ≥ 0, within the bounds.
@@ -243,10 +263,13 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
   fit.x = unscaled();
   fit.cost = summary.final_cost;
-  fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  fit.converged = summary.termination_type == ceres::CONVERGENCE || watch.settled();
   fit.message = summary.message;
-  if (summary.termination_type == ceres::USER_SUCCESS)
+  if (watch.settled()) {
+    fit.message = "a further step gains less than the errors of the simulation";
+  } else if (summary.termination_type == ceres::USER_SUCCESS) {
     fit.message = StopRequested() ? "interrupted" : "given up: it cannot come near a better one";
+  }
   fit.evaluations = problem.evaluations() - before;
   fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return fit;
@@ -355,7 +378,7 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
     effective += static_cast<double>(block.r.size()) / bandwidth;
   }
   u.information(inside, inside) = H;
-  const Matrix Hi = H.completeOrthogonalDecomposition().pseudoInverse();
+  const Matrix Hi = PseudoInverse(H);
   const Matrix cov = Hi * S * Hi;
   const double freedom = std::max(2.0, effective - static_cast<double>(k));
   const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
@@ -390,7 +413,7 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
     if (!J[l].size()) continue;
     pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
   }
-  ReachOver(problem, u.information.completeOrthogonalDecomposition().pseudoInverse() * pull, u);
+  ReachOver(problem, PseudoInverse(u.information) * pull, u);
 }
 
 Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r) {

@@ -129,6 +129,23 @@ TEST_F(FitTest, IntervalsAreWiderForNoiseThatLasts) {
   EXPECT_GT(error(0.9), 1.5 * error(0));
 }
 
+// Of an area in m² and of a cubic spring in N/m³ one is 1e-5 and the other 1e5.
+TEST_F(FitTest, ErrorsFollowTheUnitsOfTheirParameters) {
+  AddTrials({}, 1, 0.01);
+  const System system = Model({});
+  const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
+  const Problem problem(e, system);
+  const Problem::Vector x = problem.Start();
+  const auto r = problem.Residuals(x, problem.AllLogs());
+  auto J = problem.Jacobian(x, r, problem.AllLogs());
+  const auto plain = UncertaintyOf(problem, x, r, J);
+  J[0].col(0) *= 1e-6, J[0].col(1) *= 1e6;
+  const auto scaled = UncertaintyOf(problem, x, r, J);
+  EXPECT_NEAR(1e-6 * scaled.standard_error[0] / plain.standard_error[0], 1, 1e-6);
+  EXPECT_NEAR(1e6 * scaled.standard_error[1] / plain.standard_error[1], 1, 1e-6);
+  EXPECT_NEAR(scaled.correlation(0, 1), plain.correlation(0, 1), 1e-6);
+}
+
 TEST_F(FitTest, StopsAtABoundAndGivesNoErrorThere) {
   AddTrials({}, 2, 2e-4);
   const System system = Model({});
