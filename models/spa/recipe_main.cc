@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "error.h"
+#include "models/spa/logs.h"
 #include "models/spa/recipe.h"
 #include "sim/file.h"
 
@@ -25,7 +26,7 @@ void Progress(int done, int of) {
 
 int Main(int argc, char** argv) {
   CLI::App app("Identification and validation of the soft pneumatic actuator on simulated steps");
-  std::string file = CONTINUUM_SPA_FILE, out;
+  std::string file = CONTINUUM_SPA_FILE, out, logs;
   SpaRecipe recipe;
   app.add_option("--parameters", file, "parameters of the true model")->capture_default_str();
   app.add_option("--seed", recipe.seed, "seed of noise and swarm")->capture_default_str();
@@ -36,13 +37,20 @@ int Main(int argc, char** argv) {
       ->transform(CLI::CheckedTransformer(std::map<std::string, SpaFilter::Kind>{
           {"butterworth", SpaFilter::Kind::kButterworth}, {"average", SpaFilter::Kind::kAverage}}));
   app.add_option("--out", out, "write the tables to this file instead of stdout");
+  app.add_option("--logs", logs,
+                 "only write steps as logs and an experiment of `continuum identify` here");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  const SpaFile truth = ReadSpa(file);
+  if (!logs.empty()) {
+    WriteSpaLogs(truth, recipe.noise, recipe.seed, logs);
+    return 0;
+  }
   recipe.progress = Progress;
-  const std::string tables = SpaTables(RunSpaRecipe(ReadSpa(file), recipe));
+  const std::string tables = SpaTables(RunSpaRecipe(truth, recipe));
   if (out.empty()) {
     fmt::print("{}", tables);
   } else {
