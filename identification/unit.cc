@@ -56,6 +56,18 @@ std::string PluginUnit(const mjModel& m, const Parameter& p) {
   return unit;
 }
 
+// Whether the first number of the dynamics of all these actuators is the time of a lag.
+bool Lags(const mjModel& m, std::string_view globs) {
+  bool lags = false;
+  for (int i = 0; i < m.nu; ++i) {
+    const char* const name = mj_id2name(&m, mjOBJ_ACTUATOR, i);
+    if (!name || !AnyGlobMatches(globs, name)) continue;
+    lags = m.actuator_dyntype[i] == mjDYN_FILTER || m.actuator_dyntype[i] == mjDYN_FILTEREXACT;
+    if (!lags) return false;
+  }
+  return lags;
+}
+
 // Of MuJoCo's attributes, on what turns.
 std::string AttributeUnit(const std::string& name) {
   if (name == "mass" || name == "point_mass") return "kg";
@@ -80,6 +92,7 @@ std::string UnitOf(const System& system, const Parameter& p) {
   const std::size_t colon = p.target.find(':');
   const std::string kind = p.target.substr(0, colon);
   const std::string globs = colon == p.target.npos ? "" : p.target.substr(colon + 1);
+  if (kind == "actuator" && p.attribute == "dynprm[0]" && Lags(m, globs)) return "s";
   const Motion motion = MotionOf(m, kind, globs);
   if (IsNativeEffect({p.target, p.attribute})) return Read(UnitOfNativeEffect(p.attribute), motion);
   return Read(AttributeUnit(p.attribute.substr(0, p.attribute.find('['))), motion);

@@ -22,6 +22,8 @@ constexpr char kModel[] = R"(<mujoco>
   </worldbody>
   <tendon><spatial name="cable"><site site="a"/><site site="corner"/><site site="b"/></spatial>
   </tendon>
+  <actuator><general name="lagged" joint="turn" dyntype="filterexact" dynprm="0.1"/>
+    <motor name="straight" joint="turn"/></actuator>
 </mujoco>)";
 
 struct Case {
@@ -45,6 +47,8 @@ TEST(Unit, OfAParameterFollowsItsEffectAndWhetherItsPlacesTurnOrSlide) {
                         Case{"joint:slide1 slide2", "effect:viscous", "N*s/m"},
                         Case{"joint:slide1", "effect:stiffness.k", "N/m"},
                         Case{"actuator:motor", "effect:pt1.T", "s"},
+                        Case{"actuator:lag*", "dynprm[0]", "s"},
+                        Case{"actuator:*", "dynprm[0]", "1"},
                         Case{"world:*", "effect:gravity_tilt.roll", "rad"},
                         Case{"body:*", "effect:external_force.fy", "N"},
                         Case{"plugin:grease", "sigma", "N*m/rad"},
