@@ -56,21 +56,9 @@ def cost(rows, values, logs, substeps, **option):
     return float(np.mean(np.square(r)))
 
 
-def fit_sysid(rows, logs):
+def optimise(parameters, sequences):
     """Returns the values, the seconds, and the seconds to within 0.1 % of the best cost."""
-    spec = mujoco.MjSpec.from_string(problem.mjcf())
-    model = spec.compile()
-    state = sysid.create_initial_state(model, np.zeros(model.nq), np.zeros(model.nv), np.zeros(0))
-    parameters = sysid.ParameterDict()
-    for name, target, attribute, _, start, lower, upper in rows:
-        parameters.add(sysid.Parameter(
-            name, nominal=start, min_value=lower, max_value=upper,
-            modifier=lambda s, p, t=target, a=attribute: modify(s, t, a, p.value[0])))
-    sequences = sysid.ModelSequences(
-        "arm", spec, [f"log{i}" for i in range(len(logs))], [state] * len(logs),
-        [sysid.TimeSeries(t, u) for t, u, _ in logs],
-        [sysid.TimeSeries.from_names(t, y, model) for t, _, y in logs])
-    residual = sysid.build_residual_fn(models_sequences=[sequences])
+    residual = sysid.build_residual_fn(models_sequences=sequences)
     history = []
     begin = time.perf_counter()
 
@@ -86,6 +74,22 @@ def fit_sysid(rows, logs):
     least = min(c for _, c in history)
     near = next(t for t, c in history if c <= 1.001 * least)
     return best.as_vector(), seconds, near
+
+
+def fit_sysid(rows, logs):
+    spec = mujoco.MjSpec.from_string(problem.mjcf())
+    model = spec.compile()
+    state = sysid.create_initial_state(model, np.zeros(model.nq), np.zeros(model.nv), np.zeros(0))
+    parameters = sysid.ParameterDict()
+    for name, target, attribute, _, start, lower, upper in rows:
+        parameters.add(sysid.Parameter(
+            name, nominal=start, min_value=lower, max_value=upper,
+            modifier=lambda s, p, t=target, a=attribute: modify(s, t, a, p.value[0])))
+    sequences = sysid.ModelSequences(
+        "arm", spec, [f"log{i}" for i in range(len(logs))], [state] * len(logs),
+        [sysid.TimeSeries(t, u) for t, u, _ in logs],
+        [sysid.TimeSeries.from_names(t, y, model) for t, _, y in logs])
+    return optimise(parameters, [sequences])
 
 
 def fit_continuum(executable, rows, logs, *how):
