@@ -74,7 +74,7 @@ void RunReplay(const Options& o) {
 
 struct CheckOptions {
   std::string experiment;
-  bool json = false;
+  bool json = false, all = false;
 };
 
 void RunCheck(const CheckOptions& o) {
@@ -86,7 +86,9 @@ void RunCheck(const CheckOptions& o) {
   auto findings = CheckLogs(e);
   const auto more = CheckAgainstModel(e, system);
   findings.insert(findings.end(), more.begin(), more.end());
-  const std::string text = o.json ? ToJson(findings).dump(2) + "\n" : Report(findings);
+  const std::string text = o.json  ? ToJson(findings).dump(2) + "\n"
+                           : o.all ? FullReport(findings)
+                                   : Report(findings);
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
@@ -108,7 +110,8 @@ void AddCheck(CLI::App& app) {
   CLI::App* const sub =
       app.add_subcommand("check", "Look at the logs of an experiment before anything else");
   sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
-  sub->add_flag("--json", o->json, "as JSON");
+  auto* const json = sub->add_flag("--json", o->json, "as JSON, every finding");
+  sub->add_flag("--all", o->all, "every finding on a line of its own")->excludes(json);
   sub->footer("Example:\n  continuum check models/annelida/demo/annelida.yaml");
   sub->callback([o] { RunCheck(*o); });
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -84,7 +86,9 @@ CheckedLog Prepare(const Experiment& e, const Log& log) {
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const auto& channel = e.channels[c];
     checked.columns.push_back(Column(channel.name, channel.unit, channel.factor, log, measured[c]));
-    checked.columns.back().smooth = e.outputs[channel.output].kind == Output::Kind::kSensor;
+    const Output& output = e.outputs[channel.output];
+    checked.columns.back().smooth = output.kind == Output::Kind::kSensor;
+    checked.columns.back().sensor = output.source.substr(0, output.source.find('['));
   }
   MarkDisturbed(checked);
   return checked;
@@ -97,8 +101,9 @@ void Findings::Add(Severity severity, const std::string& channel, const std::str
       has_time ? log_->time.back() : 0);
 }
 void Findings::Add(Severity severity, const std::string& channel, const std::string& what,
-                   const std::string& text, double begin, double end) {
-  findings_.push_back({log_ ? log_->label : "", channel, what, text, begin, end, severity});
+                   const std::string& gist, double begin, double end, const std::string& places) {
+  findings_.push_back(
+      {log_ ? log_->label : "", channel, what, gist + places, gist, begin, end, severity});
 }
 
 std::string Clock(double time) {
@@ -125,6 +130,21 @@ void ShareQuanta(std::vector<CheckedLog>& logs) {
   }
 }
 
+// A sensor is as noisy in one direction as in the others: where one hardly moves, they tell.
+void ShareBends(std::vector<CheckedLog>& logs) {
+  std::map<std::pair<std::string, std::string>, std::vector<double>> bends;
+  for (const CheckedLog& log : logs) {
+    for (const CheckedColumn& c : log.columns) {
+      if (c.smooth) bends[{c.sensor, c.unit}].push_back(BendOf(c.value));
+    }
+  }
+  for (CheckedLog& log : logs) {
+    for (CheckedColumn& c : log.columns) {
+      if (c.smooth) c.bend = Median(bends[{c.sensor, c.unit}]);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> CheckLogs(const Experiment& e) {
@@ -134,6 +154,7 @@ std::vector<Finding> CheckLogs(const Experiment& e) {
   std::vector<CheckedLog> logs;
   for (const Log& log : e.logs) logs.push_back(Prepare(e, log));
   if (!logs.empty()) ShareQuanta(logs);
+  ShareBends(logs);
   for (const CheckedLog& log : logs) {
     Findings found(log.log);
     CheckClock(log, found);

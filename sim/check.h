@@ -19,6 +19,7 @@ struct Finding {
   std::string channel;  ///< column; empty: the whole log
   std::string what;     ///< kind in snake_case: "gap", "stale", "unit_suspect", …
   std::string text;     ///< one plain sentence with numbers and units
+  std::string gist;     ///< text without the list of further places at its end
   double begin = 0;     ///< [s] where it is; the whole log when it is everywhere
   double end = 0;       ///< [s]
   Severity severity = Severity::kInfo;
@@ -36,8 +37,12 @@ std::vector<Finding> CheckLogs(const Experiment& e);
 /// does not have.
 std::vector<Finding> CheckAgainstModel(const Experiment& e, const System& system);
 
-/// For a terminal: a summary, then one line per finding under its log.
+/// For a terminal: a summary, then what the logs have in common, what columns of one log have in
+/// common as one line, the rest under its log.
 std::string Report(const std::vector<Finding>& findings);
+
+/// For a terminal: a summary, then one line per finding under its log.
+std::string FullReport(const std::vector<Finding>& findings);
 
 /// A list of objects with the members of Finding, severity as "info", "warning" or "error".
 nlohmann::json ToJson(const std::vector<Finding>& findings);

@@ -17,18 +17,13 @@ void ReportGaps(const std::vector<double>& time, std::vector<std::size_t> gaps, 
   const std::size_t count = gaps.size();
   std::stable_sort(gaps.begin(), gaps.end(),
                    [&](std::size_t a, std::size_t b) { return length(a) > length(b); });
-  gaps.resize(std::min<std::size_t>(count, 3));
-  std::string list;
-  for (const std::size_t k : gaps) {
-    list +=
-        fmt::format("{}{:.4g} s after t = {}", list.empty() ? "" : ", ", length(k), Clock(time[k]));
-  }
-  out.Add(
-      Severity::kWarning, "", "gap",
-      fmt::format("the clock has {} gap{} where rows are missing (rows are {:.4g} s apart): {}{}",
-                  count, count == 1 ? "" : "s", period, list,
-                  count > 3 ? fmt::format(" and {} more", count - 3) : ""),
-      time[gaps.front()], time[gaps.front() + 1]);
+  const auto place = [&](std::size_t k) {
+    return fmt::format("{:.4g} s after t = {}", length(k), Clock(time[k]));
+  };
+  out.Add(Severity::kWarning, "", "gap",
+          fmt::format("the clock has gaps after {} of {} rows, which are {:.4g} s apart: {}", count,
+                      time.size(), period, place(gaps.front())),
+          time[gaps.front()], time[gaps.front() + 1], Further(gaps, count, place));
 }
 
 void ReportJitter(const std::vector<double>& time, const std::vector<double>& steps, double period,

@@ -95,7 +95,8 @@ CheckedColumn Fresh(const CheckedColumn& c) {
 }
 
 void CheckJumps(const CheckedColumn& c, const std::vector<bool>& disturbed, Findings& out) {
-  std::vector<Jump> jumps = SpikesOf(c.value, c.quantum, c.input);
+  const double bend = std::max(c.bend, BendOf(c.value));
+  std::vector<Jump> jumps = SpikesOf(c.value, c.quantum, bend, c.input);
   // A short pulse of an input may show in a fast sensor.
   const double large = 0.25 * RangeOf(c.value);
   jumps.erase(std::remove_if(jumps.begin(), jumps.end(),
@@ -111,7 +112,7 @@ void CheckJumps(const CheckedColumn& c, const std::vector<bool>& disturbed, Find
       skip[k] = skip[k] || c.time[k] - c.time[k - 1] > hole;
       for (std::size_t r = c.row[k - 1] + 1; r <= c.row[k]; ++r) skip[k] = skip[k] || disturbed[r];
     }
-    for (const Jump& step : StepsOf(c.value, c.quantum, skip)) {
+    for (const Jump& step : StepsOf(c.value, c.quantum, bend, skip)) {
       const bool known = std::any_of(jumps.begin(), jumps.end(), [&](const Jump& j) {
         return j.row == step.row || j.row + 1 == step.row;
       });
@@ -123,18 +124,15 @@ void CheckJumps(const CheckedColumn& c, const std::vector<bool>& disturbed, Find
   std::stable_sort(jumps.begin(), jumps.end(), [](const Jump& a, const Jump& b) {
     return std::abs(a.size) > std::abs(b.size);
   });
-  jumps.resize(std::min<std::size_t>(count, 3));
-  std::string list;
-  for (const Jump& j : jumps) {
-    list += fmt::format("{}{} in row {} (t = {})", list.empty() ? "" : ", ", Amount(j.size, c.unit),
-                        c.row[j.row] + 1, Clock(c.time[j.row]));
-  }
+  const auto place = [&](const Jump& j) {
+    return fmt::format("{} in row {} (t = {})", Amount(j.size, c.unit), c.row[j.row] + 1,
+                       Clock(c.time[j.row]));
+  };
   const double t = c.time[jumps.front().row];
   out.Add(Severity::kWarning, c.name, "jump",
-          fmt::format("{} row{} jump{} far out of the neighbours' range: {}{}", count,
-                      Plural(count), count == 1 ? "s" : "", list,
-                      count > 3 ? fmt::format(" and {} more", count - 3) : ""),
-          t, t);
+          fmt::format("jumps far out of its neighbours' range in {} of {} rows, most by {}", count,
+                      c.row.size(), place(jumps.front())),
+          t, t, Further(jumps, count, place));
 }
 
 void ReportRefresh(const CheckedColumn& c, const Refresh& r, bool often, Findings& out) {
@@ -189,15 +187,13 @@ std::vector<std::size_t> DuplicatedRows(const CheckedLog& log,
 }
 
 void ReportDuplicates(const Log& log, const std::vector<std::size_t>& rows, Findings& out) {
-  std::string list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(rows.size(), 3); ++i) {
-    list += fmt::format("{}{} (t = {})", i ? ", " : "", rows[i] + 1, Clock(log.time[rows[i]]));
-  }
+  const auto place = [&](std::size_t row) {
+    return fmt::format("{} (t = {})", row + 1, Clock(log.time[row]));
+  };
   out.Add(Severity::kWarning, "", "duplicated_rows",
-          fmt::format("{} row{} repeat{} the row before in every column: row {}{}", rows.size(),
-                      Plural(rows.size()), rows.size() == 1 ? "s" : "", list,
-                      rows.size() > 3 ? fmt::format(" and {} more", rows.size() - 3) : ""),
-          log.time[rows.front()], log.time[rows.back()]);
+          fmt::format("{} of {} rows repeat the row before in every column: row {}", rows.size(),
+                      log.rows(), place(rows.front())),
+          log.time[rows.front()], log.time[rows.back()], Further(rows, rows.size(), place));
 }
 
 // A unit that the size of the values makes unlikely.

@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <set>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "sim/check.h"
+#include "sim/check_groups.h"
+#include "sim/check_rules.h"
 
 namespace continuum {
 namespace {
@@ -19,34 +23,83 @@ std::string Counted(std::ptrdiff_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::string Line(const Finding& f) {
-  const std::string channel = f.channel.empty() ? "" : f.channel + ": ";
-  return fmt::format("  {:<8}{:<16} {}{}\n", Name(f.severity), f.what, channel, f.text);
+struct Entry {
+  std::string section, line;
+  Severity severity;
+};
+
+Entry EntryOf(const std::string& section, const Finding& f, const std::string& where,
+              const std::string& text) {
+  const std::string subject = where.empty() ? "" : where + ": ";
+  return {section, fmt::format("  {:<8}{:<16} {}{}\n", Name(f.severity), f.what, subject, text),
+          f.severity};
+}
+
+std::string SectionOf(const std::string& log) { return log.empty() ? "experiment" : "log " + log; }
+
+// What several logs have in common names them unless they are many, and where it comes first.
+Entry EntryOf(const FindingGroup& group, std::size_t logs) {
+  const Finding& first = *group.members.front();
+  const std::string channels = fmt::format("{}", fmt::join(group.channels, ", "));
+  if (group.logs.size() == 1) return EntryOf(SectionOf(first.log), first, channels, group.text);
+  const std::string which = group.logs.size() == logs ? fmt::format("all {} logs", logs)
+                            : group.logs.size() <= 3
+                                ? fmt::format("{}", fmt::join(group.logs, ", "))
+                                : fmt::format("{} of {} logs", group.logs.size(), logs);
+  const std::string where = channels.empty() ? which : channels + " in " + which;
+  const std::string place =
+      first.severity == Severity::kInfo
+          ? ""
+          : fmt::format("; first in {} at t = {}", first.log, Clock(first.begin));
+  return EntryOf("several logs", first, where, group.text + place);
+}
+
+// The sections in the order of the findings, in each the worst first.
+std::string Listed(const std::vector<Entry>& entries) {
+  const auto count = [&](Severity severity) {
+    return std::count_if(entries.begin(), entries.end(),
+                         [&](const Entry& e) { return e.severity == severity; });
+  };
+  std::string text = fmt::format("{}, {}, {}\n", Counted(count(Severity::kError), "error"),
+                                 Counted(count(Severity::kWarning), "warning"),
+                                 Counted(count(Severity::kInfo), "note"));
+  std::vector<std::string> sections;
+  for (const Entry& e : entries) {
+    if (std::find(sections.begin(), sections.end(), e.section) == sections.end())
+      sections.push_back(e.section);
+  }
+  for (const std::string& section : sections) {
+    text += section + "\n";
+    for (const Severity severity : {Severity::kError, Severity::kWarning, Severity::kInfo}) {
+      for (const Entry& e : entries) {
+        if (e.section == section && e.severity == severity) text += e.line;
+      }
+    }
+  }
+  return text;
 }
 
 }  // namespace
 
 std::string Report(const std::vector<Finding>& findings) {
-  const auto count = [&](Severity severity) {
-    return std::count_if(findings.begin(), findings.end(),
-                         [&](const Finding& f) { return f.severity == severity; });
-  };
-  std::vector<std::string> logs;
+  std::set<std::string> logs;
   for (const Finding& f : findings) {
-    if (std::find(logs.begin(), logs.end(), f.log) == logs.end()) logs.push_back(f.log);
+    if (!f.log.empty()) logs.insert(f.log);
   }
-  std::string text = fmt::format("{}, {}, {}\n", Counted(count(Severity::kError), "error"),
-                                 Counted(count(Severity::kWarning), "warning"),
-                                 Counted(count(Severity::kInfo), "note"));
-  for (const std::string& log : logs) {
-    text += log.empty() ? "experiment\n" : "log " + log + "\n";
-    for (const Severity severity : {Severity::kError, Severity::kWarning, Severity::kInfo}) {
-      for (const Finding& f : findings) {
-        if (f.log == log && f.severity == severity) text += Line(f);
-      }
-    }
-  }
+  std::vector<Entry> entries;
+  for (const FindingGroup& group : Grouped(findings))
+    entries.push_back(EntryOf(group, logs.size()));
+  std::string text = Listed(entries);
+  if (entries.size() < findings.size())
+    text += fmt::format("{} findings in all: --all lists them one by one\n", findings.size());
   return text;
+}
+
+std::string FullReport(const std::vector<Finding>& findings) {
+  std::vector<Entry> entries;
+  for (const Finding& f : findings)
+    entries.push_back(EntryOf(SectionOf(f.log), f, f.channel, f.text));
+  return Listed(entries);
 }
 
 nlohmann::json ToJson(const std::vector<Finding>& findings) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct CheckedColumn {
   std::vector<std::size_t> row;  ///< of the log
   std::size_t missing = 0;
   double quantum = 0;
+  std::string sensor;  ///< of which it is one direction
+  double bend = 0;     ///< BendOf the sensor, of all its directions in all logs
 
   bool constant() const;
 };
@@ -38,8 +41,9 @@ class Findings {
 
   void Add(Severity severity, const std::string& channel, const std::string& what,
            const std::string& text);
+  /// places: the end of the text, a list of further places.
   void Add(Severity severity, const std::string& channel, const std::string& what,
-           const std::string& text, double begin, double end);
+           const std::string& gist, double begin, double end, const std::string& places = "");
   std::vector<Finding> Take() { return std::move(findings_); }
 
  private:
@@ -57,6 +61,15 @@ void CheckPlan(const Experiment& e, Findings& out);
 
 /// "0.0123 rad"; the unit "1" is left out.
 std::string Amount(double value, const std::string& unit);
+
+/// The second and third of count places, and how many more there are: ", … and 4 more".
+template <class Place, class Text>
+std::string Further(const std::vector<Place>& places, std::size_t count, const Text& text) {
+  std::string list;
+  for (std::size_t i = 1; i < std::min<std::size_t>(places.size(), 3); ++i)
+    list += ", " + text(places[i]);
+  return count > 3 ? list + " and " + std::to_string(count - 3) + " more" : list;
+}
 
 /// A time of the log with its unit, to a millisecond where the clock counts from long ago.
 std::string Clock(double time);

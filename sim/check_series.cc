@@ -200,17 +200,23 @@ Refresh RefreshOf(const Values& x, double quantum, bool command) {
   return r;
 }
 
-std::vector<Jump> SpikesOf(const Values& x, double quantum, bool command) {
+double BendOf(const Values& x) {
+  Values bends;
+  for (std::size_t k = 1; k + 1 < x.size(); ++k)
+    bends.push_back(std::abs(x[k + 1] - 2 * x[k] + x[k - 1]) / 2);
+  return Median(std::move(bends));
+}
+
+std::vector<Jump> SpikesOf(const Values& x, double quantum, double usual_bend, bool command) {
   std::vector<Jump> jumps;
   if (x.size() < 10 || DistinctValues(x, 8) < 8) return jumps;
   const Values d = Differences(x);
   Values bend{0};  // of row k: half of the second difference
   for (std::size_t k = 1; k < d.size(); ++k) bend.push_back((d[k] - d[k - 1]) / 2);
-  Values sizes, bends;
+  Values sizes;
   for (const double v : d) sizes.push_back(std::abs(v));
-  for (const double v : bend) bends.push_back(std::abs(v));
-  const double everywhere = std::max({20 * Median(bends), 8 * quantum, 1e-3 * RangeOf(x),
-                                      command ? 4 * Quantile(sizes, 0.95) : 0.0});
+  const double everywhere = std::max(
+      {20 * usual_bend, 8 * quantum, 1e-3 * RangeOf(x), command ? 4 * Quantile(sizes, 0.95) : 0.0});
   for (std::size_t k = 1; k < d.size(); ++k) {
     if (d[k - 1] * d[k] >= 0) continue;
     const double size = std::min(sizes[k - 1], sizes[k]);
@@ -221,13 +227,14 @@ std::vector<Jump> SpikesOf(const Values& x, double quantum, bool command) {
   return jumps;
 }
 
-std::vector<Jump> StepsOf(const Values& x, double quantum, const std::vector<bool>& skip) {
+std::vector<Jump> StepsOf(const Values& x, double quantum, double usual_bend,
+                          const std::vector<bool>& skip) {
   std::vector<Jump> jumps;
   if (x.size() < 10 || DistinctValues(x, 8) < 8) return jumps;
   const Values d = Differences(x);
   Values bends;
   for (std::size_t k = 1; k < d.size(); ++k) bends.push_back(std::abs(d[k] - d[k - 1]) / 2);
-  const double everywhere = std::max({16 * Median(bends), 8 * quantum, 0.01 * RangeOf(x)});
+  const double everywhere = std::max({16 * usual_bend, 8 * quantum, 0.01 * RangeOf(x)});
   for (std::size_t k = 2; k + 2 < d.size(); ++k) {
     const double excess = d[k] - (d[k - 1] + d[k + 1]) / 2, size = std::abs(excess);
     if (size <= everywhere || skip[k + 1]) continue;

@@ -47,11 +47,15 @@ struct Jump {
   std::size_t row;
   double size;
 };
-/// Rows that leave and return at once. command: a column that may hold levels.
-std::vector<Jump> SpikesOf(const std::vector<double>& x, double quantum, bool command);
-/// Isolated steps of a signal that is smooth before and after. skip: rows that may jump for a good
-/// reason.
-std::vector<Jump> StepsOf(const std::vector<double>& x, double quantum,
+/// How far a row usually is from the middle of its neighbours: the median.
+double BendOf(const std::vector<double>& x);
+/// Rows that leave and return at once, far beyond the usual bend. command: a column that may hold
+/// levels.
+std::vector<Jump> SpikesOf(const std::vector<double>& x, double quantum, double usual_bend,
+                           bool command);
+/// Isolated steps of a signal that is smooth before and after, far beyond the usual bend. skip:
+/// rows that may jump for a good reason.
+std::vector<Jump> StepsOf(const std::vector<double>& x, double quantum, double usual_bend,
                           const std::vector<bool>& skip);
 
 /// Flat stretches at an extreme value that the signal enters at speed.

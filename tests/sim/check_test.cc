@@ -290,7 +290,7 @@ TEST(Check, JumpingRowsAreListed) {
   Log log = Record({});
   for (const std::size_t row : {150, 420, 433, 801}) Column(log, "q2")[row] += 0.2;
   const Finding f = Only(log, "jump", "q2");
-  EXPECT_THAT(f.text, HasSubstr("4 rows jump"));
+  EXPECT_THAT(f.text, HasSubstr("in 4 of 1000 rows"));
   EXPECT_THAT(f.text, HasSubstr("and 1 more"));
 }
 
@@ -298,7 +298,7 @@ TEST(Check, AJumpThatLastsSomeRowsIsLocated) {
   Log log = Record({});
   for (std::size_t row = 600; row < 606; ++row) Column(log, "q2")[row] += 0.2;
   const Finding f = Only(log, "jump", "q2");
-  EXPECT_THAT(f.text, HasSubstr("2 rows jump"));
+  EXPECT_THAT(f.text, HasSubstr("in 2 of 1000 rows"));
   EXPECT_NEAR(f.begin, 6.0, 0.07);
 }
 

@@ -1,0 +1,61 @@
+#include "sim/check_groups.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace continuum {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Severity = Finding::Severity;
+
+Finding Warning(const std::string& log, const std::string& channel, const std::string& gist,
+                const std::string& places = "") {
+  return {log, channel, "jump", gist + places, gist, 0.5, 0.5, Severity::kWarning};
+}
+
+TEST(FindingGroups, TellOneThingOnceWithTheRangesOfItsNumbers) {
+  const std::vector<Finding> all{
+      Warning("a", "q1", "jumps in 4 of 100 rows, most by -0.2 m", ", 0.1 m in row 4"),
+      Warning("a", "q2", "jumps in 12 of 100 rows, most by 1e-3 m"),
+      Warning("b", "q2", "jumps in 1 of 90 rows, most by 0.3 m")};
+  const auto groups = Grouped(all);
+  ASSERT_EQ(groups.size(), 1u);
+  EXPECT_EQ(groups[0].text, "jumps in 1..12 of 90..100 rows, most by -0.2..0.3 m");
+  EXPECT_THAT(groups[0].channels, ElementsAre("q1", "q2"));
+  EXPECT_THAT(groups[0].logs, ElementsAre("a", "b"));
+  EXPECT_THAT(groups[0].members, ElementsAre(&all[0], &all[1], &all[2]));
+}
+
+TEST(FindingGroups, KeepsApartWhatOtherWordsOrUnitsSay) {
+  const auto groups =
+      Grouped({Warning("a", "q1", "most by 0.2 m"), Warning("a", "q2", "most by 0.2 mm"),
+               Warning("b", "q1", "copies q2"), Warning("b", "q3", "copies q4"),
+               Warning("b", "q4", "0.2 N/m^2"), Warning("b", "q5", "0.2 N/m^3")});
+  EXPECT_EQ(groups.size(), 6u);
+}
+
+TEST(FindingGroups, OfOneKeepTheirWholeText) {
+  const auto groups = Grouped({Warning("a", "q1", "jumps by 0.2 m", ", 0.1 m in row 4")});
+  EXPECT_EQ(groups[0].text, "jumps by 0.2 m, 0.1 m in row 4");
+}
+
+TEST(CheckReport, SaysWhatLogsHaveInCommonOnceAndAllOnRequest) {
+  std::vector<Finding> all;
+  for (const char* log : {"a", "b", "c", "d"}) {
+    for (const char* channel : {"q1", "q2"}) all.push_back(Warning(log, channel, "jumps in 1 row"));
+  }
+  all.push_back(Warning("d", "q3", "lags by 3 rows"));
+  const std::string text = Report(all);
+  EXPECT_THAT(text, ::testing::StartsWith("0 errors, 2 warnings, 0 notes\nseveral logs\n"));
+  EXPECT_THAT(text, HasSubstr("q1, q2 in all 4 logs: jumps in 1 row; first in a at t = 0.5 s\n"));
+  EXPECT_THAT(text, HasSubstr("log d\n  warning jump             q3: lags by 3 rows\n"));
+  EXPECT_THAT(text, HasSubstr("9 findings in all: --all lists them"));
+  const std::string full = FullReport(all);
+  EXPECT_THAT(full, ::testing::StartsWith("0 errors, 9 warnings, 0 notes\nlog a\n"));
+  EXPECT_THAT(full, HasSubstr("log c\n  warning jump             q1: jumps in 1 row\n"));
+}
+
+}  // namespace
+}  // namespace continuum
