@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <string>
@@ -378,34 +377,6 @@ TEST_F(RendererTest, NamesTheSizesThatOpenGlHas) {
               ThrowsMessage<Error>(AllOf(HasSubstr("from 64 to"), HasSubstr("20 x 480"))));
   EXPECT_THAT([&] { Renderer(*model_, 640, 1000000); },
               ThrowsMessage<Error>(HasSubstr("640 x 1000000")));
-}
-
-TEST(Gl, IsParsedByName) {
-  EXPECT_EQ(ParseGl("osmesa"), Gl::kOsmesa);
-  EXPECT_EQ(ParseGl("egl"), Gl::kEgl);
-  EXPECT_THAT([] { ParseGl("glx"); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("osmesa or egl"), HasSubstr("glx"))));
-}
-
-TEST(Gl, HasOneBackendInAProcess) {
-  const GlContext context(Gl::kOsmesa);
-  EXPECT_THAT([] { GlContext other(Gl::kEgl); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("osmesa"), HasSubstr("found egl"))));
-}
-
-TEST(GlDeathTest, DrawsTheSameSceneThroughEglInAProcessOfItsOwn) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const auto draw = [] {
-    const auto model = Compile(kScene);
-    Renderer renderer(*model, 640, 480, Gl::kEgl);
-    renderer.SetCamera("front");
-    const Image image = renderer.Draw(*model, *Pose(*model, 0, 0));
-    const auto [red_x, red_y] = Seen(image, -0.4, 0.9);
-    const auto [green_x, green_y] = Seen(image, 0.4, 0.3);
-    const bool right = IsRed(Pixel(image, red_x, red_y)) && IsGreen(Pixel(image, green_x, green_y));
-    std::exit(right ? 0 : 1);
-  };
-  EXPECT_EXIT(draw(), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
