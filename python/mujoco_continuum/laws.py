@@ -46,10 +46,23 @@ def _law(function, where, parameters, effect, key, variables):
     if set(wanted) != set(parameters):
         raise TypeError(f"{function.__name__} has the parameters {', '.join(wanted) or 'none'}; "
                         f"given: {', '.join(parameters) or 'none'}")
-    answer = function(**{name: Symbol(name) for name in names})
-    law = {"effect": effect, "name": function.__name__, key: _formula(_symbol(answer)),
+    law = {"effect": effect, "name": function.__name__, key: _traced(function, names),
            "parameters": [{"name": name, **parameters[name]} for name in wanted]}
     return law | ({"where": where} if where else {})
+
+
+def _traced(function, names):
+    """The formula of a function, whose errors name the law."""
+    try:
+        answer = function(**{name: Symbol(name) for name in names})
+        if answer is None:
+            raise TypeError("it returns nothing: is there no return?")
+        if isinstance(answer, (list, tuple, dict, str)) or getattr(answer, "shape", ()):
+            raise TypeError(f"it returns {answer!r} instead of one number")
+        return _formula(_symbol(answer))
+    except (AttributeError, TypeError, ValueError) as error:
+        kind = ValueError if isinstance(error, ValueError) else TypeError
+        raise kind(f"the law {function.__name__}: {error}") from error
 
 
 class Symbol:
@@ -60,6 +73,8 @@ class Symbol:
 
     def __init__(self, operator: str, *operands: "Symbol"):
         self.operator, self.operands = operator, operands
+
+    def __repr__(self): return _formula(self)
 
     def __add__(self, other): return Symbol("+", self, _symbol(other))
     def __radd__(self, other): return Symbol("+", _symbol(other), self)
@@ -90,6 +105,13 @@ class Symbol:
                         "math's")
 
     __int__ = __index__ = __float__
+
+    def _refuse(self, *_):
+        raise TypeError("a law cannot use %, //, @, divmod or round: it can use + - * / ** abs, "
+                        "comparisons in numpy.where, and numpy's functions of numbers")
+
+    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __matmul__ = __rmatmul__ = _refuse
+    __divmod__ = __rdivmod__ = __round__ = __floor__ = __ceil__ = __trunc__ = _refuse
 
     def __array_ufunc__(self, ufunc, method, *inputs, **options):
         known = _UFUNCS.get(ufunc.__name__)

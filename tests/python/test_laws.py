@@ -95,6 +95,37 @@ class Formula(unittest.TestCase):
                 with self.assertRaisesRegex((TypeError, ValueError), message):
                     mc.force_law(function, b=ANY)
 
+    def test_is_named_with_what_is_wrong(self):
+        def forgets(q, v, b):
+            b * v
+
+        def lists(q, v, b):
+            return [b * q, b * v]
+
+        def stacks(q, v, b):
+            return np.array([b * q])
+
+        def divides(q, v, b):
+            return b * q * float("nan")
+
+        def turns(q, v, b):
+            return b * (q % 2)
+
+        def steps(q, v, b):
+            return b * round(q)
+
+        def names(q, v, b):
+            return "b*q"
+
+        for function, message in ((forgets, "returns nothing"), (lists, r"\[b\*q, b\*v\] instead of one number"),
+                                  (stacks, "instead of one number"), (divides, "the number nan"),
+                                  (turns, r"cannot use %.*\+ - "), (steps, "round"),
+                                  (names, "instead of one number")):
+            with self.subTest(function=function.__name__):
+                with self.assertRaisesRegex((TypeError, ValueError),
+                                            f"^the law {function.__name__}: .*{message}"):
+                    mc.force_law(function, b=ANY)
+
     def test_names_parameters_that_are_missing(self):
         with self.assertRaisesRegex(TypeError, "quadratic has the parameters p1, p2; given: p1"):
             mc.force_law(quadratic, p1=ANY)
