@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
+#include "effects/all.h"
+
 namespace continuum::testing {
 
 /// A two-link arm with a servo, a cable through sites with a motor, and a wire with a servo; a link
@@ -37,11 +39,13 @@ inline std::string Arm(const std::string& plugin, const std::string& config,
     </mujoco>)";
 }
 
-inline const std::map<std::string, std::string>& Laws() {
-  const auto key = [](const std::string& k, const std::string& v) {
-    return "<config key=\"" + k + "\" value=\"" + v + "\"/>";
-  };
-  static const std::map<std::string, std::string> laws{
+inline std::string Key(const std::string& key, const std::string& value) {
+  return "<config key=\"" + key + "\" value=\"" + value + "\"/>";
+}
+
+inline std::map<std::string, std::string> ChosenLaws() {
+  const auto key = Key;
+  return {
       {"coulomb", key("joint", "q*") + key("tau_c", ".05")},
       {"stribeck", key("joint", "q2") + key("tau_mu", ".005") + key("tau_c", ".05")},
       {"load_friction", key("joint", "q1") + key("tau_c", ".01") + key("mu_l", ".2")},
@@ -53,7 +57,6 @@ inline const std::map<std::string, std::string>& Laws() {
        key("joint", "q1 q2") + key("sigma_0", "5") + key("tau_c", ".05") + key("sigma_1", ".01")},
       {"bouc_wen",
        key("tendon", "cable") + key("kappa_w", ".3") + key("sigma", ".7") + key("n", "1.5")},
-      {"cubic_stiffness", key("joint", "q2") + key("k3", ".2")},
       {"maxwell", key("joint", "q1 q2") + key("k_m", ".3") + key("tau_m", ".2")},
       {"backlash", key("actuator", "servo") + key("gap", ".05")},
       {"pt2", key("actuator", "servo pull") + key("w", "30") + key("zeta", ".5")},
@@ -73,6 +76,27 @@ inline const std::map<std::string, std::string>& Laws() {
       {"load_friction.actuator",
        key("joint", "q1") + key("tau_c", ".01") + key("mu_l", ".2") + key("load", "actuator")},
       {"capstan.coulomb", key("tendon", "cable") + key("mu", ".3") + key("law", "coulomb")}};
+}
+
+/// A law on the arm's joints, or its cable, with the parameters from which searches start.
+template <class E>
+std::string WhereSearchesStart() {
+  const bool joint = E::kPlaces.front() == Place::kJoint;
+  std::string config = joint ? Key("joint", "q1 q2") : Key("tendon", "cable");
+  for (const Param& p : E::kParams) config += Key(std::string(p.name), std::to_string(p.initial));
+  return config;
+}
+
+/// Every law of the plugin. Forces and frictions for which nothing is chosen take part too.
+inline const std::map<std::string, std::string>& Laws() {
+  static const std::map<std::string, std::string> laws = [] {
+    auto all = ChosenLaws();
+    All::ForEach([&]<class E>() {
+      if constexpr (ForceLaw<E> || FrictionLaw<E>)
+        all.try_emplace(std::string(E::kName), WhereSearchesStart<E>());
+    });
+    return all;
+  }();
   return laws;
 }
 /// A law by another choice is written LAW.CHOICE.
