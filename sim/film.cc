@@ -34,11 +34,14 @@ class MeasuredPose {
   }
   mjData* At(std::size_t row) {
     if (!complete_) return nullptr;
+    const auto found = MeasuredRow(log_, row, [&](std::size_t k) {
+      return std::none_of(channels_.begin(), channels_.end(),
+                          [&](const auto& c) { return std::isnan(log_.measured[c.first][k]); });
+    });
+    if (!found) return nullptr;
     for (const auto& [c, adr] : channels_) {
       const auto& how = e_.outputs[e_.channels[c].output].measurement;
-      const double y = (log_.measured[c][row] - e_.channels[c].factor * how.bias) / how.scale;
-      if (std::isnan(y)) return nullptr;
-      data_->qpos[adr] = y;
+      data_->qpos[adr] = (log_.measured[c][*found] - e_.channels[c].factor * how.bias) / how.scale;
     }
     mj_fwdPosition(&m_, data_.get());
     return data_.get();
@@ -148,28 +151,6 @@ void Draw(const Arrow& arrow, const mjModel& m, const mjData& d, mjvScene& scene
   Connect(arrow, m, mjGEOM_ARROW, center, tip, scene);
 }
 
-// What was measured as a green ball, and a line to where the simulation has it. Both lie within the
-// robot as a rule: drawn nearer to the camera and smaller they look the same, and are in front.
-void Draw(const MeasuredPoint& point, const mjModel& m, mjvScene& scene) {
-  constexpr float kGreen[4] = {0.10f, 0.65f, 0.25f, 1};
-  constexpr double kNearer = 0.6;  // of the distance; what is nearer than half may be clipped
-  if (scene.ngeom + 2 > scene.maxgeom) return;
-  double from[3], to[3];
-  for (int i = 0; i < 3; ++i) {
-    const double eye = (scene.camera[0].pos[i] + scene.camera[1].pos[i]) / 2;
-    from[i] = std::lerp(eye, point.measured[i], kNearer);
-    to[i] = std::lerp(eye, point.simulated[i], kNearer);
-  }
-  const double radius = kNearer * 0.25 * m.stat.meansize, size[3] = {radius, radius, radius};
-  mjvGeom& ball = scene.geoms[scene.ngeom++];
-  mjv_initGeom(&ball, mjGEOM_SPHERE, size, from, nullptr, kGreen);
-  ball.category = mjCAT_DECOR;
-  mjvGeom& line = scene.geoms[scene.ngeom++];
-  mjv_initGeom(&line, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, kGreen);
-  mjv_connector(&line, mjGEOM_CAPSULE, 0.3 * radius, from, to);
-  line.category = mjCAT_DECOR;
-}
-
 // Draws one log's rows at the film's rate.
 class Shot {
  public:
@@ -223,7 +204,7 @@ class Shot {
       overlay.bar = BarOf(m, options_);
       overlay.geoms = [&](mjvScene& scene) {
         Decorate(options_, m, d, scene);
-        for (const MeasuredPoint& point : points) Draw(point, m, scene);
+        for (const MeasuredPoint& point : points) DrawMeasured(point, m, scene);
       };
       take(renderer_.Draw(m, d, overlay));
     };
@@ -255,12 +236,40 @@ void Decorate(const FilmOptions& options, const mjModel& m, const mjData& d, mjv
   for (const Arrow& arrow : options.arrows) Draw(arrow, m, d, scene);
 }
 
+// Both ends lie within the robot as a rule: drawn nearer to the camera and smaller they look the
+// same, and are in front.
+void DrawMeasured(const MeasuredPoint& point, const mjModel& m, mjvScene& scene) {
+  const float green[4] = {0.10f, 0.65f, 0.25f, point.held ? 0.4f : 1};
+  constexpr double kNearer = 0.6;  // of the distance; what is nearer than half may be clipped
+  if (scene.ngeom + 2 > scene.maxgeom) return;
+  double from[3], to[3];
+  for (int i = 0; i < 3; ++i) {
+    const double eye = (scene.camera[0].pos[i] + scene.camera[1].pos[i]) / 2;
+    from[i] = std::lerp(eye, point.measured[i], kNearer);
+    to[i] = std::lerp(eye, point.simulated[i], kNearer);
+  }
+  const double radius = kNearer * 0.25 * m.stat.meansize, size[3] = {radius, radius, radius};
+  mjvGeom& ball = scene.geoms[scene.ngeom++];
+  mjv_initGeom(&ball, mjGEOM_SPHERE, size, from, nullptr, green);
+  ball.category = mjCAT_DECOR;
+  if (point.held) return;
+  mjvGeom& line = scene.geoms[scene.ngeom++];
+  mjv_initGeom(&line, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, green);
+  mjv_connector(&line, mjGEOM_CAPSULE, 0.3 * radius, from, to);
+  line.category = mjCAT_DECOR;
+}
+
+void DrawFrames(const Experiment& e, const System& system, const Log& log,
+                const FilmOptions& options, const std::function<void(Image)>& take) {
+  Shot(e, system, log, options).Film(take);
+}
+
 void FilmExperiment(const Experiment& e, const System& system, const std::vector<std::size_t>& logs,
                     const std::filesystem::path& file, const FilmOptions& options) {
   VideoWriter video(file, options.width, options.height, options.fps);
   for (const std::size_t l : logs) {
     if (options.progress) options.progress("film of " + e.logs[l].label);
-    Shot(e, system, e.logs[l], options).Film([&](Image image) { video.Add(std::move(image)); });
+    DrawFrames(e, system, e.logs[l], options, [&](Image image) { video.Add(std::move(image)); });
   }
   video.Finish();
 }
@@ -272,7 +281,7 @@ void PictureOf(const Experiment& e, const System& system, const std::filesystem:
   const Log& log = e.logs.front();
   few.speed = 1;
   few.fps = static_cast<int>(std::clamp(4 / (log.time.back() - log.time.front()), 1., 1000.));
-  Shot(e, system, log, few).Film([&](Image image) { frames.push_back(std::move(image)); });
+  DrawFrames(e, system, log, few, [&](Image image) { frames.push_back(std::move(image)); });
   WritePng(file, frames[frames.size() / 2]);
 }
 

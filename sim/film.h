@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/measured_points.h"
 #include "sim/renderer.h"
 #include "sim/simulate.h"
 
@@ -45,8 +46,16 @@ struct FilmOptions {
 /// What options add to the scene of a pose: arrows, colours of tendons.
 void Decorate(const FilmOptions& options, const mjModel& m, const mjData& d, mjvScene& scene);
 
-/// Simulates the logs and films them one after the other; the simulation is drawn as it is, cables
-/// coloured by tension where a capstan effect or options.tension says how, chambers by pressure.
+/// What was measured as a green ball, with a line to where the simulation has it. What is held is
+/// pale and without a line, as the simulation went on.
+void DrawMeasured(const MeasuredPoint& point, const mjModel& m, mjvScene& scene);
+
+/// Simulates a log and draws its frames: the simulation as it is, cables coloured by tension where
+/// a capstan effect or options.tension says how, chambers by pressure.
+void DrawFrames(const Experiment& experiment, const System& system, const Log& log,
+                const FilmOptions& options, const std::function<void(Image)>& take);
+
+/// The frames of the logs as a film, one log after the other.
 void FilmExperiment(const Experiment& experiment, const System& system,
                     const std::vector<std::size_t>& logs, const std::filesystem::path& file,
                     const FilmOptions& options = {});

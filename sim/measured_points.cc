@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "sim/measurement.h"
@@ -23,19 +22,16 @@ std::size_t RowShown(const Log& log, std::size_t row, double shift) {
   return static_cast<std::size_t>(next - log.time.begin()) - (before ? 1 : 0);
 }
 
-// What the log says of each position sensor; NaN: not measured.
-std::map<int, Vector> PositionsAt(const Experiment& e, const Wiring& wiring, const Log& log,
-                                  std::size_t row) {
-  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-  std::map<int, Vector> positions;
+// The channels of the position sensors that have one for each direction.
+using Directions = std::map<int, std::size_t>;
+std::map<int, Directions> PositionSensors(const Experiment& e, const Wiring& wiring) {
+  std::map<int, Directions> sensors;
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const auto& source = wiring.output[e.channels[c].output];
-    if (source.seen != Wiring::Source::Seen::kPoint) continue;
-    Vector& y =
-        positions.try_emplace(source.sensor, Vector{kMissing, kMissing, kMissing}).first->second;
-    y[source.component] = SignalOf(e, c, log.measured[c][row]);
+    if (source.seen == Wiring::Source::Seen::kPoint) sensors[source.sensor][source.component] = c;
   }
-  return positions;
+  std::erase_if(sensors, [](const auto& sensor) { return sensor.second.size() < 3; });
+  return sensors;
 }
 
 // R' (y - T): out of the frame of the measurement.
@@ -50,13 +46,34 @@ void Unregister(const Registration& r, Vector& y) {
 
 }  // namespace
 
+std::optional<std::size_t> MeasuredRow(const Log& log, std::size_t row,
+                                       const std::function<bool(std::size_t)>& measured) {
+  constexpr double kGap = 0.5;  // s
+  if (measured(row)) return row;
+  std::size_t before = row, after = row;
+  while (before > 0 && !measured(before) && log.time[row] - log.time[before] < kGap) --before;
+  while (after + 1 < log.rows() && !measured(after) && log.time[after] - log.time[row] < kGap)
+    ++after;
+  if (!measured(before) || !measured(after)) return std::nullopt;
+  if (log.time[after] - log.time[before] > kGap) return std::nullopt;
+  return log.time[after] - log.time[row] < log.time[row] - log.time[before] ? after : before;
+}
+
 std::vector<MeasuredPoint> MeasuredPoints(const Experiment& e, const Wiring& wiring, const Log& log,
                                           std::size_t row, const mjModel& m, const mjData& d) {
   std::vector<MeasuredPoint> points;
   const std::size_t shown = RowShown(log, row, e.registration.clock_shift);
-  for (auto [sensor, y] : PositionsAt(e, wiring, log, shown)) {
-    if (!std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); })) continue;
+  for (const auto& [sensor, channels] : PositionSensors(e, wiring)) {
+    const auto found = MeasuredRow(log, shown, [&log, &c = channels](std::size_t k) {
+      return std::all_of(c.begin(), c.end(), [&](const auto& direction) {
+        return std::isfinite(log.measured[direction.second][k]);
+      });
+    });
+    if (!found) continue;
     MeasuredPoint p;
+    p.held = *found != shown;
+    Vector y;
+    for (const auto& [i, c] : channels) y[i] = SignalOf(e, c, log.measured[c][*found]);
     Unregister(e.registration, y);
     p.measured = y;
     if (m.sensor_refid[sensor] >= 0) {

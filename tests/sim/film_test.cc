@@ -118,5 +118,18 @@ TEST_F(Decorated, ABentArrowRunsAroundTheTorqueInTheWorld) {
   EXPECT_NEAR(length, 0.2, 2e-3);
 }
 
+TEST_F(Decorated, WhatIsMeasuredIsABallWithALineAndWhatIsHeldAPaleBall) {
+  const int before = scene_.ngeom;
+  DrawMeasured({{0, 0, 1}, {0, 0, 0.9}}, *model_, scene_);
+  ASSERT_EQ(scene_.ngeom, before + 2);
+  EXPECT_EQ(scene_.geoms[before].type, mjGEOM_SPHERE);
+  EXPECT_EQ(scene_.geoms[before].rgba[3], 1);
+  EXPECT_EQ(scene_.geoms[before + 1].type, mjGEOM_CAPSULE);
+  DrawMeasured({{0, 0, 1}, {0, 0, 0.9}, true}, *model_, scene_);
+  ASSERT_EQ(scene_.ngeom, before + 3);
+  EXPECT_EQ(scene_.geoms[before + 2].type, mjGEOM_SPHERE);
+  EXPECT_LT(scene_.geoms[before + 2].rgba[3], 0.5);
+}
+
 }  // namespace
 }  // namespace continuum

@@ -74,6 +74,35 @@ TEST(MeasuredPoints, AreInTheWorldWhereTheSensorIsInAnotherFrame) {
   EXPECT_LT(PointsOf(e, system).apart, kStraight);
 }
 
+// A camera that misses rows 20 and 21, 40 to 60 (0.22 s) and 100 to 160 (0.62 s), a direction at a
+// time.
+TEST(MeasuredPoints, AreHeldWhereFewRowsMissAndLeftOutWhereManyDo) {
+  const MeasuredArm arm;
+  Experiment e = arm.Read("");
+  const System system = System::Load(e.model);
+  MeasuredArm::Measure(e, system, {});
+  Log& log = e.logs.front();
+  ASSERT_GT(log.rows(), 170u);
+  const auto miss = [&](std::size_t from, std::size_t to, int direction) {
+    for (std::size_t row = from; row <= to; ++row) log.measured[direction][row] = std::nan("");
+  };
+  miss(20, 21, 0), miss(40, 60, 1), miss(100, 160, 2);
+  const Machine machine = system.Build();
+  const Wiring wiring(e, *machine.model);
+  mj_forward(machine.model.get(), machine.data.get());
+  const auto at = [&](std::size_t row) {
+    return MeasuredPoints(e, wiring, log, row, *machine.model, *machine.data);
+  };
+  for (const auto& [row, shown] :
+       {std::pair{20, 19}, {21, 22}, {40, 39}, {49, 39}, {51, 61}, {60, 61}}) {
+    ASSERT_EQ(at(row).size(), 1u) << row;
+    EXPECT_TRUE(at(row).front().held) << row;
+    EXPECT_FALSE(at(shown).front().held) << row;
+    EXPECT_EQ(at(row).front().measured, at(shown).front().measured) << row;
+  }
+  for (const std::size_t row : {100, 130, 160}) EXPECT_TRUE(at(row).empty()) << row;
+}
+
 TEST(MeasuredPoints, NeedAllThreeDirections) {
   const MeasuredArm arm;
   Experiment e = arm.Read("");
