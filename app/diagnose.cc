@@ -10,11 +10,11 @@
 #include "identification/diagnosis_output.h"
 #include "identification/extension.h"
 #include "sim/file.h"
-#include "sim/film.h"
 #include "sim/json.h"
 #include "sim/output.h"
 #include "sim/registration.h"
 #include "sim/replay.h"
+#include "sim/side_by_side.h"
 
 namespace continuum {
 namespace {
@@ -90,8 +90,9 @@ void RunDiagnose(const Options& o) {
     }
     if (shown.empty()) shown.push_back(0);
     const Experiment extended = Experiment::Read(folder / "extended.yaml");
-    FilmExperiment(extended, System::Load(folder / "extended.xml"), shown, folder / "extended.mp4",
-                   film);
+    const System extended_system = System::Load(folder / "extended.xml");
+    FilmSideBySide({e, system, "before"}, {extended, extended_system, "after"}, shown,
+                   folder / "extended.mp4", film);
     EndProgress();
     std::printf("video     %s\n", (folder / "extended.mp4").c_str());
   }
@@ -130,7 +131,7 @@ void AddDiagnose(CLI::App& app) {
       ->check(WholeNumberWithin(0, UINT64_MAX))
       ->capture_default_str();
   sub->add_flag("--video", o->video,
-                "also extended.mp4: the extended model beside the measured pose");
+                "also extended.mp4: the model before and after, with what was measured");
   sub->footer(
       "Example:\n  continuum diagnose models/annelida/demo/annelida.yaml --out out --video");
   sub->callback([o] { RunDiagnose(*o); });
