@@ -1,5 +1,6 @@
 #include "sim/file.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <array>
@@ -37,6 +38,20 @@ const char* KindName(fs::file_type type) {
   }
 }
 
+// Files named before, process, after whose process is gone: it was killed while it wrote.
+void RemoveLeftBehind(const fs::path& folder, const std::string& before, const std::string& after) {
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, failed)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(before) || !name.ends_with(after)) continue;
+    pid_t process = 0;
+    const char* const end = name.data() + name.size() - after.size();
+    const auto [stop, error] = std::from_chars(name.data() + before.size(), end, process);
+    if (error != std::errc() || stop != end || process <= 0) continue;
+    if (kill(process, 0) != 0 && errno == ESRCH) fs::remove(entry.path(), failed);
+  }
+}
+
 }  // namespace
 
 void RequireFile(const fs::path& path) {
@@ -62,10 +77,11 @@ std::string ReadFile(const fs::path& path) {
 }
 
 fs::path Aside(const fs::path& path) {
+  const std::string before = "." + path.filename().string() + ".";
+  const std::string after = ".tmp" + path.extension().string();
+  RemoveLeftBehind(path.parent_path(), before, after);
   fs::path aside = path;
-  aside.replace_filename("." + path.filename().string() + "." + std::to_string(getpid()) + ".tmp" +
-                         path.extension().string());
-  return aside;
+  return aside.replace_filename(before + std::to_string(getpid()) + after);
 }
 
 void WriteFile(const fs::path& path, std::string_view content) {

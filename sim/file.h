@@ -21,6 +21,7 @@ void WriteFile(const std::filesystem::path& path, std::string_view content);
 void MakeFolder(const std::filesystem::path& path);
 
 /// A temporary name beside path, for writers that need a real file; rename it over path when done.
+/// What processes that were killed left behind under such names is removed.
 std::filesystem::path Aside(const std::filesystem::path& path);
 
 /// The shortest decimal text that reads back as exactly this number.

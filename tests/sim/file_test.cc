@@ -1,6 +1,9 @@
 #include "sim/file.h"
 #include "sim/output.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -84,6 +87,23 @@ TEST_F(Written, AnOutputIsNoInputOfItsJob) {
   EXPECT_NO_THROW(RequireWritable(scratch_ / "other.xml", {model, ""}));
   EXPECT_THROW(OutFolder(scratch_.folder(), {"other.xml", "model.xml"}, {model}), Error);
   EXPECT_EQ(Scratch::Text(model), "precious");
+}
+
+TEST_F(Written, WhatKilledProcessesLeftBehindGoes) {
+  const pid_t killed = fork();
+  if (killed == 0) _exit(0);
+  waitpid(killed, nullptr, 0);
+  const std::string gone = ".a.txt." + std::to_string(killed) + ".tmp.txt";
+  const std::string alive = ".a.txt." + std::to_string(getppid()) + ".tmp.txt";
+  const std::string other = ".b.txt." + std::to_string(killed) + ".tmp.txt";
+  for (const auto& name : {gone, alive, other, std::string(".a.txt.12x.tmp.txt")})
+    scratch_.Write(name, "half");
+  WriteFile(scratch_ / "a.txt", "whole");
+  EXPECT_FALSE(Exists(gone));
+  EXPECT_TRUE(Exists(alive));
+  EXPECT_TRUE(Exists(other));
+  EXPECT_TRUE(Exists(".a.txt.12x.tmp.txt"));
+  EXPECT_EQ(Scratch::Text(scratch_ / "a.txt"), "whole");
 }
 
 TEST_F(Written, FilesBeyondMemoryAreNotRead) {
