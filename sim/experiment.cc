@@ -6,13 +6,13 @@
 #include <limits>
 #include <set>
 
-#include "effects/all.h"
+#include "effects/effect.h"
 #include "error.h"
 #include "sim/file.h"
 #include "sim/mat.h"
+#include "sim/read_candidates.h"
 #include "sim/table.h"
 #include "sim/units.h"
-#include "sim/written_law.h"
 
 namespace continuum {
 namespace {
@@ -263,32 +263,6 @@ Parameter ReadParameter(const Yaml& y) {
   return p;
 }
 
-// Every effect of the list, to be tried wherever it makes sense.
-std::vector<Candidate> AllCandidates() {
-  std::vector<Candidate> all;
-  All::ForEach([&]<class E>() { all.push_back({std::string(E::kName), "", false}); });
-  return all;
-}
-
-Candidate ReadCandidate(const Yaml& y) {
-  Candidate c;
-  const Yaml name = y.IsMap() ? y.At("effect") : y;
-  c.effect = name.Text();
-  if (y.IsMap() && IsWritten(c.effect)) return ReadWrittenLaw(y, c.effect);
-  bool known = false;
-  std::string all;
-  All::ForEach([&]<class E>() {
-    known |= c.effect == E::kName;
-    all += (all.empty() ? "" : ", ") + std::string(E::kName);
-  });
-  if (!known) throw Error::Input(name.Where(), "an effect: " + all, "'" + c.effect + "'");
-  if (!y.IsMap()) return c;
-  y.Only({"effect", "where", "per"});
-  c.where = TextOr(y, "where", "");
-  if (const auto per = y.Find("per")) c.per_condition = OneOf<bool>(*per, {{"condition", true}});
-  return c;
-}
-
 std::vector<Experiment::Folds> ReadFolds(const Yaml& y) {
   std::vector<Experiment::Folds> folds;
   for (const Yaml& item : y.IsList() ? y.Items() : std::vector<Yaml>{y}) {
@@ -471,11 +445,7 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
   }
   if (const auto c = y.Find("candidates"); c && !(c->IsScalar() && c->Text() == "all")) {
     e.all_candidates = false;
-    for (const Yaml& item : c->Items()) {
-      const bool all = item.IsScalar() && item.Text() == "all";
-      const auto more = all ? AllCandidates() : std::vector{ReadCandidate(item)};
-      e.candidates.insert(e.candidates.end(), more.begin(), more.end());
-    }
+    e.candidates = ReadCandidates(*c);
   }
   if (const auto folds = y.Find("folds")) e.folds = ReadFolds(*folds);
   if (const auto loss = y.Find("loss")) {

@@ -154,6 +154,16 @@ TEST_F(ExperimentFile, ErrorsNameLineAndKey) {
   EXPECT_THAT(Wrong("format: 1", "format: 1\nformat: 1"), HasSubstr("'format' twice"));
   EXPECT_THAT(Wrong("format: 1", "format: 1\nstart: warm"), HasSubstr("'warm'"));
   EXPECT_THAT(Wrong("format: 1", "format: 1\ncandidates: [ghosts]"), HasSubstr("'ghosts'"));
+  EXPECT_THAT(Wrong("format: 1", "format: 1\ncandidates: [dahl, lugre, dahl]"),
+              AllOf(HasSubstr("e.yaml:2: candidates[2]"), HasSubstr("'dahl' again, as in")));
+  const std::string law =
+      "{effect: formula, name: drag, parameters: [{name: b, initial: 1, lower: 0, upper: 2, "
+      "absent: "
+      "0}], force: ";
+  EXPECT_THAT(Wrong("format: 1", "format: 1\ncandidates:\n  - " + law + "b*v}\n  - " + law +
+                                     "b*v*abs(v), where: 'joint:other'}"),
+              AllOf(HasSubstr("e.yaml:4: candidates[1]"), HasSubstr("'drag' again, as in"),
+                    HasSubstr("e.yaml:3")));
   EXPECT_THAT(Wrong("format: 1", "format: [1"), HasSubstr("e.yaml:"));
   EXPECT_THAT(Wrong("inputs: [{", "inputs: [{column: T1, actuator: cable1}, {"),
               HasSubstr("'cable1' twice"));
