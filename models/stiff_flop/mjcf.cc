@@ -3,6 +3,8 @@
 #include <ceres/jet.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -67,9 +69,12 @@ void AddMarkerSensors(Mjcf& mjcf) {
 
 void AddScene(Mjcf& mjcf, double length) {
   AddSoftMaterials(mjcf);
-  mjcf.AddStudio(-1.7 * length, 0.25);
-  // The shadow map is too coarse for a module of 25 mm: stripes.
-  mjs_asLight(mjs_firstElement(&mjcf.spec(), mjOBJ_LIGHT))->castshadow = 0;
+  mjcf.AddStudio(-1.4 * length, 0.25);
+  // Across the whole cone of light the shadow map is too coarse for a module of 25 mm: stripes.
+  mjcf.spec().visual.map.shadowscale = 0.15F;
+  mjsLight* const light = mjs_asLight(mjs_firstElement(&mjcf.spec(), mjOBJ_LIGHT));
+  std::copy_n(std::array{0.25, -1.0, 1.5}.begin(), 3, light->pos);  // a shadow beside the legend
+  std::copy_n(std::array{-0.2, 0.65, -1.0}.begin(), 3, light->dir);
   mjcf.AddCamera("side", {0, -3.2 * length, -0.2 * length}, {0, 0, -0.65 * length}, 32);
 }
 

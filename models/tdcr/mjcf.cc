@@ -63,8 +63,9 @@ class Builder {
     mjcf_.AddMaterial("rod", {0.88F, 0.52F, 0.18F, 1});
     mjcf_.AddMaterial("mount", {0.32F, 0.35F, 0.40F, 1});
     const double L = robot_.length;
-    mjcf_.AddStudio(-1.4 * L, 0.4);
-    mjcf_.AddCamera("side", {0, -2.75 * L, 0}, {0, 0, -0.6 * L}, 35);
+    mjcf_.AddStudio(-1.2 * L, 0.4);
+    mjcf_.spec().visual.map.shadowscale = 0.3F;  // of the light's cone: thin tendons
+    mjcf_.AddCamera("side", {0, -2.3 * L, 0}, {0, 0, -0.5 * L}, 35);
   }
 
   void AddHoles(mjsBody* body, const std::string& place, double z) {
