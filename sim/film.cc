@@ -34,14 +34,15 @@ class MeasuredPose {
   }
   mjData* At(std::size_t row) {
     if (!complete_) return nullptr;
-    const auto found = MeasuredRow(log_, row, [&](std::size_t k) {
+    const auto found = FindMeasured(log_, row, [&](std::size_t k) {
       return std::none_of(channels_.begin(), channels_.end(),
                           [&](const auto& c) { return std::isnan(log_.measured[c.first][k]); });
     });
     if (!found) return nullptr;
     for (const auto& [c, adr] : channels_) {
       const auto& how = e_.outputs[e_.channels[c].output].measurement;
-      data_->qpos[adr] = (log_.measured[c][*found] - e_.channels[c].factor * how.bias) / how.scale;
+      data_->qpos[adr] =
+          (log_.measured[c][found->row] - e_.channels[c].factor * how.bias) / how.scale;
     }
     mj_fwdPosition(&m_, data_.get());
     return data_.get();

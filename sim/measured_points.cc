@@ -46,17 +46,18 @@ void Unregister(const Registration& r, Vector& y) {
 
 }  // namespace
 
-std::optional<std::size_t> MeasuredRow(const Log& log, std::size_t row,
-                                       const std::function<bool(std::size_t)>& measured) {
+std::optional<MeasuredRow> FindMeasured(const Log& log, std::size_t row,
+                                        const std::function<bool(std::size_t)>& measured) {
   constexpr double kGap = 0.5;  // s
-  if (measured(row)) return row;
+  if (measured(row)) return MeasuredRow{row, 0};
   std::size_t before = row, after = row;
   while (before > 0 && !measured(before) && log.time[row] - log.time[before] < kGap) --before;
   while (after + 1 < log.rows() && !measured(after) && log.time[after] - log.time[row] < kGap)
     ++after;
   if (!measured(before) || !measured(after)) return std::nullopt;
   if (log.time[after] - log.time[before] > kGap) return std::nullopt;
-  return log.time[after] - log.time[row] < log.time[row] - log.time[before] ? after : before;
+  const bool later = log.time[after] - log.time[row] < log.time[row] - log.time[before];
+  return MeasuredRow{later ? after : before, after - before - 1};
 }
 
 std::vector<MeasuredPoint> MeasuredPoints(const Experiment& e, const Wiring& wiring, const Log& log,
@@ -64,16 +65,16 @@ std::vector<MeasuredPoint> MeasuredPoints(const Experiment& e, const Wiring& wir
   std::vector<MeasuredPoint> points;
   const std::size_t shown = RowShown(log, row, e.registration.clock_shift);
   for (const auto& [sensor, channels] : PositionSensors(e, wiring)) {
-    const auto found = MeasuredRow(log, shown, [&log, &c = channels](std::size_t k) {
+    const auto found = FindMeasured(log, shown, [&log, &c = channels](std::size_t k) {
       return std::all_of(c.begin(), c.end(), [&](const auto& direction) {
         return std::isfinite(log.measured[direction.second][k]);
       });
     });
     if (!found) continue;
     MeasuredPoint p;
-    p.held = *found != shown;
+    p.held = found->gap > 1;
     Vector y;
-    for (const auto& [i, c] : channels) y[i] = SignalOf(e, c, log.measured[c][*found]);
+    for (const auto& [i, c] : channels) y[i] = SignalOf(e, c, log.measured[c][found->row]);
     Unregister(e.registration, y);
     p.measured = y;
     if (m.sensor_refid[sensor] >= 0) {

@@ -74,8 +74,8 @@ TEST(MeasuredPoints, AreInTheWorldWhereTheSensorIsInAnotherFrame) {
   EXPECT_LT(PointsOf(e, system).apart, kStraight);
 }
 
-// A camera that misses rows 20 and 21, 40 to 60 (0.22 s) and 100 to 160 (0.62 s), a direction at a
-// time.
+// A camera that misses rows 10, 20 and 21, 40 to 60 (0.22 s) and 100 to 160 (0.62 s), a direction
+// at a time.
 TEST(MeasuredPoints, AreHeldWhereFewRowsMissAndLeftOutWhereManyDo) {
   const MeasuredArm arm;
   Experiment e = arm.Read("");
@@ -86,7 +86,7 @@ TEST(MeasuredPoints, AreHeldWhereFewRowsMissAndLeftOutWhereManyDo) {
   const auto miss = [&](std::size_t from, std::size_t to, int direction) {
     for (std::size_t row = from; row <= to; ++row) log.measured[direction][row] = std::nan("");
   };
-  miss(20, 21, 0), miss(40, 60, 1), miss(100, 160, 2);
+  miss(10, 10, 0), miss(20, 21, 0), miss(40, 60, 1), miss(100, 160, 2);
   const Machine machine = system.Build();
   const Wiring wiring(e, *machine.model);
   mj_forward(machine.model.get(), machine.data.get());
@@ -100,6 +100,8 @@ TEST(MeasuredPoints, AreHeldWhereFewRowsMissAndLeftOutWhereManyDo) {
     EXPECT_FALSE(at(shown).front().held) << row;
     EXPECT_EQ(at(row).front().measured, at(shown).front().measured) << row;
   }
+  ASSERT_EQ(at(10).size(), 1u);
+  EXPECT_FALSE(at(10).front().held);  // a single row would only flicker
   for (const std::size_t row : {100, 130, 160}) EXPECT_TRUE(at(row).empty()) << row;
 }
 
