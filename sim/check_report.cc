@@ -46,7 +46,11 @@ Entry EntryOf(const FindingGroup& group, std::size_t logs) {
                             : group.logs.size() <= 3
                                 ? fmt::format("{}", fmt::join(group.logs, ", "))
                                 : fmt::format("{} of {} logs", group.logs.size(), logs);
-  const std::string where = channels.empty() ? which : channels + " in " + which;
+  const std::size_t times = group.members.size();
+  const bool everywhere = times == group.channels.size() * group.logs.size();
+  const std::string in =
+      everywhere ? " in " + which : fmt::format(", {} times in {}", times, which);
+  const std::string where = channels.empty() ? which : channels + in;
   const std::string place =
       first.severity == Severity::kInfo
           ? ""

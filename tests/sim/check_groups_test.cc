@@ -47,13 +47,16 @@ TEST(CheckReport, SaysWhatLogsHaveInCommonOnceAndAllOnRequest) {
     for (const char* channel : {"q1", "q2"}) all.push_back(Warning(log, channel, "jumps in 1 row"));
   }
   all.push_back(Warning("d", "q3", "lags by 3 rows"));
+  for (const char* channel : {"q1", "q2", "q3"})
+    all.push_back(Warning(channel == std::string("q1") ? "a" : "b", channel, "is constant"));
   const std::string text = Report(all);
-  EXPECT_THAT(text, ::testing::StartsWith("0 errors, 2 warnings, 0 notes\nseveral logs\n"));
+  EXPECT_THAT(text, ::testing::StartsWith("0 errors, 3 warnings, 0 notes\nseveral logs\n"));
   EXPECT_THAT(text, HasSubstr("q1, q2 in all 4 logs: jumps in 1 row; first in a at t = 0.5 s\n"));
+  EXPECT_THAT(text, HasSubstr("q1, q2, q3, 3 times in a, b: is constant; first in a"));
   EXPECT_THAT(text, HasSubstr("log d\n  warning jump             q3: lags by 3 rows\n"));
-  EXPECT_THAT(text, HasSubstr("9 findings in all: --all lists them"));
+  EXPECT_THAT(text, HasSubstr("12 findings in all: --all lists them"));
   const std::string full = FullReport(all);
-  EXPECT_THAT(full, ::testing::StartsWith("0 errors, 9 warnings, 0 notes\nlog a\n"));
+  EXPECT_THAT(full, ::testing::StartsWith("0 errors, 12 warnings, 0 notes\nlog a\n"));
   EXPECT_THAT(full, HasSubstr("log c\n  warning jump             q1: jumps in 1 row\n"));
 }
 
