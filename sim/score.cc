@@ -46,6 +46,39 @@ Moments MomentsOf(const std::vector<double>& values) {
   return {mean, n ? std::sqrt(squares / static_cast<double>(n)) : 0};
 }
 
+// Of the measured train rows of a channel.
+double TrainStd(const Experiment& e, std::size_t channel) {
+  std::vector<double> train;
+  for (const Log& log : e.logs) {
+    const auto& measured = log.measured[channel];
+    if (log.train) train.insert(train.end(), measured.begin(), measured.end());
+  }
+  return MomentsOf(train).std;
+}
+
+// The same of an orientation [rad], for each component of the turn from the mean one.
+double TurnStd(const Experiment& e, std::size_t first) {
+  std::vector<std::array<double, 4>> train;
+  double mean[4] = {};
+  for (const Log& log : e.logs) {
+    for (std::size_t row = 0; log.train && row < log.rows(); ++row) {
+      if (!IsMeasured(e, log, first, row)) continue;
+      auto& q = train.emplace_back();
+      for (int i = 0; i < 4; ++i) q[i] = log.measured[first + i][row];
+      mju_normalize4(q.data());
+      mju_addToScl(mean, q.data(), mju_dot(mean, q.data(), 4) < 0 ? -1 : 1, 4);
+    }
+  }
+  mju_normalize4(mean);
+  double squares = 0;
+  for (const auto& q : train) {
+    double turn[3];
+    mju_subQuat(turn, q.data(), mean);
+    squares += mju_dot3(turn, turn);
+  }
+  return train.empty() ? 0 : std::sqrt(squares / (3 * static_cast<double>(train.size())));
+}
+
 }  // namespace
 
 bool IsMeasured(const Experiment& e, const Log& log, std::size_t channel, std::size_t row) {
@@ -129,11 +162,9 @@ Pool::Pool(const Experiment& e) {
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     scale_.push_back(e.channels[c].factor);
     if (one) continue;
-    std::vector<double> train;
-    for (const Log& log : e.logs) {
-      if (log.train) train.insert(train.end(), log.measured[c].begin(), log.measured[c].end());
-    }
-    const double std = MomentsOf(train).std;
+    const double std = e.outputs[e.channels[c].output].quaternion()
+                           ? TurnStd(e, c - e.channels[c].component)
+                           : TrainStd(e, c);
     if (std > 0) scale_.back() = std;
   }
 }

@@ -35,7 +35,7 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
 std::string MeanAbsoluteInWords(const std::vector<ChannelScore>& scores);
 
 /// One unit for all channels, so that errors can be pooled: the channels' own when they share one,
-/// else "std", the standard deviation of each channel's measured train rows.
+/// else "std", that of each channel's measured train rows (of turns from the mean orientation).
 class Pool {
  public:
   explicit Pool(const Experiment& e);

@@ -149,6 +149,19 @@ TEST(Pool, MixesUnitsByTheStandardDeviationOfTheTrainRows) {
   EXPECT_NEAR(sum.Rms(), std::sqrt((9. + 1 + 0) / 3), kRounding);
 }
 
+// Not by those of the quaternion's numbers, of which each half tells of another axis.
+TEST_F(Turn, IsPooledByTheTurnsFromTheMeanOrientation) {
+  AddOutput(e_, {"x"}, "mm", 1e-3);
+  const auto here = About({0, 1, 0}, 0.2, 1), there = About({0, 1, 0}, -0.2, 1);
+  std::vector<std::vector<double>> measured;
+  for (std::size_t c = 0; c < 4; ++c) measured.push_back({here[c][0], -there[c][0]});
+  measured.push_back({0, 0.002});
+  e_.logs = {Rows(measured)};
+  const Pool pool(e_);
+  for (const std::size_t component : {0, 1, 2})
+    EXPECT_NEAR(pool.scale(component), 0.2 / std::sqrt(3), 1e-12);
+}
+
 TEST(Pool, KeepsACommonUnitAndLeavesUnscoredChannelsOut) {
   Experiment e;
   AddOutput(e, {"x"}, "mm", 1e-3);
