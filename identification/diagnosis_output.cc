@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -15,35 +14,6 @@
 
 namespace continuum {
 namespace {
-
-// RMS of y(t − shift) − measured over a stretch of rows.
-double ShiftedError(const std::vector<double>& y, const std::vector<double>& measured, int shift) {
-  double sum = 0, n = 0;
-  const int rows = static_cast<int>(y.size());
-  for (int k = std::max(0, shift); k < std::min(rows, rows + shift); ++k) {
-    if (std::isnan(measured[k])) continue;
-    const double e = y[k - shift] - measured[k];
-    sum += e * e, n += 1;
-  }
-  return n > 0 ? std::sqrt(sum / n) : 0;
-}
-
-// "lags by 40 ms" when a shift in time alone halves the error.
-std::string LagInWords(const Log& log, const std::vector<double>& y,
-                       const std::vector<double>& measured) {
-  const double period = (log.time.back() - log.time.front()) / static_cast<double>(log.rows() - 1);
-  const int reach = static_cast<int>(std::min(0.25 / period, static_cast<double>(log.rows()) / 4));
-  const double present = ShiftedError(y, measured, 0);
-  double best = present;
-  int at = 0;
-  for (int s = -reach; s <= reach; ++s) {
-    const double e = ShiftedError(y, measured, s);
-    if (e < best) best = e, at = s;
-  }
-  if (at == 0 || best > 0.5 * present) return "";
-  return fmt::format("{} the measurement by {:.0f} ms", at > 0 ? "runs ahead of" : "lags behind",
-                     1000 * period * std::abs(at));
-}
 
 // A problem for the hypothesis that was chosen, or the null one.
 Problem ChosenProblem(const Experiment& e, const Diagnosis& d) {
@@ -180,47 +150,6 @@ std::string FallbackInWords(const Diagnosis& d) {
   return fmt::format(
       "no cause, but a smooth force at {} takes {:.0f} % off the error in the median of the folds",
       c.hypothesis.where, 100 * Median(Gains(c.record)));
-}
-
-std::vector<Wrong> FindWrong(const Experiment& e, const std::vector<Trace>& before) {
-  struct Item {
-    double size;
-    Wrong wrong;
-  };
-  std::vector<Item> items;
-  const Pool pool(e);
-  std::set<std::pair<std::string, std::string>> seen;  // replicates need no second mention
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    const Log& log = e.logs[l];
-    if (!seen.insert({log.trial, log.condition}).second && log.window.empty()) continue;
-    const auto residual = Residuals(e, log, before[l]);
-    const auto score = ScoreLog(e, log, before[l]);
-    for (std::size_t c = 0; c < e.channels.size(); ++c) {
-      if (!pool.counts(c) || !(score[c].rmse > 0)) continue;
-      const double factor = e.channels[c].factor;
-      std::size_t at = 0;
-      for (std::size_t k = 0; k < log.rows(); ++k) {
-        if (std::abs(residual[c][k]) > std::abs(residual[c][at])) at = k;
-      }
-      std::size_t from = at, to = at;  // while the deviation stays above half its peak
-      const auto large = [&](std::size_t k) { return residual[c][k] / residual[c][at] > 0.5; };
-      while (from > 0 && large(from - 1)) --from;
-      while (to + 1 < log.rows() && large(to + 1)) ++to;
-      std::string what = fmt::format("is {:.3g} {} too {}", std::abs(score[c].largest),
-                                     e.channels[c].unit, score[c].largest > 0 ? "high" : "low");
-      const std::string lag = LagInWords(log, before[l].channel[c], log.measured[c]);
-      if (!lag.empty()) what += "; over the whole log it " + lag;
-      items.push_back({score[c].rmse * factor / pool.scale(c),
-                       {log.label, e.channels[c].name,
-                        fmt::format("{:.2f}-{:.2f} s", log.time[from], log.time[to]), what}});
-    }
-  }
-  std::stable_sort(items.begin(), items.end(),
-                   [](const Item& a, const Item& b) { return a.size > b.size; });
-  std::vector<Wrong> wrong;
-  for (std::size_t i = 0; i < std::min<std::size_t>(6, items.size()); ++i)
-    wrong.push_back(items[i].wrong);
-  return wrong;
 }
 
 Gain GainOf(const Diagnosis& d, const TwoErrors& after) {

@@ -7,15 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/diagnosis.h"
+#include "identification/wrong.h"
 #include "sim/check.h"
 
 namespace continuum {
-
-/// Where and how the simulation parts from the measurement, in words.
-struct Wrong {
-  std::string log, channel, when, what;
-};
-std::vector<Wrong> FindWrong(const Experiment& experiment, const std::vector<Trace>& before);
 
 /// Files of the fallback, where there is one.
 inline constexpr char kFallbackModel[] = "fallback.xml", kFallbackExperiment[] = "fallback.yaml";
