@@ -83,14 +83,15 @@ class Story {
         "Mass times the difference between the measured acceleration and the model's at the "
         "measured "
         "state. Line: median in bins, band: quartiles.");
-    Scatter(f, f.angle, {"angle", "rad"});
-    Scatter(f, f.velocity, {"velocity", "rad/s"});
-    Scatter(f, f.load, {"actuator torque", "N*m"});
+    Scatter(f, f.angle, f.slides ? Axis{"position", "m"} : Axis{"angle", "rad"});
+    Scatter(f, f.velocity, {"velocity", f.slides ? "m/s" : "rad/s"});
+    Scatter(f, f.load, f.slides ? Axis{"actuator force", "N"} : Axis{"actuator torque", "N*m"});
     Scatter(f, f.time, {"time", "s"});
   }
 
   void Scatter(const MissingForce& f, const std::vector<double>& x, const Axis& axis) {
-    ScatterSpec spec{"over " + axis.label, axis, {"missing force", "N*m"}, {}, {}, true};
+    const Axis missing{"missing force", f.slides ? "N" : "N*m"};
+    ScatterSpec spec{"over " + axis.label, axis, missing, {}, {}, true};
     PointGroup points{"rows", {}, {}, Style::kResidual};
     const std::size_t stride = std::max<std::size_t>(1, x.size() / 1500);
     for (std::size_t k = 0; k < x.size(); k += stride)

@@ -88,6 +88,7 @@ MissingForce FindMissingForce(const Problem& problem, const Problem::Vector& x) 
       for (const auto& [joint, s] : state) {
         MissingForce& out = found[joint];
         out.joint = mj_id2name(&m, mjOBJ_JOINT, joint);
+        out.slides = m.jnt_type[joint] == mjJNT_SLIDE;
         out.log.push_back(l);
         out.time.push_back(log.time[row]);
         out.angle.push_back(s.q[row]);

@@ -15,6 +15,7 @@ namespace continuum {
 /// over 11 rows) and its mass matrix M. An equation error: no simulation drifts in it.
 struct MissingForce {
   std::string joint;
+  bool slides = false;  ///< the joint: m and N, else rad and N m
   std::vector<std::size_t> log;
   std::vector<double> time, angle, velocity, load, force;  ///< SI
 };
