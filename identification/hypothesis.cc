@@ -61,22 +61,6 @@ Present FrictionOn(const mjModel& m, const std::vector<std::string>& joints) {
   return found;
 }
 
-// Initial values, with every nuisance at three sizes.
-std::vector<std::vector<double>> StartsOf(const Hypothesis& h) {
-  std::vector<double> first;
-  for (const Parameter& p : h.extra) first.push_back(p.initial);
-  std::vector<std::vector<double>> starts{first};
-  for (std::size_t i = 0; i < h.extra.size(); ++i) {
-    if (!std::isnan(h.null[i])) continue;
-    for (const double factor : {0.2, 5.0}) {
-      auto start = first;
-      start[i] = std::clamp(factor * start[i], h.extra[i].lower, h.extra[i].upper);
-      starts.push_back(start);
-    }
-  }
-  return starts;
-}
-
 // How far the measured values of some outputs reach [their unit].
 double OutputSize(const Experiment& e, const std::vector<std::string>& columns) {
   double lower = kInfinity, upper = -kInfinity;
@@ -490,7 +474,7 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system
         Multiply(all[i], Conditions(e, c.Name()));
     }
   }
-  for (Hypothesis& h : all) h.starts = StartsOf(h), h.given = given;
+  for (Hypothesis& h : all) h.starts = StartsOf(h.extra, h.null), h.given = given;
   return all;
 }
 

@@ -63,4 +63,24 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   return out;
 }
 
+std::vector<std::vector<double>> StartsOf(const std::vector<Parameter>& extra,
+                                          const std::vector<double>& null) {
+  std::vector<double> first;
+  for (const Parameter& p : extra) first.push_back(p.initial);
+  std::vector<std::vector<double>> starts{first};
+  const auto add = [&](std::size_t i, double value) {
+    starts.push_back(first);
+    starts.back()[i] = value;
+  };
+  for (std::size_t i = 0; i < extra.size(); ++i) {
+    const double other = 2 * null[i] - first[i];
+    const bool both_ways = std::isfinite(other) && other >= extra[i].lower;
+    if (both_ways && extra[i].target.starts_with("actuator:")) add(i, other);
+    if (!std::isnan(null[i])) continue;
+    for (const double factor : {0.2, 5.0})
+      add(i, std::clamp(factor * first[i], extra[i].lower, extra[i].upper));
+  }
+  return starts;
+}
+
 }  // namespace continuum

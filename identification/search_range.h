@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "effects/effect.h"
 #include "identification/sizes.h"
@@ -11,5 +12,11 @@ namespace continuum {
 /// sizes of the experiment suggest.
 Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::string& target,
                   const std::string& attribute, Change::Operation operation);
+
+/// Values of a candidate's parameters to begin a search from: the initial ones; every nuisance
+/// (null: NaN) at three sizes; and what acts on an actuator in the other direction too, because
+/// where inputs rest at a bound the two directions are no mirror images.
+std::vector<std::vector<double>> StartsOf(const std::vector<Parameter>& extra,
+                                          const std::vector<double>& null);
 
 }  // namespace continuum
