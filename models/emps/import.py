@@ -7,7 +7,8 @@ SOURCE_FOLDER holds DATA_EMPS.mat (t [s], qg reference [m], qm position [m], vir
 a copy of it and experiment.yaml. Two windows: the first 12 s train, 12.47 s to the end validate
 (there the axis reverses, so the second window starts at rest as well). The position is shown but not
 scored: the loop holds it within 31 um of the measured one whatever the parameters are, and what they
-do is in the voltage.
+do is in the voltage. The reference goes on straight lines between its samples: at steps of 1 ms that
+is the recorded loop, and finer steps are a faster loop instead of one that waits for its reference.
 """
 import os
 import pathlib
@@ -23,7 +24,7 @@ logs:
 time: {{column: t, unit: s}}
 start: measured
 inputs:
-  - {{column: qg, unit: m, actuator: drive}}
+  - {{column: qg, unit: m, actuator: drive, interpolate: linear}}
 outputs:
   - {{column: vir, unit: V, actuator: drive, quantity: force}}
   - {{column: qm, unit: m, sensor: q, weight: 0}}
