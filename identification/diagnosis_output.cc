@@ -65,6 +65,13 @@ std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Inde
   return text;
 }
 
+nlohmann::json ValuesOf(const CandidateResult& c) {
+  nlohmann::json values = nlohmann::json::object();
+  for (std::size_t i = 0; i < c.hypothesis.extra.size(); ++i)
+    values[c.hypothesis.extra[i].name] = c.fitted.fit.x[c.own() + static_cast<Eigen::Index>(i)];
+  return values;
+}
+
 // The cause that acts beside the chosen one.
 nlohmann::json PartnerJson(const Diagnosis& d) {
   const Hypothesis& h = d.partner->hypothesis;
@@ -321,6 +328,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
          {"amplitude", c.record.amplitude},
          {"placebos", p},
          {"fails", c.failures},
+         {"values", ValuesOf(c)},
          {"between_conditions", BetweenJson(e, d, c.fitted)},
          {"error", {{"train", c.fitted.error.train}, {"validate", c.fitted.error.validate}}}});
   }

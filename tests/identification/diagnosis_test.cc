@@ -268,6 +268,9 @@ TEST_F(PerCondition, EachGetsItsOwnValue) {
   const auto told = WriteDiagnosis(e, d, folder_ / "out");  // by extended.yaml
   EXPECT_THAT(Summary(e, d, told), HasSubstr("between   the conditions' runs are"));
   EXPECT_NEAR(told.after.validate, d.after().validate, 0.02 * d.after().validate);
+  const auto json = DiagnosisJson(e, d, told);
+  const auto& best = json.at("candidates").at(0);
+  EXPECT_NEAR(best.at("values").at("mass[loaded]"), 0.08, 0.002);
 }
 
 TEST_F(PerCondition, AreNeededAndAreOfTheModel) {
