@@ -13,6 +13,8 @@ namespace {
 
 using Vector = Problem::Vector;
 
+constexpr std::size_t kTerms = 16;  // of a force that is to reach the ceiling
+
 class Comparison {
  public:
   Comparison(const Trials& trials, const DiagnosisOptions& options, Diagnosis& d)
@@ -51,7 +53,20 @@ class Comparison {
 
   void RunCeiling() {
     options_.Say("ceiling");
-    d_.ceiling = TryForce(RandomForce(16, true, d_.sizes, options_.seed), &d_.ceiling_error);
+    RaiseCeiling(d_, "the model as it is", d_.before.folds, d_.before.error);
+    Raise("a smooth force without a name", RandomForce(kTerms, true, d_.sizes, options_.seed));
+    if (!e_.quasi_static)  // there nothing moves
+      Raise("a friction without a name", RandomFriction(kTerms, d_.sizes, options_.seed));
+    for (const CandidateResult& c : d_.candidates) {
+      if (!c.record.after.empty())
+        RaiseCeiling(d_, c.hypothesis.NameAtPlace(), c.fitted.folds, c.fitted.error);
+    }
+  }
+
+  void Raise(const std::string& by, const ForceTerms& terms) {
+    TwoErrors error;
+    const FoldScores scores = TryForce(terms, &error);
+    RaiseCeiling(d_, by, scores, error);
   }
 
   // Placebos with one and with two parameters, as many as the candidates have; as long as one of
@@ -109,16 +124,13 @@ class Comparison {
       }
       records.push_back(c.record);
     }
-    FoldRecord ceiling;
-    ceiling.before = d_.before.folds.error;
-    ceiling.after = d_.ceiling.error;
     const double over = Known() ? d_.before.error.train / Floor() : 0;
     Rules rules;
     // Replicates tell the noise whatever the model: then nothing above it may remain unexplained.
     if (d_.noise.source == "replicates") rules.noise_limited = kInfinity;
     if (d_.noise.source == "differences" && d_.noise.rms > 0)
       rules.over_scatter = d_.before.error.train / d_.noise.rms;
-    d_.verdict = Judge(records, over, Median(Gains(ceiling)), rules);
+    d_.verdict = Judge(records, over, CeilingGain(d_), rules);
   }
 
   const Trials& trials_;
@@ -128,6 +140,24 @@ class Comparison {
 };
 
 }  // namespace
+
+namespace {
+
+double GainOver(const FoldScores& before, const FoldScores& after) {
+  FoldRecord record;
+  record.before = before.error, record.after = after.error;
+  return Median(Gains(record));
+}
+
+}  // namespace
+
+double CeilingGain(const Diagnosis& d) { return GainOver(d.before.folds, d.ceiling); }
+
+void RaiseCeiling(Diagnosis& d, const std::string& by, const FoldScores& folds,
+                  const TwoErrors& error) {
+  if (!d.ceiling.error.empty() && GainOver(d.before.folds, folds) <= CeilingGain(d)) return;
+  d.ceiling = folds, d.ceiling_error = error, d.ceiling_by = by;
+}
 
 void RecordFolds(const Trials& trials, const Diagnosis& d, CandidateResult& c) {
   const Problem problem = c.ProblemOf(*trials.experiment);

@@ -63,7 +63,7 @@ class Session {
       NameOnce();
     }
     BootstrapGain();
-    if (d_.verdict.text == "unexplained") d_.fallback = FindFallback(trials_, d_, options_);
+    if (d_.verdict.text == "unexplained") FallBack();
     options_.Say("next experiment");
     d_.next = ProposeNext(trials_, d_);
     d_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -111,6 +111,7 @@ class Session {
     trials_.AddFolds(null_, d_.folds, d_.before);
     for (const std::size_t i : d_.verdict.named) RecordFolds(trials_, d_, d_.candidates[i]);
     d_.ceiling_error = {d_.noise.rms, d_.noise.rms};
+    d_.ceiling_by = "noise alone";
   }
 
   // By likelihoods, which are calibrated where noise is all that the best model leaves.
@@ -190,6 +191,15 @@ class Session {
       options_.Say("at a fine step " + c.hypothesis.Name());
       trials_.FitFinely(c.ProblemOf(e_), c.fitted);
     }
+  }
+
+  // Not where forces of many more terms reach less than half of what it is asked for.
+  void FallBack() {
+    if (!d_.noise_limited && CeilingGain(d_) < 0.5 * continuum::Rules{}.median_gain) return;
+    d_.fallback = FindFallback(trials_, d_, options_);
+    if (d_.fallback && !d_.noise_limited)
+      RaiseCeiling(d_, "the force of the fallback", d_.fallback->fitted.folds,
+                   d_.fallback->fitted.error);
   }
 
   void CompareFolds() {

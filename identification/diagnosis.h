@@ -117,9 +117,12 @@ struct Diagnosis {
   bool noise_limited = false;  ///< the best model leaves noise: likelihoods judge, else folds
   LackOfFit lack;              ///< of the model that is left standing
   std::vector<std::string> skipped;
-  Verdict verdict;          ///< indices into candidates
-  FoldScores ceiling;       ///< what a smooth force without a name reaches; empty: noise-limited
+  Verdict verdict;  ///< indices into candidates
+  /// The best that anything reached on the folds, forces without a name among it; empty where the
+  /// data are noise-limited.
+  FoldScores ceiling;
   TwoErrors ceiling_error;  ///< of the same; the noise where that is all that is left
+  std::string ceiling_by;   ///< what reached it, in words
   std::optional<CandidateResult>
       fallback;  ///< where nothing explains it (identification/fallback.h)
   NextExperiment next;

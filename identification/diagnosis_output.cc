@@ -296,6 +296,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
                       {"noise_source", d.noise.source},
                       {"ceiling",
                        {{"validate_error", d.ceiling_error.validate},
+                        {"reached_by", d.ceiling_by},
                         {"share_reached", ShareReached(d, told.after)}}}};
   json["folds"] = nlohmann::json::array();
   const auto& after = d.chosen() ? d.chosen()->record.after : d.before.folds.error;
@@ -409,8 +410,8 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
         d.lack.force, d.lack.channel, LikelihoodRules{}.lack,
         d.noise.step > 0 ? ", without what the time step adds" : "");
   } else {
-    text += fmt::format("ceiling   {:.4g} {} on validate with a smooth force without a name\n",
-                        d.ceiling_error.validate, unit);
+    text += fmt::format("ceiling   {:.4g} {} on validate with {}\n", d.ceiling_error.validate, unit,
+                        d.ceiling_by);
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(3, told.wrong.size()); ++i) {
     const Wrong& w = told.wrong[i];

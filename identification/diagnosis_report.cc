@@ -204,7 +204,7 @@ class Story {
       rows.push_back({c.hypothesis.NameAtPlace()});
       for (const double error : c.record.after) rows.back().push_back(fmt::format("{:.4g}", error));
     }
-    if (!d_.ceiling.error.empty()) rows.push_back({"smooth force (ceiling)"});
+    if (!d_.ceiling.error.empty()) rows.push_back({"ceiling: " + d_.ceiling_by});
     for (const double error : d_.ceiling.error) rows.back().push_back(fmt::format("{:.4g}", error));
     page_.Table(header, rows,
                 {"Error [" + unit_ + "] on the logs left out, after refitting on the others."});
@@ -229,14 +229,14 @@ class Story {
   void TheGain() {
     page_.Heading("The gain");
     const Gain gain = GainOf(d_, told_.after);
-    const auto row = [&](const char* name, const TwoErrors& e) {
+    const auto row = [&](const std::string& name, const TwoErrors& e) {
       return std::vector<std::string>{name, fmt::format("{:.4g}", e.train),
                                       fmt::format("{:.4g}", e.validate)};
     };
     page_.Table(
         {"model", "train [" + unit_ + "]", "validate [" + unit_ + "]"},
         {row("before", d_.before.error), row("after", told_.after),
-         row(d_.noise_limited ? "noise (floor)" : "smooth force (ceiling)", d_.ceiling_error)},
+         row(d_.noise_limited ? "noise (floor)" : "ceiling: " + d_.ceiling_by, d_.ceiling_error)},
         {fmt::format(
             "Free simulation of every log. Noise: {:.3g} {} ({}). {:.0f} % of the held-out error "
             "removed, {:.0f} … {:.0f} % (95 %, whole trials resampled); {:.0f} % of what is "
@@ -255,7 +255,7 @@ class Story {
         "of what {} on the held-out logs.",
         over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited",
         100 * ShareReached(d_, told_.after),
-        d_.noise_limited ? "lies above the noise" : "a smooth force without a name reaches"));
+        d_.noise_limited ? "lies above the noise" : d_.ceiling_by + " reaches"));
     if (d_.fallback) {
       page_.Paragraph(
           "There is " + FallbackInWords(d_) + ". `" + kFallbackModel +

@@ -15,4 +15,8 @@ namespace continuum {
 /// exactly for a seed.
 ForceTerms RandomForce(std::size_t count, bool loaded, const Sizes& sizes, std::uint64_t seed);
 
+/// The same with the direction of motion, tanh(10 v_j/s_v), in place of the speed: what a dry
+/// friction could do whose level varies with angle and load.
+ForceTerms RandomFriction(std::size_t count, const Sizes& sizes, std::uint64_t seed);
+
 }  // namespace continuum

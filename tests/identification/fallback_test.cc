@@ -1,5 +1,6 @@
 #include "identification/fallback.h"
 
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -57,6 +58,27 @@ TEST_F(FallbackTest, WhatNobodyExplainsGetsAForceWithoutACause) {
   Experiment files = Experiment::Read(out / kFallbackExperiment);
   const SplitError error = PooledError(files, Replay(files, System::Load(out / kFallbackModel)));
   EXPECT_NEAR(error.validate, d.fallback->fitted.error.validate, 1e-6);
+}
+
+// A sway of the sensor, which no force of the robot's state can follow.
+TEST_F(FallbackTest, IsNotLookedForWhereForcesReachNothing) {
+  for (int t = 0; t < 4; ++t) {
+    const auto u = Command(t, 200);
+    auto q = Pendulum().Run(u, testing::kPeriod);
+    for (std::size_t k = 0; k < q.size(); ++k)
+      q[k] += 0.05 * std::sin(37 * testing::kPeriod * static_cast<double>(k) + t);
+    AddLog("t" + std::to_string(t), t < 3 ? "use: train" : "use: validate", u,
+           Noisy(q, 1e-4, 0, static_cast<unsigned>(t)));
+  }
+  e_ = ReadExperiment("candidates: [payload]\n");
+  std::string said;
+  DiagnosisOptions options;
+  options.placebos = 0;
+  options.progress = [&](const std::string& text) { said += text + "\n"; };
+  const Diagnosis d = Diagnose(e_, System::Load(Write("model.xml", Pendulum().Xml())), options);
+  EXPECT_EQ(d.verdict.text, "unexplained") << d.verdict.reason;
+  EXPECT_FALSE(d.fallback);
+  EXPECT_THAT(said, ::testing::Not(HasSubstr("a force without a cause")));
 }
 
 TEST_F(FallbackTest, WhatHasACauseGetsNone) {
