@@ -5,8 +5,9 @@ usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER
 
 SOURCE_FOLDER holds NoLoad.mat (1094 x 18: t [s], three pressures [bar absolute], base marker xyz [mm] and
 quaternion wxyz, tip marker xyz and quaternion; 20 Hz). Written: one CSV for each time that a line is up
-(cycles 1 and 2 of each line train, cycle 3 validates), experiment.yaml (two stiffnesses to be fitted) and
-with_effects.yaml (chamber asymmetry, dead pressure and creep too).
+(cycles 1 and 2 of each line train, cycle 3 validates), experiment.yaml (two stiffnesses to be fitted),
+with_effects.yaml (chamber asymmetry, dead pressure and creep too) and diagnosis.yaml (experiment.yaml without
+sigma, which weighs the fits, 0.5 mm against 0.02 rad; the noise of the tracker is a hundredth of that).
 
 Pressures are gauge: less their mean of the first 7 s, and not below zero. Lines 1, 2, 3 of the model are
 columns 1, 3, 2. The recording leaves transitions out: a line and the tip both change within one row. So a
@@ -51,7 +52,9 @@ EFFECTS = [
     ("creep", "plugin:creep", "k_m", "set", 0.2, 0, 2),
     ("tau_m", "plugin:creep", "tau_m", "set", 2, 0.3, 10),
 ]
-EXPERIMENTS = {"experiment.yaml": SEGMENT, "with_effects.yaml": SEGMENT + EFFECTS}
+SIGMA = (", sigma: 0.5", ", sigma: 0.02")  # mm, rad
+EXPERIMENTS = {"experiment.yaml": (SEGMENT, SIGMA), "with_effects.yaml": (SEGMENT + EFFECTS, SIGMA),
+               "diagnosis.yaml": (SEGMENT, ("", ""))}
 
 
 class BadFile(Exception):
@@ -249,7 +252,7 @@ def write_log(recording, position, turn, rows, path):
                          (tip if new else [""] * 7))
 
 
-def experiment(recording, model, marker, parameters):
+def experiment(recording, model, marker, parameters, sigma):
     pos = ", ".join(f"\"pos[{i}]\": {x:.6f}" for i, x in enumerate(marker))
     lines = ["format: 1", f"model: {model}", "logs:"]
     for name, use, _ in windows_of(recording):
@@ -258,9 +261,9 @@ def experiment(recording, model, marker, parameters):
     lines += ["time: {column: t, unit: s}", "start: equilibrium", "inputs:"]
     lines += [f"  - {{column: p{i}, unit: Pa, actuator: p{i}}}" for i in (1, 2, 3)]
     lines.append("outputs:")
-    lines += [f"  - {{column: {axis}, unit: mm, sensor: \"marker_pos[{i}]\", sigma: 0.5}}"
+    lines += [f"  - {{column: {axis}, unit: mm, sensor: \"marker_pos[{i}]\"{sigma[0]}}}"
               for i, axis in enumerate("xyz")]
-    lines.append("  - {column: [qw, qx, qy, qz], unit: rad, sensor: marker_quat, sigma: 0.02}")
+    lines.append(f"  - {{column: [qw, qx, qy, qz], unit: rad, sensor: marker_quat{sigma[1]}}}")
     lines.append("parameters:")
     for name, target, attribute, operation, initial, lower, upper in parameters:
         lines.append(f"  - {{name: {name}, target: \"{target}\", attribute: \"{attribute}\", "
@@ -291,8 +294,8 @@ def write(target, recording, position, turn, marker):
         write_log(recording, position, turn, rows, target / f"{name}.csv")
     model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "stiff_flop.xml",
                             target.resolve())
-    for name, parameters in EXPERIMENTS.items():
-        (target / name).write_text(experiment(recording, model, marker, parameters))
+    for name, (parameters, sigma) in EXPERIMENTS.items():
+        (target / name).write_text(experiment(recording, model, marker, parameters, sigma))
 
 
 def main():
@@ -311,7 +314,7 @@ def main():
     except OSError as error:
         refuse(f"{error.filename}: {error.strerror}")
     place = ", ".join(f"{1e3 * x:.1f}" for x in marker)
-    print(f"nine logs, {' and '.join(EXPERIMENTS)} in {target}; {sum(recording.repeats)} repeated samples left "
+    print(f"nine logs, {', '.join(EXPERIMENTS)} in {target}; {sum(recording.repeats)} repeated samples left "
           f"out; marker at {place} mm from the tip, mean distance from constant curvature "
           f"{1e3 * left:.2f} mm")
 

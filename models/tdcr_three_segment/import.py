@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Turns the recording of the three-segment arm into an experiment folder.
 
-usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER
+usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER [EVERY]
 
 SOURCE_FOLDER holds *_train.csv: timestamp [s], pattern_label, nine servo_<id>_mm (measured tendon
 displacement [mm], pulling is positive), tip_x tip_y tip_z [mm]. Written: one CSV per family of
 patterns with the time t [s] since the first row in front, and experiment.yaml. Patterns that bend one
 segment train, those that bend two together validate. Rows are poses at rest (quasi_static); where the
-cameras' frame and the marker are is estimated from the train rows.
+cameras' frame and the marker are is estimated from the train rows. Of each family every EVERY-th row is
+written (default: 1, all).
 """
 import csv
 import os
@@ -72,10 +73,13 @@ def experiment(families, model):
 
 
 def main():
-    if len(sys.argv) != 3:
-        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
+    if len(sys.argv) not in (3, 4):
+        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER [EVERY], found "
                f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
     source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    every = sys.argv[3] if len(sys.argv) == 4 else "1"
+    if not every.isdecimal() or int(every) == 0:
+        refuse(f"EVERY: expected a number of rows, found {every}")
     files = sorted(source.glob("*_train.csv"))
     if len(files) != 1:
         refuse(f"{source}: expected one recording (*_train.csv), found {len(files)}")
@@ -88,7 +92,7 @@ def main():
         with (target / f"{name}.csv").open("w", newline="") as log:
             out = csv.DictWriter(log, rows[0], lineterminator="\n")
             out.writeheader()
-            out.writerows(rows)
+            out.writerows(rows[::int(every)])
     model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "tdcr_three_segment.xml",
                             target.resolve())
     (target / "experiment.yaml").write_text(experiment(families, model))
