@@ -40,8 +40,9 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   out.has_initial = true;
   out.where = "candidate";
   const bool nuisance = std::isnan(p.null);
-  // The angle is a range over all joints, and its cube much larger than that of any one motion.
-  const double reach = p.unit == "kg"          ? 5
+  // The angle is a range over all joints, and its cube much larger than that of any one motion. A
+  // light robot of many links carries more than a few of them weigh.
+  const double reach = p.unit == "kg"          ? 5 * sizes.robot / sizes.mass
                        : p.unit == "s"         ? 25
                        : p.unit == "1"         ? 10
                        : p.unit == "N*m/rad^3" ? 100

@@ -38,8 +38,10 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
   const mjModel& m = problem.system().model();
   if (m.nv > 0)
     s.inertia = std::accumulate(m.dof_M0, m.dof_M0 + m.nv, 0.0) / static_cast<double>(m.nv);
-  if (m.nbody > 1)
+  if (m.nbody > 1) {
+    s.robot = std::max(1e-6, m.body_subtreemass[0]);
     s.mass = std::max(1e-6, m.body_subtreemass[0] / static_cast<double>(m.nbody - 1));
+  }
   s.step = m.opt.timestep;
   std::vector<double> intervals;
   for (const Log& log : e.logs) {
