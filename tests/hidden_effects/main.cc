@@ -1,16 +1,15 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "hidden_effects/suite.h"
+#include "hidden_effects/pictures.h"
+#include "hidden_effects/report.h"
 #include "identification/catalog.h"
-#include "sim/file.h"
 #include "support/json_lines.h"
 
 namespace continuum::hidden {
@@ -109,87 +108,11 @@ std::vector<Case> Told(std::vector<Case> cases) {
   return cases;
 }
 
-nlohmann::json ToJson(const Case& c, const Answer& a) {
-  return {{"case", c.Name()},
-          {"effects", c.effects},
-          {"listed", c.listed},
-          {"factor", c.factor},
-          {"noise", kNoiseNames[static_cast<int>(c.noise)]},
-          {"verdict", a.verdict},
-          {"named", a.named},
-          {"partner", a.partner},
-          {"right", InSet(c, a)},
-          {"unique", Unique(a)},
-          {"truth", a.truth},
-          {"value", a.value},
-          {"low", a.low},
-          {"high", a.high},
-          {"explained", a.explained},
-          {"p", a.p},
-          {"lack", a.lack},
-          {"next", a.next},
-          {"seconds", a.seconds}};
-}
-
-// Counts of one group of lines.
-struct Count {
-  int n = 0, alarm = 0, right = 0, unique_right = 0, unique_wrong = 0, covered = 0, with_value = 0;
-  double seconds = 0;
-  void Add(const nlohmann::json& line) {
-    const bool one = line.value("unique", false), good = line.value("right", false);
-    ++n;
-    alarm += line.at("verdict") != "adequate";
-    right += good;
-    unique_right += one && good;
-    unique_wrong += one && !good;
-    seconds += line.value("seconds", 0.0);
-    if (!good || line.value("value", 0.0) == 0) return;
-    ++with_value;
-    const double truth = line.at("truth");
-    covered += line.at("low") <= truth && truth <= line.at("high");
-  }
-};
-
-void Report(const std::vector<nlohmann::json>& lines) {
-  std::map<std::string, Count> none, effects, unlisted;
-  Count all, pairs;
-  for (const auto& line : lines) {
-    if (!line.contains("effects")) continue;
-    const auto& hidden = line.at("effects");
-    if (hidden.empty()) {
-      none[line.at("noise")].Add(line);
-    } else if (hidden.size() > 1) {
-      pairs.Add(line);
-    } else if (!line.at("listed")) {
-      unlisted[hidden.front()].Add(line);
-    } else {
-      effects[hidden.front()].Add(line);
-      all.Add(line);
-    }
-  }
-  fmt::print("nothing hidden: alarms\n");
-  for (const auto& [noise, c] : none) fmt::print("  {:<18} {:3} of {:3}\n", noise, c.alarm, c.n);
-  fmt::print(
-      "hidden and listed: truth in the set, one right name, one wrong name, intervals that "
-      "cover\n");
-  for (const auto& [name, c] : effects) {
-    fmt::print("  {:<18} {:3} {:3} {:3} of {:3}   {:3} of {:3}   {:.1f} s each\n", name, c.right,
-               c.unique_right, c.unique_wrong, c.n, c.covered, c.with_value, c.seconds / c.n);
-  }
-  fmt::print("  {:<18} {:3} {:3} {:3} of {:3}   {:3} of {:3}\n", "all", all.right, all.unique_right,
-             all.unique_wrong, all.n, all.covered, all.with_value);
-  fmt::print("two hidden: both found {} of {}, single names that are wrong {}\n", pairs.right,
-             pairs.n, pairs.unique_wrong);
-  fmt::print("hidden and not listed: one (wrong) name\n");
-  for (const auto& [name, c] : unlisted)
-    fmt::print("  {:<18} {:3} of {:3}\n", name, c.unique_wrong, c.n);
-}
-
 nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool verbose) {
   try {
     const Answer a = Solve(c, folder);
     if (verbose) fmt::print("{}\n", a.detail);
-    return ToJson(c, a);
+    return LineOf(c, a);
   } catch (const std::exception& e) {
     return {{"case", c.Name()}, {"verdict", "error"}, {"what", e.what()}};
   }
@@ -197,7 +120,7 @@ nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool ver
 
 int Main(int argc, char** argv) {
   CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
-  std::string out, only, keep, robot = "arm";
+  std::string out, only, keep, pictures, robot = "arm";
   int repeats = 1;
   bool write = false, verbose = false, told = false, quick = false, background = false,
        spoilt = false;
@@ -212,6 +135,7 @@ int Main(int argc, char** argv) {
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
   app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
+  app.add_option("--pictures", pictures, "a folder for confusion, power and calibration as SVG");
   app.add_flag("--write", write, "write the cases (--keep), without a diagnosis");
   app.add_flag("--told", told, "only cases of one effect, as the only candidate: for intervals");
   app.add_flag("--verbose", verbose, "print each summary");
@@ -242,7 +166,9 @@ int Main(int argc, char** argv) {
                line.value("named", nlohmann::json::array()).dump(), line.value("seconds", 0.0));
   }
   std::filesystem::remove_all(temporary);
-  Report(testing::ReadJsonLines(out));
+  const auto outcomes = OutcomesOf(testing::ReadJsonLines(out));
+  fmt::print("{}", Report(outcomes));
+  if (!pictures.empty()) WritePictures(outcomes, pictures);
   return 0;
 }
 

@@ -146,6 +146,10 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
   Told told;
   told.after = d.after();
   a.detail = Summary(e, d, told);
+  if (d.noise_limited && !d.partner && d.chosen()) {
+    for (const CandidateResult& one : d.candidates)
+      a.stated[one.hypothesis.effect] += one.probability;
+  }
   for (const std::size_t i : d.verdict.named) {
     const CandidateResult& one = d.candidates[i];
     if (std::find(a.named.begin(), a.named.end(), one.hypothesis.effect) == a.named.end())

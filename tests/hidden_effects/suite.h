@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct Answer {
   double lack = 1;       ///< p-value of what the model that is left standing leaves
   double next = 0;       ///< likelihood between the two best
   double seconds = 0;
+  /// Probability of every effect, at whatever place; empty where none is stated or two act.
+  std::map<std::string, double> stated = {};
   std::string detail;  ///< the summary
 };
 

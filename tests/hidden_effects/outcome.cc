@@ -1,0 +1,59 @@
+#include "hidden_effects/outcome.h"
+
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+namespace continuum::hidden {
+namespace {
+
+// An interval without an end is written as null.
+double NumberOr(const nlohmann::json& json, double other) {
+  return json.is_number() ? json.get<double>() : other;
+}
+
+}  // namespace
+
+nlohmann::json LineOf(const Case& c, const Answer& a) {
+  return {{"case", c.Name()},
+          {"effects", c.effects},
+          {"listed", c.listed},
+          {"factor", c.factor},
+          {"noise", kNoiseNames[static_cast<int>(c.noise)]},
+          {"verdict", a.verdict},
+          {"named", a.named},
+          {"partner", a.partner},
+          {"right", InSet(c, a)},
+          {"unique", Unique(a)},
+          {"truth", a.truth},
+          {"value", a.value},
+          {"low", a.low},
+          {"high", a.high},
+          {"explained", a.explained},
+          {"p", a.p},
+          {"lack", a.lack},
+          {"next", a.next},
+          {"stated", a.stated},
+          {"seconds", a.seconds}};
+}
+
+std::vector<Outcome> OutcomesOf(const std::vector<nlohmann::json>& lines) {
+  std::vector<Outcome> outcomes;
+  for (const auto& line : lines) {
+    if (!line.contains("effects")) continue;
+    Outcome o;
+    o.name = line.at("case"), o.noise = line.at("noise"), o.verdict = line.at("verdict");
+    o.effects = line.at("effects"), o.named = line.at("named"), o.partner = line.at("partner");
+    o.listed = line.at("listed"), o.factor = line.at("factor");
+    o.right = line.at("right"), o.unique = line.at("unique");
+    o.truth = line.at("truth"), o.value = line.at("value");
+    o.low = NumberOr(line.at("low"), -std::numeric_limits<double>::infinity());
+    o.high = NumberOr(line.at("high"), std::numeric_limits<double>::infinity());
+    if (line.contains("stated")) o.stated = line.at("stated");
+    o.seconds = line.at("seconds");
+    outcomes.push_back(std::move(o));
+  }
+  return outcomes;
+}
+
+}  // namespace continuum::hidden
