@@ -64,9 +64,12 @@ std::string Csv(const Robot& robot, const Columns& u, const Columns& y) {
 
 std::string CandidatesOf(const Case& c) {
   std::string text;
+  const auto has = [](const std::vector<std::string>& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
   for (const EffectInfo& info : Catalog()) {
-    const bool hidden = std::find(c.effects.begin(), c.effects.end(), info.name) != c.effects.end();
-    if (hidden ? !c.listed : c.told) continue;
+    if (has(c.effects, info.name) ? !c.listed : c.told) continue;
+    if (!c.among.empty() && !has(c.among, info.name)) continue;
     text += (text.empty() ? "" : ", ") + std::string(info.name);
   }
   return text;

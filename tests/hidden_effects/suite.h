@@ -24,6 +24,7 @@ struct Case {
   /// What is wrong with the logs, of the arm: "turned" by 5 deg as its tip is seen, "late" by 10
   /// ms, inputs "flipped" in sign or "exchanged" for others; empty: nothing.
   std::string spoilt = "";
+  std::vector<std::string> among = {};  ///< the candidates; empty: all
 
   std::string Name() const;
 };
