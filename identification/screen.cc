@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <Eigen/Dense>
 
+#include "identification/parallel.h"
 #include "identification/random.h"
 
 namespace continuum {
@@ -51,13 +53,63 @@ void Limit(Matrix& A, Vector& r, Eigen::Index free, std::vector<double> most) {
   }
 }
 
+// Least squares of z + C a; coefficients of a forbidden sign are put to zero one after the other.
+// What is left of C is decomposed once for any number of z.
+class Explainer {
+ public:
+  explicit Explainer(Probe probe) : probe_(std::move(probe)) {}
+
+  Explained operator()(const Vector& z) {
+    const Eigen::Index k = probe_.columns.cols();
+    std::vector<bool> out(k, false);
+    while (true) {
+      const Left& left = Without(out);
+      Explained e{0, Vector::Zero(k)};
+      if (left.in.empty()) return e;
+      const Vector a = -left.solver.solve(z);
+      Eigen::Index worst = -1;
+      for (std::size_t i = 0; i < left.in.size(); ++i) {
+        if (probe_.sign[left.in[i]] * a[i] < 0) worst = left.in[i];
+        e.coefficients[left.in[i]] = a[i];
+      }
+      if (worst < 0) {
+        e.amount = std::max(0.0, z.squaredNorm() - (z + left.columns * a).squaredNorm());
+        return e;
+      }
+      out[worst] = true;
+    }
+  }
+
+ private:
+  struct Left {
+    std::vector<Eigen::Index> in;
+    Matrix columns;
+    Eigen::CompleteOrthogonalDecomposition<Matrix> solver;
+  };
+
+  const Left& Without(const std::vector<bool>& out) {
+    const auto [at, fresh] = left_.try_emplace(out);
+    Left& left = at->second;
+    if (!fresh) return left;
+    for (Eigen::Index i = 0; i < probe_.columns.cols(); ++i) {
+      if (!out[i] && probe_.columns.col(i).squaredNorm() > 0) left.in.push_back(i);
+    }
+    left.columns = probe_.columns(Eigen::all, left.in);
+    if (!left.in.empty()) left.solver.compute(left.columns);
+    return left;
+  }
+
+  Probe probe_;
+  std::map<std::vector<bool>, Left> left_;
+};
+
 // A candidate in the few dimensions that any candidate reaches.
 struct Small {
-  std::vector<Probe> probes;
-  double Best(const Vector& z, std::size_t* which = nullptr) const {
+  std::vector<Explainer> probes;
+  double Best(const Vector& z, std::size_t* which = nullptr) {
     double best = 0;
     for (std::size_t i = 0; i < probes.size(); ++i) {
-      const double amount = ExplainedBy(probes[i], z).amount;
+      const double amount = probes[i](z).amount;
       if (amount > best) {
         best = amount;
         if (which) *which = i;
@@ -110,39 +162,14 @@ Remainder::Matrix Remainder::Project(const std::vector<Matrix>& columns) const {
   return Out(std::move(padded));
 }
 
-// Least squares of z + C a; coefficients of a forbidden sign are put to zero one after the other.
-Explained ExplainedBy(const Probe& probe, const Vector& z) {
-  const Eigen::Index k = probe.columns.cols();
-  std::vector<bool> out(k, false);
-  while (true) {
-    std::vector<Eigen::Index> in;
-    for (Eigen::Index i = 0; i < k; ++i) {
-      if (!out[i] && probe.columns.col(i).squaredNorm() > 0) in.push_back(i);
-    }
-    Explained e{0, Vector::Zero(k)};
-    if (in.empty()) return e;
-    Matrix C(z.size(), static_cast<Eigen::Index>(in.size()));
-    for (std::size_t i = 0; i < in.size(); ++i) C.col(i) = probe.columns.col(in[i]);
-    Eigen::CompleteOrthogonalDecomposition<Matrix> solver(C);
-    const Vector a = -solver.solve(z);
-    Eigen::Index worst = -1;
-    for (std::size_t i = 0; i < in.size(); ++i) {
-      if (probe.sign[in[i]] * a[i] < 0) worst = in[i];
-      e.coefficients[in[i]] = a[i];
-    }
-    if (worst < 0) {
-      e.amount = std::max(0.0, z.squaredNorm() - (z + C * a).squaredNorm());
-      return e;
-    }
-    out[worst] = true;
-  }
-}
+Explained ExplainedBy(const Probe& probe, const Vector& z) { return Explainer(probe)(z); }
 
 Significance BestOfProbes(const std::vector<std::vector<Probe>>& candidates, const Vector& z) {
   Significance out;
   for (const auto& probes : candidates) {
     out.best.push_back(0);
-    out.explained.push_back(Small{probes}.Best(z, &out.best.back()));
+    Small whole{{probes.begin(), probes.end()}};
+    out.explained.push_back(whole.Best(z, &out.best.back()));
     out.p.push_back(1);
   }
   return out;
@@ -173,23 +200,23 @@ Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, c
   std::vector<Small> small(candidates.size());
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     for (const Probe& p : candidates[c])
-      small[c].probes.push_back({Q.transpose() * p.columns, p.sign});
+      small[c].probes.emplace_back(Probe{Q.transpose() * p.columns, p.sign});
   }
   const Vector here = Q.transpose() * z;
   for (std::size_t c = 0; c < small.size(); ++c)
     out.explained[c] = small[c].Best(here, &out.best[c]);
 
   Random random(seed);
-  Matrix draws(static_cast<Eigen::Index>(small.size()), count);
-  for (int d = 0; d < count; ++d) {
-    Vector noise(Q.cols());
-    if (given.cols() > 0) {
-      noise = Q.transpose() * given.col(d);
-    } else {
-      for (double& v : noise) v = random.Normal();
-    }
-    for (std::size_t c = 0; c < small.size(); ++c) draws(c, d) = small[c].Best(noise);
+  Matrix noise(Q.cols(), count);
+  if (given.cols() > 0) {
+    noise = Q.transpose() * given;
+  } else {
+    for (double& v : noise.reshaped()) v = random.Normal();
   }
+  Matrix draws(static_cast<Eigen::Index>(small.size()), count);
+  ParallelFor(small.size(), [&](std::size_t, std::size_t c) {
+    for (int d = 0; d < count; ++d) draws(c, d) = small[c].Best(noise.col(d));
+  });
   // Own p-values of every draw by its rank, then the distribution of the smallest.
   Matrix own(draws.rows(), count);
   std::vector<std::vector<double>> sorted(small.size());

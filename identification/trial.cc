@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -53,6 +54,8 @@ struct Prober {
   bool calibrated;  // whether residuals are in units of the noise
   double wanted = calibrated ? std::sqrt(std::max(kLeast, left.cost() - left.freedom()))
                              : std::sqrt(0.5 * left.cost());
+  /// Residuals by the values of extra: directions on top of others begin where those ended.
+  mutable std::map<std::vector<double>, std::vector<Vector>> simulated = {};
 
   Probe AtStart(std::size_t start) const {
     Probe probe;
@@ -131,11 +134,15 @@ struct Prober {
     return Between(null.residuals, Residuals(start, shares), share);
   }
 
-  std::vector<Vector> Residuals(std::size_t start, const std::vector<double>& share) const {
-    const auto train = TrainLogs(problem.experiment());
+  const std::vector<Vector>& Residuals(std::size_t start, const std::vector<double>& share) const {
     std::vector<double> own = h.starts[start];
     for (std::size_t a = 0; a < amplitudes.size(); ++a)
       own[amplitudes[a]] = AtShare(h, h.starts[start], amplitudes[a], share[a]);
+    const auto known = simulated.find(own);
+    return known != simulated.end() ? known->second : simulated[own] = Simulate(own);
+  }
+  std::vector<Vector> Simulate(const std::vector<double>& own) const {
+    const auto train = TrainLogs(problem.experiment());
     auto r = problem.Residuals(Append(null.fit.x, own), train);
     for (std::size_t l = 0; l < train.size(); ++l) {
       if (train[l] && !r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
