@@ -108,6 +108,7 @@ class Session {
   // Likelihoods have judged; the folds show what that is worth.
   void ScoreFolds() {
     if (d_.folds.empty()) return;
+    options_.Say("folds");
     trials_.AddFolds(null_, d_.folds, d_.before);
     for (const std::size_t i : d_.verdict.named) RecordFolds(trials_, d_, d_.candidates[i]);
     d_.ceiling_error = {d_.noise.rms, d_.noise.rms};
@@ -244,6 +245,7 @@ class Session {
     if (!chosen) return;
     const auto squares = HeldOut(*chosen);
     if (squares.empty()) return;
+    options_.Say("gain");
     std::mt19937_64 rng(options_.seed);
     std::vector<double> gains;
     for (int k = 0; k < 2000; ++k) {

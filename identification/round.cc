@@ -76,6 +76,7 @@ void Round::Screen() {
       c.error = error.what();
     }
   }
+  options_.Say("significance");
   const Significance found =
       noise_.known() ? Significant(left, probes) : BestOfProbes(probes, left.residual());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
