@@ -13,7 +13,6 @@ namespace continuum {
 namespace {
 constexpr int kDraws = 399;          // of rounding errors
 constexpr double kWorthAFit = 0.04;  // of the squares, where 0.19 of them would make a name
-constexpr const char kUnresolved[] = "the time step adds more to its fit than it removes";
 
 // Nested fits are as far apart as the larger one gains; others that gain as much are farther. Where
 // the noise is not known: they are as near as nothing to what either changes.
@@ -243,7 +242,7 @@ CandidateResult Round::FitAlone(CandidateResult c) const {
   FitOne(c, std::numeric_limits<double>::infinity());
   const Problem problem = c.ProblemOf(*trials_.experiment);
   trials_.Complete(problem, c.fitted);
-  if (!Resolved(problem, c.fitted)) throw Error::Job(kUnresolved);
+  if (const std::string flaw = FlawOf(problem, c.fitted); !flaw.empty()) throw Error::Job(flaw);
   c.likelihood = Likelihood(c.fitted);
   return c;
 }
@@ -288,11 +287,9 @@ void Round::CompleteTheBest() {
       options_.Say("sensitivities of " + c->hypothesis.Name());
       const Problem problem = c->ProblemOf(*trials_.experiment);
       trials_.Complete(problem, c->fitted);
-      if (!Resolved(problem, c->fitted)) {
-        c->fits = false;
-        c->error = kUnresolved;
-        continue;
-      }
+      c->error = FlawOf(problem, c->fitted);
+      c->fits = c->error.empty();
+      if (!c->fits) continue;
       best = std::min(best, c->fitted.cost);
       taken_off = std::max(taken_off, TakenOff(c->fitted));
     }
@@ -305,11 +302,14 @@ double Round::Likelihood(const Fitted& fitted) const {
   return (base_.fitted->cost - fitted.cost) / inflation_;
 }
 
-// What the time step leaves open is free to vary: a fit that is mostly that explains anything.
-bool Round::Resolved(const Problem& problem, const Fitted& fitted) const {
+// Why nothing can be said of a complete fit; empty when it can be judged. What the time step leaves
+// open is free to vary: a fit that is mostly that explains anything.
+std::string Round::FlawOf(const Problem& problem, const Fitted& fitted) const {
+  if (!std::isfinite(fitted.cost)) return "the simulation diverges next to its fit";
   const double removed = Beyond(base_.fitted->error.train, fitted.error.train);
-  return trials_.StepEffect(problem, fitted) <
-         trials_.StepEffect(problem, *base_.fitted) + removed + 0.1 * noise_.rms;
+  const bool resolved = trials_.StepEffect(problem, fitted) <
+                        trials_.StepEffect(problem, *base_.fitted) + removed + 0.1 * noise_.rms;
+  return resolved ? "" : "the time step adds more to its fit than it removes";
 }
 
 void Round::Dismiss() {

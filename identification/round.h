@@ -65,7 +65,7 @@ class Round {
   Problem::Vector BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;
   static double TakenOff(const Fitted& fitted);
   void CompleteTheBest();
-  bool Resolved(const Problem& problem, const Fitted& fitted) const;
+  std::string FlawOf(const Problem& problem, const Fitted& fitted) const;
   void Dismiss();
   void TellApart();
 
