@@ -15,6 +15,12 @@ using Vector = Problem::Vector;
 
 constexpr std::size_t kTerms = 16;  // of a force that is to reach the ceiling
 
+double GainOver(const FoldScores& before, const FoldScores& after) {
+  FoldRecord record;
+  record.before = before.error, record.after = after.error;
+  return Median(Gains(record));
+}
+
 class Comparison {
  public:
   Comparison(const Trials& trials, const DiagnosisOptions& options, Diagnosis& d)
@@ -138,16 +144,6 @@ class Comparison {
   const DiagnosisOptions& options_;
   Diagnosis& d_;
 };
-
-}  // namespace
-
-namespace {
-
-double GainOver(const FoldScores& before, const FoldScores& after) {
-  FoldRecord record;
-  record.before = before.error, record.after = after.error;
-  return Median(Gains(record));
-}
 
 }  // namespace
 

@@ -22,7 +22,7 @@ std::size_t RowShown(const Log& log, std::size_t row, double shift) {
   return static_cast<std::size_t>(next - log.time.begin()) - (before ? 1 : 0);
 }
 
-// The channels of the position sensors that have one for each direction.
+// The channels of the position sensors that have one for two directions or all.
 using Directions = std::map<int, std::size_t>;
 std::map<int, Directions> PositionSensors(const Experiment& e, const Wiring& wiring) {
   std::map<int, Directions> sensors;
@@ -30,19 +30,56 @@ std::map<int, Directions> PositionSensors(const Experiment& e, const Wiring& wir
     const auto& source = wiring.output[e.channels[c].output];
     if (source.seen == Wiring::Source::Seen::kPoint) sensors[source.sensor][source.component] = c;
   }
-  std::erase_if(sensors, [](const auto& sensor) { return sensor.second.size() < 3; });
+  std::erase_if(sensors, [](const auto& sensor) { return sensor.second.size() < 2; });
   return sensors;
 }
 
-// R' (y - T): out of the frame of the measurement.
-void Unregister(const Registration& r, Vector& y) {
-  double quat[4], unit[3] = {-r.rotation[0], -r.rotation[1], -r.rotation[2]};
-  const double angle = mju_normalize3(unit);
-  mju_axisAngle2Quat(quat, unit, angle);
-  mju_subFrom3(y.data(), r.translation.data());
-  const Vector shifted = y;
-  mju_rotVecQuat(y.data(), shifted.data(), quat);
-}
+// From the frame of a sensor into that of the measurement, y = R x + T, and back.
+class Camera {
+ public:
+  explicit Camera(const Registration& r) : shift_(r.translation) {
+    Vector axis = r.rotation;
+    const double angle = mju_normalize3(axis.data());
+    mju_axisAngle2Quat(turn_, axis.data(), angle);
+    mju_negQuat(back_, turn_);
+  }
+  Vector Sees(const Vector& x) const {
+    Vector y;
+    mju_rotVecQuat(y.data(), x.data(), turn_);
+    mju_addTo3(y.data(), shift_.data());
+    return y;
+  }
+  Vector Finds(const Vector& y) const {
+    Vector x, shifted = y;
+    mju_subFrom3(shifted.data(), shift_.data());
+    mju_rotVecQuat(x.data(), shifted.data(), back_);
+    return x;
+  }
+
+ private:
+  Vector shift_;
+  double turn_[4], back_[4];
+};
+
+// From the world into the frame of a sensor, and back.
+struct SensorFrame {
+  std::optional<ObjectFrame> reference;
+
+  Vector Of(const Vector& world) const {
+    if (!reference) return world;
+    Vector x, shifted = world;
+    mju_subFrom3(shifted.data(), reference->position);
+    mju_mulMatTVec3(x.data(), reference->axes, shifted.data());
+    return x;
+  }
+  Vector InWorld(const Vector& x) const {
+    if (!reference) return x;
+    Vector world;
+    mju_mulMatVec3(world.data(), reference->axes, x.data());
+    mju_addTo3(world.data(), reference->position);
+    return world;
+  }
+};
 
 }  // namespace
 
@@ -64,6 +101,7 @@ std::vector<MeasuredPoint> MeasuredPoints(const Experiment& e, const Wiring& wir
                                           std::size_t row, const mjModel& m, const mjData& d) {
   std::vector<MeasuredPoint> points;
   const std::size_t shown = RowShown(log, row, e.registration.clock_shift);
+  const Camera camera(e.registration);
   for (const auto& [sensor, channels] : PositionSensors(e, wiring)) {
     const auto found = FindMeasured(log, shown, [&log, &c = channels](std::size_t k) {
       return std::all_of(c.begin(), c.end(), [&](const auto& direction) {
@@ -71,21 +109,18 @@ std::vector<MeasuredPoint> MeasuredPoints(const Experiment& e, const Wiring& wir
       });
     });
     if (!found) continue;
-    MeasuredPoint p;
-    p.held = found->gap > 1;
-    Vector y;
-    for (const auto& [i, c] : channels) y[i] = SignalOf(e, c, log.measured[c][found->row]);
-    Unregister(e.registration, y);
-    p.measured = y;
-    if (m.sensor_refid[sensor] >= 0) {
-      const ObjectFrame reference = FrameOf(d, m.sensor_reftype[sensor], m.sensor_refid[sensor]);
-      mju_mulMatVec3(p.measured.data(), reference.axes, y.data());
-      mju_addTo3(p.measured.data(), reference.position);
-    }
     const ObjectFrame object = FrameOf(d, m.sensor_objtype[sensor], m.sensor_objid[sensor]);
     const Vector offset = OffsetOf(e.registration, mj_id2name(&m, mjOBJ_SENSOR, sensor));
+    SensorFrame frame;
+    if (m.sensor_refid[sensor] >= 0)
+      frame.reference = FrameOf(d, m.sensor_reftype[sensor], m.sensor_refid[sensor]);
+    MeasuredPoint p;
+    p.held = found->gap > 1;
     mju_mulMatVec3(p.simulated.data(), object.axes, offset.data());
     mju_addTo3(p.simulated.data(), object.position);
+    Vector y = camera.Sees(frame.Of(p.simulated));
+    for (const auto& [i, c] : channels) y[i] = SignalOf(e, c, log.measured[c][found->row]);
+    p.measured = frame.InWorld(camera.Finds(y));
     points.push_back(p);
   }
   return points;

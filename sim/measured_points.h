@@ -9,7 +9,8 @@
 
 namespace continuum {
 
-/// A marker whose position a log measures in all three directions, in the world of the model [m].
+/// A marker whose position a log measures in two directions or all, in the world of the model [m].
+/// In a direction that is not measured it is where the simulated one is.
 struct MeasuredPoint {
   std::array<double, 3> measured, simulated;
   bool held = false;  ///< several rows are missing here, this one is of before or after

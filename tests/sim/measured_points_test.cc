@@ -105,11 +105,32 @@ TEST(MeasuredPoints, AreHeldWhereFewRowsMissAndLeftOutWhereManyDo) {
   for (const std::size_t row : {100, 130, 160}) EXPECT_TRUE(at(row).empty()) << row;
 }
 
-TEST(MeasuredPoints, NeedAllThreeDirections) {
+TEST(MeasuredPoints, NeedEveryDirectionThatTheLogHas) {
   const MeasuredArm arm;
   Experiment e = arm.Read("");
   for (double& z : e.logs.front().measured[2]) z = std::nan("");
   EXPECT_EQ(PointsOf(e, System::Load(e.model)).points, 0);
+}
+
+// A camera that sees x and z only, as the marker passes a plane; 1 cm too high.
+TEST(MeasuredPoints, TakeADirectionThatIsNotMeasuredFromTheSimulation) {
+  const MeasuredArm arm;
+  Experiment e = arm.Read("");
+  const System system = System::Load(e.model);
+  MeasuredArm::Measure(e, system, {});
+  Log& log = e.logs.front();
+  for (double& z : log.measured[2]) z += 0.01;
+  const auto leave_out = [&](std::size_t channel) {
+    const auto at = static_cast<std::ptrdiff_t>(channel);
+    e.channels.erase(e.channels.begin() + at);
+    for (Log& l : e.logs) l.measured.erase(l.measured.begin() + at);
+  };
+  leave_out(1);
+  const Seen two = PointsOf(e, system);
+  EXPECT_EQ(two.points, log.rows());
+  EXPECT_NEAR(two.apart, 0.01, kStraight);
+  leave_out(0);
+  EXPECT_EQ(PointsOf(e, system).points, 0);
 }
 
 }  // namespace
