@@ -118,11 +118,12 @@ class Watch : public ceres::IterationCallback {
       options_.progress(fmt::format("iteration {:2}  cost {:.6g}  {} simulations", s.iteration,
                                     s.cost, problem_.evaluations()));
     }
-    const bool hopeless = s.step_is_successful && s.iteration >= 2 &&
-                          s.cost > options_.hopeless + kMore * s.cost_change;
+    if (s.step_is_successful && s.iteration >= 2)
+      lost_ = s.cost > options_.hopeless + kMore * s.cost_change ? lost_ + 1 : 0;
     settled_ = Settled(s);
-    return StopRequested() || hopeless || settled_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                                                   : ceres::SOLVER_CONTINUE;
+    return StopRequested() || lost_ >= options_.patience || settled_
+               ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+               : ceres::SOLVER_CONTINUE;
   }
   bool settled() const { return settled_; }
 
@@ -138,6 +139,7 @@ class Watch : public ceres::IterationCallback {
   const Problem& problem_;
   const FitOptions& options_;
   Fit& fit_;
+  int lost_ = 0;  // steps in a row
   bool settled_ = false;
 };
 

@@ -21,6 +21,7 @@ struct FitOptions {
   const Whitening* whitening = nullptr;
   /// Give up when even four more steps as good as the last would leave the cost above this.
   double hopeless = std::numeric_limits<double>::infinity();
+  int patience = 1;  ///< steps in a row that must look so
   /// One line per iteration: cost and evaluations so far.
   std::function<void(const std::string&)> progress = {};
 };
