@@ -123,7 +123,8 @@ class Session {
     const CandidateResult* const best = round.leading();
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
     excused_ = d_.lack.smallest() < LikelihoodRules{}.lack &&
-               trials_.WithinStep(null_, best ? best->fitted : d_.before, d_.noise);
+               trials_.WithinStep(best ? best->fitted : d_.before) &&
+               (!best || round.GoesWithTheStep(*best, d_.lack));
     d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), round.smallest_p(), Rules());
     const auto& named = d_.verdict.named;
     if (excused_ && !named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))

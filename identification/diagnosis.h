@@ -92,6 +92,7 @@ struct Dismissed {
 struct LackOfFit {
   double force = 1;    ///< p-value of smooth forces of angle, speed and load
   double channel = 1;  ///< of constants and shifts in time of the channels
+  double amount = 0;   ///< what these explain, the larger; twice the log-likelihood
   double smallest() const { return std::min(force, channel); }
 };
 

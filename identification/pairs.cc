@@ -163,7 +163,8 @@ class Search {
     const Round& round = tried_[best.base].round;
     const LackOfFit lack = round.LackOf(*best.b);
     LikelihoodRules rules;
-    rules.excused = lack.smallest() < rules.lack && !excused_ && WithinStep(*best.b);
+    rules.excused = lack.smallest() < rules.lack && !excused_ &&
+                    trials_.WithinStep(best.b->fitted) && round.GoesWithTheStep(*best.b, lack);
     verdict = JudgeLikelihoods(records, lack.smallest(), 0, rules);
     if (verdict.named.empty()) return {};
     const auto equivalent = OthersForFirst(pairs, verdict);
@@ -180,10 +181,6 @@ class Search {
                 std::move(verdict),
                 lack,
                 std::move(tried)};
-  }
-
-  bool WithinStep(const CandidateResult& c) const {
-    return trials_.WithinStep(c.ProblemOf(*trials_.experiment), c.fitted, noise_);
   }
 
   // Effects of pairs in the set that are neither of the best pair's, nor stand for its second.

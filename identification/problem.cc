@@ -97,6 +97,8 @@ void Problem::Follow(Path path) {
   solving_.stiff = rates[true] <= rates[false];
 }
 
+double Problem::step() const { return step_ > 0 ? step_ : system().model().opt.timestep; }
+
 void Problem::StepBy(double h) {
   step_ = h;
   memory_.assign(memory_.size(), {});
@@ -352,16 +354,18 @@ Trace Problem::Later(const Trace& trace, const Vector& x, std::size_t log, doubl
 std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::vector<Vector>& r,
                                                   const std::vector<bool>& use) const {
   std::vector<Matrix> out(use.size());
-  const double h = system().model().opt.timestep;
+  const double h = step();
   const auto motions = Motions(use);
   ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
     const std::size_t first = motions[i].front();
-    const Trace fine = Run(thread, x, first, h / 4);
+    const Trace quarter = Run(thread, x, first, h / 4), half = Run(thread, x, first, h / 2);
     const Trace later = Later(Run(thread, x, first), x, first, h);
     for (const std::size_t l : motions[i]) {
-      out[l].resize(r[l].size(), 2);
-      out[l].col(0) = r[l] - ResidualOf(l, fine);
-      if (!out[l].col(0).allFinite()) out[l].col(0).setZero();
+      out[l].resize(r[l].size(), 3);
+      out[l].col(0) = r[l] - ResidualOf(l, quarter);
+      out[l].col(2) = r[l] - ResidualOf(l, half) - 2.0 / 3 * out[l].col(0);
+      for (const Eigen::Index c : {0, 2})
+        if (!out[l].col(c).allFinite()) out[l].col(c).setZero();
       out[l].col(1) = ResidualOf(l, later) - r[l];
       if (experiment_->quasi_static) out[l].col(1).setZero();  // rows know no time
     }

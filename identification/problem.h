@@ -62,6 +62,7 @@ class Problem {
   void Follow(Path path);
   /// From now on with this time step [s] instead of the model's.
   void StepBy(double h);
+  double step() const;  ///< [s]
   /// From now on with central differences, at twice the cost; one-sided where a bound is near.
   void Center() { central_ = true; }
   /// From now on with differences over this share of a parameter's scale. The default averages over
@@ -81,9 +82,10 @@ class Problem {
 
   /// Residuals of the logs marked in use; other entries are empty. A diverged log gives NaN.
   std::vector<Vector> Residuals(const Vector& x, const std::vector<bool>& use) const;
-  /// What the time step h leaves open, one column each: residuals at h less those at h/4, and what
-  /// all channels change when they come one step later (r: residuals at x). Zero where the finer
-  /// simulation diverges.
+  /// What the time step h leaves open, one column each: residuals at h less those at h/4; what all
+  /// channels change when they come one step later (r: residuals at x); by how much residuals at h
+  /// less those at h/2 are not 2/3 of the first, as they are to first order in h. Zero where a
+  /// finer simulation diverges.
   std::vector<Matrix> StepEffects(const Vector& x, const std::vector<Vector>& r,
                                   const std::vector<bool>& use) const;
   /// d residual / d parameter [per unit of the parameter] of each log, by one-sided differences or

@@ -355,12 +355,26 @@ double Round::BestLeaves() const {
 }
 
 LackOfFit Round::LackOf(const CandidateResult& c) const {
-  return trials_.LackIn(c.hypothesis.system, c.hypothesis.Free(), c.fitted, sizes_, inflation_,
-                        options_.seed);
+  return trials_.LackIn(c.ProblemOf(*trials_.experiment), c.hypothesis.Free(), c.fitted, sizes_,
+                        inflation_, options_.seed);
 }
 LackOfFit Round::LackOfBase() const {
-  return trials_.LackIn(*base_.system, base_.given, *base_.fitted, sizes_, inflation_,
-                        options_.seed);
+  const Problem problem(*trials_.experiment, *base_.system, base_.given);
+  return trials_.LackIn(problem, base_.given, *base_.fitted, sizes_, inflation_, options_.seed);
+}
+
+// What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly.
+bool Round::GoesWithTheStep(const CandidateResult& c, const LackOfFit& lack) const {
+  constexpr double kFalls = 0.75;  // to first order it falls to a sixteenth
+  options_.Say("at a fine step " + c.hypothesis.Name());
+  const Problem fine = AtQuarter(c.ProblemOf(*trials_.experiment));
+  try {
+    const LackOfFit finer = trials_.LackIn(fine, c.hypothesis.Free(), trials_.GoOn(fine, c.fitted),
+                                           sizes_, inflation_, options_.seed);
+    return finer.smallest() >= LikelihoodRules{}.lack || finer.amount < kFalls * lack.amount;
+  } catch (const Error&) {
+    return true;  // it diverges there
+  }
 }
 
 std::vector<LikelihoodRecord> Round::Records() const {

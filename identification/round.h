@@ -39,6 +39,8 @@ class Round {
   const CandidateResult* leading() const;
   LackOfFit LackOf(const CandidateResult& candidate) const;
   LackOfFit LackOfBase() const;
+  /// Whether what a fit leaves falls with the time step, at a quarter of it, as what the step adds.
+  bool GoesWithTheStep(const CandidateResult& candidate, const LackOfFit& lack) const;
   /// For JudgeLikelihoods, of the fitted candidates.
   std::vector<LikelihoodRecord> Records() const;
   double smallest_p() const;  ///< of all candidates that are not skipped, fitted or not

@@ -1,6 +1,7 @@
 #include "identification/screen.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -15,10 +16,20 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-// Standard deviations of the time step's effects: the difference to a finer step is not that to the
-// limit; when within a step a row was taken and an input came is a matter of convention.
-constexpr double kStepSpread[] = {3, 0.5};
-constexpr double kFarthest = 2;  // times that: more is a cause, as a delay of several steps
+// Of steps by which a log may be early or late: when within a step a row was taken and an input
+// came is a matter of convention.
+constexpr double kLate = 0.5;
+constexpr double kFarthest =
+    2;  // times its deviation: more is a cause, as a delay of several steps
+
+// How well a step's difference to a finer one foretells that to the limit, in units of itself:
+// well where it is of first order, not at all where joints stick and slip.
+double Spread(const Matrix& S) {
+  constexpr double kLeast = 0.1, kMost = 3, kOfDeviation = 4;  // second order leaves twice that
+  const double effect = S.col(0).norm();
+  if (!(effect > 0)) return kMost;
+  return std::clamp(kOfDeviation * S.col(2).norm() / effect, kLeast, kMost);
+}
 
 // Orthonormal columns that span A, directions below 1e-9 of the largest left out.
 Matrix Basis(const Matrix& A) {
@@ -125,24 +136,25 @@ Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
                      const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
                      const std::vector<bool>& fixed, const std::vector<Matrix>& step)
     : whitening_(&whitening), use_(use) {
-  const Vector r = whitening.Stack(residuals, use);
   const Matrix J = whitening.Stack(jacobian, use);
   const Matrix S = whitening.Stack(step, use);
-  const Eigen::Index n = r.size(), priors = S.cols();
+  const Vector r = whitening.Stack(residuals, use) - kWholeStep * S.col(0);
+  const std::array spread{Spread(S), kLate};
+  const auto n = r.size(), priors = static_cast<Eigen::Index>(spread.size());
   Matrix A = Matrix::Zero(n + priors, J.cols() + priors);  // the last rows are the priors of S
   Eigen::Index free = 0;
   for (Eigen::Index i = 0; i < J.cols(); ++i) {
     if (!fixed[i]) A.col(free++).head(n) = J.col(i);
   }
+  std::vector<double> most;
   for (Eigen::Index i = 0; i < priors; ++i) {
     A.col(free + i).head(n) = S.col(i);
-    A(n + i, free + i) = 1 / kStepSpread[i];
+    A(n + i, free + i) = 1 / spread[i];
+    most.push_back(kFarthest * spread[i]);
   }
   Vector padded = Vector::Zero(n + priors);
   padded.head(n) = r;
   A.conservativeResize(Eigen::NoChange, free + priors);
-  std::vector<double> most;
-  for (Eigen::Index i = 0; i < priors; ++i) most.push_back(kFarthest * kStepSpread[i]);
   Limit(A, padded, free, std::move(most));
   basis_ = Basis(A);
   residual_ = Out(padded).col(0);

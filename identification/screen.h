@@ -10,8 +10,8 @@ namespace continuum {
 
 /// What the data say against a fitted model, to first order: its whitened residuals r over the
 /// train logs after projecting out whatever may move freely,   z = M r,   M = I − A A⁺,
-/// with A the sensitivities of the fitted parameters and, with a prior and within limits, what the
-/// time step adds.
+/// with A the sensitivities of the fitted parameters and, with priors and within limits, what the
+/// time step adds. r is extrapolated to a step of zero; the prior is as wide as that is uncertain.
 class Remainder {
  public:
   using Vector = Eigen::VectorXd;

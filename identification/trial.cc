@@ -15,14 +15,15 @@ namespace {
 using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
-// p-value of what unsigned columns explain of white noise of size 1.
-double ChiSquared(const Matrix& columns, const Vector& z, double inflation) {
+// p-value of what unsigned columns explain of white noise of size 1; amount: the most so far.
+double ChiSquared(const Matrix& columns, const Vector& z, double inflation, double& amount) {
   Probe probe{columns, std::vector<double>(columns.cols(), 0)};
   const double rank = static_cast<double>(
       std::min<Eigen::Index>(columns.cols(), (columns.colwise().norm().array() > 1e-9).count()));
   if (rank < 1) return 1;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(rank),
-                                                  ExplainedBy(probe, z).amount / inflation));
+  const double explained = ExplainedBy(probe, z).amount / inflation;
+  amount = std::max(amount, explained);
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(rank), explained));
 }
 
 // A probe that does this many times what is left shows its own curvature; one that does less by as
@@ -192,6 +193,12 @@ Vector Append(const Vector& known, const std::vector<double>& own) {
   return x;
 }
 
+Problem AtQuarter(const Problem& problem) {
+  Problem fine = problem;
+  fine.StepBy(problem.step() / 4);
+  return fine;
+}
+
 double Beyond(double error, double part) {
   return std::sqrt(std::max(0.0, error * error - part * part));
 }
@@ -200,6 +207,13 @@ FitOptions Trials::Options() const {
   FitOptions options{iterations, 1e-4};  // first order does the rest
   options.whitening = &whitening;
   options.idle = true;
+  return options;
+}
+
+// For fits that begin next to their end.
+FitOptions Trials::FewSteps() const {
+  FitOptions options = Options();
+  options.iterations = 5;
   return options;
 }
 
@@ -239,13 +253,10 @@ void Trials::Complete(const Problem& problem, Fitted& f) const {
 void Trials::FitFinely(const Problem& problem, Fitted& f) const {
   const Uncertainty& u = f.uncertainty;
   if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
-  Problem fine = problem;
-  fine.StepBy(problem.system().model().opt.timestep / 4);
-  FitOptions options = Options();
-  options.iterations = 5;
   Vector moved;
   try {
-    moved = FitParameters(fine, f.fit.x, TrainLogs(*experiment), options).x - f.fit.x;
+    moved =
+        FitParameters(AtQuarter(problem), f.fit.x, TrainLogs(*experiment), FewSteps()).x - f.fit.x;
   } catch (const Error&) {
     return;  // it diverges at the finer step: first order has to do
   }
@@ -253,6 +264,17 @@ void Trials::FitFinely(const Problem& problem, Fitted& f) const {
   f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, f.jacobian, whitening);
   ReachOver(problem, moved, f.uncertainty);
   if (!foretold) ReachFurther(problem, f.fit.x, f.jacobian, f.step, whitening, f.uncertainty);
+}
+
+Fitted Trials::GoOn(const Problem& problem, const Fitted& before) const {
+  const auto train = TrainLogs(*experiment);
+  Fitted f = before;
+  f.fit = FitParameters(problem, before.fit.x, train, FewSteps());
+  f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
+  f.error.train = problem.PooledRms(f.residuals, train);
+  f.cost = 2 * f.fit.cost;
+  Complete(problem, f);
+  return f;
 }
 
 Fitted Trials::FitAll(const Problem& problem, const Vector& start) const {
@@ -331,19 +353,20 @@ double Trials::StepEffect(const Problem& problem, const Fitted& fitted) const {
   return problem.PooledRms(StepColumn(fitted), TrainLogs(*experiment));
 }
 
-bool Trials::WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const {
+bool Trials::WithinStep(const Fitted& fitted) const {
   constexpr double kSeen = 15;  // twice the log-likelihood: less could not be told from noise
-  const double seen = whitening.Stack(StepColumn(fitted), TrainLogs(*experiment)).squaredNorm();
-  return seen > kSeen &&
-         Beyond(fitted.error.train, noise.rms) <= 1.25 * StepEffect(problem, fitted);
+  constexpr double kMore = 1.25 * 1.25;  // first order is that rough
+  const double step = whitening.Stack(StepColumn(fitted), TrainLogs(*experiment)).squaredNorm();
+  return step > kSeen && 2 * fitted.fit.cost - fitted.freedom <= kMore * step;
 }
 
-LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& extra,
+LackOfFit Trials::LackIn(const Problem& without, const std::vector<Parameter>& extra,
                          const Fitted& fitted, const Sizes& sizes, double inflation,
                          std::uint64_t seed) const {
   const auto train = TrainLogs(*experiment);
   const ForceTerms terms = RandomForce(12, true, sizes, seed);
-  const Problem problem(*experiment, system, extra, terms);
+  Problem problem(*experiment, without.system(), extra, terms);
+  problem.StepBy(without.step());
   const Vector x = Append(fitted.fit.x, std::vector<double>(terms.count, 0.0));
   const Remainder left = LeftBy(fitted);
   LackOfFit lack;
@@ -351,11 +374,11 @@ LackOfFit Trials::LackIn(const System& system, const std::vector<Parameter>& ext
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = Matrix(J[l].rightCols(static_cast<Eigen::Index>(terms.count)));
   }
-  lack.force = ChiSquared(left.Project(J), left.residual(), inflation);
+  lack.force = ChiSquared(left.Project(J), left.residual(), inflation, lack.amount);
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = ChannelColumns(problem, problem.Predict(x, l), experiment->logs[l]);
   }
-  lack.channel = ChiSquared(left.Project(J), left.residual(), inflation);
+  lack.channel = ChiSquared(left.Project(J), left.residual(), inflation, lack.amount);
   return lack;
 }
 

@@ -20,6 +20,9 @@ struct Trials {
   /// Where the time step moves a value by more than its error, a fit at a quarter of the step tells
   /// what a fine one gives: joints that stick and slip follow no first order. For complete fits.
   void FitFinely(const Problem& problem, Fitted& fitted) const;
+  /// A few iterations from a fit of nearly the same problem, complete. Throws Error when it
+  /// diverges.
+  Fitted GoOn(const Problem& problem, const Fitted& fitted) const;
   /// Fit and Complete.
   Fitted FitAll(const Problem& problem, const Problem::Vector& start) const;
   /// Leaves out each fold in turn.
@@ -38,15 +41,21 @@ struct Trials {
   double StepEffect(const Problem& problem, const Fitted& fitted) const;
   /// Whether what a candidate leaves above the noise is no more than what its time step adds, and
   /// that is enough to be seen in the noise: then it is no sign of another cause.
-  bool WithinStep(const Problem& problem, const Fitted& fitted, const Noise& noise) const;
-  /// Tests of what no candidate covers; inflation: of noise along any direction.
-  LackOfFit LackIn(const System& system, const std::vector<Parameter>& extra, const Fitted& fitted,
-                   const Sizes& sizes, double inflation, std::uint64_t seed) const;
+  bool WithinStep(const Fitted& fitted) const;
+  /// Tests of what no candidate covers, at the step of the fit's problem; inflation: of noise along
+  /// any direction.
+  LackOfFit LackIn(const Problem& problem, const std::vector<Parameter>& extra,
+                   const Fitted& fitted, const Sizes& sizes, double inflation,
+                   std::uint64_t seed) const;
 
  private:
   FitOptions Options() const;
+  FitOptions FewSteps() const;
   std::vector<Problem::Vector> StepColumn(const Fitted& fitted) const;
 };
+
+/// The same problem at a quarter of its time step.
+Problem AtQuarter(const Problem& problem);
 
 /// What an error has beyond an independent part of it: √(a² − b²), 0 where the part is larger.
 double Beyond(double error, double part);

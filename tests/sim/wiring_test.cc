@@ -1,5 +1,7 @@
 #include "sim/simulate.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -77,6 +79,24 @@ TEST_F(SimulatedArm, IsMeasuredInATurnedFrame) {
   double x[3];
   mju_rotVecQuat(x, ahead, expected);
   EXPECT_NEAR(trace.channel[4][0], x[1], 1e-14);
+}
+
+// Between the rows no line is drawn: its error is T² ω²/8, here 0.005.
+TEST_F(SimulatedArm, IsMeasuredLateAlsoBetweenItsRows) {
+  constexpr double kOmega = 20, kDelay = 0.0037;
+  AddOutput("angle");
+  e_.outputs.back().measurement.delay = kDelay;
+  Trace trace;
+  trace.raw = {{{}}};
+  log_.time.clear();
+  for (int k = 0; k < 100; ++k) {
+    log_.time.push_back(0.01 * k + 0.002 * (k % 2));
+    trace.raw[0][0].push_back(std::sin(kOmega * log_.time.back()));
+  }
+  MeasureTrace(e_, Wiring(e_, system_.model()), log_, trace);
+  EXPECT_EQ(trace.channel[0][0], 0);  // held at the start
+  for (int k = 2; k < 98; ++k)
+    EXPECT_NEAR(trace.channel[0][k], std::sin(kOmega * (log_.time[k] - kDelay)), 3e-4) << k;
 }
 
 TEST_F(SimulatedArm, HasNoDirectionInASensorOfOneNumber) {
