@@ -124,7 +124,7 @@ class Session {
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
     excused_ = d_.lack.smallest() < LikelihoodRules{}.lack &&
                trials_.WithinStep(best ? best->fitted : d_.before) &&
-               (!best || round.GoesWithTheStep(*best, d_.lack));
+               (!best || round.GoesWithTheStep(*best));
     d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), round.smallest_p(), Rules());
     const auto& named = d_.verdict.named;
     if (excused_ && !named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))

@@ -50,6 +50,7 @@ struct CandidateResult {
   std::vector<Problem::Vector> rivals = {};  ///< starts that the screen finds as good
   bool fits = false;                         ///< whether it was fitted
   Fitted fitted = {};
+  std::optional<Fitted> finer = {};  ///< at a quarter of the step, where its effect is of no order
   FoldRecord record = {};
   std::vector<std::string> failures = {};
   std::string error = "";  ///< why it could not be tried, else empty
@@ -92,7 +93,6 @@ struct Dismissed {
 struct LackOfFit {
   double force = 1;    ///< p-value of smooth forces of angle, speed and load
   double channel = 1;  ///< of constants and shifts in time of the channels
-  double amount = 0;   ///< what these explain, the larger; twice the log-likelihood
   double smallest() const { return std::min(force, channel); }
 };
 

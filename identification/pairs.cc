@@ -164,7 +164,7 @@ class Search {
     const LackOfFit lack = round.LackOf(*best.b);
     LikelihoodRules rules;
     rules.excused = lack.smallest() < rules.lack && !excused_ &&
-                    trials_.WithinStep(best.b->fitted) && round.GoesWithTheStep(*best.b, lack);
+                    trials_.WithinStep(best.b->fitted) && round.GoesWithTheStep(*best.b);
     verdict = JudgeLikelihoods(records, lack.smallest(), 0, rules);
     if (verdict.named.empty()) return {};
     const auto equivalent = OthersForFirst(pairs, verdict);

@@ -290,10 +290,42 @@ void Round::CompleteTheBest() {
       c->error = FlawOf(problem, c->fitted);
       c->fits = c->error.empty();
       if (!c->fits) continue;
+      const double behind = c->fitted.cost - best, promise = base_.fitted->cost - best;
+      if (behind < std::min(TakenOff(c->fitted), promise)) AtAFineStep(*c);
       best = std::min(best, c->fitted.cost);
       taken_off = std::max(taken_off, TakenOff(c->fitted));
     }
     c->likelihood = Likelihood(c->fitted);
+  }
+}
+
+// To the engine a delay shorter than a step is a whole one: a fit cannot tell which.
+bool Round::RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x) {
+  bool raised = false;
+  for (std::size_t i = 0; i < c.hypothesis.extra.size(); ++i) {
+    const Parameter& p = c.hypothesis.extra[i];
+    double& value = x[c.own() + static_cast<Eigen::Index>(i)];
+    if (p.name != "delay" || !p.target.starts_with("actuator:") || value >= step) continue;
+    value = step, raised = true;
+  }
+  return raised;
+}
+
+// Where the step's effect is not of first order a finer step may leave less. The values remain
+// those of the coarse one.
+void Round::AtAFineStep(CandidateResult& c) const {
+  constexpr double kRough = 0.3;
+  const Problem problem = c.ProblemOf(*trials_.experiment);
+  Fitted from = c.fitted;
+  const bool raised = RaiseDelays(c, problem.step(), from.fit.x);
+  if (!raised && trials_.LeftBy(c.fitted).roughness() < kRough) return;
+  try {
+    Fitted finer = trials_.GoOn(AtQuarter(problem), from);
+    if (!(finer.cost < c.fitted.cost)) return;
+    c.fitted.cost = finer.cost;
+    c.finer = std::move(finer);
+  } catch (const Error&) {
+    return;  // it diverges there
   }
 }
 
@@ -355,8 +387,12 @@ double Round::BestLeaves() const {
 }
 
 LackOfFit Round::LackOf(const CandidateResult& c) const {
-  return trials_.LackIn(c.ProblemOf(*trials_.experiment), c.hypothesis.Free(), c.fitted, sizes_,
-                        inflation_, options_.seed);
+  const Problem problem = c.ProblemOf(*trials_.experiment);
+  return c.finer ? LackAt(AtQuarter(problem), c, *c.finer) : LackAt(problem, c, c.fitted);
+}
+LackOfFit Round::LackAt(const Problem& problem, const CandidateResult& c,
+                        const Fitted& fitted) const {
+  return trials_.LackIn(problem, c.hypothesis.Free(), fitted, sizes_, inflation_, options_.seed);
 }
 LackOfFit Round::LackOfBase() const {
   const Problem problem(*trials_.experiment, *base_.system, base_.given);
@@ -364,14 +400,15 @@ LackOfFit Round::LackOfBase() const {
 }
 
 // What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly.
-bool Round::GoesWithTheStep(const CandidateResult& c, const LackOfFit& lack) const {
+bool Round::GoesWithTheStep(const CandidateResult& c) const {
   constexpr double kFalls = 0.75;  // to first order it falls to a sixteenth
   options_.Say("at a fine step " + c.hypothesis.Name());
-  const Problem fine = AtQuarter(c.ProblemOf(*trials_.experiment));
+  const Problem problem = c.ProblemOf(*trials_.experiment), fine = AtQuarter(problem);
   try {
-    const LackOfFit finer = trials_.LackIn(fine, c.hypothesis.Free(), trials_.GoOn(fine, c.fitted),
-                                           sizes_, inflation_, options_.seed);
-    return finer.smallest() >= LikelihoodRules{}.lack || finer.amount < kFalls * lack.amount;
+    const Fitted finer = c.finer ? *c.finer : trials_.GoOn(fine, c.fitted);
+    const auto excess = [](const Remainder& left) { return left.cost() - left.freedom(); };
+    const double before = excess(trials_.LeftBy(c.fitted)), after = excess(trials_.LeftBy(finer));
+    return after < kFalls * before || LackAt(fine, c, finer).smallest() >= LikelihoodRules{}.lack;
   } catch (const Error&) {
     return true;  // it diverges there
   }

@@ -40,7 +40,7 @@ class Round {
   LackOfFit LackOf(const CandidateResult& candidate) const;
   LackOfFit LackOfBase() const;
   /// Whether what a fit leaves falls with the time step, at a quarter of it, as what the step adds.
-  bool GoesWithTheStep(const CandidateResult& candidate, const LackOfFit& lack) const;
+  bool GoesWithTheStep(const CandidateResult& candidate) const;
   /// For JudgeLikelihoods, of the fitted candidates.
   std::vector<LikelihoodRecord> Records() const;
   double smallest_p() const;  ///< of all candidates that are not skipped, fitted or not
@@ -67,6 +67,9 @@ class Round {
   Problem::Vector BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;
   static double TakenOff(const Fitted& fitted);
   void CompleteTheBest();
+  void AtAFineStep(CandidateResult& c) const;
+  LackOfFit LackAt(const Problem& problem, const CandidateResult& c, const Fitted& fitted) const;
+  static bool RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x);
   std::string FlawOf(const Problem& problem, const Fitted& fitted) const;
   void Dismiss();
   void TellApart();

@@ -1,7 +1,6 @@
 #include "identification/screen.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -18,9 +17,9 @@ using Matrix = Eigen::MatrixXd;
 
 // Of steps by which a log may be early or late: when within a step a row was taken and an input
 // came is a matter of convention.
-constexpr double kLate = 0.5;
-constexpr double kFarthest =
-    2;  // times its deviation: more is a cause, as a delay of several steps
+constexpr double kLate = 0.15;
+// Times its deviation: more is a cause, as a delay of several steps.
+constexpr double kFarthest = 2;
 
 // How well a step's difference to a finer one foretells that to the limit, in units of itself:
 // well where it is of first order, not at all where joints stick and slip.
@@ -138,8 +137,13 @@ Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
     : whitening_(&whitening), use_(use) {
   const Matrix J = whitening.Stack(jacobian, use);
   const Matrix S = whitening.Stack(step, use);
-  const Vector r = whitening.Stack(residuals, use) - kWholeStep * S.col(0);
-  const std::array spread{Spread(S), kLate};
+  Vector r = whitening.Stack(residuals, use);
+  std::vector<double> spread;
+  if (S.cols() > 0) {
+    r -= kWholeStep * S.col(0);
+    roughness_ = Spread(S);
+    spread = {roughness_, kLate};
+  }
   const auto n = r.size(), priors = static_cast<Eigen::Index>(spread.size());
   Matrix A = Matrix::Zero(n + priors, J.cols() + priors);  // the last rows are the priors of S
   Eigen::Index free = 0;

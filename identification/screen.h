@@ -18,7 +18,8 @@ class Remainder {
   using Matrix = Eigen::MatrixXd;
 
   /// residuals, jacobian: [log] at the optimum; fixed: parameters that a bound holds; step: [log]
-  /// Problem::StepEffects, which may be there in part.
+  /// Problem::StepEffects, which may be there in part, or no columns where the step does not
+  /// matter.
   Remainder(const Whitening& whitening, const std::vector<bool>& use,
             const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
             const std::vector<bool>& fixed, const std::vector<Matrix>& step);
@@ -30,6 +31,8 @@ class Remainder {
   Matrix Project(const std::vector<Matrix>& columns) const;
   /// How much of |z|² may be expected from noise of size 1: measured numbers less free parameters.
   double freedom() const { return freedom_; }
+  /// Standard deviation of what a step of zero gives, in units of what the time step adds.
+  double roughness() const { return roughness_; }
 
  private:
   Matrix Out(Matrix columns) const;
@@ -39,6 +42,7 @@ class Remainder {
   Matrix basis_;  // orthonormal, of A
   Vector residual_;
   double freedom_;
+  double roughness_ = 0;
 };
 
 /// Directions in which one candidate could move the residuals.

@@ -15,15 +15,14 @@ namespace {
 using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
-// p-value of what unsigned columns explain of white noise of size 1; amount: the most so far.
-double ChiSquared(const Matrix& columns, const Vector& z, double inflation, double& amount) {
+// p-value of what unsigned columns explain of white noise of size 1.
+double ChiSquared(const Matrix& columns, const Vector& z, double inflation) {
   Probe probe{columns, std::vector<double>(columns.cols(), 0)};
   const double rank = static_cast<double>(
       std::min<Eigen::Index>(columns.cols(), (columns.colwise().norm().array() > 1e-9).count()));
   if (rank < 1) return 1;
-  const double explained = ExplainedBy(probe, z).amount / inflation;
-  amount = std::max(amount, explained);
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(rank), explained));
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(rank),
+                                                  ExplainedBy(probe, z).amount / inflation));
 }
 
 // A probe that does this many times what is left shows its own curvature; one that does less by as
@@ -374,11 +373,11 @@ LackOfFit Trials::LackIn(const Problem& without, const std::vector<Parameter>& e
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = Matrix(J[l].rightCols(static_cast<Eigen::Index>(terms.count)));
   }
-  lack.force = ChiSquared(left.Project(J), left.residual(), inflation, lack.amount);
+  lack.force = ChiSquared(left.Project(J), left.residual(), inflation);
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = ChannelColumns(problem, problem.Predict(x, l), experiment->logs[l]);
   }
-  lack.channel = ChiSquared(left.Project(J), left.residual(), inflation, lack.amount);
+  lack.channel = ChiSquared(left.Project(J), left.residual(), inflation);
   return lack;
 }
 

@@ -283,6 +283,7 @@ void Element::SetLag(double lag) {
     a.dyntype = mjDYN_NONE, a.actdim = -1;
     return;
   }
+  if (!lagged) a.actearly = 1;  // else it would be a step late however short
   a.dyntype = mjDYN_FILTEREXACT;
   a.dynprm[0] = lag;
 }

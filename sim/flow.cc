@@ -94,6 +94,7 @@ Flow::Flow(Machine machine, const Experiment& e, const Log& log)
   mjData& d = *machine_.data;
   const InitialState start = StartOf(machine_, e, log);
   m.opt.disableflags |= mjDSBL_CONSTRAINT | mjDSBL_AUTORESET;
+  std::fill_n(m.actuator_actearly, m.nu, mjtByte{0});  // there are no steps to be early by
   if (m.opt.integrator == mjINT_DISCRETE) m.opt.integrator = mjINT_EULER;  // its forces know h
   mj_resetData(&m, &d);
   inputs_.AtRow(d, 0);

@@ -120,6 +120,17 @@ TEST_F(Changed, NothingIsNoDelayAndNoLagEvenWhereTheModelHasOne) {
   EXPECT_EQ(machine.model->actuator_dynprm[mjNDYN * 2], 0.1);
 }
 
+// Else it would be a step late, however short, and no fit could start from none.
+TEST_F(Changed, AShortLagIsNearlyNone) {
+  const System arm = Arm();
+  for (const double lag : {0.0, 1e-9}) {
+    const Machine machine = arm.Build({{{"actuator:servo", "effect:pt1", lag}}});
+    machine.data->ctrl[0] = 0.3;
+    mj_step(machine.model.get(), machine.data.get());
+    EXPECT_DOUBLE_EQ(machine.data->actuator_force[0], 3) << lag;
+  }
+}
+
 TEST_F(Changed, DelaysAddAndASecondLagIsRefused) {
   const System arm = Arm();
   EXPECT_DOUBLE_EQ(
