@@ -314,7 +314,7 @@ bool Round::RaiseDelays(const CandidateResult& c, double step, Problem::Vector& 
 // Where the step's effect is not of first order a finer step may leave less. The values remain
 // those of the coarse one.
 void Round::AtAFineStep(CandidateResult& c) const {
-  constexpr double kRough = 0.3;
+  constexpr double kRough = 0.15;
   const Problem problem = c.ProblemOf(*trials_.experiment);
   Fitted from = c.fitted;
   const bool raised = RaiseDelays(c, problem.step(), from.fit.x);
