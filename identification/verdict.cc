@@ -236,6 +236,10 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
     const auto& inner = candidates[a].contains;
     return std::find(inner.begin(), inner.end(), b) != inner.end();
   };
+  // It has nothing to add: where only the time step leaves that open, both stay.
+  const auto idle = [&](std::size_t a, std::size_t b) {
+    return contains(a, b) && score(a) - score(b) < rules.deeper;
+  };
   const std::size_t first = order.front();
   const auto plain = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
     return contains(first, i) && !behind(first, i, rules.deeper);
@@ -244,7 +248,7 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
   Verdict verdict{"named", {best}, ""};
   bool close = true;
   for (const std::size_t i : order) {
-    if (i == best || contains(i, best)) continue;
+    if (i == best || idle(i, best)) continue;
     if (behind(best, i, rules.apart)) continue;
     verdict.named.push_back(i);
     close = close && score(best) - score(i) < rules.apart;
@@ -252,9 +256,8 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double
   // Of a law and one that it contains the plain one says it.
   const auto near = verdict.named;
   std::erase_if(verdict.named, [&](std::size_t i) {
-    return std::any_of(near.begin(), near.end(), [&](std::size_t k) {
-      return k != i && contains(i, k) && !behind(i, k, rules.deeper);
-    });
+    return std::any_of(near.begin(), near.end(),
+                       [&](std::size_t k) { return k != i && idle(i, k); });
   });
   if (verdict.named.size() > 1) {
     verdict.text = "ambiguous";
