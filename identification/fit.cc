@@ -429,6 +429,36 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   return u;
 }
 
+std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                            const std::vector<Matrix>& J, const std::vector<Matrix>& step,
+                            const Whitening& whitening) {
+  std::vector<bool> use;
+  for (const Matrix& columns : J) use.push_back(columns.size() > 0);
+  const Matrix slopes = whitening.Stack(J, use);
+  const double wanted = kWholeStep * whitening.Stack(step, use).col(0).norm();
+  std::vector<Matrix> secants = J;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const bool up = p.upper - x[i] > x[i] - p.lower;
+    const double room = up ? p.upper - x[i] : x[i] - p.lower, slope = slopes.col(i).norm();
+    double reached = 0;
+    for (double d = wanted / slope; reached < wanted && d < room; d *= 2) {
+      Vector there = x;
+      there[i] += up ? d : -d;
+      auto change = problem.Residuals(there, use);
+      for (std::size_t l = 0; l < use.size(); ++l) {
+        if (use[l]) change[l] = (change[l] - r[l]) / (there[i] - x[i]);
+      }
+      reached = d * whitening.Stack(change, use).norm();
+      if (!std::isfinite(reached)) break;
+      for (std::size_t l = 0; l < use.size(); ++l) {
+        if (use[l]) secants[l].col(i) = change[l];
+      }
+    }
+  }
+  return secants;
+}
+
 void ReachFurther(const Problem& problem, const Vector& x, const std::vector<Matrix>& J,
                   const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
   std::vector<Vector> effect(step.size());

@@ -101,6 +101,14 @@ void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
 /// at x. Derivatives are central differences: one-sided ones bend what the step is said to change.
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r);
+/// J with mean slopes for columns: over the distance at which a parameter changes the residuals r
+/// at x as much as the time step does. Where the cost is full of valleys, slopes within one say
+/// little.
+std::vector<Problem::Matrix> Secants(const Problem& problem, const Problem::Vector& x,
+                                     const std::vector<Problem::Vector>& r,
+                                     const std::vector<Problem::Matrix>& J,
+                                     const std::vector<Problem::Matrix>& step,
+                                     const Whitening& whitening);
 /// Where first order did not foretell that (machines stick and slip, and the cost has many
 /// valleys), s says how large the step's effect is, not where it pulls: intervals reach further to
 /// both sides, by those of UncertaintyOf with 4/3 s for residuals.

@@ -260,9 +260,11 @@ void Trials::FitFinely(const Problem& problem, Fitted& f) const {
     return;  // it diverges at the finer step: first order has to do
   }
   const bool foretold = Foretold(u, moved);
-  f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, f.jacobian, whitening);
+  const auto J =
+      foretold ? f.jacobian : Secants(problem, f.fit.x, f.residuals, f.jacobian, f.step, whitening);
+  f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, J, whitening);
   ReachOver(problem, moved, f.uncertainty);
-  if (!foretold) ReachFurther(problem, f.fit.x, f.jacobian, f.step, whitening, f.uncertainty);
+  if (!foretold) ReachFurther(problem, f.fit.x, J, f.step, whitening, f.uncertainty);
 }
 
 Fitted Trials::GoOn(const Problem& problem, const Fitted& before) const {

@@ -203,6 +203,26 @@ TEST_F(FitTest, ToldOfTheStepTheIntervalReachesOverTheValueOfAFineOne) {
   EXPECT_TRUE(u.lower[0] <= truth.damping && truth.damping <= u.upper[0]);
 }
 
+// As in a narrow valley of a rough cost: slopes that hold over a tiny distance only.
+TEST_F(FitTest, SecantsFindTheSlopesOverTheDistanceThatTheStepLeavesOpen) {
+  AddTrials({}, 2);
+  const System system = Model({}, "", 4e-3);
+  const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
+  const Problem problem(e, system);
+  const Problem::Vector x = FitAll(problem).x;
+  const auto use = problem.TrainLogs();
+  const auto r = problem.Residuals(x, use);
+  const auto J = problem.Jacobian(x, r, use), step = problem.StepEffects(x, r, use);
+  auto steep = J;
+  for (auto& columns : steep) columns *= 30;
+  const auto found = Secants(problem, x, r, steep, step, {});
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) continue;
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      EXPECT_LT((found[l].col(i) - J[l].col(i)).norm(), 0.2 * J[l].col(i).norm()) << i;
+  }
+}
+
 TEST_F(FitTest, WithoutEffectAParameterMayBeAnythingThatItsBoundsAllow) {
   AddTrials({}, 1, 2e-4);
   const System system = Model({});
