@@ -13,6 +13,7 @@
 #include "identification/fit_output.h"
 #include "identification/multi_start.h"
 #include "identification/path.h"
+#include "identification/pieces.h"
 #include "identification/regressor.h"
 #include "identification/swarm.h"
 #include "sim/check.h"
@@ -31,7 +32,7 @@ struct Options {
   int starts = 1;
   double cutoff = 0;
   std::uint64_t seed = 1;
-  bool all = false, for_step = false;
+  bool all = false, for_step = false, pieces = true;
 };
 
 // The path that was asked for, else the smooth one where it can go and gains by it.
@@ -62,6 +63,7 @@ struct Fitting {
   Fit fit;
   std::optional<Problem::Vector> for_step;
   std::optional<Regression> regression;
+  std::optional<Pieces> pieces;
   std::optional<MultiStart> starts;
 };
 
@@ -83,11 +85,17 @@ Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& sta
   } else {
     FitOptions options{.soft = soft, .progress = ShowProgress};
     options.iterations = o.iterations > 0 ? o.iterations : 50;
+    if (o.pieces && o.from.empty()) all.pieces = FitInPieces(problem, start, use, options);
+    const Problem::Vector& begin = all.pieces ? all.pieces->x : start;
     if (o.starts > 1) {
-      all.starts = FitFromMany(problem, start, use, o.starts, o.seed, options);
+      all.starts = FitFromMany(problem, begin, use, o.starts, o.seed, options);
       all.fit = all.starts->best;
     } else {
-      all.fit = FitParameters(problem, start, use, options);
+      all.fit = FitParameters(problem, begin, use, options);
+    }
+    if (all.pieces) {
+      all.fit.seconds += all.pieces->seconds;
+      all.fit.evaluations += all.pieces->evaluations;
     }
     if (problem.path() == Path::kSmooth && o.for_step && !StopRequested())
       all.for_step = ForStep(problem, all.fit, use, options);
@@ -137,6 +145,9 @@ void Print(const Problem& problem, const Fitting& all, const Uncertainty& u,
     std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
                 all.regression->train, all.regression->validate);
   }
+  if (all.pieces)
+    std::printf("in pieces first: cost of the whole logs %.4g -> %.4g\n", all.pieces->before,
+                all.pieces->after);
   if (all.starts) std::printf("%s\n", all.starts->InWords().c_str());
   std::printf("%d iterations, %zu simulations, %.1f s; report: %s/report.html\n", fit.iterations,
               fit.evaluations, fit.seconds, out.c_str());
@@ -213,6 +224,8 @@ void AddIdentify(CLI::App& app) {
          "of the regressor's low-pass [Hz]; default: 50, at most a fifth of the rows' rate")
       ->check(NumberWithin(1e-9, 1e9));
   sub->add_flag("--all", o->all, "fit the validate logs too");
+  sub->add_flag("!--whole", o->pieces,
+                "begin with whole logs; else those of more than 20 s are fitted in pieces first");
   sub->add_flag("--for-step", o->for_step,
                 "fit at the model's own step (the stepped path always does)");
   sub->footer("Example:\n  continuum identify models/annelida/demo/annelida.yaml --out out");

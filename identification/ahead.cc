@@ -4,26 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "identification/pieces.h"
 #include "sim/score.h"
 
 namespace continuum {
 namespace {
 
 constexpr std::size_t kMost = 100;  // starts in a log
-
-Log Piece(const Log& log, std::size_t first, std::size_t last) {
-  Log piece = log;
-  const auto cut = [&](auto& column) {
-    using Column = std::remove_reference_t<decltype(column)>;
-    if (!column.empty()) column = Column(column.begin() + first, column.begin() + last + 1);
-  };
-  cut(piece.time);
-  for (auto* const columns : {&piece.input, &piece.measured}) {
-    for (auto& column : *columns) cut(column);
-  }
-  for (auto& column : piece.enable) cut(column);
-  return piece;
-}
 
 struct Sum {
   double squares = 0;

@@ -21,10 +21,11 @@ using Matrix = Problem::Matrix;
 // All residuals as one Ceres cost in the scaled parameters y = x/scale.
 class Cost : public ceres::CostFunction {
  public:
-  Cost(const Problem& problem, const std::vector<bool>& use, double soft,
+  Cost(const Problem& problem, const std::vector<bool>& use, const FitOptions& options,
        const Whitening& whitening, Eigen::Index residuals)
-      : problem_(problem), use_(use), soft_(soft), whitening_(whitening) {
-    set_num_residuals(static_cast<int>(residuals));
+      : problem_(problem), use_(use), options_(options), whitening_(whitening) {
+    seam_rows_ = Seams({}, 0).rows();
+    set_num_residuals(static_cast<int>(residuals + seam_rows_));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
   }
 
@@ -43,23 +44,51 @@ class Cost : public ceres::CostFunction {
     const Vector all = whitening_.Stack(r_, use_);
     if (!all.allFinite()) return false;
     for (Eigen::Index k = 0; k < all.size(); ++k) residuals[k] = Soften(all[k]).first;
+    const std::vector<Matrix> r(r_.begin(), r_.end());
+    Eigen::Map<Vector>(residuals + all.size(), seam_rows_) = Seams(r, 1);
     if (!jacobians || !jacobians[0]) return true;
     Derive();
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
-        jacobians[0], all.size(), x.size());
-    out = whitening_.Stack(J_, use_);
-    for (Eigen::Index i = 0; i < x.size(); ++i) out.col(i) *= parameters[i].scale;
+        jacobians[0], num_residuals(), x.size());
+    out.topRows(all.size()) = whitening_.Stack(J_, use_);
     for (Eigen::Index k = 0; k < all.size(); ++k) out.row(k) *= Soften(all[k]).second;
+    out.bottomRows(seam_rows_) = Seams(J_, x.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) out.col(i) *= parameters[i].scale;
     return out.allFinite();
   }
 
  private:
   // w with ½ w² = ρ(r), and dw/dr.
   std::pair<double, double> Soften(double r) const {
-    if (soft_ == 0) return {r, 1};
-    const double root = std::sqrt(1 + r * r / (soft_ * soft_));
-    const double w = std::copysign(soft_ * std::sqrt(2 * (root - 1)), r);
-    return {w, std::abs(w) > 1e-12 * soft_ ? r / (w * root) : 1};
+    const double soft = options_.soft;
+    if (soft == 0) return {r, 1};
+    const double root = std::sqrt(1 + r * r / (soft * soft));
+    const double w = std::copysign(soft * std::sqrt(2 * (root - 1)), r);
+    return {w, std::abs(w) > 1e-12 * soft ? r / (w * root) : 1};
+  }
+
+  // By how much residuals, or columns of their Jacobian, differ at the seams; all of one channel
+  // follow each other in a log.
+  Matrix Seams(const std::vector<Matrix>& of, Eigen::Index columns) const {
+    const auto channels = static_cast<Eigen::Index>(problem_.channels().size());
+    Eigen::Index rows = 0;
+    for (const Seam& seam : options_.seams) rows += channels * seam.rows;
+    Matrix all(rows, columns);
+    if (columns == 0) return all;
+    rows = 0;
+    for (const Seam& seam : options_.seams) {
+      const Matrix &before = of[seam.before], &after = of[seam.after];
+      const Eigen::Index long_before = before.rows() / channels,
+                         long_after = after.rows() / channels;
+      for (Eigen::Index c = 0; c < channels; ++c) {
+        all.middleRows(rows, seam.rows) =
+            options_.seam_weight *
+            (before.middleRows((c + 1) * long_before - seam.rows, seam.rows) -
+             after.middleRows(c * long_after, seam.rows));
+        rows += seam.rows;
+      }
+    }
+    return all;
   }
 
   // J_ at x_: updated (Broyden) along the step from where it was known, if the residuals changed
@@ -96,8 +125,9 @@ class Cost : public ceres::CostFunction {
 
   const Problem& problem_;
   const std::vector<bool>& use_;
-  double soft_;
+  const FitOptions& options_;
   const Whitening& whitening_;
+  Eigen::Index seam_rows_;
   mutable Vector x_;
   mutable std::vector<Vector> r_;  // at x_
   mutable std::vector<Matrix> J_;
@@ -236,7 +266,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
 
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  Cost cost(problem, use, options.soft, whitening, all.size());
+  Cost cost(problem, use, options, whitening, all.size());
   cost.Know(fit.x, std::move(r), std::move(J));
   ceres::Problem ceres(ownership);
   ceres.AddResidualBlock(&cost, nullptr, y.data());

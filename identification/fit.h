@@ -9,6 +9,13 @@
 
 namespace continuum {
 
+/// Two logs that are pieces of one: the last rows of one are the first of the other, and what is
+/// simulated there should be equal.
+struct Seam {
+  std::size_t before, after;
+  Eigen::Index rows;
+};
+
 struct FitOptions {
   int iterations = 30;
   double tolerance = 1e-5;  ///< relative decrease of the cost at which it ends
@@ -19,6 +26,8 @@ struct FitOptions {
   bool idle = false;
   /// Of the residuals, when their noise is known; none: as they are.
   const Whitening* whitening = nullptr;
+  std::vector<Seam> seams = {};
+  double seam_weight = 1;  ///< of a difference of residuals there, against the residuals
   /// Give up when even four more steps as good as the last would leave the cost above this.
   double hopeless = std::numeric_limits<double>::infinity();
   int patience = 1;  ///< steps in a row that must look so
