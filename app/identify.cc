@@ -180,11 +180,11 @@ void RunIdentify(const Options& o) {
                    f.text.c_str());
   }
   const Fitting all = Run(o, problem, start, use);
+  const Determined determined = WriteFit(problem, all.fit, o.out,
+                                         {o.method, all.for_step ? &*all.for_step : nullptr,
+                                          all.regression ? &*all.regression : nullptr,
+                                          all.starts ? &*all.starts : nullptr, ShowProgress});
   EndProgress();
-  const Determined determined =
-      WriteFit(problem, all.fit, o.out,
-               {o.method, all.for_step ? &*all.for_step : nullptr,
-                all.regression ? &*all.regression : nullptr, all.starts ? &*all.starts : nullptr});
   Print(problem, all, determined.uncertainty, o.out);
   for (const TradeOff& t : determined.trade_offs) std::printf("%s\n", t.text.c_str());
   StopIfRequested();  // the files hold the best so far

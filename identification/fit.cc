@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "identification/parallel.h"
+#include "sim/stop.h"
 
 namespace continuum {
 namespace {
@@ -235,6 +236,12 @@ void Reach(const Problem& problem, const Vector& low, const Vector& high, Uncert
   }
 }
 
+// Whether first order said, to half of it, what a quarter of the step changes.
+bool Foretold(const Uncertainty& u, const Vector& moved) {
+  const Vector told = u.step / kWholeStep, wrong = moved - told;
+  return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
+}
+
 }  // namespace
 
 Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<bool>& use,
@@ -432,6 +439,12 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   return u;
 }
 
+Problem AtQuarter(const Problem& problem) {
+  Problem fine = problem;
+  fine.StepBy(problem.step() / 4);
+  return fine;
+}
+
 void ReachOver(const Problem& problem, const Vector& quarter, Uncertainty& u) {
   u.step = kWholeStep * quarter;
   Reach(problem, u.step.cwiseMin(0), u.step.cwiseMax(0), u);
@@ -446,17 +459,6 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
     pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
   }
   ReachOver(problem, PseudoInverse(u.information) * pull, u);
-}
-
-Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r) {
-  const auto train = problem.TrainLogs();
-  Problem centered = problem;
-  centered.Center();
-  const auto J = centered.Jacobian(x, r, train);
-  Uncertainty u = UncertaintyOf(problem, x, r, J);
-  if (problem.path() == Path::kStepped)
-    AllowForStep(problem, J, problem.StepEffects(x, r, train), {}, u);
-  return u;
 }
 
 std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
@@ -497,6 +499,48 @@ void ReachFurther(const Problem& problem, const Vector& x, const std::vector<Mat
   }
   const Uncertainty by = UncertaintyOf(problem, x, effect, J, whitening);
   Reach(problem, by.lower - x, by.upper - x, u);
+}
+
+void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                    const std::vector<Matrix>& J, const std::vector<Matrix>& step,
+                    const FitOptions& options, Uncertainty& u) {
+  if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
+  std::vector<bool> use;
+  for (const Matrix& columns : J) use.push_back(columns.size() > 0);
+  Vector moved;
+  try {
+    moved = FitParameters(AtQuarter(problem), x, use, options).x - x;
+  } catch (const Error&) {
+    return;  // it diverges at the finer step: first order has to do
+  }
+  if (StopRequested()) return;  // before the end
+  const Whitening none;
+  const Whitening& whitening = options.whitening ? *options.whitening : none;
+  const bool foretold = Foretold(u, moved);
+  const auto slopes = foretold ? J : Secants(problem, x, r, J, step, whitening);
+  u = UncertaintyOf(problem, x, r, slopes, whitening);
+  ReachOver(problem, moved, u);
+  if (!foretold) ReachFurther(problem, x, slopes, step, whitening, u);
+}
+
+Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                        const std::function<void(const std::string&)>& progress) {
+  const auto train = problem.TrainLogs();
+  Problem centered = problem;
+  centered.Center();
+  const auto J = centered.Jacobian(x, r, train);
+  Uncertainty u = UncertaintyOf(problem, x, r, J);
+  if (problem.path() != Path::kStepped) return u;
+  const auto step = problem.StepEffects(x, r, train);
+  AllowForStep(problem, J, step, {}, u);
+  if (!StopRequested()) {
+    FitOptions few{
+        .iterations = 5, .tolerance = 1e-4, .soft = problem.experiment().soft, .idle = true};
+    if (progress)
+      few.progress = [&](const std::string& line) { progress("at a fine step: " + line); };
+    ReachByFineFit(centered, x, r, J, step, few, u);
+  }
+  return u;
 }
 
 }  // namespace continuum

@@ -94,6 +94,9 @@ Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
 /// Whole effect of a step, of order h, over what a quarter of it shows.
 inline constexpr double kWholeStep = 4.0 / 3;
 
+/// The same problem at a quarter of its time step.
+Problem AtQuarter(const Problem& problem);
+
 /// The robot has no time step, a simulation has. Intervals reach over what the same fit gives at a
 /// fine one too, x + step, which is kept. quarter: what a quarter of the step h changes of x:
 ///
@@ -106,10 +109,6 @@ void ReachOver(const Problem& problem, const Problem::Vector& quarter, Uncertain
 void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
                   const std::vector<Problem::Matrix>& step, const Whitening& whitening,
                   Uncertainty& u);
-/// UncertaintyOf and AllowForStep in one, from the train logs: what a fit.json states. r: residuals
-/// at x. Derivatives are central differences: one-sided ones bend what the step is said to change.
-Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
-                        const std::vector<Problem::Vector>& r);
 /// J with mean slopes for columns: over the distance at which a parameter changes the residuals r
 /// at x as much as the time step does. Where the cost is full of valleys, slopes within one say
 /// little.
@@ -124,5 +123,18 @@ std::vector<Problem::Matrix> Secants(const Problem& problem, const Problem::Vect
 void ReachFurther(const Problem& problem, const Problem::Vector& x,
                   const std::vector<Problem::Matrix>& J, const std::vector<Problem::Matrix>& step,
                   const Whitening& whitening, Uncertainty& u);
+/// Where the time step moves a value by more than its standard error, a fit at a quarter of the
+/// step, from x, tells what a fine one gives: intervals are made anew to reach over that, and
+/// further where first order did not foretell half of it. r, J, step: of the logs of the fit, as
+/// above; u: after AllowForStep.
+void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
+                    const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
+                    const std::vector<Problem::Matrix>& step, const FitOptions& options,
+                    Uncertainty& u);
+/// All of these in one, from the train logs: what a fit.json states. r: residuals at x. Derivatives
+/// are central differences: one-sided ones bend what the step is said to change.
+Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
+                        const std::vector<Problem::Vector>& r,
+                        const std::function<void(const std::string&)>& progress = {});
 
 }  // namespace continuum

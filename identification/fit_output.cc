@@ -215,8 +215,8 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   const Experiment& e = problem.experiment();
   MakeFolder(folder);
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
-  const Uncertainty u =
-      record.regression ? record.regression->uncertainty : IntervalsOf(problem, fit.x, r);
+  const Uncertainty u = record.regression ? record.regression->uncertainty
+                                          : IntervalsOf(problem, fit.x, r, record.progress);
   const auto trade_offs = TradeOffsOf(problem, fit.x, u);
   const std::vector<Replayed> logs = Predicted(problem, fit.x);
   std::vector<Trace> traces;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -18,6 +20,8 @@ struct FitRecord {
   const Problem::Vector* for_step = nullptr;
   const Regression* regression = nullptr;  ///< of the inverse model
   const MultiStart* starts = nullptr;      ///< where there were several
+  /// One line per step of what the intervals still take.
+  std::function<void(const std::string&)> progress = {};
 };
 
 /// How well the logs determine the parameters.

@@ -177,12 +177,6 @@ Matrix ChannelColumns(const Problem& problem, const Trace& trace, const Log& log
   return columns;
 }
 
-// Whether first order said, to half of it, what a quarter of the step changes.
-bool Foretold(const Uncertainty& u, const Vector& moved) {
-  const Vector told = u.step / kWholeStep, wrong = moved - told;
-  return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
-}
-
 }  // namespace
 
 Vector Append(const Vector& known, const std::vector<double>& own) {
@@ -190,12 +184,6 @@ Vector Append(const Vector& known, const std::vector<double>& own) {
   x.head(known.size()) = known;
   std::copy(own.begin(), own.end(), x.data() + known.size());
   return x;
-}
-
-Problem AtQuarter(const Problem& problem) {
-  Problem fine = problem;
-  fine.StepBy(problem.step() / 4);
-  return fine;
 }
 
 double Beyond(double error, double part) {
@@ -250,21 +238,7 @@ void Trials::Complete(const Problem& problem, Fitted& f) const {
 }
 
 void Trials::FitFinely(const Problem& problem, Fitted& f) const {
-  const Uncertainty& u = f.uncertainty;
-  if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
-  Vector moved;
-  try {
-    moved =
-        FitParameters(AtQuarter(problem), f.fit.x, TrainLogs(*experiment), FewSteps()).x - f.fit.x;
-  } catch (const Error&) {
-    return;  // it diverges at the finer step: first order has to do
-  }
-  const bool foretold = Foretold(u, moved);
-  const auto J =
-      foretold ? f.jacobian : Secants(problem, f.fit.x, f.residuals, f.jacobian, f.step, whitening);
-  f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, J, whitening);
-  ReachOver(problem, moved, f.uncertainty);
-  if (!foretold) ReachFurther(problem, f.fit.x, J, f.step, whitening, f.uncertainty);
+  ReachByFineFit(problem, f.fit.x, f.residuals, f.jacobian, f.step, FewSteps(), f.uncertainty);
 }
 
 Fitted Trials::GoOn(const Problem& problem, const Fitted& before) const {

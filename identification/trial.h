@@ -17,8 +17,7 @@ struct Trials {
   /// What else there is to know of a fit: sensitivities and intervals, what the time step leaves
   /// open, and with these the cost to first order.
   void Complete(const Problem& problem, Fitted& fitted) const;
-  /// Where the time step moves a value by more than its error, a fit at a quarter of the step tells
-  /// what a fine one gives: joints that stick and slip follow no first order. For complete fits.
+  /// ReachByFineFit, for complete fits.
   void FitFinely(const Problem& problem, Fitted& fitted) const;
   /// A few iterations from a fit of nearly the same problem, complete. Throws Error when it
   /// diverges.
@@ -53,9 +52,6 @@ struct Trials {
   FitOptions FewSteps() const;
   std::vector<Problem::Vector> StepColumn(const Fitted& fitted) const;
 };
-
-/// The same problem at a quarter of its time step.
-Problem AtQuarter(const Problem& problem);
 
 /// What an error has beyond an independent part of it: √(a² − b²), 0 where the part is larger.
 double Beyond(double error, double part);
