@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/console.h"
 #include "error.h"
@@ -17,6 +18,7 @@
 #include "identification/regressor.h"
 #include "identification/swarm.h"
 #include "sim/check.h"
+#include "sim/check_groups.h"
 #include "sim/file.h"
 #include "sim/output.h"
 #include "sim/registration.h"
@@ -153,6 +155,28 @@ void Print(const Problem& problem, const Fitting& all, const Uncertainty& u,
               fit.evaluations, fit.seconds, out.c_str());
 }
 
+// What the check of the logs warns of, its first lines in full.
+void PrintCheck(const Options& o, const Experiment& e) {
+  constexpr std::size_t kLines = 4;
+  std::size_t more = 0, printed = 0;
+  const auto findings = CheckLogs(e);
+  for (const FindingGroup& g : Grouped(findings)) {
+    const auto severity = g.members.front()->severity;
+    if (severity == Finding::Severity::kInfo) continue;
+    if (severity == Finding::Severity::kWarning && printed >= kLines) {
+      ++more;
+      continue;
+    }
+    ++printed;
+    std::string where = fmt::format("{}", fmt::join(g.logs, ", "));
+    for (const std::string& channel : g.channels) where += channel.empty() ? "" : " " + channel;
+    std::fprintf(stderr, "log check: %s: %s\n", where.c_str(), g.text.c_str());
+  }
+  if (more > 0)
+    std::fprintf(stderr, "log check: %zu more warnings: continuum check %s\n", more,
+                 o.experiment.c_str());
+}
+
 void RunIdentify(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
   const System system = System::Load(read.model);
@@ -174,11 +198,7 @@ void RunIdentify(const Options& o) {
   problem.Follow(Choose(o, problem));
   std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n", Way(o, problem),
                problem.parameters().size(), e.logs.size());
-  for (const Finding& f : CheckLogs(e)) {
-    if (f.severity == Finding::Severity::kError)
-      std::fprintf(stderr, "log check: %s %s: %s\n", f.log.c_str(), f.channel.c_str(),
-                   f.text.c_str());
-  }
+  PrintCheck(o, e);
   const Fitting all = Run(o, problem, start, use);
   const Determined determined = WriteFit(problem, all.fit, o.out,
                                          {o.method, all.for_step ? &*all.for_step : nullptr,

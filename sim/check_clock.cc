@@ -21,8 +21,9 @@ void ReportGaps(const std::vector<double>& time, std::vector<std::size_t> gaps, 
     return fmt::format("{:.4g} s after t = {}", length(k), Clock(time[k]));
   };
   out.Add(Severity::kWarning, "", "gap",
-          fmt::format("the clock has gaps after {} of {} rows, which are {:.4g} s apart: {}", count,
-                      time.size(), period, place(gaps.front())),
+          fmt::format("the clock has gaps after {} of {} rows, which are {:.4g} s apart: {}; the "
+                      "inputs are held over a gap, windows beside it begin anew",
+                      count, time.size(), period, place(gaps.front())),
           time[gaps.front()], time[gaps.front() + 1], Further(gaps, count, place));
 }
 

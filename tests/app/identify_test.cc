@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -41,6 +42,14 @@ TEST_F(IdentifyPath, IsSteppedWithDryFrictionAndSaysWhy) {
   const auto fit = Identify({}, "no smooth path: joint 'hinge' rubs");
   EXPECT_EQ(fit["path"], "stepped");
   EXPECT_FALSE(fit.contains("at_step"));
+}
+
+TEST_F(IdentifyPath, TellsOfGapsInALogFirst) {
+  std::string log = "t,u,q\n";
+  for (int k = 0; k < 40; ++k)  // nothing between 1 and 2 s
+    if (k <= 10 || k >= 20) log += fmt::format("{},0.1,{}\n", 0.1 * k, 0.001 * k);
+  files_.Write("log.csv", log);
+  Identify({}, "log check: log: the clock has gaps after 1 of");
 }
 
 TEST_F(IdentifyPath, IsRefusedWhereItCannotGo) {
