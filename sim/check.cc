@@ -72,7 +72,8 @@ bool CheckedColumn::constant() const {
 }
 
 CheckedLog Prepare(const Experiment& e, const Log& log) {
-  CheckedLog checked{&e, &log, {}, Median(Differences(log.time)), {}};
+  const double period = Median(Differences(log.time));
+  CheckedLog checked{&e, &log, {}, period, period, {}};
   std::set<std::string> seen;  // a column may drive several actuators
   for (std::size_t i = 0; i < e.inputs.size(); ++i) {
     const Input& in = e.inputs[i];
@@ -106,6 +107,12 @@ void Findings::Add(Severity severity, const std::string& channel, const std::str
       {log_ ? log_->label : "", channel, what, gist + places, gist, begin, end, severity});
 }
 
+bool Findings::Has(const std::string& channel) const {
+  return std::any_of(findings_.begin(), findings_.end(), [&](const Finding& f) {
+    return f.channel == channel && f.severity != Severity::kInfo;
+  });
+}
+
 std::string Clock(double time) {
   return std::abs(time) < 1000 ? fmt::format("{:.4g} s", time) : fmt::format("{:.3f} s", time);
 }
@@ -115,6 +122,12 @@ std::string Amount(double value, const std::string& unit) {
 }
 
 namespace {
+
+void SharePeriods(std::vector<CheckedLog>& logs) {
+  std::vector<double> periods;
+  for (const CheckedLog& log : logs) periods.push_back(log.period);
+  for (CheckedLog& log : logs) log.usual_period = Median(periods);
+}
 
 // The sensor is the same in all logs: where one log does not show its steps, the others do.
 void ShareQuanta(std::vector<CheckedLog>& logs) {
@@ -154,6 +167,7 @@ std::vector<Finding> CheckLogs(const Experiment& e) {
   std::vector<CheckedLog> logs;
   for (const Log& log : e.logs) logs.push_back(Prepare(e, log));
   if (!logs.empty()) ShareQuanta(logs);
+  SharePeriods(logs);
   ShareBends(logs);
   for (const CheckedLog& log : logs) {
     Findings found(log.log);

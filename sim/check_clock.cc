@@ -42,15 +42,29 @@ void ReportJitter(const std::vector<double>& time, const std::vector<double>& st
   }
   const double jitter = std::sqrt(squares / std::max(count, 1.0)) / period;
   const bool bad = jitter > 0.02 || largest > 0.2 * period;
-  const std::string text = fmt::format(
-      "{} rows over {:.4g} s, {:.4g} s apart ({:.4g} Hz); the clock jitters by {:.2g} % rms, at "
-      "most by {:.2g} s at t = {}",
-      time.size(), time.back() - time.front(), period, 1 / period, 100 * jitter, largest,
-      Clock(time[where]));
+  const bool exact = largest < 1e-6 * period;
+  const std::string text =
+      fmt::format("{} rows over {:.4g} s, {:.4g} s apart ({:.4g} Hz)", time.size(),
+                  time.back() - time.front(), period, 1 / period) +
+      (exact ? ""
+             : fmt::format("; the clock jitters by {:.2g} % rms, at most by {:.2g} s at t = {}",
+                           100 * jitter, largest, Clock(time[where])));
   if (bad) {
     out.Add(Severity::kWarning, "", "clock_jitter", text);
   } else {
     out.Add(Severity::kInfo, "", "clock", text);
+  }
+}
+
+// One log in milliseconds among others in seconds.
+void CheckUnit(const CheckedLog& log, Findings& out) {
+  const double ratio = log.period / log.usual_period;
+  for (const double factor : {1e3, 1e-3, 1e6, 1e-6}) {
+    if (std::abs(std::log(ratio / factor)) > std::log(1.5)) continue;
+    out.Add(Severity::kWarning, "", "unit_suspect",
+            fmt::format("its rows are {:.3g} s apart, {:.4g} times as far as those of the other "
+                        "logs: is its time in another unit?",
+                        log.period, ratio));
   }
 }
 
@@ -75,6 +89,7 @@ void CheckClock(const CheckedLog& log, Findings& out) {
   }
   if (!gaps.empty()) ReportGaps(time, gaps, log.period, out);
   ReportJitter(time, steps, log.period, out);
+  CheckUnit(log, out);
 }
 
 }  // namespace continuum

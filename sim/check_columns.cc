@@ -81,6 +81,20 @@ void CheckClipping(const CheckedColumn& c, Findings& out) {
   }
 }
 
+// A sensor that froze before the log ended, or woke after it began.
+bool CheckFrozenEnd(const CheckedColumn& c, Findings& out) {
+  const auto frozen = c.input ? std::nullopt : FrozenEnd(c.value, c.quantum);
+  if (!frozen) return false;
+  const std::string where =
+      frozen->begin == 0 ? fmt::format("up to t = {}", Clock(c.time[frozen->end - 1]))
+                         : fmt::format("from t = {} to the end", Clock(c.time[frozen->begin]));
+  out.Add(Severity::kWarning, c.name, "stale",
+          fmt::format("stale: keeps one value {}, {} of {} rows, and is noisy elsewhere", where,
+                      frozen->size(), c.value.size()),
+          c.time[frozen->begin], c.time[frozen->end - 1]);
+  return true;
+}
+
 // The values without those that only repeat the one before.
 CheckedColumn Fresh(const CheckedColumn& c) {
   CheckedColumn fresh = c;
@@ -223,7 +237,7 @@ void CheckColumns(const CheckedLog& log, Findings& out) {
     CheckMissing(log, i, out);
     if (!CheckVariance(c, out)) continue;
     CheckQuantum(c, out);
-    CheckClipping(c, out);
+    if (!CheckFrozenEnd(c, out)) CheckClipping(c, out);
     CheckMagnitude(c, out);
     const Refresh& r = refresh[i];
     std::size_t told = 0;  // as duplicated rows

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include <fmt/core.h>
 
@@ -7,6 +9,7 @@
 #include "sim/check_model.h"
 #include "sim/check_series.h"
 #include "sim/stop.h"
+#include "sim/units.h"
 
 namespace continuum {
 namespace {
@@ -18,6 +21,22 @@ constexpr std::size_t kRows = 2000;  // of a window at most
 constexpr double kSteps = 10'000;    // time steps of a window at most
 constexpr double kStepsOfRow = 200;  // about what a quasi-static row takes
 constexpr std::size_t kLeastRows = 40;
+
+struct Mistake {
+  double factor;     // that mends it
+  const char* unit;  // which the numbers should have; null: any
+  const char *what, *text;
+};
+constexpr Mistake kMistakes[]{
+    {-1, nullptr, "sign_suspect", "has the wrong sign"},
+    {1e-3, nullptr, "unit_suspect", "is in thousandths of its unit (millimetres for metres)"},
+    {1e3, nullptr, "unit_suspect", "is in thousands of its unit (metres for millimetres)"},
+    {1 / 57.29578, "rad", "unit_suspect", "is in degrees and not in radians"},
+    {57.29578, "rad", "unit_suspect", "is in radians and not in degrees"},
+    {1e5, "Pa", "unit_suspect", "is in bar and not in pascal"},
+    {1e-5, "Pa", "unit_suspect", "is in pascal and not in bar"},
+    {6894.757, "Pa", "unit_suspect", "is in psi and not in pascal"},
+    {9.80665, "N", "unit_suspect", "is in kilogram-force and not in newton"}};
 
 Log Cut(const Log& whole, std::size_t first, std::size_t last) {
   const auto cut = [&](auto& column) {
@@ -90,7 +109,8 @@ void InputTrials::Run(const Log& whole, const Trace& trace, Findings& out) {
   std::vector<Excerpt> excerpts;
   for (std::size_t i = 0; i < experiment_.inputs.size(); ++i)
     excerpts.push_back(Where(whole, trace, i));
-  for (std::size_t i = 0; i < excerpts.size(); ++i) TryInput(excerpts[i], i, out);
+  for (const auto& group : Alike()) TryMistakes(excerpts[group.front()], group, out);
+  for (std::size_t i = 0; i < excerpts.size(); ++i) TryMistakes(excerpts[i], {i}, out);
   for (std::size_t i = 0; i < excerpts.size(); ++i) {
     for (std::size_t j = i + 1; j < excerpts.size(); ++j) TrySwap(excerpts[i], i, j, out);
   }
@@ -121,24 +141,38 @@ double InputTrials::ErrorOf(const Log& log) {
   return trace.diverged ? HUGE_VAL : RelativeError(log, trace);
 }
 
-void InputTrials::TryInput(Excerpt& excerpt, std::size_t i, Findings& out) {
-  struct Mistake {
-    double factor;
-    const char *what, *text;
-  };
-  static constexpr Mistake kMistakes[]{
-      {-1, "sign_suspect", "has the wrong sign"},
-      {1e-3, "unit_suspect", "is in thousandths of its unit (millimetres for metres)"},
-      {1e3, "unit_suspect", "is in thousands of its unit (metres for millimetres)"},
-      {1 / 57.29578, "unit_suspect", "is in degrees and not in radians"},
-      {57.29578, "unit_suspect", "is in radians and not in degrees"}};
-  Values& u = excerpt.log.input[i];
-  const Values original = u;
+// Inputs of one dimension, which one mistake may concern together.
+std::vector<std::vector<std::size_t>> InputTrials::Alike() const {
+  std::map<std::array<int, 4>, std::vector<std::size_t>> alike;
+  for (std::size_t i = 0; i < experiment_.inputs.size(); ++i) {
+    const Input& in = experiment_.inputs[i];
+    if (!in.column.empty()) alike[ParseUnit(in.unit, "").dimension].push_back(i);
+  }
+  std::vector<std::vector<std::size_t>> groups;
+  for (auto& [dimension, inputs] : alike) {
+    if (inputs.size() > 1) groups.push_back(std::move(inputs));
+  }
+  return groups;
+}
+
+void InputTrials::TryMistakes(Excerpt& excerpt, const std::vector<std::size_t>& inputs,
+                              Findings& out) {
+  const auto moves = [&](std::size_t i) { return RangeOf(excerpt.log.input[i]) > 0; };
+  if (!(excerpt.plain > 0.5) || std::none_of(inputs.begin(), inputs.end(), moves)) return;
+  const Unit unit = ParseUnit(experiment_.inputs[inputs.front()].unit, "");
+  const auto original = excerpt.log.input;
+  const bool one = inputs.size() == 1;
+  const std::string column = one ? experiment_.inputs[inputs.front()].column : "";
   for (const Mistake& mistake : kMistakes) {
-    if (RangeOf(original) == 0) break;
-    for (double& value : u) value *= mistake.factor;
-    Tell(excerpt, experiment_.inputs[i].column, mistake.what, mistake.text, out);
-    u = original;
+    if (mistake.unit && !unit.any && unit.dimension != ParseUnit(mistake.unit, "").dimension)
+      continue;
+    for (const std::size_t i : inputs) {
+      for (double& value : excerpt.log.input[i]) value *= mistake.factor;
+    }
+    const std::string which =
+        one ? "this input" : "every input in " + experiment_.inputs[inputs.front()].unit;
+    Tell(excerpt, column, mistake.what, which + " " + mistake.text, out);
+    excerpt.log.input = original;
   }
 }
 
@@ -146,21 +180,20 @@ void InputTrials::TrySwap(Excerpt& excerpt, std::size_t i, std::size_t j, Findin
   const auto &a = experiment_.inputs[i], &b = experiment_.inputs[j];
   if (a.unit != b.unit || a.column.empty() || b.column.empty()) return;
   auto& input = excerpt.log.input;
-  if (input[i] == input[j]) return;
+  if (!(excerpt.plain > 0.1) || input[i] == input[j]) return;
   std::swap(input[i], input[j]);
-  Tell(excerpt, a.column, "swapped", "is swapped with '" + b.column + "'", out);
+  Tell(excerpt, a.column, "swapped", "this input is swapped with '" + b.column + "'", out);
   std::swap(input[i], input[j]);
 }
 
 void InputTrials::Tell(const Excerpt& excerpt, const std::string& column, const char* what,
                        const std::string& text, Findings& out) {
-  if (!(excerpt.plain > 0.5) || budget_ <= 0) return;
+  if (budget_ <= 0) return;
   const double error = ErrorOf(excerpt.log);
-  if (!(error < 0.1 * std::min(excerpt.plain, 10.0))) return;
-  out.Add(
-      Severity::kWarning, column, what,
-      fmt::format("the simulation fits if this input {}: relative error {:.2g} instead of {:.2g}",
-                  text, std::sqrt(error), std::sqrt(excerpt.plain)));
+  if (!(error < std::min(0.1 * excerpt.plain, 0.25))) return;
+  out.Add(Severity::kWarning, column, what,
+          fmt::format("the simulation fits if {}: relative error {:.2g} instead of {:.2g}", text,
+                      std::sqrt(error), std::sqrt(excerpt.plain)));
 }
 
 }  // namespace continuum

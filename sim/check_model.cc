@@ -45,6 +45,7 @@ void CheckScale(const Compared& p, Findings& out) {
 }
 
 std::optional<Lag> Shift(const Compared& p) {
+  if (Deviation(p.simulated) < 0.05 * Deviation(p.measured)) return std::nullopt;  // it rests
   const auto reach = std::min<std::ptrdiff_t>(50, static_cast<std::ptrdiff_t>(p.row.size()) / 8);
   const auto lag = LagOf(p.simulated, p.measured, -reach, reach, Sign::kAsWithoutLag);
   if (!lag || std::abs(lag->correlation) < 0.7) return std::nullopt;
@@ -61,9 +62,10 @@ void CheckShifts(const std::vector<Compared>& pairs, double period, Findings& ou
     if (const auto lag = Shift(p)) shifted.push_back({&p, *lag});
   }
   const auto say = [&](const Lag& lag) {
-    return fmt::format("{} the simulation by {:.3g} ms ({:.1f} rows)",
-                       lag.rows > 0 ? "late against" : "ahead of",
-                       1e3 * period * std::abs(lag.rows), std::abs(lag.rows));
+    const double seconds = period * std::abs(lag.rows);
+    return fmt::format(
+        "{} the simulation by {} ({:.1f} rows)", lag.rows > 0 ? "late against" : "ahead of",
+        seconds < 1 ? Amount(1e3 * seconds, "ms") : Amount(seconds, "s"), std::abs(lag.rows));
   };
   const bool together = shifted.size() > 1 && shifted.size() == pairs.size() &&
                         std::all_of(shifted.begin(), shifted.end(), [&](const auto& s) {
@@ -109,6 +111,33 @@ void CheckSwaps(const std::vector<Compared>& pairs, Findings& out) {
   }
 }
 
+// Of the channel in this unit that moves most.
+double LargestDeviation(const std::vector<Compared>& pairs, const std::string& unit) {
+  double largest = 0;
+  for (const Compared& p : pairs) {
+    if (p.unit == unit) largest = std::max(largest, Deviation(p.measured));
+  }
+  return largest;
+}
+
+// A column that nothing above explains, and the simulation neither.
+void CheckUnlike(const Compared& p, double largest, Findings& out) {
+  const double measured = Deviation(p.measured), simulated = Deviation(p.simulated);
+  if (measured < std::max(4 * NoiseOf(p.measured), 0.2 * largest) || out.Has(p.name)) return;
+  if (Misfit(p.measured, p.simulated) < 0.95 * measured) return;
+  const double correlation = Correlation(p.simulated, p.measured);
+  if (simulated > 0.05 * measured && std::abs(correlation) > 0.3) return;
+  const double unit = UnitFactor(p.unit, "");
+  out.Add(Severity::kWarning, p.name, "unlike",
+          simulated > 0.05 * measured
+              ? fmt::format("does not follow the simulation (correlation {:.2f}): is it another "
+                            "quantity, or the model far off?",
+                            correlation)
+              : fmt::format("moves by {} rms where the simulation moves by {}: does what drives it "
+                            "reach the model, and in its unit?",
+                            Amount(measured / unit, p.unit), Amount(simulated / unit, p.unit)));
+}
+
 // A constant difference while nothing moves.
 void CheckRest(const Compared& p, const Log& log, Findings& out) {
   constexpr std::size_t kStill = 10;  // rows
@@ -148,6 +177,7 @@ void CheckSimulated(const Experiment& e, const Log& log, const Trace& trace, Fin
   }
   if (!e.quasi_static) CheckShifts(pairs, Median(Differences(log.time)), out);
   CheckSwaps(pairs, out);
+  for (const Compared& p : pairs) CheckUnlike(p, LargestDeviation(pairs, p.unit), out);
 }
 
 // What the registration leaves open must not look like swapped or shifted columns.
@@ -222,6 +252,7 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const System& sys
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     if (traces[l].channel.empty()) continue;
     Findings found(&e.logs[l]);
+    CheckRanges(e, e.logs[l], system.model(), found);
     CheckSimulated(e, e.logs[l], traces[l], found);
     trials.Run(e.logs[l], traces[l], found);
     for (Finding& f : found.Take()) all.push_back(std::move(f));

@@ -19,9 +19,13 @@ std::vector<Compared> Compare(const Experiment& e, const Log& log, const Trace& 
 /// Deviation of the difference: what is left beside an offset.
 double Misfit(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Tries mistakes in the inputs of logs that the model does not explain: another sign or unit, two
-/// inputs swapped. Each is tried where its input moves most, in a window of a bounded number of
-/// time steps, so that long logs cost no more than short ones.
+/// Rows in which an input leaves the range of its actuator: the model clamps it.
+void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings& out);
+
+/// Tries mistakes in the inputs of logs that the model does not explain: another sign or unit (of
+/// one input, or of all that have one dimension), two inputs swapped. Each is tried where its input
+/// moves most, in a window of a bounded number of time steps, so that long logs cost no more than
+/// short ones.
 class InputTrials {
  public:
   InputTrials(const Experiment& e, const System& system) : experiment_(e), system_(system) {}
@@ -39,14 +43,15 @@ class InputTrials {
   std::size_t End(const Log& whole, std::size_t first) const;
   double ErrorOf(const Log& log);
   double RelativeError(const Log& log, const Trace& trace) const;
-  void TryInput(Excerpt& excerpt, std::size_t i, Findings& out);
+  std::vector<std::vector<std::size_t>> Alike() const;
+  void TryMistakes(Excerpt& excerpt, const std::vector<std::size_t>& inputs, Findings& out);
   void TrySwap(Excerpt& excerpt, std::size_t i, std::size_t j, Findings& out);
   void Tell(const Excerpt& excerpt, const std::string& column, const char* what,
             const std::string& text, Findings& out);
 
   const Experiment& experiment_;
   const System& system_;
-  int budget_ = 60;  ///< simulations over all logs
+  int budget_ = 90;  ///< simulations over all logs
 };
 
 }  // namespace continuum

@@ -29,6 +29,7 @@ struct CheckedLog {
   const Log* log;
   std::vector<CheckedColumn> columns;
   double period;                ///< median interval [s]
+  double usual_period;          ///< the median of that over all logs [s]
   std::vector<bool> disturbed;  ///< [row] a gap or a step of an input just before
 };
 CheckedLog Prepare(const Experiment& e, const Log& log);
@@ -44,6 +45,8 @@ class Findings {
   /// places: the end of the text, a list of further places.
   void Add(Severity severity, const std::string& channel, const std::string& what,
            const std::string& gist, double begin, double end, const std::string& places = "");
+  /// Whether something was said of a channel that is more than information.
+  bool Has(const std::string& channel) const;
   std::vector<Finding> Take() { return std::move(findings_); }
 
  private:

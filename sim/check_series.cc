@@ -26,13 +26,9 @@ double Around(const Values& values, std::size_t row, std::size_t reach) {
   return Median(std::move(near));
 }
 
-struct Run {
-  std::size_t begin, end;  // rows with one value, end exclusive
-  std::size_t size() const { return end - begin; }
-};
-
-std::vector<Run> RunsOf(const Values& x) {
-  std::vector<Run> runs;
+// Stretches with one value.
+std::vector<Stretch> RunsOf(const Values& x) {
+  std::vector<Stretch> runs;
   for (std::size_t k = 0; k < x.size();) {
     std::size_t end = k + 1;
     while (end < x.size() && x[end] == x[k]) ++end;
@@ -43,7 +39,7 @@ std::vector<Run> RunsOf(const Values& x) {
 }
 
 // A long constant stretch is suspicious only when the signal had to catch up afterwards.
-bool CatchesUp(const Values& x, const Run& run, double quantum) {
+bool CatchesUp(const Values& x, const Stretch& run, double quantum) {
   constexpr std::size_t kAfter = 5;  // rows
   if (run.end + kAfter >= x.size()) return false;
   double after = 0;
@@ -53,14 +49,14 @@ bool CatchesUp(const Values& x, const Run& run, double quantum) {
 }
 
 // On a coarse grid a turning signal may rest for a row; then it comes and goes in single steps.
-bool StepsOver(const Values& x, const Run& run, double quantum) {
+bool StepsOver(const Values& x, const Stretch& run, double quantum) {
   const double before = std::abs(x[run.begin] - x[run.begin - 1]);
   const double after = std::abs(x[run.end] - x[run.end - 1]);
   return std::min(before, after) >= 2.5 * quantum;
 }
 
 // Whether a staircase follows a smooth course: most steps go the way of the step before.
-bool FollowsACourse(const Values& x, const std::vector<Run>& runs) {
+bool FollowsACourse(const Values& x, const std::vector<Stretch>& runs) {
   std::size_t same = 0, all = 0;
   for (std::size_t i = 2; i < runs.size(); ++i) {
     const double before = x[runs[i - 1].begin] - x[runs[i - 2].begin];
@@ -69,6 +65,15 @@ bool FollowsACourse(const Values& x, const std::vector<Run>& runs) {
     ++all;
   }
   return Ratio(same, all) > 0.6;
+}
+
+// Whether rows scatter by more than the smoothness of a motion explains, and by more than a step.
+bool IsNoisy(const Values& x, double quantum) {
+  Values fourth;
+  for (std::size_t k = 4; k < x.size(); ++k)
+    fourth.push_back(std::abs(x[k] - 4 * x[k - 1] + 6 * x[k - 2] - 4 * x[k - 3] + x[k - 4]));
+  const double noise = NoiseOf(x), rough = 1.4826 / std::sqrt(70.0) * Median(std::move(fourth));
+  return noise > std::max(1e-5 * RangeOf(x), quantum) && rough > 0.5 * noise;
 }
 
 // Step of the grid on which all levels lie; 0 when there is none.
@@ -148,12 +153,12 @@ double QuantumOf(const Values& x) {
 Refresh RefreshOf(const Values& x, double quantum, bool command) {
   Refresh r;
   r.repeated.assign(x.size(), false);
-  const std::vector<Run> runs = RunsOf(x);
+  const std::vector<Stretch> runs = RunsOf(x);
   if (runs.size() < 20 || DistinctValues(x, 8) < 8) return r;
   if (command && !FollowsACourse(x, runs)) return r;
 
   Values holds;
-  for (const Run& run : runs) {
+  for (const Stretch& run : runs) {
     if (run.size() <= kHold) holds.push_back(static_cast<double>(run.size()));
   }
   const auto reach =
@@ -170,7 +175,7 @@ Refresh RefreshOf(const Values& x, double quantum, bool command) {
 
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   double sum = 0, squares = 0, count = 0;
-  for (const Run& run : runs) {
+  for (const Stretch& run : runs) {
     // Flat at an extreme is clipping.
     if (run.size() >= 5 && (x[run.begin] == *low || x[run.begin] == *high)) continue;
     const bool inner = run.begin > 0 && run.end < x.size();
@@ -198,6 +203,20 @@ Refresh RefreshOf(const Values& x, double quantum, bool command) {
     r.spread = std::sqrt(std::max(squares / count - r.interval * r.interval, 0.0));
   }
   return r;
+}
+
+std::optional<Stretch> FrozenEnd(const Values& x, double quantum) {
+  const auto runs = RunsOf(x);
+  if (runs.size() < kHold) return std::nullopt;
+  const bool first = runs.front().size() > runs.back().size();
+  const Stretch longer = first ? runs.front() : runs.back();
+  const auto clipped = [&](const Stretch& run) {  // the same value, elsewhere
+    return run.size() >= 5 && run.begin != longer.begin && x[run.begin] == x[longer.begin];
+  };
+  if (std::any_of(runs.begin(), runs.end(), clipped)) return std::nullopt;
+  const auto at = [&](std::size_t row) { return x.begin() + static_cast<std::ptrdiff_t>(row); };
+  const Values rest(at(runs.front().end), at(runs.back().begin));
+  return longer.size() > kHold && IsNoisy(rest, quantum) ? std::optional(longer) : std::nullopt;
 }
 
 double BendOf(const Values& x) {
@@ -256,7 +275,7 @@ std::optional<Clipping> ClippingOf(const Values& x, double quantum, bool upper) 
   const double fast = std::max(3 * quantum, 0.25 * Quantile(sizes, 0.95));
   Clipping c;
   c.upper = upper;
-  for (const Run& run : RunsOf(x)) {
+  for (const Stretch& run : RunsOf(x)) {
     if (x[run.begin] != extreme || run.size() < 5 || run.begin < 3) continue;
     // Entered in full motion, over several rows: neither a rest nor a step.
     const double last = std::abs(x[run.begin - 1] - x[run.begin - 2]);

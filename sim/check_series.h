@@ -42,6 +42,15 @@ struct Refresh {
 /// command: a column that somebody set, for which holding a level is no defect.
 Refresh RefreshOf(const std::vector<double>& x, double quantum, bool command);
 
+/// A stretch that begins a column or ends it, of a sensor that is noisy elsewhere, with one value.
+struct Stretch {
+  std::size_t begin, end;  ///< rows, end exclusive
+  std::size_t size() const { return end - begin; }
+};
+/// The longer one of more than 30 rows; nullopt where the steps of the sensor hide its noise, or
+/// where it comes to the same value elsewhere (clipping).
+std::optional<Stretch> FrozenEnd(const std::vector<double>& x, double quantum);
+
 /// A row that stands away from its neighbours.
 struct Jump {
   std::size_t row;

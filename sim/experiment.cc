@@ -273,16 +273,26 @@ std::vector<Experiment::Folds> ReadFolds(const Yaml& y) {
   return folds;
 }
 
+// Rows that were written twice are the usual cause.
+Error TimeGoesBack(const Experiment& e, const Recording& rec, std::size_t row) {
+  const double now = rec.Number(row, e.time_column, false);
+  std::string found = Decimal(now) + " after " + Decimal(rec.Number(row - 1, e.time_column, false));
+  for (std::size_t k = 0; k < row; ++k) {
+    if (rec.Number(k, e.time_column, false) != now) continue;
+    found += ", as in " + rec.Where(k) + ": are rows there twice?";
+    break;
+  }
+  return Error::Input(rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
+                      found);
+}
+
 void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_unit) {
   const std::vector<double>& window = log.window;
   double last = -kInfinity;
   std::vector<std::size_t> kept;
   for (std::size_t row = 0; row < rec.rows(); ++row) {
     const double t = rec.Number(row, e.time_column, false) * time_unit;
-    if (!(t > last)) {
-      throw Error::Input(rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
-                         Decimal(t / time_unit) + " after " + Decimal(last / time_unit));
-    }
+    if (!(t > last)) throw TimeGoesBack(e, rec, row);
     last = t;
     if (!window.empty() && (t < window[0] || t > window[1])) continue;
     kept.push_back(row);

@@ -2,144 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <functional>
-#include <numbers>
-#include <random>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include "sim/file.h"
-#include "sim/simulate.h"
-#include "sim/table.h"
-#include "support/recordings.h"
-#include "support/scratch.h"
+#include "check_bench.h"
 
 namespace continuum {
 namespace {
 
-namespace fs = std::filesystem;
+using namespace testing;  // the bench
 using ::testing::HasSubstr;
 using Severity = Finding::Severity;
-
-constexpr double kPeriod = 0.01;  // [s]
-constexpr double kDegree = std::numbers::pi / 180;
-
-// q'' = w² (u − q) − 2 d w q', u held between rows, integrated in 20 substeps.
-struct Mass {
-  double w = 12, d = 0.3, q = 0, v = 0;
-  void Advance(double u) {
-    constexpr int kSubsteps = 20;
-    const double h = kPeriod / kSubsteps;
-    for (int i = 0; i < kSubsteps; ++i) {
-      v += h * (w * w * (u - q) - 2 * d * w * v);
-      q += h * v;
-    }
-  }
-};
-
-using Command = std::function<double(double)>;
-double Steps(double t) { return t < 1 ? 0 : t < 3 ? 1 : t < 5 ? -0.5 : 0.25; }
-double Sines(double t) { return 0.8 * std::sin(2.1 * t) + 0.3 * std::sin(5.3 * t); }
-
-// One input [rad], the angle of one mass [rad], its speed [rad/s], and a slower mass's angle.
-struct Recipe {
-  Command u1 = Steps, u2 = Sines;
-  std::size_t rows = 1000;
-  double noise = 1e-3, quantum = 0;
-  unsigned seed = 1;
-};
-
-Experiment Bench() {
-  Experiment e;
-  e.inputs = {{"u1", "rad", "m1", "", false, ""}, {"u2", "rad", "m2", "", false, ""}};
-  for (const auto& [column, unit] :
-       {std::pair{"q1", "rad"}, std::pair{"v1", "rad/s"}, std::pair{"q2", "rad"}}) {
-    Output out;
-    out.columns = {column};
-    out.unit = unit;
-    out.source = column;
-    e.channels.push_back({column, unit, e.outputs.size(), 0, 1});
-    e.outputs.push_back(out);
-  }
-  return e;
-}
-
-Log Record(const Recipe& recipe, const std::string& label = "bench") {
-  Log log;
-  log.label = log.trial = label;
-  log.input.resize(2);
-  log.enable.resize(2);
-  log.measured.resize(3);
-  std::mt19937 random(recipe.seed);
-  std::normal_distribution<double> noise;
-  const auto round = [&](double x) {
-    return recipe.quantum > 0 ? recipe.quantum * std::round(x / recipe.quantum) : x;
-  };
-  Mass first, second{6, 0.5};
-  for (std::size_t k = 0; k < recipe.rows; ++k) {
-    const double t = kPeriod * static_cast<double>(k);
-    log.time.push_back(t);
-    log.input[0].push_back(recipe.u1(t));
-    log.input[1].push_back(recipe.u2(t));
-    log.measured[0].push_back(round(first.q + recipe.noise * noise(random)));
-    log.measured[1].push_back(first.v + 10 * recipe.noise * noise(random));
-    log.measured[2].push_back(round(second.q + recipe.noise * noise(random)));
-    first.Advance(log.input[0].back());
-    second.Advance(log.input[1].back());
-  }
-  return log;
-}
-
-Experiment With(Log log) {
-  Experiment e = Bench();
-  e.logs.push_back(std::move(log));
-  return e;
-}
-
-std::vector<Finding> Bad(const std::vector<Finding>& all) {
-  std::vector<Finding> bad;
-  for (const Finding& f : all) {
-    if (f.severity != Severity::kInfo) bad.push_back(f);
-  }
-  return bad;
-}
-
-const Finding* Find(const std::vector<Finding>& all, const std::string& what,
-                    const std::string& channel = "") {
-  for (const Finding& f : all) {
-    if (f.what == what && f.channel == channel) return &f;
-  }
-  return nullptr;
-}
-
-// One warning of this kind, on this channel, and no other.
-Finding Only(const Log& log, const std::string& what, const std::string& channel = "") {
-  const auto all = CheckLogs(With(log));
-  const auto bad = Bad(all);
-  EXPECT_EQ(bad.size(), 1u) << Report(all);
-  const Finding* const found = Find(bad, what, channel);
-  EXPECT_NE(found, nullptr) << what << " " << channel << "\n" << Report(all);
-  return found ? *found : Finding{};
-}
-
-std::vector<double>& Column(Log& log, const std::string& name) {
-  if (name[0] == 'u') return log.input[name == "u2"];
-  return log.measured[name == "q1" ? 0 : name == "v1" ? 1 : 2];
-}
-
-void DropRows(Log& log, std::size_t from, std::size_t to) {
-  const auto cut = [&](auto& v) {
-    v.erase(v.begin() + static_cast<std::ptrdiff_t>(from),
-            v.begin() + static_cast<std::ptrdiff_t>(to));
-  };
-  cut(log.time);
-  for (auto& column : log.input) cut(column);
-  for (auto& column : log.measured) cut(column);
-}
 
 TEST(Check, CleanLogsOfStepsAndSinesGiveNoWarning) {
   for (const double noise : {0.0, 1e-4, 1e-2}) {
@@ -149,20 +24,6 @@ TEST(Check, CleanLogsOfStepsAndSinesGiveNoWarning) {
                                     << Report(all);
     }
   }
-}
-
-// A chirp, a square wave, a triangle or a ramp that holds.
-Command RandomCommand(std::mt19937& random) {
-  std::uniform_real_distribution<double> uniform(0, 1);
-  const double size = 0.2 + uniform(random), f = 0.2 + 2 * uniform(random), at = uniform(random);
-  const auto kind = static_cast<int>(4 * uniform(random));
-  return [=](double t) {
-    const double phase = f * (t - at) - std::floor(f * (t - at));
-    if (kind == 0) return size * std::sin(2 * std::numbers::pi * f * t * (1 + 0.1 * t));
-    if (kind == 1) return phase < 0.5 ? size : -size;
-    if (kind == 2) return size * (std::abs(4 * phase - 2) - 1);
-    return t < at ? 0 : size * std::min(1.0, 2 * (t - at));
-  };
 }
 
 TEST(Check, TwentyRandomCleanLogsGiveNoWarning) {
@@ -273,6 +134,29 @@ TEST(Check, AChannelThatFreezesForAWhileIsLocated) {
     EXPECT_THAT(f->text, HasSubstr(fmt::format("{} rows from t = 3.09 s", rows + 1)));
     EXPECT_NEAR(f->end, 3.09 + 0.01 * static_cast<double>(rows), 1e-9);
   }
+}
+
+TEST(Check, AChannelThatFreezesToTheEndOrWakesLateIsNamed) {
+  for (const bool late : {false, true}) {
+    Log log = Record({Sines, Sines});
+    auto& q = Column(log, "q2");
+    const auto half = q.begin() + 500;
+    late ? std::fill(q.begin(), half, *half) : std::fill(half, q.end(), *half);
+    const Finding f = Only(log, "stale", "q2");
+    EXPECT_THAT(f.text, HasSubstr(late ? "up to t = 5 s, 501" : "from t = 5 s to the end, 500"));
+  }
+}
+
+TEST(Check, ALogInMillisecondsAmongOthersIsNamed) {
+  Experiment e = With(Record({Steps, Sines, 1000, 1e-3, 0, 1}, "a"));
+  e.logs.push_back(Record({Steps, Sines, 1000, 1e-3, 0, 2}, "b"));
+  e.logs.push_back(Record({Steps, Sines, 1000, 1e-3, 0, 3}, "c"));
+  for (double& t : e.logs[1].time) t *= 1000;
+  const auto all = CheckLogs(e);
+  const Finding* const f = Find(all, "unit_suspect");
+  ASSERT_NE(f, nullptr) << Report(all);
+  EXPECT_EQ(f->log, "b");
+  EXPECT_THAT(f->text, HasSubstr("10 s apart, 1000 times"));
 }
 
 TEST(Check, AThirdOfRepeatedSamplesIsNamed) {
@@ -467,268 +351,6 @@ TEST(Check, TheReportIsGroupedByLogWithASummaryFirst) {
   const auto json = ToJson(all);
   ASSERT_EQ(json.size(), all.size());
   EXPECT_EQ(json[0]["severity"], "info");
-}
-
-// Two pendulums on their own servos; what the model simulates is taken for measured.
-class CheckModel : public ::testing::Test {
- protected:
-  void SetUp() override {
-    system_.emplace(System::Parse(R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>
-      <worldbody>
-        <body><joint name="a" axis="0 1 0" damping="0.02"/><geom type="capsule" size=".01" fromto="0 0 0 0 0 -.2" mass=".3"/></body>
-        <body pos="1 0 0"><joint name="b" axis="0 1 0" damping="0.05"/><geom type="capsule" size=".01" fromto="0 0 0 0 0 -.3" mass=".4"/></body>
-      </worldbody>
-      <actuator><position name="m1" joint="a" kp="1"/><position name="m2" joint="b" kp="3"/></actuator>
-      <sensor><jointpos name="q1" joint="a"/><jointvel name="v1" joint="a"/><jointpos name="q2" joint="b"/></sensor>
-    </mujoco>)"));
-    RecordFrom({});
-  }
-
-  // What the model does, with noise, is what was measured.
-  void RecordFrom(const Recipe& recipe) {
-    experiment_ = With(Record(recipe));
-    Machine machine = system_->Build();
-    log().measured = Simulate(machine, experiment_, log()).channel;
-    std::mt19937 random(recipe.seed);
-    std::normal_distribution<double> noise(0, 5e-4);
-    for (auto& channel : log().measured) {
-      for (double& value : channel) value += noise(random);
-    }
-  }
-  Log& log() { return experiment_.logs[0]; }
-  std::vector<Finding> Bad() const {
-    return continuum::Bad(CheckAgainstModel(experiment_, *system_));
-  }
-  void ExpectOnly(const std::string& what, const std::string& channel) const {
-    const auto bad = Bad();
-    ASSERT_EQ(bad.size(), 1u) << Report(bad);
-    EXPECT_EQ(bad[0].what, what) << Report(bad);
-    EXPECT_EQ(bad[0].channel, channel) << Report(bad);
-  }
-
-  std::optional<System> system_;
-  Experiment experiment_;
-};
-
-TEST_F(CheckModel, ACleanLogGivesNoWarning) { EXPECT_TRUE(Bad().empty()) << Report(Bad()); }
-
-TEST_F(CheckModel, TwentyRandomCleanLogsGiveNoWarning) {
-  std::mt19937 random(13);
-  for (unsigned trial = 0; trial < 20; ++trial) {
-    Recipe recipe{RandomCommand(random), RandomCommand(random)};
-    recipe.rows = 600;
-    recipe.seed = trial;
-    RecordFrom(recipe);
-    EXPECT_TRUE(Bad().empty()) << "log " << trial << "\n" << Report(Bad());
-  }
-}
-
-TEST_F(CheckModel, AModelWithWrongDampingAndMassIsNoDefectOfTheLog) {
-  const Change changes[]{{"joint:a", "damping", 0.03}, {"joint:b", "damping", 0.03}};
-  experiment_.logs[0].set.assign(std::begin(changes), std::end(changes));
-  EXPECT_TRUE(Bad().empty()) << Report(Bad());
-}
-
-TEST_F(CheckModel, MillimetresForMetresAndDegreesForRadiansAreNamed) {
-  for (double& q : Column(log(), "q2")) q *= 1000;
-  ExpectOnly("unit_suspect", "q2");
-  for (double& q : Column(log(), "q2")) q *= 1e-3 / kDegree;
-  ExpectOnly("unit_suspect", "q2");
-}
-
-TEST_F(CheckModel, AWrongSignIsNamed) {
-  for (double& q : Column(log(), "q2")) q = -q;
-  // With one output per input, a wrong sign of either looks the same: both are told.
-  const auto bad = Bad();
-  EXPECT_NE(Find(bad, "sign_suspect", "q2"), nullptr) << Report(bad);
-  EXPECT_EQ(Find(bad, "sign_suspect", "q1"), nullptr) << Report(bad);
-}
-
-TEST_F(CheckModel, SwappedColumnsAreNamed) {
-  std::swap(Column(log(), "q1"), Column(log(), "q2"));
-  const auto bad = Bad();
-  const Finding* const f = Find(bad, "swapped", "q1");
-  ASSERT_NE(f, nullptr) << Report(bad);
-  EXPECT_THAT(f->text, HasSubstr("'q1' and 'q2' look swapped"));
-}
-
-TEST_F(CheckModel, SwappedInputsAreNamed) {
-  std::swap(log().input[0], log().input[1]);
-  EXPECT_NE(Find(Bad(), "swapped", "u1"), nullptr) << Report(Bad());
-}
-
-TEST_F(CheckModel, AnInputInAnotherUnitOrSignIsNamed) {
-  const auto original = log().input[1];
-  for (double& u : log().input[1]) u /= kDegree;
-  EXPECT_NE(Find(Bad(), "unit_suspect", "u2"), nullptr) << Report(Bad());
-  log().input[1] = original;
-  for (double& u : log().input[1]) u = -u;
-  EXPECT_NE(Find(Bad(), "sign_suspect", "u2"), nullptr) << Report(Bad());
-}
-
-TEST_F(CheckModel, AMistakeInAnInputThatMovesLateInALongLogIsNamed) {
-  Recipe recipe;
-  recipe.rows = 12000;
-  recipe.u2 = [](double t) { return t < 9 ? 0 : 0.5 * std::sin(4 * (t - 9)); };
-  RecordFrom(recipe);
-  experiment_.start = Experiment::Start::kEquilibrium;
-  for (double& u : log().input[1]) u = -u;
-  EXPECT_NE(Find(Bad(), "sign_suspect", "u2"), nullptr) << Report(Bad());
-}
-
-TEST_F(CheckModel, AColumnShiftedByOneRowIsNamed) {
-  auto& q = Column(log(), "q2");
-  q.insert(q.begin(), q.front());
-  q.pop_back();
-  ExpectOnly("lag", "q2");
-  EXPECT_THAT(Bad()[0].text, HasSubstr("late against the simulation by 10"));
-}
-
-TEST_F(CheckModel, AClockShiftOfAllOutputsIsNamed) {
-  for (auto& q : log().measured) {
-    q.insert(q.begin(), 4, q.front());
-    q.resize(log().rows());
-  }
-  ExpectOnly("clock_shift", "");
-}
-
-TEST_F(CheckModel, AnOffsetAtRestIsNamed) {
-  RecordFrom({Steps, [](double t) { return t < 5 ? 0.5 * Steps(t) : 0.1; }});
-  for (double& q : Column(log(), "q1")) q += 0.1;
-  ExpectOnly("offset_at_rest", "q1");
-}
-
-TEST_F(CheckModel, ASimulationThatDivergesIsTold) {
-  log().set.push_back({"joint:a", "stiffness", -1e9});
-  log().set.push_back({"joint:a", "damping", 0});
-  EXPECT_NE(Find(Bad(), "diverged"), nullptr) << Report(Bad());
-}
-
-// The logs of real machines, where they are at hand.
-class CheckReal : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!fs::exists(data_)) GTEST_SKIP() << "no recordings at " << data_;
-  }
-
-  // logs, time, inputs, outputs of an experiment file.
-  std::vector<Finding> Check(const std::string& yaml) const {
-    return CheckLogs(
-        Experiment::Read(scratch_.Write("experiment.yaml", "format: 1\nmodel: none.xml\n" + yaml)));
-  }
-
-  const fs::path data_ = testing::Recordings("");
-  const testing::Scratch scratch_;
-};
-
-TEST_F(CheckReal, ServoPendulum) {
-  std::string logs;
-  for (const auto& entry : fs::directory_iterator(data_ / "servo_pendulum")) {
-    if (entry.path().extension() != ".json") continue;
-    const auto json = nlohmann::json::parse(ReadFile(entry.path()));
-    std::string csv = "t,q,w,goal,enable\n";
-    for (const auto& row : json["entries"]) {
-      csv +=
-          fmt::format("{},{},{},{},{}\n", row["timestamp"].get<double>(),
-                      row["position"].get<double>(), row["speed"].get<double>(),
-                      row["goal_position"].get<double>(), row["torque_enable"].get<bool>() ? 1 : 0);
-    }
-    const std::string name = entry.path().stem().string() + ".csv";
-    scratch_.Write(name, csv);
-    logs += fmt::format("  - {{file: {}}}\n", name);
-  }
-  const auto all =
-      Check("logs:\n" + logs +
-            "time: {column: t}\n"
-            "inputs: [{column: goal, unit: rad, actuator: servo, enable: enable}]\n"
-            "outputs: [{column: q, unit: rad, sensor: q}, {column: w, unit: rad/s, sensor: w}]\n");
-  std::size_t late = 0;
-  for (const Finding& f : Bad(all)) {  // the firmware filters its speed, and nothing else is wrong
-    EXPECT_EQ(f.what, "lag") << f.text;
-    late += f.channel == "w";
-    EXPECT_THAT(f.text, ::testing::ContainsRegex("lags the derivative of 'q' by (20|19|21)"));
-  }
-  EXPECT_EQ(late, 12u) << Report(all);
-  EXPECT_THAT(Find(all, "quantisation", "q")->text, HasSubstr("0.00153 rad"));  // 2π/4096
-}
-
-TEST_F(CheckReal, Emps) {
-  const auto all = Check("logs: [{file: '" + (data_ / "emps/DATA_EMPS.mat").string() +
-                         "'}]\ntime: {column: t}\n"
-                         "inputs: [{column: qg, unit: m, actuator: axis}]\n"
-                         "outputs: [{column: qm, unit: m, sensor: q}, {column: vir, unit: V, "
-                         "actuator: axis, quantity: control}]\n");
-  EXPECT_TRUE(Bad(all).empty()) << Report(all);
-  EXPECT_THAT(Report(all), HasSubstr("qm: follows input 'qg' by 7"));
-}
-
-TEST_F(CheckReal, Trunk) {
-  std::string logs, inputs, outputs;
-  for (const char* name : {"observations_controlled_1", "observations_controlled_1_100g"}) {
-    const Table table = Table::Read(data_ / "trunk" / (std::string(name) + ".csv"));
-    std::string csv = "t";
-    for (const auto& column : table.columns()) csv += "," + column;
-    for (std::size_t k = 0; k < table.rows(); ++k) {
-      csv += fmt::format("\n{}", 0.01 * table.Number(k, "ID"));
-      for (const auto& column : table.columns()) csv += "," + table.Text(k, column);
-    }
-    scratch_.Write(std::string(name) + ".csv", csv + "\n");
-    logs += fmt::format("  - {{file: {}.csv}}\n", name);
-  }
-  for (int i = 1; i <= 6; ++i)
-    inputs += fmt::format("  - {{column: phi{0}, unit: deg, actuator: m{0}}}\n", i);
-  for (int i = 1; i <= 3; ++i) {
-    for (const char axis : {'x', 'y', 'z'}) {
-      outputs += fmt::format("  - {{column: {0}{1}, unit: m, sensor: s{0}{1}}}\n", axis, i);
-    }
-  }
-  const auto all =
-      Check("logs:\n" + logs + "time: {column: t}\ninputs:\n" + inputs + "outputs:\n" + outputs);
-  for (const Finding& f : Bad(all)) {
-    if (f.what != "stale") continue;
-    EXPECT_THAT(f.text, HasSubstr("refreshed about every 4.")) << f.channel;
-  }
-  for (int i = 1; i <= 6; ++i) EXPECT_NE(Find(Bad(all), "stale", fmt::format("phi{}", i)), nullptr);
-  const Finding* const jump = Find(all, "jump", "x3");
-  ASSERT_NE(jump, nullptr) << Report(all);
-  EXPECT_THAT(jump->text, HasSubstr("-0.0344 m in row 10768"));
-  EXPECT_NE(Find(all, "invariance"), nullptr) << Report(all);
-}
-
-TEST_F(CheckReal, TdcrThreeSegment) {
-  std::string inputs, outputs;
-  for (int i = 1; i <= 9; ++i)
-    inputs += fmt::format("  - {{column: servo_{0}_mm, unit: mm, actuator: s{0}}}\n", i);
-  for (const char axis : {'x', 'y', 'z'})
-    outputs += fmt::format("  - {{column: tip_{0}, unit: mm, sensor: {0}}}\n", axis);
-  const auto all =
-      Check("logs: [{file: '" +
-            (data_ / "tdcr_three_segment/tdcr_sysid_20260511-183002_train.csv").string() +
-            "'}]\ntime: {column: timestamp}\ninputs:\n" + inputs + "outputs:\n" + outputs);
-  EXPECT_THAT(Find(all, "gap")->text, HasSubstr("15.68 s after t = 1778538796.086 s"));
-  EXPECT_NE(Find(all, "clock_jitter"), nullptr) << Report(all);
-  EXPECT_NE(Find(all, "invariance"), nullptr) << Report(all);
-}
-
-TEST_F(CheckReal, StiffFlop) {
-  const auto all = Check(
-      "logs: [{file: '" + (data_ / "stiff_flop/NoLoad.mat").string() +
-      "', variable: NoLoad}]\ntime: {column: 1}\n"
-      "inputs:\n  - {column: 2, unit: bar, actuator: p1}\n  - {column: 3, unit: bar, actuator: "
-      "p2}\n"
-      "  - {column: 4, unit: bar, actuator: p3}\n"
-      "outputs:\n  - {column: 5, unit: mm, sensor: bx}\n  - {column: 6, unit: mm, sensor: by}\n"
-      "  - {column: 7, unit: mm, sensor: bz}\n  - {columns: [8, 9, 10, 11], sensor: bq}\n"
-      "  - {column: 12, unit: mm, sensor: tx}\n  - {column: 13, unit: mm, sensor: ty}\n"
-      "  - {column: 14, unit: mm, sensor: tz}\n  - {columns: [15, 16, 17, 18], sensor: tq}\n");
-  const auto bad = Bad(all);
-  EXPECT_NE(Find(bad, "quaternion_norm", "8"), nullptr) << Report(all);
-  EXPECT_THAT(Find(bad, "copied", "11")->text, HasSubstr("repeats column '10' in 100 %"));
-  EXPECT_NE(Find(all, "quaternion_flip", "15"), nullptr) << Report(all);
-  for (int c = 12; c <= 18; ++c) {
-    const std::string column = std::to_string(c);
-    EXPECT_TRUE(Find(bad, "repeated", column) || Find(bad, "stale", column)) << Report(all);
-  }
 }
 
 }  // namespace

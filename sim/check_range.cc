@@ -1,0 +1,48 @@
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "sim/check_model.h"
+#include "sim/units.h"
+
+namespace continuum {
+namespace {
+
+struct Beyond {
+  std::size_t rows = 0, first = 0, worst = 0;
+  double by = 0;  // of the worst row
+};
+
+Beyond BeyondRange(const std::vector<double>& u, const double* range) {
+  Beyond beyond;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    const double by = std::max(range[0] - u[k], u[k] - range[1]);
+    if (!(by > 1e-9 * (range[1] - range[0]))) continue;
+    if (beyond.rows++ == 0) beyond.first = k;
+    if (by > beyond.by) beyond.worst = k, beyond.by = by;
+  }
+  return beyond;
+}
+
+}  // namespace
+
+void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings& out) {
+  if (m.opt.disableflags & mjDSBL_CLAMPCTRL) return;
+  for (std::size_t i = 0; i < e.inputs.size(); ++i) {
+    const Input& in = e.inputs[i];
+    const int a = mj_name2id(&m, mjOBJ_ACTUATOR, in.actuator.c_str());
+    if (in.column.empty() || a < 0 || !m.actuator_ctrllimited[a]) continue;
+    const double* const range = m.actuator_ctrlrange + 2 * a;
+    const Beyond beyond = BeyondRange(log.input[i], range);
+    if (beyond.rows == 0) continue;
+    const double unit = UnitFactor(in.unit, ""), t = log.time[beyond.worst];
+    out.Add(Finding::Severity::kWarning, in.column, "out_of_range",
+            fmt::format("leaves the range of actuator '{}', {:.4g} to {}, in {} of {} rows, most "
+                        "by {} at t = {}: the model clamps it there",
+                        in.actuator, range[0] / unit, Amount(range[1] / unit, in.unit), beyond.rows,
+                        log.rows(), Amount(beyond.by / unit, in.unit), Clock(t)),
+            log.time[beyond.first], t);
+  }
+}
+
+}  // namespace continuum
