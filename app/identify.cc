@@ -119,7 +119,8 @@ void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, 
       value - p.lower < p.upper - value ? "its lower bound" : "its upper bound";
   const std::string range =
       u.at_bound[i] ? "at " + bound : fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
-  std::printf("%-24s %.6g %s (%s)\n", p.name.c_str(), value, p.unit.c_str(), range.c_str());
+  const std::string unit = p.unit == "1" ? "" : " " + p.unit;
+  std::printf("%-24s %.6g%s (%s)\n", p.name.c_str(), value, unit.c_str(), range.c_str());
 }
 
 void Print(const Problem& problem, const Fitting& all, const Uncertainty& u,

@@ -1,7 +1,9 @@
 #include "sim/replay.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,18 @@ void CheckAll(const Experiment& e, const System& system) {
   const Problem problem(e, system);
 }
 
+// " 0.1 (train), 0.2 (validate)", of the uses that logs have.
+std::string InWords(const Experiment& e, const SplitError& error) {
+  const auto train =
+      std::count_if(e.logs.begin(), e.logs.end(), [](const Log& l) { return l.train; });
+  std::string words;
+  if (train > 0) words += fmt::format(" {:.4g} (train)", error.train);
+  if (train > 0 && std::cmp_less(train, e.logs.size())) words += ",";
+  if (std::cmp_less(train, e.logs.size()))
+    words += fmt::format(" {:.4g} (validate)", error.validate);
+  return words;
+}
+
 void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
@@ -52,8 +66,8 @@ void RunReplay(const Options& o) {
   }
   const SplitError error = PooledError(e, logs);
   const std::string unit = Pool(e).unit();
-  std::printf("all: RMS %.4g (train), %.4g (validate) %s%s\n", error.train, error.validate,
-              unit.c_str(), MeanAbsoluteInWords(scores).c_str());
+  std::printf("all: RMS%s %s%s\n", InWords(e, error).c_str(), unit.c_str(),
+              MeanAbsoluteInWords(scores).c_str());
   for (const auto& line : RegistrationLines(e.registration)) std::printf("%s\n", line.c_str());
   auto errors = ErrorsJson(e, logs);
   const auto registration = RegistrationJson(e.registration);
@@ -61,6 +75,7 @@ void RunReplay(const Options& o) {
   WriteFile(folder / "errors.json", errors.dump(2) + "\n");
   WriteSimulated(e, traces, folder / "simulated");
   WriteReplayReport(e, logs, folder / "report.html");
+  std::fflush(stdout);  // before minutes of film
   if (o.video) {
     FilmOptions film;
     film.progress = ShowProgress;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <set>
@@ -16,6 +17,8 @@
 
 namespace continuum {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Options {
   std::string model, input, out, video;
@@ -189,8 +192,13 @@ std::string Header(const mjModel& m) {
 }
 
 void RunModel(const Options& o) {
-  if (!o.video.empty() && std::filesystem::path(o.video).extension() != ".mp4")
+  if (!o.video.empty() && fs::path(o.video).extension() != ".mp4")
     throw Error::Input("--video", "a name that ends in .mp4", "'" + o.video + "'");
+  const auto same = [](const std::string& a, const std::string& b) {
+    return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
+  };
+  if (!o.video.empty() && !o.out.empty() && same(o.video, o.out))
+    throw Error::Input("--video", "another file than --out", "'" + o.video + "'");
   System system = System::Load(o.model);
   std::vector<Change> changes;
   if (o.timestep > 0) changes.push_back({"option", "timestep", o.timestep});

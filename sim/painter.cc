@@ -25,8 +25,11 @@ std::string LengthText(double metres) {
 // MuJoCo's fonts have the printable ASCII characters only.
 std::string Ascii(const std::string& text) {
   static const std::vector<std::pair<std::string, std::string>> kSpelled = {
-      {"°", " deg"}, {"µ", "u"}, {"μ", "u"}, {"×", "x"},  {"·", "."}, {"²", "^2"}, {"³", "^3"},
-      {"–", "-"},    {"—", "-"}, {"−", "-"}, {"±", "+-"}, {"’", "'"}, {"…", "..."}};
+      {"°", " deg"}, {"µ", "u"},  {"μ", "u"},  {"×", "x"},  {"·", "."},  {"²", "^2"},
+      {"³", "^3"},   {"ä", "ae"}, {"ö", "oe"}, {"ü", "ue"}, {"Ä", "Ae"}, {"Ö", "Oe"},
+      {"Ü", "Ue"},   {"ß", "ss"}, {"é", "e"},  {"è", "e"},  {"ê", "e"},  {"á", "a"},
+      {"à", "a"},    {"í", "i"},  {"ó", "o"},  {"ú", "u"},  {"ñ", "n"},  {"ç", "c"},
+      {"–", "-"},    {"—", "-"},  {"−", "-"},  {"±", "+-"}, {"’", "'"},  {"…", "..."}};
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -74,10 +77,9 @@ class Painter {
   }
 
   // A length and its text, in the left half.
-  void Scale(double pixel) {
-    const double length = RoundLength(pixel * image_.width / 8);
-    const std::string text = LengthText(length);
-    const int bar = static_cast<int>(std::lround(length / pixel));
+  void Scale(const Ruler& ruler) {
+    const std::string text = LengthText(ruler.length);
+    const int bar = static_cast<int>(std::lround(ruler.length / ruler.pixel));
     const int left = free_ + pad_, width = bar + font_.Width(text) + 3 * pad_;
     if (left + width > image_.width / 2) return;
     const int top = image_.height - 2 * pad_ - line_, middle = top + (line_ + pad_) / 2;
@@ -198,11 +200,18 @@ int Font::Width(const std::string& text) const {
   return sum;
 }
 
-void Paint(const Overlay& overlay, const Font& font, double pixel, Image& image) {
+void Ruler::Measure(double pixel_length, int width) {
+  pixel = pixel_length;
+  if (pixel <= 0) return;
+  const double wanted = pixel * width / 8;
+  if (length < 0.3 * wanted || length > 1.5 * wanted) length = RoundLength(wanted);
+}
+
+void Paint(const Overlay& overlay, const Font& font, const Ruler& ruler, Image& image) {
   Painter painter(font, image);
   if (!overlay.caption.empty()) painter.Caption(overlay.caption);
   if (overlay.time) painter.Time(*overlay.time);
-  if (overlay.scale && pixel > 0) painter.Scale(pixel);
+  if (overlay.scale && ruler.pixel > 0) painter.Scale(ruler);
   if (overlay.bar) painter.Bar(*overlay.bar);
 }
 

@@ -105,7 +105,8 @@ class Renderer::Impl {
     UpdateScene(m, d, overlay);
     mjr_render({0, 0, width_, height_}, scene_.get(), context_.get());
     Image image = Read();
-    Paint(overlay, *font_, PixelAt(d), image);
+    ruler_.Measure(PixelAt(d), width_);
+    Paint(overlay, *font_, ruler_, image);
     return image;
   }
 
@@ -207,6 +208,7 @@ class Renderer::Impl {
   std::unique_ptr<mjvScene, SceneDeleter> scene_;
   std::unique_ptr<mjrContext, ContextDeleter> context_;
   std::optional<Font> font_;
+  Ruler ruler_;
 };
 
 Renderer::Renderer(const mjModel& m, int width, int height, Gl gl)

@@ -14,6 +14,7 @@
 
 #include "error.h"
 #include "sim/mujoco.h"
+#include "sim/painter.h"
 
 namespace continuum {
 namespace {
@@ -377,6 +378,18 @@ TEST_F(RendererTest, NamesTheSizesThatOpenGlHas) {
               ThrowsMessage<Error>(AllOf(HasSubstr("from 64 to"), HasSubstr("20 x 480"))));
   EXPECT_THAT([&] { Renderer(*model_, 640, 1000000); },
               ThrowsMessage<Error>(HasSubstr("640 x 1000000")));
+}
+
+TEST(Ruler, KeepsItsLengthWhileTheModelComesALittleNearer) {
+  Ruler ruler;
+  ruler.Measure(1e-3, 800);
+  EXPECT_DOUBLE_EQ(ruler.length, 0.1);
+  ruler.Measure(0.9e-3, 800);
+  EXPECT_DOUBLE_EQ(ruler.length, 0.1);
+  ruler.Measure(0.5e-3, 800);
+  EXPECT_DOUBLE_EQ(ruler.length, 0.05);
+  ruler.Measure(0, 800);  // not known
+  EXPECT_EQ(ruler.pixel, 0);
 }
 
 }  // namespace
