@@ -299,8 +299,11 @@ void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_u
     log.time.push_back(t * (1 + e.skew));
   }
   if (kept.size() < 2) {
-    throw Error::Input(log.file.string() + (window.empty() ? "" : " within its window"),
-                       "at least two rows", std::to_string(kept.size()));
+    const std::string in = window.empty() ? "" : " within its window, " + Listed(window) + " s";
+    const std::string rows = rec.rows() > 0 && kept.empty()
+                                 ? "none: it ends at " + Decimal(last) + " s"
+                                 : std::to_string(kept.size());
+    throw Error::Input(log.file.string() + in, "at least two rows", rows);
   }
   for (const Input& in : e.inputs) {
     std::vector<double> values;

@@ -150,7 +150,15 @@ TEST_F(ExperimentFile, ErrorsNameLineAndKey) {
               AllOf(HasSubstr("e.yaml:6"), HasSubstr("none.csv")));
   EXPECT_THAT(Wrong("file: log.csv", "file: log.csv, use: test"), HasSubstr("train | validate"));
   EXPECT_THAT(Wrong("file: log.csv", "file: log.csv, window: [1, 0]"), HasSubstr("window"));
-  EXPECT_THAT(Wrong("file: log.csv", "file: log.csv, window: [0, 0.05]"), HasSubstr("two rows"));
+  EXPECT_THAT(Wrong("file: log.csv", "file: log.csv, window: [0, 0.05]"),
+              HasSubstr("two rows, found 1"));
+  EXPECT_THAT(
+      Wrong("file: log.csv", "file: log.csv, window: [5, 9]"),
+      HasSubstr("window, [5, 9] s: expected at least two rows, found none: it ends at 0.4"));
+  scratch_.Write("log.csv", "t,T1,on,q1\n0,1,1,10\n100,2,0,20\n0,1,1,10\n");
+  EXPECT_THAT(Message([&] { Read(kExperiment); }),
+              HasSubstr("found 0 after 100, as in " + (scratch_ / "log.csv").string() + ":2"));
+  scratch_.Write("log.csv", kLog);
   EXPECT_THAT(Wrong("format: 1", "format: 1\nformat: 1"), HasSubstr("'format' twice"));
   EXPECT_THAT(Wrong("format: 1", "format: 1\nstart: warm"), HasSubstr("'warm'"));
   EXPECT_THAT(Wrong("format: 1", "format: 1\ncandidates: [ghosts]"), HasSubstr("'ghosts'"));
