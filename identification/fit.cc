@@ -203,6 +203,7 @@ Matrix LongRunCovariance(const Matrix& scores, double bandwidth) {
 // Andrews' plug-in for the Bartlett kernel with AR(1) scores, averaged over parameters.
 double Bandwidth(const Matrix& scores) {
   const Eigen::Index n = scores.rows();
+  if (n < 2) return 1;
   double top = 0, bottom = 0;
   for (Eigen::Index i = 0; i < scores.cols(); ++i) {
     const auto s = scores.col(i);
@@ -215,6 +216,28 @@ double Bandwidth(const Matrix& scores) {
   if (!(bottom > 0)) return 1;
   return std::min(1.1447 * std::cbrt(top / bottom * static_cast<double>(n)) + 1,
                   static_cast<double>(n) / 3);
+}
+
+// Jᵀ Cov(r) J of residuals r with the covariance of their autoregressive model: σ² YᵀY, where
+// y_t = j_t + Σ a_i y_{t+i}.
+Matrix ModelledCovariance(const Scores& block) {
+  const ChannelNoise noise = NoiseFrom({{block.r.begin(), block.r.end()}});
+  Matrix y = block.J;
+  const auto order = static_cast<Eigen::Index>(noise.ar.size());
+  for (Eigen::Index t = y.rows() - 1; t >= 0; --t) {
+    for (Eigen::Index i = 0; i < order && t + 1 + i < y.rows(); ++i)
+      y.row(t) += noise.ar[i] * y.row(t + 1 + i);
+  }
+  return noise.innovation * noise.innovation * y.transpose() * y;
+}
+
+// The rows that were measured.
+Scores Measured(const Scores& all) {
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index k = 0; k < all.r.size(); ++k) {
+    if (all.r[k] != 0 || !all.J.row(k).isZero(0)) rows.push_back(k);
+  }
+  return {all.r(rows), all.J(rows, Eigen::all), all.curvature(rows)};
 }
 
 // Of a symmetric matrix whose rows have units of their own.
@@ -240,6 +263,24 @@ void Reach(const Problem& problem, const Vector& low, const Vector& high, Uncert
 bool Foretold(const Uncertainty& u, const Vector& moved) {
   const Vector told = u.step / kWholeStep, wrong = moved - told;
   return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
+}
+
+// ρ' and ρ'' of the robust loss at residuals r.
+struct Loss {
+  Vector slope, curvature;
+};
+Loss LossOf(double soft, const Vector& r) {
+  if (soft == 0) return {r, Vector::Ones(r.size())};
+  const Eigen::ArrayXd spread = 1 + (r.array() / soft).square();
+  return {r.array() * spread.pow(-0.5), spread.pow(-1.5)};
+}
+
+// J times √ρ'' of the rows.
+std::vector<Matrix> Weighted(std::vector<Matrix> J, double soft, const std::vector<Vector>& r) {
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (J[l].size() > 0) J[l].array().colwise() *= LossOf(soft, r[l]).curvature.array().sqrt();
+  }
+  return J;
 }
 
 }  // namespace
@@ -375,7 +416,7 @@ Vector FitStarts(const Problem& problem, const Vector& x, const std::vector<bool
 }
 
 Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
-                          const std::vector<Matrix>& J, const Whitening& whitening) {
+                          const std::vector<Matrix>& J, const Whitening& whitening, double soft) {
   std::vector<Scores> blocks;
   const auto channels = static_cast<Eigen::Index>(problem.channels().size());
   for (std::size_t l = 0; l < J.size(); ++l) {
@@ -383,8 +424,10 @@ Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::ve
     const Eigen::Index rows = r[l].size() / channels;
     const Vector white = whitening.Apply(l, r[l]).col(0);
     const Matrix columns = whitening.Apply(l, J[l]);
-    for (Eigen::Index c = 0; c < channels; ++c)
-      blocks.push_back({white.segment(c * rows, rows), columns.middleRows(c * rows, rows)});
+    for (Eigen::Index c = 0; c < channels; ++c) {
+      const Loss loss = LossOf(soft, white.segment(c * rows, rows));
+      blocks.push_back({loss.slope, columns.middleRows(c * rows, rows), loss.curvature});
+    }
   }
   return UncertaintyFrom(problem, x, blocks);
 }
@@ -406,20 +449,30 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   }
   const auto k = static_cast<Eigen::Index>(inside.size());
   if (k == 0) return u;
-  Matrix H = Matrix::Zero(k, k), S = Matrix::Zero(k, k);
-  double effective = 0;  // independent samples, for the quantile
-  for (const Scores& block : blocks) {
-    const Matrix J = block.J(Eigen::all, inside);
-    const Matrix scores = block.r.asDiagonal() * J;
+  Matrix H = Matrix::Zero(k, k), S = H, modelled = H;
+  double independent = 0;  // rows, for the quantile
+  Eigen::Index rows = 0;
+  for (const Scores& all : blocks) {
+    Scores block = Measured(all);
+    block.J = Matrix(block.J(Eigen::all, inside));
+    const Matrix scores = block.r.asDiagonal() * block.J;
     const double bandwidth = Bandwidth(scores);
-    H += J.transpose() * J;
+    H += block.J.transpose() * block.curvature.asDiagonal() * block.J;
     S += LongRunCovariance(scores, bandwidth);
-    effective += static_cast<double>(block.r.size()) / bandwidth;
+    modelled += ModelledCovariance(block);
+    independent += static_cast<double>(block.r.size()) / bandwidth;
+    rows += block.r.size();
   }
   u.information(inside, inside) = H;
+  if (rows <= k) {
+    for (const Eigen::Index i : inside)
+      u.lower[i] = problem.parameters()[i].lower, u.upper[i] = problem.parameters()[i].upper;
+    return u;
+  }
+  const double freedom = std::max(2.0, independent - static_cast<double>(k));
   const Matrix Hi = PseudoInverse(H);
-  const Matrix cov = Hi * S * Hi;
-  const double freedom = std::max(2.0, effective - static_cast<double>(k));
+  const double few = std::max(1.0, independent / freedom);
+  const Matrix cov = few * Hi * modelled * Hi, robust = few * Hi * S * Hi;
   const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
   for (Eigen::Index a = 0; a < k; ++a) {
     const Eigen::Index i = inside[a];
@@ -428,7 +481,7 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
       u.lower[i] = p.lower, u.upper[i] = p.upper;
       continue;
     }
-    u.standard_error[i] = std::sqrt(std::max(0.0, cov(a, a)));
+    u.standard_error[i] = std::sqrt(std::max({0.0, cov(a, a), robust(a, a)}));
     u.lower[i] = std::max(p.lower, x[i] - t * u.standard_error[i]);
     u.upper[i] = std::min(p.upper, x[i] + t * u.standard_error[i]);
     for (Eigen::Index b = 0; b < k; ++b) {
@@ -518,7 +571,7 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const bool foretold = Foretold(u, moved);
   const auto slopes = foretold ? J : Secants(problem, x, r, J, step, whitening);
-  u = UncertaintyOf(problem, x, r, slopes, whitening);
+  u = UncertaintyOf(problem, x, r, slopes, whitening, options.soft);
   ReachOver(problem, moved, u);
   if (!foretold) ReachFurther(problem, x, slopes, step, whitening, u);
 }
@@ -529,13 +582,13 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   Problem centered = problem;
   centered.Center();
   const auto J = centered.Jacobian(x, r, train);
-  Uncertainty u = UncertaintyOf(problem, x, r, J);
+  const double soft = problem.experiment().soft;
+  Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
   if (problem.path() != Path::kStepped) return u;
   const auto step = problem.StepEffects(x, r, train);
-  AllowForStep(problem, J, step, {}, u);
+  AllowForStep(problem, Weighted(J, soft, r), Weighted(step, soft, r), {}, u);
   if (!StopRequested()) {
-    FitOptions few{
-        .iterations = 5, .tolerance = 1e-4, .soft = problem.experiment().soft, .idle = true};
+    FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
     if (progress)
       few.progress = [&](const std::string& line) { progress("at a fine step: " + line); };
     ReachByFineFit(centered, x, r, J, step, few, u);

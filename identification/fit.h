@@ -67,12 +67,20 @@ Problem::Vector FitStarts(const Problem& problem, const Problem::Vector& x,
 
 /// Standard errors and correlations of a fit, allowing for residuals that are correlated in time:
 ///
-///   Cov = H⁻¹ S H⁻¹,   H = Σ JᵀJ,   S = Σ_logs Σ_lags w(lag) Σ_t s_t s_{t+lag}ᵀ,   s_t = Jᵀ_t r_t
+///   Cov = n/(n − k) H⁻¹ S H⁻¹,   H = Σ JᵀJ
 ///
-/// of whitened residuals, with Bartlett weights and Andrews' bandwidth for AR(1) scores
-/// (heteroskedasticity and autocorrelation consistent, newey1987, andrews1991). A parameter at a
+/// (of a robust loss ρ: H = Σ Jᵀρ''J, and ρ' for r) of whitened residuals, with S once from the
+/// autoregressive model of each block's residuals (NoiseFrom), Σ Jᵀ Cov(r) J, and once from the
+/// scores s_t = Jᵀ_t r_t themselves,
+///
+///   S = Σ_blocks Σ_lags w(lag) Σ_t s_t s_{t+lag}ᵀ
+///
+/// with Bartlett weights and Andrews' bandwidth for AR(1) scores (heteroskedasticity and
+/// autocorrelation consistent, newey1987, andrews1991; of what lasts long it sees too little). Of
+/// each parameter the larger variance counts. n: independent rows, k: parameters. A parameter at a
 /// bound is left out: no standard error (NaN), and its value for an interval. One without effect
-/// has none either, and all that its bounds allow.
+/// has none either, and all that its bounds allow; so have all where rows are no more than
+/// parameters.
 struct Uncertainty {
   Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
   Problem::Vector step = {};  ///< what a fine time step would add to the value; empty: not known
@@ -80,16 +88,18 @@ struct Uncertainty {
   Problem::Matrix information;  ///< H; zero for parameters at a bound
   std::vector<bool> at_bound;
 };
-struct Scores {  ///< of rows that follow each other in time
-  Problem::Vector r;
+struct Scores {       ///< of rows that follow each other in time; a row of zeros was not measured
+  Problem::Vector r;  ///< slopes of the loss: for least squares the residuals
   Problem::Matrix J;
+  Problem::Vector curvature;  ///< of the loss: for least squares ones
 };
 Uncertainty UncertaintyFrom(const Problem& problem, const Problem::Vector& x,
                             const std::vector<Scores>& blocks);
 /// The same with one block per counted channel of every log that has a Jacobian.
 Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
                           const std::vector<Problem::Vector>& r,
-                          const std::vector<Problem::Matrix>& J, const Whitening& whitening = {});
+                          const std::vector<Problem::Matrix>& J, const Whitening& whitening = {},
+                          double soft = 0);
 
 /// Whole effect of a step, of order h, over what a quarter of it shows.
 inline constexpr double kWholeStep = 4.0 / 3;
@@ -131,8 +141,9 @@ void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
                     const std::vector<Problem::Matrix>& step, const FitOptions& options,
                     Uncertainty& u);
-/// All of these in one, from the train logs: what a fit.json states. r: residuals at x. Derivatives
-/// are central differences: one-sided ones bend what the step is said to change.
+/// All of these in one, from the train logs: what a fit.json states. r: residuals at x; the loss of
+/// the experiment may be robust. Derivatives are central differences: one-sided ones bend what the
+/// step is said to change.
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r,
                         const std::function<void(const std::string&)>& progress = {});

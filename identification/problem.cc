@@ -19,9 +19,10 @@
 namespace continuum {
 namespace {
 
+// Of a parameter that is above zero its start tells, however wide the bounds are.
 double TypicalSize(double initial, double lower, double upper) {
   const double range = upper - lower;
-  const double size = std::max(std::abs(initial), 1e-3 * range);
+  const double size = lower > 0 ? initial : std::max(std::abs(initial), 1e-3 * range);
   return std::isfinite(size) && size > 0 ? std::min(size, range) : 1;
 }
 

@@ -289,7 +289,7 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   found.validate = Relative(equations, change, false);
   std::vector<Scores> scores;
   for (const Equations& q : equations) {
-    if (q.train) scores.push_back({q.e + q.Y * change, q.Y});
+    if (q.train) scores.push_back({q.e + q.Y * change, q.Y, Eigen::VectorXd::Ones(q.e.size())});
   }
   found.uncertainty = UncertaintyFrom(problem, found.x, scores);
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -429,6 +429,13 @@ TEST_F(FitTest, ASoftLossIsNotDrawnByOutliers) {
   const double robust = std::abs(fit(0.002) - 0.1);
   EXPECT_LT(robust, 0.02 * 0.1);
   EXPECT_LT(robust, 0.2 * std::abs(fit(0) - 0.1));
+  const auto error = [&](double soft) {
+    e.soft = soft;
+    const Problem judged(e, system);
+    const Problem::Vector x = Problem::Vector::Constant(1, 0.1);
+    return IntervalsOf(judged, x, judged.Residuals(x, judged.AllLogs())).standard_error[0];
+  };
+  EXPECT_LT(error(0.002), 0.2 * error(0));
 }
 
 TEST_F(FitTest, ChordsReachTheSameOptimumFromNearby) {
