@@ -130,8 +130,9 @@ TEST_F(CheckModel, AnInputBeyondTheRangeOfItsActuatorIsNamed) {
   const Change range[]{{"actuator:m2", "ctrlrange[0]", -1.5}, {"actuator:m2", "ctrlrange[1]", 1}};
   system_.emplace(system_->With(range, {}));
   RecordFrom({});
-  const Finding* const f = Find(Bad(), "out_of_range", "u2");
-  ASSERT_NE(f, nullptr) << Report(Bad());
+  const auto bad = Bad();
+  const Finding* const f = Find(bad, "out_of_range", "u2");
+  ASSERT_NE(f, nullptr) << Report(bad);
   EXPECT_THAT(f->text, HasSubstr("actuator 'm2', -1.5 to 1 rad, in "));
 }
 
