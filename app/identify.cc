@@ -11,6 +11,7 @@
 
 #include "app/console.h"
 #include "error.h"
+#include "identification/far.h"
 #include "identification/fit_output.h"
 #include "identification/multi_start.h"
 #include "identification/path.h"
@@ -93,7 +94,7 @@ Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& sta
       all.starts = FitFromMany(problem, begin, use, o.starts, o.seed, options);
       all.fit = all.starts->best;
     } else {
-      all.fit = FitParameters(problem, begin, use, options);
+      all.fit = FitFar(problem, begin, use, options);
     }
     if (all.pieces) {
       all.fit.seconds += all.pieces->seconds;

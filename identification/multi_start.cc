@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "identification/far.h"
 #include "identification/random.h"
 #include "sim/stop.h"
 
@@ -47,7 +48,7 @@ MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
                        const std::vector<bool>& use, int starts, std::uint64_t seed,
                        const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::size_t before = problem.evaluations();
+  std::size_t evaluations = 0;
   Random random(seed);
   MultiStart all;
   all.best.cost = kInfinity;
@@ -59,15 +60,16 @@ MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
     own.patience = 3;   // far away, one step says little of the next
     own.idle |= k > 0;  // far away a parameter may have none
     try {
-      Fit fit = FitParameters(problem, all.starts.back().x, use, own);
+      Fit fit = FitFar(problem, all.starts.back().x, use, own);
       all.starts.back().cost = fit.cost;
+      evaluations += fit.evaluations;
       if (fit.cost < all.best.cost) all.best = std::move(fit);
     } catch (const Error& error) {
       if (error.kind() != Error::Kind::kJob) throw;
     }
   }
   if (all.best.x.size() == 0) throw Error::Job("the simulation diverges from every start");
-  all.best.evaluations = problem.evaluations() - before;
+  all.best.evaluations = evaluations;
   all.best.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return all;

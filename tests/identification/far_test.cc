@@ -1,0 +1,81 @@
+#include "identification/far.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pendulum.h"
+
+namespace continuum {
+namespace {
+
+// A wheel on a spring that steps of torque shake and dry friction holds again, by hand:
+//
+//   J q'' = u − k q − b q' − τ_f,   |τ_f| ≤ τ_c
+//
+// Where it comes to rest changes by leaps with every parameter.
+struct Shaken {
+  double inertia = 1.2, stiffness = 60, damping = 1.5, tau_c = 2;  // kg m², N m/rad, …, N m
+
+  static std::vector<double> Steps() {
+    std::vector<double> u(30, 0);
+    for (int k = 30; k < 500; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
+    return u;
+  }
+  std::vector<double> Run(const std::vector<double>& u) const {
+    constexpr double h = 2e-5;
+    double q = 0, v = 0;
+    std::vector<double> angle;
+    for (const double torque : u) {
+      angle.push_back(q);
+      for (int k = 0; k < std::lround(testing::kPeriod / h); ++k) {
+        const double free = v + h * (torque - stiffness * q - damping * v) / inertia;
+        const double stop = h * tau_c / inertia;
+        v = std::abs(free) <= stop ? 0 : free - std::copysign(stop, free);
+        q += h * v;
+      }
+    }
+    return angle;
+  }
+};
+
+constexpr char kModel[] = R"(<mujoco>
+  <option timestep="2e-3" integrator="implicitfast"/>
+  <extension>
+    <plugin plugin="continuum.coulomb"><instance name="dry"><config key="joint" value="hinge"/>
+      <config key="tau_c" value="1"/></instance></plugin>
+  </extension>
+  <worldbody><body><joint name="hinge" stiffness="40" damping="1" armature="0.8"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1e-6 1e-6 1e-6"/></body></worldbody>
+  <actuator><motor name="servo" joint="hinge"/></actuator>
+  <sensor><jointpos name="angle" joint="hinge"/></sensor>
+</mujoco>)";
+
+class Far : public testing::Bench {};
+
+TEST_F(Far, LeavesTheValleyWhereFittingAlongSlopesEnds) {
+  const Shaken truth;
+  const auto u = Shaken::Steps();
+  AddLog("shaken", "use: train", u, testing::Noisy(truth.Run(u), 1e-4, 0, 1));
+  const Experiment experiment = ReadExperiment(
+      "parameters:\n"
+      "  - {name: fc, target: 'plugin:dry', attribute: tau_c, initial: 1, lower: 0, upper: 6}\n"
+      "  - {name: k, target: 'joint:hinge', attribute: stiffness, initial: 40, lower: 1, "
+      "upper: 300}\n"
+      "  - {name: b, target: 'joint:hinge', attribute: damping, initial: 1, lower: 0.01, "
+      "upper: 20}\n"
+      "  - {name: j, target: 'joint:hinge', attribute: armature, initial: 0.8, lower: 0.1, "
+      "upper: 10}\n");
+  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const auto logs = problem.TrainLogs();
+  const Fit near = FitParameters(problem, problem.Start(), logs);
+  const Fit far = FitFar(problem, problem.Start(), logs);
+  EXPECT_LT(far.cost, 0.01 * near.cost);
+  const double expected[] = {truth.tau_c, truth.stiffness, truth.damping, truth.inertia};
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(far.x[k], expected[k], 0.02 * expected[k]) << k;
+  EXPECT_GT(far.evaluations, near.evaluations);
+}
+
+}  // namespace
+}  // namespace continuum
