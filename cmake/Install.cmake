@@ -20,4 +20,5 @@ install(FILES
 install(FILES LICENSE DESTINATION share/mujoco_continuum)
 install(DIRECTORY models DESTINATION share/mujoco_continuum FILES_MATCHING
   PATTERN *.xml PATTERN *.yaml PATTERN *.csv PATTERN README.md PATTERN import.py
+  PATTERN importer.py
   PATTERN generator EXCLUDE PATTERN images EXCLUDE PATTERN solver EXCLUDE)

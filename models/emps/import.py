@@ -10,12 +10,13 @@ scored: the loop holds it within 31 um of the measured one whatever the paramete
 do is in the voltage. The reference goes on straight lines between its samples: at steps of 1 ms that
 is the recorded loop, and finer steps are a faster loop instead of one that waits for its reference.
 """
-import os
 import pathlib
-import shutil
 import sys
 
-RECORDING = "DATA_EMPS.mat"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import importer  # noqa: E402
+
+RECORDING, VARIABLES = "DATA_EMPS.mat", ("t", "qg", "qm", "vir")
 EXPERIMENT = """format: 1
 model: {model}
 logs:
@@ -38,27 +39,17 @@ folds: window
 """
 
 
-def refuse(message):
-    print(f"import.py: {message}", file=sys.stderr)
-    sys.exit(2)
-
-
-def main():
-    if len(sys.argv) != 3:
-        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
-               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
-    source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    if not (source / RECORDING).is_file():
-        refuse(f"{source}: expected {RECORDING}, found none")
-    target.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(source / RECORDING, target / RECORDING)
-    model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "emps.xml", target.resolve())
-    (target / "experiment.yaml").write_text(EXPERIMENT.format(model=model, recording=RECORDING))
-    print(f"{RECORDING} and experiment.yaml in {target}")
+def convert(source, model):
+    path = source / RECORDING
+    expected = f"a MATLAB file (version 5) with {', '.join(VARIABLES)} of one length"
+    rows = {name: rows * columns for name, rows, columns, _ in importer.read_mat(path, expected)}
+    lengths = {rows.get(name) for name in VARIABLES}
+    if len(lengths) != 1 or None in lengths:
+        importer.refuse(path, expected, ", ".join(f"{n} ({k})" for n, k in rows.items()))
+    return ({RECORDING: path.read_bytes(),
+             "experiment.yaml": EXPERIMENT.format(model=model, recording=RECORDING)},
+            f"{RECORDING} and experiment.yaml")
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except OSError as error:
-        refuse(f"{error.filename}: {error.strerror}")
+    importer.run(__file__, __doc__, convert)

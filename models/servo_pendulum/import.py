@@ -9,9 +9,11 @@ trajectory up_and_down are for validation.
 """
 import json
 import math
-import os
 import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import importer  # noqa: E402
 
 K_T, RESISTANCE = 0.303, 3.37  # N m/A, Ohm
 TICKS_PER_RAD, DUTY_DIVISOR = 4096 / (2 * math.pi), 256 * 885
@@ -19,22 +21,21 @@ COLUMNS = {"t": "timestamp", "q": "position", "w": "speed", "goal": "goal_positi
            "on": "torque_enable"}
 
 
-def refuse(message):
-    print(f"import.py: {message}", file=sys.stderr)
-    sys.exit(2)
-
-
 def servo_stiffness(firmware_gain, volts):
     """Torque per rad of error [N m/rad]: k_t/R * V * duty per rad."""
     return K_T / RESISTANCE * volts * firmware_gain * TICKS_PER_RAD / DUTY_DIVISOR
 
 
-def write_log(log, path):
+def table(log, where):
+    """The entries as CSV."""
     rows = [",".join(COLUMNS)]
-    for entry in log["entries"]:
-        rows.append(",".join(repr(float(entry[key])) if name != "on" else str(int(entry[key]))
-                             for name, key in COLUMNS.items()))
-    path.write_text("\n".join(rows) + "\n")
+    for k, entry in enumerate(log["entries"]):
+        cells = {name: importer.number(entry[key], f"{where}: entries[{k}].{key}")
+                 for name, key in COLUMNS.items()}
+        rows.append(",".join(str(int(x)) if name == "on" else repr(x) for name, x in cells.items()))
+    if len(rows) < 3:
+        importer.refuse(f"{where}: entries", "at least 2", len(rows) - 1)
+    return "\n".join(rows) + "\n"
 
 
 def experiment(logs, model):
@@ -76,33 +77,35 @@ def experiment(logs, model):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    if len(sys.argv) != 3:
-        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
-               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
-    source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+def read(file):
+    """A recording with the gains of its servo, and its entries as CSV."""
+    try:
+        log = json.loads(file.read_text(encoding="utf-8"))
+        log["kp"], log["trajectory"] = int(log["kp"]), str(log["trajectory"])
+        importer.number(log["vin"], f"{file}: vin")
+        return log, table(log, file)
+    except (ValueError, LookupError, TypeError) as error:
+        importer.refuse(file, "a recording with kp, vin, trajectory and entries", repr(error))
+
+
+def convert(source, model):
     files = sorted(source.glob("*.json"))
     if not files:
-        refuse(f"{source}: expected recordings (*.json), found none")
-    target.mkdir(parents=True, exist_ok=True)
-    logs = []
+        importer.refuse(source, "recordings (*.json)", "none")
+    logs, tables, origin = [], {}, {}
     for file in files:
-        try:
-            log = json.loads(file.read_text())
-            name = f"kp{log['kp']}_{log['trajectory']}"
-            servo_stiffness(log["kp"], log["vin"])
-            write_log(log, target / f"{name}.csv")
-        except (ValueError, LookupError, TypeError) as error:
-            refuse(f"{file}: expected a recording with kp, vin, trajectory and entries, found {error!r}")
+        log, rows = read(file)
+        name = f"kp{log['kp']}_{log['trajectory']}"
+        if not name.replace("_", "").isalnum():
+            importer.refuse(f"{file}: trajectory", "a name", repr(log["trajectory"]))
+        if name in origin:
+            importer.refuse(file, "one recording for each gain and trajectory",
+                            f"{name} again, as in {origin[name]}")
+        origin[name], tables[f"{name}.csv"] = file, rows
         logs.append((name, log))
     logs.sort(key=lambda item: (item[1]["kp"], item[0]))
-    model = os.path.relpath(pathlib.Path(__file__).parent / "servo_pendulum.xml", target)
-    (target / "experiment.yaml").write_text(experiment(logs, model))
-    print(f"{len(logs)} logs and experiment.yaml in {target}")
+    return tables | {"experiment.yaml": experiment(logs, model)}, f"{len(logs)} logs and experiment.yaml"
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except OSError as error:
-        refuse(f"{error.filename}: {error.strerror}")
+    importer.run(__file__, __doc__, convert)

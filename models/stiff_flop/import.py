@@ -24,12 +24,13 @@ b, c (the marker from the tip, on the turned tip's axes) and e by linear least s
 arc of length 1. Written are marker - b [mm] and the turn as a quaternion, both in axes of the base.
 """
 import csv
+import io
 import math
-import os
 import pathlib
-import struct
 import sys
-import zlib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import importer  # noqa: E402
 
 RECORDING, ROWS, COLUMNS = "NoLoad.mat", 1094, 18
 PERIOD = 0.05  # s
@@ -55,47 +56,6 @@ EFFECTS = [
 SIGMA = (", sigma: 0.5", ", sigma: 0.02")  # mm, rad
 EXPERIMENTS = {"experiment.yaml": (SEGMENT, SIGMA), "with_effects.yaml": (SEGMENT + EFFECTS, SIGMA),
                "diagnosis.yaml": (SEGMENT, ("", ""))}
-
-
-class BadFile(Exception):
-    """What was found instead."""
-
-
-def refuse(message):
-    print(f"import.py: {message}", file=sys.stderr)
-    sys.exit(2)
-
-
-# ---- MAT version 5 ---------------------------------------------------------------------------------
-
-def elements(data, at=0):
-    """(type, bytes) of the elements from an offset on."""
-    while at + 8 <= len(data):
-        kind, size = struct.unpack_from("<II", data, at)
-        if kind >> 16:  # up to four bytes in the tag itself
-            yield kind & 0xFFFF, data[at + 4:at + 4 + (kind >> 16)]
-            at += 8
-        else:
-            yield kind, data[at + 8:at + 8 + size]
-            at += 8 + size + (0 if kind == 15 else -size % 8)
-
-
-def read_rows(data):
-    """The rows of the one matrix, doubles, of a little-endian file. Raises BadFile and what unpacking raises."""
-    for kind, part in elements(data, 128):
-        if kind == 15:
-            kind, part = next(elements(zlib.decompress(part)))
-        if kind != 14:
-            continue
-        parts = list(elements(part))
-        rows, columns = struct.unpack("<2i", parts[1][1])
-        if (rows, columns, parts[3][0]) != (ROWS, COLUMNS, 9):
-            raise BadFile(f"{rows} x {columns}")
-        values = struct.unpack(f"<{rows * columns}d", parts[3][1])
-        if not all(map(math.isfinite, values)):
-            raise BadFile("numbers that are not finite")
-        return [values[row::rows] for row in range(rows)]
-    raise BadFile("no matrix")
 
 
 # ---- vectors, quaternions (w, x, y, z), least squares ----------------------------------------------
@@ -240,16 +200,17 @@ def settled(recording, k):
     return all(recording.line_up(r) == recording.line_up(r - 1) for r in rows)
 
 
-def write_log(recording, position, turn, rows, path):
-    with path.open("w", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(["t", "p1", "p2", "p3", "x", "y", "z", "qw", "qx", "qy", "qz"])
-        for k in rows:
-            ahead = recording.pressure[min(k + 1, ROWS - 1)]
-            new = settled(recording, k) and not recording.repeats[k]
-            tip = [f"{1e3 * x:.4f}" for x in position[k]] + [f"{x:.6f}" for x in turn[k]]
-            out.writerow([f"{recording.time[k]:.2f}"] + [f"{p:.1f}" for p in ahead] +
-                         (tip if new else [""] * 7))
+def table(recording, position, turn, rows):
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(["t", "p1", "p2", "p3", "x", "y", "z", "qw", "qx", "qy", "qz"])
+    for k in rows:
+        ahead = recording.pressure[min(k + 1, ROWS - 1)]
+        new = settled(recording, k) and not recording.repeats[k]
+        tip = [f"{1e3 * x:.4f}" for x in position[k]] + [f"{x:.6f}" for x in turn[k]]
+        out.writerow([f"{recording.time[k]:.2f}"] + [f"{p:.1f}" for p in ahead] +
+                     (tip if new else [""] * 7))
+    return text.getvalue()
 
 
 def experiment(recording, model, marker, parameters, sigma):
@@ -277,47 +238,33 @@ def experiment(recording, model, marker, parameters, sigma):
 
 
 def read(path):
-    expected = f"{path}: expected a MATLAB file (version 5) of {ROWS} x {COLUMNS} doubles, found"
-    try:
-        return read_rows(path.read_bytes())
-    except OSError as error:
-        refuse(f"{path}: {error.strerror}")
-    except BadFile as found:
-        refuse(f"{expected} {found}")
-    except (struct.error, zlib.error, LookupError, StopIteration):
-        refuse(f"{expected} a damaged or another one")
+    """The rows of the one matrix."""
+    expected = f"a MATLAB file (version 5) of {ROWS} x {COLUMNS} doubles"
+    _, rows, columns, values = importer.read_mat(path, expected)[0]
+    if (rows, columns) != (ROWS, COLUMNS):
+        importer.refuse(path, expected, f"{rows} x {columns}")
+    if not all(map(math.isfinite, values)):
+        importer.refuse(path, expected, "numbers that are not finite")
+    return [values[row::rows] for row in range(rows)]
 
 
-def write(target, recording, position, turn, marker):
-    target.mkdir(parents=True, exist_ok=True)
-    for name, _, rows in windows_of(recording):
-        write_log(recording, position, turn, rows, target / f"{name}.csv")
-    model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "stiff_flop.xml",
-                            target.resolve())
-    for name, (parameters, sigma) in EXPERIMENTS.items():
-        (target / name).write_text(experiment(recording, model, marker, parameters, sigma))
-
-
-def main():
-    if len(sys.argv) != 3:
-        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
-               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
-    source, target = pathlib.Path(sys.argv[1]) / RECORDING, pathlib.Path(sys.argv[2])
-    rows = read(source)
+def convert(source, model):
+    path = source / RECORDING
+    rows = read(path)
     try:
         recording = Recording(rows)
         position, turn, marker, left = register(recording, frame_of(recording))
     except ArithmeticError:  # a line that never goes up, a tip that never turns
-        refuse(f"{source}: expected three lines that bend the module one after another, found none")
-    try:
-        write(target, recording, position, turn, marker)
-    except OSError as error:
-        refuse(f"{error.filename}: {error.strerror}")
+        importer.refuse(path, "three lines that bend the module one after another", "none")
+    logs = {f"{name}.csv": table(recording, position, turn, rows)
+            for name, _, rows in windows_of(recording)}
+    experiments = {name: experiment(recording, model, marker, parameters, sigma)
+                   for name, (parameters, sigma) in EXPERIMENTS.items()}
     place = ", ".join(f"{1e3 * x:.1f}" for x in marker)
-    print(f"nine logs, {', '.join(EXPERIMENTS)} in {target}; {sum(recording.repeats)} repeated samples left "
-          f"out; marker at {place} mm from the tip, mean distance from constant curvature "
-          f"{1e3 * left:.2f} mm")
+    print(f"{sum(recording.repeats)} repeated samples left out; marker at {place} mm from the tip, mean "
+          f"distance from constant curvature {1e3 * left:.2f} mm")
+    return logs | experiments, f"{len(logs)} logs, {', '.join(experiments)}"
 
 
 if __name__ == "__main__":
-    main()
+    importer.run(__file__, __doc__, convert)

@@ -11,9 +11,12 @@ cameras' frame and the marker are is estimated from the train rows. Of each fami
 written (default: 1, all).
 """
 import csv
-import os
+import io
 import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import importer  # noqa: E402
 
 SERVOS = (4, 3, 9, 5, 2, 8, 6, 1, 7)  # in the file's order: three of segment 1, then 2, then 3
 PARAMETERS = [
@@ -24,14 +27,11 @@ PARAMETERS = [
 ]
 
 
-def refuse(message):
-    print(f"import.py: {message}", file=sys.stderr)
-    sys.exit(2)
-
-
-def family(label):
+def family(label, where):
     """rep1_pair12_same_dir60_hold -> pair12_same; rep1_tendon0_id4_pull -> tendon_pull."""
     words = label.split("_")[1:]
+    if not words or not label.replace("_", "").isalnum():
+        importer.refuse(f"{where}, column 'pattern_label'", "repetition_family_...", repr(label))
     if words[0].startswith("tendon"):
         return "tendon_pull"
     return "_".join(words[:2]) if words[0].startswith("pair") else words[0]
@@ -39,14 +39,23 @@ def family(label):
 
 def read_families(source):
     """Rows of each family in file order, time from the first row of all."""
+    numbers = ["timestamp"] + [f"servo_{k}_mm" for k in SERVOS] + [f"tip_{axis}" for axis in "xyz"]
     families, start = {}, None
-    with source.open(newline="") as recording:
-        for row in csv.DictReader(recording):
-            start = float(row["timestamp"]) if start is None else start
-            values = {"t": f"{float(row['timestamp']) - start:.4f}"}
-            values |= {key: row[key] for key in row if key not in ("timestamp", "pattern_label")}
-            families.setdefault(family(row["pattern_label"]), []).append(values)
+    for where, row in importer.read_table(source, numbers + ["pattern_label"])[1]:
+        values = {name: importer.number(row[name], f"{where}, column '{name}'") for name in numbers}
+        start = values["timestamp"] if start is None else start
+        log = {"t": f"{values['timestamp'] - start:.4f}"}
+        log |= {key: row[key] for key in row if key not in ("timestamp", "pattern_label")}
+        families.setdefault(family(row["pattern_label"], where), []).append(log)
     return families
+
+
+def table(rows):
+    text = io.StringIO()
+    out = csv.DictWriter(text, rows[0], lineterminator="\n")
+    out.writeheader()
+    out.writerows(rows)
+    return text.getvalue()
 
 
 def experiment(families, model):
@@ -72,35 +81,21 @@ def experiment(families, model):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    if len(sys.argv) not in (3, 4):
-        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER [EVERY], found "
-               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
-    source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    every = sys.argv[3] if len(sys.argv) == 4 else "1"
-    if not every.isdecimal() or int(every) == 0:
-        refuse(f"EVERY: expected a number of rows, found {every}")
-    files = sorted(source.glob("*_train.csv"))
-    if len(files) != 1:
-        refuse(f"{source}: expected one recording (*_train.csv), found {len(files)}")
-    target.mkdir(parents=True, exist_ok=True)
-    try:
-        families = read_families(files[0])
-    except (ValueError, LookupError, TypeError, csv.Error) as error:
-        refuse(f"{files[0]}: expected rows with timestamp and pattern_label, found {error!r}")
-    for name, rows in families.items():
-        with (target / f"{name}.csv").open("w", newline="") as log:
-            out = csv.DictWriter(log, rows[0], lineterminator="\n")
-            out.writeheader()
-            out.writerows(rows[::int(every)])
-    model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "tdcr_three_segment.xml",
-                            target.resolve())
-    (target / "experiment.yaml").write_text(experiment(families, model))
-    print(f"{len(families)} logs and experiment.yaml in {target}")
+def read_every(text):
+    if not (text.isascii() and text.isdecimal()) or int(text) == 0:
+        importer.refuse("EVERY", "a number of rows", text)
+    return int(text)
+
+
+def convert(source, model, every=1):
+    recordings = sorted(source.glob("*_train.csv"))
+    if len(recordings) != 1:
+        importer.refuse(source, "one recording (*_train.csv)", len(recordings))
+    families = read_families(recordings[0])
+    files = {f"{name}.csv": table(rows[::every]) for name, rows in families.items()}
+    return (files | {"experiment.yaml": experiment(families, model)},
+            f"{len(families)} logs and experiment.yaml")
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except OSError as error:
-        refuse(f"{error.filename}: {error.strerror}")
+    importer.run(__file__, __doc__, convert, "EVERY", read_every)

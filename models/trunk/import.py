@@ -10,9 +10,12 @@ with gaps: two train (to 100 s) and one validate. The measured angles are the in
 commands u, which lead by 0.2 s; an angle is refreshed about every 5 rows and read as it stands.
 """
 import csv
-import os
+import io
 import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import importer  # noqa: E402
 
 PERIOD = 0.01  # s
 RECORDINGS = {"observations_controlled_1": ("unloaded", 0),
@@ -31,18 +34,19 @@ PARAMETERS = [
 ]
 
 
-def refuse(message):
-    print(f"import.py: {message}", file=sys.stderr)
-    sys.exit(2)
-
-
-def write_log(source, target):
-    """Copies the rows behind their time."""
-    with source.open(newline="") as recording, target.open("w", newline="") as log:
-        rows, out = csv.reader(recording), csv.writer(log, lineterminator="\n")
-        out.writerow(["t"] + next(rows))
-        for row in rows:
-            out.writerow([f"{float(row[0]) * PERIOD:.2f}"] + row)
+def table(path):
+    """The rows behind their time, as CSV."""
+    numbers = [f"phi{k}" for k in range(1, 7)] + [f"{axis}{k}" for k in (1, 2, 3) for axis in "xyz"]
+    header, rows = importer.read_table(path, ["ID"] + numbers)
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(["t"] + header)
+    for where, row in rows:
+        for name in numbers:
+            importer.number(row[name], f"{where}, column '{name}'")
+        time = importer.number(row["ID"], f"{where}, column 'ID'") * PERIOD
+        out.writerow([f"{time:.2f}"] + list(row.values()))
+    return text.getvalue()
 
 
 def experiment(model):
@@ -71,27 +75,11 @@ def experiment(model):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    if len(sys.argv) != 3:
-        refuse("expected SOURCE_FOLDER EXPERIMENT_FOLDER, found "
-               f"{len(sys.argv) - 1} argument{'' if len(sys.argv) == 2 else 's'}")
-    source, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    for name in RECORDINGS:
-        if not (source / f"{name}.csv").is_file():
-            refuse(f"{source}: expected {name}.csv, found none")
-    target.mkdir(parents=True, exist_ok=True)
-    for name in RECORDINGS:
-        try:
-            write_log(source / f"{name}.csv", target / f"{name}.csv")
-        except (ValueError, LookupError, StopIteration, csv.Error) as error:
-            refuse(f"{source / name}.csv: expected a header and rows that begin with a number, found {error!r}")
-    model = os.path.relpath(pathlib.Path(__file__).resolve().parent / "trunk.xml", target.resolve())
-    (target / "experiment.yaml").write_text(experiment(model))
-    print(f"{len(RECORDINGS)} logs and experiment.yaml in {target}")
+def convert(source, model):
+    files = {f"{name}.csv": table(source / f"{name}.csv") for name in RECORDINGS}
+    return (files | {"experiment.yaml": experiment(model)},
+            f"{len(RECORDINGS)} logs and experiment.yaml")
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except OSError as error:
-        refuse(f"{error.filename}: {error.strerror}")
+    importer.run(__file__, __doc__, convert)

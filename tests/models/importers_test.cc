@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/process.h"
+#include "support/scratch.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kServo = "servo_pendulum", kArm = "tdcr_three_segment", kTrunk = "trunk";
+const char* const kRobots[] = {"emps", "servo_pendulum", "stiff_flop", "tdcr_three_segment",
+                               "trunk"};
+
+class Importers : public ::testing::Test {
+ protected:
+  testing::Finished Import(const std::string& robot, std::vector<std::string> arguments) const {
+    const std::string script = CONTINUUM_SOURCE "/models/" + robot + "/import.py";
+    arguments.insert(arguments.begin(), {"/usr/bin/env", "python3", "-B", script});
+    return testing::RunProcess(std::move(arguments), scratch_.folder());
+  }
+  // What it says of the folder "in": one line, exit 2, and nothing written.
+  std::string Refusal(const std::string& robot,
+                      const std::vector<std::string>& arguments = {"in", "out"}) const {
+    const testing::Finished finished = Import(robot, arguments);
+    EXPECT_EQ(finished.exit_code, 2) << finished.err;
+    EXPECT_THAT(finished.err, ::testing::StartsWith("import.py: "));
+    EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch_ / "out"));
+    return finished.err;
+  }
+  void Source(const std::string& name, const std::string& content) const {
+    std::filesystem::create_directory(scratch_ / "in");
+    scratch_.Write("in/" + name, content);
+  }
+
+  static std::string Recording(int entries, const std::string& position = "0.1") {
+    std::string all;
+    for (int k = 0; k < entries; ++k) {
+      all += std::string(k ? "," : "") + "{\"timestamp\": " + std::to_string(k) +
+             ", \"position\": " + position +
+             ", \"speed\": 0, \"goal_position\": 1, \"torque_enable\": true}";
+    }
+    return R"({"kp": 400, "vin": 7.4, "trajectory": "sin", "entries": [)" + all + "]}";
+  }
+  static std::string Arm(const std::string& row) {
+    return "timestamp,pattern_label,servo_4_mm,servo_3_mm,servo_9_mm,servo_5_mm,servo_2_mm,"
+           "servo_8_mm,servo_6_mm,servo_1_mm,servo_7_mm,tip_x,tip_y,tip_z\n"
+           "10,rep1_home,0,0,0,0,0,0,0,0,0,1,2,3\n" +
+           row;
+  }
+  static std::string Trunk(const std::string& row) {
+    return "ID,phi1,phi2,phi3,phi4,phi5,phi6,x1,y1,z1,x2,y2,z2,x3,y3,z3\n"
+           "0,1,1,1,1,1,1,0,0,0,0,0,0,0,0,0\n" +
+           row;
+  }
+
+  testing::Scratch scratch_;
+};
+
+TEST_F(Importers, AskForTwoFolders) {
+  for (const std::string robot : kRobots) {
+    EXPECT_THAT(Refusal(robot, {}), HasSubstr("EXPERIMENT_FOLDER")) << robot;
+    EXPECT_THAT(Refusal(robot, {"in"}), HasSubstr("found 1 argument\n")) << robot;
+    EXPECT_THAT(Refusal(robot, {"1", "2", "3", "4"}), HasSubstr("found 4 arguments\n")) << robot;
+  }
+}
+
+TEST_F(Importers, ExplainThemselves) {
+  for (const std::string robot : kRobots) {
+    const auto help = Import(robot, {"--help"});
+    EXPECT_EQ(help.exit_code, 0) << robot;
+    EXPECT_THAT(help.out, HasSubstr("usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER")) << robot;
+  }
+}
+
+TEST_F(Importers, NameASourceThatIsNotThere) {
+  for (const std::string robot : kRobots) EXPECT_THAT(Refusal(robot), HasSubstr(": in")) << robot;
+}
+
+TEST_F(Importers, DoNotWriteOverAFileOrTheirSource) {
+  Source("here", "");
+  scratch_.Write("file", "kept");
+  for (const std::string robot : kRobots) {
+    EXPECT_THAT(Refusal(robot, {"in", "file"}), HasSubstr("expected a folder")) << robot;
+    EXPECT_THAT(Refusal(robot, {"in", "./in/"}), HasSubstr("other than the source")) << robot;
+  }
+  EXPECT_EQ(testing::Scratch::Text(scratch_ / "file"), "kept");
+}
+
+TEST_F(Importers, NameAMatlabFileThatIsAnother) {
+  const std::string head(128, ' ');
+  for (const std::string& content :
+       {std::string(), std::string("t,qg\n0,1\n"), head,
+        head + std::string("\x0f\0\0\0\x08\0\0\0\x78\x9cgarbage", 17),
+        head + std::string("\x0e\0\0\0\x10\0\0\0\x06\0\0\0\x08\0\0\0", 16)}) {
+    Source("DATA_EMPS.mat", content);
+    EXPECT_THAT(Refusal("emps"), HasSubstr("in/DATA_EMPS.mat: expected a MATLAB file (version 5)"));
+  }
+}
+
+TEST_F(Importers, NameTheRecordingOfAServoThatTheyCannotRead) {
+  Source("a.json", "");
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in/a.json: expected a recording"));
+  Source("a.json", Recording(3).substr(0, 100));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in/a.json: expected a recording"));
+  Source("a.json", "[1, 2]");
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in/a.json: expected a recording"));
+  Source("a.json", Recording(3, "NaN"));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in/a.json: entries[0].position: expected a finite"));
+  Source("a.json", Recording(1));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in/a.json: entries: expected at least 2, found 1"));
+  Source("a.json", Recording(3));
+  Source("b.json", Recording(3));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in/b.json: expected one recording for each gain"));
+}
+
+TEST_F(Importers, NameTheRowOfATableThatTheyCannotRead) {
+  Source("one_train.csv", "");
+  EXPECT_THAT(Refusal(kArm),
+              HasSubstr("one_train.csv:1: expected a column 'timestamp', found not"));
+  Source("one_train.csv", Arm(""));
+  EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv: expected at least 2 rows, found 1"));
+  Source("one_train.csv", Arm("11,rep1_home,0,0,0\n"));
+  EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv:3: expected 14 cells, found 5"));
+  Source("one_train.csv", Arm("11,rep1_home,0,0,0,0,0,0,0,0,x,1,2,3\n"));
+  EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv:3, column 'servo_7_mm': expected a finite"));
+  Source("one_train.csv", Arm("11,../home_x,0,0,0,0,0,0,0,0,0,1,2,3\n"));
+  EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv:3, column 'pattern_label': expected rep"));
+  Source("one_train.csv", Arm("11,rep1_\xff,0,0,0,0,0,0,0,0,0,1,2,3\n"));
+  EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv: expected a table as CSV"));
+}
+
+TEST_F(Importers, ReadAllSourcesBeforeTheyWrite) {
+  Source("observations_controlled_1.csv", Trunk("1,1,1,1,1,1,1,0,0,0,0,0,0,0,0,0\n"));
+  EXPECT_THAT(Refusal(kTrunk), HasSubstr("in/observations_controlled_1_100g.csv: No such file"));
+  Source("observations_controlled_1_100g.csv", Trunk("one,1,1,1,1,1,1,0,0,0,0,0,0,0,0,0\n"));
+  EXPECT_THAT(Refusal(kTrunk), HasSubstr("1_100g.csv:3, column 'ID': expected a finite number"));
+}
+
+TEST_F(Importers, LeaveAWholeFolder) {
+  Source("one_train.csv", Arm("11,rep1_pair12_same_hold,0,0,0,0,0,0,0,0,0,1,2,3\n"));
+  EXPECT_THAT(Refusal(kArm, {"in", "out", "0"}), HasSubstr("EVERY: expected a number of rows"));
+  const auto done = Import(kArm, {"in", "out"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.out, "2 logs and experiment.yaml in out\n");
+  std::vector<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(scratch_ / "out"))
+    names.push_back(file.path().filename());
+  EXPECT_THAT(names,
+              ::testing::UnorderedElementsAre("home.csv", "pair12_same.csv", "experiment.yaml"));
+}
+
+}  // namespace
+}  // namespace continuum
