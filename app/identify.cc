@@ -115,16 +115,25 @@ const char* Way(const Options& o, const Problem& problem) {
                                          : "stepped, by differences of MuJoCo's own steps";
 }
 
+std::string NearerBound(const FreeParameter& p, double value) {
+  return value - p.lower < p.upper - value ? "its lower bound" : "its upper bound";
+}
+
 void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, Eigen::Index i) {
-  const std::string bound =
-      value - p.lower < p.upper - value ? "its lower bound" : "its upper bound";
-  const std::string range =
-      u.at_bound[i] ? "at " + bound : fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  std::string range = u.at_bound[i] ? "at " + NearerBound(p, value)
+                                    : fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  if (p.initial <= p.lower || p.initial >= p.upper)
+    range += "; it starts at " + NearerBound(p, p.initial);
   const std::string unit = p.unit == "1" ? "" : " " + p.unit;
   std::printf("%-24s %.6g%s (%s)\n", p.name.c_str(), value, unit.c_str(), range.c_str());
 }
 
-void Print(const Problem& problem, const Fitting& all, const Uncertainty& u,
+std::string InWords(const SplitError& error, bool held_out, const std::string& unit) {
+  return fmt::format("error {:.4g} {} RMS on train", error.train, unit) +
+         (held_out ? fmt::format(", {:.4g} on validate", error.validate) : "");
+}
+
+void Print(const Problem& problem, const Fitting& all, const Determined& determined,
            const std::string& out) {
   const Experiment& e = problem.experiment();
   const Fit& fit = all.fit;
@@ -134,17 +143,20 @@ void Print(const Problem& problem, const Fitting& all, const Uncertainty& u,
       scores.push_back(std::move(s));
   }
   for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
-    if (!problem.parameters()[i].IsStart()) PrintParameter(problem.parameters()[i], fit.x[i], u, i);
+    if (!problem.parameters()[i].IsStart())
+      PrintParameter(problem.parameters()[i], fit.x[i], determined.uncertainty, i);
   }
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
   const std::string unit = Pool(e).unit();
   auto validate = problem.TrainLogs();
   validate.flip();
-  std::printf("error %.4g %s RMS on train", problem.PooledRms(r, problem.TrainLogs()),
-              unit.c_str());
-  if (std::find(validate.begin(), validate.end(), true) != validate.end())
-    std::printf(", %.4g on validate", problem.PooledRms(r, validate));
-  std::printf("%s\n", MeanAbsoluteInWords(scores).c_str());
+  const bool held_out = std::find(validate.begin(), validate.end(), true) != validate.end();
+  const SplitError error{problem.PooledRms(r, problem.TrainLogs()),
+                         held_out ? problem.PooledRms(r, validate) : 0};
+  std::printf("%s%s\n", InWords(error, held_out, unit).c_str(),
+              MeanAbsoluteInWords(scores).c_str());
+  if (determined.at_step)
+    std::printf("as the model steps: %s\n", InWords(*determined.at_step, held_out, unit).c_str());
   if (all.regression) {
     std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
                 all.regression->train, all.regression->validate);
@@ -170,7 +182,9 @@ void PrintCheck(const Options& o, const Experiment& e) {
       continue;
     }
     ++printed;
-    std::string where = fmt::format("{}", fmt::join(g.logs, ", "));
+    std::string where = g.logs.size() > 1 && g.logs.size() == e.logs.size()
+                            ? "all logs"
+                            : fmt::format("{}", fmt::join(g.logs, ", "));
     for (const std::string& channel : g.channels) where += channel.empty() ? "" : " " + channel;
     std::fprintf(stderr, "log check: %s: %s\n", where.c_str(), g.text.c_str());
   }
@@ -183,7 +197,8 @@ void RunIdentify(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
   const System system = System::Load(read.model);
   CheckNames(read, system);
-  const OutFolder made(o.out, {"fit.json", "fitted.xml", "simulated/", "report.html"},
+  const OutFolder made(o.out,
+                       {"fit.json", "fitted.xml", "fitted.yaml", "simulated/", "report.html"},
                        {read.file, read.model});
   const Experiment e = Registered(read, system);
   Problem problem(e, system);
@@ -207,7 +222,7 @@ void RunIdentify(const Options& o) {
                                           all.regression ? &*all.regression : nullptr,
                                           all.starts ? &*all.starts : nullptr, ShowProgress});
   EndProgress();
-  Print(problem, all, determined.uncertainty, o.out);
+  Print(problem, all, determined, o.out);
   for (const TradeOff& t : determined.trade_offs) std::printf("%s\n", t.text.c_str());
   StopIfRequested();  // the files hold the best so far
   if (!all.fit.converged) throw Error::Job("the fit did not converge: " + all.fit.message);
@@ -219,7 +234,8 @@ void AddIdentify(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* const sub = app.add_subcommand("identify", "Fit the parameters of an experiment");
   sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
-  sub->add_option("--out", o->out, "folder for fit.json, fitted.xml, simulated/, report.html")
+  sub->add_option("--out", o->out,
+                  "folder for fit.json, fitted.xml, fitted.yaml, simulated/, report.html")
       ->required();
   sub->add_option("--from", o->from,
                   "fit.json to start from: go on with a fit that was interrupted, or was made "

@@ -127,7 +127,8 @@ class Session {
                (!best || round.GoesWithTheStep(*best));
     d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), round.smallest_p(), Rules());
     const auto& named = d_.verdict.named;
-    if (excused_ && !named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))
+    const bool coarse = excused_ || d_.noise.step > d_.noise.rms;
+    if (coarse && !named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))
       d_.verdict = {"adequate", {}, "no candidate does more than the time step; try a finer one"};
   }
 

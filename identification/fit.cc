@@ -310,6 +310,9 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
     return fit;
   }
   auto J = problem.Jacobian(fit.x, r, use, {}, true);
+  for (const Matrix& part : J) {
+    if (!part.allFinite()) throw Error::Job("the simulation diverges next to the start of the fit");
+  }
   if (!options.idle) RequireEffect(problem, fit.x, J);
 
   ceres::Problem::Options ownership;

@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "identification/ahead.h"
+#include "identification/extension.h"
 #include "sim/file.h"
 #include "sim/json.h"
 #include "sim/replay.h"
@@ -107,14 +108,18 @@ nlohmann::json StartsJson(const Problem& problem, const MultiStart& all) {
 }
 
 // What the model gives at its own step, where the fit was one of its differential equation.
-nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x) {
-  Problem stepped = problem;
-  stepped.Follow(Path::kStepped);
+std::vector<Replayed> Stepped(Problem problem, const Problem::Vector& x) {
+  problem.Follow(Path::kStepped);
+  return Predicted(problem, x);
+}
+
+nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x,
+                      const std::vector<Replayed>& logs) {
   auto parameters = nlohmann::json::object();
   for (Eigen::Index i = 0; i < x.size(); ++i) parameters[problem.parameters()[i].name] = x[i];
   return {{"timestep", problem.system().model().opt.timestep},
           {"parameters", parameters},
-          {"error", ErrorsJson(problem.experiment(), Predicted(stepped, x))}};
+          {"error", ErrorsJson(problem.experiment(), logs)}};
 }
 
 constexpr std::size_t kAhead = 10;  // rows
@@ -236,7 +241,8 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
                       {"converged", fit.converged},
                       {"message", fit.message},
                       {"trace", fit.trace},
-                      {"fitted_model", "fitted.xml"}};
+                      {"fitted_model", "fitted.xml"},
+                      {"fitted_experiment", "fitted.yaml"}};
   for (Eigen::Index a = 0; a < u.correlation.rows(); ++a) {
     json["correlation"].emplace_back(
         std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
@@ -247,12 +253,19 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   if (const Regression* const inverse = record.regression)
     json["force_error"] = {
         {"unit", "%"}, {"train", inverse->train}, {"validate", inverse->validate}};
-  if (problem.path() == Path::kSmooth) json["at_step"] = AtStep(problem, x);
+  std::optional<SplitError> at_step;
+  if (problem.path() == Path::kSmooth) {
+    const auto stepped = Stepped(problem, x);
+    json["at_step"] = AtStep(problem, x, stepped);
+    at_step = PooledError(e, stepped);
+  }
   const auto ahead = PredictAhead(problem, fit.x, kAhead);
   if (ahead) json["ahead"] = AheadJson(e, *ahead);
   if (record.starts) json["starts"] = StartsJson(problem, *record.starts);
   WriteFile(folder / "fit.json", json.dump(2) + "\n");
-  WriteFile(folder / "fitted.xml", problem.system().Xml(problem.CommonChanges(x), {}, folder));
+  const Extension fitted = Extend(problem, x, folder, "fitted.xml");
+  WriteFile(folder / "fitted.xml", fitted.xml);
+  WriteFile(folder / "fitted.yaml", fitted.yaml);
   WriteSimulated(e, traces, folder / "simulated");
 
   Page page("Fit", e.model.filename().string() + " to " + std::to_string(e.logs.size()) + " logs");
@@ -292,7 +305,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
     AddOverlay(page, e, e.logs[l], {{"fitted", Style::kAfter, &traces[l]}}, true);
   }
   page.Write(folder / "report.html");
-  return {u, trade_offs};
+  return {u, trade_offs, at_step};
 }
 
 }  // namespace continuum

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "identification/multi_start.h"
 #include "identification/regressor.h"
 #include "identification/trade_off.h"
+#include "sim/replay.h"
 
 namespace continuum {
 
@@ -16,7 +18,7 @@ namespace continuum {
 struct FitRecord {
   std::string method = "lm";
   /// After a fit on the smooth path: parameters that suit the model's own step better; fitted.xml
-  /// gets these.
+  /// and fitted.yaml get these.
   const Problem::Vector* for_step = nullptr;
   const Regression* regression = nullptr;  ///< of the inverse model
   const MultiStart* starts = nullptr;      ///< where there were several
@@ -27,11 +29,13 @@ struct FitRecord {
 /// How well the logs determine the parameters.
 struct Determined {
   Uncertainty uncertainty;
-  std::vector<TradeOff> trade_offs;  ///< what they do not determine alone
+  std::vector<TradeOff> trade_offs;   ///< what they do not determine alone
+  std::optional<SplitError> at_step;  ///< after a fit on the smooth path: as the model steps
 };
 
-/// Writes fit.json, fitted.xml, simulated/*.csv and report.html of a fit into a folder. Returns
-/// what they say of the parameters.
+/// Writes fit.json, fitted.xml, fitted.yaml (the experiment with that model and every value that
+/// was fitted of single logs or of the measurement), simulated/*.csv and report.html of a fit into
+/// a folder. Returns what they say of the parameters.
 Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
                     const FitRecord& record = {});
 

@@ -81,5 +81,42 @@ TEST_F(IdentifyPath, GoesOnFromAnEarlierFit) {
                 {"broken.json", "JSON"});
 }
 
+TEST_F(IdentifyPath, SaysWhereAParameterStartsAtItsBoundAndWhatTheModelsStepsGive) {
+  Spoil("model.xml", "damping=\"0.1\"", "damping=\"0.01\"");
+  const auto f = Run({"identify", "experiment.yaml", "--out", "out"});
+  EXPECT_THAT(f.out, HasSubstr("; it starts at its lower bound)"));
+  EXPECT_THAT(f.out, HasSubstr("\nas the model steps: error "));
+}
+
+// Values of single logs, starts, sensors and the clock are not the model's: the experiment has
+// them.
+TEST_F(IdentifyPath, LeavesAnExperimentThatReplaysTheFit) {
+  std::string other = "t,u,q\n";
+  for (int k = 0; k < 30; ++k)
+    other += fmt::format("{},{},{}\n", 0.1 * k, k < 15 ? 0.2 : 0., 0.1 + 0.01 * (k % 7));
+  files_.Write("other.csv", other);
+  files_.Write("experiment.yaml", R"(format: 1
+model: model.xml
+time: {column: t, unit: s}
+start: estimate
+inputs: [{column: u, unit: Nm, actuator: motor}]
+outputs: [{column: q, unit: rad, sensor: angle}]
+parameters:
+  - {name: b, target: "joint:hinge", attribute: damping, lower: 0.01, upper: 1, per: condition}
+  - {name: shown, target: "sensor:angle", attribute: bias, initial: 0, lower: -1, upper: 1}
+logs:
+  - {file: other.csv, condition: cold}
+  - {file: other.csv, condition: warm, trial: later, window: [1, 2.5]}
+)");
+  const auto fit = Identify({"--path", "stepped"}, "path: stepped");
+  EXPECT_EQ(fit["fitted_experiment"], "fitted.yaml");
+  const auto f = Run({"replay", "out/fitted.yaml", "--out", "replayed"});
+  ASSERT_EQ(f.exit_code, 0) << f.err;
+  const auto replayed =
+      nlohmann::json::parse(testing::Scratch::Text(files_ / "replayed/errors.json"));
+  const double error = fit["error"]["train"];
+  EXPECT_NEAR(replayed["train"].get<double>(), error, 1e-9 * error);
+}
+
 }  // namespace
 }  // namespace continuum

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -294,6 +295,35 @@ TEST_F(FitTest, AStartThatDivergesIsAJobThatFailed) {
     FAIL() << "damping of -5 N m s/rad cannot be simulated";
   } catch (const Error& error) {
     EXPECT_EQ(error.exit_code(), 1);
+  }
+}
+
+TEST_F(FitTest, AStartBesideWhichItDivergesIsAJobThatFailed) {
+  AddTrials({}, 1);
+  const System system = Model({});
+  const auto parameters = [&](double b) {
+    return ReadExperiment(fmt::format(
+        "parameters:\n  - {{name: b, target: 'joint:hinge', attribute: damping, initial: {:.17g}, "
+        "lower: -50, upper: 50}}\n",
+        b));
+  };
+  double stable = 0, diverging = -5;  // damping, between which the last that can be simulated lies
+  for (int k = 0; k < 40; ++k) {
+    const double b = (stable + diverging) / 2;
+    const Experiment e = parameters(b);
+    const Problem problem(e, system);
+    const auto r = problem.Residuals(problem.Start(), problem.TrainLogs());
+    (r[0].allFinite() ? stable : diverging) = b;
+  }
+  const Experiment e = parameters(stable);
+  Problem problem(e, system);
+  problem.Center();
+  try {
+    FitAll(problem);
+    FAIL() << "damping of " << diverging << " N m s/rad cannot be simulated";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_code(), 1);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("next to the start"));
   }
 }
 
