@@ -203,7 +203,8 @@ void RunIdentify(const Options& o) {
   const Experiment e = Registered(read, system);
   Problem problem(e, system);
   if (problem.parameters().empty())
-    throw Error::Input(o.experiment, "the key 'parameters'", "none");
+    throw Error::Input(o.experiment + ": parameters", "at least one that is not frozen",
+                       e.parameters.empty() ? "none" : "frozen ones only");
   for (const auto& [option, given] :
        {std::pair{"--starts", o.starts > 1}, {"--from", !o.from.empty()}})
     if (given && o.method != "lm") throw Error::Input(option, "--method lm", o.method);

@@ -10,6 +10,7 @@
 #include "identification/hypothesis.h"
 #include "identification/noise.h"
 #include "identification/screen.h"
+#include "identification/uncertainty.h"
 #include "identification/verdict.h"
 
 namespace continuum {

@@ -152,6 +152,19 @@ void AddAhead(Page& page, const Experiment& e, const Ahead& ahead) {
                           ahead.rows, ahead.seconds)});
 }
 
+void RequireWithin(const std::filesystem::path& fit, const Problem& problem,
+                   const Problem::Vector& x) {
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const double edge = 1e-9 * p.scale;
+    if (p.lower - edge <= x[i] && x[i] <= p.upper + edge) continue;
+    throw Error::Input(
+        fit.string() + ": parameter '" + p.name + "'",
+        fmt::format("a value within its bounds [{:g}, {:g}], {}", p.lower, p.upper, p.where),
+        fmt::format("{:g}", x[i]));
+  }
+}
+
 }  // namespace
 
 Problem::Vector ValuesIn(const std::filesystem::path& fit, const Problem& problem) {
@@ -169,6 +182,7 @@ Problem::Vector ValuesIn(const std::filesystem::path& fit, const Problem& proble
     }
     if (!found) throw Error::Input(fit.string(), "a value of the parameter '" + name + "'", "none");
   }
+  RequireWithin(fit, problem, x);
   return problem.Clamp(x);
 }
 

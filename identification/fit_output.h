@@ -39,8 +39,8 @@ struct Determined {
 Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
                     const FitRecord& record = {});
 
-/// The values that a fit.json has for the parameters of a problem, within their bounds. Throws
-/// Error when it is none or lacks one.
+/// The values that a fit.json has for the parameters of a problem. Throws Error when it is none,
+/// lacks one, or has one beyond its bounds.
 Problem::Vector ValuesIn(const std::filesystem::path& fit, const Problem& problem);
 
 /// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}], and fine_step, the value

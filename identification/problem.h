@@ -20,9 +20,10 @@ struct FreeParameter {
   std::string name;  ///< "mass", "mass[CONDITION]", "mass[LOG]"
   std::string unit;
   double initial, lower, upper;
-  double scale;           ///< a typical size, for scaling and finite differences
-  Change change;          ///< value is filled in
-  std::vector<bool> log;  ///< which logs it acts on
+  double scale;            ///< a typical size, for scaling and finite differences
+  Change change;           ///< value is filled in
+  std::vector<bool> log;   ///< which logs it acts on
+  std::string where = {};  ///< file:line: key, for messages
 
   /// Whether it is where a trial begins (identification/starts.h).
   bool IsStart() const { return change.target.starts_with("start:"); }

@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "identification/rounding.h"
+#include "identification/uncertainty.h"
 
 namespace continuum {
 namespace {

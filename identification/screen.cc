@@ -8,6 +8,7 @@
 
 #include "identification/parallel.h"
 #include "identification/random.h"
+#include "identification/uncertainty.h"
 
 namespace continuum {
 namespace {

@@ -329,17 +329,22 @@ void ReadRows(Log& log, const Experiment& e, const Recording& rec, double time_u
   }
 }
 
+// The file that a key names, beside the experiment.
+std::filesystem::path FileAt(const Yaml& y, const std::filesystem::path& experiment,
+                             const std::string& expected) {
+  const std::filesystem::path file = experiment.parent_path() / y.Text();
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw Error::Input(y.Where(), expected, "no file " + file.string());
+  if (std::filesystem::is_directory(file, ignored))
+    throw Error::Input(y.Where(), expected, "a folder");
+  return file;
+}
+
 Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
   y.Only({"file", "variable", "trial", "use", "window", "condition", "set", "start"});
   Log log;
-  log.file = e.file.parent_path() / y.At("file").Text();
-  std::error_code ignored;
-  if (!std::filesystem::exists(log.file, ignored)) {
-    throw Error::Input(y.At("file").Where(), "a log file", "no file " + log.file.string());
-  }
-  if (std::filesystem::is_directory(log.file, ignored)) {
-    throw Error::Input(y.At("file").Where(), "a log file", "a folder");
-  }
+  log.file = FileAt(y.At("file"), e.file, "a log file");
   log.label = log.file.stem().string();
   log.trial = TextOr(y, "trial", log.label);
   log.condition = TextOr(y, "condition", "");
@@ -413,7 +418,7 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
 
   Experiment e;
   e.file = file;
-  e.model = file.parent_path() / y.At("model").Text();
+  e.model = FileAt(y.At("model"), file, "a model file");
   double time_unit = 1;
   if (const auto time = y.Find("time")) {
     time->Only({"column", "unit", "skew"});

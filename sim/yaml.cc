@@ -22,7 +22,9 @@ Yaml Yaml::Parse(const std::string& text, std::string name) {
     if (!root.node_.IsMap()) throw Error::Input(name, "a map of keys", root.Found());
     return root;
   } catch (const YAML::Exception& e) {
-    throw Error::Input(name + ":" + std::to_string(e.mark.line + 1), e.msg);
+    const bool anchor = e.msg.starts_with("the referenced anchor is not defined");
+    throw Error::Input(name + ":" + std::to_string(e.mark.line + 1),
+                       e.msg + (anchor ? " (text that begins with * needs quotes)" : ""));
   }
 }
 

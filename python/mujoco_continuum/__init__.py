@@ -14,7 +14,11 @@ force_law and friction_law make candidates of Python functions.
 An experiment is the path of an EXPERIMENT.yaml or a dict with the same keys. docs/python.md shows a
 whole example.
 """
-from ._build import MUJOCO, VERSION as __version__
+try:
+    from ._build import MUJOCO, VERSION as __version__
+except ModuleNotFoundError as error:
+    raise ImportError("this is mujoco_continuum's source tree, where nothing is built; install it "
+                      "with `pip install .` and start Python elsewhere") from error
 from ._engine import load as _load
 from ._paths import EXECUTABLE, MODELS, PLUGIN
 from ._tool import Error, InputError, JobError

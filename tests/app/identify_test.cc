@@ -79,6 +79,15 @@ TEST_F(IdentifyPath, GoesOnFromAnEarlierFit) {
   files_.Write("broken.json", "{");
   ExpectRefused({"identify", "experiment.yaml", "--from", "broken.json", "--out", "no"},
                 {"broken.json", "JSON"});
+  files_.Write("beyond.json", R"({"parameters": [{"name": "b", "value": 1e6}]})");
+  ExpectRefused({"identify", "experiment.yaml", "--from", "beyond.json", "--out", "no"},
+                {"beyond.json: parameter 'b'", "bounds", "experiment.yaml:", "1e+06"});
+}
+
+TEST_F(IdentifyPath, NeedsAParameterThatIsFree) {
+  Spoil("experiment.yaml", "name: b,", "name: b, frozen: true,");
+  ExpectRefused({"identify", "experiment.yaml", "--out", "no"},
+                {"experiment.yaml: parameters", "frozen ones only"});
 }
 
 TEST_F(IdentifyPath, SaysWhereAParameterStartsAtItsBoundAndWhatTheModelsStepsGive) {

@@ -130,6 +130,7 @@ TEST_F(ExtensionTest, KeepsWindowsTrialsOutputsAndFolds) {
   const Problem problem(e, system);
   MakeFolder(folder_ / "out");
   const Extension extension = Extend(problem, problem.Start(), folder_ / "out");
+  WriteFile(folder_ / "out" / "extended.xml", extension.xml);
   WriteFile(folder_ / "out" / "extended.yaml", extension.yaml);
   const Experiment again = Experiment::Read(folder_ / "out" / "extended.yaml");
   ASSERT_EQ(again.logs.size(), e.logs.size());

@@ -13,6 +13,7 @@
 #include "benchmark/stick_slip/experiment.h"
 #include "error.h"
 #include "identification/trade_off.h"
+#include "identification/uncertainty.h"
 #include "pendulum.h"
 
 namespace continuum {

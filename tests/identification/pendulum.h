@@ -127,6 +127,7 @@ class Bench : public ::testing::Test {
     folder_ = std::filesystem::temp_directory_path() / name;
     std::filesystem::remove_all(folder_);
     MakeFolder(folder_);
+    Write("model.xml", "<mujoco/>");  // experiments are read before their model is known
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 

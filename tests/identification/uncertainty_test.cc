@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
-#include "identification/fit.h"
+#include "identification/uncertainty.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -33,7 +33,7 @@ class Experiment(bench.Bench):
         (self.folder / "log.csv").rename(self.folder / "logs" / "log.csv")
         (self.folder / "model.xml").rename(self.folder / "logs" / "model.xml")
         self.assertEqual(mc.replay(self.experiment, folder="logs")["logs"][0]["log"], "log")
-        with self.assertRaisesRegex(mc.InputError, "log file"):
+        with self.assertRaisesRegex(mc.InputError, "model file"):
             mc.replay(self.experiment)
 
     def test_a_dict_stays_as_it_is(self):

@@ -1,4 +1,5 @@
 """The plugin in the MuJoCo of this Python."""
+import pathlib
 import subprocess
 import sys
 import unittest
@@ -8,8 +9,11 @@ import mujoco
 import mujoco_continuum
 
 
-def python(code):
-    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+SOURCES = pathlib.Path(__file__).parents[2] / "python"
+
+
+def python(code, **options):
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, **options)
 
 
 class Plugin(bench.Bench):
@@ -34,6 +38,10 @@ class Import(unittest.TestCase):
         run = python("import sys; sys.modules['mujoco'] = None; import mujoco_continuum")
         self.assertIn("ImportError: mujoco_continuum", run.stderr)
         self.assertIn(f"pip install mujoco-core=={mujoco_continuum.MUJOCO}", run.stderr)
+
+    def test_in_the_source_tree_says_what_to_do(self):
+        run = python("import mujoco_continuum", cwd=SOURCES)
+        self.assertIn("ImportError: this is mujoco_continuum's source tree", run.stderr)
 
     def test_with_another_release_says_which_is_needed(self):
         run = python("import mujoco; mujoco.mj_versionString = lambda: '3.9.9'\n"

@@ -23,12 +23,13 @@ class CheckReal : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!fs::exists(data_)) GTEST_SKIP() << "no recordings at " << data_;
+    scratch_.Write("model.xml", "<mujoco/>");
   }
 
   // logs, time, inputs, outputs of an experiment file.
   std::vector<Finding> Check(const std::string& yaml) const {
-    return CheckLogs(
-        Experiment::Read(scratch_.Write("experiment.yaml", "format: 1\nmodel: none.xml\n" + yaml)));
+    return CheckLogs(Experiment::Read(
+        scratch_.Write("experiment.yaml", "format: 1\nmodel: model.xml\n" + yaml)));
   }
 
   const fs::path data_ = testing::Recordings("");

@@ -31,7 +31,10 @@ logs: [{file: log.csv}]
 
 class ExperimentFile : public ::testing::Test {
  protected:
-  ExperimentFile() { scratch_.Write("log.csv", kLog); }
+  ExperimentFile() {
+    scratch_.Write("log.csv", kLog);
+    scratch_.Write("m.xml", "<mujoco/>");
+  }
 
   Experiment Read(const std::string& text) const {
     return Experiment::Read(scratch_.Write("e.yaml", text));
@@ -205,6 +208,8 @@ TEST_F(ExperimentFile, SurvivesPathsThatNoFileSystemTakes) {
   EXPECT_THAT(Wrong("file: log.csv", "file: " + name), HasSubstr("e.yaml:6"));
   EXPECT_THAT(Wrong("file: log.csv", "file: \"a\\0b\""), HasSubstr("e.yaml:6"));
   EXPECT_THAT(Wrong("file: log.csv", "file: ."), HasSubstr("a folder"));
+  EXPECT_THAT(Wrong("model: m.xml", "model: nix.xml"),
+              AllOf(HasSubstr("e.yaml:2: model"), HasSubstr("nix.xml")));
   EXPECT_THAT(Message([&] { Experiment::Read(scratch_ / name); }), HasSubstr("readable"));
 }
 
@@ -232,6 +237,7 @@ void ExpectErrorOrNothing(const testing::Scratch& scratch) {
 
 RC_GTEST_PROP(ExperimentBytes, NeverFailExceptWithAnError, (const std::string& bytes)) {
   const testing::Scratch scratch;
+  scratch.Write("m.xml", "<mujoco/>");
   scratch.Write("log.csv", kLog);
   scratch.Write("e.yaml", bytes);
   ExpectErrorOrNothing(scratch);
@@ -244,6 +250,7 @@ RC_GTEST_PROP(ExperimentBytes, NeverFailWhenAGoodFileIsDamagedExceptWithAnError,
                        '~', '!', '?', '|', '<', '\xFF', '\0'));
   const bool log = *rc::gen::arbitrary<bool>();
   const testing::Scratch scratch;
+  scratch.Write("m.xml", "<mujoco/>");
   scratch.Write("log.csv", log ? Arbitrary(kLog, from, count % 8, by) : kLog);
   scratch.Write("e.yaml", log ? kExperiment : Arbitrary(kExperiment, from, count % 8, by));
   ExpectErrorOrNothing(scratch);
@@ -262,6 +269,7 @@ RC_GTEST_PROP(ExperimentLog, RoundTripsIncreasingTimesAndNumbers, ()) {
     text += Decimal(t) + ",0,1," + Decimal(value.back()) + "\n";
   }
   const testing::Scratch scratch;
+  scratch.Write("m.xml", "<mujoco/>");
   scratch.Write("log.csv", text);
   std::string good = kExperiment;
   const Experiment e =

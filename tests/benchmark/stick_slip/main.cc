@@ -15,6 +15,7 @@
 #include "identification/multi_start.h"
 #include "identification/noise.h"
 #include "identification/path.h"
+#include "identification/uncertainty.h"
 #include "sim/file.h"
 #include "support/json_lines.h"
 

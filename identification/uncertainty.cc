@@ -1,0 +1,297 @@
+#include "identification/uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Dense>
+#include <boost/math/distributions/students_t.hpp>
+
+#include "error.h"
+#include "sim/stop.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+// Σ_t s_t s_tᵀ with Bartlett-weighted lags up to the bandwidth.
+Matrix LongRunCovariance(const Matrix& scores, double bandwidth) {
+  const Eigen::Index n = scores.rows();
+  Matrix S = scores.transpose() * scores;
+  for (Eigen::Index lag = 1; lag < n && static_cast<double>(lag) < bandwidth; ++lag) {
+    const double w = 1 - static_cast<double>(lag) / bandwidth;
+    const Matrix G = scores.topRows(n - lag).transpose() * scores.bottomRows(n - lag);
+    S += w * (G + G.transpose());
+  }
+  return S;
+}
+
+// Andrews' plug-in for the Bartlett kernel with AR(1) scores, averaged over parameters.
+double Bandwidth(const Matrix& scores) {
+  const Eigen::Index n = scores.rows();
+  if (n < 2) return 1;
+  double top = 0, bottom = 0;
+  for (Eigen::Index i = 0; i < scores.cols(); ++i) {
+    const auto s = scores.col(i);
+    const double power = s.head(n - 1).squaredNorm();
+    if (!(power > 0)) continue;
+    const double rho = std::clamp(s.head(n - 1).dot(s.tail(n - 1)) / power, -0.99, 0.99);
+    top += 4 * rho * rho / (std::pow(1 - rho, 6) * std::pow(1 + rho, 2));
+    bottom += 1 / std::pow(1 - rho, 4);
+  }
+  if (!(bottom > 0)) return 1;
+  return std::min(1.1447 * std::cbrt(top / bottom * static_cast<double>(n)) + 1,
+                  static_cast<double>(n) / 3);
+}
+
+// Jᵀ Cov(r) J of residuals r with the covariance of their autoregressive model: σ² YᵀY, where
+// y_t = j_t + Σ a_i y_{t+i}.
+Matrix ModelledCovariance(const Scores& block) {
+  const ChannelNoise noise = NoiseFrom({{block.r.begin(), block.r.end()}});
+  Matrix y = block.J;
+  const auto order = static_cast<Eigen::Index>(noise.ar.size());
+  for (Eigen::Index t = y.rows() - 1; t >= 0; --t) {
+    for (Eigen::Index i = 0; i < order && t + 1 + i < y.rows(); ++i)
+      y.row(t) += noise.ar[i] * y.row(t + 1 + i);
+  }
+  return noise.innovation * noise.innovation * y.transpose() * y;
+}
+
+// The rows that were measured.
+Scores Measured(const Scores& all) {
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index k = 0; k < all.r.size(); ++k) {
+    if (all.r[k] != 0 || !all.J.row(k).isZero(0)) rows.push_back(k);
+  }
+  return {all.r(rows), all.J(rows, Eigen::all), all.curvature(rows)};
+}
+
+// Of a symmetric matrix whose rows have units of their own.
+Matrix PseudoInverse(const Matrix& H) {
+  const Vector scale =
+      H.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 1; });
+  const Matrix even = scale.asDiagonal() * H * scale.asDiagonal();
+  const Matrix inverse = even.completeOrthogonalDecomposition().pseudoInverse();
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+// Moves the ends of the intervals by low ≤ 0 and high ≥ 0, within the bounds.
+void Reach(const Problem& problem, const Vector& low, const Vector& high, Uncertainty& u) {
+  for (Eigen::Index i = 0; i < low.size(); ++i) {
+    if (u.at_bound[i]) continue;
+    const FreeParameter& p = problem.parameters()[i];
+    u.lower[i] = std::max(p.lower, u.lower[i] + low[i]);
+    u.upper[i] = std::min(p.upper, u.upper[i] + high[i]);
+  }
+}
+
+// Whether first order said, to half of it, what a quarter of the step changes.
+bool Foretold(const Uncertainty& u, const Vector& moved) {
+  const Vector told = u.step / kWholeStep, wrong = moved - told;
+  return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
+}
+
+// ρ' and ρ'' of the robust loss at residuals r.
+struct Loss {
+  Vector slope, curvature;
+};
+Loss LossOf(double soft, const Vector& r) {
+  if (soft == 0) return {r, Vector::Ones(r.size())};
+  const Eigen::ArrayXd spread = 1 + (r.array() / soft).square();
+  return {r.array() * spread.pow(-0.5), spread.pow(-1.5)};
+}
+
+// J times √ρ'' of the rows.
+std::vector<Matrix> Weighted(std::vector<Matrix> J, double soft, const std::vector<Vector>& r) {
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (J[l].size() > 0) J[l].array().colwise() *= LossOf(soft, r[l]).curvature.array().sqrt();
+  }
+  return J;
+}
+
+}  // namespace
+
+Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                          const std::vector<Matrix>& J, const Whitening& whitening, double soft) {
+  std::vector<Scores> blocks;
+  const auto channels = static_cast<Eigen::Index>(problem.channels().size());
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (!J[l].size()) continue;
+    const Eigen::Index rows = r[l].size() / channels;
+    const Vector white = whitening.Apply(l, r[l]).col(0);
+    const Matrix columns = whitening.Apply(l, J[l]);
+    for (Eigen::Index c = 0; c < channels; ++c) {
+      const Loss loss = LossOf(soft, white.segment(c * rows, rows));
+      blocks.push_back({loss.slope, columns.middleRows(c * rows, rows), loss.curvature});
+    }
+  }
+  return UncertaintyFrom(problem, x, blocks);
+}
+
+Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
+                            const std::vector<Scores>& blocks) {
+  const Eigen::Index n = x.size();
+  Uncertainty u;
+  u.standard_error = Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  u.lower = u.upper = x;
+  u.correlation = Matrix::Identity(n, n);
+  u.information = Matrix::Zero(n, n);
+  std::vector<Eigen::Index> inside;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const double edge = 1e-6 * p.scale;
+    u.at_bound.push_back(x[i] <= p.lower + edge || x[i] >= p.upper - edge);
+    if (!u.at_bound.back()) inside.push_back(i);
+  }
+  const auto k = static_cast<Eigen::Index>(inside.size());
+  if (k == 0) return u;
+  Matrix H = Matrix::Zero(k, k), S = H, modelled = H;
+  double independent = 0;  // rows, for the quantile
+  Eigen::Index rows = 0;
+  for (const Scores& all : blocks) {
+    Scores block = Measured(all);
+    block.J = Matrix(block.J(Eigen::all, inside));
+    const Matrix scores = block.r.asDiagonal() * block.J;
+    const double bandwidth = Bandwidth(scores);
+    H += block.J.transpose() * block.curvature.asDiagonal() * block.J;
+    S += LongRunCovariance(scores, bandwidth);
+    modelled += ModelledCovariance(block);
+    independent += static_cast<double>(block.r.size()) / bandwidth;
+    rows += block.r.size();
+  }
+  u.information(inside, inside) = H;
+  if (rows <= k) {
+    for (const Eigen::Index i : inside)
+      u.lower[i] = problem.parameters()[i].lower, u.upper[i] = problem.parameters()[i].upper;
+    return u;
+  }
+  const double freedom = std::max(2.0, independent - static_cast<double>(k));
+  const Matrix Hi = PseudoInverse(H);
+  const double few = std::max(1.0, independent / freedom);
+  const Matrix cov = few * Hi * modelled * Hi, robust = few * Hi * S * Hi;
+  const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
+  for (Eigen::Index a = 0; a < k; ++a) {
+    const Eigen::Index i = inside[a];
+    const FreeParameter& p = problem.parameters()[i];
+    if (!(H(a, a) > 0)) {
+      u.lower[i] = p.lower, u.upper[i] = p.upper;
+      continue;
+    }
+    u.standard_error[i] = std::sqrt(std::max({0.0, cov(a, a), robust(a, a)}));
+    u.lower[i] = std::max(p.lower, x[i] - t * u.standard_error[i]);
+    u.upper[i] = std::min(p.upper, x[i] + t * u.standard_error[i]);
+    for (Eigen::Index b = 0; b < k; ++b) {
+      const double size = std::sqrt(cov(a, a) * cov(b, b));
+      u.correlation(i, inside[b]) = size > 0 ? cov(a, b) / size : (a == b ? 1 : 0);
+    }
+  }
+  return u;
+}
+
+Problem AtQuarter(const Problem& problem) {
+  Problem fine = problem;
+  fine.StepBy(problem.step() / 4);
+  return fine;
+}
+
+void ReachOver(const Problem& problem, const Vector& quarter, Uncertainty& u) {
+  u.step = kWholeStep * quarter;
+  Reach(problem, u.step.cwiseMin(0), u.step.cwiseMax(0), u);
+}
+
+void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
+                  const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
+  if (u.information.size() == 0) return;
+  Vector pull = Vector::Zero(u.information.rows());
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (!J[l].size()) continue;
+    pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
+  }
+  ReachOver(problem, PseudoInverse(u.information) * pull, u);
+}
+
+std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                            const std::vector<Matrix>& J, const std::vector<Matrix>& step,
+                            const Whitening& whitening) {
+  std::vector<bool> use;
+  for (const Matrix& columns : J) use.push_back(columns.size() > 0);
+  const Matrix slopes = whitening.Stack(J, use);
+  const double wanted = kWholeStep * whitening.Stack(step, use).col(0).norm();
+  std::vector<Matrix> secants = J;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const bool up = p.upper - x[i] > x[i] - p.lower;
+    const double room = up ? p.upper - x[i] : x[i] - p.lower, slope = slopes.col(i).norm();
+    double reached = 0;
+    for (double d = wanted / slope; reached < wanted && d < room; d *= 2) {
+      Vector there = x;
+      there[i] += up ? d : -d;
+      auto change = problem.Residuals(there, use);
+      for (std::size_t l = 0; l < use.size(); ++l) {
+        if (use[l]) change[l] = (change[l] - r[l]) / (there[i] - x[i]);
+      }
+      reached = d * whitening.Stack(change, use).norm();
+      if (!std::isfinite(reached)) break;
+      for (std::size_t l = 0; l < use.size(); ++l) {
+        if (use[l]) secants[l].col(i) = change[l];
+      }
+    }
+  }
+  return secants;
+}
+
+void ReachFurther(const Problem& problem, const Vector& x, const std::vector<Matrix>& J,
+                  const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
+  std::vector<Vector> effect(step.size());
+  for (std::size_t l = 0; l < step.size(); ++l) {
+    if (step[l].size()) effect[l] = kWholeStep * step[l].col(0);
+  }
+  const Uncertainty by = UncertaintyOf(problem, x, effect, J, whitening);
+  Reach(problem, by.lower - x, by.upper - x, u);
+}
+
+void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                    const std::vector<Matrix>& J, const std::vector<Matrix>& step,
+                    const FitOptions& options, Uncertainty& u) {
+  if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
+  std::vector<bool> use;
+  for (const Matrix& columns : J) use.push_back(columns.size() > 0);
+  Vector moved;
+  try {
+    moved = FitParameters(AtQuarter(problem), x, use, options).x - x;
+  } catch (const Error&) {
+    return;  // it diverges at the finer step: first order has to do
+  }
+  if (StopRequested()) return;  // before the end
+  const Whitening none;
+  const Whitening& whitening = options.whitening ? *options.whitening : none;
+  const bool foretold = Foretold(u, moved);
+  const auto slopes = foretold ? J : Secants(problem, x, r, J, step, whitening);
+  u = UncertaintyOf(problem, x, r, slopes, whitening, options.soft);
+  ReachOver(problem, moved, u);
+  if (!foretold) ReachFurther(problem, x, slopes, step, whitening, u);
+}
+
+Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                        const std::function<void(const std::string&)>& progress) {
+  const auto train = problem.TrainLogs();
+  Problem centered = problem;
+  centered.Center();
+  const auto J = centered.Jacobian(x, r, train);
+  const double soft = problem.experiment().soft;
+  Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
+  if (problem.path() != Path::kStepped) return u;
+  const auto step = problem.StepEffects(x, r, train);
+  AllowForStep(problem, Weighted(J, soft, r), Weighted(step, soft, r), {}, u);
+  if (!StopRequested()) {
+    FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
+    if (progress)
+      few.progress = [&](const std::string& line) { progress("at a fine step: " + line); };
+    ReachByFineFit(centered, x, r, J, step, few, u);
+  }
+  return u;
+}
+
+}  // namespace continuum
