@@ -214,7 +214,8 @@ TEST_F(GoodFile, MayHaveRowsAtOneTimeButForRounding) {
 
 TEST_F(GoodFile, NeedsItsModel) {
   fs::remove(files_ / "model.xml");
-  ExpectRefused({"replay", "experiment.yaml", "--out", "out"}, {"experiment.yaml:2: model", "no file model.xml"});
+  ExpectRefused({"replay", "experiment.yaml", "--out", "out"},
+                {"experiment.yaml:2: model", "no file model.xml"});
 }
 
 TEST_F(GoodFile, IsNoMatFileBecauseOfItsName) {
