@@ -183,7 +183,7 @@ double Share(const Diagnosis& d, const CandidateResult& c) {
 }
 
 bool ModelLimited(const Diagnosis& d, const TwoErrors& after) {
-  return !d.noise_limited && d.noise.rms > 0 && after.train > 3 * d.noise.rms;
+  return !d.noise_limited && after.train > 3 * d.noise.rms;
 }
 
 double Separation(const Diagnosis& d) {
@@ -401,9 +401,12 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
       "explainable\n",
       100 * gain.removed, 100 * d.gain_low, 100 * d.gain_high, 100 * gain.explainable);
   text +=
-      fmt::format("noise     {:.3g} {} ({}), time step {:.3g}; what remains is {:.1f} times both\n",
-                  d.noise.rms, unit, d.noise.source, d.noise.step,
-                  d.noise.rms > 0 ? told.after.train / std::hypot(d.noise.rms, d.noise.step) : 0);
+      d.noise.rms > 0
+          ? fmt::format(
+                "noise     {:.3g} {} ({}), time step {:.3g}; what remains is {:.1f} times both\n",
+                d.noise.rms, unit, d.noise.source, d.noise.step,
+                told.after.train / std::hypot(d.noise.rms, d.noise.step))
+          : fmt::format("noise     not known, time step {:.3g} {}\n", d.noise.step, unit);
   if (d.noise_limited) {
     text += fmt::format(
         "left      p = {:.2g} (smooth forces), {:.2g} (channels); significant below {:g}{}\n",

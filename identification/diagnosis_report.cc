@@ -238,24 +238,32 @@ class Story {
         {row("before", d_.before.error), row("after", told_.after),
          row(d_.noise_limited ? "noise (floor)" : "ceiling: " + d_.ceiling_by, d_.ceiling_error)},
         {fmt::format(
-            "Free simulation of every log. Noise: {:.3g} {} ({}). {:.0f} % of the held-out error "
+            "Free simulation of every log. Noise: {}. {:.0f} % of the held-out error "
             "removed, {:.0f} … {:.0f} % (95 %, whole trials resampled); {:.0f} % of what is "
             "explainable above the noise.",
-            d_.noise.rms, unit_, d_.noise.source, 100 * gain.removed, 100 * d_.gain_low,
-            100 * d_.gain_high, 100 * gain.explainable)});
+            NoiseInWords(), 100 * gain.removed, 100 * d_.gain_low, 100 * d_.gain_high,
+            100 * gain.explainable)});
     if (const std::string between = BetweenInWords(e_, d_); !between.empty())
       page_.Paragraph("Between conditions: " + between + ".");
   }
 
+  std::string NoiseInWords() const {
+    return d_.noise.rms > 0 ? fmt::format("{:.3g} {} ({})", d_.noise.rms, unit_, d_.noise.source)
+                            : "not known";
+  }
+
   void WhatIsLeft() {
     page_.Heading("What is left");
-    const double over = d_.noise.rms > 0 ? told_.after.train / d_.noise.rms : 0;
-    page_.Paragraph(fmt::format(
-        "What remains is {:.1f} times the noise: the data are {}. The extension reaches {:.0f} % "
-        "of what {} on the held-out logs.",
-        over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited",
-        100 * ShareReached(d_, told_.after),
-        d_.noise_limited ? "lies above the noise" : d_.ceiling_by + " reaches"));
+    const std::string over = d_.noise.rms > 0
+                                 ? fmt::format("What remains is {:.1f} times the noise: the data",
+                                               told_.after.train / d_.noise.rms)
+                                 : "How large the noise is these logs do not tell; they";
+    page_.Paragraph(
+        fmt::format("{} are {}. The extension reaches {:.0f} % "
+                    "of what {} on the held-out logs.",
+                    over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited",
+                    100 * ShareReached(d_, told_.after),
+                    d_.noise_limited ? "lies above the noise" : d_.ceiling_by + " reaches"));
     if (d_.fallback) {
       page_.Paragraph(
           "There is " + FallbackInWords(d_) + ". `" + kFallbackModel +

@@ -221,7 +221,11 @@ Noise NoiseOf(const Experiment& e) {
     const Output& out = e.outputs[e.channels[c].output];
     sigma &= out.sigma > 0 || !pool.counts(c);
   }
-  noise.source = noise.pairs > 0 ? "replicates" : sigma ? "sigma" : "differences";
+  noise.source = noise.pairs > 0  ? "replicates"
+                 : sigma          ? "sigma"
+                 : e.quasi_static ? "not known"
+                                  : "differences";
+  if (noise.source == "not known") return noise;
   if (noise.source == "differences") {
     Pool::Sum sum;
     for (const Log& log : e.logs) {

@@ -24,7 +24,7 @@ struct ChannelNoise {
 struct Noise {
   double rms = 0;         ///< pooled unit; 0: not known
   double step = 0;        ///< what the model's own time step adds (h against h/4), pooled unit
-  std::string source;     ///< "replicates", "sigma", "differences"
+  std::string source;     ///< "replicates", "sigma", "differences", "not known"
   std::size_t pairs = 0;  ///< of replicates
   std::vector<ChannelNoise> channel;  ///< [channel]; empty: not known
 
@@ -34,7 +34,8 @@ struct Noise {
 /// From replicates (logs of one trial and condition with the same inputs and rows): what each
 /// differs from their mean, in which model error cancels. Else from sigma where every output gives
 /// it. Else from third differences of the measured rows (smooth motion cancels), a lower bound that
-/// sees only white noise.
+/// sees only white noise; rows of quasi-static logs are poses of their own, whose differences say
+/// nothing of it.
 Noise NoiseOf(const Experiment& experiment);
 
 /// The noise of a channel whose values are rounded to steps larger than its noise, from values that

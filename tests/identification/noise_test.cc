@@ -91,6 +91,16 @@ TEST_F(Whitened, StepsOfTheMeasurementCountAsNoise) {
   EXPECT_GT(noise.channel[0].offset, 0);
 }
 
+TEST_F(Whitened, OneLogOfAMotionTellsWhiteNoiseByItsRowsButOneOfPosesDoesNot) {
+  Experiment one = Logs(0, 0);
+  one.logs.resize(1);
+  EXPECT_EQ(NoiseOf(one).source, "differences");
+  EXPECT_GT(NoiseOf(one).rms, 0);
+  one.quasi_static = true;
+  EXPECT_EQ(NoiseOf(one).source, "not known");
+  EXPECT_EQ(NoiseOf(one).rms, 0);
+}
+
 // A ramp through many steps: errors are uniform in ±q/2 and repeat with the steps; a value at rest
 // keeps its error.
 TEST(ChannelNoise, RoundingErrorsOfASlowMotionAreSlow) {
