@@ -362,16 +362,20 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
 
 namespace {
 
-std::string Ranking(const Diagnosis& d) {
+std::string Ranking(const Experiment& e, const Diagnosis& d) {
   constexpr std::size_t kShown = 6;
   std::string text = "ranking  ";
+  if (d.candidates.empty()) text += " no candidate was fitted";
   for (std::size_t i = 0; i < std::min(kShown, d.candidates.size()); ++i) {
     const CandidateResult& c = d.candidates[i];
     text +=
         fmt::format("{} {} {:.0f} %", i ? "," : "", c.hypothesis.NameAtPlace(), 100 * Share(d, c));
   }
   if (d.candidates.size() > kShown) text += fmt::format(" … ({} in all)", d.candidates.size());
-  return text + "\n";
+  text += "\n";
+  if (e.all_candidates) return text;  // of so many some always have no place in a model
+  for (const std::string& why : d.skipped) text += "not tried " + why + "\n";
+  return text;
 }
 
 }  // namespace
@@ -426,7 +430,7 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
   if (d.fallback) {
     text += fmt::format("fallback  {}, in {}\n", FallbackInWords(d), kFallbackModel);
   }
-  text += Ranking(d);
+  text += Ranking(e, d);
   if (d.verdict.named.size() > 1)
     text += fmt::format("next      {} (separation {:.3g})\n", d.next.input, d.next.separation);
   (void)e;

@@ -121,7 +121,11 @@ class Story {
   void TheCause() {
     page_.Heading("The cause");
     if (d_.candidates.empty()) {
-      page_.Paragraph("No candidate could be tried.");
+      std::string text = "No candidate was fitted.";
+      for (const Dismissed& c : d_.dismissed)
+        text += " To first order " + c.effect + " takes off next to nothing.";
+      for (const std::string& why : d_.skipped) text += " " + why + ".";
+      page_.Paragraph(text);
       return;
     }
     BarsSpec bars{d_.noise_limited ? "Share of what is above the noise that each candidate explains"

@@ -40,12 +40,13 @@ std::string LagInWords(const Log& log, const std::vector<double>& y,
                      1000 * period * std::abs(at));
 }
 
-// "1.02-1.10 s": while a deviation stays above half its peak.
+// "1.02-1.10 s" or "1.02 s": while a deviation stays above half its peak.
 std::string WhenInWords(const Log& log, const std::vector<double>& residual, std::size_t peak) {
   std::size_t from = peak, to = peak;
   const auto large = [&](std::size_t k) { return residual[k] / residual[peak] > 0.5; };
   while (from > 0 && large(from - 1)) --from;
   while (to + 1 < log.rows() && large(to + 1)) ++to;
+  if (from == to) return fmt::format("{:.2f} s", log.time[peak]);
   return fmt::format("{:.2f}-{:.2f} s", log.time[from], log.time[to]);
 }
 
