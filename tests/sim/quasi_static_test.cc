@@ -80,6 +80,24 @@ class QuasiStatic : public ::testing::Test {
            <actuator><position name="a" joint="x" kp="100"/></actuator>
            <sensor><jointpos name="x" joint="x"/><jointpos name="y" joint="y"/></sensor>)";
   }
+  // Links of a milligram one on the other, each on a spring of 3 N/m with 3 N s/m and dry friction.
+  static std::string LightLinks(int count) {
+    std::string rubs, bodies, ends;
+    for (int i = 0; i < count; ++i) {
+      rubs += Coulomb(fmt::format("f{}", i), fmt::format("x{}", i), 0.1);
+      bodies += fmt::format(
+          "<body pos=\"0 0 .05\"><joint name=\"x{}\" type=\"slide\" axis=\"1 0 0\" "
+          "stiffness=\"3\" damping=\"3\"/><inertial pos=\"0 0 0\" mass=\"1e-6\" "
+          "diaginertia=\"1e-6 1e-6 1e-6\"/>",
+          i);
+      ends += "</body>";
+    }
+    return "<extension><plugin plugin=\"continuum.coulomb\">" + rubs +
+           "</plugin></extension><worldbody>" + bodies + ends +
+           R"(</worldbody>
+           <actuator><position name="a" joint="x0" kp="10"/></actuator>
+           <sensor><jointpos name="x0" joint="x0"/></sensor>)";
+  }
 
   testing::Scratch scratch_;
 };
@@ -174,6 +192,14 @@ TEST_F(QuasiStatic, ACableHoldsWhatItsCornerHolds) {
     // A corner at rest gives way by 0.1 mm before it slides (its contact is a stiff spring).
     EXPECT_NEAR(trace.channel[0][k], -tension / 200, 2e-4) << "row " << k;
   }
+}
+
+TEST_F(QuasiStatic, FrictionOfLinksThatWeighNothingLetsThemRest) {
+  auto trial = Read(LightLinks(24), {0.5, 0.1}, {"x0"});
+  const Trace trace = Run(trial);
+  ASSERT_FALSE(trace.diverged) << trace.why;
+  EXPECT_NEAR(trace.channel[0][0], (10 * 0.5 - 0.1) / 13, 1e-4);  // kp u − τ_c over all stiffness
+  EXPECT_NEAR(trace.channel[0][1], (10 * 0.1 + 0.1) / 13, 1e-4);
 }
 
 TEST_F(QuasiStatic, ARowWithoutRestIsNamed) {
