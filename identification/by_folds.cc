@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "identification/equation_error.h"
 #include "identification/placebo.h"
 #include "identification/round.h"
 
@@ -137,6 +139,36 @@ class Comparison {
     if (d_.noise.source == "differences" && d_.noise.rms > 0)
       rules.over_scatter = d_.before.error.train / d_.noise.rms;
     d_.verdict = Judge(records, over, CeilingGain(d_), rules);
+    if (d_.verdict.text == "named") HearTheEquation();
+  }
+
+  // A name that the missing force at the measured states speaks against is none.
+  void HearTheEquation() {
+    const std::size_t named = d_.verdict.named.front();
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
+      const CandidateResult& c = d_.candidates[i];
+      const bool rival =
+          i != named && !Related(i, named) && ClearlyBetterByEquation(c, d_.candidates[named]);
+      if (rival && (!best || c.by_equation->share > d_.candidates[*best].by_equation->share))
+        best = i;
+    }
+    if (!best) return;
+    d_.verdict.text = "ambiguous";
+    d_.verdict.named.push_back(*best);
+    d_.verdict.reason += fmt::format(
+        " on the logs left out, but {} explains the missing force at the measured states better",
+        d_.candidates[*best].hypothesis.NameAtPlace());
+  }
+
+  // One effect, or one that can do what the other does.
+  bool Related(std::size_t a, std::size_t b) const {
+    const auto holds = [&](std::size_t outer, std::size_t inner) {
+      const auto& contains = d_.candidates[outer].record.contains;
+      return std::find(contains.begin(), contains.end(), inner) != contains.end();
+    };
+    return d_.candidates[a].hypothesis.effect == d_.candidates[b].hypothesis.effect ||
+           holds(a, b) || holds(b, a);
   }
 
   const Trials& trials_;

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "identification/by_folds.h"
+#include "identification/equation_error.h"
 #include "identification/fallback.h"
 #include "identification/next_experiment.h"
 #include "identification/pairs.h"
@@ -43,6 +44,7 @@ class Session {
     round.Fit();
     if (d_.noise.known()) {
       Judge(round);
+      LookBeyondTheList(round);
       auto pair = MayBeTwo(round) ? FindPair(trials_, round, excused_, d_.noise, d_.sizes, options_)
                                   : std::nullopt;
       d_.noise_limited = pair || round.BestLeaves() < Round::kModelLimited;
@@ -54,6 +56,7 @@ class Session {
     } else {
       Take(round);
     }
+    LookAtTheEquation();
     if (d_.noise_limited) {
       NameOnce();
       FitFinely();
@@ -96,12 +99,19 @@ class Session {
     for (std::string& s : round.skipped) d_.skipped.push_back(std::move(s));
   }
 
+  void LookAtTheEquation() {
+    options_.Say("missing force");
+    const EquationErrors view(e_, d_.system, d_.before);
+    for (CandidateResult& c : d_.candidates) c.by_equation = view.Of(c);
+  }
+
   // No single candidate leaves noise, or only by the time step's leave; and what the best leaves is
   // not a hundred times the noise.
   bool MayBeTwo(const Round& round) const {
     constexpr double kHopeless = 10;
-    return (d_.verdict.text == "unexplained" || (excused_ && d_.verdict.text != "adequate")) &&
-           round.leading() && round.smallest_p() < LikelihoodRules{}.level &&
+    const bool more =
+        d_.verdict.text == "unexplained" || (excused_ && d_.verdict.text != "adequate");
+    return more && !beyond_ && round.leading() && round.smallest_p() < LikelihoodRules{}.level &&
            round.BestLeaves() < kHopeless;
   }
 
@@ -118,18 +128,55 @@ class Session {
   // By likelihoods, which are calibrated where noise is all that the best model leaves.
   void Judge(Round& round) {
     options_.Say("what is left");
-    const auto records = round.Records();
-    SetProbabilities(round.candidates, records);
-    const CandidateResult* const best = round.leading();
+    const CandidateResult* const best = round.leading_listed();
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
     excused_ = d_.lack.smallest() < LikelihoodRules{}.lack &&
                trials_.WithinStep(best ? best->fitted : d_.before) &&
                (!best || round.GoesWithTheStep(*best));
+    Decide(round);
+  }
+
+  void Decide(Round& round) {
+    const auto records = round.Records();
+    SetProbabilities(round.candidates, records);
     d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), round.smallest_p(), Rules());
     const auto& named = d_.verdict.named;
     const bool coarse = excused_ || d_.noise.step > d_.noise.rms;
     if (coarse && !named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))
       d_.verdict = {"adequate", {}, "no candidate does more than the time step; try a finer one"};
+  }
+
+  // A name that stands only because the list leaves its rival out is none.
+  void LookBeyondTheList(Round& round) {
+    DiagnosisOptions options = options_;
+    options.candidates = Unlisted(e_, options_.candidates);
+    if (options.candidates.empty() || d_.verdict.text == "adequate") return;
+    Round beyond(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options);
+    beyond.Screen();
+    beyond.Fit(&round);
+    const bool unexplained = d_.verdict.text == "unexplained";
+    const CandidateResult* const best = beyond.leading();
+    beyond_ = unexplained && best && beyond.LackOf(*best).smallest() >= LikelihoodRules{}.lack;
+    const std::string name = beyond_ ? best->hypothesis.NameAtPlace() : "";
+    round.JoinUnlisted(std::move(beyond));
+    Decide(round);
+    if (beyond_) d_.verdict.reason += fmt::format("; {}, which is not listed, is enough", name);
+    beyond_ = beyond_ || (!unexplained && d_.verdict.text == "unexplained");
+    SetUnlistedApart(round.candidates);
+  }
+
+  // Only what was asked for is a candidate; of the others those stay that the verdict tells of.
+  void SetUnlistedApart(std::vector<CandidateResult>& all) {
+    std::vector<CandidateResult> listed;
+    std::vector<std::size_t> place(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      place[i] = listed.size();
+      if (all[i].listed) listed.push_back(std::move(all[i]));
+    }
+    for (const std::size_t i : d_.verdict.unlisted) d_.unlisted.push_back(std::move(all[i]));
+    for (std::size_t& i : d_.verdict.named) i = place[i];
+    for (std::size_t k = 0; k < d_.verdict.unlisted.size(); ++k) d_.verdict.unlisted[k] = k;
+    all = std::move(listed);
   }
 
   // Whether a fit takes more off the error than the time step may have put there.
@@ -211,6 +258,7 @@ class Session {
                          "at least two groups of logs to leave out in turn", "one");
     }
     d_.verdict = {};
+    d_.unlisted.clear();
     CompareByFolds(trials_, options_, d_);
   }
 
@@ -269,6 +317,7 @@ class Session {
   Diagnosis d_;
   Trials trials_;
   bool excused_ = false;  // what is left is significant, but within what the time step adds
+  bool beyond_ = false;   // what is there is an effect that is not listed
 };
 
 }  // namespace

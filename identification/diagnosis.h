@@ -44,6 +44,12 @@ struct Fitted {
   bool complete = false;  ///< else only x, residuals, error and the plain cost are known
 };
 
+/// How a candidate explains the missing force (identification/equation_error.h).
+struct ByEquation {
+  double share = 0;                   ///< of its squares
+  std::vector<double> before, after;  ///< [train log] norm of what is left of it
+};
+
 struct CandidateResult {
   Hypothesis hypothesis;
   std::vector<Probe> probes = {};  ///< one for each start: directions from the fit without it
@@ -53,8 +59,10 @@ struct CandidateResult {
   Fitted fitted = {};
   std::optional<Fitted> finer = {};  ///< at a quarter of the step, where its effect is of no order
   FoldRecord record = {};
+  std::optional<ByEquation> by_equation = {};  ///< none where it cannot be seen there
   std::vector<std::string> failures = {};
   std::string error = "";  ///< why it could not be tried, else empty
+  bool listed = true;      ///< else it was looked at because it might outdo those that are
   double explained = 0;    ///< of the whitened sum of squares, to first order from the null fit
   double p = 1;            ///< family-wise, of explained
   double likelihood = 0;   ///< twice the logarithm of the likelihood gained by its fit
@@ -113,13 +121,14 @@ struct Diagnosis {
   std::vector<Fold> folds;
   Fitted before;
   std::vector<CandidateResult> candidates;  ///< best first
+  std::vector<CandidateResult> unlisted;    ///< that nobody asked for, and that matter
   std::optional<Partner> partner;           ///< of all candidates: their systems have it
   std::vector<PairTried> pairs;             ///< where no single candidate was enough; best first
   std::vector<Dismissed> dismissed;
   bool noise_limited = false;  ///< the best model leaves noise: likelihoods judge, else folds
   LackOfFit lack;              ///< of the model that is left standing
   std::vector<std::string> skipped;
-  Verdict verdict;  ///< indices into candidates
+  Verdict verdict;  ///< indices into candidates, and into unlisted
   /// The best that anything reached on the folds, forces without a name among it; empty where the
   /// data are noise-limited.
   FoldScores ceiling;

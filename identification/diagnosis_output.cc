@@ -254,12 +254,14 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
   json["causes"] = nlohmann::json::array();
   if (!d.verdict.named.empty()) {
     std::vector<std::string> equivalent;
-    for (std::size_t i = 1; i < d.verdict.named.size(); ++i) {
-      const std::string& name = d.candidates[d.verdict.named[i]].hypothesis.effect;
+    const auto add = [&](const CandidateResult& c) {
+      const std::string& name = c.hypothesis.effect;
       const bool known = name == d.chosen()->hypothesis.effect ||
                          std::find(equivalent.begin(), equivalent.end(), name) != equivalent.end();
       if (!known) equivalent.push_back(name);
-    }
+    };
+    for (std::size_t i = 1; i < d.verdict.named.size(); ++i) add(d.candidates[d.verdict.named[i]]);
+    for (const CandidateResult& c : d.unlisted) add(c);
     json["causes"].push_back(CauseJson(d, *d.chosen(), equivalent));
     if (d.partner) json["causes"].push_back(PartnerJson(d));
   }
@@ -324,6 +326,8 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
          {"likelihood", c.likelihood},
          {"probability", c.probability},
          {"lambda", c.apart},
+         {"missing_force_explained",
+          c.by_equation ? nlohmann::json(c.by_equation->share) : nlohmann::json(nullptr)},
          {"group", named && d.verdict.named.size() > 1 ? "not told apart" : ""},
          {"folds", c.record.after},
          {"amplitude", c.record.amplitude},
@@ -368,8 +372,8 @@ std::string Ranking(const Experiment& e, const Diagnosis& d) {
   if (d.candidates.empty()) text += " no candidate was fitted";
   for (std::size_t i = 0; i < std::min(kShown, d.candidates.size()); ++i) {
     const CandidateResult& c = d.candidates[i];
-    text +=
-        fmt::format("{} {} {:.0f} %", i ? "," : "", c.hypothesis.NameAtPlace(), 100 * Share(d, c));
+    text += fmt::format("{} {} {:.0f} %{}", i ? "," : "", c.hypothesis.NameAtPlace(),
+                        100 * Share(d, c), c.listed ? "" : " (not listed)");
   }
   if (d.candidates.size() > kShown) text += fmt::format(" … ({} in all)", d.candidates.size());
   text += "\n";
@@ -384,12 +388,13 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
   const Gain gain = GainOf(d, told.after);
   const std::string unit = d.pool.unit();
   std::string text = fmt::format("verdict   {}: {}\n", d.verdict.text, d.verdict.reason);
-  for (const std::size_t i : d.verdict.named) {
-    const CandidateResult& c = d.candidates[i];
-    text += fmt::format("{} {} at {}", i == d.verdict.named.front() ? "cause    " : "   or    ",
-                        c.hypothesis.Name(), c.hypothesis.where);
-    text += ValuesInWords(c.hypothesis, c.fitted, c.own()) + "\n";
-  }
+  const auto tell = [&](const CandidateResult& c, const std::string& how, const std::string& note) {
+    text += fmt::format("{} {}{}{}\n", how, c.hypothesis.NameAtPlace(), note,
+                        ValuesInWords(c.hypothesis, c.fitted, c.own()));
+  };
+  for (const std::size_t i : d.verdict.named)
+    tell(d.candidates[i], i == d.verdict.named.front() ? "cause    " : "   or    ", "");
+  for (const CandidateResult& c : d.unlisted) tell(c, "   or    ", " (not listed)");
   if (d.partner && d.chosen()) {
     text += fmt::format(
         "and       {} at {}{}", d.partner->hypothesis.Name(), d.partner->hypothesis.where,

@@ -478,4 +478,17 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system
   return all;
 }
 
+std::vector<std::string> Unlisted(const Experiment& e, const std::vector<std::string>& names) {
+  std::set<std::string> listed(names.begin(), names.end());
+  if (names.empty()) {
+    for (const Candidate& c : e.candidates) listed.insert(c.effect);
+  }
+  std::vector<std::string> others;
+  if (listed.empty() || (names.empty() && e.all_candidates)) return others;
+  for (const EffectInfo& effect : Catalog()) {
+    if (!listed.contains(std::string(effect.name))) others.emplace_back(effect.name);
+  }
+  return others;
+}
+
 }  // namespace continuum

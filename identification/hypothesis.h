@@ -45,4 +45,9 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const Syste
                                        const Sizes& sizes, std::vector<std::string>& skipped,
                                        const std::vector<Parameter>& given = {});
 
+/// Effects of the catalog that the experiment's list of candidates leaves out; none where it lists
+/// all, or none. names: the list to take in place of the experiment's, if any.
+std::vector<std::string> Unlisted(const Experiment& experiment,
+                                  const std::vector<std::string>& names);
+
 }  // namespace continuum

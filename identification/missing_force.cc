@@ -11,30 +11,42 @@
 namespace continuum {
 namespace {
 
-struct Smooth {
-  std::vector<double> q, v, a;
-};
+constexpr std::size_t kHalf = 5, kRows = 2 * kHalf + 1, kTerms = 5;
 
-// Least-squares parabola over the 11 rows around each row.
-Smooth Smoothed(const std::vector<double>& t, const std::vector<double>& y) {
-  constexpr int kHalf = 5;
-  const int n = static_cast<int>(t.size());
-  Smooth s{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
-  for (int k = 0; k < n; ++k) {
-    const int begin = std::max(0, std::min(k - kHalf, n - 2 * kHalf - 1));
-    const int end = std::min(n, begin + 2 * kHalf + 1);
-    Eigen::MatrixXd A(end - begin, 3);
-    Eigen::VectorXd b(end - begin);
-    for (int i = begin; i < end; ++i) {
-      const double dt = t[i] - t[k];
-      A.row(i - begin) << 1, dt, dt * dt / 2;
-      b[i - begin] = y[i];
+double Square(double x) { return x * x; }
+
+// The quartic through the rows around one row: weights of their values.
+struct Quartic {
+  std::size_t begin;
+  Eigen::VectorXd value, slope, curvature;
+  Eigen::VectorXd mean;  // (2): of mean accelerations from each of these rows to the next
+
+  Quartic(const std::vector<double>& t, std::size_t k) : begin(k - kHalf), mean(kRows - 1) {
+    Eigen::MatrixXd A(kRows, kTerms);
+    for (std::size_t i = 0; i < kRows; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      A(row, 0) = 1;
+      for (Eigen::Index n = 1; n < A.cols(); ++n)
+        A(row, n) = A(row, n - 1) * (t[begin + i] - t[k]) / static_cast<double>(n);
     }
-    const Eigen::Vector3d c = A.colPivHouseholderQr().solve(b);
-    s.q[k] = c[0], s.v[k] = c[1], s.a[k] = c[2];
+    const Eigen::MatrixXd weights =
+        A.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(kRows, kRows));
+    value = weights.row(0), slope = weights.row(1), curvature = weights.row(2);
+    const auto after = [&](std::size_t i, std::size_t j) {
+      return Square(std::max(0.0, t[begin + i] - t[begin + j])) / 2;
+    };
+    for (std::size_t j = 0; j + 1 < kRows; ++j) {
+      double& integral = mean[static_cast<Eigen::Index>(j)];
+      integral = 0;
+      for (std::size_t i = 0; i < kRows; ++i)
+        integral += curvature[static_cast<Eigen::Index>(i)] * (after(i, j) - after(i, j + 1));
+    }
   }
-  return s;
-}
+
+  double Of(const std::vector<double>& y, const Eigen::VectorXd& weights) const {
+    return Eigen::Map<const Eigen::VectorXd>(y.data() + begin, weights.size()).dot(weights);
+  }
+};
 
 // The channel that measures each joint; empty when one is not measured.
 std::map<int, std::size_t> JointChannels(const Experiment& e, const mjModel& m) {
@@ -49,66 +61,150 @@ std::map<int, std::size_t> JointChannels(const Experiment& e, const mjModel& m) 
   return channels;
 }
 
-}  // namespace
+struct Motion {
+  std::vector<double> angle, velocity, acceleration;
+};
 
-MissingForce FindMissingForce(const Problem& problem, const Problem::Vector& x) {
-  const Experiment& e = problem.experiment();
-  const auto channels = JointChannels(e, problem.system().model());
-  if (channels.empty() || e.quasi_static) return {};
-  std::map<int, MissingForce> found;
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    const Log& log = e.logs[l];
-    if (log.rows() < 11) continue;
-    std::map<int, Smooth> state;
-    for (const auto& [joint, c] : channels) {
-      auto y = log.measured[c];
-      for (double& value : y) value = SignalOf(e, c, value);
-      if (std::any_of(y.begin(), y.end(), [](double v) { return std::isnan(v); })) return {};
-      state[joint] = Smoothed(log.time, y);
-    }
-    Machine machine = problem.system().Build(problem.ChangesFor(x, l));
-    std::size_t next = 0;
-    Hooks hooks;
-    hooks.step = [&](const mjModel& m, mjData& d) {  // each row starts from the measured state
-      if (next >= log.rows() || d.time < log.time[next] - log.time[0] - 1e-9) return;
-      for (const auto& [joint, s] : state) {
-        d.qpos[m.jnt_qposadr[joint]] = s.q[next];
-        d.qvel[m.jnt_dofadr[joint]] = s.v[next];
+// One log, as the model sees it, but for the rows at its ends.
+class LogForces {
+ public:
+  LogForces(const Problem& problem, const Problem::Vector& x, std::size_t log)
+      : e_(problem.MeasuredBy(x, log)),
+        log_(problem.experiment().logs[log]),
+        index_(log),
+        machine_(problem.system().Build(problem.ChangesFor(x, log))) {
+    for (std::size_t k = kHalf; k + kHalf < log_.rows(); ++k) fits_.emplace_back(log_.time, k);
+    for (const auto& [joint, channel] : JointChannels(e_, *machine_.model)) {
+      std::vector<double> y = log_.measured[channel];
+      for (double& value : y) value = SignalOf(e_, channel, value);
+      Motion& motion = measured_[joint];
+      for (const Quartic& fit : fits_) {
+        motion.angle.push_back(fit.Of(y, fit.value));
+        motion.velocity.push_back(fit.Of(y, fit.slope));
+        motion.acceleration.push_back(fit.Of(y, fit.curvature));
       }
+      model_[joint].resize(log_.rows(), 0);
+      load_[joint].resize(log_.rows(), 0);
+    }
+  }
+
+  // Appended to those of other logs, joint by joint.
+  void AddTo(std::vector<MissingForce>& all) {
+    Drive();
+    mjModel& m = *machine_.model;
+    mjData& d = *machine_.data;
+    all.resize(measured_.size());
+    for (std::size_t k = 0; k < fits_.size(); ++k) {
+      Place(m, d, k);
+      mj_fwdPosition(&m, &d);
+      const Eigen::VectorXd lack = Lack(k);
+      Eigen::VectorXd force(m.nv);
+      mj_mulM(&m, &d, force.data(), lack.data());
+      std::size_t i = 0;
+      for (const auto& [joint, motion] : measured_) {
+        MissingForce& out = all[i++];
+        out.joint = mj_id2name(&m, mjOBJ_JOINT, joint);
+        out.slides = m.jnt_type[joint] == mjJNT_SLIDE;
+        out.log.push_back(index_);
+        out.time.push_back(log_.time[k + kHalf]);
+        out.angle.push_back(motion.angle[k]);
+        out.velocity.push_back(motion.velocity[k]);
+        out.load.push_back(load_.at(joint)[k + kHalf]);
+        out.force.push_back(force[m.jnt_dofadr[joint]]);
+      }
+    }
+  }
+
+ private:
+  Eigen::VectorXd Lack(std::size_t k) const {
+    const mjModel& m = *machine_.model;
+    Eigen::VectorXd lack = Eigen::VectorXd::Zero(m.nv);
+    for (const auto& [joint, motion] : measured_) {
+      lack[m.jnt_dofadr[joint]] =
+          motion.acceleration[k] - fits_[k].Of(model_.at(joint), fits_[k].mean);
+    }
+    return lack;
+  }
+
+  void Place(const mjModel& m, mjData& d, std::size_t k) const {
+    for (const auto& [joint, motion] : measured_) {
+      d.qpos[m.jnt_qposadr[joint]] = motion.angle[k];
+      d.qvel[m.jnt_dofadr[joint]] = motion.velocity[k];
+    }
+  }
+
+  // Every row begins at the measured state; from there to the next the model moves by itself, so
+  // that lags and hysteresis remember, and what its speed gains is its mean acceleration.
+  void Drive() {
+    std::size_t next = 0;
+    std::map<int, double> speed;  // at the row before
+    const auto arrive = [&](const mjModel& m, const mjData& d, std::size_t row) {
+      for (auto& [joint, mean] : model_) {
+        if (row == 0) break;
+        mean[row - 1] =
+            (d.qvel[m.jnt_dofadr[joint]] - speed[joint]) / (log_.time[row] - log_.time[row - 1]);
+      }
+    };
+    Hooks hooks;
+    hooks.step = [&](const mjModel& m, mjData& d) {
+      if (next >= log_.rows() || d.time < log_.time[next] - log_.time[0] - 1e-9) return;
+      arrive(m, d, next);
+      const bool seen = next >= kHalf && next + kHalf < log_.rows();
+      if (seen) Place(m, d, next - kHalf);
+      for (const auto& [joint, motion] : measured_) speed[joint] = d.qvel[m.jnt_dofadr[joint]];
     };
     hooks.row = [&](const mjModel& m, mjData& d, std::size_t row) {
       next = row + 1;
-      Eigen::VectorXd lack(m.nv), force(m.nv);
-      for (const auto& [joint, s] : state) {
-        const int dof = m.jnt_dofadr[joint];
-        lack[dof] = s.a[row] - d.qacc[dof];
-      }
-      mj_mulM(&m, &d, force.data(), lack.data());
-      if (row + 1 == log.rows()) return;  // no step starts there
-      for (const auto& [joint, s] : state) {
-        MissingForce& out = found[joint];
-        out.joint = mj_id2name(&m, mjOBJ_JOINT, joint);
-        out.slides = m.jnt_type[joint] == mjJNT_SLIDE;
-        out.log.push_back(l);
-        out.time.push_back(log.time[row]);
-        out.angle.push_back(s.q[row]);
-        out.velocity.push_back(s.v[row]);
-        out.load.push_back(d.qfrc_actuator[m.jnt_dofadr[joint]]);
-        out.force.push_back(force[m.jnt_dofadr[joint]]);
-      }
+      if (next == log_.rows()) arrive(m, d, row);
+      for (auto& [joint, load] : load_) load[row] = d.qfrc_actuator[m.jnt_dofadr[joint]];
     };
-    Simulate(machine, e, log, {}, hooks);
+    Simulate(machine_, e_, log_, {}, hooks);
   }
-  const auto size = [](const MissingForce& f) {
-    double sum = 0;
-    for (const double v : f.force) sum += v * v;
-    return sum;
-  };
-  const MissingForce* largest = nullptr;
-  for (const auto& [joint, f] : found) {
-    if (!largest || size(f) > size(*largest)) largest = &f;
+
+  Experiment e_;
+  const Log& log_;
+  std::size_t index_;
+  Machine machine_;
+  std::vector<Quartic> fits_;
+  std::map<int, Motion> measured_;
+  std::map<int, std::vector<double>> model_, load_;
+};
+
+bool EveryRowIsThere(const Experiment& e, const mjModel& m, const Log& log) {
+  const auto channels = JointChannels(e, m);
+  return !channels.empty() && std::all_of(channels.begin(), channels.end(), [&](const auto& one) {
+    const std::vector<double>& y = log.measured[one.second];
+    return std::none_of(y.begin(), y.end(), [](double v) { return std::isnan(v); });
+  });
+}
+
+double Squares(const MissingForce& f) {
+  double sum = 0;
+  for (const double v : f.force) sum += v * v;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
+                                        const std::vector<bool>& use) {
+  const Experiment& e = problem.experiment();
+  std::vector<MissingForce> all;
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    const Log& log = e.logs[l];
+    if (!use[l] || log.rows() < kRows) continue;
+    if (e.quasi_static || !EveryRowIsThere(e, problem.system().model(), log)) return {};
+    LogForces(problem, x, l).AddTo(all);
   }
-  return largest ? *largest : MissingForce{};
+  return all;
+}
+
+MissingForce FindMissingForce(const Problem& problem, const Problem::Vector& x) {
+  const auto all = MissingForces(problem, x, problem.AllLogs());
+  const auto largest = std::max_element(
+      all.begin(), all.end(),
+      [](const MissingForce& a, const MissingForce& b) { return Squares(a) < Squares(b); });
+  return largest == all.end() ? MissingForce{} : *largest;
 }
 
 }  // namespace continuum

@@ -7,12 +7,19 @@
 
 namespace continuum {
 
-/// What the model lacks, as a generalized force on one joint, at every row of the logs:
+/// What the model lacks, as a generalized force on one joint, at the rows of the logs:
 ///
-///   missing = (M (a_measured − a_model))_j                             (1)
+///   missing = (M (a_measured − F a_model))_j                             (1)
 ///
-/// with the model's acceleration at the measured state (angles and speeds by a local quadratic fit
-/// over 11 rows) and its mass matrix M. An equation error: no simulation drifts in it.
+/// with the model's acceleration at the measured states and its mass matrix M. Angles, speeds and
+/// a_measured come from a quartic through 11 rows; its second derivative is a mean of the true
+/// acceleration over those rows,
+///
+///   ÿ_fit(t_k) = Σ c_i y_i = ∫ w(s) ÿ(s) ds,   w(s) = Σ c_i max(0, t_i − s),   (2)
+///
+/// and F takes the same mean of the model's, so that neither fast motion nor an input that jumps
+/// looks like a missing force. An equation error: no simulation drifts in it. The five rows at each
+/// end of a log are left out.
 struct MissingForce {
   std::string joint;
   bool slides = false;  ///< the joint: m and N, else rad and N m
@@ -20,7 +27,11 @@ struct MissingForce {
   std::vector<double> time, angle, velocity, load, force;  ///< SI
 };
 
-/// The joint on which most is missing; empty joint when not every joint is measured.
+/// On every joint, of the logs in use; none when not every joint is measured in all their rows.
+std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
+                                        const std::vector<bool>& use);
+
+/// The joint on which most is missing, over all logs; empty joint when not every joint is measured.
 MissingForce FindMissingForce(const Problem& problem, const Problem::Vector& x);
 
 }  // namespace continuum

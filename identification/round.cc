@@ -13,6 +13,7 @@
 namespace continuum {
 namespace {
 constexpr int kDraws = 399;          // of rounding errors
+constexpr double kRival = 0.3;       // of what the best of a list explains: may yet outdo it
 constexpr double kWorthAFit = 0.04;  // of the squares, where 0.19 of them would make a name
 
 // Nested fits are as far apart as the larger one gains; others that gain as much are farther. Where
@@ -156,13 +157,13 @@ double Round::HowMuchIsNeeded() const {
 }
 
 // The likeliest first, so that the others know what to reach; nobody where only noise is left.
-void Round::Fit() {
+void Round::Fit(const Round* beside) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.explained > b.explained; });
-  const double needed = !noise_.known() || SomethingIsLeft()
-                            ? HowMuchIsNeeded()
-                            : std::numeric_limits<double>::infinity();
-  double rival = std::numeric_limits<double>::infinity();
+  double needed = !noise_.known() || SomethingIsLeft() ? HowMuchIsNeeded() : kInfinity;
+  const CandidateResult* const known = beside ? beside->leading() : nullptr;
+  if (beside) needed = std::max(needed, kRival * beside->MostExplained());
+  double rival = known ? known->fitted.fit.cost : kInfinity;
   for (CandidateResult& c : candidates) {
     if (!c.error.empty() || c.explained < needed) continue;
     options_.Say("fit " + c.hypothesis.Name());
@@ -174,20 +175,30 @@ void Round::Fit() {
     }
   }
   SecondChances();
-  CompleteTheBest();
+  CompleteTheBest(known ? known->fitted.cost : kInfinity);
   Dismiss();
+  TellApart();
+}
+
+void Round::JoinUnlisted(Round other) {
+  for (CandidateResult& c : other.candidates) {
+    c.listed = false;
+    c.likelihood = Likelihood(c.fitted);  // in this round's unit of noise
+    candidates.push_back(std::move(c));
+  }
+  Sort();
   TellApart();
 }
 
 // Where no fit comes near the noise and what the time step adds, those that were given up as too
 // far behind go on to their end, the likeliest first: what a fit gains early says little where a
-// swing is out of phase with the measured one. Until one comes near.
+// swing is out of phase with the measured one. Until one of this round comes near.
 void Round::SecondChances() {
   constexpr std::size_t kMost = 6;
   constexpr double kWorth = 0.1;                // of what the best explains to first order
   constexpr double kNoise = 1.1, kStep = 1.25;  // of their errors: more is plainly another cause
   if (!noise_.known()) return;
-  double best = std::numeric_limits<double>::infinity();
+  double best = kInfinity;
   for (const CandidateResult& c : candidates) {
     if (c.fits) best = std::min(best, c.fitted.error.train);
   }
@@ -272,8 +283,9 @@ Problem::Vector Round::BestOf(const Problem& problem,
 double Round::TakenOff(const Fitted& f) { return 2 * f.fit.cost - f.cost; }
 
 // Sensitivities are dear: only those get theirs that may come near the best with them. What the
-// time step leaves open takes about as much off everybody's cost.
-void Round::CompleteTheBest() {
+// time step leaves open takes about as much off everybody's cost. best: the least cost that is
+// known already.
+void Round::CompleteTheBest(double best) {
   std::vector<CandidateResult*> order;
   for (CandidateResult& c : candidates) {
     if (c.fits) order.push_back(&c);
@@ -281,7 +293,7 @@ void Round::CompleteTheBest() {
   std::stable_sort(order.begin(), order.end(),
                    [](const auto* a, const auto* b) { return a->fitted.cost < b->fitted.cost; });
   constexpr double kNear = 50;
-  double best = std::numeric_limits<double>::infinity(), taken_off = TakenOff(*base_.fitted);
+  double taken_off = TakenOff(*base_.fitted);
   for (CandidateResult* const c : order) {
     const double plain = c->fitted.cost;
     if (noise_.known() && plain - best < kNear + 2 * taken_off) {
@@ -361,6 +373,10 @@ void Round::Dismiss() {
   for (const auto* all : {&candidates, &left_behind}) {
     for (const CandidateResult& c : *all) smallest_p_ = std::min(smallest_p_, c.p);
   }
+  Sort();
+}
+
+void Round::Sort() {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.likelihood > b.likelihood; });
 }
@@ -380,6 +396,12 @@ void Round::TellApart() {
 
 const CandidateResult* Round::leading() const {
   return candidates.empty() || !candidates.front().fits ? nullptr : &candidates.front();
+}
+
+const CandidateResult* Round::leading_listed() const {
+  const auto at = std::find_if(candidates.begin(), candidates.end(),
+                               [](const CandidateResult& c) { return c.listed && c.fits; });
+  return at == candidates.end() ? nullptr : &*at;
 }
 
 double Round::BestLeaves() const {
@@ -422,7 +444,8 @@ std::vector<LikelihoodRecord> Round::Records() const {
                             c.hypothesis.extra.size(),
                             c.likelihood,
                             {},
-                            std::max(0.0, TakenOff(c.fitted)) / inflation_};
+                            std::max(0.0, TakenOff(c.fitted)) / inflation_,
+                            c.listed};
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(trials_, c, candidates[a])) record.contains.push_back(a);
     }

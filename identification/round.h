@@ -26,8 +26,11 @@ class Round {
   /// let the best of so many do as well.
   void Screen();
   /// Fits those that first order does not leave far behind, if a candidate is significant or what
-  /// is left is plainly not noise; then best first, the others left behind.
-  void Fit();
+  /// is left is plainly not noise; then best first, the others left behind. beside: a round from
+  /// the same base that has been fitted, whose best they have to come near.
+  void Fit(const Round* beside = nullptr);
+  /// Takes the fitted candidates of a round from the same base as well, as not listed.
+  void JoinUnlisted(Round other);
 
   /// A candidate that was left behind or not fitted to the end, with a complete fit. Throws Error
   /// when it diverges.
@@ -37,6 +40,8 @@ class Round {
   double BestLeaves() const;
   /// The best model of this round: the leading candidate, or null for the base.
   const CandidateResult* leading() const;
+  /// The best of those that were asked for, or null.
+  const CandidateResult* leading_listed() const;
   LackOfFit LackOf(const CandidateResult& candidate) const;
   LackOfFit LackOfBase() const;
   /// Whether what a fit leaves falls with the time step, at a quarter of it, as what the step adds.
@@ -66,12 +71,13 @@ class Round {
                                             const Remainder& left) const;
   Problem::Vector BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;
   static double TakenOff(const Fitted& fitted);
-  void CompleteTheBest();
+  void CompleteTheBest(double best);
   void AtAFineStep(CandidateResult& c) const;
   LackOfFit LackAt(const Problem& problem, const CandidateResult& c, const Fitted& fitted) const;
   static bool RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x);
   std::string FlawOf(const Problem& problem, const Fitted& fitted) const;
   void Dismiss();
+  void Sort();
   void TellApart();
 
   const Trials& trials_;

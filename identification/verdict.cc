@@ -195,82 +195,150 @@ std::string LeftInWords(double lack, const LikelihoodRules& rules) {
                      lack);
 }
 
+namespace {
+
+// Who stands beside whom, where something has to be named.
+class Comparison {
+ public:
+  Comparison(const std::vector<LikelihoodRecord>& candidates, const LikelihoodRules& rules)
+      : candidates_(candidates), rules_(rules), order_(candidates.size()) {
+    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
+    std::sort(order_.begin(), order_.end(), [&](auto a, auto b) { return Score(a) > Score(b); });
+  }
+
+  /// The first of those that were asked for.
+  std::size_t first() const {
+    return *std::find_if(order_.begin(), order_.end(),
+                         [&](std::size_t i) { return candidates_[i].listed; });
+  }
+  const LikelihoodRecord& of(std::size_t i) const { return candidates_[i]; }
+
+  /// The first, or the best of those that it contains and does not clearly beat: only as deep as
+  /// the data allow.
+  std::size_t Best() const {
+    const std::size_t f = first();
+    for (const std::size_t i : order_) {
+      if (candidates_[i].listed && Contains(f, i) && !Behind(f, i, rules_.deeper)) return i;
+    }
+    return f;
+  }
+
+  /// One that was not asked for and does clearly better; null when there is none.
+  const LikelihoodRecord* Outdoing(std::size_t best) const {
+    const std::size_t top = order_.front();
+    const bool outdoes = !candidates_[top].listed && Behind(top, best, rules_.apart);
+    return outdoes ? &candidates_[top] : nullptr;
+  }
+
+  /// Those that the data do not tell from the best, which comes first. Of a law and one that it
+  /// contains the plain one says it, unless only the complicated one was asked for.
+  std::vector<std::size_t> Near(std::size_t best) const {
+    std::vector<std::size_t> near{best};
+    for (const std::size_t i : order_) {
+      if (i != best && !Idle(i, best) && !Behind(best, i, rules_.apart)) near.push_back(i);
+    }
+    const auto all = near;
+    std::erase_if(near, [&](std::size_t i) {
+      return std::any_of(all.begin(), all.end(), [&](std::size_t k) {
+        return k != i && Idle(i, k) && (candidates_[k].listed || !candidates_[i].listed);
+      });
+    });
+    return near;
+  }
+
+  double Score(std::size_t i) const { return ScoreOf(candidates_[i], rules_); }
+  /// By how much the next one is behind.
+  double Lead(std::size_t best) const {
+    if (order_.size() < 2) return Score(best);
+    return Score(best) - Score(order_[best == order_[0] ? 1 : 0]);
+  }
+
+ private:
+  // The smaller step: one that leans on it far more than the other is not excused by it.
+  bool Behind(std::size_t i, std::size_t j, double least) const {
+    const double open = rules_.step * std::min(candidates_[i].step, candidates_[j].step);
+    return Score(i) - Score(j) >= std::max(least, open);
+  }
+  bool Contains(std::size_t a, std::size_t b) const {
+    const auto& inner = candidates_[a].contains;
+    return std::find(inner.begin(), inner.end(), b) != inner.end();
+  }
+  // It has nothing to add: where only the time step leaves that open, both stay.
+  bool Idle(std::size_t a, std::size_t b) const {
+    return Contains(a, b) && Score(a) - Score(b) < rules_.deeper;
+  }
+
+  const std::vector<LikelihoodRecord>& candidates_;
+  const LikelihoodRules& rules_;
+  std::vector<std::size_t> order_;
+};
+
+Verdict NothingToName(double lack, double p, const LikelihoodRules& rules) {
+  const std::string why =
+      p < rules.level
+          ? "no candidate's fit gains more than its parameters gain from noise alone"
+          : fmt::format("noise alone lets the best candidate do as well with p = {:.2g}", p);
+  return {"adequate", {}, fmt::format("the model leaves {}: {}", LeftInWords(lack, rules), why)};
+}
+
+Verdict Name(const Comparison& all, std::size_t best, double lack, const LikelihoodRules& rules) {
+  Verdict verdict{"named", {}, ""};
+  std::string unlisted;
+  bool close = true;
+  for (const std::size_t i : all.Near(best)) {
+    const LikelihoodRecord& one = all.of(i);
+    (one.listed ? verdict.named : verdict.unlisted).push_back(i);
+    if (!one.listed) unlisted += (unlisted.empty() ? "" : ", ") + one.name;
+    close = close && all.Score(best) - all.Score(i) < rules.apart;
+  }
+  const std::string near =
+      fmt::format("within {:g}{}", rules.apart, close ? "" : " or what the time step leaves open");
+  const std::string leaves = "it leaves " + LeftInWords(lack, rules);
+  if (verdict.named.size() > 1) {
+    verdict.text = "ambiguous";
+    verdict.reason =
+        fmt::format("the likelihoods of {} candidates are {}", verdict.named.size(), near);
+  } else if (verdict.unlisted.empty()) {
+    verdict.reason = fmt::format("{}, and the next candidate is {:.1f} behind in likelihood",
+                                 leaves, all.Lead(best));
+  } else {
+    verdict.reason = leaves;
+  }
+  if (!unlisted.empty())
+    verdict.reason += fmt::format("; not listed, but as likely ({}): {}", near, unlisted);
+  return verdict;
+}
+
+}  // namespace
+
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double lack, double p,
                          const LikelihoodRules& rules) {
   // First order may promise what no fit keeps.
-  const bool kept = std::any_of(candidates.begin(), candidates.end(),
-                                [&](const auto& c) { return ScoreOf(c, rules) > rules.parameter; });
+  const bool kept = std::any_of(candidates.begin(), candidates.end(), [&](const auto& c) {
+    return c.listed && ScoreOf(c, rules) > rules.parameter;
+  });
   const bool any = p < rules.level && kept;
   const bool more = lack < rules.lack && !rules.excused;
   if (!any && more) {
     return {"unexplained", {}, "something beside noise is left that no candidate explains"};
   }
-  if (!any) {
-    return {"adequate",
-            {},
-            fmt::format("the model leaves {}: ", LeftInWords(lack, rules)) +
-                (p < rules.level
-                     ? std::string("no candidate's fit gains more than its parameters gain from "
-                                   "noise alone")
-                     : fmt::format("noise alone lets the best candidate do as well with p = {:.2g}",
-                                   p))};
-  }
-  std::vector<std::size_t> order(candidates.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto score = [&](std::size_t i) { return ScoreOf(candidates[i], rules); };
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return score(a) > score(b); });
+  if (!any) return NothingToName(lack, p, rules);
+  const Comparison all(candidates, rules);
   if (more) {
     return {"unexplained",
             {},
             fmt::format("the best candidate, {}, leaves more than noise (p = {:.2g}): another "
                         "cause is at work, or one more",
-                        candidates[order.front()].name, lack)};
+                        all.of(all.first()).name, lack)};
   }
-  // The smaller: one that leans on the time step far more than the other is not excused by it.
-  const auto behind = [&](std::size_t i, std::size_t j, double least) {
-    const double open = rules.step * std::min(candidates[i].step, candidates[j].step);
-    return score(i) - score(j) >= std::max(least, open);
-  };
-  // Only as deep as the data allow: a law that contains another must clearly beat it.
-  const auto contains = [&](std::size_t a, std::size_t b) {
-    const auto& inner = candidates[a].contains;
-    return std::find(inner.begin(), inner.end(), b) != inner.end();
-  };
-  // It has nothing to add: where only the time step leaves that open, both stay.
-  const auto idle = [&](std::size_t a, std::size_t b) {
-    return contains(a, b) && score(a) - score(b) < rules.deeper;
-  };
-  const std::size_t first = order.front();
-  const auto plain = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
-    return contains(first, i) && !behind(first, i, rules.deeper);
-  });
-  const std::size_t best = plain == order.end() ? first : *plain;
-  Verdict verdict{"named", {best}, ""};
-  bool close = true;
-  for (const std::size_t i : order) {
-    if (i == best || idle(i, best)) continue;
-    if (behind(best, i, rules.apart)) continue;
-    verdict.named.push_back(i);
-    close = close && score(best) - score(i) < rules.apart;
+  const std::size_t best = all.Best();
+  if (const LikelihoodRecord* const other = all.Outdoing(best)) {
+    return {"unexplained",
+            {},
+            fmt::format("the best candidate, {}, is clearly outdone by {}, which is not listed",
+                        all.of(best).name, other->name)};
   }
-  // Of a law and one that it contains the plain one says it.
-  const auto near = verdict.named;
-  std::erase_if(verdict.named, [&](std::size_t i) {
-    return std::any_of(near.begin(), near.end(),
-                       [&](std::size_t k) { return k != i && idle(i, k); });
-  });
-  if (verdict.named.size() > 1) {
-    verdict.text = "ambiguous";
-    verdict.reason =
-        fmt::format("the likelihoods of {} candidates are within {:g}{}", verdict.named.size(),
-                    rules.apart, close ? "" : " or what the time step leaves open");
-  } else {
-    verdict.reason =
-        fmt::format("it leaves {}, and the next candidate is {:.1f} behind in likelihood",
-                    LeftInWords(lack, rules),
-                    score(best) - (order.size() > 1 ? score(order[best == order[0] ? 1 : 0]) : 0));
-  }
-  return verdict;
+  return Name(all, best, lack, rules);
 }
 
 }  // namespace continuum

@@ -53,7 +53,8 @@ struct LikelihoodRecord {
   std::size_t parameters = 0;
   double likelihood = 0;                   ///< twice the logarithm gained over the model without it
   std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
-  double step = 0;  ///< how much of its misfit is put down to the time step, in the same unit
+  double step = 0;     ///< how much of its misfit is put down to the time step, in the same unit
+  bool listed = true;  ///< whether it was asked for: only then it can be named
 };
 
 struct LikelihoodRules {
@@ -69,9 +70,10 @@ struct LikelihoodRules {
 };
 
 struct Verdict {
-  std::string text;                ///< adequate | named | ambiguous | unexplained
-  std::vector<std::size_t> named;  ///< one when named, two or more when ambiguous
-  std::string reason;              ///< one sentence
+  std::string text;                        ///< adequate | named | ambiguous | unexplained
+  std::vector<std::size_t> named;          ///< one when named, two or more when ambiguous
+  std::string reason;                      ///< one sentence
+  std::vector<std::size_t> unlisted = {};  ///< that nobody asked for, and that do as well
 };
 
 /// What the folds allow one to say. noise_over: remaining error of the present model over the
@@ -80,8 +82,9 @@ struct Verdict {
 Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, double ceiling_gain,
               const Rules& rules = {});
 
-/// What the likelihoods allow one to say. lack: p-value of what the best candidate (or, without a
-/// significant one, the present model) leaves; p: family-wise, of the best.
+/// What the likelihoods allow one to say. lack: p-value of what the best listed candidate (or,
+/// without a significant one, the present model) leaves; p: family-wise, of the best. A name that
+/// one that is not listed clearly outdoes is none; one that does as well is told beside it.
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double lack, double p,
                          const LikelihoodRules& rules = {});
 

@@ -153,8 +153,11 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
     for (const CandidateResult& one : d.candidates)
       a.stated[one.hypothesis.effect] += one.probability;
   }
-  for (const std::size_t i : d.verdict.named) {
-    const CandidateResult& one = d.candidates[i];
+  std::vector<const CandidateResult*> set;
+  for (const std::size_t i : d.verdict.named) set.push_back(&d.candidates[i]);
+  for (const CandidateResult& one : d.unlisted) set.push_back(&one);
+  for (const CandidateResult* const member : set) {
+    const CandidateResult& one = *member;
     if (std::find(a.named.begin(), a.named.end(), one.hypothesis.effect) == a.named.end())
       a.named.push_back(one.hypothesis.effect);
     if (c.effects.empty() || c.background) continue;  // its size is not c's

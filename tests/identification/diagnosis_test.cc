@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "error.h"
 #include "identification/between.h"
@@ -94,6 +95,33 @@ TEST_F(DiagnosisTest, NamesAHiddenPayload) {
   EXPECT_NEAR(d.noise.rms, kNoise, 0.1 * kNoise);
   EXPECT_LT(d.after().validate, 0.2 * d.before.error.validate);
   EXPECT_GT(d.gain_low, 0.8);
+}
+
+// Of one pendulum nobody can tell its bob from a payload where the bob hangs.
+TEST_F(DiagnosisTest, TellsWhatIsNotListedAndWouldDoAsWell) {
+  Pendulum truth;
+  truth.payload = 0.05;
+  AddTrials(truth);
+  const Experiment e = ReadWith("link_mass, coulomb");
+  const Diagnosis d = Ask(e);
+  ASSERT_EQ(d.verdict.text, "named") << Told(d);
+  EXPECT_EQ(d.chosen()->hypothesis.effect, "link_mass");
+  std::vector<std::string> beside;
+  for (const CandidateResult& c : d.unlisted) beside.push_back(c.hypothesis.effect);
+  EXPECT_THAT(beside, ::testing::Contains("payload")) << Told(d);
+  EXPECT_THAT(d.verdict.reason, HasSubstr("not listed"));
+  WriteDiagnosis(e, d, folder_ / "out");
+  const auto json = nlohmann::json::parse(ReadFile(folder_ / "out" / "diagnosis.json"));
+  EXPECT_THAT(json.at("causes").at(0).at("equivalent"), ::testing::Contains("payload"));
+}
+
+TEST_F(DiagnosisTest, NoNameStandsThatOneOutsideTheListClearlyOutdoes) {
+  Pendulum truth;
+  truth.tau_c = 0.01;
+  AddTrials(truth);
+  const Diagnosis d = Ask(ReadWith("maxwell, payload"));
+  EXPECT_EQ(d.verdict.text, "unexplained") << Told(d);
+  EXPECT_THAT(d.verdict.reason, HasSubstr("not listed")) << Told(d);
 }
 
 TEST_F(DiagnosisTest, FindsNothingWhereNothingIsHidden) {

@@ -336,6 +336,46 @@ TEST(Likelihoods, OfALawAndOneThatItContainsThePlainOneIsKeptBesideAnother) {
       ElementsAre(2, 0));
 }
 
+// One that nobody asked for, in a list of others.
+LikelihoodRecord Unlisted(double likelihood, std::vector<std::size_t> contains = {}) {
+  return {"unlisted", 1, likelihood, std::move(contains), 0, false};
+}
+
+TEST(Likelihoods, ANameThatOneOutsideTheListClearlyOutdoesIsNone) {
+  const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(46)}, 0.5, 1e-3);
+  EXPECT_EQ(v.text, "unexplained");
+  EXPECT_THAT(v.reason, HasSubstr("a, is clearly outdone by unlisted, which is not listed"));
+}
+
+TEST(Likelihoods, OneOutsideTheListThatDoesAsWellIsToldBesideTheName) {
+  for (const double as_well : {36.0, 44.0}) {
+    const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(as_well)}, 0.5, 1e-3);
+    EXPECT_EQ(v.text, "named");
+    EXPECT_THAT(v.named, ElementsAre(0));
+    EXPECT_THAT(v.unlisted, ElementsAre(1));
+    EXPECT_THAT(v.reason, HasSubstr("not listed, but as likely (within 5): unlisted"));
+  }
+  EXPECT_THAT(JudgeLikelihoods({{"a", 1, 40}, Unlisted(34)}, 0.5, 1e-3).unlisted, IsEmpty());
+}
+
+TEST(Likelihoods, APlainLawOutsideTheListDoesNotTakeTheNameOfOneThatContainsIt) {
+  const std::vector<std::size_t> inner{0};
+  const auto v = JudgeLikelihoods({Unlisted(40), {"rich", 2, 44, inner}}, 0.5, 1e-3);
+  EXPECT_THAT(v.named, ElementsAre(1));
+  EXPECT_THAT(v.unlisted, ElementsAre(0));
+}
+
+TEST(Likelihoods, ARichLawOutsideTheListHasNothingToAdd) {
+  const std::vector<std::size_t> inner{0};
+  const auto v = JudgeLikelihoods({{"plain", 1, 40}, Unlisted(42, inner)}, 0.5, 1e-3);
+  EXPECT_THAT(v.named, ElementsAre(0));
+  EXPECT_THAT(v.unlisted, IsEmpty());
+}
+
+TEST(Likelihoods, NothingOutsideTheListMakesANameWhereNoneOfItHelps) {
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 2}, Unlisted(400)}, 0.5, 1e-3).text, "adequate");
+}
+
 TEST(Likelihoods, NoNameWhenTheBestLeavesMoreThanNoise) {
   EXPECT_EQ(JudgeLikelihoods({{"a", 1, 4000}}, 1e-6, 1e-3).text, "unexplained");
 }

@@ -1,0 +1,101 @@
+#include "identification/equation_error.h"
+
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+// Orthonormal columns that span the given ones.
+Matrix BasisOf(const std::vector<Vector>& columns, Eigen::Index rows) {
+  if (columns.empty()) return Matrix(rows, 0);
+  Matrix A(rows, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) A.col(static_cast<Eigen::Index>(k)) = columns[k];
+  Eigen::ColPivHouseholderQR<Matrix> qr(A);
+  qr.setThreshold(1e-9);
+  return qr.householderQ() * Matrix::Identity(rows, qr.rank());
+}
+
+}  // namespace
+
+EquationErrors::EquationErrors(const Experiment& experiment, const System& system,
+                               const Fitted& base)
+    : experiment_(experiment), x_(base.fit.x) {
+  const Problem problem(experiment, system);
+  const auto joints = MissingForces(problem, x_, problem.TrainLogs());
+  if (joints.empty()) return;
+  SetUnits(joints);
+  missing_ = Stacked(problem, x_);
+  std::vector<Vector> columns;
+  for (std::size_t k = 0; k < problem.parameters().size(); ++k) {
+    if (problem.parameters()[k].IsStart()) continue;
+    Vector moved = x_;
+    moved[static_cast<Eigen::Index>(k)] += problem.StepOf(x_, k, 1e-3);
+    const Vector column = Stacked(problem, moved) - missing_;
+    if (column.norm() > 1e-12) columns.push_back(column.normalized());
+  }
+  basis_ = BasisOf(columns, missing_.size());
+  force_ = missing_ - basis_ * (basis_.transpose() * missing_);
+}
+
+void EquationErrors::SetUnits(const std::vector<MissingForce>& joints) {
+  unit_.resize(static_cast<Eigen::Index>(joints.size()));
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const auto& f = joints[j].force;
+    const double norm =
+        Eigen::Map<const Vector>(f.data(), static_cast<Eigen::Index>(f.size())).norm();
+    unit_[static_cast<Eigen::Index>(j)] = norm > 0 ? norm : 1;
+    log_.insert(log_.end(), joints[j].log.begin(), joints[j].log.end());
+  }
+}
+
+Vector EquationErrors::Stacked(const Problem& problem, const Vector& x) const {
+  const auto joints = MissingForces(problem, x, problem.TrainLogs());
+  Vector all(static_cast<Eigen::Index>(log_.size()));
+  Eigen::Index at = 0;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    for (const double f : joints[j].force) all[at++] = f / unit_[static_cast<Eigen::Index>(j)];
+  }
+  return all;
+}
+
+std::optional<ByEquation> EquationErrors::Of(const CandidateResult& c) const {
+  constexpr double kNothing = 1e-6;  // of the missing force
+  if (!any() || !c.fits || !c.hypothesis.given.empty()) return {};
+  Vector x = c.fitted.fit.x;
+  x.head(x_.size()) = x_;
+  Vector d = missing_ - Stacked(c.ProblemOf(experiment_), x);
+  if (!d.allFinite() || d.norm() < kNothing * missing_.norm()) return {};
+  d -= basis_ * (basis_.transpose() * d);
+  const double amplitude = std::max(0.0, d.dot(force_) / std::max(d.squaredNorm(), 1e-300));
+  const Vector left = force_ - amplitude * d;
+  ByEquation result;
+  result.share = 1 - left.squaredNorm() / force_.squaredNorm();
+  result.before = PerLog(force_), result.after = PerLog(left);
+  return result;
+}
+
+std::vector<double> EquationErrors::PerLog(const Vector& r) const {
+  std::vector<double> squares(experiment_.logs.size(), 0);
+  for (std::size_t i = 0; i < log_.size(); ++i)
+    squares[log_[i]] += std::pow(r[static_cast<Eigen::Index>(i)], 2);
+  std::vector<double> roots;
+  for (const double sum : squares) {
+    if (sum > 0) roots.push_back(std::sqrt(sum));
+  }
+  return roots;
+}
+
+bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b) {
+  if (!a.by_equation || !b.by_equation) return false;
+  FoldRecord first, second;
+  first.before = second.before = a.by_equation->before;
+  first.after = a.by_equation->after, second.after = b.by_equation->after;
+  return ClearlyBetter(first, second, Rules{}.apart);
+}
+
+}  // namespace continuum
