@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "app/console.h"
+#include "app/filming.h"
 #include "identification/hypothesis.h"
 #include "identification/problem.h"
 #include "sim/check.h"
 #include "sim/file.h"
-#include "sim/film.h"
 #include "sim/output.h"
 #include "sim/registration.h"
 
@@ -22,6 +22,7 @@ namespace {
 struct Options {
   std::string experiment, out;
   bool video = false;
+  Filming filming;
 };
 
 // Names, units and known values, and the parameters as a fit would take them.
@@ -46,6 +47,9 @@ void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
   CheckAll(e, system);
+  FilmOptions film;
+  o.filming.Set(film, system.model());
+  const std::vector<std::size_t> filmed = o.filming.LogsOf(e);
   std::vector<std::string> outputs{"errors.json", "simulated/", "report.html"};
   if (o.video) outputs.push_back("replay.mp4");
   const OutFolder made(o.out, outputs, {e.file, e.model});
@@ -76,13 +80,7 @@ void RunReplay(const Options& o) {
   WriteSimulated(e, traces, folder / "simulated");
   WriteReplayReport(e, logs, folder / "report.html");
   std::fflush(stdout);  // before minutes of film
-  if (o.video) {
-    FilmOptions film;
-    film.progress = ShowProgress;
-    std::vector<std::size_t> all(e.logs.size());
-    for (std::size_t l = 0; l < all.size(); ++l) all[l] = l;
-    FilmExperiment(e, system, all, folder / "replay.mp4", film);
-  }
+  if (o.video) FilmExperiment(e, system, filmed, folder / "replay.mp4", film);
   EndProgress();
   std::printf("report: %s\n", (folder / "report.html").c_str());
 }
@@ -115,7 +113,8 @@ void AddReplay(CLI::App& app) {
       app.add_subcommand("replay", "Simulate every log of an experiment as it stands");
   sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
   sub->add_option("--out", o->out, "folder for errors.json, simulated/, report.html")->required();
-  sub->add_flag("--video", o->video, "also replay.mp4");
+  auto* const video = sub->add_flag("--video", o->video, "also replay.mp4");
+  for (CLI::Option* const option : o->filming.AddTo(*sub)) option->needs(video);
   sub->footer("Example:\n  continuum replay models/annelida/demo/annelida.yaml --out out");
   sub->callback([o] { RunReplay(*o); });
 }

@@ -50,8 +50,21 @@ void Decorate(const FilmOptions& options, const mjModel& m, const mjData& d, mjv
 /// pale and without a line, as the simulation went on.
 void DrawMeasured(const MeasuredPoint& point, const mjModel& m, mjvScene& scene);
 
+/// What the film of a log will show, found by simulating it beforehand.
+struct Outlook {
+  Framing framing;      ///< of all poses, those that were measured too
+  bool marked = false;  ///< whether positions without a pose are measured in some frame
+};
+Outlook LookAhead(const Experiment& experiment, const System& system, const Log& log,
+                  const FilmOptions& options);
+
 /// Simulates a log and draws its frames: the simulation as it is, cables coloured by tension where
-/// a capstan effect or options.tension says how, chambers by pressure.
+/// a capstan effect or options.tension says how, chambers by pressure. ruler: gives the scale, and
+/// one scale to all films that share it.
+void DrawFrames(const Experiment& experiment, const System& system, const Log& log,
+                const FilmOptions& options, const Outlook& ahead, Ruler& ruler,
+                const std::function<void(Image)>& take);
+/// The same, as a film of its own.
 void DrawFrames(const Experiment& experiment, const System& system, const Log& log,
                 const FilmOptions& options, const std::function<void(Image)>& take);
 
@@ -60,8 +73,8 @@ void FilmExperiment(const Experiment& experiment, const System& system,
                     const std::vector<std::size_t>& logs, const std::filesystem::path& file,
                     const FilmOptions& options = {});
 
-/// One frame of the first log at its middle (or of the model at rest), as PNG.
-void PictureOf(const Experiment& experiment, const System& system,
+/// One frame of a log at its middle (or of the model at rest), as PNG.
+void PictureOf(const Experiment& experiment, const System& system, std::size_t log,
                const std::filesystem::path& file, const FilmOptions& options = {});
 
 }  // namespace continuum

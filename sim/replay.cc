@@ -7,6 +7,7 @@
 #include "error.h"
 #include "sim/check_units.h"
 #include "sim/file.h"
+#include "sim/own_files.h"
 #include "sim/possible.h"
 #include "sim/registration.h"
 
@@ -108,7 +109,7 @@ nlohmann::json ErrorsJson(const Experiment& e, const std::vector<Replayed>& logs
 
 void WriteSimulated(const Experiment& e, const std::vector<Trace>& traces,
                     const std::filesystem::path& folder) {
-  MakeFolder(folder);
+  OwnFiles files(folder);
   for (std::size_t l = 0; l < traces.size(); ++l) {
     const Log& log = e.logs[l];
     std::string text = "time";
@@ -123,8 +124,9 @@ void WriteSimulated(const Experiment& e, const std::vector<Trace>& traces,
       }
       text += "\n";
     }
-    WriteFile(folder / (log.label + ".csv"), text);
+    files.Write(log.label + ".csv", text);
   }
+  files.Finish();
 }
 
 void AddOverlay(Page& page, const Experiment& e, const Log& log,

@@ -39,6 +39,7 @@ nlohmann::json ErrorsJson(const Experiment& experiment, const std::vector<Replay
 nlohmann::json ScoreJson(const std::vector<ChannelScore>& score);
 
 /// simulated/<log>.csv: time [s], and per channel the simulated and the measured value in its unit.
+/// Files of logs that an earlier job wrote there and this experiment lacks go (OwnFiles).
 void WriteSimulated(const Experiment& experiment, const std::vector<Trace>& traces,
                     const std::filesystem::path& folder);
 
