@@ -15,6 +15,7 @@
 #include "sim/file.h"
 #include "sim/output.h"
 #include "sim/registration.h"
+#include "sim/sensor_score.h"
 
 namespace continuum {
 namespace {
@@ -43,6 +44,19 @@ std::string InWords(const Experiment& e, const SplitError& error) {
   return words;
 }
 
+// "plate3 validate loaded: off by 11.7 mm RMS, 10.3 mean, 3.1 % of its RMS, 5001 rows".
+void PrintSensors(const std::vector<SensorScore>& sensors) {
+  for (const SensorScore& s : sensors) {
+    if (!s.condition.empty() && s.use != "validate") continue;  // in errors.json
+    std::string line = s.source;
+    for (const std::string& word : {s.quantity, s.use.empty() ? "all" : s.use, s.condition})
+      line += word.empty() ? "" : " " + word;
+    line += fmt::format(": off by {:.4g} {} RMS, {:.4g} mean", s.rms, s.unit, s.mean);
+    if (s.relative > 0) line += fmt::format(", {:.3g} % of its RMS", 100 * s.relative);
+    std::printf("%s, %zu rows\n", line.c_str(), s.rows);
+  }
+}
+
 void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
@@ -68,6 +82,7 @@ void RunReplay(const Options& o) {
       scores.push_back(s);
     }
   }
+  PrintSensors(ScoreSensors(e, logs));
   const SplitError error = PooledError(e, logs);
   const std::string unit = Pool(e).unit();
   std::printf("all: RMS%s %s%s\n", InWords(e, error).c_str(), unit.c_str(),

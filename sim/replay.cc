@@ -10,6 +10,7 @@
 #include "sim/own_files.h"
 #include "sim/possible.h"
 #include "sim/registration.h"
+#include "sim/sensor_score.h"
 
 namespace continuum {
 namespace {
@@ -104,6 +105,7 @@ nlohmann::json ErrorsJson(const Experiment& e, const std::vector<Replayed>& logs
                             {"diverged", logs[l].trace.diverged},
                             {"channels", ScoreJson(logs[l].score)}});
   }
+  json["sensors"] = ToJson(ScoreSensors(e, logs));
   return json;
 }
 

@@ -33,7 +33,8 @@ struct SplitError {
 };
 SplitError PooledError(const Experiment& experiment, const std::vector<Replayed>& logs);
 
-/// errors.json: pooled errors, and per log and channel what ChannelScore holds.
+/// errors.json: pooled errors, per log and channel what ChannelScore holds, and what ScoreSensors
+/// says.
 nlohmann::json ErrorsJson(const Experiment& experiment, const std::vector<Replayed>& logs);
 /// [channels] of one log as JSON.
 nlohmann::json ScoreJson(const std::vector<ChannelScore>& score);

@@ -6,6 +6,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::Contains;
+using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::Scratch;
 
@@ -62,6 +63,17 @@ TEST_F(ReplayOutputs, OfLogsThatLeftTheExperimentGo) {
     EXPECT_THAT(Listing(), Contains("out/simulated/log.csv"));
     EXPECT_THAT(Listing(), Contains("out/simulated/mine.csv"));
   }
+}
+
+TEST_F(ReplayOutputs, TellHowFarASensorIsOffInAllOfItsDirections) {
+  Spoil(
+      "experiment.yaml", "{column: q, unit: rad, sensor: angle}",
+      "{column: t, unit: m, sensor: \"tip_pos[0]\"}, {column: q, unit: m, sensor: \"tip_pos[1]\"}");
+  const auto f = Run({"replay", "experiment.yaml", "--out", "out"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("tip_pos train: off by "));
+  EXPECT_THAT(f.out, HasSubstr(" m RMS, "));
+  EXPECT_THAT(f.out, HasSubstr(", 8 rows\n"));
 }
 
 }  // namespace
