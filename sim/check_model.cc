@@ -80,6 +80,7 @@ void CheckShifts(const std::vector<Compared>& pairs, double period, Findings& ou
     return;
   }
   for (const auto& [p, lag] : shifted) {
+    if (out.Has(p->name, "lag")) continue;  // the kinematics know better
     out.Add(Severity::kWarning, p->name, "lag",
             fmt::format("is {}: the column is shifted, or the model lacks a delay", say(lag)));
   }
@@ -253,6 +254,7 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const System& sys
     if (traces[l].channel.empty()) continue;
     Findings found(&e.logs[l]);
     CheckRanges(e, e.logs[l], system.model(), found);
+    CheckPose(e, e.logs[l], system, found);
     CheckSimulated(e, e.logs[l], traces[l], found);
     trials.Run(e.logs[l], traces[l], found);
     for (Finding& f : found.Take()) all.push_back(std::move(f));

@@ -19,8 +19,14 @@ std::vector<Compared> Compare(const Experiment& e, const Log& log, const Trace& 
 /// Deviation of the difference: what is left beside an offset.
 double Misfit(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Rows in which an input leaves the range of its actuator: the model clamps it.
+/// Rows in which an input leaves the range of its actuator, where the model clamps it, and inputs
+/// that are on a limit in many rows.
 void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings& out);
+
+/// Columns that are shifted in time against the pose: where a log measures every joint and something
+/// that the joints determine, the model's kinematics tell without its forces. Not with a
+/// registration.
+void CheckPose(const Experiment& e, const Log& log, const System& system, Findings& out);
 
 /// Tries mistakes in the inputs of logs that the model does not explain: another sign or unit (of
 /// one input, or of all that have one dimension), two inputs swapped. Each is tried where its input
