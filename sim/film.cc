@@ -83,14 +83,33 @@ std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
   return ColorBar{"chamber pressure [kPa]", "0", fmt::format("{:g}", 1e-3 * full)};
 }
 
+// What actuators pull each tendon with [N]; nullopt of those that none pulls or nobody sees.
+std::vector<std::optional<double>> TensionsOf(const mjModel& m, const mjData& d) {
+  std::vector<std::optional<double>> tensions(m.ntendon);
+  for (int a = 0; a < m.nu; ++a) {
+    if (m.actuator_trntype[a] != mjTRN_TENDON) continue;
+    const int t = m.actuator_trnid[2 * a];
+    if (m.wrap_type[m.tendon_adr[t]] == mjWRAP_JOINT) continue;
+    tensions[t] = tensions[t].value_or(0) - m.actuator_gear[6 * a] * d.actuator_force[a];
+  }
+  return tensions;
+}
+
+// The next of 1, 2, 5 times a power of ten.
+double RoundUp(double x) {
+  if (!(x > 0)) return 0;
+  const double power = std::pow(10, std::floor(std::log10(x)));
+  for (const double digit : {1, 2, 5}) {
+    if (digit * power >= x) return digit * power;
+  }
+  return 10 * power;
+}
+
 // Tendons from blue to red over a range [N]: by the actuators that pull them, or as an effect says.
 void ColorTendons(const mjModel& m, const mjData& d, const std::array<double, 2>& range,
                   mjvScene& scene) {
-  std::vector<double> tension(m.ntendon, 0);
-  for (int a = 0; a < m.nu; ++a) {
-    if (m.actuator_trntype[a] != mjTRN_TENDON) continue;
-    tension[m.actuator_trnid[2 * a]] -= m.actuator_gear[6 * a] * d.actuator_force[a];
-  }
+  std::vector<double> tension;
+  for (const auto& t : TensionsOf(m, d)) tension.push_back(t.value_or(0));
   const ColorBar bar;
   for (int g = 0; g < scene.ngeom; ++g) {
     mjvGeom& geom = scene.geoms[g];
@@ -217,6 +236,19 @@ void DrawMeasured(const MeasuredPoint& point, const mjModel& m, mjvScene& scene)
   line.category = mjCAT_DECOR;
 }
 
+void Outlook::Include(const std::vector<std::optional<double>>& tensions) {
+  for (const auto& t : tensions) {
+    if (!t) continue;
+    if (!tension) tension = {0, 0};
+    tension = {std::min((*tension)[0], -RoundUp(-*t)), std::max((*tension)[1], RoundUp(*t))};
+  }
+}
+
+void Outlook::Include(const Outlook& other) {
+  framing.Include(other.framing);
+  if (other.tension) Include({(*other.tension)[0], (*other.tension)[1]});
+}
+
 Outlook LookAhead(const Experiment& e, const System& system, const Log& log,
                   const FilmOptions& options) {
   Machine machine = system.Build(log.set);
@@ -228,6 +260,7 @@ Outlook LookAhead(const Experiment& e, const System& system, const Log& log,
   look.row = [&](const mjModel& m, mjData& d, std::size_t row) {
     if (!clock.Due(row)) return;
     ahead.framing.Include(m, d);
+    if (!options.tension && !HasEffect(m, "capstan")) ahead.Include(TensionsOf(m, d));
     if (!options.ghost) return;
     if (const mjData* const ghost = measured.At(row))
       ahead.framing.Include(m, *ghost);
@@ -239,9 +272,10 @@ Outlook LookAhead(const Experiment& e, const System& system, const Log& log,
   return ahead;
 }
 
-void DrawFrames(const Experiment& e, const System& system, const Log& log,
-                const FilmOptions& options, const Outlook& ahead, Ruler& ruler,
-                const std::function<void(Image)>& take) {
+void DrawFrames(const Experiment& e, const System& system, const Log& log, FilmOptions options,
+                const Outlook& ahead, Ruler& ruler, const std::function<void(Image)>& take) {
+  const bool pulled = ahead.tension && (*ahead.tension)[0] < (*ahead.tension)[1];
+  if (!options.tension && pulled) options.tension = ahead.tension;
   Machine machine = system.Build(log.set);
   const Wiring wiring(e, *machine.model);
   MeasuredPose measured(e, log, *machine.model);

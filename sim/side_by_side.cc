@@ -95,8 +95,8 @@ void DrawSideBySide(const Side& left, const Side& right, std::size_t log,
     return LookAhead(side.experiment, side.system, side.experiment.logs[log], options);
   };
   Outlook ahead = look(left), beside = look(right);
-  ahead.framing.Include(beside.framing);
-  beside.framing = ahead.framing;
+  ahead.Include(beside);
+  beside.Include(ahead);
   Ruler ruler;
   Frames one(left, log, options, ahead, ruler), other(right, log, options, beside, ruler);
   Image shown[2];
