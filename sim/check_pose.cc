@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -21,14 +23,15 @@ struct Place {
   int address;
 };
 
-// What a log measures of the pose: every joint, and sensors that the joints determine.
+// What a log measures of the pose: joints, and sensors that all joints determine.
 struct Pose {
   std::vector<Place> joints, others;
+  bool whole;  // every joint; else the rest is taken to stand still
 };
 
 std::optional<Pose> PoseOf(const Experiment& e, const mjModel& m) {
   const Wiring wiring(e, m);
-  Pose pose;
+  Pose pose{};
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const Output& out = e.outputs[e.channels[c].output];
     const Wiring::Source& source = wiring.output[e.channels[c].output];
@@ -39,26 +42,27 @@ std::optional<Pose> PoseOf(const Experiment& e, const mjModel& m) {
     else if (m.sensor_needstage[source.sensor] == mjSTAGE_POS)
       pose.others.push_back({c, source.address + source.component});
   }
-  const bool whole = std::cmp_equal(pose.joints.size(), m.njnt) && m.nq == m.nv;
-  return whole && !pose.others.empty() ? std::optional(pose) : std::nullopt;
+  pose.whole = std::cmp_equal(pose.joints.size(), m.njnt);
+  const bool known = m.nq == m.nv && !pose.joints.empty() && !pose.others.empty();
+  return known ? std::optional(pose) : std::nullopt;
 }
 
-// Rows at which everything is measured, before and after too: at most a thousand.
+constexpr std::size_t kReach = 3;  // rows on either side of a secant: noise is not speed
+
+// Rows at which everything is measured, before and after too: some two thousand at most, in one
+// piece.
 std::vector<std::size_t> RowsOf(const Log& log, const Pose& pose) {
   std::vector<std::size_t> rows;
-  for (std::size_t k = 1; k + 1 < log.rows(); ++k) {
+  for (std::size_t k = kReach; k + kReach < log.rows() && rows.size() < 2000; ++k) {
     const auto missing = [&](const Place& p) {
       const auto& x = log.measured[p.channel];
-      return !std::isfinite(x[k - 1]) || !std::isfinite(x[k]) || !std::isfinite(x[k + 1]);
+      return !std::isfinite(x[k - kReach]) || !std::isfinite(x[k]) || !std::isfinite(x[k + kReach]);
     };
     if (std::none_of(pose.joints.begin(), pose.joints.end(), missing) &&
         std::none_of(pose.others.begin(), pose.others.end(), missing))
       rows.push_back(k);
   }
-  const std::size_t every = rows.size() / 1000 + 1;
-  std::vector<std::size_t> some;
-  for (std::size_t i = 0; i < rows.size(); i += every) some.push_back(rows[i]);
-  return some;
+  return rows;
 }
 
 // Per other column: what is measured beside what the measured joints make of it, and how fast each
@@ -117,12 +121,12 @@ class Poses {
   VectorXd Speed(const Place& joint, std::size_t row) {
     double& q = d_.qpos[joint.address];
     const double here = q;
-    q = Measured(joint, row + 1);
+    q = Measured(joint, row + kReach);
     const VectorXd after = Look();
-    q = Measured(joint, row - 1);
+    q = Measured(joint, row - kReach);
     const VectorXd before = Look();
     q = here;
-    return (after - before) / (log_.time[row + 1] - log_.time[row - 1]);
+    return (after - before) / (log_.time[row + kReach] - log_.time[row - kReach]);
   }
 
   const Experiment& e_;
@@ -138,19 +142,22 @@ struct Late {
 };
 
 // rest ≈ late · pattern, in units of the channel's own motion; sd for noise that lasts ten rows.
+// The share is of what is more than white noise.
 Late FitLate(const std::vector<VectorXd>& rest, const std::vector<VectorXd>& pattern,
              const std::vector<double>& unit) {
-  double rr = 0, rp = 0, pp = 0;
+  double rr = 0, rp = 0, pp = 0, white = 0;
+  const auto rows = static_cast<double>(rest.front().size());
   for (std::size_t o = 0; o < rest.size(); ++o) {
     const double weight = unit[o] > 0 ? 1 / (unit[o] * unit[o]) : 0;
     rr += weight * rest[o].squaredNorm();
     rp += weight * rest[o].dot(pattern[o]);
     pp += weight * pattern[o].squaredNorm();
+    white += weight * rows * std::pow(NoiseOf({rest[o].begin(), rest[o].end()}), 2);
   }
   if (!(pp > 0) || !(rr > 0)) return {};
-  const auto n = static_cast<double>(rest.size()) * static_cast<double>(rest.front().size());
-  const double explained = rp * rp / pp;
-  return {rp / pp, std::sqrt(10 * (rr - explained) / n / pp), explained, explained / rr};
+  const double explained = rp * rp / pp, n = static_cast<double>(rest.size()) * rows;
+  return {rp / pp, std::sqrt(10 * (rr - explained) / n / pp), explained,
+          explained / std::max(rr - white, explained)};
 }
 
 void Tell(const std::string& column, const Late& late, double period, const std::string& against,
@@ -161,6 +168,16 @@ void Tell(const std::string& column, const Late& late, double period, const std:
                       "column is shifted",
                       late.seconds > 0 ? "late against" : "ahead of", against,
                       Amount(1e3 * std::abs(late.seconds), "ms"), rows));
+}
+
+// Whether joints that are not measured move, by the sensors that see them too.
+bool Moves(const Motion& motion, const std::vector<double>& unit) {
+  constexpr double kStill = 0.2;  // of what is measured: shifts by some rows are less
+  for (std::size_t o = 0; o < unit.size(); ++o) {
+    const auto rows = static_cast<double>(motion.rest[o].size());
+    if (motion.rest[o].norm() > kStill * unit[o] * std::sqrt(rows)) return true;
+  }
+  return false;
 }
 
 // Columns that are late on their own, those of the joints behind the others.
@@ -176,36 +193,60 @@ std::vector<Late> LateColumns(const Motion& motion, const std::vector<double>& u
   return late;
 }
 
+// A column that is refreshed now and then is late by itself, and makes others look so.
+bool Repeats(const std::vector<double>& x) {
+  std::size_t repeats = 0;
+  for (std::size_t k = 1; k < x.size(); ++k) repeats += x[k] == x[k - 1];
+  return 3 * repeats > x.size();
+}
+
+// What is believed of them: some of the others, or the one joint that says more than they do.
+std::vector<Late> Believed(std::vector<Late> late, std::size_t others, double period) {
+  constexpr double kShare = 0.4;  // joints that move together look late together
+  for (Late& l : late) {
+    if (std::abs(l.seconds) < std::max(0.7 * period, 4 * l.sd) || l.share < kShare) l = {};
+  }
+  const auto first_joint = late.begin() + static_cast<std::ptrdiff_t>(others);
+  const auto joint = std::max_element(first_joint, late.end(),
+                                      [](auto& a, auto& b) { return a.explained < b.explained; });
+  double by_others = 0;
+  for (auto l = late.begin(); l != first_joint; ++l) by_others += l->explained;
+  const bool one_joint = joint->explained > by_others;
+  for (auto l = late.begin(); l != late.end(); ++l) {
+    if (one_joint ? l != joint : l >= first_joint) *l = {};
+  }
+  return late;
+}
+
 }  // namespace
 
-void CheckPose(const Experiment& e, const Log& log, const System& system, Findings& out) {
+std::set<std::string> CheckPose(const Experiment& e, const Log& log, const System& system,
+                                Findings& out) {
   const Registration& r = e.registration;
-  if (e.quasi_static || r.has_frame() || r.has_marker()) return;
+  if (e.quasi_static || r.has_frame() || r.has_marker()) return {};
   Machine machine = system.Build(log.set);
   const auto pose = PoseOf(e, *machine.model);
   const std::vector<std::size_t> rows = pose ? RowsOf(log, *pose) : std::vector<std::size_t>();
-  if (rows.size() < 100) return;
+  if (rows.size() < 100) return {};
   std::vector<double> unit;
   for (const Place& o : pose->others) unit.push_back(Deviation(log.measured[o.channel]));
+  std::vector<Place> places = pose->others;
+  places.insert(places.end(), pose->joints.begin(), pose->joints.end());
+  const auto repeats = [&](const Place& p) { return Repeats(log.measured[p.channel]); };
+  if (std::any_of(places.begin(), places.end(), repeats)) return {};
+  const Motion motion = Poses(e, log, *pose, machine).Of(rows);
+  if (!pose->whole && Moves(motion, unit)) return {};
   const double period = Median(Differences(log.time));
-  std::vector<Late> late = LateColumns(Poses(e, log, *pose, machine).Of(rows), unit);
-  for (Late& l : late) {
-    if (std::abs(l.seconds) < std::max(0.7 * period, 4 * l.sd) || l.share < 0.5) l = {};
+  const std::vector<Late> late = Believed(LateColumns(motion, unit), pose->others.size(), period);
+  std::set<std::string> judged;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::string& column = e.channels[places[i].channel].name;
+    judged.insert(column);
+    const bool joint = i >= pose->others.size();
+    if (late[i].explained > 0)
+      Tell(column, late[i], period, joint ? "the other outputs" : "the measured joints", out);
   }
-  // Either some of the others, or the one joint that says more than they do.
-  const auto first_joint = late.begin() + static_cast<std::ptrdiff_t>(pose->others.size());
-  double by_others = 0;
-  for (auto l = late.begin(); l != first_joint; ++l) by_others += l->explained;
-  const auto joint = std::max_element(first_joint, late.end(),
-                                      [](auto& a, auto& b) { return a.explained < b.explained; });
-  const auto tell = [&](const Place& place, const Late& l, const char* against) {
-    const std::string& column = e.channels[place.channel].name;
-    if (l.explained > 0) Tell(column, l, period, against, out);
-  };
-  if (joint->explained > by_others)
-    return tell(pose->joints[joint - first_joint], *joint, "the other outputs");
-  for (std::size_t o = 0; o < pose->others.size(); ++o)
-    tell(pose->others[o], late[o], "the measured joints");
+  return judged;
 }
 
 }  // namespace continuum

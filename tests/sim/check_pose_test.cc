@@ -104,5 +104,31 @@ TEST_F(CheckPoseTest, NothingIsSaidOfALogWithoutShiftsOrWithAWrongLength) {
   EXPECT_TRUE(lags.empty()) << Report(lags);
 }
 
+// Five of its ten joints are measured, the others rest; cables and friction of the model are wrong.
+TEST(SnakeArm, AColumnShiftedByOneRowIsNamedInItsLogs) {
+  Experiment e = Experiment::Read(CONTINUUM_SOURCE "/models/annelida/demo/annelida.yaml");
+  e.logs.resize(1);
+  const System system = System::Load(e.model);
+  const auto lags = [&] {
+    std::vector<Finding> lags;
+    for (const Finding& f : CheckAgainstModel(e, system)) {
+      if (f.what == "lag" && f.severity == Finding::Severity::kWarning) lags.push_back(f);
+    }
+    return lags;
+  };
+  EXPECT_TRUE(lags().empty()) << Report(lags());
+  const auto original = e.logs[0].measured;
+  for (const std::size_t channel : {0, 2, 5, 6}) {
+    auto& x = e.logs[0].measured[channel];
+    x.insert(x.begin(), x.front());
+    x.pop_back();
+    const auto found = lags();
+    ASSERT_EQ(found.size(), 1u) << e.channels[channel].name << "\n" << Report(found);
+    EXPECT_EQ(found[0].channel, e.channels[channel].name);
+    EXPECT_THAT(found[0].text, HasSubstr("late against"));
+    e.logs[0].measured = original;
+  }
+}
+
 }  // namespace
 }  // namespace continuum
