@@ -6,6 +6,7 @@
 #include "sim/clip.h"
 #include "sim/output.h"
 #include "sim/registration.h"
+#include "sim/video.h"
 
 namespace continuum {
 namespace {
@@ -34,6 +35,7 @@ void RunRender(const Options& o) {
   if (!picture && out.extension() != ".mp4")
     throw Error::Input("--out", "a name that ends in .mp4 or .png", "'" + o.out + "'");
   RequireWritable(out);
+  if (!picture) RequireFilm(out, film.width, film.height, film.fps);
   e = Registered(e, system);
   if (picture) return PictureOf(e, system, logs.front(), out, film);
   FilmExperiment(e, system, logs, out, film);

@@ -16,6 +16,7 @@
 #include "sim/output.h"
 #include "sim/registration.h"
 #include "sim/sensor_score.h"
+#include "sim/video.h"
 
 namespace continuum {
 namespace {
@@ -65,9 +66,12 @@ void RunReplay(const Options& o) {
   o.filming.Set(film, system.model());
   const std::vector<std::size_t> filmed = o.filming.LogsOf(e);
   std::vector<std::string> outputs{"errors.json", "simulated/", "report.html"};
-  if (o.video) outputs.push_back("replay.mp4");
-  const OutFolder made(o.out, outputs, {e.file, e.model});
   const std::filesystem::path folder = o.out;
+  if (o.video) {
+    RequireFilm(folder / "replay.mp4", film.width, film.height, film.fps);
+    outputs.push_back("replay.mp4");
+  }
+  const OutFolder made(o.out, outputs, {e.file, e.model});
   const auto logs = Replay(e, system, ShowProgress);
   EndProgress();
   std::vector<Trace> traces;
