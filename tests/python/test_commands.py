@@ -81,9 +81,11 @@ class Options(bench.Bench):
 
     def test_a_fit_goes_on_from_another(self):
         first = mc.identify(self.experiment, starts=2, seed=3, whole=True)
-        value = first["parameters"][0]["value"]
-        again = mc.identify(self.experiment, from_=first)["parameters"][0]
-        self.assertAlmostEqual(again["start"], value)
+        again = mc.identify(self.experiment, from_=first)
+        self.assertAlmostEqual(again["parameters"][0]["value"], first["parameters"][0]["value"], 5)
+        self.assertLess(again["evaluations"], first["evaluations"])
+        with self.assertRaisesRegex(mc.InputError, "^from: "):
+            mc.identify(self.experiment, from_={"parameters": 1})
         with self.assertRaisesRegex(mc.InputError, "--starts: expected --method lm"):
             mc.identify(self.experiment, method="pso", starts=2)
 
