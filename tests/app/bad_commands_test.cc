@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"SolveExperiment", {"solve", kE, "--out", "x.csv"}, {"experiment.yaml:2", "tdcr"}}),
     testing::kCaseName);
 
-class Unwritable : public testing::AppBench {
+class AtOnce : public testing::AppBench {
  protected:
   // Refused without a word of progress: before the work.
   void ExpectRefusedAtOnce(const std::string& command, const std::string& place) const {
@@ -148,6 +148,12 @@ class Unwritable : public testing::AppBench {
     EXPECT_THAT(Run({command, kE, "--out", "out"}).err, ::testing::StartsWith("continuum: "));
   }
 };
+
+TEST_F(AtOnce, ADiagnosisWithNeitherNoiseNorLogsToLeaveOutIsRefused) {
+  ExpectRefusedAtOnce("diagnose", "experiment.yaml: folds: expected at least two groups");
+}
+
+class Unwritable : public AtOnce {};
 
 TEST_F(Unwritable, OutputsAreNoticedBeforeTheWork) {
   for (const char* file : {"errors.json", "fit.json", "diagnosis.json"})
