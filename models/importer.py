@@ -147,7 +147,8 @@ def attempt(name, job):
 
 
 def run(file, doc, convert, option="", read_option=None):
-    """A script from its command line; option: a third argument that may be given, and its reader."""
+    """A script from its command line; option: a third argument that may be given, and its
+    reader."""
     script, arguments = pathlib.Path(file), sys.argv[1:]
     if "-h" in arguments or "--help" in arguments:
         print(doc.strip())

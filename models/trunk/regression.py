@@ -52,7 +52,8 @@ def main():
         raise importer.Refusal(f"expected EXPERIMENT_FOLDER, found {len(sys.argv) - 1} "
                                "arguments")
     folder = pathlib.Path(sys.argv[1])
-    lines = ["| RMS distance of the third disk [mm], 100-150 s | unloaded | 100 g |", "|---|---|---|"]
+    lines = ["| RMS distance of the third disk [mm], 100-150 s | unloaded | 100 g |",
+             "|---|---|---|"]
     for name, degree in (("linear", 1), ("quadratic", 2)):
         errors = [error(folder / f"{recording}.csv", degree) for recording in RECORDINGS]
         lines.append(f"| {name} regression | " + " | ".join(f"{e:.1f}" for e in errors) + " |")
