@@ -8,13 +8,15 @@
 #include <fmt/format.h>
 
 #include "app/console.h"
+#include "app/filming.h"
 #include "identification/hypothesis.h"
 #include "identification/problem.h"
 #include "sim/check.h"
 #include "sim/file.h"
-#include "sim/film.h"
 #include "sim/output.h"
 #include "sim/registration.h"
+#include "sim/sensor_score.h"
+#include "sim/video.h"
 
 namespace continuum {
 namespace {
@@ -22,6 +24,7 @@ namespace {
 struct Options {
   std::string experiment, out;
   bool video = false;
+  Filming filming;
 };
 
 // Names, units and known values, and the parameters as a fit would take them.
@@ -42,14 +45,33 @@ std::string InWords(const Experiment& e, const SplitError& error) {
   return words;
 }
 
+// "plate3 validate loaded: off by 11.7 mm RMS, 10.3 mean, 3.1 % of its RMS, 5001 rows".
+void PrintSensors(const std::vector<SensorScore>& sensors) {
+  for (const SensorScore& s : sensors) {
+    if (!s.condition.empty() && s.use != "validate") continue;  // in errors.json
+    std::string line = s.source;
+    for (const std::string& word : {s.quantity, s.use.empty() ? "all" : s.use, s.condition})
+      line += word.empty() ? "" : " " + word;
+    line += fmt::format(": off by {:.4g} {} RMS, {:.4g} mean", s.rms, s.unit, s.mean);
+    if (s.relative > 0) line += fmt::format(", {:.3g} % of its RMS", 100 * s.relative);
+    std::printf("%s, %zu rows\n", line.c_str(), s.rows);
+  }
+}
+
 void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
   const System system = System::Load(e.model);
   CheckAll(e, system);
+  FilmOptions film;
+  o.filming.Set(film, system.model());
+  const std::vector<std::size_t> filmed = o.filming.LogsOf(e);
   std::vector<std::string> outputs{"errors.json", "simulated/", "report.html"};
-  if (o.video) outputs.push_back("replay.mp4");
-  const OutFolder made(o.out, outputs, {e.file, e.model});
   const std::filesystem::path folder = o.out;
+  if (o.video) {
+    RequireFilm(folder / "replay.mp4", film.width, film.height, film.fps);
+    outputs.push_back("replay.mp4");
+  }
+  const OutFolder made(o.out, outputs, {e.file, e.model});
   const auto logs = Replay(e, system, ShowProgress);
   EndProgress();
   std::vector<Trace> traces;
@@ -64,6 +86,7 @@ void RunReplay(const Options& o) {
       scores.push_back(s);
     }
   }
+  PrintSensors(ScoreSensors(e, logs));
   const SplitError error = PooledError(e, logs);
   const std::string unit = Pool(e).unit();
   std::printf("all: RMS%s %s%s\n", InWords(e, error).c_str(), unit.c_str(),
@@ -76,13 +99,7 @@ void RunReplay(const Options& o) {
   WriteSimulated(e, traces, folder / "simulated");
   WriteReplayReport(e, logs, folder / "report.html");
   std::fflush(stdout);  // before minutes of film
-  if (o.video) {
-    FilmOptions film;
-    film.progress = ShowProgress;
-    std::vector<std::size_t> all(e.logs.size());
-    for (std::size_t l = 0; l < all.size(); ++l) all[l] = l;
-    FilmExperiment(e, system, all, folder / "replay.mp4", film);
-  }
+  if (o.video) FilmExperiment(e, system, filmed, folder / "replay.mp4", film);
   EndProgress();
   std::printf("report: %s\n", (folder / "report.html").c_str());
 }
@@ -115,7 +132,8 @@ void AddReplay(CLI::App& app) {
       app.add_subcommand("replay", "Simulate every log of an experiment as it stands");
   sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
   sub->add_option("--out", o->out, "folder for errors.json, simulated/, report.html")->required();
-  sub->add_flag("--video", o->video, "also replay.mp4");
+  auto* const video = sub->add_flag("--video", o->video, "also replay.mp4");
+  for (CLI::Option* const option : o->filming.AddTo(*sub)) option->needs(video);
   sub->footer("Example:\n  continuum replay models/annelida/demo/annelida.yaml --out out");
   sub->callback([o] { RunReplay(*o); });
 }

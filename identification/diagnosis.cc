@@ -36,6 +36,7 @@ class Session {
     }
     d_.noise = NoiseOf(e_);
     d_.folds = FoldsOf(e_);
+    if (!d_.noise.known()) RequireFolds();  // before long work
     FitNull();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
     d_.noise.step = trials_.StepEffect(null_, d_.before);
@@ -252,11 +253,14 @@ class Session {
                    d_.fallback->fitted.error);
   }
 
+  void RequireFolds() const {
+    if (!d_.folds.empty()) return;
+    throw Error::Input(e_.file.string() + ": folds",
+                       "at least two groups of logs to leave out in turn", "one");
+  }
+
   void CompareFolds() {
-    if (d_.folds.empty()) {
-      throw Error::Input(e_.file.string() + ": folds",
-                         "at least two groups of logs to leave out in turn", "one");
-    }
+    RequireFolds();
     d_.verdict = {};
     d_.unlisted.clear();
     CompareByFolds(trials_, options_, d_);

@@ -131,20 +131,27 @@ def convert_folders(arguments, script, convert, option, read_option):
     print(f"{said} in {target}")
 
 
+def attempt(name, job):
+    """Runs a script's job; what it refuses is one line that begins with the script's name."""
+    try:
+        job()
+    except Refusal as refusal:
+        print(f"{name}: {refusal}", file=sys.stderr)
+        sys.exit(2)
+    except OSError as error:
+        print(f"{name}: {error.filename}: {error.strerror}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print(f"{name}: interrupted, nothing written", file=sys.stderr)
+        sys.exit(130)
+
+
 def run(file, doc, convert, option="", read_option=None):
-    """A script from its command line; option: a third argument that may be given, and its reader."""
+    """A script from its command line; option: a third argument that may be given, and its
+    reader."""
     script, arguments = pathlib.Path(file), sys.argv[1:]
     if "-h" in arguments or "--help" in arguments:
         print(doc.strip())
         return
-    try:
-        convert_folders(arguments, script, convert, option, read_option)
-    except Refusal as refusal:
-        print(f"{script.name}: {refusal}", file=sys.stderr)
-        sys.exit(2)
-    except OSError as error:
-        print(f"{script.name}: {error.filename}: {error.strerror}", file=sys.stderr)
-        sys.exit(2)
-    except KeyboardInterrupt:
-        print(f"{script.name}: interrupted, nothing written", file=sys.stderr)
-        sys.exit(130)
+    attempt(script.name,
+            lambda: convert_folders(arguments, script, convert, option, read_option))

@@ -107,9 +107,10 @@ void Findings::Add(Severity severity, const std::string& channel, const std::str
       {log_ ? log_->label : "", channel, what, gist + places, gist, begin, end, severity});
 }
 
-bool Findings::Has(const std::string& channel) const {
+bool Findings::Has(const std::string& channel, const std::string& what) const {
   return std::any_of(findings_.begin(), findings_.end(), [&](const Finding& f) {
-    return f.channel == channel && f.severity != Severity::kInfo;
+    return f.channel == channel && f.severity != Severity::kInfo &&
+           (what.empty() || f.what == what);
   });
 }
 

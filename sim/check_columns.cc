@@ -11,8 +11,6 @@ namespace {
 
 using Severity = Finding::Severity;
 
-const char* Plural(std::size_t n) { return n == 1 ? "" : "s"; }
-
 // The columns that miss the same rows as one: a tracker that is lost loses all at once.
 std::vector<std::size_t> Together(const CheckedLog& log, std::size_t column) {
   std::vector<std::size_t> together;
@@ -63,22 +61,6 @@ void CheckQuantum(const CheckedColumn& c, Findings& out) {
       fmt::format("values come in steps of {}, {:.0f} of them over the range: a noise floor of "
                   "{} rms",
                   Amount(c.quantum, c.unit), levels, Amount(c.quantum / std::sqrt(12.0), c.unit)));
-}
-
-void CheckClipping(const CheckedColumn& c, Findings& out) {
-  for (const bool upper : {false, true}) {
-    const auto clip = ClippingOf(c.value, c.quantum, upper);
-    if (!clip) continue;
-    out.Add(
-        c.input ? Severity::kInfo : Severity::kWarning, c.name, "saturation",
-        fmt::format("stays flat at its {} value {} for {:.2g} % of the rows ({} time{}, entered "
-                    "at speed): {}",
-                    upper ? "largest" : "smallest", Amount(c.value[clip->first_row], c.unit),
-                    100 * static_cast<double>(clip->rows) / static_cast<double>(c.value.size()),
-                    clip->runs, Plural(clip->runs),
-                    c.input ? "saturated, or held there on purpose" : "it looks saturated"),
-        c.time[clip->first_row], c.time[clip->last_row]);
-  }
 }
 
 // A sensor that froze before the log ended, or woke after it began.
@@ -237,7 +219,7 @@ void CheckColumns(const CheckedLog& log, Findings& out) {
     CheckMissing(log, i, out);
     if (!CheckVariance(c, out)) continue;
     CheckQuantum(c, out);
-    if (!CheckFrozenEnd(c, out)) CheckClipping(c, out);
+    if (!CheckFrozenEnd(c, out)) CheckSaturation(c, out);
     CheckMagnitude(c, out);
     const Refresh& r = refresh[i];
     std::size_t told = 0;  // as duplicated rows

@@ -56,7 +56,9 @@ std::optional<Lag> Shift(const Compared& p) {
   return after < 0.5 * before ? lag : std::nullopt;
 }
 
-void CheckShifts(const std::vector<Compared>& pairs, double period, Findings& out) {
+// judged: columns whose place in time the kinematics know.
+void CheckShifts(const std::vector<Compared>& pairs, double period,
+                 const std::set<std::string>& judged, Findings& out) {
   std::vector<std::pair<const Compared*, Lag>> shifted;
   for (const Compared& p : pairs) {
     if (const auto lag = Shift(p)) shifted.push_back({&p, *lag});
@@ -80,8 +82,13 @@ void CheckShifts(const std::vector<Compared>& pairs, double period, Findings& ou
     return;
   }
   for (const auto& [p, lag] : shifted) {
-    out.Add(Severity::kWarning, p->name, "lag",
-            fmt::format("is {}: the column is shifted, or the model lacks a delay", say(lag)));
+    if (out.Has(p->name, "lag")) continue;
+    const bool cleared = judged.contains(p->name);
+    out.Add(
+        cleared ? Severity::kInfo : Severity::kWarning, p->name, "lag",
+        fmt::format("is {}: {}", say(lag),
+                    cleared ? "the model lacks a delay, as the column goes with the other outputs"
+                            : "the column is shifted, or the model lacks a delay"));
   }
 }
 
@@ -169,13 +176,14 @@ void CheckRest(const Compared& p, const Log& log, Findings& out) {
       log.time[first], log.time[last]);
 }
 
-void CheckSimulated(const Experiment& e, const Log& log, const Trace& trace, Findings& out) {
+void CheckSimulated(const Experiment& e, const Log& log, const Trace& trace,
+                    const std::set<std::string>& judged, Findings& out) {
   const std::vector<Compared> pairs = Compare(e, log, trace);
   for (const Compared& p : pairs) {
     CheckScale(p, out);
     CheckRest(p, log, out);
   }
-  if (!e.quasi_static) CheckShifts(pairs, Median(Differences(log.time)), out);
+  if (!e.quasi_static) CheckShifts(pairs, Median(Differences(log.time)), judged, out);
   CheckSwaps(pairs, out);
   for (const Compared& p : pairs) CheckUnlike(p, LargestDeviation(pairs, p.unit), out);
 }
@@ -253,7 +261,8 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const System& sys
     if (traces[l].channel.empty()) continue;
     Findings found(&e.logs[l]);
     CheckRanges(e, e.logs[l], system.model(), found);
-    CheckSimulated(e, e.logs[l], traces[l], found);
+    const std::set<std::string> judged = CheckPose(e, e.logs[l], system, found);
+    CheckSimulated(e, e.logs[l], traces[l], judged, found);
     trials.Run(e.logs[l], traces[l], found);
     for (Finding& f : found.Take()) all.push_back(std::move(f));
   }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <set>
+#include <string>
+
 #include "sim/check_rules.h"
 #include "sim/simulate.h"
 
@@ -19,8 +22,15 @@ std::vector<Compared> Compare(const Experiment& e, const Log& log, const Trace& 
 /// Deviation of the difference: what is left beside an offset.
 double Misfit(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Rows in which an input leaves the range of its actuator: the model clamps it.
+/// Rows in which an input leaves the range of its actuator, where the model clamps it, and inputs
+/// that are on a limit in many rows.
 void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings& out);
+
+/// Columns that are shifted in time against the pose: where a log measures the joints that move and
+/// something that they determine, the model's kinematics tell without its forces. Not with a
+/// registration. Returns the columns that were judged.
+std::set<std::string> CheckPose(const Experiment& e, const Log& log, const System& system,
+                                Findings& out);
 
 /// Tries mistakes in the inputs of logs that the model does not explain: another sign or unit (of
 /// one input, or of all that have one dimension), two inputs swapped. Each is tried where its input

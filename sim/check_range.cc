@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/core.h>
 
@@ -24,6 +25,26 @@ Beyond BeyondRange(const std::vector<double>& u, const double* range) {
   return beyond;
 }
 
+// Rows on a limit: what was asked beyond it the log does not show. A limit of 0 is where a cable or
+// chamber is let go.
+void CheckLimit(const Input& in, const Log& log, const std::vector<double>& u, double limit,
+                const char* which, Findings& out) {
+  if (limit == 0) return;
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    if (std::abs(u[k] - limit) <= 1e-6 * std::abs(limit)) rows.push_back(k);
+  }
+  constexpr double kNoticeable = 0.02;
+  const double share = static_cast<double>(rows.size()) / static_cast<double>(u.size());
+  if (rows.size() < 5 || share < kNoticeable) return;
+  out.Add(Finding::Severity::kInfo, in.column, "at_limit",
+          fmt::format("is at the {} that actuator '{}' takes, {}, in {:.2g} % of the rows: "
+                      "saturated, or held there on purpose",
+                      which, in.actuator, Amount(limit / UnitFactor(in.unit, ""), in.unit),
+                      100 * share),
+          log.time[rows.front()], log.time[rows.back()]);
+}
+
 }  // namespace
 
 void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings& out) {
@@ -33,6 +54,8 @@ void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings
     const int a = mj_name2id(&m, mjOBJ_ACTUATOR, in.actuator.c_str());
     if (in.column.empty() || a < 0 || !m.actuator_ctrllimited[a]) continue;
     const double* const range = m.actuator_ctrlrange + 2 * a;
+    CheckLimit(in, log, log.input[i], range[0], "smallest", out);
+    CheckLimit(in, log, log.input[i], range[1], "largest", out);
     const Beyond beyond = BeyondRange(log.input[i], range);
     if (beyond.rows == 0) continue;
     const double unit = UnitFactor(in.unit, ""), t = log.time[beyond.worst];

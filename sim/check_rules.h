@@ -45,8 +45,8 @@ class Findings {
   /// places: the end of the text, a list of further places.
   void Add(Severity severity, const std::string& channel, const std::string& what,
            const std::string& gist, double begin, double end, const std::string& places = "");
-  /// Whether something was said of a channel that is more than information.
-  bool Has(const std::string& channel) const;
+  /// Whether something was said of a channel that is more than information; of one kind, if given.
+  bool Has(const std::string& channel, const std::string& what = "") const;
   std::vector<Finding> Take() { return std::move(findings_); }
 
  private:
@@ -56,6 +56,8 @@ class Findings {
 
 void CheckClock(const CheckedLog& log, Findings& out);
 void CheckColumns(const CheckedLog& log, Findings& out);
+/// A column that is flat at its largest or smallest value.
+void CheckSaturation(const CheckedColumn& column, Findings& out);
 void CheckExcitation(const CheckedLog& log, Findings& out);
 /// Copied columns, quaternions, velocities against positions, inputs against outputs.
 void CheckPairs(const CheckedLog& log, Findings& out);

@@ -26,18 +26,6 @@ double Around(const Values& values, std::size_t row, std::size_t reach) {
   return Median(std::move(near));
 }
 
-// Stretches with one value.
-std::vector<Stretch> RunsOf(const Values& x) {
-  std::vector<Stretch> runs;
-  for (std::size_t k = 0; k < x.size();) {
-    std::size_t end = k + 1;
-    while (end < x.size() && x[end] == x[k]) ++end;
-    runs.push_back({k, end});
-    k = end;
-  }
-  return runs;
-}
-
 // A long constant stretch is suspicious only when the signal had to catch up afterwards.
 bool CatchesUp(const Values& x, const Stretch& run, double quantum) {
   constexpr std::size_t kAfter = 5;  // rows
@@ -101,6 +89,17 @@ double GridOf(Values levels, double range) {
 }
 
 }  // namespace
+
+std::vector<Stretch> RunsOf(const Values& x) {
+  std::vector<Stretch> runs;
+  for (std::size_t k = 0; k < x.size();) {
+    std::size_t end = k + 1;
+    while (end < x.size() && x[end] == x[k]) ++end;
+    runs.push_back({k, end});
+    k = end;
+  }
+  return runs;
+}
 
 double Quantile(Values values, double q) {
   if (values.empty()) return 0;
@@ -263,31 +262,6 @@ std::vector<Jump> StepsOf(const Values& x, double quantum, double usual_bend,
     jumps.push_back({k + 1, excess});
   }
   return jumps;
-}
-
-std::optional<Clipping> ClippingOf(const Values& x, double quantum, bool upper) {
-  if (x.size() < 20 || DistinctValues(x, 8) < 8) return std::nullopt;
-  const double extreme =
-      upper ? *std::max_element(x.begin(), x.end()) : *std::min_element(x.begin(), x.end());
-  Values sizes;
-  for (const double v : Differences(x)) sizes.push_back(std::abs(v));
-  const double range = RangeOf(x);
-  const double fast = std::max(3 * quantum, 0.25 * Quantile(sizes, 0.95));
-  Clipping c;
-  c.upper = upper;
-  for (const Stretch& run : RunsOf(x)) {
-    if (x[run.begin] != extreme || run.size() < 5 || run.begin < 3) continue;
-    // Entered in full motion, over several rows: neither a rest nor a step.
-    const double last = std::abs(x[run.begin - 1] - x[run.begin - 2]);
-    const double before = std::abs(x[run.begin - 2] - x[run.begin - 3]);
-    if (std::min(last, before) < fast) continue;
-    if (last * static_cast<double>(run.size()) < 0.02 * range) continue;
-    if (c.runs == 0) c.first_row = run.begin;
-    c.last_row = run.end - 1;
-    c.rows += run.size();
-    ++c.runs;
-  }
-  return c.runs ? std::optional(c) : std::nullopt;
 }
 
 double Correlation(const Values& a, const Values& b, std::ptrdiff_t lag) {

@@ -42,12 +42,16 @@ struct Refresh {
 /// command: a column that somebody set, for which holding a level is no defect.
 Refresh RefreshOf(const std::vector<double>& x, double quantum, bool command);
 
-/// A stretch that begins a column or ends it, of a sensor that is noisy elsewhere, with one value.
+/// A stretch of rows.
 struct Stretch {
   std::size_t begin, end;  ///< rows, end exclusive
   std::size_t size() const { return end - begin; }
 };
-/// The longer one of more than 30 rows; nullopt where the steps of the sensor hide its noise, or
+/// Stretches with one value.
+std::vector<Stretch> RunsOf(const std::vector<double>& x);
+
+/// A stretch with one value that begins a column or ends it, of a sensor that is noisy elsewhere:
+/// the longer one of more than 30 rows; nullopt where the steps of the sensor hide its noise, or
 /// where it comes to the same value elsewhere (clipping).
 std::optional<Stretch> FrozenEnd(const std::vector<double>& x, double quantum);
 
@@ -66,13 +70,6 @@ std::vector<Jump> SpikesOf(const std::vector<double>& x, double quantum, double 
 /// rows that may jump for a good reason.
 std::vector<Jump> StepsOf(const std::vector<double>& x, double quantum, double usual_bend,
                           const std::vector<bool>& skip);
-
-/// Flat stretches at an extreme value that the signal enters at speed.
-struct Clipping {
-  std::size_t rows = 0, runs = 0, first_row = 0, last_row = 0;
-  bool upper = false;
-};
-std::optional<Clipping> ClippingOf(const std::vector<double>& x, double quantum, bool upper);
 
 /// Where b repeats a: b(k) ≈ slope · a(k − rows).
 struct Lag {

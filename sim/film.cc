@@ -83,14 +83,33 @@ std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
   return ColorBar{"chamber pressure [kPa]", "0", fmt::format("{:g}", 1e-3 * full)};
 }
 
+// What actuators pull each tendon with [N]; nullopt of those that none pulls or nobody sees.
+std::vector<std::optional<double>> TensionsOf(const mjModel& m, const mjData& d) {
+  std::vector<std::optional<double>> tensions(m.ntendon);
+  for (int a = 0; a < m.nu; ++a) {
+    if (m.actuator_trntype[a] != mjTRN_TENDON) continue;
+    const int t = m.actuator_trnid[2 * a];
+    if (m.wrap_type[m.tendon_adr[t]] == mjWRAP_JOINT) continue;
+    tensions[t] = tensions[t].value_or(0) - m.actuator_gear[6 * a] * d.actuator_force[a];
+  }
+  return tensions;
+}
+
+// The next of 1, 2, 5 times a power of ten.
+double RoundUp(double x) {
+  if (!(x > 0)) return 0;
+  const double power = std::pow(10, std::floor(std::log10(x)));
+  for (const double digit : {1, 2, 5}) {
+    if (digit * power >= x) return digit * power;
+  }
+  return 10 * power;
+}
+
 // Tendons from blue to red over a range [N]: by the actuators that pull them, or as an effect says.
 void ColorTendons(const mjModel& m, const mjData& d, const std::array<double, 2>& range,
                   mjvScene& scene) {
-  std::vector<double> tension(m.ntendon, 0);
-  for (int a = 0; a < m.nu; ++a) {
-    if (m.actuator_trntype[a] != mjTRN_TENDON) continue;
-    tension[m.actuator_trnid[2 * a]] -= m.actuator_gear[6 * a] * d.actuator_force[a];
-  }
+  std::vector<double> tension;
+  for (const auto& t : TensionsOf(m, d)) tension.push_back(t.value_or(0));
   const ColorBar bar;
   for (int g = 0; g < scene.ngeom; ++g) {
     mjvGeom& geom = scene.geoms[g];
@@ -152,76 +171,33 @@ void Draw(const Arrow& arrow, const mjModel& m, const mjData& d, mjvScene& scene
   Connect(arrow, m, mjGEOM_ARROW, center, tip, scene);
 }
 
-// Draws one log's rows at the film's rate.
-class Shot {
+// Says of each row whether a frame is due.
+class Clock {
  public:
-  Shot(const Experiment& e, const System& system, const Log& log, const FilmOptions& options)
-      : e_(e),
-        log_(log),
-        options_(options),
-        machine_(system.Build(log.set)),
-        wiring_(e, *machine_.model),
-        renderer_(*machine_.model, options.width, options.height, options.gl),
-        measured_(e, log, *machine_.model) {
-    const std::string camera = CameraOf(*machine_.model, options.camera);
-    if (options.view)
-      renderer_.SetView(*options.view);
-    else if (!camera.empty())
-      renderer_.SetCamera(camera);
-  }
+  Clock(const Log& log, const FilmOptions& options)
+      : log_(log), frame_(options.speed / options.fps) {}
 
-  void Film(const std::function<void(Image)>& take) {
-    const double frame = options_.speed / options_.fps;
-    const auto due = [&](std::size_t row, double& next) {
-      const double t = log_.time[row] - log_.time.front();
-      if (t + 1e-9 < next) return false;
-      next += frame * std::ceil((t - next + 1e-9) / frame);
-      return true;
-    };
-    double next = 0;
-    Hooks look = Hooks::Stoppable();
-    look.row = [&](const mjModel& m, mjData& d, std::size_t row) {
-      if (!due(row, next)) return;
-      renderer_.Include(m, d);
-      marked_ = marked_ || !MeasuredPoints(e_, wiring_, log_, row, m, d).empty();
-    };
-    const Trace trace = Simulate(machine_, e_, log_, {}, look);
-    if (options_.whole && trace.diverged)
-      throw Error::Job(log_.file.string() + ": " + trace.Failure());
-    next = 0;
-    Hooks draw = Hooks::Stoppable();
-    draw.row = [&](const mjModel& m, mjData& d, std::size_t row) {
-      if (!due(row, next)) return;
-      Overlay overlay;
-      overlay.caption = options_.caption.empty() ? log_.label : options_.caption;
-      overlay.time = log_.time[row] - log_.time.front();
-      if (options_.ghost) overlay.ghost = measured_.At(row);
-      if (overlay.ghost) overlay.caption += " (translucent: measured)";
-      const bool marks = options_.ghost && !overlay.ghost && marked_;
-      std::vector<MeasuredPoint> points;
-      if (marks) points = MeasuredPoints(e_, wiring_, log_, row, m, d);
-      if (marks) overlay.caption += " (green: measured)";
-      overlay.scale = true;
-      overlay.bar = BarOf(m, options_);
-      overlay.geoms = [&](mjvScene& scene) {
-        Decorate(options_, m, d, scene);
-        for (const MeasuredPoint& point : points) DrawMeasured(point, m, scene);
-      };
-      take(renderer_.Draw(m, d, overlay));
-    };
-    Simulate(machine_, e_, log_, {}, draw);
+  bool Due(std::size_t row) {
+    const double t = log_.time[row] - log_.time.front();
+    if (t + 1e-9 < next_) return false;
+    next_ += frame_ * std::ceil((t - next_ + 1e-9) / frame_);
+    return true;
   }
 
  private:
-  const Experiment& e_;
   const Log& log_;
-  const FilmOptions& options_;
-  Machine machine_;
-  Wiring wiring_;
-  Renderer renderer_;
-  MeasuredPose measured_;
-  bool marked_ = false;  // whether positions are measured in some frame
+  double frame_, next_ = 0;
 };
+
+Renderer RendererOf(const mjModel& m, const FilmOptions& options) {
+  Renderer renderer(m, options.width, options.height, options.gl);
+  const std::string camera = CameraOf(m, options.camera);
+  if (options.view)
+    renderer.SetView(*options.view);
+  else if (!camera.empty())
+    renderer.SetCamera(camera);
+  return renderer;
+}
 
 }  // namespace
 
@@ -260,9 +236,79 @@ void DrawMeasured(const MeasuredPoint& point, const mjModel& m, mjvScene& scene)
   line.category = mjCAT_DECOR;
 }
 
+void Outlook::Include(const std::vector<std::optional<double>>& tensions) {
+  for (const auto& t : tensions) {
+    if (!t) continue;
+    if (!tension) tension = {0, 0};
+    tension = {std::min((*tension)[0], -RoundUp(-*t)), std::max((*tension)[1], RoundUp(*t))};
+  }
+}
+
+void Outlook::Include(const Outlook& other) {
+  framing.Include(other.framing);
+  if (other.tension) Include({(*other.tension)[0], (*other.tension)[1]});
+}
+
+Outlook LookAhead(const Experiment& e, const System& system, const Log& log,
+                  const FilmOptions& options) {
+  Machine machine = system.Build(log.set);
+  const Wiring wiring(e, *machine.model);
+  MeasuredPose measured(e, log, *machine.model);
+  Clock clock(log, options);
+  Outlook ahead;
+  Hooks look = Hooks::Stoppable();
+  look.row = [&](const mjModel& m, mjData& d, std::size_t row) {
+    if (!clock.Due(row)) return;
+    ahead.framing.Include(m, d);
+    if (!options.tension && !HasEffect(m, "capstan")) ahead.Include(TensionsOf(m, d));
+    if (!options.ghost) return;
+    if (const mjData* const ghost = measured.At(row))
+      ahead.framing.Include(m, *ghost);
+    else
+      ahead.marked = ahead.marked || !MeasuredPoints(e, wiring, log, row, m, d).empty();
+  };
+  const Trace trace = Simulate(machine, e, log, {}, look);
+  if (options.whole && trace.diverged) throw Error::Job(log.file.string() + ": " + trace.Failure());
+  return ahead;
+}
+
+void DrawFrames(const Experiment& e, const System& system, const Log& log, FilmOptions options,
+                const Outlook& ahead, Ruler& ruler, const std::function<void(Image)>& take) {
+  const bool pulled = ahead.tension && (*ahead.tension)[0] < (*ahead.tension)[1];
+  if (!options.tension && pulled) options.tension = ahead.tension;
+  Machine machine = system.Build(log.set);
+  const Wiring wiring(e, *machine.model);
+  MeasuredPose measured(e, log, *machine.model);
+  Renderer renderer = RendererOf(*machine.model, options);
+  renderer.Include(ahead.framing);
+  Clock clock(log, options);
+  Hooks draw = Hooks::Stoppable();
+  draw.row = [&](const mjModel& m, mjData& d, std::size_t row) {
+    if (!clock.Due(row)) return;
+    Overlay overlay;
+    overlay.caption = options.caption.empty() ? log.label : options.caption;
+    overlay.time = log.time[row] - log.time.front();
+    if (options.ghost) overlay.ghost = measured.At(row);
+    if (overlay.ghost) overlay.caption += " (translucent: measured)";
+    const bool marks = !overlay.ghost && ahead.marked;
+    std::vector<MeasuredPoint> points;
+    if (marks) points = MeasuredPoints(e, wiring, log, row, m, d);
+    if (marks) overlay.caption += " (green: measured)";
+    overlay.ruler = &ruler;
+    overlay.bar = BarOf(m, options);
+    overlay.geoms = [&](mjvScene& scene) {
+      Decorate(options, m, d, scene);
+      for (const MeasuredPoint& point : points) DrawMeasured(point, m, scene);
+    };
+    take(renderer.Draw(m, d, overlay));
+  };
+  Simulate(machine, e, log, {}, draw);
+}
+
 void DrawFrames(const Experiment& e, const System& system, const Log& log,
                 const FilmOptions& options, const std::function<void(Image)>& take) {
-  Shot(e, system, log, options).Film(take);
+  Ruler ruler;
+  DrawFrames(e, system, log, options, LookAhead(e, system, log, options), ruler, take);
 }
 
 void FilmExperiment(const Experiment& e, const System& system, const std::vector<std::size_t>& logs,
@@ -275,11 +321,11 @@ void FilmExperiment(const Experiment& e, const System& system, const std::vector
   video.Finish();
 }
 
-void PictureOf(const Experiment& e, const System& system, const std::filesystem::path& file,
-               const FilmOptions& options) {
+void PictureOf(const Experiment& e, const System& system, std::size_t l,
+               const std::filesystem::path& file, const FilmOptions& options) {
   std::vector<Image> frames;
   FilmOptions few = options;
-  const Log& log = e.logs.front();
+  const Log& log = e.logs[l];
   few.speed = 1;
   few.fps = static_cast<int>(std::clamp(4 / (log.time.back() - log.time.front()), 1., 1000.));
   DrawFrames(e, system, log, few, [&](Image image) { frames.push_back(std::move(image)); });

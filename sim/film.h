@@ -31,7 +31,8 @@ struct FilmOptions {
   std::string camera;  ///< empty: "front" or "side" when the model has it, else framed by itself
   std::optional<View> view = {};  ///< a camera that frames the robot by itself, whatever `camera`
   double speed = 1;               ///< seconds of the robot per second of the film
-  /// Drawn blue and red [N], of tendons that actuators pull; else as the effects say.
+  /// Drawn blue and red [N], of tendons that actuators pull; else as the effects say, else over
+  /// what the log reaches.
   std::optional<std::array<double, 2>> tension = {};
   std::vector<Arrow> arrows = {};
   bool whole = false;  ///< throw when the simulation diverges; else the film ends there
@@ -50,8 +51,28 @@ void Decorate(const FilmOptions& options, const mjModel& m, const mjData& d, mjv
 /// pale and without a line, as the simulation went on.
 void DrawMeasured(const MeasuredPoint& point, const mjModel& m, mjvScene& scene);
 
-/// Simulates a log and draws its frames: the simulation as it is, cables coloured by tension where
-/// a capstan effect or options.tension says how, chambers by pressure.
+/// What the film of a log will show, found by simulating it beforehand.
+struct Outlook {
+  Framing framing;      ///< of all poses, those that were measured too
+  bool marked = false;  ///< whether positions without a pose are measured in some frame
+  /// Of the tendons that actuators pull [N], from 0, in round numbers; where neither options nor an
+  /// effect say how tension is drawn.
+  std::optional<std::array<double, 2>> tension = {};
+
+  void Include(const std::vector<std::optional<double>>& tensions);
+  /// What another film of the same scene shows.
+  void Include(const Outlook& other);
+};
+Outlook LookAhead(const Experiment& experiment, const System& system, const Log& log,
+                  const FilmOptions& options);
+
+/// Simulates a log and draws its frames: the simulation as it is, cables coloured by tension as a
+/// capstan effect, options.tension or the outlook says, chambers by pressure. ruler: gives the
+/// scale, and one scale to all films that share it.
+void DrawFrames(const Experiment& experiment, const System& system, const Log& log,
+                FilmOptions options, const Outlook& ahead, Ruler& ruler,
+                const std::function<void(Image)>& take);
+/// The same, as a film of its own.
 void DrawFrames(const Experiment& experiment, const System& system, const Log& log,
                 const FilmOptions& options, const std::function<void(Image)>& take);
 
@@ -60,8 +81,8 @@ void FilmExperiment(const Experiment& experiment, const System& system,
                     const std::vector<std::size_t>& logs, const std::filesystem::path& file,
                     const FilmOptions& options = {});
 
-/// One frame of the first log at its middle (or of the model at rest), as PNG.
-void PictureOf(const Experiment& experiment, const System& system,
+/// One frame of a log at its middle (or of the model at rest), as PNG.
+void PictureOf(const Experiment& experiment, const System& system, std::size_t log,
                const std::filesystem::path& file, const FilmOptions& options = {});
 
 }  // namespace continuum

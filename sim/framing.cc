@@ -64,7 +64,9 @@ Vector Framing::Box::Corner(int k) const {
   return {k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]};
 }
 
-void Framing::Include(const mjModel& m, const mjData& d, const mjvOption& option) {
+void Framing::Include(const mjModel& m, const mjData& d) {
+  mjvOption option;
+  mjv_defaultOption(&option);
   std::vector<Box> fixed;
   for (int g = 0; g < m.ngeom; ++g) {
     const bool visible = option.geomgroup[m.geom_group[g]] && m.geom_rgba[4 * g + 3] > 0;
@@ -87,6 +89,11 @@ void Framing::Include(const mjModel& m, const mjData& d, const mjvOption& option
   for (const Box& box : fixed) {
     if (Near(box)) shown_.Add(box);
   }
+}
+
+void Framing::Include(const Framing& other) {
+  moving_.Add(other.moving_);
+  shown_.Add(other.shown_);
 }
 
 void Framing::Aim(mjvCamera& camera, double fovy, double aspect) {

@@ -10,7 +10,9 @@ namespace continuum {
 /// in all poses that were included.
 class Framing {
  public:
-  void Include(const mjModel& m, const mjData& d, const mjvOption& option);
+  void Include(const mjModel& m, const mjData& d);
+  /// What another one has to see.
+  void Include(const Framing& other);
 
   /// Sets a free camera of given direction so that every corner p of the box is inside its picture:
   /// with q = p - center, |q.up| and |q.right|/aspect <= fill tan(fovy/2) (distance + q.forward).

@@ -115,6 +115,7 @@ Columns ReadMat(const std::filesystem::path& file, const std::string& variable) 
     if (v->rank != 2)
       throw Error::Input(where, "a matrix", std::to_string(v->rank) + " dimensions");
     const auto all = Numbers(*mat, *v, where, size);
+    if (all.empty()) throw Error::Input(where, "a matrix of numbers", "an empty one");
     const std::size_t rows = v->dims[0];
     for (std::size_t c = 0; c < v->dims[1]; ++c) {
       columns.names.push_back(std::to_string(c + 1));

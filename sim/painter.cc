@@ -207,11 +207,11 @@ void Ruler::Measure(double pixel_length, int width) {
   if (length < 0.3 * wanted || length > 1.5 * wanted) length = RoundLength(wanted);
 }
 
-void Paint(const Overlay& overlay, const Font& font, const Ruler& ruler, Image& image) {
+void Paint(const Overlay& overlay, const Font& font, Image& image) {
   Painter painter(font, image);
   if (!overlay.caption.empty()) painter.Caption(overlay.caption);
   if (overlay.time) painter.Time(*overlay.time);
-  if (overlay.scale && ruler.pixel > 0) painter.Scale(ruler);
+  if (overlay.ruler && overlay.ruler->pixel > 0) painter.Scale(*overlay.ruler);
   if (overlay.bar) painter.Bar(*overlay.bar);
 }
 

@@ -22,17 +22,8 @@ struct Font {
   int Width(const std::string& text) const;
 };
 
-/// A bar of round length [m], about an eighth of the picture. It keeps its length while the model
-/// comes a little nearer or goes a little further.
-struct Ruler {
-  double pixel = 0;   ///< length [m] of one where the model is; 0: not known
-  double length = 0;  ///< of the bar [m]
-
-  void Measure(double pixel_length, int width);
-};
-
-/// Lays an overlay's caption, time, scale and bar over a finished picture, on dark translucent
-/// plates. Where no pixel is known there is no scale.
-void Paint(const Overlay& overlay, const Font& font, const Ruler& ruler, Image& image);
+/// Lays an overlay's caption, time, ruler and bar over a finished picture, on dark translucent
+/// plates. Where no pixel is known there is no ruler.
+void Paint(const Overlay& overlay, const Font& font, Image& image);
 
 }  // namespace continuum

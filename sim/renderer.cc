@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "error.h"
-#include "sim/framing.h"
 #include "sim/painter.h"
 
 namespace continuum {
@@ -42,18 +41,35 @@ struct ContextDeleter {
 
 }  // namespace
 
+std::vector<std::string> CamerasOf(const mjModel& m) {
+  std::vector<std::string> names;
+  for (int c = 0; c < m.ncam; ++c) {
+    const char* const name = mj_id2name(&m, mjOBJ_CAMERA, c);
+    names.emplace_back(name ? name : "");
+  }
+  return names;
+}
+
+int CameraNamed(const std::vector<std::string>& cameras, std::string_view name) {
+  const auto it = std::find(cameras.begin(), cameras.end(), name);
+  if (it != cameras.end()) return static_cast<int>(it - cameras.begin());
+  const std::string known = cameras.empty() ? "no name, as the model has no cameras"
+                                            : fmt::format("one of {}", fmt::join(cameras, ", "));
+  throw Error::Input("camera", known, "'" + std::string(name) + "'");
+}
+
 class Renderer::Impl {
  public:
   Impl(const mjModel& m, int width, int height, Gl backend)
-      : width_(width), height_(height), contents_(Contents(m)), gl_(backend) {
+      : width_(width),
+        height_(height),
+        contents_(Contents(m)),
+        cameras_(CamerasOf(m)),
+        gl_(backend) {
     const int limit = std::min(gl_.MaxSize(), 16384);
     if (width < 64 || height < 64 || width > limit || height > limit) {
       throw Error::Input("frame", fmt::format("a width and height from 64 to {} px", limit),
                          fmt::format("{} x {}", width, height));
-    }
-    for (int c = 0; c < m.ncam; ++c) {
-      const char* const name = mj_id2name(&m, mjOBJ_CAMERA, c);
-      cameras_.emplace_back(name ? name : "");
     }
     mjv_defaultOption(&option_);
     mjv_defaultPerturb(&perturb_);
@@ -75,15 +91,8 @@ class Renderer::Impl {
       camera_ = free_;
       return;
     }
-    const auto it = std::find(cameras_.begin(), cameras_.end(), name);
-    if (it == cameras_.end()) {
-      const std::string known = cameras_.empty()
-                                    ? "no name, as the model has no cameras"
-                                    : fmt::format("one of {}", fmt::join(cameras_, ", "));
-      throw Error::Input("camera", known, std::string(name));
-    }
+    camera_.fixedcamid = CameraNamed(cameras_, name);
     camera_.type = mjCAMERA_FIXED;
-    camera_.fixedcamid = static_cast<int>(it - cameras_.begin());
   }
 
   void SetView(const View& view) {
@@ -94,8 +103,9 @@ class Renderer::Impl {
 
   void Include(const mjModel& m, const mjData& d) {
     CheckModel(m);
-    framing_.Include(m, d, option_);
+    framing_.Include(m, d);
   }
+  void Include(const Framing& framing) { framing_.Include(framing); }
 
   Image Draw(const mjModel& m, mjData& d, const Overlay& overlay) {
     Include(m, d);
@@ -105,8 +115,8 @@ class Renderer::Impl {
     UpdateScene(m, d, overlay);
     mjr_render({0, 0, width_, height_}, scene_.get(), context_.get());
     Image image = Read();
-    ruler_.Measure(PixelAt(d), width_);
-    Paint(overlay, *font_, ruler_, image);
+    if (overlay.ruler) overlay.ruler->Measure(PixelAt(d), width_);
+    Paint(overlay, *font_, image);
     return image;
   }
 
@@ -163,11 +173,13 @@ class Renderer::Impl {
     }
   }
 
-  // Length of a pixel [m] at the depth of the model's centre of mass; 0 behind the camera.
+  // Length of a pixel [m] where the free camera looks, for others at the depth of the model's
+  // centre of mass; 0 behind the camera.
   double PixelAt(const mjData& d) const {
     const mjvGLCamera& eye = scene_->camera[0];  // both eyes are as far away
+    const double* const seen = camera_.type == mjCAMERA_FREE ? camera_.lookat : d.subtree_com;
     double depth = 0;
-    for (int i = 0; i < 3; ++i) depth += eye.forward[i] * (d.subtree_com[i] - eye.pos[i]);
+    for (int i = 0; i < 3; ++i) depth += eye.forward[i] * (seen[i] - eye.pos[i]);
     if (depth <= 0) return 0;
     const double height = eye.frustum_top - eye.frustum_bottom;
     return (eye.orthographic ? height : height * depth / eye.frustum_near) / height_;
@@ -208,7 +220,6 @@ class Renderer::Impl {
   std::unique_ptr<mjvScene, SceneDeleter> scene_;
   std::unique_ptr<mjrContext, ContextDeleter> context_;
   std::optional<Font> font_;
-  Ruler ruler_;
 };
 
 Renderer::Renderer(const mjModel& m, int width, int height, Gl gl)
@@ -220,6 +231,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 void Renderer::SetCamera(std::string_view name) { impl_->SetCamera(name); }
 void Renderer::SetView(const View& view) { impl_->SetView(view); }
 void Renderer::Include(const mjModel& m, const mjData& d) { impl_->Include(m, d); }
+void Renderer::Include(const Framing& framing) { impl_->Include(framing); }
 Image Renderer::Draw(const mjModel& m, mjData& d, const Overlay& overlay) {
   return impl_->Draw(m, d, overlay);
 }

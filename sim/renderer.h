@@ -1,10 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <mujoco/mujoco.h>
 
+#include "sim/framing.h"
 #include "sim/gl.h"
 #include "sim/image.h"
 #include "sim/overlay.h"
@@ -15,6 +18,11 @@ namespace continuum {
 struct View {
   double azimuth, elevation;
 };
+
+/// The names of a model's cameras, "" for those without.
+std::vector<std::string> CamerasOf(const mjModel& m);
+/// Which of the cameras has a name. Throws Error that lists the names.
+int CameraNamed(const std::vector<std::string>& cameras, std::string_view name);
 
 /// Draws poses of one model off-screen: shadows, no mirroring floor, no multisampling.
 ///
@@ -40,6 +48,7 @@ class Renderer {
 
   /// The free camera shall see this pose.
   void Include(const mjModel& m, const mjData& d);
+  void Include(const Framing& framing);
 
   /// One frame. m: the model given at construction or a copy of it; d needs current positions
   /// (mj_kinematics and what follows it). Throws Error for another model or too many geoms.

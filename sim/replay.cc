@@ -7,8 +7,10 @@
 #include "error.h"
 #include "sim/check_units.h"
 #include "sim/file.h"
+#include "sim/own_files.h"
 #include "sim/possible.h"
 #include "sim/registration.h"
+#include "sim/sensor_score.h"
 
 namespace continuum {
 namespace {
@@ -103,12 +105,13 @@ nlohmann::json ErrorsJson(const Experiment& e, const std::vector<Replayed>& logs
                             {"diverged", logs[l].trace.diverged},
                             {"channels", ScoreJson(logs[l].score)}});
   }
+  json["sensors"] = ToJson(ScoreSensors(e, logs));
   return json;
 }
 
 void WriteSimulated(const Experiment& e, const std::vector<Trace>& traces,
                     const std::filesystem::path& folder) {
-  MakeFolder(folder);
+  OwnFiles files(folder);
   for (std::size_t l = 0; l < traces.size(); ++l) {
     const Log& log = e.logs[l];
     std::string text = "time";
@@ -123,8 +126,9 @@ void WriteSimulated(const Experiment& e, const std::vector<Trace>& traces,
       }
       text += "\n";
     }
-    WriteFile(folder / (log.label + ".csv"), text);
+    files.Write(log.label + ".csv", text);
   }
+  files.Finish();
 }
 
 void AddOverlay(Page& page, const Experiment& e, const Log& log,

@@ -33,12 +33,14 @@ struct SplitError {
 };
 SplitError PooledError(const Experiment& experiment, const std::vector<Replayed>& logs);
 
-/// errors.json: pooled errors, and per log and channel what ChannelScore holds.
+/// errors.json: pooled errors, per log and channel what ChannelScore holds, and what ScoreSensors
+/// says.
 nlohmann::json ErrorsJson(const Experiment& experiment, const std::vector<Replayed>& logs);
 /// [channels] of one log as JSON.
 nlohmann::json ScoreJson(const std::vector<ChannelScore>& score);
 
 /// simulated/<log>.csv: time [s], and per channel the simulated and the measured value in its unit.
+/// Files of logs that an earlier job wrote there and this experiment lacks go (OwnFiles).
 void WriteSimulated(const Experiment& experiment, const std::vector<Trace>& traces,
                     const std::filesystem::path& folder);
 

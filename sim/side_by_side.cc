@@ -16,8 +16,11 @@ namespace {
 // nobody waits for a frame: no two threads ever simulate or draw at once.
 class Frames {
  public:
-  Frames(const Side& side, std::size_t log, const FilmOptions& options)
-      : thread_([this, &side, log, options] { Draw(side, log, options); }) {}
+  Frames(const Side& side, std::size_t log, const FilmOptions& options, const Outlook& ahead,
+         Ruler& ruler)
+      : thread_([this, &side, log, options, &ahead, &ruler] {
+          Draw(side, log, options, ahead, ruler);
+        }) {}
   ~Frames() {
     if (!ended_) {
       cancelled_ = true;
@@ -47,11 +50,12 @@ class Frames {
     if (cancelled_) throw Cancelled();
   }
 
-  void Draw(const Side& side, std::size_t log, FilmOptions options) {
+  void Draw(const Side& side, std::size_t log, FilmOptions options, const Outlook& ahead,
+            Ruler& ruler) {
     try {
       Await();
       options.caption = side.name + ": " + side.experiment.logs[log].label;
-      DrawFrames(side.experiment, side.system, side.experiment.logs[log], options,
+      DrawFrames(side.experiment, side.system, side.experiment.logs[log], options, ahead, ruler,
                  [&](Image image) {
                    image_ = std::move(image);
                    ready_.release();
@@ -87,7 +91,14 @@ Image Joined(const Image& left, const Image& right) {
 
 void DrawSideBySide(const Side& left, const Side& right, std::size_t log,
                     const FilmOptions& options, const std::function<void(Image)>& take) {
-  Frames one(left, log, options), other(right, log, options);
+  const auto look = [&](const Side& side) {
+    return LookAhead(side.experiment, side.system, side.experiment.logs[log], options);
+  };
+  Outlook ahead = look(left), beside = look(right);
+  ahead.Include(beside);
+  beside.Include(ahead);
+  Ruler ruler;
+  Frames one(left, log, options, ahead, ruler), other(right, log, options, beside, ruler);
   Image shown[2];
   for (;;) {
     std::optional<Image> next[2] = {one.Next(), other.Next()};

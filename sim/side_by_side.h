@@ -15,8 +15,8 @@ struct Side {
   std::string name;
 };
 
-/// The frames of a log by two models, joined: options say the size of a half. Where one of them
-/// ends earlier its last frame stays.
+/// The frames of a log by two models, joined: options say the size of a half. Both halves are seen
+/// from one place and have one scale. Where one of them ends earlier its last frame stays.
 void DrawSideBySide(const Side& left, const Side& right, std::size_t log,
                     const FilmOptions& options, const std::function<void(Image)>& take);
 

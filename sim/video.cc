@@ -41,21 +41,6 @@ struct ScalerDeleter {
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
 
-void CheckArguments(const fs::path& path, int width, int height, int fps) {
-  const std::string where = path.string();
-  if (path.extension() != ".mp4") throw Error::Input(where, "a name that ends in .mp4", where);
-  if (fs::is_directory(path)) throw Error::Input(where, "a file", "a folder");
-  if (fs::is_other(path)) throw Error::Input(where, "a file", "a device");
-  const auto allowed = [](int n) { return n >= 16 && n <= 8192 && n % 2 == 0; };
-  if (!allowed(width) || !allowed(height)) {
-    throw Error::Input(where, "an even width and height from 16 to 8192 px",
-                       fmt::format("{} x {}", width, height));
-  }
-  if (fps < 1 || fps > 1000) {
-    throw Error::Input(where, "1 to 1000 frames per second", std::to_string(fps));
-  }
-}
-
 // The file and its encoder, in the thread that calls.
 class Film {
  public:
@@ -164,6 +149,21 @@ class Partial {
 
 }  // namespace
 
+void RequireFilm(const fs::path& path, int width, int height, int fps) {
+  const std::string where = path.string();
+  if (path.extension() != ".mp4") throw Error::Input(where, "a name that ends in .mp4", where);
+  if (fs::is_directory(path)) throw Error::Input(where, "a file", "a folder");
+  if (fs::is_other(path)) throw Error::Input(where, "a file", "a device");
+  const auto allowed = [](int n) { return n >= 16 && n <= 8192 && n % 2 == 0; };
+  if (!allowed(width) || !allowed(height)) {
+    throw Error::Input(where, "an even width and height from 16 to 8192 px",
+                       fmt::format("{} x {}", width, height));
+  }
+  if (fps < 1 || fps > 1000) {
+    throw Error::Input(where, "1 to 1000 frames per second", std::to_string(fps));
+  }
+}
+
 class VideoWriter::Impl {
  public:
   Impl(const fs::path& path, int width, int height, int fps)
@@ -265,7 +265,7 @@ class VideoWriter::Impl {
 };
 
 VideoWriter::VideoWriter(const fs::path& path, int width, int height, int fps) {
-  CheckArguments(path, width, height, fps);
+  RequireFilm(path, width, height, fps);
   impl_ = std::make_unique<Impl>(path, width, height, fps);
 }
 VideoWriter::~VideoWriter() = default;

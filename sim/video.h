@@ -7,6 +7,9 @@
 
 namespace continuum {
 
+/// Throws Error (kInput) where a VideoWriter would for its arguments: to be asked before long work.
+void RequireFilm(const std::filesystem::path& path, int width, int height, int fps);
+
 /// Writes an H.264 film (MP4, 4:2:0, BT.709, index in front) of constant frame rate. Frame k is
 /// shown from k/fps to (k+1)/fps [s].
 ///

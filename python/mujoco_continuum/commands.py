@@ -33,22 +33,32 @@ def check(experiment: Document, *, folder: StrPath = ".",
 
 
 def replay(experiment: Document, out: StrPath | None = None, *, video: bool = False,
-           folder: StrPath = ".", progress: Progress | None = None) -> Json:
-    """Simulates every log as it stands. Returns errors.json: errors per log and channel, pooled."""
-    return _job("replay", "errors.json", experiment, out, {"video": video}, folder, progress)
+           log: str | None = None, size: str | None = None, fps: int | None = None,
+           camera: str | None = None, gl: str | None = None, folder: StrPath = ".",
+           progress: Progress | None = None) -> Json:
+    """Simulates every log as it stands. Returns errors.json: errors per log and channel, pooled.
+
+    video: also replay.mp4; of it log (only this one), size ("960x720"), fps, camera, gl (osmesa |
+    egl)."""
+    options = {"video": video, "log": log, "size": size, "fps": fps, "camera": camera, "gl": gl}
+    return _job("replay", "errors.json", experiment, out, options, folder, progress)
 
 
 def identify(experiment: Document, out: StrPath | None = None, *, method: str = "lm",
-             path: str = "auto", iterations: int | None = None, seed: int = 1,
+             path: str = "auto", iterations: int | None = None, starts: int = 1, seed: int = 1,
              cutoff: float | None = None, all: bool = False, for_step: bool = False,
-             folder: StrPath = ".", progress: Progress | None = None) -> Json:
+             whole: bool = False, from_: Document | None = None, folder: StrPath = ".",
+             progress: Progress | None = None) -> Json:
     """Fits the parameters. Returns fit.json: parameters with intervals, correlation, errors.
 
-    method: lm | pso | regressor. path: auto | smooth | stepped. seed belongs to pso, cutoff [Hz] to
-    regressor; None: what the method likes. all: the validate logs too."""
-    options = {"method": method, "path": path, "iterations": iterations, "seed": seed,
-               "cutoff": cutoff, "all": all, "for_step": for_step}
-    return _job("identify", "fit.json", experiment, out, options, folder, progress)
+    method: lm | pso | regressor. path: auto | smooth | stepped. starts: fit from so many, keep the
+    best. seed belongs to starts and pso, cutoff [Hz] to regressor; None: what the method likes.
+    all: the validate logs too. whole: no pieces first. from_: an earlier fit to start from."""
+    options = {"method": method, "path": path, "iterations": iterations, "starts": starts,
+               "seed": seed, "cutoff": cutoff, "all": all, "for_step": for_step, "whole": whole}
+    with as_file(from_ or "", "from") as (fit, rename):
+        options["from"] = fit or None
+        return _job("identify", "fit.json", experiment, out, options, folder, progress, rename)
 
 
 def diagnose(experiment: Document, out: StrPath | None = None, *,

@@ -73,6 +73,18 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"RenderNoSuchCamera",
             {"render", kE, "--out", "x.png", "--camera", "mine"},
             {"camera", "mine"}},
+        Bad{"ReplayFilmOptionsWithoutAFilm",
+            {"replay", kE, "--out", "out", "--size", "640x480"},
+            {"--size requires --video"}},
+        Bad{"ReplayFilmOfOddSize",
+            {"replay", kE, "--out", "out", "--video", "--size", "641x480"},
+            {"out/replay.mp4", "even width", "641 x 480"}},
+        Bad{"ReplayFilmOfNoSuchLog",
+            {"replay", kE, "--out", "out", "--video", "--log", "no"},
+            {"--log", "one of log", "'no'"}},
+        Bad{"ReplayFilmByNoSuchCamera",
+            {"replay", kE, "--out", "out", "--video", "--camera", "mine"},
+            {"camera", "'mine'"}},
         Bad{"RenderUnknownGl", {"render", kE, "--out", "x.png", "--gl", "vulkan"}, {"vulkan"}},
         Bad{"RenderBelowAFile",
             {"render", kE, "--out", "log.csv/x.mp4"},
@@ -127,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"SolveExperiment", {"solve", kE, "--out", "x.csv"}, {"experiment.yaml:2", "tdcr"}}),
     testing::kCaseName);
 
-class Unwritable : public testing::AppBench {
+class AtOnce : public testing::AppBench {
  protected:
   // Refused without a word of progress: before the work.
   void ExpectRefusedAtOnce(const std::string& command, const std::string& place) const {
@@ -136,6 +148,12 @@ class Unwritable : public testing::AppBench {
     EXPECT_THAT(Run({command, kE, "--out", "out"}).err, ::testing::StartsWith("continuum: "));
   }
 };
+
+TEST_F(AtOnce, ADiagnosisWithNeitherNoiseNorLogsToLeaveOutIsRefused) {
+  ExpectRefusedAtOnce("diagnose", "experiment.yaml: folds: expected at least two groups");
+}
+
+class Unwritable : public AtOnce {};
 
 TEST_F(Unwritable, OutputsAreNoticedBeforeTheWork) {
   for (const char* file : {"errors.json", "fit.json", "diagnosis.json"})

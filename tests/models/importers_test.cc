@@ -84,6 +84,22 @@ TEST_F(Importers, NameASourceThatIsNotThere) {
   for (const std::string robot : kRobots) EXPECT_THAT(Refusal(robot), HasSubstr(": in")) << robot;
 }
 
+TEST_F(Importers, ARegressionNamesWhatItCannotRead) {
+  const auto refusal = [&](const std::vector<std::string>& arguments) {
+    std::vector<std::string> command{"/usr/bin/env", "python3", "-B",
+                                     CONTINUUM_SOURCE "/models/trunk/regression.py"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const testing::Finished finished = testing::RunProcess(command, scratch_.folder());
+    EXPECT_EQ(finished.exit_code, 2) << finished.err;
+    EXPECT_EQ(finished.out, "");
+    return finished.err;
+  };
+  EXPECT_EQ(refusal({}), "regression.py: expected EXPERIMENT_FOLDER, found 0 arguments\n");
+  EXPECT_THAT(refusal({"out"}), HasSubstr("out/observations_controlled_1.csv: No such file"));
+  Source("observations_controlled_1.csv", "t,phi1\n0,1\n1,1\n");
+  EXPECT_THAT(refusal({"in"}), HasSubstr(":1: expected a column 'phi2', found t, phi1"));
+}
+
 TEST_F(Importers, DoNotWriteOverAFileOrTheirSource) {
   Source("here", "");
   scratch_.Write("file", "kept");

@@ -71,6 +71,25 @@ class Outputs(bench.Bench):
         self.assertTrue(any(line.startswith("all: RMS") for line in lines))
 
 
+class Options(bench.Bench):
+    def test_a_film_has_those_of_the_command_line(self):
+        mc.replay(self.experiment, "out", video=True, log="log", size="128x96", fps=10,
+                  gl="osmesa")
+        self.assertTrue((self.folder / "out/replay.mp4").exists())
+        with self.assertRaisesRegex(mc.InputError, "--size requires --video"):
+            mc.replay(self.experiment, size="128x96")
+
+    def test_a_fit_goes_on_from_another(self):
+        first = mc.identify(self.experiment, starts=2, seed=3, whole=True)
+        again = mc.identify(self.experiment, from_=first)
+        self.assertAlmostEqual(again["parameters"][0]["value"], first["parameters"][0]["value"], 5)
+        self.assertLess(again["evaluations"], first["evaluations"])
+        with self.assertRaisesRegex(mc.InputError, "^from: "):
+            mc.identify(self.experiment, from_={"parameters": 1})
+        with self.assertRaisesRegex(mc.InputError, "--starts: expected --method lm"):
+            mc.identify(self.experiment, method="pso", starts=2)
+
+
 class Errors(bench.Bench):
     def test_bad_input_has_the_tool_s_message(self):
         self.experiment["outputs"][0]["sensor"] = "angel"

@@ -186,13 +186,6 @@ TEST(Check, AJumpThatLastsSomeRowsIsLocated) {
   EXPECT_NEAR(f.begin, 6.0, 0.07);
 }
 
-TEST(Check, SaturationIsNamed) {
-  Log log = Record({Sines, Sines});
-  for (double& q : Column(log, "q2")) q = std::min(q, 0.5);
-  const Finding f = Only(log, "saturation", "q2");
-  EXPECT_THAT(f.text, HasSubstr("largest value 0.5 rad"));
-}
-
 TEST(Check, AConstantChannelIsNamed) {
   Log log = Record({});
   for (double& q : Column(log, "q2")) q = 0.3;

@@ -76,6 +76,18 @@ TEST_F(Decorated, TendonsTakeTheColourOfTheirTension) {
     EXPECT_THAT(cable->rgba[c], FloatNear((bar.from[c] + bar.to[c]) / 2, 1e-6F));
 }
 
+TEST(Outlook, RangeOfTheTensionIsRoundAndHoldsNought) {
+  Outlook ahead;
+  ahead.Include(std::vector<std::optional<double>>{std::nullopt});
+  EXPECT_FALSE(ahead.tension);
+  ahead.Include(std::vector<std::optional<double>>{3.2, std::nullopt, 0.7});
+  EXPECT_EQ(ahead.tension, (std::array{0.0, 5.0}));
+  Outlook other;
+  other.Include(std::vector<std::optional<double>>{-11.0, 1.0});
+  other.Include(ahead);
+  EXPECT_EQ(other.tension, (std::array{-20.0, 5.0}));
+}
+
 TEST_F(Decorated, AnArrowPointsAlongTheForceInTheWorld) {
   ASSERT_NEAR(std::abs(data_->sensordata[2]), 6, 1e-9);  // z of the site is x of the world
   FilmOptions options;

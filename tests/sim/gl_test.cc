@@ -43,8 +43,9 @@ Image SnakeArm(Gl backend) {
   mj_forward(machine.model.get(), machine.data.get());
   Renderer renderer(*machine.model, 640, 480, backend);
   const ColorBar bar{.label = "cable tension [N]", .low = "0", .high = "20"};
+  Ruler ruler;
   return renderer.Draw(*machine.model, *machine.data,
-                       {.caption = "Snake arm", .time = 1.5, .scale = true, .bar = bar});
+                       {.caption = "Snake arm", .time = 1.5, .ruler = &ruler, .bar = bar});
 }
 
 // Mean difference of the colours, 0 to 255, of a and of b moved to the left by some pixels.

@@ -59,6 +59,16 @@ TEST_F(Mat, ThatPromisesMoreThanItHoldsIsRefused) {
   EXPECT_THAT([&] { Read(bytes, "t"); }, ThrowsMessage<Error>(HasSubstr("log.mat: t: ")));
 }
 
+// It has two billion columns: room for their names would take hours.
+TEST_F(Mat, WithColumnsButNoRowsIsRefusedAtOnce) {
+  std::string bytes = Bytes("plain.mat");
+  const std::int32_t rows = 0, columns = 2'000'000'000;
+  std::memcpy(bytes.data() + 288 + 32, &rows, 4);  // of x, as above
+  std::memcpy(bytes.data() + 288 + 36, &columns, 4);
+  EXPECT_THAT([&] { Read(bytes, "x"); },
+              ThrowsMessage<Error>(HasSubstr("log.mat: x: expected a matrix of numbers")));
+}
+
 TEST_F(Mat, CutOffAnywhereGivesAnErrorOrWhatIsWhole) {
   for (const char* name : {"plain.mat", "zipped.mat"}) {
     const std::string bytes = Bytes(name);

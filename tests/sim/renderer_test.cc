@@ -217,7 +217,8 @@ TEST_F(RendererTest, DrawsARoundLengthToScaleRightOfTheTime) {
   renderer_.SetCamera("front");
   const Image bare = renderer_.Draw(*model_, *data_);
   const Image timed = renderer_.Draw(*model_, *data_, {.time = 1.5});
-  const Image image = renderer_.Draw(*model_, *data_, {.time = 1.5, .scale = true});
+  Ruler ruler;
+  const Image image = renderer_.Draw(*model_, *data_, {.time = 1.5, .ruler = &ruler});
   const Extent plate = Difference(timed, image);
   EXPECT_GT(plate.left, Difference(bare, timed).right);
   EXPECT_LT(plate.right, 320);

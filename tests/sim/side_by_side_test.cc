@@ -1,5 +1,7 @@
 #include "sim/side_by_side.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "error.h"
@@ -18,11 +20,17 @@ class SideBySide : public ::testing::Test {
     options_.width = 160, options_.height = 120, options_.fps = 10;
   }
 
-  std::vector<Image> Frames(const Experiment& e, const std::string& name) {
+  // Of the first log by one model, with the camera where another model needs it too.
+  std::vector<Image> Frames(const Experiment& e, const Experiment& other, const std::string& name) {
     FilmOptions options = options_;
     options.caption = name + ": " + e.logs[0].label;
+    const System system = System::Load(e.model);
+    Outlook ahead = LookAhead(e, system, e.logs[0], options);
+    ahead.framing.Include(
+        LookAhead(other, System::Load(other.model), other.logs[0], options).framing);
+    Ruler ruler;
     std::vector<Image> frames;
-    DrawFrames(e, System::Load(e.model), e.logs[0], options,
+    DrawFrames(e, system, e.logs[0], options, ahead, ruler,
                [&](Image image) { frames.push_back(std::move(image)); });
     return frames;
   }
@@ -32,8 +40,8 @@ class SideBySide : public ::testing::Test {
   FilmOptions options_;
 };
 
-TEST_F(SideBySide, TheHalvesAreTheFramesOfEitherModel) {
-  const auto left = Frames(before_, "before"), right = Frames(after_, "after");
+TEST_F(SideBySide, TheHalvesAreTheFramesOfEitherModelSeenFromOnePlace) {
+  const auto left = Frames(before_, after_, "before"), right = Frames(after_, before_, "after");
   ASSERT_GT(left.size(), 3u);
   ASSERT_NE(left[3].rgb, right[3].rgb);
   const System before = System::Load(before_.model), after = System::Load(after_.model);
@@ -51,6 +59,43 @@ TEST_F(SideBySide, TheHalvesAreTheFramesOfEitherModel) {
                    ++k;
                  });
   EXPECT_EQ(k, left.size());
+}
+
+// Rows of white pixels below: the longest is the bar of the scale.
+int LongestBar(const Image& both, int begin, int end) {
+  int longest = 0;
+  for (int y = both.height / 2; y < both.height; ++y) {
+    for (int x = begin, run = 0; x < end; ++x) {
+      const auto at = both.rgb.begin() + 3 * (std::ptrdiff_t{y} * both.width + x);
+      run = std::all_of(at, at + 3, [](int c) { return c == 255; }) ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+  }
+  return longest;
+}
+
+// The softer arm swings further: on its own its camera would stand back.
+TEST_F(SideBySide, TheHalvesHaveOneScale) {
+  options_.width = 640, options_.height = 480, options_.fps = 1;
+  const System before = System::Load(before_.model), after = System::Load(after_.model);
+  const Outlook one = LookAhead(before_, before, before_.logs[0], options_);
+  const Outlook other = LookAhead(after_, after, after_.logs[0], options_);
+  const auto distance = [](Framing framing) {
+    mjvCamera camera;
+    mjv_defaultCamera(&camera);
+    framing.Aim(camera, 45, 640. / 480);
+    return camera.distance;
+  };
+  ASSERT_GT(distance(other.framing), 1.02 * distance(one.framing));
+  int frames = 0;
+  DrawSideBySide({before_, before, "before"}, {after_, after, "after"}, 0, options_,
+                 [&](const Image& both) {
+                   const int left = LongestBar(both, 0, 640);
+                   ASSERT_GT(left, 40);
+                   ASSERT_EQ(left, LongestBar(both, 640, 1280));
+                   ++frames;
+                 });
+  EXPECT_GT(frames, 3);
 }
 
 TEST_F(SideBySide, EndsWithTheErrorOfEitherModelOrOfItsTaker) {
