@@ -120,8 +120,8 @@ std::string NearerBound(const FreeParameter& p, double value) {
 }
 
 void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, Eigen::Index i) {
-  std::string range = u.at_bound[i] ? "at " + NearerBound(p, value)
-                                    : fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  std::string range = fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  if (u.at_bound[i]) range = "at " + NearerBound(p, value) + "; " + range;
   if (p.initial <= p.lower || p.initial >= p.upper)
     range += "; it starts at " + NearerBound(p, p.initial);
   const std::string unit = p.unit == "1" ? "" : " " + p.unit;
@@ -169,7 +169,7 @@ void Print(const Problem& problem, const Fitting& all, const Determined& determi
               fit.evaluations, fit.seconds, out.c_str());
 }
 
-// What the check of the logs warns of, its first lines in full.
+// What the check of the logs warns of, its first lines and channels without variance in full.
 void PrintCheck(const Options& o, const Experiment& e) {
   constexpr std::size_t kLines = 4;
   std::size_t more = 0, printed = 0;
@@ -177,7 +177,8 @@ void PrintCheck(const Options& o, const Experiment& e) {
   for (const FindingGroup& g : Grouped(findings)) {
     const auto severity = g.members.front()->severity;
     if (severity == Finding::Severity::kInfo) continue;
-    if (severity == Finding::Severity::kWarning && printed >= kLines) {
+    const bool constant = g.members.front()->what == "no_variance";
+    if (severity == Finding::Severity::kWarning && printed >= kLines && !constant) {
       ++more;
       continue;
     }
@@ -185,7 +186,8 @@ void PrintCheck(const Options& o, const Experiment& e) {
     std::string where = g.logs.size() > 1 && g.logs.size() == e.logs.size()
                             ? "all logs"
                             : fmt::format("{}", fmt::join(g.logs, ", "));
-    for (const std::string& channel : g.channels) where += channel.empty() ? "" : " " + channel;
+    for (const std::string& channel : g.channels)
+      where += channel.empty() ? "" : ", column '" + channel + "'";
     std::fprintf(stderr, "log check: %s: %s\n", where.c_str(), g.text.c_str());
   }
   if (more > 0)

@@ -20,10 +20,11 @@ namespace continuum {
 ///
 /// with Bartlett weights and Andrews' bandwidth for AR(1) scores (heteroskedasticity and
 /// autocorrelation consistent, newey1987, andrews1991; of what lasts long it sees too little). Of
-/// each parameter the larger variance counts. n: independent rows, k: parameters. A parameter at a
-/// bound is left out: no standard error (NaN), and its value for an interval. One without effect
-/// has none either, and all that its bounds allow; so have all where rows are no more than
-/// parameters.
+/// each parameter the larger variance counts. n: independent rows, k: parameters. Intervals end at
+/// the bounds; that of a parameter at a bound goes from there inwards, and as its true value may
+/// lie inside, it counts as free for the others too. One without effect may be anything that its
+/// bounds allow (standard error: that of an even distribution); so may all where rows are no more
+/// than parameters.
 struct Uncertainty {
   Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
   Problem::Vector step = {};  ///< what a fine time step would add to the value; empty: not known
