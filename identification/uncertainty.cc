@@ -269,6 +269,7 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   Problem centered = problem;
   centered.Center();
   const auto J = centered.Jacobian(x, r, train);
+  if (StopRequested()) return UncertaintyFrom(problem, x, {});
   const double soft = problem.experiment().soft;
   Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
   if (problem.path() != Path::kStepped) return u;

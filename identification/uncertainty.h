@@ -87,7 +87,7 @@ void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     Uncertainty& u);
 /// All of these in one, from the train logs: what a fit.json states. r: residuals at x; the loss of
 /// the experiment may be robust. Derivatives are central differences: one-sided ones bend what the
-/// step is said to change.
+/// step is said to change. Once the user has asked to stop, nothing is known but the bounds.
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r,
                         const std::function<void(const std::string&)>& progress = {});

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 
 #include "bench.h"
@@ -15,6 +16,15 @@ class Stop : public testing::AppBench {
   void SetUp() override {
     std::string text = "t,u,q\n";
     for (int k = 0; k < 20; ++k) text += std::to_string(k * 5e5) + ",0.1,0.1\n";
+    files_.Write("log.csv", text);
+  }
+  void WriteLongLog() const {
+    std::string text = "t,u,q\n";
+    for (int k = 0; k < 3000; ++k) {
+      const double t = 0.1 * k;
+      text += std::to_string(t) + "," + std::to_string(std::sin(t)) + "," +
+              std::to_string(0.02 * std::sin(1.7 * t)) + "\n";
+    }
     files_.Write("log.csv", text);
   }
   Finished Interrupt(std::vector<std::string> arguments, const std::string& after,
@@ -47,19 +57,26 @@ TEST_F(Stop, EndsAFilm) {
 }
 
 TEST_F(Stop, OfAFitLeavesTheBestSoFar) {
-  std::string text = "t,u,q\n";
-  for (int k = 0; k < 3000; ++k) {
-    const double t = 0.1 * k;
-    text += std::to_string(t) + "," + std::to_string(std::sin(t)) + "," +
-            std::to_string(0.02 * std::sin(1.7 * t)) + "\n";
-  }
-  files_.Write("log.csv", text);
+  WriteLongLog();
   const Finished f = Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"},
                                "iteration  0");
   EXPECT_EQ(f.signal, 0);
   EXPECT_EQ(f.exit_code, 1) << f.err;
   EXPECT_THAT(f.err, HasSubstr("interrupted"));
   EXPECT_THAT(Scratch::Text(files_ / "out/fit.json"), HasSubstr("\"parameters\""));
+}
+
+// A generation of its swarm takes seconds, and nobody waits for the intervals.
+TEST_F(Stop, OfASwarmIsHeardWithinASecondOrTwo) {
+  WriteLongLog();
+  Spoil("model.xml", "timestep=\"0.01\"", "timestep=\"0.0005\"");
+  const auto begin = std::chrono::steady_clock::now();
+  const auto first = Interrupt(
+      {"identify", "experiment.yaml", "--path", "stepped", "--method", "pso", "--out", "out"},
+      "path: stepped");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(6));
+  EXPECT_EQ(first.exit_code, 1) << first.err;
+  EXPECT_THAT(first.err, HasSubstr("interrupted"));
 }
 
 }  // namespace
