@@ -17,6 +17,7 @@
 #include "identification/path.h"
 #include "identification/pieces.h"
 #include "identification/regressor.h"
+#include "identification/start_hint.h"
 #include "identification/swarm.h"
 #include "sim/check.h"
 #include "sim/check_groups.h"
@@ -228,6 +229,8 @@ void RunIdentify(const Options& o) {
   Print(problem, all, determined, o.out);
   for (const TradeOff& t : determined.trade_offs) std::printf("%s\n", t.text.c_str());
   StopIfRequested();  // the files hold the best so far
+  if (const std::string hint = StartHint(problem, all.fit.x, use); !hint.empty())
+    std::printf("%s\n", hint.c_str());
   if (!all.fit.converged) throw Error::Job("the fit did not converge: " + all.fit.message);
 }
 

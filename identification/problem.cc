@@ -281,6 +281,7 @@ InitialState Problem::StartAt(Machine& machine, const Vector& x, std::size_t log
   if (changes.empty()) return {};
   InitialState state = StartOf(machine, setup_, experiment_->logs[log]);
   for (const Change& c : changes) PutStart(*machine.model, c, state);
+  PutTied(machine, state);
   return state;
 }
 
