@@ -260,7 +260,10 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
   const auto slopes = foretold ? J : Secants(problem, x, r, J, step, whitening);
   u = UncertaintyOf(problem, x, r, slopes, whitening, options.soft);
   ReachOver(problem, moved, u);
-  if (!foretold) ReachFurther(problem, x, slopes, step, whitening, u);
+  if (foretold) return;
+  const Vector more = (kWholeRoot - kWholeStep) * moved;
+  Reach(problem, more.cwiseMin(0), more.cwiseMax(0), u);
+  ReachFurther(problem, x, slopes, step, whitening, u);
 }
 
 Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,

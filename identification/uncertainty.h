@@ -47,6 +47,8 @@ Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
 
 /// Whole effect of a step, of order h, over what a quarter of it shows.
 inline constexpr double kWholeStep = 4.0 / 3;
+/// The same of order √h, as seen where machines stick and slip.
+inline constexpr double kWholeRoot = 2;
 
 /// The same problem at a quarter of its time step.
 Problem AtQuarter(const Problem& problem);
@@ -79,8 +81,8 @@ void ReachFurther(const Problem& problem, const Problem::Vector& x,
                   const Whitening& whitening, Uncertainty& u);
 /// Where the time step moves a value by more than its standard error, a fit at a quarter of the
 /// step, from x, tells what a fine one gives: intervals are made anew to reach over that, and
-/// further where first order did not foretell half of it. r, J, step: of the logs of the fit, as
-/// above; u: after AllowForStep.
+/// further (over twice its move, and by ReachFurther) where first order did not foretell half of
+/// it. r, J, step: of the logs of the fit, as above; u: after AllowForStep.
 void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
                     const std::vector<Problem::Matrix>& step, const FitOptions& options,
