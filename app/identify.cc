@@ -17,6 +17,7 @@
 #include "identification/path.h"
 #include "identification/pieces.h"
 #include "identification/regressor.h"
+#include "identification/start_hint.h"
 #include "identification/swarm.h"
 #include "sim/check.h"
 #include "sim/check_groups.h"
@@ -120,8 +121,8 @@ std::string NearerBound(const FreeParameter& p, double value) {
 }
 
 void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, Eigen::Index i) {
-  std::string range = u.at_bound[i] ? "at " + NearerBound(p, value)
-                                    : fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  std::string range = fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  if (u.at_bound[i]) range = "at " + NearerBound(p, value) + "; " + range;
   if (p.initial <= p.lower || p.initial >= p.upper)
     range += "; it starts at " + NearerBound(p, p.initial);
   const std::string unit = p.unit == "1" ? "" : " " + p.unit;
@@ -169,7 +170,7 @@ void Print(const Problem& problem, const Fitting& all, const Determined& determi
               fit.evaluations, fit.seconds, out.c_str());
 }
 
-// What the check of the logs warns of, its first lines in full.
+// What the check of the logs warns of, its first lines and channels without variance in full.
 void PrintCheck(const Options& o, const Experiment& e) {
   constexpr std::size_t kLines = 4;
   std::size_t more = 0, printed = 0;
@@ -177,7 +178,8 @@ void PrintCheck(const Options& o, const Experiment& e) {
   for (const FindingGroup& g : Grouped(findings)) {
     const auto severity = g.members.front()->severity;
     if (severity == Finding::Severity::kInfo) continue;
-    if (severity == Finding::Severity::kWarning && printed >= kLines) {
+    const bool constant = g.members.front()->what == "no_variance";
+    if (severity == Finding::Severity::kWarning && printed >= kLines && !constant) {
       ++more;
       continue;
     }
@@ -185,7 +187,8 @@ void PrintCheck(const Options& o, const Experiment& e) {
     std::string where = g.logs.size() > 1 && g.logs.size() == e.logs.size()
                             ? "all logs"
                             : fmt::format("{}", fmt::join(g.logs, ", "));
-    for (const std::string& channel : g.channels) where += channel.empty() ? "" : " " + channel;
+    for (const std::string& channel : g.channels)
+      where += channel.empty() ? "" : ", column '" + channel + "'";
     std::fprintf(stderr, "log check: %s: %s\n", where.c_str(), g.text.c_str());
   }
   if (more > 0)
@@ -226,6 +229,8 @@ void RunIdentify(const Options& o) {
   Print(problem, all, determined, o.out);
   for (const TradeOff& t : determined.trade_offs) std::printf("%s\n", t.text.c_str());
   StopIfRequested();  // the files hold the best so far
+  if (const std::string hint = StartHint(problem, all.fit.x, use); !hint.empty())
+    std::printf("%s\n", hint.c_str());
   if (!all.fit.converged) throw Error::Job("the fit did not converge: " + all.fit.message);
 }
 

@@ -218,7 +218,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   for (const Matrix& part : J) {
     if (!part.allFinite()) throw Error::Job("the simulation diverges next to the start of the fit");
   }
-  if (!options.idle) RequireEffect(problem, fit.x, J);
+  if (!options.idle && !StopRequested()) RequireEffect(problem, fit.x, J);
 
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

@@ -11,6 +11,7 @@
 #include "sim/file.h"
 #include "sim/json.h"
 #include "sim/replay.h"
+#include "sim/units.h"
 
 namespace continuum {
 namespace {
@@ -53,16 +54,17 @@ void AddResidualAgainstInput(Page& page, const Problem& problem,
   for (std::size_t i = 0; i < e.inputs.size() && i < 4; ++i) {
     if (e.inputs[i].column.empty()) continue;
     ScatterSpec spec{"Residual over input " + e.inputs[i].column,
-                     {e.inputs[i].column, "SI"},
+                     {e.inputs[i].column, e.inputs[i].unit},
                      {e.channels[c].name + " residual", e.channels[c].unit},
                      {},
                      {},
                      true};
     PointGroup points{"all logs", {}, {}, Style::kResidual};
+    const double unit = UnitFactor(e.inputs[i].unit, e.inputs[i].where);
     for (std::size_t l = 0; l < logs.size(); ++l) {
       const auto residual = Residuals(e, e.logs[l], logs[l].trace);
       for (std::size_t k = 0; k < e.logs[l].rows(); k += 5) {
-        points.x.push_back(e.logs[l].input[i][k]);
+        points.x.push_back(e.logs[l].input[i][k] / unit);
         points.y.push_back(residual[c][k] / e.channels[c].factor);
       }
     }
@@ -105,6 +107,28 @@ nlohmann::json StartsJson(const Problem& problem, const MultiStart& all) {
       json.back()["parameters"][problem.parameters()[i].name] = start.x[i];
   }
   return json;
+}
+
+// Where each start lies, of the parameters that were drawn, and where it ended.
+void AddStarts(Page& page, const Problem& problem, const MultiStart& all) {
+  std::vector<std::string> header{"start", "cost at its end", "over the best"};
+  std::vector<Eigen::Index> drawn;
+  for (Eigen::Index i = 0; i < all.best.x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    if (p.IsStart()) continue;
+    drawn.push_back(i);
+    header.push_back(p.name + (p.unit == "1" ? "" : " [" + p.unit + "]"));
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const Start& start : all.starts) {
+    const bool ended = std::isfinite(start.cost);
+    rows.push_back({rows.empty() ? "given" : fmt::format("random {}", rows.size()),
+                    ended ? fmt::format("{:.6g}", start.cost) : "diverged",
+                    ended ? fmt::format("{:.2g} %", 100 * (start.cost / all.best.cost - 1)) : ""});
+    for (const Eigen::Index i : drawn) rows.back().push_back(fmt::format("{:.4g}", start.x[i]));
+  }
+  page.Heading("Starts");
+  page.Table(header, rows, {all.InWords() + "; those that cannot come near it any more give up."});
 }
 
 // What the model gives at its own step, where the fit was one of its differential equation.
@@ -191,12 +215,11 @@ nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
   auto all = nlohmann::json::array();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
-    const bool known = std::isfinite(u.standard_error[i]);
     const double edge = 1e-9 * p.scale;
     all.push_back({{"name", p.name},
                    {"unit", p.unit},
                    {"value", x[i]},
-                   {"standard_error", known ? u.standard_error[i] : 0},
+                   {"standard_error", u.standard_error[i]},
                    {"ci95", {u.lower[i], u.upper[i]}},
                    {"lower", p.lower},
                    {"upper", p.upper},
@@ -214,13 +237,12 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
     if (p.IsStart()) continue;
-    const bool known = std::isfinite(u.standard_error[i]);
-    rows.push_back(
-        {p.name, fmt::format("{:.5g}", x[i]), p.unit,
-         known ? fmt::format("{:.2g}", u.standard_error[i]) : "",
-         u.at_bound[i] ? "at its bound" : fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]),
-         u.step.size() ? fmt::format("{:.5g}", x[i] + u.step[i]) : "",
-         fmt::format("{:.5g}", p.initial)});
+    rows.push_back({p.name, fmt::format("{:.5g}", x[i]), p.unit,
+                    fmt::format("{:.2g}", u.standard_error[i]),
+                    fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) +
+                        (u.at_bound[i] ? ", at its bound" : ""),
+                    u.step.size() ? fmt::format("{:.5g}", x[i] + u.step[i]) : "",
+                    fmt::format("{:.5g}", p.initial)});
   }
   std::string note = "Intervals allow for residuals that are correlated in time";
   if (u.step.size()) note += ", and reach over what a fine time step would give";
@@ -300,6 +322,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   for (std::size_t k = 0; k < fit.trace.size(); ++k) trend.x.push_back(static_cast<double>(k));
   cost.trends.push_back(trend);
   page.Scatter(cost);
+  if (record.starts) AddStarts(page, problem, *record.starts);
   page.Heading("What remains");
   AddAutocorrelation(page, problem, logs);
   AddResidualAgainstInput(page, problem, logs);

@@ -44,7 +44,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
 Problem::Vector ValuesIn(const std::filesystem::path& fit, const Problem& problem);
 
 /// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}], and fine_step, the value
-/// that a fine time step would give, where that is known; no standard error is written as 0.
+/// that a fine time step would give, where that is known.
 nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
                               const Uncertainty& uncertainty);
 

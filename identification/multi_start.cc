@@ -57,7 +57,7 @@ MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
     all.starts.push_back({k == 0 ? x : RandomStart(problem, random), kInfinity});
     FitOptions own = options;
     own.hopeless = all.best.cost;
-    own.patience = 3;   // far away, one step says little of the next
+    own.patience = 10;  // far away, steps say little of the next ones
     own.idle |= k > 0;  // far away a parameter may have none
     try {
       Fit fit = FitFar(problem, all.starts.back().x, use, own);

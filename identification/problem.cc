@@ -12,6 +12,7 @@
 #include "identification/parallel.h"
 #include "identification/smooth.h"
 #include "identification/starts.h"
+#include "identification/twice.h"
 #include "identification/unit.h"
 #include "sim/measurement.h"
 #include "sim/registration.h"
@@ -50,6 +51,7 @@ Problem::Problem(const Experiment& experiment, const System& system, std::vector
     systems_.back().DropVisuals();
   }
   for (const Parameter& p : experiment.parameters) Expand(p);
+  RefuseTwice(experiment.parameters, system);
   const Wiring wiring(experiment, system.model());
   for (const Parameter& p : RegistrationParameters(experiment, wiring, system.model())) Expand(p);
   for (FreeParameter& p : StartParameters(experiment, system)) parameters_.push_back(std::move(p));
@@ -279,6 +281,7 @@ InitialState Problem::StartAt(Machine& machine, const Vector& x, std::size_t log
   if (changes.empty()) return {};
   InitialState state = StartOf(machine, setup_, experiment_->logs[log]);
   for (const Change& c : changes) PutStart(*machine.model, c, state);
+  PutTied(machine, state);
   return state;
 }
 

@@ -92,6 +92,7 @@ class Problem {
   /// d residual / d parameter [per unit of the parameter] of each log, by one-sided differences or
   /// sensitivities; r: the residuals at x; known: its leading columns, when they are known already;
   /// rough: to two digits, on the smooth path: enough to search with, as residuals stay exact.
+  /// Once the user has asked to stop, columns that are left are zero.
   std::vector<Matrix> Jacobian(const Vector& x, const std::vector<Vector>& r,
                                const std::vector<bool>& use, const std::vector<Matrix>& known = {},
                                bool rough = false) const;

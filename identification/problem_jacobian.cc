@@ -5,6 +5,7 @@
 #include "identification/parallel.h"
 #include "identification/problem.h"
 #include "identification/smooth.h"
+#include "sim/stop.h"
 
 namespace continuum {
 
@@ -69,6 +70,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
     }
   }
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
+    if (StopRequested()) return;
     const auto [i, k] = tasks[t];
     const double step = StepOf(x, k, share_);
     const auto moved = [&](double by) {
@@ -110,6 +112,7 @@ void Problem::SensitivityColumns(const Vector& x,
   Solving how = solving_;
   if (rough) how.relative = 1e-3, how.absolute = 1e-5;
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
+    if (StopRequested()) return;
     const auto& [i, moving] = tasks[t];
     const std::size_t log = motions[i].front();
     std::vector<std::unique_ptr<Flow>> neighbours;

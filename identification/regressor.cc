@@ -1,5 +1,6 @@
 #include "identification/regressor.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -12,6 +13,7 @@
 #include "identification/lowpass.h"
 #include "sim/inputs.h"
 #include "sim/measurement.h"
+#include "sim/ties.h"
 
 namespace continuum {
 namespace {
@@ -33,7 +35,7 @@ void RequireMeasurable(const mjModel& m, const mjData& d) {
     throw Error::Input("--method regressor", "a model whose states are its joints", what);
   };
   if (m.na > 0) refuse("activations of actuators");
-  if (m.neq > 0) refuse("equality constraints");
+  if (const Ties ties(m); !ties.obstacle().empty()) refuse(ties.obstacle());
   for (int j = 0; j < m.njnt; ++j) {
     if (m.jnt_type[j] == mjJNT_FREE || m.jnt_type[j] == mjJNT_BALL)
       refuse("joint '" + JointName(m, j) + "', neither hinge nor slide");
@@ -61,7 +63,7 @@ double EvenStep(const Log& log) {
 struct Motion {
   std::size_t log;
   double step, cutoff;                                    // cutoff: share of the sampling rate
-  std::vector<std::vector<double>> q, v, a;               // [dof][row]
+  std::vector<std::vector<double>> q, v, a;               // [free dof][row]
   std::vector<std::pair<int, std::vector<double>>> pull;  // actuator, its measured force
 };
 
@@ -70,14 +72,17 @@ Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double
   Motion motion{index, EvenStep(log), 0, {}, {}, {}, {}};
   const double rate = 1 / motion.step;
   motion.cutoff = std::min(cutoff > 0 ? cutoff : kFilter, kOfTheRate * rate) / rate;
-  motion.q.resize(m.nv);
+  const std::vector<int> dofs = Ties(m).dofs();
+  motion.q.resize(dofs.size());
   const Wiring wiring(e, m);
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const auto& source = wiring.output[e.channels[c].output];
     const bool force = source.kind == Output::Kind::kForce;
-    const bool joint =
-        source.kind == Output::Kind::kSensor && m.sensor_type[source.sensor] == mjSENS_JOINTPOS;
-    if (!force && !joint) continue;
+    const auto joint =
+        source.kind == Output::Kind::kSensor && m.sensor_type[source.sensor] == mjSENS_JOINTPOS
+            ? std::find(dofs.begin(), dofs.end(), m.jnt_dofadr[m.sensor_objid[source.sensor]])
+            : dofs.end();
+    if (!force && joint == dofs.end()) continue;
     std::vector<double> y = log.measured[c];
     for (std::size_t k = 0; k < y.size(); ++k) {
       y[k] = SignalOf(e, c, y[k]);
@@ -90,13 +95,13 @@ Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double
     if (force) {
       motion.pull.emplace_back(source.address, std::move(y));
     } else {
-      motion.q[m.jnt_dofadr[m.sensor_objid[source.sensor]]] = LowPass(y, motion.cutoff);
+      motion.q[joint - dofs.begin()] = LowPass(y, motion.cutoff);
     }
   }
-  for (int i = 0; i < m.nv; ++i) {
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
     if (motion.q[i].empty()) {
       throw Error::Input("--method regressor", "every joint measured",
-                         "no output of joint '" + JointName(m, m.dof_jntid[i]) + "'");
+                         "no output of joint '" + JointName(m, m.dof_jntid[dofs[i]]) + "'");
     }
     motion.v.push_back(Derivative(motion.q[i], motion.step));
     motion.a.push_back(Derivative(motion.v[i], motion.step));
@@ -104,7 +109,31 @@ Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double
   return motion;
 }
 
-// Forces of one machine along a motion [row, dof]: what is missing, and what the actuators give.
+// Puts a machine at one row of a motion; joints that are tied to others follow.
+void Put(const Motion& motion, std::size_t row, const Ties& ties, const mjModel& m, mjData& d) {
+  const auto at = [row](const std::vector<std::vector<double>>& all) {
+    std::vector<double> values;
+    for (const auto& y : all) values.push_back(y[row]);
+    return values;
+  };
+  const auto q = at(motion.q), v = at(motion.v), a = at(motion.a);
+  ties.Spread(m, q.data(), a.data(), d);
+  mju_copy(d.qacc, d.qvel, static_cast<int>(m.nv));
+  ties.Spread(m, q.data(), v.data(), d);
+}
+
+// Held inputs act half a period after their rows on the average.
+void PutInputs(const Experiment& e, const Log& log, const Wiring& wiring, std::size_t row,
+               Inputs& inputs, mjData& d) {
+  inputs.AtRow(d, row);
+  for (std::size_t i = 0; row > 0 && i < e.inputs.size(); ++i) {
+    if (!e.inputs[i].linear)
+      d.ctrl[wiring.actuator[i]] = (log.input[i][row - 1] + log.input[i][row]) / 2;
+  }
+}
+
+// Forces of one machine along a motion [row, free dof]: what is missing, and what the actuators
+// give.
 struct Forces {
   Matrix missing, actuated;
 };
@@ -124,22 +153,26 @@ Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
   mjData& d = *machine.data;
   const Wiring wiring(e, m);
   Inputs inputs(m, e, log, wiring);
+  const Ties ties(m);
+  m.opt.disableflags |= mjDSBL_EQUALITY;
   const auto rows = static_cast<Eigen::Index>(log.rows());
-  Forces forces{Matrix(rows, m.nv), Matrix(rows, m.nv)};
+  const auto free = static_cast<Eigen::Index>(ties.velocities());
+  Forces forces{Matrix(rows, free), Matrix(rows, free)};
   mj_resetData(&m, &d);
+  Vector on_free(free);
+  const auto freely = [&](const Vector& force) {
+    ties.Project(force.data(), on_free.data());
+    return on_free.transpose();
+  };
   for (Eigen::Index k = 0; k < rows; ++k) {
-    inputs.AtRow(d, k);
-    for (int i = 0; i < m.nv; ++i) {
-      d.qpos[m.jnt_qposadr[m.dof_jntid[i]]] = motion.q[i][k];
-      d.qvel[i] = motion.v[i][k];
-      d.qacc[i] = motion.a[i][k];
-    }
+    PutInputs(e, log, wiring, k, inputs, d);
+    Put(motion, k, ties, m, d);
     mj_inverse(&m, &d);
     mj_fwdActuation(&m, &d);
     Vector actuated = Vector::Map(d.qfrc_actuator, m.nv);
     for (const auto& [actuator, force] : motion.pull) Replace(d, actuator, force[k], actuated);
-    forces.actuated.row(k) = actuated;
-    forces.missing.row(k) = Vector::Map(d.qfrc_inverse, m.nv) - actuated;
+    forces.actuated.row(k) = freely(actuated);
+    forces.missing.row(k) = freely(Vector::Map(d.qfrc_inverse, m.nv) - actuated);
   }
   for (Matrix* const forces_of : {&forces.missing, &forces.actuated}) {
     for (auto column : forces_of->colwise()) {

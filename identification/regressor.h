@@ -26,7 +26,7 @@ struct Regression {
 /// model gives under the logged inputs. F low-passes positions first and then both sides, without
 /// phase (gautier1997, janot2014). Each joint's equation is weighted by its RMS force. No
 /// simulation: a start is not needed, but every joint (hinge or slide) must be measured, evenly in
-/// time.
+/// time; those that linear joint equalities tie to others follow them (Ties).
 ///
 /// Throws Error for joints that are not measured, states that cannot be (activations, laws with
 /// states, cable friction), parameters that do not enter linearly, or that nothing determines.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "error.h"
+#include "sim/ties.h"
 
 namespace continuum {
 namespace {
@@ -35,6 +36,20 @@ std::string JointName(const mjModel& m, int joint) {
   throw Error::Input("start: estimate", "joints with names", "one without");
 }
 
+// Those that no equality ties to others.
+std::vector<int> JointsThatStart(const mjModel& m) {
+  const Ties ties(m);
+  std::vector<int> joints;
+  for (int j = 0; j < m.njnt; ++j) {
+    if (m.jnt_type[j] != mjJNT_HINGE && m.jnt_type[j] != mjJNT_SLIDE)
+      throw Error::Input("start: estimate", "hinge and slide joints", "'" + JointName(m, j) + "'");
+    const auto& free = ties.dofs();
+    const bool tied = std::find(free.begin(), free.end(), m.jnt_dofadr[j]) == free.end();
+    if (!tied || !ties.obstacle().empty()) joints.push_back(j);
+  }
+  return joints;
+}
+
 }  // namespace
 
 std::vector<FreeParameter> StartParameters(const Experiment& e, const System& system) {
@@ -47,10 +62,8 @@ std::vector<FreeParameter> StartParameters(const Experiment& e, const System& sy
     const InitialState start = StartOf(machine, e, log);
     std::vector<bool> own(e.logs.size(), false);
     own[l] = true;
-    for (int j = 0; j < m.njnt; ++j) {
+    for (const int j : JointsThatStart(m)) {
       const std::string joint = JointName(m, j);
-      if (m.jnt_type[j] != mjJNT_HINGE && m.jnt_type[j] != mjJNT_SLIDE)
-        throw Error::Input("start: estimate", "hinge and slide joints", "'" + joint + "'");
       const double travel = Travel(m, j, e, log);
       const double fast = 10 * travel;  // 1/s: back and forth three times a second
       const bool slide = m.jnt_type[j] == mjJNT_SLIDE;
@@ -78,6 +91,17 @@ void PutStart(const mjModel& m, const Change& change, InitialState& state) {
   } else {
     state.qvel[m.jnt_dofadr[joint]] = change.value;
   }
+}
+
+void PutTied(Machine& machine, InitialState& state) {
+  const Ties ties(*machine.model);
+  if (ties.none() || !ties.obstacle().empty()) return;
+  std::vector<double> q(ties.positions()), v(ties.velocities());
+  ties.FreePositions(state.qpos.data(), q.data());
+  ties.FreeVelocities(state.qvel.data(), v.data());
+  ties.Spread(*machine.model, q.data(), v.data(), *machine.data);
+  state.qpos.assign(machine.data->qpos, machine.data->qpos + machine.model->nq);
+  state.qvel.assign(machine.data->qvel, machine.data->qvel + machine.model->nv);
 }
 
 }  // namespace continuum

@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "identification/parallel.h"
+#include "sim/stop.h"
 
 namespace continuum {
 namespace {
@@ -66,11 +67,15 @@ Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use, const Swarm
   fit.cost = std::numeric_limits<double>::infinity();
   for (; fit.iterations < options.iterations && !StopRequested(); ++fit.iterations) {
     for (Particle& p : swarm) {
+      if (StopRequested()) break;
       const double cost = CostAt(problem, p.at, use, options.soft);
       if (cost < p.cost) p.cost = cost, p.best = p.at;
       if (cost < fit.cost) fit.cost = cost, fit.x = p.at;
     }
-    if (!std::isfinite(fit.cost)) throw Error::Job("the simulation diverges at all particles");
+    if (!std::isfinite(fit.cost)) {
+      StopIfRequested();
+      throw Error::Job("the simulation diverges at all particles");
+    }
     fit.trace.push_back(fit.cost);
     if (options.progress) {
       options.progress(fmt::format("generation {:2}  cost {:.6g}  {} simulations", fit.iterations,

@@ -1,5 +1,6 @@
 #include "identification/trade_off.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +16,8 @@ using Matrix = Problem::Matrix;
 constexpr double kPoor = 0.01;   // of an eigenvalue
 constexpr double kNone = 1e-12;  // below this, rounding decides
 constexpr double kTakesPart = 0.05, kAlike = 0.1;
+
+constexpr std::size_t kMostNames = 6;  // of those that move most, that anybody reads
 
 std::string Joined(const std::vector<std::string>& names) {
   std::string text;
@@ -37,11 +40,14 @@ std::string Constant(const std::vector<std::string>& names, const Vector& move) 
 
 std::string Sentence(const std::vector<std::string>& names, const Vector& move, bool relative,
                      double freedom) {
-  std::string text = Joined(names) + " trade off: ";
+  std::vector<std::string> shown(names.begin(), names.begin() + std::min(names.size(), kMostNames));
   std::string moves;
-  for (Eigen::Index i = 0; i < move.size(); ++i) {
+  for (Eigen::Index i = 0; i < std::ssize(shown); ++i) {
     moves += fmt::format("{}{} {:+.3g}{}", i ? ", " : "", names[i], move[i], relative ? " %" : "");
   }
+  if (names.size() > kMostNames)
+    shown.push_back(fmt::format("{} others", names.size() - kMostNames));
+  std::string text = Joined(shown) + " trade off: ";
   text += std::isinf(freedom)
               ? "changes of " + moves + " leave everything as it is"
               : fmt::format("changes of {} show {:.0f} times less than one alone", moves, freedom);
@@ -72,10 +78,18 @@ std::vector<TradeOff> TradeOffsOf(const Problem& problem, const Vector& x, const
     std::vector<Eigen::Index> part, whose;  // of inside, of all parameters
     for (Eigen::Index i = 0; i < v.size(); ++i) {
       if (std::abs(v[i]) < kTakesPart * v.cwiseAbs().maxCoeff()) continue;
-      part.push_back(i), whose.push_back(inside[i]);
+      part.push_back(i);
+    }
+    const auto is_start = [&](auto i) { return problem.parameters()[inside[i]].IsStart(); };
+    if (part.size() < 2 || std::all_of(part.begin(), part.end(), is_start)) continue;
+    if (part.size() > kMostNames) {
+      std::stable_sort(part.begin(), part.end(),
+                       [&](auto a, auto b) { return std::abs(v[a]) > std::abs(v[b]); });
+    }
+    for (const Eigen::Index i : part) {
+      whose.push_back(inside[i]);
       found.names.push_back(problem.parameters()[inside[i]].name);
     }
-    if (part.size() < 2) continue;
     const Vector values = x(whose);
     const bool relative = (values.array() != 0).all();
     Vector shown = v.cwiseProduct(one)(part);

@@ -80,7 +80,6 @@ Matrix PseudoInverse(const Matrix& H) {
 // Moves the ends of the intervals by low ≤ 0 and high ≥ 0, within the bounds.
 void Reach(const Problem& problem, const Vector& low, const Vector& high, Uncertainty& u) {
   for (Eigen::Index i = 0; i < low.size(); ++i) {
-    if (u.at_bound[i]) continue;
     const FreeParameter& p = problem.parameters()[i];
     u.lower[i] = std::max(p.lower, u.lower[i] + low[i]);
     u.upper[i] = std::min(p.upper, u.upper[i] + high[i]);
@@ -134,25 +133,14 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
                             const std::vector<Scores>& blocks) {
   const Eigen::Index n = x.size();
   Uncertainty u;
-  u.standard_error = Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
-  u.lower = u.upper = x;
+  u.standard_error.resize(n), u.lower.resize(n), u.upper.resize(n);
   u.correlation = Matrix::Identity(n, n);
-  u.information = Matrix::Zero(n, n);
-  std::vector<Eigen::Index> inside;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    const double edge = 1e-6 * p.scale;
-    u.at_bound.push_back(x[i] <= p.lower + edge || x[i] >= p.upper - edge);
-    if (!u.at_bound.back()) inside.push_back(i);
-  }
-  const auto k = static_cast<Eigen::Index>(inside.size());
-  if (k == 0) return u;
-  Matrix H = Matrix::Zero(k, k), S = H, modelled = H;
+  if (n == 0) return u;
+  Matrix H = Matrix::Zero(n, n), S = H, modelled = H;
   double independent = 0;  // rows, for the quantile
   Eigen::Index rows = 0;
   for (const Scores& all : blocks) {
-    Scores block = Measured(all);
-    block.J = Matrix(block.J(Eigen::all, inside));
+    const Scores block = Measured(all);
     const Matrix scores = block.r.asDiagonal() * block.J;
     const double bandwidth = Bandwidth(scores);
     H += block.J.transpose() * block.curvature.asDiagonal() * block.J;
@@ -161,30 +149,31 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
     independent += static_cast<double>(block.r.size()) / bandwidth;
     rows += block.r.size();
   }
-  u.information(inside, inside) = H;
-  if (rows <= k) {
-    for (const Eigen::Index i : inside)
-      u.lower[i] = problem.parameters()[i].lower, u.upper[i] = problem.parameters()[i].upper;
-    return u;
+  u.information = H;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const double edge = 1e-6 * p.scale;
+    u.at_bound.push_back(x[i] <= p.lower + edge || x[i] >= p.upper - edge);
+    if (u.at_bound.back()) u.information.row(i).setZero(), u.information.col(i).setZero();
   }
-  const double freedom = std::max(2.0, independent - static_cast<double>(k));
+  const double freedom = std::max(2.0, independent - static_cast<double>(n));
   const Matrix Hi = PseudoInverse(H);
   const double few = std::max(1.0, independent / freedom);
   const Matrix cov = few * Hi * modelled * Hi, robust = few * Hi * S * Hi;
   const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
-  for (Eigen::Index a = 0; a < k; ++a) {
-    const Eigen::Index i = inside[a];
-    const FreeParameter& p = problem.parameters()[i];
-    if (!(H(a, a) > 0)) {
-      u.lower[i] = p.lower, u.upper[i] = p.upper;
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const FreeParameter& p = problem.parameters()[a];
+    if (rows <= n || !(H(a, a) > 0)) {
+      u.standard_error[a] = (p.upper - p.lower) / std::sqrt(12.0);
+      u.lower[a] = p.lower, u.upper[a] = p.upper;
       continue;
     }
-    u.standard_error[i] = std::sqrt(std::max({0.0, cov(a, a), robust(a, a)}));
-    u.lower[i] = std::max(p.lower, x[i] - t * u.standard_error[i]);
-    u.upper[i] = std::min(p.upper, x[i] + t * u.standard_error[i]);
-    for (Eigen::Index b = 0; b < k; ++b) {
+    u.standard_error[a] = std::sqrt(std::max({0.0, cov(a, a), robust(a, a)}));
+    u.lower[a] = std::max(p.lower, x[a] - t * u.standard_error[a]);
+    u.upper[a] = std::min(p.upper, x[a] + t * u.standard_error[a]);
+    for (Eigen::Index b = 0; b < n; ++b) {
       const double size = std::sqrt(cov(a, a) * cov(b, b));
-      u.correlation(i, inside[b]) = size > 0 ? cov(a, b) / size : (a == b ? 1 : 0);
+      u.correlation(a, b) = size > 0 ? cov(a, b) / size : (a == b ? 1 : 0);
     }
   }
   return u;
@@ -271,7 +260,10 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
   const auto slopes = foretold ? J : Secants(problem, x, r, J, step, whitening);
   u = UncertaintyOf(problem, x, r, slopes, whitening, options.soft);
   ReachOver(problem, moved, u);
-  if (!foretold) ReachFurther(problem, x, slopes, step, whitening, u);
+  if (foretold) return;
+  const Vector more = (kWholeRoot - kWholeStep) * moved;
+  Reach(problem, more.cwiseMin(0), more.cwiseMax(0), u);
+  ReachFurther(problem, x, slopes, step, whitening, u);
 }
 
 Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
@@ -280,6 +272,7 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   Problem centered = problem;
   centered.Center();
   const auto J = centered.Jacobian(x, r, train);
+  if (StopRequested()) return UncertaintyFrom(problem, x, {});
   const double soft = problem.experiment().soft;
   Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
   if (problem.path() != Path::kStepped) return u;

@@ -20,10 +20,11 @@ namespace continuum {
 ///
 /// with Bartlett weights and Andrews' bandwidth for AR(1) scores (heteroskedasticity and
 /// autocorrelation consistent, newey1987, andrews1991; of what lasts long it sees too little). Of
-/// each parameter the larger variance counts. n: independent rows, k: parameters. A parameter at a
-/// bound is left out: no standard error (NaN), and its value for an interval. One without effect
-/// has none either, and all that its bounds allow; so have all where rows are no more than
-/// parameters.
+/// each parameter the larger variance counts. n: independent rows, k: parameters. Intervals end at
+/// the bounds; that of a parameter at a bound goes from there inwards, and as its true value may
+/// lie inside, it counts as free for the others too. One without effect may be anything that its
+/// bounds allow (standard error: that of an even distribution); so may all where rows are no more
+/// than parameters.
 struct Uncertainty {
   Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
   Problem::Vector step = {};  ///< what a fine time step would add to the value; empty: not known
@@ -46,6 +47,8 @@ Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
 
 /// Whole effect of a step, of order h, over what a quarter of it shows.
 inline constexpr double kWholeStep = 4.0 / 3;
+/// The same of order √h, as seen where machines stick and slip.
+inline constexpr double kWholeRoot = 2;
 
 /// The same problem at a quarter of its time step.
 Problem AtQuarter(const Problem& problem);
@@ -78,15 +81,15 @@ void ReachFurther(const Problem& problem, const Problem::Vector& x,
                   const Whitening& whitening, Uncertainty& u);
 /// Where the time step moves a value by more than its standard error, a fit at a quarter of the
 /// step, from x, tells what a fine one gives: intervals are made anew to reach over that, and
-/// further where first order did not foretell half of it. r, J, step: of the logs of the fit, as
-/// above; u: after AllowForStep.
+/// further (over twice its move, and by ReachFurther) where first order did not foretell half of
+/// it. r, J, step: of the logs of the fit, as above; u: after AllowForStep.
 void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
                     const std::vector<Problem::Matrix>& step, const FitOptions& options,
                     Uncertainty& u);
 /// All of these in one, from the train logs: what a fit.json states. r: residuals at x; the loss of
 /// the experiment may be robust. Derivatives are central differences: one-sided ones bend what the
-/// step is said to change.
+/// step is said to change. Once the user has asked to stop, nothing is known but the bounds.
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r,
                         const std::function<void(const std::string&)>& progress = {});

@@ -47,8 +47,9 @@ bool CheckVariance(const CheckedColumn& c, Findings& out) {
   if (!c.constant()) return true;
   const auto severity = c.input ? Severity::kInfo : Severity::kWarning;
   out.Add(severity, c.name, "no_variance",
-          fmt::format("no variance: every value is {}, so it tells nothing",
-                      Amount(c.value.empty() ? 0 : c.value.front(), c.unit)));
+          fmt::format("no variance: every value is {}, so it tells nothing{}",
+                      Amount(c.value.empty() ? 0 : c.value.front(), c.unit),
+                      c.input ? "" : " but that this does not move"));
   return false;
 }
 

@@ -185,6 +185,7 @@ double* Element::Address(std::string_view attribute, double& unit) const {
 
 double Element::Get(std::string_view attribute) const {
   if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return BodyMass();
+  if (element_->elemtype == mjOBJ_TENDON && attribute == "springlength") return RestLength();
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return 0;
   if (element_->elemtype == mjOBJ_ACTUATOR) {
     const mjsActuator& a = *mjs_asActuator(element_);
@@ -200,6 +201,10 @@ double Element::Get(std::string_view attribute) const {
 
 void Element::Set(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return SetBodyMass(value);
+  if (element_->elemtype == mjOBJ_TENDON && attribute == "springlength") {
+    for (double& end : mjs_asTendon(element_)->springlength) end = value;
+    return;
+  }
   if (element_->elemtype == mjOBJ_ACTUATOR) {
     if (attribute == "lag") return SetLag(value);
     if (attribute == "delay") return SetDelay(value);
@@ -254,6 +259,13 @@ void Element::Scale(std::string_view attribute, double factor) {
     return;
   }
   Set(attribute, Get(attribute) * factor);
+}
+
+// Where nothing is written (-1), MuJoCo takes the length at qpos0.
+double Element::RestLength() const {
+  const double written = mjs_asTendon(element_)->springlength[0];
+  const int id = mj_name2id(compiled_, mjOBJ_TENDON, Name().c_str());
+  return written >= 0 || id < 0 ? written : compiled_->tendon_lengthspring[2 * id];
 }
 
 // An actuator with fixed gain and at most affine bias, written with <general>.

@@ -15,6 +15,7 @@ namespace continuum {
 ///
 ///   body      mass (scales the inertia with it), point_mass (added at the body's origin)
 ///   body and site  force[i] (Add: a constant force in world axes, by an actuator of its own)
+///   tendon    springlength (without an index both ends of its range: the rest length)
 ///   actuator  kp, kv (gain and bias), force_scale (gain, bias and force range), input (what it
 ///             receives: Scale, Add), delay (Add: on top of the present one), lag (first-order,
 ///             filterexact; Add is refused where there is one)
@@ -54,6 +55,7 @@ class Element {
  private:
   double* Address(std::string_view attribute, double& unit) const;
   double BodyMass() const;
+  double RestLength() const;
   void FreezeInertia();
   void SetBodyMass(double mass);
   void AddPointMass(double mass);

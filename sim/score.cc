@@ -43,7 +43,8 @@ Moments MomentsOf(const std::vector<double>& values) {
   for (const double v : values) {
     if (!std::isnan(v)) squares += (v - mean) * (v - mean);
   }
-  return {mean, n ? std::sqrt(squares / static_cast<double>(n)) : 0};
+  const double std = n ? std::sqrt(squares / static_cast<double>(n)) : 0;
+  return {mean, std > 1e-12 * std::abs(mean) ? std : 0};  // else rounding of equal values
 }
 
 // Of the measured train rows of a channel.
@@ -124,9 +125,7 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
       if (!(std::abs(error) <= std::abs(s.largest))) s.largest = error, s.when = log.time[row];
     }
     const double n = static_cast<double>(std::max<std::size_t>(s.rows, 1));
-    const Moments measured = MomentsOf(log.measured[c]);
-    const bool constant = measured.std <= 1e-12 * std::abs(measured.mean);  // but for rounding
-    const double std = constant ? 0 : measured.std / channel.factor;
+    const double std = MomentsOf(log.measured[c]).std / channel.factor;
     s.rmse = std::sqrt(squares / n);
     s.mae = absolute / n;
     s.nrmse = std > 0 ? s.rmse / std : 0;

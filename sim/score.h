@@ -23,7 +23,7 @@ struct ChannelScore {
   std::size_t rows = 0;  ///< compared
   double rmse = 0;       ///< [unit]
   double mae = 0;        ///< mean absolute error [unit]
-  double nrmse = 0;      ///< rmse over the standard deviation of the measured values
+  double nrmse = 0;      ///< rmse over the standard deviation of the measured values; constant: 0
   double fit = 0;        ///< 100 (1 − |error| / |measured − mean|) [%]
   double largest = 0;    ///< largest deviation [unit], signed
   double when = 0;       ///< its time [s]

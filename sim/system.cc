@@ -258,6 +258,14 @@ double System::Value(const std::string& target, const std::string& attribute) co
   return MatchElements(spec_.get(), compiled_.get(), target, target).front().Get(attribute);
 }
 
+std::vector<std::string> System::Named(const std::string& target) const {
+  if (IsWorld(target) || target.starts_with(kPluginTarget)) return {target};
+  std::vector<std::string> names;
+  for (const Element& e : MatchElements(spec_.get(), compiled_.get(), target, target))
+    names.push_back(e.Who());
+  return names;
+}
+
 double System::ValueAfter(std::span<const Change> changes, const std::string& target,
                           const std::string& attribute) const {
   if (!target.starts_with(kPluginTarget) && !IsNativeEffect({target, attribute})) {

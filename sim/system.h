@@ -51,6 +51,9 @@ class System {
   /// The value after changes.
   double ValueAfter(std::span<const Change> changes, const std::string& target,
                     const std::string& attribute) const;
+  /// Names of the elements that a target names ("option" and "plugin:NAME" are their own), in the
+  /// order of the model. Throws Error as Build does.
+  std::vector<std::string> Named(const std::string& target) const;
   /// MJCF of the specification with changes and plugin instances, as authored. folder: where the
   /// text is going to lie, so that it finds its meshes and textures; empty: beside the model.
   std::string Xml(std::span<const Change> changes = {}, std::span<const EffectInstance> added = {},

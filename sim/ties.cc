@@ -115,14 +115,20 @@ void Ties::Spread(const mjModel& m, const double* position, const double* veloci
   }
 }
 
+void Ties::Project(const double* force, double* free) const {
+  std::fill_n(free, dofs_.size(), 0.0);
+  for (std::size_t v = 0; v < column_.size(); ++v) {
+    if (column_[v] != kHeld) free[column_[v]] += entry_[v] * force[v];
+  }
+}
+
 void Ties::Accelerate(const mjModel& m, mjData& d) {
   const int free = static_cast<int>(dofs_.size());
   mj_fullM(&m, &d, inertia_.data());
   std::fill(reduced_.begin(), reduced_.end(), 0.0);
-  std::fill(force_.begin(), force_.end(), 0.0);
+  Project(d.qfrc_smooth, force_.data());
   for (int i = 0; i < m.nv; ++i) {
     if (column_[i] == kHeld) continue;
-    force_[column_[i]] += entry_[i] * d.qfrc_smooth[i];
     for (int j = 0; j < m.nv; ++j) {
       if (column_[j] == kHeld) continue;
       reduced_[column_[i] * free + column_[j]] += entry_[i] * entry_[j] * inertia_[i * m.nv + j];

@@ -26,12 +26,16 @@ class Ties {
   /// How many entries of qpos and qvel are free.
   std::size_t positions() const { return positions_.size(); }
   std::size_t velocities() const { return dofs_.size(); }
+  /// The free entries of qvel.
+  const std::vector<int>& dofs() const { return dofs_; }
 
   /// Of vectors as long as qpos or qvel to the free entries.
   void FreePositions(const double* all, double* free) const;
   void FreeVelocities(const double* all, double* free) const;
   /// Sets qpos and qvel from the free entries, by (1).
   void Spread(const mjModel& m, const double* position, const double* velocity, mjData& d) const;
+  /// Sᵀ f, of a force on every joint [qvel] the one on the free ones.
+  void Project(const double* force, double* free) const;
   /// Sets qacc by (2) where a forward pass without constraints has been made.
   void Accelerate(const mjModel& m, mjData& d);
 
@@ -47,9 +51,9 @@ class Ties {
 
   std::vector<Tie> tie_;        ///< [joint]
   std::vector<int> positions_;  ///< free entries of qpos
-  std::vector<int> dofs_;       ///< free entries of qvel
-  std::vector<int> column_;     ///< [dof] its entry's column in S, or kHeld
-  std::vector<double> entry_;   ///< [dof]
+  std::vector<int> dofs_;
+  std::vector<int> column_;    ///< [dof] its entry's column in S, or kHeld
+  std::vector<double> entry_;  ///< [dof]
   std::string obstacle_;
   std::vector<double> inertia_, reduced_, force_, rate_;  ///< M, Sᵀ M S, Sᵀ (τ − c), ẇ
 };

@@ -52,6 +52,18 @@ TEST_F(IdentifyPath, TellsOfGapsInALogFirst) {
   Identify({}, "log check: log: the clock has gaps after 1 of");
 }
 
+// A joint that does not move is a measurement too.
+TEST_F(IdentifyPath, NamesAChannelWithoutVarianceAndFitsBesideIt) {
+  files_.Write("log.csv", "t,u,q,z\n0,0.1,0,0.1\n0.1,0.1,0.01,0.1\n0.2,0.1,0.03,0.1\n");
+  Spoil("experiment.yaml", "sensor: angle}",
+        "sensor: angle}, {column: z, unit: mm, sensor: \"tip_pos[1]\"}");
+  const auto fit = Identify({}, "log check: log, column 'z': no variance: every value is 0.1 mm");
+  const auto& z = fit["error"]["logs"][0]["channels"][1];
+  EXPECT_EQ(z["channel"], "z");
+  EXPECT_TRUE(z["nrmse"].is_number() && z["fit_percent"].is_number());
+  EXPECT_TRUE(fit["error"]["train"].is_number());
+}
+
 TEST_F(IdentifyPath, IsRefusedWhereItCannotGo) {
   Spoil("model.xml", "damping=\"0.1\"", "damping=\"0.1\" frictionloss=\"0.001\"");
   ExpectRefused({"identify", "experiment.yaml", "--path", "smooth", "--out", "out"},
@@ -64,6 +76,8 @@ TEST_F(IdentifyPath, FromSeveralStartsSaysWhereEachEnds) {
   for (const auto& start : fit["starts"])
     EXPECT_GE(start["cost"].get<double>(), fit["cost"].get<double>());
   EXPECT_NE(fit["starts"][1]["parameters"]["b"], fit["starts"][2]["parameters"]["b"]);
+  const std::string report = testing::Scratch::Text(files_ / "out/report.html");
+  EXPECT_THAT(report, AllOf(HasSubstr("cost at its end"), HasSubstr("random 2")));
   ExpectRefused({"identify", "experiment.yaml", "--starts", "3", "--method", "pso", "--out", "no"},
                 {"--starts", "--method lm", "pso"});
 }

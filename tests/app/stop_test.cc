@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "bench.h"
 
 namespace continuum {
@@ -15,6 +17,15 @@ class Stop : public testing::AppBench {
   void SetUp() override {
     std::string text = "t,u,q\n";
     for (int k = 0; k < 20; ++k) text += std::to_string(k * 5e5) + ",0.1,0.1\n";
+    files_.Write("log.csv", text);
+  }
+  void WriteLongLog() const {
+    std::string text = "t,u,q\n";
+    for (int k = 0; k < 3000; ++k) {
+      const double t = 0.1 * k;
+      text += std::to_string(t) + "," + std::to_string(std::sin(t)) + "," +
+              std::to_string(0.02 * std::sin(1.7 * t)) + "\n";
+    }
     files_.Write("log.csv", text);
   }
   Finished Interrupt(std::vector<std::string> arguments, const std::string& after,
@@ -47,19 +58,27 @@ TEST_F(Stop, EndsAFilm) {
 }
 
 TEST_F(Stop, OfAFitLeavesTheBestSoFar) {
-  std::string text = "t,u,q\n";
-  for (int k = 0; k < 3000; ++k) {
-    const double t = 0.1 * k;
-    text += std::to_string(t) + "," + std::to_string(std::sin(t)) + "," +
-            std::to_string(0.02 * std::sin(1.7 * t)) + "\n";
-  }
-  files_.Write("log.csv", text);
+  WriteLongLog();
   const Finished f = Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"},
                                "iteration  0");
   EXPECT_EQ(f.signal, 0);
   EXPECT_EQ(f.exit_code, 1) << f.err;
   EXPECT_THAT(f.err, HasSubstr("interrupted"));
   EXPECT_THAT(Scratch::Text(files_ / "out/fit.json"), HasSubstr("\"parameters\""));
+}
+
+// The second generation of 20 is not waited for, nor are intervals: they are as wide as the bounds.
+TEST_F(Stop, OfASwarmIsHeardBetweenItsParticles) {
+  WriteLongLog();
+  Spoil("model.xml", "timestep=\"0.01\"", "timestep=\"0.002\"");
+  const Finished f = Interrupt(
+      {"identify", "experiment.yaml", "--path", "stepped", "--method", "pso", "--out", "out"},
+      "generation  0");
+  EXPECT_EQ(f.exit_code, 1) << f.err;
+  EXPECT_THAT(f.err, HasSubstr("interrupted"));
+  const auto fit = nlohmann::json::parse(Scratch::Text(files_ / "out/fit.json"));
+  EXPECT_LT(fit["evaluations"].get<int>(), 35);
+  EXPECT_EQ(fit["parameters"][0]["ci95"], nlohmann::json({0.01, 1.0}));
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ TEST_F(FitTest, ErrorsFollowTheUnitsOfTheirParameters) {
   EXPECT_NEAR(scaled.correlation(0, 1), plain.correlation(0, 1), 1e-6);
 }
 
-TEST_F(FitTest, StopsAtABoundAndGivesNoErrorThere) {
+TEST_F(FitTest, StopsAtABoundAndSaysHowFarFromItTheValueMayBe) {
   AddTrials({}, 2, 2e-4);
   const System system = Model({});
   const Experiment e = ReadExperiment(
@@ -162,8 +162,9 @@ TEST_F(FitTest, StopsAtABoundAndGivesNoErrorThere) {
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
   const auto u = UncertaintyOf(problem, fit.x, r, problem.Jacobian(fit.x, r, problem.AllLogs()));
   EXPECT_THAT(u.at_bound, ElementsAre(true, false));
-  EXPECT_TRUE(std::isnan(u.standard_error[0]));
-  EXPECT_GT(u.standard_error[1], 0);
+  for (Eigen::Index i = 0; i < 2; ++i) EXPECT_GT(u.standard_error[i], 0);
+  EXPECT_EQ(u.lower[0], 0.15);
+  EXPECT_GT(u.upper[0], 0.15 + 1.9 * u.standard_error[0]);
 }
 
 // Exact logs of a slider that is stuck at two rows of three: what the step of 2 ms does to the
@@ -235,10 +236,37 @@ TEST_F(FitTest, WithoutEffectAParameterMayBeAnythingThatItsBoundsAllow) {
   auto J = problem.Jacobian(x, r, problem.AllLogs());
   J[0].col(1).setZero();
   const Uncertainty u = UncertaintyOf(problem, x, r, J);
-  EXPECT_TRUE(std::isnan(u.standard_error[1]));
+  EXPECT_NEAR(u.standard_error[1], 0.95 / std::sqrt(12), 1e-12);
   EXPECT_EQ(u.lower[1], 0.05);
   EXPECT_EQ(u.upper[1], 1);
   EXPECT_GT(u.standard_error[0], 0);
+}
+
+TEST_F(FitTest, RefusesTwoParametersThatDoTheSameAndNamesBoth) {
+  AddTrials({}, 1);
+  const System system = Model({});
+  const auto with = [&](const std::string& first, const std::string& second) -> std::string {
+    const Experiment e =
+        ReadExperiment(fmt::format("parameters:\n  - {{name: one, {0}, lower: 0.1, upper: 9}}\n"
+                                   "  - {{name: two, {1}, lower: 0.1, upper: 9}}\n",
+                                   first, second));
+    try {
+      const Problem problem(e, system);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string scale = "target: 'joint:hinge', attribute: damping, operation: scale";
+  EXPECT_THAT(with(scale, "target: 'joint:h*', attribute: 'damping[0]', operation: scale"),
+              AllOf(HasSubstr("experiment.yaml:"), HasSubstr("'one'"), HasSubstr("'two'")));
+  const std::string mass = "initial: 1, attribute: mass, operation: scale, target: 'body:";
+  EXPECT_EQ(with(mass + "*'", mass + "tip'"), "accepted");
+  EXPECT_EQ(with("target: 'joint:hinge', attribute: damping", scale), "accepted");
+  EXPECT_EQ(with(scale + ", frozen: true", scale), "accepted");
+  EXPECT_THAT(with("initial: 1, target: 'sensor:angle', attribute: scale",
+                   "initial: 1, target: 'sensor:angle', attribute: scale, per: log"),
+              HasSubstr("the same: sensor:angle, scale"));
 }
 
 TEST_F(FitTest, NamesAParameterWithoutEffectBeforeItFits) {

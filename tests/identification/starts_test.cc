@@ -7,6 +7,8 @@
 #include "identification/extension.h"
 #include "identification/fit.h"
 #include "identification/path.h"
+#include "identification/start_hint.h"
+#include "identification/starts.h"
 #include "pendulum.h"
 #include "sim/replay.h"
 
@@ -71,6 +73,34 @@ TEST_F(StartsTest, WhereTheyBeginIsFarFromRestAndFromTheFirstRow) {
   const Problem::Vector x = Fitted(problem);
   const auto r = problem.Residuals(x, problem.AllLogs());
   EXPECT_GT(problem.PooledRms(r, problem.AllLogs()), 10 * kSigma);
+  EXPECT_THAT(StartHint(problem, x, problem.TrainLogs()), HasSubstr("'start: estimate' 9"));
+}
+
+TEST_F(StartsTest, NoHintIsGivenWhereTheFirstRowsAreRight) {
+  logs_ = "  - {file: long.csv, trial: a, use: train}\n";
+  const Experiment e = From("measured");
+  const Problem problem(e, Model());
+  EXPECT_EQ(StartHint(problem, Fitted(problem), problem.TrainLogs()), "");
+}
+
+// A wheel at half the speed: its start is that of the arm, and not one more parameter.
+TEST_F(StartsTest, OfTiedJointsAreThoseOfTheOthers) {
+  std::string xml = Pendulum().Xml("", 5e-4);
+  xml.insert(xml.find("<worldbody>") + 11,
+             "<body><joint name='wheel'/>"
+             "<inertial pos='0 0 0' mass='1' diaginertia='1e-4 1e-4 1e-4'/></body>");
+  xml.insert(
+      xml.find("<actuator>"),
+      "<equality><joint joint1='wheel' joint2='hinge' polycoef='0.2 0.5 0 0 0'/></equality>");
+  const System system = System::Load(Write("tied.xml", xml));
+  const Experiment e = From("estimate");
+  const Problem problem(e, system);
+  ASSERT_EQ(problem.parameters().size(), 2 + 2 * e.logs.size());
+  Machine machine = system.Build();
+  InitialState state{{0, 0.4}, {0, 1}};
+  PutTied(machine, state);
+  EXPECT_THAT(state.qpos, ::testing::ElementsAre(::testing::DoubleEq(0.4), 0.4));
+  EXPECT_THAT(state.qvel, ::testing::ElementsAre(0.5, 1));
 }
 
 TEST_F(StartsTest, AHeldOutLogMovesNothingButItsOwnStart) {

@@ -30,12 +30,15 @@ class UncertaintyTest : public testing::Bench {
     Bench::SetUp();
     AddLog("log", "use: train", testing::Command(0, 10), std::vector<double>(10));
     const System system = System::Load(Write("model.xml", testing::Pendulum{}.Xml("", 1e-3)));
-    problem_.emplace(
-        ReadExperiment(
-            "parameters:\n"
-            "  - {name: b, target: 'joint:hinge', attribute: damping, lower: -9, upper: 9}\n"
-            "  - {name: k, target: 'joint:hinge', attribute: stiffness, lower: -9, upper: 9}\n"),
-        system);
+    problem_.emplace(ReadExperiment(Bounds(-9)), system);
+    bounded_.emplace(ReadExperiment(Bounds(0)), system);
+  }
+  static std::string Bounds(double least_damping) {
+    return fmt::format(
+        "parameters:\n"
+        "  - {{name: b, target: 'joint:hinge', attribute: damping, lower: {}, upper: 9}}\n"
+        "  - {{name: k, target: 'joint:hinge', attribute: stiffness, lower: -9, upper: 9}}\n",
+        least_damping);
   }
   // Noise of size 1 that keeps so much of itself from row to row.
   Vector Noise(double rho) {
@@ -61,7 +64,7 @@ class UncertaintyTest : public testing::Bench {
   }
 
   Matrix J_;
-  std::optional<Problem> problem_;
+  std::optional<Problem> problem_, bounded_;  // the first parameter from 0 on
   std::mt19937 random_{5};
 };
 
@@ -73,6 +76,30 @@ TEST_F(UncertaintyTest, NinetyFiveOfHundredIntervalsHoldUnderNoiseThatLasts) {
   for (const double rho : {0.0, 0.5, 0.9}) {
     EXPECT_GE(Covered(rho, plain), 0.93) << rho;
     EXPECT_LE(Covered(rho, plain), 0.97) << rho;
+  }
+}
+
+// Columns that look alike: what holds one at its bound moves the other.
+TEST_F(UncertaintyTest, IntervalsHoldTooWhereAValueNextToItsBoundIsNotSeen) {
+  J_.col(1) += 2 * J_.col(0);
+  const Matrix H = J_.transpose() * J_;
+  const double error = std::sqrt(H.inverse()(0, 0));
+  for (const double inside : {0.0, 0.5, 1.0, 2.0}) {
+    const Vector truth{{inside * error, 0.0}};
+    int at_bound = 0;
+    Vector held = Vector::Zero(2);
+    for (int draw = 0; draw < 300; ++draw) {
+      const Vector y = J_ * truth + Noise(0);
+      Vector x = H.ldlt().solve(J_.transpose() * y);
+      if (x[0] < 0) x << 0, J_.col(1).dot(y) / H(1, 1);
+      const Uncertainty u = UncertaintyFrom(*bounded_, x, {{y - J_ * x, J_, Vector::Ones(kRows)}});
+      at_bound += u.at_bound[0];
+      EXPECT_TRUE(!u.at_bound[0] || (u.lower[0] == 0 && u.upper[0] > error)) << u.upper[0];
+      for (Eigen::Index i = 0; i < 2; ++i)
+        held[i] += u.lower[i] <= truth[i] && truth[i] <= u.upper[i];
+    }
+    EXPECT_TRUE(inside > 1 || at_bound > 30) << at_bound;
+    EXPECT_GE(held.minCoeff(), 0.93 * 300) << inside << ": " << held.transpose();
   }
 }
 
@@ -91,6 +118,7 @@ TEST_F(UncertaintyTest, AsManyRowsAsParametersTellNothing) {
   const Uncertainty u = Of(Vector::Zero(2), {{Vector::Zero(2), J_.topRows(2), Vector::Ones(2)}});
   EXPECT_EQ(u.lower, Vector::Constant(2, -9));
   EXPECT_EQ(u.upper, Vector::Constant(2, 9));
+  EXPECT_NEAR(u.standard_error[0], 18 / std::sqrt(12), 1e-12);
 }
 
 }  // namespace

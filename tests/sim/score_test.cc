@@ -60,6 +60,18 @@ TEST(Score, StaysFiniteForAConstantChannel) {
   EXPECT_TRUE(std::isfinite(score[0].nrmse) && std::isfinite(score[0].fit));
 }
 
+// The sum of 0.1 over such rows is no multiple of it: rounding must not pass for the channel's
+// size.
+TEST(Score, PoolsAConstantChannelInItsOwnUnitBesideOthers) {
+  Experiment e;
+  AddOutput(e, {"x"}, "rad", 1);
+  AddOutput(e, {"y"}, "mm", 1e-3);
+  e.logs = {Rows({{1, 2, 1, 2, 1, 2, 1}, std::vector<double>(7, 0.1)})};
+  const Pool pool(e);
+  EXPECT_EQ(pool.unit(), "std");
+  EXPECT_EQ(pool.scale(1), 1e-3);
+}
+
 // Rows of a simulation that has diverged are no rows without a measurement.
 TEST(Score, IsInfiniteWhereTheSimulationGivesNoNumber) {
   Experiment e;

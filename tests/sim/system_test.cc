@@ -121,6 +121,21 @@ TEST_F(Changed, NothingIsNoDelayAndNoLagEvenWhereTheModelHasOne) {
 }
 
 // Else it would be a step late, however short, and no fit could start from none.
+TEST_F(Changed, TheRestLengthOfATendonIsBothEndsOfItsRange) {
+  std::string xml = kArm;
+  xml.insert(xml.find("<body name=\"arm\">"), "<site name=\"wall\" pos=\"0 0 0.4\"/>");
+  xml.insert(xml.find("<body name=\"ball\""), "<site name=\"hook\" pos=\"0.3 0 0\"/>");
+  xml.insert(xml.find("  <actuator>"),
+             "<tendon><spatial name=\"rope\" stiffness=\"9\"><site site=\"wall\"/>"
+             "<site site=\"hook\"/></spatial></tendon>");
+  const System arm = Arm(xml);
+  EXPECT_NEAR(arm.Value("tendon:rope", "springlength"), 0.5, 1e-12);  // as long as at qpos0
+  const std::vector<Change> shorter{{"tendon:rope", "springlength", 0.8, Operation::kScale}};
+  const Machine machine = arm.Build(shorter);
+  EXPECT_NEAR(machine.model->tendon_lengthspring[0], 0.4, 1e-12);
+  EXPECT_NEAR(machine.model->tendon_lengthspring[1], 0.4, 1e-12);
+}
+
 TEST_F(Changed, AShortLagIsNearlyNone) {
   const System arm = Arm();
   for (const double lag : {0.0, 1e-9}) {

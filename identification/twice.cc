@@ -1,0 +1,40 @@
+#include "identification/twice.h"
+
+#include <string>
+
+#include "error.h"
+#include "sim/measurement.h"
+
+namespace continuum {
+namespace {
+
+std::vector<std::string> Reached(const Parameter& p, const System& system) {
+  return IsMeasurement(p.target, p.attribute) ? std::vector{p.target} : system.Named(p.target);
+}
+
+// "gear[0]" and "gear" are one.
+std::string First(const std::string& attribute) {
+  return attribute.ends_with("[0]") ? attribute.substr(0, attribute.size() - 3) : attribute;
+}
+
+bool DoTheSame(const Parameter& a, const Parameter& b, const System& system) {
+  return !a.frozen && !b.frozen && a.operation == b.operation &&
+         First(a.attribute) == First(b.attribute) && Reached(a, system) == Reached(b, system);
+}
+
+}  // namespace
+
+void RefuseTwice(const std::vector<Parameter>& parameters, const System& system) {
+  for (std::size_t b = 0; b < parameters.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const Parameter &one = parameters[a], &two = parameters[b];
+      if (!DoTheSame(one, two, system)) continue;
+      throw Error::Input(two.where + ": parameter '" + two.name + "'",
+                         "another target, attribute or operation than that of '" + one.name +
+                             "' (" + one.where + ")",
+                         "the same: " + two.target + ", " + two.attribute);
+    }
+  }
+}
+
+}  // namespace continuum

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/experiment.h"
+#include "sim/system.h"
+
+namespace continuum {
+
+/// Throws Error, naming both, when two free parameters do the same to the same attribute of the
+/// same elements: only their product, their sum or the later one would count. One of all joints and
+/// one of a single joint may stand together; so may different operations.
+void RefuseTwice(const std::vector<Parameter>& parameters, const System& system);
+
+}  // namespace continuum
