@@ -48,7 +48,7 @@ class Session {
       LookBeyondTheList(round);
       auto pair = MayBeTwo(round) ? FindPair(trials_, round, excused_, d_.noise, d_.sizes, options_)
                                   : std::nullopt;
-      d_.noise_limited = pair || round.BestLeaves() < Round::kModelLimited;
+      d_.noise_limited = pair || beyond_ || round.BestLeaves() < Round::kModelLimited;
       if (pair) {
         JudgePair(*pair);
       } else {
