@@ -189,7 +189,8 @@ void PrintCheck(const Options& o, const Experiment& e) {
                             : fmt::format("{}", fmt::join(g.logs, ", "));
     for (const std::string& channel : g.channels)
       where += channel.empty() ? "" : ", column '" + channel + "'";
-    std::fprintf(stderr, "log check: %s: %s\n", where.c_str(), g.text.c_str());
+    if (!where.empty()) where += ": ";
+    std::fprintf(stderr, "log check: %s%s\n", where.c_str(), g.text.c_str());
   }
   if (more > 0)
     std::fprintf(stderr, "log check: %zu more warnings: continuum check %s\n", more,

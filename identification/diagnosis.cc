@@ -157,7 +157,8 @@ class Session {
     beyond.Fit(&round);
     const bool unexplained = d_.verdict.text == "unexplained";
     const CandidateResult* const best = beyond.leading();
-    beyond_ = unexplained && best && beyond.LackOf(*best).smallest() >= LikelihoodRules{}.lack;
+    const bool judged = best && best->fitted.complete;  // else plainly behind
+    beyond_ = unexplained && judged && beyond.LackOf(*best).smallest() >= LikelihoodRules{}.lack;
     const std::string name = beyond_ ? best->hypothesis.NameAtPlace() : "";
     round.JoinUnlisted(std::move(beyond));
     Decide(round);

@@ -208,7 +208,11 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const Vector all = whitening.Stack(r, use);
-  if (!all.allFinite()) throw Error::Job("the simulation diverges at the start of the fit");
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l] || r[l].allFinite()) continue;
+    throw Error::Job("the simulation of " + problem.experiment().logs[l].label +
+                     " diverges at the start of the fit");
+  }
   if (x.size() == 0) {
     fit.cost = 0.5 * all.squaredNorm();
     fit.converged = true;

@@ -46,9 +46,13 @@ Problem::Problem(const Experiment& experiment, const System& system, std::vector
     : experiment_(&experiment), setup_(experiment), terms_(std::move(terms)) {
   setup_.logs.clear();
   memory_.resize(experiment.logs.size());
+  const auto is_geom = [](const auto& change) { return change.target.starts_with("geom:"); };
+  bool geoms = std::any_of(experiment.parameters.begin(), experiment.parameters.end(), is_geom);
+  for (const Log& log : experiment.logs)
+    geoms = geoms || std::any_of(log.set.begin(), log.set.end(), is_geom);
   for (std::size_t t = 0; t < ThreadCount(); ++t) {
     systems_.push_back(system);
-    systems_.back().DropVisuals();
+    if (!geoms) systems_.back().DropVisuals();
   }
   for (const Parameter& p : experiment.parameters) Expand(p);
   RefuseTwice(experiment.parameters, system);

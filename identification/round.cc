@@ -280,7 +280,8 @@ Problem::Vector Round::BestOf(const Problem& problem,
 }
 
 // By what the time step leaves open: a fit that imitates it has less to spare than the others.
-double Round::TakenOff(const Fitted& f) { return 2 * f.fit.cost - f.cost; }
+// Nothing where the step of zero fits worse.
+double Round::TakenOff(const Fitted& f) { return std::max(0.0, 2 * f.fit.cost - f.cost); }
 
 // Sensitivities are dear: only those get theirs that may come near the best with them. What the
 // time step leaves open takes about as much off everybody's cost. best: the least cost that is
@@ -444,7 +445,7 @@ std::vector<LikelihoodRecord> Round::Records() const {
                             c.hypothesis.extra.size(),
                             c.likelihood,
                             {},
-                            std::max(0.0, TakenOff(c.fitted)) / inflation_,
+                            TakenOff(c.fitted) / inflation_,
                             c.listed};
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(trials_, c, candidates[a])) record.contains.push_back(a);

@@ -226,7 +226,20 @@ class System::Edits {
   std::vector<Element::Saved> elements_;
 };
 
-void System::DropVisuals() { spec_->compiler.discardvisual = 1; }
+// Bodies may get their inertia from visual geoms: then these stay.
+void System::DropVisuals() {
+  for (mjsElement* e = mjs_firstElement(spec_.get(), mjOBJ_GEOM); e;
+       e = mjs_nextElement(spec_.get(), e)) {
+    const mjsGeom& geom = *mjs_asGeom(e);
+    const mjsBody* const body = mjs_getParent(e);
+    if (body == mjs_findBody(spec_.get(), "world")) continue;
+    const bool inferred =
+        spec_->compiler.inertiafromgeom == mjINERTIAFROMGEOM_TRUE || !body->explicitinertial;
+    const bool weighs = std::isnan(geom.mass) ? geom.density > 0 : geom.mass > 0;
+    if (!geom.contype && !geom.conaffinity && inferred && weighs) return;
+  }
+  spec_->compiler.discardvisual = 1;
+}
 
 System::System(const System& other) : System(Parse(other.Xml(), other.folder_, other.name_)) {}
 

@@ -136,6 +136,22 @@ TEST_F(Changed, TheRestLengthOfATendonIsBothEndsOfItsRange) {
   EXPECT_NEAR(machine.model->tendon_lengthspring[1], 0.4, 1e-12);
 }
 
+// A model that is drawn as it weighs: its only geom does not collide.
+TEST_F(Changed, ABodyKeepsTheInertiaOfAGeomThatIsOnlySeen) {
+  std::string xml = kArm;
+  const std::string solid = "<geom size=\"0.05\" mass=\"1\"/>";
+  xml.replace(xml.find(solid), solid.size(),
+              "<joint name='spin'/><geom name='seen' size='0.05' mass='1' contype='0' "
+              "conaffinity='0'/>");
+  System arm = Arm(xml);
+  arm.DropVisuals();
+  EXPECT_NEAR(Mass(arm.Build({{{"body:ball", "mass", 3}}}), "ball"), 3, 1e-12);
+  const System copy = arm;  // after a model was compiled
+  EXPECT_NEAR(Mass(copy.Build(), "ball"), 1, 1e-12);
+  EXPECT_NEAR(Inertia(*copy.Build().model, "ball")[0], 0.4 * 0.05 * 0.05, 1e-12);
+  EXPECT_THAT(copy.Named("geom:seen"), ::testing::ElementsAre(HasSubstr("seen")));
+}
+
 TEST_F(Changed, AShortLagIsNearlyNone) {
   const System arm = Arm();
   for (const double lag : {0.0, 1e-9}) {
