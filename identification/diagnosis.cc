@@ -129,7 +129,7 @@ class Session {
   // By likelihoods, which are calibrated where noise is all that the best model leaves.
   void Judge(Round& round) {
     options_.Say("what is left");
-    const CandidateResult* const best = round.leading_listed();
+    const CandidateResult* const best = round.leading();
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
     excused_ = d_.lack.smallest() < LikelihoodRules{}.lack &&
                trials_.WithinStep(best ? best->fitted : d_.before) &&
@@ -160,25 +160,18 @@ class Session {
     const bool judged = best && best->fitted.complete;  // else plainly behind
     beyond_ = unexplained && judged && beyond.LackOf(*best).smallest() >= LikelihoodRules{}.lack;
     const std::string name = beyond_ ? best->hypothesis.NameAtPlace() : "";
+    const std::size_t listed = round.candidates.size();
     round.JoinUnlisted(std::move(beyond));
     Decide(round);
     if (beyond_) d_.verdict.reason += fmt::format("; {}, which is not listed, is enough", name);
     beyond_ = beyond_ || (!unexplained && d_.verdict.text == "unexplained");
-    SetUnlistedApart(round.candidates);
-  }
-
-  // Only what was asked for is a candidate; of the others those stay that the verdict tells of.
-  void SetUnlistedApart(std::vector<CandidateResult>& all) {
-    std::vector<CandidateResult> listed;
-    std::vector<std::size_t> place(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      place[i] = listed.size();
-      if (all[i].listed) listed.push_back(std::move(all[i]));
+    // Only what was asked for is a candidate; of the others those stay that the verdict tells of.
+    for (std::size_t& i : d_.verdict.unlisted) {
+      d_.unlisted.push_back(std::move(round.candidates[i]));
+      i = d_.unlisted.size() - 1;
     }
-    for (const std::size_t i : d_.verdict.unlisted) d_.unlisted.push_back(std::move(all[i]));
-    for (std::size_t& i : d_.verdict.named) i = place[i];
-    for (std::size_t k = 0; k < d_.verdict.unlisted.size(); ++k) d_.verdict.unlisted[k] = k;
-    all = std::move(listed);
+    round.candidates.erase(round.candidates.begin() + static_cast<std::ptrdiff_t>(listed),
+                           round.candidates.end());
   }
 
   // Whether a fit takes more off the error than the time step may have put there.

@@ -372,8 +372,8 @@ std::string Ranking(const Experiment& e, const Diagnosis& d) {
   if (d.candidates.empty()) text += " no candidate was fitted";
   for (std::size_t i = 0; i < std::min(kShown, d.candidates.size()); ++i) {
     const CandidateResult& c = d.candidates[i];
-    text += fmt::format("{} {} {:.0f} %{}", i ? "," : "", c.hypothesis.NameAtPlace(),
-                        100 * Share(d, c), c.listed ? "" : " (not listed)");
+    text +=
+        fmt::format("{} {} {:.0f} %", i ? "," : "", c.hypothesis.NameAtPlace(), 100 * Share(d, c));
   }
   if (d.candidates.size() > kShown) text += fmt::format(" … ({} in all)", d.candidates.size());
   text += "\n";

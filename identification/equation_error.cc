@@ -8,17 +8,6 @@ namespace continuum {
 namespace {
 
 using Vector = Problem::Vector;
-using Matrix = Problem::Matrix;
-
-// Orthonormal columns that span the given ones.
-Matrix BasisOf(const std::vector<Vector>& columns, Eigen::Index rows) {
-  if (columns.empty()) return Matrix(rows, 0);
-  Matrix A(rows, static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) A.col(static_cast<Eigen::Index>(k)) = columns[k];
-  Eigen::ColPivHouseholderQR<Matrix> qr(A);
-  qr.setThreshold(1e-9);
-  return qr.householderQ() * Matrix::Identity(rows, qr.rank());
-}
 
 }  // namespace
 
@@ -29,16 +18,17 @@ EquationErrors::EquationErrors(const Experiment& experiment, const System& syste
   const auto joints = MissingForces(problem, x_, problem.TrainLogs());
   if (joints.empty()) return;
   SetUnits(joints);
-  missing_ = Stacked(problem, x_);
-  std::vector<Vector> columns;
-  for (std::size_t k = 0; k < problem.parameters().size(); ++k) {
+  missing_ = Stacked(joints);
+  const auto count = static_cast<Eigen::Index>(problem.parameters().size());
+  Problem::Matrix columns = Problem::Matrix::Zero(missing_.size(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
     if (problem.parameters()[k].IsStart()) continue;
     Vector moved = x_;
-    moved[static_cast<Eigen::Index>(k)] += problem.StepOf(x_, k, 1e-3);
+    moved[k] += problem.StepOf(x_, k, 1e-3);
     const Vector column = Stacked(problem, moved) - missing_;
-    if (column.norm() > 1e-12) columns.push_back(column.normalized());
+    if (column.norm() > 1e-12) columns.col(k) = column;
   }
-  basis_ = BasisOf(columns, missing_.size());
+  basis_ = Basis(columns);
   force_ = missing_ - basis_ * (basis_.transpose() * missing_);
 }
 
@@ -54,7 +44,10 @@ void EquationErrors::SetUnits(const std::vector<MissingForce>& joints) {
 }
 
 Vector EquationErrors::Stacked(const Problem& problem, const Vector& x) const {
-  const auto joints = MissingForces(problem, x, problem.TrainLogs());
+  return Stacked(MissingForces(problem, x, problem.TrainLogs()));
+}
+
+Vector EquationErrors::Stacked(const std::vector<MissingForce>& joints) const {
   Vector all(static_cast<Eigen::Index>(log_.size()));
   Eigen::Index at = 0;
   for (std::size_t j = 0; j < joints.size(); ++j) {

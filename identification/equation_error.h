@@ -30,6 +30,7 @@ class EquationErrors {
  private:
   void SetUnits(const std::vector<MissingForce>& joints);
   std::vector<double> PerLog(const Problem::Vector& r) const;
+  Problem::Vector Stacked(const std::vector<MissingForce>& joints) const;
   Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x) const;
 
   const Experiment& experiment_;

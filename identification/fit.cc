@@ -190,6 +190,15 @@ void RequireEffect(const Problem& problem, const Vector& x, const std::vector<Ma
 
 }  // namespace
 
+void RequireFinite(const Problem& problem, const std::vector<Vector>& r,
+                   const std::vector<bool>& use, const std::string& when) {
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l] || r[l].allFinite()) continue;
+    throw Error::Job("the simulation of " + problem.experiment().logs[l].label + " diverges " +
+                     when);
+  }
+}
+
 Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<bool>& use,
                   const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
@@ -208,11 +217,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const Vector all = whitening.Stack(r, use);
-  for (std::size_t l = 0; l < use.size(); ++l) {
-    if (!use[l] || r[l].allFinite()) continue;
-    throw Error::Job("the simulation of " + problem.experiment().logs[l].label +
-                     " diverges at the start of the fit");
-  }
+  RequireFinite(problem, r, use, "at the start of the fit");
   if (x.size() == 0) {
     fit.cost = 0.5 * all.squaredNorm();
     fit.converged = true;

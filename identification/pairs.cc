@@ -63,8 +63,8 @@ class Search {
   std::optional<Pair> Run() {
     std::set<std::string> effects;
     for (const CandidateResult& c : single_.candidates) {
-      const bool judged = c.listed && c.fitted.complete;
-      if (judged && effects.size() < 2 && effects.insert(c.hypothesis.effect).second) Await(c);
+      if (c.fitted.complete && effects.size() < 2 && effects.insert(c.hypothesis.effect).second)
+        Await(c);
     }
     while (!waiting_.empty() && tried_.size() < kBases) {
       const CandidateResult* const base = waiting_.front();

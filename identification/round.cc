@@ -186,8 +186,6 @@ void Round::JoinUnlisted(Round other) {
     c.likelihood = Likelihood(c.fitted);  // in this round's unit of noise
     candidates.push_back(std::move(c));
   }
-  Sort();
-  TellApart();
 }
 
 // Where no fit comes near the noise and what the time step adds, those that were given up as too
@@ -210,7 +208,7 @@ void Round::SecondChances() {
     options_.Say("fit to the end " + c.hypothesis.Name());
     ++tried;
     try {
-      FitOne(c, std::numeric_limits<double>::infinity());
+      FitOne(c, kInfinity);
       best = std::min(best, c.fitted.error.train);
     } catch (const Error&) {
       continue;  // the fit that was given up stands
@@ -251,7 +249,7 @@ void Round::GoOn(const Problem& problem, CandidateResult& c, double rival) const
 }
 
 CandidateResult Round::FitAlone(CandidateResult c) const {
-  FitOne(c, std::numeric_limits<double>::infinity());
+  FitOne(c, kInfinity);
   const Problem problem = c.ProblemOf(*trials_.experiment);
   trials_.Complete(problem, c.fitted);
   if (const std::string flaw = FlawOf(problem, c.fitted); !flaw.empty()) throw Error::Job(flaw);
@@ -265,7 +263,7 @@ Problem::Vector Round::BestOf(const Problem& problem,
   FitOptions options{4, 1e-3};
   options.idle = true;
   if (trials_.whitening.active()) options.whitening = &trials_.whitening;
-  double best_cost = std::numeric_limits<double>::infinity();
+  double best_cost = kInfinity;
   Problem::Vector best;
   for (const auto& start : starts) {
     try {
@@ -374,10 +372,6 @@ void Round::Dismiss() {
   for (const auto* all : {&candidates, &left_behind}) {
     for (const CandidateResult& c : *all) smallest_p_ = std::min(smallest_p_, c.p);
   }
-  Sort();
-}
-
-void Round::Sort() {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.likelihood > b.likelihood; });
 }
@@ -397,12 +391,6 @@ void Round::TellApart() {
 
 const CandidateResult* Round::leading() const {
   return candidates.empty() || !candidates.front().fits ? nullptr : &candidates.front();
-}
-
-const CandidateResult* Round::leading_listed() const {
-  const auto at = std::find_if(candidates.begin(), candidates.end(),
-                               [](const CandidateResult& c) { return c.listed && c.fits; });
-  return at == candidates.end() ? nullptr : &*at;
 }
 
 double Round::BestLeaves() const {

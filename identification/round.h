@@ -29,7 +29,8 @@ class Round {
   /// is left is plainly not noise; then best first, the others left behind. beside: a round from
   /// the same base that has been fitted, whose best they have to come near.
   void Fit(const Round* beside = nullptr);
-  /// Takes the fitted candidates of a round from the same base as well, as not listed.
+  /// Takes the fitted candidates of a round from the same base as well: behind its own, as not
+  /// listed.
   void JoinUnlisted(Round other);
 
   /// A candidate that was left behind or not fitted to the end, with a complete fit. Throws Error
@@ -40,8 +41,6 @@ class Round {
   double BestLeaves() const;
   /// The best model of this round: the leading candidate, or null for the base.
   const CandidateResult* leading() const;
-  /// The best of those that were asked for, or null.
-  const CandidateResult* leading_listed() const;
   LackOfFit LackOf(const CandidateResult& candidate) const;
   LackOfFit LackOfBase() const;
   /// Whether what a fit leaves falls with the time step, at a quarter of it, as what the step adds.
@@ -77,7 +76,6 @@ class Round {
   static bool RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x);
   std::string FlawOf(const Problem& problem, const Fitted& fitted) const;
   void Dismiss();
-  void Sort();
   void TellApart();
 
   const Trials& trials_;

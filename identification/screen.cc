@@ -31,19 +31,6 @@ double Spread(const Matrix& S) {
   return std::clamp(kOfDeviation * S.col(2).norm() / effect, kLeast, kMost);
 }
 
-// Orthonormal columns that span A, directions below 1e-9 of the largest left out.
-Matrix Basis(const Matrix& A) {
-  if (A.cols() == 0) return Matrix(A.rows(), 0);
-  Matrix scaled = A;
-  for (Eigen::Index i = 0; i < A.cols(); ++i) {
-    const double norm = A.col(i).norm();
-    if (norm > 0) scaled.col(i) /= norm;
-  }
-  Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
-  qr.setThreshold(1e-9);
-  return qr.householderQ() * Matrix::Identity(A.rows(), qr.rank());
-}
-
 // Takes columns that r wants more of than they can be, one after the other, out of A's last ones
 // and as much as they can be out of r.
 void Limit(Matrix& A, Vector& r, Eigen::Index free, std::vector<double> most) {
@@ -131,6 +118,18 @@ struct Small {
 };
 
 }  // namespace
+
+Matrix Basis(const Matrix& A) {
+  if (A.cols() == 0) return Matrix(A.rows(), 0);
+  Matrix scaled = A;
+  for (Eigen::Index i = 0; i < A.cols(); ++i) {
+    const double norm = A.col(i).norm();
+    if (norm > 0) scaled.col(i) /= norm;
+  }
+  Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
+  qr.setThreshold(1e-9);
+  return qr.householderQ() * Matrix::Identity(A.rows(), qr.rank());
+}
 
 Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
                      const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,

@@ -45,6 +45,9 @@ class Remainder {
   double roughness_ = 0;
 };
 
+/// Orthonormal columns that span A's, directions below 1e-9 of the largest left out.
+Eigen::MatrixXd Basis(const Eigen::MatrixXd& A);
+
 /// Directions in which one candidate could move the residuals.
 struct Probe {
   Eigen::MatrixXd columns;   ///< projected, per unit of the coefficients

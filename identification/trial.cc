@@ -214,11 +214,7 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) co
   f.fit = FitParameters(problem, start, train, options);
   f.fit.x = FitStarts(problem, f.fit.x, validate);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
-  for (std::size_t l = 0; l < train.size(); ++l) {
-    if (f.residuals[l].allFinite()) continue;
-    throw Error::Job("the simulation of " + experiment->logs[l].label +
-                     " diverges with the fitted parameters");
-  }
+  RequireFinite(problem, f.residuals, problem.AllLogs(), "with the fitted parameters");
   f.error = {problem.PooledRms(f.residuals, train), problem.PooledRms(f.residuals, validate)};
   f.cost = 2 * f.fit.cost;
   return f;
