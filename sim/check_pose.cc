@@ -10,6 +10,7 @@
 
 #include "sim/check_model.h"
 #include "sim/check_series.h"
+#include "sim/measurement.h"
 
 namespace continuum {
 namespace {
@@ -105,9 +106,7 @@ class Poses {
 
  private:
   double Measured(const Place& p, std::size_t row) const {
-    const auto& channel = e_.channels[p.channel];
-    const Measurement& how = e_.outputs[channel.output].measurement;
-    return (log_.measured[p.channel][row] - channel.factor * how.bias) / how.scale;
+    return SignalOf(e_, p.channel, log_.measured[p.channel][row]);
   }
   VectorXd Look() {
     mj_fwdPosition(&m_, &d_);

@@ -11,6 +11,7 @@
 #include "sim/file.h"
 #include "sim/measured_points.h"
 #include "sim/mujoco.h"
+#include "sim/round_number.h"
 #include "sim/video.h"
 
 namespace continuum {
@@ -93,16 +94,6 @@ std::vector<std::optional<double>> TensionsOf(const mjModel& m, const mjData& d)
     tensions[t] = tensions[t].value_or(0) - m.actuator_gear[6 * a] * d.actuator_force[a];
   }
   return tensions;
-}
-
-// The next of 1, 2, 5 times a power of ten.
-double RoundUp(double x) {
-  if (!(x > 0)) return 0;
-  const double power = std::pow(10, std::floor(std::log10(x)));
-  for (const double digit : {1, 2, 5}) {
-    if (digit * power >= x) return digit * power;
-  }
-  return 10 * power;
 }
 
 // Tendons from blue to red over a range [N]: by the actuators that pull them, or as an effect says.

@@ -6,17 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/round_number.h"
+
 namespace continuum {
 namespace {
-
-// The longest of 1, 2, 5 times a power of ten.
-double RoundLength(double most) {
-  const double power = std::pow(10, std::floor(std::log10(most)));
-  for (const double digit : {5, 2}) {
-    if (digit * power <= most) return digit * power;
-  }
-  return power;
-}
 
 std::string LengthText(double metres) {
   return metres < 1 ? fmt::format("{:g} mm", 1e3 * metres) : fmt::format("{:g} m", metres);
@@ -204,7 +197,7 @@ void Ruler::Measure(double pixel_length, int width) {
   pixel = pixel_length;
   if (pixel <= 0) return;
   const double wanted = pixel * width / 8;
-  if (length < 0.3 * wanted || length > 1.5 * wanted) length = RoundLength(wanted);
+  if (length < 0.3 * wanted || length > 1.5 * wanted) length = RoundDown(wanted);
 }
 
 void Paint(const Overlay& overlay, const Font& font, Image& image) {

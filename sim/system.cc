@@ -228,11 +228,12 @@ class System::Edits {
 
 // Bodies may get their inertia from visual geoms: then these stay.
 void System::DropVisuals() {
+  const mjsBody* const world = mjs_findBody(spec_.get(), "world");
   for (mjsElement* e = mjs_firstElement(spec_.get(), mjOBJ_GEOM); e;
        e = mjs_nextElement(spec_.get(), e)) {
     const mjsGeom& geom = *mjs_asGeom(e);
     const mjsBody* const body = mjs_getParent(e);
-    if (body == mjs_findBody(spec_.get(), "world")) continue;
+    if (body == world) continue;
     const bool inferred =
         spec_->compiler.inertiafromgeom == mjINERTIAFROMGEOM_TRUE || !body->explicitinertial;
     const bool weighs = std::isnan(geom.mass) ? geom.density > 0 : geom.mass > 0;

@@ -11,6 +11,7 @@
 #include "models/solver/results.h"
 #include "sim/file.h"
 #include "sim/image.h"
+#include "sim/round_number.h"
 
 namespace continuum::solver {
 namespace {
@@ -68,15 +69,6 @@ Box Extent(const Picture& picture, const std::array<int, 2>& view) {
   return box;
 }
 
-// 1, 2 or 5 times a power of ten, about a fifth of the span.
-double TickStep(double span) {
-  const double power = std::pow(10, std::floor(std::log10(span / 5)));
-  for (const double digit : {1., 2., 5.}) {
-    if (digit * power >= span / 5) return digit * power;
-  }
-  return 10 * power;
-}
-
 // One view: a square of pixels that shows `span` metres around the middle of the box.
 struct View {
   double left, top, side, span;
@@ -98,7 +90,7 @@ void AddText(std::vector<Mark>& marks, double x, double y, const std::string& te
 double TextWidth(const std::string& text) { return 6 * kLetter * static_cast<double>(text.size()); }
 
 void AddAxes(const View& view, std::vector<Mark>& marks) {
-  const double step = TickStep(view.span);
+  const double step = RoundUp(view.span / 5);
   const double bottom = view.top + view.side, right = view.left + view.side;
   for (int a = 0; a < 2; ++a) {
     const double first = std::ceil(view.corner[a] / step) * step;
