@@ -33,10 +33,15 @@ std::string ComparisonLine(const char* when, const nlohmann::json& d) {
                      d.at("error").at("after").at("validate").get<double>());
 }
 
-std::string OldComparison(const std::string& file) {
+std::string OldComparison(const std::string& file, const Experiment& e) {
   if (file.empty()) return "";
   try {
-    return "compared with " + file + ":\n" + ComparisonLine("then", ReadJson(file));
+    const auto old = ReadJson(file);
+    const nlohmann::json channels = ChannelNames(e);
+    const nlohmann::json then = old.value("channels", channels);
+    if (then != channels)
+      throw Error::Input(file, "a diagnosis of the channels " + channels.dump(), then.dump());
+    return "compared with " + file + ":\n" + ComparisonLine("then", old);
   } catch (const nlohmann::json::exception& e) {
     throw Error::Input(file, "a diagnosis.json", e.what());
   }
@@ -56,7 +61,7 @@ void CheckCandidate(const std::string& name, const Experiment& e) {
 void RunDiagnose(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
   const System system = System::Load(read.model);
-  const std::string old = OldComparison(o.compare);
+  const std::string old = OldComparison(o.compare, read);
   DiagnosisOptions options;
   std::istringstream names(o.candidates);
   for (std::string name; std::getline(names, name, ',');) {

@@ -114,7 +114,7 @@ void RunCheck(const CheckOptions& o) {
   const System system = System::Load(e.model);
   CheckAll(e, system);
   std::vector<std::string> skipped;
-  MakeCandidates(e, system, {}, skipped);  // refuses places that the model has not
+  MakeCandidates(e, {&system}, {}, skipped);  // refuses places that the model has not
   auto findings = CheckLogs(e);
   const auto more = CheckAgainstModel(e, system);
   findings.insert(findings.end(), more.begin(), more.end());

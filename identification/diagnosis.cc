@@ -45,6 +45,8 @@ class Session {
     round.Fit();
     if (d_.noise.known()) {
       Judge(round);
+      LookAtOtherPlaces(round);
+      if (d_.verdict.text == "unexplained" && round.StartAnew()) Judge(round);
       LookBeyondTheList(round);
       auto pair = MayBeTwo(round) ? FindPair(trials_, round, excused_, d_.noise, d_.sizes, options_)
                                   : std::nullopt;
@@ -145,6 +147,18 @@ class Session {
     const bool coarse = excused_ || d_.noise.step > d_.noise.rms;
     if (coarse && !named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))
       d_.verdict = {"adequate", {}, "no candidate does more than the time step; try a finer one"};
+  }
+
+  // Where no effect explains it at all joints together it may be at one of them.
+  void LookAtOtherPlaces(Round& round) {
+    if (d_.verdict.text != "unexplained") return;
+    Round others(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_,
+                 Places::kOthers);
+    others.Screen();
+    others.Fit(&round);
+    if (others.candidates.empty()) return;
+    round.Join(std::move(others));
+    Judge(round);
   }
 
   // A name that stands only because the list leaves its rival out is none.

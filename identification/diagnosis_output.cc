@@ -59,8 +59,10 @@ nlohmann::json ParametersOf(const Hypothesis& h, const Fitted& fitted, Eigen::In
 std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin) {
   std::string text;
   for (std::size_t k = 0; k < h.extra.size(); ++k) {
-    text += fmt::format(", {} = {:.4g}", h.extra[k].name,
-                        fitted.fit.x[begin + static_cast<Eigen::Index>(k)]);
+    const Eigen::Index at = begin + static_cast<Eigen::Index>(k);
+    const auto& bound = fitted.uncertainty.at_bound;
+    text += fmt::format(", {} = {:.4g}{}", h.extra[k].name, fitted.fit.x[at],
+                        !bound.empty() && bound[at] ? " (at its bound)" : "");
   }
   return text;
 }
@@ -132,7 +134,26 @@ nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
           {"evidence", evidence}};
 }
 
+// The experiment's own parameters that a fit has put at a bound.
+std::string BoundsInWords(const Problem& null, const Fitted& fitted) {
+  std::string text;
+  const auto& bound = fitted.uncertainty.at_bound;
+  for (std::size_t i = 0; i < std::min(bound.size(), null.parameters().size()); ++i) {
+    const FreeParameter& p = null.parameters()[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    if (bound[i] && !p.IsStart())
+      text += fmt::format("{}{} = {:.4g}", text.empty() ? "" : ", ", p.name, fitted.fit.x[at]);
+  }
+  return text.empty() ? "" : "at bound  " + text + "\n";
+}
+
 }  // namespace
+
+std::vector<std::string> ChannelNames(const Experiment& e) {
+  std::vector<std::string> names;
+  for (const auto& channel : e.channels) names.push_back(channel.name);
+  return names;
+}
 
 std::string BetweenInWords(const Experiment& e, const Diagnosis& d) {
   const Problem problem(e, d.system);
@@ -172,8 +193,9 @@ Gain GainOf(const Diagnosis& d, const TwoErrors& after) {
 double ShareReached(const Diagnosis& d, const TwoErrors& after) {
   const double possible =
       d.before.error.validate - std::min(d.ceiling_error.validate, after.validate);
-  return possible > 0 ? std::clamp((d.before.error.validate - after.validate) / possible, 0.0, 1.0)
-                      : 1;
+  if (possible > 0)
+    return std::clamp((d.before.error.validate - after.validate) / possible, 0.0, 1.0);
+  return d.chosen() || d.verdict.text == "adequate" ? 1 : 0;
 }
 
 double Share(const Diagnosis& d, const CandidateResult& c) {
@@ -249,6 +271,8 @@ Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesyst
 nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told& told) {
   const Gain gain = GainOf(d, told.after);
   nlohmann::json json;
+  json["model"] = e.model.filename().string();
+  json["channels"] = ChannelNames(e);
   json["verdict"] = d.verdict.text;
   json["reason"] = d.verdict.reason;
   json["causes"] = nlohmann::json::array();
@@ -427,9 +451,11 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(3, told.wrong.size()); ++i) {
     const Wrong& w = told.wrong[i];
-    text +=
-        fmt::format("wrong     {} {} at {}: the simulation {}\n", w.log, w.channel, w.when, w.what);
+    text += fmt::format("{}{} {} at {}: the simulation {}\n",
+                        d.verdict.text == "adequate" ? "largest   " : "wrong     ", w.log,
+                        w.channel, w.when, w.what);
   }
+  text += BoundsInWords(Problem(e, d.system), d.chosen() ? d.chosen()->fitted : d.before);
   if (const std::string between = BetweenInWords(e, d); !between.empty())
     text += "between   " + between + "\n";
   if (d.fallback) {

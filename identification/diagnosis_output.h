@@ -35,6 +35,9 @@ struct Told {
 Told WriteDiagnosis(const Experiment& experiment, const Diagnosis& diagnosis,
                     const std::filesystem::path& folder);
 
+/// The channels of an experiment, in its order; by them diagnoses of the same robot are known.
+std::vector<std::string> ChannelNames(const Experiment& experiment);
+
 nlohmann::json DiagnosisJson(const Experiment& experiment, const Diagnosis& diagnosis,
                              const Told& told);
 void WriteDiagnosisReport(const Experiment& experiment, const Diagnosis& diagnosis,

@@ -51,7 +51,9 @@ class Story {
   void WhatIsWrong() {
     page_.Heading("What is wrong");
     page_.Paragraph(
-        "Where the fitted model without any extension parts most from the measurement:");
+        d_.verdict.text == "adequate"
+            ? "Nothing that can be told from noise and the time step. The largest differences are:"
+            : "Where the fitted model without any extension parts most from the measurement:");
     std::vector<std::string> items;
     for (const Wrong& w : told_.wrong) {
       items.push_back(
@@ -148,6 +150,7 @@ class Story {
     page_.Bars(bars);
     if (d_.noise_limited) LikelihoodTable();
     FoldTable();
+    SecondView();
     std::vector<std::string> items;
     for (const auto& c : d_.candidates) {
       std::string why;
@@ -170,6 +173,34 @@ class Story {
                       d_.next.input, d_.next.separation,
                       d_.noise.known() ? "" : " if what remains were white noise"));
     }
+  }
+
+  // What the missing force itself says, without a simulation.
+  void SecondView() {
+    std::vector<const CandidateResult*> seen;
+    for (const auto& c : d_.candidates) {
+      if (c.by_equation) seen.push_back(&c);
+    }
+    if (seen.empty()) return;
+    constexpr std::size_t kShown = 6;
+    std::stable_sort(seen.begin(), seen.end(), [](const auto* a, const auto* b) {
+      return a->by_equation->share > b->by_equation->share;
+    });
+    BarsSpec bars{"A second view: share of the missing force that each candidate explains",
+                  {"of its squares", "%"},
+                  {},
+                  {}};
+    for (const CandidateResult* c : seen) {
+      if (bars.bars.size() == kShown) break;
+      const bool chosen = c == d_.chosen();
+      bars.bars.push_back({c->hypothesis.NameAtPlace(), 100 * c->by_equation->share, 0, chosen});
+    }
+    page_.Bars(bars);
+    page_.Paragraph(
+        "From the measured states alone, without simulating: sensor noise, twice differentiated, "
+        "is "
+        "most of this force on many logs, so that small shares may be all there is to explain. "
+        "Only candidates that were fitted are here.");
   }
 
   void LikelihoodTable() {
@@ -262,12 +293,17 @@ class Story {
                                  ? fmt::format("What remains is {:.1f} times the noise: the data",
                                                told_.after.train / d_.noise.rms)
                                  : "How large the noise is these logs do not tell; they";
-    page_.Paragraph(
-        fmt::format("{} are {}. The extension reaches {:.0f} % "
-                    "of what {} on the held-out logs.",
-                    over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited",
-                    100 * ShareReached(d_, told_.after),
-                    d_.noise_limited ? "lies above the noise" : d_.ceiling_by + " reaches"));
+    std::string text = fmt::format(
+        "{} are {}. ", over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited");
+    const bool any = d_.chosen() || d_.verdict.text == "adequate" ||
+                     d_.ceiling_error.validate < d_.before.error.validate;
+    text +=
+        any ? fmt::format("The extension reaches {:.0f} % of what {} on the held-out logs.",
+                          100 * ShareReached(d_, told_.after),
+                          d_.noise_limited ? "lies above the noise" : d_.ceiling_by + " reaches")
+            : "Nothing that was tried, forces without a name among it, does better on the "
+              "held-out logs.";
+    page_.Paragraph(text);
     if (d_.fallback) {
       page_.Paragraph(
           "There is " + FallbackInWords(d_) + ". `" + kFallbackModel +

@@ -45,7 +45,7 @@ std::vector<Hypothesis> Forces(std::size_t terms, const Experiment& e, const Dia
   wanted.all_candidates = false;
   wanted.candidates = {{"formula", "", false, Law(terms, d.sizes)}};
   std::vector<std::string> skipped;
-  return MakeCandidates(wanted, d.system, d.sizes, skipped);
+  return MakeCandidates(wanted, {&d.system}, d.sizes, skipped);
 }
 
 }  // namespace

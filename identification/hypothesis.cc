@@ -10,6 +10,7 @@
 #include "binding/config.h"
 #include "binding/expression.h"
 #include "error.h"
+#include "identification/measure_candidates.h"
 #include "identification/places.h"
 #include "identification/search_range.h"
 #include "sim/file.h"
@@ -26,12 +27,6 @@ std::string FreshInstance(const mjModel& m) {
     std::string one = i == 1 ? name : name + std::to_string(i);
     if (mj_name2id(&m, mjOBJ_PLUGIN, one.c_str()) < 0) return one;
   }
-}
-
-std::string Join(const std::vector<std::string>& names) {
-  std::string all;
-  for (const auto& name : names) all += (all.empty() ? "" : " ") + name;
-  return all;
 }
 
 // The name of an instance of another dry friction law on the same joints, and its effect.
@@ -61,39 +56,43 @@ Present FrictionOn(const mjModel& m, const std::vector<std::string>& joints) {
   return found;
 }
 
-// How far the measured values of some outputs reach [their unit].
-double OutputSize(const Experiment& e, const std::vector<std::string>& columns) {
-  double lower = kInfinity, upper = -kInfinity;
-  for (std::size_t c = 0; c < e.channels.size(); ++c) {
-    const bool wanted =
-        std::find(columns.begin(), columns.end(), e.channels[c].name) != columns.end();
-    for (const Log& log : e.logs) {
-      for (const double y : log.measured[c]) {
-        if (!wanted || std::isnan(y)) continue;
-        lower = std::min(lower, y / e.channels[c].factor);
-        upper = std::max(upper, y / e.channels[c].factor);
-      }
-    }
-  }
-  return upper > lower ? upper - lower : 1;
+// The attribute that an effect edits, in the experiment's words.
+std::string AttributeOf(const EffectInfo& effect) {
+  return effect.name == "viscous" ? "damping" : std::string(effect.name);
 }
 
-bool AlreadyFitted(const Experiment& e, const std::string& kind, const std::string& attribute) {
+bool IsFitted(const Experiment& e, const std::string& kind, const std::string& attribute) {
   return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const Parameter& p) {
     return p.target.starts_with(kind + ":") && p.attribute == attribute;
   });
 }
 
+// Whether a parameter of the experiment says already what an effect is at some objects, out of all
+// of their kind: not where they are some of several that share one.
+bool IsFitted(const Experiment& e, const EffectInfo& effect, Place place,
+              const std::vector<std::string>& names, const std::vector<std::string>& all) {
+  const std::string kind = std::string(PlaceName(place)) + ":";
+  return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const Parameter& p) {
+    if (!p.target.starts_with(kind) || p.attribute != AttributeOf(effect)) return false;
+    const auto acts = [&](const std::string& name) {
+      return AnyGlobMatches(p.target.substr(kind.size()), name);
+    };
+    const auto here = std::count_if(names.begin(), names.end(), acts);
+    return here > 0 &&
+           (here < std::ssize(names) || here == std::count_if(all.begin(), all.end(), acts));
+  });
+}
+
 Hypothesis EditCandidate(const EffectInfo& effect, Place place,
                          const std::vector<std::string>& names, const Experiment& e,
-                         const System& system, Sizes sizes) {
+                         const Standpoint& from, Sizes sizes) {
   if (place == Place::kActuator) sizes.input = InputSize(e, names);
-  Hypothesis h{std::string(effect.name), "", InWords(place, names), system, {}, {}, "", {}};
+  Hypothesis h{std::string(effect.name), "", InWords(place, names), *from.system, {}, {}, "", {}};
   const std::string target =
-      place == Place::kWorld ? "world" : std::string(PlaceName(place)) + ":" + Join(names);
+      place == Place::kWorld ? "world" : std::string(PlaceName(place)) + ":" + Globs(names);
   for (Param param : effect.params) {
     const bool as_is = std::isnan(param.null);  // the effect is an attribute of the model
-    if (as_is) param.null = system.Value(target, std::string(effect.name));
+    if (as_is) param.null = from.system->ValueAfter(from.fitted, target, std::string(effect.name));
     h.extra.push_back(FreeOne(
         param, place, sizes, target,
         as_is ? std::string(effect.name) : fmt::format("effect:{}.{}", effect.name, param.name),
@@ -108,7 +107,7 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
                            const Sizes& sizes, int option) {
   EffectInstance added{std::string(effect.name),
                        FreshInstance(system.model()),
-                       {{std::string(PlaceName(place)), Join(names)}}};
+                       {{std::string(PlaceName(place)), Globs(names)}}};
   std::string variant;
   if (!effect.choices.empty() && effect.kind == EffectInfo::Kind::kFriction) {
     const Choice& choice = effect.choices.front();
@@ -164,7 +163,7 @@ Hypothesis WrittenCandidate(const EffectInfo& effect, const WrittenLaw& law, Pla
   h.null = law.null;
   EffectInstance added{std::string(effect.name),
                        FreshInstance(system.model()),
-                       {{std::string(PlaceName(place)), Join(names)}}};
+                       {{std::string(PlaceName(place)), Globs(names)}}};
   std::vector<std::string> from, to;
   for (Parameter p : law.parameters) {
     p.target = "plugin:" + added.name;
@@ -226,78 +225,28 @@ Hypothesis BesideCandidate(const EffectInfo& effect, int segment, const System& 
   return h;
 }
 
-// An effect of the measurement on some outputs (or on the clock): nothing of the model changes.
-Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
-                            const std::vector<std::string>& names, const Experiment& e,
-                            const System& system, const Sizes& sizes) {
-  const std::string where = names.empty() ? "clock" : InWords(Place::kSensor, names);
-  Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
-  const Param& card = effect.params.front();
-  const std::string name(card.name);
-  double size = 1, typical = 0.02;  // of a scale, an angle or a skew
-  if (name == "delay") size = 4 * sizes.period, typical = 0.125;
-  if (name == "bias" || name == "rate") {
-    size = OutputSize(e, names);
-    if (name == "rate") size /= std::max(1e-9, e.logs.front().time.back() - e.logs.front().time[0]);
-  }
-  Parameter p;
-  p.name = name;
-  p.target = target, p.attribute = name;
-  p.has_initial = true;
-  p.where = "candidate";
-  const double null = MeasurementValue(e, target, name);
-  const bool factor = card.null == 1;
-  p.initial = null + typical * size;
-  p.upper = null + (factor ? 9 * std::abs(null) : name == "delay" ? 25 * size : size);
-  p.lower = factor ? 0.1 * null : name == "delay" ? 0 : null - size;
-  h.extra.push_back(p);
-  h.null.push_back(null);
-  return h;
-}
+// So many objects are few: each is tried too, beside all of them together.
+constexpr std::size_t kFew = 4;
 
-// All outputs of one unit together, and each alone. Late ones also all together: as the input is.
-void AddMeasure(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
-                const System& system, const Sizes& sizes, std::vector<Hypothesis>& all) {
-  if (effect.params.front().name == "skew") {
-    all.push_back(MeasureCandidate(effect, "time", {}, e, system, sizes));
-    return;
-  }
-  const bool turned = effect.params.front().name == "angle";
-  const std::string glob =
-      wanted.where.empty() ? "*" : wanted.where.substr(wanted.where.find(':') + 1);
-  std::map<std::string, std::vector<std::string>> groups;
-  for (const Output& out : e.outputs) {
-    if (out.kind != Output::Kind::kSensor || out.weight == 0 || out.quaternion()) continue;
-    const std::string sensor = out.source.substr(0, out.source.find('['));
-    if (!GlobMatches(glob, sensor) && !GlobMatches(glob, out.name())) continue;
-    const int id = mj_name2id(&system.model(), mjOBJ_SENSOR, sensor.c_str());
-    if (turned && (id < 0 || system.model().sensor_dim[id] != 3)) continue;
-    auto& group = groups[turned ? sensor : out.unit];
-    const std::string& name = turned ? sensor : out.name();
-    if (std::find(group.begin(), group.end(), name) == group.end()) group.push_back(name);
-  }
-  std::vector<std::string> every;
-  for (const auto& [unit, names] : groups) every.insert(every.end(), names.begin(), names.end());
-  if (groups.size() > 1 && effect.params.front().name == "delay")
-    all.push_back(MeasureCandidate(effect, "sensor:" + Join(every), every, e, system, sizes));
-  for (const auto& [unit, names] : groups) {
-    if (names.size() > 1)
-      all.push_back(MeasureCandidate(effect, "sensor:" + Join(names), names, e, system, sizes));
-    if (names.size() > 1 && effect.params.front().name != "bias") continue;
-    for (const auto& name : names)
-      all.push_back(MeasureCandidate(effect, "sensor:" + name, {name}, e, system, sizes));
-  }
+// The objects at which an effect that has no place is tried, out of those of one kind. first:
+// whether it is the kind that it usually acts on; together: whether it may act on all of them.
+std::vector<std::vector<std::string>> Choose(const std::vector<std::string>& names, Place place,
+                                             bool first, bool together, Places places) {
+  std::vector<std::vector<std::string>> chosen;
+  const bool others = places == Places::kOthers;
+  if (!first && place != Place::kTendon) return chosen;  // a site is a body's
+  if (together && others != first) chosen.push_back(names);
+  const bool one_by_one = (names.size() > kFew || !first || !together) == others;
+  for (std::size_t i = 0; one_by_one && names.size() > 1 && i < names.size(); ++i)
+    chosen.push_back({names[i]});
+  return chosen;
 }
-
-// Up to so many places are tried one by one too, beside all of them together.
-constexpr std::size_t kEach = 3;
 
 // Why an effect makes no sense at places of a model; empty when it does.
 std::string WhyNot(const EffectInfo& effect, Place place, const std::vector<std::string>& names,
                    const Experiment& e, const mjModel& m) {
   if (effect.kind == EffectInfo::Kind::kEdit) {
-    const std::string attribute = effect.name == "viscous" ? "damping" : std::string(effect.name);
-    if (AlreadyFitted(e, std::string(PlaceName(place)), attribute))
+    if (IsFitted(e, effect, place, names, PlacesFor(m, effect, place, "*", e)))
       return "the experiment fits it already";
     if (effect.name == "viscous" && place == Place::kJoint &&
         FrictionOn(m, names).effect == "stribeck") {
@@ -320,14 +269,15 @@ std::string WhyNot(const EffectInfo& effect, Place place, const std::vector<std:
 
 // One hypothesis, or one for each option of a friction's choice.
 void AddAt(const EffectInfo& effect, const Candidate& wanted, Place place,
-           const std::vector<std::string>& names, const Experiment& e, const System& system,
+           const std::vector<std::string>& names, const Experiment& e, const Standpoint& from,
            const Sizes& sizes, std::vector<Hypothesis>& all) {
+  const System& system = *from.system;
   if (wanted.law) {
     all.push_back(WrittenCandidate(effect, *wanted.law, place, names, system));
     return;
   }
   if (effect.kind == EffectInfo::Kind::kEdit) {
-    all.push_back(EditCandidate(effect, place, names, e, system, sizes));
+    all.push_back(EditCandidate(effect, place, names, e, from, sizes));
     return;
   }
   const bool choice = effect.kind == EffectInfo::Kind::kFriction && !effect.choices.empty();
@@ -344,47 +294,63 @@ std::string AddBeside(const EffectInfo& effect, const Experiment& e, const Syste
   const auto segments = SegmentsFor(m, effect);
   if (segments.empty()) return "no soft segment in the model";
   for (const Param& p : effect.params) {
-    if (!std::isnan(p.null) && AlreadyFitted(e, "plugin", std::string(p.name)))
+    if (!std::isnan(p.null) && IsFitted(e, "plugin", std::string(p.name)))
       return "the experiment fits it already";
   }
   for (const int i : segments) all.push_back(BesideCandidate(effect, i, system, sizes));
   return "";
 }
 
-void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
-               const System& system, const Sizes& sizes, std::vector<Hypothesis>& all,
-               std::vector<std::string>& skipped) {
-  const auto skip = [&](const std::string& why) { skipped.push_back(wanted.Name() + ": " + why); };
-  if (effect.kind == EffectInfo::Kind::kSegment) {
-    const std::string why = AddBeside(effect, e, system, sizes, all);
-    return why.empty() ? void() : skip(why);
-  }
-  if (effect.kind == EffectInfo::Kind::kMeasure) {
-    const std::size_t before = all.size();
-    AddMeasure(effect, wanted, e, system, sizes, all);
-    if (all.size() == before) skip("no output that it acts on");
-    return;
-  }
+// At objects of the model. Throws Error where the experiment asks for a place that it has not.
+void AddAtObjects(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
+                  const Standpoint& from, const Sizes& sizes, Places places,
+                  std::vector<Hypothesis>& all, std::vector<std::string>& skipped) {
+  const mjModel& m = from.system->model();
   const std::size_t colon = wanted.where.find(':');
+  const bool anywhere = wanted.where.empty(), few = places == Places::kFew;
+  bool first = true;
   for (const Place place : effect.places) {
-    const std::string key(PlaceName(place));
-    if (!wanted.where.empty() && wanted.where.substr(0, colon) != key) continue;
-    const std::string glob = wanted.where.empty() ? "*" : wanted.where.substr(colon + 1);
-    const auto names = PlacesFor(system.model(), effect, place, glob, e);
+    if (!anywhere && wanted.where.substr(0, colon) != PlaceName(place)) continue;
+    const std::string glob = anywhere ? "*" : wanted.where.substr(colon + 1);
+    const auto names = PlacesFor(m, effect, place, glob, e);
     if (names.empty()) continue;
-    const std::string why = wanted.law ? "" : WhyNot(effect, place, names, e, system.model());
-    if (!why.empty()) return skip(why);
-    AddAt(effect, wanted, place, names, e, system, sizes, all);
-    const bool each = wanted.where.empty() && names.size() > 1 && names.size() <= kEach;
-    for (std::size_t i = 0; each && i < names.size(); ++i)
-      AddAt(effect, wanted, place, {names[i]}, e, system, sizes, all);
-    return;
+    const auto why = [&](const std::vector<std::string>& some) {
+      return wanted.law ? "" : WhyNot(effect, place, some, e, m);
+    };
+    const bool together = why(names).empty();
+    if (few && first && !together) return skipped.push_back(wanted.Name() + ": " + why(names));
+    std::vector<std::vector<std::string>> chosen;
+    if (anywhere) chosen = Choose(names, place, first, together, places);
+    if (!anywhere && few) chosen.push_back(names);
+    for (const auto& some : chosen) {
+      if (why(some).empty()) AddAt(effect, wanted, place, some, e, from, sizes, all);
+    }
+    first = false;
   }
-  if (!wanted.where.empty()) {
+  if (!first) return;
+  if (!anywhere) {
     throw Error::Input(fmt::format("{}: candidates: {}", e.file.string(), wanted.Name()),
                        "a place in the model where the effect can act", wanted.where);
   }
-  skip("nothing in the model to bind it to");
+  skipped.push_back(wanted.Name() + ": nothing in the model to bind it to");
+}
+
+void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
+               const Standpoint& from, const Sizes& sizes, Places places,
+               std::vector<Hypothesis>& all, std::vector<std::string>& skipped) {
+  const auto skip = [&](const std::string& why) { skipped.push_back(wanted.Name() + ": " + why); };
+  const bool few = places == Places::kFew;  // of segments and sensors these leave nothing out
+  if (effect.kind == EffectInfo::Kind::kSegment) {
+    const std::string why = few ? AddBeside(effect, e, *from.system, sizes, all) : "";
+    if (!why.empty()) skip(why);
+  } else if (effect.kind == EffectInfo::Kind::kMeasure) {
+    if (!few) return;
+    auto found = MeasureCandidates(effect, wanted, e, *from.system, sizes);
+    if (found.empty()) skip("no output that it acts on");
+    std::move(found.begin(), found.end(), std::back_inserter(all));
+  } else {
+    AddAtObjects(effect, wanted, e, from, sizes, places, all, skipped);
+  }
 }
 
 }  // namespace
@@ -406,6 +372,12 @@ std::size_t Hypothesis::Main(std::span<const double> values) const {
     if (size > largest) main = i, largest = size;
   }
   return main;
+}
+
+bool Hypothesis::OnlyMeasured() const {
+  return !extra.empty() && std::all_of(extra.begin(), extra.end(), [](const Parameter& p) {
+    return IsMeasurement(p.target, p.attribute);
+  });
 }
 
 std::vector<Parameter> Hypothesis::Free() const {
@@ -452,13 +424,14 @@ void Multiply(Hypothesis& h, const std::set<std::string>& conditions) {
 
 }  // namespace
 
-std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system,
+std::vector<Hypothesis> MakeCandidates(const Experiment& e, const Standpoint& from,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
-                                       const std::vector<Parameter>& given) {
+                                       Places places) {
   std::vector<Hypothesis> all;
   if (e.all_candidates) {
     for (const EffectInfo& effect : Catalog())
-      AddEffect(effect, {std::string(effect.name), "", false}, e, system, sizes, all, skipped);
+      AddEffect(effect, {std::string(effect.name), "", false}, e, from, sizes, places, all,
+                skipped);
   } else {
     std::vector<Candidate> seen;
     for (const Candidate& c : e.candidates) {
@@ -469,12 +442,12 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& e, const System& system
         throw Error::Input(fmt::format("{}: candidates: {}: per", e.file.string(), c.Name()),
                            "an effect of the model", "one of the measurement");
       const std::size_t first = all.size();
-      AddEffect(effect, c, e, system, sizes, all, skipped);
+      AddEffect(effect, c, e, from, sizes, places, all, skipped);
       for (std::size_t i = first; c.per_condition && i < all.size(); ++i)
         Multiply(all[i], Conditions(e, c.Name()));
     }
   }
-  for (Hypothesis& h : all) h.starts = StartsOf(h.extra, h.null), h.given = given;
+  for (Hypothesis& h : all) h.starts = StartsOf(h.extra, h.null), h.given = from.given;
   return all;
 }
 

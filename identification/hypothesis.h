@@ -32,18 +32,31 @@ struct Hypothesis {
   std::size_t Main(std::span<const double> values) const;
   /// Those of extra that say whether the effect is there.
   std::vector<std::size_t> Amplitudes() const;
+  /// Whether it is one of the measurement: nothing of the model is other.
+  bool OnlyMeasured() const;
   /// The effect on whose card its parameters are.
   const std::string& Card() const { return instance.effect.empty() ? effect : instance.effect; }
   std::string Name() const { return variant.empty() ? effect : effect + " (" + variant + ")"; }
   std::string NameAtPlace() const { return Name() + " at " + where; }
 };
 
-/// The candidates of an experiment that make sense in its model, one Hypothesis per effect and
-/// choice; skipped: one sentence for each that does not. given: free parameters of causes that the
-/// system has already.
-std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const System& system,
+/// Where effects are tried that the experiment gives no place: all objects of a kind together, and
+/// each where they are few; or what that leaves out, each of many, each of those that share a
+/// parameter of the experiment, and tendons beside joints.
+enum class Places { kFew, kOthers };
+
+/// From where candidates are looked for.
+struct Standpoint {
+  const System* system;               ///< with the causes that are taken for granted
+  std::vector<Parameter> given = {};  ///< free parameters of these
+  std::vector<Change> fitted = {};    ///< what a fit has made of the model
+};
+
+/// The candidates of an experiment that make sense in its model, one Hypothesis per effect, choice
+/// and place; skipped: one sentence for each that does not.
+std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const Standpoint& from,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
-                                       const std::vector<Parameter>& given = {});
+                                       Places places = Places::kFew);
 
 /// Effects of the catalog that the experiment's list of candidates leaves out; none where it lists
 /// all, or none. names: the list to take in place of the experiment's, if any.

@@ -86,6 +86,12 @@ std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, P
   return names;
 }
 
+std::string Globs(const std::vector<std::string>& names) {
+  std::string all;
+  for (const auto& name : names) all += (all.empty() ? "" : " ") + name;
+  return all;
+}
+
 std::string InWords(Place place, const std::vector<std::string>& names) {
   if (place == Place::kWorld) return "world";
   std::string text(PlaceName(place));

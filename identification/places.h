@@ -14,6 +14,9 @@ namespace continuum {
 std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
                                    const std::string& glob, const Experiment& experiment);
 
+/// Names as the text of a target or key that matches each of them.
+std::string Globs(const std::vector<std::string>& names);
+
 /// "joint q", "joints a, b", "world"; of more than six the number.
 std::string InWords(Place place, const std::vector<std::string>& names);
 

@@ -64,6 +64,9 @@ class Problem {
   /// From now on with this time step [s] instead of the model's.
   void StepBy(double h);
   double step() const;  ///< [s]
+  /// Takes over the simulations that a problem with the same model, but for parameters of the
+  /// measurement, remembers: each log's last one.
+  void Recall(const Problem& other) { memory_ = other.memory_; }
   /// From now on with central differences, at twice the cost; one-sided where a bound is near.
   void Center() { central_ = true; }
   /// From now on with differences over this share of a parameter's scale. The default averages over

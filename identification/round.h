@@ -9,6 +9,8 @@ struct Base {
   const System* system;
   std::vector<Parameter> given;  ///< free parameters of causes that the system has already
   const Fitted* fitted;          ///< complete
+
+  Standpoint Here(const Experiment& experiment) const;
 };
 
 /// Whether b can imitate whatever a does: its directions span a's, or with more parameters it was
@@ -20,7 +22,7 @@ bool Contains(const Trials& trials, const CandidateResult& b, const CandidateRes
 class Round {
  public:
   Round(const Trials& trials, const Base& base, const Noise& noise, const Sizes& sizes,
-        const DiagnosisOptions& options);
+        const DiagnosisOptions& options, Places places = Places::kFew);
 
   /// What every candidate could explain of what the base leaves, and how often noise alone would
   /// let the best of so many do as well.
@@ -29,8 +31,12 @@ class Round {
   /// is left is plainly not noise; then best first, the others left behind. beside: a round from
   /// the same base that has been fitted, whose best they have to come near.
   void Fit(const Round* beside = nullptr);
-  /// Takes the fitted candidates of a round from the same base as well: behind its own, as not
-  /// listed.
+  /// Fits the best candidates once more, from where the experiment begins instead of where the base
+  /// ended; whether any of them is better there.
+  bool StartAnew();
+  /// Takes the candidates of a round from the same base as well.
+  void Join(Round other);
+  /// Takes those of them that were fitted, behind its own, as not listed.
   void JoinUnlisted(Round other);
 
   /// A candidate that was left behind or not fitted to the end, with a complete fit. Throws Error
@@ -64,6 +70,10 @@ class Round {
   double HowMuchIsNeeded() const;
   double Likelihood(const Fitted& fitted) const;
   void FitOne(CandidateResult& c, double rival) const;
+  static std::vector<Problem::Vector> FromTheOutset(const Problem& problem,
+                                                    const CandidateResult& c);
+  bool FitAnew(CandidateResult& c) const;
+  bool FallsTo(const Problem& fine, const CandidateResult& c, const Fitted& finer) const;
   void GoOn(const Problem& problem, CandidateResult& c, double rival) const;
   void SecondChances();
   std::vector<Problem::Vector> StartsAsGood(const CandidateResult& c, std::size_t best,
@@ -76,6 +86,7 @@ class Round {
   static bool RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x);
   std::string FlawOf(const Problem& problem, const Fitted& fitted) const;
   void Dismiss();
+  void Rank();
   void TellApart();
 
   const Trials& trials_;

@@ -9,17 +9,19 @@ namespace {
 // The size in which a parameter is looked for, from its unit.
 double SizeFor(const Param& p, Place place, const Sizes& s) {
   const std::string_view u = p.unit;
+  // On tendons angles are lengths: by the lever that makes a torque of a tension.
   const bool line = place == Place::kTendon;
-  if (u == "N*m") return line ? s.tension : s.torque;
-  if (u == "N") return line ? s.tension : s.torque;  // Dahl's f, on joints a torque
-  if (u == "rad") return s.angle;
-  if (u == "rad/s") return place == Place::kActuator ? 0.25 / s.period : s.velocity;
-  if (u == "N*m*s/rad") return s.torque / s.velocity;
-  if (u == "N*m/rad" || u == "N/m") return (line ? s.tension : s.torque) / (0.02 * s.angle);
+  const double force = line ? s.tension : s.torque;
+  const double lever = line ? s.torque / s.tension : 1;
+  if (u == "N*m" || u == "N") return force;
+  if (u == "rad") return lever * s.angle;
+  if (u == "rad/s") return place == Place::kActuator ? 0.25 / s.period : lever * s.velocity;
+  if (u == "N*m*s/rad") return force / (lever * s.velocity);
+  if (u == "N*m/rad" || u == "N/m") return force / (0.02 * lever * s.angle);
   if (u == "N*m/rad^3") return s.torque / std::pow(s.angle, 3);
   if (u == "kg") return s.mass;
   if (u == "kg*m^2") return s.inertia;
-  if (u == "1/rad") return 50 / s.angle;
+  if (u == "1/rad") return 50 / (lever * s.angle);
   if (u == "m/N") return 0.01 / s.tension;
   if (u == "s") return 4 * s.period;
   if (u == "input") return s.input;

@@ -299,8 +299,9 @@ Verdict Name(const Comparison& all, std::size_t best, double lack, const Likelih
     verdict.reason =
         fmt::format("the likelihoods of {} candidates are {}", verdict.named.size(), near);
   } else if (verdict.unlisted.empty()) {
-    verdict.reason = fmt::format("{}, and the next candidate is {:.1f} behind in likelihood",
-                                 leaves, all.Lead(best));
+    verdict.reason = fmt::format(
+        "{}, and the next candidate is {:.1f} behind in 2 ln L, less {:g} for each parameter",
+        leaves, all.Lead(best), rules.parameter);
   } else {
     verdict.reason = leaves;
   }

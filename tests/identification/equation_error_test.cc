@@ -44,7 +44,7 @@ class ByEquationTest : public Bench {
                               double value) {
     std::vector<std::string> skipped;
     const Problem null(e, system);
-    for (Hypothesis& h : MakeCandidates(e, system, SizesOf(null, null.Start()), skipped)) {
+    for (Hypothesis& h : MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped)) {
       if (h.effect != effect) continue;
       CandidateResult c{std::move(h)};
       c.fits = true;

@@ -162,7 +162,7 @@ TEST_P(Applied, GivesTheSameModelAsTheExtensionWithTheSameErrors) {
   const Experiment e = ReadExperiment(kScaled + "candidates: [" + GetParam() + "]\n");
   std::vector<std::string> skipped;
   const Problem null(e, system);
-  const auto candidates = MakeCandidates(e, system, SizesOf(null, null.Start()), skipped);
+  const auto candidates = MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped);
   ASSERT_THAT(candidates, SizeIs(Gt(0u))) << (skipped.empty() ? "" : skipped.front());
   for (const Hypothesis& h : candidates) {
     SCOPED_TRACE(h.Name());
@@ -186,7 +186,7 @@ TEST_F(ExtensionTest, ACandidateBesideAllIsTriedOnce) {
   const auto count = [&](const std::string& candidates) {
     const Experiment e = ReadExperiment(kScaled + "candidates: [" + candidates + "]\n");
     const Problem null(e, system);
-    return MakeCandidates(e, system, SizesOf(null, null.Start()), skipped).size();
+    return MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped).size();
   };
   EXPECT_EQ(count("all, payload"), count("all"));
   EXPECT_GT(count("payload, backlash"), count("payload"));
@@ -204,7 +204,7 @@ TEST_F(ExtensionTest, AnInputIsLookedForInItsOwnUnit) {
   const Sizes sizes = SizesOf(null, null.Start());
   std::vector<std::string> skipped;
   const auto reach = [&](const Experiment& one) {
-    return MakeCandidates(one, system, sizes, skipped).at(0).extra.at(0).upper;
+    return MakeCandidates(one, {&system}, sizes, skipped).at(0).extra.at(0).upper;
   };
   EXPECT_NEAR(reach(pascal), 1e5 * reach(e), 1e-6 * reach(pascal));
 }

@@ -24,7 +24,7 @@ TEST_F(ProbeTest, NothingIsSimulatedTwice) {
   const Trials trials{&e, {}};
   const Fitted fitted = trials.FitAll(null, null.Start());
   std::vector<std::string> skipped;
-  const auto all = MakeCandidates(e, system, SizesOf(null, fitted.fit.x), skipped);
+  const auto all = MakeCandidates(e, {&system}, SizesOf(null, fitted.fit.x), skipped);
   ASSERT_EQ(all.size(), 1u);
   const Problem problem(e, all[0].system, all[0].Free());
   const auto probes = trials.Probes(all[0], problem, fitted, trials.LeftBy(fitted));

@@ -20,7 +20,8 @@ TEST(SegmentCandidates, LieBesideTheSegmentWithItsPlacesAndGeometry) {
   e.all_candidates = false;
   e.candidates = {{"braid", "", false}, {"chamber_asymmetry", "", false}};
   std::vector<std::string> skipped;
-  const auto all = MakeCandidates(e, System::Load(kModule), {}, skipped);
+  const System module = System::Load(kModule);
+  const auto all = MakeCandidates(e, {&module}, {}, skipped);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_THAT(skipped, ::testing::IsEmpty());
   for (const Hypothesis& h : all) {
@@ -47,13 +48,14 @@ TEST(SegmentCandidates, AreLeftOutWithoutASegmentAndWhereTheExperimentFitsThem) 
   fitted.name = "x_m", fitted.target = "plugin:segment", fitted.attribute = "x_m";
   e.parameters = {fitted};
   std::vector<std::string> skipped;
-  EXPECT_THAT(MakeCandidates(e, System::Load(kModule), {}, skipped), ::testing::IsEmpty());
+  const System module = System::Load(kModule);
+  EXPECT_THAT(MakeCandidates(e, {&module}, {}, skipped), ::testing::IsEmpty());
   EXPECT_THAT(skipped, ::testing::ElementsAre("pcc_segment: the model has it already",
                                               "chamber_asymmetry: the experiment fits it already"));
   skipped.clear();
   e.candidates = {{"braid", "", false}};
   const System arm = System::Load(CONTINUUM_SOURCE "/models/emps/emps.xml");
-  EXPECT_THAT(MakeCandidates(e, arm, {}, skipped), ::testing::IsEmpty());
+  EXPECT_THAT(MakeCandidates(e, {&arm}, {}, skipped), ::testing::IsEmpty());
   EXPECT_THAT(skipped, ::testing::ElementsAre("braid: no soft segment in the model"));
 }
 

@@ -1,0 +1,107 @@
+#include "identification/measure_candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "binding/config.h"
+#include "identification/places.h"
+#include "sim/measurement.h"
+#include "sim/mujoco.h"
+
+namespace continuum {
+namespace {
+
+// How far the measured values of some outputs reach [their unit].
+double OutputSize(const Experiment& e, const std::vector<std::string>& columns) {
+  double lower = kInfinity, upper = -kInfinity;
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    const bool wanted =
+        std::find(columns.begin(), columns.end(), e.channels[c].name) != columns.end();
+    for (const Log& log : e.logs) {
+      for (const double y : log.measured[c]) {
+        if (!wanted || std::isnan(y)) continue;
+        lower = std::min(lower, y / e.channels[c].factor);
+        upper = std::max(upper, y / e.channels[c].factor);
+      }
+    }
+  }
+  return upper > lower ? upper - lower : 1;
+}
+
+// An effect of the measurement on some outputs (or on the clock): nothing of the model changes.
+Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
+                            const std::vector<std::string>& names, const Experiment& e,
+                            const System& system, const Sizes& sizes) {
+  const std::string where = names.empty() ? "clock" : InWords(Place::kSensor, names);
+  Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
+  const Param& card = effect.params.front();
+  const std::string name(card.name);
+  double size = 1, typical = 0.02;  // of a scale, an angle or a skew
+  if (name == "delay") size = 4 * sizes.period, typical = 0.125;
+  if (name == "bias" || name == "rate") {
+    size = OutputSize(e, names);
+    if (name == "rate") size /= std::max(1e-9, e.logs.front().time.back() - e.logs.front().time[0]);
+  }
+  Parameter p;
+  p.name = name;
+  p.target = target, p.attribute = name;
+  p.has_initial = true;
+  p.where = "candidate";
+  const double null = MeasurementValue(e, target, name);
+  const bool factor = card.null == 1;
+  p.initial = null + typical * size;
+  p.upper = null + (factor ? 9 * std::abs(null) : name == "delay" ? 25 * size : size);
+  p.lower = factor ? 0.1 * null : name == "delay" ? 0 : null - size;
+  h.extra.push_back(p);
+  h.null.push_back(null);
+  return h;
+}
+
+// Outputs that one cause may act on alike: all of a unit, those of each sensor among them, each
+// alone; late ones also all of any unit, as the input is. turned: those of sensors with three
+// components.
+std::vector<std::vector<std::string>> OutputsTogether(const Experiment& e, const mjModel& m,
+                                                      const std::string& glob, bool turned,
+                                                      bool late) {
+  std::map<std::string, std::vector<std::string>> units, sensors;
+  std::vector<std::string> every;
+  for (const Output& out : e.outputs) {
+    if (out.kind != Output::Kind::kSensor || out.weight == 0 || out.quaternion()) continue;
+    const std::string sensor = out.source.substr(0, out.source.find('['));
+    if (!GlobMatches(glob, sensor) && !GlobMatches(glob, out.name())) continue;
+    const int id = mj_name2id(&m, mjOBJ_SENSOR, sensor.c_str());
+    if (turned && (id < 0 || m.sensor_dim[id] != 3)) continue;
+    const std::string& name = turned ? sensor : out.name();
+    if (std::find(every.begin(), every.end(), name) != every.end()) continue;
+    every.push_back(name), units[out.unit].push_back(name), sensors[sensor].push_back(name);
+  }
+  std::vector<std::vector<std::string>> all;
+  const auto add = [&](const std::vector<std::string>& names) {
+    if (!names.empty() && std::find(all.begin(), all.end(), names) == all.end())
+      all.push_back(names);
+  };
+  if (late) add(every);
+  for (const auto& [unit, names] : units) add(names);
+  for (const auto& [sensor, names] : sensors) add(names);
+  for (const auto& name : every) add({name});
+  return all;
+}
+
+}  // namespace
+
+std::vector<Hypothesis> MeasureCandidates(const EffectInfo& effect, const Candidate& wanted,
+                                          const Experiment& e, const System& system,
+                                          const Sizes& sizes) {
+  const std::string_view name = effect.params.front().name;
+  if (name == "skew") return {MeasureCandidate(effect, "time", {}, e, system, sizes)};
+  const std::string glob =
+      wanted.where.empty() ? "*" : wanted.where.substr(wanted.where.find(':') + 1);
+  std::vector<Hypothesis> all;
+  for (const auto& names :
+       OutputsTogether(e, system.model(), glob, name == "angle", name == "delay"))
+    all.push_back(MeasureCandidate(effect, "sensor:" + Globs(names), names, e, system, sizes));
+  return all;
+}
+
+}  // namespace continuum
