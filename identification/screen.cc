@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include <Eigen/Dense>
 
@@ -117,6 +118,34 @@ struct Small {
   }
 };
 
+// How often noise explains more than some amount: nothing at all in some draws, else as a gamma
+// distribution does that has their mean and variance, by Wilson and Hilferty's cube root. Not by
+// ranks: of many candidates one is likely to be beyond all its draws, where ranks do not tell how
+// far. What is to be judged is one of the draws, so that all are treated alike.
+class Tail {
+ public:
+  explicit Tail(const Eigen::Ref<const Eigen::RowVectorXd>& draws) {
+    double count = 0, sum = 0, squares = 0;
+    for (const double v : draws) {
+      if (v > 0) count += 1, sum += v, squares += v * v;
+    }
+    share_ = count / static_cast<double>(draws.size());
+    if (count < 2) return;
+    mean_ = sum / count;
+    ninth_ = (squares / count / (mean_ * mean_) - 1) / 9;
+  }
+
+  double operator()(double amount) const {
+    if (!(amount > 0)) return 1;
+    if (!(ninth_ > 0)) return share_;
+    const double z = (std::cbrt(amount / mean_) - (1 - ninth_)) / std::sqrt(ninth_);
+    return share_ * 0.5 * std::erfc(z * std::numbers::sqrt2 / 2);
+  }
+
+ private:
+  double share_ = 0, mean_ = 1, ninth_ = 0;  // of the positive ones, a ninth of 1/shape
+};
+
 }  // namespace
 
 Matrix Basis(const Matrix& A) {
@@ -229,30 +258,23 @@ Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, c
   } else {
     for (double& v : noise.reshaped()) v = random.Normal();
   }
-  Matrix draws(static_cast<Eigen::Index>(small.size()), count);
+  Matrix draws(static_cast<Eigen::Index>(small.size()), count + 1);  // z itself is the last
+  draws.rightCols(1) = Eigen::Map<const Vector>(out.explained.data(), draws.rows());
   ParallelFor(small.size(), [&](std::size_t, std::size_t c) {
     for (int d = 0; d < count; ++d) draws(c, d) = small[c].Best(noise.col(d));
   });
-  // Own p-values of every draw by its rank, then the distribution of the smallest.
-  Matrix own(draws.rows(), count);
-  std::vector<std::vector<double>> sorted(small.size());
-  const auto share = [&](std::size_t c, double amount) {
-    const auto& s = sorted[c];
-    const auto above = s.end() - std::lower_bound(s.begin(), s.end(), amount);
-    return (static_cast<double>(above) + 1) / (count + 1);
-  };
+  std::vector<Tail> tails;
+  Matrix score(draws.rows(), count + 1);
   for (std::size_t c = 0; c < small.size(); ++c) {
-    for (int d = 0; d < count; ++d) sorted[c].push_back(draws(c, d));
-    std::sort(sorted[c].begin(), sorted[c].end());
-    for (int d = 0; d < count; ++d) own(c, d) = share(c, draws(c, d));
+    tails.emplace_back(draws.row(static_cast<Eigen::Index>(c)));
+    for (int d = 0; d <= count; ++d) score(c, d) = tails[c](draws(c, d));
   }
   std::vector<double> smallest;
-  for (int d = 0; d < count; ++d) smallest.push_back(own.col(d).minCoeff());
+  for (int d = 0; d < count; ++d) smallest.push_back(score.col(d).minCoeff());
   std::sort(smallest.begin(), smallest.end());
   for (std::size_t c = 0; c < small.size(); ++c) {
-    const double mine = share(c, out.explained[c]);
     const auto as_small =
-        std::upper_bound(smallest.begin(), smallest.end(), mine) - smallest.begin();
+        std::upper_bound(smallest.begin(), smallest.end(), score(c, count)) - smallest.begin();
     out.p[c] = (static_cast<double>(as_small) + 1) / (count + 1);
   }
   return out;

@@ -69,9 +69,9 @@ struct Explained {
 Explained ExplainedBy(const Probe& probe, const Eigen::VectorXd& z);
 
 /// What several candidates explain, each with one or more probes (the best counts), and their
-/// family-wise significance: the share of draws of white noise in which some candidate reaches as
-/// small a p-value of its own as this one did with z. Repeats exactly for a seed. draws: of the
-/// noise where it is not white, one column each, instead.
+/// family-wise significance: the share of draws of white noise in which some candidate does as
+/// well, by what noise lets it explain, as this one did with z. Repeats exactly for a seed. draws:
+/// of the noise where it is not white, one column each, instead.
 struct Significance {
   std::vector<double> explained;  ///< [candidate] of its best probe
   std::vector<std::size_t> best;  ///< [candidate] its best probe

@@ -57,6 +57,20 @@ TEST_F(Screened, TheBestOfManyIsSignificantInFivePercentOfPureNoise) {
   EXPECT_NEAR(alarms / 400.0, 0.05, 0.033);
 }
 
+// One of so many candidates is likely to be beyond all of so few draws: no alarm by itself.
+TEST_F(Screened, ManyCandidatesRaiseNoMoreAlarmsWithFewDraws) {
+  std::vector<std::vector<Probe>> candidates;
+  for (int i = 0; i < 60; ++i) candidates.push_back({OneWay(Normal(), i % 3 - 1)});
+  int alarms = 0;
+  for (int repeat = 0; repeat < 400; ++repeat) {
+    Matrix draws(kRows, 99);
+    for (auto column : draws.colwise()) column = Normal();
+    const auto s = SignificanceOf(candidates, Normal(), 5, draws);
+    alarms += *std::min_element(s.p.begin(), s.p.end()) < 0.05;
+  }
+  EXPECT_NEAR(alarms / 400.0, 0.05, 0.033);
+}
+
 TEST_F(Screened, AStrongEffectIsSignificantAndTheBest) {
   std::vector<std::vector<Probe>> candidates;
   std::vector<Vector> columns;
