@@ -121,7 +121,8 @@ std::string NearerBound(const FreeParameter& p, double value) {
 }
 
 void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, Eigen::Index i) {
-  std::string range = fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  std::string range = u.known() ? fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i])
+                                : "interval not computed";
   if (u.at_bound[i]) range = "at " + NearerBound(p, value) + "; " + range;
   if (p.initial <= p.lower || p.initial >= p.upper)
     range += "; it starts at " + NearerBound(p, p.initial);

@@ -237,15 +237,17 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
     if (p.IsStart()) continue;
+    const std::string range =
+        u.known() ? fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) : "not computed";
     rows.push_back({p.name, fmt::format("{:.5g}", x[i]), p.unit,
-                    fmt::format("{:.2g}", u.standard_error[i]),
-                    fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) +
-                        (u.at_bound[i] ? ", at its bound" : ""),
+                    u.known() ? fmt::format("{:.2g}", u.standard_error[i]) : "–",
+                    range + (u.at_bound[i] ? ", at its bound" : ""),
                     u.step.size() ? fmt::format("{:.5g}", x[i] + u.step[i]) : "",
                     fmt::format("{:.5g}", p.initial)});
   }
   std::string note = "Intervals allow for residuals that are correlated in time";
   if (u.step.size()) note += ", and reach over what a fine time step would give";
+  if (!u.known()) note = "Standard errors, intervals and correlations are " + u.lacks;
   page.Table({"parameter", "value", "unit", "standard error", "95 % interval",
               u.step.size() ? "at a fine step" : "", "start"},
              rows, {note + "."});
@@ -279,6 +281,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
                       {"trace", fit.trace},
                       {"fitted_model", "fitted.xml"},
                       {"fitted_experiment", "fitted.yaml"}};
+  if (!u.lacks.empty()) json["intervals"] = u.lacks;
   for (Eigen::Index a = 0; a < u.correlation.rows(); ++a) {
     json["correlation"].emplace_back(
         std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
@@ -315,7 +318,12 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   page.Heading("Parameters");
   AddParameterTable(page, problem, fit.x, u);
   for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);
-  if (u.correlation.rows() > 1) page.HeatMap(CorrelationMap(problem, u));
+  if (!u.lacks.empty()) {
+    const std::string all = u.known() ? "Intervals are " : "Intervals and correlations were ";
+    page.Badge(Tone::kWarn, all + u.lacks,
+               "Run it again, with `--from` this fit.json to go on from here.");
+  }
+  if (u.known() && u.correlation.rows() > 1) page.HeatMap(CorrelationMap(problem, u));
   page.Heading("Convergence");
   ScatterSpec cost{"Cost", {"iteration", ""}, {"cost", ""}, {}, {}, true};
   Trend trend{"cost", {}, fit.trace};
