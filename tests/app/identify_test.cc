@@ -151,8 +151,8 @@ parameters:
   - {name: b, target: "joint:hinge", attribute: damping, lower: 0.01, upper: 1, per: condition}
   - {name: shown, target: "sensor:angle", attribute: bias, initial: 0, lower: -1, upper: 1}
 logs:
-  - {file: other.csv, condition: cold}
-  - {file: other.csv, condition: warm, trial: later, window: [1, 2.5]}
+  - {file: other.csv, condition: cold, window: [0, 1.2]}
+  - {file: other.csv, condition: warm, trial: later, window: [1.2, 2.9]}
 )");
   const auto fit = Identify({"--path", "stepped"}, "path: stepped");
   EXPECT_EQ(fit["fitted_experiment"], "fitted.yaml");
