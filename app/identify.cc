@@ -18,6 +18,7 @@
 #include "identification/pieces.h"
 #include "identification/regressor.h"
 #include "identification/start_hint.h"
+#include "identification/start_model.h"
 #include "identification/swarm.h"
 #include "sim/check.h"
 #include "sim/check_groups.h"
@@ -213,6 +214,7 @@ void RunIdentify(const Options& o) {
   for (const auto& [option, given] :
        {std::pair{"--starts", o.starts > 1}, {"--from", !o.from.empty()}})
     if (given && o.method != "lm") throw Error::Input(option, "--method lm", o.method);
+  RequireStartModels(problem);
   const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
   if (std::find(use.begin(), use.end(), true) == use.end()) {
     throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");

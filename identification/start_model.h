@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "identification/problem.h"
+
+namespace continuum {
+
+/// Throws Error (kInput; parameter, its line, log) where a start, a frozen value or a bound is one
+/// that no machine can have, and where a log's model does not compile at the start of a fit.
+void RequireStartModels(const Problem& problem);
+
+/// Why the simulation of a log diverges at x, in words: when, and by which of its parameters'
+/// values alone, if by one.
+std::string WhyItDiverges(const Problem& problem, const Problem::Vector& x, std::size_t log);
+
+}  // namespace continuum
