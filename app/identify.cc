@@ -150,6 +150,12 @@ void Print(const Problem& problem, const Fitting& all, const Determined& determi
       PrintParameter(problem.parameters()[i], fit.x[i], determined.uncertainty, i);
   }
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
+  for (std::size_t l = 0; l < r.size(); ++l) {
+    if (r[l].allFinite()) continue;
+    std::printf("log '%s' (%s) has no error, with the fitted parameters: %s\n",
+                e.logs[l].label.c_str(), e.logs[l].file.string().c_str(),
+                WhyItDiverges(problem, fit.x, l).c_str());
+  }
   const std::string unit = Pool(e).unit();
   auto validate = problem.TrainLogs();
   validate.flip();

@@ -19,12 +19,12 @@ std::string InWords(const FreeParameter& p, double value) {
   return fmt::format("{} = {:g} ({})", p.name, value, p.where);
 }
 
-// The parameters of a log whose values at x alone make it fail, beside what the log sets; "" where
-// it fails without any.
+// The parameters of a log whose values at x alone make it fail, beside what the log sets, or what
+// does without any.
 std::string Culprits(const Problem& problem, const Problem::Vector& x, std::size_t log,
                      const std::function<bool(const Changes&)>& fails) {
   Changes set = problem.experiment().logs[log].set;
-  if (fails(set)) return "";
+  if (fails(set)) return set.empty() || fails({}) ? " as the model stands" : " with its `set`";
   std::vector<std::string> alone, all;
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     const FreeParameter& p = problem.parameters()[k];

@@ -11,7 +11,7 @@ namespace continuum {
 void RequireStartModels(const Problem& problem);
 
 /// Why the simulation of a log diverges at x, in words: when, and by which of its parameters'
-/// values alone, if by one.
+/// values alone, if by one, by what the log sets, or as the model stands.
 std::string WhyItDiverges(const Problem& problem, const Problem::Vector& x, std::size_t log);
 
 }  // namespace continuum

@@ -78,6 +78,21 @@ TEST_F(Impossible, IsWhatDivergesAtTheStart) {
     EXPECT_THAT(f.err, HasSubstr(words));
 }
 
+TEST_F(Impossible, IsWhatALogSets) {
+  const std::string set =
+      "{file: other.csv, use: validate, set: {\"joint:hinge\": {stiffness: -1e9}}}";
+  Spoil("experiment.yaml", "{file: other.csv}", set);
+  auto f = Run({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("log 'other' (other.csv) has no error, with the fitted parameters: "
+                               "the simulation diverges at "));
+  Spoil("experiment.yaml", "use: validate, ", "");
+  f = Run({"identify", "experiment.yaml", "--path", "stepped", "--out", "no"});
+  EXPECT_EQ(f.exit_code, 1);
+  EXPECT_THAT(f.err, HasSubstr("other.csv, log 'other', at the start of the fit: "));
+  EXPECT_THAT(f.err, HasSubstr(" with its `set`"));
+}
+
 // The log is one of a heavy hand, whose inertia alone MuJoCo does not compile.
 TEST_F(Impossible, IsARejectedStepInsideAFit) {
   std::string heavy = Scratch::Text(files_ / "model.xml"), input = "time,motor\n";
