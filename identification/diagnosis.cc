@@ -39,6 +39,7 @@ class Session {
     d_.folds = FoldsOf(e_);
     if (!d_.noise.known()) RequireFolds();  // before long work
     RequireStartModels(null_);
+    RequireEffects(null_);
     FitNull();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
     d_.noise.step = trials_.StepEffect(null_, d_.before);

@@ -176,21 +176,6 @@ class Watch : public ceres::IterationCallback {
   bool settled_ = false;
 };
 
-void RequireEffect(const Problem& problem, const Vector& x, const std::vector<Matrix>& J) {
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    double norm = 0;
-    for (const Matrix& part : J) {
-      if (part.size()) norm += part.col(i).squaredNorm();
-    }
-    if (norm * p.scale * p.scale > 0 || p.IsStart()) continue;  // of a log that is not in use
-    throw Error::Input((p.where.empty() ? "" : p.where + ": ") + "parameter '" + p.name + "' (" +
-                           p.change.target + ", " + p.change.attribute + ")",
-                       "an effect on some output at its start " + fmt::format("{:g}", x[i]),
-                       "none");
-  }
-}
-
 }  // namespace
 
 void RequireFinite(const Problem& problem, const Vector& x, const std::vector<Vector>& r,

@@ -95,6 +95,31 @@ void RequireStartModels(const Problem& problem) {
   }
 }
 
+void RequireEffect(const Problem& problem, const Problem::Vector& x,
+                   const std::vector<Problem::Matrix>& J) {
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    double norm = 0;
+    for (const Problem::Matrix& part : J) {
+      if (part.size()) norm += part.col(i).squaredNorm();
+    }
+    if (norm * p.scale * p.scale > 0 || p.IsStart()) continue;  // of a log that is not in use
+    throw Error::Input((p.where.empty() ? "" : p.where + ": ") + "parameter '" + p.name + "' (" +
+                           p.change.target + ", " + p.change.attribute + ")",
+                       "an effect on some output at its start " + fmt::format("{:g}", x[i]),
+                       "none");
+  }
+}
+
+void RequireEffects(const Problem& problem) {
+  const auto train = problem.TrainLogs();
+  const Problem::Vector x = problem.Start();
+  const auto r = problem.Residuals(x, train);
+  const auto finite = [](const Problem::Vector& log) { return log.allFinite(); };
+  if (std::all_of(r.begin(), r.end(), finite))
+    RequireEffect(problem, x, problem.Jacobian(x, r, train, {}, true));
+}
+
 std::string WhyItDiverges(const Problem& problem, const Problem::Vector& x, std::size_t log) {
   const auto fails = [&](const Changes& some) { return Diverges(problem, some, log); };
   return problem.Predict(x, log).Failure() + Culprits(problem, x, log, fails);

@@ -67,6 +67,14 @@ TEST_F(Impossible, StartsAreNamed) {
   ExpectRefusedAs({"experiment.yaml:6: parameters[0].initial", "a number >= 0", "-1"});
 }
 
+TEST_F(Impossible, ParametersWithoutEffectAreNamedBeforeTheFit) {
+  Free(
+      "{name: b, target: \"joint:hinge\", attribute: damping, lower: 0.01, upper: 1}, "
+      "{name: rough, target: \"geom:rod\", attribute: \"friction[0]\", lower: 0.1, upper: 2}");
+  ExpectRefusedAs({"experiment.yaml:6: parameters[1]: parameter 'rough' (geom:rod, friction[0])",
+                   "an effect on some output at its start 1"});
+}
+
 TEST_F(Impossible, IsWhatDivergesAtTheStart) {
   Free(
       "{name: k, target: \"joint:hinge\", attribute: stiffness, initial: -1e9, lower: -2e9, "
