@@ -18,6 +18,7 @@
 #include "identification/pieces.h"
 #include "identification/regressor.h"
 #include "identification/start_hint.h"
+#include "identification/start_model.h"
 #include "identification/swarm.h"
 #include "sim/check.h"
 #include "sim/check_groups.h"
@@ -121,7 +122,8 @@ std::string NearerBound(const FreeParameter& p, double value) {
 }
 
 void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, Eigen::Index i) {
-  std::string range = fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i]);
+  std::string range = u.known() ? fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i])
+                                : "interval not computed";
   if (u.at_bound[i]) range = "at " + NearerBound(p, value) + "; " + range;
   if (p.initial <= p.lower || p.initial >= p.upper)
     range += "; it starts at " + NearerBound(p, p.initial);
@@ -148,6 +150,12 @@ void Print(const Problem& problem, const Fitting& all, const Determined& determi
       PrintParameter(problem.parameters()[i], fit.x[i], determined.uncertainty, i);
   }
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
+  for (std::size_t l = 0; l < r.size(); ++l) {
+    if (r[l].allFinite()) continue;
+    std::printf("log '%s' (%s) has no error, with the fitted parameters: %s\n",
+                e.logs[l].label.c_str(), e.logs[l].file.string().c_str(),
+                WhyItDiverges(problem, fit.x, l).c_str());
+  }
   const std::string unit = Pool(e).unit();
   auto validate = problem.TrainLogs();
   validate.flip();
@@ -212,6 +220,7 @@ void RunIdentify(const Options& o) {
   for (const auto& [option, given] :
        {std::pair{"--starts", o.starts > 1}, {"--from", !o.from.empty()}})
     if (given && o.method != "lm") throw Error::Input(option, "--method lm", o.method);
+  RequireStartModels(problem);
   const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
   if (std::find(use.begin(), use.end(), true) == use.end()) {
     throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");

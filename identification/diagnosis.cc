@@ -16,6 +16,7 @@
 #include "identification/pairs.h"
 #include "identification/parallel.h"
 #include "identification/rounding.h"
+#include "identification/start_model.h"
 
 namespace continuum {
 namespace {
@@ -37,6 +38,8 @@ class Session {
     d_.noise = NoiseOf(e_);
     d_.folds = FoldsOf(e_);
     if (!d_.noise.known()) RequireFolds();  // before long work
+    RequireStartModels(null_);
+    RequireEffects(null_);
     FitNull();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
     d_.noise.step = trials_.StepEffect(null_, d_.before);

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "identification/parallel.h"
+#include "identification/start_model.h"
 #include "sim/stop.h"
 
 namespace continuum {
@@ -159,7 +160,9 @@ class Watch : public ceres::IterationCallback {
 
  private:
   // Whether a step failed from which little was expected: then the simulation's own errors decide.
+  // One that diverged says nothing of what was expected (Ceres gives it the largest cost there is).
   bool Settled(const ceres::IterationSummary& s) const {
+    if (!(s.cost < std::numeric_limits<double>::max())) return false;
     if (s.step_is_successful || !s.step_is_valid || !(s.relative_decrease < 0)) return false;
     return s.cost_change / s.relative_decrease < options_.tolerance * s.cost;
   }
@@ -173,29 +176,15 @@ class Watch : public ceres::IterationCallback {
   bool settled_ = false;
 };
 
-void RequireEffect(const Problem& problem, const Vector& x, const std::vector<Matrix>& J) {
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    double norm = 0;
-    for (const Matrix& part : J) {
-      if (part.size()) norm += part.col(i).squaredNorm();
-    }
-    if (norm * p.scale * p.scale > 0 || p.IsStart()) continue;  // of a log that is not in use
-    throw Error::Input((p.where.empty() ? "" : p.where + ": ") + "parameter '" + p.name + "' (" +
-                           p.change.target + ", " + p.change.attribute + ")",
-                       "an effect on some output at its start " + fmt::format("{:g}", x[i]),
-                       "none");
-  }
-}
-
 }  // namespace
 
-void RequireFinite(const Problem& problem, const std::vector<Vector>& r,
+void RequireFinite(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                    const std::vector<bool>& use, const std::string& when) {
   for (std::size_t l = 0; l < use.size(); ++l) {
     if (!use[l] || r[l].allFinite()) continue;
-    throw Error::Job("the simulation of " + problem.experiment().logs[l].label + " diverges " +
-                     when);
+    const Log& log = problem.experiment().logs[l];
+    throw Error::Job(log.file.string() + ", log '" + log.label + "', " + when + ": " +
+                     WhyItDiverges(problem, x, l));
   }
 }
 
@@ -217,7 +206,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const Vector all = whitening.Stack(r, use);
-  RequireFinite(problem, r, use, "at the start of the fit");
+  RequireFinite(problem, fit.x, r, use, "at the start of the fit");
   if (x.size() == 0) {
     fit.cost = 0.5 * all.squaredNorm();
     fit.converged = true;

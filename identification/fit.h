@@ -46,10 +46,11 @@ struct Fit {
   std::vector<double> trace;  ///< cost after each iteration
 };
 
-/// Throws Error (kJob) when the simulation of a log in use diverges: r has no number there. when:
-/// in words, "at the start of the fit".
-void RequireFinite(const Problem& problem, const std::vector<Problem::Vector>& r,
-                   const std::vector<bool>& use, const std::string& when);
+/// Throws Error (kJob; file of the log, time, parameter) when the simulation of a log in use
+/// diverges at x: r has no number there. when: in words, "at the start of the fit".
+void RequireFinite(const Problem& problem, const Problem::Vector& x,
+                   const std::vector<Problem::Vector>& r, const std::vector<bool>& use,
+                   const std::string& when);
 
 /// Bounded Levenberg-Marquardt (Ceres) over the logs in use, from x. Divergence of the simulation
 /// is a rejected step. Throws Error when a parameter has no effect on any output at the start, or

@@ -8,6 +8,7 @@
 #include "error.h"
 #include "identification/ahead.h"
 #include "identification/extension.h"
+#include "identification/residual_plots.h"
 #include "sim/file.h"
 #include "sim/json.h"
 #include "sim/replay.h"
@@ -15,63 +16,6 @@
 
 namespace continuum {
 namespace {
-
-constexpr int kLags = 100;
-
-std::vector<double> Autocorrelation(const std::vector<double>& r) {
-  double power = 0, mean = 0;
-  for (const double v : r) mean += v / static_cast<double>(r.size());
-  for (const double v : r) power += (v - mean) * (v - mean);
-  std::vector<double> rho;
-  for (std::size_t lag = 0; lag < std::min<std::size_t>(kLags, r.size()); ++lag) {
-    double sum = 0;
-    for (std::size_t k = lag; k < r.size(); ++k) sum += (r[k] - mean) * (r[k - lag] - mean);
-    rho.push_back(power > 0 ? sum / power : 0);
-  }
-  return rho;
-}
-
-void AddAutocorrelation(Page& page, const Problem& problem, const std::vector<Replayed>& logs) {
-  const Experiment& e = problem.experiment();
-  ScatterSpec spec{"Residual autocorrelation", {"lag", "s"}, {"correlation", ""}, {}, {}, true};
-  for (std::size_t l = 0; l < logs.size() && l < 6; ++l) {
-    const auto residual = Residuals(e, e.logs[l], logs[l].trace);
-    const std::size_t c = problem.channels().front();
-    const auto rho = Autocorrelation(residual[c]);
-    Trend trend{e.logs[l].label + ": " + e.channels[c].name, {}, rho};
-    const double dt = (e.logs[l].time.back() - e.logs[l].time.front()) /
-                      static_cast<double>(e.logs[l].rows() - 1);
-    for (std::size_t k = 0; k < rho.size(); ++k) trend.x.push_back(static_cast<double>(k) * dt);
-    spec.trends.push_back(std::move(trend));
-  }
-  page.Scatter(spec);
-}
-
-void AddResidualAgainstInput(Page& page, const Problem& problem,
-                             const std::vector<Replayed>& logs) {
-  const Experiment& e = problem.experiment();
-  const std::size_t c = problem.channels().front();
-  for (std::size_t i = 0; i < e.inputs.size() && i < 4; ++i) {
-    if (e.inputs[i].column.empty()) continue;
-    ScatterSpec spec{"Residual over input " + e.inputs[i].column,
-                     {e.inputs[i].column, e.inputs[i].unit},
-                     {e.channels[c].name + " residual", e.channels[c].unit},
-                     {},
-                     {},
-                     true};
-    PointGroup points{"all logs", {}, {}, Style::kResidual};
-    const double unit = UnitFactor(e.inputs[i].unit, e.inputs[i].where);
-    for (std::size_t l = 0; l < logs.size(); ++l) {
-      const auto residual = Residuals(e, e.logs[l], logs[l].trace);
-      for (std::size_t k = 0; k < e.logs[l].rows(); k += 5) {
-        points.x.push_back(e.logs[l].input[i][k] / unit);
-        points.y.push_back(residual[c][k] / e.channels[c].factor);
-      }
-    }
-    spec.groups.push_back(std::move(points));
-    page.Scatter(spec);
-  }
-}
 
 HeatMapSpec CorrelationMap(const Problem& problem, const Uncertainty& u) {
   HeatMapSpec spec{"Correlation of the parameters", {}, {}, {}};
@@ -237,15 +181,17 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
     if (p.IsStart()) continue;
+    const std::string range =
+        u.known() ? fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) : "not computed";
     rows.push_back({p.name, fmt::format("{:.5g}", x[i]), p.unit,
-                    fmt::format("{:.2g}", u.standard_error[i]),
-                    fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) +
-                        (u.at_bound[i] ? ", at its bound" : ""),
+                    u.known() ? fmt::format("{:.2g}", u.standard_error[i]) : "–",
+                    range + (u.at_bound[i] ? ", at its bound" : ""),
                     u.step.size() ? fmt::format("{:.5g}", x[i] + u.step[i]) : "",
                     fmt::format("{:.5g}", p.initial)});
   }
   std::string note = "Intervals allow for residuals that are correlated in time";
   if (u.step.size()) note += ", and reach over what a fine time step would give";
+  if (!u.known()) note = "Standard errors, intervals and correlations are " + u.lacks;
   page.Table({"parameter", "value", "unit", "standard error", "95 % interval",
               u.step.size() ? "at a fine step" : "", "start"},
              rows, {note + "."});
@@ -279,6 +225,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
                       {"trace", fit.trace},
                       {"fitted_model", "fitted.xml"},
                       {"fitted_experiment", "fitted.yaml"}};
+  if (!u.lacks.empty()) json["intervals"] = u.lacks;
   for (Eigen::Index a = 0; a < u.correlation.rows(); ++a) {
     json["correlation"].emplace_back(
         std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
@@ -315,7 +262,12 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   page.Heading("Parameters");
   AddParameterTable(page, problem, fit.x, u);
   for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);
-  if (u.correlation.rows() > 1) page.HeatMap(CorrelationMap(problem, u));
+  if (!u.lacks.empty()) {
+    const std::string all = u.known() ? "Intervals are " : "Intervals and correlations were ";
+    page.Badge(Tone::kWarn, all + u.lacks,
+               "Run it again, with `--from` this fit.json to go on from here.");
+  }
+  if (u.known() && u.correlation.rows() > 1) page.HeatMap(CorrelationMap(problem, u));
   page.Heading("Convergence");
   ScatterSpec cost{"Cost", {"iteration", ""}, {"cost", ""}, {}, {}, true};
   Trend trend{"cost", {}, fit.trace};
@@ -324,8 +276,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   page.Scatter(cost);
   if (record.starts) AddStarts(page, problem, *record.starts);
   page.Heading("What remains");
-  AddAutocorrelation(page, problem, logs);
-  AddResidualAgainstInput(page, problem, logs);
+  AddResiduals(page, problem, logs);
   page.Heading("Errors");
   std::vector<std::vector<std::string>> rows;
   for (std::size_t l = 0; l < logs.size(); ++l) {

@@ -8,21 +8,12 @@
 #include <Eigen/Dense>
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "sim/replicates.h"
+
 namespace continuum {
 namespace {
 
 constexpr int kHighestOrder = 4;
-
-bool Replicates(const Log& a, const Log& b) {
-  if (a.trial != b.trial || a.condition != b.condition || a.rows() != b.rows()) return false;
-  for (std::size_t k = 0; k < a.rows(); ++k) {
-    if (std::abs((a.time[k] - a.time[0]) - (b.time[k] - b.time[0])) > 1e-6) return false;
-  }
-  for (std::size_t i = 0; i < a.input.size(); ++i) {
-    if (a.input[i] != b.input[i]) return false;
-  }
-  return true;
-}
 
 // What each replicate of one channel differs from their mean, at the size of one log's noise.
 std::vector<std::vector<double>> Deviations(const Experiment& e,

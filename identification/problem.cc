@@ -245,6 +245,18 @@ std::vector<Change> Problem::CommonChanges(const Vector& x) const {
   return changes;
 }
 
+// Of values that no machine has, or whose model does not compile: as much a step to be rejected as
+// one that diverges.
+Trace Problem::Refused(const Log& log, const Error& error) const {
+  Trace trace;
+  trace.diverged = true;
+  trace.diverged_at = log.time.front();
+  trace.why = error.what();
+  const std::vector<double> none(log.rows(), std::numeric_limits<double>::quiet_NaN());
+  trace.channel.assign(experiment_->channels.size(), none);
+  return trace;
+}
+
 // step: a time step other than the model's [s], or 0.
 Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double step) const {
   const Experiment setup = MeasuredBy(x, log);
@@ -260,11 +272,20 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
     return trace;
   }
   if (path_ == Path::kSmooth) {
-    const auto flow = FlowAt(thread, x, log);
-    return FollowFlow(*flow, {}, setup, logged, solving_).trace;
+    try {
+      const auto flow = FlowAt(thread, x, log);
+      return FollowFlow(*flow, {}, setup, logged, solving_).trace;
+    } catch (const Error& error) {
+      return Refused(logged, error);
+    }
   }
   if (const double h = step > 0 ? step : step_; h > 0) changes.push_back({"option", "timestep", h});
-  Machine machine = systems_[thread].Build(changes);
+  Machine machine;
+  try {
+    machine = systems_[thread].Build(changes);
+  } catch (const Error& error) {
+    return Refused(logged, error);
+  }
   const InitialState start = StartAt(machine, x, log);
   Hooks hooks;
   if (terms_.count > 0) {
@@ -298,16 +319,16 @@ Trace Problem::Predict(const Vector& x, std::size_t log) const { return Run(0, x
 
 Problem::Vector Problem::ResidualOf(std::size_t index, const Trace& trace) const {
   const Log& log = experiment_->logs[index];
-  const auto residuals = continuum::Residuals(*experiment_, log, trace);
   const auto rows = static_cast<Eigen::Index>(log.rows());
   Vector r(rows * static_cast<Eigen::Index>(channels_.size()));
+  if (trace.diverged) return r.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const auto residuals = continuum::Residuals(*experiment_, log, trace);
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     for (Eigen::Index k = 0; k < rows; ++k) {
       const double value = residuals[channels_[c]][k];
       r[static_cast<Eigen::Index>(c) * rows + k] = std::isnan(value) ? 0 : value / scale_[c];
     }
   }
-  if (trace.diverged) r.setConstant(std::numeric_limits<double>::quiet_NaN());
   return r;
 }
 

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "error.h"
 #include "identification/cvodes.h"
 #include "sim/flow.h"
 #include "sim/score.h"
@@ -128,6 +129,7 @@ class Problem {
   bool SameMotion(std::size_t a, std::size_t b) const;
   std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
+  Trace Refused(const Log& log, const Error& error) const;
   std::unique_ptr<Flow> FlowAt(std::size_t thread, const Vector& x, std::size_t log) const;
   bool Measures(std::size_t k) const;
   /// Within the parameter's bounds.

@@ -72,14 +72,21 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
     if (StopRequested()) return;
     const auto [i, k] = tasks[t];
-    const double step = StepOf(x, k, share_);
+    double step = StepOf(x, k, share_);
     const auto moved = [&](double by) {
       Vector beside = x;
       beside[k] += by;
       return Run(thread, beside, motions[i].front());
     };
-    const bool both = central_ && Allows(k, x[k] - step);
-    const Trace there = moved(step), back = both ? moved(-step) : Trace{};
+    const bool room = Allows(k, x[k] - step);
+    Trace there = moved(step), back;
+    bool both = central_ && room;
+    if (both) back = moved(-step);
+    if (both && back.diverged) both = false;
+    if (there.diverged && room) {  // at the edge of what can be simulated: to the other side
+      there = central_ ? std::move(back) : moved(-step);
+      step = -step, both = false;
+    }
     for (const std::size_t l : motions[i])
       J[l].col(k) = both ? (ResidualOf(l, there) - ResidualOf(l, back)) / (2 * step)
                          : (ResidualOf(l, there) - r[l]) / step;

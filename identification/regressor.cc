@@ -11,6 +11,7 @@
 #include "engine.h"
 #include "error.h"
 #include "identification/lowpass.h"
+#include "identification/rests.h"
 #include "sim/inputs.h"
 #include "sim/measurement.h"
 #include "sim/ties.h"
@@ -21,9 +22,10 @@ namespace {
 using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
-constexpr double kFilter = 50;      // Hz
-constexpr double kOfTheRate = 0.2;  // of the sampling rate, at most
-constexpr double kLinear = 0.01;    // of a column: dry friction near rest bends it by less
+constexpr double kFilter = 50;        // Hz
+constexpr double kOfTheRate = 0.2;    // of the sampling rate, at most
+constexpr double kSpeedNoise = 4e-3;  // of a joint's fastest, at least: filters ring after stops
+constexpr double kLinear = 0.01;      // of a column: dry friction near rest bends it by less
 
 std::string JointName(const mjModel& m, int j) {
   const char* const name = mj_id2name(&m, mjOBJ_JOINT, j);
@@ -64,16 +66,17 @@ struct Motion {
   std::size_t log;
   double step, cutoff;                                    // cutoff: share of the sampling rate
   std::vector<std::vector<double>> q, v, a;               // [free dof][row]
+  std::vector<double> noise;                              // [free dof], of v
   std::vector<std::pair<int, std::vector<double>>> pull;  // actuator, its measured force
 };
 
 Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double cutoff) {
   const Log& log = e.logs[index];
-  Motion motion{index, EvenStep(log), 0, {}, {}, {}, {}};
+  Motion motion{index, EvenStep(log), 0, {}, {}, {}, {}, {}};
   const double rate = 1 / motion.step;
   motion.cutoff = std::min(cutoff > 0 ? cutoff : kFilter, kOfTheRate * rate) / rate;
   const std::vector<int> dofs = Ties(m).dofs();
-  motion.q.resize(dofs.size());
+  motion.q.resize(dofs.size()), motion.noise.resize(dofs.size());
   const Wiring wiring(e, m);
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const auto& source = wiring.output[e.channels[c].output];
@@ -95,7 +98,9 @@ Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double
     if (force) {
       motion.pull.emplace_back(source.address, std::move(y));
     } else {
-      motion.q[joint - dofs.begin()] = LowPass(y, motion.cutoff);
+      const auto i = joint - dofs.begin();
+      motion.q[i] = LowPass(y, motion.cutoff);
+      motion.noise[i] = SpeedNoise(y, motion.q[i], motion.cutoff, motion.step);
     }
   }
   for (std::size_t i = 0; i < dofs.size(); ++i) {
@@ -105,18 +110,21 @@ Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double
     }
     motion.v.push_back(Derivative(motion.q[i], motion.step));
     motion.a.push_back(Derivative(motion.v[i], motion.step));
+    const double fastest = Vector::Map(motion.v[i].data(), log.rows()).cwiseAbs().maxCoeff();
+    motion.noise[i] = std::max(motion.noise[i], kSpeedNoise * fastest);
   }
   return motion;
 }
 
+std::vector<double> At(std::size_t row, const std::vector<std::vector<double>>& all) {
+  std::vector<double> values;
+  for (const auto& y : all) values.push_back(y[row]);
+  return values;
+}
+
 // Puts a machine at one row of a motion; joints that are tied to others follow.
 void Put(const Motion& motion, std::size_t row, const Ties& ties, const mjModel& m, mjData& d) {
-  const auto at = [row](const std::vector<std::vector<double>>& all) {
-    std::vector<double> values;
-    for (const auto& y : all) values.push_back(y[row]);
-    return values;
-  };
-  const auto q = at(motion.q), v = at(motion.v), a = at(motion.a);
+  const auto q = At(row, motion.q), v = At(row, motion.v), a = At(row, motion.a);
   ties.Spread(m, q.data(), a.data(), d);
   mju_copy(d.qacc, d.qvel, static_cast<int>(m.nv));
   ties.Spread(m, q.data(), v.data(), d);
@@ -132,10 +140,10 @@ void PutInputs(const Experiment& e, const Log& log, const Wiring& wiring, std::s
   }
 }
 
-// Forces of one machine along a motion [row, free dof]: what is missing, and what the actuators
-// give.
+// Forces of one machine along a motion [row, free dof]: what is missing, what the actuators give;
+// and 1 where dry friction may hold.
 struct Forces {
-  Matrix missing, actuated;
+  Matrix missing, actuated, rests;
 };
 
 void Replace(const mjData& d, int actuator, double measured, Vector& force) {
@@ -157,7 +165,8 @@ Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
   m.opt.disableflags |= mjDSBL_EQUALITY;
   const auto rows = static_cast<Eigen::Index>(log.rows());
   const auto free = static_cast<Eigen::Index>(ties.velocities());
-  Forces forces{Matrix(rows, free), Matrix(rows, free)};
+  Forces forces{Matrix(rows, free), Matrix(rows, free), Matrix::Zero(rows, free)};
+  Matrix friction(rows, free);
   mj_resetData(&m, &d);
   Vector on_free(free);
   const auto freely = [&](const Vector& force) {
@@ -168,11 +177,21 @@ Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
     PutInputs(e, log, wiring, k, inputs, d);
     Put(motion, k, ties, m, d);
     mj_inverse(&m, &d);
+    Eigen::RowVectorXd rests = Eigen::RowVectorXd::Zero(free);
+    MarkRests(ties, m, d, At(k, motion.v), motion.noise, rests);
+    forces.rests.row(k) = rests;
     mj_fwdActuation(&m, &d);
     Vector actuated = Vector::Map(d.qfrc_actuator, m.nv);
     for (const auto& [actuator, force] : motion.pull) Replace(d, actuator, force[k], actuated);
     forces.actuated.row(k) = freely(actuated);
-    forces.missing.row(k) = freely(Vector::Map(d.qfrc_inverse, m.nv) - actuated);
+    const auto held = Vector::Map(d.qfrc_constraint, m.nv);
+    friction.row(k) = freely(held);
+    forces.missing.row(k) = freely(Vector::Map(d.qfrc_inverse, m.nv) + held - actuated);
+  }
+  // Dry friction jumps where filtered motion does not: it is filtered like the positions first.
+  for (Eigen::Index i = 0; i < free; ++i) {
+    const auto smooth = LowPass({friction.col(i).begin(), friction.col(i).end()}, motion.cutoff);
+    forces.missing.col(i) -= Vector::Map(smooth.data(), rows);
   }
   for (Matrix* const forces_of : {&forces.missing, &forces.actuated}) {
     for (auto column : forces_of->colwise()) {
@@ -187,6 +206,7 @@ Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
 struct Equations {
   bool train;
   Vector e, f;  // missing and actuator force, dof after dof
+  Vector told;  // 0 where dry friction may hold, else 1
   Matrix Y;     // ∂e/∂p
 };
 
@@ -194,6 +214,14 @@ Vector Inner(const Matrix& forces, const Vector& weight, double cutoff) {
   const auto ends = std::min<Eigen::Index>(std::lround(1 / cutoff), forces.rows() / 4);
   const Matrix inner = forces.middleRows(ends, forces.rows() - 2 * ends) * weight.asDiagonal();
   return inner.reshaped();
+}
+
+// Rows that say something, whatever friction there is: at the start, or with other parameters.
+Vector Told(const Problem& problem, const Motion& motion, const Vector& x, const Matrix& rests) {
+  Vector there = x;
+  for (Eigen::Index k = 0; k < x.size(); ++k) there[k] += problem.StepOf(x, k, 0.2);
+  const Matrix all = Widened(rests.cwiseMax(ForcesOf(problem, motion, there).rests), motion.cutoff);
+  return 1 - Inner(all, Vector::Ones(all.cols()), motion.cutoff).array();
 }
 
 Vector Weights(const std::vector<Forces>& forces) {
@@ -208,7 +236,7 @@ Vector Weights(const std::vector<Forces>& forces) {
 }
 
 Matrix Columns(const Problem& problem, const Motion& motion, const Vector& x, const Matrix& missing,
-               const Vector& weight) {
+               const Vector& weight, const Vector& told) {
   const Vector base = Inner(missing, weight, motion.cutoff);
   Matrix Y(base.size(), x.size());
   for (Eigen::Index k = 0; k < x.size(); ++k) {
@@ -224,11 +252,12 @@ Matrix Columns(const Problem& problem, const Motion& motion, const Vector& x, co
       return (Inner(ForcesOf(problem, motion, there).missing, weight, motion.cutoff) - base) / by;
     };
     Y.col(k) = moved(step);
-    const double bend = (moved(2 * step) - Y.col(k)).norm();
-    if (bend > kLinear * Y.col(k).norm()) {
+    const double bend = told.cwiseProduct(moved(2 * step) - Y.col(k)).norm();
+    const double size = told.cwiseProduct(Y.col(k)).norm();
+    if (bend > kLinear * size) {
       throw Error::Input("--method regressor", "parameters that enter the forces linearly",
                          fmt::format("'{}', whose effect changes by {:.2g} % over {:g} {}", p.name,
-                                     100 * bend / Y.col(k).norm(), step, p.unit));
+                                     100 * bend / size, step, p.unit));
     }
   }
   return Y;
@@ -252,15 +281,15 @@ Vector Solve(const Problem& problem, const Vector& x, const std::vector<Equation
   for (Eigen::Index k = 0; k < n; ++k) scale[k] = problem.parameters()[k].scale;
   for (const Equations& q : equations) {
     if (!q.train) continue;
-    H += q.Y.transpose() * q.Y;
-    g += q.Y.transpose() * q.e;
+    H += q.Y.transpose() * q.told.asDiagonal() * q.Y;
+    g += q.Y.transpose() * q.told.cwiseProduct(q.e);
   }
   H = scale.asDiagonal() * H * scale.asDiagonal();
   g = scale.cwiseProduct(g);
   for (Eigen::Index k = 0; k < n; ++k) {
     if (H(k, k) > 0) continue;
     throw Error::Input("parameter '" + problem.parameters()[k].name + "'",
-                       "an effect on the forces of a train log", "none");
+                       "an effect on the forces of a train log where its joints move", "none");
   }
   const Vector size = H.diagonal().cwiseSqrt();
   const Matrix unit = size.cwiseInverse().asDiagonal() * H * size.cwiseInverse().asDiagonal();
@@ -311,10 +340,11 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   Regression found;
   for (std::size_t l = 0; l < motions.size(); ++l) {
     const double cutoff = motions[l].cutoff;
+    const Vector told = Told(problem, motions[l], x, forces[l].rests);
     equations.push_back({use[l], Inner(forces[l].missing, weight, cutoff),
-                         Inner(forces[l].actuated, weight, cutoff),
-                         Columns(problem, motions[l], x, forces[l].missing, weight)});
-    if (use[l]) found.rows += static_cast<std::size_t>(equations.back().e.size());
+                         Inner(forces[l].actuated, weight, cutoff), told,
+                         Columns(problem, motions[l], x, forces[l].missing, weight, told)});
+    if (use[l]) found.rows += static_cast<std::size_t>(told.sum());
   }
   found.x = Solve(problem, x, equations);
   const Vector change = found.x - x;
@@ -322,7 +352,9 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   found.validate = Relative(equations, change, false);
   std::vector<Scores> scores;
   for (const Equations& q : equations) {
-    if (q.train) scores.push_back({q.e + q.Y * change, q.Y, Eigen::VectorXd::Ones(q.e.size())});
+    if (!q.train) continue;
+    scores.push_back({q.told.cwiseProduct(q.e + q.Y * change), q.told.asDiagonal() * q.Y,
+                      Vector::Ones(q.e.size())});
   }
   found.uncertainty = UncertaintyFrom(problem, found.x, scores);
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -214,7 +214,7 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) co
   f.fit = FitParameters(problem, start, train, options);
   f.fit.x = FitStarts(problem, f.fit.x, validate);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
-  RequireFinite(problem, f.residuals, problem.AllLogs(), "with the fitted parameters");
+  RequireFinite(problem, f.fit.x, f.residuals, problem.AllLogs(), "with the fitted parameters");
   f.error = {problem.PooledRms(f.residuals, train), problem.PooledRms(f.residuals, validate)};
   f.cost = 2 * f.fit.cost;
   return f;

@@ -92,6 +92,28 @@ bool Foretold(const Uncertainty& u, const Vector& moved) {
   return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
 }
 
+std::vector<bool> AtBounds(const Problem& problem, const Vector& x) {
+  std::vector<bool> at;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    const double edge = 1e-6 * p.scale;
+    at.push_back(x[i] <= p.lower + edge || x[i] >= p.upper - edge);
+  }
+  return at;
+}
+
+// Of a fit that the user did not wait for.
+Uncertainty NotComputed(const Problem& problem, const Vector& x) {
+  const Vector none = Vector::Constant(x.size(), std::numeric_limits<double>::quiet_NaN());
+  return {.standard_error = none,
+          .lower = none,
+          .upper = none,
+          .correlation = none * none.transpose(),
+          .information = Matrix::Zero(x.size(), x.size()),
+          .at_bound = AtBounds(problem, x),
+          .lacks = "not computed: interrupted"};
+}
+
 // ρ' and ρ'' of the robust loss at residuals r.
 struct Loss {
   Vector slope, curvature;
@@ -150,11 +172,9 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
     rows += block.r.size();
   }
   u.information = H;
+  u.at_bound = AtBounds(problem, x);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    const double edge = 1e-6 * p.scale;
-    u.at_bound.push_back(x[i] <= p.lower + edge || x[i] >= p.upper - edge);
-    if (u.at_bound.back()) u.information.row(i).setZero(), u.information.col(i).setZero();
+    if (u.at_bound[i]) u.information.row(i).setZero(), u.information.col(i).setZero();
   }
   const double freedom = std::max(2.0, independent - static_cast<double>(n));
   const Matrix Hi = PseudoInverse(H);
@@ -253,7 +273,10 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
   } catch (const Error&) {
     return;  // it diverges at the finer step: first order has to do
   }
-  if (StopRequested()) return;  // before the end
+  if (StopRequested()) {
+    u.lacks = "by first order in the time step: the fit at a fine one was interrupted";
+    return;
+  }
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const bool foretold = Foretold(u, moved);
@@ -272,18 +295,17 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   Problem centered = problem;
   centered.Center();
   const auto J = centered.Jacobian(x, r, train);
-  if (StopRequested()) return UncertaintyFrom(problem, x, {});
+  if (StopRequested()) return NotComputed(problem, x);
   const double soft = problem.experiment().soft;
   Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
   if (problem.path() != Path::kStepped) return u;
   const auto step = problem.StepEffects(x, r, train);
+  if (StopRequested()) return NotComputed(problem, x);
   AllowForStep(problem, Weighted(J, soft, r), Weighted(step, soft, r), {}, u);
-  if (!StopRequested()) {
-    FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
-    if (progress)
-      few.progress = [&](const std::string& line) { progress("at a fine step: " + line); };
-    ReachByFineFit(centered, x, r, J, step, few, u);
-  }
+  FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
+  if (progress)
+    few.progress = [&](const std::string& line) { progress("at a fine step: " + line); };
+  ReachByFineFit(centered, x, r, J, step, few, u);
   return u;
 }
 

@@ -31,6 +31,9 @@ struct Uncertainty {
   Problem::Matrix correlation;
   Problem::Matrix information;  ///< H; zero for parameters at a bound
   std::vector<bool> at_bound;
+  std::string lacks = {};  ///< in words, what the user did not wait for; empty: nothing
+
+  bool known() const { return !standard_error.hasNaN(); }  ///< else only values are, and at_bound
 };
 struct Scores {       ///< of rows that follow each other in time; a row of zeros was not measured
   Problem::Vector r;  ///< slopes of the loss: for least squares the residuals
@@ -89,7 +92,8 @@ void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     Uncertainty& u);
 /// All of these in one, from the train logs: what a fit.json states. r: residuals at x; the loss of
 /// the experiment may be robust. Derivatives are central differences: one-sided ones bend what the
-/// step is said to change. Once the user has asked to stop, nothing is known but the bounds.
+/// step is said to change. Once the user has asked to stop, errors, intervals and correlations are
+/// not known (NaN).
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r,
                         const std::function<void(const std::string&)>& progress = {});

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "sim/check_rules.h"
+#include "sim/replicates.h"
 
 namespace continuum {
 namespace {
@@ -15,18 +17,33 @@ struct Trial {
   std::size_t logs = 0, train = 0;
 };
 
+// A trial whose name stands for two motions; returns how many were recorded more than once.
+std::size_t CheckReplicates(const Experiment& e, Findings& out) {
+  std::map<std::pair<std::string, std::string>, std::vector<const Log*>> recorded;
+  for (const Log& log : e.logs) recorded[{log.trial, log.condition}].push_back(&log);
+  std::size_t replicated = 0;
+  for (const auto& [name, logs] : recorded) {
+    const auto other = std::find_if(
+        logs.begin(), logs.end(), [&](const Log* log) { return !Replicates(*logs.front(), *log); });
+    replicated += logs.size() > 1 && other == logs.end();
+    if (other == logs.end()) continue;
+    out.Add(Severity::kWarning, "", "trial",
+            fmt::format("logs '{}' and '{}' have one trial name, '{}', but other times or inputs: "
+                        "they are no replicates, and noise is not known from them",
+                        logs.front()->label, (*other)->label, name.first));
+  }
+  return replicated;
+}
+
 void CheckTrials(const Experiment& e, Findings& out) {
   std::map<std::string, Trial> trials;
-  std::map<std::pair<std::string, std::string>, std::size_t> recorded;  // trial, condition
   std::size_t train = 0;
   for (const Log& log : e.logs) {
-    ++recorded[{log.trial, log.condition}];
     ++trials[log.trial].logs;
     trials[log.trial].train += log.train;
     train += log.train;
   }
-  std::size_t replicated = 0;
-  for (const auto& [name, count] : recorded) replicated += count > 1;
+  const std::size_t replicated = CheckReplicates(e, out);
   for (const auto& [name, trial] : trials) {
     if (trial.train > 0 && trial.train < trial.logs) {
       out.Add(Severity::kWarning, "", "split",

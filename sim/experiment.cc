@@ -11,6 +11,7 @@
 #include "sim/file.h"
 #include "sim/mat.h"
 #include "sim/read_candidates.h"
+#include "sim/repeated_logs.h"
 #include "sim/table.h"
 #include "sim/units.h"
 
@@ -471,8 +472,13 @@ Experiment Experiment::Read(const std::filesystem::path& file) {
     e.soft = loss->At("soft_l1").Number(1e-300, kInfinity);
   }
   CheckNames(e, y);
-  for (const Yaml& item : y.At("logs").Items()) e.logs.push_back(ReadLog(item, e, time_unit));
+  std::vector<std::string> where;
+  for (const Yaml& item : y.At("logs").Items()) {
+    e.logs.push_back(ReadLog(item, e, time_unit));
+    where.push_back(item.Where());
+  }
   if (e.logs.empty()) throw Error::Input(y.At("logs").Where(), "at least one log", "none");
+  RefuseRepeatedLogs(e.logs, where);
   MakeLabelsUnique(e.logs);
   return e;
 }

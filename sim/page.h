@@ -56,6 +56,7 @@ struct ScatterSpec {
   std::vector<PointGroup> groups;
   std::vector<Trend> trends = {};
   bool half_width = true;  ///< two such plots share a row
+  bool small = false;      ///< three do
 };
 
 struct Bar {

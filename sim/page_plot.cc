@@ -14,7 +14,7 @@
 namespace continuum::page {
 namespace {
 
-constexpr double kFullWidth = 1060, kHalfWidth = 522;
+constexpr double kFullWidth = 1060, kHalfWidth = 522, kThirdWidth = 345;
 
 struct Box {
   double left, top, right, bottom;
@@ -314,14 +314,16 @@ std::string NothingToPlot() { return "<div class=\"nothing\">no finite value to 
 std::string ScatterHtml(const ScatterSpec& spec) {
   CheckSizes(spec);
   const Ranges extent = Extent(spec);
-  const char* classes = spec.half_width ? "plot half" : "plot";
+  const char* classes = spec.small ? "plot third" : spec.half_width ? "plot half" : "plot";
   const std::string x_title = AxisTitle(spec.x), y_title = AxisTitle(spec.y);
   if (extent.x.empty()) return Figure(classes, spec.title, "", y_title, NothingToPlot(), x_title);
 
-  const double width = spec.half_width ? kHalfWidth : kFullWidth, height = 300;
+  const double width = spec.small ? kThirdWidth : spec.half_width ? kHalfWidth : kFullWidth;
+  const double height = spec.small ? 200 : 300;
+  const int ticks = spec.small ? 4 : spec.half_width ? 6 : 10;
   const Box box{58, 6, width - 8, height - 24};
   const Scale x(extent.x, box.left, box.right), y(extent.y, box.bottom, box.top);
-  std::string content = VerticalGrid(x, box, spec.half_width ? 6 : 10) + HorizontalGrid(y, box, 6);
+  std::string content = VerticalGrid(x, box, ticks) + HorizontalGrid(y, box, spec.small ? 4 : 6);
   std::size_t index = 0;
   for (const PointGroup& group : spec.groups) {
     content += Points(group, StyleName(group.style, index++), x, y);

@@ -55,6 +55,10 @@ Owned<mjModel> Compile(mjSpec& spec, const std::string& name) {
 }
 
 bool IsPlugin(const Change& change) { return change.target.starts_with(kPluginTarget); }
+// A body's mass scales its inertia, so that comes first: an inertia that is given is the body's.
+bool IsMass(const Change& change) {
+  return change.target.starts_with("body:") && change.attribute == "mass";
+}
 
 int InstanceId(const mjModel& m, const std::string& target) {
   const std::string instance = target.substr(kPluginTarget.size());
@@ -170,8 +174,11 @@ class System::Edits {
   Edits(const System& system, std::span<const Change> changes)
       : spec_(*system.spec_), option_(spec_.option), compiler_(spec_.compiler) {
     try {
-      for (std::size_t i = 0; i < changes.size(); ++i) {
-        if (!IsPlugin(changes[i]) && !RepeatsEffect(changes, i)) Apply(system, changes, changes[i]);
+      for (const bool masses : {true, false}) {
+        for (std::size_t i = 0; i < changes.size(); ++i) {
+          if (!IsPlugin(changes[i]) && !RepeatsEffect(changes, i) && IsMass(changes[i]) == masses)
+            Apply(system, changes, changes[i]);
+        }
       }
       for (Element& actuator : Elements(&spec_, mjOBJ_ACTUATOR, system.compiled_.get())) {
         elements_.push_back(actuator.Save());

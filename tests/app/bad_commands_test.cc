@@ -220,7 +220,9 @@ TEST_F(GoodFile, MayLieInAFolderWithSpacesAndUmlauts) {
 }
 
 TEST_F(GoodFile, MayUseAnchors) {
-  Spoil("experiment.yaml", "[{file: log.csv}]", "\n  - &log {file: log.csv, trial: a}\n  - *log\n");
+  Spoil("experiment.yaml", "[{file: log.csv}]",
+        "\n  - {file: &log log.csv, window: [0, 0.1]}\n"
+        "  - {file: *log, window: [0.2, 0.3]}\n");
   ExpectReplayed();
 }
 

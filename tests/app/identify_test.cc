@@ -98,6 +98,29 @@ TEST_F(IdentifyPath, GoesOnFromAnEarlierFit) {
                 {"beyond.json: parameter 'b'", "bounds", "experiment.yaml:", "1e+06"});
 }
 
+// With more logs than the page has colours; the joint and the tip beside each other.
+TEST_F(IdentifyPath, ReportsWhatRemainsOfEveryChannelAndEveryLog) {
+  std::string logs = "logs:\n";
+  for (int l = 0; l < 8; ++l) {
+    std::string log = "t,u,q,x\n";
+    for (int k = 0; k < 40; ++k)
+      log += fmt::format("{},{},{},{}\n", 0.05 * k, 0.1 + 0.1 * ((k / 10 + l) % 3),
+                         0.001 * k + 0.01 * (k % 3), 0.3 * (k % 2));
+    files_.Write(fmt::format("log{}.csv", l), log);
+    logs += fmt::format("  - {{file: log{}.csv}}\n", l);
+  }
+  Spoil("experiment.yaml", "logs: [{file: log.csv}]\n", logs);
+  Spoil("experiment.yaml", "sensor: angle}",
+        "sensor: angle}, {column: x, unit: mm, sensor: \"tip_pos[0]\"}");
+  Identify({}, "path:");
+  const std::string page = testing::Scratch::Text(files_ / "out/report.html");
+  for (const char* title : {"q: autocorrelation", "x: autocorrelation", "q: over input u",
+                            "x: over input u", "mean of 8 logs, lowest to highest"})
+    EXPECT_THAT(page, HasSubstr(title));
+  for (int l = 0; l < 8; ++l)
+    EXPECT_THAT(page, HasSubstr(fmt::format("<td class=\"\">log{}</td><td class=\"number\">", l)));
+}
+
 TEST_F(IdentifyPath, NeedsAParameterThatIsFree) {
   Spoil("experiment.yaml", "name: b,", "name: b, frozen: true,");
   ExpectRefused({"identify", "experiment.yaml", "--out", "no"},
@@ -128,8 +151,8 @@ parameters:
   - {name: b, target: "joint:hinge", attribute: damping, lower: 0.01, upper: 1, per: condition}
   - {name: shown, target: "sensor:angle", attribute: bias, initial: 0, lower: -1, upper: 1}
 logs:
-  - {file: other.csv, condition: cold}
-  - {file: other.csv, condition: warm, trial: later, window: [1, 2.5]}
+  - {file: other.csv, condition: cold, window: [0, 1.2]}
+  - {file: other.csv, condition: warm, trial: later, window: [1.2, 2.9]}
 )");
   const auto fit = Identify({"--path", "stepped"}, "path: stepped");
   EXPECT_EQ(fit["fitted_experiment"], "fitted.yaml");

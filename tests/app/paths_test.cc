@@ -13,8 +13,9 @@ class AnyPath : public testing::AppBench, public ::testing::WithParamInterface<c
     fs::create_directory(files_ / GetParam());
     for (const char* file : {"model.xml", "log.csv", "input.csv", "diagnosis.json"})
       fs::rename(files_ / file, files_.folder() / GetParam() / file);
+    fs::copy(files_.folder() / GetParam() / "log.csv", files_.folder() / GetParam() / "again.csv");
     Spoil("experiment.yaml", "{file: log.csv}",
-          "{file: log.csv}, {file: log.csv, trial: again, use: validate}");
+          "{file: log.csv}, {file: again.csv, use: validate}");
     Spoil("experiment.yaml", "format: 1", "format: 1\ncandidates: [coulomb]");
     fs::rename(files_ / "experiment.yaml", files_.folder() / GetParam() / "experiment.yaml");
   }

@@ -39,8 +39,9 @@ class Storage : public testing::AppBench {
       log += std::to_string(0.05 * k) + "," + std::to_string(k / 10 - 1) + ",0.0" +
              std::to_string(k % 7) + "\n";
     files_.Write("log.csv", log);
+    files_.Write("again.csv", log);
     Spoil("experiment.yaml", "format: 1", "format: 1\ncandidates: [coulomb]");
-    Spoil("experiment.yaml", "{file: log.csv}", "{file: log.csv}, {file: log.csv, trial: again}");
+    Spoil("experiment.yaml", "{file: log.csv}", "{file: log.csv}, {file: again.csv}");
     fs::create_directory(files_ / "there");
   }
 

@@ -124,7 +124,8 @@ TEST_F(ExtensionTest, ReproducesFrozenParameters) {
 TEST_F(ExtensionTest, KeepsWindowsTrialsOutputsAndFolds) {
   AddTrials();
   const System system = Model(CoulombInstance(0.1));
-  logs_ += "  - {file: soft0.csv, use: validate, trial: again, window: [0, 0.9]}\n";
+  std::filesystem::copy_file(folder_ / "soft0.csv", folder_ / "again.csv");
+  logs_ += "  - {file: again.csv, use: validate, trial: again, window: [0, 0.9]}\n";
   const Experiment e = ReadExperiment(kScaled + "folds: [trial, condition]\nloss: {soft_l1: 3}\n",
                                       ", sigma: 0.001, weight: 2, bias: 0.01, delay: 0.002");
   const Problem problem(e, system);

@@ -327,7 +327,7 @@ TEST_F(FitTest, AStartThatDivergesIsAJobThatFailed) {
   }
 }
 
-TEST_F(FitTest, AStartBesideWhichItDivergesIsAJobThatFailed) {
+TEST_F(FitTest, AStartBesideWhichItDivergesIsLeftOnTheOtherSide) {
   AddTrials({}, 1);
   const System system = Model({});
   const auto parameters = [&](double b) {
@@ -347,13 +347,8 @@ TEST_F(FitTest, AStartBesideWhichItDivergesIsAJobThatFailed) {
   const Experiment e = parameters(stable);
   Problem problem(e, system);
   problem.Center();
-  try {
-    FitAll(problem);
-    FAIL() << "damping of " << diverging << " N m s/rad cannot be simulated";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.exit_code(), 1);
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("next to the start"));
-  }
+  const Fit fit = FitAll(problem);
+  EXPECT_LT(fit.cost, 0.5 * fit.trace.front()) << "from " << stable << " beside " << diverging;
 }
 
 // MuJoCo reads a positive velocity bias of a servo as a damping ratio.

@@ -320,6 +320,11 @@ TEST(Check, TheExperimentsLimitsAreTold) {
   e.logs[1].condition = e.logs[0].condition;
   e.logs[1].train = false;
   EXPECT_NE(Find(Bad(CheckLogs(e)), "split"), nullptr);
+  EXPECT_EQ(Find(Bad(CheckLogs(e)), "trial"), nullptr);
+  e.logs[1].input[0][500] += 0.1;  // another motion under the same name
+  EXPECT_THAT(Find(Bad(CheckLogs(e)), "trial")->text,
+              HasSubstr("'bench' and 'again' have one trial name"));
+  EXPECT_THAT(Report(CheckLogs(e)), HasSubstr("no trial was recorded twice"));
   e.logs[1] = e.logs[0];
   EXPECT_NE(Find(Bad(CheckLogs(e)), "duplicate_log"), nullptr);
 }

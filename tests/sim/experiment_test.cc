@@ -97,12 +97,40 @@ TEST_F(ExperimentFile, CutsWindowsInSecondsOfTheLogAndThenSkewsTheClock) {
 }
 
 TEST_F(ExperimentFile, GivesEveryLogALabelOfItsOwn) {
-  scratch_.Write("log_1.csv", kLog);
+  std::filesystem::create_directory(scratch_ / "other");
+  scratch_.Write("other/log.csv", kLog);
+  scratch_.Write("log_2.csv", kLog);
   const Experiment e =
-      With("[{file: log.csv}]", "[{file: log.csv}, {file: log.csv}, {file: log_1.csv}]");
+      With("[{file: log.csv}]", "[{file: log.csv}, {file: other/log.csv}, {file: log_2.csv}]");
   EXPECT_NE(e.logs[0].label, e.logs[1].label);
   EXPECT_NE(e.logs[0].label, e.logs[2].label);
   EXPECT_NE(e.logs[1].label, e.logs[2].label);
+}
+
+// As replicates they would show a noise of zero.
+TEST_F(ExperimentFile, RefusesTheSameRowsInTwoLogsAndNamesBoth) {
+  const auto twice = [&](const std::string& first, const std::string& second) {
+    return Wrong("logs: [{file: log.csv}]",
+                 "logs:\n  - {file: log.csv" + first + "}\n  - {file: log.csv" + second + "}");
+  };
+  EXPECT_THAT(twice("", ""), AllOf(HasSubstr("e.yaml:8"), HasSubstr("logs[1]"), HasSubstr("as in "),
+                                   HasSubstr("e.yaml:7: logs[0]")));
+  EXPECT_THAT(twice(", trial: a", ", trial: b"), HasSubstr("no other log has"));
+  EXPECT_THAT(twice(", condition: a", ", condition: b"), HasSubstr("no other log has"));
+  EXPECT_THAT(twice("", ", use: validate"), HasSubstr("no other log has"));
+  EXPECT_THAT(twice("", ", window: [0.1, 0.3]"), HasSubstr("window [0.1, 0.3]"));
+  EXPECT_THAT(twice(", window: [0, 0.21]", ", window: [0.2, 0.4]"),
+              HasSubstr("windows that do not overlap"));
+  std::filesystem::create_symlink(scratch_ / "log.csv", scratch_ / "link.csv");
+  EXPECT_THAT(Wrong("[{file: log.csv}]", "[{file: log.csv}, {file: link.csv}]"),
+              HasSubstr("link.csv, as in "));
+}
+
+TEST_F(ExperimentFile, TakesWindowsOfOneFileThatTouch) {
+  EXPECT_EQ(With("[{file: log.csv}]",
+                 "[{file: log.csv, window: [0, 0.2]}, {file: log.csv, window: [0.2, 0.4]}]")
+                .logs.size(),
+            2u);
 }
 
 TEST_F(ExperimentFile, KeepsColumnNamesAsTheyAreWritten) {

@@ -1,5 +1,6 @@
 #include "sim/system.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -54,6 +55,20 @@ class Changed : public ::testing::Test {
 
   testing::Scratch scratch_;
 };
+
+TEST_F(Changed, InertiaIsWhatWasGivenWhereverAMassStands) {
+  const System arm = Arm();
+  const Change mass{"body:arm", "mass", 4}, inertia{"body:arm", "inertia[1]", 0.035};
+  for (const auto& changes : {std::vector{mass, inertia}, std::vector{inertia, mass}}) {
+    const Machine machine = arm.Build(changes);
+    EXPECT_EQ(Mass(machine, "arm"), 4);
+    std::vector<double> moments(machine.model->body_inertia + 3, machine.model->body_inertia + 6);
+    std::sort(moments.begin(), moments.end());
+    EXPECT_NEAR(moments[0], 2 * 0.01, 1e-12);  // the others grow with the mass
+    EXPECT_NEAR(moments[1], 0.035, 1e-12);
+    EXPECT_NEAR(moments[2], 2 * 0.025, 1e-12);
+  }
+}
 
 TEST_F(Changed, SystemsAreAsBeforeAfterAChangeThatFails) {
   const System arm = Arm();

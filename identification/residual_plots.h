@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "identification/problem.h"
+#include "sim/page.h"
+#include "sim/replay.h"
+
+namespace continuum {
+
+/// Adds what a fit leaves over, per counted channel: autocorrelation (each log, or the mean and the
+/// range of more logs than the page has colours), a table of how long residuals stay correlated,
+/// and residuals over every input with their mean by classes of the input.
+void AddResiduals(Page& page, const Problem& problem, const std::vector<Replayed>& logs);
+
+}  // namespace continuum
