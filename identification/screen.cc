@@ -121,13 +121,17 @@ struct Small {
 // How often noise explains more than some amount: nothing at all in some draws, else as a gamma
 // distribution does that has their mean and variance, by Wilson and Hilferty's cube root. Not by
 // ranks: of many candidates one is likely to be beyond all its draws, where ranks do not tell how
-// far. What is to be judged is one of the draws, so that all are treated alike.
+// far. What is to be judged is one of the draws, so that all are treated alike; the largest of them
+// says nothing of the distribution, as it may be no noise.
 class Tail {
  public:
   explicit Tail(const Eigen::Ref<const Eigen::RowVectorXd>& draws) {
+    Eigen::Index largest = 0;
+    draws.maxCoeff(&largest);
     double count = 0, sum = 0, squares = 0;
-    for (const double v : draws) {
-      if (v > 0) count += 1, sum += v, squares += v * v;
+    for (Eigen::Index i = 0; i < draws.size(); ++i) {
+      const double v = draws[i];
+      if (i != largest && v > 0) count += 1, sum += v, squares += v * v;
     }
     share_ = count / static_cast<double>(draws.size());
     if (count < 2) return;
@@ -263,18 +267,16 @@ Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, c
   ParallelFor(small.size(), [&](std::size_t, std::size_t c) {
     for (int d = 0; d < count; ++d) draws(c, d) = small[c].Best(noise.col(d));
   });
-  std::vector<Tail> tails;
-  Matrix score(draws.rows(), count + 1);
-  for (std::size_t c = 0; c < small.size(); ++c) {
-    tails.emplace_back(draws.row(static_cast<Eigen::Index>(c)));
-    for (int d = 0; d <= count; ++d) score(c, d) = tails[c](draws(c, d));
+  for (auto row : draws.rowwise()) {
+    const Tail tail(row);
+    for (double& amount : row) amount = tail(amount);
   }
   std::vector<double> smallest;
-  for (int d = 0; d < count; ++d) smallest.push_back(score.col(d).minCoeff());
+  for (int d = 0; d < count; ++d) smallest.push_back(draws.col(d).minCoeff());
   std::sort(smallest.begin(), smallest.end());
   for (std::size_t c = 0; c < small.size(); ++c) {
     const auto as_small =
-        std::upper_bound(smallest.begin(), smallest.end(), score(c, count)) - smallest.begin();
+        std::upper_bound(smallest.begin(), smallest.end(), draws(c, count)) - smallest.begin();
     out.p[c] = (static_cast<double>(as_small) + 1) / (count + 1);
   }
   return out;

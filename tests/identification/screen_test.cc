@@ -83,6 +83,18 @@ TEST_F(Screened, AStrongEffectIsSignificantAndTheBest) {
   for (int i = 0; i < 5; ++i) EXPECT_LE(s.explained[i], s.explained[3]);
 }
 
+// Whatever the others explain of it, and however much more.
+TEST_F(Screened, AStrongEffectIsSignificantInEveryCandidateThatExplainsSomeOfIt) {
+  const Vector effect = Normal();
+  std::vector<std::vector<Probe>> candidates;
+  for (const double other : {0.0, 0.3, 1.0, 3.0})
+    candidates.push_back({OneWay(effect + other * Normal())});
+  for (const double size : {1.0, 10.0, 1000.0}) {
+    for (const double p : SignificanceOf(candidates, Normal() + size * effect, 5).p)
+      EXPECT_LT(p, 0.001) << size;
+  }
+}
+
 TEST_F(Screened, RepeatsExactlyForASeed) {
   const std::vector<std::vector<Probe>> candidates{{OneWay(Normal())}, {OneWay(Normal(), 1)}};
   const Vector z = Normal();
