@@ -39,7 +39,6 @@ class Session {
     d_.folds = FoldsOf(e_);
     if (!d_.noise.known()) RequireFolds();  // before long work
     RequireStartModels(null_);
-    RequireEffects(null_);
     FitNull();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
     d_.noise.step = trials_.StepEffect(null_, d_.before);
@@ -84,7 +83,7 @@ class Session {
   void FitNull() {
     options_.Say("null fit");
     if (d_.noise.known()) trials_.whitening = Whitening(null_, d_.noise);
-    d_.before = trials_.Fit(null_, null_.Start());
+    d_.before = trials_.Fit(null_, null_.Start(), kInfinity, false);
     if (d_.noise.known()) {
       const Rounding rounding(null_, d_.noise, d_.before.fit.x);
       if (rounding.any()) {

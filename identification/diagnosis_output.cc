@@ -190,12 +190,17 @@ Gain GainOf(const Diagnosis& d, const TwoErrors& after) {
   return gain;
 }
 
+bool NothingHelps(const Diagnosis& d) {
+  return !d.chosen() && d.verdict.text != "adequate" &&
+         !(d.ceiling_error.validate < d.before.error.validate);
+}
+
 double ShareReached(const Diagnosis& d, const TwoErrors& after) {
+  if (NothingHelps(d)) return 0;
   const double possible =
       d.before.error.validate - std::min(d.ceiling_error.validate, after.validate);
-  if (possible > 0)
-    return std::clamp((d.before.error.validate - after.validate) / possible, 0.0, 1.0);
-  return d.chosen() || d.verdict.text == "adequate" ? 1 : 0;
+  return possible > 0 ? std::clamp((d.before.error.validate - after.validate) / possible, 0.0, 1.0)
+                      : 1;
 }
 
 double Share(const Diagnosis& d, const CandidateResult& c) {
@@ -464,7 +469,6 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
   text += Ranking(e, d);
   if (d.verdict.named.size() > 1)
     text += fmt::format("next      {} (separation {:.3g})\n", d.next.input, d.next.separation);
-  (void)e;
   return text;
 }
 

@@ -59,6 +59,8 @@ double Separation(const Diagnosis& diagnosis);
 /// where noise is all that is left, else the median share of the error removed over the folds.
 double Share(const Diagnosis& diagnosis, const CandidateResult& candidate);
 bool ModelLimited(const Diagnosis& diagnosis, const TwoErrors& after);
+/// Whether nothing that was tried, forces without a name among it, does better than the model.
+bool NothingHelps(const Diagnosis& diagnosis);
 /// Share of the reducible error (down to the ceiling) that was removed on the validate logs.
 double ShareReached(const Diagnosis& diagnosis, const TwoErrors& after);
 

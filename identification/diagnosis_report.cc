@@ -198,8 +198,7 @@ class Story {
     page_.Bars(bars);
     page_.Paragraph(
         "From the measured states alone, without simulating: sensor noise, twice differentiated, "
-        "is "
-        "most of this force on many logs, so that small shares may be all there is to explain. "
+        "is most of this force on many logs, so that small shares may be all there is to explain. "
         "Only candidates that were fitted are here.");
   }
 
@@ -295,14 +294,13 @@ class Story {
                                  : "How large the noise is these logs do not tell; they";
     std::string text = fmt::format(
         "{} are {}. ", over, ModelLimited(d_, told_.after) ? "model-limited" : "noise-limited");
-    const bool any = d_.chosen() || d_.verdict.text == "adequate" ||
-                     d_.ceiling_error.validate < d_.before.error.validate;
     text +=
-        any ? fmt::format("The extension reaches {:.0f} % of what {} on the held-out logs.",
+        NothingHelps(d_)
+            ? "Nothing that was tried, forces without a name among it, does better on the "
+              "held-out logs."
+            : fmt::format("The extension reaches {:.0f} % of what {} on the held-out logs.",
                           100 * ShareReached(d_, told_.after),
-                          d_.noise_limited ? "lies above the noise" : d_.ceiling_by + " reaches")
-            : "Nothing that was tried, forces without a name among it, does better on the "
-              "held-out logs.";
+                          d_.noise_limited ? "lies above the noise" : d_.ceiling_by + " reaches");
     page_.Paragraph(text);
     if (d_.fallback) {
       page_.Paragraph(

@@ -374,6 +374,11 @@ std::size_t Hypothesis::Main(std::span<const double> values) const {
   return main;
 }
 
+double Hypothesis::AtShare(std::size_t i, double value, double share) const {
+  if (!std::isinf(null[i])) return null[i] + share * (value - null[i]);
+  return share > 0 ? value / share : extra[i].upper;
+}
+
 bool Hypothesis::OnlyMeasured() const {
   return !extra.empty() && std::all_of(extra.begin(), extra.end(), [](const Parameter& p) {
     return IsMeasurement(p.target, p.attribute);

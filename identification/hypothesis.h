@@ -32,6 +32,8 @@ struct Hypothesis {
   std::size_t Main(std::span<const double> values) const;
   /// Those of extra that say whether the effect is there.
   std::vector<std::size_t> Amplitudes() const;
+  /// The value of extra[i] at a share of what `value` does; at none the effect is absent.
+  double AtShare(std::size_t i, double value, double share) const;
   /// Whether it is one of the measurement: nothing of the model is other.
   bool OnlyMeasured() const;
   /// The effect on whose card its parameters are.

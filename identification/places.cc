@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "binding/config.h"
 
@@ -87,9 +88,7 @@ std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, P
 }
 
 std::string Globs(const std::vector<std::string>& names) {
-  std::string all;
-  for (const auto& name : names) all += (all.empty() ? "" : " ") + name;
-  return all;
+  return fmt::format("{}", fmt::join(names, " "));
 }
 
 std::string InWords(Place place, const std::vector<std::string>& names) {

@@ -43,13 +43,14 @@ bool Contains(const Trials& trials, const CandidateResult& b, const CandidateRes
   return rest.squaredNorm() < 0.01 * A.squaredNorm();
 }
 
-Standpoint Base::Here(const Experiment& e) const {
-  return {system, given, Problem(e, *system, given).CommonChanges(fitted->fit.x)};
-}
-
 Round::Round(const Trials& trials, const Base& base, const Noise& noise, const Sizes& sizes,
              const DiagnosisOptions& options, Places places)
-    : trials_(trials), base_(base), noise_(noise), sizes_(sizes), options_(options) {
+    : trials_(trials),
+      base_(base),
+      base_problem_(*trials.experiment, *base.system, base.given),
+      noise_(noise),
+      sizes_(sizes),
+      options_(options) {
   Experiment wanted = *trials.experiment;
   if (!options.candidates.empty()) {
     wanted.all_candidates = false;
@@ -59,8 +60,8 @@ Round::Round(const Trials& trials, const Base& base, const Noise& noise, const S
       wanted.candidates.push_back(written ? *written : Candidate{name, "", false});
     }
   }
-  for (Hypothesis& h :
-       MakeCandidates(wanted, base.Here(*trials.experiment), sizes, skipped, places)) {
+  const Standpoint here{base.system, base.given, base_problem_.CommonChanges(base.fitted->fit.x)};
+  for (Hypothesis& h : MakeCandidates(wanted, here, sizes, skipped, places)) {
     candidates.push_back({std::move(h)});
     candidates.back().record.name = candidates.back().hypothesis.Name();
   }
@@ -69,15 +70,14 @@ Round::Round(const Trials& trials, const Base& base, const Noise& noise, const S
 void Round::Screen() {
   const Remainder left = trials_.LeftBy(*base_.fitted);
   left_ = left.cost();
-  const Problem base(*trials_.experiment, *base_.system, base_.given);
-  base.Residuals(base_.fitted->fit.x, TrainLogs(*trials_.experiment));
+  base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*trials_.experiment));
   std::vector<std::vector<Probe>> probes;
   for (CandidateResult& c : candidates) {
     options_.Say("screen " + c.hypothesis.Name());
     probes.emplace_back();
     try {
       Problem problem = c.ProblemOf(*trials_.experiment);
-      if (c.hypothesis.OnlyMeasured()) problem.Recall(base);
+      if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
       probes.back() = trials_.Probes(c.hypothesis, problem, *base_.fitted, left);
     } catch (const Error& error) {
       c.error = error.what();
@@ -104,8 +104,7 @@ void Round::Screen() {
 
 Significance Round::Significant(const Remainder& left,
                                 const std::vector<std::vector<Probe>>& probes) {
-  const Problem base(*trials_.experiment, *base_.system, base_.given);
-  const Rounding rounding(base, noise_, base_.fitted->fit.x);
+  const Rounding rounding(base_problem_, noise_, base_.fitted->fit.x);
   Problem::Matrix draws;
   if (rounding.any()) {
     inflation_ = rounding.Inflation(left, probes, options_.seed);
@@ -233,8 +232,8 @@ LackOfFit Round::LackAt(const Problem& problem, const CandidateResult& c,
   return trials_.LackIn(problem, c.hypothesis.Free(), fitted, sizes_, inflation_, options_.seed);
 }
 LackOfFit Round::LackOfBase() const {
-  const Problem problem(*trials_.experiment, *base_.system, base_.given);
-  return trials_.LackIn(problem, base_.given, *base_.fitted, sizes_, inflation_, options_.seed);
+  return trials_.LackIn(base_problem_, base_.given, *base_.fitted, sizes_, inflation_,
+                        options_.seed);
 }
 
 // What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly,

@@ -9,8 +9,6 @@ struct Base {
   const System* system;
   std::vector<Parameter> given;  ///< free parameters of causes that the system has already
   const Fitted* fitted;          ///< complete
-
-  Standpoint Here(const Experiment& experiment) const;
 };
 
 /// Whether b can imitate whatever a does: its directions span a's, or with more parameters it was
@@ -91,6 +89,7 @@ class Round {
 
   const Trials& trials_;
   Base base_;
+  Problem base_problem_;
   const Noise& noise_;
   const Sizes& sizes_;
   const DiagnosisOptions& options_;

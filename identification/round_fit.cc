@@ -104,7 +104,7 @@ std::vector<Problem::Vector> Round::FromTheOutset(const Problem& problem,
     x.tail(own) = c.fitted.fit.x.tail(own);
     for (const std::size_t a : h.Amplitudes()) {
       double& value = x[c.own() + static_cast<Eigen::Index>(a)];
-      if (std::isfinite(h.null[a])) value = h.null[a] + share * (value - h.null[a]);
+      value = h.AtShare(a, value, share);
     }
     starts.push_back(problem.Clamp(x));
   }

@@ -111,15 +111,6 @@ void RequireEffect(const Problem& problem, const Problem::Vector& x,
   }
 }
 
-void RequireEffects(const Problem& problem) {
-  const auto train = problem.TrainLogs();
-  const Problem::Vector x = problem.Start();
-  const auto r = problem.Residuals(x, train);
-  const auto finite = [](const Problem::Vector& log) { return log.allFinite(); };
-  if (std::all_of(r.begin(), r.end(), finite))
-    RequireEffect(problem, x, problem.Jacobian(x, r, train, {}, true));
-}
-
 std::string WhyItDiverges(const Problem& problem, const Problem::Vector& x, std::size_t log) {
   const auto fails = [&](const Changes& some) { return Diverges(problem, some, log); };
   return problem.Predict(x, log).Failure() + Culprits(problem, x, log, fails);

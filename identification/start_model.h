@@ -15,8 +15,6 @@ void RequireStartModels(const Problem& problem);
 /// the derivatives J at x.
 void RequireEffect(const Problem& problem, const Problem::Vector& x,
                    const std::vector<Problem::Matrix>& J);
-/// The same at the start, of the train logs; where one diverges, that is for the fit to say.
-void RequireEffects(const Problem& problem);
 
 /// Why the simulation of a log diverges at x, in words: when, and by which of its parameters'
 /// values alone, if by one, by what the log sets, or as the model stands.

@@ -30,12 +30,6 @@ double ChiSquared(const Matrix& columns, const Vector& z, double inflation) {
 constexpr double kFar = 5;
 constexpr double kLeast = 20;  // of twice the log-likelihood: what is worth a look
 
-// The value of a parameter at a share of what its start does; at none the effect is absent.
-double AtShare(const Hypothesis& h, const std::vector<double>& start, std::size_t i, double share) {
-  if (!std::isinf(h.null[i])) return h.null[i] + share * (start[i] - h.null[i]);
-  return share > 0 ? start[i] / share : h.extra[i].upper;
-}
-
 // The share at which a parameter comes to its bound.
 double MostShare(const Hypothesis& h, const std::vector<double>& start, std::size_t i) {
   const Parameter& p = h.extra[i];
@@ -137,7 +131,7 @@ struct Prober {
   const std::vector<Vector>& Residuals(std::size_t start, const std::vector<double>& share) const {
     std::vector<double> own = h.starts[start];
     for (std::size_t a = 0; a < amplitudes.size(); ++a)
-      own[amplitudes[a]] = AtShare(h, h.starts[start], amplitudes[a], share[a]);
+      own[amplitudes[a]] = h.AtShare(amplitudes[a], own[amplitudes[a]], share[a]);
     const auto known = simulated.find(own);
     return known != simulated.end() ? known->second : simulated[own] = Simulate(own);
   }
@@ -204,13 +198,14 @@ FitOptions Trials::FewSteps() const {
   return options;
 }
 
-Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival) const {
+Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival, bool idle) const {
   const auto train = TrainLogs(*experiment);
   auto validate = train;
   validate.flip();
   Fitted f;
   FitOptions options = Options();
   options.hopeless = 1.1 * rival + 50;
+  options.idle = idle;
   f.fit = FitParameters(problem, start, train, options);
   f.fit.x = FitStarts(problem, f.fit.x, validate);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
@@ -304,7 +299,7 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& p
                          : probe.on_top[a]          ? excess * probe.share[a]
                          : std::abs(wanted) > least ? wanted
                                                     : least;
-    own[amplitudes[a]] = AtShare(h, start, amplitudes[a], share);
+    own[amplitudes[a]] = h.AtShare(amplitudes[a], start[amplitudes[a]], share);
   }
   for (std::size_t i = 0; i < own.size(); ++i)
     own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);

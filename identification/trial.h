@@ -11,9 +11,9 @@ struct Trials {
   int iterations = 15;
 
   /// Fits on the train logs and scores train and validate; rival: cost of a fit that this one must
-  /// come near to be worth its iterations. Throws Error when it diverges.
+  /// come near to be worth its iterations; idle: FitOptions::idle. Throws Error when it diverges.
   Fitted Fit(const Problem& problem, const Problem::Vector& start,
-             double rival = std::numeric_limits<double>::infinity()) const;
+             double rival = std::numeric_limits<double>::infinity(), bool idle = true) const;
   /// What else there is to know of a fit: sensitivities and intervals, what the time step leaves
   /// open, and with these the cost to first order.
   void Complete(const Problem& problem, Fitted& fitted) const;
