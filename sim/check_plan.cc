@@ -23,14 +23,15 @@ std::size_t CheckReplicates(const Experiment& e, Findings& out) {
   for (const Log& log : e.logs) recorded[{log.trial, log.condition}].push_back(&log);
   std::size_t replicated = 0;
   for (const auto& [name, logs] : recorded) {
-    const auto other = std::find_if(
-        logs.begin(), logs.end(), [&](const Log* log) { return !Replicates(*logs.front(), *log); });
+    const Log& first = *logs.front();
+    const auto other = std::find_if(logs.begin(), logs.end(),
+                                    [&](const Log* log) { return !Replicates(first, *log); });
     replicated += logs.size() > 1 && other == logs.end();
     if (other == logs.end()) continue;
     out.Add(Severity::kWarning, "", "trial",
             fmt::format("logs '{}' and '{}' have one trial name, '{}', but other times or inputs: "
                         "they are no replicates, and noise is not known from them",
-                        logs.front()->label, (*other)->label, name.first));
+                        first.label, (*other)->label, name.first));
   }
   return replicated;
 }

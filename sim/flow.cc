@@ -85,7 +85,6 @@ std::string Flow::Obstacle(const mjModel& m, const mjData& d) {
 
 Flow::Flow(Machine machine, const Experiment& e, const Log& log)
     : machine_(std::move(machine)),
-      e_(e),
       log_(log),
       wiring_(e, *machine_.model),
       ties_(*machine_.model),

@@ -47,7 +47,6 @@ class Flow {
   void Load(const double* y);
 
   Machine machine_;
-  const Experiment& e_;
   const Log& log_;
   Wiring wiring_;
   Ties ties_;
