@@ -107,7 +107,9 @@ class Session {
   void LookAtTheEquation() {
     options_.Say("missing force");
     const EquationErrors view(e_, d_.system, d_.before);
-    for (CandidateResult& c : d_.candidates) c.by_equation = view.Of(c);
+    ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {
+      d_.candidates[i].by_equation = view.Of(d_.candidates[i]);
+    });
   }
 
   // No single candidate leaves noise, or only by the time step's leave; and what the best leaves is

@@ -66,6 +66,7 @@ class Round {
   bool SomethingIsLeft() const;
   double MostExplained() const;
   double HowMuchIsNeeded() const;
+  bool NearTheNoise(const Fitted& fitted) const;
   double Likelihood(const Fitted& fitted) const;
   void FitOne(CandidateResult& c, double rival) const;
   static std::vector<Problem::Vector> FromTheOutset(const Problem& problem,

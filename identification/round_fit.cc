@@ -10,6 +10,7 @@ namespace continuum {
 namespace {
 constexpr double kRival = 0.3;       // of what the best of a list explains: may yet outdo it
 constexpr double kWorthAFit = 0.04;  // of the squares, where 0.19 of them would make a name
+constexpr double kOutdoes = 0.1;     // of the best: hardly what comes near the noise besides
 }  // namespace
 
 // Where little is to be explained first order is right to a few units, else wrong about sizes by
@@ -18,6 +19,12 @@ double Round::HowMuchIsNeeded() const {
   if (!noise_.known()) return kWorthAFit * left_;
   const double best = MostExplained();
   return std::max(std::min(best - 15, 45.0), 0.02 * best);
+}
+
+// Whether a fit leaves hardly more than the noise and what the time step adds.
+bool Round::NearTheNoise(const Fitted& fitted) const {
+  constexpr double kNoise = 1.1, kStep = 1.25;  // of their errors: more is plainly another cause
+  return fitted.error.train < std::hypot(kNoise * noise_.rms, kStep * noise_.step);
 }
 
 // The likeliest first, so that the others know what to reach; nobody where only noise is left.
@@ -33,7 +40,9 @@ void Round::Fit(const Round* beside) {
     options_.Say("fit " + c.hypothesis.Name());
     try {
       FitOne(c, rival + 0.5 * TakenOff(*base_.fitted));
-      if (noise_.known()) rival = std::min(rival, c.fitted.fit.cost);
+      if (!noise_.known()) continue;
+      rival = std::min(rival, c.fitted.fit.cost);
+      if (NearTheNoise(c.fitted)) needed = std::max(needed, kOutdoes * MostExplained());
     } catch (const Error& error) {
       c.error = error.what();
     }
@@ -48,23 +57,19 @@ void Round::Fit(const Round* beside) {
 // swing is out of phase with the measured one. Until one of this round comes near.
 void Round::SecondChances() {
   constexpr std::size_t kMost = 6;
-  constexpr double kWorth = 0.1;                // of what the best explains to first order
-  constexpr double kNoise = 1.1, kStep = 1.25;  // of their errors: more is plainly another cause
   if (!noise_.known()) return;
-  double best = kInfinity;
   for (const CandidateResult& c : candidates) {
-    if (c.fits) best = std::min(best, c.fitted.error.train);
+    if (c.fits && NearTheNoise(c.fitted)) return;
   }
-  const double near = std::hypot(kNoise * noise_.rms, kStep * noise_.step);
   std::size_t tried = 0;
   for (CandidateResult& c : candidates) {
-    if (best < near || tried == kMost || c.explained < kWorth * MostExplained()) return;
+    if (tried == kMost || c.explained < kOutdoes * MostExplained()) return;
     if (!c.fits || c.fitted.fit.converged) continue;
     options_.Say("fit to the end " + c.hypothesis.Name());
     ++tried;
     try {
       FitOne(c, kInfinity);
-      best = std::min(best, c.fitted.error.train);
+      if (NearTheNoise(c.fitted)) return;
     } catch (const Error&) {
       continue;  // the fit that was given up stands
     }

@@ -245,20 +245,28 @@ Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, c
       columns += p.columns.cols();
     }
   }
-  const Matrix Q = Basis(all);
+  const Eigen::HouseholderQR<Matrix> qr(all);
+  const Eigen::Index span = std::min(all.rows(), all.cols());
+  const auto projected = [&](const Matrix& any) -> Matrix {
+    return (qr.householderQ().transpose() * any).topRows(span);
+  };
+  const Matrix within = qr.matrixQR().topRows(span).template triangularView<Eigen::Upper>();
   std::vector<Small> small(candidates.size());
+  columns = 0;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    for (const Probe& p : candidates[c])
-      small[c].probes.emplace_back(Probe{Q.transpose() * p.columns, p.sign});
+    for (const Probe& p : candidates[c]) {
+      small[c].probes.emplace_back(Probe{within.middleCols(columns, p.columns.cols()), p.sign});
+      columns += p.columns.cols();
+    }
   }
-  const Vector here = Q.transpose() * z;
+  const Vector here = projected(z);
   for (std::size_t c = 0; c < small.size(); ++c)
     out.explained[c] = small[c].Best(here, &out.best[c]);
 
   Random random(seed);
-  Matrix noise(Q.cols(), count);
+  Matrix noise(span, count);
   if (given.cols() > 0) {
-    noise = Q.transpose() * given;
+    noise = projected(given);
   } else {
     for (double& v : noise.reshaped()) v = random.Normal();
   }
@@ -266,11 +274,9 @@ Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, c
   draws.rightCols(1) = Eigen::Map<const Vector>(out.explained.data(), draws.rows());
   ParallelFor(small.size(), [&](std::size_t, std::size_t c) {
     for (int d = 0; d < count; ++d) draws(c, d) = small[c].Best(noise.col(d));
+    const Tail tail(draws.row(c));
+    for (double& amount : draws.row(c)) amount = tail(amount);
   });
-  for (auto row : draws.rowwise()) {
-    const Tail tail(row);
-    for (double& amount : row) amount = tail(amount);
-  }
   std::vector<double> smallest;
   for (int d = 0; d < count; ++d) smallest.push_back(draws.col(d).minCoeff());
   std::sort(smallest.begin(), smallest.end());
