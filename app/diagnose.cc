@@ -74,7 +74,7 @@ void RunDiagnose(const Options& o) {
   CheckNames(read, system);
   std::vector<std::string> outputs{"diagnosis.json", "extended.xml",  "extended.yaml",
                                    "fallback.xml",   "fallback.yaml", "simulated/",
-                                   "report.html"};
+                                   kNextInputs,      "report.html"};
   if (o.video) outputs.push_back("extended.mp4");
   const OutFolder made(o.out, outputs, {read.file, read.model});
   const Experiment e = Registered(read, system);

@@ -306,6 +306,7 @@ class Session {
     return squares;
   }
 
+  // Trials left out in turn may all gain less than the validate logs do, or more.
   void BootstrapGain() {
     const CandidateResult* chosen = d_.chosen();
     if (!chosen) return;
@@ -325,6 +326,10 @@ class Session {
     std::sort(gains.begin(), gains.end());
     d_.gain_low = gains[gains.size() * 25 / 1000];
     d_.gain_high = gains[gains.size() * 975 / 1000];
+    const double before = d_.before.error.validate, after = chosen->fitted.error.validate;
+    if (!(before > 0)) return;
+    d_.gain_low = std::min(d_.gain_low, 1 - after / before);
+    d_.gain_high = std::max(d_.gain_high, 1 - after / before);
   }
 
   const Experiment& e_;

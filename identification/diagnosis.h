@@ -107,8 +107,9 @@ struct LackOfFit {
 
 /// What to measure next to tell the models of an ambiguous set apart.
 struct NextExperiment {
-  std::string input;      ///< in words; empty: none is needed
-  double separation = 0;  ///< expected; see ProposeNext
+  std::string input;            ///< in words; empty: none is needed
+  double separation = 0;        ///< expected; see ProposeNext
+  std::optional<Log> log = {};  ///< its inputs and what it sets; none where nothing parts them
 };
 
 struct Diagnosis {

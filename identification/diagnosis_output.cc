@@ -9,6 +9,7 @@
 #include "identification/between.h"
 #include "identification/extension.h"
 #include "identification/fit_output.h"
+#include "identification/next_experiment.h"
 #include "sim/file.h"
 #include "sim/replay.h"
 
@@ -243,6 +244,22 @@ void WriteFallback(const Experiment& e, const Diagnosis& d, const std::filesyste
   WriteFile(folder / kFallbackExperiment, files.yaml);
 }
 
+void WriteNext(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder) {
+  if (d.next.log) {
+    WriteFile(folder / kNextInputs, NextCsv(e, *d.next.log));
+  } else {
+    std::filesystem::remove(folder / kNextInputs);
+  }
+}
+
+// As under `set` of a log.
+nlohmann::json NextSettings(const Diagnosis& d) {
+  auto json = nlohmann::json::object();
+  if (!d.next.log) return json;
+  for (const Change& c : d.next.log->set) json[c.target][c.attribute] = c.value;
+  return json;
+}
+
 }  // namespace
 
 Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder) {
@@ -256,6 +273,7 @@ Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesyst
   WriteFile(folder / "extended.xml", extension.xml);
   WriteFile(folder / "extended.yaml", extension.yaml);
   WriteFallback(e, d, folder);
+  WriteNext(e, d, folder);
   told.difference = LineDiff(d.system.Xml({}, {}, folder), extension.xml);
 
   Experiment extended = Experiment::Read(folder / "extended.yaml");
@@ -318,7 +336,9 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
   json["next_experiment"] = {
       {"for", d.verdict.named.size() > 1 ? alternatives : nlohmann::json::array()},
       {"input", d.next.input},
-      {"expected_separation", d.next.separation}};
+      {"expected_separation", d.next.separation},
+      {"file", d.next.log ? nlohmann::json(kNextInputs) : nlohmann::json(nullptr)},
+      {"set", NextSettings(d)}};
   const double over = d.noise.rms > 0 ? told.after.train / d.noise.rms : 0;
   json["adequacy"] = {{"regime", ModelLimited(d, told.after) ? "model_limited" : "noise_limited"},
                       {"remaining_over_noise", over},
@@ -468,7 +488,8 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
   }
   text += Ranking(e, d);
   if (d.verdict.named.size() > 1)
-    text += fmt::format("next      {} (separation {:.3g})\n", d.next.input, d.next.separation);
+    text += fmt::format("next      {} (separation {:.3g}){}\n", d.next.input, d.next.separation,
+                        d.next.log ? fmt::format(", in {}", kNextInputs) : "");
   return text;
 }
 

@@ -14,6 +14,8 @@ namespace continuum {
 
 /// Files of the fallback, where there is one.
 inline constexpr char kFallbackModel[] = "fallback.xml", kFallbackExperiment[] = "fallback.yaml";
+/// The inputs of the next experiment, where one would part the candidates.
+inline constexpr char kNextInputs[] = "next_experiment.csv";
 /// What the fallback reaches: "no cause, but ...".
 std::string FallbackInWords(const Diagnosis& d);
 

@@ -169,9 +169,10 @@ class Story {
       page_.Heading("The next experiment", 3);
       page_.Paragraph(
           fmt::format("To tell them apart: {}. Expected separation {:.3g}, in units of twice the "
-                      "log-likelihood{}.",
+                      "log-likelihood{}.{}",
                       d_.next.input, d_.next.separation,
-                      d_.noise.known() ? "" : " if what remains were white noise"));
+                      d_.noise.known() ? "" : " if what remains were white noise",
+                      d_.next.log ? fmt::format(" Its inputs: {}.", kNextInputs) : ""));
     }
   }
 

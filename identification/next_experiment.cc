@@ -9,14 +9,17 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "sim/file.h"
+#include "sim/units.h"
 
 namespace continuum {
 namespace {
 
 using Signal = std::vector<double>;
 
-constexpr double kTooClose = 15;    // of separation
-constexpr std::size_t kRivals = 3;  // of the chosen one that are looked at
+constexpr double kTooClose = 15;           // of separation
+constexpr std::size_t kRivals = 3;         // of the chosen one that are looked at
+constexpr double kWeights[] = {0.1, 0.5};  // known ones to add, of the mean mass of a body
 constexpr double kTau = 2 * std::numbers::pi;
 
 // A change of all inputs of a log. u: one input over its rows.
@@ -24,6 +27,11 @@ struct Variation {
   std::string words;
   std::function<Signal(const Signal& u)> change;
 };
+
+double TwoDigits(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::round(value / unit) * unit;
+}
 
 double Reach(const Signal& u) {
   const auto [low, high] = std::minmax_element(u.begin(), u.end());
@@ -96,15 +104,18 @@ class Proposal {
       Consider(log, v.words, best);
     }
     for (const std::string& body : Ends()) {
-      Log log = Longest();
-      const double mass = 0.1 * d_.sizes.mass;
-      log.set.push_back({"body:" + body, "point_mass", mass, Change::Operation::kAdd});
-      Consider(log, fmt::format("the same inputs with {:.2g} kg more at body {}", mass, body),
-               best);
+      for (const double share : kWeights) {
+        Log log = Longest();
+        const double mass = TwoDigits(share * d_.sizes.mass);
+        log.set.push_back({"body:" + body, "point_mass", mass, Change::Operation::kAdd});
+        Consider(log, fmt::format("the same inputs with {:.2g} kg more at body {}", mass, body),
+                 best);
+      }
     }
     if (best.input.empty())
       best.input = "slow and fast motions over the whole range";
     else if (best.separation < kTooClose) {
+      best.log.reset();
       best.input = "no change of these inputs tells them apart (the best: " + best.input +
                    "): add a sensor, or fix one of them by a known mass or a separate measurement";
     }
@@ -121,7 +132,7 @@ class Proposal {
     } catch (const Error&) {
       return;  // a simulation diverges under these inputs
     }
-    if (best.input.empty() || least > best.separation) best = {words, least};
+    if (best.input.empty() || least > best.separation) best = {words, least, log};
   }
 
   // Either may be the larger model, which can do what the other does.
@@ -214,6 +225,31 @@ class Proposal {
 
 NextExperiment ProposeNext(const Trials& trials, const Diagnosis& diagnosis) {
   return diagnosis.verdict.named.size() < 2 ? NextExperiment{} : Proposal(trials, diagnosis).Run();
+}
+
+std::string NextCsv(const Experiment& e, const Log& next) {
+  std::vector<std::pair<std::string, Signal>> columns;
+  const auto add = [&](const std::string& name, Signal values, double unit) {
+    const auto same = [&](const auto& c) { return c.first == name; };
+    if (name.empty() || std::any_of(columns.begin(), columns.end(), same)) return;
+    for (double& v : values) v /= unit;
+    columns.emplace_back(name, std::move(values));
+  };
+  Signal time = next.time;
+  for (double& t : time) t -= next.time.front();
+  add(e.time_column, std::move(time), UnitFactor(e.time_unit, "time"));
+  for (std::size_t i = 0; i < e.inputs.size(); ++i) {
+    const Input& in = e.inputs[i];
+    add(in.column, next.input[i], UnitFactor(in.unit, in.where));
+    add(in.enable, Signal(next.enable[i].begin(), next.enable[i].end()), 1);
+  }
+  std::string text;
+  for (const auto& [name, values] : columns) text += (text.empty() ? "" : ",") + name;
+  for (std::size_t k = 0; k < next.rows(); ++k) {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      text += (c ? "," : "\n") + Decimal(columns[c].second[k]);
+  }
+  return text + "\n";
 }
 
 }  // namespace continuum

@@ -13,4 +13,7 @@ namespace continuum {
 /// Below about 15 no change of the inputs parts them.
 NextExperiment ProposeNext(const Trials& trials, const Diagnosis& diagnosis);
 
+/// Its inputs from t = 0, in the columns and units of the experiment.
+std::string NextCsv(const Experiment& experiment, const Log& next);
+
 }  // namespace continuum

@@ -214,11 +214,13 @@ void Round::CompleteTheBest(double best) {
       options_.Say("sensitivities of " + c->hypothesis.Name());
       const Problem problem = c->ProblemOf(*trials_.experiment);
       trials_.Complete(problem, c->fitted);
-      c->error = FlawOf(problem, c->fitted);
+      Problem::Vector x = c->fitted.fit.x;
+      if (RaiseDelays(*c, problem.step(), x)) AtAFineStep(*c);
+      c->error = c->finer ? FlawOf(AtQuarter(problem), *c->finer) : FlawOf(problem, c->fitted);
       c->fits = c->error.empty();
       if (!c->fits) continue;
       const double behind = c->fitted.cost - best, promise = base_.fitted->cost - best;
-      if (behind < std::min(TakenOff(c->fitted), promise)) AtAFineStep(*c);
+      if (!c->finer && behind < std::min(TakenOff(c->fitted), promise)) AtAFineStep(*c);
       best = std::min(best, c->fitted.cost);
       taken_off = std::max(taken_off, TakenOff(c->fitted));
     }

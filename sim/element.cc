@@ -201,6 +201,7 @@ double Element::Get(std::string_view attribute) const {
 
 void Element::Set(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return SetBodyMass(value);
+  if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return AddPointMass(value);
   if (element_->elemtype == mjOBJ_TENDON && attribute == "springlength") {
     for (double& end : mjs_asTendon(element_)->springlength) end = value;
     return;

@@ -55,9 +55,12 @@ Owned<mjModel> Compile(mjSpec& spec, const std::string& name) {
 }
 
 bool IsPlugin(const Change& change) { return change.target.starts_with(kPluginTarget); }
-// A body's mass scales its inertia, so that comes first: an inertia that is given is the body's.
-bool IsMass(const Change& change) {
-  return change.target.starts_with("body:") && change.attribute == "mass";
+// A body's mass scales its inertia, so that comes first: an inertia that is given is the body's. A
+// weight that is put on a body comes last: what scales the body does not scale that.
+constexpr int kTurns = 3;
+int TurnOf(const Change& change) {
+  if (!change.target.starts_with("body:")) return 1;
+  return change.attribute == "mass" ? 0 : change.attribute == "point_mass" ? 2 : 1;
 }
 
 int InstanceId(const mjModel& m, const std::string& target) {
@@ -174,9 +177,9 @@ class System::Edits {
   Edits(const System& system, std::span<const Change> changes)
       : spec_(*system.spec_), option_(spec_.option), compiler_(spec_.compiler) {
     try {
-      for (const bool masses : {true, false}) {
+      for (int turn = 0; turn < kTurns; ++turn) {
         for (std::size_t i = 0; i < changes.size(); ++i) {
-          if (!IsPlugin(changes[i]) && !RepeatsEffect(changes, i) && IsMass(changes[i]) == masses)
+          if (!IsPlugin(changes[i]) && !RepeatsEffect(changes, i) && TurnOf(changes[i]) == turn)
             Apply(system, changes, changes[i]);
         }
       }

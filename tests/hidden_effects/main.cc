@@ -108,9 +108,9 @@ std::vector<Case> Told(std::vector<Case> cases) {
   return cases;
 }
 
-nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool verbose) {
+nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool follow, bool verbose) {
   try {
-    const Answer a = Solve(c, folder);
+    const Answer a = follow ? SolveAndFollow(c, folder) : Solve(c, folder);
     if (verbose) fmt::print("{}\n", a.detail);
     return LineOf(c, a);
   } catch (const std::exception& e) {
@@ -123,7 +123,7 @@ int Main(int argc, char** argv) {
   std::string out, only, keep, pictures, robot = "arm";
   int repeats = 1;
   bool write = false, verbose = false, told = false, quick = false, background = false,
-       spoilt = false;
+       spoilt = false, follow = false;
   app.add_option("--out", out, "one JSON line per case")->required();
   app.add_option("--robot", robot, "arm, servo, silverbox, bouc_wen, spa or annelida")
       ->capture_default_str();
@@ -138,6 +138,7 @@ int Main(int argc, char** argv) {
   app.add_option("--pictures", pictures, "a folder for confusion, power and calibration as SVG");
   app.add_flag("--write", write, "write the cases (--keep), without a diagnosis");
   app.add_flag("--told", told, "only cases of one effect, as the only candidate: for intervals");
+  app.add_flag("--follow", follow, "run the experiment that a set proposes, and diagnose again");
   app.add_flag("--verbose", verbose, "print each summary");
   CLI11_PARSE(app, argc, argv);
   std::set<std::string> done;
@@ -159,7 +160,7 @@ int Main(int argc, char** argv) {
       WriteCase(cases[i], folder);
       continue;
     }
-    const nlohmann::json line = Line(cases[i], folder, verbose);
+    const nlohmann::json line = Line(cases[i], folder, follow, verbose);
     testing::AppendJsonLine(out, line);
     fmt::print(stderr, "{}/{} {}: {} {} {:.1f} s\n", i + 1, cases.size(), name,
                line.at("verdict").get<std::string>(),

@@ -15,26 +15,36 @@ double NumberOr(const nlohmann::json& json, double other) {
 }  // namespace
 
 nlohmann::json LineOf(const Case& c, const Answer& a) {
-  return {{"case", c.Name()},
-          {"effects", c.effects},
-          {"listed", c.listed},
-          {"factor", c.factor},
-          {"noise", kNoiseNames[static_cast<int>(c.noise)]},
-          {"verdict", a.verdict},
-          {"named", a.named},
-          {"partner", a.partner},
-          {"right", InSet(c, a)},
-          {"unique", Unique(a)},
-          {"truth", a.truth},
-          {"value", a.value},
-          {"low", a.low},
-          {"high", a.high},
-          {"explained", a.explained},
-          {"p", a.p},
-          {"lack", a.lack},
-          {"next", a.next},
-          {"stated", a.stated},
-          {"seconds", a.seconds}};
+  nlohmann::json line{{"case", c.Name()},
+                      {"effects", c.effects},
+                      {"listed", c.listed},
+                      {"factor", c.factor},
+                      {"noise", kNoiseNames[static_cast<int>(c.noise)]},
+                      {"verdict", a.verdict},
+                      {"named", a.named},
+                      {"partner", a.partner},
+                      {"right", InSet(c, a)},
+                      {"unique", Unique(a)},
+                      {"truth", a.truth},
+                      {"value", a.value},
+                      {"low", a.low},
+                      {"high", a.high},
+                      {"explained", a.explained},
+                      {"p", a.p},
+                      {"lack", a.lack},
+                      {"next", a.next},
+                      {"closest", a.closest},
+                      {"stated", a.stated},
+                      {"seconds", a.seconds}};
+  if (a.followed) {
+    const Followed& f = *a.followed;
+    line["followed"] = {{"input", f.input},
+                        {"separation", f.separation},
+                        {"named", f.named},
+                        {"right", f.right},
+                        {"unique", f.unique}};
+  }
+  return line;
 }
 
 std::vector<Outcome> OutcomesOf(const std::vector<nlohmann::json>& lines) {
@@ -50,7 +60,11 @@ std::vector<Outcome> OutcomesOf(const std::vector<nlohmann::json>& lines) {
     o.low = NumberOr(line.at("low"), -std::numeric_limits<double>::infinity());
     o.high = NumberOr(line.at("high"), std::numeric_limits<double>::infinity());
     if (line.contains("stated")) o.stated = line.at("stated");
-    o.seconds = line.at("seconds");
+    o.seconds = line.at("seconds"), o.closest = line.value("closest", 0.0);
+    if (line.contains("followed")) {
+      const auto& f = line["followed"];
+      o.followed = {f.at("right").get<bool>(), f.at("unique").get<bool>()};
+    }
     outcomes.push_back(std::move(o));
   }
   return outcomes;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,11 @@ struct Outcome {
   double truth = 0, value = 0, low = 0, high = 0;
   std::map<std::string, double> stated;  ///< probability of every effect
   double seconds = 0;
+  double closest = 0;  ///< how far the closest other effect is, λ
+  struct Followed {
+    bool right, unique;
+  };
+  std::optional<Followed> followed = {};  ///< after the proposed experiment
 
   bool HasSize() const { return right && value != 0; }
   bool Covered() const { return low <= truth && truth <= high; }

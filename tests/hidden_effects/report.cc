@@ -67,6 +67,34 @@ std::string ByEffect(const Counts& counts) {
   return text;
 }
 
+std::string ApartText(const std::vector<Outcome>& outcomes) {
+  constexpr double kApart = 15;
+  int n = 0, right = 0;
+  for (const Outcome& o : outcomes) {
+    if (o.effects.size() != 1 || !o.listed || o.closest < kApart) continue;
+    ++n;
+    right += o.unique && o.right;
+  }
+  return fmt::format("one right name where every other effect is apart by {:g} or more: {} of {}\n",
+                     kApart, right, n);
+}
+
+std::string FollowedText(const std::vector<Outcome>& outcomes) {
+  int n = 0, kept = 0, resolved = 0, wrong = 0;
+  for (const Outcome& o : outcomes) {
+    if (!o.followed || !o.right) continue;
+    ++n;
+    kept += o.followed->right;
+    resolved += o.followed->right && o.followed->unique;
+    wrong += !o.followed->right && o.followed->unique;
+  }
+  if (n == 0) return "";
+  return fmt::format(
+      "sets with the truth, after the proposed experiment: one right name {} of {}, "
+      "truth in the set {}, one wrong name {}\n",
+      resolved, n, kept, wrong);
+}
+
 std::string MatrixText(const Matrix& m) {
   std::size_t width = 0;
   for (const auto& row : m.rows) width = std::max(width, row.size());
@@ -115,9 +143,10 @@ std::string CoverageText(const std::vector<Outcome>& outcomes) {
 }  // namespace
 
 std::string Report(const std::vector<Outcome>& outcomes) {
-  return ByEffect(Counts(outcomes)) + MatrixText(Worth(outcomes)) +
-         MatrixText(Confusion(outcomes)) + PowerText(PowerOf(outcomes)) +
-         ReliabilityText(ReliabilityOf(outcomes)) + CoverageText(outcomes);
+  return ByEffect(Counts(outcomes)) + ApartText(outcomes) + FollowedText(outcomes) +
+         MatrixText(Worth(outcomes)) + MatrixText(Confusion(outcomes)) +
+         PowerText(PowerOf(outcomes)) + ReliabilityText(ReliabilityOf(outcomes)) +
+         CoverageText(outcomes);
 }
 
 }  // namespace continuum::hidden

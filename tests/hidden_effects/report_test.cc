@@ -129,6 +129,8 @@ TEST(Outcome, IsWhatItsLineSays) {
   a.verdict = "named", a.named = {"payload"}, a.truth = 2, a.value = 1.8, a.low = 1;
   a.high = std::numeric_limits<double>::infinity();
   a.stated = {{"payload", 0.75}};
+  a.closest = 20;
+  a.followed = {"a staircase", 40, {"payload"}, true, true};
   const Case c{{"payload"}, 2};
   const auto line = nlohmann::json::parse(LineOf(c, a).dump());
   const auto read = OutcomesOf({line, {{"case", "failed"}, {"verdict", "error"}}});
@@ -136,6 +138,10 @@ TEST(Outcome, IsWhatItsLineSays) {
   EXPECT_TRUE(read[0].right && read[0].unique && read[0].Covered());
   EXPECT_EQ(read[0].factor, 2);
   EXPECT_EQ(read[0].stated.at("payload"), 0.75);
+  ASSERT_TRUE(read[0].followed);
+  EXPECT_TRUE(read[0].followed->right && read[0].followed->unique);
+  EXPECT_THAT(Report(read), HasSubstr("apart by 15 or more: 1 of 1"));
+  EXPECT_THAT(Report(read), HasSubstr("after the proposed experiment: one right name 1 of 1"));
 }
 
 TEST(Pictures, OfMatricesHaveACellForEveryCount) {

@@ -43,6 +43,13 @@ void Spoil(const std::string& how, Columns& u, Columns& y) {
   }
 }
 
+Amounts AmountsOf(const Case& c) {
+  const Robot& robot = RobotNamed(c.robot);
+  Amounts hidden;
+  for (const auto& name : c.effects) hidden.emplace_back(name, robot.Named(name).size * c.factor);
+  return hidden;
+}
+
 // Whether a name is in both.
 bool Share(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
@@ -109,8 +116,7 @@ std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& fold
   if (c.background) return WriteBackground(c, folder);
   std::mt19937_64 rng(c.seed);
   const Robot& robot = RobotNamed(c.robot);
-  Amounts hidden;
-  for (const auto& name : c.effects) hidden.emplace_back(name, robot.Named(name).size * c.factor);
+  const Amounts hidden = AmountsOf(c);
   MakeFolder(folder);
   WriteFile(folder / "robot.xml", robot.model);
   std::string logs;
@@ -135,8 +141,19 @@ std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& fold
   return folder / "experiment.yaml";
 }
 
-Answer Solve(const Case& c, const std::filesystem::path& folder) {
-  const Experiment e = Experiment::Read(WriteCase(c, folder));
+namespace {
+
+double ClosestTo(const CandidateResult& lead, const Diagnosis& d) {
+  double closest = 1e9;
+  for (const CandidateResult& c : d.candidates) {
+    if (c.hypothesis.effect != lead.hypothesis.effect && !c.probes.empty())
+      closest = std::min(closest, c.apart);
+  }
+  return closest;
+}
+
+Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
+  const Experiment e = Experiment::Read(file);
   const Diagnosis d = Diagnose(e, System::Load(e.model));
   Answer a;
   a.verdict = d.verdict.text;
@@ -146,6 +163,8 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
   for (const CandidateResult& one : d.candidates) a.p = std::min(a.p, one.p);
   for (const Dismissed& one : d.dismissed) a.p = std::min(a.p, one.p);
   a.lack = d.lack.smallest();
+  if (d.noise_limited && d.chosen()) a.closest = ClosestTo(d.candidates.front(), d);
+  a.next_experiment = d.next;
   Told told;
   told.after = d.after();
   a.detail = Summary(e, d, told);
@@ -176,6 +195,54 @@ Answer Solve(const Case& c, const std::filesystem::path& folder) {
     for (const auto& other : d.partner->equivalent) a.partner.push_back(other);
   }
   return a;
+}
+
+// The arm under the inputs of an experiment and with the mass that it carries there.
+void WriteNext(const Case& c, const Log& next, const std::filesystem::path& folder) {
+  const Robot& robot = RobotNamed(c.robot);
+  Amounts hidden = AmountsOf(c);
+  std::string set;
+  for (const Change& change : next.set) {
+    set = fmt::format(", set: {{\"{}\": {{{}: {}}}}}", change.target, change.attribute,
+                      Decimal(change.value));
+    const auto payload = std::find_if(hidden.begin(), hidden.end(),
+                                      [](const auto& h) { return h.first == "payload"; });
+    if (payload == hidden.end()) {
+      hidden.emplace_back("payload", change.value);
+    } else {
+      payload->second += change.value;
+    }
+  }
+  std::mt19937_64 rng(c.seed + 1'000'000);
+  const Columns y = robot.run(hidden, 0, next.input);
+  std::string lines = "logs:\n";
+  for (int replicate = 0; replicate < kReplicates; ++replicate) {
+    Columns noisy = y;
+    for (std::size_t i = 0; i < noisy.size(); ++i)
+      noisy[i] = WithNoise(noisy[i], c.noise, robot.sigma[i], rng);
+    const std::string name = fmt::format("next_{}", replicate);
+    WriteFile(folder / (name + ".csv"), Csv(robot, next.input, noisy));
+    lines += fmt::format("  - {{file: {}.csv, trial: next, use: train{}}}\n", name, set);
+  }
+  std::string text = ReadFile(folder / "experiment.yaml");
+  text.replace(text.find("logs:\n"), 6, lines);
+  WriteFile(folder / "followed.yaml", text);
+}
+
+}  // namespace
+
+Answer Solve(const Case& c, const std::filesystem::path& folder) {
+  return AnswerTo(c, WriteCase(c, folder));
+}
+
+Answer SolveAndFollow(const Case& c, const std::filesystem::path& folder) {
+  Answer first = Solve(c, folder);
+  if (!first.next_experiment.log || c.robot != "arm" || c.background) return first;
+  WriteNext(c, *first.next_experiment.log, folder);
+  const Answer then = AnswerTo(c, folder / "followed.yaml");
+  first.followed = {first.next_experiment.input, first.next_experiment.separation, then.named,
+                    InSet(c, then), Unique(then)};
+  return first;
 }
 
 bool InSet(const Case& c, const Answer& a) {

@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hidden_effects/noise.h"
 #include "hidden_effects/robot.h"
+#include "identification/diagnosis.h"
 
 namespace continuum::hidden {
 
@@ -29,6 +31,14 @@ struct Case {
   std::string Name() const;
 };
 
+/// What became of a set when the experiment that the diagnosis proposed was run as well.
+struct Followed {
+  std::string input;
+  double separation = 0;
+  std::vector<std::string> named;
+  bool right = false, unique = false;
+};
+
 /// What the diagnosis made of it.
 struct Answer {
   std::string verdict;
@@ -39,10 +49,13 @@ struct Answer {
   double p = 1;          ///< family-wise, of the best candidate to first order
   double lack = 1;       ///< p-value of what the model that is left standing leaves
   double next = 0;       ///< likelihood between the two best
+  double closest = 0;    ///< how far the closest other effect is from the likeliest, to first order
   double seconds = 0;
   /// Probability of every effect, at whatever place; empty where none is stated or two act.
   std::map<std::string, double> stated = {};
   std::string detail;  ///< the summary
+  NextExperiment next_experiment = {};
+  std::optional<Followed> followed = {};
 };
 
 /// Writes model, logs and experiment of a case into a folder, and returns the experiment's path.
@@ -57,6 +70,9 @@ std::string Csv(const Robot& robot, const Columns& u, const Columns& y);
 std::string CandidatesOf(const Case& c);
 /// A case, diagnosed.
 Answer Solve(const Case& c, const std::filesystem::path& folder);
+/// The same; of the arm, where the answer is a set with an experiment that would part it, once more
+/// with logs of that.
+Answer SolveAndFollow(const Case& c, const std::filesystem::path& folder);
 
 /// Whether the answer holds the truth (of two effects: both), and whether it is one name.
 bool InSet(const Case& c, const Answer& a);

@@ -26,6 +26,7 @@ using testing::Noisy;
 using ::testing::Not;
 using testing::Pendulum;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 // Logs of a servo pendulum by its own integrator, four trials of which the last is held out, two
 // replicates each; the model knows neither payload nor free play.
@@ -210,10 +211,16 @@ TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
   const NextExperiment parts = ProposeNext(trials, d);
   EXPECT_GT(parts.separation, 15);
   EXPECT_THAT(parts.input, Not(HasSubstr("no change")));
+  ASSERT_TRUE(parts.log);
+  const std::string csv = NextCsv(e, *parts.log);
+  EXPECT_THAT(csv, StartsWith(e.time_column + "," + e.inputs[0].column + "\n0,"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'),
+            static_cast<std::ptrdiff_t>(parts.log->rows() + 1));
   d.candidates[1] = CandidateResult(d.candidates[0]);
   const NextExperiment same = ProposeNext(trials, d);
   EXPECT_LT(same.separation, 1e-6);
   EXPECT_THAT(same.input, HasSubstr("no change of these inputs"));
+  EXPECT_FALSE(same.log);
 }
 
 // The pendulum that made the logs has a far finer step.

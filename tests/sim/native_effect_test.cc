@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -73,6 +74,13 @@ TEST_F(NativeEffect, LinkMassScalesMassAndInertiaAboutTheSameCentre) {
     EXPECT_DOUBLE_EQ(heavy.model->body_ipos[3 + i], plain.model->body_ipos[3 + i]);
   }
   EXPECT_EQ(system.Value("body:link", "effect:link_mass"), 1);
+}
+
+TEST_F(NativeEffect, WhatScalesABodyDoesNotScaleAKnownWeightOnIt) {
+  const System system = Load();
+  const Change weight{"body:link", "point_mass", 0.2}, scale{"body:link", "effect:link_mass", 1.5};
+  for (const auto& changes : {std::array{weight, scale}, std::array{scale, weight}})
+    EXPECT_DOUBLE_EQ(system.Build(changes).model->body_mass[1], 1.5 * 0.4 + 0.2);
 }
 
 TEST_F(NativeEffect, ExternalForceActsInWorldAxesAtTheOriginOrASite) {
