@@ -131,11 +131,6 @@ void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, 
   std::printf("%-24s %.6g%s (%s)\n", p.name.c_str(), value, unit.c_str(), range.c_str());
 }
 
-std::string InWords(const SplitError& error, bool held_out, const std::string& unit) {
-  return fmt::format("error {:.4g} {} RMS on train", error.train, unit) +
-         (held_out ? fmt::format(", {:.4g} on validate", error.validate) : "");
-}
-
 void Print(const Problem& problem, const Fitting& all, const Determined& determined,
            const std::string& out) {
   const Experiment& e = problem.experiment();
@@ -162,10 +157,11 @@ void Print(const Problem& problem, const Fitting& all, const Determined& determi
   const bool held_out = std::find(validate.begin(), validate.end(), true) != validate.end();
   const SplitError error{problem.PooledRms(r, problem.TrainLogs()),
                          held_out ? problem.PooledRms(r, validate) : 0};
-  std::printf("%s%s\n", InWords(error, held_out, unit).c_str(),
+  std::printf("%s%s\n", ErrorInWords(error, held_out, unit).c_str(),
               MeanAbsoluteInWords(scores).c_str());
   if (determined.at_step)
-    std::printf("as the model steps: %s\n", InWords(*determined.at_step, held_out, unit).c_str());
+    std::printf("as the model steps: %s\n",
+                ErrorInWords(*determined.at_step, held_out, unit).c_str());
   if (all.regression) {
     std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
                 all.regression->train, all.regression->validate);
@@ -238,6 +234,7 @@ void RunIdentify(const Options& o) {
   EndProgress();
   Print(problem, all, determined, o.out);
   for (const TradeOff& t : determined.trade_offs) std::printf("%s\n", t.text.c_str());
+  if (!determined.beyond_noise.empty()) std::printf("%s\n", determined.beyond_noise.c_str());
   StopIfRequested();  // the files hold the best so far
   if (const std::string hint = StartHint(problem, all.fit.x, use); !hint.empty())
     std::printf("%s\n", hint.c_str());

@@ -21,6 +21,20 @@
 namespace continuum {
 namespace {
 
+// A copy of a log is no replicate: the noise between them is none.
+void RequireOwnRecordings(const Experiment& e) {
+  for (const auto& group : ReplicateGroups(e)) {
+    for (std::size_t b = 1; b < group.size(); ++b) {
+      for (std::size_t a = 0; a < b; ++a) {
+        const Log &first = e.logs[group[a]], &copy = e.logs[group[b]];
+        if (first.measured != copy.measured) continue;
+        throw Error::Input(copy.file.string(), "a recording of its own",
+                           "the values of " + first.file.string() + ": a copy is no replicate");
+      }
+    }
+  }
+}
+
 class Session {
  public:
   Session(const Experiment& experiment, const System& system, const DiagnosisOptions& options)
@@ -35,6 +49,7 @@ class Session {
     if (std::find(train.begin(), train.end(), true) == train.end()) {
       throw Error::Input(e_.file.string() + ": logs", "at least one with use: train", "none");
     }
+    RequireOwnRecordings(e_);
     d_.noise = NoiseOf(e_);
     d_.folds = FoldsOf(e_);
     if (!d_.noise.known()) RequireFolds();  // before long work

@@ -57,13 +57,25 @@ nlohmann::json ParametersOf(const Hypothesis& h, const Fitted& fitted, Eigen::In
   return parameters;
 }
 
+// Interval, bound, and the value at a fine step where that rounds to another.
+std::string IntervalInWords(const Uncertainty& u, double value, Eigen::Index at) {
+  std::vector<std::string> words;
+  if (u.lower.size() > at && std::isfinite(u.upper[at] - u.lower[at]))
+    words.push_back(fmt::format("{:.4g} .. {:.4g}", u.lower[at], u.upper[at]));
+  if (!u.at_bound.empty() && u.at_bound[at]) words.push_back("at its bound");
+  if (u.step.size() > at && std::isfinite(u.step[at])) {
+    const std::string fine = fmt::format("{:.3g}", value + u.step[at]);
+    if (fine != fmt::format("{:.3g}", value)) words.push_back(fine + " at a fine step");
+  }
+  return words.empty() ? "" : fmt::format(" ({})", fmt::join(words, "; "));
+}
+
 std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin) {
   std::string text;
   for (std::size_t k = 0; k < h.extra.size(); ++k) {
     const Eigen::Index at = begin + static_cast<Eigen::Index>(k);
-    const auto& bound = fitted.uncertainty.at_bound;
     text += fmt::format(", {} = {:.4g}{}", h.extra[k].name, fitted.fit.x[at],
-                        !bound.empty() && bound[at] ? " (at its bound)" : "");
+                        IntervalInWords(fitted.uncertainty, fitted.fit.x[at], at));
   }
   return text;
 }

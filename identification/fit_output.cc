@@ -8,7 +8,9 @@
 #include "error.h"
 #include "identification/ahead.h"
 #include "identification/extension.h"
+#include "identification/noise.h"
 #include "identification/residual_plots.h"
+#include "identification/start_model.h"
 #include "sim/file.h"
 #include "sim/json.h"
 #include "sim/replay.h"
@@ -197,6 +199,30 @@ void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector
              rows, {note + "."});
 }
 
+namespace {
+
+// Intervals are those of a model that is right, next to the best of its valleys.
+std::string BeyondNoise(const Experiment& e, double error) {
+  constexpr double kFar = 5;
+  const Noise noise = NoiseOf(e);
+  if (!(noise.rms > 0) || !(error > kFar * noise.rms)) return "";
+  return fmt::format(
+      "what remains is {:.0f} times the measurement noise ({}): the model lacks something "
+      "(`continuum diagnose` says what) or a better fit is elsewhere (`--starts 8`); intervals "
+      "hold "
+      "for neither",
+      error / noise.rms, noise.source);
+}
+
+}  // namespace
+
+std::string ErrorInWords(const SplitError& error, bool held_out, const std::string& unit) {
+  std::string text = fmt::format("error {:.4g} {} RMS on train", error.train, unit);
+  if (!held_out) return text;
+  return text + (std::isfinite(error.validate) ? fmt::format(", {:.4g} on validate", error.validate)
+                                               : ", none on validate, where a log diverges");
+}
+
 Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
                     const FitRecord& record) {
   const Experiment& e = problem.experiment();
@@ -253,12 +279,17 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
 
   Page page("Fit", e.model.filename().string() + " to " + std::to_string(e.logs.size()) + " logs");
   const bool held_out = std::any_of(e.logs.begin(), e.logs.end(), [](auto& l) { return !l.train; });
-  std::string title = fmt::format("error {:.4g} {} on train", error.train, unit);
-  if (held_out) title += fmt::format(", {:.4g} {} on validate", error.validate, unit);
-  page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, title,
+  page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, ErrorInWords(error, held_out, unit),
              fmt::format("{} iterations, {} simulations, {:.1f} s. {}", fit.iterations,
                          fit.evaluations, fit.seconds, fit.message) +
                  (record.starts ? " " + record.starts->InWords() + "." : ""));
+  const std::string beyond = BeyondNoise(e, error.train);
+  if (!beyond.empty()) page.Badge(Tone::kWarn, "More than noise is left", beyond + ".");
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    if (logs[l].trace.diverged)
+      page.Badge(Tone::kWarn, "Log " + e.logs[l].label + " has no error",
+                 "With the fitted parameters: " + WhyItDiverges(problem, fit.x, l) + ".");
+  }
   page.Heading("Parameters");
   AddParameterTable(page, problem, fit.x, u);
   for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);
@@ -281,9 +312,14 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   std::vector<std::vector<std::string>> rows;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     for (const ChannelScore& s : logs[l].score) {
-      rows.push_back({e.logs[l].label, e.logs[l].train ? "train" : "validate", s.channel, s.unit,
-                      fmt::format("{:.4g}", s.rmse), fmt::format("{:.4g}", s.mae),
-                      fmt::format("{:.3f}", s.nrmse), fmt::format("{:.1f}", s.fit)});
+      rows.push_back({e.logs[l].label, e.logs[l].train ? "train" : "validate", s.channel, s.unit});
+      if (logs[l].trace.diverged) {
+        rows.back().insert(rows.back().end(), {"diverges", "", "", ""});
+        continue;
+      }
+      rows.back().insert(rows.back().end(),
+                         {fmt::format("{:.4g}", s.rmse), fmt::format("{:.4g}", s.mae),
+                          fmt::format("{:.3f}", s.nrmse), fmt::format("{:.1f}", s.fit)});
     }
   }
   page.Table({"log", "use", "channel", "unit", "RMSE", "mean abs.", "NRMSE", "fit %"}, rows);
@@ -293,7 +329,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
     AddOverlay(page, e, e.logs[l], {{"fitted", Style::kAfter, &traces[l]}}, true);
   }
   page.Write(folder / "report.html");
-  return {u, trade_offs, at_step};
+  return {u, trade_offs, at_step, beyond};
 }
 
 }  // namespace continuum

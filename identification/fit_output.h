@@ -31,7 +31,11 @@ struct Determined {
   Uncertainty uncertainty;
   std::vector<TradeOff> trade_offs;   ///< what they do not determine alone
   std::optional<SplitError> at_step;  ///< after a fit on the smooth path: as the model steps
+  std::string beyond_noise = {};      ///< in words, where far more than noise is left
 };
+
+/// "error 0.1 m RMS on train, 0.2 on validate".
+std::string ErrorInWords(const SplitError& error, bool held_out, const std::string& unit);
 
 /// Writes fit.json, fitted.xml, fitted.yaml (the experiment with that model and every value that
 /// was fitted of single logs or of the measurement), simulated/*.csv and report.html of a fit into

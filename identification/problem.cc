@@ -166,7 +166,7 @@ void Problem::Expand(const Parameter& p) {
       throw Error::Input(p.where,
                          "a train log of every " +
                              std::string(p.per == Parameter::Per::kLog ? "log" : "condition"),
-                         "none of '" + name + "'");
+                         "none of '" + name + "': nothing would tell its value");
     }
     FreeParameter one = free;
     one.name = p.name + "[" + name + "]";

@@ -50,10 +50,10 @@ Trend OfLog(const Log& log, const std::vector<double>& rho) {
 }
 
 // Where logs have different clocks, their curves are compared at the lags of the slowest.
-Trend OfAllLogs(const Experiment& e, const PerLog& rho, std::size_t c) {
+Trend OfAllLogs(const std::vector<const Log*>& logs, const PerLog& rho, std::size_t c) {
   double step = 0, last = std::numeric_limits<double>::infinity();
   for (std::size_t l = 0; l < rho.size(); ++l) {
-    const double period = Period(e.logs[l]);
+    const double period = Period(*logs[l]);
     step = std::max(step, period);
     last = std::min(last, period * static_cast<double>(rho[l][c].size() - 1));
   }
@@ -62,7 +62,7 @@ Trend OfAllLogs(const Experiment& e, const PerLog& rho, std::size_t c) {
     double sum = 0, low = 1, high = -1;
     for (std::size_t l = 0; l < rho.size(); ++l) {
       const auto& curve = rho[l][c];
-      const auto k = static_cast<std::size_t>(std::lround(lag / Period(e.logs[l])));
+      const auto k = static_cast<std::size_t>(std::lround(lag / Period(*logs[l])));
       const double v = curve[std::min(k, curve.size() - 1)];
       sum += v, low = std::min(low, v), high = std::max(high, v);
     }
@@ -91,8 +91,11 @@ class ResidualPlots {
  public:
   ResidualPlots(Page& page, const Problem& problem, const std::vector<Replayed>& logs)
       : page_(page), e_(problem.experiment()), channels_(problem.channels()) {
-    for (std::size_t l = 0; l < logs.size(); ++l)
+    for (std::size_t l = 0; l < logs.size(); ++l) {
+      if (logs[l].trace.diverged) continue;  // nothing remains of it
+      logs_.push_back(&e_.logs[l]);
       residual_.push_back(Residuals(e_, e_.logs[l], logs[l].trace));
+    }
   }
 
   void AddAutocorrelation() const {
@@ -104,9 +107,9 @@ class ResidualPlots {
       for (const std::size_t c : channels_) {
         ScatterSpec spec{Title(c, "autocorrelation"), {"lag", "s"}, {"correlation", ""}, {}};
         spec.small = small();
-        if (rho.size() > kColours) spec.trends.push_back(OfAllLogs(e_, rho, c));
+        if (rho.size() > kColours) spec.trends.push_back(OfAllLogs(logs_, rho, c));
         for (std::size_t l = 0; l < rho.size() && rho.size() <= kColours; ++l)
-          spec.trends.push_back(OfLog(e_.logs[l], rho[l][c]));
+          spec.trends.push_back(OfLog(*logs_[l], rho[l][c]));
         page_.Scatter(spec);
       }
     });
@@ -134,8 +137,8 @@ class ResidualPlots {
     for (const std::size_t c : channels_) header.push_back(e_.channels[c].name);
     std::vector<std::vector<std::string>> rows;
     for (std::size_t l = 0; l < rho.size(); ++l) {
-      rows.push_back({e_.logs[l].label});
-      for (const std::size_t c : channels_) rows.back().push_back(Lasts(e_.logs[l], rho[l][c]));
+      rows.push_back({logs_[l]->label});
+      for (const std::size_t c : channels_) rows.back().push_back(Lasts(*logs_[l], rho[l][c]));
     }
     page_.Table(header, rows,
                 {"How long residuals stay correlated [s]: until the correlation falls below 1/e. "
@@ -150,9 +153,9 @@ class ResidualPlots {
     const double unit = UnitFactor(input.unit, input.where);
     PointGroup all{"rows", {}, {}, Style::kResidual};
     for (std::size_t l = 0; l < residual_.size(); ++l) {
-      for (std::size_t k = 0; k < e_.logs[l].rows(); ++k) {
+      for (std::size_t k = 0; k < logs_[l]->rows(); ++k) {
         if (std::isnan(residual_[l][c][k])) continue;
-        all.x.push_back(e_.logs[l].input[i][k] / unit);
+        all.x.push_back(logs_[l]->input[i][k] / unit);
         all.y.push_back(residual_[l][c][k] / e_.channels[c].factor);
       }
     }
@@ -194,7 +197,8 @@ class ResidualPlots {
   Page& page_;
   const Experiment& e_;
   const std::vector<std::size_t>& channels_;
-  PerLog residual_;
+  std::vector<const Log*> logs_;  // that do not diverge
+  PerLog residual_;               // of them
 };
 
 }  // namespace

@@ -74,6 +74,7 @@ class Round {
   bool FitAnew(CandidateResult& c) const;
   bool FallsTo(const Problem& fine, const CandidateResult& c, const Fitted& finer) const;
   void GoOn(const Problem& problem, CandidateResult& c, double rival) const;
+  void FitBeyond(CandidateResult& c, double rival) const;
   void SecondChances();
   std::vector<Problem::Vector> StartsAsGood(const CandidateResult& c, std::size_t best,
                                             const Remainder& left) const;

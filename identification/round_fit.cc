@@ -3,6 +3,7 @@
 
 #include "error.h"
 #include "identification/round.h"
+#include "identification/search_range.h"
 #include "identification/uncertainty.h"
 
 // The fits of a round: who gets one, from where, and how far.
@@ -143,6 +144,20 @@ void Round::FitOne(CandidateResult& c, double rival) const {
   c.fitted = trials_.Fit(problem, BestOf(problem, starts), rival);
   c.fits = true;
   GoOn(problem, c, rival);
+  FitBeyond(c, rival);
+}
+
+// In what size an effect is looked for is a guess: a fit that ends there goes on beyond.
+void Round::FitBeyond(CandidateResult& c, double rival) const {
+  constexpr int kTimes = 3;
+  Hypothesis& h = c.hypothesis;
+  const std::vector<Param>& law = EffectNamed(h.Card()).params;
+  for (int i = 0; i < kTimes; ++i) {
+    if (!Widen(h.extra, h.null, law, {c.fitted.fit.x.data() + c.own(), h.extra.size()})) return;
+    const Problem problem = c.ProblemOf(*trials_.experiment);
+    c.fitted = trials_.Fit(problem, c.fitted.fit.x, rival);
+    GoOn(problem, c, rival);
+  }
 }
 
 // A fit that is out of iterations while every one of them still gains goes on, as along a valley

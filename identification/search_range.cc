@@ -86,4 +86,26 @@ std::vector<std::vector<double>> StartsOf(const std::vector<Parameter>& extra,
   return starts;
 }
 
+bool Widen(std::vector<Parameter>& extra, const std::vector<double>& null,
+           const std::vector<Param>& law, std::span<const double> values) {
+  constexpr double kTimes = 10, kEdge = 1e-6;
+  bool any = false;
+  for (std::size_t i = 0; i < extra.size(); ++i) {
+    Parameter& p = extra[i];
+    const auto known =
+        std::find_if(law.begin(), law.end(), [&](const Param& one) { return one.name == p.name; });
+    if (known == law.end() || !std::isfinite(null[i])) continue;
+    const auto widen = [&](double& end, double most) {
+      const double range = end - null[i];
+      if (end == most || range == 0 || std::abs(values[i] - end) > kEdge * std::abs(range)) return;
+      const double wider = null[i] + kTimes * range;
+      end = range > 0 ? std::min(most, wider) : std::max(most, wider);
+      any = true;
+    };
+    widen(p.upper, known->upper);
+    widen(p.lower, known->lower);
+  }
+  return any;
+}
+
 }  // namespace continuum

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,10 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
 /// where inputs rest at a bound the two directions are no mirror images.
 std::vector<std::vector<double>> StartsOf(const std::vector<Parameter>& extra,
                                           const std::vector<double>& null);
+
+/// Widens the ranges of amplitudes (null: a number) that a fit has put at an end, ten times but
+/// within what the law allows; whether there were any. What the law does not know stays.
+bool Widen(std::vector<Parameter>& extra, const std::vector<double>& null,
+           const std::vector<Param>& law, std::span<const double> values);
 
 }  // namespace continuum

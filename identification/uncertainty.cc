@@ -8,6 +8,7 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include "error.h"
+#include "identification/invariance.h"
 #include "sim/stop.h"
 
 namespace continuum {
@@ -66,15 +67,6 @@ Scores Measured(const Scores& all) {
     if (all.r[k] != 0 || !all.J.row(k).isZero(0)) rows.push_back(k);
   }
   return {all.r(rows), all.J(rows, Eigen::all), all.curvature(rows)};
-}
-
-// Of a symmetric matrix whose rows have units of their own.
-Matrix PseudoInverse(const Matrix& H) {
-  const Vector scale =
-      H.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 1; });
-  const Matrix even = scale.asDiagonal() * H * scale.asDiagonal();
-  const Matrix inverse = even.completeOrthogonalDecomposition().pseudoInverse();
-  return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
 // Moves the ends of the intervals by low ≤ 0 and high ≥ 0, within the bounds.
@@ -177,20 +169,23 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
     if (u.at_bound[i]) u.information.row(i).setZero(), u.information.col(i).setZero();
   }
   const double freedom = std::max(2.0, independent - static_cast<double>(n));
-  const Matrix Hi = PseudoInverse(H);
+  const Modes modes(H);
+  const Matrix Hi = modes.Inverse(), along = modes.AlongInvariances();
   const double few = std::max(1.0, independent / freedom);
-  const Matrix cov = few * Hi * modelled * Hi, robust = few * Hi * S * Hi;
+  const Matrix cov = few * Hi * modelled * Hi + along, robust = few * Hi * S * Hi + along;
   const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
   for (Eigen::Index a = 0; a < n; ++a) {
     const FreeParameter& p = problem.parameters()[a];
+    const double unknown = (p.upper - p.lower) / std::sqrt(12.0);
     if (rows <= n || !(H(a, a) > 0)) {
-      u.standard_error[a] = (p.upper - p.lower) / std::sqrt(12.0);
+      u.standard_error[a] = unknown;
       u.lower[a] = p.lower, u.upper[a] = p.upper;
       continue;
     }
-    u.standard_error[a] = std::sqrt(std::max({0.0, cov(a, a), robust(a, a)}));
-    u.lower[a] = std::max(p.lower, x[a] - t * u.standard_error[a]);
-    u.upper[a] = std::min(p.upper, x[a] + t * u.standard_error[a]);
+    const double error = std::sqrt(std::max({0.0, cov(a, a), robust(a, a)}));
+    u.standard_error[a] = along(a, a) > 0 ? std::min(error, unknown) : error;
+    u.lower[a] = std::max(p.lower, x[a] - t * error);
+    u.upper[a] = std::min(p.upper, x[a] + t * error);
     for (Eigen::Index b = 0; b < n; ++b) {
       const double size = std::sqrt(cov(a, a) * cov(b, b));
       u.correlation(a, b) = size > 0 ? cov(a, b) / size : (a == b ? 1 : 0);
@@ -218,7 +213,7 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
     if (!J[l].size()) continue;
     pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
   }
-  ReachOver(problem, PseudoInverse(u.information) * pull, u);
+  ReachOver(problem, Modes(u.information).Inverse() * pull, u);
 }
 
 std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
@@ -247,6 +242,10 @@ std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::
         if (use[l]) secants[l].col(i) = change[l];
       }
     }
+  }
+  const Modes modes(InformationIn(J));  // what no slope shows is no secant's either
+  for (Matrix& one : secants) {
+    if (one.size() > 0) one = modes.Without(one);
   }
   return secants;
 }
@@ -294,7 +293,8 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   const auto train = problem.TrainLogs();
   Problem centered = problem;
   centered.Center();
-  const auto J = centered.Jacobian(x, r, train);
+  auto J = centered.Jacobian(x, r, train);
+  KeepInvariances(problem, x, r, J);
   if (StopRequested()) return NotComputed(problem, x);
   const double soft = problem.experiment().soft;
   Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);

@@ -248,7 +248,10 @@ Parameter ReadParameter(const Yaml& y) {
     p.initial = initial->Number();
     p.has_initial = true;
     if (p.initial < p.lower || p.initial > p.upper) {
-      throw Error::Input(initial->Where(), "a start within the bounds", initial->Text());
+      throw Error::Input(
+          initial->Where(),
+          "a start within the bounds, " + Decimal(p.lower) + " to " + Decimal(p.upper),
+          initial->Text());
     }
   }
   if (const auto o = y.Find("operation")) {

@@ -138,7 +138,7 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
 std::string MeanAbsoluteInWords(const std::vector<ChannelScore>& scores) {
   double sum = 0;
   for (const ChannelScore& s : scores) {
-    if (s.unit != scores.front().unit) return "";
+    if (s.unit != scores.front().unit || !std::isfinite(s.mae)) return "";
     sum += s.mae;
   }
   if (scores.empty()) return "";

@@ -31,7 +31,7 @@ struct ChannelScore {
 std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Trace& trace);
 
 /// "; mean absolute error averaged over logs and channels 0.0736 rad"; empty when the scores have
-/// several units.
+/// several units, or a log diverges.
 std::string MeanAbsoluteInWords(const std::vector<ChannelScore>& scores);
 
 /// One unit for all channels, so that errors can be pooled: the channels' own when they share one,

@@ -242,6 +242,14 @@ TEST_F(DiagnosisTest, AFitAtAFineStepTellsHowFarTheStepMovesAValue) {
   EXPECT_GE(fitted.uncertainty.upper[0], std::max(x, truth.damping));
 }
 
+TEST_F(DiagnosisTest, ACopyOfALogIsNoReplicate) {
+  AddTrials({});
+  Experiment e = ReadWith("payload");
+  e.logs.push_back(e.logs.front());
+  EXPECT_THAT([&] { Ask(e); },
+              ::testing::ThrowsMessage<Error>(HasSubstr("a copy is no replicate")));
+}
+
 TEST_F(DiagnosisTest, AsksForTwoGroupsToLeaveOut) {
   const auto u = Command(0, kRows);
   AddLog("only", "use: train", u, Pendulum().Run(u, testing::kPeriod));
