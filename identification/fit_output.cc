@@ -209,8 +209,7 @@ std::string BeyondNoise(const Experiment& e, double error) {
   return fmt::format(
       "what remains is {:.0f} times the measurement noise ({}): the model lacks something "
       "(`continuum diagnose` says what) or a better fit is elsewhere (`--starts 8`); intervals "
-      "hold "
-      "for neither",
+      "allow for neither",
       error / noise.rms, noise.source);
 }
 
