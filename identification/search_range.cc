@@ -89,12 +89,14 @@ std::vector<std::vector<double>> StartsOf(const std::vector<Parameter>& extra,
 bool Widen(std::vector<Parameter>& extra, const std::vector<double>& null,
            const std::vector<Param>& law, std::span<const double> values) {
   constexpr double kTimes = 10, kEdge = 1e-6;
+  const auto shapes = [](double v) { return !std::isfinite(v); };
+  if (std::any_of(null.begin(), null.end(), shapes)) return false;
   bool any = false;
   for (std::size_t i = 0; i < extra.size(); ++i) {
     Parameter& p = extra[i];
     const auto known =
         std::find_if(law.begin(), law.end(), [&](const Param& one) { return one.name == p.name; });
-    if (known == law.end() || !std::isfinite(null[i])) continue;
+    if (known == law.end() || null[i] == 1) continue;  // no factor beyond ten
     const auto widen = [&](double& end, double most) {
       const double range = end - null[i];
       if (end == most || range == 0 || std::abs(values[i] - end) > kEdge * std::abs(range)) return;

@@ -20,8 +20,10 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
 std::vector<std::vector<double>> StartsOf(const std::vector<Parameter>& extra,
                                           const std::vector<double>& null);
 
-/// Widens the ranges of amplitudes (null: a number) that a fit has put at an end, ten times but
-/// within what the law allows; whether there were any. What the law does not know stays.
+/// Widens the ranges that a fit has put at an end, ten times but within what the law allows;
+/// whether there were any. What the law does not know stays; so do factors (null: 1), as what has
+/// next to no mass would become a load, and laws with a nuisance (null: not finite), which at sizes
+/// without limit take the shape of others.
 bool Widen(std::vector<Parameter>& extra, const std::vector<double>& null,
            const std::vector<Param>& law, std::span<const double> values);
 

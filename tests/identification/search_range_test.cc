@@ -20,20 +20,33 @@ TEST(SearchRange, ALoadMayBeFiveTimesTheWholeRobotHoweverLightItsLinks) {
 }
 
 TEST(SearchRange, WidensWhatAFitHasReachedAsFarAsTheLawAllows) {
-  const std::vector<Param> law{{"k", "N*m/rad", 0, kInfinity, 0, 0},
-                               {"share", "1", 0, 1, 0, 0},
-                               {"width", "rad", 0, kInfinity, std::nan(""), 0}};
-  std::vector<Parameter> extra(3);
+  const std::vector<Param> law{{"k", "N*m/rad", 0, kInfinity, 0, 0}, {"share", "1", 0, 1, 0, 0}};
+  std::vector<Parameter> extra(2);
   extra[0].name = "k", extra[0].upper = 2;
   extra[1].name = "share", extra[1].upper = 0.5;
-  extra[2].name = "width", extra[2].upper = 3;
-  const std::vector<double> null{0, 0, std::nan("")};
-  EXPECT_FALSE(Widen(extra, null, law, std::vector<double>{1.9, 0.4, 3}));
-  EXPECT_TRUE(Widen(extra, null, law, std::vector<double>{2, 0.5, 3}));
+  const std::vector<double> null{0, 0};
+  EXPECT_FALSE(Widen(extra, null, law, std::vector<double>{1.9, 0.4}));
+  EXPECT_TRUE(Widen(extra, null, law, std::vector<double>{2, 0.5}));
   EXPECT_EQ(extra[0].upper, 20);
   EXPECT_EQ(extra[1].upper, 1);  // all of it
-  EXPECT_EQ(extra[2].upper, 3);  // no amplitude
-  EXPECT_FALSE(Widen(extra, null, law, std::vector<double>{2, 1, 3}));
+  EXPECT_FALSE(Widen(extra, null, law, std::vector<double>{2, 1}));
+}
+
+TEST(SearchRange, AFactorStaysWithinTen) {
+  const std::vector<Param> law{{"scale", "1", 0, kInfinity, 1, 1}};
+  std::vector<Parameter> extra(1);
+  extra[0].name = "scale", extra[0].lower = 0.1, extra[0].upper = 10;
+  EXPECT_FALSE(Widen(extra, {1}, law, std::vector<double>{10}));
+}
+
+TEST(SearchRange, ALawWithAShapeOfItsOwnStaysWithinItsRange) {
+  const std::vector<Param> law{{"f", "N*m", 0, kInfinity, 0, 0},
+                               {"width", "rad", 0, kInfinity, 0.1, std::nan("")}};
+  std::vector<Parameter> extra(2);
+  extra[0].name = "f", extra[0].upper = 2;
+  extra[1].name = "width", extra[1].upper = 3;
+  EXPECT_FALSE(Widen(extra, {0, std::nan("")}, law, std::vector<double>{2, 3}));
+  EXPECT_EQ(extra[0].upper, 2);
 }
 
 }  // namespace
