@@ -58,9 +58,12 @@ bool IsPlugin(const Change& change) { return change.target.starts_with(kPluginTa
 // A body's mass scales its inertia, so that comes first: an inertia that is given is the body's. A
 // weight that is put on a body comes last: what scales the body does not scale that.
 constexpr int kTurns = 3;
+bool IsWeight(const std::string& target, const std::string& attribute) {
+  return target.starts_with("body:") && attribute == "point_mass";
+}
 int TurnOf(const Change& change) {
-  if (!change.target.starts_with("body:")) return 1;
-  return change.attribute == "mass" ? 0 : change.attribute == "point_mass" ? 2 : 1;
+  if (IsWeight(change.target, change.attribute)) return 2;
+  return change.target.starts_with("body:") && change.attribute == "mass" ? 0 : 1;
 }
 
 int InstanceId(const mjModel& m, const std::string& target) {
@@ -292,7 +295,9 @@ std::vector<std::string> System::Named(const std::string& target) const {
 
 double System::ValueAfter(std::span<const Change> changes, const std::string& target,
                           const std::string& attribute) const {
-  if (!target.starts_with(kPluginTarget) && !IsNativeEffect({target, attribute})) {
+  const bool told = target.starts_with(kPluginTarget) || IsNativeEffect({target, attribute}) ||
+                    IsWeight(target, attribute);  // a body does not show what hangs on it
+  if (!told) {
     const Edits edits(*this, changes);
     return Value(target, attribute);
   }

@@ -81,6 +81,7 @@ TEST_F(NativeEffect, WhatScalesABodyDoesNotScaleAKnownWeightOnIt) {
   const Change weight{"body:link", "point_mass", 0.2}, scale{"body:link", "effect:link_mass", 1.5};
   for (const auto& changes : {std::array{weight, scale}, std::array{scale, weight}})
     EXPECT_DOUBLE_EQ(system.Build(changes).model->body_mass[1], 1.5 * 0.4 + 0.2);
+  EXPECT_EQ(system.ValueAfter({{weight, scale}}, "body:link", "point_mass"), 0.2);
 }
 
 TEST_F(NativeEffect, ExternalForceActsInWorldAxesAtTheOriginOrASite) {
