@@ -34,9 +34,12 @@ Matrix Modes::AlongInvariances() const {
   return along * along.transpose() / kNone;
 }
 
-Matrix Modes::Without(const Matrix& J) const {
+void Modes::TakeOutOf(std::vector<Matrix>& J) const {
   const Matrix V = vectors_.leftCols(none_);
-  return J - J * unit_.asDiagonal() * V * V.transpose() * unit_.cwiseInverse().asDiagonal();
+  const Matrix P = unit_.asDiagonal() * V * V.transpose() * unit_.cwiseInverse().asDiagonal();
+  for (Matrix& one : J) {
+    if (one.size() > 0) one -= one * P;
+  }
 }
 
 Matrix InformationIn(const std::vector<Matrix>& J) {
@@ -57,10 +60,7 @@ void KeepInvariances(const Problem& problem, const Vector& x, const std::vector<
   Problem narrow = problem;
   narrow.Center();
   narrow.DifferBy(1e-6);
-  const Modes modes(InformationIn(narrow.Jacobian(x, r, use)));
-  for (Matrix& one : J) {
-    if (one.size() > 0) one = modes.Without(one);
-  }
+  Modes(InformationIn(narrow.Jacobian(x, r, use))).TakeOutOf(J);
 }
 
 }  // namespace continuum

@@ -20,8 +20,8 @@ class Modes {
   Problem::Matrix Inverse() const;
   /// D V Vᵀ D / 1e-12, V the invariances: a covariance along them that reaches over any bounds.
   Problem::Matrix AlongInvariances() const;
-  /// J with what it does along the invariances taken out: J (1 − D V Vᵀ D⁻¹).
-  Problem::Matrix Without(const Problem::Matrix& J) const;
+  /// Takes what the J of each log do along the invariances out: J (1 − D V Vᵀ D⁻¹).
+  void TakeOutOf(std::vector<Problem::Matrix>& J) const;
 
  private:
   Problem::Vector unit_;  // D

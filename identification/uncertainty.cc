@@ -243,10 +243,7 @@ std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::
       }
     }
   }
-  const Modes modes(InformationIn(J));  // what no slope shows is no secant's either
-  for (Matrix& one : secants) {
-    if (one.size() > 0) one = modes.Without(one);
-  }
+  Modes(InformationIn(J)).TakeOutOf(secants);  // what no slope shows is no secant's either
   return secants;
 }
 

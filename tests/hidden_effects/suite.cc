@@ -50,6 +50,22 @@ Amounts AmountsOf(const Case& c) {
   return hidden;
 }
 
+// One motion as often as it is recorded, each time with noise of its own. Returns the logs' names.
+std::vector<std::string> WriteReplicates(const Case& c, const std::string& trial, const Columns& u,
+                                         const Columns& y, const std::filesystem::path& folder,
+                                         std::mt19937_64& rng) {
+  const Robot& robot = RobotNamed(c.robot);
+  std::vector<std::string> names;
+  for (int replicate = 0; replicate < kReplicates; ++replicate) {
+    Columns noisy = y;
+    for (std::size_t i = 0; i < noisy.size(); ++i)
+      noisy[i] = WithNoise(noisy[i], c.noise, robot.sigma[i], rng);
+    names.push_back(fmt::format("{}_{}", trial, replicate));
+    WriteFile(folder / (names.back() + ".csv"), Csv(robot, u, noisy));
+  }
+  return names;
+}
+
 // Whether a name is in both.
 bool Share(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
@@ -126,14 +142,8 @@ std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& fold
     Columns y = robot.run(hidden, trial, u);
     if (c.spoilt == "exchanged") u = robot.drive(trial, elsewhere);
     Spoil(c.spoilt, u, y);
-    for (int replicate = 0; replicate < kReplicates; ++replicate) {
-      Columns noisy = y;
-      for (std::size_t i = 0; i < noisy.size(); ++i)
-        noisy[i] = WithNoise(noisy[i], c.noise, robot.sigma[i], rng);
-      const std::string name = fmt::format("trial{}_{}", trial, replicate);
-      WriteFile(folder / (name + ".csv"), Csv(robot, u, noisy));
+    for (const auto& name : WriteReplicates(c, fmt::format("trial{}", trial), u, y, folder, rng))
       logs += LogLine(robot, trial, name);
-    }
   }
   WriteFile(folder / "experiment.yaml", "format: 1\nmodel: robot.xml\nstart: rest\n" +
                                             robot.experiment + "logs:\n" + logs + "candidates: [" +
@@ -216,14 +226,8 @@ void WriteNext(const Case& c, const Log& next, const std::filesystem::path& fold
   std::mt19937_64 rng(c.seed + 1'000'000);
   const Columns y = robot.run(hidden, 0, next.input);
   std::string lines = "logs:\n";
-  for (int replicate = 0; replicate < kReplicates; ++replicate) {
-    Columns noisy = y;
-    for (std::size_t i = 0; i < noisy.size(); ++i)
-      noisy[i] = WithNoise(noisy[i], c.noise, robot.sigma[i], rng);
-    const std::string name = fmt::format("next_{}", replicate);
-    WriteFile(folder / (name + ".csv"), Csv(robot, next.input, noisy));
+  for (const auto& name : WriteReplicates(c, "next", next.input, y, folder, rng))
     lines += fmt::format("  - {{file: {}.csv, trial: next, use: train{}}}\n", name, set);
-  }
   std::string text = ReadFile(folder / "experiment.yaml");
   text.replace(text.find("logs:\n"), 6, lines);
   WriteFile(folder / "followed.yaml", text);
