@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 
 #include "app/console.h"
 #include "error.h"
+#include "identification/equation_fit.h"
 #include "identification/far.h"
 #include "identification/fit_output.h"
 #include "identification/multi_start.h"
@@ -98,6 +100,7 @@ Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& sta
     } else {
       all.fit = FitFar(problem, begin, use, options);
     }
+    all.fit = FitByEquations(problem, std::move(all.fit), use, options);
     if (all.pieces) {
       all.fit.seconds += all.pieces->seconds;
       all.fit.evaluations += all.pieces->evaluations;

@@ -98,7 +98,7 @@ class Session {
   void FitNull() {
     options_.Say("null fit");
     if (d_.noise.known()) trials_.whitening = Whitening(null_, d_.noise);
-    d_.before = trials_.Fit(null_, null_.Start(), kInfinity, false);
+    d_.before = trials_.FitNull(null_);
     if (d_.noise.known()) {
       const Rounding rounding(null_, d_.noise, d_.before.fit.x);
       if (rounding.any()) {

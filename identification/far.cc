@@ -9,14 +9,6 @@
 namespace continuum {
 namespace {
 
-// On top of a fit, the effort of one before it.
-void AddEffort(const Fit& before, Fit& to) {
-  to.iterations += before.iterations;
-  to.evaluations += before.evaluations;
-  to.seconds += before.seconds;
-  to.trace.insert(to.trace.begin(), before.trace.begin(), before.trace.end());
-}
-
 // From x with slopes over a fifth of the parameters' sizes; goes on only if the first step helps.
 Fit FitWide(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,
             FitOptions options) {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include <ceres/ceres.h>
 #include <fmt/format.h>
 #include <Eigen/Dense>
 
 #include "error.h"
+#include "identification/bounded.h"
 #include "identification/parallel.h"
 #include "identification/start_model.h"
 #include "sim/stop.h"
@@ -38,9 +38,7 @@ class Cost : public ceres::CostFunction {
 
   bool Evaluate(const double* const* y, double* residuals, double** jacobians) const override {
     const auto& parameters = problem_.parameters();
-    Vector x(static_cast<Eigen::Index>(parameters.size()));
-    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = y[0][i] * parameters[i].scale;
-    x = problem_.Clamp(x);
+    const Vector x = Unscaled(problem_, y[0]);
     if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x;
     const Vector all = whitening_.Stack(r_, use_);
     if (!all.allFinite()) return false;
@@ -178,6 +176,13 @@ class Watch : public ceres::IterationCallback {
 
 }  // namespace
 
+void AddEffort(const Fit& before, Fit& to) {
+  to.iterations += before.iterations;
+  to.evaluations += before.evaluations;
+  to.seconds += before.seconds;
+  to.trace.insert(to.trace.begin(), before.trace.begin(), before.trace.end());
+}
+
 void RequireFinite(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                    const std::vector<bool>& use, const std::string& when) {
   for (std::size_t l = 0; l < use.size(); ++l) {
@@ -193,15 +198,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t before = problem.evaluations();
   Fit fit;
-  const auto& parameters = problem.parameters();
-  Vector y = problem.Clamp(x);  // scaled, as Ceres sees them
-  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] /= parameters[i].scale;
-  const auto unscaled = [&] {
-    Vector values(y.size());
-    for (Eigen::Index i = 0; i < y.size(); ++i) values[i] = y[i] * parameters[i].scale;
-    return problem.Clamp(values);
-  };
-  fit.x = unscaled();
+  fit.x = problem.Clamp(x);
   auto r = problem.Residuals(fit.x, use);
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
@@ -218,36 +215,13 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   }
   if (!options.idle && !StopRequested()) RequireEffect(problem, fit.x, J);
 
-  ceres::Problem::Options ownership;
-  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   Cost cost(problem, use, options, whitening, all.size());
   cost.Know(fit.x, std::move(r), std::move(J));
-  ceres::Problem ceres(ownership);
-  ceres.AddResidualBlock(&cost, nullptr, y.data());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const FreeParameter& p = parameters[i];
-    if (std::isfinite(p.lower))
-      ceres.SetParameterLowerBound(y.data(), static_cast<int>(i), p.lower / p.scale);
-    if (std::isfinite(p.upper))
-      ceres.SetParameterUpperBound(y.data(), static_cast<int>(i), p.upper / p.scale);
-  }
   Watch watch(problem, options, fit);
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.max_num_iterations = options.iterations;
-  solver.function_tolerance = options.tolerance;
-  solver.parameter_tolerance = 1e-7;
-  solver.initial_trust_region_radius = 1e3;
-  solver.max_num_consecutive_invalid_steps = 12;
-  // Steps that a bound cuts short are searched by values alone: a gradient is a Jacobian here.
-  solver.line_search_interpolation_type = ceres::BISECTION;
-  solver.max_num_line_search_step_size_iterations = 3;
-  solver.logging_type = ceres::SILENT;
-  solver.callbacks.push_back(&watch);
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &ceres, &summary);
+  Vector y = Scaled(problem, fit.x);
+  const auto summary = Minimize(problem, cost, {options.iterations, options.tolerance, &watch}, y);
   fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
-  fit.x = unscaled();
+  fit.x = Unscaled(problem, y.data());
   fit.cost = summary.final_cost;
   fit.converged = summary.termination_type == ceres::CONVERGENCE || watch.settled();
   fit.message = summary.message;

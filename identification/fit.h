@@ -46,6 +46,9 @@ struct Fit {
   std::vector<double> trace;  ///< cost after each iteration
 };
 
+/// On top of a fit, the effort of one that led there.
+void AddEffort(const Fit& before, Fit& to);
+
 /// Throws Error (kJob; file of the log, time, parameter) when the simulation of a log in use
 /// diverges at x: r has no number there. when: in words, "at the start of the fit".
 void RequireFinite(const Problem& problem, const Problem::Vector& x,

@@ -203,9 +203,8 @@ namespace {
 
 // Intervals are those of a model that is right, next to the best of its valleys.
 std::string BeyondNoise(const Experiment& e, double error) {
-  constexpr double kFar = 5;
   const Noise noise = NoiseOf(e);
-  if (!(noise.rms > 0) || !(error > kFar * noise.rms)) return "";
+  if (!(noise.rms > 0) || !(error > kFarOverNoise * noise.rms)) return "";
   return fmt::format(
       "what remains is {:.0f} times the measurement noise ({}): the model lacks something "
       "(`continuum diagnose` says what) or a better fit is elsewhere (`--starts 8`); intervals "

@@ -68,11 +68,11 @@ struct Motion {
 // One log, as the model sees it, but for the rows at its ends.
 class LogForces {
  public:
-  LogForces(const Problem& problem, const Problem::Vector& x, std::size_t log)
+  LogForces(const Problem& problem, const Problem::Vector& x, std::size_t log, std::size_t thread)
       : e_(problem.MeasuredBy(x, log)),
         log_(problem.experiment().logs[log]),
         index_(log),
-        machine_(problem.system().Build(problem.ChangesFor(x, log))) {
+        machine_(problem.system(thread).Build(problem.ChangesFor(x, log))) {
     for (std::size_t k = kHalf; k + kHalf < log_.rows(); ++k) fits_.emplace_back(log_.time, k);
     for (const auto& [joint, channel] : JointChannels(e_, *machine_.model)) {
       std::vector<double> y = log_.measured[channel];
@@ -111,6 +111,7 @@ class LogForces {
         out.velocity.push_back(motion.velocity[k]);
         out.load.push_back(load_.at(joint)[k + kHalf]);
         out.force.push_back(force[m.jnt_dofadr[joint]]);
+        out.acceleration.push_back(lack[m.jnt_dofadr[joint]]);
       }
     }
   }
@@ -187,14 +188,14 @@ double Squares(const MissingForce& f) {
 }  // namespace
 
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
-                                        const std::vector<bool>& use) {
+                                        const std::vector<bool>& use, std::size_t thread) {
   const Experiment& e = problem.experiment();
   std::vector<MissingForce> all;
   for (std::size_t l = 0; l < use.size(); ++l) {
     const Log& log = e.logs[l];
     if (!use[l] || log.rows() < kRows) continue;
     if (e.quasi_static || !EveryRowIsThere(e, problem.system().model(), log)) return {};
-    LogForces(problem, x, l).AddTo(all);
+    LogForces(problem, x, l, thread).AddTo(all);
   }
   return all;
 }

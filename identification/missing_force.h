@@ -25,11 +25,13 @@ struct MissingForce {
   bool slides = false;  ///< the joint: m and N, else rad and N m
   std::vector<std::size_t> log;
   std::vector<double> time, angle, velocity, load, force;  ///< SI
+  std::vector<double> acceleration;  ///< a_measured − F a_model: what noise there is, is added
 };
 
 /// On every joint, of the logs in use; none when not every joint is measured in all their rows.
+/// thread: of parallel work.
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
-                                        const std::vector<bool>& use);
+                                        const std::vector<bool>& use, std::size_t thread = 0);
 
 /// The joint on which most is missing, over all logs; empty joint when not every joint is measured.
 MissingForce FindMissingForce(const Problem& problem, const Problem::Vector& x);

@@ -31,6 +31,9 @@ struct Noise {
   bool known() const { return !channel.empty(); }
 };
 
+/// A fit that leaves more than so many times the noise lacks something, or ended in a wrong place.
+inline constexpr double kFarOverNoise = 5;
+
 /// From replicates (logs of one trial and condition with the same inputs and rows): what each
 /// differs from their mean, in which model error cancels. Else from sigma where every output gives
 /// it. Else from third differences of the measured rows (smooth motion cancels), a lower bound that

@@ -75,7 +75,8 @@ class Problem {
   void DifferBy(double share) { share_ = share; }
 
   const Experiment& experiment() const { return *experiment_; }
-  const System& system() const { return systems_.front(); }
+  /// Of one thread of parallel work; all are alike.
+  const System& system(std::size_t thread = 0) const { return systems_[thread]; }
   const std::vector<FreeParameter>& parameters() const { return parameters_; }
   Vector Start() const;
   Vector Clamp(const Vector& x) const;

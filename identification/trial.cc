@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "error.h"
+#include "identification/equation_fit.h"
 #include "identification/placebo.h"
 
 namespace continuum {
@@ -213,6 +215,12 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival, bo
   f.error = {problem.PooledRms(f.residuals, train), problem.PooledRms(f.residuals, validate)};
   f.cost = 2 * f.fit.cost;
   return f;
+}
+
+Fitted Trials::FitNull(const Problem& problem) const {
+  Fitted f = Fit(problem, problem.Start(), std::numeric_limits<double>::infinity(), false);
+  const auto found = FitByEquations(problem, f.fit, TrainLogs(*experiment), Options());
+  return found.cost < f.fit.cost ? Fit(problem, found.x) : f;
 }
 
 void Trials::Complete(const Problem& problem, Fitted& f) const {

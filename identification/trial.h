@@ -14,6 +14,9 @@ struct Trials {
   /// come near to be worth its iterations; idle: FitOptions::idle. Throws Error when it diverges.
   Fitted Fit(const Problem& problem, const Problem::Vector& start,
              double rival = std::numeric_limits<double>::infinity(), bool idle = true) const;
+  /// Fit of the experiment's own parameters, from its start or, where that leads to a wrong place,
+  /// by the equations of motion: what is left there would be blamed on effects.
+  Fitted FitNull(const Problem& problem) const;
   /// What else there is to know of a fit: sensitivities and intervals, what the time step leaves
   /// open, and with these the cost to first order.
   void Complete(const Problem& problem, Fitted& fitted) const;

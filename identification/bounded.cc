@@ -1,0 +1,50 @@
+#include "identification/bounded.h"
+
+#include <cmath>
+
+namespace continuum {
+
+Problem::Vector Scaled(const Problem& problem, const Problem::Vector& x) {
+  Problem::Vector y = problem.Clamp(x);
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] /= problem.parameters()[i].scale;
+  return y;
+}
+
+Problem::Vector Unscaled(const Problem& problem, const double* y) {
+  const auto& parameters = problem.parameters();
+  Problem::Vector x(static_cast<Eigen::Index>(parameters.size()));
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = y[i] * parameters[i].scale;
+  return problem.Clamp(x);
+}
+
+ceres::Solver::Summary Minimize(const Problem& problem, ceres::CostFunction& cost,
+                                const Search& search, Problem::Vector& y) {
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem ceres(ownership);
+  ceres.AddResidualBlock(&cost, nullptr, y.data());
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    if (std::isfinite(p.lower))
+      ceres.SetParameterLowerBound(y.data(), static_cast<int>(i), p.lower / p.scale);
+    if (std::isfinite(p.upper))
+      ceres.SetParameterUpperBound(y.data(), static_cast<int>(i), p.upper / p.scale);
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = search.iterations;
+  solver.function_tolerance = search.tolerance;
+  solver.parameter_tolerance = 1e-7;
+  solver.initial_trust_region_radius = 1e3;
+  solver.max_num_consecutive_invalid_steps = 12;
+  // Steps that a bound cuts short are searched by values alone: a gradient is a Jacobian here.
+  solver.line_search_interpolation_type = ceres::BISECTION;
+  solver.max_num_line_search_step_size_iterations = 3;
+  solver.logging_type = ceres::SILENT;
+  if (search.watch) solver.callbacks.push_back(search.watch);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &ceres, &summary);
+  return summary;
+}
+
+}  // namespace continuum

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <ceres/ceres.h>
+
+#include "identification/problem.h"
+
+namespace continuum {
+
+/// Parameters in units of their scales, as a solver sees them, and back, within their bounds.
+Problem::Vector Scaled(const Problem& problem, const Problem::Vector& x);
+Problem::Vector Unscaled(const Problem& problem, const double* y);
+
+/// When bounded Levenberg-Marquardt ends, and who watches it.
+struct Search {
+  int iterations;
+  double tolerance;  ///< relative decrease of the cost
+  ceres::IterationCallback* watch = nullptr;
+};
+
+/// Minimises ½ |cost(y)|² within the parameters' bounds, from the scaled y and into it.
+ceres::Solver::Summary Minimize(const Problem& problem, ceres::CostFunction& cost,
+                                const Search& search, Problem::Vector& y);
+
+}  // namespace continuum

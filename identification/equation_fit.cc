@@ -1,0 +1,137 @@
+#include "identification/equation_fit.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "error.h"
+#include "identification/bounded.h"
+#include "identification/far.h"
+#include "identification/missing_force.h"
+#include "identification/noise.h"
+#include "identification/parallel.h"
+#include "sim/stop.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+
+constexpr Search kFewSteps{5, 1e-2};
+
+using Member = std::vector<double> MissingForce::*;
+
+// Missing forces of all joints below each other as one Ceres cost in scaled parameters.
+class ForceCost : public ceres::CostFunction {
+ public:
+  ForceCost(const Problem& problem, const std::vector<bool>& use) : problem_(problem), use_(use) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
+  }
+
+  // From now on at this, in units of what is missing at x. Returns whether anything is.
+  bool Look(Member of, const Vector& x) {
+    of_ = of;
+    std::vector<double> weights;
+    for (const MissingForce& joint : MissingForces(problem_, x, use_)) {
+      double squares = 0;
+      for (const double f : joint.*of) squares += f * f;
+      weights.insert(weights.end(), (joint.*of).size(), squares > 0 ? 1 / std::sqrt(squares) : 0);
+    }
+    weight_ = Vector::Map(weights.data(), static_cast<Eigen::Index>(weights.size()));
+    set_num_residuals(static_cast<int>(weight_.size()));
+    return weight_.norm() > 0;
+  }
+
+  std::size_t evaluations() const { return evaluations_; }
+
+  bool Evaluate(const double* const* y, double* residuals, double** jacobians) const override {
+    const Vector x = Unscaled(problem_, y[0]);
+    evaluations_ += static_cast<std::size_t>(std::count(use_.begin(), use_.end(), true)) *
+                    (jacobians && jacobians[0] ? 1 + problem_.parameters().size() : 1);
+    const Vector f = Forces(x, 0);
+    if (!f.allFinite()) return false;
+    Vector::Map(residuals, f.size()) = f;
+    if (!jacobians || !jacobians[0]) return true;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(
+        jacobians[0], f.size(), x.size());
+    J.setZero();
+    ParallelFor(static_cast<std::size_t>(x.size()), [&](std::size_t thread, std::size_t k) {
+      if (StopRequested() || problem_.parameters()[k].IsStart()) return;
+      const double step = problem_.StepOf(x, k, 1e-3);
+      Vector moved = x;
+      moved[static_cast<Eigen::Index>(k)] += step;
+      J.col(static_cast<Eigen::Index>(k)) =
+          (Forces(moved, thread) - f) * (problem_.parameters()[k].scale / step);
+    });
+    return J.allFinite();
+  }
+
+ private:
+  // Not finite where no machine can have these parameters.
+  Vector Forces(const Vector& x, std::size_t thread) const {
+    Vector all = Vector::Constant(weight_.size(), std::numeric_limits<double>::quiet_NaN());
+    try {
+      Eigen::Index at = 0;
+      for (const MissingForce& joint : MissingForces(problem_, x, use_, thread)) {
+        for (const double f : joint.*of_) all[at++] = f;
+      }
+    } catch (const Error&) {
+    }
+    return all.cwiseProduct(weight_);
+  }
+
+  const Problem& problem_;
+  const std::vector<bool>& use_;
+  Vector weight_;
+  Member of_ = nullptr;
+  mutable std::size_t evaluations_ = 0;
+};
+
+}  // namespace
+
+std::optional<EquationFit> FitEquations(const Problem& problem, const Vector& x,
+                                        const std::vector<bool>& use) {
+  ForceCost cost(problem, use);
+  if (x.size() == 0 || !cost.Look(&MissingForce::force, x)) return {};
+  Vector y = Scaled(problem, x);
+  Minimize(problem, cost, kFewSteps, y);
+  cost.Look(&MissingForce::acceleration, Unscaled(problem, y.data()));
+  Minimize(problem, cost, kFewSteps, y);
+  return EquationFit{Unscaled(problem, y.data()), cost.evaluations()};
+}
+
+Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& use,
+                   const FitOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto spent = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  const auto tell = [&](const std::string& line) {
+    if (options.progress) options.progress("by the equations of motion: " + line);
+  };
+  const Noise noise = NoiseOf(problem.experiment());
+  const double left = problem.PooledRms(problem.Residuals(best.x, use), use);
+  if (!(noise.rms > 0) || left < kFarOverNoise * noise.rms || StopRequested()) return best;
+  tell("is there a better start?");
+  const auto equations = FitEquations(problem, best.x, use);
+  if (!equations || StopRequested()) return best;
+  best.evaluations += equations->evaluations;
+  const double there = problem.PooledRms(problem.Residuals(equations->x, use), use);
+  if (!(there < left)) {  // nor where it diverges
+    best.seconds += spent();
+    return best;
+  }
+  FitOptions own = options;
+  own.idle = true, own.progress = tell;
+  Fit fit = FitFar(problem, equations->x, use, own);
+  fit.seconds = spent();
+  if (fit.cost > best.cost) std::swap(fit, best);  // as a robust loss sees it
+  AddEffort(best, fit);
+  return fit;
+}
+
+}  // namespace continuum

@@ -1,0 +1,114 @@
+#include "identification/equation_fit.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pendulum.h"
+
+namespace continuum {
+namespace {
+
+// A wheel on a spring that rings for long after steps of torque, by hand:
+//
+//   J q'' = u − k q − b q'
+//
+// Out of step from the first swings on, a simulation fits best when it hardly moves.
+struct Ringing {
+  double inertia = 0.8, stiffness = 120, damping = 0.4;  // kg m², N m/rad, N m s/rad
+
+  static std::vector<double> Steps() {
+    std::vector<double> u;
+    for (int k = 0; k < 800; ++k) u.push_back(k < 30 ? 0 : k % 400 < 200 ? 20 : -15);
+    return u;
+  }
+  std::vector<double> Run(const std::vector<double>& u) const {
+    constexpr double h = 2e-5;
+    double q = 0, v = 0;
+    std::vector<double> angle;
+    for (const double torque : u) {
+      angle.push_back(q);
+      for (int k = 0; k < std::lround(testing::kPeriod / h); ++k) {
+        v += h * (torque - stiffness * q - damping * v) / inertia;
+        q += h * v;
+      }
+    }
+    return angle;
+  }
+};
+
+constexpr char kModel[] = R"(<mujoco>
+  <option timestep="2e-3" integrator="implicitfast"/>
+  <worldbody><body><joint name="hinge" stiffness="40" damping="1" armature="2.4"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1e-6 1e-6 1e-6"/></body></worldbody>
+  <actuator><motor name="servo" joint="hinge"/></actuator>
+  <sensor><jointpos name="angle" joint="hinge"/></sensor>
+</mujoco>)";
+
+constexpr char kParameters[] =
+    "parameters:\n"
+    "  - {name: k, target: 'joint:hinge', attribute: stiffness, initial: 30, lower: 10, "
+    "upper: 900}\n"
+    "  - {name: b, target: 'joint:hinge', attribute: damping, initial: 0.1, lower: 0.01, "
+    "upper: 20}\n"
+    "  - {name: j, target: 'joint:hinge', attribute: armature, initial: 2.4, lower: 0.1, "
+    "upper: 10}\n";
+
+class EquationFitTest : public testing::Bench {
+ protected:
+  void SetUp() override {
+    Bench::SetUp();
+    const auto u = Ringing::Steps();
+    AddLog("ringing", "use: train", u, testing::Noisy(Ringing{}.Run(u), 1e-3, 0, 1));
+  }
+};
+
+TEST_F(EquationFitTest, IsNearFromFarAwayAlthoughInertiasMultiplyNoise) {
+  const Experiment experiment = ReadExperiment(kParameters);
+  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const auto found = FitEquations(problem, problem.Start(), problem.TrainLogs());
+  ASSERT_TRUE(found);
+  const Ringing truth;
+  EXPECT_NEAR(found->x[0], truth.stiffness, 0.03 * truth.stiffness);
+  EXPECT_NEAR(found->x[1], truth.damping, 0.5 * truth.damping);
+  EXPECT_NEAR(found->x[2], truth.inertia, 0.03 * truth.inertia);
+  EXPECT_GT(found->evaluations, 8u);
+}
+
+TEST_F(EquationFitTest, LeadsAFitThatEndedInAWrongPlaceHome) {
+  const Experiment experiment = ReadExperiment(kParameters);
+  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const auto use = problem.TrainLogs();
+  const Fit lost = FitParameters(problem, problem.Start(), use);
+  EXPECT_EQ(lost.x[1], 20) << "at its bound";
+  const Fit home = FitByEquations(problem, lost, use, {});
+  EXPECT_LT(home.cost, 1e-3 * lost.cost);
+  EXPECT_NEAR(home.x[0], 120, 0.6);
+  EXPECT_NEAR(home.x[2], 0.8, 0.004);
+  EXPECT_GT(home.evaluations, lost.evaluations);
+  EXPECT_GT(home.iterations, lost.iterations);
+}
+
+TEST_F(EquationFitTest, LeavesAFitAsItIsThatLeavesLittleMoreThanNoise) {
+  const Experiment experiment = ReadExperiment(kParameters);
+  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const auto use = problem.TrainLogs();
+  Problem::Vector near = problem.Start();
+  near << 118, 0.5, 0.8;
+  const Fit fit = FitParameters(problem, near, use);
+  EXPECT_EQ(FitByEquations(problem, fit, use, {}).evaluations, fit.evaluations);
+}
+
+TEST_F(EquationFitTest, HasNothingToSayWhereARowIsNotMeasured) {
+  const auto u = Ringing::Steps();
+  auto q = Ringing{}.Run(u);
+  q[100] = std::nan("");
+  AddLog("gap", "use: train", u, q);
+  const Experiment experiment = ReadExperiment(kParameters);
+  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  EXPECT_FALSE(FitEquations(problem, problem.Start(), problem.TrainLogs()));
+}
+
+}  // namespace
+}  // namespace continuum
