@@ -212,7 +212,8 @@ void RunIdentify(const Options& o) {
                        {"fit.json", "fitted.xml", "fitted.yaml", "simulated/", "report.html"},
                        {read.file, read.model});
   const Experiment e = Registered(read, system);
-  Problem problem(e, system);
+  const auto use = o.all ? std::vector<bool>(e.logs.size(), true) : TrainLogs(e);
+  Problem problem(e, system, {}, {}, use);
   if (problem.parameters().empty())
     throw Error::Input(o.experiment + ": parameters", "at least one that is not frozen",
                        e.parameters.empty() ? "none" : "frozen ones only");
@@ -220,7 +221,6 @@ void RunIdentify(const Options& o) {
        {std::pair{"--starts", o.starts > 1}, {"--from", !o.from.empty()}})
     if (given && o.method != "lm") throw Error::Input(option, "--method lm", o.method);
   RequireStartModels(problem);
-  const auto use = o.all ? problem.AllLogs() : problem.TrainLogs();
   if (std::find(use.begin(), use.end(), true) == use.end()) {
     throw Error::Input(o.experiment + ": logs", "at least one with use: train (or --all)", "none");
   }

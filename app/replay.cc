@@ -27,10 +27,10 @@ struct Options {
   Filming filming;
 };
 
-// Names, units and known values, and the parameters as a fit would take them.
+// Names, units and known values, and the parameters as a fit of all logs would take them.
 void CheckAll(const Experiment& e, const System& system) {
   CheckNames(e, system);
-  const Problem problem(e, system);
+  const Problem problem(e, system, {}, {}, std::vector<bool>(e.logs.size(), true));
 }
 
 // " 0.1 (train), 0.2 (validate)", of the uses that logs have.

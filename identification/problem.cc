@@ -42,8 +42,11 @@ double SumOfSquares(const std::vector<Eigen::VectorXd>& residuals) {
 }
 
 Problem::Problem(const Experiment& experiment, const System& system, std::vector<Parameter> extra,
-                 ForceTerms terms)
-    : experiment_(&experiment), setup_(experiment), terms_(std::move(terms)) {
+                 ForceTerms terms, std::vector<bool> seen)
+    : experiment_(&experiment),
+      seen_(seen.empty() ? continuum::TrainLogs(experiment) : std::move(seen)),
+      setup_(experiment),
+      terms_(std::move(terms)) {
   setup_.logs.clear();
   memory_.resize(experiment.logs.size());
   const auto is_geom = [](const auto& change) { return change.target.starts_with("geom:"); };
@@ -153,25 +156,40 @@ void Problem::Expand(const Parameter& p) {
     parameters_.push_back(free);
     return;
   }
-  const auto group = [&](const Log& log) {
-    return p.per == Parameter::Per::kLog ? log.label : log.condition;
-  };
-  std::set<std::string> trained, all;
-  for (const Log& log : logs) {
-    all.insert(group(log));
-    if (log.train) trained.insert(group(log));
-  }
-  for (const std::string& name : all) {
-    if (!trained.contains(name)) {
-      throw Error::Input(p.where,
-                         "a train log of every " +
-                             std::string(p.per == Parameter::Per::kLog ? "log" : "condition"),
-                         "none of '" + name + "': nothing would tell its value");
-    }
+  RequireSeen(p);
+  std::set<std::string> groups;
+  for (const Log& log : logs) groups.insert(GroupOf(p, log));
+  for (const std::string& name : groups) {
     FreeParameter one = free;
     one.name = p.name + "[" + name + "]";
-    for (const Log& log : logs) one.log.push_back(group(log) == name);
+    for (const Log& log : logs) one.log.push_back(GroupOf(p, log) == name);
     parameters_.push_back(std::move(one));
+  }
+}
+
+// The logs that share a value.
+std::string Problem::GroupOf(const Parameter& p, const Log& log) const {
+  return p.per == Parameter::Per::kLog ? log.label : log.condition;
+}
+
+// Every value needs a log that tells it.
+void Problem::RequireSeen(const Parameter& p) const {
+  const auto& logs = experiment_->logs;
+  std::set<std::string> told;
+  for (std::size_t l = 0; l < logs.size(); ++l)
+    if (seen_[l]) told.insert(GroupOf(p, logs[l]));
+  for (const Log& log : logs) {
+    const std::string name = GroupOf(p, log);
+    if (told.contains(name)) continue;
+    if (p.per == Parameter::Per::kLog)
+      throw Error::Input(
+          p.where + ".per",
+          "`use: train` in every log where each has a value of its own (or `identify --all`, or "
+          "`per: condition`)",
+          "log '" + name +
+              "' with `use: validate`, which no fit sees: nothing would tell its value");
+    throw Error::Input(p.where + ".per", "a train log of every condition (or `identify --all`)",
+                       "none of '" + name + "': nothing would tell its value");
   }
 }
 

@@ -56,10 +56,11 @@ class Problem {
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
 
-  /// extra: parameters beyond the experiment's own. Throws Error (key and file) for targets that
-  /// match nothing and starts outside the bounds.
+  /// extra: parameters beyond the experiment's own; seen: the logs of the fit, empty: those that
+  /// train. Throws Error (key and file) for targets that match nothing, starts outside the bounds
+  /// and values of single logs or conditions that no log of the fit tells.
   Problem(const Experiment& experiment, const System& system, std::vector<Parameter> extra = {},
-          ForceTerms terms = {});
+          ForceTerms terms = {}, std::vector<bool> seen = {});
   /// From now on along this path (SmoothObstacle says where the smooth one cannot go).
   void Follow(Path path);
   /// From now on with this time step [s] instead of the model's.
@@ -117,6 +118,8 @@ class Problem {
 
   std::vector<bool> AllLogs() const { return std::vector<bool>(experiment_->logs.size(), true); }
   std::vector<bool> TrainLogs() const { return continuum::TrainLogs(*experiment_); }
+  /// The logs of the fit.
+  const std::vector<bool>& seen() const { return seen_; }
   Path path() const { return path_; }
   /// Simulations run so far.
   std::size_t evaluations() const { return evaluations_; }
@@ -127,6 +130,8 @@ class Problem {
 
  private:
   void Expand(const Parameter& p);
+  std::string GroupOf(const Parameter& p, const Log& log) const;
+  void RequireSeen(const Parameter& p) const;
   bool SameMotion(std::size_t a, std::size_t b) const;
   std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
@@ -148,6 +153,7 @@ class Problem {
   Trace Later(const Trace& trace, const Vector& x, std::size_t log, double delay) const;
 
   const Experiment* experiment_;
+  std::vector<bool> seen_;
   std::vector<System> systems_;  ///< one per thread
   Experiment setup_;             ///< without logs
   /// [log] the last simulation and what it was made of, as only the measurement may change.

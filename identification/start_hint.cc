@@ -25,7 +25,7 @@ std::string StartHint(const Problem& problem, const Problem::Vector& x,
   Experiment e = problem.experiment();
   e.start = Experiment::Start::kEstimate;
   try {
-    const Problem free(e, problem.system());
+    const Problem free(e, problem.system(), {}, {}, problem.seen());
     Problem::Vector y = free.Start();
     y.head(x.size()) = x;
     const auto starts = y.size() - x.size();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Dense>
 #include <boost/math/distributions/students_t.hpp>
@@ -124,6 +125,45 @@ std::vector<Matrix> Weighted(std::vector<Matrix> J, double soft, const std::vect
   return J;
 }
 
+// Where a log begins that the fit did not see was fitted to that log alone (FitStarts): so is its
+// error. Nothing where it diverges.
+std::optional<Uncertainty> OfOwnStart(const Problem& problem, const Vector& x,
+                                      const std::vector<Vector>& r, std::size_t log, double soft) {
+  if (!r[log].allFinite()) return {};
+  std::vector<bool> use(r.size(), false);
+  use[log] = true;
+  const auto J = problem.StartJacobian(x, r, use);
+  Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
+  AllowForStep(problem, Weighted(J, soft, r), Weighted(problem.StepEffects(x, r, use), soft, r), {},
+               u);
+  return u;
+}
+
+// [log] of those that the fit did not see.
+std::vector<std::optional<Uncertainty>> OfOwnStarts(const Problem& problem, const Vector& x,
+                                                    const std::vector<Vector>& r, double soft) {
+  std::vector<std::optional<Uncertainty>> own(r.size());
+  if (problem.experiment().start != Experiment::Start::kEstimate) return own;
+  for (std::size_t l = 0; l < r.size() && !StopRequested(); ++l)
+    if (!problem.seen()[l]) own[l] = OfOwnStart(problem, x, r, l, soft);
+  return own;
+}
+
+// What is known of a log's own start.
+void TakeStart(const Problem& problem, std::size_t log, const Uncertainty& own, Uncertainty& u) {
+  std::vector<Eigen::Index> starts;
+  for (Eigen::Index i = 0; i < u.standard_error.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    if (p.IsStart() && p.log[log]) starts.push_back(i);
+  }
+  u.standard_error(starts) = own.standard_error(starts);
+  u.lower(starts) = own.lower(starts);
+  u.upper(starts) = own.upper(starts);
+  u.correlation(starts, starts) = own.correlation(starts, starts);
+  u.information(starts, starts) = own.information(starts, starts);
+  if (u.step.size() && own.step.size()) u.step(starts) = own.step(starts);
+}
+
 }  // namespace
 
 Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
@@ -168,7 +208,8 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   for (Eigen::Index i = 0; i < n; ++i) {
     if (u.at_bound[i]) u.information.row(i).setZero(), u.information.col(i).setZero();
   }
-  const double freedom = std::max(2.0, independent - static_cast<double>(n));
+  const Eigen::Index told = (H.diagonal().array() > 0).count();
+  const double freedom = std::max(2.0, independent - static_cast<double>(told));
   const Modes modes(H);
   const Matrix Hi = modes.Inverse(), along = modes.AlongInvariances();
   const double few = std::max(1.0, independent / freedom);
@@ -177,7 +218,7 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   for (Eigen::Index a = 0; a < n; ++a) {
     const FreeParameter& p = problem.parameters()[a];
     const double unknown = (p.upper - p.lower) / std::sqrt(12.0);
-    if (rows <= n || !(H(a, a) > 0)) {
+    if (rows <= told || !(H(a, a) > 0)) {
       u.standard_error[a] = unknown;
       u.lower[a] = p.lower, u.upper[a] = p.upper;
       continue;
@@ -287,22 +328,24 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
 
 Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                         const std::function<void(const std::string&)>& progress) {
-  const auto train = problem.TrainLogs();
   Problem centered = problem;
   centered.Center();
-  auto J = centered.Jacobian(x, r, train);
+  auto J = centered.Jacobian(x, r, problem.seen());
   KeepInvariances(problem, x, r, J);
   if (StopRequested()) return NotComputed(problem, x);
   const double soft = problem.experiment().soft;
   Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
   if (problem.path() != Path::kStepped) return u;
-  const auto step = problem.StepEffects(x, r, train);
+  const auto step = problem.StepEffects(x, r, problem.seen());
+  const auto own = OfOwnStarts(centered, x, r, soft);
   if (StopRequested()) return NotComputed(problem, x);
   AllowForStep(problem, Weighted(J, soft, r), Weighted(step, soft, r), {}, u);
   FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
   if (progress)
     few.progress = [&](const std::string& line) { progress("at a fine step: " + line); };
   ReachByFineFit(centered, x, r, J, step, few, u);
+  for (std::size_t l = 0; l < own.size(); ++l)
+    if (own[l]) TakeStart(problem, l, *own[l], u);
   return u;
 }
 

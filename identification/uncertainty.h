@@ -20,11 +20,11 @@ namespace continuum {
 ///
 /// with Bartlett weights and Andrews' bandwidth for AR(1) scores (heteroskedasticity and
 /// autocorrelation consistent, newey1987, andrews1991; of what lasts long it sees too little). Of
-/// each parameter the larger variance counts. n: independent rows, k: parameters. Intervals end at
-/// the bounds; that of a parameter at a bound goes from there inwards, and as its true value may
-/// lie inside, it counts as free for the others too. One without effect may be anything that its
-/// bounds allow (standard error: that of an even distribution); so may all where rows are no more
-/// than parameters.
+/// each parameter the larger variance counts. n: independent rows, k: parameters that they tell of.
+/// Intervals end at the bounds; that of a parameter at a bound goes from there inwards, and as its
+/// true value may lie inside, it counts as free for the others too. One without effect may be
+/// anything that its bounds allow (standard error: that of an even distribution); so may all where
+/// rows are no more than parameters.
 struct Uncertainty {
   Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
   Problem::Vector step = {};  ///< what a fine time step would add to the value; empty: not known
@@ -90,10 +90,10 @@ void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
                     const std::vector<Problem::Matrix>& step, const FitOptions& options,
                     Uncertainty& u);
-/// All of these in one, from the train logs: what a fit.json states. r: residuals at x; the loss of
-/// the experiment may be robust. Derivatives are central differences: one-sided ones bend what the
-/// step is said to change. Once the user has asked to stop, errors, intervals and correlations are
-/// not known (NaN).
+/// All of these in one, from the logs of the fit; of where another log begins from that log alone,
+/// given all else: what a fit.json states. r: residuals at x; the loss of the experiment may be
+/// robust. Derivatives are central differences: one-sided ones bend what the step is said to
+/// change. Once the user has asked to stop, errors, intervals and correlations are not known (NaN).
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r,
                         const std::function<void(const std::string&)>& progress = {});

@@ -134,6 +134,25 @@ TEST_F(IdentifyPath, SaysWhereAParameterStartsAtItsBoundAndWhatTheModelsStepsGiv
   EXPECT_THAT(f.out, HasSubstr("\nas the model steps: error "));
 }
 
+TEST_F(IdentifyPath, FitsAValueOfEachLogsOwnWhereItSeesAllOfThem) {
+  files_.Write("held.csv", testing::kLog);
+  Spoil("experiment.yaml", "{file: log.csv}", "{file: log.csv}, {file: held.csv, use: validate}");
+  Spoil("experiment.yaml", "upper: 1}", "upper: 1, per: log}");
+  ExpectRefused({"identify", "experiment.yaml", "--out", "no"},
+                {"experiment.yaml:6: parameters[0].per", "identify --all", "'held'"});
+  EXPECT_EQ(Run({"replay", "experiment.yaml", "--out", "as_it_stands"}).exit_code, 0);
+  const auto fit = Identify({"--all", "--path", "stepped"}, "path: stepped");
+  EXPECT_EQ(fit["parameters"][0]["name"], "b[held]");
+  EXPECT_EQ(fit["parameters"][0]["standard_error"], fit["parameters"][1]["standard_error"]);
+  ASSERT_EQ(Run({"replay", "out/fitted.yaml", "--out", "replayed"}).exit_code, 0);
+  const auto replayed =
+      nlohmann::json::parse(testing::Scratch::Text(files_ / "replayed/errors.json"));
+  for (const char* use : {"train", "validate"}) {
+    const double error = fit["error"][use];
+    EXPECT_NEAR(replayed[use].get<double>(), error, 1e-9 * error) << use;
+  }
+}
+
 // Values of single logs, starts, sensors and the clock are not the model's: the experiment has
 // them.
 TEST_F(IdentifyPath, LeavesAnExperimentThatReplaysTheFit) {

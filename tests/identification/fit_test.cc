@@ -425,6 +425,32 @@ TEST_F(FitTest, PerLogExpandsToTheLabels) {
   EXPECT_EQ(problem.parameters()[0].initial, 0.1);  // what the model has
 }
 
+TEST_F(FitTest, AValueOfEachLogsOwnNeedsAFitThatSeesThemAll) {
+  AddTrials({}, 1);
+  const auto u = Command(1, kRows);
+  AddLog("held", "use: validate", u, Pendulum().Run(u, testing::kPeriod));
+  const System system = Model({});
+  const Experiment e = ReadExperiment(
+      "parameters:\n  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1, "
+      "per: log}\n");
+  try {
+    const Problem problem(e, system);
+    FAIL() << "nothing says how large b[held] is";
+  } catch (const Error& error) {
+    for (const char* word : {"experiment.yaml:", "parameters[0].per", "'held'", "use: train",
+                             "identify --all", "per: condition"})
+      EXPECT_THAT(error.what(), HasSubstr(word));
+  }
+  const Problem all(e, system, {}, {}, {true, true});
+  ASSERT_EQ(all.parameters().size(), 2u);
+  const Fit fit = FitParameters(all, all.Start(), all.seen());
+  const auto intervals = IntervalsOf(all, fit.x, all.Residuals(fit.x, all.AllLogs()));
+  for (const Eigen::Index k : {0, 1}) {
+    EXPECT_NEAR(fit.x[k], 0.1, 0.02 * 0.1) << all.parameters()[k].name;
+    EXPECT_LT(intervals.standard_error[k], 0.01) << all.parameters()[k].name;
+  }
+}
+
 TEST_F(FitTest, ScaleAndAddActOnWhatTheModelAndTheLogHave) {
   Pendulum truth;
   truth.kp = 6;

@@ -9,6 +9,7 @@
 #include "identification/path.h"
 #include "identification/start_hint.h"
 #include "identification/starts.h"
+#include "identification/uncertainty.h"
 #include "pendulum.h"
 #include "sim/replay.h"
 
@@ -111,6 +112,27 @@ TEST_F(StartsTest, AHeldOutLogMovesNothingButItsOwnStart) {
   for (Eigen::Index i = 0; i < before.size(); ++i) {
     const bool own = problem.parameters()[i].IsStart() && problem.parameters()[i].log[2];
     EXPECT_EQ(after[i] != before[i], own) << problem.parameters()[i].name;
+  }
+}
+
+// As if its log had been one of the fit, but that all else is held then.
+TEST_F(StartsTest, OfAHeldOutLogHaveTheErrorsThatItsOwnRowsGive) {
+  const Experiment e = From("estimate");
+  Experiment seen = e;
+  seen.logs[2].train = true;
+  const System system = Model();
+  const Problem problem(e, system), all(seen, system);
+  const Problem::Vector x = Fitted(problem);
+  const auto r = problem.Residuals(x, problem.AllLogs());
+  const Uncertainty u = IntervalsOf(problem, x, r), with = IntervalsOf(all, x, r);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    if (!p.IsStart() || !p.log[2]) continue;
+    EXPECT_LT(u.standard_error[i], 1.1 * with.standard_error[i]) << p.name;
+    EXPECT_GT(u.standard_error[i], 0.2 * with.standard_error[i]) << p.name;
+    EXPECT_LE(u.lower[i], x[i]) << p.name;
+    EXPECT_GE(u.upper[i], x[i]) << p.name;
+    EXPECT_NE(u.step[i], 0) << p.name;
   }
 }
 
