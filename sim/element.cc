@@ -13,6 +13,7 @@
 #include "binding/actuator_type.h"
 #include "binding/config.h"
 #include "error.h"
+#include "sim/file.h"
 
 namespace continuum {
 namespace {
@@ -185,7 +186,10 @@ double* Element::Address(std::string_view attribute, double& unit) const {
 
 double Element::Get(std::string_view attribute) const {
   if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return BodyMass();
-  if (element_->elemtype == mjOBJ_TENDON && attribute == "springlength") return RestLength();
+  if (element_->elemtype == mjOBJ_TENDON) {
+    if (attribute == "springlength" || attribute == "springlength[0]") return RestLength(0);
+    if (attribute == "springlength[1]") return RestLength(1);
+  }
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return 0;
   if (element_->elemtype == mjOBJ_ACTUATOR) {
     const mjsActuator& a = *mjs_asActuator(element_);
@@ -202,9 +206,12 @@ double Element::Get(std::string_view attribute) const {
 void Element::Set(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return SetBodyMass(value);
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return AddPointMass(value);
-  if (element_->elemtype == mjOBJ_TENDON && attribute == "springlength") {
-    for (double& end : mjs_asTendon(element_)->springlength) end = value;
-    return;
+  if (element_->elemtype == mjOBJ_TENDON && attribute.starts_with("springlength")) {
+    double* const ends = mjs_asTendon(element_)->springlength;
+    const bool both = attribute == "springlength";
+    const double now[2] = {RestLength(0), RestLength(1)};
+    for (const int end : {0, 1}) ends[end] = both ? value : now[end];
+    if (both) return;
   }
   if (element_->elemtype == mjOBJ_ACTUATOR) {
     if (attribute == "lag") return SetLag(value);
@@ -262,11 +269,25 @@ void Element::Scale(std::string_view attribute, double factor) {
   Set(attribute, Get(attribute) * factor);
 }
 
-// Where nothing is written (-1), MuJoCo takes the length at qpos0.
-double Element::RestLength() const {
-  const double written = mjs_asTendon(element_)->springlength[0];
+// Where nothing is written (-1 at both ends), MuJoCo takes the length at qpos0.
+double Element::RestLength(int end) const {
+  const double* const written = mjs_asTendon(element_)->springlength;
   const int id = mj_name2id(compiled_, mjOBJ_TENDON, Name().c_str());
-  return written >= 0 || id < 0 ? written : compiled_->tendon_lengthspring[2 * id];
+  const bool none = written[0] == -1 && written[1] == -1;
+  return none && id >= 0 ? compiled_->tendon_lengthspring[2 * id + end] : written[end];
+}
+
+void Element::RequireOrder(std::string_view attribute) const {
+  const auto [name, index] = SplitIndex(attribute);
+  const bool length = name == "springlength";
+  if (!length && !name.ends_with("range")) return;
+  const double low = Get(name + "[0]"), high = Get(name + "[1]");
+  if (length ? low <= high : low < high) return;
+  const std::string ends[] = {name + "[0]", name + "[1]"};
+  throw Error::Input(Who() + ": " + ends[index],
+                     (index == 0 ? "a number below " : "a number above ") + ends[1 - index] +
+                         " = " + Decimal(index == 0 ? high : low),
+                     Decimal(index == 0 ? low : high));
 }
 
 // An actuator with fixed gain and at most affine bias, written with <general>.

@@ -15,7 +15,8 @@ namespace continuum {
 ///
 ///   body      mass (scales the inertia with it), point_mass (added at the body's origin)
 ///   body and site  force[i] (Add: a constant force in world axes, by an actuator of its own)
-///   tendon    springlength (without an index both ends of its range: the rest length)
+///   tendon    springlength (without an index both ends of its range: the rest length; the length
+///             at qpos0 where the model has none)
 ///   actuator  kp, kv (gain and bias), force_scale (gain, bias and force range), input (what it
 ///             receives: Scale, Add), delay (Add: on top of the present one), lag (first-order,
 ///             filterexact; Add is refused where there is one)
@@ -48,6 +49,10 @@ class Element {
   /// also where rows of a log shorten the steps to an eighth; one that is long enough stays.
   void CoverDelay();
 
+  /// Throws Error (element, attribute, the other end) where an attribute is an end of a range and
+  /// lies beyond the other one.
+  void RequireOrder(std::string_view attribute) const;
+
   std::string Name() const;
   /// "joint 'q1'", for messages.
   std::string Who() const;
@@ -55,7 +60,7 @@ class Element {
  private:
   double* Address(std::string_view attribute, double& unit) const;
   double BodyMass() const;
-  double RestLength() const;
+  double RestLength(int end) const;
   void FreezeInertia();
   void SetBodyMass(double mass);
   void AddPointMass(double mass);

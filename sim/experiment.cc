@@ -363,7 +363,7 @@ Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
     }
     log.label += "_" + w->Items()[0].Text() + "_" + w->Items()[1].Text();
   }
-  if (const auto set = y.Find("set")) log.set = ReadSettings(*set);
+  if (const auto set = y.Find("set")) log.set = ReadSettings(*set), log.set_where = set->Where();
   if (const auto start = y.Find("start")) log.start = ReadStart(*start);
   ReadRows(log, e, Recording(log.file, log.variable), time_unit);
   return log;

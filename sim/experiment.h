@@ -79,6 +79,7 @@ struct Log {
   std::string trial, condition;
   bool train = true;
   std::vector<Change> set;  ///< known values of this log
+  std::string set_where;    ///< file:line: key of these, for messages
   /// [joint] position and speed at the first row, where they are known: of hinges and slides.
   std::map<std::string, std::array<double, 2>> start;
 

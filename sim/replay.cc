@@ -41,7 +41,7 @@ void CheckNames(const Experiment& e, const System& system) {
       for (const Change& change : log.set) RequirePossible(change);
       system.Build(log.set);
     } catch (const Error& error) {
-      throw Error::Input(e.file.string() + ": set of log '" + log.label + "'", error.what());
+      throw Error::Input(log.set_where + " (log '" + log.label + "')", error.what());
     }
   }
 }

@@ -175,6 +175,19 @@ System System::Parse(const std::string& xml, const std::filesystem::path& folder
   return system;
 }
 
+namespace {
+
+// In words, where MuJoCo refuses a range for its order.
+void RequireOrder(mjSpec& spec, const mjModel& compiled, std::span<const Change> changes) {
+  for (const Change& change : changes) {
+    if (IsPlugin(change) || IsWorld(change.target) || IsNativeEffect(change)) continue;
+    for (const Element& e : MatchElements(&spec, &compiled, change.target, change.target))
+      e.RequireOrder(change.attribute);
+  }
+}
+
+}  // namespace
+
 class System::Edits {
  public:
   Edits(const System& system, std::span<const Change> changes)
@@ -261,7 +274,12 @@ Machine System::Build(std::span<const Change> changes) const {
   Machine machine;
   {
     const Edits edits(*this, changes);
-    machine.model = Compile(*spec_, name_);
+    try {
+      machine.model = Compile(*spec_, name_);
+    } catch (const Error&) {
+      RequireOrder(*spec_, *compiled_, changes);
+      throw;
+    }
   }
   machine.data.reset(mj_makeData(machine.model.get()));
   if (!machine.data) throw Error::Job(name_ + ": MuJoCo cannot allocate its data");

@@ -55,6 +55,22 @@ TEST_F(Impossible, ValuesThatExcludeEachOtherAreNamedTogether) {
   ExpectRefusedAs({"with x = 0.0019 (", "y = 0.0001 (", "A + B >= C"});
 }
 
+TEST_F(Impossible, AnEndOfARangeBeyondTheOtherIsNamedWithItsLine) {
+  Spoil("model.xml", "<actuator>",
+        "<tendon><fixed name=\"rope\" stiffness=\"1\" springlength=\"0 0.1\"><joint "
+        "joint=\"hinge\" coef=\"1\"/></fixed></tendon><actuator>");
+  Spoil("experiment.yaml", "{file: other.csv}",
+        "{file: other.csv, set: {\"tendon:rope\": {\"springlength[0]\": 0.2}}}");
+  ExpectRefusedAs({"experiment.yaml:7: logs[1].set (log 'other'): tendon 'rope': springlength[0]: ",
+                   "a number below springlength[1] = 0.1, found 0.2"});
+  Spoil("experiment.yaml", ", set: {\"tendon:rope\": {\"springlength[0]\": 0.2}}", "");
+  Free(
+      "{name: s, target: \"tendon:rope\", attribute: \"springlength[0]\", initial: 0.3, lower: 0, "
+      "upper: 1}");
+  ExpectRefusedAs({"experiment.yaml: log 'log' with s = 0.3 (experiment.yaml:6: parameters[0]): ",
+                   "a number below springlength[1] = 0.1, found 0.3"});
+}
+
 TEST_F(Impossible, BoundsAreNamed) {
   Free(
       "{name: i, target: \"body:hand\", attribute: \"inertia[1]\", initial: 1e-3, lower: -1e-3, "

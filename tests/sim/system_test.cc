@@ -151,6 +151,35 @@ TEST_F(Changed, TheRestLengthOfATendonIsBothEndsOfItsRange) {
   EXPECT_NEAR(machine.model->tendon_lengthspring[1], 0.4, 1e-12);
 }
 
+TEST_F(Changed, AnEndOfARangeKeepsTheOtherOneAndMayNotPassIt) {
+  std::string xml = kArm;
+  xml.insert(xml.find("<body name=\"arm\">"), "<site name=\"wall\" pos=\"0 0 0.4\"/>");
+  xml.insert(xml.find("<body name=\"ball\""), "<site name=\"hook\" pos=\"0.3 0 0\"/>");
+  xml.insert(
+      xml.find("  <actuator>"),
+      "<tendon><spatial name=\"rope\" stiffness=\"9\" limited=\"true\" range=\"0.1 0.6\"><site "
+      "site=\"wall\"/><site site=\"hook\"/></spatial></tendon>");
+  const System arm = Arm(xml);
+  EXPECT_NEAR(arm.Value("tendon:rope", "springlength[1]"), 0.5, 1e-12);
+  const Machine slack = arm.Build({{{"tendon:rope", "springlength[0]", 0.3}}});
+  EXPECT_NEAR(slack.model->tendon_lengthspring[0], 0.3, 1e-12);
+  EXPECT_NEAR(slack.model->tendon_lengthspring[1], 0.5, 1e-12);  // as at qpos0
+  const auto message = [&](const std::string& attribute, double value) -> std::string {
+    try {
+      arm.Build({{{"tendon:rope", attribute, value}}});
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(message("springlength[0]", 0.7),
+              HasSubstr("tendon 'rope': springlength[0]: expected a number below springlength[1] = "
+                        "0.5"));
+  EXPECT_THAT(message("springlength[1]", 0.2), HasSubstr("a number above springlength[0] = 0.5"));
+  EXPECT_EQ(message("range[0]", 0.7),
+            "tendon 'rope': range[0]: expected a number below range[1] = 0.6, found 0.7");
+}
+
 // A model that is drawn as it weighs: its only geom does not collide.
 TEST_F(Changed, ABodyKeepsTheInertiaOfAGeomThatIsOnlySeen) {
   std::string xml = kArm;
