@@ -24,10 +24,17 @@ std::string Quoted(const std::string& text) {
 }
 
 std::string SettingsYaml(const Problem& problem, const Problem::Vector& x, std::size_t log) {
-  const auto changes = problem.ChangesFor(x, log);
+  // What a log alone puts on top of the model is told by itself, not in what lies beneath.
+  std::vector<Change> beneath, on_top;
+  const auto common = problem.CommonChanges(x);
+  for (const Change& c : problem.ChangesFor(x, log)) {
+    const bool own = std::find(common.begin(), common.end(), c) == common.end();
+    (own && LiesOnTop(c) ? on_top : beneath).push_back(c);
+  }
   std::map<std::string, std::map<std::string, double>> settings;
   const auto read = [&](const Change& c) {
-    settings[c.target][c.attribute] = problem.system().ValueAfter(changes, c.target, c.attribute);
+    settings[c.target][c.attribute] =
+        problem.system().ValueAfter(LiesOnTop(c) ? on_top : beneath, c.target, c.attribute);
   };
   for (const Change& c : problem.experiment().logs[log].set) read(c);
   for (const FreeParameter& p : problem.parameters()) {
@@ -105,12 +112,12 @@ std::string ParameterYaml(const Problem& problem, const FreeParameter& p, double
   std::string name = p.name;  // an effect's parameter may be called as one of the experiment's
   while (!names.insert(name).second) name += "_effect";
   const bool absolute = p.change.operation == Change::Operation::kSet;
-  const bool effect = p.change.attribute.starts_with("effect:");
+  const bool on_top = LiesOnTop(p.change);
   // The model has the rest already.
-  const double null = effect ? problem.system().Value(p.change.target, p.change.attribute)
+  const double null = on_top ? problem.system().Value(p.change.target, p.change.attribute)
                       : p.change.operation == Change::Operation::kScale ? 1
                                                                         : 0;
-  const double start = absolute && !effect ? value : null;
+  const double start = absolute && !on_top ? value : null;
   const char* const operation[] = {"set", "scale", "add"};
   return fmt::format(
       "  - {{name: {}, target: {}, attribute: {}, operation: {}, initial: {}, lower: {}, upper: "

@@ -130,6 +130,10 @@ void AddInstance(std::string& xml, const EffectInstance& effect) {
 
 }  // namespace
 
+bool LiesOnTop(const Change& change) {
+  return IsNativeEffect(change) || IsWeight(change.target, change.attribute);
+}
+
 std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter) {
   std::string all = "no parameters";
   std::size_t index = 0;
@@ -313,9 +317,7 @@ std::vector<std::string> System::Named(const std::string& target) const {
 
 double System::ValueAfter(std::span<const Change> changes, const std::string& target,
                           const std::string& attribute) const {
-  const bool told = target.starts_with(kPluginTarget) || IsNativeEffect({target, attribute}) ||
-                    IsWeight(target, attribute);  // a body does not show what hangs on it
-  if (!told) {
+  if (!target.starts_with(kPluginTarget) && !LiesOnTop({target, attribute})) {
     const Edits edits(*this, changes);
     return Value(target, attribute);
   }

@@ -48,7 +48,8 @@ class System {
   Machine Build(std::span<const Change> changes = {}) const;
   /// The value that a change would replace.
   double Value(const std::string& target, const std::string& attribute) const;
-  /// The value after changes.
+  /// The value after changes. What lies on top (LiesOnTop) is in it, so that it comes twice where
+  /// it is told beside it.
   double ValueAfter(std::span<const Change> changes, const std::string& target,
                     const std::string& attribute) const;
   /// Names of the elements that a target names ("option" and "plugin:NAME" are their own), in the
@@ -74,6 +75,10 @@ class System {
   Owned<mjSpec> spec_;
   Owned<mjModel> compiled_;
 };
+
+/// Whether a change lies on top of an element, which does not show it as a value of its own: a
+/// native effect or a point_mass.
+bool LiesOnTop(const Change& change);
 
 /// Index of a parameter on an effect's card; throws Error when the effect has none of this name.
 std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter);

@@ -121,6 +121,45 @@ TEST_F(ExtensionTest, ReproducesFrozenParameters) {
   EXPECT_NEAR(ErrorsOf(Extend(problem, fit.x, folder_ / "out"), "out").train, train, 0.02 * train);
 }
 
+// The weight hangs on the mass that the log knows; written twice it would count twice.
+TEST_F(ExtensionTest, ReproducesAMassAndAWeightOnItThatALogSets) {
+  Pendulum p;
+  p.tip = 0.04, p.payload = 0.05;
+  AddTrial(p, "loaded", 0, "use: train, set: {'body:tip': {mass: 0.04, point_mass: 0.05}}");
+  AddTrial(p, "again", 1, "use: validate, set: {'body:tip': {point_mass: 0.05, mass: 0.04}}");
+  const System system = Model(CoulombInstance(0.1));
+  const Experiment e = ReadExperiment(
+      "parameters:\n"
+      "  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1}\n");
+  const Problem problem(e, system);
+  const auto x = problem.Start();
+  const auto r = problem.Residuals(x, problem.AllLogs());
+  const SplitError files = ErrorsOf(Extend(problem, x, folder_ / "out"), "out");
+  EXPECT_NEAR(files.train, problem.PooledRms(r, {true, false}), 1e-9);
+  EXPECT_NEAR(files.validate, problem.PooledRms(r, {false, true}), 1e-9);
+}
+
+// A weight on all logs is in the model file, one of a log's own in its line, on whatever it sets.
+TEST_F(ExtensionTest, ReproducesWeightsOfAllLogsBesideThoseOfOne) {
+  AddTrial(Pendulum(), "bare", 0, "use: train");
+  AddTrial(Pendulum(), "loaded", 1, "use: train, set: {'body:tip': {point_mass: 0.05}}");
+  const System system = Model(CoulombInstance(0.1));
+  const Experiment e = ReadExperiment(
+      "parameters:\n"
+      "  - {name: w, target: 'body:tip', attribute: point_mass, initial: 0.03, lower: 0, upper: "
+      "1}\n");
+  const Problem problem(e, system);
+  const auto x = problem.Start();
+  const auto r = problem.Residuals(x, problem.AllLogs());
+  const Extension extension = Extend(problem, x, folder_ / "out");
+  EXPECT_NEAR(ErrorsOf(extension, "out").train, problem.PooledRms(r, problem.AllLogs()), 1e-9);
+  // And so is where a fit of these files begins.
+  const Experiment again = Experiment::Read(folder_ / "out/extended.yaml");
+  const Problem on(again, System::Load(folder_ / "out/extended.xml"));
+  const auto s = on.Residuals(on.Start(), on.AllLogs());
+  EXPECT_NEAR(on.PooledRms(s, on.AllLogs()), problem.PooledRms(r, problem.AllLogs()), 1e-9);
+}
+
 TEST_F(ExtensionTest, KeepsWindowsTrialsOutputsAndFolds) {
   AddTrials();
   const System system = Model(CoulombInstance(0.1));
