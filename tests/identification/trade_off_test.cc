@@ -62,6 +62,43 @@ TEST_F(TradeOffTest, SaysWhichParametersTradeOff) {
   EXPECT_THAT(two[0].text, HasSubstr("only g*u is"));
 }
 
+TEST_F(TradeOffTest, TellsSeveralTiesOfTheSameParametersOnce) {
+  AddTrials();
+  const System system = System::Load(Write("model.xml", kSlide));
+  const Experiment e =
+      ReadExperiment("parameters: [" + kK + ", " + kC + ", " + kM + ", " + kG + ", " + kU + "]\n");
+  const Problem problem(e, system);
+  const auto x = problem.Start();
+  const auto u = IntervalsOf(problem, x, problem.Residuals(x, problem.AllLogs()));
+  const auto ties = TradeOffsOf(problem, x, u);
+  ASSERT_EQ(ties.size(), 1u);
+  EXPECT_EQ(ties[0].text,
+            "k, c, m, g and u trade off: 2 independent changes of them leave everything as it is; "
+            "only 3 combinations of them are determined");
+}
+
+// A spring beside the joint's, and two factors of the same force.
+TEST_F(TradeOffTest, TellsTiesThatHaveNothingToDoWithEachOtherApart) {
+  AddTrials();
+  std::string xml = kSlide;
+  xml.insert(xml.find("<actuator>"),
+             "<tendon><fixed name='rope' stiffness='5'><joint joint='x' coef='1'/></fixed>"
+             "</tendon>");
+  const System system = System::Load(Write("model.xml", xml));
+  const Experiment e = ReadExperiment(
+      "parameters: [" + kK + ", " + kG + ", " + kU +
+      ", {name: t, target: 'tendon:rope', attribute: stiffness, lower: 1, upper: 99}]\n");
+  const Problem problem(e, system);
+  const auto x = problem.Start();
+  const auto u = IntervalsOf(problem, x, problem.Residuals(x, problem.AllLogs()));
+  const auto ties = TradeOffsOf(problem, x, u);
+  ASSERT_EQ(ties.size(), 2u);
+  EXPECT_THAT(ties[0].names, ElementsAre("k", "t"));
+  EXPECT_THAT(ties[0].text, HasSubstr("only one combination of them is determined"));
+  EXPECT_THAT(ties[1].names, ElementsAre("g", "u"));
+  EXPECT_THAT(ties[1].text, HasSubstr("only g*u is determined"));
+}
+
 // However far the slopes are taken because of the time step.
 TEST_F(TradeOffTest, WhatNothingDeterminesReachesOverItsBounds) {
   AddTrials();
