@@ -106,6 +106,7 @@ std::optional<EquationFit> FitEquations(const Problem& problem, const Vector& x,
 
 Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& use,
                    const FitOptions& options) {
+  const double before = best.seconds;
   const auto begin = std::chrono::steady_clock::now();
   const auto spent = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -122,15 +123,14 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
   best.evaluations += equations->evaluations;
   const double there = problem.PooledRms(problem.Residuals(equations->x, use), use);
   if (!(there < left)) {  // nor where it diverges
-    best.seconds += spent();
+    best.seconds = before + spent();
     return best;
   }
   FitOptions own = options;
   own.idle = true, own.progress = tell;
   Fit fit = FitFar(problem, equations->x, use, own);
-  fit.seconds = spent();
   if (fit.cost > best.cost) std::swap(fit, best);  // as a robust loss sees it
-  AddEffort(best, fit);
+  fit.evaluations += best.evaluations, fit.seconds = before + spent();
   return fit;
 }
 

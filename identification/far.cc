@@ -9,6 +9,23 @@
 namespace continuum {
 namespace {
 
+// On top of a fit, the effort of one before it.
+void AddEffort(const Fit& before, Fit& to) {
+  to.iterations += before.iterations;
+  to.evaluations += before.evaluations;
+  to.seconds += before.seconds;
+  // Where it ended is where this one began.
+  to.trace.insert(to.trace.begin(), before.trace.begin(), before.trace.end() - 1);
+}
+
+// To a fit, the effort of one after it that led nowhere.
+void AddVain(const Fit& after, Fit& to) {
+  to.iterations += after.iterations;
+  to.evaluations += after.evaluations;
+  to.seconds += after.seconds;
+  to.trace.resize(to.trace.size() + static_cast<std::size_t>(after.iterations), to.cost);
+}
+
 // From x with slopes over a fifth of the parameters' sizes; goes on only if the first step helps.
 Fit FitWide(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,
             FitOptions options) {
@@ -18,10 +35,10 @@ Fit FitWide(const Problem& problem, const Problem::Vector& x, const std::vector<
   options.progress = [tell = options.progress](const std::string& line) {
     if (tell) tell("slopes over a fifth: " + line);
   };
-  const int iterations = std::exchange(options.iterations, 1);
+  const int most = std::exchange(options.iterations, 1);
   Fit first = FitParameters(wide, x, use, options);
-  if (first.cost >= first.trace.front()) return first;
-  options.iterations = iterations;
+  if (first.cost >= first.trace.front() || most == first.iterations) return first;
+  options.iterations = most - first.iterations;
   Fit fit = FitParameters(wide, first.x, use, options);
   AddEffort(first, fit);
   return fit;
@@ -34,11 +51,21 @@ Fit FitFar(const Problem& problem, const Problem::Vector& x, const std::vector<b
   constexpr double kLower = 1e-3;  // of the cost, that is worth another fit
   constexpr int kFits = 4;
   Fit best = FitParameters(problem, x, use, options);
-  for (int k = 1; k < kFits && problem.path() == Path::kStepped && !StopRequested(); ++k) {
-    const Fit wide = FitWide(problem, best.x, use, options);
-    best.evaluations += wide.evaluations, best.seconds += wide.seconds;
-    if (wide.cost > best.cost * (1 - kLower)) break;
-    Fit next = FitParameters(problem, wide.x, use, options);
+  const bool may_go_on = problem.path() == Path::kStepped;
+  for (int k = 1; k < kFits && may_go_on && !StopRequested(); ++k) {
+    FitOptions left = options;
+    left.iterations -= best.iterations;
+    if (left.iterations <= 0) break;
+    Fit wide = FitWide(problem, best.x, use, left);
+    if (wide.cost > best.cost * (1 - kLower)) {
+      AddVain(wide, best);
+      break;
+    }
+    left.iterations -= wide.iterations;
+    AddEffort(best, wide);
+    best = std::move(wide);
+    if (left.iterations <= 0) break;
+    Fit next = FitParameters(problem, best.x, use, left);
     AddEffort(best, next);
     best = std::move(next);
   }

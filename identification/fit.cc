@@ -142,7 +142,8 @@ class Watch : public ceres::IterationCallback {
   Watch(const Problem& problem, const FitOptions& options, Fit& fit)
       : problem_(problem), options_(options), fit_(fit) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
-    if (s.step_is_successful || s.iteration == 0) fit_.trace.push_back(s.cost);
+    const bool taken = s.step_is_successful || s.iteration == 0;
+    fit_.trace.push_back(taken ? s.cost : fit_.trace.back());
     if (options_.progress) {
       options_.progress(fmt::format("iteration {:2}  cost {:.6g}  {} simulations", s.iteration,
                                     s.cost, problem_.evaluations()));
@@ -176,11 +177,10 @@ class Watch : public ceres::IterationCallback {
 
 }  // namespace
 
-void AddEffort(const Fit& before, Fit& to) {
-  to.iterations += before.iterations;
-  to.evaluations += before.evaluations;
-  to.seconds += before.seconds;
-  to.trace.insert(to.trace.begin(), before.trace.begin(), before.trace.end());
+double Fit::LastGain() const {
+  for (std::size_t k = trace.size(); k-- > 1;)
+    if (trace[k - 1] > trace[k]) return trace[k - 1] - trace[k];
+  return 0;
 }
 
 void RequireFinite(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
@@ -227,6 +227,9 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   fit.message = summary.message;
   if (watch.settled()) {
     fit.message = "a further step gains less than the errors of the simulation";
+  } else if (summary.termination_type == ceres::NO_CONVERGENCE &&
+             fit.iterations == options.iterations) {
+    fit.message = "out of iterations";
   } else if (summary.termination_type == ceres::USER_SUCCESS) {
     fit.message = StopRequested() ? "interrupted" : "given up: it cannot come near a better one";
   }

@@ -43,11 +43,11 @@ struct Fit {
   double seconds = 0;
   bool converged = false;
   std::string message;
-  std::vector<double> trace;  ///< cost after each iteration
-};
+  std::vector<double> trace;  ///< cost at the start and after each iteration
 
-/// On top of a fit, the effort of one that led there.
-void AddEffort(const Fit& before, Fit& to);
+  /// By how much the last step that was taken lowered the cost.
+  double LastGain() const;
+};
 
 /// Throws Error (kJob; file of the log, time, parameter) when the simulation of a log in use
 /// diverges at x: r has no number there. when: in words, "at the start of the fit".

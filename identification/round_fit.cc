@@ -164,14 +164,12 @@ void Round::FitBeyond(CandidateResult& c, double rival) const {
 // in which a stiffness of the model makes room for one of the candidate.
 void Round::GoOn(const Problem& problem, CandidateResult& c, double rival) const {
   constexpr int kTimes = 3;
-  // By the last iteration: of half the whitened squares, or of any in parts of them.
+  // By the last step: of half the whitened squares, or of any in parts of them.
   constexpr double kGain = 0.5, kShare = 1e-3;
   for (int i = 0; i < kTimes; ++i) {
     const continuum::Fit& f = c.fitted.fit;
-    const std::size_t n = f.trace.size();
     const double least = noise_.known() ? kGain : kShare * f.cost;
-    const bool gains = n > 1 && f.trace[n - 2] - f.trace[n - 1] > least;
-    if (f.iterations < trials_.iterations || !gains) return;
+    if (f.iterations < trials_.iterations || !(f.LastGain() > least)) return;
     Fitted next = trials_.Fit(problem, f.x, rival);
     if (!(next.fit.cost < f.cost)) return;
     c.fitted = std::move(next);

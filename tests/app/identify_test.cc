@@ -153,6 +153,19 @@ TEST_F(IdentifyPath, FitsAValueOfEachLogsOwnWhereItSeesAllOfThem) {
   }
 }
 
+TEST_F(IdentifyPath, TracesEveryIterationAndTakesNoMoreThanAllowed) {
+  Spoil("model.xml", "damping=\"0.1\"", "damping=\"0.1\" frictionloss=\"0.001\"");
+  for (const int most : {1, 3}) {
+    const auto f =
+        Run({"identify", "experiment.yaml", "--iterations", std::to_string(most), "--out", "out"});
+    const auto fit = nlohmann::json::parse(testing::Scratch::Text(files_ / "out/fit.json"));
+    const int taken = fit["iterations"];
+    EXPECT_LE(taken, most);
+    EXPECT_EQ(std::ssize(fit["trace"]), taken + 1);
+    EXPECT_THAT(f.out, HasSubstr(fmt::format("\n{} iterations, ", taken)));
+  }
+}
+
 // Values of single logs, starts, sensors and the clock are not the model's: the experiment has
 // them.
 TEST_F(IdentifyPath, LeavesAnExperimentThatReplaysTheFit) {

@@ -1,5 +1,6 @@
 #include "identification/far.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -75,6 +76,24 @@ TEST_F(Far, LeavesTheValleyWhereFittingAlongSlopesEnds) {
   const double expected[] = {truth.tau_c, truth.stiffness, truth.damping, truth.inertia};
   for (int k = 0; k < 4; ++k) EXPECT_NEAR(far.x[k], expected[k], 0.02 * expected[k]) << k;
   EXPECT_GT(far.evaluations, near.evaluations);
+}
+
+TEST_F(Far, TakesNoMoreIterationsThanAllowedAndTracesEach) {
+  const auto u = Shaken::Steps();
+  AddLog("shaken", "use: train", u, testing::Noisy(Shaken().Run(u), 1e-4, 0, 1));
+  const Experiment experiment = ReadExperiment(
+      "parameters:\n"
+      "  - {name: fc, target: 'plugin:dry', attribute: tau_c, initial: 1, lower: 0, upper: 6}\n"
+      "  - {name: k, target: 'joint:hinge', attribute: stiffness, initial: 40, lower: 1, "
+      "upper: 300}\n");
+  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  for (const int most : {1, 4, 8, 50}) {
+    const Fit fit = FitFar(problem, problem.Start(), problem.TrainLogs(), {.iterations = most});
+    EXPECT_LE(fit.iterations, most);
+    EXPECT_EQ(std::ssize(fit.trace), fit.iterations + 1) << most;
+    EXPECT_EQ(fit.trace.back(), fit.cost) << most;
+    EXPECT_TRUE(std::is_sorted(fit.trace.rbegin(), fit.trace.rend())) << most;
+  }
 }
 
 }  // namespace
