@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "identification/pieces.h"
 #include "sim/score.h"
@@ -25,6 +27,21 @@ struct Sum {
   }
 };
 
+// [row] what free simulation of a log remembers at every stride-th row, as far as it comes.
+std::map<std::size_t, std::vector<double>> Memories(const Problem& problem,
+                                                    const Problem::Vector& x, std::size_t log,
+                                                    std::size_t stride) {
+  std::map<std::size_t, std::vector<double>> memories;
+  Hooks hooks;
+  hooks.row = [&](const mjModel& m, const mjData& d, std::size_t row) {
+    if (row % stride == 0) memories[row] = MemoryOf(m, d);
+  };
+  Machine machine = problem.system().Build(problem.ChangesFor(x, log));
+  const InitialState start = problem.StartAt(machine, x, log);
+  Simulate(machine, problem.MeasuredBy(x, log), problem.experiment().logs[log], start, hooks);
+  return memories;
+}
+
 }  // namespace
 
 std::optional<Ahead> PredictAhead(const Problem& problem, const Problem::Vector& x,
@@ -39,9 +56,11 @@ std::optional<Ahead> PredictAhead(const Problem& problem, const Problem::Vector&
     const Experiment measured = problem.MeasuredBy(x, l);
     const auto changes = problem.ChangesFor(x, l);
     const std::size_t stride = std::max(rows, log.rows() / kMost);
+    auto memories = Memories(problem, x, l, stride);
     for (std::size_t first = 0; first + rows < log.rows(); first += stride) {
-      const auto state = StateAt(problem.system().model(), measured, log, first);
+      auto state = StateAt(problem.system().model(), measured, log, first);
       if (!state) continue;
+      state->memory = std::move(memories[first]);
       Machine machine = problem.system().Build(changes);
       const Log piece = Piece(log, first, first + rows);
       const Trace trace = Simulate(machine, measured, piece, *state);

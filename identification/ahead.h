@@ -9,8 +9,8 @@ namespace continuum {
 
 /// How well a model goes on with a measured motion: it starts anew at every rows-th row (in long
 /// logs at a hundred rows), from the state measured there (StateAt), and is compared with the
-/// measurement so many rows later. What the state does not tell begins as at the start of a log:
-/// lags settled under the inputs, friction and hysteresis without memory.
+/// measurement so many rows later. What the state does not tell (activations, the past of delays,
+/// friction and hysteresis) is what free simulation has there.
 struct Ahead {
   std::size_t rows;
   double seconds;                       ///< so long, in the median

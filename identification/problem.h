@@ -113,6 +113,8 @@ class Problem {
   Experiment MeasuredBy(const Vector& x, std::size_t log) const;
   /// The changes that make the model of one log.
   std::vector<Change> ChangesFor(const Vector& x, std::size_t log) const;
+  /// Where the trial of one log begins; empty: as the experiment says.
+  InitialState StartAt(Machine& machine, const Vector& x, std::size_t log) const;
   /// The changes that hold for every log alike: those of the model file to be written.
   std::vector<Change> CommonChanges(const Vector& x) const;
 
@@ -148,7 +150,6 @@ class Problem {
   enum class Side { kModel, kMeasurement, kStart };
   static Side SideOf(const Change& change);
   std::vector<Change> ChangesAt(const Vector& x, std::size_t log, Side side) const;
-  InitialState StartAt(Machine& machine, const Vector& x, std::size_t log) const;
   Vector ResidualOf(std::size_t log, const Trace& trace) const;
   Trace Later(const Trace& trace, const Vector& x, std::size_t log, double delay) const;
 

@@ -155,6 +155,15 @@ void RequireHistory(const mjModel& m, const Log& log) {
   }
 }
 
+constexpr int kMemory = mjSTATE_TIME | mjSTATE_ACT | mjSTATE_HISTORY | mjSTATE_PLUGIN;
+constexpr int kState = mjSTATE_QPOS | mjSTATE_QVEL | kMemory;
+
+std::vector<double> StateOf(const mjModel& m, const mjData& d, int parts) {
+  std::vector<double> state(mj_stateSize(&m, parts));
+  mj_getState(&m, &d, state.data(), parts);
+  return state;
+}
+
 bool IsJoint(const mjModel& m, const Output& out, mjtSensor type, int& joint) {
   if (out.kind != Output::Kind::kSensor) return false;
   const int id = mj_name2id(&m, mjOBJ_SENSOR, out.source.c_str());
@@ -178,6 +187,8 @@ double SlopeAt(const std::vector<double>& time, const std::vector<double>& y, st
 }
 
 }  // namespace
+
+std::vector<double> MemoryOf(const mjModel& m, const mjData& d) { return StateOf(m, d, kMemory); }
 
 Hooks Hooks::Stoppable() {
   return {{}, [](const mjModel&, mjData&) { StopIfRequested(); }};
@@ -372,30 +383,28 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
   std::copy(start.qvel.begin(), start.qvel.end(), d.qvel);
   inputs.AtRow(d, 0);
   Settle(m, d);
+  if (!start.memory.empty()) mj_setState(&m, &d, start.memory.data(), kMemory);
 
   Trace trace;
   Recorder recorder(m, wiring, log.rows());
   // The stages of RK4 overwrite the forces of the first: evaluate the row before its step.
   const bool staged = m.opt.integrator == mjINT_RK4;
-  std::vector<double> qpos(m.nq), qvel(m.nv);
   const auto evaluated = [&](std::size_t row) {
     mj_forward(&m, &d);
     recorder.Take(d, row);
     if (hooks.row) hooks.row(m, d, row);
   };
   const auto stepped = [&](std::size_t row) {  // a row's step; what the row sees is recorded
-    std::copy(d.qpos, d.qpos + m.nq, qpos.begin());
-    std::copy(d.qvel, d.qvel + m.nv, qvel.begin());
     if (staged) evaluated(row);
+    const auto seen = hooks.row ? StateOf(m, d, kState) : std::vector<double>{};
     mj_step(&m, &d);  // its sensors and forces are those of the state it starts from
     if (staged) return;
     recorder.Take(d, row);
     if (!hooks.row) return;
-    std::swap_ranges(qpos.begin(), qpos.end(), d.qpos);
-    std::swap_ranges(qvel.begin(), qvel.end(), d.qvel);
+    const auto after = StateOf(m, d, kState);
+    mj_setState(&m, &d, seen.data(), kState);
     hooks.row(m, d, row);
-    std::swap_ranges(qpos.begin(), qpos.end(), d.qpos);
-    std::swap_ranges(qvel.begin(), qvel.end(), d.qvel);
+    mj_setState(&m, &d, after.data(), kState);
   };
 
   for (std::size_t row = 0; row + 1 < log.rows() && !trace.diverged; ++row) {

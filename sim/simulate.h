@@ -12,7 +12,12 @@ namespace continuum {
 /// Where a trial begins; empty: as the experiment says.
 struct InitialState {
   std::vector<double> qpos, qvel;
+  std::vector<double> memory = {};  ///< MemoryOf; empty: settled under the first inputs
 };
+
+/// What a machine remembers beside positions and speeds: activations, the past of its delays,
+/// states of effects, its clock.
+std::vector<double> MemoryOf(const mjModel& m, const mjData& d);
 
 /// What the simulation says about the channels of an experiment, at the rows of one log.
 struct Trace {

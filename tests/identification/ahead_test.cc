@@ -45,6 +45,48 @@ TEST_F(AheadTest, AWrongOnePartsFromItTheMoreTheLater) {
   EXPECT_LT(1.5 * soon->train[0], late->train[0]);
 }
 
+// Of a model with this actuator and extension, on a log that it has made itself.
+class AheadOfItself : public AheadTest {
+ protected:
+  std::optional<Ahead> After(const std::string& actuator, const std::string& extension) {
+    std::string xml = Pendulum().Xml(extension);
+    const std::string servo = "<position name=\"servo\" joint=\"hinge\" kp=\"5\"/>";
+    xml.replace(xml.find(servo), servo.size(), actuator.empty() ? servo : actuator);
+    const System system = System::Load(Write("model.xml", xml));
+    const auto u = Command(1, kRows);
+    logs_.clear();
+    AddLog("made", "use: train", u, std::vector<double>(kRows, 0));
+    Experiment e = ReadExperiment("");
+    e.logs[0].measured = Problem(e, system).Predict({}, 0).channel;
+    const Problem problem(e, system);
+    return PredictAhead(problem, problem.Start(), 10);
+  }
+};
+
+TEST_F(AheadOfItself, ActuatorsGoOnFromTheActivationTheyHave) {
+  const auto lagged =
+      After("<position name=\"servo\" joint=\"hinge\" kp=\"5\" timeconst=\"0.3\"/>", "");
+  ASSERT_TRUE(lagged);
+  EXPECT_LT(lagged->train[0], 3e-3);  // as above
+  const auto sums =
+      After("<intvelocity name=\"servo\" joint=\"hinge\" kp=\"5\" actrange=\"-3 3\"/>", "");
+  ASSERT_TRUE(sums);
+  EXPECT_LT(sums->train[0], 3e-3);
+}
+
+TEST_F(AheadOfItself, DelaysAndEffectsGoOnFromWhatTheyRemember) {
+  const auto late = After(
+      "<position name=\"servo\" joint=\"hinge\" kp=\"5\" delay=\"0.1\" nsample=\"200\"/>", "");
+  ASSERT_TRUE(late);
+  EXPECT_LT(late->train[0], 3e-3);
+  const auto creeps = After("",
+                            "<plugin plugin=\"continuum.maxwell\"><instance name=\"creep\"><config "
+                            "key=\"joint\" value=\"hinge\"/><config key=\"k_m\" value=\"8\"/>"
+                            "<config key=\"tau_m\" value=\"1\"/></instance></plugin>");
+  ASSERT_TRUE(creeps);
+  EXPECT_LT(creeps->train[0], 3e-3);
+}
+
 TEST_F(AheadTest, ALogThatIsTooShortHasNone) { EXPECT_FALSE(After(0, kRows)); }
 
 }  // namespace
