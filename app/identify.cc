@@ -154,17 +154,12 @@ void Print(const Problem& problem, const Fitting& all, const Determined& determi
                 e.logs[l].label.c_str(), e.logs[l].file.string().c_str(),
                 WhyItDiverges(problem, fit.x, l).c_str());
   }
-  const std::string unit = Pool(e).unit();
   auto validate = problem.TrainLogs();
   validate.flip();
-  const bool held_out = std::find(validate.begin(), validate.end(), true) != validate.end();
-  const SplitError error{problem.PooledRms(r, problem.TrainLogs()),
-                         held_out ? problem.PooledRms(r, validate) : 0};
-  std::printf("%s%s\n", ErrorInWords(error, held_out, unit).c_str(),
-              MeanAbsoluteInWords(scores).c_str());
+  const SplitError error{problem.PooledRms(r, problem.TrainLogs()), problem.PooledRms(r, validate)};
+  std::printf("%s%s\n", ErrorInWords(e, error).c_str(), MeanAbsoluteInWords(scores).c_str());
   if (determined.at_step)
-    std::printf("as the model steps: %s\n",
-                ErrorInWords(*determined.at_step, held_out, unit).c_str());
+    std::printf("as the model steps: %s\n", ErrorInWords(e, *determined.at_step).c_str());
   if (all.regression) {
     std::printf("forces by the inverse model: error %.3g %% (train) %.3g %% (validate)\n",
                 all.regression->train, all.regression->validate);

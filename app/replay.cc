@@ -33,18 +33,6 @@ void CheckAll(const Experiment& e, const System& system) {
   const Problem problem(e, system, {}, {}, std::vector<bool>(e.logs.size(), true));
 }
 
-// " 0.1 (train), 0.2 (validate)", of the uses that logs have.
-std::string InWords(const Experiment& e, const SplitError& error) {
-  const auto train =
-      std::count_if(e.logs.begin(), e.logs.end(), [](const Log& l) { return l.train; });
-  std::string words;
-  if (train > 0) words += fmt::format(" {:.4g} (train)", error.train);
-  if (train > 0 && std::cmp_less(train, e.logs.size())) words += ",";
-  if (std::cmp_less(train, e.logs.size()))
-    words += fmt::format(" {:.4g} (validate)", error.validate);
-  return words;
-}
-
 // "plate3 validate loaded: off by 11.7 mm RMS, 10.3 mean, 3.1 % of its RMS, 5001 rows".
 void PrintSensors(const std::vector<SensorScore>& sensors) {
   for (const SensorScore& s : sensors) {
@@ -87,9 +75,7 @@ void RunReplay(const Options& o) {
     }
   }
   PrintSensors(ScoreSensors(e, logs));
-  const SplitError error = PooledError(e, logs);
-  const std::string unit = Pool(e).unit();
-  std::printf("all: RMS%s %s%s\n", InWords(e, error).c_str(), unit.c_str(),
+  std::printf("all: %s%s\n", ErrorInWords(e, PooledError(e, logs)).c_str(),
               MeanAbsoluteInWords(scores).c_str());
   for (const auto& line : RegistrationLines(e.registration)) std::printf("%s\n", line.c_str());
   auto errors = ErrorsJson(e, logs);

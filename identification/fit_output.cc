@@ -214,13 +214,6 @@ std::string BeyondNoise(const Experiment& e, double error) {
 
 }  // namespace
 
-std::string ErrorInWords(const SplitError& error, bool held_out, const std::string& unit) {
-  std::string text = fmt::format("error {:.4g} {} RMS on train", error.train, unit);
-  if (!held_out) return text;
-  return text + (std::isfinite(error.validate) ? fmt::format(", {:.4g} on validate", error.validate)
-                                               : ", none on validate, where a log diverges");
-}
-
 Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesystem::path& folder,
                     const FitRecord& record) {
   const Experiment& e = problem.experiment();
@@ -233,7 +226,6 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   std::vector<Trace> traces;
   for (const Replayed& log : logs) traces.push_back(log.trace);
   const SplitError error = PooledError(e, logs);
-  const std::string unit = Pool(e).unit();
 
   nlohmann::json json{{"parameters", ParametersJson(problem, fit.x, u)},
                       {"correlation", nlohmann::json::array()},
@@ -276,8 +268,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   WriteSimulated(e, traces, folder / "simulated");
 
   Page page("Fit", e.model.filename().string() + " to " + std::to_string(e.logs.size()) + " logs");
-  const bool held_out = std::any_of(e.logs.begin(), e.logs.end(), [](auto& l) { return !l.train; });
-  page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, ErrorInWords(error, held_out, unit),
+  page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, ErrorInWords(e, error),
              fmt::format("{} iterations, {} simulations, {:.1f} s. {}", fit.iterations,
                          fit.evaluations, fit.seconds, fit.message) +
                  (record.starts ? " " + record.starts->InWords() + "." : ""));

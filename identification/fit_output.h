@@ -34,9 +34,6 @@ struct Determined {
   std::string beyond_noise = {};      ///< in words, where far more than noise is left
 };
 
-/// "error 0.1 m RMS on train, 0.2 on validate".
-std::string ErrorInWords(const SplitError& error, bool held_out, const std::string& unit);
-
 /// Writes fit.json, fitted.xml, fitted.yaml (the experiment with that model and every value that
 /// was fitted of single logs or of the measurement), simulated/*.csv and report.html of a fit into
 /// a folder. Returns what they say of the parameters.

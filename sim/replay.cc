@@ -1,6 +1,8 @@
 #include "sim/replay.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -74,6 +76,20 @@ SplitError PooledError(const Experiment& e, const std::vector<Replayed>& logs) {
     pool.Add(Residuals(e, e.logs[l], logs[l].trace), e.logs[l].train ? train : validate);
   }
   return {train.Rms(), validate.Rms()};
+}
+
+std::string ErrorInWords(const Experiment& e, const SplitError& error) {
+  std::string text;
+  for (const auto& [train, use, value] :
+       {std::tuple{true, "train", error.train}, {false, "validate", error.validate}}) {
+    const auto used = [&](const Log& log) { return log.train == train; };
+    if (std::none_of(e.logs.begin(), e.logs.end(), used)) continue;
+    const std::string unit = text.empty() ? " " + Pool(e).unit() + " RMS" : "";
+    text += text.empty() ? "error " : ", ";
+    text += std::isfinite(value) ? fmt::format("{:.4g}{} on {}", value, unit, use)
+                                 : fmt::format("none on {}, where a log diverges", use);
+  }
+  return text;
 }
 
 nlohmann::json ScoreJson(const std::vector<ChannelScore>& score) {
@@ -156,13 +172,9 @@ void AddOverlay(Page& page, const Experiment& e, const Log& log,
 
 void WriteReplayReport(const Experiment& e, const std::vector<Replayed>& logs,
                        const std::filesystem::path& file) {
-  const SplitError error = PooledError(e, logs);
-  const std::string unit = Pool(e).unit();
   Page page("Replay",
             e.model.filename().string() + " against " + std::to_string(logs.size()) + " logs");
-  page.Badge(Tone::kInfo,
-             fmt::format("error {:.4g} {} on train, {:.4g} {} on validate", error.train, unit,
-                         error.validate, unit),
+  page.Badge(Tone::kInfo, ErrorInWords(e, PooledError(e, logs)),
              "root mean square over all samples, channels and logs; the model as it stands");
   page.Heading("Errors");
   std::vector<std::vector<std::string>> rows;

@@ -32,6 +32,8 @@ struct SplitError {
   double train = 0, validate = 0;
 };
 SplitError PooledError(const Experiment& experiment, const std::vector<Replayed>& logs);
+/// "error 0.1 m RMS on train, 0.2 on validate", of the uses that logs have.
+std::string ErrorInWords(const Experiment& experiment, const SplitError& error);
 
 /// errors.json: pooled errors, per log and channel what ChannelScore holds, and what ScoreSensors
 /// says.

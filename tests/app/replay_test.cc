@@ -65,6 +65,20 @@ TEST_F(ReplayOutputs, OfLogsThatLeftTheExperimentGo) {
   }
 }
 
+TEST_F(ReplayOutputs, SayTheErrorInTheSameWordsOnThePageAndTheTerminal) {
+  const auto said = [&] {
+    const auto f = Run({"replay", "experiment.yaml", "--out", "out"});
+    const std::size_t from = f.out.find("\nall: ") + 6;
+    const std::string words = f.out.substr(from, f.out.find(';', from) - from);
+    EXPECT_THAT(Scratch::Text(files_ / "out/report.html"), HasSubstr(words));
+    return words;
+  };
+  EXPECT_THAT(said(), ::testing::MatchesRegex("error [0-9.e-]+ rad RMS on train"));
+  Spoil("experiment.yaml", "{file: second.csv}", "{file: second.csv, use: validate}");
+  EXPECT_THAT(said(),
+              ::testing::MatchesRegex("error [0-9.e-]+ rad RMS on train, [0-9.e-]+ on validate"));
+}
+
 TEST_F(ReplayOutputs, TellHowFarASensorIsOffInAllOfItsDirections) {
   Spoil(
       "experiment.yaml", "{column: q, unit: rad, sensor: angle}",

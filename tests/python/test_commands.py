@@ -68,7 +68,7 @@ class Outputs(bench.Bench):
         lines = []
         mc.replay(self.experiment, progress=lines.append)
         self.assertIn("log 1 of 1: log", lines)
-        self.assertTrue(any(line.startswith("all: RMS") for line in lines))
+        self.assertTrue(any(line.startswith("all: error ") for line in lines))
 
 
 class Options(bench.Bench):
