@@ -37,7 +37,7 @@ struct Options {
   std::string experiment, out, from, method = "lm", path = "auto";
   int iterations = 0;  // as the method likes
   int starts = 1;
-  double cutoff = 0;
+  double cutoff = 0, differences = 0;  // 0: the usual
   std::uint64_t seed = 1;
   bool all = false, for_step = false, pieces = true;
 };
@@ -91,7 +91,7 @@ Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& sta
     all.fit.message = "linear least squares";
   } else {
     FitOptions options{.soft = soft, .progress = ShowProgress};
-    options.iterations = o.iterations > 0 ? o.iterations : 50;
+    options.iterations = o.iterations > 0 ? o.iterations : 100;
     if (o.pieces && o.from.empty()) all.pieces = FitInPieces(problem, start, use, options);
     const Problem::Vector& begin = all.pieces ? all.pieces->x : start;
     if (o.starts > 1) {
@@ -221,6 +221,12 @@ void RunIdentify(const Options& o) {
   }
   const Problem::Vector start = o.from.empty() ? problem.Start() : ValuesIn(o.from, problem);
   problem.Follow(Choose(o, problem));
+  if (o.differences > 0) {
+    if (problem.path() == Path::kSmooth)
+      throw Error::Input("--differences", "the stepped path (--path stepped)",
+                         "the smooth one, which has none");
+    problem.DifferBy(o.differences);
+  }
   std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n", Way(o, problem),
                problem.parameters().size(), e.logs.size());
   PrintCheck(o, e);
@@ -259,7 +265,11 @@ void AddIdentify(CLI::App& app) {
   sub->add_option("--path", o->path, "how logs are simulated: smooth (CVODES), stepped, or auto")
       ->check(CLI::IsMember({"auto", "smooth", "stepped"}))
       ->capture_default_str();
-  sub->add_option("--iterations", o->iterations, "at most; default: 50 (lm), 40 (pso)")
+  sub->add_option("--differences", o->differences,
+                  "stepped path: slopes over this share of a parameter's size; default: 0.001, "
+                  "which averages over stick and slip; 1e-6: the derivative itself")
+      ->check(NumberWithin(1e-9, 0.5));
+  sub->add_option("--iterations", o->iterations, "at most; default: 100 (lm), 40 (pso)")
       ->check(WholeNumberWithin(1, 1000));
   sub->add_option("--starts", o->starts,
                   "lm: fit from the experiment's start and from random ones, keep the best")

@@ -28,8 +28,8 @@ def modify(spec, target, attribute, value):
     if kind == "joint":
         for joint in spec.joints:
             if glob == "*" or joint.name.endswith(glob[-1]):
-                if attribute == "armature":
-                    joint.armature = value
+                if attribute in ("armature", "frictionloss"):
+                    setattr(joint, attribute, value)
                 else:
                     getattr(joint, attribute)[0] = value
     elif kind == "body":
@@ -40,8 +40,8 @@ def modify(spec, target, attribute, value):
         spec.actuator(glob).gainprm[0] = value
 
 
-def build(rows, values, **option):
-    spec = mujoco.MjSpec.from_string(problem.mjcf())
+def build(rows, values, arm=problem.Arm(), **option):
+    spec = mujoco.MjSpec.from_string(problem.mjcf(arm))
     for (_, target, attribute, *_), value in zip(rows, values):
         modify(spec, target, attribute, value)
     model = spec.compile()
@@ -50,8 +50,8 @@ def build(rows, values, **option):
     return model
 
 
-def cost(rows, values, logs, substeps, **option):
-    model = build(rows, values, **option)
+def cost(rows, values, logs, substeps, arm=problem.Arm(), **option):
+    model = build(rows, values, arm, **option)
     r = [(problem.simulate(model, t, u, substeps) - y) / problem.SIGMA for t, u, y in logs]
     return float(np.mean(np.square(r)))
 
@@ -76,8 +76,8 @@ def optimise(parameters, sequences):
     return best.as_vector(), seconds, near
 
 
-def fit_sysid(rows, logs):
-    spec = mujoco.MjSpec.from_string(problem.mjcf())
+def fit_sysid(rows, logs, arm=problem.Arm()):
+    spec = mujoco.MjSpec.from_string(problem.mjcf(arm))
     model = spec.compile()
     state = sysid.create_initial_state(model, np.zeros(model.nq), np.zeros(model.nv), np.zeros(0))
     parameters = sysid.ParameterDict()
@@ -92,12 +92,12 @@ def fit_sysid(rows, logs):
     return optimise(parameters, [sequences])
 
 
-def fit_continuum(executable, rows, logs, *how):
+def fit_continuum(executable, rows, logs, *how, arm=problem.Arm()):
     with tempfile.TemporaryDirectory() as folder:
-        problem.write_experiment(folder, logs, rows)
+        problem.write_experiment(folder, logs, rows, arm)
         out = pathlib.Path(folder) / "out"
-        subprocess.run([executable, "identify", f"{folder}/experiment.yaml", *how, "--out",
-                        out], check=True, capture_output=True)
+        subprocess.run([executable, "identify", f"{folder}/experiment.yaml", *how, "--out", out],
+                       capture_output=True)  # without convergence it ends with 1, and files
         fit = json.loads((out / "fit.json").read_text())
     values = [p["value"] for p in fit["parameters"]]
     inside = sum(p["ci95"][0] <= row[3] <= p["ci95"][1] for p, row in zip(fit["parameters"], rows))

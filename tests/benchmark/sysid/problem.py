@@ -1,44 +1,67 @@
-"""A five-link arm with four tendons, and logs of it, as a problem for any identification tool.
+"""An arm with four tendons, and logs of it, as a problem for any identification tool.
 
-Ten hinges, thirteen channels (all hinges, the tip), three logs of 4 s at 200 Hz in which the
-tensions step. The logs are made with RK4 at 0.2 ms, so that no tool is favoured by its step, and get
-white noise of the given sigma. Seven or seventeen parameters start 20 to 60 % off.
+Five links unless said otherwise: ten hinges, thirteen channels (all hinges, the tip), three logs
+of 4 s at 200 Hz in which the tensions step. The logs are made with RK4 at 0.2 ms, so that no tool is
+favoured by its step, and get white noise of the given sigma. Seven or seventeen parameters start 20
+to 60 % off.
 """
 
 import csv
+import dataclasses
 import pathlib
 
 import mujoco
 import numpy as np
 
-LINKS, LENGTH, RADIUS = 5, 0.12, 0.032
+LENGTH, RADIUS = 0.12, 0.032
 SIGMA = 1e-3  # rad and m alike: then weights of channels make no difference
-MASS, STIFFNESS, DAMPING, ARMATURE = 0.12, 0.9, 0.02, 2e-4
+MASS, ARMATURE = 0.12, 2e-4
 
 
-def mjcf():
+@dataclasses.dataclass(frozen=True)
+class Arm:
+    """What may differ: links, and of the first one's hinges stiffness [N m/rad], damping
+    [N m s/rad] and dry friction [N m]. Further out they are softer."""
+    links: int = 5
+    stiffness: float = 0.9
+    damping: float = 0.02
+    friction: float = 0
+
+    def stiffness_of(self, link):
+        return self.stiffness * (1 - 0.08 * link)
+
+    def damping_of(self, link):
+        return self.damping * (1 - 0.06 * link)
+
+
+def mass_of(link):
+    return MASS * (1 - 0.1 * link)
+
+
+def mjcf(arm=Arm()):
     """The arm as it truly is."""
     axes = {"x": "1 0 0", "y": "0 1 0"}
     body, close = "", ""
-    for i in range(LINKS):
+    for i in range(arm.links):
         joints = "".join(
-            f'<joint name="{a}{i}" axis="{axes[a]}" stiffness="{STIFFNESS * (1 - 0.08 * i):.6g}"'
-            f' damping="{DAMPING * (1 - 0.06 * i):.6g}" armature="{ARMATURE}"/>' for a in axes)
+            f'<joint name="{a}{i}" axis="{axes[a]}" stiffness="{arm.stiffness_of(i):.6g}"'
+            f' damping="{arm.damping_of(i):.6g}" armature="{ARMATURE}"'
+            f' frictionloss="{arm.friction}"/>' for a in axes)
         sites = "".join(
             f'<site name="s{i}{k}" pos="{RADIUS * np.cos(k * np.pi / 2):.6g} '
             f'{RADIUS * np.sin(k * np.pi / 2):.6g} {-LENGTH}"/>' for k in range(4))
         body += (f'<body name="link{i}" pos="0 0 {0 if i == 0 else -LENGTH}">{joints}'
-                 f'<inertial pos="0 0 {-LENGTH / 2}" mass="{MASS * (1 - 0.1 * i):.6g}"'
+                 f'<inertial pos="0 0 {-LENGTH / 2}" mass="{mass_of(i):.6g}"'
                  f' diaginertia="{MASS * LENGTH**2 / 12:.6g} {MASS * LENGTH**2 / 12:.6g} 4e-5"/>{sites}')
         close += "</body>"
     base = "".join(f'<site name="b{k}" pos="{RADIUS * np.cos(k * np.pi / 2):.6g} '
                    f'{RADIUS * np.sin(k * np.pi / 2):.6g} 0"/>' for k in range(4))
     tip = f'<site name="tip" pos="0 0 {-LENGTH}"/>'
     cables = "".join(f'<spatial name="t{k}"><site site="b{k}"/>' + "".join(
-        f'<site site="s{i}{k}"/>' for i in range(LINKS)) + "</spatial>" for k in range(4))
+        f'<site site="s{i}{k}"/>' for i in range(arm.links)) + "</spatial>" for k in range(4))
     motors = "".join(f'<general name="m{k}" tendon="t{k}" gainprm="-1" ctrlrange="0 60"/>'
                      for k in range(4))
-    sensors = "".join(f'<jointpos name="{a}{i}" joint="{a}{i}"/>' for i in range(LINKS)
+    sensors = "".join(f'<jointpos name="{a}{i}" joint="{a}{i}"/>' for i in range(arm.links)
                       for a in axes) + '<framepos name="tip" objtype="site" objname="tip"/>'
     return (f'<mujoco model="five_link"><option timestep="0.002" integrator="implicitfast">'
             f'<flag contact="disable"/></option><worldbody>{base}{body}{tip}{close}</worldbody>'
@@ -46,20 +69,17 @@ def mjcf():
             f"<sensor>{sensors}</sensor></mujoco>")
 
 
-def parameters(count):
-    """(name, target, attribute, truth, start, lower, upper); 7 or 17 of them."""
-    each = range(LINKS)
-    if count == 7:
-        rows = [(f"k{i}", f"joint:?{i}", "stiffness", STIFFNESS * (1 - 0.08 * i)) for i in (0, 4)]
-        rows += [(f"d{i}", f"joint:?{i}", "damping", DAMPING * (1 - 0.06 * i)) for i in (0, 4)]
-        rows += [(f"m{i}", f"body:link{i}", "mass", MASS * (1 - 0.1 * i)) for i in (1, 4)]
-        rows += [("armature", "joint:*", "armature", ARMATURE)]
-    else:
-        rows = [(f"k{i}", f"joint:?{i}", "stiffness", STIFFNESS * (1 - 0.08 * i)) for i in each]
-        rows += [(f"d{i}", f"joint:?{i}", "damping", DAMPING * (1 - 0.06 * i)) for i in each]
-        rows += [(f"m{i}", f"body:link{i}", "mass", MASS * (1 - 0.1 * i)) for i in each]
-        rows += [("armature", "joint:*", "armature", ARMATURE),
-                 ("gain0", "actuator:m0", "gainprm[0]", -1.0)]
+def parameters(count, arm=Arm()):
+    """(name, target, attribute, truth, start, lower, upper); 7, or 17 of the five links."""
+    last = arm.links - 1
+    ends, heavy = ((0, last), (1, last)) if count == 7 else (range(arm.links),) * 2
+    rows = [(f"k{i}", f"joint:?{i}", "stiffness", arm.stiffness_of(i)) for i in ends]
+    rows += [(f"d{i}", f"joint:?{i}", "damping", arm.damping_of(i)) for i in ends]
+    rows += [(f"m{i}", f"body:link{i}", "mass", mass_of(i)) for i in heavy]
+    rows += [("friction", "joint:*", "frictionloss", arm.friction) if arm.friction else
+             ("armature", "joint:*", "armature", ARMATURE)]
+    if count != 7:
+        rows += [("gain0", "actuator:m0", "gainprm[0]", -1.0)]
     return [(n, t, a, v, *_start(v, j)) for j, (n, t, a, v) in enumerate(rows)]
 
 
@@ -92,9 +112,9 @@ def simulate(model, times, u, substeps):
     return y
 
 
-def make_logs(seed=1, count=3, seconds=4.0, rate=200.0):
+def make_logs(seed=1, count=3, seconds=4.0, rate=200.0, arm=Arm()):
     """[(times, tensions, measured)], and what was measured without noise."""
-    model = mujoco.MjModel.from_xml_string(mjcf())
+    model = mujoco.MjModel.from_xml_string(mjcf(arm))
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     rng = np.random.default_rng(seed)
     logs, truth = [], []
@@ -107,12 +127,12 @@ def make_logs(seed=1, count=3, seconds=4.0, rate=200.0):
     return logs, truth
 
 
-def write_experiment(folder, logs, rows):
+def write_experiment(folder, logs, rows, arm=Arm()):
     """arm.xml, log*.csv and experiment.yaml for `continuum identify`."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "arm.xml").write_text(mjcf())
-    joints = [f"{a}{i}" for i in range(LINKS) for a in "xy"]
+    (folder / "arm.xml").write_text(mjcf(arm))
+    joints = [f"{a}{i}" for i in range(arm.links) for a in "xy"]
     names = [f"q_{j}" for j in joints] + ["tip_x", "tip_y", "tip_z"]
     for i, (times, u, y) in enumerate(logs):
         with open(folder / f"log{i}.csv", "w", newline="") as file:
