@@ -167,6 +167,7 @@ void Print(const Problem& problem, const Fitting& all, const Determined& determi
   if (all.pieces)
     std::printf("in pieces first: cost of the whole logs %.4g -> %.4g\n", all.pieces->before,
                 all.pieces->after);
+  if (fit.anew) std::printf("%s\n", kAnewInWords);
   if (all.starts) std::printf("%s\n", all.starts->InWords().c_str());
   std::printf("%d iterations, %zu simulations, %.1f s; report: %s/report.html\n", fit.iterations,
               fit.evaluations, fit.seconds, out.c_str());

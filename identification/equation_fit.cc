@@ -129,6 +129,7 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
   FitOptions own = options;
   own.idle = true, own.progress = tell;
   Fit fit = FitFar(problem, equations->x, use, own);
+  fit.anew = true;
   if (fit.cost > best.cost) std::swap(fit, best);  // as a robust loss sees it
   fit.evaluations += best.evaluations, fit.seconds = before + spent();
   return fit;

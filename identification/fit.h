@@ -42,6 +42,7 @@ struct Fit {
   std::size_t evaluations = 0;  ///< simulated logs
   double seconds = 0;
   bool converged = false;
+  bool anew = false;  ///< from where the equations of motion hold best (FitByEquations)
   std::string message;
   std::vector<double> trace;  ///< cost at the start and after each iteration
 

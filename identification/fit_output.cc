@@ -238,6 +238,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
                       {"seconds", fit.seconds},
                       {"converged", fit.converged},
                       {"message", fit.message},
+                      {"begun_anew", fit.anew},
                       {"trace", fit.trace},
                       {"fitted_model", "fitted.xml"},
                       {"fitted_experiment", "fitted.yaml"}};
@@ -271,6 +272,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, ErrorInWords(e, error),
              fmt::format("{} iterations, {} simulations, {:.1f} s. {}", fit.iterations,
                          fit.evaluations, fit.seconds, fit.message) +
+                 (fit.anew ? fmt::format(" The fit was {}.", kAnewInWords) : "") +
                  (record.starts ? " " + record.starts->InWords() + "." : ""));
   const std::string beyond = BeyondNoise(e, error.train);
   if (!beyond.empty()) page.Badge(Tone::kWarn, "More than noise is left", beyond + ".");

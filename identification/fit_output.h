@@ -26,6 +26,11 @@ struct FitRecord {
   std::function<void(const std::string&)> progress = {};
 };
 
+/// What is said of a fit that began anew (Fit::anew).
+inline constexpr char kAnewInWords[] =
+    "begun anew where the equations of motion hold best along what was measured, as from its start "
+    "it ended far above the noise";
+
 /// How well the logs determine the parameters.
 struct Determined {
   Uncertainty uncertainty;

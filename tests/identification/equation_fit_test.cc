@@ -84,6 +84,7 @@ TEST_F(EquationFitTest, LeadsAFitThatEndedInAWrongPlaceHome) {
   EXPECT_EQ(lost.x[1], 20) << "at its bound";
   const Fit home = FitByEquations(problem, lost, use, {});
   EXPECT_LT(home.cost, 1e-3 * lost.cost);
+  EXPECT_TRUE(home.anew);
   EXPECT_NEAR(home.x[0], 120, 0.6);
   EXPECT_NEAR(home.x[2], 0.8, 0.004);
   EXPECT_GT(home.evaluations, lost.evaluations);
@@ -97,7 +98,9 @@ TEST_F(EquationFitTest, LeavesAFitAsItIsThatLeavesLittleMoreThanNoise) {
   Problem::Vector near = problem.Start();
   near << 118, 0.5, 0.8;
   const Fit fit = FitParameters(problem, near, use);
-  EXPECT_EQ(FitByEquations(problem, fit, use, {}).evaluations, fit.evaluations);
+  const Fit same = FitByEquations(problem, fit, use, {});
+  EXPECT_EQ(same.evaluations, fit.evaluations);
+  EXPECT_FALSE(same.anew);
 }
 
 TEST_F(EquationFitTest, HasNothingToSayWhereARowIsNotMeasured) {
