@@ -175,6 +175,17 @@ class Watch : public ceres::IterationCallback {
   bool settled_ = false;
 };
 
+// Why a fit ended.
+std::string InWords(const ceres::Solver::Summary& summary, bool settled, const FitOptions& o) {
+  if (settled) return "a further step gains less than the errors of the simulation";
+  if (summary.termination_type == ceres::USER_SUCCESS)
+    return StopRequested() ? "interrupted" : "given up: it cannot come near a better one";
+  if (summary.termination_type == ceres::CONVERGENCE)
+    return fmt::format("a further step gains less than {:g} % of the cost", 100 * o.tolerance);
+  if (static_cast<int>(summary.iterations.size()) > o.iterations) return "out of iterations";
+  return summary.message;
+}
+
 }  // namespace
 
 double Fit::LastGain() const {
@@ -224,15 +235,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   fit.x = Unscaled(problem, y.data());
   fit.cost = summary.final_cost;
   fit.converged = summary.termination_type == ceres::CONVERGENCE || watch.settled();
-  fit.message = summary.message;
-  if (watch.settled()) {
-    fit.message = "a further step gains less than the errors of the simulation";
-  } else if (summary.termination_type == ceres::NO_CONVERGENCE &&
-             fit.iterations == options.iterations) {
-    fit.message = "out of iterations";
-  } else if (summary.termination_type == ceres::USER_SUCCESS) {
-    fit.message = StopRequested() ? "interrupted" : "given up: it cannot come near a better one";
-  }
+  fit.message = InWords(summary, watch.settled(), options);
   fit.evaluations = problem.evaluations() - before;
   fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return fit;

@@ -270,7 +270,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
 
   Page page("Fit", e.model.filename().string() + " to " + std::to_string(e.logs.size()) + " logs");
   page.Badge(fit.converged ? Tone::kGood : Tone::kWarn, ErrorInWords(e, error),
-             fmt::format("{} iterations, {} simulations, {:.1f} s. {}", fit.iterations,
+             fmt::format("{} iterations, {} simulations, {:.1f} s; {}.", fit.iterations,
                          fit.evaluations, fit.seconds, fit.message) +
                  (fit.anew ? fmt::format(" The fit was {}.", kAnewInWords) : "") +
                  (record.starts ? " " + record.starts->InWords() + "." : ""));
