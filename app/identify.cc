@@ -101,6 +101,7 @@ Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& sta
       all.fit = FitFar(problem, begin, use, options);
     }
     all.fit = FitByEquations(problem, std::move(all.fit), use, options);
+    if (all.starts) all.starts->best = all.fit;
     if (all.pieces) {
       all.fit.seconds += all.pieces->seconds;
       all.fit.evaluations += all.pieces->evaluations;
@@ -134,6 +135,16 @@ void PrintParameter(const FreeParameter& p, double value, const Uncertainty& u, 
   std::printf("%-24s %.6g%s (%s)\n", p.name.c_str(), value, unit.c_str(), range.c_str());
 }
 
+// Where trials begin is found by itself; what stops at a bound is worth a line.
+void PrintStartsAtBounds(const Problem& problem, const Problem::Vector& x, const Uncertainty& u) {
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    if (p.IsStart() && u.at_bound[i])
+      std::printf("%s = %.4g %s is at %s: does the log begin elsewhere?\n", p.name.c_str(), x[i],
+                  p.unit.c_str(), NearerBound(p, x[i]).c_str());
+  }
+}
+
 void Print(const Problem& problem, const Fitting& all, const Determined& determined,
            const std::string& out) {
   const Experiment& e = problem.experiment();
@@ -147,6 +158,7 @@ void Print(const Problem& problem, const Fitting& all, const Determined& determi
     if (!problem.parameters()[i].IsStart())
       PrintParameter(problem.parameters()[i], fit.x[i], determined.uncertainty, i);
   }
+  PrintStartsAtBounds(problem, fit.x, determined.uncertainty);
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
   for (std::size_t l = 0; l < r.size(); ++l) {
     if (r[l].allFinite()) continue;

@@ -17,6 +17,13 @@ Problem::Vector Unscaled(const Problem& problem, const double* y) {
   return problem.Clamp(x);
 }
 
+std::pair<double, double> Soften(double r, double soft) {
+  if (soft == 0) return {r, 1};
+  const double root = std::sqrt(1 + r * r / (soft * soft));
+  const double w = std::copysign(soft * std::sqrt(2 * (root - 1)), r);
+  return {w, std::abs(w) > 1e-12 * soft ? r / (w * root) : 1};
+}
+
 ceres::Solver::Summary Minimize(const Problem& problem, ceres::CostFunction& cost,
                                 const Search& search, Problem::Vector& y) {
   ceres::Problem::Options ownership;

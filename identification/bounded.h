@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include <ceres/ceres.h>
 
 #include "identification/problem.h"
@@ -9,6 +11,9 @@ namespace continuum {
 /// Parameters in units of their scales, as a solver sees them, and back, within their bounds.
 Problem::Vector Scaled(const Problem& problem, const Problem::Vector& x);
 Problem::Vector Unscaled(const Problem& problem, const double* y);
+
+/// w with ½ w² = ρ(r), the soft L1 loss of FitOptions (soft 0: w = r), and dw/dr.
+std::pair<double, double> Soften(double r, double soft);
 
 /// When bounded Levenberg-Marquardt ends, and who watches it.
 struct Search {

@@ -29,6 +29,8 @@ using Member = std::vector<double> MissingForce::*;
 class ForceCost : public ceres::CostFunction {
  public:
   ForceCost(const Problem& problem, const std::vector<bool>& use) : problem_(problem), use_(use) {
+    for (std::size_t l = 0; l < use_.size(); ++l)
+      use_[l] = use_[l] && MeasuresEveryJoint(problem, l);
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
   }
 
@@ -85,7 +87,7 @@ class ForceCost : public ceres::CostFunction {
   }
 
   const Problem& problem_;
-  const std::vector<bool>& use_;
+  std::vector<bool> use_;
   Vector weight_;
   Member of_ = nullptr;
   mutable std::size_t evaluations_ = 0;
@@ -115,23 +117,26 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
     if (options.progress) options.progress("by the equations of motion: " + line);
   };
   const Noise noise = NoiseOf(problem.experiment());
-  const double left = problem.PooledRms(problem.Residuals(best.x, use), use);
-  if (!(noise.rms > 0) || left < kFarOverNoise * noise.rms || StopRequested()) return best;
+  const double left = TypicalRms(problem, problem.Residuals(best.x, use), use);
+  FitOptions own = options;
+  own.iterations -= best.iterations, own.idle = true, own.progress = tell;
+  if (!(left > kFarOverNoise * noise.rms && noise.rms > 0) || own.iterations <= 0) return best;
+  if (StopRequested()) return best;
   tell("is there a better start?");
   const auto equations = FitEquations(problem, best.x, use);
-  if (!equations || StopRequested()) return best;
-  best.evaluations += equations->evaluations;
-  const double there = problem.PooledRms(problem.Residuals(equations->x, use), use);
-  if (!(there < left)) {  // nor where it diverges
-    best.seconds = before + spent();
+  if (equations) best.evaluations += equations->evaluations;
+  best.seconds = before + spent();
+  if (StopRequested()) {
+    best.converged = false, best.message = "interrupted";
     return best;
   }
-  FitOptions own = options;
-  own.idle = true, own.progress = tell;
+  if (!equations || !(CostAt(problem, equations->x, use, options) < best.cost)) {
+    tell("no");
+    return best;
+  }
   Fit fit = FitFar(problem, equations->x, use, own);
-  fit.anew = true;
-  if (fit.cost > best.cost) std::swap(fit, best);  // as a robust loss sees it
   fit.evaluations += best.evaluations, fit.seconds = before + spent();
+  fit.anew = true;
   return fit;
 }
 

@@ -22,13 +22,15 @@ struct EquationFit {
 /// No simulation drifts in them, and most parameters enter f linearly: this cost has one valley
 /// where that of the motion has many. But inertias multiply the noise of measured accelerations,
 /// which draws them down; to a it is only added. A start for a fit, no more, as differences of
-/// measured rows tell less than the motion does. Parameters that neither sees stay at x. Nothing
-/// where not every joint is measured in all rows.
+/// measured rows tell less than the motion does. Outliers spoil it, under a robust loss
+/// too. Parameters that neither sees stay at x. Logs count in which every joint is measured in all
+/// rows; nothing where there is none.
 std::optional<EquationFit> FitEquations(const Problem& problem, const Problem::Vector& x,
                                         const std::vector<bool>& use);
 
 /// A fit, or where it leaves far more than the measurement noise and the motion fits better with
-/// those parameters, one that begins there.
+/// those parameters, one that begins there, in the iterations that are left. Its iterations and
+/// trace are its own, its effort that of all.
 Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& use,
                    const FitOptions& options);
 

@@ -55,6 +55,7 @@ Fit FitFar(const Problem& problem, const Problem::Vector& x, const std::vector<b
   for (int k = 1; k < kFits && may_go_on && !StopRequested(); ++k) {
     FitOptions left = options;
     left.iterations -= best.iterations;
+    left.idle = true;  // out there a parameter may have no effect
     if (left.iterations <= 0) break;
     Fit wide = FitWide(problem, best.x, use, left);
     if (wide.cost > best.cost * (1 - kLower)) {

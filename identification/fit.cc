@@ -1,5 +1,6 @@
 #include "identification/fit.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -42,7 +43,8 @@ class Cost : public ceres::CostFunction {
     if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x;
     const Vector all = whitening_.Stack(r_, use_);
     if (!all.allFinite()) return false;
-    for (Eigen::Index k = 0; k < all.size(); ++k) residuals[k] = Soften(all[k]).first;
+    for (Eigen::Index k = 0; k < all.size(); ++k)
+      residuals[k] = Soften(all[k], options_.soft).first;
     const std::vector<Matrix> r(r_.begin(), r_.end());
     Eigen::Map<Vector>(residuals + all.size(), seam_rows_) = Seams(r, 1);
     if (!jacobians || !jacobians[0]) return true;
@@ -50,22 +52,14 @@ class Cost : public ceres::CostFunction {
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
         jacobians[0], num_residuals(), x.size());
     out.topRows(all.size()) = whitening_.Stack(J_, use_);
-    for (Eigen::Index k = 0; k < all.size(); ++k) out.row(k) *= Soften(all[k]).second;
+    for (Eigen::Index k = 0; k < all.size(); ++k)
+      out.row(k) *= Soften(all[k], options_.soft).second;
     out.bottomRows(seam_rows_) = Seams(J_, x.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) out.col(i) *= parameters[i].scale;
     return out.allFinite();
   }
 
  private:
-  // w with ½ w² = ρ(r), and dw/dr.
-  std::pair<double, double> Soften(double r) const {
-    const double soft = options_.soft;
-    if (soft == 0) return {r, 1};
-    const double root = std::sqrt(1 + r * r / (soft * soft));
-    const double w = std::copysign(soft * std::sqrt(2 * (root - 1)), r);
-    return {w, std::abs(w) > 1e-12 * soft ? r / (w * root) : 1};
-  }
-
   // By how much residuals, or columns of their Jacobian, differ at the seams; all of one channel
   // follow each other in a log.
   Matrix Seams(const std::vector<Matrix>& of, Eigen::Index columns) const {
@@ -202,6 +196,32 @@ void RequireFinite(const Problem& problem, const Vector& x, const std::vector<Ve
     throw Error::Job(log.file.string() + ", log '" + log.label + "', " + when + ": " +
                      WhyItDiverges(problem, x, l));
   }
+}
+
+double TypicalRms(const Problem& problem, std::vector<Vector> r, const std::vector<bool>& use) {
+  if (problem.experiment().soft == 0) return problem.PooledRms(r, use);
+  constexpr double kSigma = 1.4826, kFar = 3;  // of a median of normal sizes; standard deviations
+  std::vector<double> sizes;
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) continue;
+    for (const double v : r[l])
+      if (v != 0) sizes.push_back(std::abs(v));
+  }
+  if (sizes.empty()) return 0;
+  const auto middle = sizes.begin() + std::ssize(sizes) / 2;
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double most = kFar * kSigma * *middle;
+  for (Vector& part : r) part = part.cwiseMax(-most).cwiseMin(most);
+  return problem.PooledRms(r, use);
+}
+
+double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& use,
+              const FitOptions& options) {
+  const Whitening none;
+  const Whitening& whitening = options.whitening ? *options.whitening : none;
+  const Vector r = whitening.Stack(problem.Residuals(x, use), use);
+  if (!r.allFinite()) return std::numeric_limits<double>::infinity();
+  return 0.5 * r.unaryExpr([&](double v) { return Soften(v, options.soft).first; }).squaredNorm();
 }
 
 Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<bool>& use,

@@ -56,6 +56,15 @@ void RequireFinite(const Problem& problem, const Problem::Vector& x,
                    const std::vector<Problem::Vector>& r, const std::vector<bool>& use,
                    const std::string& when);
 
+/// PooledRms of residuals; under a robust loss without outliers, which count as three standard
+/// deviations (of which the median tells).
+double TypicalRms(const Problem& problem, std::vector<Problem::Vector> residuals,
+                  const std::vector<bool>& use);
+
+/// ½ Σ ρ(r) of whitened residuals, what a fit lowers but for seams; infinite where it diverges.
+double CostAt(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,
+              const FitOptions& options);
+
 /// Bounded Levenberg-Marquardt (Ceres) over the logs in use, from x. Divergence of the simulation
 /// is a rejected step. Throws Error when a parameter has no effect on any output at the start, or
 /// the start itself diverges.

@@ -274,7 +274,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
                          fit.evaluations, fit.seconds, fit.message) +
                  (fit.anew ? fmt::format(" The fit was {}.", kAnewInWords) : "") +
                  (record.starts ? " " + record.starts->InWords() + "." : ""));
-  const std::string beyond = BeyondNoise(e, error.train);
+  const std::string beyond = BeyondNoise(e, TypicalRms(problem, r, problem.TrainLogs()));
   if (!beyond.empty()) page.Badge(Tone::kWarn, "More than noise is left", beyond + ".");
   for (std::size_t l = 0; l < logs.size(); ++l) {
     if (logs[l].trace.diverged)

@@ -187,6 +187,13 @@ double Squares(const MissingForce& f) {
 
 }  // namespace
 
+bool MeasuresEveryJoint(const Problem& problem, std::size_t log) {
+  const Experiment& e = problem.experiment();
+  const Log& rows = e.logs[log];
+  return !e.quasi_static && rows.rows() >= kRows &&
+         EveryRowIsThere(e, problem.system().model(), rows);
+}
+
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
                                         const std::vector<bool>& use, std::size_t thread) {
   const Experiment& e = problem.experiment();

@@ -28,6 +28,9 @@ struct MissingForce {
   std::vector<double> acceleration;  ///< a_measured − F a_model: what noise there is, is added
 };
 
+/// Whether every joint is measured in all rows of a log, which are enough.
+bool MeasuresEveryJoint(const Problem& problem, std::size_t log);
+
 /// On every joint, of the logs in use; none when not every joint is measured in all their rows.
 /// thread: of parallel work.
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,

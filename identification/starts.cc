@@ -67,18 +67,22 @@ std::vector<FreeParameter> StartParameters(const Experiment& e, const System& sy
       const double travel = Travel(m, j, e, log);
       const double fast = 10 * travel;  // 1/s: back and forth three times a second
       const bool slide = m.jnt_type[j] == mjJNT_SLIDE;
-      const auto add = [&](const char* what, const char* unit, double value, double size) {
+      // Within its size of what the first rows say or of another value: of speeds rest, as noise
+      // may hide it.
+      const auto add = [&](const char* what, const char* unit, double value, double size,
+                           double other) {
         all.push_back({joint + " " + what + "[" + log.label + "]",
                        unit,
                        value,
-                       value - size,
-                       value + size,
+                       std::min(value, other) - size,
+                       std::max(value, other) + size,
                        size,
                        {"start:" + joint, what, 0},
                        own});
       };
-      add(kPosition, slide ? "m" : "rad", start.qpos[m.jnt_qposadr[j]], travel);
-      add(kSpeed, slide ? "m/s" : "rad/s", start.qvel[m.jnt_dofadr[j]], fast);
+      const double q = start.qpos[m.jnt_qposadr[j]], v = start.qvel[m.jnt_dofadr[j]];
+      add(kPosition, slide ? "m" : "rad", q, travel, q);
+      add(kSpeed, slide ? "m/s" : "rad/s", v, fast, 0);
     }
   }
   return all;

@@ -219,7 +219,9 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival, bo
 
 Fitted Trials::FitNull(const Problem& problem) const {
   Fitted f = Fit(problem, problem.Start(), std::numeric_limits<double>::infinity(), false);
-  const auto found = FitByEquations(problem, f.fit, TrainLogs(*experiment), Options());
+  FitOptions again = Options();
+  again.iterations += f.fit.iterations;
+  const auto found = FitByEquations(problem, f.fit, TrainLogs(*experiment), again);
   return found.cost < f.fit.cost ? Fit(problem, found.x) : f;
 }
 

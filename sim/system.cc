@@ -56,13 +56,17 @@ Owned<mjModel> Compile(mjSpec& spec, const std::string& name) {
 
 bool IsPlugin(const Change& change) { return change.target.starts_with(kPluginTarget); }
 // A body's mass scales its inertia, so that comes first: an inertia that is given is the body's. A
-// weight that is put on a body comes last: what scales the body does not scale that.
+// weight that is put on a body comes last: what scales the body does not scale that. So does what
+// scales an actuator's force: a gain that is given is the actuator's.
 constexpr int kTurns = 3;
 bool IsWeight(const std::string& target, const std::string& attribute) {
   return target.starts_with("body:") && attribute == "point_mass";
 }
+bool IsForceScale(const Change& change) {
+  return change.target.starts_with("actuator:") && change.attribute == "force_scale";
+}
 int TurnOf(const Change& change) {
-  if (IsWeight(change.target, change.attribute)) return 2;
+  if (IsWeight(change.target, change.attribute) || IsForceScale(change)) return 2;
   return change.target.starts_with("body:") && change.attribute == "mass" ? 0 : 1;
 }
 
@@ -131,7 +135,8 @@ void AddInstance(std::string& xml, const EffectInstance& effect) {
 }  // namespace
 
 bool LiesOnTop(const Change& change) {
-  return IsNativeEffect(change) || IsWeight(change.target, change.attribute);
+  return IsNativeEffect(change) || IsWeight(change.target, change.attribute) ||
+         IsForceScale(change);
 }
 
 std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter) {

@@ -77,7 +77,7 @@ class System {
 };
 
 /// Whether a change lies on top of an element, which does not show it as a value of its own: a
-/// native effect or a point_mass.
+/// native effect, a point_mass or a force_scale.
 bool LiesOnTop(const Change& change);
 
 /// Index of a parameter on an effect's card; throws Error when the effect has none of this name.

@@ -103,14 +103,45 @@ TEST_F(EquationFitTest, LeavesAFitAsItIsThatLeavesLittleMoreThanNoise) {
   EXPECT_FALSE(same.anew);
 }
 
-TEST_F(EquationFitTest, HasNothingToSayWhereARowIsNotMeasured) {
+TEST_F(EquationFitTest, UnderARobustLossOutliersAreNotWhatIsLeft) {
+  const auto u = Ringing::Steps();
+  auto q = testing::Noisy(Ringing{}.Run(u), 1e-3, 0, 2);
+  for (std::size_t k = 20; k < q.size(); k += 100) q[k] += 0.5;
+  AddLog("outliers", "use: validate", u, q);
+  const Experiment experiment =
+      ReadExperiment(std::string("loss: {soft_l1: 0.01}\n") + kParameters);
+  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const std::vector<bool> use{false, true};
+  FitOptions robust;
+  robust.soft = experiment.soft;
+  const Fit fit = FitParameters(problem, problem.Start(), use, robust);
+  EXPECT_NEAR(fit.x[0], 120, 0.6);
+  const auto r = problem.Residuals(fit.x, use);
+  EXPECT_LT(TypicalRms(problem, r, use), 0.2 * problem.PooledRms(r, use));
+}
+
+TEST_F(EquationFitTest, TakesNoMoreIterationsThanAreLeft) {
+  const Experiment experiment = ReadExperiment(kParameters);
+  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const auto use = problem.TrainLogs();
+  const Fit lost = FitParameters(problem, problem.Start(), use);
+  EXPECT_FALSE(FitByEquations(problem, lost, use, {.iterations = lost.iterations}).anew);
+  const Fit home = FitByEquations(problem, lost, use, {.iterations = lost.iterations + 2});
+  EXPECT_TRUE(home.anew);
+  EXPECT_LE(home.iterations, 2);
+}
+
+TEST_F(EquationFitTest, LooksAtLogsInWhichEveryRowIsMeasured) {
   const auto u = Ringing::Steps();
   auto q = Ringing{}.Run(u);
   q[100] = std::nan("");
   AddLog("gap", "use: train", u, q);
   const Experiment experiment = ReadExperiment(kParameters);
   const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
-  EXPECT_FALSE(FitEquations(problem, problem.Start(), problem.TrainLogs()));
+  const auto found = FitEquations(problem, problem.Start(), problem.TrainLogs());
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->x[0], 120, 4);
+  EXPECT_FALSE(FitEquations(problem, problem.Start(), {false, true}));
 }
 
 }  // namespace

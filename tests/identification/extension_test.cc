@@ -139,6 +139,25 @@ TEST_F(ExtensionTest, ReproducesAMassAndAWeightOnItThatALogSets) {
   EXPECT_NEAR(files.validate, problem.PooledRms(r, {false, true}), 1e-9);
 }
 
+TEST_F(ExtensionTest, ReproducesWhatScalesAnActuatorsForce) {
+  AddTrial(Pendulum(), "weak", 0,
+           "use: train, condition: low, set: {'actuator:servo': {force_scale: 0.6, kp: 4}}");
+  AddTrial(Pendulum(), "full", 1, "use: train, condition: high");
+  AddTrial(Pendulum(), "again", 2, "use: validate, condition: low");
+  const System system = Model(CoulombInstance(0.1));
+  const Experiment e = ReadExperiment(
+      "parameters:\n"
+      "  - {name: own, target: 'actuator:servo', attribute: force_scale, operation: scale, "
+      "initial: 0.8, lower: 0, upper: 2, per: condition}\n");
+  const Problem problem(e, system);
+  Problem::Vector x = problem.Start();
+  x[1] = 0.7;
+  const auto r = problem.Residuals(x, problem.AllLogs());
+  const SplitError files = ErrorsOf(Extend(problem, x, folder_ / "out"), "out");
+  EXPECT_NEAR(files.train, problem.PooledRms(r, {true, true, false}), 1e-9);
+  EXPECT_NEAR(files.validate, problem.PooledRms(r, {false, false, true}), 1e-9);
+}
+
 // A weight on all logs is in the model file, one of a log's own in its line, on whatever it sets.
 TEST_F(ExtensionTest, ReproducesWeightsOfAllLogsBesideThoseOfOne) {
   AddTrial(Pendulum(), "bare", 0, "use: train");
