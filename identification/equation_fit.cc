@@ -22,6 +22,7 @@ namespace {
 using Vector = Problem::Vector;
 
 constexpr Search kFewSteps{5, 1e-2};
+constexpr double kOutOfStep = 0.3;  // of the measured motion: a fit that leaves more may be lost
 
 using Member = std::vector<double> MissingForce::*;
 
@@ -93,6 +94,24 @@ class ForceCost : public ceres::CostFunction {
   mutable std::size_t evaluations_ = 0;
 };
 
+// What is measured, but for each channel's mean in a log, as residuals would be.
+std::vector<Vector> Deviations(const Problem& problem) {
+  std::vector<Vector> all;
+  for (const Log& log : problem.experiment().logs) {
+    Vector r(static_cast<Eigen::Index>(problem.channels().size() * log.rows()));
+    auto at = r.begin();
+    for (std::size_t c = 0; c < problem.channels().size(); ++c) {
+      const std::vector<double>& y = log.measured[problem.channels()[c]];
+      double sum = 0, count = 0;
+      for (const double v : y)
+        if (!std::isnan(v)) sum += v, ++count;
+      for (const double v : y) *at++ = std::isnan(v) ? 0 : (v - sum / count) / problem.scale(c);
+    }
+    all.push_back(std::move(r));
+  }
+  return all;
+}
+
 }  // namespace
 
 std::optional<EquationFit> FitEquations(const Problem& problem, const Vector& x,
@@ -120,7 +139,9 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
   const double left = TypicalRms(problem, problem.Residuals(best.x, use), use);
   FitOptions own = options;
   own.iterations -= best.iterations, own.idle = true, own.progress = tell;
-  if (!(left > kFarOverNoise * noise.rms && noise.rms > 0) || own.iterations <= 0) return best;
+  const bool lost = noise.rms > 0 && left > kFarOverNoise * noise.rms &&
+                    left > kOutOfStep * problem.PooledRms(Deviations(problem), use);
+  if (!lost || own.iterations <= 0) return best;
   if (StopRequested()) return best;
   tell("is there a better start?");
   const auto equations = FitEquations(problem, best.x, use);

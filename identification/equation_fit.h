@@ -28,9 +28,10 @@ struct EquationFit {
 std::optional<EquationFit> FitEquations(const Problem& problem, const Problem::Vector& x,
                                         const std::vector<bool>& use);
 
-/// A fit, or where it leaves far more than the measurement noise and the motion fits better with
-/// those parameters, one that begins there, in the iterations that are left. Its iterations and
-/// trace are its own, its effort that of all.
+/// A fit, or where it leaves far more than the measurement noise and three tenths of the motion
+/// itself, as when it ended out of step, and the motion fits better with those parameters, one that
+/// begins there, in the iterations that are left. Its iterations and trace are its own, its effort
+/// that of all.
 Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& use,
                    const FitOptions& options);
 
