@@ -17,8 +17,10 @@ EquationErrors::EquationErrors(const Experiment& experiment, const System& syste
   const Problem problem(experiment, system);
   const auto joints = MissingForces(problem, x_, problem.TrainLogs());
   if (joints.empty()) return;
-  SetUnits(joints);
-  missing_ = Stacked(joints);
+  units_ = StackedForces(joints, &MissingForce::force);
+  for (const MissingForce& joint : joints)
+    log_.insert(log_.end(), joint.log.begin(), joint.log.end());
+  missing_ = units_.Of(joints);
   const auto count = static_cast<Eigen::Index>(problem.parameters().size());
   Problem::Matrix columns = Problem::Matrix::Zero(missing_.size(), count);
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -32,28 +34,8 @@ EquationErrors::EquationErrors(const Experiment& experiment, const System& syste
   force_ = missing_ - basis_ * (basis_.transpose() * missing_);
 }
 
-void EquationErrors::SetUnits(const std::vector<MissingForce>& joints) {
-  unit_.resize(static_cast<Eigen::Index>(joints.size()));
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    const auto& f = joints[j].force;
-    const double norm =
-        Eigen::Map<const Vector>(f.data(), static_cast<Eigen::Index>(f.size())).norm();
-    unit_[static_cast<Eigen::Index>(j)] = norm > 0 ? norm : 1;
-    log_.insert(log_.end(), joints[j].log.begin(), joints[j].log.end());
-  }
-}
-
 Vector EquationErrors::Stacked(const Problem& problem, const Vector& x) const {
-  return Stacked(MissingForces(problem, x, problem.TrainLogs()));
-}
-
-Vector EquationErrors::Stacked(const std::vector<MissingForce>& joints) const {
-  Vector all(static_cast<Eigen::Index>(log_.size()));
-  Eigen::Index at = 0;
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    for (const double f : joints[j].force) all[at++] = f / unit_[static_cast<Eigen::Index>(j)];
-  }
-  return all;
+  return units_.Of(MissingForces(problem, x, problem.TrainLogs()));
 }
 
 std::optional<ByEquation> EquationErrors::Of(const CandidateResult& c) const {

@@ -28,14 +28,12 @@ class EquationErrors {
   std::optional<ByEquation> Of(const CandidateResult& candidate) const;
 
  private:
-  void SetUnits(const std::vector<MissingForce>& joints);
   std::vector<double> PerLog(const Problem::Vector& r) const;
-  Problem::Vector Stacked(const std::vector<MissingForce>& joints) const;
   Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x) const;
 
   const Experiment& experiment_;
   Problem::Vector x_;
-  Problem::Vector unit_;          // of every joint
+  StackedForces units_;
   std::vector<std::size_t> log_;  // of every number
   Problem::Vector missing_;       // f
   Problem::Vector force_;         // f, less what the parameters explain of it

@@ -24,8 +24,6 @@ using Vector = Problem::Vector;
 constexpr Search kFewSteps{5, 1e-2};
 constexpr double kOutOfStep = 0.3;  // of the measured motion: a fit that leaves more may be lost
 
-using Member = std::vector<double> MissingForce::*;
-
 // Missing forces of all joints below each other as one Ceres cost in scaled parameters.
 class ForceCost : public ceres::CostFunction {
  public:
@@ -36,17 +34,11 @@ class ForceCost : public ceres::CostFunction {
   }
 
   // From now on at this, in units of what is missing at x. Returns whether anything is.
-  bool Look(Member of, const Vector& x) {
-    of_ = of;
-    std::vector<double> weights;
-    for (const MissingForce& joint : MissingForces(problem_, x, use_)) {
-      double squares = 0;
-      for (const double f : joint.*of) squares += f * f;
-      weights.insert(weights.end(), (joint.*of).size(), squares > 0 ? 1 / std::sqrt(squares) : 0);
-    }
-    weight_ = Vector::Map(weights.data(), static_cast<Eigen::Index>(weights.size()));
-    set_num_residuals(static_cast<int>(weight_.size()));
-    return weight_.norm() > 0;
+  bool Look(StackedForces::Kind kind, const Vector& x) {
+    const auto joints = MissingForces(problem_, x, use_);
+    units_ = StackedForces(joints, kind);
+    set_num_residuals(static_cast<int>(units_.size()));
+    return units_.Of(joints).norm() > 0;
   }
 
   std::size_t evaluations() const { return evaluations_; }
@@ -76,21 +68,16 @@ class ForceCost : public ceres::CostFunction {
  private:
   // Not finite where no machine can have these parameters.
   Vector Forces(const Vector& x, std::size_t thread) const {
-    Vector all = Vector::Constant(weight_.size(), std::numeric_limits<double>::quiet_NaN());
     try {
-      Eigen::Index at = 0;
-      for (const MissingForce& joint : MissingForces(problem_, x, use_, thread)) {
-        for (const double f : joint.*of_) all[at++] = f;
-      }
+      return units_.Of(MissingForces(problem_, x, use_, thread));
     } catch (const Error&) {
+      return Vector::Constant(units_.size(), std::numeric_limits<double>::quiet_NaN());
     }
-    return all.cwiseProduct(weight_);
   }
 
   const Problem& problem_;
   std::vector<bool> use_;
-  Vector weight_;
-  Member of_ = nullptr;
+  StackedForces units_;
   mutable std::size_t evaluations_ = 0;
 };
 
@@ -141,8 +128,7 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
   own.iterations -= best.iterations, own.idle = true, own.progress = tell;
   const bool lost = noise.rms > 0 && left > kFarOverNoise * noise.rms &&
                     left > kOutOfStep * problem.PooledRms(Deviations(problem), use);
-  if (!lost || own.iterations <= 0) return best;
-  if (StopRequested()) return best;
+  if (!lost || own.iterations <= 0 || StopRequested()) return best;
   tell("is there a better start?");
   const auto equations = FitEquations(problem, best.x, use);
   if (equations) best.evaluations += equations->evaluations;

@@ -187,6 +187,24 @@ double Squares(const MissingForce& f) {
 
 }  // namespace
 
+StackedForces::StackedForces(const std::vector<MissingForce>& joints, Kind kind) : kind_(kind) {
+  for (const MissingForce& joint : joints) {
+    const auto all = Problem::Vector::Map((joint.*kind).data(), std::ssize(joint.*kind));
+    const double norm = all.norm();
+    unit_.push_back(norm > 0 ? norm : 1);
+    size_ += all.size();
+  }
+}
+
+Problem::Vector StackedForces::Of(const std::vector<MissingForce>& joints) const {
+  Problem::Vector all(size_);
+  Eigen::Index at = 0;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    for (const double f : joints[j].*kind_) all[at++] = f / unit_[j];
+  }
+  return all;
+}
+
 bool MeasuresEveryJoint(const Problem& problem, std::size_t log) {
   const Experiment& e = problem.experiment();
   const Log& rows = e.logs[log];

@@ -28,6 +28,24 @@ struct MissingForce {
   std::vector<double> acceleration;  ///< a_measured − F a_model: what noise there is, is added
 };
 
+/// Missing forces, or accelerations, of all joints below each other, each joint's in units of its
+/// own (root of the sum of squares) where this was made; 1 where it has none there.
+class StackedForces {
+ public:
+  using Kind = std::vector<double> MissingForce::*;
+  StackedForces() = default;
+  StackedForces(const std::vector<MissingForce>& joints, Kind kind);
+
+  /// Of the same joints, logs and rows.
+  Problem::Vector Of(const std::vector<MissingForce>& joints) const;
+  Eigen::Index size() const { return size_; }
+
+ private:
+  Kind kind_ = nullptr;
+  std::vector<double> unit_;  // [joint]
+  Eigen::Index size_ = 0;
+};
+
 /// Whether every joint is measured in all rows of a log, which are enough.
 bool MeasuresEveryJoint(const Problem& problem, std::size_t log);
 

@@ -5,36 +5,20 @@
 
 #include <gtest/gtest.h>
 
-#include "pendulum.h"
+#include "wheel.h"
 
 namespace continuum {
 namespace {
 
-// A wheel on a spring that rings for long after steps of torque, by hand:
-//
-//   J q'' = u − k q − b q'
-//
-// Out of step from the first swings on, a simulation fits best when it hardly moves.
-struct Ringing {
-  double inertia = 0.8, stiffness = 120, damping = 0.4;  // kg m², N m/rad, N m s/rad
+// It rings for long after steps of torque: out of step from the first swings on, a simulation fits
+// best when it hardly moves.
+struct Ringing : testing::Wheel {
+  Ringing() : Wheel{0.8, 120, 0.4} {}
 
   static std::vector<double> Steps() {
     std::vector<double> u;
     for (int k = 0; k < 800; ++k) u.push_back(k < 30 ? 0 : k % 400 < 200 ? 20 : -15);
     return u;
-  }
-  std::vector<double> Run(const std::vector<double>& u) const {
-    constexpr double h = 2e-5;
-    double q = 0, v = 0;
-    std::vector<double> angle;
-    for (const double torque : u) {
-      angle.push_back(q);
-      for (int k = 0; k < std::lround(testing::kPeriod / h); ++k) {
-        v += h * (torque - stiffness * q - damping * v) / inertia;
-        q += h * v;
-      }
-    }
-    return angle;
   }
 };
 

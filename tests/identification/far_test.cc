@@ -6,38 +6,20 @@
 
 #include <gtest/gtest.h>
 
-#include "pendulum.h"
+#include "wheel.h"
 
 namespace continuum {
 namespace {
 
-// A wheel on a spring that steps of torque shake and dry friction holds again, by hand:
-//
-//   J q'' = u − k q − b q' − τ_f,   |τ_f| ≤ τ_c
-//
-// Where it comes to rest changes by leaps with every parameter.
-struct Shaken {
-  double inertia = 1.2, stiffness = 60, damping = 1.5, tau_c = 2;  // kg m², N m/rad, …, N m
+// Shaken by steps of torque and held again by friction: where it comes to rest changes by leaps
+// with every parameter.
+struct Shaken : testing::Wheel {
+  Shaken() : Wheel{1.2, 60, 1.5, 2} {}
 
   static std::vector<double> Steps() {
     std::vector<double> u(30, 0);
     for (int k = 30; k < 500; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
     return u;
-  }
-  std::vector<double> Run(const std::vector<double>& u) const {
-    constexpr double h = 2e-5;
-    double q = 0, v = 0;
-    std::vector<double> angle;
-    for (const double torque : u) {
-      angle.push_back(q);
-      for (int k = 0; k < std::lround(testing::kPeriod / h); ++k) {
-        const double free = v + h * (torque - stiffness * q - damping * v) / inertia;
-        const double stop = h * tau_c / inertia;
-        v = std::abs(free) <= stop ? 0 : free - std::copysign(stop, free);
-        q += h * v;
-      }
-    }
-    return angle;
   }
 };
 
