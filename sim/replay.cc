@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include <fmt/format.h>
 
@@ -80,15 +79,16 @@ SplitError PooledError(const Experiment& e, const std::vector<Replayed>& logs) {
 
 std::string ErrorInWords(const Experiment& e, const SplitError& error) {
   std::string text;
-  for (const auto& [train, use, value] :
-       {std::tuple{true, "train", error.train}, {false, "validate", error.validate}}) {
+  const auto say = [&](bool train, const char* use, double value) {
     const auto used = [&](const Log& log) { return log.train == train; };
-    if (std::none_of(e.logs.begin(), e.logs.end(), used)) continue;
+    if (std::none_of(e.logs.begin(), e.logs.end(), used)) return;
     const std::string unit = text.empty() ? " " + Pool(e).unit() + " RMS" : "";
     text += text.empty() ? "error " : ", ";
     text += std::isfinite(value) ? fmt::format("{:.4g}{} on {}", value, unit, use)
                                  : fmt::format("none on {}, where a log diverges", use);
-  }
+  };
+  say(true, "train", error.train);
+  say(false, "validate", error.validate);
   return text;
 }
 
