@@ -198,7 +198,7 @@ void Flow::Observe(const double* y, Recorder& recorder) {
     mj_sensorPos(&m, &d);
     mj_sensorVel(&m, &d);
   }
-  recorder.Take(d, row_);
+  Record(recorder);
 }
 
 }  // namespace continuum

@@ -34,12 +34,18 @@ class Flow {
   const std::vector<double>& start() const { return start_; }
   const Wiring& wiring() const { return wiring_; }
   const mjModel& model() const { return *machine_.model; }
+  /// As Rate or Observe has left it.
+  mjData& data() { return *machine_.data; }
+  /// Whether some joints are tied to others, so that y lacks them.
+  bool tied() const { return !ties_.none(); }
   /// From here to the next row the inputs are those of this one.
   void Hold(std::size_t row);
   /// dy/dt [size] at the time t of the log and y.
   void Rate(double t, const double* y, double* rate);
   /// Lets a recorder see the row that is held, at y.
   void Observe(const double* y, Recorder& recorder);
+  /// Lets it see the row that is held, with the data as they are.
+  void Record(Recorder& recorder) const { recorder.Take(*machine_.data, row_); }
 
  private:
   enum class Needs { kState, kFrames, kPosition, kAll };  // what the outputs are made of

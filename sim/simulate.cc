@@ -191,7 +191,9 @@ double SlopeAt(const std::vector<double>& time, const std::vector<double>& y, st
 std::vector<double> MemoryOf(const mjModel& m, const mjData& d) { return StateOf(m, d, kMemory); }
 
 Hooks Hooks::Stoppable() {
-  return {{}, [](const mjModel&, mjData&) { StopIfRequested(); }};
+  Hooks hooks;
+  hooks.step = [](const mjModel&, mjData&) { StopIfRequested(); };
+  return hooks;
 }
 
 Wiring::Wiring(const Experiment& e, const mjModel& m) {
@@ -423,6 +425,7 @@ Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const Init
       } else {
         mj_step(&m, &d);
       }
+      if (hooks.stepped) hooks.stepped(m, d);
       if (!Healthy(m, d)) {
         trace.diverged = true;
         trace.diverged_at = begin + step * h;

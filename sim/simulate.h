@@ -40,6 +40,8 @@ struct Hooks {
   std::function<void(const mjModel&, mjData&, std::size_t row)> row = {};
   /// Before every step; may write qfrc_applied.
   std::function<void(const mjModel&, mjData&)> step = {};
+  /// After every step, with the state after it and the forces that made it; must not write.
+  std::function<void(const mjModel&, mjData&)> stepped = {};
 
   /// Hooks that end the simulation with an Error (kJob) when the user asks to stop.
   static Hooks Stoppable();

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include <mujoco/mujoco.h>
+
+namespace continuum {
+
+/// A force along a joint or a tendon, and how it follows its length, its rate and, of an actuator,
+/// the activation [SI].
+struct Pull {
+  double f = 0, by_length = 0, by_rate = 0, by_activation = 0;
+  Pull& operator+=(const Pull& more);
+  /// The same where a faster rate is felt.
+  Pull Felt(double faster) const;
+};
+
+/// Spring and damper of a hinge or slide at d, at the speed v.
+Pull PullOfJoint(const mjModel& m, const mjData& d, int joint, double v);
+/// The same of a tendon.
+Pull PullOfTendon(const mjModel& m, const mjData& d, int tendon, double rate);
+/// An actuator with fixed or affine gain and bias, along the joint or tendon that it pulls, of
+/// that rate; step: of the lag that acts early [s].
+Pull PullOfActuator(const mjModel& m, const mjData& d, int actuator, double rate, double step);
+/// What an actuator's activation becomes, and how this follows it: its rate (step: 0), or its value
+/// after a step [s].
+struct Activation {
+  double value = 0, by_itself = 0;
+};
+Activation RateOfActivation(const mjModel& m, const mjData& d, int actuator);
+Activation NextActivation(const mjModel& m, const mjData& d, int actuator, double step);
+
+/// What has no closed form here ("actuator 'a1' is a muscle"); empty: nothing.
+std::string PullObstacle(const mjModel& m);
+
+}  // namespace continuum

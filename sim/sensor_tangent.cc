@@ -1,0 +1,102 @@
+#include "sim/sensor_tangent.h"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+
+#include "sim/mujoco.h"
+#include "sim/object_frame.h"
+
+namespace continuum {
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+
+bool IsLine(const mjModel& m, int joint) {
+  return m.jnt_type[joint] == mjJNT_HINGE || m.jnt_type[joint] == mjJNT_SLIDE;
+}
+
+bool Covers(const mjModel& m, int s) {
+  if (m.sensor_cutoff[s] > 0 || m.sensor_delay[s] > 0 || m.sensor_interval[2 * s] > 0) return false;
+  switch (m.sensor_type[s]) {
+    case mjSENS_JOINTPOS:
+    case mjSENS_JOINTVEL:
+      return IsLine(m, m.sensor_objid[s]);
+    case mjSENS_FRAMEPOS:
+      return m.sensor_refid[s] < 0;
+    default:
+      return false;
+  }
+}
+
+int BodyOf(const mjModel& m, int type, int id) {
+  switch (type) {
+    case mjOBJ_SITE:
+      return m.site_bodyid[id];
+    case mjOBJ_GEOM:
+      return m.geom_bodyid[id];
+    case mjOBJ_CAMERA:
+      return m.cam_bodyid[id];
+    default:
+      return id;
+  }
+}
+
+}  // namespace
+
+std::string SensorTangent::Obstacle(const mjModel& m, const Wiring& wiring) {
+  if (wiring.marked) return "a marker's offset";
+  for (const auto& source : wiring.output) {
+    if (source.kind != Output::Kind::kSensor) return "an actuator's force or control";
+    if (!Covers(m, source.sensor)) return "sensor " + Called(m, mjOBJ_SENSOR, source.sensor);
+  }
+  return "";
+}
+
+SensorTangent::SensorTangent(const mjModel& m, const Wiring& wiring) : was_(m.nsensordata) {
+  for (const auto& source : wiring.output) {
+    const int s = source.sensor;
+    const auto known = [&](const Read& read) { return read.sensor == s; };
+    if (std::any_of(reads_.begin(), reads_.end(), known)) continue;
+    const bool frame = m.sensor_type[s] == mjSENS_FRAMEPOS;
+    reads_.push_back({s, m.sensor_adr[s], m.sensor_dim[s],
+                      frame ? -1 : m.jnt_dofadr[m.sensor_objid[s]],
+                      m.sensor_type[s] == mjSENS_JOINTVEL});
+    lever_.emplace_back(3, frame ? m.nv : 0);
+  }
+}
+
+void SensorTangent::Update(const mjModel& m, const mjData& d) {
+  for (std::size_t r = 0; r < reads_.size(); ++r) {
+    if (reads_[r].dof >= 0) continue;
+    const int s = reads_[r].sensor, type = m.sensor_objtype[s], id = m.sensor_objid[s];
+    int b = BodyOf(m, type, id);
+    const Vector3 point(FrameOf(d, type, id).position);
+    const Vector3 arm = point - Vector3(d.subtree_com + 3 * m.body_rootid[b]);
+    lever_[r].setZero();
+    while (b > 0 && m.body_dofnum[b] == 0) b = m.body_parentid[b];
+    if (b == 0) continue;
+    for (int i = m.body_dofadr[b] + m.body_dofnum[b] - 1; i >= 0; i = m.dof_parentid[i])
+      lever_[r].col(i) = Vector3(d.cdof + 6 * i + 3) + Vector3(d.cdof + 6 * i).cross(arm);
+  }
+}
+
+void SensorTangent::Move(mjData& d, const double* dq, const double* dv) {
+  for (std::size_t r = 0; r < reads_.size(); ++r) {
+    const Read& read = reads_[r];
+    std::copy_n(d.sensordata + read.address, read.size, &was_[read.address]);
+    if (read.dof >= 0) {
+      d.sensordata[read.address] += read.speed ? dv[read.dof] : dq[read.dof];
+    } else {
+      Eigen::Map<Vector3>(d.sensordata + read.address) +=
+          lever_[r] * Eigen::Map<const Eigen::VectorXd>(dq, lever_[r].cols());
+    }
+  }
+}
+
+void SensorTangent::Back(mjData& d) const {
+  for (const Read& read : reads_)
+    std::copy_n(&was_[read.address], read.size, d.sensordata + read.address);
+}
+
+}  // namespace continuum

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/simulate.h"
+
+#include <Eigen/Core>
+
+namespace continuum {
+
+/// How the sensors of an experiment's outputs follow positions and speeds [nv], in closed form, on
+/// hinges and slides: positions and speeds of joints, and where frames are in the world.
+class SensorTangent {
+ public:
+  /// What an output is made of beyond that ("sensor 'tip_force'"); empty: nothing.
+  static std::string Obstacle(const mjModel& m, const Wiring& wiring);
+  SensorTangent(const mjModel& m, const Wiring& wiring);
+
+  /// At d, whose positions' frames and axes (mj_comPos) are known.
+  void Update(const mjModel& m, const mjData& d);
+  /// Adds to d's sensors what they change as positions and speeds do; takes it back.
+  void Move(mjData& d, const double* dq, const double* dv);
+  void Back(mjData& d) const;
+
+ private:
+  struct Read {
+    int sensor, address, size;
+    int dof;  ///< of a joint's; −1: a frame
+    bool speed;
+  };
+  std::vector<Read> reads_;
+  std::vector<Eigen::Matrix3Xd> lever_;  ///< [read] of frames, ∂p/∂q
+  std::vector<double> was_;
+};
+
+}  // namespace continuum

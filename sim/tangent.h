@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/model_difference.h"
+#include "sim/native_pull.h"
+#include "sim/rigid_tangent.h"
+#include "sim/tendon_tangent.h"
+
+namespace continuum {
+
+/// The equations of motion next to a state, in closed form: with F = τ − c − M a, forces less what
+/// the motion takes,
+///
+///   dF = ∂F/∂q dq + ∂F/∂q̇ dq̇ + ∂F/∂w dw + ∂F/∂p dp                               (1)
+///
+/// at fixed accelerations a; w are activations. Of hinges and slides with springs and dampers,
+/// tendons through sites or of joints, and actuators with affine gain and bias that pull either.
+class Tangent {
+ public:
+  using Matrix = Eigen::MatrixXd;
+
+  /// What a model has beyond that ("actuator 'a1' has dynamics of its own"); empty: nothing.
+  static std::string Obstacle(const mjModel& m);
+  explicit Tangent(const mjModel& m);
+
+  /// At d, after a forward pass; a: accelerations [nv]; felt: speeds that dampers and actuators
+  /// feel [nv], those of d, or of the step's end where a method is implicit in them; step: of lags
+  /// that act early [s].
+  void Update(const mjModel& m, const mjData& d, const double* a, const double* felt,
+              double step = 0);
+  const Matrix& by_position() const { return by_position_; }      ///< [nv × nv]
+  const Matrix& by_velocity() const { return by_velocity_; }      ///< [nv × nv]
+  const Matrix& by_activation() const { return by_activation_; }  ///< [nv × na]
+  /// ∂τ/∂q̇ of native forces alone, what implicit methods know [nv × nv].
+  const Matrix& damping() const { return damping_; }
+
+  /// force[nv] += F of another model less F, at the state and accelerations of Update; the
+  /// difference has no field.
+  void Differ(const mjModel& m, const mjData& d, const mjModel& other,
+              const ModelDifference& difference, double* force) const;
+
+ private:
+  Pull Joint(const mjModel& by, const mjData& d, int joint) const;
+  Pull Tendon(const mjModel& by, const mjData& d, int tendon) const;
+  Pull Actuator(const mjModel& by, const mjData& d, int actuator) const;
+  void PullAlong(const mjModel& m, const mjData& d, int actuator, double f, double* force) const;
+
+  RigidTangent rigid_;
+  TendonTangent tendons_;
+  std::vector<double> a_, felt_;
+  std::vector<Pull> of_tendon_;
+  double step_ = 0;
+  Matrix by_position_, by_velocity_, by_activation_, damping_;
+};
+
+}  // namespace continuum

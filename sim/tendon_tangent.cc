@@ -1,0 +1,125 @@
+#include "sim/tendon_tangent.h"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+
+#include "sim/mujoco.h"
+
+namespace continuum {
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+
+Vector3 At(const double* x) { return {x[0], x[1], x[2]}; }
+
+// The joints between a site and the world, from the root on.
+std::vector<int> Chain(const mjModel& m, int site) {
+  int b = m.site_bodyid[site];
+  while (b > 0 && m.body_dofnum[b] == 0) b = m.body_parentid[b];
+  std::vector<int> dofs;
+  if (b == 0) return dofs;
+  for (int i = m.body_dofadr[b] + m.body_dofnum[b] - 1; i >= 0; i = m.dof_parentid[i])
+    dofs.push_back(i);
+  std::reverse(dofs.begin(), dofs.end());
+  return dofs;
+}
+
+}  // namespace
+
+std::string TendonTangent::Obstacle(const mjModel& m) {
+  for (int t = 0; t < m.ntendon; ++t) {
+    for (int w = m.tendon_adr[t]; w < m.tendon_adr[t] + m.tendon_num[t]; ++w) {
+      if (m.wrap_type[w] == mjWRAP_SITE || m.wrap_type[w] == mjWRAP_JOINT) continue;
+      return "tendon " + Called(m, mjOBJ_TENDON, t) +
+             (m.wrap_type[w] == mjWRAP_PULLEY ? " has a pulley" : " wraps around a geom");
+    }
+    if (m.tendon_armature[t] > 0)
+      return "tendon " + Called(m, mjOBJ_TENDON, t) + " has an armature";
+  }
+  return "";
+}
+
+TendonTangent::TendonTangent(const mjModel& m) : route_(m.ntendon), bent_(m.nv) {
+  for (int t = 0; t < m.ntendon; ++t) {
+    const int first = m.tendon_adr[t];
+    for (int w = first + 1; w < first + m.tendon_num[t]; ++w) {
+      if (m.wrap_type[w] != mjWRAP_SITE) break;
+      Segment segment{m.wrap_objid[w - 1], m.wrap_objid[w]};
+      const auto before = Chain(m, segment.near), after = Chain(m, segment.far);
+      const auto common = std::mismatch(before.begin(), before.end(), after.begin(), after.end());
+      for (auto i = common.first; i != before.end(); ++i) segment.levers.push_back({*i, -1});
+      for (auto i = common.second; i != after.end(); ++i) segment.levers.push_back({*i, 1});
+      if (!segment.levers.empty()) route_[t].push_back(std::move(segment));
+    }
+  }
+}
+
+void TendonTangent::Update(const mjModel& m, const mjData& d) {
+  for (auto& route : route_) {
+    for (Segment& s : route) {
+      const double *const near = d.site_xpos + 3 * s.near, *const far = d.site_xpos + 3 * s.far;
+      s.along = At(far) - At(near);
+      s.length = s.along.norm();
+      if (s.length > mjMINVAL) s.along /= s.length;
+      for (Lever& lever : s.levers) {
+        const double* const axis = d.cdof + 6 * lever.dof;
+        const int root = m.body_rootid[m.dof_bodyid[lever.dof]];
+        const Vector3 arm = At(lever.sign > 0 ? far : near) - At(d.subtree_com + 3 * root);
+        lever.axis = At(axis);
+        lever.moved = lever.sign * (At(axis + 3) + lever.axis.cross(arm));
+        lever.arm = s.along.dot(lever.moved);
+      }
+    }
+  }
+}
+
+double TendonTangent::Rate(const mjModel& m, const mjData& d, int tendon, const double* v) const {
+  double rate = 0;
+  const int adr = m.ten_J_rowadr[tendon];
+  for (int k = adr; k < adr + m.ten_J_rownnz[tendon]; ++k)
+    rate += d.ten_J[k] * v[m.ten_J_colind[k]];
+  return rate;
+}
+
+void TendonTangent::Pull(const mjModel& m, const mjData& d, int tendon, double f,
+                         double* force) const {
+  const int adr = m.ten_J_rowadr[tendon];
+  for (int k = adr; k < adr + m.ten_J_rownnz[tendon]; ++k)
+    force[m.ten_J_colind[k]] += f * d.ten_J[k];
+}
+
+void TendonTangent::Add(const mjModel& m, const mjData& d, int tendon, double f, double by_length,
+                        double by_rate, const double* v, Matrix& by_position, Matrix& by_velocity) {
+  std::fill(bent_.begin(), bent_.end(), 0.0);
+  for (const Segment& s : route_[tendon]) {
+    if (s.length <= mjMINVAL) continue;  // it has no direction
+    for (std::size_t a = 0; a < s.levers.size(); ++a) {
+      const Lever& i = s.levers[a];
+      for (std::size_t b = 0; b <= a; ++b) {
+        const Lever& j = s.levers[b];
+        double h = (i.moved.dot(j.moved) - i.arm * j.arm) / s.length;
+        if (i.sign == j.sign) h += s.along.dot(j.axis.cross(i.moved));  // j is before i, or i
+        by_position(i.dof, j.dof) += f * h;
+        bent_[i.dof] += h * v[j.dof];
+        if (a == b) continue;
+        by_position(j.dof, i.dof) += f * h;
+        bent_[j.dof] += h * v[i.dof];
+      }
+    }
+  }
+  const int adr = m.ten_J_rowadr[tendon], end = adr + m.ten_J_rownnz[tendon];
+  for (int k = adr; k < end; ++k) {
+    const int i = m.ten_J_colind[k];
+    for (int l = adr; l < end; ++l) {
+      const int j = m.ten_J_colind[l];
+      by_position(i, j) += by_length * d.ten_J[k] * d.ten_J[l];
+      by_velocity(i, j) += by_rate * d.ten_J[k] * d.ten_J[l];
+    }
+    if (by_rate == 0) continue;
+    for (Eigen::Index j = 0; j < by_position.cols(); ++j)
+      by_position(i, j) += by_rate * d.ten_J[k] * bent_[j];
+  }
+}
+
+}  // namespace continuum

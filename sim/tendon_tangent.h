@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+
+namespace continuum {
+
+/// How the levers of tendons follow positions: with u a segment's direction, l its length and
+/// e_i = ∂(far − near)/∂q_i,
+///
+///   ∂L/∂q_i = Σ u · e_i                                                          (1)
+///   ∂²L/∂q_i∂q_j = Σ (e_i · e_j − (u · e_i)(u · e_j))/l + u · ∂e_i/∂q_j           (2)
+///
+/// over the segments of a path through sites on hinges and slides, each moved only by the joints
+/// between its two ends. Tendons of joints have no second derivative.
+class TendonTangent {
+ public:
+  using Matrix = Eigen::MatrixXd;
+
+  /// What keeps a model's tendons from it ("tendon 't1' wraps around a geom"); empty: nothing.
+  static std::string Obstacle(const mjModel& m);
+  explicit TendonTangent(const mjModel& m);
+
+  /// At d, after a forward pass.
+  void Update(const mjModel& m, const mjData& d);
+  /// dL/dt at velocities [nv].
+  double Rate(const mjModel& m, const mjData& d, int tendon, const double* v) const;
+  /// force[nv] += f ∂L/∂q.
+  void Pull(const mjModel& m, const mjData& d, int tendon, double f, double* force) const;
+  /// Adds of a pull f(L, L̇) along a tendon what follows positions and speeds [nv × nv]:
+  ///   f_L ∂L/∂q ∂L/∂qᵀ + f_L̇ ∂L/∂q (v ∂²L)ᵀ + f ∂²L   and   f_L̇ ∂L/∂q ∂L/∂qᵀ    (3)
+  void Add(const mjModel& m, const mjData& d, int tendon, double f, double by_length,
+           double by_rate, const double* v, Matrix& by_position, Matrix& by_velocity);
+
+ private:
+  struct Lever {
+    int dof;
+    double sign;  ///< 1: it moves the far end, −1: the near one
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero();   ///< of the joint, 0 for a slide
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< e_i
+    double arm = 0;                                   ///< u · e_i
+  };
+  struct Segment {
+    int near, far;                   ///< sites
+    std::vector<Lever> levers = {};  ///< of each side from the root on
+    double length = 0;
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< u
+  };
+  std::vector<std::vector<Segment>> route_;  ///< [tendon]
+  std::vector<double> bent_;                 ///< [nv] v ∂²L
+};
+
+}  // namespace continuum
