@@ -115,10 +115,12 @@ Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& sta
   return all;
 }
 
-const char* Way(const Options& o, const Problem& problem) {
+std::string Way(const Options& o, const Problem& problem) {
   if (o.method == "regressor") return "none, the inverse model along the measured motion";
-  return problem.path() == Path::kSmooth ? "smooth, by CVODES and its sensitivities"
-                                         : "stepped, by differences of MuJoCo's own steps";
+  if (problem.path() == Path::kSmooth) return "smooth, by CVODES and its sensitivities";
+  const std::string why = problem.NoClosedForm();
+  return why.empty() ? "stepped, by sensitivities of MuJoCo's own steps"
+                     : "stepped, by differences of MuJoCo's own steps (" + why + ")";
 }
 
 std::string NearerBound(const FreeParameter& p, double value) {
@@ -240,7 +242,7 @@ void RunIdentify(const Options& o) {
                          "the smooth one, which has none");
     problem.DifferBy(o.differences);
   }
-  std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n", Way(o, problem),
+  std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n", Way(o, problem).c_str(),
                problem.parameters().size(), e.logs.size());
   PrintCheck(o, e);
   const Fitting all = Run(o, problem, start, use);
@@ -279,8 +281,9 @@ void AddIdentify(CLI::App& app) {
       ->check(CLI::IsMember({"auto", "smooth", "stepped"}))
       ->capture_default_str();
   sub->add_option("--differences", o->differences,
-                  "stepped path: slopes over this share of a parameter's size; default: 0.001, "
-                  "which averages over stick and slip; 1e-6: the derivative itself")
+                  "stepped path: slopes over this share of a parameter's size; default: the "
+                  "derivative where it has a closed form, else 0.001, which averages over stick "
+                  "and slip; 1e-6: the derivative itself")
       ->check(NumberWithin(1e-9, 0.5));
   sub->add_option("--iterations", o->iterations, "at most; default: 100 (lm), 40 (pso)")
       ->check(WholeNumberWithin(1, 1000));

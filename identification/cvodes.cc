@@ -63,6 +63,7 @@ struct Cvodes::Solver {
     const auto n = static_cast<sunindextype>(ode.size);
     y.reset(N_VNew_Serial(n, made));
     Require(y != nullptr);
+    Set(N_VEnableFusedOps_Serial(y.get(), SUNTRUE));  // of its clones too
     N_VConst(0, y.get());
     for (std::size_t k = 0; k < ode.parameters; ++k) {
       columns.emplace_back(N_VClone(y.get()), N_VDestroy);

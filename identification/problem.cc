@@ -278,7 +278,7 @@ Trace Problem::Refused(const Log& log, const Error& error) const {
 // step: a time step other than the model's [s], or 0.
 Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double step) const {
   const Experiment setup = MeasuredBy(x, log);
-  auto changes = ChangesFor(x, log);
+  const auto changes = ChangesFor(x, log);
   const auto starts = ChangesAt(x, log, Side::kStart);
   const Vector theta = x.tail(static_cast<Eigen::Index>(terms_.count));
   const Memory& memory = memory_[motion_[log]];
@@ -297,10 +297,9 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
       return Refused(logged, error);
     }
   }
-  if (const double h = step > 0 ? step : step_; h > 0) changes.push_back({"option", "timestep", h});
   Machine machine;
   try {
-    machine = systems_[thread].Build(changes);
+    machine = MachineAt(thread, x, log, step);
   } catch (const Error& error) {
     return Refused(logged, error);
   }
@@ -317,6 +316,14 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
   Log stretched = logged;
   for (double& t : stretched.time) t *= (1 + setup.skew) / (1 + experiment_->skew);
   return Simulate(machine, setup, stretched, start, hooks);
+}
+
+// As it steps.
+Machine Problem::MachineAt(std::size_t thread, const Vector& x, std::size_t log,
+                           double step) const {
+  auto changes = ChangesFor(x, log);
+  if (const double h = step > 0 ? step : step_; h > 0) changes.push_back({"option", "timestep", h});
+  return systems_[thread].Build(changes);
 }
 
 InitialState Problem::StartAt(Machine& machine, const Vector& x, std::size_t log) const {

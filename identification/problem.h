@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "identification/cvodes.h"
+#include "identification/stepped.h"
 #include "sim/flow.h"
 #include "sim/score.h"
 #include "sim/simulate.h"
@@ -71,9 +72,14 @@ class Problem {
   void Recall(const Problem& other) { memory_ = other.memory_; }
   /// From now on with central differences, at twice the cost; one-sided where a bound is near.
   void Center() { central_ = true; }
-  /// From now on with differences over this share of a parameter's scale. The default averages over
-  /// the kinks of joints that stick and slip step by step; 1e-6 gives the derivative itself.
-  void DifferBy(double share) { share_ = share; }
+  /// From now on with differences over this share of a parameter's scale, nothing in closed form.
+  /// The default share averages over the kinks of joints that stick and slip step by step; 1e-6
+  /// gives the derivative itself.
+  void DifferBy(double share) { share_ = share, exact_ = false; }
+
+  /// Why sensitivities of the stepped path come from differences ("an effect acts"); empty: they
+  /// have a closed form, but for parameters that the motion follows in other ways.
+  std::string NoClosedForm() const;
 
   const Experiment& experiment() const { return *experiment_; }
   /// Of one thread of parallel work; all are alike.
@@ -137,6 +143,7 @@ class Problem {
   bool SameMotion(std::size_t a, std::size_t b) const;
   std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
+  Machine MachineAt(std::size_t thread, const Vector& x, std::size_t log, double step) const;
   Trace Refused(const Log& log, const Error& error) const;
   std::unique_ptr<Flow> FlowAt(std::size_t thread, const Vector& x, std::size_t log) const;
   bool Measures(std::size_t k) const;
@@ -145,6 +152,11 @@ class Problem {
   void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                          const std::vector<std::vector<std::size_t>>& motions,
                          const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
+  Trial TrialAt(std::size_t thread, const Vector& x, std::size_t log) const;
+  /// By StepTangent, one simulation for all columns; returns those that are left.
+  std::vector<std::size_t> TangentColumns(const Vector& x, const std::vector<std::size_t>& motion,
+                                          const std::vector<std::size_t>& columns,
+                                          std::size_t thread, std::vector<Matrix>& J) const;
   void SensitivityColumns(const Vector& x, const std::vector<std::vector<std::size_t>>& motions,
                           std::size_t first, bool rough, std::vector<Matrix>& J) const;
   enum class Side { kModel, kMeasurement, kStart };
@@ -176,7 +188,8 @@ class Problem {
   double step_ = 0;  ///< 0: the model's
   bool central_ = false;
   double share_ = 1e-3;
-  Solving solving_;  ///< on the smooth path
+  bool exact_ = true;  ///< in closed form where there is one
+  Solving solving_;    ///< on the smooth path
   mutable std::size_t evaluations_ = 0;
 };
 

@@ -2,9 +2,13 @@
 #include <memory>
 #include <numeric>
 
+#include "error.h"
 #include "identification/parallel.h"
 #include "identification/problem.h"
 #include "identification/smooth.h"
+#include "identification/stepped.h"
+#include "sim/inputs.h"
+#include "sim/step_tangent.h"
 #include "sim/stop.h"
 
 namespace continuum {
@@ -64,14 +68,21 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                                 const std::vector<std::size_t>& columns,
                                 std::vector<Matrix>& J) const {
   std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
-  for (std::size_t i = 0; i < motions.size(); ++i) {
+  std::vector<std::vector<std::size_t>> left(motions.size());
+  ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
     for (const std::size_t k : columns) {
-      if (parameters_[k].log[motions[i].front()]) tasks.emplace_back(i, k);
+      if (parameters_[k].log[motions[i].front()]) left[i].push_back(k);
     }
+    left[i] = TangentColumns(x, motions[i], left[i], thread, J);
+  });
+  std::size_t exact = 0;  // simulations that gave columns in closed form
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    exact += left[i].size() < columns.size();
+    for (const std::size_t k : left[i]) tasks.emplace_back(i, k);
   }
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
     if (StopRequested()) return;
-    const auto [i, k] = tasks[t];
+    const std::size_t i = tasks[t].first, k = tasks[t].second;
     double step = StepOf(x, k, share_);
     const auto moved = [&](double by) {
       Vector beside = x;
@@ -91,7 +102,72 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
       J[l].col(k) = both ? (ResidualOf(l, there) - ResidualOf(l, back)) / (2 * step)
                          : (ResidualOf(l, there) - r[l]) / step;
   });
-  evaluations_ += (central_ ? 2 : 1) * tasks.size();
+  evaluations_ += (central_ ? 2 : 1) * tasks.size() + exact;
+}
+
+Trial Problem::TrialAt(std::size_t thread, const Vector& x, std::size_t log) const {
+  Trial trial{MachineAt(thread, x, log, 0), {}, {}, {}};
+  const Log& logged = experiment_->logs[log];
+  InitialState start = StartAt(trial.machine, x, log);
+  if (start.qpos.empty()) start = StartOf(trial.machine, setup_, logged);
+  mjModel& m = *trial.machine.model;
+  mjData& d = *trial.machine.data;
+  const Wiring wiring(setup_, m);
+  Inputs inputs(m, setup_, logged, wiring);
+  inputs.AtRow(d, 0);
+  Settle(m, d);
+  inputs.AllOn();
+  trial.q = std::move(start.qpos), trial.v = std::move(start.qvel);
+  trial.w.assign(d.act, d.act + m.na);
+  return trial;
+}
+
+std::string Problem::NoClosedForm() const {
+  if (!exact_) return "as asked for";
+  if (terms_.count > 0) return "a force of free form acts";
+  if (experiment_->quasi_static) return "the logs are quasi-static";
+  const Machine machine = MachineAt(0, Start(), 0, 0);
+  return StepTangent::Obstacle(*machine.model, Wiring(setup_, *machine.model));
+}
+
+std::vector<std::size_t> Problem::TangentColumns(const Vector& x,
+                                                 const std::vector<std::size_t>& motion,
+                                                 const std::vector<std::size_t>& columns,
+                                                 std::size_t thread, std::vector<Matrix>& J) const {
+  const std::size_t log = motion.front();
+  const Experiment setup = MeasuredBy(x, log);
+  if (!exact_ || path_ != Path::kStepped || columns.size() < 2 || terms_.count > 0 ||
+      experiment_->quasi_static || setup.skew != experiment_->skew || StopRequested())
+    return columns;
+  std::vector<std::size_t> left, moving;
+  for (const std::size_t k : columns) (Measures(k) ? left : moving).push_back(k);
+  SteppedTraces traces;
+  try {
+    Trial trial = TrialAt(thread, x, log);
+    if (!StepTangent::Obstacle(*trial.machine.model, Wiring(setup, *trial.machine.model)).empty())
+      return columns;
+    std::vector<Trial> neighbours;
+    for (const std::size_t k : moving) {
+      Vector moved = x;
+      moved[k] += StepOf(x, k, kMove);
+      neighbours.push_back(TrialAt(thread, moved, log));
+    }
+    traces = FollowSteps(trial, neighbours, setup, experiment_->logs[log]);
+  } catch (const Error&) {  // of values that no machine has: differences look to the other side
+    return columns;
+  }
+  for (std::size_t j = 0; j < moving.size(); ++j) {
+    const std::size_t k = moving[j];
+    if (!traces.moved[j] || !ResidualOf(log, *traces.moved[j]).allFinite()) {
+      left.push_back(k);
+      continue;
+    }
+    for (const std::size_t l : motion) {
+      J[l].col(k) =
+          (ResidualOf(l, *traces.moved[j]) - ResidualOf(l, traces.trace)) / StepOf(x, k, kMove);
+    }
+  }
+  return left;
 }
 
 // Parameters of a motion are shared out so that no core waits for another.

@@ -1,5 +1,7 @@
 #include "identification/smooth.h"
 
+#include "sim/flow_tangent.h"
+
 namespace continuum {
 namespace {
 
@@ -14,7 +16,7 @@ std::vector<double> FirstSensitivities(const Flow& flow, const Flows& neighbours
   return s;
 }
 
-Ode EquationOf(Flow& flow, const Flows& neighbours) {
+Ode EquationOf(Flow& flow, const Flows& neighbours, FlowTangent& tangent) {
   Ode ode;
   ode.size = flow.size();
   ode.parameters = neighbours.size();
@@ -22,7 +24,10 @@ Ode EquationOf(Flow& flow, const Flows& neighbours) {
   ode.sensitivity = [&, near = std::vector<double>(ode.size)](
                         double t, const double* y, const double* rate, const Ode::States& s,
                         const Ode::States& rates) mutable {
+    tangent.At(t, y);
+    tangent.Rates(s, rates);
     for (std::size_t k = 0; k < s.size(); ++k) {
+      if (tangent.Covers(k)) continue;
       for (std::size_t i = 0; i < near.size(); ++i) near[i] = y[i] + kMove * s[k][i];
       neighbours[k]->Rate(t, near.data(), rates[k]);
       for (std::size_t i = 0; i < near.size(); ++i) rates[k][i] = (rates[k][i] - rate[i]) / kMove;
@@ -34,8 +39,8 @@ Ode EquationOf(Flow& flow, const Flows& neighbours) {
 // Lets recorders see every row that the solver reaches.
 class Observation {
  public:
-  Observation(Flow& flow, const Flows& neighbours, std::size_t rows)
-      : flow_(flow), neighbours_(neighbours), near_(flow.size()) {
+  Observation(Flow& flow, const Flows& neighbours, FlowTangent& tangent, std::size_t rows)
+      : flow_(flow), neighbours_(neighbours), tangent_(tangent), near_(flow.size()) {
     recorders_.emplace_back(flow.model(), flow.wiring(), rows);
     for (const auto& other : neighbours)
       recorders_.emplace_back(other->model(), other->wiring(), rows);
@@ -44,10 +49,17 @@ class Observation {
   void Hold(std::size_t row) {
     flow_.Hold(row);
     for (const auto& other : neighbours_) other->Hold(row);
+    tangent_.Forget();
   }
   void See(const Cvodes& solver) {
     flow_.Observe(solver.y(), recorders_[0]);
+    std::vector<const double*> s;
+    std::vector<Recorder*> recorders;
+    for (std::size_t k = 0; k < neighbours_.size(); ++k)
+      s.push_back(solver.s(k)), recorders.push_back(&recorders_[k + 1]);
+    tangent_.Observe(s, recorders);
     for (std::size_t k = 0; k < neighbours_.size(); ++k) {
+      if (tangent_.Covers(k)) continue;
       for (std::size_t i = 0; i < near_.size(); ++i)
         near_[i] = solver.y()[i] + kMove * solver.s(k)[i];
       neighbours_[k]->Observe(near_.data(), recorders_[k + 1]);
@@ -62,6 +74,7 @@ class Observation {
  private:
   Flow& flow_;
   const Flows& neighbours_;
+  FlowTangent& tangent_;
   std::vector<Recorder> recorders_;
   std::vector<double> near_;
 };
@@ -76,8 +89,9 @@ SmoothTraces FollowFlow(Flow& flow, const Flows& neighbours, const Experiment& e
   for (std::size_t row = rows - 1; row-- > 0;)
     breaks[row] = BreaksAt(e, log, row + 1) ? log.time[row + 1] : breaks[row + 1];
 
-  Cvodes solver(EquationOf(flow, neighbours), how);
-  Observation observation(flow, neighbours, rows);
+  FlowTangent tangent(flow, neighbours, kMove);
+  Cvodes solver(EquationOf(flow, neighbours, tangent), how);
+  Observation observation(flow, neighbours, tangent, rows);
   solver.Start(log.time[0], flow.start(), FirstSensitivities(flow, neighbours));
   SmoothTraces traces;
   for (std::size_t row = 0; row < rows; ++row) {

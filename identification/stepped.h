@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sim/simulate.h"
+
+namespace continuum {
+
+/// A machine with where its trial begins: positions, speeds and activations.
+struct Trial {
+  Machine machine;
+  std::vector<double> q, v, w;
+};
+
+/// What a machine and its neighbours say about the rows of one log, as MuJoCo steps them.
+struct SteppedTraces {
+  Trace trace;
+  /// [neighbour] to first order; none where it has no closed form.
+  std::vector<std::optional<Trace>> moved;
+};
+
+/// Steps a machine once, and with it by StepTangent its neighbours, which are the same machine with
+/// one parameter moved by kMove times its typical size (identification/smooth.h). Without traces
+/// of neighbours where the closed form does not reach: the model has other parts, or other rows of
+/// the constraint solver act on the way.
+SteppedTraces FollowSteps(Trial& trial, std::vector<Trial>& neighbours, const Experiment& e,
+                          const Log& log);
+
+}  // namespace continuum
