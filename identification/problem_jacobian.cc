@@ -12,6 +12,12 @@
 #include "sim/stop.h"
 
 namespace continuum {
+namespace {
+
+// A simulation with all columns in closed form takes as long as some four plain ones.
+constexpr std::size_t kWorth = 4;
+
+}  // namespace
 
 std::vector<Problem::Matrix> Problem::Jacobian(const Vector& x, const std::vector<Vector>& r,
                                                const std::vector<bool>& use,
@@ -123,6 +129,7 @@ Trial Problem::TrialAt(std::size_t thread, const Vector& x, std::size_t log) con
 }
 
 std::string Problem::NoClosedForm() const {
+  if (parameters_.size() < kWorth) return "they are cheaper for a few parameters";
   if (!exact_) return "as asked for";
   if (terms_.count > 0) return "a force of free form acts";
   if (experiment_->quasi_static) return "the logs are quasi-static";
@@ -136,7 +143,7 @@ std::vector<std::size_t> Problem::TangentColumns(const Vector& x,
                                                  std::size_t thread, std::vector<Matrix>& J) const {
   const std::size_t log = motion.front();
   const Experiment setup = MeasuredBy(x, log);
-  if (!exact_ || path_ != Path::kStepped || columns.size() < 2 || terms_.count > 0 ||
+  if (!exact_ || path_ != Path::kStepped || columns.size() < kWorth || terms_.count > 0 ||
       experiment_->quasi_static || setup.skew != experiment_->skew || StopRequested())
     return columns;
   std::vector<std::size_t> left, moving;

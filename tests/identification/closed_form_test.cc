@@ -142,12 +142,11 @@ INSTANTIATE_TEST_SUITE_P(Arm, ClosedFormStepsTest,
                          [](const auto& info) { return info.param.name; });
 
 TEST_F(ClosedFormTest, FollowsAFrictionThatSlides) {
-  const Experiment e =
-      Read(0.02,
-           "parameters:\n  - {name: f, target: 'joint:*', attribute: frictionloss, "
-           "initial: 0.02, lower: 0, upper: 1}\n  - {name: k, target: 'joint:y*', "
-           "attribute: stiffness, initial: 0.6, lower: 0.1, upper: 2}\n",
-           "rest");
+  const Experiment e = Read(0.02,
+                            std::string(kParameters) +
+                                "  - {name: f, target: 'joint:*', attribute: frictionloss, "
+                                "initial: 0.02, lower: 0, upper: 1}\n",
+                            "rest");
   const System system = System::Load(e.model);
   const Problem problem(e, system);
   Problem differences(e, system);
