@@ -187,7 +187,9 @@ TEST_P(ClosedFormFlowTest, AgreesWithTightCentralDifferences) {
   std::vector<std::unique_ptr<Flow>> neighbours;
   neighbours.push_back(testing::FlowBeside(e, g, kMove));
   EXPECT_TRUE(FlowTangent(*flow, neighbours, kMove).Covers(0));
-  EXPECT_LT(testing::SlopeError(testing::Slopes(e, g), testing::CentralDifferences(e, g)), 1e-5);
+  // The fast joint at the end needs runs as exact as they can be.
+  const auto reference = testing::CentralDifferences(e, g, 1e-2, {1e-13, 1e-15, false});
+  EXPECT_LT(testing::SlopeError(testing::Slopes(e, g), reference), 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Attribute, ClosedFormFlowTest,

@@ -80,20 +80,21 @@ inline double SlopeError(const std::vector<std::vector<double>>& found,
   return worst;
 }
 
-/// The same slopes by central differences of fourth order of runs at 1e-13, in steps of 1e-2 of the
+/// The same slopes by central differences of fourth order of runs at 1e-11, in steps of 1e-3 of the
 /// value: their own error is some 1e-7.
-inline std::vector<std::vector<double>> CentralDifferences(const Experiment& e, const Gradient& g) {
-  constexpr double kStep = 1e-2;
+inline std::vector<std::vector<double>> CentralDifferences(const Experiment& e, const Gradient& g,
+                                                           double step = 1e-3,
+                                                           Solving how = {1e-11, 1e-13, false}) {
   std::vector<Trace> runs;
   for (const int steps : {-2, -1, 1, 2}) {
-    const auto flow = FlowBeside(e, g, steps * kStep);
-    runs.push_back(FollowFlow(*flow, {}, e, e.logs[0], {1e-13, 1e-15, false}).trace);
+    const auto flow = FlowBeside(e, g, steps * step);
+    runs.push_back(FollowFlow(*flow, {}, e, e.logs[0], how).trace);
   }
   auto slopes = runs[0].channel;
   for (std::size_t c = 0; c < slopes.size(); ++c) {
     for (std::size_t k = 0; k < slopes[c].size(); ++k) {
       const auto y = [&](int run) { return runs[run].channel[c][k]; };
-      slopes[c][k] = (y(0) - 8 * y(1) + 8 * y(2) - y(3)) / (12 * kStep);
+      slopes[c][k] = (y(0) - 8 * y(1) + 8 * y(2) - y(3)) / (12 * step);
     }
   }
   return slopes;
