@@ -152,7 +152,7 @@ class Problem {
   void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                          const std::vector<std::vector<std::size_t>>& motions,
                          const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
-  Trial TrialAt(std::size_t thread, const Vector& x, std::size_t log) const;
+  Trial TrialOf(Machine machine, const Vector& x, std::size_t log) const;
   /// By StepTangent, one simulation for all columns; returns those that are left.
   std::vector<std::size_t> TangentColumns(const Vector& x, const std::vector<std::size_t>& motion,
                                           const std::vector<std::size_t>& columns,

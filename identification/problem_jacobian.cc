@@ -111,8 +111,8 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
   evaluations_ += (central_ ? 2 : 1) * tasks.size() + exact;
 }
 
-Trial Problem::TrialAt(std::size_t thread, const Vector& x, std::size_t log) const {
-  Trial trial{MachineAt(thread, x, log, 0), {}, {}, {}};
+Trial Problem::TrialOf(Machine machine, const Vector& x, std::size_t log) const {
+  Trial trial{std::move(machine), {}, {}, {}};
   const Log& logged = experiment_->logs[log];
   InitialState start = StartAt(trial.machine, x, log);
   if (start.qpos.empty()) start = StartOf(trial.machine, setup_, logged);
@@ -150,14 +150,15 @@ std::vector<std::size_t> Problem::TangentColumns(const Vector& x,
   for (const std::size_t k : columns) (Measures(k) ? left : moving).push_back(k);
   SteppedTraces traces;
   try {
-    Trial trial = TrialAt(thread, x, log);
-    if (!StepTangent::Obstacle(*trial.machine.model, Wiring(setup, *trial.machine.model)).empty())
-      return columns;
+    Machine machine = MachineAt(thread, x, log, 0);
+    const mjModel& m = *machine.model;
+    if (!StepTangent::Obstacle(m, Wiring(setup, m)).empty()) return columns;
+    Trial trial = TrialOf(std::move(machine), x, log);
     std::vector<Trial> neighbours;
     for (const std::size_t k : moving) {
       Vector moved = x;
       moved[k] += StepOf(x, k, kMove);
-      neighbours.push_back(TrialAt(thread, moved, log));
+      neighbours.push_back(TrialOf(MachineAt(thread, moved, log, 0), moved, log));
     }
     traces = FollowSteps(trial, neighbours, setup, experiment_->logs[log]);
   } catch (const Error&) {  // of values that no machine has: differences look to the other side

@@ -71,7 +71,6 @@ SteppedTraces FollowSteps(Trial& trial, std::vector<Trial>& neighbours, const Ex
   SteppedTraces traces;
   traces.moved.resize(neighbours.size());
   const Wiring wiring(e, *trial.machine.model);
-  if (!StepTangent::Obstacle(*trial.machine.model, wiring).empty()) return traces;
   Company company(trial, neighbours, e, log, wiring);
   traces.trace = Simulate(trial.machine, e, log, {trial.q, trial.v}, company.Along());
   if (traces.trace.diverged) return traces;

@@ -32,8 +32,12 @@ bool Same(const T* a, const T* b, std::size_t n) {
   return std::equal(a, a + n, b);
 }
 
-// By MuJoCo's own list of the arrays of a model.
+// By MuJoCo's own lists of the sizes and the arrays of a model.
 std::string OtherField(const mjModel* m, const mjModel* other) {
+#define X(name) \
+  if (m->name != other->name) return #name;
+  MJMODEL_SIZES
+#undef X
 #undef MJ_M
 #define MJ_M(n) m->n
 #define X(type, name, count, each)                                                                \

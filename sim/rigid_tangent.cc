@@ -1,6 +1,6 @@
 #include "sim/rigid_tangent.h"
 
-#include <Eigen/Geometry>
+#include "sim/lever.h"
 
 namespace continuum {
 namespace {

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Geometry>
-
+#include "sim/lever.h"
 #include "sim/mujoco.h"
 #include "sim/object_frame.h"
 
@@ -70,14 +69,10 @@ void SensorTangent::Update(const mjModel& m, const mjData& d) {
   for (std::size_t r = 0; r < reads_.size(); ++r) {
     if (reads_[r].dof >= 0) continue;
     const int s = reads_[r].sensor, type = m.sensor_objtype[s], id = m.sensor_objid[s];
-    int b = BodyOf(m, type, id);
     const Vector3 point(FrameOf(d, type, id).position);
-    const Vector3 arm = point - Vector3(d.subtree_com + 3 * m.body_rootid[b]);
     lever_[r].setZero();
-    while (b > 0 && m.body_dofnum[b] == 0) b = m.body_parentid[b];
-    if (b == 0) continue;
-    for (int i = m.body_dofadr[b] + m.body_dofnum[b] - 1; i >= 0; i = m.dof_parentid[i])
-      lever_[r].col(i) = Vector3(d.cdof + 6 * i + 3) + Vector3(d.cdof + 6 * i).cross(arm);
+    for (int i = LastDof(m, BodyOf(m, type, id)); i >= 0; i = m.dof_parentid[i])
+      lever_[r].col(i) = LeverOf(m, d, i, point);
   }
 }
 

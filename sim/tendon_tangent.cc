@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Geometry>
-
+#include "sim/lever.h"
 #include "sim/mujoco.h"
 
 namespace continuum {
@@ -15,12 +14,8 @@ Vector3 At(const double* x) { return {x[0], x[1], x[2]}; }
 
 // The joints between a site and the world, from the root on.
 std::vector<int> Chain(const mjModel& m, int site) {
-  int b = m.site_bodyid[site];
-  while (b > 0 && m.body_dofnum[b] == 0) b = m.body_parentid[b];
   std::vector<int> dofs;
-  if (b == 0) return dofs;
-  for (int i = m.body_dofadr[b] + m.body_dofnum[b] - 1; i >= 0; i = m.dof_parentid[i])
-    dofs.push_back(i);
+  for (int i = LastDof(m, m.site_bodyid[site]); i >= 0; i = m.dof_parentid[i]) dofs.push_back(i);
   std::reverse(dofs.begin(), dofs.end());
   return dofs;
 }
@@ -63,11 +58,8 @@ void TendonTangent::Update(const mjModel& m, const mjData& d) {
       s.length = s.along.norm();
       if (s.length > mjMINVAL) s.along /= s.length;
       for (Lever& lever : s.levers) {
-        const double* const axis = d.cdof + 6 * lever.dof;
-        const int root = m.body_rootid[m.dof_bodyid[lever.dof]];
-        const Vector3 arm = At(lever.sign > 0 ? far : near) - At(d.subtree_com + 3 * root);
-        lever.axis = At(axis);
-        lever.moved = lever.sign * (At(axis + 3) + lever.axis.cross(arm));
+        lever.axis = At(d.cdof + 6 * lever.dof);
+        lever.moved = lever.sign * LeverOf(m, d, lever.dof, At(lever.sign > 0 ? far : near));
         lever.arm = s.along.dot(lever.moved);
       }
     }

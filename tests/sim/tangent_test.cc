@@ -237,6 +237,7 @@ TEST(Tangent, NamesWhatItDoesNotCover) {
   EXPECT_EQ(field({"site:t", "pos[0]", 0.02}), "site_pos");
   EXPECT_EQ(field({"body:tip", "pos[0]", 0.02}), "body_pos");
   EXPECT_EQ(field({"joint:a", "ref", 0.1}), "qpos0");
+  EXPECT_EQ(field({"body:tip", "force[0]", 1, Change::Operation::kAdd}), "nu");  // an actuator more
   const auto obstacle = [](const std::string& from, const std::string& to) {
     std::string xml = kModel;
     xml.replace(xml.find(from), from.size(), to);
