@@ -79,7 +79,7 @@ Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& sta
   const double soft = problem.experiment().soft;
   Fitting all;
   if (o.method == "pso") {
-    SwarmOptions options{.seed = o.seed, .soft = soft, .progress = ShowProgress};
+    SwarmFitOptions options{.seed = o.seed, .soft = soft, .progress = ShowProgress};
     if (o.iterations > 0) options.iterations = o.iterations;
     all.fit = FitBySwarm(problem, use, options);
   } else if (o.method == "regressor") {

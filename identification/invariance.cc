@@ -13,7 +13,7 @@ constexpr double kPoor = 1e-6;   // worth a second look
 
 }  // namespace
 
-Modes::Modes(const Matrix& H)
+InformationModes::InformationModes(const Matrix& H)
     : unit_(H.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 1; })) {
   if (H.rows() == 0) return;
   const Eigen::SelfAdjointEigenSolver<Matrix> modes(unit_.asDiagonal() * H * unit_.asDiagonal());
@@ -21,20 +21,20 @@ Modes::Modes(const Matrix& H)
   none_ = (values_.array() < kNone).count();
 }
 
-double Modes::smallest() const { return values_.size() > 0 ? values_[0] : 1; }
+double InformationModes::smallest() const { return values_.size() > 0 ? values_[0] : 1; }
 
-Matrix Modes::Inverse() const {
+Matrix InformationModes::Inverse() const {
   const auto n = values_.size() - none_;
   const Matrix seen = unit_.asDiagonal() * vectors_.rightCols(n);
   return seen * values_.tail(n).cwiseInverse().asDiagonal() * seen.transpose();
 }
 
-Matrix Modes::AlongInvariances() const {
+Matrix InformationModes::AlongInvariances() const {
   const Matrix along = unit_.asDiagonal() * vectors_.leftCols(none_);
   return along * along.transpose() / kNone;
 }
 
-void Modes::TakeOutOf(std::vector<Matrix>& J) const {
+void InformationModes::TakeOutOf(std::vector<Matrix>& J) const {
   const Matrix V = vectors_.leftCols(none_);
   const Matrix P = unit_.asDiagonal() * V * V.transpose() * unit_.cwiseInverse().asDiagonal();
   for (Matrix& one : J) {
@@ -54,13 +54,14 @@ Matrix InformationIn(const std::vector<Matrix>& J) {
 
 void KeepInvariances(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                      std::vector<Matrix>& J) {
-  if (problem.path() != Path::kStepped || Modes(InformationIn(J)).smallest() > kPoor) return;
+  if (problem.path() != Path::kStepped || InformationModes(InformationIn(J)).smallest() > kPoor)
+    return;
   std::vector<bool> use;
   for (const Matrix& one : J) use.push_back(one.size() > 0);
   Problem narrow = problem;
   narrow.Center();
   narrow.DifferBy(1e-6);
-  Modes(InformationIn(narrow.Jacobian(x, r, use))).TakeOutOf(J);
+  InformationModes(InformationIn(narrow.Jacobian(x, r, use))).TakeOutOf(J);
 }
 
 }  // namespace continuum

@@ -10,9 +10,9 @@ namespace continuum {
 /// D H D has a unit diagonal, D = diag(1/√H_ii) (1 where H_ii is 0). Eigenvalues below 1e-12 are
 /// invariances: combinations of parameters that change nothing, as a mass, a stiffness, a damping
 /// and a gain that grow together.
-class Modes {
+class InformationModes {
  public:
-  explicit Modes(const Problem::Matrix& H);
+  explicit InformationModes(const Problem::Matrix& H);
 
   /// Smallest eigenvalue; 1 without parameters.
   double smallest() const;

@@ -43,7 +43,8 @@ double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& 
 
 }  // namespace
 
-Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use, const SwarmOptions& options) {
+Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use,
+               const SwarmFitOptions& options) {
   RequireBounds(problem);
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t before = problem.evaluations();

@@ -210,7 +210,7 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   }
   const Eigen::Index told = (H.diagonal().array() > 0).count();
   const double freedom = std::max(2.0, independent - static_cast<double>(told));
-  const Modes modes(H);
+  const InformationModes modes(H);
   const Matrix Hi = modes.Inverse(), along = modes.AlongInvariances();
   const double few = std::max(1.0, independent / freedom);
   const Matrix cov = few * Hi * modelled * Hi + along, robust = few * Hi * S * Hi + along;
@@ -254,7 +254,7 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
     if (!J[l].size()) continue;
     pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
   }
-  ReachOver(problem, Modes(u.information).Inverse() * pull, u);
+  ReachOver(problem, InformationModes(u.information).Inverse() * pull, u);
 }
 
 std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
@@ -284,7 +284,8 @@ std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::
       }
     }
   }
-  Modes(InformationIn(J)).TakeOutOf(secants);  // what no slope shows is no secant's either
+  InformationModes(InformationIn(J))
+      .TakeOutOf(secants);  // what no slope shows is no secant's either
   return secants;
 }
 

@@ -72,7 +72,7 @@ double TimeConstant(double omega, double damping) {
 
 }  // namespace
 
-Modes::Modes(mjModel& m, mjData& d) : damping_(m.nv, m.nv) {
+CriticalDamping::CriticalDamping(mjModel& m, mjData& d) : damping_(m.nv, m.nv) {
   // From 1 to 2 (rad/s or m/s), forward and back: what dry friction gives cancels, and so does
   // what is even in v.
   Probing at(m, d);
@@ -83,7 +83,7 @@ Modes::Modes(mjModel& m, mjData& d) : damping_(m.nv, m.nv) {
   damping_ = Symmetric(damping_);
 }
 
-void Modes::Update(mjModel& m, mjData& d) {
+void CriticalDamping::Update(mjModel& m, mjData& d) {
   const auto nv = static_cast<int>(m.nv);
   MatrixXd stiffness(nv, nv), mass(nv, nv);
   {
@@ -115,7 +115,7 @@ void Modes::Update(mjModel& m, mjData& d) {
   brake_ = mass * V * lack.asDiagonal() * V.transpose() * mass;
 }
 
-VectorXd Modes::Brake(const mjData& d) const {
+VectorXd CriticalDamping::Brake(const mjData& d) const {
   return -brake_ * VectorXd::Map(d.qvel, brake_.cols());
 }
 

@@ -7,11 +7,11 @@
 namespace continuum {
 
 /// Small motions of a machine around a state, without dry friction, contacts and limits.
-class Modes {
+class CriticalDamping {
  public:
   /// Measures damping at d; Update must follow. d is left as it was, but for what the next step
   /// computes anew.
-  Modes(mjModel& m, mjData& d);
+  CriticalDamping(mjModel& m, mjData& d);
 
   /// Measures stiffness at d.
   void Update(mjModel& m, mjData& d);

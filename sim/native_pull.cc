@@ -61,13 +61,13 @@ std::string ActuatorObstacle(const mjModel& m, int a) {
 
 }  // namespace
 
-Pull& Pull::operator+=(const Pull& more) {
+ForceAlong& ForceAlong::operator+=(const ForceAlong& more) {
   f += more.f, by_length += more.by_length, by_rate += more.by_rate;
   return *this;
 }
 
-Pull Pull::Felt(double faster) const {
-  Pull felt = *this;
+ForceAlong ForceAlong::Felt(double faster) const {
+  ForceAlong felt = *this;
   felt.f += by_rate * faster;
   return felt;
 }
@@ -93,8 +93,8 @@ std::string PullObstacle(const mjModel& m) {
   return "";
 }
 
-Pull PullOfJoint(const mjModel& m, const mjData& d, int joint, double v) {
-  Pull pull;
+ForceAlong PullOfJoint(const mjModel& m, const mjData& d, int joint, double v) {
+  ForceAlong pull;
   const int dof = m.jnt_dofadr[joint], adr = m.jnt_qposadr[joint];
   if (!(m.opt.disableflags & mjDSBL_SPRING)) {
     pull.by_length = -m.jnt_stiffness[joint];
@@ -107,8 +107,8 @@ Pull PullOfJoint(const mjModel& m, const mjData& d, int joint, double v) {
   return pull;
 }
 
-Pull PullOfTendon(const mjModel& m, const mjData& d, int tendon, double rate) {
-  Pull pull;
+ForceAlong PullOfTendon(const mjModel& m, const mjData& d, int tendon, double rate) {
+  ForceAlong pull;
   if (!(m.opt.disableflags & mjDSBL_SPRING) && m.tendon_stiffness[tendon] != 0) {
     const double* const rest = m.tendon_lengthspring + 2 * tendon;
     const double length = d.ten_length[tendon];
@@ -138,8 +138,8 @@ Activation NextActivation(const mjModel& m, const mjData& d, int a, double step)
   return {act + span * rate.value, 1 + span * rate.by_itself};
 }
 
-Pull PullOfActuator(const mjModel& m, const mjData& d, int a, double rate, double step) {
-  Pull pull;
+ForceAlong PullOfActuator(const mjModel& m, const mjData& d, int a, double rate, double step) {
+  ForceAlong pull;
   if (m.opt.disableflags & mjDSBL_ACTUATION) return pull;
   const double gear = m.actuator_gear[6 * m.actuator_outadr[a]];
   const int id = m.actuator_trnid[2 * a];

@@ -8,20 +8,21 @@ namespace continuum {
 
 /// A force along a joint or a tendon, and how it follows its length, its rate and, of an actuator,
 /// the activation [SI].
-struct Pull {
+struct ForceAlong {
   double f = 0, by_length = 0, by_rate = 0, by_activation = 0;
-  Pull& operator+=(const Pull& more);
+  ForceAlong& operator+=(const ForceAlong& more);
   /// The same where a faster rate is felt.
-  Pull Felt(double faster) const;
+  ForceAlong Felt(double faster) const;
 };
 
 /// Spring and damper of a hinge or slide at d, at the speed v.
-Pull PullOfJoint(const mjModel& m, const mjData& d, int joint, double v);
+ForceAlong PullOfJoint(const mjModel& m, const mjData& d, int joint, double v);
 /// The same of a tendon.
-Pull PullOfTendon(const mjModel& m, const mjData& d, int tendon, double rate);
+ForceAlong PullOfTendon(const mjModel& m, const mjData& d, int tendon, double rate);
 /// An actuator with fixed or affine gain and bias, along the joint or tendon that it pulls, of
 /// that rate; step: of the lag that acts early [s].
-Pull PullOfActuator(const mjModel& m, const mjData& d, int actuator, double rate, double step);
+ForceAlong PullOfActuator(const mjModel& m, const mjData& d, int actuator, double rate,
+                          double step);
 /// What an actuator's activation becomes, and how this follows it: its rate (step: 0), or its value
 /// after a step [s].
 struct Activation {

@@ -48,7 +48,7 @@ void RefuseCreep(const mjModel& m) {
 class Walk {
  public:
   Walk(Machine& machine, const Experiment& e, const Log& log, const Wiring& wiring,
-       const Hooks& hooks, const Pace& pace)
+       const Hooks& hooks, const QuasiStaticOptions& pace)
       : m_(*machine.model),
         d_(*machine.data),
         log_(log),
@@ -177,18 +177,19 @@ class Walk {
   mjData& d_;
   const Log& log_;
   const Hooks& hooks_;
-  const Pace& pace_;
+  const QuasiStaticOptions& pace_;
   Inputs inputs_;
   std::vector<double> range_, from_;  // of each input
   std::vector<double> before_;        // speeds before the last step
-  std::optional<Modes> modes_;
+  std::optional<CriticalDamping> modes_;
   double moved_ = 0;
 };
 
 }  // namespace
 
 Trace SimulateAtRest(Machine& machine, const Experiment& e, const Log& log,
-                     const InitialState& initial, const Hooks& hooks, const Pace& pace) {
+                     const InitialState& initial, const Hooks& hooks,
+                     const QuasiStaticOptions& pace) {
   const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
   const bool risen = initial.qpos.empty() && e.start == Experiment::Start::kRest;
   mjModel& m = *machine.model;

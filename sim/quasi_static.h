@@ -5,7 +5,7 @@
 namespace continuum {
 
 /// How slowly a quasi-static simulation moves, in time constants of the machine's slowest mode.
-struct Pace {
+struct QuasiStaticOptions {
   double crossing = 50;   ///< for an input to cross the range that it has in the log
   double patience = 500;  ///< that a row waits for rest after its ramp
   /// Rest: within the slowest time constant τ neither speed nor acceleration would carry a joint
@@ -36,6 +36,7 @@ struct Pace {
 /// A row that finds no rest ends the simulation: diverged and why are set. Throws Error for effects
 /// that creep: their rest is a matter of time.
 Trace SimulateAtRest(Machine& machine, const Experiment& e, const Log& log,
-                     const InitialState& initial = {}, const Hooks& hooks = {}, const Pace& = {});
+                     const InitialState& initial = {}, const Hooks& hooks = {},
+                     const QuasiStaticOptions& = {});
 
 }  // namespace continuum

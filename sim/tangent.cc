@@ -32,17 +32,17 @@ Tangent::Tangent(const mjModel& m)
       damping_(m.nv, m.nv) {}
 
 // What acts at d, but by the speeds that it feels: it is linear in them.
-Pull Tangent::Joint(const mjModel& by, const mjData& d, int joint) const {
+ForceAlong Tangent::Joint(const mjModel& by, const mjData& d, int joint) const {
   const int i = by.jnt_dofadr[joint];
   return PullOfJoint(by, d, joint, d.qvel[i]).Felt(felt_[i] - d.qvel[i]);
 }
 
-Pull Tangent::Tendon(const mjModel& by, const mjData& d, int tendon) const {
+ForceAlong Tangent::Tendon(const mjModel& by, const mjData& d, int tendon) const {
   const double rate = tendons_.Rate(by, d, tendon, d.qvel);
   return PullOfTendon(by, d, tendon, rate).Felt(tendons_.Rate(by, d, tendon, felt_.data()) - rate);
 }
 
-Pull Tangent::Actuator(const mjModel& by, const mjData& d, int actuator) const {
+ForceAlong Tangent::Actuator(const mjModel& by, const mjData& d, int actuator) const {
   const auto rate = [&](const double* v) {
     return OnTendon(by, actuator) ? tendons_.Rate(by, d, by.actuator_trnid[2 * actuator], v)
                                   : v[DofOf(by, actuator)];
@@ -54,7 +54,7 @@ Pull Tangent::Actuator(const mjModel& by, const mjData& d, int actuator) const {
 void Tangent::PullAlong(const mjModel& m, const mjData& d, int actuator, double f,
                         double* force) const {
   if (OnTendon(m, actuator)) {
-    tendons_.Pull(m, d, m.actuator_trnid[2 * actuator], f, force);
+    tendons_.ForceAlong(m, d, m.actuator_trnid[2 * actuator], f, force);
   } else {
     force[DofOf(m, actuator)] += f;
   }
@@ -67,11 +67,11 @@ void Tangent::Update(const mjModel& m, const mjData& d, const double* a, const d
   for (int t = 0; t < m.ntendon; ++t) of_tendon_[t] = Tendon(m, d, t);
   for (int j = 0; j < m.njnt; ++j) {
     const int i = m.jnt_dofadr[j];
-    const Pull pull = Joint(m, d, j);
+    const ForceAlong pull = Joint(m, d, j);
     by_position_(i, i) += pull.by_length, by_velocity_(i, i) += pull.by_rate;
   }
   for (int k = 0; k < m.nactuator; ++k) {
-    const Pull pull = Actuator(m, d, k);
+    const ForceAlong pull = Actuator(m, d, k);
     if (OnTendon(m, k)) {
       of_tendon_[m.actuator_trnid[2 * k]] += pull;
     } else {
@@ -83,7 +83,7 @@ void Tangent::Update(const mjModel& m, const mjData& d, const double* a, const d
   }
   tendons_.Update(m, d);
   for (int t = 0; t < m.ntendon; ++t) {
-    const Pull& pull = of_tendon_[t];
+    const ForceAlong& pull = of_tendon_[t];
     if (pull.f == 0 && pull.by_length == 0 && pull.by_rate == 0) continue;
     tendons_.Add(m, d, t, pull.f, pull.by_length, pull.by_rate, felt, by_position_, by_velocity_);
   }
@@ -99,7 +99,7 @@ void Tangent::Differ(const mjModel& m, const mjData& d, const mjModel& other,
   for (const int i : difference.armatures)
     force[i] -= (other.dof_armature[i] - m.dof_armature[i]) * a_[i];
   for (const int t : difference.tendons)
-    tendons_.Pull(m, d, t, Tendon(other, d, t).f - Tendon(m, d, t).f, force);
+    tendons_.ForceAlong(m, d, t, Tendon(other, d, t).f - Tendon(m, d, t).f, force);
   for (const int k : difference.actuators)
     PullAlong(m, d, k, Actuator(other, d, k).f - Actuator(m, d, k).f, force);
   for (const auto& body : difference.bodies)

@@ -42,15 +42,15 @@ class Tangent {
               const ModelDifference& difference, double* force) const;
 
  private:
-  Pull Joint(const mjModel& by, const mjData& d, int joint) const;
-  Pull Tendon(const mjModel& by, const mjData& d, int tendon) const;
-  Pull Actuator(const mjModel& by, const mjData& d, int actuator) const;
+  ForceAlong Joint(const mjModel& by, const mjData& d, int joint) const;
+  ForceAlong Tendon(const mjModel& by, const mjData& d, int tendon) const;
+  ForceAlong Actuator(const mjModel& by, const mjData& d, int actuator) const;
   void PullAlong(const mjModel& m, const mjData& d, int actuator, double f, double* force) const;
 
   RigidTangent rigid_;
   TendonTangent tendons_;
   std::vector<double> a_, felt_;
-  std::vector<Pull> of_tendon_;
+  std::vector<ForceAlong> of_tendon_;
   double step_ = 0;
   Matrix by_position_, by_velocity_, by_activation_, damping_;
 };

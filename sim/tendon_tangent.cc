@@ -74,8 +74,8 @@ double TendonTangent::Rate(const mjModel& m, const mjData& d, int tendon, const 
   return rate;
 }
 
-void TendonTangent::Pull(const mjModel& m, const mjData& d, int tendon, double f,
-                         double* force) const {
+void TendonTangent::ForceAlong(const mjModel& m, const mjData& d, int tendon, double f,
+                               double* force) const {
   const int adr = m.ten_J_rowadr[tendon];
   for (int k = adr; k < adr + m.ten_J_rownnz[tendon]; ++k)
     force[m.ten_J_colind[k]] += f * d.ten_J[k];

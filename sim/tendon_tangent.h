@@ -30,7 +30,7 @@ class TendonTangent {
   /// dL/dt at velocities [nv].
   double Rate(const mjModel& m, const mjData& d, int tendon, const double* v) const;
   /// force[nv] += f ∂L/∂q.
-  void Pull(const mjModel& m, const mjData& d, int tendon, double f, double* force) const;
+  void ForceAlong(const mjModel& m, const mjData& d, int tendon, double f, double* force) const;
   /// Adds of a pull f(L, L̇) along a tendon what follows positions and speeds [nv × nv]:
   ///   f_L ∂L/∂q ∂L/∂qᵀ + f_L̇ ∂L/∂q (v ∂²L)ᵀ + f ∂²L   and   f_L̇ ∂L/∂q ∂L/∂qᵀ    (3)
   void Add(const mjModel& m, const mjData& d, int tendon, double f, double by_length,

@@ -35,7 +35,7 @@ Eigen::Vector2d ArcTip(const Study& s) {
 
 // The pose of an arm whose joints share its angle evenly.
 void TurnEvenly(const mjModel& m, mjData& d) {
-  Joints q;
+  PlanarJoints q;
   const auto angle = [&](int i) -> double& {
     const std::string joint = fmt::format("bend{}_y", i + 1);
     return d.qpos[m.jnt_qposadr[mj_name2id(&m, mjOBJ_JOINT, joint.c_str())]];
@@ -71,7 +71,7 @@ Image BentArm(const Study& s, const System& annelida) {
 
 Chart CurvatureChart(const Study& s) {
   const double unit = 1 / s.p.Pitch();
-  const Joints ours = s.coarse.bend.q.back(), truth = s.reference.bend.q.back();
+  const PlanarJoints ours = s.coarse.bend.q.back(), truth = s.reference.bend.q.back();
   return {"Curvature along the arm at 90°",
           {"joint", ""},
           {"angle / pitch", "1/m"},
@@ -89,7 +89,7 @@ ChartLine Shape(const std::string& name, const char* colour, const Eigen::Matrix
 
 Chart ShapeChart(const Study& s) {
   const PlanarChain chain(s.p);
-  const Joints ours = s.coarse.bend.q.back(), truth = s.reference.bend.q.back();
+  const PlanarJoints ours = s.coarse.bend.q.back(), truth = s.reference.bend.q.back();
   const auto error = [&](const Eigen::Vector2d& tip) {
     return fmt::format("tip {:.3g} mm off", 1e3 * TipError(s, tip));
   };
@@ -117,7 +117,7 @@ Chart AnglesChart(const Study& s) {
   const Course ours = Shown(s.fine.release), truth = Shown(s.reference.release);
   const auto angle = [](const Course& course, int i) {
     std::vector<double> out;
-    for (const Joints& q : course.q) out.push_back(q[i] / kDegree);
+    for (const PlanarJoints& q : course.q) out.push_back(q[i] / kDegree);
     return out;
   };
   for (int i = 0; i < kAnnelidaLinks; ++i)

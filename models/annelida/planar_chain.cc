@@ -18,7 +18,7 @@ Vector2d Across(double phi) { return {std::cos(phi), -std::sin(phi)}; }
 
 }  // namespace
 
-Eigen::Matrix<double, 2, kN + 2> PlanarChain::Points(const Joints& q) const {
+Eigen::Matrix<double, 2, kN + 2> PlanarChain::Points(const PlanarJoints& q) const {
   Eigen::Matrix<double, 2, kN + 2> points;
   Vector2d at{0, 0};
   double phi = 0;
@@ -30,12 +30,12 @@ Eigen::Matrix<double, 2, kN + 2> PlanarChain::Points(const Joints& q) const {
   return points;
 }
 
-Vector2d PlanarChain::Tip(const Joints& q) const { return Points(q).col(kN + 1); }
+Vector2d PlanarChain::Tip(const PlanarJoints& q) const { return Points(q).col(kN + 1); }
 
 // Masses at distances along the links: each contributes m JᵀJ to M and m Jᵀ(acceleration at q̈ = 0
 // minus gravity) to the bias.
-PlanarChain::Equations PlanarChain::At(const Joints& q, const Joints& v) const {
-  Equations e{Eigen::Matrix<double, kN, kN>::Zero(), Joints::Zero()};
+PlanarChain::Equations PlanarChain::At(const PlanarJoints& q, const PlanarJoints& v) const {
+  Equations e{Eigen::Matrix<double, kN, kN>::Zero(), PlanarJoints::Zero()};
   Eigen::Matrix<double, 2, kN> joint;  // velocity of link k's joint per unit velocity of joint i
   joint.setZero();
   Vector2d acceleration = p_.gravity * Vector2d(std::sin(tilt_), -std::cos(tilt_));
@@ -61,14 +61,15 @@ PlanarChain::Equations PlanarChain::At(const Joints& q, const Joints& v) const {
 
 // The cable's spans shorten toward its own side. A contact before span i slides with everything
 // distal of it; disc i − 1 turns the cable by half of either neighbouring joint.
-Joints PlanarChain::CableTorque(PlanarState& state, int cable, double tension, double h) const {
+PlanarJoints PlanarChain::CableTorque(PlanarState& state, int cable, double tension,
+                                      double h) const {
   const double side = cable == 0 ? 1 : -1;
-  Joints slope;
+  PlanarJoints slope;
   for (int i = 0; i < kN; ++i) {
     const double half = state.q[i] / 2;
     slope[i] = -p_.b1 * std::sin(half) - side * p_.a * std::cos(half);
   }
-  Joints torque;
+  PlanarJoints torque;
   double T = tension, before = 0;
   for (int i = 0; i < kN; ++i) {
     double slip = 0;
@@ -83,9 +84,9 @@ Joints PlanarChain::CableTorque(PlanarState& state, int cable, double tension, d
   return torque;
 }
 
-Joints PlanarChain::Friction(PlanarState& state, double h) const {
+PlanarJoints PlanarChain::Friction(PlanarState& state, double h) const {
   const double stiffness = p_.tau_c * (1 + p_.S) / kJointBristle;
-  Joints torque;
+  PlanarJoints torque;
   for (int i = 0; i < kN; ++i) {
     const double ratio = state.v[i] / p_.v_d;
     const double level = p_.tau_c * (1 + p_.S * std::exp(-ratio * ratio));
@@ -98,7 +99,7 @@ Joints PlanarChain::Friction(PlanarState& state, double h) const {
 
 void PlanarChain::Step(PlanarState& state, const std::array<double, 2>& tension, double h) const {
   const Equations e = At(state.q, state.v);
-  Joints force = -e.bias - p_.K * state.q - p_.tau_mu * state.v;
+  PlanarJoints force = -e.bias - p_.K * state.q - p_.tau_mu * state.v;
   if (p_.tau_c > 0) force -= Friction(state, h);
   for (int cable = 0; cable < 2; ++cable) {
     if (tension[cable] > 0) force += CableTorque(state, cable, tension[cable], h);

@@ -8,13 +8,14 @@
 
 namespace continuum {
 
-using Joints = Eigen::Matrix<double, kAnnelidaLinks, 1>;  ///< bend1_y .. bend5_y
+using PlanarJoints = Eigen::Matrix<double, kAnnelidaLinks, 1>;  ///< bend1_y .. bend5_y
 
 /// Motion of the snake arm in the plane of cables 1 and 3.
 struct PlanarState {
-  Joints q = Joints::Zero(), v = Joints::Zero();  ///< [rad], [rad/s]
-  Joints bristle = Joints::Zero();                ///< deflection of the joints' friction [rad]
-  std::array<Joints, 2> grip{Joints::Zero(), Joints::Zero()};  ///< of cables 1, 3 at the holes [m]
+  PlanarJoints q = PlanarJoints::Zero(), v = PlanarJoints::Zero();  ///< [rad], [rad/s]
+  PlanarJoints bristle = PlanarJoints::Zero();  ///< deflection of the joints' friction [rad]
+  std::array<PlanarJoints, 2> grip{PlanarJoints::Zero(),
+                                   PlanarJoints::Zero()};  ///< of cables 1, 3 at the holes [m]
 };
 
 /// The same arm without MuJoCo: equations of motion of five links in a plane, written out.
@@ -37,20 +38,20 @@ class PlanarChain {
   void Step(PlanarState& state, const std::array<double, 2>& tension, double h) const;
 
   /// World x and z of the tip [m].
-  Eigen::Vector2d Tip(const Joints& q) const;
+  Eigen::Vector2d Tip(const PlanarJoints& q) const;
   /// World x and z of base, joints 1 .. 5 and tip [m].
-  Eigen::Matrix<double, 2, kAnnelidaLinks + 2> Points(const Joints& q) const;
+  Eigen::Matrix<double, 2, kAnnelidaLinks + 2> Points(const PlanarJoints& q) const;
   /// Kinetic, potential and spring energy [J]; without tilt.
   double Energy(const PlanarState& state) const;
 
  private:
   struct Equations {
     Eigen::Matrix<double, kAnnelidaLinks, kAnnelidaLinks> M;
-    Joints bias;  ///< c + g
+    PlanarJoints bias;  ///< c + g
   };
-  Equations At(const Joints& q, const Joints& v) const;
-  Joints CableTorque(PlanarState& state, int cable, double tension, double h) const;
-  Joints Friction(PlanarState& state, double h) const;
+  Equations At(const PlanarJoints& q, const PlanarJoints& v) const;
+  PlanarJoints CableTorque(PlanarState& state, int cable, double tension, double h) const;
+  PlanarJoints Friction(PlanarState& state, double h) const;
 
   AnnelidaParameters p_;
   double payload_, tilt_;

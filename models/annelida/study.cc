@@ -14,7 +14,7 @@ namespace {
 constexpr double kRightAngle = std::numbers::pi / 2, kLargestTension = 100;
 
 // A plant: joint angles after the next step under this tension of cable 1.
-using Plant = std::function<Joints(double tension)>;
+using Plant = std::function<PlanarJoints(double tension)>;
 
 BendResult Run(
     const Plant& plant, const BendAndRelease& plan, double h,
@@ -23,7 +23,7 @@ BendResult Run(
   BendResult result;
   // The k-th step of a course; returns the angle by which the tip has turned.
   const auto step = [&](Course& course, long k, double tension) {
-    const Joints q = plant(tension);
+    const PlanarJoints q = plant(tension);
     if (k % stride == 0) {
       course.time.push_back(double(k) * h);
       course.tension.push_back(tension);
@@ -62,7 +62,7 @@ BendResult BendMujoco(const System& annelida, const BendAndRelease& plan, double
   const auto plant = [&](double tension) {
     d.ctrl[cable] = tension;
     mj_step(&m, &d);
-    Joints q;
+    PlanarJoints q;
     for (int i = 0; i < kAnnelidaLinks; ++i) q[i] = d.qpos[address[i]];
     return q;
   };
@@ -80,9 +80,9 @@ BendResult BendChain(const PlanarChain& chain, const BendAndRelease& plan, doubl
   return Run(plant, plan, h);
 }
 
-Joints Even(const Joints& q) { return Joints::Constant(q.mean()); }
+PlanarJoints Even(const PlanarJoints& q) { return PlanarJoints::Constant(q.mean()); }
 
-Eigen::Matrix2Xd ArcPoints(const AnnelidaParameters& p, const Joints& q, int n) {
+Eigen::Matrix2Xd ArcPoints(const AnnelidaParameters& p, const PlanarJoints& q, int n) {
   Eigen::Matrix2Xd points(2, n);
   for (int i = 0; i < n; ++i) {
     const double share = double(i) / double(n - 1);
@@ -92,7 +92,7 @@ Eigen::Matrix2Xd ArcPoints(const AnnelidaParameters& p, const Joints& q, int n) 
   return points;
 }
 
-Joints At(const Course& course, double time) {
+PlanarJoints At(const Course& course, double time) {
   std::size_t i = 0;
   while (i + 1 < course.time.size() && course.time[i] < time - 1e-6) ++i;
   return course.q[i];

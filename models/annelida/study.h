@@ -13,7 +13,7 @@ namespace continuum {
 /// Joint angles of a run, and what pulled.
 struct Course {
   std::vector<double> time, tension;  ///< [s], of cable 1 [N]
-  std::vector<Joints> q;              ///< [rad]
+  std::vector<PlanarJoints> q;        ///< [rad]
 };
 
 /// The static bend and the release of the paper, section 3.3: cable 1 is pulled at `rate` until the
@@ -42,11 +42,11 @@ struct Study {
 };
 
 /// Equal angles of the same sum.
-Joints Even(const Joints& q);
+PlanarJoints Even(const PlanarJoints& q);
 /// The paper's arc of the arm's length that turns as far as the joints: world x and z of n points
 /// from the base to the tip.
-Eigen::Matrix2Xd ArcPoints(const AnnelidaParameters& p, const Joints& q, int n);
+Eigen::Matrix2Xd ArcPoints(const AnnelidaParameters& p, const PlanarJoints& q, int n);
 /// The row of a course at a time [s].
-Joints At(const Course& course, double time);
+PlanarJoints At(const Course& course, double time);
 
 }  // namespace continuum

@@ -19,14 +19,14 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFine = 2e-5;  // step of the chain [s]
 
 // RMS distance from the best straight line over the joints' numbers, relative to the spread.
-double Unevenness(const Joints& q) {
-  const Joints off = q - Even(q);
-  const Joints place = Joints::LinSpaced(-1, 1);
-  const Joints residual = off - (place.dot(off) / place.squaredNorm()) * place;
+double Unevenness(const PlanarJoints& q) {
+  const PlanarJoints off = q - Even(q);
+  const PlanarJoints place = PlanarJoints::LinSpaced(-1, 1);
+  const PlanarJoints residual = off - (place.dot(off) / place.squaredNorm()) * place;
   return residual.norm() / off.norm();
 }
 
-std::string Angles(const std::string& name, const Joints& q) {
+std::string Angles(const std::string& name, const PlanarJoints& q) {
   std::string row = fmt::format("| {} |", name);
   for (const double angle : q) row += fmt::format(" {:.2f} |", angle / kDegree);
   return row;
@@ -34,9 +34,10 @@ std::string Angles(const std::string& name, const Joints& q) {
 
 std::string StaticTable(const AnnelidaParameters& p, const PlanarChain& chain,
                         const BendResult& ours, const BendResult& reference) {
-  const Joints q = ours.bend.q.back(), r = reference.bend.q.back();
+  const PlanarJoints q = ours.bend.q.back(), r = reference.bend.q.back();
   const Eigen::Vector2d truth = chain.Tip(r);
-  const auto row = [&](const std::string& name, const Joints& angles, const Eigen::Vector2d& tip) {
+  const auto row = [&](const std::string& name, const PlanarJoints& angles,
+                       const Eigen::Vector2d& tip) {
     const double error = (tip - truth).norm();
     return Angles(name, angles) + fmt::format(" {:.2f} | {:.1f}, {:.1f} | {:.2f} ({:.2f} % L) |\n",
                                               (angles - r).norm() / std::sqrt(5.0) / kDegree,
@@ -130,7 +131,7 @@ std::string ReleaseCsv(const Study& runs, const PlanarChain& chain) {
   for (std::size_t k = 0; k < runs.reference.release.q.size(); ++k) {
     csv += fmt::format("{:.3f}", runs.reference.release.time[k]);
     for (const BendResult* run : {&runs.coarse, &runs.fine, &runs.reference}) {
-      const Joints& q = run->release.q[k];
+      const PlanarJoints& q = run->release.q[k];
       for (const double angle : q) csv += fmt::format(",{:.6f}", angle);
       const Eigen::Vector2d tip = chain.Tip(q);
       csv += fmt::format(",{:.6f},{:.6f}", tip.x(), tip.y());
@@ -141,7 +142,7 @@ std::string ReleaseCsv(const Study& runs, const PlanarChain& chain) {
 }
 
 std::string ShapeCsv(const Study& runs, const PlanarChain& chain) {
-  const Joints q = runs.coarse.bend.q.back(), r = runs.reference.bend.q.back();
+  const PlanarJoints q = runs.coarse.bend.q.back(), r = runs.reference.bend.q.back();
   const auto ours = chain.Points(q), truth = chain.Points(r);
   std::string csv = "mujoco_x,mujoco_z,chain_x,chain_z,arc_x,arc_z\n";
   const Eigen::Matrix2Xd arc = ArcPoints(runs.p, r, static_cast<int>(ours.cols()));

@@ -178,7 +178,7 @@ void Mjcf::AddBend(mjsBody* body, const std::string& name, const Point& axis, do
 }
 
 void Mjcf::AddElasticHinge(mjsBody* body, const std::string& name, const Point& axis,
-                           double stiffness, const Pace& pace) {
+                           double stiffness, const ModalLimit& pace) {
   mjsJoint* const joint = AddJoint(body, name, axis, stiffness);
   joint->armature = stiffness / (pace.fastest * pace.fastest);
   joint->damping[0] = stiffness * pace.lag;

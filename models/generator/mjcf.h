@@ -18,7 +18,7 @@ using Colour = std::array<float, 4>;  ///< red, green, blue, opacity
 /// of the stiffnesses keep the shapes of the slow modes: a mode at w swings at
 /// 1/sqrt(1/w² + 1/fastest²) instead, so an explicit step of a fraction of 1/fastest is stable
 /// however light and stiff the pieces are, and statics are untouched.
-struct Pace {
+struct ModalLimit {
   double fastest;  ///< no mode swings faster [rad/s]: armature k/fastest²
   double lag;      ///< of the material [s]: damping k · lag
 };
@@ -56,7 +56,7 @@ class Mjcf {
                double damping);
   /// A hinge without stops whose stiffness [N m/rad] is that of a piece of an elastic body.
   void AddElasticHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
-                       const Pace& pace);
+                       const ModalLimit& pace);
   /// A slide along z or a hinge through the body's origin, free of springs and stops; armature [kg]
   /// or [kg m^2].
   void AddFreeJoint(mjsBody* body, const std::string& name, mjtJoint type, const Point& axis,

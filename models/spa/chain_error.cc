@@ -38,7 +38,7 @@ std::string Swinging(std::string xml) {
   return xml;
 }
 
-Machine Build(const SpaFile& file, const SpaTrial& trial) {
+Machine Build(const SpaFile& file, const SpaStepResponse& trial) {
   const std::string xml = SpaMjcf(file, {.links = trial.links, .evenness = trial.evenness});
   Machine machine = System::Parse(trial.moving ? Swinging(xml) : xml).Build();
   mjModel& m = *machine.model;
@@ -112,7 +112,7 @@ SpaBaseMotion SpaSwing() {
   };
 }
 
-SpaGap ChainError(const SpaFile& file, const SpaTrial& trial) {
+SpaGap ChainError(const SpaFile& file, const SpaStepResponse& trial) {
   SpaOptions options = file.options;
   options.mass = SpaMass::kArc;
   const Spa<double> spa(file.parameters, options);

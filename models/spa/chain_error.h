@@ -6,7 +6,7 @@
 namespace continuum {
 
 /// One step response that the chain in MuJoCo and the analytic actuator both give.
-struct SpaTrial {
+struct SpaStepResponse {
   Eigen::Vector3d pressure;  ///< in the lines from 20 ms on [Pa], zero before
   bool moving = false;  ///< the base swings in all six coordinates (SpaSwing), else it is fixed
   int links = 10;
@@ -24,7 +24,7 @@ struct SpaGap {
 };
 
 /// Throws Error::Job when the chain diverges.
-SpaGap ChainError(const SpaFile& file, const SpaTrial& trial);
+SpaGap ChainError(const SpaFile& file, const SpaStepResponse& trial);
 
 /// Hanging, with sinusoids of 0.02 m and 0.2 rad at 1, 1.6, .. 4 Hz in x, y, z, α, β, γ.
 SpaBaseMotion SpaSwing();

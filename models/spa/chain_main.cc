@@ -26,7 +26,7 @@ void PrintHead(const std::string& what) {
   fmt::print("\n| {} | δ | tip | force | torque |\n|---|---|---|---|---|\n", what);
 }
 
-SpaGap PrintRow(const std::string& name, const SpaFile& file, const SpaTrial& trial) {
+SpaGap PrintRow(const std::string& name, const SpaFile& file, const SpaStepResponse& trial) {
   const SpaGap gap = ChainError(file, trial);
   fmt::print("| {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n", name, 100 * gap.delta, 100 * gap.tip,
              100 * gap.force, 100 * gap.torque);

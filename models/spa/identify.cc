@@ -12,7 +12,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Columns = Eigen::Matrix<double, 3, 6>;
 
-double Mass(const Spa<double>& spa, const std::vector<SpaTrial>& trials) {
+double Mass(const Spa<double>& spa, const std::vector<SpaRecordedTrial>& trials) {
   const SpaBase<double> base = SpaBase<double>::Hanging();
   double product = 0, square = 0;
   for (const auto& [recording, motion] : trials) {
@@ -30,7 +30,7 @@ double Mass(const Spa<double>& spa, const std::vector<SpaTrial>& trials) {
 class Inner {
  public:
   Inner(const SpaParameters<double>& known, const SpaOptions& options,
-        const std::vector<SpaTrial>& trials, double mass, const SpaFilter& filter)
+        const std::vector<SpaRecordedTrial>& trials, double mass, const SpaFilter& filter)
       : known_(known), options_(options), trials_(trials), filter_(filter) {
     known_.A = 1;
     const Spa<double> spa(known_, options_);
@@ -97,7 +97,7 @@ class Inner {
  private:
   SpaParameters<double> known_;
   SpaOptions options_;
-  const std::vector<SpaTrial>& trials_;
+  const std::vector<SpaRecordedTrial>& trials_;
   SpaFilter filter_;
   std::vector<std::vector<Columns>> columns_;
   Vector6 scale_;
@@ -109,8 +109,8 @@ bool Feasible(const Vector6& beta) { return beta.head<5>().minCoeff() > 0; }
 }  // namespace
 
 SpaParameters<double> SpaIdentify(const SpaParameters<double>& known, const SpaOptions& options,
-                                  const std::vector<SpaTrial>& trials, const SpaFilter& filter,
-                                  const SwarmOptions& swarm) {
+                                  const std::vector<SpaRecordedTrial>& trials,
+                                  const SpaFilter& filter, const SwarmOptions& swarm) {
   SpaParameters<double> found = known;
   found.m = Mass(Spa<double>(known, options), trials);  // step 1
 

@@ -8,7 +8,7 @@
 namespace continuum {
 
 /// A recording with the motion regained from it.
-struct SpaTrial {
+struct SpaRecordedTrial {
   SpaRecording recording;
   SpaMotion motion;
 };
@@ -20,7 +20,7 @@ struct SpaTrial {
 /// L0, d, r_ch and k_theta3 are used, and the options. The base is taken to hang at rest; the
 /// filter is SpaRegain's. Throws Error::Job when every particle is infeasible.
 SpaParameters<double> SpaIdentify(const SpaParameters<double>& known, const SpaOptions& options,
-                                  const std::vector<SpaTrial>& trials, const SpaFilter& filter,
-                                  const SwarmOptions& swarm = {});
+                                  const std::vector<SpaRecordedTrial>& trials,
+                                  const SpaFilter& filter, const SwarmOptions& swarm = {});
 
 }  // namespace continuum

@@ -30,9 +30,9 @@ std::vector<Vector3d> ValidationSteps() {
           {40e3, 40e3, 0}, {0, 30e3, 30e3}, {32e3, 32e3, 32e3}};
 }
 
-std::vector<SpaTrial> Record(const Spa<double>& spa, const std::vector<Vector3d>& steps,
-                             const SpaRecipe& recipe, unsigned first_seed) {
-  std::vector<SpaTrial> trials;
+std::vector<SpaRecordedTrial> Record(const Spa<double>& spa, const std::vector<Vector3d>& steps,
+                                     const SpaRecipe& recipe, unsigned first_seed) {
+  std::vector<SpaRecordedTrial> trials;
   for (const Vector3d& step : steps) {
     const SpaRecording recording =
         SpaRecordStep(spa, step, recipe.noise, first_seed + unsigned(trials.size()));
@@ -82,7 +82,8 @@ std::vector<SpaError> Errors(const std::vector<Channel>& channels) {
 
 // The nine rows of (16): the base wrench against the sensor, the forces on δ against the actuation
 // by the measured pressures.
-std::vector<SpaError> InverseErrors(const Spa<double>& model, const std::vector<SpaTrial>& trials,
+std::vector<SpaError> InverseErrors(const Spa<double>& model,
+                                    const std::vector<SpaRecordedTrial>& trials,
                                     const SpaFilter& filter) {
   std::vector<Channel> channels;
   for (const char* name : {"f_x", "f_y", "f_z"}) channels.emplace_back(name, "N²", 1);
@@ -111,7 +112,7 @@ std::vector<SpaSample> Simulate(const Spa<double>& model, const std::vector<Vect
 
 // Hybrid dynamics driven by the measured line pressures against the regained motion.
 std::vector<SpaError> SimulationErrors(const Spa<double>& model,
-                                       const std::vector<SpaTrial>& trials) {
+                                       const std::vector<SpaRecordedTrial>& trials) {
   std::vector<Channel> channels;
   for (const char* name : {"Δx", "Δy", "δL"}) channels.emplace_back(name, "mm²", 1e3);
   for (const auto& [recording, motion] : trials) {

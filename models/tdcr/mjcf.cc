@@ -14,7 +14,7 @@ namespace continuum::tdcr {
 namespace {
 
 constexpr double kStep = 1e-3, kLead = 5e-3, kLargestTension = 20, kLargestForce = 5;
-constexpr Pace kPace{200, 0.02};
+constexpr ModalLimit kPace{200, 0.02};
 constexpr double kDiskThickness = 2e-3;
 
 const char* const kComment =

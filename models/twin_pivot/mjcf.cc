@@ -15,7 +15,7 @@ namespace continuum::twin_pivot {
 namespace {
 
 constexpr double kStep = 2e-4, kLargestTension = 100, kLargestForce = 10;
-constexpr Pace kPace{500, 0.01};
+constexpr ModalLimit kPace{500, 0.01};
 
 // What is only drawn, and the disc's own inertia.
 constexpr double kDiscRadius = 8e-3, kRodRadius = 0.4e-3, kRodApart = 3e-3, kLead = 10e-3;

@@ -176,7 +176,7 @@ TEST_F(RegressorTest, ASwarmFindsThePlaceButNotThePoint) {
       "1}\n"
       "  - {name: kp, target: 'actuator:servo', attribute: kp, initial: 2, lower: 1, upper: 9}\n");
   const Problem problem(e, system);
-  SwarmOptions options;
+  SwarmFitOptions options;
   options.iterations = 15;
   const Fit swarm = FitBySwarm(problem, problem.TrainLogs(), options);
   const Fit again = FitBySwarm(problem, problem.TrainLogs(), options);

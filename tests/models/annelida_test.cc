@@ -225,7 +225,9 @@ class BendAndReleaseTest : public ::testing::Test {
     coarse_ = BendMujoco(Robot(), kPlan, 2e-3);
     chain_ = BendChain(PlanarChain(Parameters()), kPlan, 2e-5);
   }
-  static double Distance(const Joints& a, const Joints& b) { return (a - b).cwiseAbs().maxCoeff(); }
+  static double Distance(const PlanarJoints& a, const PlanarJoints& b) {
+    return (a - b).cwiseAbs().maxCoeff();
+  }
 
   inline static const BendAndRelease kPlan{};
   inline static BendResult ours_, medium_, coarse_, chain_;
@@ -238,7 +240,7 @@ TEST_F(BendAndReleaseTest, TheStaticBendIsThatOfTheChainAtTheModelsOwnStep) {
 }
 
 TEST_F(BendAndReleaseTest, CurvatureGrowsTowardTheTip) {
-  const Joints q = coarse_.bend.q.back();
+  const PlanarJoints q = coarse_.bend.q.back();
   for (int i = 1; i < 5; ++i) EXPECT_GT(q[i], q[i - 1]);
 }
 

@@ -44,7 +44,7 @@ TEST(SpaFree, ACantileverIsItsLimitOfManyLinks) {
 }
 
 // Squared natural frequencies [1/s²] of the chain at rest without gravity.
-Eigen::VectorXd Modes(double evenness, int links) {
+Eigen::VectorXd CriticalDamping(double evenness, int links) {
   const Machine machine =
       System::Parse(SpaMjcf(File(), {.links = links, .evenness = evenness})).Build();
   mjModel& m = *machine.model;
@@ -69,7 +69,7 @@ Eigen::VectorXd Modes(double evenness, int links) {
 // bend 1.8751² √(EI L0/(m L0⁴)), twice, then the rod π/2 √(k_dL1/m). N = 20 is 0.5 % from there.
 TEST(SpaFree, AtOneItSwingsAsAUniformBodyDoes) {
   const SpaParameters<double> p = File().parameters;
-  const Eigen::VectorXd modes = Modes(1, 20);
+  const Eigen::VectorXd modes = CriticalDamping(1, 20);
   const double bend = p.k_theta * p.d * p.d / (p.m * p.L0 * p.L0);
   EXPECT_NEAR(modes[0], std::pow(1.87510407, 4) * bend, 0.01 * modes[0]);
   EXPECT_NEAR(modes[1], modes[0], 1e-6 * modes[0]);
@@ -78,7 +78,7 @@ TEST(SpaFree, AtOneItSwingsAsAUniformBodyDoes) {
 
 TEST(SpaFree, StiffEnoughItSwingsAsTheArcDoes) {
   const SpaParameters<double> p = File().parameters;
-  const Eigen::VectorXd modes = Modes(1e4, 10);
+  const Eigen::VectorXd modes = CriticalDamping(1e4, 10);
   const double bend = p.k_theta * p.d * p.d / (p.m * p.L0 * p.L0);
   // The armature adds 1.7/N⁴, Simpson's weights 0.7/N⁴ to m L²/20.
   EXPECT_NEAR(modes[0], 20 * bend, 5e-4 * modes[0]);

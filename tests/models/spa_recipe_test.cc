@@ -153,7 +153,7 @@ TEST(SpaRegain, FindsTheMotionOfACleanRecording) {
 TEST(SpaIdentify, RecoversEveryParameterFromCleanRecordings) {
   const auto [truth, options] = ReadSpa(kFile);
   const Spa<double> spa(truth, options);
-  std::vector<SpaTrial> trials;
+  std::vector<SpaRecordedTrial> trials;
   const double cutoff = 200;
   const std::vector<Eigen::Vector3d> steps{{7e4, 0, 0}, {0, 4e4, 4e4},   {3e4, 0, 3e4},
                                            {0, 6e4, 0}, {2e4, 2e4, 2e4}, {4e4, 4e4, 4e4}};

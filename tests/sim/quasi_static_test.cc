@@ -50,7 +50,7 @@ class QuasiStatic : public ::testing::Test {
     trial.machine = System::Load(trial.experiment.model).Build();
     return trial;
   }
-  static Trace Run(Trial& trial, const Pace& pace = {}) {
+  static Trace Run(Trial& trial, const QuasiStaticOptions& pace = {}) {
     return SimulateAtRest(trial.machine, trial.experiment, trial.log(), {}, {}, pace);
   }
 
@@ -152,7 +152,7 @@ TEST_F(QuasiStatic, TwoMassesKeepTheFrictionOfTheWayTheyCame) {
 TEST_F(QuasiStatic, HalvingTheSpeedDoesNotMoveTheAnswer) {
   auto trial = Read(Chain(), kWay, {"x", "y"});
   const Trace usual = Run(trial);
-  Pace slow;
+  QuasiStaticOptions slow;
   slow.crossing *= 2;
   const Trace half = Run(trial, slow);
   for (std::size_t k = 0; k < kWay.size(); ++k) {
@@ -209,7 +209,7 @@ TEST_F(QuasiStatic, ARowWithoutRestIsNamed) {
       <worldbody><body><joint name="x" type="slide" axis="1 0 0"/><geom size=".1" mass="1"/></body></worldbody>
       <actuator><motor name="a" joint="x"/></actuator><sensor><jointpos name="x" joint="x"/></sensor>)";
   auto trial = Read(model, {1, 2, 4, 2}, {"x"});
-  Pace pace;
+  QuasiStaticOptions pace;
   pace.crossing = pace.patience =
       1;  // nothing holds the mass: its slowest mode is the longest that counts, 5 s
   const Trace trace = Run(trial, pace);
