@@ -24,11 +24,11 @@
 #include "identification/swarm.h"
 #include "sim/check.h"
 #include "sim/check_groups.h"
-#include "sim/file.h"
-#include "sim/output.h"
+#include "sim/io/file.h"
+#include "sim/io/interrupt.h"
+#include "sim/io/output_folder.h"
 #include "sim/registration.h"
 #include "sim/replay.h"
-#include "sim/stop.h"
 
 namespace continuum {
 namespace {

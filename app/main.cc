@@ -12,7 +12,7 @@
 #include "app/console.h"
 #include "app/solve.h"
 #include "error.h"
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include "app/filming.h"
 #include "error.h"
 #include "sim/clip.h"
-#include "sim/output.h"
+#include "sim/io/output_folder.h"
 #include "sim/registration.h"
 #include "sim/video.h"
 

@@ -10,10 +10,10 @@
 
 #include "app/console.h"
 #include "error.h"
-#include "sim/file.h"
 #include "sim/film.h"
-#include "sim/output.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
+#include "sim/io/output_folder.h"
 
 namespace continuum {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "app/console.h"
 #include "models/solver/solve.h"
-#include "sim/output.h"
+#include "sim/io/output_folder.h"
 
 namespace continuum {
 

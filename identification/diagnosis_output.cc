@@ -10,7 +10,7 @@
 #include "identification/extension.h"
 #include "identification/fit_output.h"
 #include "identification/next_experiment.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/replay.h"
 
 namespace continuum {

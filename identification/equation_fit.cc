@@ -14,7 +14,7 @@
 #include "identification/missing_force.h"
 #include "identification/noise.h"
 #include "identification/parallel.h"
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "sim/asset_folders.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/registration.h"
 
 namespace continuum {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {

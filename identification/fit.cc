@@ -12,7 +12,7 @@
 #include "identification/bounded.h"
 #include "identification/parallel.h"
 #include "identification/start_model.h"
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {

@@ -11,10 +11,10 @@
 #include "identification/noise.h"
 #include "identification/residual_plots.h"
 #include "identification/start_model.h"
-#include "sim/file.h"
-#include "sim/json.h"
+#include "sim/io/file.h"
+#include "sim/io/json.h"
+#include "sim/io/units.h"
 #include "sim/replay.h"
-#include "sim/units.h"
 
 namespace continuum {
 namespace {

@@ -13,7 +13,7 @@
 #include "identification/measure_candidates.h"
 #include "identification/places.h"
 #include "identification/search_range.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/measurement.h"
 #include "sim/mujoco.h"
 

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "sim/file.h"
-#include "sim/units.h"
+#include "sim/io/file.h"
+#include "sim/io/units.h"
 
 namespace continuum {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 namespace continuum {
 

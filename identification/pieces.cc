@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {

@@ -8,8 +8,8 @@
 #include "identification/smooth.h"
 #include "identification/stepped.h"
 #include "sim/inputs.h"
+#include "sim/io/interrupt.h"
 #include "sim/step_tangent.h"
-#include "sim/stop.h"
 
 namespace continuum {
 namespace {

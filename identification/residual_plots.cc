@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/units.h"
+#include "sim/io/units.h"
 
 namespace continuum {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "error.h"
 #include "identification/parallel.h"
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {

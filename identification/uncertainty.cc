@@ -10,7 +10,7 @@
 
 #include "error.h"
 #include "identification/invariance.h"
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {

@@ -8,8 +8,8 @@
 #include "error.h"
 #include "sim/check_model.h"
 #include "sim/check_series.h"
-#include "sim/stop.h"
-#include "sim/units.h"
+#include "sim/io/interrupt.h"
+#include "sim/io/units.h"
 
 namespace continuum {
 namespace {

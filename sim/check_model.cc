@@ -7,9 +7,9 @@
 #include "error.h"
 #include "sim/check_model.h"
 #include "sim/check_series.h"
+#include "sim/io/interrupt.h"
+#include "sim/io/units.h"
 #include "sim/registration.h"
-#include "sim/stop.h"
-#include "sim/units.h"
 
 namespace continuum {
 namespace {

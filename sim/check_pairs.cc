@@ -6,7 +6,7 @@
 
 #include "sim/check_rules.h"
 #include "sim/check_series.h"
-#include "sim/units.h"
+#include "sim/io/units.h"
 
 namespace continuum {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "sim/check_model.h"
-#include "sim/units.h"
+#include "sim/io/units.h"
 
 namespace continuum {
 namespace {

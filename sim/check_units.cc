@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "sim/io/units.h"
 #include "sim/measurement.h"
 #include "sim/simulate.h"
-#include "sim/units.h"
 
 namespace continuum {
 namespace {

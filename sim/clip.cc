@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/simulate.h"
 
 namespace continuum {

@@ -13,7 +13,7 @@
 #include "binding/actuator_type.h"
 #include "binding/config.h"
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -8,12 +8,12 @@
 
 #include "effects/effect.h"
 #include "error.h"
-#include "sim/file.h"
-#include "sim/mat.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
+#include "sim/io/mat_file.h"
+#include "sim/io/units.h"
 #include "sim/read_candidates.h"
 #include "sim/repeated_logs.h"
-#include "sim/table.h"
-#include "sim/units.h"
 
 namespace continuum {
 namespace {

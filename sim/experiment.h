@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/change.h"
-#include "sim/yaml.h"
+#include "sim/io/yaml.h"
 
 namespace continuum {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/measured_points.h"
 #include "sim/mujoco.h"
 #include "sim/round_number.h"

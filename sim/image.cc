@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

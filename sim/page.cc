@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/page_plot.h"
 #include "sim/page_series.h"
 #include "sim/page_text.h"

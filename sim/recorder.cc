@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "sim/io/units.h"
 #include "sim/object_frame.h"
 #include "sim/registration.h"
-#include "sim/units.h"
 
 namespace continuum {
 namespace {

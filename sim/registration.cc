@@ -9,7 +9,7 @@
 #include <Eigen/Dense>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/score.h"
 
 namespace continuum {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

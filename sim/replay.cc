@@ -7,8 +7,8 @@
 
 #include "error.h"
 #include "sim/check_units.h"
-#include "sim/file.h"
-#include "sim/own_files.h"
+#include "sim/io/file.h"
+#include "sim/io/output_manifest.h"
 #include "sim/possible.h"
 #include "sim/registration.h"
 #include "sim/sensor_score.h"

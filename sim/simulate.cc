@@ -12,12 +12,12 @@
 
 #include "engine.h"
 #include "error.h"
-#include "sim/file.h"
 #include "sim/inputs.h"
+#include "sim/io/file.h"
+#include "sim/io/interrupt.h"
 #include "sim/measurement.h"
 #include "sim/quasi_static.h"
 #include "sim/recorder.h"
-#include "sim/stop.h"
 
 namespace continuum {
 namespace {

@@ -11,7 +11,7 @@
 #include "sim/asset_folders.h"
 #include "sim/element.h"
 #include "sim/empty_config.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/native_effect.h"
 
 namespace continuum {

@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "error.h"
-#include "sim/file.h"
-#include "sim/output.h"
+#include "sim/io/file.h"
+#include "sim/io/output_folder.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

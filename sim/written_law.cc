@@ -6,7 +6,7 @@
 #include "binding/expression.h"
 #include "effects/all.h"
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

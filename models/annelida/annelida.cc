@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "models/generator/mjcf.h"
-#include "sim/file.h"
-#include "sim/yaml.h"
+#include "sim/io/file.h"
+#include "sim/io/yaml.h"
 
 namespace continuum {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "error.h"
 #include "models/annelida/releases.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "sim/chart.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/renderer.h"
 
 namespace continuum {

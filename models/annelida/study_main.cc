@@ -10,7 +10,7 @@
 #include "error.h"
 #include "models/annelida/pictures.h"
 #include "models/annelida/study.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

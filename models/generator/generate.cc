@@ -13,7 +13,7 @@
 #include "models/stiff_flop/mjcf.h"
 #include "models/tdcr/mjcf.h"
 #include "models/twin_pivot/mjcf.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

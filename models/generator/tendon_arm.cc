@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "error.h"
-#include "sim/yaml.h"
+#include "sim/io/yaml.h"
 
 namespace continuum {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <type_traits>
 
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 /// Roots and least squares of small dense systems, shared by the static models.
 ///

@@ -9,8 +9,8 @@
 
 #include "models/solver/font.h"
 #include "models/solver/results.h"
-#include "sim/file.h"
 #include "sim/image.h"
+#include "sim/io/file.h"
 #include "sim/round_number.h"
 
 namespace continuum::solver {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::solver {
 namespace {

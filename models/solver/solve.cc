@@ -1,7 +1,7 @@
 #include "models/solver/solve.h"
 
 #include "error.h"
-#include "sim/yaml.h"
+#include "sim/io/yaml.h"
 
 namespace continuum {
 

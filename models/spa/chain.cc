@@ -5,7 +5,7 @@
 
 #include "error.h"
 #include "models/generator/soft_segment.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/system.h"
 
 namespace continuum {

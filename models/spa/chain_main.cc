@@ -14,7 +14,7 @@
 #include "models/spa/fold.h"
 #include "models/spa/links_chart.h"
 #include "models/spa/side_force.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

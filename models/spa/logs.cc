@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "models/spa/chain.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "error.h"
-#include "sim/yaml.h"
+#include "sim/io/yaml.h"
 
 namespace continuum {
 namespace {

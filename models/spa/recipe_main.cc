@@ -11,7 +11,7 @@
 #include "error.h"
 #include "models/spa/logs.h"
 #include "models/spa/recipe.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

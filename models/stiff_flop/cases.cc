@@ -3,8 +3,8 @@
 
 #include "error.h"
 #include "models/stiff_flop/case.h"
-#include "sim/file.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
 
 namespace continuum::stiff_flop {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "error.h"
 #include "models/stiff_flop/forward.h"
-#include "sim/mat.h"
+#include "sim/io/mat_file.h"
 
 namespace continuum::stiff_flop {
 namespace {

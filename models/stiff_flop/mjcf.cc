@@ -12,7 +12,7 @@
 
 #include "effects/braid.h"
 #include "models/stiff_flop/elastic.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::stiff_flop {
 namespace {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "error.h"
-#include "sim/file.h"
-#include "sim/yaml.h"
+#include "sim/io/file.h"
+#include "sim/io/yaml.h"
 
 namespace continuum::stiff_flop {
 namespace {

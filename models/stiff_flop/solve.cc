@@ -10,7 +10,7 @@
 #include "models/solver/results.h"
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
-#include "sim/yaml.h"
+#include "sim/io/yaml.h"
 
 namespace continuum {
 namespace {

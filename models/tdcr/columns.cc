@@ -5,7 +5,7 @@
 #include <set>
 
 #include "error.h"
-#include "sim/shown.h"
+#include "sim/io/excerpt.h"
 
 namespace continuum::tdcr {
 namespace {

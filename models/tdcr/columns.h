@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/table.h"
-#include "sim/yaml.h"
+#include "sim/io/csv.h"
+#include "sim/io/yaml.h"
 
 namespace continuum::tdcr {
 

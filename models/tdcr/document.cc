@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::tdcr {
 

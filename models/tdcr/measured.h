@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "models/tdcr/robot.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
 
 namespace continuum::tdcr {
 

@@ -7,8 +7,8 @@
 #include "models/generator/pull.h"
 #include "models/tdcr/mjcf.h"
 #include "models/tdcr/model.h"
-#include "sim/table.h"
-#include "sim/yaml.h"
+#include "sim/io/csv.h"
+#include "sim/io/yaml.h"
 
 /// Prints the distances between the tips of the MJCF, pulled slowly, and of the Cosserat rod with
 /// friction, as Markdown.

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "models/solver/newton.h"
-#include "sim/table.h"
-#include "sim/yaml.h"
+#include "sim/io/csv.h"
+#include "sim/io/yaml.h"
 
 namespace continuum::tdcr {
 

@@ -10,7 +10,7 @@
 #include "models/tdcr/fit.h"
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/synthetic.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::tdcr {
 namespace {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "sim/file.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
 
 namespace continuum::twin_pivot {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "error.h"
 #include "models/solver/results.h"
-#include "sim/file.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
 
 namespace continuum::twin_pivot {
 namespace {

@@ -1,8 +1,8 @@
 
 #include "error.h"
 #include "models/twin_pivot/twin_pivot.h"
-#include "sim/file.h"
-#include "sim/yaml.h"
+#include "sim/io/file.h"
+#include "sim/io/yaml.h"
 
 namespace continuum::twin_pivot {
 namespace {

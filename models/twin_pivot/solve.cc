@@ -11,7 +11,7 @@
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
 #include "models/twin_pivot/twin_pivot.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "error.h"
 #include "models/twin_pivot/balance.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::twin_pivot {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "fuzz/fuzz.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
 
 namespace continuum {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

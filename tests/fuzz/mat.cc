@@ -1,7 +1,7 @@
 // A log of MATLAB: all vectors, and the matrix of one name. Version 7.3 is HDF5, of which damaged
 // files leak memory and take seconds inside that library: not tried here.
-#include "sim/mat.h"
 #include "fuzz/fuzz.h"
+#include "sim/io/mat_file.h"
 
 namespace continuum {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "hidden_effects/suite.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::hidden {
 namespace {

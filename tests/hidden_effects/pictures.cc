@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "sim/chart.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/page_text.h"
 
 namespace continuum::hidden {

@@ -9,7 +9,7 @@
 
 #include "hidden_effects/robots.h"
 #include "identification/diagnosis_output.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::hidden {
 namespace {

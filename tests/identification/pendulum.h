@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/experiment.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::testing {
 

@@ -2,7 +2,7 @@
 
 #include "identification/extension.h"
 #include "identification/fit.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/replay.h"
 #include "support/measured_arm.h"
 

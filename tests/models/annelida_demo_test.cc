@@ -8,8 +8,8 @@
 
 #include "identification/diagnosis.h"
 #include "sim/experiment.h"
+#include "sim/io/csv.h"
 #include "sim/simulate.h"
-#include "sim/table.h"
 
 namespace continuum {
 namespace {

@@ -11,7 +11,7 @@
 #include "error.h"
 #include "models/annelida/planar_chain.h"
 #include "models/annelida/study.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/system.h"
 
 namespace continuum {

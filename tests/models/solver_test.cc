@@ -10,7 +10,7 @@
 #include "models/solver/newton.h"
 #include "models/solver/plot.h"
 #include "models/solver/results.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::solver {
 namespace {

@@ -11,7 +11,7 @@
 #include "error.h"
 #include "models/spa/chain_error.h"
 #include "models/spa/statics.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/system.h"
 
 namespace continuum {

@@ -9,7 +9,7 @@
 #include "error.h"
 #include "models/spa/chain_error.h"
 #include "models/spa/side_force.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/system.h"
 
 namespace continuum {

@@ -8,7 +8,7 @@
 
 #include "error.h"
 #include "models/spa/filter.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "models/stiff_flop/forward.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/system.h"
 
 namespace continuum::stiff_flop {

@@ -7,8 +7,8 @@
 #include "error.h"
 #include "models/solver/solve.h"
 #include "models/stiff_flop/module.h"
-#include "sim/file.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
 
 namespace continuum::stiff_flop {
 namespace {

@@ -8,8 +8,8 @@
 #include "error.h"
 #include "models/generator/pull.h"
 #include "models/tdcr/model.h"
-#include "sim/file.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
 
 namespace continuum::tdcr {
 namespace {

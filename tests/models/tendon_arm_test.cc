@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/system.h"
 #include "support/scratch.h"
 

@@ -9,7 +9,7 @@
 #include "error.h"
 #include "models/generator/pull.h"
 #include "models/twin_pivot/cases.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::twin_pivot {
 namespace {

@@ -10,8 +10,8 @@
 #include "models/solver/solve.h"
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
-#include "sim/file.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
 
 namespace continuum::twin_pivot {
 namespace {

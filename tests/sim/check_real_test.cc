@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "check_bench.h"
-#include "sim/file.h"
-#include "sim/table.h"
+#include "sim/io/csv.h"
+#include "sim/io/file.h"
 #include "support/recordings.h"
 #include "support/scratch.h"
 

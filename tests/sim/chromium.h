@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::testing {
 

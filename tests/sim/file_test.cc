@@ -1,5 +1,5 @@
-#include "sim/file.h"
-#include "sim/output.h"
+#include "sim/io/file.h"
+#include "sim/io/output_folder.h"
 
 #include <sys/wait.h>
 #include <unistd.h>

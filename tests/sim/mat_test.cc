@@ -1,4 +1,4 @@
-#include "sim/mat.h"
+#include "sim/io/mat_file.h"
 
 #include <cstdint>
 #include <cstring>

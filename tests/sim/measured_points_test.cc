@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "support/measured_arm.h"
 
 namespace continuum {

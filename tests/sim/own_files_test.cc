@@ -1,4 +1,4 @@
-#include "sim/own_files.h"
+#include "sim/io/output_manifest.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 
 #include "chromium.h"
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "sim/page_scale.h"
 #include "sim/page_series.h"
 #include "sim/page_text.h"

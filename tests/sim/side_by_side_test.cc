@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "support/measured_arm.h"
 
 namespace continuum {

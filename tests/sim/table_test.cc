@@ -1,4 +1,4 @@
-#include "sim/table.h"
+#include "sim/io/csv.h"
 
 #include <cmath>
 #include <functional>
@@ -8,7 +8,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

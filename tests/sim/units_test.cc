@@ -1,4 +1,4 @@
-#include "sim/units.h"
+#include "sim/io/units.h"
 
 #include <numbers>
 

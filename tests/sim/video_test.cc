@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "error.h"
-#include "sim/file.h"
 #include "sim/image.h"
+#include "sim/io/file.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -12,7 +12,7 @@
 #include "identification/noise.h"
 #include "identification/problem.h"
 #include "sim/experiment.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::speed {
 

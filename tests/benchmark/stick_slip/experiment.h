@@ -11,7 +11,7 @@
 
 #include "benchmark/stick_slip/slider.h"
 #include "sim/experiment.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum::stick_slip {
 

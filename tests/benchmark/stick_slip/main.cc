@@ -16,7 +16,7 @@
 #include "identification/noise.h"
 #include "identification/path.h"
 #include "identification/uncertainty.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 #include "support/json_lines.h"
 
 namespace continuum::stick_slip {

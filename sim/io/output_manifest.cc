@@ -1,11 +1,11 @@
-#include "sim/own_files.h"
+#include "sim/io/output_manifest.h"
 
 #include <sstream>
 
 #include <fmt/core.h>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 #include <signal.h>
 #include <unistd.h>
@@ -12,7 +12,7 @@
 #include <iterator>
 
 #include "error.h"
-#include "sim/output.h"
+#include "sim/io/output_folder.h"
 
 namespace continuum {
 namespace fs = std::filesystem;

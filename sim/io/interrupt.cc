@@ -1,4 +1,4 @@
-#include "sim/stop.h"
+#include "sim/io/interrupt.h"
 
 #include <atomic>
 

@@ -1,4 +1,4 @@
-#include "sim/output.h"
+#include "sim/io/output_folder.h"
 
 #include <cerrno>
 #include <cstring>
@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

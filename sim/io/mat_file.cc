@@ -1,4 +1,4 @@
-#include "sim/mat.h"
+#include "sim/io/mat_file.h"
 
 #include <cstdint>
 #include <memory>
@@ -9,7 +9,7 @@
 #include <matio.h>
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

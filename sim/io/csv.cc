@@ -1,4 +1,4 @@
-#include "sim/table.h"
+#include "sim/io/csv.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,8 +7,8 @@
 #include <set>
 
 #include "error.h"
-#include "sim/file.h"
-#include "sim/shown.h"
+#include "sim/io/excerpt.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 namespace {

@@ -1,7 +1,7 @@
-#include "sim/json.h"
+#include "sim/io/json.h"
 
 #include "error.h"
-#include "sim/file.h"
+#include "sim/io/file.h"
 
 namespace continuum {
 

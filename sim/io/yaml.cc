@@ -1,4 +1,4 @@
-#include "sim/yaml.h"
+#include "sim/io/yaml.h"
 
 #include <algorithm>
 #include <charconv>
@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "error.h"
-#include "sim/file.h"
-#include "sim/repeated_keys.h"
-#include "sim/shown.h"
-#include "sim/units.h"
+#include "sim/io/excerpt.h"
+#include "sim/io/file.h"
+#include "sim/io/repeated_keys.h"
+#include "sim/io/units.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "sim/repeated_keys.h"
+#include "sim/io/repeated_keys.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -9,7 +9,7 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include "error.h"
-#include "sim/shown.h"
+#include "sim/io/excerpt.h"
 
 namespace continuum {
 namespace {
