@@ -14,9 +14,9 @@
 #include "identification/fallback.h"
 #include "identification/next_experiment.h"
 #include "identification/pairs.h"
-#include "identification/parallel.h"
 #include "identification/rounding.h"
 #include "identification/start_model.h"
+#include "sim/numerics/parallel.h"
 
 namespace continuum {
 namespace {

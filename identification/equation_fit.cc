@@ -13,8 +13,8 @@
 #include "identification/far.h"
 #include "identification/missing_force.h"
 #include "identification/noise.h"
-#include "identification/parallel.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/parallel.h"
 
 namespace continuum {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "error.h"
 #include "identification/bounded.h"
-#include "identification/parallel.h"
 #include "identification/start_model.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/parallel.h"
 
 namespace continuum {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "error.h"
 #include "identification/far.h"
-#include "identification/random.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "identification/random.h"
+#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {

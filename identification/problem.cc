@@ -9,12 +9,12 @@
 #include <set>
 
 #include "error.h"
-#include "identification/parallel.h"
 #include "identification/smooth.h"
 #include "identification/starts.h"
 #include "identification/twice.h"
 #include "identification/unit.h"
 #include "sim/measurement.h"
+#include "sim/numerics/parallel.h"
 #include "sim/registration.h"
 
 namespace continuum {

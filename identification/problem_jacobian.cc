@@ -3,12 +3,12 @@
 #include <numeric>
 
 #include "error.h"
-#include "identification/parallel.h"
 #include "identification/problem.h"
 #include "identification/smooth.h"
 #include "identification/stepped.h"
 #include "sim/inputs.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/parallel.h"
 #include "sim/step_tangent.h"
 
 namespace continuum {

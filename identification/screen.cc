@@ -7,9 +7,9 @@
 
 #include <Eigen/Dense>
 
-#include "identification/parallel.h"
-#include "identification/random.h"
 #include "identification/uncertainty.h"
+#include "sim/numerics/parallel.h"
+#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "identification/parallel.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/parallel.h"
 
 namespace continuum {
 namespace {

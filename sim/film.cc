@@ -11,7 +11,7 @@
 #include "sim/io/file.h"
 #include "sim/measured_points.h"
 #include "sim/mujoco.h"
-#include "sim/round_number.h"
+#include "sim/numerics/round_number.h"
 #include "sim/video.h"
 
 namespace continuum {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/round_number.h"
+#include "sim/numerics/round_number.h"
 
 namespace continuum {
 namespace {

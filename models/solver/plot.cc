@@ -11,7 +11,7 @@
 #include "models/solver/results.h"
 #include "sim/image.h"
 #include "sim/io/file.h"
-#include "sim/round_number.h"
+#include "sim/numerics/round_number.h"
 
 namespace continuum::solver {
 namespace {

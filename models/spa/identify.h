@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "models/spa/experiment.h"
-#include "models/spa/swarm.h"
+#include "sim/numerics/particle_swarm.h"
 
 namespace continuum {
 

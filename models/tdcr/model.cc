@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "error.h"
-#include "models/solver/eigenvalues.h"
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
+#include "sim/numerics/decompositions.h"
 
 namespace continuum::tdcr {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/round_number.h"
+#include "sim/numerics/round_number.h"
 
 #include <gtest/gtest.h>
 

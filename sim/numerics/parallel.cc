@@ -1,4 +1,4 @@
-#include "identification/parallel.h"
+#include "sim/numerics/parallel.h"
 
 #include <algorithm>
 #include <atomic>

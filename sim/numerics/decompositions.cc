@@ -1,4 +1,4 @@
-#include "models/solver/eigenvalues.h"
+#include "sim/numerics/decompositions.h"
 
 #include <Eigen/Eigenvalues>
 
