@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "identification/problem.h"
-#include "sim/page.h"
+#include "sim/page/page.h"
 #include "sim/replay.h"
 
 namespace continuum {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/page.h"
+#include "sim/page/page.h"
 #include "sim/score.h"
 
 namespace continuum {

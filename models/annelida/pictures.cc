@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/chart.h"
 #include "sim/io/file.h"
+#include "sim/page/chart.h"
 #include "sim/renderer.h"
 
 namespace continuum {

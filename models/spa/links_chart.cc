@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/chart.h"
+#include "sim/page/chart.h"
 
 namespace continuum {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "sim/chart.h"
 #include "sim/io/file.h"
-#include "sim/page_text.h"
+#include "sim/page/chart.h"
+#include "sim/page/text.h"
 
 namespace continuum::hidden {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/chart.h"
+#include "sim/page/chart.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "sim/page.h"
+#include "sim/page/page.h"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -18,9 +18,9 @@
 #include "chromium.h"
 #include "error.h"
 #include "sim/io/file.h"
-#include "sim/page_scale.h"
-#include "sim/page_series.h"
-#include "sim/page_text.h"
+#include "sim/page/axis_scale.h"
+#include "sim/page/text.h"
+#include "sim/page/time_series.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/page_plot.h"
+#include "sim/page/plots.h"
 
 #include <fmt/core.h>
 
@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "error.h"
-#include "sim/page_scale.h"
-#include "sim/page_text.h"
+#include "sim/page/axis_scale.h"
+#include "sim/page/text.h"
 
 namespace continuum::page {
 namespace {

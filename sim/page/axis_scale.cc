@@ -1,9 +1,9 @@
-#include "sim/page_scale.h"
+#include "sim/page/axis_scale.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/page_text.h"
+#include "sim/page/text.h"
 
 namespace continuum::page {
 namespace {

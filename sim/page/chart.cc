@@ -1,10 +1,10 @@
-#include "sim/chart.h"
+#include "sim/page/chart.h"
 
 #include <fmt/core.h>
 
 #include "error.h"
-#include "sim/page_scale.h"
-#include "sim/page_text.h"
+#include "sim/page/axis_scale.h"
+#include "sim/page/text.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/page_text.h"
+#include "sim/page/text.h"
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "sim/page.h"
+#include "sim/page/page.h"
 
 namespace continuum::page {
 

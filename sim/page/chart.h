@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/page.h"
+#include "sim/page/page.h"
 
 namespace continuum {
 

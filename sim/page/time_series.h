@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/page.h"
+#include "sim/page/page.h"
 
 namespace continuum::page {
 

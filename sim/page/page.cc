@@ -1,4 +1,4 @@
-#include "sim/page.h"
+#include "sim/page/page.h"
 
 #include <fmt/core.h>
 
@@ -9,9 +9,9 @@
 
 #include "error.h"
 #include "sim/io/file.h"
-#include "sim/page_plot.h"
-#include "sim/page_series.h"
-#include "sim/page_text.h"
+#include "sim/page/plots.h"
+#include "sim/page/text.h"
+#include "sim/page/time_series.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "sim/page_series.h"
+#include "sim/page/time_series.h"
 
 #include <fmt/core.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "sim/page_text.h"
+#include "sim/page/text.h"
 
 namespace continuum::page {
 namespace {
