@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/asset_folders.h"
 #include "sim/io/file.h"
+#include "sim/model/asset_folders.h"
 #include "sim/registration.h"
 
 namespace continuum {

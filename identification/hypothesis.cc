@@ -15,7 +15,7 @@
 #include "identification/search_range.h"
 #include "sim/io/file.h"
 #include "sim/measurement.h"
-#include "sim/mujoco.h"
+#include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 namespace {

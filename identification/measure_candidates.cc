@@ -7,7 +7,7 @@
 #include "binding/config.h"
 #include "identification/places.h"
 #include "sim/measurement.h"
-#include "sim/mujoco.h"
+#include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 namespace {

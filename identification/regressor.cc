@@ -14,7 +14,7 @@
 #include "identification/rests.h"
 #include "sim/inputs.h"
 #include "sim/measurement.h"
-#include "sim/ties.h"
+#include "sim/model/joint_equalities.h"
 
 namespace continuum {
 namespace {

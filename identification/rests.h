@@ -5,7 +5,7 @@
 #include <mujoco/mujoco.h>
 #include <Eigen/Core>
 
-#include "sim/ties.h"
+#include "sim/model/joint_equalities.h"
 
 namespace continuum {
 

@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "error.h"
-#include "sim/possible.h"
+#include "sim/model/attribute_bounds.h"
 
 namespace continuum {
 namespace {

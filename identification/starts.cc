@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "error.h"
-#include "sim/ties.h"
+#include "sim/model/joint_equalities.h"
 
 namespace continuum {
 namespace {

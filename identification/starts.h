@@ -6,7 +6,7 @@ namespace continuum {
 
 /// Where the trials begin when nobody says it (start: estimate): position and speed of every hinge
 /// and slide joint at the first row of each log, two parameters each, but for joints that linear
-/// equalities tie to others (sim/ties.h). They begin at what the log
+/// equalities tie to others (sim/model/joint_equalities.h). They begin at what the log
 /// measures there (StartOf), and stay within what it does at all. Empty for other starts. Throws
 /// Error for joints of other kinds.
 std::vector<FreeParameter> StartParameters(const Experiment& experiment, const System& system);

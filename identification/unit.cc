@@ -6,7 +6,7 @@
 
 #include "binding/config.h"
 #include "effects/all.h"
-#include "sim/native_effect.h"
+#include "sim/model/native_effect.h"
 
 namespace continuum {
 namespace {

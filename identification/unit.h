@@ -3,7 +3,7 @@
 #include <string>
 
 #include "sim/experiment.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/experiment.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 

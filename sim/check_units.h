@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/experiment.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 

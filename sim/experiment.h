@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/change.h"
 #include "sim/io/yaml.h"
+#include "sim/model/change.h"
 
 namespace continuum {
 

@@ -10,7 +10,7 @@
 #include "error.h"
 #include "sim/io/file.h"
 #include "sim/measured_points.h"
-#include "sim/mujoco.h"
+#include "sim/model/mujoco_handles.h"
 #include "sim/numerics/round_number.h"
 #include "sim/video.h"
 

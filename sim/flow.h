@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "sim/inputs.h"
+#include "sim/model/joint_equalities.h"
 #include "sim/recorder.h"
-#include "sim/ties.h"
 
 namespace continuum {
 

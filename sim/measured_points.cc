@@ -5,7 +5,7 @@
 #include <map>
 
 #include "sim/measurement.h"
-#include "sim/object_frame.h"
+#include "sim/model/object_frame.h"
 #include "sim/registration.h"
 
 namespace continuum {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "sim/change.h"
 #include "sim/experiment.h"
+#include "sim/model/change.h"
 
 namespace continuum {
 

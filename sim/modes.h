@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "sim/mujoco.h"
+#include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 

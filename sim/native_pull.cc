@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/mujoco.h"
+#include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "sim/io/units.h"
-#include "sim/object_frame.h"
+#include "sim/model/object_frame.h"
 #include "sim/registration.h"
 
 namespace continuum {

@@ -9,7 +9,7 @@
 #include "sim/check_units.h"
 #include "sim/io/file.h"
 #include "sim/io/output_manifest.h"
-#include "sim/possible.h"
+#include "sim/model/attribute_bounds.h"
 #include "sim/registration.h"
 #include "sim/sensor_score.h"
 

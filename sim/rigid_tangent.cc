@@ -1,6 +1,6 @@
 #include "sim/rigid_tangent.h"
 
-#include "sim/lever.h"
+#include "sim/model/point_jacobian.h"
 
 namespace continuum {
 namespace {

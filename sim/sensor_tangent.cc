@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "sim/lever.h"
-#include "sim/mujoco.h"
-#include "sim/object_frame.h"
+#include "sim/model/mujoco_handles.h"
+#include "sim/model/object_frame.h"
+#include "sim/model/point_jacobian.h"
 
 namespace continuum {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/experiment.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 

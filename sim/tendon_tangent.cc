@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "sim/lever.h"
-#include "sim/mujoco.h"
+#include "sim/model/mujoco_handles.h"
+#include "sim/model/point_jacobian.h"
 
 namespace continuum {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "models/annelida/planar_chain.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/mujoco.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
+#include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 

@@ -7,7 +7,7 @@
 
 #include "error.h"
 #include "sim/io/file.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 namespace {

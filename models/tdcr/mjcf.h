@@ -4,7 +4,7 @@
 #include <string>
 
 #include "models/tdcr/robot.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum::tdcr {
 

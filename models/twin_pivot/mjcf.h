@@ -3,7 +3,7 @@
 #include <string>
 
 #include "models/twin_pivot/twin_pivot.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum::twin_pivot {
 

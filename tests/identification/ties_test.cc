@@ -1,4 +1,4 @@
-#include "sim/ties.h"
+#include "sim/model/joint_equalities.h"
 
 #include <cmath>
 #include <string>

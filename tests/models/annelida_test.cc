@@ -12,7 +12,7 @@
 #include "models/annelida/planar_chain.h"
 #include "models/annelida/study.h"
 #include "sim/io/file.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 namespace {

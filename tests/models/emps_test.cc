@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/model/model_spec.h"
 #include "sim/simulate.h"
-#include "sim/system.h"
 #include "support/real_log.h"
 
 namespace continuum {

@@ -7,7 +7,7 @@
 
 #include "models/spa/parameters.h"
 #include "models/spa/spa.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 namespace {

@@ -12,7 +12,7 @@
 #include "models/spa/chain_error.h"
 #include "models/spa/statics.h"
 #include "sim/io/file.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 namespace {

@@ -10,7 +10,7 @@
 #include "models/spa/chain_error.h"
 #include "models/spa/side_force.h"
 #include "sim/io/file.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 namespace {

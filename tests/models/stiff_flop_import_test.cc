@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/model/model_spec.h"
 #include "sim/score.h"
 #include "sim/simulate.h"
-#include "sim/system.h"
 #include "support/real_log.h"
 
 namespace continuum {

@@ -9,7 +9,7 @@
 
 #include "models/stiff_flop/forward.h"
 #include "sim/io/file.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum::stiff_flop {
 namespace {

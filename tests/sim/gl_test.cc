@@ -10,9 +10,9 @@
 #include <string>
 
 #include "error.h"
-#include "sim/mujoco.h"
+#include "sim/model/model_spec.h"
+#include "sim/model/mujoco_handles.h"
 #include "sim/renderer.h"
-#include "sim/system.h"
 #include "support/scratch.h"
 
 namespace continuum {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 #include "support/scratch.h"
 
 namespace continuum {

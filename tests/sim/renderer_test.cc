@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "error.h"
-#include "sim/mujoco.h"
+#include "sim/model/mujoco_handles.h"
 #include "sim/painter.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "sim/experiment.h"
+#include "sim/model/model_spec.h"
 #include "sim/registration.h"
 #include "sim/simulate.h"
-#include "sim/system.h"
 #include "support/scratch.h"
 
 namespace continuum::testing {

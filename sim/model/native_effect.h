@@ -6,7 +6,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "sim/change.h"
+#include "sim/model/change.h"
 
 namespace continuum {
 

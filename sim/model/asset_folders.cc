@@ -1,4 +1,4 @@
-#include "sim/asset_folders.h"
+#include "sim/model/asset_folders.h"
 
 namespace continuum {
 namespace {

@@ -1,11 +1,11 @@
-#include "sim/native_effect.h"
+#include "sim/model/native_effect.h"
 
 #include <cmath>
 
 #include "effects/all.h"
 #include "error.h"
-#include "sim/element.h"
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
+#include "sim/model/spec_element.h"
 
 namespace continuum {
 namespace {

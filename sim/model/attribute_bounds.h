@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sim/change.h"
+#include "sim/model/change.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "sim/system.h"
+#include "sim/model/model_spec.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include "effects/all.h"
 #include "engine.h"
 #include "error.h"
-#include "sim/asset_folders.h"
-#include "sim/element.h"
-#include "sim/empty_config.h"
 #include "sim/io/file.h"
-#include "sim/native_effect.h"
+#include "sim/model/asset_folders.h"
+#include "sim/model/native_effect.h"
+#include "sim/model/plugin_config_check.h"
+#include "sim/model/spec_element.h"
 
 namespace continuum {
 namespace {

@@ -1,10 +1,10 @@
-#include "sim/ties.h"
+#include "sim/model/joint_equalities.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "sim/mujoco.h"
+#include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/possible.h"
+#include "sim/model/attribute_bounds.h"
 
 #include <array>
 #include <string_view>

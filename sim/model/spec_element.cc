@@ -1,4 +1,4 @@
-#include "sim/element.h"
+#include "sim/model/spec_element.h"
 
 #include <cmath>
 #include <cstring>

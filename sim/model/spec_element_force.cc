@@ -1,7 +1,7 @@
 #include <string>
 
 #include "error.h"
-#include "sim/element.h"
+#include "sim/model/spec_element.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/empty_config.h"
+#include "sim/model/plugin_config_check.h"
 
 #include <algorithm>
 #include <optional>

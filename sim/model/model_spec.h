@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/change.h"
-#include "sim/mujoco.h"
+#include "sim/model/change.h"
+#include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 
