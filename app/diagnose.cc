@@ -9,10 +9,10 @@
 #include "error.h"
 #include "identification/diagnosis_output.h"
 #include "identification/extension.h"
+#include "sim/experiment/registration.h"
 #include "sim/io/file.h"
 #include "sim/io/json.h"
 #include "sim/io/output_folder.h"
-#include "sim/registration.h"
 #include "sim/replay.h"
 #include "sim/side_by_side.h"
 

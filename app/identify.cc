@@ -24,10 +24,10 @@
 #include "identification/swarm.h"
 #include "sim/check.h"
 #include "sim/check_groups.h"
+#include "sim/experiment/registration.h"
 #include "sim/io/file.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/output_folder.h"
-#include "sim/registration.h"
 #include "sim/replay.h"
 
 namespace continuum {

@@ -4,8 +4,8 @@
 #include "app/filming.h"
 #include "error.h"
 #include "sim/clip.h"
+#include "sim/experiment/registration.h"
 #include "sim/io/output_folder.h"
-#include "sim/registration.h"
 #include "sim/video.h"
 
 namespace continuum {

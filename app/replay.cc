@@ -12,9 +12,9 @@
 #include "identification/hypothesis.h"
 #include "identification/problem.h"
 #include "sim/check.h"
+#include "sim/experiment/registration.h"
 #include "sim/io/file.h"
 #include "sim/io/output_folder.h"
-#include "sim/registration.h"
 #include "sim/sensor_score.h"
 #include "sim/video.h"
 

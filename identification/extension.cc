@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "sim/experiment/registration.h"
 #include "sim/io/file.h"
 #include "sim/model/asset_folders.h"
-#include "sim/registration.h"
 
 namespace continuum {
 namespace {

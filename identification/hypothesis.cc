@@ -13,8 +13,8 @@
 #include "identification/measure_candidates.h"
 #include "identification/places.h"
 #include "identification/search_range.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/io/file.h"
-#include "sim/measurement.h"
 #include "sim/model/mujoco_handles.h"
 
 namespace continuum {

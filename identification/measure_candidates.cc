@@ -6,7 +6,7 @@
 
 #include "binding/config.h"
 #include "identification/places.h"
-#include "sim/measurement.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/model/mujoco_handles.h"
 
 namespace continuum {

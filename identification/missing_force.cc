@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "sim/measurement.h"
+#include "sim/experiment/measurement_model.h"
 
 namespace continuum {
 namespace {

@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "sim/replicates.h"
+#include "sim/experiment/replicates.h"
 
 namespace continuum {
 namespace {

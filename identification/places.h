@@ -6,7 +6,7 @@
 #include <mujoco/mujoco.h>
 
 #include "identification/catalog.h"
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 
 namespace continuum {
 

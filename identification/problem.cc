@@ -13,9 +13,9 @@
 #include "identification/starts.h"
 #include "identification/twice.h"
 #include "identification/unit.h"
-#include "sim/measurement.h"
+#include "sim/experiment/measurement_model.h"
+#include "sim/experiment/registration.h"
 #include "sim/numerics/parallel.h"
-#include "sim/registration.h"
 
 namespace continuum {
 namespace {

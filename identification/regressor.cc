@@ -12,8 +12,8 @@
 #include "error.h"
 #include "identification/lowpass.h"
 #include "identification/rests.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/inputs.h"
-#include "sim/measurement.h"
 #include "sim/model/joint_equalities.h"
 
 namespace continuum {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "error.h"
-#include "sim/measurement.h"
+#include "sim/experiment/measurement_model.h"
 
 namespace continuum {
 namespace {

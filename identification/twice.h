@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/model/model_spec.h"
 
 namespace continuum {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/model/model_spec.h"
 
 namespace continuum {

@@ -7,9 +7,9 @@
 #include "error.h"
 #include "sim/check_model.h"
 #include "sim/check_series.h"
+#include "sim/experiment/registration.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/units.h"
-#include "sim/registration.h"
 
 namespace continuum {
 namespace {

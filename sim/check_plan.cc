@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "sim/check_rules.h"
-#include "sim/replicates.h"
+#include "sim/experiment/replicates.h"
 
 namespace continuum {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "sim/check_model.h"
 #include "sim/check_series.h"
-#include "sim/measurement.h"
+#include "sim/experiment/measurement_model.h"
 
 namespace continuum {
 namespace {

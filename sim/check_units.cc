@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/experiment/measurement_model.h"
 #include "sim/io/units.h"
-#include "sim/measurement.h"
 #include "sim/simulate.h"
 
 namespace continuum {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/model/model_spec.h"
 
 namespace continuum {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/film.h"
 
 namespace continuum {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "sim/measurement.h"
+#include "sim/experiment/measurement_model.h"
+#include "sim/experiment/registration.h"
 #include "sim/model/object_frame.h"
-#include "sim/registration.h"
 
 namespace continuum {
 namespace {

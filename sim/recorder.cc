@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "sim/experiment/registration.h"
 #include "sim/io/units.h"
 #include "sim/model/object_frame.h"
-#include "sim/registration.h"
 
 namespace continuum {
 namespace {

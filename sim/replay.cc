@@ -7,10 +7,10 @@
 
 #include "error.h"
 #include "sim/check_units.h"
+#include "sim/experiment/registration.h"
 #include "sim/io/file.h"
 #include "sim/io/output_manifest.h"
 #include "sim/model/attribute_bounds.h"
-#include "sim/registration.h"
 #include "sim/sensor_score.h"
 
 namespace continuum {

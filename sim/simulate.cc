@@ -12,10 +12,10 @@
 
 #include "engine.h"
 #include "error.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/inputs.h"
 #include "sim/io/file.h"
 #include "sim/io/interrupt.h"
-#include "sim/measurement.h"
 #include "sim/quasi_static.h"
 #include "sim/recorder.h"
 

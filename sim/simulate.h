@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/model/model_spec.h"
 
 namespace continuum {

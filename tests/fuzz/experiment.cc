@@ -1,5 +1,5 @@
 // An EXPERIMENT.yaml beside a good model and a log that has a column for each of its outputs.
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "app/bench.h"
 #include "fuzz/fuzz.h"
 

@@ -1,4 +1,4 @@
-#include "sim/measurement.h"
+#include "sim/experiment/measurement_model.h"
 
 #include <cmath>
 

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/io/file.h"
 
 namespace continuum::testing {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/diagnosis.h"
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/io/csv.h"
 #include "sim/simulate.h"
 

@@ -1,4 +1,4 @@
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 
 #include <cmath>
 #include <functional>

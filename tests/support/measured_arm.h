@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
+#include "sim/experiment/registration.h"
 #include "sim/model/model_spec.h"
-#include "sim/registration.h"
 #include "sim/simulate.h"
 #include "support/scratch.h"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "support/recordings.h"
 #include "support/scratch.h"
 

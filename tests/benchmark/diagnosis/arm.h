@@ -11,7 +11,7 @@
 
 #include "identification/noise.h"
 #include "identification/problem.h"
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/io/file.h"
 
 namespace continuum::speed {

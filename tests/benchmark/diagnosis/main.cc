@@ -11,7 +11,7 @@
 #include "benchmark/diagnosis/split.h"
 #include "error.h"
 #include "identification/diagnosis.h"
-#include "sim/registration.h"
+#include "sim/experiment/registration.h"
 
 namespace continuum::speed {
 namespace {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "benchmark/stick_slip/slider.h"
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/io/file.h"
 
 namespace continuum::stick_slip {

@@ -1,4 +1,4 @@
-#include "sim/written_law.h"
+#include "sim/experiment/formula_candidate.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "sim/registration.h"
+#include "sim/experiment/registration.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,11 +1,11 @@
-#include "sim/read_candidates.h"
+#include "sim/experiment/candidate_list.h"
 
 #include <string>
 #include <utility>
 
 #include "effects/all.h"
 #include "error.h"
-#include "sim/written_law.h"
+#include "sim/experiment/formula_candidate.h"
 
 namespace continuum {
 namespace {

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 #include "sim/model/change.h"
 
 namespace continuum {
 
 /// Whether a change is one of how channels are measured instead of the model: target "sensor:GLOB
 /// …" (of sensors, actuators or columns of outputs) with bias, scale, delay, rate or angle, target
-/// "time" with skew, or target "registration" (sim/registration.h).
+/// "time" with skew, or target "registration" (sim/experiment/registration.h).
 bool IsMeasurement(const std::string& target, const std::string& attribute);
 
 /// The value that such a change would replace, of the first output that matches. Throws Error when

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 
 namespace continuum {
 

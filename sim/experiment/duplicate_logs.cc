@@ -1,4 +1,4 @@
-#include "sim/repeated_logs.h"
+#include "sim/experiment/duplicate_logs.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "sim/replicates.h"
+#include "sim/experiment/replicates.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "sim/experiment.h"
+#include "sim/experiment/experiment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@
 
 #include "effects/effect.h"
 #include "error.h"
+#include "sim/experiment/candidate_list.h"
+#include "sim/experiment/duplicate_logs.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"
 #include "sim/io/mat_file.h"
 #include "sim/io/units.h"
-#include "sim/read_candidates.h"
-#include "sim/repeated_logs.h"
 
 namespace continuum {
 namespace {

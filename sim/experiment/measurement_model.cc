@@ -1,10 +1,10 @@
-#include "sim/measurement.h"
+#include "sim/experiment/measurement_model.h"
 
 #include <map>
 
 #include "binding/config.h"
 #include "error.h"
-#include "sim/registration.h"
+#include "sim/experiment/registration.h"
 
 namespace continuum {
 namespace {
