@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "identification/pieces.h"
-#include "sim/score.h"
+#include "sim/simulation/score.h"
 
 namespace continuum {
 namespace {

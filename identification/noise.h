@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/score.h"
+#include "sim/simulation/score.h"
 
 namespace continuum {
 

@@ -12,8 +12,8 @@
 #include "identification/cvodes.h"
 #include "identification/stepped.h"
 #include "sim/flow.h"
-#include "sim/score.h"
-#include "sim/simulate.h"
+#include "sim/simulation/score.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

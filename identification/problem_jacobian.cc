@@ -6,9 +6,9 @@
 #include "identification/problem.h"
 #include "identification/smooth.h"
 #include "identification/stepped.h"
-#include "sim/inputs.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
+#include "sim/simulation/input_signals.h"
 #include "sim/step_tangent.h"
 
 namespace continuum {

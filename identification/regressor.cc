@@ -13,8 +13,8 @@
 #include "identification/lowpass.h"
 #include "identification/rests.h"
 #include "sim/experiment/measurement_model.h"
-#include "sim/inputs.h"
 #include "sim/model/joint_equalities.h"
+#include "sim/simulation/input_signals.h"
 
 namespace continuum {
 namespace {

@@ -1,7 +1,7 @@
 #include "identification/stepped.h"
 
 #include "identification/smooth.h"
-#include "sim/inputs.h"
+#include "sim/simulation/input_signals.h"
 #include "sim/step_tangent.h"
 
 namespace continuum {

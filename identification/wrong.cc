@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/score.h"
+#include "sim/simulation/score.h"
 
 namespace continuum {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "sim/check_rules.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

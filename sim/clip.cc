@@ -6,7 +6,7 @@
 
 #include "error.h"
 #include "sim/io/file.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

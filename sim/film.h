@@ -9,7 +9,7 @@
 
 #include "sim/measured_points.h"
 #include "sim/renderer.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/inputs.h"
 #include "sim/model/joint_equalities.h"
-#include "sim/recorder.h"
+#include "sim/simulation/input_signals.h"
+#include "sim/simulation/output_recorder.h"
 
 namespace continuum {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

@@ -6,7 +6,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

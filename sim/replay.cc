@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "sim/check_units.h"
 #include "sim/experiment/registration.h"
 #include "sim/io/file.h"
 #include "sim/io/output_manifest.h"
 #include "sim/model/attribute_bounds.h"
 #include "sim/sensor_score.h"
+#include "sim/simulation/output_units.h"
 
 namespace continuum {
 namespace {

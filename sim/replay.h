@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/page/page.h"
-#include "sim/score.h"
+#include "sim/simulation/score.h"
 
 namespace continuum {
 

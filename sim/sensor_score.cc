@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "sim/score.h"
+#include "sim/simulation/score.h"
 
 namespace continuum {
 namespace {

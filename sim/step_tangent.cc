@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/recorder.h"
+#include "sim/simulation/output_recorder.h"
 
 namespace continuum {
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "sim/recorder.h"
 #include "sim/sensor_tangent.h"
+#include "sim/simulation/output_recorder.h"
 #include "sim/tangent.h"
 
 namespace continuum {

@@ -136,7 +136,7 @@ struct Experiment {
   std::string time_column = "time", time_unit = "s";
   double skew = 0;
   Start start = Start::kRest;
-  bool quasi_static = false;  ///< rows in order, each at rest: sim/quasi_static.h
+  bool quasi_static = false;  ///< rows in order, each at rest: sim/simulation/quasi_static.h
   std::vector<Input> inputs;
   std::vector<Output> outputs;
   Registration registration;

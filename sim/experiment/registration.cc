@@ -10,7 +10,7 @@
 
 #include "error.h"
 #include "sim/io/file.h"
-#include "sim/score.h"
+#include "sim/simulation/score.h"
 
 namespace continuum {
 namespace {

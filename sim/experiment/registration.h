@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/diagnosis.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 #include "support/real_log.h"
 
 namespace continuum {

@@ -9,7 +9,7 @@
 #include "identification/diagnosis.h"
 #include "sim/experiment/experiment.h"
 #include "sim/io/csv.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

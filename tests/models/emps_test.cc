@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/model/model_spec.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 #include "support/real_log.h"
 
 namespace continuum {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "sim/model/model_spec.h"
-#include "sim/score.h"
-#include "sim/simulate.h"
+#include "sim/simulation/score.h"
+#include "sim/simulation/simulate.h"
 #include "support/real_log.h"
 
 namespace continuum {

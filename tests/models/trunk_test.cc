@@ -4,7 +4,7 @@
 
 #include "error.h"
 #include "sim/model/model_spec.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 #include "support/real_log.h"
 
 namespace continuum {

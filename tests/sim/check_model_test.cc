@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "check_bench.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/quasi_static.h"
+#include "sim/simulation/quasi_static.h"
 
 #include <algorithm>
 #include <cmath>

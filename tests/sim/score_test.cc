@@ -1,4 +1,4 @@
-#include "sim/score.h"
+#include "sim/simulation/score.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 #include <cmath>
 

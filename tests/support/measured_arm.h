@@ -9,7 +9,7 @@
 #include "sim/experiment/experiment.h"
 #include "sim/experiment/registration.h"
 #include "sim/model/model_spec.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 #include "support/scratch.h"
 
 namespace continuum::testing {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

@@ -16,7 +16,8 @@ class CriticalDamping {
   /// Measures stiffness at d.
   void Update(mjModel& m, mjData& d);
 
-  /// What critical damping of all modes lacks: the force −C v of (1) in sim/quasi_static.h.
+  /// What critical damping of all modes lacks: the force −C v of (1) in
+  /// sim/simulation/quasi_static.h.
   Eigen::VectorXd Brake(const mjData& d) const;
   /// Time constant of the slowest mode with that damping [s].
   double slowest() const { return slowest_; }

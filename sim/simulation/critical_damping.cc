@@ -1,4 +1,4 @@
-#include "sim/modes.h"
+#include "sim/simulation/critical_damping.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "sim/check_units.h"
+#include "sim/simulation/output_units.h"
 
 #include <algorithm>
 
 #include "sim/experiment/measurement_model.h"
 #include "sim/io/units.h"
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

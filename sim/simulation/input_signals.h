@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 #include <algorithm>
 #include <charconv>
@@ -13,11 +13,11 @@
 #include "engine.h"
 #include "error.h"
 #include "sim/experiment/measurement_model.h"
-#include "sim/inputs.h"
 #include "sim/io/file.h"
 #include "sim/io/interrupt.h"
-#include "sim/quasi_static.h"
-#include "sim/recorder.h"
+#include "sim/simulation/input_signals.h"
+#include "sim/simulation/output_recorder.h"
+#include "sim/simulation/quasi_static.h"
 
 namespace continuum {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/simulate.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

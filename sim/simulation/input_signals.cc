@@ -1,4 +1,4 @@
-#include "sim/inputs.h"
+#include "sim/simulation/input_signals.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "sim/recorder.h"
+#include "sim/simulation/output_recorder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/quasi_static.h"
+#include "sim/simulation/quasi_static.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 #include "effects/all.h"
 #include "error.h"
-#include "sim/inputs.h"
-#include "sim/modes.h"
-#include "sim/recorder.h"
+#include "sim/simulation/critical_damping.h"
+#include "sim/simulation/input_signals.h"
+#include "sim/simulation/output_recorder.h"
 
 namespace continuum {
 namespace {
