@@ -13,7 +13,7 @@
 #include "sim/io/file.h"
 #include "sim/io/json.h"
 #include "sim/io/output_folder.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 #include "sim/side_by_side.h"
 
 namespace continuum {

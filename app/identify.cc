@@ -28,7 +28,7 @@
 #include "sim/io/file.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/output_folder.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -15,7 +15,7 @@
 #include "sim/experiment/registration.h"
 #include "sim/io/file.h"
 #include "sim/io/output_folder.h"
-#include "sim/sensor_score.h"
+#include "sim/replay/sensor_score.h"
 #include "sim/video.h"
 
 namespace continuum {

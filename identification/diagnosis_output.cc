@@ -11,7 +11,7 @@
 #include "identification/fit_output.h"
 #include "identification/next_experiment.h"
 #include "sim/io/file.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 namespace {

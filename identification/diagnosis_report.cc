@@ -6,7 +6,7 @@
 #include "identification/diagnosis_output.h"
 #include "identification/fit_output.h"
 #include "identification/missing_force.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 namespace {

@@ -14,7 +14,7 @@
 #include "sim/io/file.h"
 #include "sim/io/json.h"
 #include "sim/io/units.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 namespace {

@@ -10,7 +10,7 @@
 #include "identification/multi_start.h"
 #include "identification/regressor.h"
 #include "identification/trade_off.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 

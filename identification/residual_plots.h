@@ -4,7 +4,7 @@
 
 #include "identification/problem.h"
 #include "sim/page/page.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 

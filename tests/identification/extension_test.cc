@@ -11,7 +11,7 @@
 #include "error.h"
 #include "identification/hypothesis.h"
 #include "pendulum.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 namespace {

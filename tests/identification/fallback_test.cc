@@ -8,7 +8,7 @@
 
 #include "identification/diagnosis_output.h"
 #include "pendulum.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 namespace {

@@ -9,7 +9,7 @@
 #include "identification/extension.h"
 #include "identification/fit.h"
 #include "pendulum.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 namespace {

@@ -3,7 +3,7 @@
 #include "identification/extension.h"
 #include "identification/fit.h"
 #include "sim/io/file.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 #include "support/measured_arm.h"
 
 namespace continuum {

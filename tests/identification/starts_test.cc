@@ -11,7 +11,7 @@
 #include "identification/starts.h"
 #include "identification/uncertainty.h"
 #include "pendulum.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 namespace {

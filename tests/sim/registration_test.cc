@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 #include "support/measured_arm.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "sim/sensor_score.h"
+#include "sim/replay/sensor_score.h"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 namespace continuum {
 

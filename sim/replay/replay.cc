@@ -1,4 +1,4 @@
-#include "sim/replay.h"
+#include "sim/replay/replay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "sim/io/file.h"
 #include "sim/io/output_manifest.h"
 #include "sim/model/attribute_bounds.h"
-#include "sim/sensor_score.h"
+#include "sim/replay/sensor_score.h"
 #include "sim/simulation/output_units.h"
 
 namespace continuum {
