@@ -11,7 +11,7 @@
 #include "app/filming.h"
 #include "identification/hypothesis.h"
 #include "identification/problem.h"
-#include "sim/check.h"
+#include "sim/check/check.h"
 #include "sim/experiment/registration.h"
 #include "sim/io/file.h"
 #include "sim/io/output_folder.h"

@@ -8,7 +8,7 @@
 
 #include "identification/diagnosis.h"
 #include "identification/wrong.h"
-#include "sim/check.h"
+#include "sim/check/check.h"
 
 namespace continuum {
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/check.h"
+#include "sim/check/check.h"
 
 /// A bench of two masses for tests of `check`, and its findings.
 namespace continuum::testing {

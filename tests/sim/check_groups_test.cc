@@ -1,4 +1,4 @@
-#include "sim/check_groups.h"
+#include "sim/check/finding_groups.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

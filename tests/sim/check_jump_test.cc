@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "sim/check.h"
+#include "sim/check/check.h"
 
 namespace continuum {
 namespace {

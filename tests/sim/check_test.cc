@@ -1,4 +1,4 @@
-#include "sim/check.h"
+#include "sim/check/check.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "sim/check_model.h"
+#include "sim/check/against_model.h"
 #include "sim/io/units.h"
 
 namespace continuum {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/check.h"
+#include "sim/check/check.h"
 
 namespace continuum {
 

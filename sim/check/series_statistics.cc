@@ -1,4 +1,4 @@
-#include "sim/check_series.h"
+#include "sim/check/series_statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include "sim/check_rules.h"
-#include "sim/check_series.h"
+#include "sim/check/rules.h"
+#include "sim/check/series_statistics.h"
 
 namespace continuum {
 namespace {

@@ -5,8 +5,8 @@
 #include <fmt/core.h>
 
 #include "error.h"
-#include "sim/check_model.h"
-#include "sim/check_series.h"
+#include "sim/check/against_model.h"
+#include "sim/check/series_statistics.h"
 #include "sim/experiment/registration.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/units.h"

@@ -1,4 +1,4 @@
-#include "sim/check.h"
+#include "sim/check/check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include <fmt/core.h>
 
-#include "sim/check_rules.h"
-#include "sim/check_series.h"
+#include "sim/check/rules.h"
+#include "sim/check/series_statistics.h"
 #include "sim/io/units.h"
 
 namespace continuum {

@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 #include <Eigen/Core>
 
-#include "sim/check_model.h"
-#include "sim/check_series.h"
+#include "sim/check/against_model.h"
+#include "sim/check/series_statistics.h"
 #include "sim/experiment/measurement_model.h"
 
 namespace continuum {

@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "sim/check_rules.h"
+#include "sim/check/rules.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "sim/check_rules.h"
+#include "sim/check/rules.h"
 #include "sim/experiment/replicates.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "sim/check_groups.h"
+#include "sim/check/finding_groups.h"
 
 #include <algorithm>
 #include <cctype>

@@ -4,9 +4,9 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "sim/check.h"
-#include "sim/check_groups.h"
-#include "sim/check_rules.h"
+#include "sim/check/check.h"
+#include "sim/check/finding_groups.h"
+#include "sim/check/rules.h"
 
 namespace continuum {
 namespace {
