@@ -10,11 +10,11 @@
 #include "identification/diagnosis_output.h"
 #include "identification/extension.h"
 #include "sim/experiment/registration.h"
+#include "sim/film/side_by_side.h"
 #include "sim/io/file.h"
 #include "sim/io/json.h"
 #include "sim/io/output_folder.h"
 #include "sim/replay/replay.h"
-#include "sim/side_by_side.h"
 
 namespace continuum {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <CLI/App.hpp>
 
-#include "sim/film.h"
+#include "sim/film/film.h"
 
 namespace continuum {
 

@@ -3,10 +3,10 @@
 #include "app/console.h"
 #include "app/filming.h"
 #include "error.h"
-#include "sim/clip.h"
 #include "sim/experiment/registration.h"
+#include "sim/film/film_recipe.h"
+#include "sim/film/video.h"
 #include "sim/io/output_folder.h"
-#include "sim/video.h"
 
 namespace continuum {
 namespace {

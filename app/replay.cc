@@ -13,10 +13,10 @@
 #include "identification/problem.h"
 #include "sim/check/check.h"
 #include "sim/experiment/registration.h"
+#include "sim/film/video.h"
 #include "sim/io/file.h"
 #include "sim/io/output_folder.h"
 #include "sim/replay/sensor_score.h"
-#include "sim/video.h"
 
 namespace continuum {
 namespace {

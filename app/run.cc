@@ -10,7 +10,7 @@
 
 #include "app/console.h"
 #include "error.h"
-#include "sim/film.h"
+#include "sim/film/film.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"
 #include "sim/io/output_folder.h"

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "sim/film/renderer.h"
 #include "sim/io/file.h"
 #include "sim/page/chart.h"
-#include "sim/renderer.h"
 
 namespace continuum {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "models/solver/font.h"
 #include "models/solver/results.h"
-#include "sim/image.h"
+#include "sim/film/image.h"
 #include "sim/io/file.h"
 #include "sim/numerics/round_number.h"
 

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "bench.h"
-#include "sim/image.h"
+#include "sim/film/image.h"
 
 namespace continuum {
 namespace {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "sim/film.h"
-#include "sim/gl.h"
-#include "sim/video.h"
+#include "sim/film/film.h"
+#include "sim/film/gl_context.h"
+#include "sim/film/video.h"
 
 namespace continuum {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "sim/clip.h"
+#include "sim/film/film_recipe.h"
 #include "sim/model/model_spec.h"
 #include "support/process.h"
 #include "support/scratch.h"

@@ -1,4 +1,4 @@
-#include "sim/film.h"
+#include "sim/film/film.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "sim/gl.h"
+#include "sim/film/gl_context.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include <string>
 
 #include "error.h"
+#include "sim/film/renderer.h"
 #include "sim/model/model_spec.h"
 #include "sim/model/mujoco_handles.h"
-#include "sim/renderer.h"
 #include "support/scratch.h"
 
 namespace continuum {

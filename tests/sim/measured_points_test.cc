@@ -1,4 +1,4 @@
-#include "sim/measured_points.h"
+#include "sim/film/measured_points.h"
 
 #include <cmath>
 

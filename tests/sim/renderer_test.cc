@@ -1,4 +1,4 @@
-#include "sim/renderer.h"
+#include "sim/film/renderer.h"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "error.h"
+#include "sim/film/overlay_painter.h"
 #include "sim/model/mujoco_handles.h"
-#include "sim/painter.h"
 
 namespace continuum {
 namespace {

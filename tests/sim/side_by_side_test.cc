@@ -1,4 +1,4 @@
-#include "sim/side_by_side.h"
+#include "sim/film/side_by_side.h"
 
 #include <algorithm>
 

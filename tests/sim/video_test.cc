@@ -1,4 +1,4 @@
-#include "sim/video.h"
+#include "sim/film/video.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "error.h"
-#include "sim/image.h"
+#include "sim/film/image.h"
 #include "sim/io/file.h"
 
 extern "C" {

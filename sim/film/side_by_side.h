@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/film.h"
+#include "sim/film/film.h"
 
 namespace continuum {
 

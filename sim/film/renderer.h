@@ -7,10 +7,10 @@
 
 #include <mujoco/mujoco.h>
 
-#include "sim/framing.h"
-#include "sim/gl.h"
-#include "sim/image.h"
-#include "sim/overlay.h"
+#include "sim/film/camera_framing.h"
+#include "sim/film/gl_context.h"
+#include "sim/film/image.h"
+#include "sim/film/overlay.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "sim/image.h"
+#include "sim/film/image.h"
 
 #include <fmt/core.h>
 

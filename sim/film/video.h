@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "sim/image.h"
+#include "sim/film/image.h"
 
 namespace continuum {
 

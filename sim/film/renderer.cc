@@ -1,4 +1,4 @@
-#include "sim/renderer.h"
+#include "sim/film/renderer.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "error.h"
-#include "sim/painter.h"
+#include "sim/film/overlay_painter.h"
 
 namespace continuum {
 namespace {

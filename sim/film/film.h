@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/measured_points.h"
-#include "sim/renderer.h"
+#include "sim/film/measured_points.h"
+#include "sim/film/renderer.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {

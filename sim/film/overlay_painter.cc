@@ -1,4 +1,4 @@
-#include "sim/painter.h"
+#include "sim/film/overlay_painter.h"
 
 #include <fmt/core.h>
 

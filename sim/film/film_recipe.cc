@@ -1,4 +1,4 @@
-#include "sim/clip.h"
+#include "sim/film/film_recipe.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/film.h"
+#include "sim/film/film.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "sim/film/measured_points.h"
+#include "sim/film/video.h"
 #include "sim/io/file.h"
-#include "sim/measured_points.h"
 #include "sim/model/mujoco_handles.h"
 #include "sim/numerics/round_number.h"
-#include "sim/video.h"
 
 namespace continuum {
 namespace {

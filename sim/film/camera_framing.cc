@@ -1,4 +1,4 @@
-#include "sim/framing.h"
+#include "sim/film/camera_framing.h"
 
 #include <algorithm>
 #include <cmath>

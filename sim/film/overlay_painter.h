@@ -6,8 +6,8 @@
 
 #include <mujoco/mujoco.h>
 
-#include "sim/image.h"
-#include "sim/overlay.h"
+#include "sim/film/image.h"
+#include "sim/film/overlay.h"
 
 namespace continuum {
 

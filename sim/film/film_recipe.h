@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "sim/experiment/experiment.h"
-#include "sim/film.h"
+#include "sim/film/film.h"
 
 namespace continuum {
 

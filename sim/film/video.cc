@@ -1,4 +1,4 @@
-#include "sim/video.h"
+#include "sim/film/video.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "sim/side_by_side.h"
+#include "sim/film/side_by_side.h"
 
 #include <algorithm>
 #include <exception>
@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "sim/video.h"
+#include "sim/film/video.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/gl.h"
+#include "sim/film/gl_context.h"
 
 #include <dlfcn.h>
 #include <fmt/core.h>
