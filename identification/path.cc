@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "identification/smooth.h"
+#include "identification/sensitivity/smooth_path.h"
 
 namespace continuum {
 namespace {

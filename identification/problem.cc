@@ -9,7 +9,7 @@
 #include <set>
 
 #include "error.h"
-#include "identification/smooth.h"
+#include "identification/sensitivity/smooth_path.h"
 #include "identification/starts.h"
 #include "identification/twice.h"
 #include "identification/unit.h"

@@ -9,9 +9,9 @@
 #include <Eigen/Core>
 
 #include "error.h"
-#include "identification/cvodes.h"
-#include "identification/stepped.h"
-#include "sim/flow.h"
+#include "identification/sensitivity/continuous_dynamics.h"
+#include "identification/sensitivity/cvodes.h"
+#include "identification/sensitivity/stepped_path.h"
 #include "sim/simulation/score.h"
 #include "sim/simulation/simulate.h"
 

@@ -4,12 +4,12 @@
 
 #include "error.h"
 #include "identification/problem.h"
-#include "identification/smooth.h"
-#include "identification/stepped.h"
+#include "identification/sensitivity/smooth_path.h"
+#include "identification/sensitivity/step_sensitivity.h"
+#include "identification/sensitivity/stepped_path.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
 #include "sim/simulation/input_signals.h"
-#include "sim/step_tangent.h"
 
 namespace continuum {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "gradient.h"
 #include "identification/problem.h"
+#include "identification/sensitivity/continuous_sensitivity.h"
 #include "pendulum.h"
-#include "sim/flow_tangent.h"
 
 namespace continuum {
 namespace {

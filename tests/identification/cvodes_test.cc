@@ -1,4 +1,4 @@
-#include "identification/cvodes.h"
+#include "identification/sensitivity/cvodes.h"
 
 #include <cmath>
 #include <limits>

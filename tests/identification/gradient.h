@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/smooth.h"
+#include "identification/sensitivity/smooth_path.h"
 
 namespace continuum::testing {
 

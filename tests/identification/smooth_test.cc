@@ -1,4 +1,4 @@
-#include "identification/smooth.h"
+#include "identification/sensitivity/smooth_path.h"
 
 #include <cmath>
 #include <string>

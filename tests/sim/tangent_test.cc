@@ -1,5 +1,5 @@
 // The equations of motion next to a state, against differences of MuJoCo's own.
-#include "sim/tangent.h"
+#include "identification/sensitivity/force_derivatives.h"
 
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "sim/native_pull.h"
+#include "identification/sensitivity/native_forces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "identification/smooth.h"
+#include "identification/sensitivity/smooth_path.h"
 
-#include "sim/flow_tangent.h"
+#include "identification/sensitivity/continuous_sensitivity.h"
 
 namespace continuum {
 namespace {

@@ -1,8 +1,8 @@
-#include "identification/stepped.h"
+#include "identification/sensitivity/stepped_path.h"
 
-#include "identification/smooth.h"
+#include "identification/sensitivity/smooth_path.h"
+#include "identification/sensitivity/step_sensitivity.h"
 #include "sim/simulation/input_signals.h"
-#include "sim/step_tangent.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/sensor_tangent.h"
+#include "identification/sensitivity/sensor_derivatives.h"
 
 #include <algorithm>
 

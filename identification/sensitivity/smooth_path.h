@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "identification/cvodes.h"
-#include "sim/flow.h"
+#include "identification/sensitivity/continuous_dynamics.h"
+#include "identification/sensitivity/cvodes.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "sim/step_tangent.h"
+#include "identification/sensitivity/step_sensitivity.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/flow_tangent.h"
+#include "identification/sensitivity/continuous_sensitivity.h"
 
 #include <algorithm>
 

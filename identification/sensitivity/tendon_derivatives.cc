@@ -1,4 +1,4 @@
-#include "sim/tendon_tangent.h"
+#include "identification/sensitivity/tendon_derivatives.h"
 
 #include <algorithm>
 

@@ -6,9 +6,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "sim/sensor_tangent.h"
+#include "identification/sensitivity/force_derivatives.h"
+#include "identification/sensitivity/sensor_derivatives.h"
 #include "sim/simulation/output_recorder.h"
-#include "sim/tangent.h"
 
 namespace continuum {
 

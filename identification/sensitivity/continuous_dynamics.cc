@@ -1,4 +1,4 @@
-#include "sim/flow.h"
+#include "identification/sensitivity/continuous_dynamics.h"
 
 #include <algorithm>
 

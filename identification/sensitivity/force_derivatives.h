@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/model_difference.h"
-#include "sim/native_pull.h"
-#include "sim/rigid_tangent.h"
-#include "sim/tendon_tangent.h"
+#include "identification/sensitivity/model_difference.h"
+#include "identification/sensitivity/native_forces.h"
+#include "identification/sensitivity/rigid_body_derivatives.h"
+#include "identification/sensitivity/tendon_derivatives.h"
 
 namespace continuum {
 

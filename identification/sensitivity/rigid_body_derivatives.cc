@@ -1,4 +1,4 @@
-#include "sim/rigid_tangent.h"
+#include "identification/sensitivity/rigid_body_derivatives.h"
 
 #include "sim/model/point_jacobian.h"
 

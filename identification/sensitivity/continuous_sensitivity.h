@@ -5,9 +5,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "sim/flow.h"
-#include "sim/sensor_tangent.h"
-#include "sim/tangent.h"
+#include "identification/sensitivity/continuous_dynamics.h"
+#include "identification/sensitivity/force_derivatives.h"
+#include "identification/sensitivity/sensor_derivatives.h"
 
 namespace continuum {
 

@@ -21,9 +21,9 @@ struct SteppedTraces {
 };
 
 /// Steps a machine once, and with it by StepTangent its neighbours, which are the same machine with
-/// one parameter moved by kMove times its typical size (identification/smooth.h). The model has no
-/// obstacle to StepTangent. Without traces of neighbours where other rows of the constraint solver
-/// act on the way.
+/// one parameter moved by kMove times its typical size (identification/sensitivity/smooth_path.h).
+/// The model has no obstacle to StepTangent. Without traces of neighbours where other rows of the
+/// constraint solver act on the way.
 SteppedTraces FollowSteps(Trial& trial, std::vector<Trial>& neighbours, const Experiment& e,
                           const Log& log);
 

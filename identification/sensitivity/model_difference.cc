@@ -1,4 +1,4 @@
-#include "sim/model_difference.h"
+#include "identification/sensitivity/model_difference.h"
 
 #include <algorithm>
 #include <set>

@@ -1,4 +1,4 @@
-#include "sim/tangent.h"
+#include "identification/sensitivity/force_derivatives.h"
 
 #include <algorithm>
 
