@@ -10,7 +10,7 @@
 #include "app/console.h"
 #include "app/filming.h"
 #include "identification/hypothesis.h"
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 #include "sim/check/check.h"
 #include "sim/experiment/registration.h"
 #include "sim/film/video.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 namespace continuum {
 

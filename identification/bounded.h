@@ -4,7 +4,7 @@
 
 #include <ceres/ceres.h>
 
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 namespace continuum {
 

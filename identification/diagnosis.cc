@@ -14,8 +14,8 @@
 #include "identification/fallback.h"
 #include "identification/next_experiment.h"
 #include "identification/pairs.h"
+#include "identification/problem/start_checks.h"
 #include "identification/rounding.h"
-#include "identification/start_model.h"
 #include "sim/numerics/parallel.h"
 
 namespace continuum {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 namespace continuum {
 

@@ -10,7 +10,7 @@
 
 #include "error.h"
 #include "identification/bounded.h"
-#include "identification/start_model.h"
+#include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
 

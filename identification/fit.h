@@ -79,8 +79,9 @@ Problem::Vector RefitByChords(const Problem& problem, const Problem::Vector& x,
                               std::vector<Problem::Vector> r, const std::vector<Problem::Matrix>& J,
                               const std::vector<bool>& use, int iterations = 3);
 
-/// Where the trials of the logs in use begin (identification/starts.h), each fitted to its own log
-/// while all else stays: a log that no fit has seen begins somewhere too. Returns x with them.
+/// Where the trials of the logs in use begin (identification/problem/start_parameters.h), each
+/// fitted to its own log while all else stays: a log that no fit has seen begins somewhere too.
+/// Returns x with them.
 Problem::Vector FitStarts(const Problem& problem, const Problem::Vector& x,
                           const std::vector<bool>& use);
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 namespace continuum {
 

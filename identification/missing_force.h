@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 namespace continuum {
 

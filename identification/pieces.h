@@ -21,8 +21,8 @@ struct Pieces {
 /// Multiple shooting (bock1984). Over a long log a small error of a parameter adds up until the
 /// simulation is out of step with the measurement: the cost is full of valleys, and a fit ends in
 /// the first. So logs of more than 20 s are cut into pieces that overlap and begin where they like
-/// (start: estimate, identification/starts.h): first 64, of which no simulation falls out of step,
-/// then 16, which tell more and whose ends are drawn together,
+/// (start: estimate, identification/problem/start_parameters.h): first 64, of which no simulation
+/// falls out of step, then 16, which tell more and whose ends are drawn together,
 ///
 ///   Σ r² + w² Σ (r_k − r_{k+1})²,   w = 0, 1, 10, 100,
 ///

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 namespace continuum {
 

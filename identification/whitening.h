@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "identification/noise.h"
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 namespace continuum {
 

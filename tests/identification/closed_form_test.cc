@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "gradient.h"
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 #include "identification/sensitivity/continuous_sensitivity.h"
 #include "pendulum.h"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 #include "pendulum.h"
 
 namespace continuum {

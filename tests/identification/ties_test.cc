@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "gradient.h"
-#include "identification/path.h"
+#include "identification/problem/path_choice.h"
 #include "pendulum.h"
 #include "smooth_arm.h"
 

@@ -1,4 +1,4 @@
-#include "identification/unit.h"
+#include "identification/problem/parameter_units.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/fit.h"
-#include "identification/path.h"
+#include "identification/problem/path_choice.h"
 #include "support/scratch.h"
 
 namespace continuum {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "identification/noise.h"
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 #include "sim/experiment/experiment.h"
 #include "sim/io/file.h"
 

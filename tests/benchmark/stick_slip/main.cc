@@ -14,7 +14,7 @@
 #include "error.h"
 #include "identification/multi_start.h"
 #include "identification/noise.h"
-#include "identification/path.h"
+#include "identification/problem/path_choice.h"
 #include "identification/uncertainty.h"
 #include "sim/io/file.h"
 #include "support/json_lines.h"

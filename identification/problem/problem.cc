@@ -1,4 +1,4 @@
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 #include <set>
 
 #include "error.h"
+#include "identification/problem/duplicate_parameters.h"
+#include "identification/problem/parameter_units.h"
+#include "identification/problem/start_parameters.h"
 #include "identification/sensitivity/smooth_path.h"
-#include "identification/starts.h"
-#include "identification/twice.h"
-#include "identification/unit.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/numerics/parallel.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "identification/twice.h"
+#include "identification/problem/duplicate_parameters.h"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "identification/path.h"
+#include "identification/problem/path_choice.h"
 
 #include <fmt/format.h>
 

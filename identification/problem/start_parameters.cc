@@ -1,4 +1,4 @@
-#include "identification/starts.h"
+#include "identification/problem/start_parameters.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "error.h"
-#include "identification/problem.h"
+#include "identification/problem/problem.h"
 #include "identification/sensitivity/smooth_path.h"
 #include "identification/sensitivity/step_sensitivity.h"
 #include "identification/sensitivity/stepped_path.h"

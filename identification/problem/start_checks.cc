@@ -1,4 +1,4 @@
-#include "identification/start_model.h"
+#include "identification/problem/start_checks.h"
 
 #include <algorithm>
 #include <functional>

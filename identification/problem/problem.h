@@ -27,7 +27,7 @@ struct FreeParameter {
   std::vector<bool> log;   ///< which logs it acts on
   std::string where = {};  ///< file:line: key, for messages
 
-  /// Whether it is where a trial begins (identification/starts.h).
+  /// Whether it is where a trial begins (identification/problem/start_parameters.h).
   bool IsStart() const { return change.target.starts_with("start:"); }
 };
 
