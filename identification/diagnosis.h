@@ -8,9 +8,9 @@
 
 #include "identification/folds.h"
 #include "identification/hypothesis.h"
-#include "identification/noise.h"
 #include "identification/screen.h"
-#include "identification/uncertainty.h"
+#include "identification/statistics/noise_model.h"
+#include "identification/statistics/uncertainty.h"
 #include "identification/verdict.h"
 
 namespace continuum {

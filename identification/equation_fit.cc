@@ -12,7 +12,7 @@
 #include "identification/bounded.h"
 #include "identification/far.h"
 #include "identification/missing_force.h"
-#include "identification/noise.h"
+#include "identification/statistics/noise_model.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/whitening.h"
+#include "identification/statistics/whitening.h"
 
 namespace continuum {
 

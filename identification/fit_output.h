@@ -9,7 +9,7 @@
 
 #include "identification/multi_start.h"
 #include "identification/regressor.h"
-#include "identification/trade_off.h"
+#include "identification/statistics/identifiability.h"
 #include "sim/replay/replay.h"
 
 namespace continuum {

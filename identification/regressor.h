@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 
 namespace continuum {
 

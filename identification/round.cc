@@ -8,7 +8,7 @@
 
 #include "error.h"
 #include "identification/rounding.h"
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 
 namespace continuum {
 namespace {

@@ -4,7 +4,7 @@
 #include "error.h"
 #include "identification/round.h"
 #include "identification/search_range.h"
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 
 // The fits of a round: who gets one, from where, and how far.
 namespace continuum {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Dense>
 
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 #include "sim/numerics/parallel.h"
 #include "sim/numerics/portable_random.h"
 

@@ -12,7 +12,7 @@
 
 #include "benchmark/stick_slip/experiment.h"
 #include "error.h"
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 #include "pendulum.h"
 
 namespace continuum {

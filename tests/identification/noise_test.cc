@@ -1,4 +1,4 @@
-#include "identification/noise.h"
+#include "identification/statistics/noise_model.h"
 
 #include <cmath>
 #include <numeric>
@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/whitening.h"
+#include "identification/statistics/whitening.h"
 #include "pendulum.h"
 
 namespace continuum {

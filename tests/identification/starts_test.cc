@@ -9,7 +9,7 @@
 #include "identification/problem/path_choice.h"
 #include "identification/problem/start_parameters.h"
 #include "identification/start_hint.h"
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 #include "pendulum.h"
 #include "sim/replay/replay.h"
 

@@ -1,11 +1,11 @@
-#include "identification/trade_off.h"
+#include "identification/statistics/identifiability.h"
 
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 #include "pendulum.h"
 
 namespace continuum {

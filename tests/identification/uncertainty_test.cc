@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "identification/noise.h"
 #include "identification/problem/problem.h"
+#include "identification/statistics/noise_model.h"
 #include "sim/experiment/experiment.h"
 #include "sim/io/file.h"
 

@@ -13,9 +13,9 @@
 #include "benchmark/stick_slip/experiment.h"
 #include "error.h"
 #include "identification/multi_start.h"
-#include "identification/noise.h"
 #include "identification/problem/path_choice.h"
-#include "identification/uncertainty.h"
+#include "identification/statistics/noise_model.h"
+#include "identification/statistics/uncertainty.h"
 #include "sim/io/file.h"
 #include "support/json_lines.h"
 

@@ -1,4 +1,4 @@
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include "error.h"
-#include "identification/invariance.h"
+#include "identification/statistics/information_modes.h"
 #include "sim/io/interrupt.h"
 
 namespace continuum {

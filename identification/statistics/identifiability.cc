@@ -1,4 +1,4 @@
-#include "identification/trade_off.h"
+#include "identification/statistics/identifiability.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "identification/noise.h"
+#include "identification/statistics/noise_model.h"
 
 #include <algorithm>
 #include <cmath>

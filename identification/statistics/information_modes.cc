@@ -1,4 +1,4 @@
-#include "identification/invariance.h"
+#include "identification/statistics/information_modes.h"
 
 #include <Eigen/Dense>
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/uncertainty.h"
+#include "identification/statistics/uncertainty.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "identification/whitening.h"
+#include "identification/statistics/whitening.h"
 
 #include <cmath>
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "identification/noise.h"
 #include "identification/problem/problem.h"
+#include "identification/statistics/noise_model.h"
 
 namespace continuum {
 
