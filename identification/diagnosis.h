@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/folds.h"
+#include "identification/fit/cross_validation.h"
 #include "identification/hypothesis.h"
 #include "identification/screen.h"
 #include "identification/statistics/noise_model.h"

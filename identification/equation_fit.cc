@@ -9,8 +9,8 @@
 #include <Eigen/Core>
 
 #include "error.h"
-#include "identification/bounded.h"
-#include "identification/far.h"
+#include "identification/fit/bounded_least_squares.h"
+#include "identification/fit/wide_slope_fit.h"
 #include "identification/missing_force.h"
 #include "identification/statistics/noise_model.h"
 #include "sim/io/interrupt.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 
 namespace continuum {
 

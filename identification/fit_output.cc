@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "identification/ahead.h"
 #include "identification/extension.h"
+#include "identification/fit/prediction_error.h"
 #include "identification/problem/start_checks.h"
 #include "identification/residual_plots.h"
 #include "identification/statistics/noise_model.h"

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/multi_start.h"
+#include "identification/fit/multi_start.h"
 #include "identification/regressor.h"
 #include "identification/statistics/identifiability.h"
 #include "sim/replay/replay.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "identification/catalog.h"
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 #include "identification/sizes.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "identification/ahead.h"
+#include "identification/fit/prediction_error.h"
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include "error.h"
 #include "identification/extension.h"
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 #include "pendulum.h"
 #include "sim/replay/replay.h"
 

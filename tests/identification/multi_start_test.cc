@@ -1,4 +1,4 @@
-#include "identification/multi_start.h"
+#include "identification/fit/multi_start.h"
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "identification/pieces.h"
+#include "identification/fit/multiple_shooting.h"
 
 #include <cmath>
 #include <string>

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
+#include "identification/fit/swarm_fit.h"
 #include "identification/lowpass.h"
-#include "identification/swarm.h"
 #include "pendulum.h"
 
 namespace continuum {

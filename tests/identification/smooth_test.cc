@@ -10,7 +10,7 @@
 
 #include "error.h"
 #include "gradient.h"
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 #include "identification/problem/path_choice.h"
 #include "pendulum.h"
 #include "smooth_arm.h"

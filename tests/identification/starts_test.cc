@@ -5,10 +5,10 @@
 
 #include "error.h"
 #include "identification/extension.h"
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
+#include "identification/fit/start_hint.h"
 #include "identification/problem/path_choice.h"
 #include "identification/problem/start_parameters.h"
-#include "identification/start_hint.h"
 #include "identification/statistics/uncertainty.h"
 #include "pendulum.h"
 #include "sim/replay/replay.h"

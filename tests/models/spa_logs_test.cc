@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 #include "identification/problem/path_choice.h"
 #include "support/scratch.h"
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "identification/far.h"
+#include "identification/fit/wide_slope_fit.h"
 
 #include <utility>
 

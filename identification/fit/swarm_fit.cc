@@ -1,4 +1,4 @@
-#include "identification/swarm.h"
+#include "identification/fit/swarm_fit.h"
 
 #include <chrono>
 #include <cmath>

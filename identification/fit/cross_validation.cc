@@ -1,4 +1,4 @@
-#include "identification/folds.h"
+#include "identification/fit/cross_validation.h"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "identification/ahead.h"
+#include "identification/fit/prediction_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "identification/pieces.h"
+#include "identification/fit/multiple_shooting.h"
 #include "sim/simulation/score.h"
 
 namespace continuum {

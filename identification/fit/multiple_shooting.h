@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 
 namespace continuum {
 

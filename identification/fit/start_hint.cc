@@ -1,4 +1,4 @@
-#include "identification/start_hint.h"
+#include "identification/fit/start_hint.h"
 
 #include <fmt/format.h>
 

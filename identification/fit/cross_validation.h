@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 
 namespace continuum {
 

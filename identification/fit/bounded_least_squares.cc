@@ -1,4 +1,4 @@
-#include "identification/bounded.h"
+#include "identification/fit/bounded_least_squares.h"
 
 #include <cmath>
 

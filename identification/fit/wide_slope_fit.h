@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include <Eigen/Dense>
 
 #include "error.h"
-#include "identification/bounded.h"
+#include "identification/fit/bounded_least_squares.h"
 #include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"

@@ -1,4 +1,4 @@
-#include "identification/multi_start.h"
+#include "identification/fit/multi_start.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "identification/far.h"
+#include "identification/fit/wide_slope_fit.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/portable_random.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/fit.h"
+#include "identification/fit/fit.h"
 
 namespace continuum {
 
