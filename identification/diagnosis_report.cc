@@ -5,7 +5,7 @@
 
 #include "identification/diagnosis_output.h"
 #include "identification/fit_output.h"
-#include "identification/missing_force.h"
+#include "identification/inverse_dynamics/missing_force.h"
 #include "sim/replay/replay.h"
 
 namespace continuum {

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "identification/diagnosis.h"
-#include "identification/missing_force.h"
+#include "identification/inverse_dynamics/missing_force.h"
 
 namespace continuum {
 
 /// A second view of the candidates, in which nothing is simulated for long: the missing force f at
-/// the measured states (identification/missing_force.h) as a sum of what the fitted parameters p
-/// and one candidate do there,
+/// the measured states (identification/inverse_dynamics/missing_force.h) as a sum of what the
+/// fitted parameters p and one candidate do there,
 ///
 ///   f ≈ Σ a_i ∂f/∂p_i + b (f(p) − f(p, candidate)),   b ≥ 0,
 ///

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/fit/multi_start.h"
-#include "identification/regressor.h"
+#include "identification/inverse_dynamics/regressor.h"
 #include "identification/statistics/identifiability.h"
 #include "sim/replay/replay.h"
 

@@ -8,7 +8,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "error.h"
-#include "identification/equation_fit.h"
+#include "identification/inverse_dynamics/equation_error_fit.h"
 #include "identification/placebo.h"
 
 namespace continuum {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/regressor.h"
+#include "identification/inverse_dynamics/regressor.h"
 #include "support/real_log.h"
 
 namespace continuum {

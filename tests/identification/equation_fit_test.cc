@@ -1,4 +1,4 @@
-#include "identification/equation_fit.h"
+#include "identification/inverse_dynamics/equation_error_fit.h"
 
 #include <cmath>
 #include <vector>

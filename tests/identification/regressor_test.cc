@@ -1,4 +1,4 @@
-#include "identification/regressor.h"
+#include "identification/inverse_dynamics/regressor.h"
 
 #include <cmath>
 #include <numbers>
@@ -11,7 +11,7 @@
 
 #include "error.h"
 #include "identification/fit/swarm_fit.h"
-#include "identification/lowpass.h"
+#include "identification/inverse_dynamics/zero_phase_lowpass.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "identification/missing_force.h"
+#include "identification/inverse_dynamics/missing_force.h"
 
 #include <algorithm>
 #include <cmath>

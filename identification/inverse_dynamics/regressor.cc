@@ -1,4 +1,4 @@
-#include "identification/regressor.h"
+#include "identification/inverse_dynamics/regressor.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,8 +10,8 @@
 
 #include "engine.h"
 #include "error.h"
-#include "identification/lowpass.h"
-#include "identification/rests.h"
+#include "identification/inverse_dynamics/stationary_rows.h"
+#include "identification/inverse_dynamics/zero_phase_lowpass.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/model/joint_equalities.h"
 #include "sim/simulation/input_signals.h"

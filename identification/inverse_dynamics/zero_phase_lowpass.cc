@@ -1,4 +1,4 @@
-#include "identification/lowpass.h"
+#include "identification/inverse_dynamics/zero_phase_lowpass.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "identification/rests.h"
+#include "identification/inverse_dynamics/stationary_rows.h"
 
 #include <algorithm>
 #include <cmath>

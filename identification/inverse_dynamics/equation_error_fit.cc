@@ -1,4 +1,4 @@
-#include "identification/equation_fit.h"
+#include "identification/inverse_dynamics/equation_error_fit.h"
 
 #include <algorithm>
 #include <chrono>
@@ -11,7 +11,7 @@
 #include "error.h"
 #include "identification/fit/bounded_least_squares.h"
 #include "identification/fit/wide_slope_fit.h"
-#include "identification/missing_force.h"
+#include "identification/inverse_dynamics/missing_force.h"
 #include "identification/statistics/noise_model.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
