@@ -9,7 +9,7 @@
 
 #include "app/console.h"
 #include "app/filming.h"
-#include "identification/hypothesis.h"
+#include "identification/candidates/hypothesis.h"
 #include "identification/problem/problem.h"
 #include "sim/check/check.h"
 #include "sim/experiment/registration.h"

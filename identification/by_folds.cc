@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "identification/candidates/random_forces.h"
 #include "identification/equation_error.h"
-#include "identification/placebo.h"
 #include "identification/round.h"
 
 namespace continuum {

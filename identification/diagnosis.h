@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "identification/candidates/hypothesis.h"
 #include "identification/fit/cross_validation.h"
-#include "identification/hypothesis.h"
 #include "identification/screen.h"
 #include "identification/statistics/noise_model.h"
 #include "identification/statistics/uncertainty.h"

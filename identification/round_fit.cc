@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "error.h"
+#include "identification/candidates/search_range.h"
 #include "identification/round.h"
-#include "identification/search_range.h"
 #include "identification/statistics/uncertainty.h"
 
 // The fits of a round: who gets one, from where, and how far.

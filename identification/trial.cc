@@ -8,8 +8,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "error.h"
+#include "identification/candidates/random_forces.h"
 #include "identification/inverse_dynamics/equation_error_fit.h"
-#include "identification/placebo.h"
 
 namespace continuum {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "identification/hypothesis.h"
+#include "identification/candidates/hypothesis.h"
 #include "pendulum.h"
 #include "sim/replay/replay.h"
 

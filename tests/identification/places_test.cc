@@ -1,4 +1,4 @@
-#include "identification/places.h"
+#include "identification/candidates/effect_places.h"
 
 #include <cmath>
 #include <string>
@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "identification/candidates/hypothesis.h"
 #include "identification/diagnosis.h"
-#include "identification/hypothesis.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "identification/search_range.h"
+#include "identification/candidates/search_range.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/hypothesis.h"
+#include "identification/candidates/hypothesis.h"
 
 namespace continuum {
 namespace {

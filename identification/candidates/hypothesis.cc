@@ -1,4 +1,4 @@
-#include "identification/hypothesis.h"
+#include "identification/candidates/hypothesis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include "binding/config.h"
 #include "binding/expression.h"
 #include "error.h"
-#include "identification/measure_candidates.h"
-#include "identification/places.h"
-#include "identification/search_range.h"
+#include "identification/candidates/effect_places.h"
+#include "identification/candidates/measurement_candidates.h"
+#include "identification/candidates/search_range.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/io/file.h"
 #include "sim/model/mujoco_handles.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "effects/effect.h"
-#include "identification/sizes.h"
+#include "identification/candidates/typical_sizes.h"
 
 namespace continuum {
 

@@ -1,4 +1,4 @@
-#include "identification/places.h"
+#include "identification/candidates/effect_places.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "identification/placebo.h"
+#include "identification/candidates/random_forces.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,11 +1,11 @@
-#include "identification/measure_candidates.h"
+#include "identification/candidates/measurement_candidates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "binding/config.h"
-#include "identification/places.h"
+#include "identification/candidates/effect_places.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/model/mujoco_handles.h"
 

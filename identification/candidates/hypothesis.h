@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "identification/candidates/typical_sizes.h"
 #include "identification/catalog.h"
 #include "identification/fit/fit.h"
-#include "identification/sizes.h"
 
 namespace continuum {
 

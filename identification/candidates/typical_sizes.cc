@@ -1,4 +1,4 @@
-#include "identification/sizes.h"
+#include "identification/candidates/typical_sizes.h"
 
 #include <algorithm>
 #include <cmath>

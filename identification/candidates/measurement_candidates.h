@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "identification/hypothesis.h"
+#include "identification/candidates/hypothesis.h"
 
 namespace continuum {
 
