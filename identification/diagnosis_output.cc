@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "identification/between.h"
+#include "identification/diagnosis/condition_contrast.h"
+#include "identification/diagnosis/next_experiment.h"
 #include "identification/extension.h"
 #include "identification/fit_output.h"
-#include "identification/next_experiment.h"
 #include "sim/io/file.h"
 #include "sim/replay/replay.h"
 

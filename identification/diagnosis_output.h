@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/diagnosis.h"
-#include "identification/wrong.h"
+#include "identification/diagnosis/deviations.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "sim/check/check.h"
 
 namespace continuum {

@@ -9,7 +9,7 @@
 
 #include "hidden_effects/noise.h"
 #include "hidden_effects/robot.h"
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 
 namespace continuum::hidden {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/by_folds.h"
+#include "identification/diagnosis/fold_comparison.h"
 #include "pendulum.h"
 
 namespace continuum {

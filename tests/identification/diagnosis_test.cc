@@ -1,4 +1,4 @@
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 
 #include <cmath>
 #include <string>
@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "identification/between.h"
+#include "identification/diagnosis/condition_contrast.h"
+#include "identification/diagnosis/next_experiment.h"
 #include "identification/diagnosis_output.h"
-#include "identification/next_experiment.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "identification/equation_error.h"
+#include "identification/diagnosis/equation_error.h"
 
 #include <cmath>
 #include <string>
@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/trial.h"
+#include "identification/diagnosis/candidate_fitter.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "identification/fallback.h"
+#include "identification/diagnosis/fallback_force.h"
 
 #include <cmath>
 #include <string>

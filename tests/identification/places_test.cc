@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/candidates/hypothesis.h"
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "identification/trial.h"
+#include "identification/diagnosis/candidate_fitter.h"
 #include "pendulum.h"
 
 namespace continuum {

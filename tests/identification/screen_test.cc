@@ -1,4 +1,4 @@
-#include "identification/screen.h"
+#include "identification/diagnosis/screening.h"
 
 #include <cmath>
 #include <random>

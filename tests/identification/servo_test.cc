@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "sim/simulation/simulate.h"
 #include "support/real_log.h"
 

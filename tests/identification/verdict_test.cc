@@ -1,4 +1,4 @@
-#include "identification/verdict.h"
+#include "identification/diagnosis/verdict.h"
 
 #include <cmath>
 #include <limits>

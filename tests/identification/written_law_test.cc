@@ -6,7 +6,7 @@
 
 #include "binding/expression.h"
 #include "error.h"
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis_output.h"
 #include "pendulum.h"
 

@@ -1,4 +1,4 @@
-#include "identification/wrong.h"
+#include "identification/diagnosis/deviations.h"
 
 #include <cmath>
 #include <limits>

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "sim/experiment/experiment.h"
 #include "sim/io/csv.h"
 #include "sim/simulation/simulate.h"

@@ -10,7 +10,7 @@
 #include "benchmark/diagnosis/arm.h"
 #include "benchmark/diagnosis/split.h"
 #include "error.h"
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "sim/experiment/registration.h"
 
 namespace continuum::speed {

@@ -1,4 +1,4 @@
-#include "identification/next_experiment.h"
+#include "identification/diagnosis/next_experiment.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/screen.h"
+#include "identification/diagnosis/screening.h"
 
 namespace continuum {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/round.h"
+#include "identification/diagnosis/candidate_search.h"
 
 namespace continuum {
 

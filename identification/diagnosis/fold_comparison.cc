@@ -1,4 +1,4 @@
-#include "identification/by_folds.h"
+#include "identification/diagnosis/fold_comparison.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "identification/candidates/random_forces.h"
-#include "identification/equation_error.h"
-#include "identification/round.h"
+#include "identification/diagnosis/candidate_search.h"
+#include "identification/diagnosis/equation_error.h"
 
 namespace continuum {
 namespace {

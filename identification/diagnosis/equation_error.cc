@@ -1,4 +1,4 @@
-#include "identification/equation_error.h"
+#include "identification/diagnosis/equation_error.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "identification/pairs.h"
+#include "identification/diagnosis/cause_pairs.h"
 
 #include <algorithm>
 #include <deque>

@@ -1,4 +1,4 @@
-#include "identification/between.h"
+#include "identification/diagnosis/condition_contrast.h"
 
 #include <cmath>
 #include <limits>

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "identification/inverse_dynamics/missing_force.h"
 
 namespace continuum {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "identification/candidates/hypothesis.h"
+#include "identification/diagnosis/screening.h"
+#include "identification/diagnosis/verdict.h"
 #include "identification/fit/cross_validation.h"
-#include "identification/screen.h"
 #include "identification/statistics/noise_model.h"
 #include "identification/statistics/uncertainty.h"
-#include "identification/verdict.h"
 
 namespace continuum {
 
@@ -44,7 +44,7 @@ struct Fitted {
   bool complete = false;  ///< else only x, residuals, error and the plain cost are known
 };
 
-/// How a candidate explains the missing force (identification/equation_error.h).
+/// How a candidate explains the missing force (identification/diagnosis/equation_error.h).
 struct ByEquation {
   double share = 0;                   ///< of its squares
   std::vector<double> before, after;  ///< [train log] norm of what is left of it
@@ -136,7 +136,7 @@ struct Diagnosis {
   TwoErrors ceiling_error;  ///< of the same; the noise where that is all that is left
   std::string ceiling_by;   ///< what reached it, in words
   std::optional<CandidateResult>
-      fallback;  ///< where nothing explains it (identification/fallback.h)
+      fallback;  ///< where nothing explains it (identification/diagnosis/fallback_force.h)
   NextExperiment next;
   double gain_low = 0, gain_high = 0;  ///< 95 % interval, over held-out trials or the folds
   double seconds = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 
 namespace continuum {
 

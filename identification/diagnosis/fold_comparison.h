@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/trial.h"
+#include "identification/diagnosis/candidate_fitter.h"
 
 namespace continuum {
 

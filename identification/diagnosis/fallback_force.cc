@@ -1,4 +1,4 @@
-#include "identification/fallback.h"
+#include "identification/diagnosis/fallback_force.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "identification/by_folds.h"
+#include "identification/diagnosis/fold_comparison.h"
 
 namespace continuum {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "identification/trial.h"
+#include "identification/diagnosis/candidate_fitter.h"
 
 namespace continuum {
 

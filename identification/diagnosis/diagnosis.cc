@@ -1,4 +1,4 @@
-#include "identification/diagnosis.h"
+#include "identification/diagnosis/diagnosis.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "identification/by_folds.h"
-#include "identification/equation_error.h"
-#include "identification/fallback.h"
-#include "identification/next_experiment.h"
-#include "identification/pairs.h"
+#include "identification/diagnosis/cause_pairs.h"
+#include "identification/diagnosis/equation_error.h"
+#include "identification/diagnosis/fallback_force.h"
+#include "identification/diagnosis/fold_comparison.h"
+#include "identification/diagnosis/next_experiment.h"
+#include "identification/diagnosis/quantisation.h"
 #include "identification/problem/start_checks.h"
-#include "identification/rounding.h"
 #include "sim/numerics/parallel.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "identification/rounding.h"
+#include "identification/diagnosis/quantisation.h"
 
 #include <algorithm>
 #include <cmath>

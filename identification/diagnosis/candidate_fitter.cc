@@ -1,4 +1,4 @@
-#include "identification/trial.h"
+#include "identification/diagnosis/candidate_fitter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "error.h"
 #include "identification/candidates/search_range.h"
-#include "identification/round.h"
+#include "identification/diagnosis/candidate_search.h"
 #include "identification/statistics/uncertainty.h"
 
 // The fits of a round: who gets one, from where, and how far.

@@ -1,4 +1,4 @@
-#include "identification/verdict.h"
+#include "identification/diagnosis/verdict.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "identification/round.h"
+#include "identification/diagnosis/candidate_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 
 #include "error.h"
-#include "identification/rounding.h"
+#include "identification/diagnosis/quantisation.h"
 #include "identification/statistics/uncertainty.h"
 
 namespace continuum {
