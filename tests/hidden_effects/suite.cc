@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "hidden_effects/robots.h"
-#include "identification/diagnosis_output.h"
+#include "identification/report/diagnosis_output.h"
 #include "sim/io/file.h"
 
 namespace continuum::hidden {

@@ -12,7 +12,7 @@
 #include "error.h"
 #include "identification/diagnosis/condition_contrast.h"
 #include "identification/diagnosis/next_experiment.h"
-#include "identification/diagnosis_output.h"
+#include "identification/report/diagnosis_output.h"
 #include "pendulum.h"
 
 namespace continuum {

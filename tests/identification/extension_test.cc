@@ -1,4 +1,4 @@
-#include "identification/extension.h"
+#include "identification/report/extended_model.h"
 
 #include <algorithm>
 #include <string>

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "identification/extension.h"
 #include "identification/fit/fit.h"
+#include "identification/report/extended_model.h"
 #include "pendulum.h"
 #include "sim/replay/replay.h"
 

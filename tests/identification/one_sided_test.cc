@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/diagnosis_output.h"
+#include "identification/report/diagnosis_output.h"
 #include "pendulum.h"
 
 namespace continuum {

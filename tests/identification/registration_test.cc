@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "identification/extension.h"
 #include "identification/fit/fit.h"
+#include "identification/report/extended_model.h"
 #include "sim/io/file.h"
 #include "sim/replay/replay.h"
 #include "support/measured_arm.h"

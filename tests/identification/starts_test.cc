@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "identification/extension.h"
 #include "identification/fit/fit.h"
 #include "identification/fit/start_hint.h"
 #include "identification/problem/path_choice.h"
 #include "identification/problem/start_parameters.h"
+#include "identification/report/extended_model.h"
 #include "identification/statistics/uncertainty.h"
 #include "pendulum.h"
 #include "sim/replay/replay.h"

@@ -7,7 +7,7 @@
 #include "binding/expression.h"
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/diagnosis_output.h"
+#include "identification/report/diagnosis_output.h"
 #include "pendulum.h"
 
 namespace continuum {

@@ -1,4 +1,4 @@
-#include "identification/diagnosis_output.h"
+#include "identification/report/diagnosis_output.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include "error.h"
 #include "identification/diagnosis/condition_contrast.h"
 #include "identification/diagnosis/next_experiment.h"
-#include "identification/extension.h"
-#include "identification/fit_output.h"
+#include "identification/report/extended_model.h"
+#include "identification/report/fit_output.h"
 #include "sim/io/file.h"
 #include "sim/replay/replay.h"
 

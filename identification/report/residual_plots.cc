@@ -1,4 +1,4 @@
-#include "identification/residual_plots.h"
+#include "identification/report/residual_plots.h"
 
 #include <algorithm>
 #include <cmath>

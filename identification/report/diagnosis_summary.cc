@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "identification/diagnosis_output.h"
+#include "identification/report/diagnosis_output.h"
 
 namespace continuum {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "identification/diagnosis_output.h"
-#include "identification/fit_output.h"
 #include "identification/inverse_dynamics/missing_force.h"
+#include "identification/report/diagnosis_output.h"
+#include "identification/report/fit_output.h"
 #include "sim/replay/replay.h"
 
 namespace continuum {

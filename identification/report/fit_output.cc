@@ -1,4 +1,4 @@
-#include "identification/fit_output.h"
+#include "identification/report/fit_output.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "identification/extension.h"
 #include "identification/fit/prediction_error.h"
 #include "identification/problem/start_checks.h"
-#include "identification/residual_plots.h"
+#include "identification/report/extended_model.h"
+#include "identification/report/residual_plots.h"
 #include "identification/statistics/noise_model.h"
 #include "sim/io/file.h"
 #include "sim/io/json.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "error.h"
-#include "identification/extension.h"
+#include "identification/report/extended_model.h"
 
 namespace continuum {
 namespace {
