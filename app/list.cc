@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
-#include "identification/catalog.h"
+#include "plugin/binding/effect_catalog.h"
 
 namespace continuum {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "identification/catalog.h"
+#include "plugin/binding/effect_catalog.h"
 #include "sim/experiment/experiment.h"
 
 namespace continuum {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "identification/candidates/typical_sizes.h"
-#include "identification/catalog.h"
 #include "identification/fit/fit.h"
+#include "plugin/binding/effect_catalog.h"
 
 namespace continuum {
 

@@ -9,7 +9,7 @@
 
 #include "hidden_effects/pictures.h"
 #include "hidden_effects/report.h"
-#include "identification/catalog.h"
+#include "plugin/binding/effect_catalog.h"
 #include "support/json_lines.h"
 
 namespace continuum::hidden {

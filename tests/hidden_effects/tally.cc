@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "identification/catalog.h"
+#include "plugin/binding/effect_catalog.h"
 
 namespace continuum::hidden {
 namespace {

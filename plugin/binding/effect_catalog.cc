@@ -1,4 +1,4 @@
-#include "identification/catalog.h"
+#include "plugin/binding/effect_catalog.h"
 
 #include "binding/config.h"
 #include "effects/all.h"
