@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
-#include "plugin/binding/effect_catalog.h"
+#include "binding/effect_catalog.h"
 
 namespace continuum {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "app/console.h"
-#include "models/solver/solve.h"
+#include "models/solve.h"
 #include "sim/io/output_folder.h"
 
 namespace continuum {

@@ -5,7 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "plugin/binding/effect_catalog.h"
+#include "binding/effect_catalog.h"
 #include "sim/experiment/experiment.h"
 
 namespace continuum {

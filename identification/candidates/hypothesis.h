@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "binding/effect_catalog.h"
 #include "identification/candidates/typical_sizes.h"
 #include "identification/fit/fit.h"
-#include "plugin/binding/effect_catalog.h"
 
 namespace continuum {
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "models/generator/mjcf.h"
+#include "models/mjcf/mjcf_builder.h"
 #include "sim/io/file.h"
 #include "sim/io/yaml.h"
 

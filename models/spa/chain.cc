@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "error.h"
-#include "models/generator/soft_segment.h"
+#include "models/mjcf/soft_segment.h"
 #include "sim/io/file.h"
 
 namespace continuum {

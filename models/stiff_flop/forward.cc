@@ -83,15 +83,15 @@ class Balance {
 
   /// Newton from the moments of the straight module, else along the rising load; then finer steps
   /// until they change nothing.
-  solver::Outcome Solve() {
+  statics::Outcome Solve() {
     moment_ = Straight();
-    solver::Outcome outcome = Shoot(kFirstSteps);
+    statics::Outcome outcome = Shoot(kFirstSteps);
     if (!trusted_) outcome = Recover(outcome);
     while (outcome.ok()) {
       const double change = ChangeOfHalvedSteps();
       if (change <= kDiscretisation) break;
       if (steps_ == kMostSteps) {
-        outcome.status = solver::Status::kNoConvergence;
+        outcome.status = statics::Status::kNoConvergence;
         outcome.why = "the discretisation does not converge";
         break;
       }
@@ -122,15 +122,15 @@ class Balance {
     return y.cross(weight + tip) / Rod(module_, method_, row_, 1, 1).unit();
   }
 
-  static solver::Outcome After(const solver::Outcome& before, solver::Outcome outcome) {
+  static statics::Outcome After(const statics::Outcome& before, statics::Outcome outcome) {
     outcome.iterations += before.iterations;
     return outcome;
   }
 
-  solver::Outcome Shoot(int steps) {
+  statics::Outcome Shoot(int steps) {
     steps_ = steps;
     Rod rod(module_, method_, row_, 1, steps);
-    const solver::Outcome outcome = solver::Newton(Shooting{&rod}, moment_);
+    const statics::Outcome outcome = statics::Newton(Shooting{&rod}, moment_);
     stable_ = outcome.ok() && tip_.Find(rod, moment_) && rod.reserve().stiffness > 0 &&
               rod.reserve().plain;
     trusted_ = stable_ && tip_.determinant > 0;
@@ -140,16 +140,16 @@ class Balance {
 
   // Along the rising load. Past a bifurcation there may be no path to follow: a direct answer with
   // stable sections stays one.
-  solver::Outcome Recover(const solver::Outcome& direct) {
+  statics::Outcome Recover(const statics::Outcome& direct) {
     const Vector3d moment = moment_;
-    const solver::Outcome along = After(direct, Climb());
+    const statics::Outcome along = After(direct, Climb());
     if (along.ok()) return After(along, Shoot(kFirstSteps));
     if (!stable_) return along;
     moment_ = moment;
     return direct;
   }
 
-  solver::Outcome Climb() {
+  statics::Outcome Climb() {
     steps_ = 2 * kFirstSteps;
     moment_.setZero();
     std::optional<Rod> rod;
@@ -168,7 +168,7 @@ class Balance {
       last_determinant_ = tip.determinant;
       return true;
     };
-    return solver::Continue(at, moment_, {}, {}, on_branch);
+    return statics::Continue(at, moment_, {}, {}, on_branch);
   }
 
   // How far tip (per l) and moment (per unit) move when every step is halved.
@@ -211,8 +211,8 @@ Solution SolveForward(const Module& module, const Method& method, const Case& ro
                       std::vector<Vector3d>* line) {
   Solution solution;
   Balance balance(module, method, row);
-  solution.outcome = solver::Timed([&] {
-    const solver::Outcome outcome = balance.Solve();
+  solution.outcome = statics::Timed([&] {
+    const statics::Outcome outcome = balance.Solve();
     if (!outcome.ok()) {
       solution.status = balance.Reason();
       return outcome;

@@ -65,11 +65,11 @@ Solution SolveInverse(const Module& module, const Method& method, const Case& ro
                       bool sensitivity) {
   Solution solution;
   const Axis<double> axis = AxisOf(row.given);
-  solution.outcome = solver::Timed([&] {
-    solver::Outcome outcome;
+  solution.outcome = statics::Timed([&] {
+    statics::Outcome outcome;
     if (Margin(module, method, axis) <= 0) {
       solution.status = Status::kOutOfDomain;
-      outcome.status = solver::Status::kOutOfDomain;
+      outcome.status = statics::Status::kOutOfDomain;
       outcome.why = "the section folds or a thread is straight";
       return outcome;
     }
@@ -81,7 +81,7 @@ Solution SolveInverse(const Module& module, const Method& method, const Case& ro
       outcome.why = "no pressures balance this shape, or its integrals do not converge";
       return outcome;
     }
-    outcome.status = solver::Status::kOk;
+    outcome.status = statics::Status::kOk;
     solution.status = Status::kOk;
     solution.answer = module.E * p;
     if (sensitivity) {

@@ -51,7 +51,7 @@ struct Residuals {
 
   template <class X, class F, class J>
   bool Jacobian(const X& x, F& f, J& jacobian) const {
-    return solver::Differences(*this, x, 1e-4, f, jacobian);
+    return statics::Differences(*this, x, 1e-4, f, jacobian);
   }
 };
 
@@ -74,18 +74,18 @@ Log Lines::Acting(const Log& log) const {
   return acting;
 }
 
-solver::Outcome FitLines(const Robot& robot, const Method& method, const Log& log,
-                         const LineEffects& effects, Lines& lines) {
+statics::Outcome FitLines(const Robot& robot, const Method& method, const Log& log,
+                          const LineEffects& effects, Lines& lines) {
   const Log train = log.First(TrainRows(log));
   const std::vector<double> start = Unknowns(lines, effects);
   Eigen::VectorXd x =
       Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
-  solver::Options options;
+  statics::Options options;
   options.max_iterations = 20;
   options.gradient = 1e-4;
   options.step = 1e-5;
   const Lines given = lines;
-  const auto outcome = solver::LevenbergMarquardt<Eigen::VectorXd>(
+  const auto outcome = statics::LevenbergMarquardt<Eigen::VectorXd>(
       Residuals{robot, method, train, effects, given}, x,
       static_cast<Eigen::Index>(3 * train.time.size()), options);
   lines = WithUnknowns(given, effects, x.data());

@@ -29,7 +29,7 @@ struct LineEffects {
 };
 
 /// Least squared marker distance over the train rows, registration fitted for each guess.
-solver::Outcome FitLines(const Robot& robot, const Method& method, const Log& log,
-                         const LineEffects& effects, Lines& lines);
+statics::Outcome FitLines(const Robot& robot, const Method& method, const Log& log,
+                          const LineEffects& effects, Lines& lines);
 
 }  // namespace continuum::stiff_flop

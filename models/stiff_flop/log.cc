@@ -56,7 +56,7 @@ struct Residuals {
 
   template <class X, class F, class J>
   bool Jacobian(const X& x, F& f, J& jacobian) const {
-    return solver::Differences(*this, x, 1e-4, f, jacobian);
+    return statics::Differences(*this, x, 1e-4, f, jacobian);
   }
 };
 
@@ -169,17 +169,17 @@ bool MarkerResiduals(const Robot& robot, const Method& method, const Log& log, d
   return true;
 }
 
-solver::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
+statics::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
   const Log train = log.First(TrainRows(log));
   Eigen::Vector2d x(1, robot.module.gamma);
-  solver::Bounds<2> bounds;
+  statics::Bounds<2> bounds;
   bounds.lower = {0.2, std::numbers::pi / 4};
   bounds.upper = {5, std::numbers::pi / 2};
-  solver::Options options;
+  statics::Options options;
   options.max_iterations = 12;
   options.gradient = 1e-4;
   options.step = 1e-5;
-  const solver::Outcome outcome = solver::LevenbergMarquardt<Eigen::VectorXd>(
+  const statics::Outcome outcome = statics::LevenbergMarquardt<Eigen::VectorXd>(
       Residuals{robot, method, train}, x, static_cast<Eigen::Index>(3 * train.time.size()), options,
       bounds);
   robot.module.E *= x[0];

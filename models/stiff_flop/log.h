@@ -58,6 +58,6 @@ bool MarkerResiduals(const Robot& robot, const Method& method, const Log& log, d
 
 /// E [Pa] and gamma [rad] of least squared marker distance over the train rows, registration fitted
 /// for each. Starts from the robot's own and changes them.
-solver::Outcome FitBraid(const Method& method, const Log& log, Robot& robot);
+statics::Outcome FitBraid(const Method& method, const Log& log, Robot& robot);
 
 }  // namespace continuum::stiff_flop

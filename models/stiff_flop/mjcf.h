@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "models/generator/soft_segment.h"
+#include "models/mjcf/soft_segment.h"
 #include "models/stiff_flop/module.h"
 
 namespace continuum::stiff_flop {

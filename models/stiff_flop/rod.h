@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "models/solver/newton.h"
+#include "models/statics/newton.h"
 #include "models/stiff_flop/case.h"
 #include "models/stiff_flop/tubes.h"
 
@@ -90,7 +90,8 @@ class Rod {
   bool Strains(const Eigen::Vector3d& n, const Eigen::Vector3d& M, Strain<double>& strain);
   bool Strains(const Eigen::Matrix<Dual, 3, 1>& n, const Eigen::Matrix<Dual, 3, 1>& M,
                Strain<Dual>& strain);
-  bool Raise(const Eigen::Vector3d& load, Eigen::Vector3d& x, const solver::Options& options) const;
+  bool Raise(const Eigen::Vector3d& load, Eigen::Vector3d& x,
+             const statics::Options& options) const;
   bool SolveSection(const Eigen::Vector3d& load);
   bool FollowNeighbour(const Eigen::Vector3d& load);
   bool SearchSection(const Eigen::Vector3d& load);

@@ -1,4 +1,4 @@
-#include "models/solver/solve.h"
+#include "models/solve.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "error.h"
-#include "models/solver/plot.h"
-#include "models/solver/results.h"
+#include "models/statics/results.h"
+#include "models/statics/shape_plot.h"
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
 #include "sim/io/yaml.h"
@@ -67,12 +67,12 @@ Names Columns(Direction direction, bool sensitivity) {
   return names;
 }
 
-void Set(solver::Results& results, const Names& columns, const Eigen::Vector3d& values) {
+void Set(statics::Results& results, const Names& columns, const Eigen::Vector3d& values) {
   for (int i = 0; i < 3; ++i) results.Set(columns[i], values[i]);
 }
 
 void WriteRow(const Case& row, Direction direction, bool sensitivity, const Solution& solution,
-              solver::Results& results) {
+              statics::Results& results) {
   results.Row();
   results.Set("case", row.label);
   results.Set("status", Name(solution.status));
@@ -101,19 +101,19 @@ void WriteRow(const Case& row, Direction direction, bool sensitivity, const Solu
 void Plot(const SolveRequest& request, const Robot& robot, const Cases& cases,
           const std::vector<Solution>& solved,
           const std::vector<std::vector<Eigen::Vector3d>>& lines) {
-  solver::Picture picture;
+  statics::Picture picture;
   picture.title = "stiff_flop, module " + robot.name;
   picture.views = {{{0, 1}, {2, 1}}};
   for (std::size_t i = 0; i < cases.rows.size(); ++i) {
     if (solved[i].status != Status::kOk) continue;
-    solver::Shape shape;
+    statics::Shape shape;
     shape.label = cases.rows[i].label;
     for (const Eigen::Vector3d& point : lines[i]) {
       shape.line.push_back({point.x(), point.y(), point.z()});
     }
     picture.shapes.push_back(std::move(shape));
   }
-  solver::WritePicture(request.plot, picture);
+  statics::WritePicture(request.plot, picture);
 }
 
 }  // namespace
@@ -124,12 +124,12 @@ int SolveStiffFlop(const SolveRequest& request) {
   const Cases cases = Cases::Read(request.input, robot.gravity);
   WarnOfTubesOutsideTheWall(request, robot);
   const Method method = Method::Parse(request.method, cases.direction);
-  solver::RequireExtension(request.out, {".csv", ".json"}, "--out");
+  statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) {
-    solver::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
+    statics::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
   }
   std::vector<Solution> solved;
-  solver::Results results(Columns(cases.direction, request.sensitivity));
+  statics::Results results(Columns(cases.direction, request.sensitivity));
   int failed = 0;
   const bool draw = !request.plot.empty();
   std::vector<std::vector<Eigen::Vector3d>> lines(draw ? cases.rows.size() : 0);

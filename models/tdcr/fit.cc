@@ -78,18 +78,18 @@ Solution FitShape(const Robot& robot, const Eigen::Matrix3Xd& points, double lam
     if (!std::isnan(points(0, i))) problem.measured.push_back(i);
   }
   Solution best;
-  best.outcome = solver::Timed([&] {
-    solver::Options options;
+  best.outcome = statics::Timed([&] {
+    statics::Options options;
     options.tolerance = 0;
     options.max_iterations = 200;
-    solver::Outcome outcome;
+    statics::Outcome outcome;
     Ends x = Ends::Zero();
     int iterations = 0;
     const int last = problem.measured.back();
     for (const Ends& start : {Ends(Ends::Zero()), ArcThrough(robot, points.col(last), last)}) {
       Ends trial = start;
-      const auto result =
-          solver::LevenbergMarquardt<Eigen::VectorXd>(problem, trial, problem.equations(), options);
+      const auto result = statics::LevenbergMarquardt<Eigen::VectorXd>(
+          problem, trial, problem.equations(), options);
       iterations += result.iterations;
       if (result.residual < outcome.residual) {
         outcome = result;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "error.h"
-#include "models/generator/mjcf.h"
-#include "models/generator/pull.h"
+#include "models/mjcf/mjcf_builder.h"
+#include "models/mjcf/slow_pull.h"
 #include "sim/io/file.h"
 
 namespace continuum::tdcr {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "error.h"
-#include "models/generator/pull.h"
+#include "models/mjcf/slow_pull.h"
 #include "models/tdcr/mjcf.h"
 #include "models/tdcr/model.h"
 #include "sim/io/csv.h"

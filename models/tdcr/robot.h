@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "models/solver/newton.h"
+#include "models/statics/newton.h"
 #include "sim/io/csv.h"
 #include "sim/io/yaml.h"
 

@@ -1,4 +1,4 @@
-#include "models/solver/solve.h"
+#include "models/solve.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "error.h"
-#include "models/solver/plot.h"
-#include "models/solver/results.h"
+#include "models/statics/results.h"
+#include "models/statics/shape_plot.h"
 #include "models/tdcr/calibrate.h"
 #include "models/tdcr/columns.h"
 #include "models/tdcr/disks.h"
@@ -64,7 +64,7 @@ void AddErrorColumns(const std::vector<Solved>& solved, int disks,
   }
 }
 
-void AddShape(const Robot& robot, const Solved& s, solver::Results& results) {
+void AddShape(const Robot& robot, const Solved& s, statics::Results& results) {
   const char* const axes[3] = {"x", "y", "z"};
   const char* const curvatures[3] = {"kappa_x", "kappa_y", "tau"};
   const Solution& solution = s.solution;
@@ -94,11 +94,11 @@ Eigen::Matrix3Xd Backbone(const Robot& robot, const Solution& solution) {
 
 void Draw(const std::filesystem::path& path, const Robot& robot, const std::string& title,
           const std::vector<Solved>& solved) {
-  solver::Picture picture;
+  statics::Picture picture;
   picture.title = title;
   for (const Solved& s : solved) {
     if (!s.solution.outcome.ok()) continue;
-    solver::Shape shape;
+    statics::Shape shape;
     shape.label = s.name;
     shape.line.push_back({0, 0, 0});
     const Eigen::Matrix3Xd backbone = Backbone(robot, s.solution);
@@ -112,7 +112,7 @@ void Draw(const std::filesystem::path& path, const Robot& robot, const std::stri
     }
     picture.shapes.push_back(std::move(shape));
   }
-  solver::WritePicture(path, picture);
+  statics::WritePicture(path, picture);
 }
 
 int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
@@ -121,7 +121,7 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
   const auto failed = [](const Solved& s) { return !s.solution.outcome.ok(); };
   const bool all = std::none_of(solved.begin(), solved.end(), failed);
   if (!all) columns.emplace_back("why");
-  solver::Results results(columns);
+  statics::Results results(columns);
   for (const Solved& s : solved) {
     const bool ok = s.solution.outcome.ok();
     results.Row();
@@ -277,7 +277,7 @@ int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& r
   Need(request.input, "--input", "--calibrate");
   Need(request.measured, "--measured", "--calibrate");
   Refuse(!request.plot.empty(), "--plot", "--calibrate");
-  solver::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
+  statics::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
   const Calibration c =
@@ -290,7 +290,7 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
   Need(request.input, "--input", "--hybrid train");
   Need(request.measured, "--measured", "--hybrid train");
   Refuse(!request.plot.empty(), "--plot", "--hybrid train");
-  solver::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
+  statics::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
   const Hybrid h = Train(robot, ReadPairs(request, cases, measured), request.measured.string(),
@@ -339,8 +339,8 @@ int SolveTdcr(const SolveRequest& request) {
     }
     return CalibrateRobot(request, file, robot, ParseMethod(method));
   }
-  solver::RequireExtension(request.out, {".csv", ".json"}, "--out");
-  if (!request.plot.empty()) solver::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
+  statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
+  if (!request.plot.empty()) statics::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
   if (method == "fit") return FitShapes(request, robot);
   const Method parsed = ParseMethod(method);
   Need(request.input, "--input", "the cases");

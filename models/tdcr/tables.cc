@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "models/solver/results.h"
+#include "models/statics/results.h"
 #include "models/tdcr/calibrate.h"
 #include "models/tdcr/fit.h"
 #include "models/tdcr/hybrid.h"

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "error.h"
-#include "models/solver/results.h"
+#include "models/statics/results.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"
 
@@ -29,7 +29,7 @@ double NotNegative(const Table& table, std::size_t row, const std::string& colum
 
 // The columns of the cables' loads: all masses or all tensions, whichever the first cable has.
 std::vector<std::string> LoadColumns(const Table& table, int cables) {
-  return solver::Numbered(table.Has("F1") ? "F" : "m", cables);
+  return statics::Numbered(table.Has("F1") ? "F" : "m", cables);
 }
 
 void RequireColumns(const Table& table, const std::vector<std::string>& loads) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "error.h"
-#include "models/generator/pull.h"
+#include "models/mjcf/slow_pull.h"
 #include "models/twin_pivot/cases.h"
 #include "models/twin_pivot/mjcf.h"
 

@@ -1,4 +1,4 @@
-#include "models/solver/solve.h"
+#include "models/solve.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "error.h"
-#include "models/solver/plot.h"
-#include "models/solver/results.h"
+#include "models/statics/results.h"
+#include "models/statics/shape_plot.h"
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
 #include "models/twin_pivot/twin_pivot.h"
@@ -43,7 +43,7 @@ Method ReadMethod(const std::string& name) {
 }
 
 int Calibrate(const SolveRequest& request) {
-  solver::RequireExtension(request.out, {".json"}, "--out");
+  statics::RequireExtension(request.out, {".json"}, "--out");
   WriteFile(request.out, twin_pivot::CalibrateFriction(request.input).Json());
   return 0;
 }
@@ -68,7 +68,7 @@ std::vector<Solution> SolveCases(const Robot& robot, const std::vector<Case>& ca
 }
 
 void WriteRow(const Robot& robot, const Case& row, const Solution& solution,
-              solver::Results& results) {
+              statics::Results& results) {
   results.Row();
   results.Set("case", row.label);
   results.Set("condition",
@@ -90,25 +90,25 @@ void WriteResults(const SolveRequest& request, const Robot& robot, const std::ve
                                       "micros", "x",         "y",      "z"};
   for (const auto& [prefix, count] :
        {std::pair{"beta_", robot.Joints()}, std::pair{"F_end_", robot.Cables()}}) {
-    for (const std::string& name : solver::Numbered(prefix, count)) columns.push_back(name);
+    for (const std::string& name : statics::Numbered(prefix, count)) columns.push_back(name);
   }
   const bool all =
       std::all_of(solved.begin(), solved.end(), [](const Solution& s) { return s.outcome.ok(); });
   if (!all) columns.emplace_back("why");
-  solver::Results results(columns);
+  statics::Results results(columns);
   for (std::size_t i = 0; i < cases.size(); ++i) WriteRow(robot, cases[i], solved[i], results);
   results.Write(request.out);
 }
 
 void Plot(const SolveRequest& request, const Robot& robot, const std::vector<Case>& cases,
           const std::vector<Solution>& solved) {
-  solver::Picture picture;
+  statics::Picture picture;
   picture.title = "twin_pivot: " + request.robot.filename().string();
   picture.views = {{{0, 1}, {0, 2}}};
   constexpr int kPerRod = 6;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (!solved[i].outcome.ok()) continue;
-    solver::Shape shape;
+    statics::Shape shape;
     shape.label = cases[i].label;
     const auto points = twin_pivot::CentreLine(robot, solved[i].beta, kPerRod);
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -117,7 +117,7 @@ void Plot(const SolveRequest& request, const Robot& robot, const std::vector<Cas
     }
     picture.shapes.push_back(std::move(shape));
   }
-  solver::WritePicture(request.plot, picture);
+  statics::WritePicture(request.plot, picture);
 }
 
 }  // namespace
@@ -127,9 +127,9 @@ int SolveTwinPivot(const SolveRequest& request) {
   const Robot robot = Robot::Read(request.robot);
   if (request.calibrate) return Calibrate(request);
   const Method method = ReadMethod(request.method);
-  solver::RequireExtension(request.out, {".csv", ".json"}, "--out");
+  statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) {
-    solver::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
+    statics::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
   }
   const std::vector<Case> cases = twin_pivot::ReadCases(request.input, robot);
   const std::vector<Solution> solved = SolveCases(robot, cases, method);

@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 // A contact this wide [m] is no obstacle to Newton: cables move by about as much.
 constexpr double kWidest = 1e-3;
 
-solver::Options Tolerances() {
-  solver::Options options;
+statics::Options Tolerances() {
+  statics::Options options;
   options.tolerance = 1e-13;
   options.accept = 1e-10;
   options.max_step = 1;
@@ -28,9 +28,9 @@ solver::Options Tolerances() {
 
 // Runs one stage from x; keeps the count of iterations, and x only when it succeeded.
 template <class Stage>
-bool Take(solver::Outcome& total, VectorXd& x, const Stage& stage) {
+bool Take(statics::Outcome& total, VectorXd& x, const Stage& stage) {
   VectorXd trial = x;
-  solver::Outcome outcome = stage(trial);
+  statics::Outcome outcome = stage(trial);
   outcome.iterations += total.iterations;
   total = outcome;
   if (total.ok()) x = trial;
@@ -40,16 +40,19 @@ bool Take(solver::Outcome& total, VectorXd& x, const Stage& stage) {
 // The root of problem_at(1): by Newton from x where that works, otherwise along the roots from that
 // of problem_at(0), which is `known`.
 template <class ProblemAt>
-bool Reach(solver::Outcome& total, VectorXd& x, const ProblemAt& problem_at, VectorXd known) {
-  const auto newton = [&](VectorXd& y) { return solver::Newton(problem_at(1.0), y, Tolerances()); };
+bool Reach(statics::Outcome& total, VectorXd& x, const ProblemAt& problem_at, VectorXd known) {
+  const auto newton = [&](VectorXd& y) {
+    return statics::Newton(problem_at(1.0), y, Tolerances());
+  };
   if (Take(total, x, newton)) return true;
   x = std::move(known);
-  return Take(total, x, [&](VectorXd& y) { return solver::Continue(problem_at, y, Tolerances()); });
+  return Take(total, x,
+              [&](VectorXd& y) { return statics::Continue(problem_at, y, Tolerances()); });
 }
 
 // Three stages: everything but friction; friction with contacts that turn widely; sharp contacts.
-solver::Outcome FindRoot(const Task& task, VectorXd& x) {
-  solver::Outcome total;
+statics::Outcome FindRoot(const Task& task, VectorXd& x) {
+  statics::Outcome total;
   const double eps = task.robot.eps;
   const double widest = std::max(kWidest, eps);
   const auto loaded = [&](double t) { return Balance{task, t, 0, widest}; };
@@ -122,7 +125,7 @@ Solution Solve(const Robot& robot, const Load& load, Method method,
   const Task task(robot, load, method);
   Solution solution;
   solution.beta = start ? *start : VectorXd::Zero(task.joints);
-  solution.outcome = solver::Timed([&] { return FindRoot(task, solution.beta); });
+  solution.outcome = statics::Timed([&] { return FindRoot(task, solution.beta); });
   RequirePositiveFriction(task, solution.beta);
   if (!solution.outcome.ok()) {
     const auto f = Residual(robot, load, method, solution.beta);
@@ -151,7 +154,7 @@ std::optional<Eigen::MatrixXd> ResidualSlope(const Robot& robot, const Load& loa
   const Task task(robot, load, method);
   VectorXd f(task.joints);
   Eigen::MatrixXd slope(task.joints, task.joints);
-  if (!solver::Linearize(Balance{task, 1, 1, robot.eps}, beta, f, slope)) return std::nullopt;
+  if (!statics::Linearize(Balance{task, 1, 1, robot.eps}, beta, f, slope)) return std::nullopt;
   return slope;
 }
 

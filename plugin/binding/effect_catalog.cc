@@ -1,4 +1,4 @@
-#include "plugin/binding/effect_catalog.h"
+#include "binding/effect_catalog.h"
 
 #include "binding/config.h"
 #include "effects/all.h"

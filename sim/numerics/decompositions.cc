@@ -2,10 +2,10 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace continuum::solver {
+namespace continuum {
 
 double LeastRealEigenvalue(const Eigen::MatrixXd& matrix) {
   return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues().real().minCoeff();
 }
 
-}  // namespace continuum::solver
+}  // namespace continuum

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "plugin/binding/effect_catalog.h"
+#include "binding/effect_catalog.h"
 
 namespace continuum::hidden {
 namespace {

@@ -7,9 +7,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "binding/effect_catalog.h"
 #include "hidden_effects/pictures.h"
 #include "hidden_effects/report.h"
-#include "plugin/binding/effect_catalog.h"
 #include "support/json_lines.h"
 
 namespace continuum::hidden {

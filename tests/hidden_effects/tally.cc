@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "plugin/binding/effect_catalog.h"
+#include "binding/effect_catalog.h"
 
 namespace continuum::hidden {
 namespace {

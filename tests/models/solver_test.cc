@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "error.h"
-#include "models/solver/font.h"
-#include "models/solver/newton.h"
-#include "models/solver/plot.h"
-#include "models/solver/results.h"
+#include "models/statics/font.h"
+#include "models/statics/newton.h"
+#include "models/statics/results.h"
+#include "models/statics/shape_plot.h"
 #include "sim/io/file.h"
 
-namespace continuum::solver {
+namespace continuum::statics {
 namespace {
 
 using testing::HasSubstr;
@@ -261,4 +261,4 @@ TEST(Font, TellsCapitalsFromSmallLetters) {
 }
 
 }  // namespace
-}  // namespace continuum::solver
+}  // namespace continuum::statics

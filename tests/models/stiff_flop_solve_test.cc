@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "models/solver/solve.h"
+#include "models/solve.h"
 #include "models/stiff_flop/module.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"

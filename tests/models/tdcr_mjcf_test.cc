@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "models/generator/pull.h"
+#include "models/mjcf/slow_pull.h"
 #include "models/tdcr/model.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "error.h"
-#include "models/solver/solve.h"
+#include "models/solve.h"
 #include "models/tdcr/calibrate.h"
 #include "models/tdcr/fit.h"
 #include "models/tdcr/hybrid.h"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
-#include "models/generator/pull.h"
+#include "models/mjcf/slow_pull.h"
 #include "models/twin_pivot/cases.h"
 #include "sim/io/file.h"
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "error.h"
-#include "models/solver/solve.h"
+#include "models/solve.h"
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
 #include "sim/io/csv.h"

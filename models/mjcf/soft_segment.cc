@@ -1,4 +1,4 @@
-#include "models/generator/soft_segment.h"
+#include "models/mjcf/soft_segment.h"
 
 #include <cmath>
 

@@ -7,7 +7,7 @@
 
 #include "error.h"
 #include "models/annelida/annelida.h"
-#include "models/generator/tendon_arm.h"
+#include "models/mjcf/tendon_arm.h"
 #include "models/spa/chain.h"
 #include "models/spa/parameters.h"
 #include "models/stiff_flop/mjcf.h"

@@ -30,7 +30,7 @@
 ///
 /// Scale the residuals so that their norm means something (the models divide by EI/L): tolerances
 /// are absolute norms. Fixed sizes never touch the heap while iterating.
-namespace continuum::solver {
+namespace continuum::statics {
 
 enum class Status { kOk, kNoConvergence, kOutOfDomain };
 
@@ -365,4 +365,4 @@ Outcome Continue(const ProblemAt& problem_at, Eigen::Matrix<double, N, 1>& x,
       "the path of equilibria ends at " + std::to_string(load) + " of the load");
 }
 
-}  // namespace continuum::solver
+}  // namespace continuum::statics

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace continuum::solver {
+namespace continuum::statics {
 
 /// A letter of 5 dots in width: rows from the top, bit 4 the leftmost dot; the line is under the
 /// seventh, and two may hang below it.
@@ -101,4 +101,4 @@ inline const Glyph* FindGlyph(char letter) {
   return nullptr;
 }
 
-}  // namespace continuum::solver
+}  // namespace continuum::statics

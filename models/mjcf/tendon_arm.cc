@@ -1,4 +1,4 @@
-#include "models/generator/tendon_arm.h"
+#include "models/mjcf/tendon_arm.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "models/solver/results.h"
+#include "models/statics/results.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "error.h"
 #include "sim/io/file.h"
 
-namespace continuum::solver {
+namespace continuum::statics {
 namespace {
 
 using Cell = Results::Cell;
@@ -104,4 +104,4 @@ void RequireExtension(const std::filesystem::path& path, const std::vector<std::
                      path.empty() ? "nothing" : "'" + path.string() + "'");
 }
 
-}  // namespace continuum::solver
+}  // namespace continuum::statics

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace continuum::solver {
+namespace continuum::statics {
 
 /// One case in a picture: points [m] of the backbone in the base frame, joined by a line.
 struct Shape {
@@ -28,4 +28,4 @@ std::string Svg(const Picture& picture);
 /// By extension: .svg or .png, whole or nothing. @throws Error for another extension.
 void WritePicture(const std::filesystem::path& path, const Picture& picture);
 
-}  // namespace continuum::solver
+}  // namespace continuum::statics

@@ -1,4 +1,4 @@
-#include "models/generator/mjcf.h"
+#include "models/mjcf/mjcf_builder.h"
 
 #include <algorithm>
 #include <cmath>

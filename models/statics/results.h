@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "models/solver/newton.h"
+#include "models/statics/newton.h"
 
-namespace continuum::solver {
+namespace continuum::statics {
 
 /// A table of results with named columns, written as CSV or as a JSON array of objects.
 ///
@@ -50,4 +50,4 @@ std::vector<std::string> Numbered(const std::string& prefix, int count);
 void RequireExtension(const std::filesystem::path& path, const std::vector<std::string>& allowed,
                       const std::string& option);
 
-}  // namespace continuum::solver
+}  // namespace continuum::statics

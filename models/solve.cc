@@ -1,4 +1,4 @@
-#include "models/solver/solve.h"
+#include "models/solve.h"
 
 #include "error.h"
 #include "sim/io/yaml.h"

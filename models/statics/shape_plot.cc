@@ -1,4 +1,4 @@
-#include "models/solver/plot.h"
+#include "models/statics/shape_plot.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 #include <cstdint>
 #include <limits>
 
-#include "models/solver/font.h"
-#include "models/solver/results.h"
+#include "models/statics/font.h"
+#include "models/statics/results.h"
 #include "sim/film/image.h"
 #include "sim/io/file.h"
 #include "sim/numerics/round_number.h"
 
-namespace continuum::solver {
+namespace continuum::statics {
 namespace {
 
 constexpr double kWidth = 1260, kHeight = 540, kMargin = 70, kLegend = 250;
@@ -315,4 +315,4 @@ void WritePicture(const std::filesystem::path& path, const Picture& picture) {
   WritePng(path, raster.Averaged());
 }
 
-}  // namespace continuum::solver
+}  // namespace continuum::statics

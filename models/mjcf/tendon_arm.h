@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "models/generator/mjcf.h"
+#include "models/mjcf/mjcf_builder.h"
 
 namespace continuum {
 

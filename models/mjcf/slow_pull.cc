@@ -1,4 +1,4 @@
-#include "models/generator/pull.h"
+#include "models/mjcf/slow_pull.h"
 
 #include <algorithm>
 #include <cmath>
