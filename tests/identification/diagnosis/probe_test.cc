@@ -1,0 +1,37 @@
+#include <gtest/gtest.h>
+
+#include "identification/diagnosis/candidate_fitter.h"
+#include "support/pendulum.h"
+
+namespace continuum {
+namespace {
+
+using testing::Command;
+using testing::Pendulum;
+
+class ProbeTest : public testing::Bench {};
+
+// An excess over a friction that is not there does nothing alone. On top of the friction it is what
+// both do less what the friction does, which is known by then.
+TEST_F(ProbeTest, NothingIsSimulatedTwice) {
+  Pendulum truth;
+  truth.tau_c = 0.03;
+  const auto u = Command(0, 200);
+  AddLog("log", "use: train", u, truth.Run(u, testing::kPeriod));
+  const Experiment e = ReadExperiment("candidates: [stribeck]\n");
+  const System system = System::Load(Write("model.xml", Pendulum().Xml()));
+  const Problem null(e, system);
+  const Trials trials{&e, {}};
+  const Fitted fitted = trials.FitAll(null, null.Start());
+  std::vector<std::string> skipped;
+  const auto all = MakeCandidates(e, {&system}, SizesOf(null, fitted.fit.x), skipped);
+  ASSERT_EQ(all.size(), 1u);
+  const Problem problem(e, all[0].system, all[0].Free());
+  const auto probes = trials.Probes(all[0], problem, fitted, trials.LeftBy(fitted));
+  ASSERT_EQ(probes.size(), all[0].starts.size());  // all at their starts
+  for (const Probe& probe : probes) EXPECT_EQ(probe.on_top, (std::vector<bool>{false, true}));
+  EXPECT_EQ(problem.evaluations(), 3 * probes.size());  // the friction, the excess, and both
+}
+
+}  // namespace
+}  // namespace continuum

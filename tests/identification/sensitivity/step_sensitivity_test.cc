@@ -1,0 +1,212 @@
+// Sensitivities in closed form, of the differential equation and of MuJoCo's steps, against
+// differences of both.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "gradient.h"
+#include "identification/problem/problem.h"
+#include "identification/sensitivity/continuous_sensitivity.h"
+#include "support/pendulum.h"
+
+namespace continuum {
+namespace {
+
+using testing::Gradient;
+
+// Three links with two cables and a lagged motor that can be switched off; friction: of every
+// joint.
+std::string Arm(double friction) {
+  std::string bodies, close;
+  for (int i = 0; i < 3; ++i) {
+    bodies += fmt::format(
+        "<body name='link{0}' pos='0 0 {1}'><joint name='x{0}' axis='1 0 0' stiffness='0.8' "
+        "damping='0.02' armature='2e-4' frictionloss='{2}'/><joint name='y{0}' axis='0 1 0' "
+        "stiffness='0.6' damping='0.015' frictionloss='{2}'/><inertial pos='0.003 0 -0.05' "
+        "mass='0.1' diaginertia='1e-4 1.2e-4 4e-5'/><site name='a{0}' pos='0.03 0.01 -0.1'/>"
+        "<site name='b{0}' pos='-0.01 0.03 -0.1'/>",
+        i, i ? -0.1 : 0, friction);
+    close += "</body>";
+  }
+  return fmt::format(
+      "<mujoco><option timestep='2e-3' integrator='implicitfast' tolerance='0' iterations='200'/>"
+      "<worldbody><site name='a' pos='0.03 0.01 0'/><site name='b' pos='-0.01 0.03 0'/>{}{}"
+      "</worldbody><tendon><spatial name='ta' damping='0.5'><site site='a'/><site site='a0'/>"
+      "<site site='a1'/><site site='a2'/></spatial><spatial name='tb' stiffness='20'>"
+      "<site site='b'/><site site='b0'/><site site='b1'/></spatial></tendon><actuator>"
+      "<general name='pull' tendon='ta' gainprm='-1'/><general name='lagged' joint='y0' "
+      "dyntype='filterexact' dynprm='0.04' gainprm='0.3' gear='1.5' actearly='true' "
+      "biastype='affine' biasprm='0 0 -0.01'/></actuator><sensor><jointpos name='x0' joint='x0'/>"
+      "<jointvel name='y2' joint='y2'/><framepos name='end' objtype='site' objname='a2'/>"
+      "<framepos name='link' objtype='body' objname='link1'/></sensor></mujoco>",
+      bodies, close);
+}
+
+constexpr char kParameters[] =
+    "parameters:\n"
+    "  - {name: k, target: 'joint:y*', attribute: stiffness, initial: 0.6, lower: 0.1, upper: 2}\n"
+    "  - {name: b, target: 'joint:x*', attribute: damping, initial: 0.02, lower: 0, upper: 1}\n"
+    "  - {name: ref, target: 'joint:x1', attribute: springref, initial: 0.1, lower: -1, upper: 1}\n"
+    "  - {name: j, target: 'joint:y2', attribute: armature, initial: 1e-4, lower: 0, upper: 1e-2}\n"
+    "  - {name: m, target: 'body:link1', attribute: mass, initial: 0.1, lower: 0.01, upper: 1}\n"
+    "  - {name: c, target: 'body:link2', attribute: 'ipos[0]', initial: 0.003, lower: -1, upper: "
+    "1}\n"
+    "  - {name: g, target: 'actuator:pull', attribute: 'gainprm[0]', initial: -1, lower: -9, "
+    "upper: 0}\n"
+    "  - {name: T, target: 'actuator:lagged', attribute: 'dynprm[0]', initial: 0.04, lower: 0.01, "
+    "upper: 1}\n"
+    "  - {name: tk, target: 'tendon:tb', attribute: stiffness, initial: 20, lower: 1, upper: 90}\n"
+    "  - {name: tb, target: 'tendon:ta', attribute: damping, initial: 0.5, lower: 0, upper: 9}\n"
+    "  - {name: g0, target: option, attribute: 'gravity[0]', initial: 0.3, lower: -1, upper: 1}\n"
+    "  - {name: site, target: 'site:a1', attribute: 'pos[0]', initial: 0.03, lower: 0, upper: "
+    "0.1}\n"
+    "  - {name: shift, target: 'sensor:x0', attribute: bias, initial: 0.01, lower: -1, upper: 1}\n";
+
+class ClosedFormTest : public testing::Bench {
+ protected:
+  Experiment Read(double friction, const std::string& parameters, const std::string& start) {
+    std::string csv = "time,pull,swing,on,x0,y2,ex,ey,ez,lx\n";
+    for (int k = 0; k < 60; ++k) {
+      csv += fmt::format("{:.4f},{},{:.6f},{},0,0,0,0,0,0\n", 0.0105 * k,
+                         k < 5    ? 0
+                         : k < 35 ? 6
+                                  : 2,
+                         0.3 * std::sin(0.4 * k), k < 20 || k > 30);
+    }
+    Write("log.csv", csv), Write("model.xml", Arm(friction));
+    return Experiment::Read(Write(
+        "e.yaml", "format: 1\nmodel: model.xml\ntime: {column: time, unit: s}\nstart: " + start +
+                      "\ninputs:\n"
+                      "  - {column: pull, unit: N, actuator: pull, enable: on}\n"
+                      "  - {column: swing, unit: N, actuator: lagged, interpolate: linear}\n"
+                      "outputs:\n"
+                      "  - {column: x0, unit: rad, sensor: x0, sigma: 1}\n"
+                      "  - {column: y2, unit: rad/s, sensor: y2, sigma: 1}\n"
+                      "  - {column: ex, unit: m, sensor: 'end[0]', sigma: 1}\n"
+                      "  - {column: ey, unit: m, sensor: 'end[1]', sigma: 1}\n"
+                      "  - {column: ez, unit: m, sensor: 'end[2]', sigma: 1}\n"
+                      "  - {column: lx, unit: m, sensor: 'link[0]', sigma: 1}\n"
+                      "logs:\n  - {file: log.csv, use: train}\n" +
+                      parameters));
+  }
+};
+
+// The largest error of any column in closed form, over that column's largest number.
+std::string Errors(const Problem& problem, const Problem::Matrix& found,
+                   const Problem::Matrix& expected, double most) {
+  std::string wrong;
+  for (Eigen::Index k = 0; k < expected.cols(); ++k) {
+    if (problem.parameters()[k].name == "site") continue;  // it has no closed form
+    const double size = expected.col(k).cwiseAbs().maxCoeff();
+    const double error = (found.col(k) - expected.col(k)).cwiseAbs().maxCoeff() / size;
+    if (!(error < most)) wrong += fmt::format("{} {:.2g}  ", problem.parameters()[k].name, error);
+  }
+  return wrong;
+}
+
+struct Steps {
+  std::string name, start;
+  double friction;
+};
+void PrintTo(const Steps& s, std::ostream* out) { *out << s.name; }
+
+class ClosedFormStepsTest : public ClosedFormTest, public ::testing::WithParamInterface<Steps> {};
+
+// Joints that rest are springs in the solver, and its friction is not smooth where they let go:
+// differences narrower than the distance to that are rare events of rounding.
+TEST_P(ClosedFormStepsTest, AreThoseOfMuJoCosSteps) {
+  const Experiment e = Read(GetParam().friction, kParameters, GetParam().start);
+  const System system = System::Load(e.model);
+  const Problem problem(e, system);
+  ASSERT_EQ(problem.NoClosedForm(), "");
+  Problem differences(e, system);
+  differences.DifferBy(1e-6);
+  differences.Center();
+  const auto use = problem.AllLogs();
+  const auto x = problem.Start();
+  const auto r = problem.Residuals(x, use);
+  const std::size_t before = problem.evaluations();
+  const auto J = problem.Jacobian(x, r, use)[0];
+  EXPECT_EQ(problem.evaluations() - before,
+            3);  // all but a site's place and a sensor's bias in one
+  EXPECT_EQ(Errors(problem, J, differences.Jacobian(x, r, use)[0], 1e-5), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Arm, ClosedFormStepsTest,
+                         ::testing::Values(Steps{"Smooth", "rest", 0},
+                                           Steps{"FromEquilibrium", "equilibrium", 0},
+                                           Steps{"Rubs", "rest", 0.02}),
+                         [](const auto& info) { return info.param.name; });
+
+TEST_F(ClosedFormTest, FollowsAFrictionThatSlides) {
+  const Experiment e = Read(0.02,
+                            std::string(kParameters) +
+                                "  - {name: f, target: 'joint:*', attribute: frictionloss, "
+                                "initial: 0.02, lower: 0, upper: 1}\n",
+                            "rest");
+  const System system = System::Load(e.model);
+  const Problem problem(e, system);
+  Problem differences(e, system);
+  differences.DifferBy(1e-6);
+  differences.Center();
+  const auto use = problem.AllLogs();
+  const auto r = problem.Residuals(problem.Start(), use);
+  EXPECT_EQ(Errors(problem, problem.Jacobian(problem.Start(), r, use)[0],
+                   differences.Jacobian(problem.Start(), r, use)[0], 1e-5),
+            "");
+}
+
+// What nobody can see in the model: a joint comes to its limit on the way.
+TEST_F(ClosedFormTest, LeavesALogWithALimitToDifferences) {
+  Read(0, kParameters, "rest");
+  std::string model = Arm(0);
+  const std::string joint = "name='x0'";
+  model.replace(model.find(joint), joint.size(), joint + " range='-0.05 0.05' limited='true'");
+  Write("model.xml", model);
+  const Experiment e = Experiment::Read(folder_ / "e.yaml");
+  const System system = System::Load(e.model);
+  const Problem problem(e, system);
+  ASSERT_EQ(problem.NoClosedForm(), "");
+  Problem differences(e, system);
+  differences.DifferBy(1e-3);
+  const auto use = problem.AllLogs();
+  const auto r = problem.Residuals(problem.Start(), use);
+  EXPECT_EQ(problem.Jacobian(problem.Start(), r, use)[0],
+            differences.Jacobian(problem.Start(), r, use)[0]);
+}
+
+class ClosedFormFlowTest : public ClosedFormTest, public ::testing::WithParamInterface<Gradient> {};
+
+TEST_P(ClosedFormFlowTest, AgreesWithTightCentralDifferences) {
+  const Gradient& g = GetParam();
+  const Experiment e = Read(0, "", "rest");
+  const auto flow = testing::FlowBeside(e, g, 0);
+  std::vector<std::unique_ptr<Flow>> neighbours;
+  neighbours.push_back(testing::FlowBeside(e, g, kMove));
+  EXPECT_TRUE(FlowTangent(*flow, neighbours, kMove).Covers(0));
+  // The fast joint at the end needs runs as exact as they can be.
+  const auto reference = testing::CentralDifferences(e, g, 1e-2, {1e-13, 1e-15, false});
+  EXPECT_LT(testing::SlopeError(testing::Slopes(e, g), reference), 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Attribute, ClosedFormFlowTest,
+                         ::testing::Values(Gradient{"Mass", "body:link1", "mass", 0.1},
+                                           Gradient{"Centre", "body:link2", "ipos[0]", 0.003},
+                                           Gradient{"Stiffness", "joint:y*", "stiffness", 0.6},
+                                           Gradient{"Damping", "joint:x*", "damping", 0.02},
+                                           Gradient{"SpringRef", "joint:x1", "springref", 0.1},
+                                           Gradient{"Armature", "joint:x*", "armature", 2e-4},
+                                           Gradient{"Gear", "actuator:lagged", "gear", 1.5},
+                                           Gradient{"Gain", "actuator:pull", "gainprm[0]", -1},
+                                           Gradient{"Lag", "actuator:lagged", "dynprm[0]", 0.04},
+                                           Gradient{"TendonStiffness", "tendon:tb", "stiffness",
+                                                    20},
+                                           Gradient{"TendonDamping", "tendon:ta", "damping", 0.5},
+                                           Gradient{"Gravity", "option", "gravity[2]", -9.81}),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace continuum

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bench.h"
+#include "sim/simulation/simulate.h"
+
+namespace continuum {
+namespace {
+
+using namespace testing;  // the bench
+using ::testing::HasSubstr;
+
+// Two pendulums on their own servos; what the model simulates is taken for measured.
+class CheckModel : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    system_.emplace(System::Parse(R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>
+      <worldbody>
+        <body><joint name="a" axis="0 1 0" damping="0.02"/><geom type="capsule" size=".01" fromto="0 0 0 0 0 -.2" mass=".3"/></body>
+        <body pos="1 0 0"><joint name="b" axis="0 1 0" damping="0.05"/><geom type="capsule" size=".01" fromto="0 0 0 0 0 -.3" mass=".4"/></body>
+      </worldbody>
+      <actuator><position name="m1" joint="a" kp="1"/><position name="m2" joint="b" kp="3"/></actuator>
+      <sensor><jointpos name="q1" joint="a"/><jointvel name="v1" joint="a"/><jointpos name="q2" joint="b"/></sensor>
+    </mujoco>)"));
+    RecordFrom({});
+  }
+
+  // What the model does, with noise, is what was measured.
+  void RecordFrom(const Recipe& recipe) {
+    experiment_ = With(Record(recipe));
+    Machine machine = system_->Build();
+    log().measured = Simulate(machine, experiment_, log()).channel;
+    std::mt19937 random(recipe.seed);
+    std::normal_distribution<double> noise(0, 5e-4);
+    for (auto& channel : log().measured) {
+      for (double& value : channel) value += noise(random);
+    }
+  }
+  Log& log() { return experiment_.logs[0]; }
+  std::vector<Finding> Bad() const {
+    return continuum::Bad(CheckAgainstModel(experiment_, *system_));
+  }
+  void ExpectOnly(const std::string& what, const std::string& channel) const {
+    const auto bad = Bad();
+    ASSERT_EQ(bad.size(), 1u) << Report(bad);
+    EXPECT_EQ(bad[0].what, what) << Report(bad);
+    EXPECT_EQ(bad[0].channel, channel) << Report(bad);
+  }
+
+  std::optional<System> system_;
+  Experiment experiment_;
+};
+
+TEST_F(CheckModel, ACleanLogGivesNoWarning) { EXPECT_TRUE(Bad().empty()) << Report(Bad()); }
+
+TEST_F(CheckModel, TwentyRandomCleanLogsGiveNoWarning) {
+  std::mt19937 random(13);
+  for (unsigned trial = 0; trial < 20; ++trial) {
+    Recipe recipe{RandomCommand(random), RandomCommand(random)};
+    recipe.rows = 600;
+    recipe.seed = trial;
+    RecordFrom(recipe);
+    EXPECT_TRUE(Bad().empty()) << "log " << trial << "\n" << Report(Bad());
+  }
+}
+
+TEST_F(CheckModel, AModelWithWrongDampingAndMassIsNoDefectOfTheLog) {
+  const Change changes[]{{"joint:a", "damping", 0.03}, {"joint:b", "damping", 0.03}};
+  experiment_.logs[0].set.assign(std::begin(changes), std::end(changes));
+  EXPECT_TRUE(Bad().empty()) << Report(Bad());
+}
+
+TEST_F(CheckModel, MillimetresForMetresAndDegreesForRadiansAreNamed) {
+  for (double& q : Column(log(), "q2")) q *= 1000;
+  ExpectOnly("unit_suspect", "q2");
+  for (double& q : Column(log(), "q2")) q *= 1e-3 / kDegree;
+  ExpectOnly("unit_suspect", "q2");
+}
+
+TEST_F(CheckModel, AWrongSignIsNamed) {
+  for (double& q : Column(log(), "q2")) q = -q;
+  // With one output per input, a wrong sign of either looks the same: both are told.
+  const auto bad = Bad();
+  EXPECT_NE(Find(bad, "sign_suspect", "q2"), nullptr) << Report(bad);
+  EXPECT_EQ(Find(bad, "sign_suspect", "q1"), nullptr) << Report(bad);
+}
+
+TEST_F(CheckModel, SwappedColumnsAreNamed) {
+  std::swap(Column(log(), "q1"), Column(log(), "q2"));
+  const auto bad = Bad();
+  const Finding* const f = Find(bad, "swapped", "q1");
+  ASSERT_NE(f, nullptr) << Report(bad);
+  EXPECT_THAT(f->text, HasSubstr("'q1' and 'q2' look swapped"));
+}
+
+TEST_F(CheckModel, SwappedInputsAreNamed) {
+  std::swap(log().input[0], log().input[1]);
+  EXPECT_NE(Find(Bad(), "swapped", "u1"), nullptr) << Report(Bad());
+}
+
+TEST_F(CheckModel, AnInputInAnotherUnitOrSignIsNamed) {
+  const auto original = log().input[1];
+  for (double& u : log().input[1]) u /= kDegree;
+  EXPECT_NE(Find(Bad(), "unit_suspect", "u2"), nullptr) << Report(Bad());
+  log().input[1] = original;
+  for (double& u : log().input[1]) u = -u;
+  EXPECT_NE(Find(Bad(), "sign_suspect", "u2"), nullptr) << Report(Bad());
+}
+
+TEST_F(CheckModel, AMistakeInAllInputsIsNamedOnce) {
+  for (auto& input : log().input) {
+    for (double& u : input) u *= 1e-3;
+  }
+  const auto bad = Bad();
+  const Finding* const f = Find(bad, "unit_suspect");
+  ASSERT_NE(f, nullptr) << Report(bad);
+  EXPECT_THAT(f->text, HasSubstr("every input in rad is in thousands of its unit"));
+}
+
+TEST_F(CheckModel, AColumnOfSomethingElseIsUnlike) {
+  Column(log(), "q2") = Column(log(), "v1");
+  EXPECT_THAT(Find(Bad(), "unlike", "q2")->text, HasSubstr("does not follow the simulation"));
+}
+
+TEST_F(CheckModel, AnInputBeyondTheRangeOfItsActuatorIsNamed) {
+  const Change range[]{{"actuator:m2", "ctrlrange[0]", -1.5}, {"actuator:m2", "ctrlrange[1]", 1}};
+  system_.emplace(system_->With(range, {}));
+  RecordFrom({});
+  const auto bad = Bad();
+  const Finding* const f = Find(bad, "out_of_range", "u2");
+  ASSERT_NE(f, nullptr) << Report(bad);
+  EXPECT_THAT(f->text, HasSubstr("actuator 'm2', -1.5 to 1 rad, in "));
+}
+
+TEST_F(CheckModel, AMistakeInAnInputThatMovesLateInALongLogIsNamed) {
+  Recipe recipe;
+  recipe.rows = 12000;
+  recipe.u2 = [](double t) { return t < 9 ? 0 : 0.5 * std::sin(4 * (t - 9)); };
+  RecordFrom(recipe);
+  experiment_.start = Experiment::Start::kEquilibrium;
+  for (double& u : log().input[1]) u = -u;
+  EXPECT_NE(Find(Bad(), "sign_suspect", "u2"), nullptr) << Report(Bad());
+}
+
+TEST_F(CheckModel, AColumnShiftedByOneRowIsNamed) {
+  auto& q = Column(log(), "q2");
+  q.insert(q.begin(), q.front());
+  q.pop_back();
+  ExpectOnly("lag", "q2");
+  EXPECT_THAT(Bad()[0].text, HasSubstr("late against the simulation by 10"));
+}
+
+TEST_F(CheckModel, AClockShiftOfAllOutputsIsNamed) {
+  for (auto& q : log().measured) {
+    q.insert(q.begin(), 4, q.front());
+    q.resize(log().rows());
+  }
+  ExpectOnly("clock_shift", "");
+}
+
+TEST_F(CheckModel, AnOffsetAtRestIsNamed) {
+  RecordFrom({Steps, [](double t) { return t < 5 ? 0.5 * Steps(t) : 0.1; }});
+  for (double& q : Column(log(), "q1")) q += 0.1;
+  ExpectOnly("offset_at_rest", "q1");
+}
+
+TEST_F(CheckModel, ASimulationThatDivergesIsTold) {
+  log().set.push_back({"joint:a", "stiffness", -1e9});
+  log().set.push_back({"joint:a", "damping", 0});
+  EXPECT_NE(Find(Bad(), "diverged"), nullptr) << Report(Bad());
+}
+
+}  // namespace
+}  // namespace continuum
