@@ -60,7 +60,7 @@ void CheckCandidate(const std::string& name, const Experiment& e) {
 
 void RunDiagnose(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
-  const System system = System::Load(read.model);
+  const ModelSpec system = ModelSpec::Load(read.model);
   const std::string old = OldComparison(o.compare, read);
   DiagnosisOptions options;
   std::istringstream names(o.candidates);
@@ -80,7 +80,7 @@ void RunDiagnose(const Options& o) {
   const Experiment e = Registered(read, system);
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress("files");
-  const Told told = WriteDiagnosis(e, d, o.out);
+  const DiagnosisFiles told = WriteDiagnosis(e, d, o.out);
   EndProgress();
   std::fputs(Summary(e, d, told).c_str(), stdout);
   if (!old.empty())
@@ -95,7 +95,7 @@ void RunDiagnose(const Options& o) {
     }
     if (shown.empty()) shown.push_back(0);
     const Experiment extended = Experiment::Read(folder / "extended.yaml");
-    const System extended_system = System::Load(folder / "extended.xml");
+    const ModelSpec extended_system = ModelSpec::Load(folder / "extended.xml");
     FilmSideBySide({e, system, "before"}, {extended, extended_system, "after"}, shown,
                    folder / "extended.mp4", film);
     EndProgress();
@@ -112,8 +112,8 @@ void RunApply(const ApplyOptions& o) {
   RequireWritable(o.out, {o.diagnosis, o.model});
   const auto json = ReadJson(o.diagnosis);
   const auto folder = std::filesystem::absolute(ThroughLinks(o.out)).parent_path();
-  const std::string xml = ApplyJson(System::Load(o.model), json, o.diagnosis, folder);
-  System::Parse(xml, folder, o.diagnosis + " applied to " + o.model);  // says why it cannot be
+  const std::string xml = ApplyJson(ModelSpec::Load(o.model), json, o.diagnosis, folder);
+  ModelSpec::Parse(xml, folder, o.diagnosis + " applied to " + o.model);  // says why it cannot be
   WriteFile(o.out, xml);
 }
 

@@ -66,18 +66,18 @@ Problem::Vector ForStep(const Problem& problem, const Fit& fit, const std::vecto
   return FitParameters(stepped, fit.x, use, options).x;
 }
 
-struct Fitting {
+struct IdentifyResult {
   Fit fit;
   std::optional<Problem::Vector> for_step;
   std::optional<Regression> regression;
-  std::optional<Pieces> pieces;
+  std::optional<ShootingSegments> pieces;
   std::optional<MultiStart> starts;
 };
 
-Fitting Run(const Options& o, const Problem& problem, const Problem::Vector& start,
-            const std::vector<bool>& use) {
+IdentifyResult Run(const Options& o, const Problem& problem, const Problem::Vector& start,
+                   const std::vector<bool>& use) {
   const double soft = problem.experiment().soft;
-  Fitting all;
+  IdentifyResult all;
   if (o.method == "pso") {
     SwarmFitOptions options{.seed = o.seed, .soft = soft, .progress = ShowProgress};
     if (o.iterations > 0) options.iterations = o.iterations;
@@ -147,7 +147,7 @@ void PrintStartsAtBounds(const Problem& problem, const Problem::Vector& x, const
   }
 }
 
-void Print(const Problem& problem, const Fitting& all, const Determined& determined,
+void Print(const Problem& problem, const IdentifyResult& all, const Determined& determined,
            const std::string& out) {
   const Experiment& e = problem.experiment();
   const Fit& fit = all.fit;
@@ -216,7 +216,7 @@ void PrintCheck(const Options& o, const Experiment& e) {
 
 void RunIdentify(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
-  const System system = System::Load(read.model);
+  const ModelSpec system = ModelSpec::Load(read.model);
   CheckNames(read, system);
   const OutFolder made(o.out,
                        {"fit.json", "fitted.xml", "fitted.yaml", "simulated/", "report.html"},
@@ -245,14 +245,14 @@ void RunIdentify(const Options& o) {
   std::fprintf(stderr, "path: %s; %zu parameters, %zu logs\n", Way(o, problem).c_str(),
                problem.parameters().size(), e.logs.size());
   PrintCheck(o, e);
-  const Fitting all = Run(o, problem, start, use);
+  const IdentifyResult all = Run(o, problem, start, use);
   const Determined determined = WriteFit(problem, all.fit, o.out,
                                          {o.method, all.for_step ? &*all.for_step : nullptr,
                                           all.regression ? &*all.regression : nullptr,
                                           all.starts ? &*all.starts : nullptr, ShowProgress});
   EndProgress();
   Print(problem, all, determined, o.out);
-  for (const TradeOff& t : determined.trade_offs) std::printf("%s\n", t.text.c_str());
+  for (const Confounding& t : determined.trade_offs) std::printf("%s\n", t.text.c_str());
   if (!determined.beyond_noise.empty()) std::printf("%s\n", determined.beyond_noise.c_str());
   StopIfRequested();  // the files hold the best so far
   if (const std::string hint = StartHint(problem, all.fit.x, use); !hint.empty())

@@ -27,7 +27,7 @@ Experiment Read(const Options& o, FilmOptions& film) {
 void RunRender(const Options& o) {
   FilmOptions film;
   Experiment e = Read(o, film);
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   o.filming.Set(film, system.model());
   const std::vector<std::size_t> logs = o.filming.LogsOf(e);
   const std::filesystem::path out = o.out;

@@ -28,7 +28,7 @@ struct Options {
 };
 
 // Names, units and known values, and the parameters as a fit of all logs would take them.
-void CheckAll(const Experiment& e, const System& system) {
+void CheckAll(const Experiment& e, const ModelSpec& system) {
   CheckNames(e, system);
   const Problem problem(e, system, {}, {}, std::vector<bool>(e.logs.size(), true));
 }
@@ -48,7 +48,7 @@ void PrintSensors(const std::vector<SensorScore>& sensors) {
 
 void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   CheckAll(e, system);
   FilmOptions film;
   o.filming.Set(film, system.model());
@@ -97,7 +97,7 @@ struct CheckOptions {
 
 void RunCheck(const CheckOptions& o) {
   const Experiment e = Experiment::Read(o.experiment);
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   CheckAll(e, system);
   std::vector<std::string> skipped;
   MakeCandidates(e, {&system}, {}, skipped);  // refuses places that the model has not

@@ -51,7 +51,7 @@ std::vector<std::string> Names(const mjModel& m, mjtObj type, int count) {
   return names;
 }
 
-void CheckColumns(const Table& table, const std::vector<std::string>& actuators,
+void CheckColumns(const CsvTable& table, const std::vector<std::string>& actuators,
                   const std::string& model) {
   for (const auto& column : table.columns()) {
     if (column == "time" ||
@@ -80,7 +80,7 @@ Controls ReadControls(const Options& o, const mjModel& m) {
     throw Error::Input(o.model, "a name for every actuator, for the columns of " + o.input,
                        fmt::format("none for actuator {}", unnamed - c.actuator.begin()));
   }
-  const Table table = Table::Read(o.input);
+  const CsvTable table = CsvTable::Read(o.input);
   CheckColumns(table, c.actuator, o.model);
   c.time = table.Numbers("time");
   if (c.time.empty()) throw Error::Input(o.input, "at least one row", "none");
@@ -199,10 +199,10 @@ void RunModel(const Options& o) {
   };
   if (!o.video.empty() && !o.out.empty() && same(o.video, o.out))
     throw Error::Input("--video", "another file than --out", "'" + o.video + "'");
-  System system = System::Load(o.model);
+  ModelSpec system = ModelSpec::Load(o.model);
   std::vector<Change> changes;
   if (o.timestep > 0) changes.push_back({"option", "timestep", o.timestep});
-  Machine machine = system.Build(changes);
+  ModelAndData machine = system.Build(changes);
   const mjModel& m = *machine.model;
   const double period = o.input.empty() ? m.opt.timestep : 0;
   const Run run = Plan(o, m, o.every > 0 ? o.every : period);

@@ -17,13 +17,13 @@
 #include "binding/segment.h"
 #include "binding/signal.h"
 #include "effects/all.h"
-#include "entry_objects.h"
 #include "one_mujoco.h"
+#include "plugin_data_slots.h"
 
 namespace continuum {
 namespace {
 
-using Bind = std::unique_ptr<Bound> (*)(const mjModel&, const Config&, int instance);
+using Bind = std::unique_ptr<BoundLaw> (*)(const mjModel&, const Config&, int instance);
 
 // What the engine keeps of one instance: its law, the configuration it was read from, the force it
 // last gave. The last instance of a model also keeps the sum over all of them, and evaluates the
@@ -31,7 +31,7 @@ using Bind = std::unique_ptr<Bound> (*)(const mjModel&, const Config&, int insta
 struct Instance {
   Bind bind;
   std::string config;
-  std::unique_ptr<Bound> bound;
+  std::unique_ptr<BoundLaw> bound;
   std::vector<double> force;
   bool changed = false;             ///< force, since the last sum
   std::vector<int> sensors;         ///< of this instance
@@ -45,7 +45,7 @@ struct Instance {
 };
 
 // Never destroyed: an mjData may outlive what the process destroys at its end.
-EntryObjects<Instance>& instances = *new EntryObjects<Instance>;
+PluginDataSlots<Instance>& instances = *new PluginDataSlots<Instance>;
 
 Instance* Get(const mjData& d, int i) { return instances.Find(d.plugin_data[i]); }
 
@@ -109,7 +109,7 @@ void WarnOfSilence(const mjModel& m, const Instance& self, const Config& config)
 
 // Instances of ours up to the last one, which is not registered in d yet.
 std::vector<int> Those(const mjModel& m, const mjData& d, int last, const Instance& self,
-                       bool (Bound::*kind)() const) {
+                       bool (BoundLaw::*kind)() const) {
   std::vector<int> those;
   for (int j = 0; j < last; ++j) {
     if (IsOurs(m, j) && (*Get(d, j)->bound.*kind)()) those.push_back(j);
@@ -183,9 +183,9 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     self->force.assign(m.nv, 0);
     bool last = true;
     for (int j = i + 1; j < m.nplugin; ++j) last &= !IsOurs(m, j);
-    if (last) self->givers = Those(m, d, i, *self, &Bound::GivesForce);
-    if (last) self->answers = Those(m, d, i, *self, &Bound::Answers);
-    if (last) self->rows = Those(m, d, i, *self, &Bound::IsRow);
+    if (last) self->givers = Those(m, d, i, *self, &BoundLaw::GivesForce);
+    if (last) self->answers = Those(m, d, i, *self, &BoundLaw::Answers);
+    if (last) self->rows = Those(m, d, i, *self, &BoundLaw::IsRow);
     if (last) self->forces = Less(self->givers, self->rows);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
     self->sum = self->next = self->before;
@@ -333,7 +333,7 @@ auto BoundType() {
 }
 
 template <class E>
-std::unique_ptr<Bound> BindEffect(const mjModel& m, const Config& c, int i) {
+std::unique_ptr<BoundLaw> BindEffect(const mjModel& m, const Config& c, int i) {
   using B = typename decltype(BoundType<E>())::type;
   if constexpr (std::constructible_from<B, const mjModel&, const Config&, int>)
     return std::make_unique<B>(m, c, i);
@@ -432,10 +432,10 @@ void RegisterEffects() {
     if constexpr (kInEngine<E>) Register<E>();
   };
   All::ForEach(add);
-  Written::ForEach(add);
+  FormulaLaws::ForEach(add);
 }
 
-Bound& BoundOf(const mjModel& m, const mjData& d, int instance) {
+BoundLaw& BoundOf(const mjModel& m, const mjData& d, int instance) {
   if (instance < 0 || instance >= m.nplugin || !IsOurs(m, instance)) {
     throw Error::Input("plugin instance " + std::to_string(instance), "an effect of ours", "none");
   }
@@ -449,7 +449,7 @@ void SettleEffects(const mjModel& m, mjData& d) {
 }
 
 void SetParameters(mjModel& m, mjData& d, int instance, const std::vector<double>& parameters) {
-  Bound& bound = BoundOf(m, d, instance);
+  BoundLaw& bound = BoundOf(m, d, instance);
   bound.Set(parameters);
   bound.Impose(m);
 }

@@ -16,7 +16,7 @@ void RegisterEffects();
 
 /// The law of a plugin instance in d, to read or set its parameters (order of its card). Throws
 /// Error when the model has no instance of this name or it is not one of ours.
-Bound& BoundOf(const mjModel& m, const mjData& d, int instance);
+BoundLaw& BoundOf(const mjModel& m, const mjData& d, int instance);
 
 /// Sets the parameters of an instance for this d, and the model constants that depend on them.
 void SetParameters(mjModel& m, mjData& d, int instance, const std::vector<double>& parameters);

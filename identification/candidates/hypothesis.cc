@@ -85,7 +85,7 @@ bool IsFitted(const Experiment& e, const EffectInfo& effect, Place place,
 
 Hypothesis EditCandidate(const EffectInfo& effect, Place place,
                          const std::vector<std::string>& names, const Experiment& e,
-                         const Standpoint& from, Sizes sizes) {
+                         const SearchBase& from, Sizes sizes) {
   if (place == Place::kActuator) sizes.input = InputSize(e, names);
   Hypothesis h{std::string(effect.name), "", InWords(place, names), *from.system, {}, {}, "", {}};
   const std::string target =
@@ -103,7 +103,7 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place,
 }
 
 Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
-                           const std::vector<std::string>& names, const System& system,
+                           const std::vector<std::string>& names, const ModelSpec& system,
                            const Sizes& sizes, int option) {
   EffectInstance added{std::string(effect.name),
                        FreshInstance(system.model()),
@@ -158,7 +158,7 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
 
 // A law that the experiment writes. Its parameters are p1, p2, .. of the instance.
 Hypothesis WrittenCandidate(const EffectInfo& effect, const WrittenLaw& law, Place place,
-                            const std::vector<std::string>& names, const System& system) {
+                            const std::vector<std::string>& names, const ModelSpec& system) {
   Hypothesis h{law.name, "", InWords(place, names), system, {}, {}, "", {}};
   h.null = law.null;
   EffectInstance added{std::string(effect.name),
@@ -197,7 +197,7 @@ std::vector<int> SegmentsFor(const mjModel& m, const EffectInfo& effect) {
 }
 
 // A law beside a soft segment of the model: places, choices and geometry are the segment's.
-Hypothesis BesideCandidate(const EffectInfo& effect, int segment, const System& system,
+Hypothesis BesideCandidate(const EffectInfo& effect, int segment, const ModelSpec& system,
                            Sizes sizes) {
   const Config config(system.model(), segment);
   const std::string name = mj_id2name(&system.model(), mjOBJ_PLUGIN, segment);
@@ -231,9 +231,9 @@ constexpr std::size_t kFew = 4;
 // The objects at which an effect that has no place is tried, out of those of one kind. first:
 // whether it is the kind that it usually acts on; together: whether it may act on all of them.
 std::vector<std::vector<std::string>> Choose(const std::vector<std::string>& names, Place place,
-                                             bool first, bool together, Places places) {
+                                             bool first, bool together, SearchScope places) {
   std::vector<std::vector<std::string>> chosen;
-  const bool others = places == Places::kOthers;
+  const bool others = places == SearchScope::kOthers;
   if (!first && place != Place::kTendon) return chosen;  // a site is a body's
   if (together && others != first) chosen.push_back(names);
   const bool one_by_one = (names.size() > kFew || !first || !together) == others;
@@ -269,9 +269,9 @@ std::string WhyNot(const EffectInfo& effect, Place place, const std::vector<std:
 
 // One hypothesis, or one for each option of a friction's choice.
 void AddAt(const EffectInfo& effect, const Candidate& wanted, Place place,
-           const std::vector<std::string>& names, const Experiment& e, const Standpoint& from,
+           const std::vector<std::string>& names, const Experiment& e, const SearchBase& from,
            const Sizes& sizes, std::vector<Hypothesis>& all) {
-  const System& system = *from.system;
+  const ModelSpec& system = *from.system;
   if (wanted.law) {
     all.push_back(WrittenCandidate(effect, *wanted.law, place, names, system));
     return;
@@ -287,7 +287,7 @@ void AddAt(const EffectInfo& effect, const Candidate& wanted, Place place,
 }
 
 // Why a law of soft segments was not added; empty when it was.
-std::string AddBeside(const EffectInfo& effect, const Experiment& e, const System& system,
+std::string AddBeside(const EffectInfo& effect, const Experiment& e, const ModelSpec& system,
                       const Sizes& sizes, std::vector<Hypothesis>& all) {
   const mjModel& m = system.model();
   if (HasEffect(m, effect.name)) return "the model has it already";
@@ -303,11 +303,11 @@ std::string AddBeside(const EffectInfo& effect, const Experiment& e, const Syste
 
 // At objects of the model. Throws Error where the experiment asks for a place that it has not.
 void AddAtObjects(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
-                  const Standpoint& from, const Sizes& sizes, Places places,
+                  const SearchBase& from, const Sizes& sizes, SearchScope places,
                   std::vector<Hypothesis>& all, std::vector<std::string>& skipped) {
   const mjModel& m = from.system->model();
   const std::size_t colon = wanted.where.find(':');
-  const bool anywhere = wanted.where.empty(), few = places == Places::kFew;
+  const bool anywhere = wanted.where.empty(), few = places == SearchScope::kFew;
   bool first = true;
   for (const Place place : effect.places) {
     if (!anywhere && wanted.where.substr(0, colon) != PlaceName(place)) continue;
@@ -336,10 +336,10 @@ void AddAtObjects(const EffectInfo& effect, const Candidate& wanted, const Exper
 }
 
 void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
-               const Standpoint& from, const Sizes& sizes, Places places,
+               const SearchBase& from, const Sizes& sizes, SearchScope places,
                std::vector<Hypothesis>& all, std::vector<std::string>& skipped) {
   const auto skip = [&](const std::string& why) { skipped.push_back(wanted.Name() + ": " + why); };
-  const bool few = places == Places::kFew;  // of segments and sensors these leave nothing out
+  const bool few = places == SearchScope::kFew;  // of segments and sensors these leave nothing out
   if (effect.kind == EffectInfo::Kind::kSegment) {
     const std::string why = few ? AddBeside(effect, e, *from.system, sizes, all) : "";
     if (!why.empty()) skip(why);
@@ -429,9 +429,9 @@ void Multiply(Hypothesis& h, const std::set<std::string>& conditions) {
 
 }  // namespace
 
-std::vector<Hypothesis> MakeCandidates(const Experiment& e, const Standpoint& from,
+std::vector<Hypothesis> MakeCandidates(const Experiment& e, const SearchBase& from,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
-                                       Places places) {
+                                       SearchScope places) {
   std::vector<Hypothesis> all;
   if (e.all_candidates) {
     for (const EffectInfo& effect : Catalog())

@@ -15,7 +15,7 @@ struct Hypothesis {
   std::string effect;   ///< empty: the model as it is; of a law of the experiment: its name
   std::string variant;  ///< of a choice: "load=actuator"
   std::string where;    ///< in words: "joint q"
-  System system;
+  ModelSpec system;
   std::vector<Parameter> extra;  ///< free parameters of the effect
   EffectInstance instance;  ///< the plugin instance, for effects that need one (else no effect)
   std::string replaces;     ///< instance whose place it takes
@@ -45,20 +45,20 @@ struct Hypothesis {
 /// Where effects are tried that the experiment gives no place: all objects of a kind together, and
 /// each where they are few; or what that leaves out, each of many, each of those that share a
 /// parameter of the experiment, and tendons beside joints.
-enum class Places { kFew, kOthers };
+enum class SearchScope { kFew, kOthers };
 
 /// From where candidates are looked for.
-struct Standpoint {
-  const System* system;               ///< with the causes that are taken for granted
+struct SearchBase {
+  const ModelSpec* system;            ///< with the causes that are taken for granted
   std::vector<Parameter> given = {};  ///< free parameters of these
   std::vector<Change> fitted = {};    ///< what a fit has made of the model
 };
 
 /// The candidates of an experiment that make sense in its model, one Hypothesis per effect, choice
 /// and place; skipped: one sentence for each that does not.
-std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const Standpoint& from,
+std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const SearchBase& from,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
-                                       Places places = Places::kFew);
+                                       SearchScope places = SearchScope::kFew);
 
 /// Effects of the catalog that the experiment's list of candidates leaves out; none where it lists
 /// all, or none. names: the list to take in place of the experiment's, if any.

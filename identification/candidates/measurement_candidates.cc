@@ -32,7 +32,7 @@ double OutputSize(const Experiment& e, const std::vector<std::string>& columns) 
 // An effect of the measurement on some outputs (or on the clock): nothing of the model changes.
 Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
                             const std::vector<std::string>& names, const Experiment& e,
-                            const System& system, const Sizes& sizes) {
+                            const ModelSpec& system, const Sizes& sizes) {
   const std::string where = names.empty() ? "clock" : InWords(Place::kSensor, names);
   Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
   const Param& card = effect.params.front();
@@ -91,7 +91,7 @@ std::vector<std::vector<std::string>> OutputsTogether(const Experiment& e, const
 }  // namespace
 
 std::vector<Hypothesis> MeasureCandidates(const EffectInfo& effect, const Candidate& wanted,
-                                          const Experiment& e, const System& system,
+                                          const Experiment& e, const ModelSpec& system,
                                           const Sizes& sizes) {
   const std::string_view name = effect.params.front().name;
   if (name == "skew") return {MeasureCandidate(effect, "time", {}, e, system, sizes)};

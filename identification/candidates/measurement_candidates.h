@@ -10,7 +10,7 @@ namespace continuum {
 /// sensor, on each alone (late ones also on all of any unit), or on the clock. wanted.where may
 /// choose outputs or sensors by a glob. None where no output fits.
 std::vector<Hypothesis> MeasureCandidates(const EffectInfo& effect, const Candidate& wanted,
-                                          const Experiment& experiment, const System& system,
+                                          const Experiment& experiment, const ModelSpec& system,
                                           const Sizes& sizes);
 
 }  // namespace continuum

@@ -14,7 +14,7 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
   double torque = 0, velocity = 0, tension = 0, count = 0;
   double lower = kInfinity, upper = -kInfinity;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    Machine machine = problem.system().Build(problem.ChangesFor(x, l));
+    ModelAndData machine = problem.system().Build(problem.ChangesFor(x, l));
     Hooks hooks;
     hooks.row = [&](const mjModel& m, mjData& d, std::size_t) {
       for (int i = 0; i < m.nv; ++i) {

@@ -186,7 +186,7 @@ double Beyond(double error, double part) {
   return std::sqrt(std::max(0.0, error * error - part * part));
 }
 
-FitOptions Trials::Options() const {
+FitOptions CandidateFitter::Options() const {
   FitOptions options{iterations, 1e-4};  // first order does the rest
   options.whitening = &whitening;
   options.idle = true;
@@ -194,13 +194,14 @@ FitOptions Trials::Options() const {
 }
 
 // For fits that begin next to their end.
-FitOptions Trials::FewSteps() const {
+FitOptions CandidateFitter::FewSteps() const {
   FitOptions options = Options();
   options.iterations = 5;
   return options;
 }
 
-Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival, bool idle) const {
+Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double rival,
+                            bool idle) const {
   const auto train = TrainLogs(*experiment);
   auto validate = train;
   validate.flip();
@@ -217,7 +218,7 @@ Fitted Trials::Fit(const Problem& problem, const Vector& start, double rival, bo
   return f;
 }
 
-Fitted Trials::FitNull(const Problem& problem) const {
+Fitted CandidateFitter::FitNull(const Problem& problem) const {
   Fitted f = Fit(problem, problem.Start(), std::numeric_limits<double>::infinity(), false);
   FitOptions again = Options();
   again.iterations += f.fit.iterations;
@@ -225,7 +226,7 @@ Fitted Trials::FitNull(const Problem& problem) const {
   return found.cost < f.fit.cost ? Fit(problem, found.x) : f;
 }
 
-void Trials::Complete(const Problem& problem, Fitted& f) const {
+void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {
   const auto train = TrainLogs(*experiment);
   f.jacobian = problem.Jacobian(f.fit.x, f.residuals, train);
   f.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, f.jacobian, whitening);
@@ -238,11 +239,11 @@ void Trials::Complete(const Problem& problem, Fitted& f) const {
   f.freedom = left.freedom();
 }
 
-void Trials::FitFinely(const Problem& problem, Fitted& f) const {
+void CandidateFitter::FitFinely(const Problem& problem, Fitted& f) const {
   ReachByFineFit(problem, f.fit.x, f.residuals, f.jacobian, f.step, FewSteps(), f.uncertainty);
 }
 
-Fitted Trials::GoOn(const Problem& problem, const Fitted& before) const {
+Fitted CandidateFitter::GoOn(const Problem& problem, const Fitted& before) const {
   const auto train = TrainLogs(*experiment);
   Fitted f = before;
   f.fit = FitParameters(problem, before.fit.x, train, FewSteps());
@@ -253,14 +254,14 @@ Fitted Trials::GoOn(const Problem& problem, const Fitted& before) const {
   return f;
 }
 
-Fitted Trials::FitAll(const Problem& problem, const Vector& start) const {
+Fitted CandidateFitter::FitAll(const Problem& problem, const Vector& start) const {
   Fitted f = Fit(problem, start);
   Complete(problem, f);
   return f;
 }
 
-void Trials::AddFolds(const Problem& problem, const std::vector<Fold>& folds,
-                      Fitted& fitted) const {
+void CandidateFitter::AddFolds(const Problem& problem, const std::vector<Fold>& folds,
+                               Fitted& fitted) const {
   auto validate = TrainLogs(*experiment);
   validate.flip();
   auto J = problem.Jacobian(fitted.fit.x, fitted.residuals, validate);
@@ -271,13 +272,13 @@ void Trials::AddFolds(const Problem& problem, const std::vector<Fold>& folds,
   fitted.folds = CrossValidate(problem, fitted.fit.x, fitted.residuals, fitted.jacobian, folds);
 }
 
-Remainder Trials::LeftBy(const Fitted& fitted) const {
+Remainder CandidateFitter::LeftBy(const Fitted& fitted) const {
   return Remainder(whitening, TrainLogs(*experiment), fitted.residuals, fitted.jacobian,
                    fitted.uncertainty.at_bound, fitted.step);
 }
 
-std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, const Fitted& null,
-                                  const Remainder& left) const {
+std::vector<Probe> CandidateFitter::Probes(const Hypothesis& h, const Problem& problem,
+                                           const Fitted& null, const Remainder& left) const {
   const Prober prober{h, problem, null, left, h.Amplitudes(), whitening.active()};
   std::vector<Probe> probes;
   for (std::size_t start = 0; start < h.starts.size(); ++start) {
@@ -294,8 +295,8 @@ std::vector<Probe> Trials::Probes(const Hypothesis& h, const Problem& problem, c
   return probes;
 }
 
-Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,
-                         const Explained& explained, double excess) const {
+Vector CandidateFitter::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,
+                                  const Explained& explained, double excess) const {
   const auto amplitudes = h.Amplitudes();
   const std::vector<double>& start = h.starts[probe.start];
   std::vector<double> own = start;
@@ -316,7 +317,7 @@ Vector Trials::StartFrom(const Hypothesis& h, const Fitted& null, const Probe& p
   return Append(null.fit.x, own);
 }
 
-std::vector<Vector> Trials::StepColumn(const Fitted& fitted) const {
+std::vector<Vector> CandidateFitter::StepColumn(const Fitted& fitted) const {
   const auto train = TrainLogs(*experiment);
   std::vector<Vector> column(train.size());
   for (std::size_t l = 0; l < column.size(); ++l) {
@@ -325,20 +326,20 @@ std::vector<Vector> Trials::StepColumn(const Fitted& fitted) const {
   return column;
 }
 
-double Trials::StepEffect(const Problem& problem, const Fitted& fitted) const {
+double CandidateFitter::StepEffect(const Problem& problem, const Fitted& fitted) const {
   return problem.PooledRms(StepColumn(fitted), TrainLogs(*experiment));
 }
 
-bool Trials::WithinStep(const Fitted& fitted) const {
+bool CandidateFitter::WithinStep(const Fitted& fitted) const {
   constexpr double kSeen = 15;  // twice the log-likelihood: less could not be told from noise
   constexpr double kMore = 1.25 * 1.25;  // first order is that rough
   const double step = whitening.Stack(StepColumn(fitted), TrainLogs(*experiment)).squaredNorm();
   return step > kSeen && 2 * fitted.fit.cost - fitted.freedom <= kMore * step;
 }
 
-LackOfFit Trials::LackIn(const Problem& without, const std::vector<Parameter>& extra,
-                         const Fitted& fitted, const Sizes& sizes, double inflation,
-                         std::uint64_t seed) const {
+LackOfFit CandidateFitter::LackIn(const Problem& without, const std::vector<Parameter>& extra,
+                                  const Fitted& fitted, const Sizes& sizes, double inflation,
+                                  std::uint64_t seed) const {
   const auto train = TrainLogs(*experiment);
   const ForceTerms terms = RandomForce(12, true, sizes, seed);
   Problem problem(*experiment, without.system(), extra, terms);

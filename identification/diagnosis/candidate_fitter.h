@@ -5,7 +5,7 @@
 namespace continuum {
 
 /// How the models of one diagnosis are fitted and compared.
-struct Trials {
+struct CandidateFitter {
   const Experiment* experiment;
   Whitening whitening;  ///< inactive when the noise is not known
   int iterations = 15;

@@ -16,7 +16,8 @@ constexpr int kDraws = 399;  // of rounding errors
 
 // Nested fits are as far apart as the larger one gains; others that gain as much are farther. Where
 // the noise is not known: they are as near as nothing to what either changes.
-bool SaysTheSame(const Trials& trials, const CandidateResult& b, const CandidateResult& a) {
+bool SaysTheSame(const CandidateFitter& trials, const CandidateResult& b,
+                 const CandidateResult& a) {
   constexpr double kNoise = 10;      // of twice the log-likelihood
   constexpr double kNothing = 0.02;  // of the squares that one takes off
   if (!a.fits || !b.fits) return false;
@@ -33,7 +34,7 @@ bool SaysTheSame(const Trials& trials, const CandidateResult& b, const Candidate
 
 }  // namespace
 
-bool Contains(const Trials& trials, const CandidateResult& b, const CandidateResult& a) {
+bool Contains(const CandidateFitter& trials, const CandidateResult& b, const CandidateResult& a) {
   if (b.hypothesis.extra.size() > a.hypothesis.extra.size() && SaysTheSame(trials, b, a))
     return true;
   if (a.probes.empty() || b.probes.empty()) return false;
@@ -43,8 +44,9 @@ bool Contains(const Trials& trials, const CandidateResult& b, const CandidateRes
   return rest.squaredNorm() < 0.01 * A.squaredNorm();
 }
 
-Round::Round(const Trials& trials, const Base& base, const Noise& noise, const Sizes& sizes,
-             const DiagnosisOptions& options, Places places)
+CandidateSearch::CandidateSearch(const CandidateFitter& trials, const Base& base,
+                                 const Noise& noise, const Sizes& sizes,
+                                 const DiagnosisOptions& options, SearchScope places)
     : trials_(trials),
       base_(base),
       base_problem_(*trials.experiment, *base.system, base.given),
@@ -60,14 +62,14 @@ Round::Round(const Trials& trials, const Base& base, const Noise& noise, const S
       wanted.candidates.push_back(written ? *written : Candidate{name, "", false});
     }
   }
-  const Standpoint here{base.system, base.given, base_problem_.CommonChanges(base.fitted->fit.x)};
+  const SearchBase here{base.system, base.given, base_problem_.CommonChanges(base.fitted->fit.x)};
   for (Hypothesis& h : MakeCandidates(wanted, here, sizes, skipped, places)) {
     candidates.push_back({std::move(h)});
     candidates.back().record.name = candidates.back().hypothesis.Name();
   }
 }
 
-void Round::Screen() {
+void CandidateSearch::Screen() {
   const Remainder left = trials_.LeftBy(*base_.fitted);
   left_ = left.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*trials_.experiment));
@@ -102,9 +104,9 @@ void Round::Screen() {
   }
 }
 
-Significance Round::Significant(const Remainder& left,
-                                const std::vector<std::vector<Probe>>& probes) {
-  const Rounding rounding(base_problem_, noise_, base_.fitted->fit.x);
+Significance CandidateSearch::Significant(const Remainder& left,
+                                          const std::vector<std::vector<Probe>>& probes) {
+  const Quantisation rounding(base_problem_, noise_, base_.fitted->fit.x);
   Problem::Matrix draws;
   if (rounding.any()) {
     inflation_ = rounding.Inflation(left, probes, options_.seed);
@@ -116,8 +118,9 @@ Significance Round::Significant(const Remainder& left,
 // First order says little of what acts on top of another amplitude, as a Stribeck excess, nor of
 // what belongs to it, as its speed: starts that explain as much as the best, with little and much
 // of it.
-std::vector<Problem::Vector> Round::StartsAsGood(const CandidateResult& c, std::size_t best,
-                                                 const Remainder& left) const {
+std::vector<Problem::Vector> CandidateSearch::StartsAsGood(const CandidateResult& c,
+                                                           std::size_t best,
+                                                           const Remainder& left) const {
   constexpr double kAsGood = 0.99;
   std::set<std::size_t> seen;
   std::vector<Problem::Vector> starts;
@@ -134,26 +137,26 @@ std::vector<Problem::Vector> Round::StartsAsGood(const CandidateResult& c, std::
   return starts;
 }
 
-double Round::smallest_p() const { return smallest_p_; }
+double CandidateSearch::smallest_p() const { return smallest_p_; }
 
-bool Round::SomethingIsLeft() const {
+bool CandidateSearch::SomethingIsLeft() const {
   const Fitted& f = *base_.fitted;
   return smallest_p_ < LikelihoodRules{}.level ||
          f.cost > kModelLimited * kModelLimited * f.freedom;
 }
 
-double Round::MostExplained() const {
+double CandidateSearch::MostExplained() const {
   double best = 0;
   for (const CandidateResult& c : candidates) best = std::max(best, c.explained);
   return best;
 }
 
-double Round::Promise() const {
+double CandidateSearch::Promise() const {
   const double left = base_.fitted->cost - base_.fitted->freedom;
   return left > 0 ? MostExplained() / left : 0;
 }
 
-void Round::Join(Round other) {
+void CandidateSearch::Join(CandidateSearch other) {
   for (CandidateResult& c : other.candidates) {
     c.likelihood = Likelihood(c.fitted);  // in this round's unit of noise
     candidates.push_back(std::move(c));
@@ -163,7 +166,7 @@ void Round::Join(Round other) {
   Rank();
 }
 
-void Round::JoinUnlisted(Round other) {
+void CandidateSearch::JoinUnlisted(CandidateSearch other) {
   for (CandidateResult& c : other.candidates) {
     c.listed = false;
     c.likelihood = Likelihood(c.fitted);
@@ -172,11 +175,11 @@ void Round::JoinUnlisted(Round other) {
 }
 
 // Twice the logarithm of what a fit gains over the base.
-double Round::Likelihood(const Fitted& fitted) const {
+double CandidateSearch::Likelihood(const Fitted& fitted) const {
   return (base_.fitted->cost - fitted.cost) / inflation_;
 }
 
-void Round::Dismiss() {
+void CandidateSearch::Dismiss() {
   std::vector<CandidateResult> kept;
   for (CandidateResult& c : candidates) {
     if (c.fits) {
@@ -191,7 +194,7 @@ void Round::Dismiss() {
   Rank();
 }
 
-void Round::Rank() {
+void CandidateSearch::Rank() {
   smallest_p_ = 1;
   for (const auto* all : {&candidates, &left_behind}) {
     for (const CandidateResult& c : *all) smallest_p_ = std::min(smallest_p_, c.p);
@@ -202,7 +205,7 @@ void Round::Rank() {
 }
 
 // |v − P v|², v what the leading candidate's directions explain, P onto the other's directions.
-void Round::TellApart() {
+void CandidateSearch::TellApart() {
   if (!noise_.known() || candidates.empty() || candidates.front().probes.empty()) return;
   const Remainder left = trials_.LeftBy(*base_.fitted);
   const Probe& lead = candidates.front().probes.front();
@@ -214,31 +217,31 @@ void Round::TellApart() {
   }
 }
 
-const CandidateResult* Round::leading() const {
+const CandidateResult* CandidateSearch::leading() const {
   return candidates.empty() || !candidates.front().fits ? nullptr : &candidates.front();
 }
 
-double Round::BestLeaves() const {
+double CandidateSearch::BestLeaves() const {
   const Fitted& best = leading() ? leading()->fitted : *base_.fitted;
   return std::sqrt(best.cost / best.freedom);
 }
 
-LackOfFit Round::LackOf(const CandidateResult& c) const {
+LackOfFit CandidateSearch::LackOf(const CandidateResult& c) const {
   const Problem problem = c.ProblemOf(*trials_.experiment);
   return c.finer ? LackAt(AtQuarter(problem), c, *c.finer) : LackAt(problem, c, c.fitted);
 }
-LackOfFit Round::LackAt(const Problem& problem, const CandidateResult& c,
-                        const Fitted& fitted) const {
+LackOfFit CandidateSearch::LackAt(const Problem& problem, const CandidateResult& c,
+                                  const Fitted& fitted) const {
   return trials_.LackIn(problem, c.hypothesis.Free(), fitted, sizes_, inflation_, options_.seed);
 }
-LackOfFit Round::LackOfBase() const {
+LackOfFit CandidateSearch::LackOfBase() const {
   return trials_.LackIn(base_problem_, base_.given, *base_.fitted, sizes_, inflation_,
                         options_.seed);
 }
 
 // What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly,
 // and a fit may end in another valley.
-bool Round::GoesWithTheStep(const CandidateResult& c) const {
+bool CandidateSearch::GoesWithTheStep(const CandidateResult& c) const {
   options_.Say("at a fine step " + c.hypothesis.Name());
   const Problem fine = AtQuarter(c.ProblemOf(*trials_.experiment));
   try {
@@ -251,14 +254,15 @@ bool Round::GoesWithTheStep(const CandidateResult& c) const {
   }
 }
 
-bool Round::FallsTo(const Problem& fine, const CandidateResult& c, const Fitted& finer) const {
+bool CandidateSearch::FallsTo(const Problem& fine, const CandidateResult& c,
+                              const Fitted& finer) const {
   constexpr double kFalls = 0.75;  // to first order it falls to a sixteenth
   const auto excess = [](const Remainder& left) { return left.cost() - left.freedom(); };
   const double before = excess(trials_.LeftBy(c.fitted)), after = excess(trials_.LeftBy(finer));
   return after < kFalls * before || LackAt(fine, c, finer).smallest() >= LikelihoodRules{}.lack;
 }
 
-std::vector<LikelihoodRecord> Round::Records() const {
+std::vector<LikelihoodRecord> CandidateSearch::Records() const {
   std::vector<LikelihoodRecord> records;
   for (const CandidateResult& c : candidates) {
     LikelihoodRecord record{c.hypothesis.Name(),

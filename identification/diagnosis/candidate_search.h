@@ -6,21 +6,22 @@ namespace continuum {
 
 /// A fitted model from which to look for one more cause.
 struct Base {
-  const System* system;
+  const ModelSpec* system;
   std::vector<Parameter> given;  ///< free parameters of causes that the system has already
   const Fitted* fitted;          ///< complete
 };
 
 /// Whether b can imitate whatever a does: its directions span a's, or with more parameters it was
 /// fitted to the same motion.
-bool Contains(const Trials& trials, const CandidateResult& b, const CandidateResult& a);
+bool Contains(const CandidateFitter& trials, const CandidateResult& b, const CandidateResult& a);
 
 /// One search for one more cause: all candidates to first order, then fits of those that matter.
 /// Where the noise is not known nothing is significant, and first order is taken less literally.
-class Round {
+class CandidateSearch {
  public:
-  Round(const Trials& trials, const Base& base, const Noise& noise, const Sizes& sizes,
-        const DiagnosisOptions& options, Places places = Places::kFew);
+  CandidateSearch(const CandidateFitter& trials, const Base& base, const Noise& noise,
+                  const Sizes& sizes, const DiagnosisOptions& options,
+                  SearchScope places = SearchScope::kFew);
 
   /// What every candidate could explain of what the base leaves, and how often noise alone would
   /// let the best of so many do as well.
@@ -28,14 +29,14 @@ class Round {
   /// Fits those that first order does not leave far behind, if a candidate is significant or what
   /// is left is plainly not noise; then best first, the others left behind. beside: a round from
   /// the same base that has been fitted, whose best they have to come near.
-  void Fit(const Round* beside = nullptr);
+  void Fit(const CandidateSearch* beside = nullptr);
   /// Fits the best candidates once more, from where the experiment begins instead of where the base
   /// ended; whether any of them is better there.
   bool StartAnew();
   /// Takes the candidates of a round from the same base as well.
-  void Join(Round other);
+  void Join(CandidateSearch other);
   /// Takes those of them that were fitted, behind its own, as not listed.
-  void JoinUnlisted(Round other);
+  void JoinUnlisted(CandidateSearch other);
 
   /// A candidate that was left behind or not fitted to the end, with a complete fit. Throws Error
   /// when it diverges.
@@ -89,7 +90,7 @@ class Round {
   void Rank();
   void TellApart();
 
-  const Trials& trials_;
+  const CandidateFitter& trials_;
   Base base_;
   Problem base_problem_;
   const Noise& noise_;

@@ -16,20 +16,20 @@ constexpr double kOutdoes = 0.1;     // of the best: hardly what comes near the 
 
 // Where little is to be explained first order is right to a few units, else wrong about sizes by
 // factors but not by orders of magnitude.
-double Round::HowMuchIsNeeded() const {
+double CandidateSearch::HowMuchIsNeeded() const {
   if (!noise_.known()) return kWorthAFit * left_;
   const double best = MostExplained();
   return std::max(std::min(best - 15, 45.0), 0.02 * best);
 }
 
 // Whether a fit leaves hardly more than the noise and what the time step adds.
-bool Round::NearTheNoise(const Fitted& fitted) const {
+bool CandidateSearch::NearTheNoise(const Fitted& fitted) const {
   constexpr double kNoise = 1.1, kStep = 1.25;  // of their errors: more is plainly another cause
   return fitted.error.train < std::hypot(kNoise * noise_.rms, kStep * noise_.step);
 }
 
 // The likeliest first, so that the others know what to reach; nobody where only noise is left.
-void Round::Fit(const Round* beside) {
+void CandidateSearch::Fit(const CandidateSearch* beside) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.explained > b.explained; });
   double needed = !noise_.known() || SomethingIsLeft() ? HowMuchIsNeeded() : kInfinity;
@@ -56,7 +56,7 @@ void Round::Fit(const Round* beside) {
 // Where no fit comes near the noise and what the time step adds, those that were given up as too
 // far behind go on to their end, the likeliest first: what a fit gains early says little where a
 // swing is out of phase with the measured one. Until one of this round comes near.
-void Round::SecondChances() {
+void CandidateSearch::SecondChances() {
   constexpr std::size_t kMost = 6;
   if (!noise_.known()) return;
   for (const CandidateResult& c : candidates) {
@@ -78,7 +78,7 @@ void Round::SecondChances() {
 }
 
 // Where joints stick and slip a fit from what the base has become ends in a neighbouring valley.
-bool Round::StartAnew() {
+bool CandidateSearch::StartAnew() {
   constexpr std::size_t kMost = 4;
   std::vector<CandidateResult*> best;
   for (CandidateResult& c : candidates) {
@@ -100,8 +100,8 @@ bool Round::StartAnew() {
 }
 
 // What the experiment begins with, and all or part of what the candidate's fit has found.
-std::vector<Problem::Vector> Round::FromTheOutset(const Problem& problem,
-                                                  const CandidateResult& c) {
+std::vector<Problem::Vector> CandidateSearch::FromTheOutset(const Problem& problem,
+                                                            const CandidateResult& c) {
   const Hypothesis& h = c.hypothesis;
   const auto own = static_cast<Eigen::Index>(h.extra.size());
   std::vector<Problem::Vector> starts;
@@ -117,7 +117,7 @@ std::vector<Problem::Vector> Round::FromTheOutset(const Problem& problem,
   return starts;
 }
 
-bool Round::FitAnew(CandidateResult& c) const {
+bool CandidateSearch::FitAnew(CandidateResult& c) const {
   constexpr double kGain = 0.5;  // of half the whitened squares
   const Problem problem = c.ProblemOf(*trials_.experiment);
   try {
@@ -133,7 +133,7 @@ bool Round::FitAnew(CandidateResult& c) const {
 }
 
 // From the start that is best after a few iterations, of the screen or of the hypothesis.
-void Round::FitOne(CandidateResult& c, double rival) const {
+void CandidateSearch::FitOne(CandidateResult& c, double rival) const {
   const Problem problem = c.ProblemOf(*trials_.experiment);
   std::vector<Problem::Vector> starts = c.rivals;
   if (c.start.size() > 0) starts.insert(starts.begin(), c.start);
@@ -148,7 +148,7 @@ void Round::FitOne(CandidateResult& c, double rival) const {
 }
 
 // In what size an effect is looked for is a guess: a fit that ends there goes on beyond.
-void Round::FitBeyond(CandidateResult& c, double rival) const {
+void CandidateSearch::FitBeyond(CandidateResult& c, double rival) const {
   constexpr int kTimes = 3;
   Hypothesis& h = c.hypothesis;
   const std::vector<Param>& law = EffectNamed(h.Card()).params;
@@ -162,7 +162,7 @@ void Round::FitBeyond(CandidateResult& c, double rival) const {
 
 // A fit that is out of iterations while every one of them still gains goes on, as along a valley
 // in which a stiffness of the model makes room for one of the candidate.
-void Round::GoOn(const Problem& problem, CandidateResult& c, double rival) const {
+void CandidateSearch::GoOn(const Problem& problem, CandidateResult& c, double rival) const {
   constexpr int kTimes = 3;
   // By the last step: of half the whitened squares, or of any in parts of them.
   constexpr double kGain = 0.5, kShare = 1e-3;
@@ -176,7 +176,7 @@ void Round::GoOn(const Problem& problem, CandidateResult& c, double rival) const
   }
 }
 
-CandidateResult Round::FitAlone(CandidateResult c) const {
+CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
   FitOne(c, kInfinity);
   const Problem problem = c.ProblemOf(*trials_.experiment);
   trials_.Complete(problem, c.fitted);
@@ -185,8 +185,8 @@ CandidateResult Round::FitAlone(CandidateResult c) const {
   return c;
 }
 
-Problem::Vector Round::BestOf(const Problem& problem,
-                              const std::vector<Problem::Vector>& starts) const {
+Problem::Vector CandidateSearch::BestOf(const Problem& problem,
+                                        const std::vector<Problem::Vector>& starts) const {
   if (starts.size() == 1) return starts.front();
   FitOptions options{4, 1e-3};
   options.idle = true;
@@ -207,12 +207,12 @@ Problem::Vector Round::BestOf(const Problem& problem,
 
 // By what the time step leaves open: a fit that imitates it has less to spare than the others.
 // Nothing where the step of zero fits worse.
-double Round::TakenOff(const Fitted& f) { return std::max(0.0, 2 * f.fit.cost - f.cost); }
+double CandidateSearch::TakenOff(const Fitted& f) { return std::max(0.0, 2 * f.fit.cost - f.cost); }
 
 // Sensitivities are dear: only those get theirs that may come near the best with them. What the
 // time step leaves open takes about as much off everybody's cost. best: the least cost that is
 // known already.
-void Round::CompleteTheBest(double best) {
+void CandidateSearch::CompleteTheBest(double best) {
   std::vector<CandidateResult*> order;
   for (CandidateResult& c : candidates) {
     if (c.fits) order.push_back(&c);
@@ -242,7 +242,7 @@ void Round::CompleteTheBest(double best) {
 }
 
 // To the engine a delay shorter than a step is a whole one: a fit cannot tell which.
-bool Round::RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x) {
+bool CandidateSearch::RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x) {
   bool raised = false;
   for (std::size_t i = 0; i < c.hypothesis.extra.size(); ++i) {
     const Parameter& p = c.hypothesis.extra[i];
@@ -255,7 +255,7 @@ bool Round::RaiseDelays(const CandidateResult& c, double step, Problem::Vector& 
 
 // Where the step's effect is not of first order a finer step may leave less. The values remain
 // those of the coarse one.
-void Round::AtAFineStep(CandidateResult& c) const {
+void CandidateSearch::AtAFineStep(CandidateResult& c) const {
   constexpr double kRough = 0.15;
   const Problem problem = c.ProblemOf(*trials_.experiment);
   Fitted from = c.fitted;
@@ -273,7 +273,7 @@ void Round::AtAFineStep(CandidateResult& c) const {
 
 // Why nothing can be said of a complete fit; empty when it can be judged. What the time step leaves
 // open is free to vary: a fit that is mostly that explains anything.
-std::string Round::FlawOf(const Problem& problem, const Fitted& fitted) const {
+std::string CandidateSearch::FlawOf(const Problem& problem, const Fitted& fitted) const {
   if (!std::isfinite(fitted.cost)) return "the simulation diverges next to its fit";
   const double removed = Beyond(base_.fitted->error.train, fitted.error.train);
   const bool resolved = trials_.StepEffect(problem, fitted) <

@@ -28,7 +28,7 @@ bool IsThere(const Hypothesis& h, const Fitted& f, Eigen::Index begin) {
 // A first cause, and the round for a second beside it.
 struct Beside {
   const CandidateResult* first;
-  Round round;
+  CandidateSearch round;
 };
 
 // One pair that was fitted.
@@ -51,8 +51,8 @@ struct Fitting {
 
 class Search {
  public:
-  Search(const Trials& trials, const Round& single, bool excused, const Noise& noise,
-         const Sizes& sizes, const DiagnosisOptions& options)
+  Search(const CandidateFitter& trials, const CandidateSearch& single, bool excused,
+         const Noise& noise, const Sizes& sizes, const DiagnosisOptions& options)
       : trials_(trials),
         single_(single),
         excused_(excused),
@@ -83,7 +83,7 @@ class Search {
   void Extend(const CandidateResult& first) {
     options_.Say("a second cause beside " + Key(first.hypothesis));
     const Base base{&first.hypothesis.system, first.hypothesis.Free(), &first.fitted};
-    Round round(trials_, base, noise_, sizes_, options_);
+    CandidateSearch round(trials_, base, noise_, sizes_, options_);
     round.Screen();
     if (!(round.smallest_p() < LikelihoodRules{}.level)) return;
     if (excused_ && round.Promise() < kPromising) return;
@@ -160,7 +160,7 @@ class Search {
     if (verdict.named.empty()) return {};
     const Fitting& best = pairs[verdict.named.front()];
     if (!best.b->fitted.complete) return {};  // those before it were no two causes
-    const Round& round = tried_[best.base].round;
+    const CandidateSearch& round = tried_[best.base].round;
     const LackOfFit lack = round.LackOf(*best.b);
     LikelihoodRules rules;
     rules.excused = lack.smallest() < rules.lack && !excused_ &&
@@ -207,8 +207,8 @@ class Search {
     return list;
   }
 
-  const Trials& trials_;
-  const Round& single_;
+  const CandidateFitter& trials_;
+  const CandidateSearch& single_;
   bool excused_;
   const Noise& noise_;
   const Sizes& sizes_;
@@ -221,8 +221,8 @@ class Search {
 
 }  // namespace
 
-std::optional<Pair> FindPair(const Trials& trials, const Round& single, bool excused,
-                             const Noise& noise, const Sizes& sizes,
+std::optional<Pair> FindPair(const CandidateFitter& trials, const CandidateSearch& single,
+                             bool excused, const Noise& noise, const Sizes& sizes,
                              const DiagnosisOptions& options) {
   return Search(trials, single, excused, noise, sizes, options).Run();
 }

@@ -6,7 +6,7 @@ namespace continuum {
 
 /// Two causes that act together and leave nothing but noise.
 struct Pair {
-  Round round;  ///< for the second cause: its base has the first
+  CandidateSearch round;  ///< for the second cause: its base has the first
   Hypothesis first;
   double first_likelihood;              ///< gained by the first alone
   std::vector<std::string> equivalent;  ///< effects that could stand for the first
@@ -20,8 +20,8 @@ struct Pair {
 /// that was found becomes the base, until nothing changes. single: a round that has been fitted;
 /// excused: what its best leaves may be the time step's doing, so that a second cause must explain
 /// nearly all of it. Nothing when no pair leaves noise.
-std::optional<Pair> FindPair(const Trials& trials, const Round& single, bool excused,
-                             const Noise& noise, const Sizes& sizes,
+std::optional<Pair> FindPair(const CandidateFitter& trials, const CandidateSearch& single,
+                             bool excused, const Noise& noise, const Sizes& sizes,
                              const DiagnosisOptions& options);
 
 }  // namespace continuum

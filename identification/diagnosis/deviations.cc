@@ -60,7 +60,7 @@ std::size_t Peak(const std::vector<double>& residual) {
 
 struct Deviation {
   double size;
-  Wrong wrong;
+  Deviation wrong;
 };
 
 Deviation Largest(const Experiment& e, const Log& log, const Trace& trace, std::size_t c,
@@ -84,7 +84,7 @@ Deviation Largest(const Experiment& e, const Log& log, const Trace& trace, std::
 
 }  // namespace
 
-std::vector<Wrong> FindWrong(const Experiment& e, const std::vector<Trace>& simulated) {
+std::vector<Deviation> FindWrong(const Experiment& e, const std::vector<Trace>& simulated) {
   std::vector<Deviation> all;
   const Pool pool(e);
   std::set<std::pair<std::string, std::string>> seen;  // replicates need no second mention
@@ -101,7 +101,7 @@ std::vector<Wrong> FindWrong(const Experiment& e, const std::vector<Trace>& simu
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.size > b.size; });
-  std::vector<Wrong> wrong;
+  std::vector<Deviation> wrong;
   for (std::size_t i = 0; i < std::min<std::size_t>(6, all.size()); ++i)
     wrong.push_back(all[i].wrong);
   return wrong;

@@ -9,11 +9,11 @@ namespace continuum {
 
 /// Where and how the simulation parts from the measurement, in words. Of an orientation the channel
 /// is the quaternion's that a turn about the axis shows most in.
-struct Wrong {
+struct Deviation {
   std::string log, channel, when, what;
 };
 
 /// The six largest deviations, in units of what the channels move; one for each channel of a log.
-std::vector<Wrong> FindWrong(const Experiment& experiment, const std::vector<Trace>& simulated);
+std::vector<Deviation> FindWrong(const Experiment& experiment, const std::vector<Trace>& simulated);
 
 }  // namespace continuum

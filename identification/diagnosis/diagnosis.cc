@@ -37,7 +37,7 @@ void RequireOwnRecordings(const Experiment& e) {
 
 class Session {
  public:
-  Session(const Experiment& experiment, const System& system, const DiagnosisOptions& options)
+  Session(const Experiment& experiment, const ModelSpec& system, const DiagnosisOptions& options)
       : e_(experiment), options_(options), null_(experiment, system), d_(experiment, system) {
     trials_.experiment = &e_;
     trials_.iterations = options.iterations;
@@ -57,7 +57,7 @@ class Session {
     FitNull();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
     d_.noise.step = trials_.StepEffect(null_, d_.before);
-    Round round(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_);
+    CandidateSearch round(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_);
     round.Screen();
     round.Fit();
     if (d_.noise.known()) {
@@ -67,7 +67,7 @@ class Session {
       LookBeyondTheList(round);
       auto pair = MayBeTwo(round) ? FindPair(trials_, round, excused_, d_.noise, d_.sizes, options_)
                                   : std::nullopt;
-      d_.noise_limited = pair || beyond_ || round.BestLeaves() < Round::kModelLimited;
+      d_.noise_limited = pair || beyond_ || round.BestLeaves() < CandidateSearch::kModelLimited;
       if (pair) {
         JudgePair(*pair);
       } else {
@@ -100,7 +100,7 @@ class Session {
     if (d_.noise.known()) trials_.whitening = Whitening(null_, d_.noise);
     d_.before = trials_.FitNull(null_);
     if (d_.noise.known()) {
-      const Rounding rounding(null_, d_.noise, d_.before.fit.x);
+      const Quantisation rounding(null_, d_.noise, d_.before.fit.x);
       if (rounding.any()) {
         d_.noise = rounding.Corrected();
         trials_.whitening = Whitening(null_, d_.noise);
@@ -110,7 +110,7 @@ class Session {
     trials_.Complete(null_, d_.before);
   }
 
-  void Take(Round& round) {
+  void Take(CandidateSearch& round) {
     d_.candidates = std::move(round.candidates);
     for (const CandidateResult& c : round.left_behind) {
       d_.dismissed.push_back(
@@ -129,7 +129,7 @@ class Session {
 
   // No single candidate leaves noise, or only by the time step's leave; and what the best leaves is
   // not a hundred times the noise.
-  bool MayBeTwo(const Round& round) const {
+  bool MayBeTwo(const CandidateSearch& round) const {
     constexpr double kHopeless = 10;
     const bool more =
         d_.verdict.text == "unexplained" || (excused_ && d_.verdict.text != "adequate");
@@ -148,7 +148,7 @@ class Session {
   }
 
   // By likelihoods, which are calibrated where noise is all that the best model leaves.
-  void Judge(Round& round) {
+  void Judge(CandidateSearch& round) {
     options_.Say("what is left");
     const CandidateResult* const best = round.leading();
     d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
@@ -158,7 +158,7 @@ class Session {
     Decide(round);
   }
 
-  void Decide(Round& round) {
+  void Decide(CandidateSearch& round) {
     const auto records = round.Records();
     SetProbabilities(round.candidates, records);
     d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), round.smallest_p(), Rules());
@@ -169,10 +169,10 @@ class Session {
   }
 
   // Where no effect explains it at all joints together it may be at one of them.
-  void LookAtOtherPlaces(Round& round) {
+  void LookAtOtherPlaces(CandidateSearch& round) {
     if (d_.verdict.text != "unexplained") return;
-    Round others(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_,
-                 Places::kOthers);
+    CandidateSearch others(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_,
+                           SearchScope::kOthers);
     others.Screen();
     others.Fit(&round);
     if (others.candidates.empty()) return;
@@ -181,11 +181,11 @@ class Session {
   }
 
   // A name that stands only because the list leaves its rival out is none.
-  void LookBeyondTheList(Round& round) {
+  void LookBeyondTheList(CandidateSearch& round) {
     DiagnosisOptions options = options_;
     options.candidates = Unlisted(e_, options_.candidates);
     if (options.candidates.empty() || d_.verdict.text == "adequate") return;
-    Round beyond(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options);
+    CandidateSearch beyond(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options);
     beyond.Screen();
     beyond.Fit(&round);
     const bool unexplained = d_.verdict.text == "unexplained";
@@ -351,7 +351,7 @@ class Session {
   const DiagnosisOptions& options_;
   Problem null_;
   Diagnosis d_;
-  Trials trials_;
+  CandidateFitter trials_;
   bool excused_ = false;  // what is left is significant, but within what the time step adds
   bool beyond_ = false;   // what is there is an effect that is not listed
 };
@@ -363,7 +363,7 @@ void DiagnosisOptions::Say(const std::string& text) const {
   if (progress) progress(text);
 }
 
-Diagnosis Diagnose(const Experiment& experiment, const System& system,
+Diagnosis Diagnose(const Experiment& experiment, const ModelSpec& system,
                    const DiagnosisOptions& options) {
   return Session(experiment, system, options).Run();
 }

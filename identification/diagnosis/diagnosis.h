@@ -113,10 +113,10 @@ struct NextExperiment {
 };
 
 struct Diagnosis {
-  Diagnosis(const Experiment& experiment, const System& null) : pool(experiment), system(null) {}
+  Diagnosis(const Experiment& experiment, const ModelSpec& null) : pool(experiment), system(null) {}
 
   Pool pool;
-  System system;  ///< the model before
+  ModelSpec system;  ///< the model before
   Noise noise;
   Sizes sizes;
   std::vector<Fold> folds;
@@ -151,7 +151,7 @@ struct Diagnosis {
 /// Fits the model, tries every candidate, and judges: by likelihood where noise is all that the
 /// best one leaves (then also two causes together), else by leaving out one group of logs at a
 /// time, beside random forces. Throws Error for experiments that cannot be diagnosed.
-Diagnosis Diagnose(const Experiment& experiment, const System& system,
+Diagnosis Diagnose(const Experiment& experiment, const ModelSpec& system,
                    const DiagnosisOptions& options = {});
 
 }  // namespace continuum

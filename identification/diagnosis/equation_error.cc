@@ -11,7 +11,7 @@ using Vector = Problem::Vector;
 
 }  // namespace
 
-EquationErrors::EquationErrors(const Experiment& experiment, const System& system,
+EquationErrors::EquationErrors(const Experiment& experiment, const ModelSpec& system,
                                const Fitted& base)
     : experiment_(experiment), x_(base.fit.x) {
   const Problem problem(experiment, system);

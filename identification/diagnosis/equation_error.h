@@ -20,7 +20,7 @@ namespace continuum {
 class EquationErrors {
  public:
   /// base: the fitted model without a candidate.
-  EquationErrors(const Experiment& experiment, const System& system, const Fitted& base);
+  EquationErrors(const Experiment& experiment, const ModelSpec& system, const Fitted& base);
 
   /// Whether every joint is measured, so that there is anything to see.
   bool any() const { return force_.size() > 0; }

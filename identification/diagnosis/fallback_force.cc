@@ -50,7 +50,7 @@ std::vector<Hypothesis> Forces(std::size_t terms, const Experiment& e, const Dia
 
 }  // namespace
 
-std::optional<CandidateResult> FindFallback(const Trials& trials, const Diagnosis& d,
+std::optional<CandidateResult> FindFallback(const CandidateFitter& trials, const Diagnosis& d,
                                             const DiagnosisOptions& options) {
   std::optional<CandidateResult> best;
   if (d.before.folds.error.empty()) return best;

@@ -16,7 +16,8 @@ namespace continuum {
 /// where and to which order. It is a model to simulate with where the logs went, a `formula` in the
 /// MJCF. Empty where it does not take a tenth off the error in the median of the folds, and
 /// something in four of five.
-std::optional<CandidateResult> FindFallback(const Trials& trials, const Diagnosis& diagnosis,
+std::optional<CandidateResult> FindFallback(const CandidateFitter& trials,
+                                            const Diagnosis& diagnosis,
                                             const DiagnosisOptions& options);
 
 }  // namespace continuum

@@ -25,7 +25,7 @@ double GainOver(const FoldScores& before, const FoldScores& after) {
 
 class Comparison {
  public:
-  Comparison(const Trials& trials, const DiagnosisOptions& options, Diagnosis& d)
+  Comparison(const CandidateFitter& trials, const DiagnosisOptions& options, Diagnosis& d)
       : trials_(trials), e_(*trials.experiment), options_(options), d_(d) {}
 
   void Run() {
@@ -171,7 +171,7 @@ class Comparison {
            holds(a, b) || holds(b, a);
   }
 
-  const Trials& trials_;
+  const CandidateFitter& trials_;
   const Experiment& e_;
   const DiagnosisOptions& options_;
   Diagnosis& d_;
@@ -187,7 +187,7 @@ void RaiseCeiling(Diagnosis& d, const std::string& by, const FoldScores& folds,
   d.ceiling = folds, d.ceiling_error = error, d.ceiling_by = by;
 }
 
-void RecordFolds(const Trials& trials, const Diagnosis& d, CandidateResult& c) {
+void RecordFolds(const CandidateFitter& trials, const Diagnosis& d, CandidateResult& c) {
   const Problem problem = c.ProblemOf(*trials.experiment);
   if (!c.fitted.complete) trials.Complete(problem, c.fitted);
   trials.AddFolds(problem, d.folds, c.fitted);
@@ -201,7 +201,8 @@ void RecordFolds(const Trials& trials, const Diagnosis& d, CandidateResult& c) {
     c.record.amplitude.push_back(x[own + static_cast<Eigen::Index>(main)] - null);
 }
 
-void CompareByFolds(const Trials& trials, const DiagnosisOptions& options, Diagnosis& diagnosis) {
+void CompareByFolds(const CandidateFitter& trials, const DiagnosisOptions& options,
+                    Diagnosis& diagnosis) {
   Comparison(trials, options, diagnosis).Run();
 }
 

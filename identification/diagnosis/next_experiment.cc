@@ -94,7 +94,7 @@ std::vector<Variation> Library() {
 
 class Proposal {
  public:
-  Proposal(const Trials& trials, const Diagnosis& d) : e_(*trials.experiment), d_(d) {}
+  Proposal(const CandidateFitter& trials, const Diagnosis& d) : e_(*trials.experiment), d_(d) {}
 
   NextExperiment Run() {
     NextExperiment best;
@@ -223,7 +223,7 @@ class Proposal {
 
 }  // namespace
 
-NextExperiment ProposeNext(const Trials& trials, const Diagnosis& diagnosis) {
+NextExperiment ProposeNext(const CandidateFitter& trials, const Diagnosis& diagnosis) {
   return diagnosis.verdict.named.size() < 2 ? NextExperiment{} : Proposal(trials, diagnosis).Run();
 }
 

@@ -11,7 +11,7 @@ namespace continuum {
 /// better):
 ///   λ = |M W (y_rival − y_chosen)|²
 /// Below about 15 no change of the inputs parts them.
-NextExperiment ProposeNext(const Trials& trials, const Diagnosis& diagnosis);
+NextExperiment ProposeNext(const CandidateFitter& trials, const Diagnosis& diagnosis);
 
 /// Its inputs from t = 0, in the columns and units of the experiment.
 std::string NextCsv(const Experiment& experiment, const Log& next);

@@ -5,7 +5,7 @@
 
 namespace continuum {
 
-Rounding::Rounding(const Problem& problem, const Noise& noise, const Problem::Vector& x)
+Quantisation::Quantisation(const Problem& problem, const Noise& noise, const Problem::Vector& x)
     : problem_(&problem), noise_(&noise) {
   for (const std::size_t c : problem.channels()) any_ |= Rounded(noise.channel[c]);
   if (!any_) return;
@@ -13,7 +13,7 @@ Rounding::Rounding(const Problem& problem, const Noise& noise, const Problem::Ve
     traces_.push_back(problem.Predict(x, l));
 }
 
-Noise Rounding::Corrected() const {
+Noise Quantisation::Corrected() const {
   Noise noise = *noise_;
   for (std::size_t c = 0; c < noise.channel.size(); ++c) {
     std::vector<std::vector<double>> values;
@@ -23,8 +23,9 @@ Noise Rounding::Corrected() const {
   return noise;
 }
 
-double Rounding::Inflation(const Remainder& left, const std::vector<std::vector<Probe>>& candidates,
-                           std::uint64_t seed) const {
+double Quantisation::Inflation(const Remainder& left,
+                               const std::vector<std::vector<Probe>>& candidates,
+                               std::uint64_t seed) const {
   std::mt19937_64 rng(seed);
   constexpr int kDraws = 40;
   double power = 0, count = 0;
@@ -42,7 +43,7 @@ double Rounding::Inflation(const Remainder& left, const std::vector<std::vector<
   return count > 0 ? std::max(1.0, power / count) : 1;
 }
 
-Problem::Matrix Rounding::Draws(const Remainder& left, int count, std::uint64_t seed) const {
+Problem::Matrix Quantisation::Draws(const Remainder& left, int count, std::uint64_t seed) const {
   std::mt19937_64 rng(seed);
   Problem::Matrix draws(left.residual().size(), count);
   for (int i = 0; i < count; ++i) draws.col(i) = left.Project(Draw(rng, true)).col(0);
@@ -50,7 +51,7 @@ Problem::Matrix Rounding::Draws(const Remainder& left, int count, std::uint64_t 
 }
 
 // all: also the noise of channels that are not rounded.
-std::vector<Problem::Matrix> Rounding::Draw(std::mt19937_64& rng, bool all) const {
+std::vector<Problem::Matrix> Quantisation::Draw(std::mt19937_64& rng, bool all) const {
   const auto& channels = problem_->channels();
   std::vector<Problem::Matrix> draw;
   std::vector<double> phase;

@@ -6,9 +6,9 @@ namespace continuum {
 
 /// What values rounded to steps larger than their noise do to a diagnosis. x: the fitted model,
 /// which is simulated only where some are.
-class Rounding {
+class Quantisation {
  public:
-  Rounding(const Problem& problem, const Noise& noise, const Problem::Vector& x);
+  Quantisation(const Problem& problem, const Noise& noise, const Problem::Vector& x);
 
   bool any() const { return any_; }
   /// The noise with that of the rounded channels as a model moves between their steps.

@@ -102,7 +102,7 @@ struct Search {
   const Problem& problem;
   const std::vector<bool>& use;
   const FitOptions& options;
-  Pieces found;
+  ShootingSegments found;
   Problem::Vector x;  // where the last pieces ended
 
   // Fits pieces with these weights of their seams, one after the other.
@@ -153,8 +153,9 @@ Log Piece(const Log& log, std::size_t first, std::size_t last) {
   return piece;
 }
 
-std::optional<Pieces> FitInPieces(const Problem& problem, const Problem::Vector& x,
-                                  const std::vector<bool>& use, const FitOptions& options) {
+std::optional<ShootingSegments> FitInPieces(const Problem& problem, const Problem::Vector& x,
+                                            const std::vector<bool>& use,
+                                            const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t evaluations = problem.evaluations();
   Search search{problem, use, options, {x, CostOf(problem, x, use)}, x};
@@ -162,7 +163,7 @@ std::optional<Pieces> FitInPieces(const Problem& problem, const Problem::Vector&
   if (MayBeCut(problem, use, kMany)) search.Cut(kMany, {0});
   if (MayBeCut(problem, use, kFew)) search.Cut(kFew, {0, 1, 10, 100});
   if (search.found.evaluations == 0) return {};
-  Pieces& found = search.found;
+  ShootingSegments& found = search.found;
   found.evaluations += problem.evaluations() - evaluations;
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return found;

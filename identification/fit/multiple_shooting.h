@@ -11,7 +11,7 @@ namespace continuum {
 Log Piece(const Log& log, std::size_t first, std::size_t last);
 
 /// Where a fit of long logs begins after one of their pieces.
-struct Pieces {
+struct ShootingSegments {
   Problem::Vector x;
   double before = 0, after = 0;  ///< ½ Σ r² of the whole logs, at the start and at x
   double seconds = 0;            ///< of wall clock
@@ -31,7 +31,8 @@ struct Pieces {
 /// Returns the best for whole logs of x and these ends. Nothing where no log in use is long, rows
 /// know no time, parameters belong to single logs, joints are not hinges and slides with names, or
 /// the starts are too many.
-std::optional<Pieces> FitInPieces(const Problem& problem, const Problem::Vector& x,
-                                  const std::vector<bool>& use, const FitOptions& options);
+std::optional<ShootingSegments> FitInPieces(const Problem& problem, const Problem::Vector& x,
+                                            const std::vector<bool>& use,
+                                            const FitOptions& options);
 
 }  // namespace continuum

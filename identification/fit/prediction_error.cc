@@ -36,7 +36,7 @@ std::map<std::size_t, std::vector<double>> Memories(const Problem& problem,
   hooks.row = [&](const mjModel& m, const mjData& d, std::size_t row) {
     if (row % stride == 0) memories[row] = MemoryOf(m, d);
   };
-  Machine machine = problem.system().Build(problem.ChangesFor(x, log));
+  ModelAndData machine = problem.system().Build(problem.ChangesFor(x, log));
   const InitialState start = problem.StartAt(machine, x, log);
   Simulate(machine, problem.MeasuredBy(x, log), problem.experiment().logs[log], start, hooks);
   return memories;
@@ -44,8 +44,8 @@ std::map<std::size_t, std::vector<double>> Memories(const Problem& problem,
 
 }  // namespace
 
-std::optional<Ahead> PredictAhead(const Problem& problem, const Problem::Vector& x,
-                                  std::size_t rows) {
+std::optional<PredictionError> PredictAhead(const Problem& problem, const Problem::Vector& x,
+                                            std::size_t rows) {
   const Experiment& e = problem.experiment();
   if (e.quasi_static) return {};  // its rows know no time
   std::vector<Sum> sums[2] = {std::vector<Sum>(e.channels.size()),
@@ -61,7 +61,7 @@ std::optional<Ahead> PredictAhead(const Problem& problem, const Problem::Vector&
       auto state = StateAt(problem.system().model(), measured, log, first);
       if (!state) continue;
       state->memory = std::move(memories[first]);
-      Machine machine = problem.system().Build(changes);
+      ModelAndData machine = problem.system().Build(changes);
       const Log piece = Piece(log, first, first + rows);
       const Trace trace = Simulate(machine, measured, piece, *state);
       const auto residuals = Residuals(measured, piece, trace);
@@ -72,7 +72,7 @@ std::optional<Ahead> PredictAhead(const Problem& problem, const Problem::Vector&
   }
   if (seconds.empty()) return {};
   std::nth_element(seconds.begin(), seconds.begin() + seconds.size() / 2, seconds.end());
-  Ahead ahead{rows, seconds[seconds.size() / 2], {}, {}};
+  PredictionError ahead{rows, seconds[seconds.size() / 2], {}, {}};
   for (const Sum& sum : sums[0]) ahead.train.push_back(sum.Root());
   for (const Sum& sum : sums[1]) ahead.validate.push_back(sum.Root());
   return ahead;

@@ -11,14 +11,14 @@ namespace continuum {
 /// logs at a hundred rows), from the state measured there (StateAt), and is compared with the
 /// measurement so many rows later. What the state does not tell (activations, the past of delays,
 /// friction and hysteresis) is what free simulation has there.
-struct Ahead {
+struct PredictionError {
   std::size_t rows;
   double seconds;                       ///< so long, in the median
   std::vector<double> train, validate;  ///< [channel] root mean square error [SI]; NaN: none
 };
 
 /// None where the outputs do not give the state, or no log is as long.
-std::optional<Ahead> PredictAhead(const Problem& problem, const Problem::Vector& x,
-                                  std::size_t rows);
+std::optional<PredictionError> PredictAhead(const Problem& problem, const Problem::Vector& x,
+                                            std::size_t rows);
 
 }  // namespace continuum

@@ -165,7 +165,7 @@ class LogForces {
   Experiment e_;
   const Log& log_;
   std::size_t index_;
-  Machine machine_;
+  ModelAndData machine_;
   std::vector<Quartic> fits_;
   std::map<int, Motion> measured_;
   std::map<int, std::vector<double>> model_, load_;

@@ -37,13 +37,13 @@ void RequireMeasurable(const mjModel& m, const mjData& d) {
     throw Error::Input("--method regressor", "a model whose states are its joints", what);
   };
   if (m.na > 0) refuse("activations of actuators");
-  if (const Ties ties(m); !ties.obstacle().empty()) refuse(ties.obstacle());
+  if (const JointEqualities ties(m); !ties.obstacle().empty()) refuse(ties.obstacle());
   for (int j = 0; j < m.njnt; ++j) {
     if (m.jnt_type[j] == mjJNT_FREE || m.jnt_type[j] == mjJNT_BALL)
       refuse("joint '" + JointName(m, j) + "', neither hinge nor slide");
   }
   for (int i = 0; i < m.nplugin; ++i) {
-    const Bound& law = BoundOf(m, d, i);
+    const BoundLaw& law = BoundOf(m, d, i);
     if (law.Answers() || (m.plugin_statenum[i] > 0 && !law.IsRow()))
       refuse(std::string(mjp_getPluginAtSlot(m.plugin[i])->name));
   }
@@ -75,7 +75,7 @@ Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double
   Motion motion{index, EvenStep(log), 0, {}, {}, {}, {}, {}};
   const double rate = 1 / motion.step;
   motion.cutoff = std::min(cutoff > 0 ? cutoff : kFilter, kOfTheRate * rate) / rate;
-  const std::vector<int> dofs = Ties(m).dofs();
+  const std::vector<int> dofs = JointEqualities(m).dofs();
   motion.q.resize(dofs.size()), motion.noise.resize(dofs.size());
   const Wiring wiring(e, m);
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
@@ -123,7 +123,8 @@ std::vector<double> At(std::size_t row, const std::vector<std::vector<double>>& 
 }
 
 // Puts a machine at one row of a motion; joints that are tied to others follow.
-void Put(const Motion& motion, std::size_t row, const Ties& ties, const mjModel& m, mjData& d) {
+void Put(const Motion& motion, std::size_t row, const JointEqualities& ties, const mjModel& m,
+         mjData& d) {
   const auto q = At(row, motion.q), v = At(row, motion.v), a = At(row, motion.a);
   ties.Spread(m, q.data(), a.data(), d);
   mju_copy(d.qacc, d.qvel, static_cast<int>(m.nv));
@@ -156,12 +157,12 @@ void Replace(const mjData& d, int actuator, double measured, Vector& force) {
 Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
   const Experiment& e = problem.experiment();
   const Log& log = e.logs[motion.log];
-  Machine machine = problem.system().Build(problem.ChangesFor(x, motion.log));
+  ModelAndData machine = problem.system().Build(problem.ChangesFor(x, motion.log));
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   const Wiring wiring(e, m);
   Inputs inputs(m, e, log, wiring);
-  const Ties ties(m);
+  const JointEqualities ties(m);
   m.opt.disableflags |= mjDSBL_EQUALITY;
   const auto rows = static_cast<Eigen::Index>(log.rows());
   const auto free = static_cast<Eigen::Index>(ties.velocities());
@@ -217,7 +218,8 @@ Vector Inner(const Matrix& forces, const Vector& weight, double cutoff) {
 }
 
 // Rows that say something, whatever friction there is: at the start, or with other parameters.
-Vector Told(const Problem& problem, const Motion& motion, const Vector& x, const Matrix& rests) {
+Vector InformativeRows(const Problem& problem, const Motion& motion, const Vector& x,
+                       const Matrix& rests) {
   Vector there = x;
   for (Eigen::Index k = 0; k < x.size(); ++k) there[k] += problem.StepOf(x, k, 0.2);
   const Matrix all = Widened(rests.cwiseMax(ForcesOf(problem, motion, there).rests), motion.cutoff);
@@ -326,7 +328,7 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   const auto begin = std::chrono::steady_clock::now();
   const Experiment& e = problem.experiment();
   const Vector x = problem.Start();
-  const Machine machine = problem.system().Build(problem.ChangesFor(x, 0));
+  const ModelAndData machine = problem.system().Build(problem.ChangesFor(x, 0));
   RequireMeasurable(*machine.model, *machine.data);
   std::vector<Motion> motions;
   std::vector<Forces> forces, seen;
@@ -340,7 +342,7 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   Regression found;
   for (std::size_t l = 0; l < motions.size(); ++l) {
     const double cutoff = motions[l].cutoff;
-    const Vector told = Told(problem, motions[l], x, forces[l].rests);
+    const Vector told = InformativeRows(problem, motions[l], x, forces[l].rests);
     equations.push_back({use[l], Inner(forces[l].missing, weight, cutoff),
                          Inner(forces[l].actuated, weight, cutoff), told,
                          Columns(problem, motions[l], x, forces[l].missing, weight, told)});

@@ -32,8 +32,9 @@ double SpeedNoise(const std::vector<double>& y, const std::vector<double>& filte
   return sigma * 2 * std::numbers::pi / h * std::sqrt(2 * std::pow(cutoff, 3) / 3);
 }
 
-void MarkRests(const Ties& ties, const mjModel& m, const mjData& d, const std::vector<double>& v,
-               const std::vector<double>& noise, Eigen::Ref<Eigen::RowVectorXd> rests) {
+void MarkRests(const JointEqualities& ties, const mjModel& m, const mjData& d,
+               const std::vector<double>& v, const std::vector<double>& noise,
+               Eigen::Ref<Eigen::RowVectorXd> rests) {
   const auto free = static_cast<Eigen::Index>(ties.velocities());
   Vector seen(free);
   for (int row = 0; row < d.nefc; ++row) {

@@ -8,7 +8,7 @@
 namespace continuum {
 namespace {
 
-std::vector<std::string> Reached(const Parameter& p, const System& system) {
+std::vector<std::string> Reached(const Parameter& p, const ModelSpec& system) {
   return IsMeasurement(p.target, p.attribute) ? std::vector{p.target} : system.Named(p.target);
 }
 
@@ -17,14 +17,14 @@ std::string First(const std::string& attribute) {
   return attribute.ends_with("[0]") ? attribute.substr(0, attribute.size() - 3) : attribute;
 }
 
-bool DoTheSame(const Parameter& a, const Parameter& b, const System& system) {
+bool DoTheSame(const Parameter& a, const Parameter& b, const ModelSpec& system) {
   return !a.frozen && !b.frozen && a.operation == b.operation &&
          First(a.attribute) == First(b.attribute) && Reached(a, system) == Reached(b, system);
 }
 
 }  // namespace
 
-void RefuseTwice(const std::vector<Parameter>& parameters, const System& system) {
+void RefuseTwice(const std::vector<Parameter>& parameters, const ModelSpec& system) {
   for (std::size_t b = 0; b < parameters.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
       const Parameter &one = parameters[a], &two = parameters[b];

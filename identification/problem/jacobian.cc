@@ -111,8 +111,8 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
   evaluations_ += (central_ ? 2 : 1) * tasks.size() + exact;
 }
 
-Trial Problem::TrialOf(Machine machine, const Vector& x, std::size_t log) const {
-  Trial trial{std::move(machine), {}, {}, {}};
+PerturbedRun Problem::TrialOf(ModelAndData machine, const Vector& x, std::size_t log) const {
+  PerturbedRun trial{std::move(machine), {}, {}, {}};
   const Log& logged = experiment_->logs[log];
   InitialState start = StartAt(trial.machine, x, log);
   if (start.qpos.empty()) start = StartOf(trial.machine, setup_, logged);
@@ -133,8 +133,8 @@ std::string Problem::NoClosedForm() const {
   if (!exact_) return "as asked for";
   if (terms_.count > 0) return "a force of free form acts";
   if (experiment_->quasi_static) return "the logs are quasi-static";
-  const Machine machine = MachineAt(0, Start(), 0, 0);
-  return StepTangent::Obstacle(*machine.model, Wiring(setup_, *machine.model));
+  const ModelAndData machine = MachineAt(0, Start(), 0, 0);
+  return StepSensitivity::Obstacle(*machine.model, Wiring(setup_, *machine.model));
 }
 
 std::vector<std::size_t> Problem::TangentColumns(const Vector& x,
@@ -150,11 +150,11 @@ std::vector<std::size_t> Problem::TangentColumns(const Vector& x,
   for (const std::size_t k : columns) (Measures(k) ? left : moving).push_back(k);
   SteppedTraces traces;
   try {
-    Machine machine = MachineAt(thread, x, log, 0);
+    ModelAndData machine = MachineAt(thread, x, log, 0);
     const mjModel& m = *machine.model;
-    if (!StepTangent::Obstacle(m, Wiring(setup, m)).empty()) return columns;
-    Trial trial = TrialOf(std::move(machine), x, log);
-    std::vector<Trial> neighbours;
+    if (!StepSensitivity::Obstacle(m, Wiring(setup, m)).empty()) return columns;
+    PerturbedRun trial = TrialOf(std::move(machine), x, log);
+    std::vector<PerturbedRun> neighbours;
     for (const std::size_t k : moving) {
       Vector moved = x;
       moved[k] += StepOf(x, k, kMove);
@@ -206,7 +206,7 @@ void Problem::SensitivityColumns(const Vector& x,
     if (StopRequested()) return;
     const auto& [i, moving] = tasks[t];
     const std::size_t log = motions[i].front();
-    std::vector<std::unique_ptr<Flow>> neighbours;
+    std::vector<std::unique_ptr<ContinuousDynamics>> neighbours;
     for (const std::size_t k : moving) {
       Vector moved = x;
       moved[k] += StepOf(x, k, kMove);

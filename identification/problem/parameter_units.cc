@@ -84,7 +84,7 @@ std::string AttributeUnit(const std::string& name) {
 
 }  // namespace
 
-std::string UnitOf(const System& system, const Parameter& p) {
+std::string UnitOf(const ModelSpec& system, const Parameter& p) {
   if (!p.unit.empty()) return p.unit;
   if (p.operation == Change::Operation::kScale) return "1";
   const mjModel& m = system.model();

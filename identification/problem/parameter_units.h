@@ -10,6 +10,6 @@ namespace continuum {
 /// The unit of a parameter of the model: what the card of its effect says, or what MuJoCo's
 /// attribute has; on slide joints and tendons that of a translation ("N*s/m" for "N*m*s/rad"). "1"
 /// for factors, and where the joints of one parameter differ.
-std::string UnitOf(const System& system, const Parameter& p);
+std::string UnitOf(const ModelSpec& system, const Parameter& p);
 
 }  // namespace continuum

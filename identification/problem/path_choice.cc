@@ -9,13 +9,13 @@ namespace {
 
 // Of the model of one log, at a start that lies a little beside the null of every parameter.
 std::string ObstacleOf(const Problem& problem, const Problem::Vector& x, std::size_t log) {
-  const Machine machine = problem.system().Build(problem.ChangesFor(x, log));
-  return Flow::Obstacle(*machine.model, *machine.data);
+  const ModelAndData machine = problem.system().Build(problem.ChangesFor(x, log));
+  return ContinuousDynamics::Obstacle(*machine.model, *machine.data);
 }
 
 // Whether a contact or a limit acts on the way; of the rows the first d.ne are equalities.
 std::string Touches(const Problem& problem, std::size_t log) {
-  Machine machine = problem.system().Build(problem.ChangesFor(problem.Start(), log));
+  ModelAndData machine = problem.system().Build(problem.ChangesFor(problem.Start(), log));
   double when = -1;
   Hooks hooks;
   hooks.step = [&](const mjModel&, const mjData& d) {

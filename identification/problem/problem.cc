@@ -41,8 +41,8 @@ double SumOfSquares(const std::vector<Eigen::VectorXd>& residuals) {
   return sum;
 }
 
-Problem::Problem(const Experiment& experiment, const System& system, std::vector<Parameter> extra,
-                 ForceTerms terms, std::vector<bool> seen)
+Problem::Problem(const Experiment& experiment, const ModelSpec& system,
+                 std::vector<Parameter> extra, ForceTerms terms, std::vector<bool> seen)
     : experiment_(&experiment),
       seen_(seen.empty() ? continuum::TrainLogs(experiment) : std::move(seen)),
       setup_(experiment),
@@ -297,7 +297,7 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
       return Refused(logged, error);
     }
   }
-  Machine machine;
+  ModelAndData machine;
   try {
     machine = MachineAt(thread, x, log, step);
   } catch (const Error& error) {
@@ -319,14 +319,14 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
 }
 
 // As it steps.
-Machine Problem::MachineAt(std::size_t thread, const Vector& x, std::size_t log,
-                           double step) const {
+ModelAndData Problem::MachineAt(std::size_t thread, const Vector& x, std::size_t log,
+                                double step) const {
   auto changes = ChangesFor(x, log);
   if (const double h = step > 0 ? step : step_; h > 0) changes.push_back({"option", "timestep", h});
   return systems_[thread].Build(changes);
 }
 
-InitialState Problem::StartAt(Machine& machine, const Vector& x, std::size_t log) const {
+InitialState Problem::StartAt(ModelAndData& machine, const Vector& x, std::size_t log) const {
   const auto changes = ChangesAt(x, log, Side::kStart);
   if (changes.empty()) return {};
   InitialState state = StartOf(machine, setup_, experiment_->logs[log]);
@@ -335,9 +335,10 @@ InitialState Problem::StartAt(Machine& machine, const Vector& x, std::size_t log
   return state;
 }
 
-std::unique_ptr<Flow> Problem::FlowAt(std::size_t thread, const Vector& x, std::size_t log) const {
-  return std::make_unique<Flow>(systems_[thread].Build(ChangesFor(x, log)), *experiment_,
-                                experiment_->logs[log]);
+std::unique_ptr<ContinuousDynamics> Problem::FlowAt(std::size_t thread, const Vector& x,
+                                                    std::size_t log) const {
+  return std::make_unique<ContinuousDynamics>(systems_[thread].Build(ChangesFor(x, log)),
+                                              *experiment_, experiment_->logs[log]);
 }
 
 Trace Problem::Predict(const Vector& x, std::size_t log) const { return Run(0, x, log); }

@@ -60,7 +60,7 @@ class Problem {
   /// extra: parameters beyond the experiment's own; seen: the logs of the fit, empty: those that
   /// train. Throws Error (key and file) for targets that match nothing, starts outside the bounds
   /// and values of single logs or conditions that no log of the fit tells.
-  Problem(const Experiment& experiment, const System& system, std::vector<Parameter> extra = {},
+  Problem(const Experiment& experiment, const ModelSpec& system, std::vector<Parameter> extra = {},
           ForceTerms terms = {}, std::vector<bool> seen = {});
   /// From now on along this path (SmoothObstacle says where the smooth one cannot go).
   void Follow(Path path);
@@ -83,7 +83,7 @@ class Problem {
 
   const Experiment& experiment() const { return *experiment_; }
   /// Of one thread of parallel work; all are alike.
-  const System& system(std::size_t thread = 0) const { return systems_[thread]; }
+  const ModelSpec& system(std::size_t thread = 0) const { return systems_[thread]; }
   const std::vector<FreeParameter>& parameters() const { return parameters_; }
   Vector Start() const;
   Vector Clamp(const Vector& x) const;
@@ -120,7 +120,7 @@ class Problem {
   /// The changes that make the model of one log.
   std::vector<Change> ChangesFor(const Vector& x, std::size_t log) const;
   /// Where the trial of one log begins; empty: as the experiment says.
-  InitialState StartAt(Machine& machine, const Vector& x, std::size_t log) const;
+  InitialState StartAt(ModelAndData& machine, const Vector& x, std::size_t log) const;
   /// The changes that hold for every log alike: those of the model file to be written.
   std::vector<Change> CommonChanges(const Vector& x) const;
 
@@ -143,17 +143,18 @@ class Problem {
   bool SameMotion(std::size_t a, std::size_t b) const;
   std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
-  Machine MachineAt(std::size_t thread, const Vector& x, std::size_t log, double step) const;
+  ModelAndData MachineAt(std::size_t thread, const Vector& x, std::size_t log, double step) const;
   Trace Refused(const Log& log, const Error& error) const;
-  std::unique_ptr<Flow> FlowAt(std::size_t thread, const Vector& x, std::size_t log) const;
+  std::unique_ptr<ContinuousDynamics> FlowAt(std::size_t thread, const Vector& x,
+                                             std::size_t log) const;
   bool Measures(std::size_t k) const;
   /// Within the parameter's bounds.
   bool Allows(std::size_t k, double value) const;
   void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                          const std::vector<std::vector<std::size_t>>& motions,
                          const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
-  Trial TrialOf(Machine machine, const Vector& x, std::size_t log) const;
-  /// By StepTangent, one simulation for all columns; returns those that are left.
+  PerturbedRun TrialOf(ModelAndData machine, const Vector& x, std::size_t log) const;
+  /// By StepSensitivity, one simulation for all columns; returns those that are left.
   std::vector<std::size_t> TangentColumns(const Vector& x, const std::vector<std::size_t>& motion,
                                           const std::vector<std::size_t>& columns,
                                           std::size_t thread, std::vector<Matrix>& J) const;
@@ -167,8 +168,8 @@ class Problem {
 
   const Experiment* experiment_;
   std::vector<bool> seen_;
-  std::vector<System> systems_;  ///< one per thread
-  Experiment setup_;             ///< without logs
+  std::vector<ModelSpec> systems_;  ///< one per thread
+  Experiment setup_;                ///< without logs
   /// [log] the last simulation and what it was made of, as only the measurement may change.
   struct Memory {
     std::vector<Change> changes, starts;

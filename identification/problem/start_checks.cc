@@ -49,7 +49,7 @@ bool Compiles(const Problem& problem, const Changes& changes) {
 
 bool Diverges(const Problem& problem, const Changes& changes, std::size_t log) {
   try {
-    Machine machine = problem.system().Build(changes);
+    ModelAndData machine = problem.system().Build(changes);
     return Simulate(machine, problem.experiment(), problem.experiment().logs[log]).diverged;
   } catch (const Error&) {
     return true;

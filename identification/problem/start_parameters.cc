@@ -38,7 +38,7 @@ std::string JointName(const mjModel& m, int joint) {
 
 // Those that no equality ties to others.
 std::vector<int> JointsThatStart(const mjModel& m) {
-  const Ties ties(m);
+  const JointEqualities ties(m);
   std::vector<int> joints;
   for (int j = 0; j < m.njnt; ++j) {
     if (m.jnt_type[j] != mjJNT_HINGE && m.jnt_type[j] != mjJNT_SLIDE)
@@ -52,12 +52,12 @@ std::vector<int> JointsThatStart(const mjModel& m) {
 
 }  // namespace
 
-std::vector<FreeParameter> StartParameters(const Experiment& e, const System& system) {
+std::vector<FreeParameter> StartParameters(const Experiment& e, const ModelSpec& system) {
   std::vector<FreeParameter> all;
   if (e.start != Experiment::Start::kEstimate) return all;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     const Log& log = e.logs[l];
-    Machine machine = system.Build(log.set);
+    ModelAndData machine = system.Build(log.set);
     const mjModel& m = *machine.model;
     const InitialState start = StartOf(machine, e, log);
     std::vector<bool> own(e.logs.size(), false);
@@ -97,8 +97,8 @@ void PutStart(const mjModel& m, const Change& change, InitialState& state) {
   }
 }
 
-void PutTied(Machine& machine, InitialState& state) {
-  const Ties ties(*machine.model);
+void PutTied(ModelAndData& machine, InitialState& state) {
+  const JointEqualities ties(*machine.model);
   if (ties.none() || !ties.obstacle().empty()) return;
   std::vector<double> q(ties.positions()), v(ties.velocities());
   ties.FreePositions(state.qpos.data(), q.data());

@@ -9,11 +9,11 @@ namespace continuum {
 /// equalities tie to others (sim/model/joint_equalities.h). They begin at what the log
 /// measures there (StartOf), and stay within what it does at all. Empty for other starts. Throws
 /// Error for joints of other kinds.
-std::vector<FreeParameter> StartParameters(const Experiment& experiment, const System& system);
+std::vector<FreeParameter> StartParameters(const Experiment& experiment, const ModelSpec& system);
 
 /// Moves a state to where such parameters are.
 void PutStart(const mjModel& m, const Change& change, InitialState& state);
 /// Moves the joints that are tied to others to where these are.
-void PutTied(Machine& machine, InitialState& state);
+void PutTied(ModelAndData& machine, InitialState& state);
 
 }  // namespace continuum

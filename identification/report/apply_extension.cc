@@ -76,12 +76,12 @@ EffectInstance ReadInstance(const Json& json) {
 
 }  // namespace
 
-std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where,
+std::string ApplyJson(const ModelSpec& system, const nlohmann::json& json, const std::string& where,
                       const std::filesystem::path& folder) {
   const Json extension = Json(json, where).At("extension");
   std::vector<Change> changes;
   for (const Json& c : extension.At("changes").Items()) changes.push_back(ReadChange(c));
-  System extended = system;
+  ModelSpec extended = system;
   try {
     for (const Json& json_instance : extension.At("instances").Items()) {
       const EffectInstance instance = ReadInstance(json_instance);

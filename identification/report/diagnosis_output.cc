@@ -238,9 +238,10 @@ nlohmann::json NextSettings(const Diagnosis& d) {
 
 }  // namespace
 
-Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder) {
+DiagnosisFiles WriteDiagnosis(const Experiment& e, const Diagnosis& d,
+                              const std::filesystem::path& folder) {
   MakeFolder(folder);
-  Told told;
+  DiagnosisFiles told;
   const Problem null(e, d.system);
   const Problem problem = ChosenProblem(e, d);
   const CandidateResult* const chosen = d.chosen();
@@ -253,7 +254,7 @@ Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesyst
   told.difference = LineDiff(d.system.Xml({}, {}, folder), extension.xml);
 
   Experiment extended = Experiment::Read(folder / "extended.yaml");
-  const auto replayed = Replay(extended, System::Load(folder / "extended.xml"));
+  const auto replayed = Replay(extended, ModelSpec::Load(folder / "extended.xml"));
   const SplitError error = PooledError(extended, replayed);
   told.after = {error.train, error.validate};
   for (const Replayed& r : replayed) told.after_traces.push_back(r.trace);
@@ -267,7 +268,7 @@ Told WriteDiagnosis(const Experiment& e, const Diagnosis& d, const std::filesyst
   return told;
 }
 
-nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told& told) {
+nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const DiagnosisFiles& told) {
   const Gain gain = GainOf(d, told.after);
   nlohmann::json json;
   json["model"] = e.model.filename().string();
@@ -302,7 +303,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Told
   json["between_conditions"] = {{"before", BetweenJson(e, d, d.before)},
                                 {"after", BetweenJson(e, d, standing)}};
   json["wrong"] = nlohmann::json::array();
-  for (const Wrong& w : told.wrong) {
+  for (const Deviation& w : told.wrong) {
     json["wrong"].push_back(
         {{"log", w.log}, {"channel", w.channel}, {"when", w.when}, {"what", w.what}});
   }

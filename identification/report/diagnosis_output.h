@@ -24,29 +24,30 @@ std::string FallbackInWords(const Diagnosis& d);
 std::string BetweenInWords(const Experiment& experiment, const Diagnosis& d);
 
 /// What the files of a diagnosis need beyond it.
-struct Told {
+struct DiagnosisFiles {
   TwoErrors after;  ///< of extended.xml with extended.yaml, as written
   std::vector<Trace> before_traces, after_traces;
-  std::vector<Wrong> wrong;
+  std::vector<Deviation> wrong;
   std::vector<Finding> findings;
   std::string difference;  ///< of the MJCF
 };
 
 /// Writes extended.xml, extended.yaml, simulated/*.csv, diagnosis.json and report.html, after
 /// having run the two extended files to measure error.after. Returns what was found on the way.
-Told WriteDiagnosis(const Experiment& experiment, const Diagnosis& diagnosis,
-                    const std::filesystem::path& folder);
+DiagnosisFiles WriteDiagnosis(const Experiment& experiment, const Diagnosis& diagnosis,
+                              const std::filesystem::path& folder);
 
 /// The channels of an experiment, in its order; by them diagnoses of the same robot are known.
 std::vector<std::string> ChannelNames(const Experiment& experiment);
 
 nlohmann::json DiagnosisJson(const Experiment& experiment, const Diagnosis& diagnosis,
-                             const Told& told);
+                             const DiagnosisFiles& told);
 void WriteDiagnosisReport(const Experiment& experiment, const Diagnosis& diagnosis,
-                          const Told& told, const std::filesystem::path& file);
+                          const DiagnosisFiles& told, const std::filesystem::path& file);
 
 /// The same story in about fifteen lines.
-std::string Summary(const Experiment& experiment, const Diagnosis& diagnosis, const Told& told);
+std::string Summary(const Experiment& experiment, const Diagnosis& diagnosis,
+                    const DiagnosisFiles& told);
 
 /// Shared wording.
 struct Gain {

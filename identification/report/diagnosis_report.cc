@@ -11,9 +11,9 @@
 namespace continuum {
 namespace {
 
-class Story {
+class DiagnosisPage {
  public:
-  Story(const Experiment& e, const Diagnosis& d, const Told& told)
+  DiagnosisPage(const Experiment& e, const Diagnosis& d, const DiagnosisFiles& told)
       : e_(e),
         d_(d),
         told_(told),
@@ -55,12 +55,12 @@ class Story {
             ? "Nothing that can be told from noise and the time step. The largest differences are:"
             : "Where the fitted model without any extension parts most from the measurement:");
     std::vector<std::string> items;
-    for (const Wrong& w : told_.wrong) {
+    for (const Deviation& w : told_.wrong) {
       items.push_back(
           fmt::format("**{}**, {} at {}: the simulation {}.", w.log, w.channel, w.when, w.what));
     }
     page_.List(items);
-    for (const Wrong& w : told_.wrong) {
+    for (const Deviation& w : told_.wrong) {
       for (std::size_t l = 0; l < e_.logs.size(); ++l) {
         if (e_.logs[l].label == w.log) Overlay(l, w.channel);
       }
@@ -350,16 +350,16 @@ class Story {
 
   const Experiment& e_;
   const Diagnosis& d_;
-  const Told& told_;
+  const DiagnosisFiles& told_;
   std::string unit_;
   Page page_;
 };
 
 }  // namespace
 
-void WriteDiagnosisReport(const Experiment& e, const Diagnosis& d, const Told& told,
+void WriteDiagnosisReport(const Experiment& e, const Diagnosis& d, const DiagnosisFiles& told,
                           const std::filesystem::path& file) {
-  Story(e, d, told).Write(file);
+  DiagnosisPage(e, d, told).Write(file);
 }
 
 }  // namespace continuum

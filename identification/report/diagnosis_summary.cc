@@ -63,7 +63,7 @@ std::string Ranking(const Experiment& e, const Diagnosis& d) {
 
 }  // namespace
 
-std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
+std::string Summary(const Experiment& e, const Diagnosis& d, const DiagnosisFiles& told) {
   const Gain gain = GainOf(d, told.after);
   const std::string unit = d.pool.unit();
   std::string text = fmt::format("verdict   {}: {}\n", d.verdict.text, d.verdict.reason);
@@ -105,7 +105,7 @@ std::string Summary(const Experiment& e, const Diagnosis& d, const Told& told) {
                         d.ceiling_by);
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(3, told.wrong.size()); ++i) {
-    const Wrong& w = told.wrong[i];
+    const Deviation& w = told.wrong[i];
     text += fmt::format("{}{} {} at {}: the simulation {}\n",
                         d.verdict.text == "adequate" ? "largest   " : "wrong     ", w.log,
                         w.channel, w.when, w.what);

@@ -30,7 +30,7 @@ nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
                            const std::vector<Added>& added);
 /// Applies ChangesJson to another model and returns its MJCF, to be written into a folder (empty:
 /// beside the model). where: the file of the JSON. Throws Error with file and key.
-std::string ApplyJson(const System& system, const nlohmann::json& json, const std::string& where,
+std::string ApplyJson(const ModelSpec& system, const nlohmann::json& json, const std::string& where,
                       const std::filesystem::path& folder = {});
 
 /// Lines that differ between two texts, with "-" and "+" in front, as a minimal line diff.

@@ -94,7 +94,7 @@ nlohmann::json AtStep(const Problem& problem, const Problem::Vector& x,
 
 constexpr std::size_t kAhead = 10;  // rows
 
-nlohmann::json AheadJson(const Experiment& e, const Ahead& ahead) {
+nlohmann::json AheadJson(const Experiment& e, const PredictionError& ahead) {
   nlohmann::json json{{"rows", ahead.rows}, {"seconds", ahead.seconds}};
   for (const auto& [use, errors] :
        {std::pair{"train", &ahead.train}, {"validate", &ahead.validate}}) {
@@ -107,7 +107,7 @@ nlohmann::json AheadJson(const Experiment& e, const Ahead& ahead) {
 }
 
 // Beside the errors of free simulation.
-void AddAhead(Page& page, const Experiment& e, const Ahead& ahead) {
+void AddAhead(Page& page, const Experiment& e, const PredictionError& ahead) {
   std::vector<std::vector<std::string>> rows;
   const auto shown = [&](double error, std::size_t c) {
     return std::isnan(error) ? "" : fmt::format("{:.4g}", error / e.channels[c].factor);
@@ -248,7 +248,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
         std::vector<double>(u.correlation.row(a).begin(), u.correlation.row(a).end()));
   }
   json["trade_offs"] = nlohmann::json::array();
-  for (const TradeOff& t : trade_offs) json["trade_offs"].push_back(t.text);
+  for (const Confounding& t : trade_offs) json["trade_offs"].push_back(t.text);
   const Problem::Vector& x = record.for_step ? *record.for_step : fit.x;
   if (const Regression* const inverse = record.regression)
     json["force_error"] = {
@@ -283,7 +283,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   }
   page.Heading("Parameters");
   AddParameterTable(page, problem, fit.x, u);
-  for (const TradeOff& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);
+  for (const Confounding& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);
   if (!u.lacks.empty()) {
     const std::string all = u.known() ? "Intervals are " : "Intervals and correlations were ";
     page.Badge(Tone::kWarn, all + u.lacks,

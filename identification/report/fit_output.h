@@ -34,9 +34,9 @@ inline constexpr char kAnewInWords[] =
 /// How well the logs determine the parameters.
 struct Determined {
   Uncertainty uncertainty;
-  std::vector<TradeOff> trade_offs;   ///< what they do not determine alone
-  std::optional<SplitError> at_step;  ///< after a fit on the smooth path: as the model steps
-  std::string beyond_noise = {};      ///< in words, where far more than noise is left
+  std::vector<Confounding> trade_offs;  ///< what they do not determine alone
+  std::optional<SplitError> at_step;    ///< after a fit on the smooth path: as the model steps
+  std::string beyond_noise = {};        ///< in words, where far more than noise is left
 };
 
 /// Writes fit.json, fitted.xml, fitted.yaml (the experiment with that model and every value that

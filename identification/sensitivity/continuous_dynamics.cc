@@ -38,7 +38,7 @@ std::string Switches(const mjModel& m, const mjData& d) {
     const std::string name = mjp_getPluginAtSlot(m.plugin[i])->name;
     const std::string instance = name + " " + Called(m, mjOBJ_PLUGIN, i);
     if (!name.starts_with("continuum.")) return instance + " is not one of ours";
-    const Bound& law = BoundOf(m, d, i);
+    const BoundLaw& law = BoundOf(m, d, i);
     const double* const z = d.plugin_state + m.plugin_stateadr[i];
     if (law.IsRow() || law.Answers()) return instance + " rubs";
     if (m.plugin_statenum[i] > 0 && !law.Rates(m, d, z, rate.data()))
@@ -76,14 +76,14 @@ bool BreaksAt(const Experiment& e, const Log& log, std::size_t row) {
   return false;
 }
 
-std::string Flow::Obstacle(const mjModel& m, const mjData& d) {
+std::string ContinuousDynamics::Obstacle(const mjModel& m, const mjData& d) {
   for (const std::string& why : {Rubs(m), Delayed(m), Switches(m, d)}) {
     if (!why.empty()) return why;
   }
-  return Ties(m).obstacle();
+  return JointEqualities(m).obstacle();
 }
 
-Flow::Flow(Machine machine, const Experiment& e, const Log& log)
+ContinuousDynamics::ContinuousDynamics(ModelAndData machine, const Experiment& e, const Log& log)
     : machine_(std::move(machine)),
       log_(log),
       wiring_(e, *machine_.model),
@@ -114,7 +114,7 @@ Flow::Flow(Machine machine, const Experiment& e, const Log& log)
   }
 }
 
-Flow::Needs Flow::NeedsOf(const mjModel& m, int sensor) {
+ContinuousDynamics::Needs ContinuousDynamics::NeedsOf(const mjModel& m, int sensor) {
   switch (m.sensor_type[sensor]) {
     case mjSENS_JOINTPOS:
     case mjSENS_JOINTVEL:
@@ -132,12 +132,12 @@ Flow::Needs Flow::NeedsOf(const mjModel& m, int sensor) {
   }
 }
 
-void Flow::Hold(std::size_t row) {
+void ContinuousDynamics::Hold(std::size_t row) {
   row_ = row;
   inputs_.AtRow(*machine_.data, row);
 }
 
-void Flow::Load(const double* y) {
+void ContinuousDynamics::Load(const double* y) {
   const mjModel& m = *machine_.model;
   mjData& d = *machine_.data;
   ties_.Spread(m, y, y + ties_.positions(), d);
@@ -145,7 +145,7 @@ void Flow::Load(const double* y) {
   std::copy_n(y += m.na, m.npluginstate, d.plugin_state);
 }
 
-void Flow::Rate(double t, const double* y, double* rate) {
+void ContinuousDynamics::Rate(double t, const double* y, double* rate) {
   const mjModel& m = *machine_.model;
   mjData& d = *machine_.data;
   Load(y);
@@ -176,7 +176,7 @@ void Flow::Rate(double t, const double* y, double* rate) {
   }
 }
 
-void Flow::Observe(const double* y, Recorder& recorder) {
+void ContinuousDynamics::Observe(const double* y, Recorder& recorder) {
   const mjModel& m = *machine_.model;
   mjData& d = *machine_.data;
   Load(y);

@@ -20,14 +20,14 @@ bool BreaksAt(const Experiment& e, const Log& log, std::size_t row);
 /// and z the states of our laws. The state y holds qpos (a quaternion p moves by ½ p ω), qvel, act
 /// and plugin_state, in SI. Joints that linear equalities tie to others are taken out of q and v
 /// (Ties). No other constraint acts: a model that needs one is refused by Obstacle.
-class Flow {
+class ContinuousDynamics {
  public:
   /// What keeps a model from being such an equation ("joint 'j1' rubs"); empty: nothing does.
   static std::string Obstacle(const mjModel& m, const mjData& d);
 
   /// Throws Error for names that the model lacks, and when the start cannot be found.
-  Flow(Machine machine, const Experiment& e, const Log& log);
-  Flow(const Flow&) = delete;
+  ContinuousDynamics(ModelAndData machine, const Experiment& e, const Log& log);
+  ContinuousDynamics(const ContinuousDynamics&) = delete;
 
   std::size_t size() const { return start_.size(); }
   /// y at the first row.
@@ -52,10 +52,10 @@ class Flow {
   static Needs NeedsOf(const mjModel& m, int sensor);
   void Load(const double* y);
 
-  Machine machine_;
+  ModelAndData machine_;
   const Log& log_;
   Wiring wiring_;
-  Ties ties_;
+  JointEqualities ties_;
   Inputs inputs_;
   std::vector<double> start_, moving_;  // moving_: rate of qpos
   Needs needs_ = Needs::kState;

@@ -6,18 +6,19 @@ namespace continuum {
 namespace {
 
 // What a flow has that the closed form does not know; empty: nothing.
-std::string Obstacle(const Flow& flow) {
+std::string Obstacle(const ContinuousDynamics& flow) {
   const mjModel& m = flow.model();
   if (flow.tied()) return "joints are tied";
   if (m.nplugin > 0) return "an effect acts";
-  const std::string why = Tangent::Obstacle(m);
+  const std::string why = ForceDerivatives::Obstacle(m);
   return why.empty() ? SensorTangent::Obstacle(m, flow.wiring()) : why;
 }
 
 }  // namespace
 
-FlowTangent::FlowTangent(Flow& flow, const std::vector<std::unique_ptr<Flow>>& neighbours,
-                         double move)
+ContinuousSensitivity::ContinuousSensitivity(
+    ContinuousDynamics& flow, const std::vector<std::unique_ptr<ContinuousDynamics>>& neighbours,
+    double move)
     : flow_(flow),
       neighbours_(neighbours),
       move_(move),
@@ -42,7 +43,7 @@ FlowTangent::FlowTangent(Flow& flow, const std::vector<std::unique_ptr<Flow>>& n
   in_.resize(2 * nv + na, count), out_.resize(nv, count);
 }
 
-void FlowTangent::At(double t, const double* y) {
+void ContinuousSensitivity::At(double t, const double* y) {
   if (columns_.empty()) return;
   if (t == t_ && !y_.empty() && std::equal(y_.begin(), y_.end(), y)) return;
   flow_.Rate(t, y, rate_.data());
@@ -72,7 +73,8 @@ void FlowTangent::At(double t, const double* y) {
   factor_.solveInPlace(driven_);
 }
 
-void FlowTangent::Rates(const std::vector<double*>& s, const std::vector<double*>& rates) {
+void ContinuousSensitivity::Rates(const std::vector<double*>& s,
+                                  const std::vector<double*>& rates) {
   const Eigen::Index nv = flow_.model().nv, na = flow_.model().na;
   for (std::size_t c = 0; c < columns_.size(); ++c)
     std::copy_n(s[columns_[c]], 2 * nv + na, in_.col(static_cast<Eigen::Index>(c)).data());
@@ -88,8 +90,8 @@ void FlowTangent::Rates(const std::vector<double*>& s, const std::vector<double*
   }
 }
 
-void FlowTangent::Observe(const std::vector<const double*>& s,
-                          const std::vector<Recorder*>& recorders) {
+void ContinuousSensitivity::Observe(const std::vector<const double*>& s,
+                                    const std::vector<Recorder*>& recorders) {
   if (columns_.empty()) return;
   const mjModel& m = flow_.model();
   mjData& d = flow_.data();

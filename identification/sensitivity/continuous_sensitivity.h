@@ -17,12 +17,14 @@ namespace continuum {
 ///   ṡ = ∂f/∂y s + f' − f,   f' of the neighbour at the same y                     (1)
 ///
 /// The matrices are those of the last y and serve all neighbours.
-class FlowTangent {
+class ContinuousSensitivity {
  public:
   using Matrix = Eigen::MatrixXd;
 
   /// move: what the moves of the neighbours are to be divided by, so that s is of the size of y.
-  FlowTangent(Flow& flow, const std::vector<std::unique_ptr<Flow>>& neighbours, double move);
+  ContinuousSensitivity(ContinuousDynamics& flow,
+                        const std::vector<std::unique_ptr<ContinuousDynamics>>& neighbours,
+                        double move);
 
   /// Whether a neighbour differs by what the closed form knows.
   bool Covers(std::size_t k) const { return covered_[k]; }
@@ -37,13 +39,13 @@ class FlowTangent {
   void Observe(const std::vector<const double*>& s, const std::vector<Recorder*>& recorders);
 
  private:
-  Flow& flow_;
-  const std::vector<std::unique_ptr<Flow>>& neighbours_;
+  ContinuousDynamics& flow_;
+  const std::vector<std::unique_ptr<ContinuousDynamics>>& neighbours_;
   double move_;
   std::vector<bool> covered_;
   std::vector<std::size_t> columns_;          ///< neighbours that are covered
   std::vector<ModelDifference> differences_;  ///< of these
-  Tangent tangent_;
+  ForceDerivatives tangent_;
   std::unique_ptr<SensorTangent> sensors_;
   double t_ = 0;
   std::vector<double> y_, rate_;

@@ -13,14 +13,14 @@ int DofOf(const mjModel& m, int actuator) { return m.jnt_dofadr[m.actuator_trnid
 
 }  // namespace
 
-std::string Tangent::Obstacle(const mjModel& m) {
+std::string ForceDerivatives::Obstacle(const mjModel& m) {
   if (m.nv == 0) return "nothing moves";
   if (m.opt.enableflags & mjENBL_SLEEP) return "what rests may sleep";
   const std::string why = PullObstacle(m);
   return why.empty() ? TendonTangent::Obstacle(m) : why;
 }
 
-Tangent::Tangent(const mjModel& m)
+ForceDerivatives::ForceDerivatives(const mjModel& m)
     : rigid_(m),
       tendons_(m),
       a_(m.nv),
@@ -32,17 +32,17 @@ Tangent::Tangent(const mjModel& m)
       damping_(m.nv, m.nv) {}
 
 // What acts at d, but by the speeds that it feels: it is linear in them.
-ForceAlong Tangent::Joint(const mjModel& by, const mjData& d, int joint) const {
+ForceAlong ForceDerivatives::Joint(const mjModel& by, const mjData& d, int joint) const {
   const int i = by.jnt_dofadr[joint];
   return PullOfJoint(by, d, joint, d.qvel[i]).Felt(felt_[i] - d.qvel[i]);
 }
 
-ForceAlong Tangent::Tendon(const mjModel& by, const mjData& d, int tendon) const {
+ForceAlong ForceDerivatives::Tendon(const mjModel& by, const mjData& d, int tendon) const {
   const double rate = tendons_.Rate(by, d, tendon, d.qvel);
   return PullOfTendon(by, d, tendon, rate).Felt(tendons_.Rate(by, d, tendon, felt_.data()) - rate);
 }
 
-ForceAlong Tangent::Actuator(const mjModel& by, const mjData& d, int actuator) const {
+ForceAlong ForceDerivatives::Actuator(const mjModel& by, const mjData& d, int actuator) const {
   const auto rate = [&](const double* v) {
     return OnTendon(by, actuator) ? tendons_.Rate(by, d, by.actuator_trnid[2 * actuator], v)
                                   : v[DofOf(by, actuator)];
@@ -51,8 +51,8 @@ ForceAlong Tangent::Actuator(const mjModel& by, const mjData& d, int actuator) c
   return PullOfActuator(by, d, actuator, now, step_).Felt(rate(felt_.data()) - now);
 }
 
-void Tangent::PullAlong(const mjModel& m, const mjData& d, int actuator, double f,
-                        double* force) const {
+void ForceDerivatives::PullAlong(const mjModel& m, const mjData& d, int actuator, double f,
+                                 double* force) const {
   if (OnTendon(m, actuator)) {
     tendons_.ForceAlong(m, d, m.actuator_trnid[2 * actuator], f, force);
   } else {
@@ -60,8 +60,8 @@ void Tangent::PullAlong(const mjModel& m, const mjData& d, int actuator, double 
   }
 }
 
-void Tangent::Update(const mjModel& m, const mjData& d, const double* a, const double* felt,
-                     double step) {
+void ForceDerivatives::Update(const mjModel& m, const mjData& d, const double* a,
+                              const double* felt, double step) {
   a_.assign(a, a + m.nv), felt_.assign(felt, felt + m.nv), step_ = step;
   for (Matrix* all : {&by_position_, &by_velocity_, &by_activation_}) all->setZero();
   for (int t = 0; t < m.ntendon; ++t) of_tendon_[t] = Tendon(m, d, t);
@@ -92,8 +92,8 @@ void Tangent::Update(const mjModel& m, const mjData& d, const double* a, const d
   rigid_.Add(-1, by_position_, by_velocity_);
 }
 
-void Tangent::Differ(const mjModel& m, const mjData& d, const mjModel& other,
-                     const ModelDifference& difference, double* force) const {
+void ForceDerivatives::Differ(const mjModel& m, const mjData& d, const mjModel& other,
+                              const ModelDifference& difference, double* force) const {
   for (const int j : difference.joints)
     force[m.jnt_dofadr[j]] += Joint(other, d, j).f - Joint(m, d, j).f;
   for (const int i : difference.armatures)

@@ -17,13 +17,13 @@ namespace continuum {
 ///
 /// at fixed accelerations a; w are activations. Of hinges and slides with springs and dampers,
 /// tendons through sites or of joints, and actuators with affine gain and bias that pull either.
-class Tangent {
+class ForceDerivatives {
  public:
   using Matrix = Eigen::MatrixXd;
 
   /// What a model has beyond that ("actuator 'a1' has dynamics of its own"); empty: nothing.
   static std::string Obstacle(const mjModel& m);
-  explicit Tangent(const mjModel& m);
+  explicit ForceDerivatives(const mjModel& m);
 
   /// At d, after a forward pass; a: accelerations [nv]; felt: speeds that dampers and actuators
   /// feel [nv], those of d, or of the step's end where a method is implicit in them; step: of lags
@@ -47,7 +47,7 @@ class Tangent {
   ForceAlong Actuator(const mjModel& by, const mjData& d, int actuator) const;
   void PullAlong(const mjModel& m, const mjData& d, int actuator, double f, double* force) const;
 
-  RigidTangent rigid_;
+  RigidBodyDerivatives rigid_;
   TendonTangent tendons_;
   std::vector<double> a_, felt_;
   std::vector<ForceAlong> of_tendon_;

@@ -7,8 +7,8 @@ namespace {
 
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
-using Vector6 = RigidTangent::Vector6;
-using Matrix6 = RigidTangent::Matrix6;
+using Vector6 = RigidBodyDerivatives::Vector6;
+using Matrix6 = RigidBodyDerivatives::Matrix6;
 
 Eigen::Map<const Vector3> At(const double* x) { return Eigen::Map<const Vector3>(x); }
 Eigen::Map<const Vector6> SpatialAt(const double* x) { return Eigen::Map<const Vector6>(x); }
@@ -61,7 +61,7 @@ Matrix6 Turn(const Vector6& v, const Matrix6& inertia, const Vector6& momentum) 
 
 }  // namespace
 
-RigidTangent::RigidTangent(const mjModel& m)
+RigidBodyDerivatives::RigidBodyDerivatives(const mjModel& m)
     : parent_(m.dof_parentid, m.dof_parentid + m.nv),
       last_(m.nbody, -1),
       axis_(m.nv),
@@ -79,7 +79,7 @@ RigidTangent::RigidTangent(const mjModel& m)
   }
 }
 
-void RigidTangent::Update(const mjModel& m, const mjData& d, const double* a) {
+void RigidBodyDerivatives::Update(const mjModel& m, const mjData& d, const double* a) {
   velocity_[0].setZero(), rate_[0].setZero();
   if (!(m.opt.disableflags & mjDSBL_GRAVITY)) rate_[0].tail<3>() = -At(m.opt.gravity);
   for (int b = 1; b < m.nbody; ++b) {
@@ -104,7 +104,7 @@ void RigidTangent::Update(const mjModel& m, const mjData& d, const double* a) {
   }
 }
 
-void RigidTangent::Add(double factor, Matrix& by_position, Matrix& by_velocity) const {
+void RigidBodyDerivatives::Add(double factor, Matrix& by_position, Matrix& by_velocity) const {
   for (int j = 0, n = static_cast<int>(axis_.size()); j < n; ++j) {
     const int b = body_[j];
     // j as the deeper one: what its motion does to itself and to those before it.
@@ -124,8 +124,8 @@ void RigidTangent::Add(double factor, Matrix& by_position, Matrix& by_velocity) 
   }
 }
 
-void RigidTangent::AddBody(const mjModel& m, const mjData& d, int body, const double inertia[10],
-                           double factor, double* force) const {
+void RigidBodyDerivatives::AddBody(const mjModel& m, const mjData& d, int body,
+                                   const double inertia[10], double factor, double* force) const {
   const Matrix3 R =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(d.xmat + 9 * body);
   const Vector3 r = At(d.xpos + 3 * body) - At(d.subtree_com + 3 * m.body_rootid[body]);
@@ -147,7 +147,7 @@ void RigidTangent::AddBody(const mjModel& m, const mjData& d, int body, const do
   for (int i = last_[body]; i >= 0; i = parent_[i]) force[i] += factor * axis_[i].dot(wrench);
 }
 
-void RigidTangent::AddGravity(const mjModel& m, const mjModel& other, double* force) const {
+void RigidBodyDerivatives::AddGravity(const mjModel& m, const mjModel& other, double* force) const {
   if (m.opt.disableflags & mjDSBL_GRAVITY) return;
   Vector6 more = Vector6::Zero();
   more.tail<3>() = At(other.opt.gravity) - At(m.opt.gravity);

@@ -20,13 +20,13 @@ namespace continuum {
 /// that is distal of the deeper one m of i and j, p what j hangs on, and B Ψ the part of f linear
 /// in a rigid velocity Ψ added to V. Spatial vectors are (turn, shift) about the centre of mass of
 /// the tree, as MuJoCo keeps them, in SI.
-class RigidTangent {
+class RigidBodyDerivatives {
  public:
   using Matrix = Eigen::MatrixXd;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-  explicit RigidTangent(const mjModel& m);
+  explicit RigidBodyDerivatives(const mjModel& m);
 
   /// Takes up d, after a forward pass, with the accelerations a [nv].
   void Update(const mjModel& m, const mjData& d, const double* a);

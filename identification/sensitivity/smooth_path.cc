@@ -5,9 +5,9 @@
 namespace continuum {
 namespace {
 
-using Flows = std::vector<std::unique_ptr<Flow>>;
+using Flows = std::vector<std::unique_ptr<ContinuousDynamics>>;
 
-std::vector<double> FirstSensitivities(const Flow& flow, const Flows& neighbours) {
+std::vector<double> FirstSensitivities(const ContinuousDynamics& flow, const Flows& neighbours) {
   std::vector<double> s;
   for (const auto& neighbour : neighbours) {
     for (std::size_t i = 0; i < flow.size(); ++i)
@@ -16,7 +16,7 @@ std::vector<double> FirstSensitivities(const Flow& flow, const Flows& neighbours
   return s;
 }
 
-Ode EquationOf(Flow& flow, const Flows& neighbours, FlowTangent& tangent) {
+Ode EquationOf(ContinuousDynamics& flow, const Flows& neighbours, ContinuousSensitivity& tangent) {
   Ode ode;
   ode.size = flow.size();
   ode.parameters = neighbours.size();
@@ -39,7 +39,8 @@ Ode EquationOf(Flow& flow, const Flows& neighbours, FlowTangent& tangent) {
 // Lets recorders see every row that the solver reaches.
 class Observation {
  public:
-  Observation(Flow& flow, const Flows& neighbours, FlowTangent& tangent, std::size_t rows)
+  Observation(ContinuousDynamics& flow, const Flows& neighbours, ContinuousSensitivity& tangent,
+              std::size_t rows)
       : flow_(flow), neighbours_(neighbours), tangent_(tangent), near_(flow.size()) {
     recorders_.emplace_back(flow.model(), flow.wiring(), rows);
     for (const auto& other : neighbours)
@@ -72,24 +73,24 @@ class Observation {
   }
 
  private:
-  Flow& flow_;
+  ContinuousDynamics& flow_;
   const Flows& neighbours_;
-  FlowTangent& tangent_;
+  ContinuousSensitivity& tangent_;
   std::vector<Recorder> recorders_;
   std::vector<double> near_;
 };
 
 }  // namespace
 
-SmoothTraces FollowFlow(Flow& flow, const Flows& neighbours, const Experiment& e, const Log& log,
-                        const Solving& how) {
+SmoothTraces FollowFlow(ContinuousDynamics& flow, const Flows& neighbours, const Experiment& e,
+                        const Log& log, const Solving& how) {
   const std::size_t rows = log.rows();
   std::vector<double> breaks;  // times after each row at which the inputs are smooth no more
   breaks.assign(rows, log.time.back());
   for (std::size_t row = rows - 1; row-- > 0;)
     breaks[row] = BreaksAt(e, log, row + 1) ? log.time[row + 1] : breaks[row + 1];
 
-  FlowTangent tangent(flow, neighbours, kMove);
+  ContinuousSensitivity tangent(flow, neighbours, kMove);
   Cvodes solver(EquationOf(flow, neighbours, tangent), how);
   Observation observation(flow, neighbours, tangent, rows);
   solver.Start(log.time[0], flow.start(), FirstSensitivities(flow, neighbours));

@@ -23,7 +23,8 @@ struct SmoothTraces {
 /// of states (internal numerical differentiation, bock1983). Neighbours should be kMove times the
 /// typical size of their parameter away, so that errors of all s_k are weighed alike. A trace that
 /// the solver could not follow is marked diverged.
-SmoothTraces FollowFlow(Flow& flow, const std::vector<std::unique_ptr<Flow>>& neighbours,
+SmoothTraces FollowFlow(ContinuousDynamics& flow,
+                        const std::vector<std::unique_ptr<ContinuousDynamics>>& neighbours,
                         const Experiment& e, const Log& log, const Solving& how);
 
 /// Below, rounding shows in sensitivities; above, curvature does.

@@ -8,17 +8,17 @@
 
 namespace continuum {
 
-std::string StepTangent::Obstacle(const mjModel& m, const Wiring& wiring) {
+std::string StepSensitivity::Obstacle(const mjModel& m, const Wiring& wiring) {
   if (m.nplugin > 0) return "an effect acts";
   if (m.opt.integrator != mjINT_IMPLICITFAST) return "the integrator is not implicitfast";
   if (m.neq > 0) return "there are equalities";
   if (m.opt.noslip_iterations > 0) return "the solver has steps against slip";
-  const std::string why = Tangent::Obstacle(m);
+  const std::string why = ForceDerivatives::Obstacle(m);
   return why.empty() ? SensorTangent::Obstacle(m, wiring) : why;
 }
 
-StepTangent::StepTangent(const mjModel& m, const Wiring& wiring,
-                         std::vector<const mjModel*> neighbours, double move)
+StepSensitivity::StepSensitivity(const mjModel& m, const Wiring& wiring,
+                                 std::vector<const mjModel*> neighbours, double move)
     : neighbours_(std::move(neighbours)),
       move_(move),
       covered_(neighbours_.size()),
@@ -38,21 +38,21 @@ StepTangent::StepTangent(const mjModel& m, const Wiring& wiring,
   inertia_.resize(m.nv, m.nv);
 }
 
-void StepTangent::Start(std::size_t k, const std::vector<double>& dq, const std::vector<double>& dv,
-                        const std::vector<double>& dw) {
+void StepSensitivity::Start(std::size_t k, const std::vector<double>& dq,
+                            const std::vector<double>& dv, const std::vector<double>& dw) {
   const auto c = std::find(columns_.begin(), columns_.end(), k) - columns_.begin();
   std::copy(dq.begin(), dq.end(), dq_.col(c).data());
   std::copy(dv.begin(), dv.end(), dv_.col(c).data());
   std::copy(dw.begin(), dw.end(), dw_.col(c).data());
 }
 
-void StepTangent::Before(const mjModel& m, const mjData& d) {
+void StepSensitivity::Before(const mjModel& m, const mjData& d) {
   q_.assign(d.qpos, d.qpos + m.nq), v_.assign(d.qvel, d.qvel + m.nv);
   w_.assign(d.act, d.act + m.na);
 }
 
 // A row at rest gives less than its level.
-bool StepTangent::FindRows(const mjData& d) {
+bool StepSensitivity::FindRows(const mjData& d) {
   rubs_.clear();
   for (int r = 0; r < d.nefc; ++r) {
     if (d.efc_type[r] != mjCNSTR_FRICTION_DOF) return false;
@@ -63,8 +63,8 @@ bool StepTangent::FindRows(const mjData& d) {
 }
 
 // dF at the accelerations a and the speeds felt, of every covered neighbour.
-void StepTangent::Derive(const mjModel& m, const mjData& d, const double* a, const double* felt,
-                         Matrix& force) {
+void StepSensitivity::Derive(const mjModel& m, const mjData& d, const double* a, const double* felt,
+                             Matrix& force) {
   tangent_.Update(m, d, a, felt, m.opt.timestep);
   force = Matrix::Zero(m.nv, static_cast<Eigen::Index>(columns_.size()));
   for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -78,7 +78,7 @@ void StepTangent::Derive(const mjModel& m, const mjData& d, const double* a, con
 }
 
 // df of (2).
-bool StepTangent::AddFriction(const mjModel& m, const mjData& d, Matrix& force) {
+bool StepSensitivity::AddFriction(const mjModel& m, const mjData& d, Matrix& force) {
   Derive(m, d, d.qacc, d.qvel, answer_);
   mj_fullM(&m, &d, inertia_.data());
   work_ = Matrix::Zero(answer_.rows(), answer_.cols());  // what f changes by itself
@@ -110,7 +110,7 @@ bool StepTangent::AddFriction(const mjModel& m, const mjData& d, Matrix& force) 
   return true;
 }
 
-void StepTangent::FollowLags(const mjModel& m, const mjData& d) {
+void StepSensitivity::FollowLags(const mjModel& m, const mjData& d) {
   const double h = m.opt.timestep;
   for (int k = 0; k < m.nactuator; ++k) {
     const int w = m.actuator_actadr[k];
@@ -126,7 +126,7 @@ void StepTangent::FollowLags(const mjModel& m, const mjData& d) {
 }
 
 // At the state of Before.
-bool StepTangent::Follow(const mjModel& m, const mjData& d) {
+bool StepSensitivity::Follow(const mjModel& m, const mjData& d) {
   const double h = m.opt.timestep;
   Derive(m, d, a_.data(), after_.data(), force_);
   const Matrix damping = tangent_.damping();
@@ -142,13 +142,13 @@ bool StepTangent::Follow(const mjModel& m, const mjData& d) {
   return true;
 }
 
-void StepTangent::SwapState(mjData& d) {
+void StepSensitivity::SwapState(mjData& d) {
   std::swap_ranges(q_.begin(), q_.end(), d.qpos);
   std::swap_ranges(v_.begin(), v_.end(), d.qvel);
   std::swap_ranges(w_.begin(), w_.end(), d.act);
 }
 
-bool StepTangent::After(const mjModel& m, mjData& d) {
+bool StepSensitivity::After(const mjModel& m, mjData& d) {
   if (!FindRows(d)) return false;
   after_.assign(d.qvel, d.qvel + m.nv), a_.resize(m.nv);
   for (int i = 0; i < m.nv; ++i) a_[i] = (after_[i] - v_[i]) / m.opt.timestep;
@@ -158,8 +158,8 @@ bool StepTangent::After(const mjModel& m, mjData& d) {
   return followed;
 }
 
-void StepTangent::Observe(const mjModel& m, mjData& d, std::size_t row,
-                          std::span<Recorder> recorders) {
+void StepSensitivity::Observe(const mjModel& m, mjData& d, std::size_t row,
+                              std::span<Recorder> recorders) {
   sensors_.Update(m, d);
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);

@@ -25,16 +25,16 @@ namespace continuum {
 ///   (M + R⁻¹) da = dF(a) − R⁻¹ B dq̇ + …,   (M − h D) da* = dF(a*) + df             (2)
 ///
 /// Which joints slide is taken from the step.
-class StepTangent {
+class StepSensitivity {
  public:
   using Matrix = Eigen::MatrixXd;
 
   /// What keeps a model from it ("the integrator is RK4"); empty: nothing.
   static std::string Obstacle(const mjModel& m, const Wiring& wiring);
 
-  /// neighbours: the same machine with one parameter moved; move: as FlowTangent has it.
-  StepTangent(const mjModel& m, const Wiring& wiring, std::vector<const mjModel*> neighbours,
-              double move);
+  /// neighbours: the same machine with one parameter moved; move: as ContinuousSensitivity has it.
+  StepSensitivity(const mjModel& m, const Wiring& wiring, std::vector<const mjModel*> neighbours,
+                  double move);
   /// Whether a neighbour differs by what the closed form knows.
   bool Covers(std::size_t k) const { return covered_[k]; }
   /// The state from which a covered neighbour starts less the machine's, by the move.
@@ -67,7 +67,7 @@ class StepTangent {
   std::vector<bool> covered_;
   std::vector<std::size_t> columns_;
   std::vector<ModelDifference> differences_;
-  Tangent tangent_;
+  ForceDerivatives tangent_;
   SensorTangent sensors_;
   std::vector<Rub> rubs_;
   std::vector<double> q_, v_, w_, after_, a_;  ///< of Before; a*

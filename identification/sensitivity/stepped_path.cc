@@ -16,11 +16,11 @@ std::vector<double> Apart(const std::vector<double>& there, const std::vector<do
 // The neighbours on their way beside the machine.
 class Company {
  public:
-  Company(const Trial& trial, std::vector<Trial>& neighbours, const Experiment& e, const Log& log,
-          const Wiring& wiring)
+  Company(const PerturbedRun& trial, std::vector<PerturbedRun>& neighbours, const Experiment& e,
+          const Log& log, const Wiring& wiring)
       : neighbours_(neighbours), tangent_(*trial.machine.model, wiring, Models(neighbours), kMove) {
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
-      const Trial& other = neighbours[k];
+      const PerturbedRun& other = neighbours[k];
       inputs_.emplace_back(*other.machine.model, e, log, wiring);
       recorders_.emplace_back(*trial.machine.model, wiring, log.rows());
       if (tangent_.Covers(k))
@@ -51,14 +51,14 @@ class Company {
   }
 
  private:
-  static std::vector<const mjModel*> Models(const std::vector<Trial>& trials) {
+  static std::vector<const mjModel*> Models(const std::vector<PerturbedRun>& trials) {
     std::vector<const mjModel*> models;
-    for (const Trial& trial : trials) models.push_back(trial.machine.model.get());
+    for (const PerturbedRun& trial : trials) models.push_back(trial.machine.model.get());
     return models;
   }
 
-  std::vector<Trial>& neighbours_;
-  StepTangent tangent_;
+  std::vector<PerturbedRun>& neighbours_;
+  StepSensitivity tangent_;
   std::vector<Inputs> inputs_;
   std::vector<Recorder> recorders_;
   bool reaches_ = true;  ///< the closed form, so far
@@ -66,8 +66,8 @@ class Company {
 
 }  // namespace
 
-SteppedTraces FollowSteps(Trial& trial, std::vector<Trial>& neighbours, const Experiment& e,
-                          const Log& log) {
+SteppedTraces FollowSteps(PerturbedRun& trial, std::vector<PerturbedRun>& neighbours,
+                          const Experiment& e, const Log& log) {
   SteppedTraces traces;
   traces.moved.resize(neighbours.size());
   const Wiring wiring(e, *trial.machine.model);

@@ -8,8 +8,8 @@
 namespace continuum {
 
 /// A machine with where its trial begins: positions, speeds and activations.
-struct Trial {
-  Machine machine;
+struct PerturbedRun {
+  ModelAndData machine;
   std::vector<double> q, v, w;
 };
 
@@ -20,11 +20,11 @@ struct SteppedTraces {
   std::vector<std::optional<Trace>> moved;
 };
 
-/// Steps a machine once, and with it by StepTangent its neighbours, which are the same machine with
-/// one parameter moved by kMove times its typical size (identification/sensitivity/smooth_path.h).
-/// The model has no obstacle to StepTangent. Without traces of neighbours where other rows of the
-/// constraint solver act on the way.
-SteppedTraces FollowSteps(Trial& trial, std::vector<Trial>& neighbours, const Experiment& e,
-                          const Log& log);
+/// Steps a machine once, and with it by StepSensitivity its neighbours, which are the same machine
+/// with one parameter moved by kMove times its typical size
+/// (identification/sensitivity/smooth_path.h). The model has no obstacle to StepSensitivity.
+/// Without traces of neighbours where other rows of the constraint solver act on the way.
+SteppedTraces FollowSteps(PerturbedRun& trial, std::vector<PerturbedRun>& neighbours,
+                          const Experiment& e, const Log& log);
 
 }  // namespace continuum

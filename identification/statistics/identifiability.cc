@@ -142,9 +142,9 @@ std::vector<Group> GroupsOf(const Vector& values, const Matrix& vectors) {
 }
 
 // one: moves of each parameter that show as much as each other's.
-TradeOff Told(const Problem& problem, const Vector& x, const Vector& one,
-              const std::vector<Eigen::Index>& inside, const Group& group) {
-  TradeOff found{{}, group.freedom, ""};
+Confounding ConfoundingOf(const Problem& problem, const Vector& x, const Vector& one,
+                          const std::vector<Eigen::Index>& inside, const Group& group) {
+  Confounding found{{}, group.freedom, ""};
   std::vector<Eigen::Index> whose;  // of all parameters
   for (const Eigen::Index i : group.part) {
     whose.push_back(inside[i]);
@@ -171,7 +171,8 @@ TradeOff Told(const Problem& problem, const Vector& x, const Vector& one,
 
 }  // namespace
 
-std::vector<TradeOff> TradeOffsOf(const Problem& problem, const Vector& x, const Uncertainty& u) {
+std::vector<Confounding> TradeOffsOf(const Problem& problem, const Vector& x,
+                                     const Uncertainty& u) {
   std::vector<Eigen::Index> inside;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     if (!u.at_bound[i] && u.information(i, i) > 0) inside.push_back(i);
@@ -181,7 +182,7 @@ std::vector<TradeOff> TradeOffsOf(const Problem& problem, const Vector& x, const
   const Vector one = H.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Matrix> modes(one.asDiagonal() * H * one.asDiagonal());
   const auto is_start = [&](auto i) { return problem.parameters()[inside[i]].IsStart(); };
-  std::vector<TradeOff> all;
+  std::vector<Confounding> all;
   for (Group& group : GroupsOf(modes.eigenvalues(), modes.eigenvectors())) {
     auto& part = group.part;
     if (part.size() < 2 || std::all_of(part.begin(), part.end(), is_start)) continue;
@@ -189,7 +190,7 @@ std::vector<TradeOff> TradeOffsOf(const Problem& problem, const Vector& x, const
       const Vector far = group.directions.rowwise().norm();
       std::stable_sort(part.begin(), part.end(), [&](auto a, auto b) { return far[a] > far[b]; });
     }
-    all.push_back(Told(problem, x, one, inside, group));
+    all.push_back(ConfoundingOf(problem, x, one, inside, group));
   }
   return all;
 }

@@ -8,7 +8,7 @@
 namespace continuum {
 
 /// Parameters that can move together with little change of what is measured.
-struct TradeOff {
+struct Confounding {
   std::vector<std::string> names;
   /// How much farther they can move together than one of them alone; infinite: without any change.
   double freedom;
@@ -20,7 +20,7 @@ struct TradeOff {
 /// freedom 1/√λ. Of those that nobody sees (λ < 1e-8) any mixture is one too: they are told
 /// together where they move the same parameters. In the text, changes are relative to the values
 /// where none of them is zero.
-std::vector<TradeOff> TradeOffsOf(const Problem& problem, const Problem::Vector& x,
-                                  const Uncertainty& uncertainty);
+std::vector<Confounding> TradeOffsOf(const Problem& problem, const Problem::Vector& x,
+                                     const Uncertainty& uncertainty);
 
 }  // namespace continuum

@@ -45,7 +45,7 @@ void TurnEvenly(const mjModel& m, mjData& d) {
   mj_fwdPosition(&m, &d);
 }
 
-Image BentArm(const Study& s, const System& annelida) {
+Image BentArm(const Study& s, const ModelSpec& annelida) {
   constexpr int kWidth = 520, kHeight = 450;
   constexpr double kStep = 2e-3;
   BendAndRelease plan = s.plan;
@@ -170,7 +170,7 @@ Chart OffsetChart(const Study& s) {
 
 }  // namespace
 
-void WritePictures(const Study& study, const System& annelida,
+void WritePictures(const Study& study, const ModelSpec& annelida,
                    const std::filesystem::path& folder) {
   MakeFolder(folder);
   WritePng(folder / "bend.png", BentArm(study, annelida));

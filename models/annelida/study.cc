@@ -47,10 +47,10 @@ BendResult Run(
 
 }  // namespace
 
-BendResult BendMujoco(const System& annelida, const BendAndRelease& plan, double h,
+BendResult BendMujoco(const ModelSpec& annelida, const BendAndRelease& plan, double h,
                       const std::function<void(const mjModel&, const mjData&)>& held) {
   const Change step{"option", "timestep", h};
-  const Machine machine = annelida.Build(std::span(&step, 1));
+  const ModelAndData machine = annelida.Build(std::span(&step, 1));
   const mjModel& m = *machine.model;
   mjData& d = *machine.data;
   std::array<int, kAnnelidaLinks> address;

@@ -29,7 +29,7 @@ struct BendResult {
 };
 
 /// In MuJoCo with the plugin, at step h [s]. held: sees the arm at the end of the hold.
-BendResult BendMujoco(const System& annelida, const BendAndRelease& plan, double h,
+BendResult BendMujoco(const ModelSpec& annelida, const BendAndRelease& plan, double h,
                       const std::function<void(const mjModel&, const mjData&)>& held = {});
 /// By the chain written out, at step h [s].
 BendResult BendChain(const PlanarChain& chain, const BendAndRelease& plan, double h);

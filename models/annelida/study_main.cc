@@ -184,7 +184,7 @@ int Main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   const AnnelidaParameters p = ReadAnnelida(folder / "annelida.yaml");
-  const System system = System::Load(folder / "annelida.xml");
+  const ModelSpec system = ModelSpec::Load(folder / "annelida.xml");
   const PlanarChain chain(p);
   const BendAndRelease plan;
   const Study runs{p,

@@ -30,7 +30,7 @@ double Fastest(const mjModel& m, const mjData& d) {
 
 }  // namespace
 
-void Pull(const Machine& machine, const SlowPull& pull) {
+void Pull(const ModelAndData& machine, const SlowPull& pull) {
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   const double begin = d.time, end = begin + pull.rise;
@@ -49,7 +49,7 @@ void Pull(const Machine& machine, const SlowPull& pull) {
   mj_forward(&m, &d);
 }
 
-std::array<double, 3> SensedPoint(const Machine& machine, const std::string& sensor) {
+std::array<double, 3> SensedPoint(const ModelAndData& machine, const std::string& sensor) {
   const mjModel& m = *machine.model;
   const double* const at =
       machine.data->sensordata + m.sensor_adr[Find(m, mjOBJ_SENSOR, sensor, "sensor")];

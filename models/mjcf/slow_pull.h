@@ -25,9 +25,9 @@ struct SlowPull {
 /// contact that slid is pushed back by the swing of the model.
 /// @throws Error (input) for an unknown actuator, (job) when the model diverges or does not come to
 /// rest.
-void Pull(const Machine& machine, const SlowPull& pull);
+void Pull(const ModelAndData& machine, const SlowPull& pull);
 
 /// The three numbers of a sensor.
-std::array<double, 3> SensedPoint(const Machine& machine, const std::string& sensor);
+std::array<double, 3> SensedPoint(const ModelAndData& machine, const std::string& sensor);
 
 }  // namespace continuum

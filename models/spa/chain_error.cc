@@ -38,9 +38,9 @@ std::string Swinging(std::string xml) {
   return xml;
 }
 
-Machine Build(const SpaFile& file, const SpaStepResponse& trial) {
+ModelAndData Build(const SpaFile& file, const SpaStepResponse& trial) {
   const std::string xml = SpaMjcf(file, {.links = trial.links, .evenness = trial.evenness});
-  Machine machine = System::Parse(trial.moving ? Swinging(xml) : xml).Build();
+  ModelAndData machine = ModelSpec::Parse(trial.moving ? Swinging(xml) : xml).Build();
   mjModel& m = *machine.model;
   m.opt.timestep = trial.timestep;
   m.opt.tolerance = 0;  // it is scaled by the mean inertia, which the base's armature spoils
@@ -57,13 +57,13 @@ Machine Build(const SpaFile& file, const SpaStepResponse& trial) {
   return machine;
 }
 
-Vector3d Sensor(const Machine& machine, const std::string& name) {
+Vector3d Sensor(const ModelAndData& machine, const std::string& name) {
   const mjModel& m = *machine.model;
   const int id = mj_name2id(&m, mjOBJ_SENSOR, name.c_str());
   return Eigen::Map<const Vector3d>(machine.data->sensordata + m.sensor_adr[id]);
 }
 
-Vector3d TipInBase(const Machine& machine) {
+Vector3d TipInBase(const ModelAndData& machine) {
   using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   const int base = mj_name2id(machine.model.get(), mjOBJ_BODY, "base");
   const Eigen::Map<const Vector3d> origin(machine.data->xpos + 3 * base);
@@ -84,7 +84,7 @@ struct Distance {
   double Share() const { return largest / (high - low).maxCoeff(); }
 };
 
-void StepTo(const Machine& machine, double time) {
+void StepTo(const ModelAndData& machine, double time) {
   const mjData& d = *machine.data;
   while (d.time < time - 1e-9) {
     mj_step(machine.model.get(), machine.data.get());
@@ -123,7 +123,7 @@ SpaGap ChainError(const SpaFile& file, const SpaStepResponse& trial) {
       spa, {}, input, kPeriod,
       trial.moving ? SpaSwing() : [](double) { return SpaBase<double>::Hanging(); });
 
-  const Machine machine = Build(file, trial);
+  const ModelAndData machine = Build(file, trial);
   Distance delta, tip, force, torque;
   for (std::size_t k = 0; k < rows; ++k) {
     StepTo(machine, truth[k].time);

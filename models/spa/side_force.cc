@@ -9,7 +9,7 @@
 namespace continuum {
 namespace {
 
-double Bend(const Machine& machine, int node) {
+double Bend(const ModelAndData& machine, int node) {
   const std::string name = "bend" + std::to_string(node) + "_y";
   const int joint = mj_name2id(machine.model.get(), mjOBJ_JOINT, name.c_str());
   return machine.data->qpos[machine.model->jnt_qposadr[joint]];
@@ -20,7 +20,7 @@ double Bend(const Machine& machine, int node) {
 SpaSideForce PushAcross(const SpaFile& file, const SpaLayout& layout, double force) {
   constexpr double kSettled = 20;  // [s]: bending dies away as exp(−1.9 t/s)
   const int n = layout.links;
-  const Machine machine = System::Parse(SpaMjcf(file, layout)).Build();
+  const ModelAndData machine = ModelSpec::Parse(SpaMjcf(file, layout)).Build();
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   std::fill_n(m.opt.gravity, 3, 0.0);

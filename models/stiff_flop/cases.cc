@@ -15,12 +15,12 @@ constexpr Columns kForward = {"p1", "p2", "p3"};
 constexpr Columns kForce = {"fx", "fy", "fz"};
 constexpr Columns kGravity = {"gx", "gy", "gz"};
 
-int Count(const Table& table, const Columns& columns) {
+int Count(const CsvTable& table, const Columns& columns) {
   return static_cast<int>(
       std::count_if(columns.begin(), columns.end(), [&](auto* name) { return table.Has(name); }));
 }
 
-void RefuseUnknown(const Table& table) {
+void RefuseUnknown(const CsvTable& table) {
   for (const std::string& column : table.columns()) {
     bool known = column == "case";
     for (const Columns& columns : {kInverse, kForward, kForce, kGravity}) {
@@ -34,7 +34,7 @@ void RefuseUnknown(const Table& table) {
   }
 }
 
-Direction DirectionOf(const Table& table) {
+Direction DirectionOf(const CsvTable& table) {
   const int inverse = Count(table, kInverse);
   const int forward = Count(table, kForward);
   if (inverse == 3 && forward == 0) return Direction::kInverse;
@@ -46,7 +46,7 @@ Direction DirectionOf(const Table& table) {
                      found);
 }
 
-Eigen::Vector3d Read(const Table& table, std::size_t row, const Columns& columns,
+Eigen::Vector3d Read(const CsvTable& table, std::size_t row, const Columns& columns,
                      const Eigen::Vector3d& missing) {
   Eigen::Vector3d values = missing;
   for (int i = 0; i < 3; ++i) {
@@ -55,7 +55,7 @@ Eigen::Vector3d Read(const Table& table, std::size_t row, const Columns& columns
   return values;
 }
 
-void CheckShape(const Table& table, std::size_t row, const Eigen::Vector3d& shape) {
+void CheckShape(const CsvTable& table, std::size_t row, const Eigen::Vector3d& shape) {
   if (shape[0] < 0) {
     throw Error::Input(table.Where(row) + ", column 'kappa'", "a number >= 0", Decimal(shape[0]));
   }
@@ -73,7 +73,7 @@ std::string Name(Status status) {
 }
 
 Cases Cases::Read(const std::filesystem::path& file, const Eigen::Vector3d& gravity) {
-  const Table table = Table::Read(file);
+  const CsvTable table = CsvTable::Read(file);
   RefuseUnknown(table);
   table.RequireRows();
   Cases cases{DirectionOf(table), {}};

@@ -28,7 +28,7 @@ std::vector<std::string> KnownColumns(int tendons) {
   return known;
 }
 
-std::vector<std::string> Unused(const Table& table, const std::vector<std::string>& known) {
+std::vector<std::string> Unused(const CsvTable& table, const std::vector<std::string>& known) {
   std::string names;
   for (const auto& column : table.columns()) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
@@ -52,11 +52,11 @@ std::vector<std::string> UnusedKeys(const Yaml& robot) {
   return unused;
 }
 
-std::vector<std::string> UnusedCaseColumns(const Table& cases, int tendons) {
+std::vector<std::string> UnusedCaseColumns(const CsvTable& cases, int tendons) {
   return Unused(cases, KnownColumns(tendons));
 }
 
-std::vector<std::string> UnusedMeasuredColumns(const Table& measured, int disks) {
+std::vector<std::string> UnusedMeasuredColumns(const CsvTable& measured, int disks) {
   std::vector<std::string> known{"case", "use"};
   for (int i = 1; i <= disks; ++i) {
     for (const char* axis : {"x_", "y_", "z_"}) known.push_back(axis + std::to_string(i));
@@ -64,7 +64,7 @@ std::vector<std::string> UnusedMeasuredColumns(const Table& measured, int disks)
   return Unused(measured, known);
 }
 
-void RejectMisspelt(const Table& table, int tendons) {
+void RejectMisspelt(const CsvTable& table, int tendons) {
   const auto known = KnownColumns(tendons);
   for (const auto& column : table.columns()) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;

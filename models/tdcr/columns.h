@@ -12,11 +12,11 @@ namespace continuum::tdcr {
 /// whoever meant one of the optional names has to hear of it: one sentence each, with file and
 /// line.
 std::vector<std::string> UnusedKeys(const Yaml& robot);
-std::vector<std::string> UnusedCaseColumns(const Table& cases, int tendons);
-std::vector<std::string> UnusedMeasuredColumns(const Table& measured, int disks);
+std::vector<std::string> UnusedCaseColumns(const CsvTable& cases, int tendons);
+std::vector<std::string> UnusedMeasuredColumns(const CsvTable& measured, int disks);
 
 /// @throws Error for a column of CASES.csv that is one of its names but for case, blanks and
 /// underscores, or a tendon's number.
-void RejectMisspelt(const Table& cases, int tendons);
+void RejectMisspelt(const CsvTable& cases, int tendons);
 
 }  // namespace continuum::tdcr

@@ -11,7 +11,7 @@
 namespace continuum::tdcr {
 namespace {
 
-void RejectUnknownDisks(const Table& table, int disks) {
+void RejectUnknownDisks(const CsvTable& table, int disks) {
   for (const auto& column : table.columns()) {
     if (column.size() < 3 || column[1] != '_' ||
         std::string("xyz").find(column[0]) == std::string::npos) {
@@ -28,7 +28,7 @@ void RejectUnknownDisks(const Table& table, int disks) {
   }
 }
 
-bool IsTest(const Table& table, std::size_t row) {
+bool IsTest(const CsvTable& table, std::size_t row) {
   if (!table.Has("use")) return false;
   const std::string& use = table.Text(row, "use");
   if (use == "test") return true;
@@ -36,7 +36,7 @@ bool IsTest(const Table& table, std::size_t row) {
   throw Error::Input(table.Where(row) + ", column 'use'", "train or test", "'" + use + "'");
 }
 
-void ReadDisk(const Table& table, std::size_t row, int disk, Eigen::Matrix3Xd& disks) {
+void ReadDisk(const CsvTable& table, std::size_t row, int disk, Eigen::Matrix3Xd& disks) {
   const std::string end = "_" + std::to_string(disk + 1);
   const char* const axes[3] = {"x", "y", "z"};
   int missing = 0;
@@ -58,7 +58,7 @@ int Measured::count() const {
   return found;
 }
 
-std::vector<Measured> ReadMeasured(const Table& table, int disks) {
+std::vector<Measured> ReadMeasured(const CsvTable& table, int disks) {
   RejectUnknownDisks(table, disks);
   table.RequireRows();
   std::vector<bool> present;

@@ -22,7 +22,7 @@ struct Measured {
 
 /// Reads MEASURED.csv. @throws Error with file, line and column: a point that is not whole, a disk
 /// that the robot lacks, a name twice, a row without any point, no row.
-std::vector<Measured> ReadMeasured(const Table& table, int disks);
+std::vector<Measured> ReadMeasured(const CsvTable& table, int disks);
 
 /// The row of that name, or nothing.
 const Measured* Find(const std::vector<Measured>& measured, const std::string& name);

@@ -143,9 +143,9 @@ std::string SegmentMjcf(const Robot& robot, int links, Guides guides) {
   return Builder(robot, links, guides).Build();
 }
 
-Eigen::Vector3d PulledTip(const System& mjcf, const Loads& loads) {
+Eigen::Vector3d PulledTip(const ModelSpec& mjcf, const Loads& loads) {
   const Change friction{"plugin:cable_friction", "mu", loads.mu};
-  const Machine machine = mjcf.Build(std::span(&friction, 1));
+  const ModelAndData machine = mjcf.Build(std::span(&friction, 1));
   SlowPull pull;
   pull.gravity = {loads.gravity.x(), -loads.gravity.y(), -loads.gravity.z()};
   for (std::size_t k = 0; k < loads.tension.size(); ++k) {

@@ -27,6 +27,6 @@ std::string SegmentMjcf(const Robot& robot, int links, Guides guides);
 
 /// Tip [m, base frame] after a slow pull of the MJCF from the straight rod: all loads together.
 /// Directions come out of the pull; `loads.direction` is not read. @throws Error as Pull.
-Eigen::Vector3d PulledTip(const System& mjcf, const Loads& loads);
+Eigen::Vector3d PulledTip(const ModelSpec& mjcf, const Loads& loads);
 
 }  // namespace continuum::tdcr

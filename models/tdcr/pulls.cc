@@ -19,23 +19,23 @@ constexpr int kLinksPerDisk[] = {1, 2, 3, 5, 6};
 
 void Print(const std::filesystem::path& folder) {
   const Robot robot = ReadRobot(Yaml::Read(folder / "tdcr.yaml"));
-  std::vector<System> models;
+  std::vector<ModelSpec> models;
   fmt::print("| tip off by [% L] |");
   for (const int per_disk : kLinksPerDisk) {
     const int links = per_disk * robot.disks;
-    models.push_back(System::Parse(SegmentMjcf(robot, links, Guides::kLinks)));
+    models.push_back(ModelSpec::Parse(SegmentMjcf(robot, links, Guides::kLinks)));
     fmt::print(" {} links |", links);
   }
   const int fine = kLinksPerDisk[3] * robot.disks;
-  models.push_back(System::Parse(SegmentMjcf(robot, fine, Guides::kDisks)));
+  models.push_back(ModelSpec::Parse(SegmentMjcf(robot, fine, Guides::kDisks)));
   fmt::print(" {} links, tendons through the disks only |\n|---|", fine);
   for (std::size_t i = 0; i < models.size(); ++i) fmt::print("---|");
   fmt::print("\n");
-  for (const Case& c : ReadCases(Table::Read(folder / "pulls.csv"), robot)) {
+  for (const Case& c : ReadCases(CsvTable::Read(folder / "pulls.csv"), robot)) {
     const Solution rod = SolveCase(robot, c.loads, Method::kCrtFriction);
     if (!rod.outcome.ok()) throw Error::Job(c.name + ": " + rod.outcome.why);
     fmt::print("| {} |", c.name);
-    for (const System& model : models) {
+    for (const ModelSpec& model : models) {
       const Eigen::Vector3d off = PulledTip(model, c.loads) - rod.disks.col(robot.disks - 1);
       fmt::print(" {:.3f} |", 100 * off.norm() / robot.length);
     }

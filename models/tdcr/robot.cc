@@ -50,7 +50,7 @@ double Friction(double mu, const std::string& where) {
   throw Error::Input(where, "0 <= mu < 1", Decimal(mu));
 }
 
-int Direction(const Table& table, std::size_t row, const std::string& column) {
+int Direction(const CsvTable& table, std::size_t row, const std::string& column) {
   const double value = table.Number(row, column);
   if (value == 1 || value == 0 || value == -1) return static_cast<int>(value);
   throw Error::Input(table.Where(row) + ", column '" + column + "'",
@@ -59,7 +59,7 @@ int Direction(const Table& table, std::size_t row, const std::string& column) {
 
 }  // namespace
 
-bool HasVector(const Table& table, const std::vector<std::string>& columns) {
+bool HasVector(const CsvTable& table, const std::vector<std::string>& columns) {
   const auto has = [&](const std::string& column) { return table.Has(column); };
   if (std::none_of(columns.begin(), columns.end(), has)) return false;
   for (const auto& column : columns) {
@@ -129,7 +129,7 @@ Robot ReadRobot(const Yaml& file) {
   return robot;
 }
 
-std::vector<Case> ReadCases(const Table& table, const Robot& robot) {
+std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
   RejectMisspelt(table, robot.tendons);
   std::vector<std::string> needed{"case", "fx", "fy", "fz"};
   for (int k = 1; k <= robot.tendons; ++k) needed.push_back("T" + std::to_string(k));

@@ -70,10 +70,10 @@ struct Case {
 Robot ReadRobot(const Yaml& file);
 
 /// Reads CASES.csv. @throws Error with file, line and column for bad input.
-std::vector<Case> ReadCases(const Table& table, const Robot& robot);
+std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot);
 
 /// Whether the table has these columns: all or none. @throws Error when some are missing.
-bool HasVector(const Table& table, const std::vector<std::string>& columns);
+bool HasVector(const CsvTable& table, const std::vector<std::string>& columns);
 
 /// The loads of a robot at rest: no tension, no tip force, its own gravity and friction.
 Loads NoLoads(const Robot& robot);

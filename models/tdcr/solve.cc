@@ -145,7 +145,7 @@ void Warn(const SolveRequest& request, const std::vector<std::string>& sentences
 }
 
 std::vector<Case> ReadInput(const SolveRequest& request, const Robot& robot) {
-  const Table table = Table::Read(request.input);
+  const CsvTable table = CsvTable::Read(request.input);
   auto cases = ReadCases(table, robot);
   Warn(request, UnusedCaseColumns(table, robot.tendons));
   return cases;
@@ -167,7 +167,7 @@ void WarnOfFarPoints(const SolveRequest& request, const Robot& robot,
 
 std::vector<Measured> ReadMeasurements(const SolveRequest& request, const Robot& robot) {
   if (request.measured.empty()) return {};
-  const Table table = Table::Read(request.measured);
+  const CsvTable table = CsvTable::Read(request.measured);
   auto measured = ReadMeasured(table, robot.disks);
   Warn(request, UnusedMeasuredColumns(table, robot.disks));
   WarnOfFarPoints(request, robot, measured);

@@ -15,7 +15,7 @@ constexpr double kGravity = 9.81;
 // Angles closer than this [rad] are one angle: no protractor tells them apart, nor does the fit.
 constexpr double kSameAngle = 1e-9;
 
-void RequireColumns(const Table& table) {
+void RequireColumns(const CsvTable& table) {
   for (const std::string& column : table.columns()) {
     if (column == "theta" || column == "m" || column == "F_SC") continue;
     throw Error::Input(table.name() + ":1, column '" + column + "'", "the columns theta, m, F_SC",
@@ -27,7 +27,7 @@ void RequireColumns(const Table& table) {
   }
 }
 
-double InRange(const Table& table, std::size_t row, const std::string& column, bool inside,
+double InRange(const CsvTable& table, std::size_t row, const std::string& column, bool inside,
                const std::string& range) {
   if (inside) return table.Number(row, column);
   throw Error::Input(table.Where(row) + ", column '" + column + "'", range,
@@ -76,7 +76,7 @@ FrictionFit FitFriction(const std::vector<double>& theta, const std::vector<doub
 }
 
 FrictionFit CalibrateFriction(const std::filesystem::path& file) {
-  const Table table = Table::Read(file);
+  const CsvTable table = CsvTable::Read(file);
   RequireColumns(table);
   std::vector<double> theta, mu;
   for (std::size_t row = 0; row < table.rows(); ++row) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNewtonPerKilogram = 9.81;
 
-std::string Cell(const Table& table, std::size_t row, const std::string& column) {
+std::string Cell(const CsvTable& table, std::size_t row, const std::string& column) {
   return table.Where(row) + ", column '" + column + "'";
 }
 
@@ -21,18 +21,18 @@ std::string Quoted(const std::string& text) {
   return text.empty() ? "an empty cell" : "'" + text + "'";
 }
 
-double NotNegative(const Table& table, std::size_t row, const std::string& column) {
+double NotNegative(const CsvTable& table, std::size_t row, const std::string& column) {
   const double value = table.Number(row, column);
   if (value >= 0) return value;
   throw Error::Input(Cell(table, row, column), "a number >= 0", Decimal(value));
 }
 
 // The columns of the cables' loads: all masses or all tensions, whichever the first cable has.
-std::vector<std::string> LoadColumns(const Table& table, int cables) {
+std::vector<std::string> LoadColumns(const CsvTable& table, int cables) {
   return statics::Numbered(table.Has("F1") ? "F" : "m", cables);
 }
 
-void RequireColumns(const Table& table, const std::vector<std::string>& loads) {
+void RequireColumns(const CsvTable& table, const std::vector<std::string>& loads) {
   std::vector<std::string> known = {"case", "condition", "payload", "fx", "fy", "fz",       "Mx",
                                     "My",   "Mz",        "gx",      "gy", "gz", "reference"};
   known.insert(known.end(), loads.begin(), loads.end());
@@ -52,7 +52,7 @@ void RequireColumns(const Table& table, const std::vector<std::string>& loads) {
   }
 }
 
-Condition ReadCondition(const Table& table, std::size_t row) {
+Condition ReadCondition(const CsvTable& table, std::size_t row) {
   if (!table.Has("condition")) return Condition::kV;
   const std::string& text = table.Text(row, "condition");
   const auto found = std::find(kConditions.begin(), kConditions.end(), text);
@@ -61,7 +61,7 @@ Condition ReadCondition(const Table& table, std::size_t row) {
 }
 
 // The components that have a column; the others stay as they are.
-void ReadVector(const Table& table, std::size_t row, const std::string& prefix,
+void ReadVector(const CsvTable& table, std::size_t row, const std::string& prefix,
                 Eigen::Vector3d& vector) {
   for (int i = 0; i < 3; ++i) {
     const std::string column = prefix + "xyz"[i];
@@ -69,7 +69,8 @@ void ReadVector(const Table& table, std::size_t row, const std::string& prefix,
   }
 }
 
-int ReadReference(const Table& table, std::size_t row, const std::map<std::string, int>& earlier) {
+int ReadReference(const CsvTable& table, std::size_t row,
+                  const std::map<std::string, int>& earlier) {
   if (!table.Has("reference")) return -1;
   const std::string& label = table.Text(row, "reference");
   if (label.empty()) return -1;
@@ -78,7 +79,7 @@ int ReadReference(const Table& table, std::size_t row, const std::map<std::strin
   throw Error::Input(Cell(table, row, "reference"), "the case of an earlier row", Quoted(label));
 }
 
-Load ReadLoad(const Table& table, std::size_t row, const std::vector<std::string>& columns,
+Load ReadLoad(const CsvTable& table, std::size_t row, const std::vector<std::string>& columns,
               const Robot& robot) {
   Load load;
   load.condition = ReadCondition(table, row);
@@ -97,7 +98,7 @@ Load ReadLoad(const Table& table, std::size_t row, const std::vector<std::string
 }  // namespace
 
 std::vector<Case> ReadCases(const std::filesystem::path& file, const Robot& robot) {
-  const Table table = Table::Read(file);
+  const CsvTable table = CsvTable::Read(file);
   const std::vector<std::string> columns = LoadColumns(table, robot.Cables());
   RequireColumns(table, columns);
   table.RequireRows();

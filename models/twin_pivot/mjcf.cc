@@ -185,10 +185,10 @@ class Builder {
 
 std::string RobotMjcf(const Robot& robot) { return Builder(robot).Build(); }
 
-Eigen::Vector3d PulledTip(const System& mjcf, const Load& load) {
+Eigen::Vector3d PulledTip(const ModelSpec& mjcf, const Load& load) {
   if (!load.moment.isZero()) throw Error::Input("Mx, My, Mz", "no moment on the MJCF", "one");
   const Change payload{"body:tip", "mass", load.condition == Condition::kV ? load.payload : 0};
-  const Machine machine = mjcf.Build(std::span(&payload, 1));
+  const ModelAndData machine = mjcf.Build(std::span(&payload, 1));
   SlowPull pull;
   // A chain sways the slower the longer it is, with the square: what is slow for six joints swings
   // twelve, and friction keeps where they swung to.

@@ -34,7 +34,7 @@ struct Loop {
 };
 
 template <class Choice>
-void Print(const Robot& robot, const System& mjcf, const std::vector<Case>& cases,
+void Print(const Robot& robot, const ModelSpec& mjcf, const std::vector<Case>& cases,
            const Choice& choice) {
   double sum = 0, worst = 0, bent = 0;
   int count = 0;
@@ -54,7 +54,7 @@ template <class Choice>
 void Print(const std::filesystem::path& file, const std::filesystem::path& input,
            std::initializer_list<Choice> choices) {
   const Robot robot = Robot::Read(file);
-  const System mjcf = System::Parse(RobotMjcf(robot));
+  const ModelSpec mjcf = ModelSpec::Parse(RobotMjcf(robot));
   const auto cases = ReadCases(input, robot);
   for (const Choice& choice : choices) Print(robot, mjcf, cases, choice);
 }

@@ -19,10 +19,10 @@ enum class Stage { kPassive, kActuator, kAnswer };
 /// A law bound to places of one model. The engine plugin and the identification both use it.
 ///
 /// Parameters are values of the card, in its order; Set changes them while the model runs.
-class Bound {
+class BoundLaw {
  public:
-  explicit Bound(std::vector<double> p) : p_(std::move(p)) {}
-  virtual ~Bound() = default;
+  explicit BoundLaw(std::vector<double> p) : p_(std::move(p)) {}
+  virtual ~BoundLaw() = default;
 
   const std::vector<double>& parameters() const { return p_; }
   void Set(std::vector<double> p) { p_ = std::move(p); }
@@ -65,7 +65,7 @@ class Bound {
   virtual void Sense(const mjModel&, const mjData&, int /*id*/, std::span<double>) const {}
   virtual void Visualize(const mjModel&, const mjData&, mjvScene&) const {}
   /// Takes over what was computed (not configured) from another Bound of the same kind.
-  virtual void CopyFrom(const Bound&) {}
+  virtual void CopyFrom(const BoundLaw&) {}
 
  protected:
   std::vector<double> p_;

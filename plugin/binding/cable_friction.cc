@@ -55,7 +55,7 @@ void Exponential(std::span<const double> x, std::span<double> y) {
 }  // namespace
 
 CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters)
-    : Bound(std::move(parameters)),
+    : BoundLaw(std::move(parameters)),
       cables_(MatchCables(m, config)),
       geometry_(m, cables_),
       sliding_(m, geometry_),
@@ -208,7 +208,7 @@ void CableFriction::Visualize(const mjModel& m, const mjData& d, mjvScene& scene
   }
 }
 
-void CableFriction::CopyFrom(const Bound& other) {
+void CableFriction::CopyFrom(const BoundLaw& other) {
   const auto& from = static_cast<const CableFriction&>(other);
   geometry_ = from.geometry_, base_ = from.base_;
   band_ = from.band_, rho_ = from.rho_, ratio_ = from.ratio_, tension_ = from.tension_;

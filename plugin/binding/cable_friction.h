@@ -28,7 +28,7 @@ namespace continuum {
 /// States, as the last step left them: ρ = log(t_k/t_{k−1}) of the contact in front of each
 /// segment, for the first segment of a cable t_0 instead; and the constraint forces. Several
 /// instances see each other's states.
-class CableFriction : public Bound {
+class CableFriction : public BoundLaw {
  public:
   CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters);
 
@@ -48,7 +48,7 @@ class CableFriction : public Bound {
     out[0] = tension_[Index(site)];
   }
   void Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const override;
-  void CopyFrom(const Bound& other) override;
+  void CopyFrom(const BoundLaw& other) override;
 
  protected:
   /// Largest |ρ| at each wrap angle.

@@ -54,7 +54,7 @@ const std::vector<EffectInfo>& Catalog() {
 }
 
 const EffectInfo& EffectNamed(std::string_view name) {
-  static const auto written = InfosOf<Written>();
+  static const auto written = InfosOf<FormulaLaws>();
   for (const EffectInfo& info : written) {
     if (info.name == name) return info;
   }

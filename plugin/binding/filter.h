@@ -24,14 +24,14 @@ std::vector<ActuatorInput> MatchInputs(const mjModel& m, const Config& config);
 /// A Signal law with states at the input of actuators: they receive y = Eval(u, z) instead of u.
 /// The states follow the controls from step to step, and y is held over a step as u is.
 template <FilterLaw E>
-class BoundFilter : public Bound {
+class BoundFilter : public BoundLaw {
   static_assert(E::kTap == Tap::kInput);
 
  public:
   static constexpr std::size_t kZ = E::kStates.size();
 
   BoundFilter(const mjModel& m, const Config& config)
-      : Bound(ReadParams<E>(config)), inputs_(MatchInputs(m, config)), u_(inputs_.size()) {}
+      : BoundLaw(ReadParams<E>(config)), inputs_(MatchInputs(m, config)), u_(inputs_.size()) {}
 
   static int StateSize(const mjModel&, const Config& config) {
     return static_cast<int>(kZ * config.Match("actuator", mjOBJ_ACTUATOR).size());
@@ -63,7 +63,7 @@ class BoundFilter : public Bound {
     }
   }
 
-  void CopyFrom(const Bound& other) override { u_ = static_cast<const BoundFilter&>(other).u_; }
+  void CopyFrom(const BoundLaw& other) override { u_ = static_cast<const BoundFilter&>(other).u_; }
 
  private:
   static Vec<double, kZ> Load(const double* z) {

@@ -37,12 +37,12 @@ std::vector<Line> LinesOf(const mjModel& m, const Config& config, Joints types);
 
 /// A Force law on joints or tendons: −F(x, v, z) along each.
 template <ForceLaw E>
-class BoundForce : public Bound {
+class BoundForce : public BoundLaw {
  public:
   static constexpr int kZ = static_cast<int>(E::kStates.size());
 
   BoundForce(const mjModel& m, const Config& config)
-      : Bound(ReadParams<E>(config)), lines_(LinesOf(m, config, JointsOf<E>())) {}
+      : BoundLaw(ReadParams<E>(config)), lines_(LinesOf(m, config, JointsOf<E>())) {}
 
   static int StateSize(const mjModel& m, const Config& config) {
     return kZ * static_cast<int>(LinesOf(m, config, JointsOf<E>()).size());

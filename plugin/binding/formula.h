@@ -29,10 +29,10 @@ FormulaValues<E> ValuesOf(const std::vector<double>& p) {
 }
 
 /// A written force on joints or tendons.
-class BoundFormula : public Bound {
+class BoundFormula : public BoundLaw {
  public:
   BoundFormula(const mjModel& m, const Config& config)
-      : Bound(ReadParams<Formula>(config)),
+      : BoundLaw(ReadParams<Formula>(config)),
         lines_(LinesOf(m, config, JointsOf<Formula>())),
         force_(ReadFormula<Formula>(config)) {}
   static int StateSize(const mjModel&, const Config&) { return 0; }
@@ -58,10 +58,10 @@ class BoundFormula : public Bound {
 };
 
 /// A written dry friction on joints or tendons, as rows.
-class BoundFormulaFriction : public Bound {
+class BoundFormulaFriction : public BoundLaw {
  public:
   BoundFormulaFriction(const mjModel& m, const Config& config, int instance)
-      : Bound(ReadParams<FormulaFriction>(config)),
+      : BoundLaw(ReadParams<FormulaFriction>(config)),
         rows_(m, config, JointsOf<FormulaFriction>(), instance),
         level_(ReadFormula<FormulaFriction>(config)) {}
   static int StateSize(const mjModel& m, const Config& config) {

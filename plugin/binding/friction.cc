@@ -29,7 +29,7 @@ std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
       }
     };
     All::ForEach(add);
-    Written::ForEach(add);
+    FormulaLaws::ForEach(add);
   }
   return taken;
 }

@@ -104,10 +104,10 @@ double GearLoad(const mjModel& m, const mjData& d, int dof, int option);
 
 /// A Friction law on joints or tendons, as rows.
 template <FrictionLaw E>
-class BoundFriction : public Bound {
+class BoundFriction : public BoundLaw {
  public:
   BoundFriction(const mjModel& m, const Config& config, int instance)
-      : Bound(ReadParams<E>(config)), rows_(m, config, JointsOf<E>(), instance) {
+      : BoundLaw(ReadParams<E>(config)), rows_(m, config, JointsOf<E>(), instance) {
     if constexpr (kLoaded) load_ = config.Read(E::kChoices[0]);
     if constexpr (kDamped) {
       damping_.emplace("continuum." + std::string(E::kName), E::kParams[E::kDamping].name,

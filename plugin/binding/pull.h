@@ -24,12 +24,12 @@ std::string WithoutServo(const mjModel& m, std::span<const Drive> drives);
 /// A Signal law between the position servos of a tendon and its route. It acts before the
 /// actuators' force ranges.
 template <PullLaw E>
-class BoundPull : public Bound {
+class BoundPull : public BoundLaw {
   static_assert(E::kTap == Tap::kTendon);
 
  public:
   BoundPull(const mjModel& m, const Config& config)
-      : Bound(ReadParams<E>(config)), drives_(MatchDrives(m, config)) {}
+      : BoundLaw(ReadParams<E>(config)), drives_(MatchDrives(m, config)) {}
   static int StateSize(const mjModel&, const Config&) { return 0; }
 
   std::string Silence(const mjModel& m) const override { return WithoutServo(m, drives_); }

@@ -76,10 +76,10 @@ void DrawChamber(const mjModel& m, const mjData& d, const Chain& chain, const Ve
 /// h = 2 ms these are 0.06 and 0.13. Where only the joints' own constraints make the links move
 /// together, these must be stiff.
 template <SegmentLaw E>
-class BoundSegment : public Bound {
+class BoundSegment : public BoundLaw {
  public:
   BoundSegment(const mjModel& m, const Config& config)
-      : Bound(ReadParams<E>(config)),
+      : BoundLaw(ReadParams<E>(config)),
         choice_(ChoiceOf(config)),
         chain_(m, config),
         chambers_(MatchChambers(m, config)) {
@@ -125,7 +125,7 @@ class BoundSegment : public Bound {
       }
     }
   }
-  void CopyFrom(const Bound& other) override {
+  void CopyFrom(const BoundLaw& other) override {
     pressure_ = static_cast<const BoundSegment&>(other).pressure_;
   }
 

@@ -11,12 +11,12 @@ namespace continuum {
 ///
 /// It acts before the actuator's force range.
 template <SignalLaw E>
-class BoundSignal : public Bound {
+class BoundSignal : public BoundLaw {
   static_assert(E::kTap == Tap::kServoError);
 
  public:
   BoundSignal(const mjModel& m, const Config& config)
-      : Bound(ReadParams<E>(config)), actuators_(config.Match("actuator", mjOBJ_ACTUATOR)) {
+      : BoundLaw(ReadParams<E>(config)), actuators_(config.Match("actuator", mjOBJ_ACTUATOR)) {
     for (const int a : actuators_) {
       const double kp = m.actuator_gainprm[mjNGAIN * a], k = -m.actuator_biasprm[mjNBIAS * a + 1];
       const bool servo =

@@ -58,6 +58,6 @@ using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalF
                  Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
 
 /// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.
-using Written = List<Formula, FormulaFriction>;
+using FormulaLaws = List<Formula, FormulaFriction>;
 
 }  // namespace continuum

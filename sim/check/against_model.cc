@@ -189,7 +189,7 @@ void CheckSimulated(const Experiment& e, const Log& log, const Trace& trace,
 }
 
 // What the registration leaves open must not look like swapped or shifted columns.
-void RegisterTraces(const System& system, Experiment& e, std::vector<Trace>& traces,
+void RegisterTraces(const ModelSpec& system, Experiment& e, std::vector<Trace>& traces,
                     std::vector<Finding>& all) {
   if (!e.registration.estimates()) return;
   const Wiring wiring(e, system.model());
@@ -230,13 +230,13 @@ double Misfit(const Values& a, const Values& b) {
   return Deviation(difference);
 }
 
-std::vector<Finding> CheckAgainstModel(const Experiment& read, const System& system) {
+std::vector<Finding> CheckAgainstModel(const Experiment& read, const ModelSpec& system) {
   Experiment e = read;
   std::vector<Finding> all;
   std::vector<Trace> traces;
   for (const Log& log : e.logs) {
     Findings found(&log);
-    Machine machine = system.Build(log.set);
+    ModelAndData machine = system.Build(log.set);
     traces.emplace_back();
     try {
       traces.back() = Simulate(machine, e, log, {}, Hooks::Stoppable());

@@ -29,7 +29,7 @@ void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings
 /// Columns that are shifted in time against the pose: where a log measures the joints that move and
 /// something that they determine, the model's kinematics tell without its forces. Not with a
 /// registration. Returns the columns that were judged.
-std::set<std::string> CheckPose(const Experiment& e, const Log& log, const System& system,
+std::set<std::string> CheckPose(const Experiment& e, const Log& log, const ModelSpec& system,
                                 Findings& out);
 
 /// Tries mistakes in the inputs of logs that the model does not explain: another sign or unit (of
@@ -38,7 +38,7 @@ std::set<std::string> CheckPose(const Experiment& e, const Log& log, const Syste
 /// short ones.
 class InputTrials {
  public:
-  InputTrials(const Experiment& e, const System& system) : experiment_(e), system_(system) {}
+  InputTrials(const Experiment& e, const ModelSpec& system) : experiment_(e), system_(system) {}
 
   /// trace: the whole log as simulated.
   void Run(const Log& whole, const Trace& trace, Findings& out);
@@ -60,7 +60,7 @@ class InputTrials {
             const std::string& text, Findings& out);
 
   const Experiment& experiment_;
-  const System& system_;
+  const ModelSpec& system_;
   int budget_ = 90;  ///< simulations over all logs
 };
 

@@ -35,7 +35,7 @@ std::vector<Finding> CheckLogs(const Experiment& e);
 /// offsets at rest. The model need not be right, only right enough to be recognised; what a wrong
 /// model and a wrong column would both explain is worded so. Throws Error for names that the model
 /// does not have.
-std::vector<Finding> CheckAgainstModel(const Experiment& e, const System& system);
+std::vector<Finding> CheckAgainstModel(const Experiment& e, const ModelSpec& system);
 
 /// For a terminal: a summary, then what the logs have in common, what columns of one log have in
 /// common as one line, the rest under its log.

@@ -130,7 +130,7 @@ double InputTrials::RelativeError(const Log& log, const Trace& trace) const {
 
 double InputTrials::ErrorOf(const Log& log) {
   --budget_;
-  Machine machine = system_.Build(log.set);
+  ModelAndData machine = system_.Build(log.set);
   Trace trace;
   try {
     trace = Simulate(machine, experiment_, log, {}, Hooks::Stoppable());

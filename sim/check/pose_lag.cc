@@ -75,7 +75,7 @@ struct Motion {
 
 class Poses {
  public:
-  Poses(const Experiment& e, const Log& log, const Pose& pose, Machine& machine)
+  Poses(const Experiment& e, const Log& log, const Pose& pose, ModelAndData& machine)
       : e_(e), log_(log), pose_(pose), m_(*machine.model), d_(*machine.data) {}
 
   Motion Of(const std::vector<std::size_t>& rows) {
@@ -219,11 +219,11 @@ std::vector<Late> Believed(std::vector<Late> late, std::size_t others, double pe
 
 }  // namespace
 
-std::set<std::string> CheckPose(const Experiment& e, const Log& log, const System& system,
+std::set<std::string> CheckPose(const Experiment& e, const Log& log, const ModelSpec& system,
                                 Findings& out) {
   const Registration& r = e.registration;
   if (e.quasi_static || r.has_frame() || r.has_marker()) return {};
-  Machine machine = system.Build(log.set);
+  ModelAndData machine = system.Build(log.set);
   const auto pose = PoseOf(e, *machine.model);
   const std::vector<std::size_t> rows = pose ? RowsOf(log, *pose) : std::vector<std::size_t>();
   if (rows.size() < 100) return {};

@@ -29,7 +29,7 @@ class Recording {
       mat_ = ReadMat(file, variable);
       name_ = file.string();
     } else {
-      table_ = Table::Read(file);
+      table_ = CsvTable::Read(file);
       name_ = file.string();
     }
   }
@@ -50,13 +50,13 @@ class Recording {
       throw Error::Input(name_, "a column '" + column + "'", all);
     }
     const double value = mat_->values[found - mat_->names.begin()][row];
-    if (std::abs(value) <= Table::kLargest || (may_miss && std::isnan(value))) return value;
+    if (std::abs(value) <= CsvTable::kLargest || (may_miss && std::isnan(value))) return value;
     throw Error::Input(Where(row) + ", column '" + column + "'", "a number within +-1e100",
                        std::isnan(value) ? "none" : Decimal(value));
   }
 
  private:
-  std::optional<Table> table_;
+  std::optional<CsvTable> table_;
   std::optional<Columns> mat_;
   std::string name_;
 };

@@ -83,13 +83,13 @@ Candidate Read(const Yaml& y) {
 
 bool IsWritten(const std::string& effect) {
   bool written = false;
-  Written::ForEach([&]<class E>() { written |= effect == E::kName; });
+  FormulaLaws::ForEach([&]<class E>() { written |= effect == E::kName; });
   return written;
 }
 
 Candidate ReadWrittenLaw(const Yaml& y, const std::string& effect) {
   Candidate c;
-  Written::ForEach([&]<class E>() {
+  FormulaLaws::ForEach([&]<class E>() {
     if (effect == E::kName) c = Read<E>(y);
   });
   return c;

@@ -348,7 +348,7 @@ Registration Registered(const Experiment& e, const Wiring& wiring, const mjModel
   return Search(e, wiring, free, traces).From(start);
 }
 
-Experiment Registered(const Experiment& e, const System& system) {
+Experiment Registered(const Experiment& e, const ModelSpec& system) {
   Experiment out = e;
   if (!e.registration.estimates()) return out;
   const Wiring wiring(e, system.model());
@@ -357,7 +357,7 @@ Experiment Registered(const Experiment& e, const System& system) {
     traces.emplace_back();
     traces.back().diverged = true;
     if (!log.train) continue;
-    Machine machine = system.Build(log.set);
+    ModelAndData machine = system.Build(log.set);
     traces.back() = Simulate(machine, e, log, {}, Hooks::Stoppable());
   }
   out.registration = Registered(e, wiring, system.model(), traces);

@@ -33,7 +33,7 @@ Registration Registered(const Experiment& e, const Wiring& wiring, const mjModel
 
 /// The experiment with its registration estimated from its train logs as the model simulates them;
 /// the same where nothing is to be estimated.
-Experiment Registered(const Experiment& e, const System& system);
+Experiment Registered(const Experiment& e, const ModelSpec& system);
 
 /// Values and units; null when there is no registration.
 nlohmann::json RegistrationJson(const Registration& r);

@@ -240,9 +240,9 @@ void Outlook::Include(const Outlook& other) {
   if (other.tension) Include({(*other.tension)[0], (*other.tension)[1]});
 }
 
-Outlook LookAhead(const Experiment& e, const System& system, const Log& log,
+Outlook LookAhead(const Experiment& e, const ModelSpec& system, const Log& log,
                   const FilmOptions& options) {
-  Machine machine = system.Build(log.set);
+  ModelAndData machine = system.Build(log.set);
   const Wiring wiring(e, *machine.model);
   MeasuredPose measured(e, log, *machine.model);
   Clock clock(log, options);
@@ -263,11 +263,11 @@ Outlook LookAhead(const Experiment& e, const System& system, const Log& log,
   return ahead;
 }
 
-void DrawFrames(const Experiment& e, const System& system, const Log& log, FilmOptions options,
+void DrawFrames(const Experiment& e, const ModelSpec& system, const Log& log, FilmOptions options,
                 const Outlook& ahead, Ruler& ruler, const std::function<void(Image)>& take) {
   const bool pulled = ahead.tension && (*ahead.tension)[0] < (*ahead.tension)[1];
   if (!options.tension && pulled) options.tension = ahead.tension;
-  Machine machine = system.Build(log.set);
+  ModelAndData machine = system.Build(log.set);
   const Wiring wiring(e, *machine.model);
   MeasuredPose measured(e, log, *machine.model);
   Renderer renderer = RendererOf(*machine.model, options);
@@ -296,14 +296,15 @@ void DrawFrames(const Experiment& e, const System& system, const Log& log, FilmO
   Simulate(machine, e, log, {}, draw);
 }
 
-void DrawFrames(const Experiment& e, const System& system, const Log& log,
+void DrawFrames(const Experiment& e, const ModelSpec& system, const Log& log,
                 const FilmOptions& options, const std::function<void(Image)>& take) {
   Ruler ruler;
   DrawFrames(e, system, log, options, LookAhead(e, system, log, options), ruler, take);
 }
 
-void FilmExperiment(const Experiment& e, const System& system, const std::vector<std::size_t>& logs,
-                    const std::filesystem::path& file, const FilmOptions& options) {
+void FilmExperiment(const Experiment& e, const ModelSpec& system,
+                    const std::vector<std::size_t>& logs, const std::filesystem::path& file,
+                    const FilmOptions& options) {
   VideoWriter video(file, options.width, options.height, options.fps);
   for (const std::size_t l : logs) {
     if (options.progress) options.progress("film of " + e.logs[l].label);
@@ -312,7 +313,7 @@ void FilmExperiment(const Experiment& e, const System& system, const std::vector
   video.Finish();
 }
 
-void PictureOf(const Experiment& e, const System& system, std::size_t l,
+void PictureOf(const Experiment& e, const ModelSpec& system, std::size_t l,
                const std::filesystem::path& file, const FilmOptions& options) {
   std::vector<Image> frames;
   FilmOptions few = options;

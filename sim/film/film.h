@@ -63,26 +63,26 @@ struct Outlook {
   /// What another film of the same scene shows.
   void Include(const Outlook& other);
 };
-Outlook LookAhead(const Experiment& experiment, const System& system, const Log& log,
+Outlook LookAhead(const Experiment& experiment, const ModelSpec& system, const Log& log,
                   const FilmOptions& options);
 
 /// Simulates a log and draws its frames: the simulation as it is, cables coloured by tension as a
 /// capstan effect, options.tension or the outlook says, chambers by pressure. ruler: gives the
 /// scale, and one scale to all films that share it.
-void DrawFrames(const Experiment& experiment, const System& system, const Log& log,
+void DrawFrames(const Experiment& experiment, const ModelSpec& system, const Log& log,
                 FilmOptions options, const Outlook& ahead, Ruler& ruler,
                 const std::function<void(Image)>& take);
 /// The same, as a film of its own.
-void DrawFrames(const Experiment& experiment, const System& system, const Log& log,
+void DrawFrames(const Experiment& experiment, const ModelSpec& system, const Log& log,
                 const FilmOptions& options, const std::function<void(Image)>& take);
 
 /// The frames of the logs as a film, one log after the other.
-void FilmExperiment(const Experiment& experiment, const System& system,
+void FilmExperiment(const Experiment& experiment, const ModelSpec& system,
                     const std::vector<std::size_t>& logs, const std::filesystem::path& file,
                     const FilmOptions& options = {});
 
 /// One frame of a log at its middle (or of the model at rest), as PNG.
-void PictureOf(const Experiment& experiment, const System& system, std::size_t log,
+void PictureOf(const Experiment& experiment, const ModelSpec& system, std::size_t log,
                const std::filesystem::path& file, const FilmOptions& options = {});
 
 }  // namespace continuum

@@ -11,7 +11,7 @@ namespace continuum {
 /// One half of a film: an experiment by a model, and what the captions call it.
 struct Side {
   const Experiment& experiment;
-  const System& system;
+  const ModelSpec& system;
   std::string name;
 };
 

@@ -59,12 +59,12 @@ std::vector<std::string> Split(std::string_view line, const std::string& where) 
 
 }  // namespace
 
-Table Table::Read(const std::filesystem::path& file) {
+CsvTable CsvTable::Read(const std::filesystem::path& file) {
   return Parse(ReadFile(file), file.string());
 }
 
-Table Table::Parse(std::string_view text, std::string name) {
-  Table t;
+CsvTable CsvTable::Parse(std::string_view text, std::string name) {
+  CsvTable t;
   t.name_ = std::move(name);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   if (text.find('\0') != text.npos) throw Error::Input(t.name_, "a text file", "a zero byte");
@@ -96,15 +96,15 @@ Table Table::Parse(std::string_view text, std::string name) {
   return t;
 }
 
-bool Table::Has(std::string_view column) const {
+bool CsvTable::Has(std::string_view column) const {
   return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
 }
 
-void Table::RequireRows() const {
+void CsvTable::RequireRows() const {
   if (rows() == 0) throw Error::Input(name_, "one row or more", "only a header");
 }
 
-std::size_t Table::Column(std::string_view column) const {
+std::size_t CsvTable::Column(std::string_view column) const {
   const auto c = std::find(columns_.begin(), columns_.end(), column);
   if (c != columns_.end()) return static_cast<std::size_t>(c - columns_.begin());
   std::string all;
@@ -112,15 +112,15 @@ std::size_t Table::Column(std::string_view column) const {
   throw Error::Input(name_ + ":1", "a column '" + std::string(column) + "'", Shown(all, kShown));
 }
 
-std::string Table::Where(std::size_t row) const {
+std::string CsvTable::Where(std::size_t row) const {
   return name_ + ":" + std::to_string(lines_.at(row));
 }
 
-const std::string& Table::Text(std::size_t row, std::string_view column) const {
+const std::string& CsvTable::Text(std::size_t row, std::string_view column) const {
   return cells_.at(row)[Column(column)];
 }
 
-double Table::NumberOrNan(std::size_t row, std::string_view column) const {
+double CsvTable::NumberOrNan(std::size_t row, std::string_view column) const {
   const std::string& cell = Text(row, column);
   if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NAN") {
     return std::numeric_limits<double>::quiet_NaN();
@@ -128,7 +128,7 @@ double Table::NumberOrNan(std::size_t row, std::string_view column) const {
   return Number(row, column);
 }
 
-double Table::Number(std::size_t row, std::string_view column) const {
+double CsvTable::Number(std::size_t row, std::string_view column) const {
   const std::string& cell = Text(row, column);
   const bool plus = cell.starts_with('+') && !cell.starts_with("+-");
   const char* const begin = cell.data() + (plus ? 1 : 0);
@@ -142,14 +142,14 @@ double Table::Number(std::size_t row, std::string_view column) const {
                      cell.empty() ? "an empty cell" : "'" + Shown(cell) + "'");
 }
 
-bool Table::Flag(std::size_t row, std::string_view column) const {
+bool CsvTable::Flag(std::size_t row, std::string_view column) const {
   const std::string& cell = Text(row, column);
   if (cell == "True" || cell == "true" || cell == "TRUE") return true;
   if (cell == "False" || cell == "false" || cell == "FALSE") return false;
   return Number(row, column) != 0;
 }
 
-std::vector<double> Table::Numbers(std::string_view column) const {
+std::vector<double> CsvTable::Numbers(std::string_view column) const {
   std::vector<double> values(rows());
   for (std::size_t i = 0; i < rows(); ++i) values[i] = Number(i, column);
   return values;

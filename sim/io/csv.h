@@ -11,13 +11,13 @@ namespace continuum {
 ///
 /// Comma-separated; cells may be quoted; blank lines and a byte-order mark are skipped. Every error
 /// names file and line.
-class Table {
+class CsvTable {
  public:
   static constexpr double kLargest = 1e100;  ///< the sum of squares of such numbers is finite
 
-  static Table Read(const std::filesystem::path& file);
+  static CsvTable Read(const std::filesystem::path& file);
   /// name stands for the file in messages.
-  static Table Parse(std::string_view text, std::string name);
+  static CsvTable Parse(std::string_view text, std::string name);
 
   const std::string& name() const { return name_; }
   const std::vector<std::string>& columns() const { return columns_; }

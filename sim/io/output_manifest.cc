@@ -34,17 +34,17 @@ bool Holds(const fs::path& file, std::uint64_t sum) {
 
 }  // namespace
 
-OwnFiles::OwnFiles(const fs::path& folder) : folder_(folder) {
+OutputManifest::OutputManifest(const fs::path& folder) : folder_(folder) {
   MakeFolder(folder_);
   before_ = ReadList();
 }
 
-void OwnFiles::Write(const std::string& name, std::string_view content) {
+void OutputManifest::Write(const std::string& name, std::string_view content) {
   WriteFile(folder_ / name, content);
   if (IsName(name)) now_[name] = SumOf(content);
 }
 
-void OwnFiles::Finish() {
+void OutputManifest::Finish() {
   std::error_code failed;
   for (const auto& [name, sum] : before_) {
     if (!now_.contains(name) && Holds(folder_ / name, sum)) fs::remove(folder_ / name, failed);
@@ -54,7 +54,7 @@ void OwnFiles::Finish() {
   WriteFile(folder_ / kList, list);
 }
 
-OwnFiles::Sums OwnFiles::ReadList() const {
+OutputManifest::Sums OutputManifest::ReadList() const {
   Sums sums;
   if (!fs::exists(folder_ / kList)) return sums;
   std::istringstream lines(ReadFile(folder_ / kList));

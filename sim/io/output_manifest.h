@@ -12,10 +12,10 @@ namespace continuum {
 /// this one does not write is taken away if it still is as that job left it: its name and a sum of
 /// its content stand in the list `.written` of the folder. What was changed since, or never was in
 /// the list, stays.
-class OwnFiles {
+class OutputManifest {
  public:
   /// Makes the folder. Throws Error when that is impossible.
-  explicit OwnFiles(const std::filesystem::path& folder);
+  explicit OutputManifest(const std::filesystem::path& folder);
 
   /// As WriteFile.
   void Write(const std::string& name, std::string_view content);

@@ -17,7 +17,7 @@ int DofCount(int type) { return type == mjJNT_FREE ? 6 : type == mjJNT_BALL ? 3 
 
 }  // namespace
 
-Ties::Ties(const mjModel& m) : column_(m.nv, kHeld), entry_(m.nv, 1) {
+JointEqualities::JointEqualities(const mjModel& m) : column_(m.nv, kHeld), entry_(m.nv, 1) {
   for (int j = 0; j < m.njnt; ++j) tie_.push_back({j, 0, 1});
   const bool off = m.opt.disableflags & (mjDSBL_EQUALITY | mjDSBL_CONSTRAINT);
   for (int i = 0; i < m.neq && !off; ++i) {
@@ -48,7 +48,7 @@ Ties::Ties(const mjModel& m) : column_(m.nv, kHeld), entry_(m.nv, 1) {
 
 // An equality says x₁ = p₀ + p₁ x₂ of x = q − q₀. With what is known of both joints it either ties
 // the free joint of one to that of the other, or holds one, or says nothing new.
-void Ties::Join(const mjModel& m, int equality) {
+void JointEqualities::Join(const mjModel& m, int equality) {
   const double* const p = m.eq_data + mjNEQDATA * equality;
   if (m.eq_type[equality] != mjEQ_JOINT) {
     obstacle_ = Called(m, equality) + " ties no joints";
@@ -78,7 +78,7 @@ void Ties::Join(const mjModel& m, int equality) {
   }
 }
 
-void Ties::Replace(int joint, const Tie& by) {
+void JointEqualities::Replace(int joint, const Tie& by) {
   for (Tie& tie : tie_) {
     if (tie.on != joint) continue;
     tie.offset += tie.ratio * by.offset;
@@ -87,20 +87,20 @@ void Ties::Replace(int joint, const Tie& by) {
   }
 }
 
-std::string Ties::Called(const mjModel& m, int equality) const {
+std::string JointEqualities::Called(const mjModel& m, int equality) const {
   return "equality " + continuum::Called(m, mjOBJ_EQUALITY, equality);
 }
 
-void Ties::FreePositions(const double* all, double* free) const {
+void JointEqualities::FreePositions(const double* all, double* free) const {
   for (const int q : positions_) *free++ = all[q];
 }
 
-void Ties::FreeVelocities(const double* all, double* free) const {
+void JointEqualities::FreeVelocities(const double* all, double* free) const {
   for (const int v : dofs_) *free++ = all[v];
 }
 
-void Ties::Spread(const mjModel& m, const double* position, const double* velocity,
-                  mjData& d) const {
+void JointEqualities::Spread(const mjModel& m, const double* position, const double* velocity,
+                             mjData& d) const {
   for (std::size_t i = 0; i < positions_.size(); ++i) d.qpos[positions_[i]] = position[i];
   for (int v = 0; v < m.nv; ++v)
     d.qvel[v] = column_[v] == kHeld ? 0 : entry_[v] * velocity[column_[v]];
@@ -115,14 +115,14 @@ void Ties::Spread(const mjModel& m, const double* position, const double* veloci
   }
 }
 
-void Ties::Project(const double* force, double* free) const {
+void JointEqualities::Project(const double* force, double* free) const {
   std::fill_n(free, dofs_.size(), 0.0);
   for (std::size_t v = 0; v < column_.size(); ++v) {
     if (column_[v] != kHeld) free[column_[v]] += entry_[v] * force[v];
   }
 }
 
-void Ties::Accelerate(const mjModel& m, mjData& d) {
+void JointEqualities::Accelerate(const mjModel& m, mjData& d) {
   const int free = static_cast<int>(dofs_.size());
   mj_fullM(&m, &d, inertia_.data());
   std::fill(reduced_.begin(), reduced_.end(), 0.0);

@@ -15,10 +15,10 @@ namespace continuum {
 /// with ξ the positions and w the velocities of the free joints, q₀ and ξ₀ those of qpos0, and τ,
 /// c, M of MuJoCo's forward dynamics. Forces of the ties do no work on (1), so (2) lacks them. A
 /// joint hangs on at most one other: a row of S has at most one entry.
-class Ties {
+class JointEqualities {
  public:
   /// Of the equalities that are active at the start; without any, every joint is free.
-  explicit Ties(const mjModel& m);
+  explicit JointEqualities(const mjModel& m);
 
   /// What (1) cannot say ("equality 'e' is not linear"); empty: nothing.
   const std::string& obstacle() const { return obstacle_; }

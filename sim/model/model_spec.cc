@@ -152,15 +152,15 @@ std::size_t ParameterIndex(const std::string& plugin, const std::string& paramet
     }
   };
   All::ForEach(look);
-  Written::ForEach(look);
+  FormulaLaws::ForEach(look);
   if (!found) throw Error::Input(plugin, "one of the parameters " + all, "'" + parameter + "'");
   return index;
 }
 
-System System::Load(const std::filesystem::path& model) {
+ModelSpec ModelSpec::Load(const std::filesystem::path& model) {
   RegisterOnce();
   RefuseEmptyConfig(ReadFile(model), model.string());
-  System system;
+  ModelSpec system;
   system.name_ = model.string();
   system.folder_ = std::filesystem::absolute(model).parent_path().string() + "/";
   char error[1000] = "";
@@ -170,10 +170,10 @@ System System::Load(const std::filesystem::path& model) {
   return system;
 }
 
-System System::Parse(const std::string& xml, const std::filesystem::path& folder,
-                     const std::string& name) {
+ModelSpec ModelSpec::Parse(const std::string& xml, const std::filesystem::path& folder,
+                           const std::string& name) {
   RegisterOnce();
-  System system;
+  ModelSpec system;
   system.name_ = name;
   system.folder_ = std::filesystem::absolute(folder / "").string();
   char error[1000] = "";
@@ -190,16 +190,16 @@ namespace {
 void RequireOrder(mjSpec& spec, const mjModel& compiled, std::span<const Change> changes) {
   for (const Change& change : changes) {
     if (IsPlugin(change) || IsWorld(change.target) || IsNativeEffect(change)) continue;
-    for (const Element& e : MatchElements(&spec, &compiled, change.target, change.target))
+    for (const SpecElement& e : MatchElements(&spec, &compiled, change.target, change.target))
       e.RequireOrder(change.attribute);
   }
 }
 
 }  // namespace
 
-class System::Edits {
+class ModelSpec::Edits {
  public:
-  Edits(const System& system, std::span<const Change> changes)
+  Edits(const ModelSpec& system, std::span<const Change> changes)
       : spec_(*system.spec_), option_(spec_.option), compiler_(spec_.compiler) {
     try {
       for (int turn = 0; turn < kTurns; ++turn) {
@@ -208,7 +208,7 @@ class System::Edits {
             Apply(system, changes, changes[i]);
         }
       }
-      for (Element& actuator : Elements(&spec_, mjOBJ_ACTUATOR, system.compiled_.get())) {
+      for (SpecElement& actuator : Elements(&spec_, mjOBJ_ACTUATOR, system.compiled_.get())) {
         elements_.push_back(actuator.Save());
         actuator.CoverDelay();
       }
@@ -227,14 +227,15 @@ class System::Edits {
     spec_.compiler = compiler_;
   }
 
-  void Apply(const System& system, std::span<const Change> changes, const Change& change) {
+  void Apply(const ModelSpec& system, std::span<const Change> changes, const Change& change) {
     if (IsWorld(change.target)) {
       if (IsNativeEffect(change)) return ApplyNativeEffect(spec_.option, changes, change);
       double& value = OptionAttribute(spec_.option, change.attribute, change.target);
       value = Changed(value, change);
       return;
     }
-    for (Element& e : MatchElements(&spec_, system.compiled_.get(), change.target, change.target)) {
+    for (SpecElement& e :
+         MatchElements(&spec_, system.compiled_.get(), change.target, change.target)) {
       elements_.push_back(e.Save());
       if (IsNativeEffect(change)) {
         ApplyNativeEffect(e, changes, change);
@@ -258,11 +259,11 @@ class System::Edits {
   mjSpec& spec_;
   mjOption option_;
   mjsCompiler compiler_;
-  std::vector<Element::Saved> elements_;
+  std::vector<SpecElement::Saved> elements_;
 };
 
 // Bodies may get their inertia from visual geoms: then these stay.
-void System::DropVisuals() {
+void ModelSpec::DropVisuals() {
   const mjsBody* const world = mjs_findBody(spec_.get(), "world");
   for (mjsElement* e = mjs_firstElement(spec_.get(), mjOBJ_GEOM); e;
        e = mjs_nextElement(spec_.get(), e)) {
@@ -277,10 +278,11 @@ void System::DropVisuals() {
   spec_->compiler.discardvisual = 1;
 }
 
-System::System(const System& other) : System(Parse(other.Xml(), other.folder_, other.name_)) {}
+ModelSpec::ModelSpec(const ModelSpec& other)
+    : ModelSpec(Parse(other.Xml(), other.folder_, other.name_)) {}
 
-Machine System::Build(std::span<const Change> changes) const {
-  Machine machine;
+ModelAndData ModelSpec::Build(std::span<const Change> changes) const {
+  ModelAndData machine;
   {
     const Edits edits(*this, changes);
     try {
@@ -298,7 +300,7 @@ Machine System::Build(std::span<const Change> changes) const {
   return machine;
 }
 
-double System::Value(const std::string& target, const std::string& attribute) const {
+double ModelSpec::Value(const std::string& target, const std::string& attribute) const {
   if (IsNativeEffect({target, attribute})) {
     if (!IsWorld(target)) MatchElements(spec_.get(), compiled_.get(), target, target);
     return NullOfNativeEffect(attribute);
@@ -312,16 +314,16 @@ double System::Value(const std::string& target, const std::string& attribute) co
   return MatchElements(spec_.get(), compiled_.get(), target, target).front().Get(attribute);
 }
 
-std::vector<std::string> System::Named(const std::string& target) const {
+std::vector<std::string> ModelSpec::Named(const std::string& target) const {
   if (IsWorld(target) || target.starts_with(kPluginTarget)) return {target};
   std::vector<std::string> names;
-  for (const Element& e : MatchElements(spec_.get(), compiled_.get(), target, target))
+  for (const SpecElement& e : MatchElements(spec_.get(), compiled_.get(), target, target))
     names.push_back(e.Who());
   return names;
 }
 
-double System::ValueAfter(std::span<const Change> changes, const std::string& target,
-                          const std::string& attribute) const {
+double ModelSpec::ValueAfter(std::span<const Change> changes, const std::string& target,
+                             const std::string& attribute) const {
   if (!target.starts_with(kPluginTarget) && !LiesOnTop({target, attribute})) {
     const Edits edits(*this, changes);
     return Value(target, attribute);
@@ -333,8 +335,8 @@ double System::ValueAfter(std::span<const Change> changes, const std::string& ta
   return value;
 }
 
-std::string System::Xml(std::span<const Change> changes, std::span<const EffectInstance> added,
-                        const std::filesystem::path& folder) const {
+std::string ModelSpec::Xml(std::span<const Change> changes, std::span<const EffectInstance> added,
+                           const std::filesystem::path& folder) const {
   const Edits edits(*this, changes);
   const AssetFolders moved(*spec_, folder_,
                            folder.empty() ? std::filesystem::path(folder_) : folder);
@@ -364,7 +366,7 @@ std::string System::Xml(std::span<const Change> changes, std::span<const EffectI
   return xml;
 }
 
-System System::Replacing(const std::string& instance, const EffectInstance& by) const {
+ModelSpec ModelSpec::Replacing(const std::string& instance, const EffectInstance& by) const {
   std::string xml = Xml();
   const std::size_t begin = xml.find("<instance name=\"" + instance + "\"");
   if (begin == xml.npos)
@@ -380,7 +382,8 @@ System System::Replacing(const std::string& instance, const EffectInstance& by) 
   return Parse(xml, folder_, name_);
 }
 
-System System::With(std::span<const Change> changes, std::span<const EffectInstance> added) const {
+ModelSpec ModelSpec::With(std::span<const Change> changes,
+                          std::span<const EffectInstance> added) const {
   return Parse(Xml(changes, added), folder_, name_);
 }
 

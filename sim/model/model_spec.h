@@ -12,7 +12,7 @@
 namespace continuum {
 
 /// A compiled model of one's own with its data.
-struct Machine {
+struct ModelAndData {
   Owned<mjModel> model;
   Owned<mjData> data;
 };
@@ -25,16 +25,16 @@ struct EffectInstance {
 
 /// A model specification that compiles with other values and effects. Not thread-safe: every thread
 /// builds from its own copy.
-class System {
+class ModelSpec {
  public:
   /// Reads an MJCF file, with our effects registered. Throws Error with MuJoCo's text.
-  static System Load(const std::filesystem::path& model);
+  static ModelSpec Load(const std::filesystem::path& model);
   /// Takes MJCF as a file of this folder would be taken. Throws Error (name) with MuJoCo's text.
-  static System Parse(const std::string& xml, const std::filesystem::path& folder = ".",
-                      const std::string& name = "MJCF");
-  System(const System& other);
-  System(System&&) = default;
-  System& operator=(System&&) = default;
+  static ModelSpec Parse(const std::string& xml, const std::filesystem::path& folder = ".",
+                         const std::string& name = "MJCF");
+  ModelSpec(const ModelSpec& other);
+  ModelSpec(ModelSpec&&) = default;
+  ModelSpec& operator=(ModelSpec&&) = default;
 
   /// The model as it stands, compiled once; for names and sizes.
   const mjModel& model() const { return *compiled_; }
@@ -45,7 +45,7 @@ class System {
 
   /// Compiles with changes, later ones after earlier ones. Throws Error (where the change came from
   /// is the caller's to say) for unknown targets and attributes, or with MuJoCo's text.
-  Machine Build(std::span<const Change> changes = {}) const;
+  ModelAndData Build(std::span<const Change> changes = {}) const;
   /// The value that a change would replace.
   double Value(const std::string& target, const std::string& attribute) const;
   /// The value after changes. What lies on top (LiesOnTop) is in it, so that it comes twice where
@@ -60,12 +60,12 @@ class System {
   std::string Xml(std::span<const Change> changes = {}, std::span<const EffectInstance> added = {},
                   const std::filesystem::path& folder = {}) const;
   /// The same with another effect under an instance's name; keys that the other effect lacks go.
-  System Replacing(const std::string& instance, const EffectInstance& by) const;
+  ModelSpec Replacing(const std::string& instance, const EffectInstance& by) const;
   /// The same with changes and instances inside.
-  System With(std::span<const Change> changes, std::span<const EffectInstance> added) const;
+  ModelSpec With(std::span<const Change> changes, std::span<const EffectInstance> added) const;
 
  private:
-  System() = default;
+  ModelSpec() = default;
 
   // Edits of the specification that are taken back at the end of a scope (mj_copySpec would lose
   // plugin instances that nothing refers to).

@@ -88,7 +88,8 @@ bool RepeatsEffect(std::span<const Change> changes, std::size_t index) {
   return false;
 }
 
-void ApplyNativeEffect(Element& element, std::span<const Change> changes, const Change& change) {
+void ApplyNativeEffect(SpecElement& element, std::span<const Change> changes,
+                       const Change& change) {
   Apply(element, changes, change);
 }
 

@@ -10,7 +10,7 @@
 
 namespace continuum {
 
-class Element;
+class SpecElement;
 
 /// Whether the target is the model as a whole: "option", or "world" as the place of an effect
 /// ("world:*" too).
@@ -23,7 +23,7 @@ bool RepeatsEffect(std::span<const Change> changes, std::size_t index);
 
 /// Applies the effect of `change` with the values that `changes` give its parameters. Throws Error
 /// when there is no native effect or parameter of this name.
-void ApplyNativeEffect(Element& element, std::span<const Change> changes, const Change& change);
+void ApplyNativeEffect(SpecElement& element, std::span<const Change> changes, const Change& change);
 void ApplyNativeEffect(mjOption& world, std::span<const Change> changes, const Change& change);
 
 /// The value of a parameter at which its effect is absent; 0 when that is what the model has.

@@ -122,10 +122,10 @@ std::string KindName(mjtObj kind) {
 
 }  // namespace
 
-Element::Element(mjSpec* spec, mjsElement* element, const mjModel* compiled)
+SpecElement::SpecElement(mjSpec* spec, mjsElement* element, const mjModel* compiled)
     : spec_(spec), element_(element), compiled_(compiled) {}
 
-Element::Saved Element::Save() const {
+SpecElement::Saved SpecElement::Save() const {
   // The structs hold numbers and pointers to strings; only numbers are edited here.
   const auto copy = [](auto* s) {
     Saved saved{s, std::vector<std::byte>(sizeof *s), nullptr};
@@ -150,7 +150,7 @@ Element::Saved Element::Save() const {
   }
 }
 
-void Element::Saved::Restore() const {
+void SpecElement::Saved::Restore() const {
   if (created_in) {
     mjs_delete(created_in, static_cast<mjsElement*>(address));
   } else {
@@ -158,11 +158,11 @@ void Element::Saved::Restore() const {
   }
 }
 
-std::string Element::Name() const { return mjs_getString(mjs_getName(element_)); }
+std::string SpecElement::Name() const { return mjs_getString(mjs_getName(element_)); }
 
-std::string Element::Who() const { return KindName(element_->elemtype) + " '" + Name() + "'"; }
+std::string SpecElement::Who() const { return KindName(element_->elemtype) + " '" + Name() + "'"; }
 
-double* Element::Address(std::string_view attribute, double& unit) const {
+double* SpecElement::Address(std::string_view attribute, double& unit) const {
   const auto [name, index] = SplitIndex(attribute);
   const Fields fields = FieldsOf(element_);
   const auto field = fields.find(name);
@@ -184,7 +184,7 @@ double* Element::Address(std::string_view attribute, double& unit) const {
   return field->second.data + index;
 }
 
-double Element::Get(std::string_view attribute) const {
+double SpecElement::Get(std::string_view attribute) const {
   if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return BodyMass();
   if (element_->elemtype == mjOBJ_TENDON) {
     if (attribute == "springlength" || attribute == "springlength[0]") return RestLength(0);
@@ -203,7 +203,7 @@ double Element::Get(std::string_view attribute) const {
   return *Address(attribute, unit) * unit;
 }
 
-void Element::Set(std::string_view attribute, double value) {
+void SpecElement::Set(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return SetBodyMass(value);
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return AddPointMass(value);
   if (element_->elemtype == mjOBJ_TENDON && attribute.starts_with("springlength")) {
@@ -234,7 +234,7 @@ void Element::Set(std::string_view attribute, double value) {
   *address = value / unit;
 }
 
-void Element::Add(std::string_view attribute, double value) {
+void SpecElement::Add(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return AddPointMass(value);
   const bool place = element_->elemtype == mjOBJ_BODY || element_->elemtype == mjOBJ_SITE;
   if (place && attribute.starts_with("force[")) return AddForce(attribute, value);
@@ -254,7 +254,7 @@ void Element::Add(std::string_view attribute, double value) {
   Set(attribute, Get(attribute) + value);
 }
 
-void Element::Scale(std::string_view attribute, double factor) {
+void SpecElement::Scale(std::string_view attribute, double factor) {
   if (element_->elemtype == mjOBJ_ACTUATOR && attribute == "force_scale") {
     mjsActuator& a = Affine();
     a.gainprm[0] *= factor;
@@ -270,14 +270,14 @@ void Element::Scale(std::string_view attribute, double factor) {
 }
 
 // Where nothing is written (-1 at both ends), MuJoCo takes the length at qpos0.
-double Element::RestLength(int end) const {
+double SpecElement::RestLength(int end) const {
   const double* const written = mjs_asTendon(element_)->springlength;
   const int id = mj_name2id(compiled_, mjOBJ_TENDON, Name().c_str());
   const bool none = written[0] == -1 && written[1] == -1;
   return none && id >= 0 ? compiled_->tendon_lengthspring[2 * id + end] : written[end];
 }
 
-void Element::RequireOrder(std::string_view attribute) const {
+void SpecElement::RequireOrder(std::string_view attribute) const {
   const auto [name, index] = SplitIndex(attribute);
   const bool length = name == "springlength";
   if (!length && !name.ends_with("range")) return;
@@ -291,7 +291,7 @@ void Element::RequireOrder(std::string_view attribute) const {
 }
 
 // An actuator with fixed gain and at most affine bias, written with <general>.
-mjsActuator& Element::Affine() {
+mjsActuator& SpecElement::Affine() {
   mjsActuator& a = *mjs_asActuator(element_);
   if (a.gaintype != mjGAIN_FIXED || (a.biastype != mjBIAS_NONE && a.biastype != mjBIAS_AFFINE)) {
     throw Error::Input(Who(), "an actuator with a fixed gain and an affine bias",
@@ -305,7 +305,7 @@ mjsActuator& Element::Affine() {
   return a;
 }
 
-void Element::SetLag(double lag) {
+void SpecElement::SetLag(double lag) {
   mjsActuator& a = *mjs_asActuator(element_);
   const bool lagged = a.dyntype == mjDYN_FILTER || a.dyntype == mjDYN_FILTEREXACT;
   if (a.dyntype != mjDYN_NONE && !lagged) {
@@ -322,7 +322,7 @@ void Element::SetLag(double lag) {
   a.dynprm[0] = lag;
 }
 
-void Element::SetDelay(double delay) {
+void SpecElement::SetDelay(double delay) {
   if (delay < 0) throw Error::Input(Who() + ": delay", "a number >= 0", std::to_string(delay));
   mjsActuator& a = *mjs_asActuator(element_);
   a.delay = delay;
@@ -330,7 +330,7 @@ void Element::SetDelay(double delay) {
   if (delay > 0 && a.nsample == 0) a.interp = 1;
 }
 
-void Element::CoverDelay() {
+void SpecElement::CoverDelay() {
   mjsActuator& a = *mjs_asActuator(element_);
   if (a.delay <= 0) return;
   const double samples = 8 * (a.delay / spec_->option.timestep + 4);
@@ -338,7 +338,7 @@ void Element::CoverDelay() {
 }
 
 // Of the specification where it says so, else what compilation found in the geoms.
-double Element::BodyMass() const {
+double SpecElement::BodyMass() const {
   const mjsBody& body = *mjs_asBody(element_);
   if (body.explicitinertial && spec_->compiler.inertiafromgeom != mjINERTIAFROMGEOM_TRUE)
     return body.mass;
@@ -346,7 +346,7 @@ double Element::BodyMass() const {
 }
 
 // Makes the inertia that compilation found explicit, with a quaternion, so that it can be edited.
-void Element::FreezeInertia() {
+void SpecElement::FreezeInertia() {
   if (spec_->compiler.inertiafromgeom == mjINERTIAFROMGEOM_TRUE ||
       spec_->compiler.settotalmass > 0) {
     throw Error::Input(Who() + ": mass",
@@ -375,7 +375,7 @@ void Element::FreezeInertia() {
   body.fullinertia[0] = NAN;
 }
 
-void Element::SetBodyMass(double mass) {
+void SpecElement::SetBodyMass(double mass) {
   FreezeInertia();
   mjsBody& body = *mjs_asBody(element_);
   const double factor = body.mass > 0 ? mass / body.mass : 0;
@@ -387,7 +387,7 @@ void Element::SetBodyMass(double mass) {
 }
 
 // Adds a point mass at the body's origin: centre and inertia by the parallel-axis theorem.
-void Element::AddPointMass(double added) {
+void SpecElement::AddPointMass(double added) {
   if (added == 0) return;
   FreezeInertia();
   mjsBody& body = *mjs_asBody(element_);
@@ -423,15 +423,15 @@ void Element::AddPointMass(double added) {
   for (double& i : body.inertia) i = 0;
 }
 
-std::vector<Element> Elements(mjSpec* spec, mjtObj kind, const mjModel* compiled) {
-  std::vector<Element> all;
+std::vector<SpecElement> Elements(mjSpec* spec, mjtObj kind, const mjModel* compiled) {
+  std::vector<SpecElement> all;
   for (mjsElement* e = mjs_firstElement(spec, kind); e; e = mjs_nextElement(spec, e))
     all.emplace_back(spec, e, compiled);
   return all;
 }
 
-std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const std::string& target,
-                                   const std::string& where) {
+std::vector<SpecElement> MatchElements(mjSpec* spec, const mjModel* compiled,
+                                       const std::string& target, const std::string& where) {
   const std::size_t colon = target.find(':');
   const auto kind = Kinds().find(target.substr(0, colon));
   if (colon == target.npos || kind == Kinds().end()) {
@@ -440,8 +440,8 @@ std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const 
     throw Error::Input(where, "a target such as " + all, "'" + target + "'");
   }
   const std::string globs = target.substr(colon + 1);
-  std::vector<Element> found;
-  for (const Element& e : Elements(spec, kind->second, compiled)) {
+  std::vector<SpecElement> found;
+  for (const SpecElement& e : Elements(spec, kind->second, compiled)) {
     if (!e.Name().empty() && AnyGlobMatches(globs, e.Name())) found.push_back(e);
   }
   if (found.empty()) {

@@ -22,11 +22,11 @@ namespace continuum {
 ///             filterexact; Add is refused where there is one)
 ///
 /// Satisfies the Element of effects/effect.h, so that native effects apply to it.
-class Element {
+class SpecElement {
  public:
   /// compiled: the compiled model of the same specification; masses that come from geoms are read
   /// there.
-  Element(mjSpec* spec, mjsElement* element, const mjModel* compiled);
+  SpecElement(mjSpec* spec, mjsElement* element, const mjModel* compiled);
 
   double Get(std::string_view attribute) const;
   void Set(std::string_view attribute, double value);
@@ -76,13 +76,13 @@ class Element {
 };
 
 /// Every element of a kind, in the order of the model.
-std::vector<Element> Elements(mjSpec* spec, mjtObj kind, const mjModel* compiled);
+std::vector<SpecElement> Elements(mjSpec* spec, mjtObj kind, const mjModel* compiled);
 
 /// The elements that a target "kind:glob" (or several globs, separated by spaces) names, in the
 /// order of the model ("option" gives none: see OptionAttribute). Throws Error (where) when the
 /// kind is unknown or nothing matches.
-std::vector<Element> MatchElements(mjSpec* spec, const mjModel* compiled, const std::string& target,
-                                   const std::string& where);
+std::vector<SpecElement> MatchElements(mjSpec* spec, const mjModel* compiled,
+                                       const std::string& target, const std::string& where);
 
 /// The number behind an attribute of <option>: "gravity[2]", "timestep". Throws Error when unknown.
 double& OptionAttribute(mjOption& option, std::string_view attribute, const std::string& where);

@@ -31,13 +31,13 @@ mjsElement* MakeSite(mjsBody* body, const std::string& name) {
 }  // namespace
 
 // Made once per place; another extension of the same model adds to it.
-void Element::AddForce(std::string_view attribute, double newtons) {
+void SpecElement::AddForce(std::string_view attribute, double newtons) {
   const int axis = attribute == "force[0]" ? 0 : attribute == "force[1]" ? 1 : 2;
   const bool body = element_->elemtype == mjOBJ_BODY;
   const std::string name = "external_force_" + std::string(body ? "body_" : "site_") + Name();
   mjsElement* const present = mjs_findElement(spec_, mjOBJ_ACTUATOR, name.c_str());
   if (present) {
-    others_.push_back(Element(spec_, present, compiled_).Save());
+    others_.push_back(SpecElement(spec_, present, compiled_).Save());
     mjs_asActuator(present)->gear[axis] += newtons;
     return;
   }

@@ -34,7 +34,7 @@ void AddRegistration(Page& page, const Registration& r) {
 
 }  // namespace
 
-void CheckNames(const Experiment& e, const System& system) {
+void CheckNames(const Experiment& e, const ModelSpec& system) {
   CheckUnits(e, system.model());
   for (const Log& log : e.logs) {
     if (log.set.empty()) continue;
@@ -47,13 +47,13 @@ void CheckNames(const Experiment& e, const System& system) {
   }
 }
 
-std::vector<Replayed> Replay(Experiment& e, const System& system,
+std::vector<Replayed> Replay(Experiment& e, const ModelSpec& system,
                              const std::function<void(const std::string&)>& progress) {
   std::vector<Trace> traces;
   for (const Log& log : e.logs) {
     if (progress)
       progress(fmt::format("log {} of {}: {}", traces.size() + 1, e.logs.size(), log.label));
-    Machine machine = system.Build(log.set);
+    ModelAndData machine = system.Build(log.set);
     traces.push_back(Simulate(machine, e, log, {}, Hooks::Stoppable()));
     if (traces.back().diverged) throw Error::Job(log.label + ": " + traces.back().Failure());
   }
@@ -127,7 +127,7 @@ nlohmann::json ErrorsJson(const Experiment& e, const std::vector<Replayed>& logs
 
 void WriteSimulated(const Experiment& e, const std::vector<Trace>& traces,
                     const std::filesystem::path& folder) {
-  OwnFiles files(folder);
+  OutputManifest files(folder);
   for (std::size_t l = 0; l < traces.size(); ++l) {
     const Log& log = e.logs[l];
     std::string text = "time";

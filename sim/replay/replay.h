@@ -20,11 +20,11 @@ struct Replayed {
 
 /// Throws Error (file and place) when an experiment names what its model lacks, when its units do
 /// not fit, or when a log's known values do not compile: before the first simulation.
-void CheckNames(const Experiment& experiment, const System& system);
+void CheckNames(const Experiment& experiment, const ModelSpec& system);
 
 /// Every log of an experiment as it stands; what its registration leaves open is estimated from the
 /// train logs and written into it. Throws Error (kJob) when a simulation diverges or finds no rest.
-std::vector<Replayed> Replay(Experiment& experiment, const System& system,
+std::vector<Replayed> Replay(Experiment& experiment, const ModelSpec& system,
                              const std::function<void(const std::string&)>& progress = {});
 
 /// Pooled RMS of the train and validate logs.
@@ -42,7 +42,7 @@ nlohmann::json ErrorsJson(const Experiment& experiment, const std::vector<Replay
 nlohmann::json ScoreJson(const std::vector<ChannelScore>& score);
 
 /// simulated/<log>.csv: time [s], and per channel the simulated and the measured value in its unit.
-/// Files of logs that an earlier job wrote there and this experiment lacks go (OwnFiles).
+/// Files of logs that an earlier job wrote there and this experiment lacks go (OutputManifest).
 void WriteSimulated(const Experiment& experiment, const std::vector<Trace>& traces,
                     const std::filesystem::path& folder);
 

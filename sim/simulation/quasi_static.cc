@@ -45,10 +45,10 @@ void RefuseCreep(const mjModel& m) {
 }
 
 // One log on one machine.
-class Walk {
+class QuasiStaticRun {
  public:
-  Walk(Machine& machine, const Experiment& e, const Log& log, const Wiring& wiring,
-       const Hooks& hooks, const QuasiStaticOptions& pace)
+  QuasiStaticRun(ModelAndData& machine, const Experiment& e, const Log& log, const Wiring& wiring,
+                 const Hooks& hooks, const QuasiStaticOptions& pace)
       : m_(*machine.model),
         d_(*machine.data),
         log_(log),
@@ -187,7 +187,7 @@ class Walk {
 
 }  // namespace
 
-Trace SimulateAtRest(Machine& machine, const Experiment& e, const Log& log,
+Trace SimulateAtRest(ModelAndData& machine, const Experiment& e, const Log& log,
                      const InitialState& initial, const Hooks& hooks,
                      const QuasiStaticOptions& pace) {
   const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
@@ -197,7 +197,7 @@ Trace SimulateAtRest(Machine& machine, const Experiment& e, const Log& log,
   m.opt.disableflags |= mjDSBL_AUTORESET;
   RefuseCreep(m);
   const Wiring wiring(e, m);
-  Walk walk(machine, e, log, wiring, hooks, pace);
+  QuasiStaticRun walk(machine, e, log, wiring, hooks, pace);
   walk.Begin(start, risen);
   Recorder recorder(m, wiring, log.rows());
   Trace trace;

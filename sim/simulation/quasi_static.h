@@ -35,7 +35,7 @@ struct QuasiStaticOptions {
 ///
 /// A row that finds no rest ends the simulation: diverged and why are set. Throws Error for effects
 /// that creep: their rest is a matter of time.
-Trace SimulateAtRest(Machine& machine, const Experiment& e, const Log& log,
+Trace SimulateAtRest(ModelAndData& machine, const Experiment& e, const Log& log,
                      const InitialState& initial = {}, const Hooks& hooks = {},
                      const QuasiStaticOptions& = {});
 

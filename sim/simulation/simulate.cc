@@ -240,7 +240,7 @@ InitialState FirstMeasured(const mjModel& m, const Experiment& e, const Log& log
   return state;
 }
 
-InitialState ByKind(Machine& machine, const Experiment& e, const Log& log) {
+InitialState ByKind(ModelAndData& machine, const Experiment& e, const Log& log) {
   const mjModel& m = *machine.model;
   switch (e.start) {
     case Experiment::Start::kRest:
@@ -254,7 +254,7 @@ InitialState ByKind(Machine& machine, const Experiment& e, const Log& log) {
 
 }  // namespace
 
-InitialState StartOf(Machine& machine, const Experiment& e, const Log& log) {
+InitialState StartOf(ModelAndData& machine, const Experiment& e, const Log& log) {
   const mjModel& m = *machine.model;
   InitialState state = ByKind(machine, e, log);
   for (const auto& [name, known] : log.start) {
@@ -295,7 +295,7 @@ std::optional<InitialState> StateAt(const mjModel& m, const Experiment& e, const
   return state;
 }
 
-InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log) {
+InitialState Equilibrium(ModelAndData& machine, const Experiment& e, const Log& log) {
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   const int flags = m.opt.disableflags;
@@ -368,8 +368,8 @@ void CheckLength(const Log& log, double timestep) {
                      "at most 1e9 time steps of " + Decimal(timestep) + " s", Decimal(span) + " s");
 }
 
-Trace Simulate(Machine& machine, const Experiment& e, const Log& log, const InitialState& initial,
-               const Hooks& hooks) {
+Trace Simulate(ModelAndData& machine, const Experiment& e, const Log& log,
+               const InitialState& initial, const Hooks& hooks) {
   if (e.quasi_static) return SimulateAtRest(machine, e, log, initial, hooks);
   const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
   mjModel& m = *machine.model;

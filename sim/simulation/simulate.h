@@ -77,7 +77,7 @@ void CheckLength(const Log& log, double timestep);
 /// state at the row's time.
 ///
 /// A simulation that diverges ends there: diverged is set, the rest of the channels is NaN.
-Trace Simulate(Machine& machine, const Experiment& e, const Log& log,
+Trace Simulate(ModelAndData& machine, const Experiment& e, const Log& log,
                const InitialState& initial = {}, const Hooks& hooks = {});
 
 /// The channels anew from raw, as this experiment's registration and outputs measure them.
@@ -86,7 +86,7 @@ void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Tra
 /// The state in which the experiment's start, and the log's own, leaves a log's trial: qpos0 at
 /// rest, the equilibrium, what joint sensors measure in the first row, or (estimate) also their
 /// slope there. Throws Error for joints that the log's start names and that are no hinge or slide.
-InitialState StartOf(Machine& machine, const Experiment& e, const Log& log);
+InitialState StartOf(ModelAndData& machine, const Experiment& e, const Log& log);
 
 /// The state at a row as it was measured: positions of the row, speeds those of a joint velocity's
 /// output, else the slope of a line through the row and its next two neighbours to each side.
@@ -96,6 +96,6 @@ std::optional<InitialState> StateAt(const mjModel& m, const Experiment& e, const
 
 /// Static equilibrium under the first inputs, without friction, lags settled. Throws Error (kJob)
 /// when there is none near qpos0.
-InitialState Equilibrium(Machine& machine, const Experiment& e, const Log& log);
+InitialState Equilibrium(ModelAndData& machine, const Experiment& e, const Log& log);
 
 }  // namespace continuum

@@ -22,7 +22,7 @@ double Since(Clock::time_point begin) {
 // Draws the scene of a pose again and again, as the renderer sets it up.
 class Bare {
  public:
-  explicit Bare(const Machine& machine) : gl_(Gl::kOsmesa) {
+  explicit Bare(const ModelAndData& machine) : gl_(Gl::kOsmesa) {
     gl_.MakeCurrent();
     mjModel sized = *machine.model;  // shares all arrays
     sized.vis.global.offwidth = kWidth;
@@ -71,7 +71,7 @@ class Bare {
 
 void Film(benchmark::State& state) {
   const Experiment e = Experiment::Read(CONTINUUM_SOURCE "/models/annelida/demo/annelida.yaml");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   Bare bare(system.Build());
   FilmOptions options;
   options.width = kWidth, options.height = kHeight, options.fps = kFps;

@@ -102,7 +102,7 @@ std::vector<Case> SpoiltCases(int repeats) {
 }
 
 // Those with one hidden effect, which alone is tried: for its size and interval, at little cost.
-std::vector<Case> Told(std::vector<Case> cases) {
+std::vector<Case> DescribedCases(std::vector<Case> cases) {
   std::erase_if(cases, [](const Case& c) { return c.effects.size() != 1 || !c.listed; });
   for (Case& c : cases) c.told = true;
   return cases;
@@ -149,7 +149,7 @@ int Main(int argc, char** argv) {
                : spoilt   ? SpoiltCases(repeats)
                : quick    ? QuickCases(robot)
                           : Cases(robot, repeats);
-  if (told) cases = Told(std::move(cases));
+  if (told) cases = DescribedCases(std::move(cases));
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const std::string name = cases[i].Name();
     if (done.contains(name) || name.find(only) == name.npos) continue;

@@ -164,7 +164,7 @@ double ClosestTo(const CandidateResult& lead, const Diagnosis& d) {
 
 Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
   const Experiment e = Experiment::Read(file);
-  const Diagnosis d = Diagnose(e, System::Load(e.model));
+  const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model));
   Answer a;
   a.verdict = d.verdict.text;
   a.seconds = d.seconds;
@@ -175,7 +175,7 @@ Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
   a.lack = d.lack.smallest();
   if (d.noise_limited && d.chosen()) a.closest = ClosestTo(d.candidates.front(), d);
   a.next_experiment = d.next;
-  Told told;
+  DiagnosisFiles told;
   told.after = d.after();
   a.detail = Summary(e, d, told);
   if (d.noise_limited && !d.partner && d.chosen()) {

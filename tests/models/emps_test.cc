@@ -15,10 +15,10 @@ class Emps : public testing::RealLog {
 
   // RMS of simulated minus measured voltage over RMS of the measured one, of both windows.
   double VoltageError(const std::vector<Change>& changes = {}) const {
-    const System system = System::Load(experiment_.model);
+    const ModelSpec system = ModelSpec::Load(experiment_.model);
     double off = 0, all = 0;
     for (const Log& log : experiment_.logs) {
-      Machine machine = system.Build(changes);
+      ModelAndData machine = system.Build(changes);
       const Trace trace = Simulate(machine, experiment_, log);
       for (std::size_t k = 0; k < log.rows(); ++k) {
         off += std::pow(trace.channel[0][k] - log.measured[0][k], 2);
@@ -41,8 +41,8 @@ TEST_F(Emps, TheOffsetHasItsSign) {
 }
 
 TEST_F(Emps, TheLoopHoldsTheCarriageWithin35MicrometresOfTheMeasuredPosition) {
-  const System system = System::Load(experiment_.model);
-  Machine machine = system.Build();
+  const ModelSpec system = ModelSpec::Load(experiment_.model);
+  ModelAndData machine = system.Build();
   const Log& log = experiment_.logs.front();
   const Trace trace = Simulate(machine, experiment_, log);
   for (std::size_t k = 0; k < log.rows(); ++k)

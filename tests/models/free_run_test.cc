@@ -20,7 +20,7 @@ struct FreeRun {
 };
 FreeRun Release(const std::string& file, const std::function<void(const mjModel&, mjData&)>& bend,
                 const std::function<double(const mjModel&, const mjData&)>& elastic) {
-  const Machine machine = System::Load(kModels + file).Build();
+  const ModelAndData machine = ModelSpec::Load(kModels + file).Build();
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   m.opt.enableflags |= mjENBL_ENERGY;

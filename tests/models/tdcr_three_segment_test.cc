@@ -22,10 +22,10 @@ class TdcrThreeSegment : public testing::RealLog {
 
   // RMS distance of the tip [m] over one family of patterns.
   double TipError(const std::string& family) const {
-    const System system = System::Load(experiment_.model);
+    const ModelSpec system = ModelSpec::Load(experiment_.model);
     for (const Log& log : experiment_.logs) {
       if (log.trial != family) continue;
-      Machine machine = system.Build();
+      ModelAndData machine = system.Build();
       const Trace trace = Simulate(machine, experiment_, log);
       double sum = 0;
       for (std::size_t k = 0; k < log.rows(); ++k) {

@@ -35,8 +35,8 @@ TEST(TendonArm, APureMomentBendsItIntoTheArcOfTheRod) {
   arm.tendons.clear();
   for (auto& segment : arm.segments) segment.links = 8, segment.length = 0.06, segment.EI = 2e-3;
   testing::Scratch scratch;
-  const System system = System::Load(scratch.Write("arm.xml", TendonArmMjcf(arm)));
-  Machine machine = system.Build();
+  const ModelSpec system = ModelSpec::Load(scratch.Write("arm.xml", TendonArmMjcf(arm)));
+  ModelAndData machine = system.Build();
   const double length = 0.18, moment = 0.01, slope = moment * length / 2e-3, x = slope / 48;
   const double radius = length / slope * x / std::tan(x);
   mjData& d = *machine.data;
@@ -72,8 +72,8 @@ TEST(TendonArm, ATendonTakenInPullsWithTheTensionOfTheChainsStatics) {
   arm.tendons = {{"t", 1, 0, 1}};
   arm.segments[0].pretension = 0;
   testing::Scratch scratch;
-  const System system = System::Load(scratch.Write("arm.xml", TendonArmMjcf(arm)));
-  Machine machine = system.Build();
+  const ModelSpec system = ModelSpec::Load(scratch.Write("arm.xml", TendonArmMjcf(arm)));
+  ModelAndData machine = system.Build();
   mjData& d = *machine.data;
   const auto settle = [&](double displacement) {
     d.ctrl[0] = displacement;

@@ -16,8 +16,8 @@ class Trunk : public testing::RealLog {
 
   // RMS distance of the third disk [m] in one window.
   double TipError(const Log& log) const {
-    const System system = System::Load(experiment_.model);
-    Machine machine = system.Build(log.set);
+    const ModelSpec system = ModelSpec::Load(experiment_.model);
+    ModelAndData machine = system.Build(log.set);
     const Trace trace = Simulate(machine, experiment_, log);
     double sum = 0;
     for (std::size_t k = 0; k < log.rows(); ++k) {
@@ -41,8 +41,8 @@ TEST_F(Trunk, ReplaysAsItsReadmeSays) {
 }
 
 TEST_F(Trunk, HangsStraightWhereItsRestingDisksWereMeasured) {
-  const System system = System::Load(experiment_.model);
-  Machine machine = system.Build();
+  const ModelSpec system = ModelSpec::Load(experiment_.model);
+  ModelAndData machine = system.Build();
   mj_forward(machine.model.get(), machine.data.get());
   // Where the disks stand on average while the motors are near zero [m]; 5 mm: hysteresis.
   constexpr double kRest[9] = {0.101,  -0.1045, 0.105,   0.102, -0.197,

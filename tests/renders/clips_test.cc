@@ -40,7 +40,7 @@ class Recipe : public ::testing::TestWithParam<fs::path> {};
 
 TEST_P(Recipe, NamesWhatItsModelHas) {
   const Clip clip = Clip::Read(GetParam());
-  const System system = System::Load(clip.experiment.model);
+  const ModelSpec system = ModelSpec::Load(clip.experiment.model);
   EXPECT_NO_THROW(clip.Check(system.model()));
 }
 
@@ -88,7 +88,7 @@ class ClipFile : public ::testing::Test {
   void ExpectRefused(const std::string& where, const std::string& found) const {
     const auto check = [&] {
       const Clip clip = Clip::Read(files_ / "clip.yaml");
-      clip.Check(System::Load(clip.experiment.model).model());
+      clip.Check(ModelSpec::Load(clip.experiment.model).model());
     };
     EXPECT_THAT(check, ThrowsMessage<Error>(
                            AllOf(HasSubstr("clip.yaml"), HasSubstr(where), HasSubstr(found))));

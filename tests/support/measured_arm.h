@@ -38,7 +38,7 @@ class MeasuredArm {
 
   /// What a camera measures that is registered like this, with white noise [m] on top: the model is
   /// simulated at a tenth of the rows' period and read at the times at which the camera looks.
-  static void Measure(Experiment& e, const System& system, const Registration& camera,
+  static void Measure(Experiment& e, const ModelSpec& system, const Registration& camera,
                       double noise = 0) {
     std::mt19937 random(7);
     std::normal_distribution<double> error(0, noise > 0 ? noise : 1);
@@ -58,7 +58,7 @@ class MeasuredArm {
       seen.registration = camera;
       seen.registration.clock_shift = 0;
       seen.quasi_static = false;
-      Machine machine = system.Build();
+      ModelAndData machine = system.Build();
       const Trace trace = Simulate(machine, seen, dense);
       const auto late =
           static_cast<std::ptrdiff_t>(std::lround(camera.clock_shift * kDense / kPeriod));

@@ -109,7 +109,7 @@ inline Experiment ArmWithPayload(const std::filesystem::path& folder, double pay
   }
   Experiment e = Experiment::Read(folder / "experiment.yaml");
   WriteFile(folder / "truth.xml", fmt::format(kArm, 1e-6 + payload));
-  Problem truth(e, System::Load(folder / "truth.xml"));
+  Problem truth(e, ModelSpec::Load(folder / "truth.xml"));
   truth.StepBy(2e-4);
   std::mt19937_64 rng(1);
   std::normal_distribution<double> normal;

@@ -31,7 +31,7 @@ std::string Tried(const Diagnosis& d) {
 }
 
 void Measure(const std::string& name, const Experiment& e) {
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   fmt::print("{}: {} logs, {} states{}\n", name, e.logs.size(),
              system.model().nq + system.model().nv, Load());
   Split split;
@@ -60,7 +60,7 @@ int Main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   for (const std::string& file : files) {
     const Experiment read = Experiment::Read(file);
-    Measure(file, Registered(read, System::Load(read.model)));
+    Measure(file, Registered(read, ModelSpec::Load(read.model)));
   }
   if (!files.empty()) return 0;
   const auto folder =

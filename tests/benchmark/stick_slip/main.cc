@@ -36,7 +36,8 @@ struct Case {
 
 std::vector<double> Values(const Problem::Vector& x) { return {x.begin(), x.end()}; }
 
-nlohmann::json Solve(const Case& c, Experiment e, const System& system, int starts, double share) {
+nlohmann::json Solve(const Case& c, Experiment e, const ModelSpec& system, int starts,
+                     double share) {
   std::mt19937_64 rng(static_cast<std::uint64_t>(c.seed));
   const ChannelNoise noise{{c.rho}, c.sigma * std::sqrt(1 - c.rho * c.rho), 0, c.sigma};
   for (Log& log : e.logs) {
@@ -132,7 +133,7 @@ int Main(int argc, char** argv) {
   std::fflush(stdout);
   for (const double step : {2e-3, 5e-4}) {
     const Experiment e = Clean(folder, step, sigma);
-    const System system = System::Load(e.model);
+    const ModelSpec system = ModelSpec::Load(e.model);
     if (step == 2e-3)
       fmt::print("smooth path: {}\n", SmoothObstacle(Problem(e, system))), std::fflush(stdout);
     for (int seed = first; seed < first + seeds; ++seed) {

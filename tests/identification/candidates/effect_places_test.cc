@@ -25,8 +25,8 @@ using ::testing::StartsWith;
 // The demo of the snake arm: ten joints, four cables, five angles and two coordinates of the tip.
 class PlacesOfAnArm : public ::testing::Test {
  protected:
-  std::vector<std::string> Places(const Candidate& candidate, continuum::Places places,
-                                  const std::vector<Change>& fitted = {}) {
+  std::vector<std::string> PlacesOf(const Candidate& candidate, continuum::SearchScope places,
+                                    const std::vector<Change>& fitted = {}) {
     Experiment e = experiment_;
     e.candidates = {candidate};
     skipped_.clear();
@@ -37,47 +37,47 @@ class PlacesOfAnArm : public ::testing::Test {
   }
 
   Experiment experiment_ = Experiment::Read(CONTINUUM_SOURCE "/models/annelida/demo/annelida.yaml");
-  System system_ = System::Load(experiment_.model);
+  ModelSpec system_ = ModelSpec::Load(experiment_.model);
   std::vector<Hypothesis> found_;
   std::vector<std::string> skipped_;
 };
 
 TEST_F(PlacesOfAnArm, AreSensorsOfAUnitTogetherAndEachAlone) {
   EXPECT_THAT(
-      Places({"sensor_scale", "", false}, Places::kFew),
+      PlacesOf({"sensor_scale", "", false}, SearchScope::kFew),
       ElementsAre("sensors tip_x, tip_z", "sensors bend1_y, bend2_y, bend3_y, bend4_y, bend5_y",
                   "sensor bend1_y", "sensor bend2_y", "sensor bend3_y", "sensor bend4_y",
                   "sensor bend5_y", "sensor tip_x", "sensor tip_z"));
-  EXPECT_THAT(Places({"sensor_delay", "", false}, Places::kFew),
+  EXPECT_THAT(PlacesOf({"sensor_delay", "", false}, SearchScope::kFew),
               Contains(StartsWith("sensors bend1_y, bend2_y, bend3_y, bend4_y, bend5_y, tip_x")));
-  EXPECT_THAT(Places({"sensor_drift", "sensor:bend[12]_y", false}, Places::kFew),
+  EXPECT_THAT(PlacesOf({"sensor_drift", "sensor:bend[12]_y", false}, SearchScope::kFew),
               ElementsAre("sensors bend1_y, bend2_y", "sensor bend1_y", "sensor bend2_y"));
 }
 
 TEST_F(PlacesOfAnArm, AreFewObjectsOneByOneAndManyOnlyTogether) {
-  EXPECT_THAT(Places({"input_gain", "", false}, Places::kFew),
+  EXPECT_THAT(PlacesOf({"input_gain", "", false}, SearchScope::kFew),
               ElementsAre("actuators cable1, cable2, cable3, cable4", "actuator cable1",
                           "actuator cable2", "actuator cable3", "actuator cable4"));
-  EXPECT_THAT(Places({"dahl", "", false}, Places::kFew), SizeIs(1));
+  EXPECT_THAT(PlacesOf({"dahl", "", false}, SearchScope::kFew), SizeIs(1));
 }
 
 TEST_F(PlacesOfAnArm, LeaveOutEachOfManyAndTendons) {
-  EXPECT_THAT(Places({"input_gain", "", false}, Places::kOthers), IsEmpty());
-  const auto where = Places({"dahl", "", false}, Places::kOthers);
+  EXPECT_THAT(PlacesOf({"input_gain", "", false}, SearchScope::kOthers), IsEmpty());
+  const auto where = PlacesOf({"dahl", "", false}, SearchScope::kOthers);
   EXPECT_THAT(where, SizeIs(10 + 1 + 4));
   EXPECT_THAT(where, Contains("joint bend3_x"));
   EXPECT_THAT(where, Contains("tendons cable1, cable2, cable3, cable4"));
-  EXPECT_THAT(Places({"dahl", "joint:bend*", false}, Places::kOthers), IsEmpty());
+  EXPECT_THAT(PlacesOf({"dahl", "joint:bend*", false}, SearchScope::kOthers), IsEmpty());
 }
 
 TEST_F(PlacesOfAnArm, AreSingleJointsWhereTheExperimentFitsAllOfThemTogether) {
-  EXPECT_THAT(Places({"stiffness", "", false}, Places::kFew), IsEmpty());
+  EXPECT_THAT(PlacesOf({"stiffness", "", false}, SearchScope::kFew), IsEmpty());
   EXPECT_THAT(skipped_, ElementsAre("stiffness: the experiment fits it already"));
   EXPECT_THAT(
-      Places({"stiffness", "", false}, Places::kOthers, {{"joint:bend*", "stiffness", 1.5}}),
+      PlacesOf({"stiffness", "", false}, SearchScope::kOthers, {{"joint:bend*", "stiffness", 1.5}}),
       Contains("joint bend2_y"));
   EXPECT_EQ(found_.front().null, std::vector<double>{1.5});
-  EXPECT_THAT(Places({"stiffness", "joint:bend2_y", false}, Places::kFew),
+  EXPECT_THAT(PlacesOf({"stiffness", "joint:bend2_y", false}, SearchScope::kFew),
               ElementsAre("joint bend2_y"));
 }
 
@@ -159,7 +159,7 @@ class Carts : public testing::Bench {
                   "parameters:\n  - {name: k, target: 'joint:x*', attribute: stiffness, initial: "
                   "60, lower: 20, upper: 200}\ncandidates: " +
                   candidates + "\n"));
-    return Diagnose(e, System::Load(Write("model.xml", xml)), {});
+    return Diagnose(e, ModelSpec::Load(Write("model.xml", xml)), {});
   }
 };
 

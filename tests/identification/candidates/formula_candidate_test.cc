@@ -34,7 +34,7 @@ class WrittenLawTest : public testing::Bench {
     DiagnosisOptions options;
     options.placebos = 0;
     options.iterations = 8;
-    return Diagnose(e, System::Load(Write("model.xml", Pendulum().Xml())), options);
+    return Diagnose(e, ModelSpec::Load(Write("model.xml", Pendulum().Xml())), options);
   }
   // The error for one law with a text replaced by another.
   std::string Refusal(const std::string& old, const std::string& by) {
@@ -83,7 +83,7 @@ TEST_F(WrittenLawTest, IsJudgedAsTheSameLawOfTheList) {
 TEST_F(WrittenLawTest, IsWrittenIntoTheModelWithItsFormula) {
   const Experiment e = ReadWith(kLevel);
   const Diagnosis d = Ask(e);
-  const Told told = WriteDiagnosis(e, d, folder_ / "out");
+  const DiagnosisFiles told = WriteDiagnosis(e, d, folder_ / "out");
   const auto json = DiagnosisJson(e, d, told);
   ASSERT_THAT(json.at("causes"), SizeIs(1)) << json.at("reason");
   const auto& level = json.at("causes")[0].at("parameters").at("level");
@@ -93,7 +93,7 @@ TEST_F(WrittenLawTest, IsWrittenIntoTheModelWithItsFormula) {
   EXPECT_THAT(xml, HasSubstr("continuum.formula_friction"));
   EXPECT_THAT(xml, HasSubstr("key=\"level\" value=\"p1\""));
   const Experiment again = Experiment::Read(folder_ / "out" / "extended.yaml");
-  const System extended = System::Load(folder_ / "out" / "extended.xml");
+  const ModelSpec extended = ModelSpec::Load(folder_ / "out" / "extended.xml");
   EXPECT_EQ(extended.Value("plugin:diagnosis", "p1"), level.at("value").get<double>());
   EXPECT_NO_THROW(Problem(again, extended));
 }

@@ -20,7 +20,7 @@ TEST(SegmentCandidates, LieBesideTheSegmentWithItsPlacesAndGeometry) {
   e.all_candidates = false;
   e.candidates = {{"braid", "", false}, {"chamber_asymmetry", "", false}};
   std::vector<std::string> skipped;
-  const System module = System::Load(kModule);
+  const ModelSpec module = ModelSpec::Load(kModule);
   const auto all = MakeCandidates(e, {&module}, {}, skipped);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_THAT(skipped, ::testing::IsEmpty());
@@ -48,13 +48,13 @@ TEST(SegmentCandidates, AreLeftOutWithoutASegmentAndWhereTheExperimentFitsThem) 
   fitted.name = "x_m", fitted.target = "plugin:segment", fitted.attribute = "x_m";
   e.parameters = {fitted};
   std::vector<std::string> skipped;
-  const System module = System::Load(kModule);
+  const ModelSpec module = ModelSpec::Load(kModule);
   EXPECT_THAT(MakeCandidates(e, {&module}, {}, skipped), ::testing::IsEmpty());
   EXPECT_THAT(skipped, ::testing::ElementsAre("pcc_segment: the model has it already",
                                               "chamber_asymmetry: the experiment fits it already"));
   skipped.clear();
   e.candidates = {{"braid", "", false}};
-  const System arm = System::Load(CONTINUUM_SOURCE "/models/emps/emps.xml");
+  const ModelSpec arm = ModelSpec::Load(CONTINUUM_SOURCE "/models/emps/emps.xml");
   EXPECT_THAT(MakeCandidates(e, {&arm}, {}, skipped), ::testing::IsEmpty());
   EXPECT_THAT(skipped, ::testing::ElementsAre("braid: no soft segment in the model"));
 }

@@ -23,7 +23,7 @@ class Ceiling : public testing::Bench {
     const Experiment e = ReadExperiment("candidates: [" + candidates + "]\n");
     DiagnosisOptions options;
     options.placebos = 0;
-    return Diagnose(e, System::Load(Write("model.xml", testing::Pendulum().Xml())), options);
+    return Diagnose(e, ModelSpec::Load(Write("model.xml", testing::Pendulum().Xml())), options);
   }
   static double Gain(const Diagnosis& d) {
     return Median(Gains({"", d.before.folds.error, d.ceiling.error, {}, {}}));

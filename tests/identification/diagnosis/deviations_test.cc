@@ -31,7 +31,7 @@ Experiment With(const std::vector<std::string>& columns, const std::string& unit
   return e;
 }
 
-TEST(Wrong, IsFoundWhereTheFirstRowWasNotMeasured) {
+TEST(Deviation, IsFoundWhereTheFirstRowWasNotMeasured) {
   const Experiment e = With({"x"}, "mm", 1e-3, {{kNan, 0.001, 0.002, 0.001}});
   const auto wrong = FindWrong(e, {{{{0, 0.001, 0.005, 0.001}}}});
   ASSERT_THAT(wrong, SizeIs(1));
@@ -39,7 +39,7 @@ TEST(Wrong, IsFoundWhereTheFirstRowWasNotMeasured) {
   EXPECT_EQ(wrong[0].what, "is 3 mm too high");
 }
 
-TEST(Wrong, OfAnOrientationIsATurnAboutAnAxis) {
+TEST(Deviation, OfAnOrientationIsATurnAboutAnAxis) {
   const double c = std::cos(0.1), s = std::sin(0.1);
   const Experiment e = With({"qw", "qx", "qy", "qz"}, "rad", 1, {{1, 1}, {0, 0}, {0, 0}, {0, 0}});
   const auto wrong = FindWrong(e, {{{{1, c}, {0, 0}, {0, -s}, {0, 0}}}});

@@ -60,9 +60,9 @@ class DiagnosisTest : public Bench {
     DiagnosisOptions options;
     options.placebos = placebos;
     options.iterations = 8;
-    return Diagnose(e, System::Load(Write("model.xml", Pendulum().Xml())), options);
+    return Diagnose(e, ModelSpec::Load(Write("model.xml", Pendulum().Xml())), options);
   }
-  static std::string Told(const Diagnosis& d) {
+  static std::string Described(const Diagnosis& d) {
     std::string text = d.verdict.text + ": " + d.verdict.reason + "\n";
     text += fmt::format("  validate error {:.3g}, with a smooth force {:.3g}, after {:.3g}\n",
                         d.before.error.validate, d.ceiling_error.validate, d.after().validate);
@@ -83,8 +83,8 @@ TEST_F(DiagnosisTest, NamesAHiddenPayload) {
   AddTrials(truth);
   const Experiment e = ReadWith(kCandidates);
   const Diagnosis d = Ask(e);
-  EXPECT_EQ(d.verdict.text, "named") << Told(d);
-  ASSERT_THAT(d.verdict.named, SizeIs(1)) << Told(d);
+  EXPECT_EQ(d.verdict.text, "named") << Described(d);
+  ASSERT_THAT(d.verdict.named, SizeIs(1)) << Described(d);
   const CandidateResult& cause = *d.chosen();
   EXPECT_EQ(cause.hypothesis.effect, "payload");
   EXPECT_EQ(cause.hypothesis.where, "body tip");
@@ -105,11 +105,11 @@ TEST_F(DiagnosisTest, TellsWhatIsNotListedAndWouldDoAsWell) {
   AddTrials(truth);
   const Experiment e = ReadWith("link_mass, coulomb");
   const Diagnosis d = Ask(e);
-  ASSERT_EQ(d.verdict.text, "named") << Told(d);
+  ASSERT_EQ(d.verdict.text, "named") << Described(d);
   EXPECT_EQ(d.chosen()->hypothesis.effect, "link_mass");
   std::vector<std::string> beside;
   for (const CandidateResult& c : d.unlisted) beside.push_back(c.hypothesis.effect);
-  EXPECT_THAT(beside, ::testing::Contains("payload")) << Told(d);
+  EXPECT_THAT(beside, ::testing::Contains("payload")) << Described(d);
   EXPECT_THAT(d.verdict.reason, HasSubstr("not listed"));
   WriteDiagnosis(e, d, folder_ / "out");
   const auto json = nlohmann::json::parse(ReadFile(folder_ / "out" / "diagnosis.json"));
@@ -121,15 +121,15 @@ TEST_F(DiagnosisTest, NoNameStandsThatOneOutsideTheListClearlyOutdoes) {
   truth.tau_c = 0.01;
   AddTrials(truth);
   const Diagnosis d = Ask(ReadWith("maxwell, payload"));
-  EXPECT_EQ(d.verdict.text, "unexplained") << Told(d);
-  EXPECT_THAT(d.verdict.reason, HasSubstr("not listed")) << Told(d);
+  EXPECT_EQ(d.verdict.text, "unexplained") << Described(d);
+  EXPECT_THAT(d.verdict.reason, HasSubstr("not listed")) << Described(d);
 }
 
 TEST_F(DiagnosisTest, FindsNothingWhereNothingIsHidden) {
   AddTrials({});
   const Experiment e = ReadWith(kCandidates);
   const Diagnosis d = Ask(e);
-  EXPECT_EQ(d.verdict.text, "adequate") << Told(d);
+  EXPECT_EQ(d.verdict.text, "adequate") << Described(d);
   EXPECT_THAT(d.verdict.named, IsEmpty());
   EXPECT_EQ(d.chosen(), nullptr);
   EXPECT_LT(d.before.error.train, 1.1 * kNoise);
@@ -140,8 +140,8 @@ TEST_F(DiagnosisTest, TheSizeOfAFactorIsCountedFromOne) {
   AddTrials({}, 0, 1.05);
   const Experiment e = ReadWith("input_gain");
   const Diagnosis d = Ask(e, 0);
-  ASSERT_NE(d.chosen(), nullptr) << Told(d);
-  EXPECT_NEAR(Median(d.chosen()->record.amplitude), 0.05, 0.005) << Told(d);
+  ASSERT_NE(d.chosen(), nullptr) << Described(d);
+  EXPECT_NEAR(Median(d.chosen()->record.amplitude), 0.05, 0.005) << Described(d);
 }
 
 TEST_F(DiagnosisTest, NamesBacklashWhenItIsAmongTheCandidates) {
@@ -150,7 +150,7 @@ TEST_F(DiagnosisTest, NamesBacklashWhenItIsAmongTheCandidates) {
   AddTrials(truth);
   const Experiment e = ReadWith("backlash, payload, input_gain");
   const Diagnosis d = Ask(e);
-  EXPECT_EQ(d.verdict.text, "named") << Told(d);
+  EXPECT_EQ(d.verdict.text, "named") << Described(d);
   ASSERT_NE(d.chosen(), nullptr);
   EXPECT_EQ(d.chosen()->hypothesis.effect, "backlash");
   EXPECT_NEAR(d.chosen()->fitted.fit.x[1], truth.gap, 0.02 * truth.gap);
@@ -166,8 +166,8 @@ TEST_P(Unlisted, BacklashIsNotGivenAnotherName) {
   AddTrials(truth);
   const Experiment e = ReadWith("payload, coulomb, input_gain");
   const Diagnosis d = Ask(e);
-  EXPECT_NE(d.verdict.text, "named") << Told(d);
-  EXPECT_NE(d.verdict.text, "adequate") << Told(d);
+  EXPECT_NE(d.verdict.text, "named") << Described(d);
+  EXPECT_NE(d.verdict.text, "adequate") << Described(d);
 }
 
 TEST_F(DiagnosisTest, NothingIsNamedWhenInputsBelongToOtherLogs) {
@@ -180,8 +180,8 @@ TEST_F(DiagnosisTest, NothingIsNamedWhenInputsBelongToOtherLogs) {
     e.logs[l].input = logs[(l + 2) % logs.size()].input;
   }
   const Diagnosis d = Ask(e);
-  EXPECT_NE(d.verdict.text, "named") << Told(d);
-  EXPECT_NE(d.verdict.text, "adequate") << Told(d);
+  EXPECT_NE(d.verdict.text, "named") << Described(d);
+  EXPECT_NE(d.verdict.text, "adequate") << Described(d);
 }
 
 TEST_F(DiagnosisTest, NothingIsNamedWhenTheInputsHaveTheOtherSign) {
@@ -193,7 +193,7 @@ TEST_F(DiagnosisTest, NothingIsNamedWhenTheInputsHaveTheOtherSign) {
     for (double& u : log.input[0]) u = -u;
   }
   const Diagnosis d = Ask(e);
-  EXPECT_NE(d.verdict.text, "named") << Told(d);
+  EXPECT_NE(d.verdict.text, "named") << Described(d);
 }
 
 TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
@@ -202,8 +202,8 @@ TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
   AddTrials(truth);
   const Experiment e = ReadWith("payload, stiffness");
   Diagnosis d = Ask(e, 2);
-  ASSERT_THAT(d.candidates, SizeIs(2)) << Told(d);
-  Trials trials;
+  ASSERT_THAT(d.candidates, SizeIs(2)) << Described(d);
+  CandidateFitter trials;
   trials.experiment = &e;
   d.verdict.named = {0};
   EXPECT_EQ(ProposeNext(trials, d).input, "");
@@ -228,9 +228,9 @@ TEST_F(DiagnosisTest, AFitAtAFineStepTellsHowFarTheStepMovesAValue) {
   const Pendulum truth;
   AddTrials(truth);
   const Experiment e = ReadWith("payload");
-  const System coarse = System::Load(Write("model.xml", Pendulum().Xml("", 4e-3)));
+  const ModelSpec coarse = ModelSpec::Load(Write("model.xml", Pendulum().Xml("", 4e-3)));
   const Problem problem(e, coarse);
-  Trials trials;
+  CandidateFitter trials;
   trials.experiment = &e;
   Fitted fitted = trials.FitAll(problem, problem.Start());
   fitted.uncertainty.step *= 2;  // a first order that is no good
@@ -298,7 +298,7 @@ TEST_F(PerCondition, EachGetsItsOwnValue) {
   AddConditions();
   const Experiment e = ReadWith("payload, {effect: payload, per: condition}, input_gain");
   const Diagnosis d = Ask(e);
-  ASSERT_EQ(d.verdict.text, "named") << Told(d);
+  ASSERT_EQ(d.verdict.text, "named") << Described(d);
   const CandidateResult& c = *d.chosen();
   EXPECT_THAT(c.hypothesis.where, HasSubstr("per condition"));
   ASSERT_THAT(c.hypothesis.extra, SizeIs(2));
@@ -336,7 +336,7 @@ TEST_F(DiagnosisTest, WritesFilesThatReproduceTheNamedModel) {
   AddTrials(truth);
   const Experiment e = ReadWith("payload, input_gain");
   const Diagnosis d = Ask(e, 2);
-  ASSERT_NE(d.chosen(), nullptr) << Told(d);
+  ASSERT_NE(d.chosen(), nullptr) << Described(d);
   const auto told = WriteDiagnosis(e, d, folder_ / "out");
   EXPECT_NEAR(told.after.train, d.after().train, 0.02 * d.after().train);
   EXPECT_NEAR(told.after.validate, d.after().validate, 0.02 * d.after().validate);

@@ -74,7 +74,7 @@ class Drag : public testing::Bench {
             "parameters:\n  - {name: b, target: 'joint:x', attribute: damping, initial: 1.5, "
             "lower: 0, upper: 60}\ncandidates: " +
             candidates + "\n"));
-    return Diagnose(e, System::Load(Write("model.xml", Xml())), {});
+    return Diagnose(e, ModelSpec::Load(Write("model.xml", Xml())), {});
   }
 
   static std::string Xml() {

@@ -31,7 +31,7 @@ class ByEquationTest : public Bench {
     }
     return ReadExperiment("candidates: [" + candidates + "]\n");
   }
-  System Model() const { return System::Load(Write("model.xml", Pendulum().Xml())); }
+  ModelSpec Model() const { return ModelSpec::Load(Write("model.xml", Pendulum().Xml())); }
 
   static double Rms(const std::vector<double>& y) {
     double sum = 0;
@@ -40,8 +40,8 @@ class ByEquationTest : public Bench {
   }
 
   // A candidate, fitted by hand to a value of its only parameter.
-  static CandidateResult With(const Experiment& e, const System& system, const std::string& effect,
-                              double value) {
+  static CandidateResult With(const Experiment& e, const ModelSpec& system,
+                              const std::string& effect, double value) {
     std::vector<std::string> skipped;
     const Problem null(e, system);
     for (Hypothesis& h : MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped)) {
@@ -53,7 +53,7 @@ class ByEquationTest : public Bench {
     }
     throw std::out_of_range(effect);
   }
-  static EquationErrors View(const Experiment& e, const System& system) {
+  static EquationErrors View(const Experiment& e, const ModelSpec& system) {
     Fitted base;
     base.fit.x = Problem(e, system).Start();
     return {e, system, base};
@@ -65,7 +65,7 @@ class ByEquationTest : public Bench {
 // mean.
 TEST_F(ByEquationTest, NothingIsMissingWhereInputsJump) {
   const Experiment e = Logs({}, "payload", true);
-  const System system = Model();
+  const ModelSpec system = Model();
   const Problem problem(e, system);
   const auto all = MissingForces(problem, problem.Start(), problem.TrainLogs());
   ASSERT_EQ(all.size(), 1u);
@@ -77,7 +77,7 @@ TEST_F(ByEquationTest, TheMissingForceOfAPayloadIsItsWeightAndInertia) {
   Pendulum truth;
   truth.payload = 0.05;
   const Experiment e = Logs(truth, "payload");
-  const System system = Model();
+  const ModelSpec system = Model();
   const Problem problem(e, system);
   const auto f = MissingForces(problem, problem.Start(), problem.TrainLogs()).front();
   // M(a − a_model), of the whole inertia: (J + m l²) a = τ − m g l sin q less J a = τ.
@@ -98,7 +98,7 @@ TEST_F(ByEquationTest, TheTruthExplainsTheMissingForceAndAnotherDoesNot) {
   Pendulum truth;
   truth.payload = 0.05;
   const Experiment e = Logs(truth, "payload, coulomb");
-  const System system = Model();
+  const ModelSpec system = Model();
   const EquationErrors view = View(e, system);
   ASSERT_TRUE(view.any());
   CandidateResult payload = With(e, system, "payload", 0.02);  // sizes are fitted again
@@ -113,7 +113,7 @@ TEST_F(ByEquationTest, TheTruthExplainsTheMissingForceAndAnotherDoesNot) {
 
 TEST_F(ByEquationTest, AnEffectOnTheSensorsAloneIsNotSeen) {
   const Experiment e = Logs({}, "sensor_delay, payload");
-  const System system = Model();
+  const ModelSpec system = Model();
   const EquationErrors view = View(e, system);
   EXPECT_FALSE(view.Of(With(e, system, "sensor_delay", 0.01)).has_value());
 }

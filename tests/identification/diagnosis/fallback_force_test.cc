@@ -38,7 +38,7 @@ class FallbackTest : public Bench {
     e_ = ReadExperiment("candidates: [" + candidate + "]\n");
     DiagnosisOptions options;
     options.placebos = 0;
-    return Diagnose(e_, System::Load(Write("model.xml", Pendulum().Xml())), options);
+    return Diagnose(e_, ModelSpec::Load(Write("model.xml", Pendulum().Xml())), options);
   }
   Experiment e_;
 };
@@ -50,13 +50,13 @@ TEST_F(FallbackTest, WhatNobodyExplainsGetsAForceWithoutACause) {
   EXPECT_EQ(d.fallback->hypothesis.where, "joint hinge");
   EXPECT_LT(d.fallback->fitted.error.validate, 0.7 * d.before.error.validate);
   const auto out = folder_ / "out";
-  const Told told = WriteDiagnosis(e_, d, out);
+  const DiagnosisFiles told = WriteDiagnosis(e_, d, out);
   const auto json = DiagnosisJson(e_, d, told);
   EXPECT_THAT(json.at("fallback").at("label"), HasSubstr("no cause"));
   EXPECT_TRUE(json.at("causes").empty());
   EXPECT_THAT(Summary(e_, d, told), HasSubstr("fallback  no cause"));
   Experiment files = Experiment::Read(out / kFallbackExperiment);
-  const SplitError error = PooledError(files, Replay(files, System::Load(out / kFallbackModel)));
+  const SplitError error = PooledError(files, Replay(files, ModelSpec::Load(out / kFallbackModel)));
   EXPECT_NEAR(error.validate, d.fallback->fitted.error.validate, 1e-6);
 }
 
@@ -75,7 +75,7 @@ TEST_F(FallbackTest, IsNotLookedForWhereForcesReachNothing) {
   DiagnosisOptions options;
   options.placebos = 0;
   options.progress = [&](const std::string& text) { said += text + "\n"; };
-  const Diagnosis d = Diagnose(e_, System::Load(Write("model.xml", Pendulum().Xml())), options);
+  const Diagnosis d = Diagnose(e_, ModelSpec::Load(Write("model.xml", Pendulum().Xml())), options);
   EXPECT_EQ(d.verdict.text, "unexplained") << d.verdict.reason;
   EXPECT_FALSE(d.fallback);
   EXPECT_THAT(said, ::testing::Not(HasSubstr("a force without a cause")));
@@ -88,7 +88,7 @@ TEST_F(FallbackTest, WhatHasACauseGetsNone) {
   const auto out = folder_ / "out";
   MakeFolder(out);
   Write("out/fallback.xml", "of an earlier diagnosis");
-  const Told told = WriteDiagnosis(e_, d, out);
+  const DiagnosisFiles told = WriteDiagnosis(e_, d, out);
   EXPECT_FALSE(std::filesystem::exists(out / kFallbackModel));
   EXPECT_TRUE(DiagnosisJson(e_, d, told).at("fallback").is_null());
 }

@@ -85,7 +85,7 @@ TEST_F(OneSided, ADeadPressureIsAnOffsetOfTheInputs) {
           "outputs:\n  - {column: x, unit: m, sensor: x}\n"
           "parameters:\n  - {name: k, target: 'joint:x', attribute: stiffness, lower: 10, upper: "
           "100}\ncandidates: [{effect: input_offset, where: 'actuator:*'}, input_gain]\n"));
-  const Diagnosis d = Diagnose(e, System::Load(Write("model.xml", Xml())), {});
+  const Diagnosis d = Diagnose(e, ModelSpec::Load(Write("model.xml", Xml())), {});
   ASSERT_EQ(d.verdict.text, "named") << d.verdict.reason;
   EXPECT_EQ(d.chosen()->hypothesis.effect, "input_offset");
   EXPECT_NEAR(d.chosen()->fitted.fit.x[d.chosen()->own()], -kDead, 0.02 * kDead);

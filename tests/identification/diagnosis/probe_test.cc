@@ -19,9 +19,9 @@ TEST_F(ProbeTest, NothingIsSimulatedTwice) {
   const auto u = Command(0, 200);
   AddLog("log", "use: train", u, truth.Run(u, testing::kPeriod));
   const Experiment e = ReadExperiment("candidates: [stribeck]\n");
-  const System system = System::Load(Write("model.xml", Pendulum().Xml()));
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", Pendulum().Xml()));
   const Problem null(e, system);
-  const Trials trials{&e, {}};
+  const CandidateFitter trials{&e, {}};
   const Fitted fitted = trials.FitAll(null, null.Start());
   std::vector<std::string> skipped;
   const auto all = MakeCandidates(e, {&system}, SizesOf(null, fitted.fit.x), skipped);

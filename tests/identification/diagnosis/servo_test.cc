@@ -28,7 +28,7 @@ class ServoPendulum : public testing::RealLog {
 
 // Published for these parameters: 82 mrad, with an offset of the angle that is left out here.
 TEST_F(ServoPendulum, UnfittedItIsAsFarOffAsTheReadmeSays) {
-  const Problem problem(experiment_, System::Load(experiment_.model));
+  const Problem problem(experiment_, ModelSpec::Load(experiment_.model));
   EXPECT_EQ(experiment_.logs.size(), 12u);
   EXPECT_NEAR(MeanError(problem, problem.Start()), 0.0736, 0.0005);
 }
@@ -36,7 +36,7 @@ TEST_F(ServoPendulum, UnfittedItIsAsFarOffAsTheReadmeSays) {
 // Published after a refit of the same laws: 58 mrad; friction 0.0206 N m, and 0.0183 rad that the
 // sensor reads too much, which MJCF's ref counts the other way.
 TEST_F(ServoPendulum, CoulombAndViscousFrictionRefittedLeave60Mrad) {
-  const Problem problem(experiment_, System::Load(experiment_.model));
+  const Problem problem(experiment_, ModelSpec::Load(experiment_.model));
   FitOptions options;
   options.soft = experiment_.soft;
   const Fit fit = FitParameters(problem, problem.Start(), problem.AllLogs(), options);
@@ -52,7 +52,7 @@ TEST_F(ServoPendulum, TheDiagnosisPrefersFrictionThatGrowsWithTheLoadToADelay) {
   DiagnosisOptions options;
   options.candidates = {"load_friction", "dead_time"};
   options.placebos = 2;
-  const Diagnosis d = Diagnose(experiment_, System::Load(experiment_.model), options);
+  const Diagnosis d = Diagnose(experiment_, ModelSpec::Load(experiment_.model), options);
   EXPECT_FALSE(d.noise_limited);
   ASSERT_NE(d.chosen(), nullptr) << d.verdict.reason;
   EXPECT_EQ(d.chosen()->hypothesis.effect, "load_friction") << d.verdict.reason;

@@ -38,8 +38,8 @@ class FitTest : public Bench {
  protected:
   static constexpr std::size_t kRows = 200;
 
-  System Model(const Pendulum& p, const std::string& extension = "", double timestep = 5e-4) {
-    return System::Load(Write("model.xml", p.Xml(extension, timestep)));
+  ModelSpec Model(const Pendulum& p, const std::string& extension = "", double timestep = 5e-4) {
+    return ModelSpec::Load(Write("model.xml", p.Xml(extension, timestep)));
   }
   // Trials of a pendulum with noise, all for training.
   void AddTrials(const Pendulum& p, int count, double sigma = 0) {
@@ -60,7 +60,7 @@ TEST_F(FitTest, RecoversMassAndBothFrictionsOfAPendulumItDidNotSimulate) {
   Pendulum truth;
   truth.tau_c = 0.12;
   AddTrials(truth, 3, 2e-4);
-  const System system = Model({}, CoulombInstance(0.01));
+  const ModelSpec system = Model({}, CoulombInstance(0.01));
   const Experiment e = ReadExperiment("parameters:\n" + kDamping + kFriction + kBob);
   const Problem problem(e, system);
   const Fit fit = FitAll(problem);
@@ -83,7 +83,7 @@ TEST_F(FitTest, IntervalsHoldTheTruthUnderNoiseThatLastsTenRows) {
   constexpr int kSeeds = 20;
   Pendulum truth;
   truth.tau_c = 0.12;
-  const System system = Model({}, CoulombInstance(0.05), 1e-3);
+  const ModelSpec system = Model({}, CoulombInstance(0.05), 1e-3);
   std::vector<std::vector<double>> clean;
   for (int t = 0; t < 2; ++t) clean.push_back(truth.Run(Command(t, kRows), testing::kPeriod));
   std::vector<int> covered(3, 0);
@@ -115,7 +115,7 @@ TEST_F(FitTest, IntervalsHoldTheTruthUnderNoiseThatLastsTenRows) {
 
 TEST_F(FitTest, IntervalsAreWiderForNoiseThatLasts) {
   Pendulum truth;
-  const System system = Model({});
+  const ModelSpec system = Model({});
   AddTrials(truth, 2);
   Experiment e = ReadExperiment("parameters:\n" + kDamping);
   const auto clean = std::vector{e.logs[0].measured[0], e.logs[1].measured[0]};
@@ -133,7 +133,7 @@ TEST_F(FitTest, IntervalsAreWiderForNoiseThatLasts) {
 // Of an area in m² and of a cubic spring in N/m³ one is 1e-5 and the other 1e5.
 TEST_F(FitTest, ErrorsFollowTheUnitsOfTheirParameters) {
   AddTrials({}, 1, 0.01);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
   const Problem problem(e, system);
   const Problem::Vector x = problem.Start();
@@ -149,7 +149,7 @@ TEST_F(FitTest, ErrorsFollowTheUnitsOfTheirParameters) {
 
 TEST_F(FitTest, StopsAtABoundAndSaysHowFarFromItTheValueMayBe) {
   AddTrials({}, 2, 2e-4);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: b, target: 'joint:hinge', attribute: damping, initial: 0.2, lower: 0.15, upper: "
@@ -171,7 +171,7 @@ TEST_F(FitTest, StopsAtABoundAndSaysHowFarFromItTheValueMayBe) {
 // off).
 TEST_F(FitTest, WhereASliderSticksTheIntervalReachesOverTheTruth) {
   const Experiment e = stick_slip::Clean(folder_, 2e-3, 2e-4);
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);
   const Fit fit = FitAll(problem);
   const auto u = IntervalsOf(problem, fit.x, problem.Residuals(fit.x, problem.AllLogs()));
@@ -189,7 +189,7 @@ TEST_F(FitTest, WhereASliderSticksTheIntervalReachesOverTheTruth) {
 TEST_F(FitTest, ToldOfTheStepTheIntervalReachesOverTheValueOfAFineOne) {
   const Pendulum truth;
   AddTrials(truth, 2);
-  const System system = Model({}, "", 4e-3);
+  const ModelSpec system = Model({}, "", 4e-3);
   const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
   const Problem problem(e, system);
   const Problem::Vector x = FitAll(problem).x;
@@ -208,7 +208,7 @@ TEST_F(FitTest, ToldOfTheStepTheIntervalReachesOverTheValueOfAFineOne) {
 // As in a narrow valley of a rough cost: slopes that hold over a tiny distance only.
 TEST_F(FitTest, SecantsFindTheSlopesOverTheDistanceThatTheStepLeavesOpen) {
   AddTrials({}, 2);
-  const System system = Model({}, "", 4e-3);
+  const ModelSpec system = Model({}, "", 4e-3);
   const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
   const Problem problem(e, system);
   const Problem::Vector x = FitAll(problem).x;
@@ -227,7 +227,7 @@ TEST_F(FitTest, SecantsFindTheSlopesOverTheDistanceThatTheStepLeavesOpen) {
 
 TEST_F(FitTest, WithoutEffectAParameterMayBeAnythingThatItsBoundsAllow) {
   AddTrials({}, 1, 2e-4);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
   const Problem problem(e, system);
   const Problem::Vector x = FitAll(problem).x;
@@ -243,7 +243,7 @@ TEST_F(FitTest, WithoutEffectAParameterMayBeAnythingThatItsBoundsAllow) {
 
 TEST_F(FitTest, RefusesTwoParametersThatDoTheSameAndNamesBoth) {
   AddTrials({}, 1);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const auto with = [&](const std::string& first, const std::string& second) -> std::string {
     const Experiment e =
         ReadExperiment(fmt::format("parameters:\n  - {{name: one, {0}, lower: 0.1, upper: 9}}\n"
@@ -270,7 +270,7 @@ TEST_F(FitTest, RefusesTwoParametersThatDoTheSameAndNamesBoth) {
 
 TEST_F(FitTest, NamesAParameterWithoutEffectBeforeItFits) {
   AddTrials({}, 1);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment(
       "parameters:\n" + kDamping +
       "  - {name: east, target: option, attribute: 'gravity[1]', initial: 0, lower: -1, upper: "
@@ -289,7 +289,7 @@ TEST_F(FitTest, NamesAParameterWithoutEffectBeforeItFits) {
 // the pendulum takes up energy without end.
 TEST_F(FitTest, AStepIntoDivergenceIsRejected) {
   AddTrials({}, 2, 2e-4);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment(
       "parameters:\n  - {name: b, target: 'joint:hinge', attribute: damping, initial: 8, lower: "
       "-50, upper: 50}\n");
@@ -313,7 +313,7 @@ TEST_F(FitTest, AStepIntoDivergenceIsRejected) {
 
 TEST_F(FitTest, AStartThatDivergesIsAJobThatFailed) {
   AddTrials({}, 1);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment(
       "parameters:\n  - {name: b, target: 'joint:hinge', attribute: damping, initial: -5, lower: "
       "-50, upper: 50}\n");
@@ -328,7 +328,7 @@ TEST_F(FitTest, AStartThatDivergesIsAJobThatFailed) {
 
 TEST_F(FitTest, AStartBesideWhichItDivergesIsLeftOnTheOtherSide) {
   AddTrials({}, 1);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const auto parameters = [&](double b) {
     return ReadExperiment(fmt::format(
         "parameters:\n  - {{name: b, target: 'joint:hinge', attribute: damping, initial: {:.17g}, "
@@ -352,7 +352,7 @@ TEST_F(FitTest, AStartBesideWhichItDivergesIsLeftOnTheOtherSide) {
 
 // MuJoCo reads a positive velocity bias of a servo as a damping ratio.
 TEST_F(FitTest, ANegativeServoDampingIsNotTakenForSomethingElse) {
-  const System system = Model({});
+  const ModelSpec system = Model({});
   EXPECT_THROW(system.Build(std::vector<Change>{{"actuator:servo", "kv", -1}}), Error);
 }
 
@@ -379,7 +379,7 @@ const std::string kGain =
 
 TEST_F(Conditions, GiveAParameterOfTheirOwnEach) {
   AddConditions();
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment("parameters:\n" + kGain + kDamping);
   const Problem problem(e, system);
   ASSERT_EQ(problem.parameters().size(), 3u);
@@ -400,7 +400,7 @@ TEST_F(Conditions, WithoutATrainLogAreAnError) {
   AddConditions();
   const auto u = Command(2, kRows);
   AddLog("odd", "use: validate, condition: odd", u, Pendulum().Run(u, testing::kPeriod));
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment("parameters:\n" + kGain);
   try {
     const Problem problem(e, system);
@@ -414,7 +414,7 @@ TEST_F(Conditions, WithoutATrainLogAreAnError) {
 
 TEST_F(FitTest, PerLogExpandsToTheLabels) {
   AddTrials({}, 2);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment(
       "parameters:\n  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1, "
       "per: log}\n");
@@ -429,7 +429,7 @@ TEST_F(FitTest, AValueOfEachLogsOwnNeedsAFitThatSeesThemAll) {
   AddTrials({}, 1);
   const auto u = Command(1, kRows);
   AddLog("held", "use: validate", u, Pendulum().Run(u, testing::kPeriod));
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment(
       "parameters:\n  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1, "
       "per: log}\n");
@@ -461,7 +461,7 @@ TEST_F(FitTest, ScaleAndAddActOnWhatTheModelAndTheLogHave) {
   truth.kp = 9;  // the log says 7.5, the scale is 1.2 again
   AddLog("set", "use: train, set: {'actuator:servo': {kp: 7.5}}", u,
          truth.Run(u, testing::kPeriod));
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: k, target: 'actuator:servo', attribute: kp, operation: scale, lower: 0.5, upper: "
@@ -481,7 +481,7 @@ TEST_F(FitTest, AFrozenParameterActsButDoesNotMove) {
   Pendulum truth;
   truth.damping = 0.2;
   AddTrials(truth, 2);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const std::string frozen =
       "  - {name: b, target: 'joint:hinge', attribute: damping, initial: 0.2, lower: 0, upper: 1, "
       "frozen: true}\n";
@@ -494,7 +494,7 @@ TEST_F(FitTest, AFrozenParameterActsButDoesNotMove) {
 
 TEST_F(FitTest, ASoftLossIsNotDrawnByOutliers) {
   AddTrials({}, 2, 2e-4);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   Experiment e = ReadExperiment("parameters:\n" + kDamping);
   for (std::size_t k = kRows - 1; k > 10; k -= 10) {  // a tenth of the rows is 80 ms late
     for (Log& log : e.logs) log.measured[0][k] = log.measured[0][k - 8];
@@ -519,7 +519,7 @@ TEST_F(FitTest, ASoftLossIsNotDrawnByOutliers) {
 
 TEST_F(FitTest, ChordsReachTheSameOptimumFromNearby) {
   AddTrials({}, 3, 2e-3);
-  const System system = Model({});
+  const ModelSpec system = Model({});
   const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
   const Problem problem(e, system);
   const auto all = problem.AllLogs();

@@ -28,7 +28,7 @@ class MultiStartTest : public testing::Bench {
   }
   Problem Ringing(const std::string& bounds = "") {
     if (!bounds.empty()) experiment_ = ReadExperiment("parameters:\n" + bounds);
-    return {experiment_, System::Load(Write("model.xml", truth_.Xml("", 1e-3)))};
+    return {experiment_, ModelSpec::Load(Write("model.xml", truth_.Xml("", 1e-3)))};
   }
 
   Pendulum truth_;

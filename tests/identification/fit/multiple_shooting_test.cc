@@ -29,16 +29,16 @@ class PiecesTest : public Bench {
     AddLog("ringing", "use: train", u, testing::Noisy(truth.Run(u, testing::kPeriod), 2e-3, 0, 1));
     return ReadExperiment(parameters);
   }
-  System Model() {
+  ModelSpec Model() {
     Pendulum model;
     model.damping = 0.004;
-    return System::Load(Write("model.xml", model.Xml()));
+    return ModelSpec::Load(Write("model.xml", model.Xml()));
   }
 };
 
 TEST_F(PiecesTest, WhereALongLogFallsOutOfStepItsPiecesLeadToTheTruth) {
   const Experiment e = Ringing(30);
-  const System system = Model();
+  const ModelSpec system = Model();
   const Problem problem(e, system);
   const auto use = problem.TrainLogs();
   const Fit alone = FitParameters(problem, problem.Start(), use);
@@ -59,7 +59,7 @@ TEST_F(PiecesTest, HeavySeamsMakeTwoPiecesOneMotion) {
   e.logs = {Piece(log, 0, 300 + kShared - 1), Piece(log, 300, log.rows() - 1)};
   e.logs[1].label = "second";
   e.start = Experiment::Start::kEstimate;
-  const System system = Model();
+  const ModelSpec system = Model();
   const Problem problem(e, system);
   const auto use = problem.AllLogs();
   const auto gap = [&](double weight) {

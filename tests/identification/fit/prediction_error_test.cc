@@ -19,14 +19,14 @@ class AheadTest : public Bench {
   static constexpr std::size_t kRows = 200;
 
   // One log of a pendulum with this payload, which its model does not have.
-  std::optional<Ahead> After(double payload, std::size_t rows) {
+  std::optional<PredictionError> After(double payload, std::size_t rows) {
     Pendulum truth;
     truth.payload = payload;
     logs_.clear();
     const auto u = Command(1, kRows);
     AddLog("a", "use: train", u, truth.Run(u, testing::kPeriod));
     const Experiment e = ReadExperiment("");
-    const Problem problem(e, System::Load(Write("model.xml", Pendulum().Xml())));
+    const Problem problem(e, ModelSpec::Load(Write("model.xml", Pendulum().Xml())));
     return PredictAhead(problem, problem.Start(), rows);
   }
 };
@@ -48,11 +48,11 @@ TEST_F(AheadTest, AWrongOnePartsFromItTheMoreTheLater) {
 // Of a model with this actuator and extension, on a log that it has made itself.
 class AheadOfItself : public AheadTest {
  protected:
-  std::optional<Ahead> After(const std::string& actuator, const std::string& extension) {
+  std::optional<PredictionError> After(const std::string& actuator, const std::string& extension) {
     std::string xml = Pendulum().Xml(extension);
     const std::string servo = "<position name=\"servo\" joint=\"hinge\" kp=\"5\"/>";
     xml.replace(xml.find(servo), servo.size(), actuator.empty() ? servo : actuator);
-    const System system = System::Load(Write("model.xml", xml));
+    const ModelSpec system = ModelSpec::Load(Write("model.xml", xml));
     const auto u = Command(1, kRows);
     logs_.clear();
     AddLog("made", "use: train", u, std::vector<double>(kRows, 0));

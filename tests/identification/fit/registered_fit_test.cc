@@ -28,7 +28,7 @@ class RegisteredFit : public ::testing::Test {
   }
   Experiment Measured(const std::string& keys) const {
     Experiment e = arm_.Read(keys + kStiffness);
-    MeasuredArm::Measure(e, System::Load(e.model), Camera(), 2e-4);
+    MeasuredArm::Measure(e, ModelSpec::Load(e.model), Camera(), 2e-4);
     return e;
   }
 
@@ -38,7 +38,7 @@ class RegisteredFit : public ::testing::Test {
 TEST_F(RegisteredFit, AWrongCameraIsNotFittedIntoTheStiffness) {
   const Experiment read =
       Measured("registration: {frame: estimate, marker: estimate, clock_shift: estimate}\n");
-  const System system = System::Load(read.model);
+  const ModelSpec system = ModelSpec::Load(read.model);
   const Experiment e = Registered(read, system);  // at twice the stiffness
   const Problem problem(e, system);
   ASSERT_EQ(problem.parameters().size(), 11u);
@@ -58,7 +58,7 @@ TEST_F(RegisteredFit, AWrongCameraIsNotFittedIntoTheStiffness) {
 
 TEST_F(RegisteredFit, WithoutTheKeyTheStiffnessTakesTheBlame) {
   const Experiment e = Measured("");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);
   const Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs());
   // Five times what the registered fit may be off.
@@ -68,7 +68,7 @@ TEST_F(RegisteredFit, WithoutTheKeyTheStiffnessTakesTheBlame) {
 TEST_F(RegisteredFit, TheExtendedExperimentKnowsTheRegistration) {
   const Experiment read =
       Measured("registration: {frame: estimate, marker: estimate, clock_shift: estimate}\n");
-  const System system = System::Load(read.model);
+  const ModelSpec system = ModelSpec::Load(read.model);
   const Experiment e = Registered(read, system);
   for (const Log& log : e.logs) {  // what the camera measured, for the extended experiment to read
     std::string rows = "time,u1,u2,x,y,z\n";
@@ -86,7 +86,7 @@ TEST_F(RegisteredFit, TheExtendedExperimentKnowsTheRegistration) {
   arm_.folder().Write("extended.xml", extension.xml);
   Experiment extended = Experiment::Read(arm_.folder().Write("extended.yaml", extension.yaml));
   EXPECT_FALSE(extended.registration.estimates());
-  const SplitError error = PooledError(extended, Replay(extended, System::Load(extended.model)));
+  const SplitError error = PooledError(extended, Replay(extended, ModelSpec::Load(extended.model)));
   const auto r = problem.Residuals(fit.x, problem.AllLogs());
   EXPECT_NEAR(error.train, problem.PooledRms(r, problem.TrainLogs()), 1e-6);
 }

@@ -50,7 +50,7 @@ TEST_F(Far, LeavesTheValleyWhereFittingAlongSlopesEnds) {
       "upper: 20}\n"
       "  - {name: j, target: 'joint:hinge', attribute: armature, initial: 0.8, lower: 0.1, "
       "upper: 10}\n");
-  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   const auto logs = problem.TrainLogs();
   const Fit near = FitParameters(problem, problem.Start(), logs);
   const Fit far = FitFar(problem, problem.Start(), logs);
@@ -68,7 +68,7 @@ TEST_F(Far, TakesNoMoreIterationsThanAllowedAndTracesEach) {
       "  - {name: fc, target: 'plugin:dry', attribute: tau_c, initial: 1, lower: 0, upper: 6}\n"
       "  - {name: k, target: 'joint:hinge', attribute: stiffness, initial: 40, lower: 1, "
       "upper: 300}\n");
-  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   for (const int most : {1, 4, 8, 50}) {
     const Fit fit = FitFar(problem, problem.Start(), problem.TrainLogs(), {.iterations = most});
     EXPECT_LE(fit.iterations, most);

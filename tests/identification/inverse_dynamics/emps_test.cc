@@ -18,7 +18,7 @@ class EmpsFit : public testing::RealLog {
 // Published by least squares on the inverse model: 95.1 kg, 203.5 N s/m, 20.4 N, −3.2 N. That
 // weighs the errors differently from a fit of the loop's voltage, which 3 % and 5 % leave room for.
 TEST_F(EmpsFit, FindsThePublishedMassAndFrictionFromAWrongStart) {
-  const System system = System::Load(experiment_.model);
+  const ModelSpec system = ModelSpec::Load(experiment_.model);
   const Problem problem(experiment_, system);
   Problem::Vector start(4);
   start << 70, 300, 10, 0;
@@ -35,7 +35,7 @@ TEST_F(EmpsFit, FindsThePublishedMassAndFrictionFromAWrongStart) {
 // A reference that waited for the loop's next sample would be 0.5 ms late in the mean of fine
 // steps, which is 690 N s/m of viscous friction. What is left is the hold of the force.
 TEST_F(EmpsFit, ValuesHardlyDependOnTheStep) {
-  const System system = System::Load(experiment_.model);
+  const ModelSpec system = ModelSpec::Load(experiment_.model);
   const Problem problem(experiment_, system);
   Problem::Vector x(4);
   x << 94.2, 203.9, 20.3, 3.1;
@@ -46,7 +46,7 @@ TEST_F(EmpsFit, ValuesHardlyDependOnTheStep) {
 
 // Published: 95.1 kg, 203.5 N s/m, 20.4 N, and 4.1 % of the force left by the inverse model.
 TEST_F(EmpsFit, FindsThePublishedValuesByTheInverseModel) {
-  const System system = System::Load(experiment_.model);
+  const ModelSpec system = ModelSpec::Load(experiment_.model);
   const Problem problem(experiment_, system);
   const Regression found = FitByRegressor(problem, problem.TrainLogs());
   EXPECT_NEAR(found.x[0], 95.1, 0.01 * 95.1);

@@ -50,7 +50,7 @@ class EquationFitTest : public testing::Bench {
 
 TEST_F(EquationFitTest, IsNearFromFarAwayAlthoughInertiasMultiplyNoise) {
   const Experiment experiment = ReadExperiment(kParameters);
-  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   const auto found = FitEquations(problem, problem.Start(), problem.TrainLogs());
   ASSERT_TRUE(found);
   const Ringing truth;
@@ -62,7 +62,7 @@ TEST_F(EquationFitTest, IsNearFromFarAwayAlthoughInertiasMultiplyNoise) {
 
 TEST_F(EquationFitTest, LeadsAFitThatEndedInAWrongPlaceHome) {
   const Experiment experiment = ReadExperiment(kParameters);
-  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   const auto use = problem.TrainLogs();
   const Fit lost = FitParameters(problem, problem.Start(), use);
   EXPECT_EQ(lost.x[1], 20) << "at its bound";
@@ -77,7 +77,7 @@ TEST_F(EquationFitTest, LeadsAFitThatEndedInAWrongPlaceHome) {
 
 TEST_F(EquationFitTest, LeavesAFitAsItIsThatLeavesLittleMoreThanNoise) {
   const Experiment experiment = ReadExperiment(kParameters);
-  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   const auto use = problem.TrainLogs();
   Problem::Vector near = problem.Start();
   near << 118, 0.5, 0.8;
@@ -94,7 +94,7 @@ TEST_F(EquationFitTest, UnderARobustLossOutliersAreNotWhatIsLeft) {
   AddLog("outliers", "use: validate", u, q);
   const Experiment experiment =
       ReadExperiment(std::string("loss: {soft_l1: 0.01}\n") + kParameters);
-  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   const std::vector<bool> use{false, true};
   FitOptions robust;
   robust.soft = experiment.soft;
@@ -106,7 +106,7 @@ TEST_F(EquationFitTest, UnderARobustLossOutliersAreNotWhatIsLeft) {
 
 TEST_F(EquationFitTest, TakesNoMoreIterationsThanAreLeft) {
   const Experiment experiment = ReadExperiment(kParameters);
-  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   const auto use = problem.TrainLogs();
   const Fit lost = FitParameters(problem, problem.Start(), use);
   EXPECT_FALSE(FitByEquations(problem, lost, use, {.iterations = lost.iterations}).anew);
@@ -121,7 +121,7 @@ TEST_F(EquationFitTest, LooksAtLogsInWhichEveryRowIsMeasured) {
   q[100] = std::nan("");
   AddLog("gap", "use: train", u, q);
   const Experiment experiment = ReadExperiment(kParameters);
-  const Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   const auto found = FitEquations(problem, problem.Start(), problem.TrainLogs());
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->x[0], 120, 4);

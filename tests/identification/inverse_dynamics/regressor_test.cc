@@ -79,7 +79,8 @@ TEST_F(RegressorTest, FindsFrictionWithoutASimulation) {
   Pendulum truth;
   truth.tau_c = 0.12;
   AddTrials(truth, 1e-4);
-  const System system = System::Load(Write("model.xml", Pendulum{}.Xml(CoulombInstance(0.01))));
+  const ModelSpec system =
+      ModelSpec::Load(Write("model.xml", Pendulum{}.Xml(CoulombInstance(0.01))));
   const Experiment e = ReadExperiment(kBoth);
   const Problem problem(e, system);
   const Regression found = FitByRegressor(problem, problem.TrainLogs(), {10});
@@ -98,7 +99,8 @@ TEST_F(RegressorTest, LearnsNothingOfFrictionFromRests) {
   std::vector<double> u;
   for (std::size_t k = 0; k < kRows; ++k) u.push_back(0.15 * static_cast<double>(k / 80 % 3));
   AddLog("stairs", "use: train", u, Noisy(truth.Run(u, testing::kPeriod), 1e-4, 0, 1));
-  const System system = System::Load(Write("model.xml", Pendulum{}.Xml(CoulombInstance(0.01))));
+  const ModelSpec system =
+      ModelSpec::Load(Write("model.xml", Pendulum{}.Xml(CoulombInstance(0.01))));
   const Experiment e = ReadExperiment(kBoth);
   const Problem problem(e, system);
   const Regression found = FitByRegressor(problem, problem.TrainLogs());
@@ -120,7 +122,7 @@ TEST_F(RegressorTest, JointsThatAreTiedToMeasuredOnesFollowThem) {
   xml.insert(
       xml.find("<actuator>"),
       "<equality><joint joint1='wheel' joint2='hinge' polycoef='0.2 0.5 0 0 0'/></equality>");
-  const System system = System::Load(Write("model.xml", xml));
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", xml));
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: b, target: 'joint:wheel', attribute: damping, lower: 0, upper: 1}\n");
@@ -133,7 +135,7 @@ TEST_F(RegressorTest, JointsThatAreTiedToMeasuredOnesFollowThem) {
 TEST_F(RegressorTest, RefusesWhatItCannotSee) {
   AddTrials({}, 1e-4);
   const auto refused = [&](const std::string& model, const std::string& parameters) {
-    const System system = System::Load(Write("model.xml", model));
+    const ModelSpec system = ModelSpec::Load(Write("model.xml", model));
     const Experiment e = ReadExperiment(parameters);
     const Problem problem(e, system);
     try {
@@ -169,7 +171,7 @@ TEST_F(RegressorTest, RefusesWhatItCannotSee) {
 
 TEST_F(RegressorTest, ASwarmFindsThePlaceButNotThePoint) {
   AddTrials({}, 1e-3);
-  const System system = System::Load(Write("model.xml", Pendulum{}.Xml()));
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", Pendulum{}.Xml()));
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: b, target: 'joint:hinge', attribute: damping, initial: 0.5, lower: 0.01, upper: "

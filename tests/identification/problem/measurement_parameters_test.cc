@@ -39,13 +39,13 @@ class Measured : public Bench {
     return ReadExperiment("parameters:\n  - {name: p, " + parameter + "}\n");
   }
   double Found(const Experiment& e) {
-    const System system = System::Load(folder_ / "model.xml");
+    const ModelSpec system = ModelSpec::Load(folder_ / "model.xml");
     const Problem problem(e, system);
     const Fit fit = FitParameters(problem, problem.Start(), problem.AllLogs());
     const Extension extension = Extend(problem, fit.x, folder_);
     Write("extended.xml", extension.xml);
     Experiment again = Experiment::Read(Write("extended.yaml", extension.yaml));
-    const SplitError error = PooledError(again, Replay(again, System::Load(again.model)));
+    const SplitError error = PooledError(again, Replay(again, ModelSpec::Load(again.model)));
     const auto r = problem.Residuals(fit.x, problem.AllLogs());
     EXPECT_NEAR(error.train, problem.PooledRms(r, problem.AllLogs()), 1e-9);
     return fit.x[0];
@@ -74,7 +74,7 @@ TEST_F(Measured, ADelayIsFound) {
 TEST_F(Measured, AnUnknownOutputIsNamed) {
   const Experiment e =
       Logs(0, 1, 0, "target: 'sensor:no_such', attribute: bias, lower: -1, upper: 1");
-  EXPECT_THROW(Problem(e, System::Load(folder_ / "model.xml")), Error);
+  EXPECT_THROW(Problem(e, ModelSpec::Load(folder_ / "model.xml")), Error);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ struct Case {
 };
 
 TEST(Unit, OfAParameterFollowsItsEffectAndWhetherItsPlacesTurnOrSlide) {
-  const System system = System::Parse(kModel);
+  const ModelSpec system = ModelSpec::Parse(kModel);
   for (const Case& c : {Case{"joint:turn", "damping", "N*m*s/rad"},
                         Case{"joint:slide1", "damping", "N*s/m"},
                         Case{"tendon:cable", "damping", "N*s/m"},

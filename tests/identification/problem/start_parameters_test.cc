@@ -46,7 +46,7 @@ class StartsTest : public Bench {
     e.start = start == "estimate" ? Experiment::Start::kEstimate : Experiment::Start::kMeasured;
     return e;
   }
-  System Model() const { return System::Load(Write("model.xml", Pendulum().Xml("", 5e-4))); }
+  ModelSpec Model() const { return ModelSpec::Load(Write("model.xml", Pendulum().Xml("", 5e-4))); }
   static Problem::Vector Fitted(const Problem& problem) {
     auto unseen = problem.TrainLogs();
     unseen.flip();
@@ -93,11 +93,11 @@ TEST_F(StartsTest, OfTiedJointsAreThoseOfTheOthers) {
   xml.insert(
       xml.find("<actuator>"),
       "<equality><joint joint1='wheel' joint2='hinge' polycoef='0.2 0.5 0 0 0'/></equality>");
-  const System system = System::Load(Write("tied.xml", xml));
+  const ModelSpec system = ModelSpec::Load(Write("tied.xml", xml));
   const Experiment e = From("estimate");
   const Problem problem(e, system);
   ASSERT_EQ(problem.parameters().size(), 2 + 2 * e.logs.size());
-  Machine machine = system.Build();
+  ModelAndData machine = system.Build();
   InitialState state{{0, 0.4}, {0, 1}};
   PutTied(machine, state);
   EXPECT_THAT(state.qpos, ::testing::ElementsAre(::testing::DoubleEq(0.4), 0.4));
@@ -120,7 +120,7 @@ TEST_F(StartsTest, OfAHeldOutLogHaveTheErrorsThatItsOwnRowsGive) {
   const Experiment e = From("estimate");
   Experiment seen = e;
   seen.logs[2].train = true;
-  const System system = Model();
+  const ModelSpec system = Model();
   const Problem problem(e, system), all(seen, system);
   const Problem::Vector x = Fitted(problem);
   const auto r = problem.Residuals(x, problem.AllLogs());
@@ -148,7 +148,7 @@ TEST_F(StartsTest, TheExtendedExperimentBeginsThere) {
   const Extension extension = Extend(problem, x, folder_);
   Write("extended.xml", extension.xml);
   Experiment extended = Experiment::Read(Write("extended.yaml", extension.yaml));
-  const auto replayed = Replay(extended, System::Load(extended.model));
+  const auto replayed = Replay(extended, ModelSpec::Load(extended.model));
   const auto r = problem.Residuals(x, problem.AllLogs());
   auto validate = problem.TrainLogs();
   validate.flip();

@@ -30,8 +30,8 @@ class ExtensionTest : public Bench {
  protected:
   static constexpr std::size_t kRows = 150;
 
-  System Model(const std::string& extension = "") {
-    return System::Load(Write("model.xml", Pendulum().Xml(extension)));
+  ModelSpec Model(const std::string& extension = "") {
+    return ModelSpec::Load(Write("model.xml", Pendulum().Xml(extension)));
   }
   void AddTrial(const Pendulum& p, const std::string& name, int trial, const std::string& keys) {
     const auto u = Command(trial, kRows);
@@ -60,7 +60,7 @@ class ExtensionTest : public Bench {
     WriteFile(folder_ / folder / "extended.xml", extension.xml);
     WriteFile(folder_ / folder / "extended.yaml", extension.yaml);
     Experiment e = Experiment::Read(folder_ / folder / "extended.yaml");
-    return PooledError(e, Replay(e, System::Load(folder_ / folder / "extended.xml")));
+    return PooledError(e, Replay(e, ModelSpec::Load(folder_ / folder / "extended.xml")));
   }
   // Extends at x and replays.
   void ExpectTheSameErrors(const Problem& problem, const Problem::Vector& x) {
@@ -99,14 +99,14 @@ const std::string kScaled =
 
 TEST_F(ExtensionTest, ReproducesTheFitWithSettingsOfLogsAndAScaledParameter) {
   AddTrials();
-  const System system = Model(CoulombInstance(0.02));
+  const ModelSpec system = Model(CoulombInstance(0.02));
   const Experiment e = ReadExperiment(kScaled);
   ExpectSameErrors(Problem(e, system));
 }
 
 TEST_F(ExtensionTest, ReproducesParametersPerCondition) {
   AddTrials();
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: k, target: 'actuator:servo', attribute: kp, operation: scale, lower: 0.5, upper: "
@@ -117,7 +117,7 @@ TEST_F(ExtensionTest, ReproducesParametersPerCondition) {
 
 TEST_F(ExtensionTest, ReproducesFrozenParameters) {
   AddTrials();
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: k, target: 'actuator:servo', attribute: kp, operation: scale, initial: 1.2, "
@@ -137,7 +137,7 @@ TEST_F(ExtensionTest, ReproducesAMassAndAWeightOnItThatALogSets) {
   p.tip = 0.04, p.payload = 0.05;
   AddTrial(p, "loaded", 0, "use: train, set: {'body:tip': {mass: 0.04, point_mass: 0.05}}");
   AddTrial(p, "again", 1, "use: validate, set: {'body:tip': {point_mass: 0.05, mass: 0.04}}");
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1}\n");
@@ -150,7 +150,7 @@ TEST_F(ExtensionTest, ReproducesWhatScalesAnActuatorsForce) {
            "use: train, condition: low, set: {'actuator:servo': {force_scale: 0.6, kp: 4}}");
   AddTrial(Pendulum(), "full", 1, "use: train, condition: high");
   AddTrial(Pendulum(), "again", 2, "use: validate, condition: low");
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: own, target: 'actuator:servo', attribute: force_scale, operation: scale, "
@@ -165,7 +165,7 @@ TEST_F(ExtensionTest, ReproducesWhatScalesAnActuatorsForce) {
 TEST_F(ExtensionTest, ReproducesWeightsOfAllLogsBesideThoseOfOne) {
   AddTrial(Pendulum(), "bare", 0, "use: train");
   AddTrial(Pendulum(), "loaded", 1, "use: train, set: {'body:tip': {point_mass: 0.05}}");
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   const Experiment e = ReadExperiment(
       "parameters:\n"
       "  - {name: w, target: 'body:tip', attribute: point_mass, initial: 0.03, lower: 0, upper: "
@@ -177,14 +177,14 @@ TEST_F(ExtensionTest, ReproducesWeightsOfAllLogsBesideThoseOfOne) {
   EXPECT_NEAR(ErrorsOf(extension, "out").train, problem.PooledRms(r, problem.AllLogs()), 1e-9);
   // And so is where a fit of these files begins.
   const Experiment again = Experiment::Read(folder_ / "out/extended.yaml");
-  const Problem on(again, System::Load(folder_ / "out/extended.xml"));
+  const Problem on(again, ModelSpec::Load(folder_ / "out/extended.xml"));
   const auto s = on.Residuals(on.Start(), on.AllLogs());
   EXPECT_NEAR(on.PooledRms(s, on.AllLogs()), problem.PooledRms(r, problem.AllLogs()), 1e-9);
 }
 
 TEST_F(ExtensionTest, KeepsWindowsTrialsOutputsAndFolds) {
   AddTrials();
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   std::filesystem::copy_file(folder_ / "soft0.csv", folder_ / "again.csv");
   logs_ += "  - {file: again.csv, use: validate, trial: again, window: [0, 0.9]}\n";
   const Experiment e = ReadExperiment(kScaled + "folds: [trial, condition]\nloss: {soft_l1: 3}\n",
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(Candidates, Applied,
 // A native edit, a signal, and laws that take the place of the model's Coulomb friction.
 TEST_P(Applied, GivesTheSameModelAsTheExtensionWithTheSameErrors) {
   AddTrials(0.05);
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   const Experiment e = ReadExperiment(kScaled + "candidates: [" + GetParam() + "]\n");
   std::vector<std::string> skipped;
   const Problem null(e, system);
@@ -243,7 +243,7 @@ TEST_P(Applied, GivesTheSameModelAsTheExtensionWithTheSameErrors) {
 
 TEST_F(ExtensionTest, ACandidateBesideAllIsTriedOnce) {
   AddTrials(0.05);
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   std::vector<std::string> skipped;
   const auto count = [&](const std::string& candidates) {
     const Experiment e = ReadExperiment(kScaled + "candidates: [" + candidates + "]\n");
@@ -256,7 +256,7 @@ TEST_F(ExtensionTest, ACandidateBesideAllIsTriedOnce) {
 
 TEST_F(ExtensionTest, AnInputIsLookedForInItsOwnUnit) {
   AddTrials(0.05);
-  const System system = Model(CoulombInstance(0.1));
+  const ModelSpec system = Model(CoulombInstance(0.1));
   const Experiment e = ReadExperiment(kScaled + "candidates: [input_offset]\n");
   Experiment pascal = e;
   for (Log& log : pascal.logs) {
@@ -272,7 +272,7 @@ TEST_F(ExtensionTest, AnInputIsLookedForInItsOwnUnit) {
 }
 
 TEST_F(ExtensionTest, ApplyNamesWhatIsMissing) {
-  const System system = Model();
+  const ModelSpec system = Model();
   for (const char* text : {"{}", R"({"extension": {"changes": []}})"}) {
     try {
       ApplyJson(system, nlohmann::json::parse(text), "some.json");

@@ -67,12 +67,12 @@ constexpr char kModel[] = R"(<mujoco>
 </mujoco>)";
 
 struct Bench {
-  Machine machine;
+  ModelAndData machine;
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   Vector a;
 
-  explicit Bench(const std::string& model = kModel) : machine(System::Parse(model).Build()) {
+  explicit Bench(const std::string& model = kModel) : machine(ModelSpec::Parse(model).Build()) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
     const auto fill = [&](double* x, int n) {
@@ -211,11 +211,11 @@ TEST(Tangent, FollowsParameters) {
                                     {"actuator:servo", "gear[0]", 3},
                                     {"actuator:weak", "forcerange[1]", 0.5},
                                     {"option", "gravity[0]", 5}};
-  const System system = System::Parse(kModel);
+  const ModelSpec system = ModelSpec::Parse(kModel);
   for (const Change& change : changes) {
     SCOPED_TRACE(change.target + " " + change.attribute);
     Bench bench;
-    const Machine other = system.Build(std::vector{change});
+    const ModelAndData other = system.Build(std::vector{change});
     const ModelDifference difference(bench.m, *other.model);
     EXPECT_EQ(difference.field, "");
     const Vector changed = bench.Force(*other.model);
@@ -231,7 +231,7 @@ TEST(Tangent, FollowsParameters) {
 
 TEST(Tangent, NamesWhatItDoesNotCover) {
   const auto field = [](const Change& change) {
-    const System system = System::Parse(kModel);
+    const ModelSpec system = ModelSpec::Parse(kModel);
     return ModelDifference(system.model(), *system.Build(std::vector{change}).model).field;
   };
   EXPECT_EQ(field({"site:t", "pos[0]", 0.02}), "site_pos");
@@ -241,7 +241,7 @@ TEST(Tangent, NamesWhatItDoesNotCover) {
   const auto obstacle = [](const std::string& from, const std::string& to) {
     std::string xml = kModel;
     xml.replace(xml.find(from), from.size(), to);
-    return Tangent::Obstacle(System::Parse(xml).model());
+    return Tangent::Obstacle(ModelSpec::Parse(xml).model());
   };
   EXPECT_NE(obstacle("<joint name=\"g\" axis=\"0 1 0\"/>", "<joint type=\"ball\"/>"), "");
   EXPECT_NE(obstacle("<motor name=\"weak\" joint=\"f\"", "<motor name=\"weak\" site=\"t\""), "");

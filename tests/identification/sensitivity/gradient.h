@@ -43,16 +43,17 @@ struct Sensitivities {
   Solving how{1e-10, 1e-13, false};
 };
 
-inline std::unique_ptr<Flow> FlowBeside(const Experiment& e, const Gradient& g, double relative) {
-  const System system = System::Load(e.model);
+inline std::unique_ptr<ContinuousDynamics> FlowBeside(const Experiment& e, const Gradient& g,
+                                                      double relative) {
+  const ModelSpec system = ModelSpec::Load(e.model);
   const std::vector<Change> changes{{g.target, g.attribute, g.value * (1 + relative)}};
-  return std::make_unique<Flow>(system.Build(changes), e, e.logs[0]);
+  return std::make_unique<ContinuousDynamics>(system.Build(changes), e, e.logs[0]);
 }
 
 /// d channel / d ln(value) of the first log: [channel][row].
 inline std::vector<std::vector<double>> Slopes(const Experiment& e, const Gradient& g,
                                                const Sensitivities& s = {}) {
-  std::vector<std::unique_ptr<Flow>> neighbour;
+  std::vector<std::unique_ptr<ContinuousDynamics>> neighbour;
   neighbour.push_back(FlowBeside(e, g, s.move));
   const auto flow = FlowBeside(e, g, 0);
   SmoothTraces traces = FollowFlow(*flow, neighbour, e, e.logs[0], s.how);

@@ -88,7 +88,7 @@ TEST_F(TiesTest, TwoJointsMoveByTheClosedForm) {
             "  - {column: a, unit: N, actuator: fx}\n  - {column: b, unit: N, actuator: fy}\n"
             "outputs:\n  - {column: x, unit: m, sensor: x, sigma: 1}\n"
             "  - {column: y, unit: m, sensor: y, sigma: 1}\nlogs: [{file: log.csv}]\n"));
-  Flow flow(System::Load(e.model).Build(), e, e.logs[0]);
+  ContinuousDynamics flow(ModelSpec::Load(e.model).Build(), e, e.logs[0]);
   EXPECT_EQ(flow.size(), 2U);
   const Trace trace = FollowFlow(flow, {}, e, e.logs[0], {1e-10, 1e-12, false}).trace;
   const double m = 0.5 + 2 / 4.0, k = 80 / 4.0, c = 0.8, force = 1 + 3 / 2.0 - 80 * 0.05 / 2;
@@ -110,13 +110,13 @@ TEST_F(TiesTest, ATiedArmAgreesWithSmallStepsOfMuJoCo) {
                             "<joint joint1='x2' joint2='x1' polycoef='0 -0.8 0 0 0'{0}"
                             "<joint joint1='y1' joint2='y2'{0}",
                             kStiff)));
-  const System system = System::Load(e.model);
-  Machine machine = system.Build();
+  const ModelSpec system = ModelSpec::Load(e.model);
+  ModelAndData machine = system.Build();
   machine.model->opt.integrator = mjINT_RK4;
   machine.model->opt.timestep = 5e-6;
   const Trace steps = Simulate(machine, e, e.logs[0]);
   for (const bool stiff : {false, true}) {
-    Flow flow(system.Build(), e, e.logs[0]);
+    ContinuousDynamics flow(system.Build(), e, e.logs[0]);
     const SmoothTraces traces = FollowFlow(flow, {}, e, e.logs[0], {1e-8, 1e-10, stiff});
     ASSERT_FALSE(traces.trace.diverged) << traces.trace.Failure();
     EXPECT_LT(Apart(traces.trace, steps), 2e-4) << (stiff ? "BDF" : "Adams");
@@ -126,12 +126,12 @@ TEST_F(TiesTest, ATiedArmAgreesWithSmallStepsOfMuJoCo) {
 // 33 joints of which 3 are free. Fine steps: the pressures' lag half a step late, of 7 ms.
 TEST_F(TiesTest, TheActuatorAgreesWithSmallStepsOfMuJoCo) {
   const Experiment e = Actuator();
-  const System system = System::Load(e.model);
-  Machine machine = system.Build();
+  const ModelSpec system = ModelSpec::Load(e.model);
+  ModelAndData machine = system.Build();
   machine.model->opt.integrator = mjINT_RK4;
   machine.model->opt.timestep = 2e-5;
   const Trace steps = Simulate(machine, e, e.logs[0]);
-  Flow flow(system.Build(), e, e.logs[0]);
+  ContinuousDynamics flow(system.Build(), e, e.logs[0]);
   EXPECT_EQ(flow.size(), 3U + 3U + 3U);
   const SmoothTraces traces = FollowFlow(flow, {}, e, e.logs[0], {1e-8, 1e-10, false});
   ASSERT_FALSE(traces.trace.diverged) << traces.trace.Failure();
@@ -168,7 +168,7 @@ class TiedObstacleTest : public TiesTest, public ::testing::WithParamInterface<R
 
 TEST_P(TiedObstacleTest, IsNamed) {
   const Experiment e = Read(Tied(GetParam().equalities));
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   const std::string why = SmoothObstacle(Problem(e, system));
   if (GetParam().why.empty()) {
     EXPECT_EQ(why, "");
@@ -205,7 +205,8 @@ TEST_F(TiesTest, AModelOfWhichNothingIsFreeIsAnObstacle) {
       "held.xml",
       "<mujoco><worldbody><body><joint name='x' type='slide'/><geom size='.1'/></body></worldbody>"
       "<equality><joint joint1='x'/></equality></mujoco>");
-  EXPECT_THAT(Ties(System::Load(file).model()).obstacle(), HasSubstr("hold every joint"));
+  EXPECT_THAT(JointEqualities(ModelSpec::Load(file).model()).obstacle(),
+              HasSubstr("hold every joint"));
 }
 
 // Joints that nothing else but equalities say where they are.
@@ -214,10 +215,10 @@ TEST_F(TiesTest, JointsMayBeHeld) {
       Read(Tied("<joint joint1='x1' polycoef='0.3 0 0 0 0'/><joint joint1='x1' joint2='x2'/>"
                 "<joint joint1='y0' joint2='y1' polycoef='0.1 1 0 0 0'/>"
                 "<joint joint1='y0' joint2='y1' polycoef='0.2 2 0 0 0'/>"));
-  const Machine machine = System::Load(e.model).Build();
+  const ModelAndData machine = ModelSpec::Load(e.model).Build();
   const mjModel& m = *machine.model;
   mjData& d = *machine.data;
-  Ties ties(m);
+  JointEqualities ties(m);
   ASSERT_EQ(ties.obstacle(), "");
   ASSERT_EQ(ties.velocities(), 5U);  // x0, y2, ball
   ASSERT_EQ(ties.positions(), 6U);

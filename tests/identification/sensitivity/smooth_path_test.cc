@@ -40,13 +40,13 @@ class SmoothTest : public testing::Bench {
 // MuJoCo's act and inputs are held over a step, half a step late, whatever the integrator: 5 us.
 TEST_F(SmoothTest, AgreesWithSmallStepsOfMuJoCo) {
   const Experiment e = Read(SmoothArm());
-  const System system = System::Load(e.model);
-  Machine machine = system.Build();
+  const ModelSpec system = ModelSpec::Load(e.model);
+  ModelAndData machine = system.Build();
   machine.model->opt.integrator = mjINT_RK4;
   machine.model->opt.timestep = 1e-5;
   const Trace steps = Simulate(machine, e, e.logs[0]);
   for (const bool stiff : {false, true}) {
-    Flow flow(system.Build(), e, e.logs[0]);
+    ContinuousDynamics flow(system.Build(), e, e.logs[0]);
     const SmoothTraces traces = FollowFlow(flow, {}, e, e.logs[0], {1e-8, 1e-10, stiff});
     ASSERT_FALSE(traces.trace.diverged) << traces.trace.Failure();
     EXPECT_LT(Apart(traces.trace, steps), 2e-4) << (stiff ? "BDF" : "Adams");
@@ -106,7 +106,7 @@ TEST_F(SmoothTest, ResidualsHaveTheDerivativesOfTheClosedForm) {
             "  - {name: k, target: 'joint:x', attribute: stiffness, lower: 1, upper: 100}\n"
             "  - {name: c, target: 'joint:x', attribute: damping, lower: 0, upper: 10}\n"
             "  - {name: m, target: 'body:b', attribute: mass, lower: 0.1, upper: 2}\n"));
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   Problem problem(e, system);
   ASSERT_EQ(SmoothObstacle(problem), "");
   problem.Follow(Path::kSmooth);
@@ -139,11 +139,11 @@ TEST_F(SmoothTest, AgreesWithSmallStepsOfLawsWithStates) {
           "<config key='tau_c' value='0.02'/>");
   for (const std::string& law : {kCreep, bristles}) {
     const Experiment e = Read(SmoothArm(law));
-    const System system = System::Load(e.model);
-    Machine machine = system.Build();
+    const ModelSpec system = ModelSpec::Load(e.model);
+    ModelAndData machine = system.Build();
     machine.model->opt.timestep = 1e-5;
     const Trace steps = Simulate(machine, e, e.logs[0]);
-    Flow flow(system.Build(), e, e.logs[0]);
+    ContinuousDynamics flow(system.Build(), e, e.logs[0]);
     const SmoothTraces traces = FollowFlow(flow, {}, e, e.logs[0], {1e-8, 1e-10, false});
     EXPECT_LT(Apart(traces.trace, steps), 1e-3) << law;
   }
@@ -158,8 +158,8 @@ TEST_F(SmoothTest, RecoversWhatADifferentIntegratorSimulated) {
       "  - {name: m, target: 'body:tip', attribute: mass, initial: 0.05, lower: 0.01, upper: 1}\n"
       "  - {name: bias, target: 'sensor:x0', attribute: bias, lower: -1, upper: 1}\n";
   Experiment e = Read(SmoothArm(), parameters);
-  const System system = System::Load(e.model);
-  Machine machine = system.Build();
+  const ModelSpec system = ModelSpec::Load(e.model);
+  ModelAndData machine = system.Build();
   machine.model->opt.integrator = mjINT_RK4;
   machine.model->opt.timestep = 1e-5;
   const Trace truth = Simulate(machine, e, e.logs[0]);
@@ -185,7 +185,7 @@ class ObstacleTest : public SmoothTest, public ::testing::WithParamInterface<Obs
 
 TEST_P(ObstacleTest, IsNamed) {
   const Experiment e = Read(GetParam().model, GetParam().parameters);
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);
   EXPECT_THAT(SmoothObstacle(problem), HasSubstr(GetParam().why));
 }
@@ -230,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(SmoothTest, LooksAtHowOftenInputsBreak) {
   const Experiment e = Read(SmoothArm());
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   EXPECT_THAT(SmoothCost(Problem(e, system)), HasSubstr("of the rows"));
   EXPECT_TRUE(BreaksAt(e, e.logs[0], 0));
   Experiment held = e;

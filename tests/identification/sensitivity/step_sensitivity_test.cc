@@ -119,7 +119,7 @@ class ClosedFormStepsTest : public ClosedFormTest, public ::testing::WithParamIn
 // differences narrower than the distance to that are rare events of rounding.
 TEST_P(ClosedFormStepsTest, AreThoseOfMuJoCosSteps) {
   const Experiment e = Read(GetParam().friction, kParameters, GetParam().start);
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);
   ASSERT_EQ(problem.NoClosedForm(), "");
   Problem differences(e, system);
@@ -147,7 +147,7 @@ TEST_F(ClosedFormTest, FollowsAFrictionThatSlides) {
                                 "  - {name: f, target: 'joint:*', attribute: frictionloss, "
                                 "initial: 0.02, lower: 0, upper: 1}\n",
                             "rest");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);
   Problem differences(e, system);
   differences.DifferBy(1e-6);
@@ -167,7 +167,7 @@ TEST_F(ClosedFormTest, LeavesALogWithALimitToDifferences) {
   model.replace(model.find(joint), joint.size(), joint + " range='-0.05 0.05' limited='true'");
   Write("model.xml", model);
   const Experiment e = Experiment::Read(folder_ / "e.yaml");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);
   ASSERT_EQ(problem.NoClosedForm(), "");
   Problem differences(e, system);
@@ -184,9 +184,9 @@ TEST_P(ClosedFormFlowTest, AgreesWithTightCentralDifferences) {
   const Gradient& g = GetParam();
   const Experiment e = Read(0, "", "rest");
   const auto flow = testing::FlowBeside(e, g, 0);
-  std::vector<std::unique_ptr<Flow>> neighbours;
+  std::vector<std::unique_ptr<ContinuousDynamics>> neighbours;
   neighbours.push_back(testing::FlowBeside(e, g, kMove));
-  EXPECT_TRUE(FlowTangent(*flow, neighbours, kMove).Covers(0));
+  EXPECT_TRUE(ContinuousSensitivity(*flow, neighbours, kMove).Covers(0));
   // The fast joint at the end needs runs as exact as they can be.
   const auto reference = testing::CentralDifferences(e, g, 1e-2, {1e-13, 1e-15, false});
   EXPECT_LT(testing::SlopeError(testing::Slopes(e, g), reference), 1e-5);

@@ -41,12 +41,12 @@ constexpr char kParameters[] =
 
 struct State {
   static constexpr int kParts = mjSTATE_FULLPHYSICS | mjSTATE_WARMSTART;
-  static Eigen::VectorXd Of(const Machine& machine) {
+  static Eigen::VectorXd Of(const ModelAndData& machine) {
     Eigen::VectorXd x(mj_stateSize(machine.model.get(), kParts));
     mj_getState(machine.model.get(), machine.data.get(), x.data(), kParts);
     return x;
   }
-  static Eigen::VectorXd After(Machine& machine, const Eigen::VectorXd& x, double input) {
+  static Eigen::VectorXd After(ModelAndData& machine, const Eigen::VectorXd& x, double input) {
     mj_setState(machine.model.get(), machine.data.get(), x.data(), kParts);
     machine.data->ctrl[0] = input;
     mj_step(machine.model.get(), machine.data.get());
@@ -62,7 +62,7 @@ std::vector<double> StepByStep(const Problem& problem, std::size_t k) {
     p[static_cast<Eigen::Index>(k)] += by;
     return problem.system().Build(problem.ChangesFor(p, 0));
   };
-  Machine here = built(0), above = built(reach), below = built(-reach);
+  ModelAndData here = built(0), above = built(reach), below = built(-reach);
   Eigen::VectorXd x = State::Of(here), s = Eigen::VectorXd::Zero(x.size());
   std::vector<double> slopes;
   for (const double input : problem.experiment().logs[0].input[0]) {
@@ -84,7 +84,7 @@ TEST_F(SteppedTest, NarrowDifferencesAreTheSensitivitiesOfEveryStep) {
   for (int k = 30; k < 400; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
   AddLog("shaken", "use: train", u, testing::Noisy(std::vector<double>(u.size(), 0), 0.1, 0, 1));
   const Experiment experiment = ReadExperiment(kParameters);
-  Problem problem(experiment, System::Load(Write("model.xml", kModel)));
+  Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   problem.Center();
   problem.DifferBy(1e-6);
   const auto use = problem.AllLogs();

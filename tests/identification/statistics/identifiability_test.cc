@@ -41,7 +41,7 @@ class TradeOffTest : public testing::Bench {
 
 TEST_F(TradeOffTest, SaysWhichParametersTradeOff) {
   AddTrials();
-  const System system = System::Load(Write("model.xml", kSlide));
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", kSlide));
   const auto trade_offs = [&](const std::string& parameters) {
     const Experiment e = ReadExperiment("parameters: [" + parameters + "]\n");
     const Problem problem(e, system);
@@ -64,7 +64,7 @@ TEST_F(TradeOffTest, SaysWhichParametersTradeOff) {
 
 TEST_F(TradeOffTest, TellsSeveralTiesOfTheSameParametersOnce) {
   AddTrials();
-  const System system = System::Load(Write("model.xml", kSlide));
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", kSlide));
   const Experiment e =
       ReadExperiment("parameters: [" + kK + ", " + kC + ", " + kM + ", " + kG + ", " + kU + "]\n");
   const Problem problem(e, system);
@@ -84,7 +84,7 @@ TEST_F(TradeOffTest, TellsTiesThatHaveNothingToDoWithEachOtherApart) {
   xml.insert(xml.find("<actuator>"),
              "<tendon><fixed name='rope' stiffness='5'><joint joint='x' coef='1'/></fixed>"
              "</tendon>");
-  const System system = System::Load(Write("model.xml", xml));
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", xml));
   const Experiment e = ReadExperiment(
       "parameters: [" + kK + ", " + kG + ", " + kU +
       ", {name: t, target: 'tendon:rope', attribute: stiffness, lower: 1, upper: 99}]\n");
@@ -102,7 +102,7 @@ TEST_F(TradeOffTest, TellsTiesThatHaveNothingToDoWithEachOtherApart) {
 // However far the slopes are taken because of the time step.
 TEST_F(TradeOffTest, WhatNothingDeterminesReachesOverItsBounds) {
   AddTrials();
-  const System system = System::Load(Write("model.xml", kSlide));
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", kSlide));
   for (const std::string& parameters : {kG + ", " + kU, kK + ", " + kC + ", " + kM + ", " + kG}) {
     const Experiment e = ReadExperiment("parameters: [" + parameters + "]\n");
     Problem problem(e, system);

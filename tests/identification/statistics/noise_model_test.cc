@@ -71,7 +71,7 @@ class Whitened : public Bench {
 
 TEST_F(Whitened, ResidualsOfSlowNoiseAreWhiteAndOfSizeOne) {
   const Experiment e = Logs(0.9, 0);
-  const System system = System::Load(folder_ / "model.xml");
+  const ModelSpec system = ModelSpec::Load(folder_ / "model.xml");
   const Problem problem(e, system);
   const Noise noise = NoiseOf(e);
   ASSERT_TRUE(noise.known());

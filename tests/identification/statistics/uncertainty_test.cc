@@ -29,7 +29,7 @@ class UncertaintyTest : public testing::Bench {
   void SetUp() override {
     Bench::SetUp();
     AddLog("log", "use: train", testing::Command(0, 10), std::vector<double>(10));
-    const System system = System::Load(Write("model.xml", testing::Pendulum{}.Xml("", 1e-3)));
+    const ModelSpec system = ModelSpec::Load(Write("model.xml", testing::Pendulum{}.Xml("", 1e-3)));
     problem_.emplace(ReadExperiment(Bounds(-9)), system);
     bounded_.emplace(ReadExperiment(Bounds(0)), system);
   }

@@ -20,19 +20,19 @@ namespace {
 const std::string kFolder = std::string(CONTINUUM_SOURCE) + "/models/annelida/";
 
 AnnelidaParameters Parameters() { return ReadAnnelida(kFolder + "annelida.yaml"); }
-System Robot() { return System::Load(kFolder + "annelida.xml"); }
+ModelSpec Robot() { return ModelSpec::Load(kFolder + "annelida.xml"); }
 
-double Sensor(const Machine& machine, const std::string& name, int component = 0) {
+double Sensor(const ModelAndData& machine, const std::string& name, int component = 0) {
   const int id = mj_name2id(machine.model.get(), mjOBJ_SENSOR, name.c_str());
   EXPECT_GE(id, 0) << name;
   return machine.data->sensordata[machine.model->sensor_adr[id] + component];
 }
 
-void StepUntil(const Machine& machine, double time) {
+void StepUntil(const ModelAndData& machine, double time) {
   while (machine.data->time < time - 1e-9) mj_step(machine.model.get(), machine.data.get());
 }
 
-double Fastest(const Machine& machine) {
+double Fastest(const ModelAndData& machine) {
   const double* const v = machine.data->qvel;
   return std::abs(*std::max_element(v, v + machine.model->nv,
                                     [](double a, double b) { return std::abs(a) < std::abs(b); }));
@@ -53,7 +53,7 @@ TEST(Annelida, CompilesWithoutItsPluginInstances) {
 }
 
 TEST(Annelida, HasTheNamesThatOthersUse) {
-  const System robot = Robot();
+  const ModelSpec robot = Robot();
   const mjModel& m = robot.model();
   for (int i = 1; i <= 4; ++i) {
     const std::string cable = "cable" + std::to_string(i);
@@ -72,7 +72,7 @@ TEST(Annelida, HasTheNamesThatOthersUse) {
 }
 
 TEST(Annelida, HangsStraightAndItsMassesSumToThePublishedOnes) {
-  const Machine machine = Robot().Build();
+  const ModelAndData machine = Robot().Build();
   StepUntil(machine, 0.1);
   EXPECT_NEAR(Sensor(machine, "tip_pos", 2), -5 * 0.052, 1e-12);
   EXPECT_NEAR(machine.model->body_subtreemass[0], 4 * 0.2226 + 0.2013, 1e-12);
@@ -80,10 +80,10 @@ TEST(Annelida, HangsStraightAndItsMassesSumToThePublishedOnes) {
 }
 
 TEST(Annelida, ACableBendsTheArmTowardItself) {
-  const System robot = Robot();
+  const ModelSpec robot = Robot();
   for (const auto& [cable, joint, sign] :
        {std::tuple{0, "bend1_y", 1}, {1, "bend1_x", -1}, {2, "bend1_y", -1}, {3, "bend1_x", 1}}) {
-    const Machine machine = robot.Build();
+    const ModelAndData machine = robot.Build();
     machine.data->ctrl[cable] = 15;
     StepUntil(machine, 1);
     EXPECT_GT(sign * Sensor(machine, joint), 0.02) << cable;
@@ -91,7 +91,7 @@ TEST(Annelida, ACableBendsTheArmTowardItself) {
 }
 
 // Largest speed and angle of a joint up to a time.
-std::pair<double, double> Extremes(const Machine& machine, double until) {
+std::pair<double, double> Extremes(const ModelAndData& machine, double until) {
   const mjModel& m = *machine.model;
   mjData& d = *machine.data;
   std::pair<double, double> most{0, 0};
@@ -106,10 +106,10 @@ std::pair<double, double> Extremes(const Machine& machine, double until) {
 // Peaks at a step of 0.1 ms: 34 rad/s from rest, 77 rad/s from one side to the other. Without the
 // discs' stop the inner cable turns inside out at 2 atan(b1/a) and the peak at 2 ms is near 1000.
 TEST(Annelida, StaysStableUnderTensionStepsOf60N) {
-  const System robot = Robot();
+  const ModelSpec robot = Robot();
   const double stop = Parameters().Stop();
   for (int cable = 0; cable < 4; ++cable) {
-    const Machine machine = robot.Build();
+    const ModelAndData machine = robot.Build();
     machine.data->ctrl[cable] = 60;
     const auto [first_speed, first_angle] = Extremes(machine, 2);
     EXPECT_LT(first_speed, 1.02 * 34) << cable;
@@ -127,7 +127,7 @@ TEST(Annelida, StaysStableUnderTensionStepsOf60N) {
 // Every joint loaded at once, suddenly.
 TEST(Annelida, GivesWayLittleBeforeItBreaksAway) {
   const AnnelidaParameters p = Parameters();
-  const Machine machine = Robot().Build();
+  const ModelAndData machine = Robot().Build();
   const auto joints = static_cast<int>(machine.model->nv);
   for (int i = 0; i < joints; ++i)
     machine.data->qfrc_applied[i] = (i % 2 ? -0.95 : 0.95) * p.tau_c * (1 + p.S);
@@ -137,7 +137,7 @@ TEST(Annelida, GivesWayLittleBeforeItBreaksAway) {
 
 TEST(Annelida, PulledSlowlyItsSpansCarryThePapersTensions) {
   const AnnelidaParameters p = Parameters();
-  const Machine machine = System::Load(kFolder + "annelida_tensions.xml").Build();
+  const ModelAndData machine = ModelSpec::Load(kFolder + "annelida_tensions.xml").Build();
   for (mjData& d = *machine.data; d.time < 12;) {
     d.ctrl[0] = 2 * d.time;
     mj_step(machine.model.get(), &d);
@@ -184,7 +184,7 @@ TEST(PlanarChain, IsTheSameMachineAsTheMjcf) {
                                     {"plugin:joint_friction", "tau_c", 0},
                                     {"plugin:cable_friction", "mu", 0},
                                     {"body:tip", "mass", 0.06}};
-  const Machine machine = Robot().Build(changes);
+  const ModelAndData machine = Robot().Build(changes);
   const PlanarChain chain(p, 0.06);
   PlanarState state;
   double worst = 0, fastest = 0;

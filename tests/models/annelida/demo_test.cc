@@ -17,11 +17,11 @@ namespace {
 const std::string kFolder = std::string(CONTINUUM_SOURCE) + "/models/annelida/";
 
 // RMS of (simulated − measured)/sigma over all logs.
-double Misfit(const Experiment& e, const System& robot, const std::vector<Change>& changes) {
+double Misfit(const Experiment& e, const ModelSpec& robot, const std::vector<Change>& changes) {
   double sum = 0;
   std::size_t count = 0;
   for (const Log& log : e.logs) {
-    Machine machine = robot.Build(changes);
+    ModelAndData machine = robot.Build(changes);
     const Trace trace = Simulate(machine, e, log);
     for (std::size_t c = 0; c < e.channels.size(); ++c) {
       for (std::size_t row = 0; row < log.rows(); ++row, ++count) {
@@ -36,8 +36,8 @@ double Misfit(const Experiment& e, const System& robot, const std::vector<Change
 // One digit of rounding is left to other compilers.
 TEST(AnnelidaDemo, ItsLogsAreTheRecordedOnes) {
   for (const DemoLog& log : RecordDemo(ReadAnnelida(kFolder + "annelida.yaml"))) {
-    const Table fresh = Table::Parse(log.csv, log.file);
-    const Table kept = Table::Read(kFolder + "demo/" + log.file);
+    const CsvTable fresh = CsvTable::Parse(log.csv, log.file);
+    const CsvTable kept = CsvTable::Read(kFolder + "demo/" + log.file);
     ASSERT_EQ(fresh.columns(), kept.columns());
     ASSERT_EQ(fresh.rows(), kept.rows());
     for (const std::string& column : fresh.columns()) {
@@ -50,7 +50,7 @@ TEST(AnnelidaDemo, ItsLogsAreTheRecordedOnes) {
 
 TEST(AnnelidaDemo, TheHiddenPayloadExplainsItsLogs) {
   const Experiment e = Experiment::Read(kFolder + "demo/annelida.yaml");
-  const System robot = System::Load(e.model);
+  const ModelSpec robot = ModelSpec::Load(e.model);
   const Change payload{"body:tip", "mass", DemoTruth().payload};
   const Change fine{"option", "timestep", 1e-4};
   const double plain = Misfit(e, robot, {}), with = Misfit(e, robot, {payload});
@@ -65,7 +65,7 @@ TEST(AnnelidaDemo, TheIntervalOfThePayloadHoldsIt) {
   const Experiment e = Experiment::Read(kFolder + "demo/annelida.yaml");
   DiagnosisOptions options;
   options.candidates = {"payload"};
-  const Diagnosis d = Diagnose(e, System::Load(e.model), options);
+  const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model), options);
   ASSERT_NE(d.chosen(), nullptr) << d.verdict.reason;
   EXPECT_EQ(d.verdict.text, "named") << d.verdict.reason;
   const Fitted& fitted = d.chosen()->fitted;

@@ -22,20 +22,20 @@ using Eigen::Vector3d;
 const std::string kFolder = std::string(CONTINUUM_SOURCE) + "/models/spa/";
 
 SpaFile File() { return ReadSpa(kFolder + "spa.yaml"); }
-System Robot() { return System::Load(kFolder + "spa.xml"); }
+ModelSpec Robot() { return ModelSpec::Load(kFolder + "spa.xml"); }
 
-Vector3d Sensor(const Machine& machine, const std::string& name) {
+Vector3d Sensor(const ModelAndData& machine, const std::string& name) {
   const int id = mj_name2id(machine.model.get(), mjOBJ_SENSOR, name.c_str());
   EXPECT_GE(id, 0) << name;
   return Eigen::Map<const Vector3d>(machine.data->sensordata + machine.model->sensor_adr[id]);
 }
 
-void RunUntil(const Machine& machine, double time) {
+void RunUntil(const ModelAndData& machine, double time) {
   while (machine.data->time < time - 1e-9) mj_step(machine.model.get(), machine.data.get());
   mj_forward(machine.model.get(), machine.data.get());
 }
 
-void Press(const Machine& machine, double p1, double p2, double p3) {
+void Press(const ModelAndData& machine, double p1, double p2, double p3) {
   const double pressure[] = {p1, p2, p3};
   std::copy(pressure, pressure + 3, machine.data->ctrl);
 }
@@ -46,7 +46,7 @@ TEST(SpaChain, TheCommittedFilesAreTheGeneratedOnes) {
 }
 
 TEST(SpaChain, HasTheNamesThatOthersUse) {
-  const System robot = Robot();
+  const ModelSpec robot = Robot();
   const mjModel& m = robot.model();
   for (const char* name : {"p1", "p2", "p3"}) {
     EXPECT_GE(mj_name2id(&m, mjOBJ_ACTUATOR, name), 0) << name;
@@ -61,10 +61,10 @@ TEST(SpaChain, HasTheNamesThatOthersUse) {
 }
 
 TEST(SpaChain, ItsMassIsThePublishedOneWithTheInertiaOfALine) {
-  const System robot = Robot();
+  const ModelSpec robot = Robot();
   const mjModel& m = robot.model();
   EXPECT_NEAR(m.body_subtreemass[0], 0.1806, 1e-12);
-  const Machine machine = robot.Build();
+  const ModelAndData machine = robot.Build();
   mj_forward(&m, machine.data.get());
   double first = 0, second = 0, bending = 0;
   for (int b = 1; b < m.nbody; ++b) {
@@ -79,7 +79,7 @@ TEST(SpaChain, ItsMassIsThePublishedOneWithTheInertiaOfALine) {
 }
 
 TEST(SpaChain, BendsTowardXUnderChamberOneAndSaysSo) {
-  const Machine machine = Robot().Build();
+  const ModelAndData machine = Robot().Build();
   Press(machine, 4e4, 0, 0);
   RunUntil(machine, 4);
   EXPECT_GT(Sensor(machine, "delta")[0], 3e-3);
@@ -90,7 +90,7 @@ TEST(SpaChain, RestsInTheAnalyticEquilibrium) {
   SpaFile file = File();
   file.options.mass = SpaMass::kArc;
   const Spa<double> spa(file.parameters, file.options);
-  const Machine machine = Robot().Build();
+  const ModelAndData machine = Robot().Build();
   Press(machine, 4e4, 1e4, 0);
   RunUntil(machine, 8);  // bending dies away as exp(−1.9 t/s)
   const Vector3d delta = SpaEquilibrium(spa, {4e4, 1e4, 0}, SpaBase<double>::Hanging());
@@ -103,14 +103,14 @@ TEST(SpaChain, RestsInTheAnalyticEquilibrium) {
 
 // What closed chambers push is inside: raising the pressure moves the wrench by inertia only.
 TEST(SpaChain, PressureAloneDoesNotReachTheBase) {
-  const Machine machine = Robot().Build();
+  const ModelAndData machine = Robot().Build();
   Press(machine, 4e4, 4e4, 4e4);
   RunUntil(machine, 6);
   EXPECT_NEAR(Sensor(machine, "base_force")[2], -0.1806 * 9.81, 1e-5);
 }
 
 TEST(SpaChain, TheMapOfJointsToDeltaIsTheOneOfTheTip) {
-  const Machine machine = Robot().Build();
+  const ModelAndData machine = Robot().Build();
   Press(machine, 7.5e4, 0, 2e4);
   RunUntil(machine, 8);
   const SpaFile file = File();
@@ -164,7 +164,7 @@ TEST(SpaChain, IsStableAtItsOwnStepOf2Milliseconds) {
 // F = d(m v)/dt − m g and T = dH/dt − Σ r × m g about the base, by differences of the momentum of
 // the links: for the series of two, of which there is no analytic model.
 TEST(SpaSeries, ItsBaseWrenchIsTheBalanceOfMomentum) {
-  const Machine machine = System::Load(kFolder + "spa_series.xml").Build();
+  const ModelAndData machine = ModelSpec::Load(kFolder + "spa_series.xml").Build();
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   EXPECT_NEAR(m.body_subtreemass[0], 2 * 0.1806, 1e-12);
@@ -206,7 +206,7 @@ TEST(SpaSeries, ItsBaseWrenchIsTheBalanceOfMomentum) {
 
 // The pair swings slowly and dies away in some 10 s, because the upper one carries the lower.
 TEST(SpaSeries, IsStableAtItsOwnStepAndDiesAway) {
-  const Machine machine = System::Load(kFolder + "spa_series.xml").Build();
+  const ModelAndData machine = ModelSpec::Load(kFolder + "spa_series.xml").Build();
   const double pressure[] = {4e4, 0, 0, 0, 3e4, 3e4};
   std::copy(pressure, pressure + 6, machine.data->ctrl);
   const auto fastest = [&](double until) {
@@ -229,8 +229,8 @@ TEST(SpaSeries, IsStableAtItsOwnStepAndDiesAway) {
 }
 
 TEST(SpaChain, ParametersCanBeFittedInPlace) {
-  const System robot = Robot();
-  const Machine machine = robot.Build(
+  const ModelSpec robot = Robot();
+  const ModelAndData machine = robot.Build(
       std::vector<Change>{{"plugin:segment", "k_dL1", 503.4548}, {"plugin:segment", "k_dL3", 0}});
   RunUntil(machine, 4);
   EXPECT_NEAR(Sensor(machine, "delta")[2], 0.5 * 0.1806 * 9.81 / 503.4548, 1e-6);

@@ -45,8 +45,8 @@ TEST(SpaFree, ACantileverIsItsLimitOfManyLinks) {
 
 // Squared natural frequencies [1/s²] of the chain at rest without gravity.
 Eigen::VectorXd CriticalDamping(double evenness, int links) {
-  const Machine machine =
-      System::Parse(SpaMjcf(File(), {.links = links, .evenness = evenness})).Build();
+  const ModelAndData machine =
+      ModelSpec::Parse(SpaMjcf(File(), {.links = links, .evenness = evenness})).Build();
   mjModel& m = *machine.model;
   mjData& d = *machine.data;
   std::fill_n(m.opt.gravity, 3, 0.0);
@@ -97,7 +97,7 @@ TEST(SpaFree, StepsComeToThoseOfConstantCurvature) {
 
 TEST(SpaFree, IsStableAtTheStepOfTheFileHoweverStiff) {
   for (const double s : {1.0, 30.0, 1e4}) {
-    const Machine machine = System::Parse(SpaMjcf(File(), {.evenness = s})).Build();
+    const ModelAndData machine = ModelSpec::Parse(SpaMjcf(File(), {.evenness = s})).Build();
     machine.data->ctrl[0] = 75e3;
     for (int k = 0; k < 1500; ++k) mj_step(machine.model.get(), machine.data.get());
     EXPECT_EQ(machine.data->warning[mjWARN_BADQACC].number, 0) << s;
@@ -108,8 +108,8 @@ TEST(SpaFree, IsStableAtTheStepOfTheFileHoweverStiff) {
 
 // The largest eigenvalue of one step, straight without gravity.
 double Growth(int links, double evenness, double timestep) {
-  const Machine machine =
-      System::Parse(SpaMjcf(File(), {.links = links, .evenness = evenness})).Build();
+  const ModelAndData machine =
+      ModelSpec::Parse(SpaMjcf(File(), {.links = links, .evenness = evenness})).Build();
   mjModel& m = *machine.model;
   std::fill_n(m.opt.gravity, 3, 0.0);
   m.opt.timestep = timestep;
@@ -129,7 +129,7 @@ TEST(SpaFree, NothingGrowsUpToTheStepsThatTheReadmeNames) {
 }
 
 TEST(SpaFree, AtRestTheMountCarriesTheWeight) {
-  const Machine machine = System::Load(kFolder + "spa_free.xml").Build();
+  const ModelAndData machine = ModelSpec::Load(kFolder + "spa_free.xml").Build();
   for (int k = 0; k < 6000; ++k) mj_step(machine.model.get(), machine.data.get());
   mj_forward(machine.model.get(), machine.data.get());
   const int id = mj_name2id(machine.model.get(), mjOBJ_SENSOR, "base_force");

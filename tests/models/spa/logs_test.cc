@@ -16,7 +16,7 @@ TEST(SpaLogs, GiveTableOneByTheSmoothPath) {
   const SpaFile truth = ReadSpa(std::string(CONTINUUM_SOURCE) + "/models/spa/spa.yaml");
   WriteSpaLogs(truth, {}, 1, scratch.folder());
   const Experiment e = Experiment::Read(scratch / "experiment.yaml");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   Problem problem(e, system);
   ASSERT_EQ(SmoothObstacle(problem), "");
   problem.Follow(Path::kSmooth);

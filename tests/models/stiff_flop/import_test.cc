@@ -19,14 +19,14 @@ class StiffFlopRecording : public testing::RealLog {
     double tip, turn;  // mean distance [m] and mean angle [rad]
   };
   Errors Replay(bool train, const std::vector<Change>& changes = {}) const {
-    const System system = System::Load(experiment_.model);
+    const ModelSpec system = ModelSpec::Load(experiment_.model);
     Errors sum{0, 0};
     double rows = 0;
     for (const Log& log : experiment_.logs) {
       if (log.train != train) continue;
       std::vector<Change> all = log.set;
       all.insert(all.end(), changes.begin(), changes.end());
-      Machine machine = system.Build(all);
+      ModelAndData machine = system.Build(all);
       const auto left = Residuals(experiment_, log, Simulate(machine, experiment_, log));
       for (std::size_t k = 0; k < log.rows(); ++k) {
         if (std::isnan(left[0][k])) continue;

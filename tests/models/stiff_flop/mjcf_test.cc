@@ -20,14 +20,14 @@ const std::string kFolder = CONTINUUM_SOURCE "/models/stiff_flop/";
 
 Robot NoLoad() { return Robot::Read(kFolder + "no_load.yaml"); }
 
-Vector3d Sensor(const Machine& machine, const std::string& name) {
+Vector3d Sensor(const ModelAndData& machine, const std::string& name) {
   const int id = mj_name2id(machine.model.get(), mjOBJ_SENSOR, name.c_str());
   EXPECT_GE(id, 0) << name;
   return Eigen::Map<const Vector3d>(machine.data->sensordata + machine.model->sensor_adr[id]);
 }
 
 // At rest under pressures [Pa], after 2 s: critical damping, the slower motion at 50 rad/s.
-void Settle(const Machine& machine, const Vector3d& pressure) {
+void Settle(const ModelAndData& machine, const Vector3d& pressure) {
   std::copy_n(pressure.data(), 3, machine.data->ctrl);
   while (machine.data->time < 2) mj_step(machine.model.get(), machine.data.get());
   mj_forward(machine.model.get(), machine.data.get());
@@ -40,12 +40,12 @@ TEST(StiffFlopMjcf, TheCommittedFileIsTheGeneratedOne) {
 
 TEST(StiffFlopMjcf, ItsThreadsHaveTheAngleOfTheFile) {
   const double cot = std::tan(std::numbers::pi / 2 - NoLoad().module.gamma);
-  const System system = System::Load(kFolder + "stiff_flop_braid.xml");
+  const ModelSpec system = ModelSpec::Load(kFolder + "stiff_flop_braid.xml");
   EXPECT_NEAR(system.Value("plugin:threads", "cot2_gamma"), cot * cot, 1e-12);
 }
 
 TEST(StiffFlopMjcf, HasTheNamesOfTheSoftActuator) {
-  const System system = System::Load(kFolder + "stiff_flop.xml");
+  const ModelSpec system = ModelSpec::Load(kFolder + "stiff_flop.xml");
   for (const char* name : {"p1", "p2", "p3"})
     EXPECT_GE(mj_name2id(&system.model(), mjOBJ_ACTUATOR, name), 0) << name;
   for (const char* name : {"delta", "tip_pos", "base_force", "base_torque", "marker_pos"}) {
@@ -78,14 +78,14 @@ TEST(StiffFlopMjcf, ItsStiffnessIsThatOfTheSectionWithoutItsBores) {
 TEST(StiffFlopMjcf, BendsAsTheStaticSolverAtSmallStrains) {
   Robot robot = NoLoad();
   robot.gravity.setZero();
-  const System system = System::Load(kFolder + "stiff_flop.xml");
+  const ModelSpec system = ModelSpec::Load(kFolder + "stiff_flop.xml");
   const Change weightless{"option", "gravity[2]", 0};
   for (int line = 0; line < 3; ++line) {
     const Vector3d pressure = 4e3 * Vector3d::Unit(line);
     const Solution rod = SolveForward(robot.module, {BodyLaw::kFixed, ChamberLaw::kFixed},
                                       {"", pressure, {Vector3d::Zero(), Vector3d::Zero()}}, false);
     ASSERT_EQ(rod.status, Status::kOk);
-    const Machine machine = system.Build({&weightless, 1});
+    const ModelAndData machine = system.Build({&weightless, 1});
     Settle(machine, pressure);
     const Vector3d tip = Sensor(machine, "tip_pos");  // world: x, -y, -z of the base
     const Vector3d expected(-rod.tip.x(), -rod.tip.z(), -rod.tip.y());
@@ -98,11 +98,11 @@ TEST(StiffFlopMjcf, BendsAsTheStaticSolverAtSmallStrains) {
 TEST(StiffFlopMjcf, ThreadsTakeFromThePressureWhatTheBraidSays) {
   const SoftSegment segment = SegmentOf(NoLoad().module);
   const double L0 = segment.law[0], A = segment.law[5], k = segment.law[10], pressure = 3e4;
-  const System system = System::Load(kFolder + "stiff_flop_braid.xml");
+  const ModelSpec system = ModelSpec::Load(kFolder + "stiff_flop_braid.xml");
   for (const double gamma : {NoLoad().module.gamma, 75 * std::numbers::pi / 180}) {
     const double cot2 = std::pow(std::tan(std::numbers::pi / 2 - gamma), 2);
     const Change changes[] = {{"option", "gravity[2]", 0}, {"plugin:threads", "cot2_gamma", cot2}};
-    const Machine machine = system.Build(changes);
+    const ModelAndData machine = system.Build(changes);
     Settle(machine, Vector3d::Constant(pressure));
     const double stretch = Sensor(machine, "delta")[2], lambda = 1 + stretch / L0;
     const double push = 3 * pressure * A * (1 + cot2 * (1 - 3 * lambda * lambda));
@@ -111,19 +111,19 @@ TEST(StiffFlopMjcf, ThreadsTakeFromThePressureWhatTheBraidSays) {
 }
 
 TEST(StiffFlopMjcf, ALineActsFromItsDeadPressureOn) {
-  const System system = System::Load(kFolder + "stiff_flop.xml");
+  const ModelSpec system = ModelSpec::Load(kFolder + "stiff_flop.xml");
   const Change dead{"actuator:p*", "biasprm[0]", -1e4};
   for (const double pressure : {5e3, 1e4, 3e4}) {
-    const Machine machine = system.Build({&dead, 1});
+    const ModelAndData machine = system.Build({&dead, 1});
     Settle(machine, {pressure, 0, 0});
-    const Machine plain = system.Build();
+    const ModelAndData plain = system.Build();
     Settle(plain, {std::max(0.0, pressure - 1e4), 0, 0});
     EXPECT_NEAR((Sensor(machine, "delta") - Sensor(plain, "delta")).norm(), 0, 1e-12);
   }
 }
 
 TEST(StiffFlopMjcf, TheMountCarriesTheWeightAtRest) {
-  const Machine machine = System::Load(kFolder + "stiff_flop.xml").Build();
+  const ModelAndData machine = ModelSpec::Load(kFolder + "stiff_flop.xml").Build();
   Settle(machine, {4e4, 0, 0});
   const Module module = NoLoad().module;
   EXPECT_NEAR(Sensor(machine, "base_force")[2], -(module.m + module.m_fs) * 9.81, 1e-5);

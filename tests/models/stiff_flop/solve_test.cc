@@ -34,9 +34,9 @@ class StiffFlopSolve : public testing::Test {
 
   void Cases(const std::string& text) const { WriteFile(request_.input, text); }
 
-  Table Solved(int code) const {
+  CsvTable Solved(int code) const {
     EXPECT_EQ(SolveStiffFlop(request_), code);
-    return Table::Read(request_.out);
+    return CsvTable::Read(request_.out);
   }
 
   /// The message of the input error, with nothing written.
@@ -67,7 +67,7 @@ class StiffFlopSolve : public testing::Test {
 
 TEST_F(StiffFlopSolve, ShapesGivePressuresAndPressuresGiveShapes) {
   Cases("phi,kappa,lambda_l,case\n0.5,20,1.2,bent\n0,0,1.1,long\n");
-  const Table inverse = Solved(0);
+  const CsvTable inverse = Solved(0);
   EXPECT_THAT(inverse.columns(),
               ElementsAre("case", "p1", "p2", "p3", "x", "y", "z", "tx", "ty", "tz", "r_o", "r_G1",
                           "r_G2", "r_G3", "gamma_e1", "gamma_e2", "gamma_e3", "x_in", "x_out",
@@ -76,7 +76,7 @@ TEST_F(StiffFlopSolve, ShapesGivePressuresAndPressuresGiveShapes) {
   EXPECT_EQ(inverse.Text(1, "status"), "ok");
   EXPECT_NEAR(inverse.Number(1, "r_o"), 9e-3 / std::sqrt(1.1), 1e-15);
   Cases("p1,p2,p3,fy,gy\n2e4,0,0,0.1,-9.81\n");
-  const Table forward = Solved(0);
+  const CsvTable forward = Solved(0);
   EXPECT_THAT(forward.columns(),
               ElementsAre("case", "x", "y", "z", "tx", "ty", "tz", "kappa", "phi", "lambda_l",
                           "r_o", "r_G1", "r_G2", "r_G3", "gamma_e1", "gamma_e2", "gamma_e3", "x_in",
@@ -97,7 +97,7 @@ TEST_F(StiffFlopSolve, SensitivitiesAreAppended) {
 
 TEST_F(StiffFlopSolve, AFailedCaseLeavesTheOthers) {
   Cases("kappa,phi,lambda_l\n20,0,1\n90,0,1\n10,0,1\n");
-  const Table table = Solved(1);
+  const CsvTable table = Solved(1);
   EXPECT_EQ(table.Text(0, "status"), "ok");
   EXPECT_EQ(table.Text(1, "status"), "out_of_domain");
   EXPECT_EQ(table.Text(1, "p1"), "");

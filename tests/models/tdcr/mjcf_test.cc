@@ -18,8 +18,8 @@ const std::string kFolder = std::string(CONTINUUM_SOURCE) + "/models/tdcr/";
 
 Robot Segment() { return ReadRobot(Yaml::Read(kFolder + "tdcr.yaml")); }
 
-System Links(const Robot& robot, int links) {
-  return System::Parse(SegmentMjcf(robot, links, Guides::kLinks));
+ModelSpec Links(const Robot& robot, int links) {
+  return ModelSpec::Parse(SegmentMjcf(robot, links, Guides::kLinks));
 }
 
 Eigen::Vector3d RodTip(const Robot& robot, const Loads& loads, Method method) {
@@ -36,7 +36,7 @@ TEST(TdcrMjcf, TheCommittedFilesAreTheGeneratedOnes) {
 
 TEST(TdcrMjcf, HangsStraightAndWeighsWhatRodAndDisksWeigh) {
   const Robot robot = Segment();
-  const System mjcf = System::Load(kFolder + "tdcr.xml");
+  const ModelSpec mjcf = ModelSpec::Load(kFolder + "tdcr.xml");
   const double rod = robot.density * robot.area() * robot.length;
   // Half of the first piece belongs to the base.
   const double mass = robot.disks * robot.disk_mass + rod * (1 - 0.5 / 45);
@@ -49,8 +49,8 @@ TEST(TdcrMjcf, HangsStraightAndWeighsWhatRodAndDisksWeigh) {
 // The goal of the model; README.md has the distances, at most a third of it.
 TEST(TdcrMjcf, PulledSlowlyItsTipIsThatOfTheRodWithFrictionWithinOnePercent) {
   const Robot robot = Segment();
-  const System mjcf = System::Load(kFolder + "tdcr.xml");
-  const auto cases = ReadCases(Table::Read(kFolder + "pulls.csv"), robot);
+  const ModelSpec mjcf = ModelSpec::Load(kFolder + "tdcr.xml");
+  const auto cases = ReadCases(CsvTable::Read(kFolder + "pulls.csv"), robot);
   EXPECT_EQ(cases.size(), 10);
   for (const Case& c : cases) {
     const Eigen::Vector3d rod = RodTip(robot, c.loads, Method::kCrtFriction);
@@ -62,7 +62,7 @@ TEST(TdcrMjcf, PulledSlowlyItsTipIsThatOfTheRodWithFrictionWithinOnePercent) {
 
 TEST(TdcrMjcf, ApproachesTheRodWithTheSquareOfTheLengthOfALink) {
   const Robot robot = Segment();
-  const auto cases = ReadCases(Table::Read(kFolder + "pulls.csv"), robot);
+  const auto cases = ReadCases(CsvTable::Read(kFolder + "pulls.csv"), robot);
   for (const std::size_t i : {0, 5, 9}) {
     const Loads& loads = cases[i].loads;
     const Eigen::Vector3d rod = RodTip(robot, loads, Method::kCrtFriction);

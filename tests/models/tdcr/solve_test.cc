@@ -73,7 +73,7 @@ TEST_F(TdcrSolve, WritesTheContractsColumnsAndEchoesTheCases) {
   for (const char* method : {"", "eas", "pcca", "crt"}) {
     request_.method = method;
     EXPECT_EQ(SolveTdcr(request_), 0);
-    const Table table = Table::Read(request_.out);
+    const CsvTable table = CsvTable::Read(request_.out);
     const auto& columns = table.columns();
     ASSERT_EQ(columns.size(), 8u + 27 + 27);
     EXPECT_THAT(std::vector(columns.begin(), columns.begin() + 11),
@@ -93,7 +93,7 @@ TEST_F(TdcrSolve, ACaseOverridesGravityFrictionAndDirection) {
                          "a,4,0,0,0,0,0,0,0,0,0,1,1,1\nb,4,0,0,0,0,0,0,0,0,0.5,0,1,1\n"
                          "c,4,0,0,0,0,0,0,0,0,0.5,1,1,1\n");
   EXPECT_EQ(SolveTdcr(request_), 0);
-  const Table table = Table::Read(request_.out);
+  const CsvTable table = CsvTable::Read(request_.out);
   EXPECT_EQ(table.Number(0, "x"), table.Number(1, "x"));
   EXPECT_LT(table.Number(2, "x"), 0.95 * table.Number(0, "x"));
 }
@@ -102,7 +102,7 @@ TEST_F(TdcrSolve, AFailedCaseLeavesItsNumbersEmptyAndTheOthersSolved) {
   request_.method = "crt";
   request_.input = Write("cases.csv", std::string(kHeader) + "a,1e6,0,0,0,0,0\nb,1,0,0,0,0,0\n");
   EXPECT_EQ(SolveTdcr(request_), 1);
-  const Table table = Table::Read(request_.out);
+  const CsvTable table = CsvTable::Read(request_.out);
   EXPECT_EQ(table.Text(0, "status"), "no_convergence");
   EXPECT_EQ(table.Text(0, "x"), "");
   EXPECT_EQ(table.Text(0, "tau_9"), "");
@@ -266,7 +266,7 @@ TEST_F(TdcrSolve, CalibrationFindsTheParametersThatMadeTheShapes) {
     truth.E = 51e9;
     truth.mu = 0.12;
     truth.base_rotation = {0.05, -0.1, 0.3};
-    const auto cases = ReadCases(Table::Read(request_.input), truth);
+    const auto cases = ReadCases(CsvTable::Read(request_.input), truth);
     request_.measured = Write("measured.csv", MeasuredText(truth, cases, ParseMethod(method)));
     request_.method = method;
     request_.calibrate = true;
@@ -289,7 +289,7 @@ TEST_F(TdcrSolve, CalibrationFindsTheParametersThatMadeTheShapes) {
     again.calibrate = false;
     again.out = folder_ / "errors.csv";
     ASSERT_EQ(SolveTdcr(again), 0);
-    EXPECT_LT(Table::Read(again.out).Number(3, "error_9"), 1e-6 * truth.length);
+    EXPECT_LT(CsvTable::Read(again.out).Number(3, "error_9"), 1e-6 * truth.length);
   }
 }
 
@@ -300,7 +300,7 @@ TEST_F(TdcrSolve, ACalibratedValueSaysWhereItIsFrom) {
   request_.input = Write("cases.csv", CasesText(12));
   Robot truth = ReadRobot(Yaml::Read(request_.robot));
   truth.natural = {0.3, 0, 0.5};
-  const auto cases = ReadCases(Table::Read(request_.input), truth);
+  const auto cases = ReadCases(CsvTable::Read(request_.input), truth);
   request_.measured = Write("measured.csv", MeasuredText(truth, cases, Method::kCrt));
   request_.calibrate = true;
   request_.out = folder_ / "calibrated.yaml";
@@ -370,13 +370,13 @@ TEST_F(TdcrSolve, ShapesOfOtherCasesGiveAPoorCalibrationAndTraining) {
 TEST_F(TdcrSolve, FitFindsAnEulerArcSplineAgain) {
   request_.input = Write("cases.csv", CasesText(8));
   const Robot robot = ReadRobot(Yaml::Read(request_.robot));
-  const auto cases = ReadCases(Table::Read(request_.input), robot);
+  const auto cases = ReadCases(CsvTable::Read(request_.input), robot);
   request_.measured = Write("measured.csv", MeasuredText(robot, cases, Method::kEas));
   request_.input.clear();
   request_.method = "fit";
   request_.lambda = 0;
   ASSERT_EQ(SolveTdcr(request_), 0);
-  const Table table = Table::Read(request_.out);
+  const CsvTable table = CsvTable::Read(request_.out);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     EXPECT_LE(table.Number(row, "residual"), 1e-9);
     EXPECT_LT(table.Number(row, "error_9"), 1e-9 * robot.length);
@@ -390,7 +390,7 @@ TEST_F(TdcrSolve, FitOfATipAloneIsHeldByThePenalty) {
   request_.measured = Write("measured.csv", "case,x_9,y_9,z_9\na,0.05,0.02,0.11\n");
   request_.method = "fit";
   ASSERT_EQ(SolveTdcr(request_), 0);
-  const Table table = Table::Read(request_.out);
+  const CsvTable table = CsvTable::Read(request_.out);
   EXPECT_LE(table.Number(0, "residual"), 1e-9);
   EXPECT_LT(table.Number(0, "error_9"), 0.03 * 0.134);
   EXPECT_FALSE(table.Has("error_8"));
@@ -399,7 +399,7 @@ TEST_F(TdcrSolve, FitOfATipAloneIsHeldByThePenalty) {
 TEST_F(TdcrSolve, HybridTrainingLowersTheTrainingErrorAndApplyRepeatsIt) {
   const Robot robot = ReadRobot(Yaml::Read(request_.robot));
   request_.input = Write("cases.csv", CasesText(16));
-  const auto cases = ReadCases(Table::Read(request_.input), robot);
+  const auto cases = ReadCases(CsvTable::Read(request_.input), robot);
   Robot twisted = robot;
   twisted.natural = {0.5, 0, 2};
   request_.measured = Write("measured.csv", MeasuredText(twisted, cases, Method::kCrt));
@@ -412,7 +412,7 @@ TEST_F(TdcrSolve, HybridTrainingLowersTheTrainingErrorAndApplyRepeatsIt) {
 
   const auto mean_error = [&](const SolveRequest& request) {
     EXPECT_EQ(SolveTdcr(request), 0);
-    const Table table = Table::Read(request.out);
+    const CsvTable table = CsvTable::Read(request.out);
     double sum = 0;
     for (std::size_t row = 0; row < table.rows(); ++row) {
       if ((row + 1) % 4 != 0) sum += table.Number(row, "error_9");

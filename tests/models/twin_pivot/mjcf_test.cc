@@ -28,13 +28,13 @@ TEST(TwinPivotMjcf, WeighsWhatThePaperSays) {
   // All but half of the cables' pieces in the first joint, which hang on the base: 18.5 mg.
   const Robot robot = Prototype("a");
   const double at_base = 4 * robot.rho_cable * robot.L / 2;
-  EXPECT_NEAR(1e3 * (System::Parse(RobotMjcf(robot)).model().body_subtreemass[0] + at_base), 14.40,
-              0.005);
+  EXPECT_NEAR(1e3 * (ModelSpec::Parse(RobotMjcf(robot)).model().body_subtreemass[0] + at_base),
+              14.40, 0.005);
 }
 
 TEST(TwinPivotMjcf, PulledSlowlyItsTipIsTheSolversOverTenCases) {
   const Robot robot = Prototype("a");
-  const System mjcf = System::Load(kFolder + "a.xml");
+  const ModelSpec mjcf = ModelSpec::Load(kFolder + "a.xml");
   int compared = 0;
   for (const Case& c : ReadCases(kFolder + "cases.csv", robot)) {
     const int number = std::stoi(c.label);
@@ -51,7 +51,7 @@ TEST(TwinPivotMjcf, PulledSlowlyItsTipIsTheSolversOverTenCases) {
 // Twelve joints sway four times as slowly as six; at the pace of A friction held them 0.8 mm off.
 TEST(TwinPivotMjcf, PulledSlowlyTheLongPrototypeIsTheSolversToo) {
   const Robot robot = Prototype("b");
-  const System mjcf = System::Parse(RobotMjcf(robot));
+  const ModelSpec mjcf = ModelSpec::Parse(RobotMjcf(robot));
   int compared = 0;
   for (const Case& c : ReadCases(kFolder + "cases.csv", robot)) {
     const int number = std::stoi(c.label);
@@ -72,7 +72,7 @@ TEST(TwinPivotMjcf, SectionsEndTheirCablesAtTheirLastDisc) {
   const Solution solution = Solve(robot, load);
   ASSERT_TRUE(solution.outcome.ok());
   // What the pull leaves (1e-4 rad/s) and the cables' weight at their straight length.
-  EXPECT_LT((PulledTip(System::Parse(RobotMjcf(robot)), load) - solution.tip).norm(), 1e-4);
+  EXPECT_LT((PulledTip(ModelSpec::Parse(RobotMjcf(robot)), load) - solution.tip).norm(), 1e-4);
 }
 
 TEST(TwinPivotMjcf, WithoutFrictionAndWeightsTwoHingesAreAnArcToTheFourthOrder) {
@@ -87,14 +87,14 @@ TEST(TwinPivotMjcf, WithoutFrictionAndWeightsTwoHingesAreAnArcToTheFourthOrder) 
   // Lengths differ by L (bend/2)^4 (1/72 - 1/120) a joint, 1e-8 m over the robot, and so do the
   // arms of 20 N over 0.4 N m/rad; the rest is the pull, which ends within 1e-5 of its load.
   EXPECT_GT(bend, 0.1);
-  EXPECT_LT((PulledTip(System::Parse(RobotMjcf(robot)), load) - solution.tip).norm(), 5e-6);
+  EXPECT_LT((PulledTip(ModelSpec::Parse(RobotMjcf(robot)), load) - solution.tip).norm(), 5e-6);
 }
 
 TEST(TwinPivotMjcf, AMomentAtTheTipIsRefused) {
   Load load;
   load.tension = {1, 1, 1, 1};
   load.moment = {0, 0, 1e-3};
-  EXPECT_THROW(PulledTip(System::Parse(RobotMjcf(Prototype("a"))), load), Error);
+  EXPECT_THROW(PulledTip(ModelSpec::Parse(RobotMjcf(Prototype("a"))), load), Error);
 }
 
 }  // namespace

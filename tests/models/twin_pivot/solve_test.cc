@@ -69,7 +69,7 @@ TEST_F(TwinPivotSolve, EveryPublishedCaseConvergesUnderEveryConditionOnBothProto
       request_.robot = kFolder / robot;
       request_.method = method;
       EXPECT_EQ(SolveTwinPivot(request_), 0);
-      const Table results = Table::Read(request_.out);
+      const CsvTable results = CsvTable::Read(request_.out);
       ASSERT_EQ(results.rows(), 210U);
       for (std::size_t row = 0; row < results.rows(); ++row) {
         EXPECT_EQ(results.Text(row, "status"), "ok");
@@ -83,7 +83,7 @@ TEST_F(TwinPivotSolve, MultiSectionTrajectoryRuns) {
   request_.robot = kFolder / "c.yaml";
   request_.input = kFolder / "trajectory.csv";
   EXPECT_EQ(SolveTwinPivot(request_), 0);
-  const Table results = Table::Read(request_.out);
+  const CsvTable results = CsvTable::Read(request_.out);
   EXPECT_TRUE(results.Has("beta_14"));
   EXPECT_TRUE(results.Has("F_end_8"));
   for (std::size_t row = 1; row < results.rows(); ++row) {
@@ -111,7 +111,7 @@ TEST_F(TwinPivotSolve, MassesAreTensionsOf981NewtonPerKilogramWhateverTheGravity
 TEST_F(TwinPivotSolve, ResultsKeepFullPrecisionInCsvAndJson) {
   Cases("case,condition,F1,F2,F3,F4\n\"pull, up\",II,9,8,1,2\n");
   EXPECT_EQ(SolveTwinPivot(request_), 0);
-  const Table table = Table::Read(request_.out);
+  const CsvTable table = CsvTable::Read(request_.out);
   const std::vector<std::string> columns = {
       "case",   "condition", "status",  "iterations", "residual", "micros", "x",
       "y",      "z",         "beta_1",  "beta_2",     "beta_3",   "beta_4", "beta_5",
@@ -135,7 +135,7 @@ TEST_F(TwinPivotSolve, ResultsKeepFullPrecisionInCsvAndJson) {
 TEST_F(TwinPivotSolve, FailedCaseAndThoseThatReferToItDoNotStopTheOthers) {
   Cases("case,F1,F2,F3,F4,reference\nbad,1e9,0,0,0,\nafter,5,5,1,1,bad\ngood,5,5,1,1,\n");
   EXPECT_EQ(SolveTwinPivot(request_), 1);
-  const Table table = Table::Read(request_.out);
+  const CsvTable table = CsvTable::Read(request_.out);
   EXPECT_EQ(table.Text(0, "status"), "no_convergence");
   EXPECT_FALSE(table.Text(0, "residual").empty());
   EXPECT_FALSE(table.Text(0, "iterations").empty());
@@ -151,7 +151,7 @@ TEST_F(TwinPivotSolve, FailedCaseAndThoseThatReferToItDoNotStopTheOthers) {
 TEST_F(TwinPivotSolve, ReferenceIsTheSolutionOfAnEarlierRow) {
   Cases("case,F1,F2,F3,F4,reference\nfar,14,14,8,8,\nback,11,11,8,8,far\ndirect,11,11,8,8,\n");
   EXPECT_EQ(SolveTwinPivot(request_), 0);
-  const Table table = Table::Read(request_.out);
+  const CsvTable table = CsvTable::Read(request_.out);
   EXPECT_GT(table.Number(1, "y"), table.Number(2, "y"));
 }
 

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 class CheckModel : public ::testing::Test {
  protected:
   void SetUp() override {
-    system_.emplace(System::Parse(R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>
+    system_.emplace(ModelSpec::Parse(R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>
       <worldbody>
         <body><joint name="a" axis="0 1 0" damping="0.02"/><geom type="capsule" size=".01" fromto="0 0 0 0 0 -.2" mass=".3"/></body>
         <body pos="1 0 0"><joint name="b" axis="0 1 0" damping="0.05"/><geom type="capsule" size=".01" fromto="0 0 0 0 0 -.3" mass=".4"/></body>
@@ -32,7 +32,7 @@ class CheckModel : public ::testing::Test {
   // What the model does, with noise, is what was measured.
   void RecordFrom(const Recipe& recipe) {
     experiment_ = With(Record(recipe));
-    Machine machine = system_->Build();
+    ModelAndData machine = system_->Build();
     log().measured = Simulate(machine, experiment_, log()).channel;
     std::mt19937 random(recipe.seed);
     std::normal_distribution<double> noise(0, 5e-4);
@@ -51,7 +51,7 @@ class CheckModel : public ::testing::Test {
     EXPECT_EQ(bad[0].channel, channel) << Report(bad);
   }
 
-  std::optional<System> system_;
+  std::optional<ModelSpec> system_;
   Experiment experiment_;
 };
 

@@ -17,12 +17,12 @@ using ::testing::HasSubstr;
 // times the mass and a tenth of the damping: its motion is another one, its kinematics are right.
 class CheckPoseTest : public ::testing::Test {
  protected:
-  static System Arm(double mass, double damping, double reach = 0.2) {
+  static ModelSpec Arm(double mass, double damping, double reach = 0.2) {
     const auto text = [](double x) { return std::to_string(x); };
     const std::string joint = R"(" axis="0 1 0" damping=")" + text(damping) + "\"/>";
     const std::string link =
         R"(<geom type="capsule" size=".01" fromto="0 0 0 0 0 -.2" mass=")" + text(mass) + "\"/>";
-    return System::Parse(
+    return ModelSpec::Parse(
         R"(<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody><body>
       <joint name="a)" +
         joint + link + R"(<body pos="0 0 -.2"><joint name="b)" + joint + link +
@@ -46,7 +46,7 @@ class CheckPoseTest : public ::testing::Test {
     Log log = Record({Sines, [](double t) { return Sines(1.3 * t + 1); }});
     log.measured.clear();
     experiment_.logs.push_back(log);
-    Machine real = Arm(0.2, 0.1).Build();
+    ModelAndData real = Arm(0.2, 0.1).Build();
     log_().measured = Simulate(real, experiment_, log_()).channel;
     std::mt19937 random(1);
     std::normal_distribution<double> noise(0, 5e-4);
@@ -61,7 +61,7 @@ class CheckPoseTest : public ::testing::Test {
     for (int k = 0; k < static_cast<int>(x.size()); ++k)
       x[k] = old[std::clamp(k - rows, 0, static_cast<int>(x.size()) - 1)];
   }
-  std::vector<Finding> Lags(const System& model) const {
+  std::vector<Finding> Lags(const ModelSpec& model) const {
     std::vector<Finding> lags;
     for (const Finding& f : CheckAgainstModel(experiment_, model)) {
       if (f.what == "lag" && f.text.find("kinematics") != f.text.npos) lags.push_back(f);
@@ -70,7 +70,7 @@ class CheckPoseTest : public ::testing::Test {
   }
 
   Experiment experiment_;
-  const System wrong_ = Arm(0.6, 0.01);
+  const ModelSpec wrong_ = Arm(0.6, 0.01);
 };
 
 TEST_F(CheckPoseTest, AColumnShiftedByOneRowIsNamedThoughTheModelMovesOtherwise) {
@@ -108,7 +108,7 @@ TEST_F(CheckPoseTest, NothingIsSaidOfALogWithoutShiftsOrWithAWrongLength) {
 TEST(SnakeArm, AColumnShiftedByOneRowIsNamedInItsLogs) {
   Experiment e = Experiment::Read(CONTINUUM_SOURCE "/models/annelida/demo/annelida.yaml");
   e.logs.resize(1);
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   const auto lags = [&] {
     std::vector<Finding> lags;
     for (const Finding& f : CheckAgainstModel(e, system)) {

@@ -80,7 +80,7 @@ TEST_F(CheckReal, Emps) {
 TEST_F(CheckReal, Trunk) {
   std::string logs, inputs, outputs;
   for (const char* name : {"observations_controlled_1", "observations_controlled_1_100g"}) {
-    const Table table = Table::Read(data_ / "trunk" / (std::string(name) + ".csv"));
+    const CsvTable table = CsvTable::Read(data_ / "trunk" / (std::string(name) + ".csv"));
     std::string csv = "t";
     for (const auto& column : table.columns()) csv += "," + column;
     for (std::size_t k = 0; k < table.rows(); ++k) {

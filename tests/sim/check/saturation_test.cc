@@ -53,7 +53,7 @@ TEST(Saturation, IsNotSeenInInputsThatTurnOrStep) {
 }
 
 TEST(Saturation, AtALimitOfTheActuatorIsTold) {
-  const System system = System::Parse(R"(<mujoco><worldbody>
+  const ModelSpec system = ModelSpec::Parse(R"(<mujoco><worldbody>
       <body><joint name="a"/><geom size=".1"/></body>
       <body pos="1 0 0"><joint name="b"/><geom size=".1"/></body></worldbody>
     <actuator><motor name="m1" joint="a"/><motor name="m2" joint="b" ctrlrange="-0.8 0.8"/></actuator>

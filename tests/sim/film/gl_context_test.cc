@@ -37,9 +37,9 @@ TEST(Gl, HasOneBackendInAProcess) {
 
 // The snake arm with shadows, cables and all that a frame may show beside the model.
 Image SnakeArm(Gl backend) {
-  const System system =
-      System::Load(std::string(CONTINUUM_SOURCE) + "/models/annelida/annelida.xml");
-  const Machine machine = system.Build();
+  const ModelSpec system =
+      ModelSpec::Load(std::string(CONTINUUM_SOURCE) + "/models/annelida/annelida.xml");
+  const ModelAndData machine = system.Build();
   mj_forward(machine.model.get(), machine.data.get());
   Renderer renderer(*machine.model, 640, 480, backend);
   const ColorBar bar{.label = "cable tension [N]", .low = "0", .high = "20"};

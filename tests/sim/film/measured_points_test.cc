@@ -30,9 +30,9 @@ struct Seen {
   std::size_t points = 0;
   double apart = 0;
 };
-Seen PointsOf(const Experiment& e, const System& system) {
+Seen PointsOf(const Experiment& e, const ModelSpec& system) {
   const Log& log = e.logs.front();
-  Machine machine = system.Build();
+  ModelAndData machine = system.Build();
   const Wiring wiring(e, *machine.model);
   Seen seen;
   Hooks hooks;
@@ -50,7 +50,7 @@ Seen PointsOf(const Experiment& e, const System& system) {
 TEST(MeasuredPoints, LieWhereARightModelHasThem) {
   const MeasuredArm arm;
   Experiment e = arm.Read("");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   MeasuredArm::Measure(e, system, Camera());
   e.registration = Camera();
   const Seen seen = PointsOf(e, system);
@@ -68,7 +68,7 @@ TEST(MeasuredPoints, AreInTheWorldWhereTheSensorIsInAnotherFrame) {
   insert("<worldbody>", "<site name=\"base\" pos=\".1 .2 .3\" euler=\"20 30 40\"/>");
   insert("objname=\"tip\"", " reftype=\"site\" refname=\"base\"");
   arm.folder().Write("arm.xml", model);
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   MeasuredArm::Measure(e, system, Camera());
   e.registration = Camera();
   EXPECT_LT(PointsOf(e, system).apart, kStraight);
@@ -79,7 +79,7 @@ TEST(MeasuredPoints, AreInTheWorldWhereTheSensorIsInAnotherFrame) {
 TEST(MeasuredPoints, AreHeldWhereFewRowsMissAndLeftOutWhereManyDo) {
   const MeasuredArm arm;
   Experiment e = arm.Read("");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   MeasuredArm::Measure(e, system, {});
   Log& log = e.logs.front();
   ASSERT_GT(log.rows(), 170u);
@@ -87,7 +87,7 @@ TEST(MeasuredPoints, AreHeldWhereFewRowsMissAndLeftOutWhereManyDo) {
     for (std::size_t row = from; row <= to; ++row) log.measured[direction][row] = std::nan("");
   };
   miss(10, 10, 0), miss(20, 21, 0), miss(40, 60, 1), miss(100, 160, 2);
-  const Machine machine = system.Build();
+  const ModelAndData machine = system.Build();
   const Wiring wiring(e, *machine.model);
   mj_forward(machine.model.get(), machine.data.get());
   const auto at = [&](std::size_t row) {
@@ -109,14 +109,14 @@ TEST(MeasuredPoints, NeedEveryDirectionThatTheLogHas) {
   const MeasuredArm arm;
   Experiment e = arm.Read("");
   for (double& z : e.logs.front().measured[2]) z = std::nan("");
-  EXPECT_EQ(PointsOf(e, System::Load(e.model)).points, 0);
+  EXPECT_EQ(PointsOf(e, ModelSpec::Load(e.model)).points, 0);
 }
 
 // A camera that sees x and z only, as the marker passes a plane; 1 cm too high.
 TEST(MeasuredPoints, TakeADirectionThatIsNotMeasuredFromTheSimulation) {
   const MeasuredArm arm;
   Experiment e = arm.Read("");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   MeasuredArm::Measure(e, system, {});
   Log& log = e.logs.front();
   for (double& z : log.measured[2]) z += 0.01;

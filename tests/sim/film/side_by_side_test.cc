@@ -24,10 +24,10 @@ class SideBySide : public ::testing::Test {
   std::vector<Image> Frames(const Experiment& e, const Experiment& other, const std::string& name) {
     FilmOptions options = options_;
     options.caption = name + ": " + e.logs[0].label;
-    const System system = System::Load(e.model);
+    const ModelSpec system = ModelSpec::Load(e.model);
     Outlook ahead = LookAhead(e, system, e.logs[0], options);
     ahead.framing.Include(
-        LookAhead(other, System::Load(other.model), other.logs[0], options).framing);
+        LookAhead(other, ModelSpec::Load(other.model), other.logs[0], options).framing);
     Ruler ruler;
     std::vector<Image> frames;
     DrawFrames(e, system, e.logs[0], options, ahead, ruler,
@@ -44,7 +44,7 @@ TEST_F(SideBySide, TheHalvesAreTheFramesOfEitherModelSeenFromOnePlace) {
   const auto left = Frames(before_, after_, "before"), right = Frames(after_, before_, "after");
   ASSERT_GT(left.size(), 3u);
   ASSERT_NE(left[3].rgb, right[3].rgb);
-  const System before = System::Load(before_.model), after = System::Load(after_.model);
+  const ModelSpec before = ModelSpec::Load(before_.model), after = ModelSpec::Load(after_.model);
   std::size_t k = 0;
   DrawSideBySide({before_, before, "before"}, {after_, after, "after"}, 0, options_,
                  [&](const Image& both) {
@@ -77,7 +77,7 @@ int LongestBar(const Image& both, int begin, int end) {
 // The softer arm swings further: on its own its camera would stand back.
 TEST_F(SideBySide, TheHalvesHaveOneScale) {
   options_.width = 640, options_.height = 480, options_.fps = 1;
-  const System before = System::Load(before_.model), after = System::Load(after_.model);
+  const ModelSpec before = ModelSpec::Load(before_.model), after = ModelSpec::Load(after_.model);
   const Outlook one = LookAhead(before_, before, before_.logs[0], options_);
   const Outlook other = LookAhead(after_, after, after_.logs[0], options_);
   const auto distance = [](Framing framing) {
@@ -99,7 +99,7 @@ TEST_F(SideBySide, TheHalvesHaveOneScale) {
 }
 
 TEST_F(SideBySide, EndsWithTheErrorOfEitherModelOrOfItsTaker) {
-  const System before = System::Load(before_.model);
+  const ModelSpec before = ModelSpec::Load(before_.model);
   options_.camera = "nowhere";
   const auto draw = [&](const std::function<void(Image)>& take) {
     DrawSideBySide({before_, before, "before"}, {before_, before, "after"}, 0, options_, take);

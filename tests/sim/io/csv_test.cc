@@ -27,24 +27,25 @@ std::string Message(const std::function<void()>& action) {
   return "no error";
 }
 std::string ParseError(const std::string& text) {
-  return Message([&] { Table::Parse(text, "log.csv"); });
+  return Message([&] { CsvTable::Parse(text, "log.csv"); });
 }
 
-TEST(Table, ReadsColumnsByNameInAnyLineEnding) {
-  const Table t = Table::Parse("\xEF\xBB\xBFtime , T1\r\n\r\n0,1\r\n+0.5 , -2e-3\r\n", "log.csv");
+TEST(CsvTable, ReadsColumnsByNameInAnyLineEnding) {
+  const CsvTable t =
+      CsvTable::Parse("\xEF\xBB\xBFtime , T1\r\n\r\n0,1\r\n+0.5 , -2e-3\r\n", "log.csv");
   EXPECT_THAT(t.columns(), ElementsAre("time", "T1"));
   EXPECT_THAT(t.Numbers("time"), ElementsAre(0, 0.5));
   EXPECT_THAT(t.Numbers("T1"), ElementsAre(1, -2e-3));
   EXPECT_EQ(t.Where(1), "log.csv:4");
 }
 
-TEST(Table, KeepsCommasAndQuotesInsideQuotedCells) {
-  const Table t = Table::Parse("a,b\n\"x, \"\"y\"\"\",\n", "log.csv");
+TEST(CsvTable, KeepsCommasAndQuotesInsideQuotedCells) {
+  const CsvTable t = CsvTable::Parse("a,b\n\"x, \"\"y\"\"\",\n", "log.csv");
   EXPECT_EQ(t.Text(0, "a"), "x, \"y\"");
   EXPECT_TRUE(std::isnan(t.NumberOrNan(0, "b")));
 }
 
-TEST(Table, SaysWhereALineIsWrong) {
+TEST(CsvTable, SaysWhereALineIsWrong) {
   EXPECT_THAT(ParseError(""), AllOf(HasSubstr("log.csv"), HasSubstr("header")));
   EXPECT_THAT(ParseError("\n \r\n"), HasSubstr("header"));
   EXPECT_THAT(ParseError("t,x,t\n"), AllOf(HasSubstr("log.csv:1"), HasSubstr("'t' twice")));
@@ -56,26 +57,26 @@ TEST(Table, SaysWhereALineIsWrong) {
   EXPECT_THAT(ParseError(std::string("t\n\0\n", 4)), HasSubstr("zero byte"));
 }
 
-TEST(Table, SaysWhichCellIsNoFiniteNumber) {
+TEST(CsvTable, SaysWhichCellIsNoFiniteNumber) {
   for (const std::string cell : {"", "nan", "inf", "-inf", "1e999", "0x10", "1 2", "1,", "--1",
                                  "++1", "+-1", "1d3", "one"}) {
-    const Table t = Table::Parse("t,x\n0,\"" + cell + "\"\n", "log.csv");
+    const CsvTable t = CsvTable::Parse("t,x\n0,\"" + cell + "\"\n", "log.csv");
     EXPECT_THAT(Message([&] { t.Number(0, "x"); }),
                 AllOf(HasSubstr("log.csv:2"), HasSubstr("'x'"), HasSubstr("finite number")))
         << cell;
   }
   for (const std::string cell : {"1e101", "-1e300"}) {  // finite, but its square is not
-    const Table t = Table::Parse("t,x\n0," + cell + "\n", "log.csv");
+    const CsvTable t = CsvTable::Parse("t,x\n0," + cell + "\n", "log.csv");
     EXPECT_THAT(Message([&] { t.NumberOrNan(0, "x"); }),
                 AllOf(HasSubstr("log.csv:2"), HasSubstr("within +-1e100"), HasSubstr(cell)));
   }
-  const Table t = Table::Parse("t\n0\n", "log.csv");
+  const CsvTable t = CsvTable::Parse("t\n0\n", "log.csv");
   EXPECT_THAT(Message([&] { t.Numbers("x"); }),
               AllOf(HasSubstr("column 'x'"), HasSubstr("found t")));
 }
 
-TEST(Table, ReadsFlagsInTheUsualSpellings) {
-  const Table t = Table::Parse("on\nTrue\nfalse\n1\n0.0\nyes\n", "log.csv");
+TEST(CsvTable, ReadsFlagsInTheUsualSpellings) {
+  const CsvTable t = CsvTable::Parse("on\nTrue\nfalse\n1\n0.0\nyes\n", "log.csv");
   EXPECT_TRUE(t.Flag(0, "on"));
   EXPECT_FALSE(t.Flag(1, "on"));
   EXPECT_TRUE(t.Flag(2, "on"));
@@ -83,9 +84,9 @@ TEST(Table, ReadsFlagsInTheUsualSpellings) {
   EXPECT_THAT(Message([&] { t.Flag(4, "on"); }), HasSubstr("log.csv:6"));
 }
 
-RC_GTEST_PROP(Table, NeverFailsOnArbitraryBytesExceptWithAnError, (const std::string& bytes)) {
+RC_GTEST_PROP(CsvTable, NeverFailsOnArbitraryBytesExceptWithAnError, (const std::string& bytes)) {
   try {
-    const Table t = Table::Parse(bytes, "log.csv");
+    const CsvTable t = CsvTable::Parse(bytes, "log.csv");
     for (std::size_t row = 0; row < t.rows(); ++row) {
       RC_ASSERT(t.Where(row).starts_with("log.csv:"));
       for (const auto& column : t.columns()) {
@@ -101,11 +102,11 @@ RC_GTEST_PROP(Table, NeverFailsOnArbitraryBytesExceptWithAnError, (const std::st
 }
 
 // Denser in what matters to a reader of CSV than arbitrary bytes are.
-RC_GTEST_PROP(Table, NeverFailsOnArbitraryCsvExceptWithAnError, ()) {
+RC_GTEST_PROP(CsvTable, NeverFailsOnArbitraryCsvExceptWithAnError, ()) {
   const auto text = *rc::gen::container<std::string>(
       rc::gen::element(',', '"', '\n', '\r', ' ', '\t', 't', '1', '-', '.', 'e', '\xEF', '\0'));
   try {
-    const Table t = Table::Parse(text, "log.csv");
+    const CsvTable t = CsvTable::Parse(text, "log.csv");
     for (std::size_t row = 0; row < t.rows(); ++row) {
       for (const auto& column : t.columns()) t.Text(row, column);
     }
@@ -119,7 +120,7 @@ std::string Quoted(const std::string& cell) {
   return out + "\"";
 }
 
-RC_GTEST_PROP(Table, RoundTripsNamesAndNumbersExactly, ()) {
+RC_GTEST_PROP(CsvTable, RoundTripsNamesAndNumbersExactly, ()) {
   const auto names = *rc::gen::unique<std::vector<std::string>>(rc::gen::nonEmpty(
       rc::gen::container<std::string>(rc::gen::element('a', 'B', '[', ']', ',', '"', ' ', '_'))));
   RC_PRE(!names.empty());
@@ -131,7 +132,7 @@ RC_GTEST_PROP(Table, RoundTripsNamesAndNumbersExactly, ()) {
     text += "\n";
     for (std::size_t c = 0; c < names.size(); ++c) text += (c ? "," : "") + Decimal(row[c]);
   }
-  const Table t = Table::Parse(text, "log.csv");
+  const CsvTable t = CsvTable::Parse(text, "log.csv");
   RC_ASSERT(t.columns() == names);
   RC_ASSERT(t.rows() == rows.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {

@@ -20,7 +20,7 @@ class OwnFilesTest : public ::testing::Test {
 
   // A job that writes these files.
   void Job(const std::vector<std::string>& names) const {
-    OwnFiles files(scratch_.folder());
+    OutputManifest files(scratch_.folder());
     for (const std::string& name : names) files.Write(name, "of " + name);
     files.Finish();
   }
@@ -59,7 +59,7 @@ TEST_F(OwnFilesTest, AreSoughtInTheFolderAlone) {
   std::string list = Scratch::Text(scratch_ / ".written");
   list.insert(list.find("a.csv"), "../");
   scratch_.Write("in/.written", list + "\n.. ..\nzz\n1 .written\n");
-  OwnFiles(scratch_ / "in").Finish();
+  OutputManifest(scratch_ / "in").Finish();
   EXPECT_TRUE(Has("a.csv") && Has("b.csv"));
   EXPECT_EQ(Scratch::Text(scratch_ / "in/.written"), "");
 }

@@ -34,8 +34,10 @@ constexpr char kArm[] = R"(<mujoco>
 
 class Changed : public ::testing::Test {
  protected:
-  System Arm(std::string xml = kArm) const { return System::Load(scratch_.Write("arm.xml", xml)); }
-  static double Mass(const Machine& machine, const char* body) {
+  ModelSpec Arm(std::string xml = kArm) const {
+    return ModelSpec::Load(scratch_.Write("arm.xml", xml));
+  }
+  static double Mass(const ModelAndData& machine, const char* body) {
     return machine.model->body_mass[mj_name2id(machine.model.get(), mjOBJ_BODY, body)];
   }
   // R diag(I) Rᵀ of a body about its centre, in the body's axes.
@@ -57,10 +59,10 @@ class Changed : public ::testing::Test {
 };
 
 TEST_F(Changed, InertiaIsWhatWasGivenWhereverAMassStands) {
-  const System arm = Arm();
+  const ModelSpec arm = Arm();
   const Change mass{"body:arm", "mass", 4}, inertia{"body:arm", "inertia[1]", 0.035};
   for (const auto& changes : {std::vector{mass, inertia}, std::vector{inertia, mass}}) {
-    const Machine machine = arm.Build(changes);
+    const ModelAndData machine = arm.Build(changes);
     EXPECT_EQ(Mass(machine, "arm"), 4);
     std::vector<double> moments(machine.model->body_inertia + 3, machine.model->body_inertia + 6);
     std::sort(moments.begin(), moments.end());
@@ -71,26 +73,26 @@ TEST_F(Changed, InertiaIsWhatWasGivenWhereverAMassStands) {
 }
 
 TEST_F(Changed, SystemsAreAsBeforeAfterAChangeThatFails) {
-  const System arm = Arm();
+  const ModelSpec arm = Arm();
   const std::vector<Change> half{{"joint:q", "damping", 5}, {"joint:q", "no_such", 1}};
   EXPECT_THROW(arm.Build(half), Error);
   EXPECT_EQ(arm.Build().model->dof_damping[0], 0.1);
 }
 
 TEST_F(Changed, MassesFollowOneAnother) {
-  const System arm = Arm();
+  const ModelSpec arm = Arm();
   for (const std::string body : {"arm", "ball"}) {
-    const Machine machine = arm.Build({{{"body:" + body, "mass", 2, Operation::kSet},
-                                        {"body:" + body, "mass", 3, Operation::kScale},
-                                        {"body:" + body, "mass", 0.5, Operation::kAdd}}});
+    const ModelAndData machine = arm.Build({{{"body:" + body, "mass", 2, Operation::kSet},
+                                             {"body:" + body, "mass", 3, Operation::kScale},
+                                             {"body:" + body, "mass", 0.5, Operation::kAdd}}});
     EXPECT_DOUBLE_EQ(Mass(machine, body.c_str()), 6.5) << body;
   }
 }
 
 TEST_F(Changed, AnInertialWithAnglesTakesAPointMass) {
-  const System arm = Arm();
-  const Machine plain = arm.Build();
-  const Machine loaded = arm.Build({{{"body:arm", "effect:payload", 0.5}}});
+  const ModelSpec arm = Arm();
+  const ModelAndData plain = arm.Build();
+  const ModelAndData loaded = arm.Build({{{"body:arm", "effect:payload", 0.5}}});
   EXPECT_DOUBLE_EQ(Mass(loaded, "arm"), 2.5);
   const int b = mj_name2id(loaded.model.get(), mjOBJ_BODY, "arm");
   EXPECT_NEAR(loaded.model->body_ipos[3 * b], 0.1 * 2 / 2.5, 1e-12);
@@ -105,7 +107,7 @@ TEST_F(Changed, APointMassMayBeAsSmallAsADifferenceTakesIt) {
   std::string xml = kArm;
   xml.insert(xml.find("</body>"), "<body name=\"tip\"><inertial pos=\"0 0 0\" mass=\"0\"/></body>");
   for (const double mass : {1e-12, 1e-8, 1e-4}) {
-    const Machine loaded = Arm(xml).Build({{{"body:tip", "effect:payload", mass}}});
+    const ModelAndData loaded = Arm(xml).Build({{{"body:tip", "effect:payload", mass}}});
     EXPECT_DOUBLE_EQ(Mass(loaded, "tip"), mass);
   }
 }
@@ -126,10 +128,10 @@ TEST_F(Changed, AMassThatTheCompilerOverridesIsRefused) {
 }
 
 TEST_F(Changed, NothingIsNoDelayAndNoLagEvenWhereTheModelHasOne) {
-  const System arm = Arm();
+  const ModelSpec arm = Arm();
   const std::vector<Change> nothing{{"actuator:late", "effect:dead_time", 0},
                                     {"actuator:lagged", "effect:pt1", 0}};
-  const Machine machine = arm.Build(nothing);
+  const ModelAndData machine = arm.Build(nothing);
   EXPECT_EQ(machine.model->actuator_delay[1], 0.05);
   EXPECT_EQ(machine.model->actuator_dyntype[2], mjDYN_FILTEREXACT);
   EXPECT_EQ(machine.model->actuator_dynprm[mjNDYN * 2], 0.1);
@@ -143,10 +145,10 @@ TEST_F(Changed, TheRestLengthOfATendonIsBothEndsOfItsRange) {
   xml.insert(xml.find("  <actuator>"),
              "<tendon><spatial name=\"rope\" stiffness=\"9\"><site site=\"wall\"/>"
              "<site site=\"hook\"/></spatial></tendon>");
-  const System arm = Arm(xml);
+  const ModelSpec arm = Arm(xml);
   EXPECT_NEAR(arm.Value("tendon:rope", "springlength"), 0.5, 1e-12);  // as long as at qpos0
   const std::vector<Change> shorter{{"tendon:rope", "springlength", 0.8, Operation::kScale}};
-  const Machine machine = arm.Build(shorter);
+  const ModelAndData machine = arm.Build(shorter);
   EXPECT_NEAR(machine.model->tendon_lengthspring[0], 0.4, 1e-12);
   EXPECT_NEAR(machine.model->tendon_lengthspring[1], 0.4, 1e-12);
 }
@@ -159,9 +161,9 @@ TEST_F(Changed, AnEndOfARangeKeepsTheOtherOneAndMayNotPassIt) {
       xml.find("  <actuator>"),
       "<tendon><spatial name=\"rope\" stiffness=\"9\" limited=\"true\" range=\"0.1 0.6\"><site "
       "site=\"wall\"/><site site=\"hook\"/></spatial></tendon>");
-  const System arm = Arm(xml);
+  const ModelSpec arm = Arm(xml);
   EXPECT_NEAR(arm.Value("tendon:rope", "springlength[1]"), 0.5, 1e-12);
-  const Machine slack = arm.Build({{{"tendon:rope", "springlength[0]", 0.3}}});
+  const ModelAndData slack = arm.Build({{{"tendon:rope", "springlength[0]", 0.3}}});
   EXPECT_NEAR(slack.model->tendon_lengthspring[0], 0.3, 1e-12);
   EXPECT_NEAR(slack.model->tendon_lengthspring[1], 0.5, 1e-12);  // as at qpos0
   const auto message = [&](const std::string& attribute, double value) -> std::string {
@@ -187,19 +189,19 @@ TEST_F(Changed, ABodyKeepsTheInertiaOfAGeomThatIsOnlySeen) {
   xml.replace(xml.find(solid), solid.size(),
               "<joint name='spin'/><geom name='seen' size='0.05' mass='1' contype='0' "
               "conaffinity='0'/>");
-  System arm = Arm(xml);
+  ModelSpec arm = Arm(xml);
   arm.DropVisuals();
   EXPECT_NEAR(Mass(arm.Build({{{"body:ball", "mass", 3}}}), "ball"), 3, 1e-12);
-  const System copy = arm;  // after a model was compiled
+  const ModelSpec copy = arm;  // after a model was compiled
   EXPECT_NEAR(Mass(copy.Build(), "ball"), 1, 1e-12);
   EXPECT_NEAR(Inertia(*copy.Build().model, "ball")[0], 0.4 * 0.05 * 0.05, 1e-12);
   EXPECT_THAT(copy.Named("geom:seen"), ::testing::ElementsAre(HasSubstr("seen")));
 }
 
 TEST_F(Changed, AShortLagIsNearlyNone) {
-  const System arm = Arm();
+  const ModelSpec arm = Arm();
   for (const double lag : {0.0, 1e-9}) {
-    const Machine machine = arm.Build({{{"actuator:servo", "effect:pt1", lag}}});
+    const ModelAndData machine = arm.Build({{{"actuator:servo", "effect:pt1", lag}}});
     machine.data->ctrl[0] = 0.3;
     mj_step(machine.model.get(), machine.data.get());
     EXPECT_DOUBLE_EQ(machine.data->actuator_force[0], 3) << lag;
@@ -207,15 +209,15 @@ TEST_F(Changed, AShortLagIsNearlyNone) {
 }
 
 TEST_F(Changed, DelaysAddAndASecondLagIsRefused) {
-  const System arm = Arm();
+  const ModelSpec arm = Arm();
   EXPECT_DOUBLE_EQ(
       arm.Build({{{"actuator:late", "effect:dead_time", 0.03}}}).model->actuator_delay[1], 0.08);
   EXPECT_THROW(arm.Build({{{"actuator:lagged", "effect:pt1", 0.03}}}), Error);
 }
 
 TEST_F(Changed, AHistoryCoversItsDelayAtTheStepThatIsUsed) {
-  const System arm = Arm();
-  const Machine machine =
+  const ModelSpec arm = Arm();
+  const ModelAndData machine =
       arm.Build({{{"actuator:servo", "effect:dead_time", 0.05}, {"option", "timestep", 2e-4}}});
   EXPECT_GE(machine.model->actuator_history[0], 250);
 }

@@ -25,13 +25,13 @@ class NativeEffect : public ::testing::Test {
     </worldbody>
     <sensor><framepos name="p" objtype="body" objname="link"/></sensor></mujoco>)";
 
-  System Load() const { return System::Load(scratch_.Write("m.xml", kModel)); }
-  static Machine Forward(const System& system, const std::vector<Change>& changes) {
-    Machine machine = system.Build(changes);
+  ModelSpec Load() const { return ModelSpec::Load(scratch_.Write("m.xml", kModel)); }
+  static ModelAndData Forward(const ModelSpec& system, const std::vector<Change>& changes) {
+    ModelAndData machine = system.Build(changes);
     mj_forward(machine.model.get(), machine.data.get());
     return machine;
   }
-  static std::string Message(const System& system, const Change& change) {
+  static std::string Message(const ModelSpec& system, const Change& change) {
     try {
       system.Build({{change}});
     } catch (const Error& e) {
@@ -39,7 +39,7 @@ class NativeEffect : public ::testing::Test {
     }
     return "no error";
   }
-  static std::vector<double> Run(const Machine& machine) {
+  static std::vector<double> Run(const ModelAndData& machine) {
     mjData& d = *machine.data;
     for (int k = 0; k < 200; ++k) mj_step(machine.model.get(), &d);
     return {d.qpos, d.qpos + machine.model->nq};
@@ -49,11 +49,11 @@ class NativeEffect : public ::testing::Test {
 };
 
 TEST_F(NativeEffect, GravityTiltTurnsGravityWhateverTheOrderOfItsParameters) {
-  const System system = Load();
+  const ModelSpec system = Load();
   const Change roll{"world", "effect:gravity_tilt.roll", 0.3},
       pitch{"world", "effect:gravity_tilt.pitch", -0.2};
   for (const auto& changes : {std::vector{roll, pitch}, std::vector{pitch, roll}}) {
-    const Machine machine = system.Build(changes);
+    const ModelAndData machine = system.Build(changes);
     const double* const g = machine.model->opt.gravity;
     EXPECT_NEAR(g[0], -9.81 * std::cos(0.3) * std::sin(-0.2), 1e-14);
     EXPECT_NEAR(g[1], 9.81 * std::sin(0.3), 1e-14);
@@ -65,9 +65,9 @@ TEST_F(NativeEffect, GravityTiltTurnsGravityWhateverTheOrderOfItsParameters) {
 }
 
 TEST_F(NativeEffect, LinkMassScalesMassAndInertiaAboutTheSameCentre) {
-  const System system = Load();
-  const Machine plain = system.Build(),
-                heavy = system.Build({{{"body:link", "effect:link_mass", 1.5}}});
+  const ModelSpec system = Load();
+  const ModelAndData plain = system.Build(),
+                     heavy = system.Build({{{"body:link", "effect:link_mass", 1.5}}});
   EXPECT_DOUBLE_EQ(heavy.model->body_mass[1], 0.6);
   for (int i = 0; i < 3; ++i) {
     EXPECT_DOUBLE_EQ(heavy.model->body_inertia[3 + i], 1.5 * plain.model->body_inertia[3 + i]);
@@ -77,7 +77,7 @@ TEST_F(NativeEffect, LinkMassScalesMassAndInertiaAboutTheSameCentre) {
 }
 
 TEST_F(NativeEffect, WhatScalesABodyDoesNotScaleAKnownWeightOnIt) {
-  const System system = Load();
+  const ModelSpec system = Load();
   const Change weight{"body:link", "point_mass", 0.2}, scale{"body:link", "effect:link_mass", 1.5};
   for (const auto& changes : {std::array{weight, scale}, std::array{scale, weight}})
     EXPECT_DOUBLE_EQ(system.Build(changes).model->body_mass[1], 1.5 * 0.4 + 0.2);
@@ -85,13 +85,13 @@ TEST_F(NativeEffect, WhatScalesABodyDoesNotScaleAKnownWeightOnIt) {
 }
 
 TEST_F(NativeEffect, ExternalForceActsInWorldAxesAtTheOriginOrASite) {
-  const System system = Load();
+  const ModelSpec system = Load();
   const double force[3] = {0.3, -0.5, 4};
   // The centre of mass lies 0.1 m along x from the origin, the site 0.1 m further.
   for (const auto& [target, x] : {std::pair{"body:link", -0.1}, {"site:tip", 0.1}}) {
-    const Machine machine = Forward(system, {{target, "effect:external_force.fx", force[0]},
-                                             {target, "effect:external_force.fy", force[1]},
-                                             {target, "effect:external_force.fz", force[2]}});
+    const ModelAndData machine = Forward(system, {{target, "effect:external_force.fx", force[0]},
+                                                  {target, "effect:external_force.fy", force[1]},
+                                                  {target, "effect:external_force.fz", force[2]}});
     const mjModel& m = *machine.model;
     mjData& d = *machine.data;
     mj_rnePostConstraint(&m, &d);
@@ -109,7 +109,7 @@ TEST_F(NativeEffect, ExternalForceActsInWorldAxesAtTheOriginOrASite) {
 }
 
 TEST_F(NativeEffect, ExternalForceLeavesNothingBehind) {
-  const System system = Load();
+  const ModelSpec system = Load();
   const std::string before = system.Xml();
   const std::vector<Change> push{{"body:link", "effect:external_force.fy", 1}};
   EXPECT_EQ(system.Build(push).model->nu, 1);
@@ -119,18 +119,18 @@ TEST_F(NativeEffect, ExternalForceLeavesNothingBehind) {
 }
 
 TEST_F(NativeEffect, ExternalForceOfAnExtendedModelRunsByItselfAndAddsUp) {
-  const System system = Load();
+  const ModelSpec system = Load();
   const std::vector<Change> push{{"body:link", "effect:external_force.fy", 1}};
-  const System extended = system.With(push, {});
+  const ModelSpec extended = system.With(push, {});
   EXPECT_EQ(Run(extended.Build()), Run(system.Build(push)));
-  const Machine twice = Forward(extended, {{"body:link", "effect:external_force.fy", 0.5}});
+  const ModelAndData twice = Forward(extended, {{"body:link", "effect:external_force.fy", 0.5}});
   EXPECT_EQ(twice.model->nu, 1);
   EXPECT_NEAR(twice.data->qfrc_actuator[1], 1.5, 1e-12);
   EXPECT_NEAR(Forward(extended, {}).data->qfrc_actuator[1], 1, 1e-12);
 }
 
 TEST_F(NativeEffect, AtTheirNullTheModelMovesBitByBitAsBefore) {
-  const System system = Load();
+  const ModelSpec system = Load();
   const auto plain = Run(system.Build());
   for (const Change& change :
        {Change{"body:link", "effect:link_mass", 1}, Change{"world", "effect:gravity_tilt.pitch", 0},
@@ -141,7 +141,7 @@ TEST_F(NativeEffect, AtTheirNullTheModelMovesBitByBitAsBefore) {
 }
 
 TEST_F(NativeEffect, ErrorsNameEffectAndParameter) {
-  const System system = Load();
+  const ModelSpec system = Load();
   EXPECT_THAT(Message(system, {"world", "effect:gravity_tilt.yaw", 1}),
               HasSubstr("roll, pitch, found 'yaw'"));
   EXPECT_THAT(Message(system, {"body:link", "effect:dahl", 1}), HasSubstr("a native effect"));

@@ -20,7 +20,7 @@ class QuasiStatic : public ::testing::Test {
  protected:
   struct Trial {
     Experiment experiment;
-    Machine machine;
+    ModelAndData machine;
     const Log& log() const { return experiment.logs[0]; }
   };
 
@@ -47,7 +47,7 @@ class QuasiStatic : public ::testing::Test {
         "e.yaml", "format: 1\nmodel: m.xml\nstart: " + start +
                       "\nquasi_static: true\ninputs: [{column: u, actuator: a}]\noutputs: [" +
                       outputs + "]\nlogs: [{file: log.csv}]\n"));
-    trial.machine = System::Load(trial.experiment.model).Build();
+    trial.machine = ModelSpec::Load(trial.experiment.model).Build();
     return trial;
   }
   static Trace Run(Trial& trial, const QuasiStaticOptions& pace = {}) {

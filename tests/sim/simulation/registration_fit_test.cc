@@ -30,13 +30,13 @@ class Registering : public ::testing::Test {
   // What the estimate says of an arm that a camera has measured.
   Experiment Found(const std::string& keys, const Registration& camera, double noise = 0) {
     Experiment e = arm_.Read("registration: " + keys + "\n");
-    const System system = System::Load(e.model);
+    const ModelSpec system = ModelSpec::Load(e.model);
     MeasuredArm::Measure(e, system, camera, noise);
     replayed_ = Replay(e, system);
     return e;
   }
   void ExpectError(Experiment e, const std::string& text) const {
-    const System system = System::Load(e.model);
+    const ModelSpec system = ModelSpec::Load(e.model);
     try {
       Replay(e, system);
       FAIL() << "nothing was said";
@@ -109,7 +109,7 @@ TEST_F(Registering, WhatIsWrittenIsReadAsItWas) {
 
 TEST_F(Registering, TheSameWorldNeedsNoKey) {
   Experiment e = arm_.Read("");
-  const System system = System::Load(e.model);
+  const ModelSpec system = ModelSpec::Load(e.model);
   MeasuredArm::Measure(e, system, {});
   EXPECT_LT(PooledError(e, Replay(e, system)).train, 0.05) << "mm";
   EXPECT_TRUE(RegistrationJson(e.registration).is_null());
@@ -141,7 +141,7 @@ TEST_F(Registering, MistakesInTheKeyAreNamed) {
   const auto read = [&](const std::string& keys) {
     try {
       const Experiment e = arm_.Read("registration: " + keys + "\n");
-      CheckNames(e, System::Load(e.model));
+      CheckNames(e, ModelSpec::Load(e.model));
     } catch (const Error& error) {
       return std::string(error.what());
     }

@@ -19,7 +19,7 @@ class Slider : public ::testing::Test {
  protected:
   struct Trial {
     Experiment experiment;
-    Machine machine;
+    ModelAndData machine;
   };
 
   Trial Read(const std::string& option, const std::string& actuator, double period, int rows,
@@ -42,7 +42,7 @@ class Slider : public ::testing::Test {
             "\ninputs: [{column: u, unit: N, actuator: a}]\n"
             "outputs: [{column: x, unit: m, sensor: x},\n"
             "  {column: f, unit: N, actuator: a, quantity: force}]\nlogs: [{file: log.csv}]\n"));
-    trial.machine = System::Load(trial.experiment.model).Build();
+    trial.machine = ModelSpec::Load(trial.experiment.model).Build();
     return trial;
   }
 

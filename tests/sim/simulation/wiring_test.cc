@@ -32,7 +32,7 @@ constexpr char kArm[] = R"(<mujoco>
 
 class SimulatedArm : public ::testing::Test {
  protected:
-  SimulatedArm() : system_(System::Load(scratch_.Write("arm.xml", kArm))) {
+  SimulatedArm() : system_(ModelSpec::Load(scratch_.Write("arm.xml", kArm))) {
     log_.label = "log";
     log_.time = {0, 0.01};
   }
@@ -58,7 +58,7 @@ class SimulatedArm : public ::testing::Test {
   }
 
   testing::Scratch scratch_;
-  System system_;
+  ModelSpec system_;
   Experiment e_;
   Log log_;
 };
@@ -68,7 +68,7 @@ TEST_F(SimulatedArm, IsMeasuredInATurnedFrame) {
   AddOutput("turn", {"w", "x", "y", "z"});
   AddOutput("x[1]");
   for (Output& out : e_.outputs) out.measurement.angle = 0.2, out.measurement.axis = {0, 0, 2};
-  Machine machine = system_.Build();
+  ModelAndData machine = system_.Build();
   const Trace trace = Simulate(machine, e_, log_, {{0.3}, {0}});
   double arm[4], frame[4], expected[4];
   const double y[3] = {0, 1, 0}, z[3] = {0, 0, 1}, ahead[3] = {1, 0, 0};
@@ -116,7 +116,7 @@ TEST_F(SimulatedArm, NamesComponentsBeyondTheNinth) {
 
 TEST_F(SimulatedArm, RefusesLogsWithoutEnd) {
   AddOutput("angle");
-  Machine machine = system_.Build();
+  ModelAndData machine = system_.Build();
   log_.time.back() = 1e12;
   EXPECT_THROW(Simulate(machine, e_, log_), Error);
 }

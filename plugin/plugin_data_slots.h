@@ -19,11 +19,11 @@ namespace continuum {
 /// those of a new one. A slot knows the address of the entry that owns it, so that such a number is
 /// noticed and the entry gets back its own. All members may be called from any thread.
 template <class T>
-class EntryObjects {
+class PluginDataSlots {
  public:
-  EntryObjects() = default;
-  EntryObjects(const EntryObjects&) = delete;
-  ~EntryObjects() {
+  PluginDataSlots() = default;
+  PluginDataSlots(const PluginDataSlots&) = delete;
+  ~PluginDataSlots() {
     for (std::atomic<Slot*>& block : blocks_) delete[] block.load();
   }
 
