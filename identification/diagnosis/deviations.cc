@@ -58,13 +58,13 @@ std::size_t Peak(const std::vector<double>& residual) {
   return peak;
 }
 
-struct Deviation {
+struct Ranked {
   double size;
-  Deviation wrong;
+  Deviation deviation;
 };
 
-Deviation Largest(const Experiment& e, const Log& log, const Trace& trace, std::size_t c,
-                  const std::vector<double>& residual, double size) {
+Ranked Largest(const Experiment& e, const Log& log, const Trace& trace, std::size_t c,
+               const std::vector<double>& residual, double size) {
   const auto& channel = e.channels[c];
   const std::size_t peak = Peak(residual);
   const std::string when = WhenInWords(log, residual, peak);
@@ -85,7 +85,7 @@ Deviation Largest(const Experiment& e, const Log& log, const Trace& trace, std::
 }  // namespace
 
 std::vector<Deviation> FindWrong(const Experiment& e, const std::vector<Trace>& simulated) {
-  std::vector<Deviation> all;
+  std::vector<Ranked> all;
   const Pool pool(e);
   std::set<std::pair<std::string, std::string>> seen;  // replicates need no second mention
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
@@ -103,7 +103,7 @@ std::vector<Deviation> FindWrong(const Experiment& e, const std::vector<Trace>& 
                    [](const auto& a, const auto& b) { return a.size > b.size; });
   std::vector<Deviation> wrong;
   for (std::size_t i = 0; i < std::min<std::size_t>(6, all.size()); ++i)
-    wrong.push_back(all[i].wrong);
+    wrong.push_back(all[i].deviation);
   return wrong;
 }
 
