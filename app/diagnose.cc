@@ -7,8 +7,8 @@
 
 #include "app/console.h"
 #include "error.h"
+#include "identification/report/apply_extension.h"
 #include "identification/report/diagnosis_output.h"
-#include "identification/report/extended_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/film/side_by_side.h"
 #include "sim/io/file.h"

@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "identification/candidates/random_forces.h"
+#include "identification/fit/intervals.h"
 #include "identification/inverse_dynamics/equation_error_fit.h"
 
 namespace continuum {

@@ -182,12 +182,6 @@ std::string InWords(const ceres::Solver::Summary& summary, bool settled, const F
 
 }  // namespace
 
-double Fit::LastGain() const {
-  for (std::size_t k = trace.size(); k-- > 1;)
-    if (trace[k - 1] > trace[k]) return trace[k - 1] - trace[k];
-  return 0;
-}
-
 void RequireFinite(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                    const std::vector<bool>& use, const std::string& when) {
   for (std::size_t l = 0; l < use.size(); ++l) {

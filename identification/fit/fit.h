@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "identification/result/fit.h"
 #include "identification/statistics/whitening.h"
 
 namespace continuum {
@@ -33,21 +34,6 @@ struct FitOptions {
   int patience = 1;  ///< steps in a row that must look so
   /// One line per iteration: cost and evaluations so far.
   std::function<void(const std::string&)> progress = {};
-};
-
-struct Fit {
-  Problem::Vector x;
-  double cost = 0;  ///< ½ Σ r² over the logs of the fit
-  int iterations = 0;
-  std::size_t evaluations = 0;  ///< simulated logs
-  double seconds = 0;
-  bool converged = false;
-  bool anew = false;  ///< from where the equations of motion hold best (FitByEquations)
-  std::string message;
-  std::vector<double> trace;  ///< cost at the start and after each iteration
-
-  /// By how much the last step that was taken lowered the cost.
-  double LastGain() const;
 };
 
 /// Throws Error (kJob; file of the log, time, parameter) when the simulation of a log in use

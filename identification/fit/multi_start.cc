@@ -34,16 +34,6 @@ Problem::Vector RandomStart(const Problem& problem, Random& random) {
 
 }  // namespace
 
-std::size_t MultiStart::Reached(double share) const {
-  return static_cast<std::size_t>(std::count_if(starts.begin(), starts.end(), [&](const Start& s) {
-    return s.cost <= best.cost * (1 + share);
-  }));
-}
-
-std::string MultiStart::InWords() const {
-  return fmt::format("{} of {} starts end within 0.1 % of the best cost", Reached(), starts.size());
-}
-
 MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
                        const std::vector<bool>& use, int starts, std::uint64_t seed,
                        const FitOptions& options) {

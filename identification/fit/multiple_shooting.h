@@ -4,19 +4,12 @@
 #include <string>
 
 #include "identification/fit/fit.h"
+#include "identification/result/shooting_segments.h"
 
 namespace continuum {
 
 /// Rows first to last of a log.
 Log Piece(const Log& log, std::size_t first, std::size_t last);
-
-/// Where a fit of long logs begins after one of their pieces.
-struct ShootingSegments {
-  Problem::Vector x;
-  double before = 0, after = 0;  ///< ½ Σ r² of the whole logs, at the start and at x
-  double seconds = 0;            ///< of wall clock
-  std::size_t evaluations = 0;
-};
 
 /// Multiple shooting (bock1984). Over a long log a small error of a parameter adds up until the
 /// simulation is out of step with the measurement: the cost is full of valleys, and a fit ends in

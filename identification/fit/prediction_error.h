@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "identification/problem/problem.h"
+#include "identification/result/prediction_error.h"
 
 namespace continuum {
 
@@ -11,12 +12,7 @@ namespace continuum {
 /// logs at a hundred rows), from the state measured there (StateAt), and is compared with the
 /// measurement so many rows later. What the state does not tell (activations, the past of delays,
 /// friction and hysteresis) is what free simulation has there.
-struct PredictionError {
-  std::size_t rows;
-  double seconds;                       ///< so long, in the median
-  std::vector<double> train, validate;  ///< [channel] root mean square error [SI]; NaN: none
-};
-
+///
 /// None where the outputs do not give the state, or no log is as long.
 std::optional<PredictionError> PredictAhead(const Problem& problem, const Problem::Vector& x,
                                             std::size_t rows);

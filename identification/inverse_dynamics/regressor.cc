@@ -12,6 +12,7 @@
 #include "error.h"
 #include "identification/inverse_dynamics/stationary_rows.h"
 #include "identification/inverse_dynamics/zero_phase_lowpass.h"
+#include "identification/statistics/uncertainty.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/model/joint_equalities.h"
 #include "sim/simulation/input_signals.h"

@@ -1,21 +1,12 @@
 #pragma once
 
-#include "identification/statistics/uncertainty.h"
+#include "identification/problem/problem.h"
+#include "identification/result/regression.h"
 
 namespace continuum {
 
 struct RegressorOptions {
   double cutoff = 0;  ///< of the low-pass [Hz]; 0: 50 Hz, or a fifth of the sampling rate
-};
-
-/// What a fit of the inverse model found.
-struct Regression {
-  Problem::Vector x;
-  Uncertainty uncertainty;
-  /// 100 |τ_model − τ| / |τ| [%] over all joints, of the train and of the other logs.
-  double train = 0, validate = 0;
-  std::size_t rows = 0;
-  double seconds = 0;
 };
 
 /// Least squares on the inverse dynamics of parameters that enter linearly:

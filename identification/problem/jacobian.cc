@@ -200,7 +200,7 @@ void Problem::SensitivityColumns(const Vector& x,
       if (at(s) != at(s + 1)) tasks.push_back({i, {at(s), at(s + 1)}});
     }
   }
-  Solving how = solving_;
+  SolverOptions how = solver_;
   if (rough) how.relative = 1e-3, how.absolute = 1e-5;
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
     if (StopRequested()) return;

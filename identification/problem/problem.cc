@@ -99,12 +99,12 @@ void Problem::Follow(Path path) {
   if (path == Path::kStepped) return;
   std::array<long, 2> rates;
   for (const bool stiff : {false, true}) {
-    solving_.stiff = stiff;
+    solver_.stiff = stiff;
     const SmoothTraces traces =
-        FollowFlow(*FlowAt(0, Start(), 0), {}, setup_, experiment_->logs[0], solving_);
+        FollowFlow(*FlowAt(0, Start(), 0), {}, setup_, experiment_->logs[0], solver_);
     rates[stiff] = traces.trace.diverged ? std::numeric_limits<long>::max() : traces.work.rates;
   }
-  solving_.stiff = rates[true] <= rates[false];
+  solver_.stiff = rates[true] <= rates[false];
 }
 
 double Problem::step() const { return step_ > 0 ? step_ : system().model().opt.timestep; }
@@ -292,7 +292,7 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
   if (path_ == Path::kSmooth) {
     try {
       const auto flow = FlowAt(thread, x, log);
-      return FollowFlow(*flow, {}, setup, logged, solving_).trace;
+      return FollowFlow(*flow, {}, setup, logged, solver_).trace;
     } catch (const Error& error) {
       return Refused(logged, error);
     }

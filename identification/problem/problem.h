@@ -8,28 +8,16 @@
 
 #include <Eigen/Core>
 
-#include "error.h"
-#include "identification/sensitivity/continuous_dynamics.h"
-#include "identification/sensitivity/cvodes.h"
-#include "identification/sensitivity/stepped_path.h"
+#include "identification/result/free_parameter.h"
+#include "identification/sensitivity/solver_options.h"
 #include "sim/simulation/score.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
 
-/// A parameter of a fit, after "per log" and "per condition" were multiplied out.
-struct FreeParameter {
-  std::string name;  ///< "mass", "mass[CONDITION]", "mass[LOG]"
-  std::string unit;
-  double initial, lower, upper;
-  double scale;            ///< a typical size, for scaling and finite differences
-  Change change;           ///< value is filled in
-  std::vector<bool> log;   ///< which logs it acts on
-  std::string where = {};  ///< file:line: key, for messages
-
-  /// Whether it is where a trial begins (identification/problem/start_parameters.h).
-  bool IsStart() const { return change.target.starts_with("start:"); }
-};
+class ContinuousDynamics;
+class Error;
+struct PerturbedRun;
 
 /// A force on the joints that is linear in parameters of its own: a placebo, or the best that any
 /// smooth law could do. Its parameters follow the others.
@@ -39,10 +27,6 @@ struct ForceTerms {
   std::size_t count = 0;
   double size = 1;  ///< typical θ [N*m]
 };
-
-/// How logs are simulated: as the model steps, or as a differential equation by CVODES, whose
-/// sensitivities are exact to the tolerance.
-enum class Path { kStepped, kSmooth };
 
 /// Which logs a fit may see.
 std::vector<bool> TrainLogs(const Experiment& experiment);
@@ -189,8 +173,8 @@ class Problem {
   double step_ = 0;  ///< 0: the model's
   bool central_ = false;
   double share_ = 1e-3;
-  bool exact_ = true;  ///< in closed form where there is one
-  Solving solving_;    ///< on the smooth path
+  bool exact_ = true;     ///< in closed form where there is one
+  SolverOptions solver_;  ///< on the smooth path
   mutable std::size_t evaluations_ = 0;
 };
 

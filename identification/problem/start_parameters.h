@@ -1,6 +1,9 @@
 #pragma once
 
-#include "identification/problem/problem.h"
+#include <vector>
+
+#include "identification/result/free_parameter.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

@@ -1,10 +1,13 @@
+#include "identification/report/apply_extension.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "error.h"
-#include "identification/report/extended_model.h"
 
 namespace continuum {
 namespace {
@@ -75,6 +78,27 @@ EffectInstance ReadInstance(const Json& json) {
 }
 
 }  // namespace
+
+nlohmann::json ChangesJson(const std::vector<Change>& changes, const std::vector<Added>& added) {
+  nlohmann::json json{{"instances", nlohmann::json::array()}, {"changes", nlohmann::json::array()}};
+  for (const auto& [instance, replaces] : added) {
+    if (instance.effect.empty()) continue;
+    auto config = nlohmann::json::array();
+    for (const auto& [key, value] : instance.config) config.push_back({key, value});
+    json["instances"].push_back({{"effect", instance.effect},
+                                 {"name", instance.name},
+                                 {"config", config},
+                                 {"replaces", replaces}});
+  }
+  const char* const operation[] = {"set", "scale", "add"};
+  for (const Change& c : changes) {
+    json["changes"].push_back({{"target", c.target},
+                               {"attribute", c.attribute},
+                               {"value", c.value},
+                               {"operation", operation[static_cast<int>(c.operation)]}});
+  }
+  return json;
+}
 
 std::string ApplyJson(const ModelSpec& system, const nlohmann::json& json, const std::string& where,
                       const std::filesystem::path& folder) {

@@ -8,8 +8,10 @@
 #include "error.h"
 #include "identification/diagnosis/condition_contrast.h"
 #include "identification/diagnosis/next_experiment.h"
-#include "identification/report/extended_model.h"
-#include "identification/report/fit_output.h"
+#include "identification/problem/extended_model.h"
+#include "identification/report/apply_extension.h"
+#include "identification/report/fit_json.h"
+#include "identification/report/line_diff.h"
 #include "sim/io/file.h"
 #include "sim/replay/replay.h"
 
@@ -215,7 +217,7 @@ void WriteFallback(const Experiment& e, const Diagnosis& d, const std::filesyste
     return;
   }
   const CandidateResult& c = *d.fallback;
-  const Extension files = Extend(c.ProblemOf(e), c.fitted.fit.x, folder, kFallbackModel);
+  const ExtendedModel files = Extend(c.ProblemOf(e), c.fitted.fit.x, folder, kFallbackModel);
   WriteFile(folder / kFallbackModel, files.xml);
   WriteFile(folder / kFallbackExperiment, files.yaml);
 }
@@ -246,7 +248,7 @@ DiagnosisFiles WriteDiagnosis(const Experiment& e, const Diagnosis& d,
   const Problem problem = ChosenProblem(e, d);
   const CandidateResult* const chosen = d.chosen();
   const Problem::Vector& x = chosen ? chosen->fitted.fit.x : d.before.fit.x;
-  const Extension extension = Extend(problem, x, folder);
+  const ExtendedModel extension = Extend(problem, x, folder);
   WriteFile(folder / "extended.xml", extension.xml);
   WriteFile(folder / "extended.yaml", extension.yaml);
   WriteFallback(e, d, folder);
@@ -381,8 +383,8 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Diag
   json["parameters"] = nlohmann::json::array();
   const Problem problem = ChosenProblem(e, d);
   const auto& fitted = d.chosen() ? d.chosen()->fitted : d.before;
-  json["parameters"] = ParametersJson(problem, fitted.fit.x, fitted.uncertainty);
-  json["extension"] = ChangesJson(problem, fitted.fit.x, AddedBy(d));
+  json["parameters"] = ParametersJson(problem.parameters(), fitted.fit.x, fitted.uncertainty);
+  json["extension"] = ChangesJson(problem.CommonChanges(fitted.fit.x), AddedBy(d));
   json["extended_model"] = "extended.xml";
   json["extended_experiment"] = "extended.yaml";
   json["fallback"] = FallbackJson(d);

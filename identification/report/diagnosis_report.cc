@@ -5,7 +5,7 @@
 
 #include "identification/inverse_dynamics/missing_force.h"
 #include "identification/report/diagnosis_output.h"
-#include "identification/report/fit_output.h"
+#include "identification/report/fit_report.h"
 #include "sim/replay/replay.h"
 
 namespace continuum {
@@ -253,10 +253,12 @@ class DiagnosisPage {
           "`extended.xml` runs in plain MuJoCo with the plugin; `extended.yaml` is the experiment "
           "that "
           "belongs to it.");
-      AddParameterTable(page_, c->ProblemOf(e_), c->fitted.fit.x, c->fitted.uncertainty);
+      AddParameterTable(page_, c->ProblemOf(e_).parameters(), c->fitted.fit.x,
+                        c->fitted.uncertainty);
     } else {
       page_.Paragraph("Nothing was added: `extended.xml` is the model with refitted parameters.");
-      AddParameterTable(page_, Problem(e_, d_.system), d_.before.fit.x, d_.before.uncertainty);
+      AddParameterTable(page_, Problem(e_, d_.system).parameters(), d_.before.fit.x,
+                        d_.before.uncertainty);
     }
     page_.Code(told_.difference, "diff");
   }

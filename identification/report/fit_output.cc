@@ -6,10 +6,14 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "identification/fit/intervals.h"
 #include "identification/fit/prediction_error.h"
+#include "identification/problem/extended_model.h"
 #include "identification/problem/start_checks.h"
-#include "identification/report/extended_model.h"
+#include "identification/report/fit_json.h"
+#include "identification/report/fit_report.h"
 #include "identification/report/residual_plots.h"
+#include "identification/statistics/identifiability.h"
 #include "identification/statistics/noise_model.h"
 #include "sim/io/file.h"
 #include "sim/io/json.h"
@@ -156,49 +160,6 @@ Problem::Vector ValuesIn(const std::filesystem::path& fit, const Problem& proble
   return problem.Clamp(x);
 }
 
-nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
-                              const Uncertainty& u) {
-  auto all = nlohmann::json::array();
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    const double edge = 1e-9 * p.scale;
-    all.push_back({{"name", p.name},
-                   {"unit", p.unit},
-                   {"value", x[i]},
-                   {"standard_error", u.standard_error[i]},
-                   {"ci95", {u.lower[i], u.upper[i]}},
-                   {"lower", p.lower},
-                   {"upper", p.upper},
-                   {"start", p.initial},
-                   {"at_bound", static_cast<bool>(u.at_bound[i])},
-                   {"start_at_bound", p.initial <= p.lower + edge || p.initial >= p.upper - edge}});
-    if (u.step.size()) all.back()["fine_step"] = x[i] + u.step[i];
-  }
-  return all;
-}
-
-void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector& x,
-                       const Uncertainty& u) {
-  std::vector<std::vector<std::string>> rows;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    if (p.IsStart()) continue;
-    const std::string range =
-        u.known() ? fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) : "not computed";
-    rows.push_back({p.name, fmt::format("{:.5g}", x[i]), p.unit,
-                    u.known() ? fmt::format("{:.2g}", u.standard_error[i]) : "–",
-                    range + (u.at_bound[i] ? ", at its bound" : ""),
-                    u.step.size() ? fmt::format("{:.5g}", x[i] + u.step[i]) : "",
-                    fmt::format("{:.5g}", p.initial)});
-  }
-  std::string note = "Intervals allow for residuals that are correlated in time";
-  if (u.step.size()) note += ", and reach over what a fine time step would give";
-  if (!u.known()) note = "Standard errors, intervals and correlations are " + u.lacks;
-  page.Table({"parameter", "value", "unit", "standard error", "95 % interval",
-              u.step.size() ? "at a fine step" : "", "start"},
-             rows, {note + "."});
-}
-
 namespace {
 
 // Intervals are those of a model that is right, next to the best of its valleys.
@@ -227,7 +188,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   for (const Replayed& log : logs) traces.push_back(log.trace);
   const SplitError error = PooledError(e, logs);
 
-  nlohmann::json json{{"parameters", ParametersJson(problem, fit.x, u)},
+  nlohmann::json json{{"parameters", ParametersJson(problem.parameters(), fit.x, u)},
                       {"correlation", nlohmann::json::array()},
                       {"error", ErrorsJson(e, logs)},
                       {"method", record.method},
@@ -263,7 +224,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   if (ahead) json["ahead"] = AheadJson(e, *ahead);
   if (record.starts) json["starts"] = StartsJson(problem, *record.starts);
   WriteFile(folder / "fit.json", json.dump(2) + "\n");
-  const Extension fitted = Extend(problem, x, folder, "fitted.xml");
+  const ExtendedModel fitted = Extend(problem, x, folder, "fitted.xml");
   WriteFile(folder / "fitted.xml", fitted.xml);
   WriteFile(folder / "fitted.yaml", fitted.yaml);
   WriteSimulated(e, traces, folder / "simulated");
@@ -282,7 +243,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
                  "With the fitted parameters: " + WhyItDiverges(problem, fit.x, l) + ".");
   }
   page.Heading("Parameters");
-  AddParameterTable(page, problem, fit.x, u);
+  AddParameterTable(page, problem.parameters(), fit.x, u);
   for (const Confounding& t : trade_offs) page.Badge(Tone::kWarn, "Trade-off", t.text);
   if (!u.lacks.empty()) {
     const std::string all = u.known() ? "Intervals are " : "Intervals and correlations were ";
@@ -298,7 +259,7 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
   page.Scatter(cost);
   if (record.starts) AddStarts(page, problem, *record.starts);
   page.Heading("What remains");
-  AddResiduals(page, problem, logs);
+  AddResiduals(page, e, problem.channels(), logs);
   page.Heading("Errors");
   std::vector<std::vector<std::string>> rows;
   for (std::size_t l = 0; l < logs.size(); ++l) {

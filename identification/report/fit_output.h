@@ -5,11 +5,12 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
-#include "identification/fit/multi_start.h"
-#include "identification/inverse_dynamics/regressor.h"
-#include "identification/statistics/identifiability.h"
+#include "identification/problem/problem.h"
+#include "identification/result/confounding.h"
+#include "identification/result/fit.h"
+#include "identification/result/multi_start.h"
+#include "identification/result/regression.h"
+#include "identification/result/uncertainty.h"
 #include "sim/replay/replay.h"
 
 namespace continuum {
@@ -48,15 +49,5 @@ Determined WriteFit(const Problem& problem, const Fit& fit, const std::filesyste
 /// The values that a fit.json has for the parameters of a problem. Throws Error when it is none,
 /// lacks one, or has one beyond its bounds.
 Problem::Vector ValuesIn(const std::filesystem::path& fit, const Problem& problem);
-
-/// [{name, unit, value, standard_error, ci95, at_bound, start_at_bound}], and fine_step, the value
-/// that a fine time step would give, where that is known.
-nlohmann::json ParametersJson(const Problem& problem, const Problem::Vector& x,
-                              const Uncertainty& uncertainty);
-
-/// The same as a table for a page.
-class Page;
-void AddParameterTable(Page& page, const Problem& problem, const Problem::Vector& x,
-                       const Uncertainty& uncertainty);
 
 }  // namespace continuum

@@ -89,8 +89,9 @@ void Fold(Page& page, std::size_t plots, const std::string& summary,
 
 class ResidualPlots {
  public:
-  ResidualPlots(Page& page, const Problem& problem, const std::vector<Replayed>& logs)
-      : page_(page), e_(problem.experiment()), channels_(problem.channels()) {
+  ResidualPlots(Page& page, const Experiment& e, const std::vector<std::size_t>& channels,
+                const std::vector<Replayed>& logs)
+      : page_(page), e_(e), channels_(channels) {
     for (std::size_t l = 0; l < logs.size(); ++l) {
       if (logs[l].trace.diverged) continue;  // nothing remains of it
       logs_.push_back(&e_.logs[l]);
@@ -203,8 +204,9 @@ class ResidualPlots {
 
 }  // namespace
 
-void AddResiduals(Page& page, const Problem& problem, const std::vector<Replayed>& logs) {
-  const ResidualPlots plots(page, problem, logs);
+void AddResiduals(Page& page, const Experiment& experiment,
+                  const std::vector<std::size_t>& channels, const std::vector<Replayed>& logs) {
+  const ResidualPlots plots(page, experiment, channels, logs);
   plots.AddAutocorrelation();
   plots.AddOverInputs();
 }

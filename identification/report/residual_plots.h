@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "identification/problem/problem.h"
 #include "sim/page/page.h"
 #include "sim/replay/replay.h"
 
@@ -11,6 +10,7 @@ namespace continuum {
 /// Adds what a fit leaves over, per counted channel: autocorrelation (each log, or the mean and the
 /// range of more logs than the page has colours), a table of how long residuals stay correlated,
 /// and residuals over every input with their mean by classes of the input.
-void AddResiduals(Page& page, const Problem& problem, const std::vector<Replayed>& logs);
+void AddResiduals(Page& page, const Experiment& experiment,
+                  const std::vector<std::size_t>& channels, const std::vector<Replayed>& logs);
 
 }  // namespace continuum

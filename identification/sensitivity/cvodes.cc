@@ -56,7 +56,7 @@ struct Cvodes::Solver {
   double t = 0;
   Work before;  // the last start
 
-  Solver(const Ode& o, const Solving& how) : ode(o), in(o.parameters), out(o.parameters) {
+  Solver(const Ode& o, const SolverOptions& how) : ode(o), in(o.parameters), out(o.parameters) {
     SUNContext made = nullptr;
     Require(SUNContext_Create(nullptr, &made) == 0);
     context.reset(made);
@@ -90,7 +90,7 @@ struct Cvodes::Solver {
     if (ode.parameters > 0) SetSensitivities(how);
   }
 
-  void SetSensitivities(const Solving& how) {
+  void SetSensitivities(const SolverOptions& how) {
     const int count = static_cast<int>(ode.parameters);
     Set(CVodeSensInit(memory.get(), count, CV_STAGGERED, Sensitivity, s.data()));
     std::vector<double> absolute(ode.parameters, how.absolute);
@@ -143,7 +143,8 @@ struct Cvodes::Solver {
   }
 };
 
-Cvodes::Cvodes(const Ode& ode, const Solving& how) : solver_(std::make_unique<Solver>(ode, how)) {}
+Cvodes::Cvodes(const Ode& ode, const SolverOptions& how)
+    : solver_(std::make_unique<Solver>(ode, how)) {}
 
 Cvodes::~Cvodes() = default;
 

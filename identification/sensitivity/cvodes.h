@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "identification/sensitivity/solver_options.h"
+
 namespace continuum {
 
 /// An initial value problem with forward sensitivities:
@@ -24,18 +26,11 @@ struct Ode {
       sensitivity;
 };
 
-/// Errors of one step that are accepted, of y and of every s_k [units of y], and the method:
-/// Adams formulas with fixed-point iterations, or, for stiff equations, BDF with Newton iterations.
-struct Solving {
-  double relative = 1e-6, absolute = 1e-8;
-  bool stiff = true;
-};
-
 /// Integrates an Ode by SUNDIALS' CVODES, at variable order and step, sensitivities under error
 /// control after each step (hindmarsh2005).
 class Cvodes {
  public:
-  Cvodes(const Ode& ode, const Solving& how);
+  Cvodes(const Ode& ode, const SolverOptions& how);
   ~Cvodes();
 
   /// Begins at t; s: [parameters × size], empty: zero.

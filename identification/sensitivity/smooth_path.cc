@@ -83,7 +83,7 @@ class Observation {
 }  // namespace
 
 SmoothTraces FollowFlow(ContinuousDynamics& flow, const Flows& neighbours, const Experiment& e,
-                        const Log& log, const Solving& how) {
+                        const Log& log, const SolverOptions& how) {
   const std::size_t rows = log.rows();
   std::vector<double> breaks;  // times after each row at which the inputs are smooth no more
   breaks.assign(rows, log.time.back());

@@ -25,7 +25,7 @@ struct SmoothTraces {
 /// the solver could not follow is marked diverged.
 SmoothTraces FollowFlow(ContinuousDynamics& flow,
                         const std::vector<std::unique_ptr<ContinuousDynamics>>& neighbours,
-                        const Experiment& e, const Log& log, const Solving& how);
+                        const Experiment& e, const Log& log, const SolverOptions& how);
 
 /// Below, rounding shows in sensitivities; above, curvature does.
 inline constexpr double kMove = 5e-7;

@@ -3,17 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "identification/statistics/uncertainty.h"
+#include "identification/problem/problem.h"
+#include "identification/result/confounding.h"
+#include "identification/result/uncertainty.h"
 
 namespace continuum {
-
-/// Parameters that can move together with little change of what is measured.
-struct Confounding {
-  std::vector<std::string> names;
-  /// How much farther they can move together than one of them alone; infinite: without any change.
-  double freedom;
-  std::string text;  ///< "mass and gain trade off: … only mass/gain is determined"
-};
 
 /// Directions of the information matrix H (unit diagonal) in which the data say less than a
 /// hundredth of what they say about single parameters: eigenvectors with eigenvalues λ < 0.01, and

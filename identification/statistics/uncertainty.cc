@@ -70,20 +70,17 @@ Scores Measured(const Scores& all) {
   return {all.r(rows), all.J(rows, Eigen::all), all.curvature(rows)};
 }
 
-// Moves the ends of the intervals by low ≤ 0 and high ≥ 0, within the bounds.
-void Reach(const Problem& problem, const Vector& low, const Vector& high, Uncertainty& u) {
-  for (Eigen::Index i = 0; i < low.size(); ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    u.lower[i] = std::max(p.lower, u.lower[i] + low[i]);
-    u.upper[i] = std::min(p.upper, u.upper[i] + high[i]);
-  }
+// ρ' and ρ'' of the robust loss at residuals r.
+struct Loss {
+  Vector slope, curvature;
+};
+Loss LossOf(double soft, const Vector& r) {
+  if (soft == 0) return {r, Vector::Ones(r.size())};
+  const Eigen::ArrayXd spread = 1 + (r.array() / soft).square();
+  return {r.array() * spread.pow(-0.5), spread.pow(-1.5)};
 }
 
-// Whether first order said, to half of it, what a quarter of the step changes.
-bool Foretold(const Uncertainty& u, const Vector& moved) {
-  const Vector told = u.step / kWholeStep, wrong = moved - told;
-  return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
-}
+}  // namespace
 
 std::vector<bool> AtBounds(const Problem& problem, const Vector& x) {
   std::vector<bool> at;
@@ -95,76 +92,21 @@ std::vector<bool> AtBounds(const Problem& problem, const Vector& x) {
   return at;
 }
 
-// Of a fit that the user did not wait for.
-Uncertainty NotComputed(const Problem& problem, const Vector& x) {
-  const Vector none = Vector::Constant(x.size(), std::numeric_limits<double>::quiet_NaN());
-  return {.standard_error = none,
-          .lower = none,
-          .upper = none,
-          .correlation = none * none.transpose(),
-          .information = Matrix::Zero(x.size(), x.size()),
-          .at_bound = AtBounds(problem, x),
-          .lacks = "not computed: interrupted"};
-}
-
-// ρ' and ρ'' of the robust loss at residuals r.
-struct Loss {
-  Vector slope, curvature;
-};
-Loss LossOf(double soft, const Vector& r) {
-  if (soft == 0) return {r, Vector::Ones(r.size())};
-  const Eigen::ArrayXd spread = 1 + (r.array() / soft).square();
-  return {r.array() * spread.pow(-0.5), spread.pow(-1.5)};
-}
-
-// J times √ρ'' of the rows.
-std::vector<Matrix> Weighted(std::vector<Matrix> J, double soft, const std::vector<Vector>& r) {
+std::vector<Matrix> WeightedByCurvature(std::vector<Matrix> J, double soft,
+                                        const std::vector<Vector>& r) {
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (J[l].size() > 0) J[l].array().colwise() *= LossOf(soft, r[l]).curvature.array().sqrt();
   }
   return J;
 }
 
-// Where a log begins that the fit did not see was fitted to that log alone (FitStarts): so is its
-// error. Nothing where it diverges.
-std::optional<Uncertainty> OfOwnStart(const Problem& problem, const Vector& x,
-                                      const std::vector<Vector>& r, std::size_t log, double soft) {
-  if (!r[log].allFinite()) return {};
-  std::vector<bool> use(r.size(), false);
-  use[log] = true;
-  const auto J = problem.StartJacobian(x, r, use);
-  Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
-  AllowForStep(problem, Weighted(J, soft, r), Weighted(problem.StepEffects(x, r, use), soft, r), {},
-               u);
-  return u;
-}
-
-// [log] of those that the fit did not see.
-std::vector<std::optional<Uncertainty>> OfOwnStarts(const Problem& problem, const Vector& x,
-                                                    const std::vector<Vector>& r, double soft) {
-  std::vector<std::optional<Uncertainty>> own(r.size());
-  if (problem.experiment().start != Experiment::Start::kEstimate) return own;
-  for (std::size_t l = 0; l < r.size() && !StopRequested(); ++l)
-    if (!problem.seen()[l]) own[l] = OfOwnStart(problem, x, r, l, soft);
-  return own;
-}
-
-// What is known of a log's own start.
-void TakeStart(const Problem& problem, std::size_t log, const Uncertainty& own, Uncertainty& u) {
-  std::vector<Eigen::Index> starts;
-  for (Eigen::Index i = 0; i < u.standard_error.size(); ++i) {
+void Widen(const Problem& problem, const Vector& low, const Vector& high, Uncertainty& u) {
+  for (Eigen::Index i = 0; i < low.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
-    if (p.IsStart() && p.log[log]) starts.push_back(i);
+    u.lower[i] = std::max(p.lower, u.lower[i] + low[i]);
+    u.upper[i] = std::min(p.upper, u.upper[i] + high[i]);
   }
-  u.standard_error(starts) = own.standard_error(starts);
-  u.lower(starts) = own.lower(starts);
-  u.upper(starts) = own.upper(starts);
-  u.correlation(starts, starts) = own.correlation(starts, starts);
-  u.information(starts, starts) = own.information(starts, starts);
-  if (u.step.size() && own.step.size()) u.step(starts) = own.step(starts);
 }
-
-}  // namespace
 
 Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                           const std::vector<Matrix>& J, const Whitening& whitening, double soft) {
@@ -243,7 +185,7 @@ Problem AtQuarter(const Problem& problem) {
 
 void ReachOver(const Problem& problem, const Vector& quarter, Uncertainty& u) {
   u.step = kWholeStep * quarter;
-  Reach(problem, u.step.cwiseMin(0), u.step.cwiseMax(0), u);
+  Widen(problem, u.step.cwiseMin(0), u.step.cwiseMax(0), u);
 }
 
 void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
@@ -296,58 +238,7 @@ void ReachFurther(const Problem& problem, const Vector& x, const std::vector<Mat
     if (step[l].size()) effect[l] = kWholeStep * step[l].col(0);
   }
   const Uncertainty by = UncertaintyOf(problem, x, effect, J, whitening);
-  Reach(problem, by.lower - x, by.upper - x, u);
-}
-
-void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
-                    const std::vector<Matrix>& J, const std::vector<Matrix>& step,
-                    const FitOptions& options, Uncertainty& u) {
-  if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
-  std::vector<bool> use;
-  for (const Matrix& columns : J) use.push_back(columns.size() > 0);
-  Vector moved;
-  try {
-    moved = FitParameters(AtQuarter(problem), x, use, options).x - x;
-  } catch (const Error&) {
-    return;  // it diverges at the finer step: first order has to do
-  }
-  if (StopRequested()) {
-    u.lacks = "by first order in the time step: the fit at a fine one was interrupted";
-    return;
-  }
-  const Whitening none;
-  const Whitening& whitening = options.whitening ? *options.whitening : none;
-  const bool foretold = Foretold(u, moved);
-  const auto slopes = foretold ? J : Secants(problem, x, r, J, step, whitening);
-  u = UncertaintyOf(problem, x, r, slopes, whitening, options.soft);
-  ReachOver(problem, moved, u);
-  if (foretold) return;
-  const Vector more = (kWholeRoot - kWholeStep) * moved;
-  Reach(problem, more.cwiseMin(0), more.cwiseMax(0), u);
-  ReachFurther(problem, x, slopes, step, whitening, u);
-}
-
-Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
-                        const std::function<void(const std::string&)>& progress) {
-  Problem centered = problem;
-  centered.Center();
-  auto J = centered.Jacobian(x, r, problem.seen());
-  KeepInvariances(problem, x, r, J);
-  if (StopRequested()) return NotComputed(problem, x);
-  const double soft = problem.experiment().soft;
-  Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
-  if (problem.path() != Path::kStepped) return u;
-  const auto step = problem.StepEffects(x, r, problem.seen());
-  const auto own = OfOwnStarts(centered, x, r, soft);
-  if (StopRequested()) return NotComputed(problem, x);
-  AllowForStep(problem, Weighted(J, soft, r), Weighted(step, soft, r), {}, u);
-  FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
-  if (progress)
-    few.progress = [&](const std::string& line) { progress("at a fine step: " + line); };
-  ReachByFineFit(centered, x, r, J, step, few, u);
-  for (std::size_t l = 0; l < own.size(); ++l)
-    if (own[l]) TakeStart(problem, l, *own[l], u);
-  return u;
+  Widen(problem, by.lower - x, by.upper - x, u);
 }
 
 }  // namespace continuum

@@ -1,12 +1,19 @@
 #pragma once
 
-#include <functional>
-#include <string>
 #include <vector>
 
-#include "identification/fit/fit.h"
+#include "identification/problem/problem.h"
+#include "identification/result/uncertainty.h"
+#include "identification/statistics/whitening.h"
 
 namespace continuum {
+
+/// Rows that follow each other in time, and how the loss follows the parameters there.
+struct Scores {
+  Problem::Vector r;          ///< [row] slopes of the loss: for least squares the residuals
+  Problem::Matrix J;          ///< [rows × parameters]; a row of zeros was not measured
+  Problem::Vector curvature;  ///< [row] of the loss: for least squares ones
+};
 
 /// Standard errors and correlations of a fit, allowing for residuals that are correlated in time:
 ///
@@ -25,21 +32,6 @@ namespace continuum {
 /// true value may lie inside, it counts as free for the others too. One without effect may be
 /// anything that its bounds allow (standard error: that of an even distribution); so may all where
 /// rows are no more than parameters.
-struct Uncertainty {
-  Problem::Vector standard_error, lower, upper;  ///< 95 % interval, within the bounds
-  Problem::Vector step = {};  ///< what a fine time step would add to the value; empty: not known
-  Problem::Matrix correlation;
-  Problem::Matrix information;  ///< H; zero for parameters at a bound
-  std::vector<bool> at_bound;
-  std::string lacks = {};  ///< in words, what the user did not wait for; empty: nothing
-
-  bool known() const { return !standard_error.hasNaN(); }  ///< else only values are, and at_bound
-};
-struct Scores {       ///< of rows that follow each other in time; a row of zeros was not measured
-  Problem::Vector r;  ///< slopes of the loss: for least squares the residuals
-  Problem::Matrix J;
-  Problem::Vector curvature;  ///< of the loss: for least squares ones
-};
 Uncertainty UncertaintyFrom(const Problem& problem, const Problem::Vector& x,
                             const std::vector<Scores>& blocks);
 /// The same with one block per counted channel of every log that has a Jacobian.
@@ -47,6 +39,16 @@ Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
                           const std::vector<Problem::Vector>& r,
                           const std::vector<Problem::Matrix>& J, const Whitening& whitening = {},
                           double soft = 0);
+
+/// Which values stand at one of their bounds, to a millionth of their scale.
+std::vector<bool> AtBounds(const Problem& problem, const Problem::Vector& x);
+/// The columns of each log times √ρ'' of its rows, the curvature of the soft L1 loss at residuals r
+/// (soft 0: as they are).
+std::vector<Problem::Matrix> WeightedByCurvature(std::vector<Problem::Matrix> columns, double soft,
+                                                 const std::vector<Problem::Vector>& r);
+/// Moves the ends of the intervals by low ≤ 0 and high ≥ 0 [parameter], within the bounds.
+void Widen(const Problem& problem, const Problem::Vector& low, const Problem::Vector& high,
+           Uncertainty& u);
 
 /// Whole effect of a step, of order h, over what a quarter of it shows.
 inline constexpr double kWholeStep = 4.0 / 3;
@@ -82,20 +84,5 @@ std::vector<Problem::Matrix> Secants(const Problem& problem, const Problem::Vect
 void ReachFurther(const Problem& problem, const Problem::Vector& x,
                   const std::vector<Problem::Matrix>& J, const std::vector<Problem::Matrix>& step,
                   const Whitening& whitening, Uncertainty& u);
-/// Where the time step moves a value by more than its standard error, a fit at a quarter of the
-/// step, from x, tells what a fine one gives: intervals are made anew to reach over that, and
-/// further (over twice its move, and by ReachFurther) where first order did not foretell half of
-/// it. r, J, step: of the logs of the fit, as above; u: after AllowForStep.
-void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
-                    const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
-                    const std::vector<Problem::Matrix>& step, const FitOptions& options,
-                    Uncertainty& u);
-/// All of these in one, from the logs of the fit; of where another log begins from that log alone,
-/// given all else: what a fit.json states. r: residuals at x; the loss of the experiment may be
-/// robust. Derivatives are central differences: one-sided ones bend what the step is said to
-/// change. Once the user has asked to stop, errors, intervals and correlations are not known (NaN).
-Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
-                        const std::vector<Problem::Vector>& r,
-                        const std::function<void(const std::string&)>& progress = {});
 
 }  // namespace continuum

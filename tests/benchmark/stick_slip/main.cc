@@ -12,6 +12,7 @@
 
 #include "benchmark/stick_slip/experiment.h"
 #include "error.h"
+#include "identification/fit/intervals.h"
 #include "identification/fit/multi_start.h"
 #include "identification/problem/path_choice.h"
 #include "identification/statistics/noise_model.h"

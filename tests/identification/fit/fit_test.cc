@@ -12,6 +12,7 @@
 
 #include "benchmark/stick_slip/experiment.h"
 #include "error.h"
+#include "identification/fit/intervals.h"
 #include "identification/statistics/uncertainty.h"
 #include "support/pendulum.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/fit/fit.h"
-#include "identification/report/extended_model.h"
+#include "identification/problem/extended_model.h"
 #include "sim/io/file.h"
 #include "sim/replay/replay.h"
 #include "support/measured_arm.h"
@@ -82,7 +82,7 @@ TEST_F(RegisteredFit, TheExtendedExperimentKnowsTheRegistration) {
   }
   const Problem problem(e, system);
   const Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs());
-  const Extension extension = Extend(problem, fit.x, arm_.folder().folder());
+  const ExtendedModel extension = Extend(problem, fit.x, arm_.folder().folder());
   arm_.folder().Write("extended.xml", extension.xml);
   Experiment extended = Experiment::Read(arm_.folder().Write("extended.yaml", extension.yaml));
   EXPECT_FALSE(extended.registration.estimates());

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "identification/fit/intervals.h"
 #include "identification/inverse_dynamics/regressor.h"
 #include "support/real_log.h"
 

@@ -7,7 +7,7 @@
 
 #include "error.h"
 #include "identification/fit/fit.h"
-#include "identification/report/extended_model.h"
+#include "identification/problem/extended_model.h"
 #include "sim/replay/replay.h"
 #include "support/pendulum.h"
 
@@ -42,7 +42,7 @@ class Measured : public Bench {
     const ModelSpec system = ModelSpec::Load(folder_ / "model.xml");
     const Problem problem(e, system);
     const Fit fit = FitParameters(problem, problem.Start(), problem.AllLogs());
-    const Extension extension = Extend(problem, fit.x, folder_);
+    const ExtendedModel extension = Extend(problem, fit.x, folder_);
     Write("extended.xml", extension.xml);
     Experiment again = Experiment::Read(Write("extended.yaml", extension.yaml));
     const SplitError error = PooledError(again, Replay(again, ModelSpec::Load(again.model)));

@@ -5,11 +5,11 @@
 
 #include "error.h"
 #include "identification/fit/fit.h"
+#include "identification/fit/intervals.h"
 #include "identification/fit/start_hint.h"
+#include "identification/problem/extended_model.h"
 #include "identification/problem/path_choice.h"
 #include "identification/problem/start_parameters.h"
-#include "identification/report/extended_model.h"
-#include "identification/statistics/uncertainty.h"
 #include "sim/replay/replay.h"
 #include "support/pendulum.h"
 
@@ -145,7 +145,7 @@ TEST_F(StartsTest, TheExtendedExperimentBeginsThere) {
   const Experiment e = From("estimate");
   const Problem problem(e, Model());
   const Problem::Vector x = Fitted(problem);
-  const Extension extension = Extend(problem, x, folder_);
+  const ExtendedModel extension = Extend(problem, x, folder_);
   Write("extended.xml", extension.xml);
   Experiment extended = Experiment::Read(Write("extended.yaml", extension.yaml));
   const auto replayed = Replay(extended, ModelSpec::Load(extended.model));

@@ -39,7 +39,7 @@ double Position(double k, double c, double t) {
 
 class CvodesTest : public ::testing::TestWithParam<bool> {
  protected:
-  Solving how_{1e-9, 1e-12, GetParam()};
+  SolverOptions how_{1e-9, 1e-12, GetParam()};
 };
 
 // Differences of the closed form to 1e-9; errors of the solver pile up over 30 radians.

@@ -40,7 +40,7 @@ inline void PrintTo(const Gradient& g, std::ostream* out) {
 /// How sensitivities are found; a test of them has to see any other way.
 struct Sensitivities {
   double move = kMove;  ///< relative, of the neighbour's parameter
-  Solving how{1e-10, 1e-13, false};
+  SolverOptions how{1e-10, 1e-13, false};
 };
 
 inline std::unique_ptr<ContinuousDynamics> FlowBeside(const Experiment& e, const Gradient& g,
@@ -85,7 +85,8 @@ inline double SlopeError(const std::vector<std::vector<double>>& found,
 /// value: their own error is some 1e-7.
 inline std::vector<std::vector<double>> CentralDifferences(const Experiment& e, const Gradient& g,
                                                            double step = 1e-3,
-                                                           Solving how = {1e-11, 1e-13, false}) {
+                                                           SolverOptions how = {1e-11, 1e-13,
+                                                                                false}) {
   std::vector<Trace> runs;
   for (const int steps : {-2, -1, 1, 2}) {
     const auto flow = FlowBeside(e, g, steps * step);

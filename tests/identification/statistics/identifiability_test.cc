@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "identification/fit/intervals.h"
 #include "identification/statistics/uncertainty.h"
 #include "support/pendulum.h"
 

@@ -1,9 +1,9 @@
-#include "identification/report/extended_model.h"
+#include "identification/problem/extended_model.h"
 
 #include <algorithm>
 #include <map>
 #include <set>
-#include <sstream>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -129,8 +129,8 @@ std::string ParameterYaml(const Problem& problem, const FreeParameter& p, double
 
 }  // namespace
 
-Extension Extend(const Problem& problem, const Problem::Vector& x,
-                 const std::filesystem::path& folder, const std::string& model) {
+ExtendedModel Extend(const Problem& problem, const Problem::Vector& x,
+                     const std::filesystem::path& folder, const std::string& model) {
   const Experiment& e = problem.experiment();
   const Experiment measured = problem.MeasuredBy(x, 0);
   std::string y = "format: 1\nmodel: " + model + "\nlogs:\n";
@@ -176,57 +176,6 @@ Extension Extend(const Problem& problem, const Problem::Vector& x,
   y += "]\n";
   if (e.soft > 0) y += "loss: {soft_l1: " + Decimal(e.soft) + "}\n";
   return {problem.system().Xml(problem.CommonChanges(x), {}, folder), y};
-}
-
-nlohmann::json ChangesJson(const Problem& problem, const Problem::Vector& x,
-                           const std::vector<Added>& added) {
-  nlohmann::json json{{"instances", nlohmann::json::array()}, {"changes", nlohmann::json::array()}};
-  for (const auto& [instance, replaces] : added) {
-    if (instance.effect.empty()) continue;
-    auto config = nlohmann::json::array();
-    for (const auto& [key, value] : instance.config) config.push_back({key, value});
-    json["instances"].push_back({{"effect", instance.effect},
-                                 {"name", instance.name},
-                                 {"config", config},
-                                 {"replaces", replaces}});
-  }
-  const char* const operation[] = {"set", "scale", "add"};
-  for (const Change& c : problem.CommonChanges(x)) {
-    json["changes"].push_back({{"target", c.target},
-                               {"attribute", c.attribute},
-                               {"value", c.value},
-                               {"operation", operation[static_cast<int>(c.operation)]}});
-  }
-  return json;
-}
-
-std::string LineDiff(const std::string& before, const std::string& after) {
-  const auto split = [](const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream in(text);
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-  };
-  const auto a = split(before), b = split(after);
-  // Longest common subsequence; models have hundreds of lines.
-  std::vector<std::vector<int>> common(a.size() + 1, std::vector<int>(b.size() + 1, 0));
-  for (std::size_t i = a.size(); i-- > 0;) {
-    for (std::size_t j = b.size(); j-- > 0;) {
-      common[i][j] =
-          a[i] == b[j] ? common[i + 1][j + 1] + 1 : std::max(common[i + 1][j], common[i][j + 1]);
-    }
-  }
-  std::string out;
-  for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
-    if (i < a.size() && j < b.size() && a[i] == b[j]) {
-      ++i, ++j;
-    } else if (j == b.size() || (i < a.size() && common[i + 1][j] >= common[i][j + 1])) {
-      out += "-" + a[i++] + "\n";
-    } else {
-      out += "+" + b[j++] + "\n";
-    }
-  }
-  return out;
 }
 
 }  // namespace continuum

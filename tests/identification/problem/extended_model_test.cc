@@ -1,4 +1,4 @@
-#include "identification/report/extended_model.h"
+#include "identification/problem/extended_model.h"
 
 #include <algorithm>
 #include <string>
@@ -7,9 +7,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "error.h"
 #include "identification/candidates/hypothesis.h"
+#include "identification/fit/fit.h"
+#include "identification/report/apply_extension.h"
 #include "sim/replay/replay.h"
 #include "support/pendulum.h"
 
@@ -21,7 +24,6 @@ using testing::Command;
 using testing::CoulombInstance;
 using ::testing::Gt;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using testing::Noisy;
 using testing::Pendulum;
 using ::testing::SizeIs;
@@ -55,7 +57,7 @@ class ExtensionTest : public Bench {
   }
 
   // The errors of the two files, as a user would replay them.
-  SplitError ErrorsOf(const Extension& extension, const std::string& folder) {
+  SplitError ErrorsOf(const ExtendedModel& extension, const std::string& folder) {
     MakeFolder(folder_ / folder);
     WriteFile(folder_ / folder / "extended.xml", extension.xml);
     WriteFile(folder_ / folder / "extended.yaml", extension.yaml);
@@ -173,7 +175,7 @@ TEST_F(ExtensionTest, ReproducesWeightsOfAllLogsBesideThoseOfOne) {
   const Problem problem(e, system);
   const auto x = problem.Start();
   const auto r = problem.Residuals(x, problem.AllLogs());
-  const Extension extension = Extend(problem, x, folder_ / "out");
+  const ExtendedModel extension = Extend(problem, x, folder_ / "out");
   EXPECT_NEAR(ErrorsOf(extension, "out").train, problem.PooledRms(r, problem.AllLogs()), 1e-9);
   // And so is where a fit of these files begins.
   const Experiment again = Experiment::Read(folder_ / "out/extended.yaml");
@@ -191,7 +193,7 @@ TEST_F(ExtensionTest, KeepsWindowsTrialsOutputsAndFolds) {
                                       ", sigma: 0.001, weight: 2, bias: 0.01, delay: 0.002");
   const Problem problem(e, system);
   MakeFolder(folder_ / "out");
-  const Extension extension = Extend(problem, problem.Start(), folder_ / "out");
+  const ExtendedModel extension = Extend(problem, problem.Start(), folder_ / "out");
   WriteFile(folder_ / "out" / "extended.xml", extension.xml);
   WriteFile(folder_ / "out" / "extended.yaml", extension.yaml);
   const Experiment again = Experiment::Read(folder_ / "out" / "extended.yaml");
@@ -231,8 +233,9 @@ TEST_P(Applied, GivesTheSameModelAsTheExtensionWithTheSameErrors) {
     const Problem problem(e, h.system, h.extra);
     auto x = problem.Start();
     x[0] = 1.15, x[1] = 0.04, x[2] = 0.09;
-    const Extension extension = Extend(problem, x, folder_ / "out");
-    const nlohmann::json json{{"extension", ChangesJson(problem, x, {{h.instance, h.replaces}})}};
+    const ExtendedModel extension = Extend(problem, x, folder_ / "out");
+    const nlohmann::json json{
+        {"extension", ChangesJson(problem.CommonChanges(x), {{h.instance, h.replaces}})}};
     EXPECT_EQ(ApplyJson(system, nlohmann::json::parse(json.dump()), "diagnosis.json"),
               extension.xml);
     const double train =
@@ -291,20 +294,6 @@ TEST_F(ExtensionTest, ApplyNamesWhatIsMissing) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("elbow"));
   }
-}
-
-TEST(LineDiff, ShowsWhatWentAndWhatCame) {
-  EXPECT_THAT(LineDiff("a\nb\nc\n", "a\nb\nc\n"), IsEmpty());
-  EXPECT_EQ(LineDiff("a\nb\nc\n", "a\nx\nc\n"), "-b\n+x\n");
-  EXPECT_EQ(LineDiff("a\nc\n", "a\nb\nc\nd\n"), "+b\n+d\n");
-  EXPECT_EQ(LineDiff("a\nb\nc\n", "c\n"), "-a\n-b\n");
-  EXPECT_EQ(LineDiff("", "a\n"), "+a\n");
-}
-
-// b, c and d stay in their order: four lines are shown, not ten.
-TEST(LineDiff, IsMinimal) {
-  const std::string diff = LineDiff("a\nb\nc\nd\ne\n", "b\nx\nc\nd\na\n");
-  EXPECT_EQ(std::count(diff.begin(), diff.end(), '\n'), 4);
 }
 
 }  // namespace

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+
+#include "identification/result/uncertainty.h"
+
+namespace continuum {
+
+/// The outcome of linear least squares on the inverse dynamics along the measured motion.
+struct Regression {
+  Eigen::VectorXd x;  ///< [parameter] in its unit
+  Uncertainty uncertainty;
+  /// Relative force error 100 |τ_model − τ| / |τ| [%] over all joints, of the train and of the
+  /// other logs.
+  double train = 0, validate = 0;
+  std::size_t rows = 0;  ///< equations, one for each joint and row
+  double seconds = 0;    ///< wall clock
+};
+
+}  // namespace continuum
