@@ -5,7 +5,9 @@
 #include <map>
 
 #include "binding/config.h"
+#include "error.h"
 #include "identification/candidates/effect_places.h"
+#include "identification/candidates/parameter_size.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/model/mujoco_handles.h"
 
@@ -29,6 +31,20 @@ double OutputSize(const Experiment& e, const std::vector<std::string>& columns) 
   return upper > lower ? upper - lower : 1;
 }
 
+// How large an error of the measurement may be, from the unit on its card.
+ParameterSize SizeOfError(const Param& card, const std::vector<std::string>& names,
+                          const Experiment& e, const Sizes& sizes) {
+  if (card.unit == "1" || card.unit == "rad") return {1, 1, 0.02};
+  if (card.unit == "s") return {4 * sizes.period, 25, 0.125};
+  const double range = OutputSize(e, names);
+  if (card.unit == "output") return {range, 1, 0.02};
+  const std::vector<double>& time = e.logs.front().time;
+  if (card.unit == "output/s") return {range / std::max(1e-9, time.back() - time[0]), 1, 0.02};
+  throw Error::Input("parameter " + std::string(card.name) + " of the measurement",
+                     "one of the units 1, rad, s, output, output/s",
+                     "'" + std::string(card.unit) + "'");
+}
+
 // An effect of the measurement on some outputs (or on the clock): nothing of the model changes.
 Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
                             const std::vector<std::string>& names, const Experiment& e,
@@ -37,22 +53,17 @@ Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
   Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
   const Param& card = effect.params.front();
   const std::string name(card.name);
-  double size = 1, typical = 0.02;  // of a scale, an angle or a skew
-  if (name == "delay") size = 4 * sizes.period, typical = 0.125;
-  if (name == "bias" || name == "rate") {
-    size = OutputSize(e, names);
-    if (name == "rate") size /= std::max(1e-9, e.logs.front().time.back() - e.logs.front().time[0]);
-  }
+  const auto [size, reach, typical] = SizeOfError(card, names, e, sizes);
   Parameter p;
   p.name = name;
   p.target = target, p.attribute = name;
   p.has_initial = true;
   p.where = "candidate";
   const double null = MeasurementValue(e, target, name);
-  const bool factor = card.null == 1;
+  const bool factor = card.null == 1, late = card.unit == "s";
   p.initial = null + typical * size;
-  p.upper = null + (factor ? 9 * std::abs(null) : name == "delay" ? 25 * size : size);
-  p.lower = factor ? 0.1 * null : name == "delay" ? 0 : null - size;
+  p.upper = null + (factor ? 9 * std::abs(null) : reach * size);
+  p.lower = factor ? 0.1 * null : late ? 0 : null - size;
   h.extra.push_back(p);
   h.null.push_back(null);
   return h;

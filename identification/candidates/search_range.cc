@@ -3,37 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identification/candidates/parameter_size.h"
+
 namespace continuum {
-namespace {
-
-// The size in which a parameter is looked for, from its unit.
-double SizeFor(const Param& p, Place place, const Sizes& s) {
-  const std::string_view u = p.unit;
-  // On tendons angles are lengths: by the lever that makes a torque of a tension.
-  const bool line = place == Place::kTendon;
-  const double force = line ? s.tension : s.torque;
-  const double lever = line ? s.torque / s.tension : 1;
-  if (u == "N*m" || u == "N") return force;
-  if (u == "rad") return lever * s.angle;
-  if (u == "rad/s") return place == Place::kActuator ? 0.25 / s.period : lever * s.velocity;
-  if (u == "N*m*s/rad") return force / (lever * s.velocity);
-  if (u == "N*m/rad" || u == "N/m") return force / (0.02 * lever * s.angle);
-  if (u == "N*m/rad^3") return s.torque / std::pow(s.angle, 3);
-  if (u == "kg") return s.mass;
-  if (u == "kg*m^2") return s.inertia;
-  if (u == "1/rad") return 50 / (lever * s.angle);
-  if (u == "m/N") return 0.01 / s.tension;
-  if (u == "s") return 4 * s.period;
-  if (u == "input") return s.input;
-  if (u == "m") return s.length;
-  return 1;
-}
-
-}  // namespace
 
 Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::string& target,
                   const std::string& attribute, Change::Operation operation) {
-  const double size = SizeFor(p, place, sizes);
+  const auto [size, reach, typical] = SizeOf(p, place, sizes);
   Parameter out;
   out.name = p.name;
   out.target = target;
@@ -42,13 +18,6 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   out.has_initial = true;
   out.where = "candidate";
   const bool nuisance = std::isnan(p.null);
-  // The angle is a range over all joints, and its cube much larger than that of any one motion. A
-  // light robot of many links carries more than a few of them weigh.
-  const double reach = p.unit == "kg"          ? 5 * sizes.robot / sizes.mass
-                       : p.unit == "s"         ? 25
-                       : p.unit == "1"         ? 10
-                       : p.unit == "N*m/rad^3" ? 100
-                                               : 3;
   if (std::isinf(p.null)) {  // a frequency, absent when it is large; at least two steps long
     out.upper = 0.5 / sizes.step;
     out.lower = std::max(p.lower, 0.02 * size), out.initial = std::min(size, 0.5 * out.upper);
@@ -56,10 +25,6 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   }
   out.upper = std::min(p.upper, (nuisance ? 100 : reach) * size);
   out.lower = nuisance ? std::max(p.lower, 1e-3 * size) : std::max(p.lower, -reach * size);
-  const double typical = p.unit == "1"     ? 0.1
-                         : p.unit == "s"   ? 0.125
-                         : p.unit == "rad" ? 0.02
-                                           : 0.05;
   out.initial = nuisance ? 0.3 * size : p.null + typical * size;
   if (p.null == 1) out.lower = 0.1, out.upper = 10, out.initial = 1.02;  // a factor
   out.initial = std::clamp(out.initial, out.lower, out.upper);

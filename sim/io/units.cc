@@ -48,26 +48,34 @@ const Unit& Simple(const std::string& name, const std::string& unit, const std::
 
 }  // namespace
 
-Unit ParseUnit(const std::string& unit, const std::string& where) {
-  Unit product;
+std::vector<UnitFactorPower> FactorsOf(const std::string& unit) {
+  std::vector<UnitFactorPower> all;
   int sign = 1;
   for (std::size_t i = 0; i <= unit.size();) {
     const std::size_t end = std::min(unit.find_first_of("*/", i), unit.size());
     std::string name = unit.substr(i, end - i);
     int power = sign;
-    if (const std::size_t caret = name.find('^'); caret != name.npos) {
-      const std::string digits = name.substr(caret + 1);
-      if (digits.size() != 1 || digits[0] < '1' || digits[0] > '9') Simple(name, unit, where);
-      power *= digits[0] - '0';
+    const std::size_t caret = name.find('^');
+    if (caret != name.npos && caret + 2 == name.size() && name[caret + 1] >= '1' &&
+        name[caret + 1] <= '9') {
+      power *= name[caret + 1] - '0';
       name.resize(caret);
     }
+    all.push_back({std::move(name), power});
+    if (end < unit.size()) sign = unit[end] == '/' ? -1 : 1;
+    i = end + 1;
+  }
+  return all;
+}
+
+Unit ParseUnit(const std::string& unit, const std::string& where) {
+  Unit product;
+  for (const auto& [name, power] : FactorsOf(unit)) {
     const Unit& part = Simple(name, unit, where);
     product.factor *= std::pow(part.factor, power);
     for (std::size_t d = 0; d < product.dimension.size(); ++d)
       product.dimension[d] += power * part.dimension[d];
     product.any &= part.any;
-    if (end < unit.size()) sign = unit[end] == '/' ? -1 : 1;
-    i = end + 1;
   }
   return product;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 namespace continuum {
 
@@ -11,6 +12,14 @@ struct Unit {
   std::array<int, 4> dimension{};  ///< powers of m, kg, s, A; an angle has none
   bool any = true;  ///< made of 1, % and step alone: counts that may stand for anything
 };
+
+/// One factor of a unit's text: of "N*m/s^2" these are N, m and s with the powers 1, 1 and -2.
+struct UnitFactorPower {
+  std::string name;
+  int power;
+};
+/// The factors of a unit's text, in its order. A name that is no unit stays as it is.
+std::vector<UnitFactorPower> FactorsOf(const std::string& unit);
 
 /// Products and quotients are understood ("N*mm", "deg/s", "mm/s^2"). where: for the Error of an
 /// unknown unit.
