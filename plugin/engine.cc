@@ -60,7 +60,7 @@ std::string_view ConfigBytes(const mjModel& m, int i) {
 
 bool IsOurs(const mjModel& m, int i) {
   const mjpPlugin* plugin = mjp_getPluginAtSlot(m.plugin[i]);
-  return plugin && std::string_view(plugin->name).starts_with("continuum.");
+  return plugin && std::string_view(plugin->name).starts_with(kPluginPrefix);
 }
 
 void Warn(const std::string& text) { mju_warning("%s", text.c_str()); }
@@ -351,33 +351,13 @@ int StateSize(const mjModel& m, int i) noexcept {
   }
 }
 
-constexpr std::string_view KeyOf(Place place) {
-  switch (place) {
-    case Place::kJoint:
-      return "joint";
-    case Place::kTendon:
-      return "tendon";
-    case Place::kActuator:
-      return "actuator";
-    case Place::kBody:
-      return "body";
-    case Place::kSite:
-      return "site";
-    case Place::kSensor:
-      return "sensor";
-    case Place::kWorld:
-      return "world";
-  }
-  return "";
-}
-
 template <class E>
 void Register() {
   // MuJoCo keeps these pointers for the life of the process.
-  static const std::string name = "continuum." + std::string(E::kName);
+  static const std::string name = PluginName(E::kName);
   static const auto keys = [] {
     std::vector<std::string> all;
-    for (const Place place : E::kPlaces) all.emplace_back(KeyOf(place));
+    for (const Place place : E::kPlaces) all.emplace_back(PlaceName(place));
     for (const Param& param : E::kParams) all.emplace_back(param.name);
     for (const Choice& choice : ChoicesOf<E>()) all.emplace_back(choice.name);
     if constexpr (FormulaLaw<E>) all.emplace_back(E::kText);

@@ -6,7 +6,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "binding/bound.h"
+#include "binding/bound_law.h"
 
 namespace continuum {
 

@@ -42,7 +42,7 @@ Present FrictionOn(const mjModel& m, const std::vector<std::string>& joints) {
     if (!plugin.starts_with("continuum.")) continue;
     const std::string effect = plugin.substr(10);
     if (EffectNamed(effect).kind != EffectInfo::Kind::kFriction) continue;
-    const auto ids = Config(m, i).Match("joint", mjOBJ_JOINT);
+    const auto ids = Config(m, i).Match(Place::kJoint);
     std::set<std::string> on;
     for (const int j : ids) on.insert(mj_id2name(&m, mjOBJ_JOINT, j));
     const std::set<std::string> wanted(joints.begin(), joints.end());

@@ -13,7 +13,7 @@ constexpr double kFull = 20;  // tension drawn in red [N]
 
 std::vector<Cable> MatchCables(const mjModel& m, const Config& config) {
   std::vector<Cable> cables;
-  for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
+  for (const int t : config.Match(Place::kTendon)) {
     cables.push_back(MakeCable(m, t, config.Who()));
   }
   return cables;
@@ -24,8 +24,8 @@ void RequireAlone(const mjModel& m, const Config& config) {
   for (int j = 0; j < m.nplugin; ++j) {
     const Config other(m, j);
     if (m.plugin[j] != m.plugin[config.instance()] || j == config.instance()) continue;
-    const auto theirs = other.Match("tendon", mjOBJ_TENDON);
-    for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
+    const auto theirs = other.Match(Place::kTendon);
+    for (const int t : config.Match(Place::kTendon)) {
       if (std::find(theirs.begin(), theirs.end(), t) == theirs.end()) continue;
       throw Error::Input(config.Who() + ": tendon '" + mj_id2name(&m, mjOBJ_TENDON, t) + "'",
                          "one instance on a cable (with the sum of their mu)",

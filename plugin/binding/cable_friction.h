@@ -1,6 +1,6 @@
 #pragma once
 
-#include "binding/bound.h"
+#include "binding/bound_law.h"
 #include "binding/cable_geometry.h"
 #include "binding/sliding.h"
 

@@ -3,6 +3,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <set>
 #include <sstream>
@@ -17,6 +18,17 @@ std::string Short(double x) {
 }
 
 }  // namespace
+
+mjtObj ObjectType(Place place) {
+  constexpr std::array types{mjOBJ_JOINT, mjOBJ_TENDON, mjOBJ_ACTUATOR, mjOBJ_BODY,
+                             mjOBJ_SITE,  mjOBJ_SENSOR, mjOBJ_UNKNOWN};
+  return types[static_cast<std::size_t>(place)];
+}
+
+int ObjectCount(const mjModel& m, Place place) {
+  const std::array<long long, 7> counts{m.njnt, m.ntendon, m.nu, m.nbody, m.nsite, m.nsensor, 0};
+  return static_cast<int>(counts[static_cast<std::size_t>(place)]);
+}
 
 std::string_view JointType(int type) {
   switch (type) {
@@ -89,11 +101,10 @@ int Config::Read(const Choice& choice) const {
   throw Error::Input(Who() + ": " + std::string(choice.name), all, "'" + std::string(text) + "'");
 }
 
-std::vector<int> Config::Match(std::string_view key, mjtObj type) const {
-  const int count = type == mjOBJ_JOINT      ? static_cast<int>(m_->njnt)
-                    : type == mjOBJ_TENDON   ? static_cast<int>(m_->ntendon)
-                    : type == mjOBJ_ACTUATOR ? static_cast<int>(m_->nu)
-                                             : static_cast<int>(m_->nbody);
+std::vector<int> Config::Match(Place place) const {
+  const std::string key(PlaceName(place));
+  const mjtObj type = ObjectType(place);
+  const int count = ObjectCount(*m_, place);
   std::set<int> ids;
   for (const std::string& word : Words(Get(key))) {
     const std::size_t before = ids.size();
@@ -103,11 +114,10 @@ std::vector<int> Config::Match(std::string_view key, mjtObj type) const {
       if (name && GlobMatches(word, name)) known = true, ids.insert(i);
     }
     if (!known && before == ids.size()) {
-      throw Error::Input(Who() + ": " + std::string(key),
-                         "no " + std::string(key) + " '" + word + "' in the model");
+      throw Error::Input(Who() + ": " + key, "no " + key + " '" + word + "' in the model");
     }
   }
-  if (ids.empty()) throw Error::Input(Who(), "the key '" + std::string(key) + "'", "none");
+  if (ids.empty()) throw Error::Input(Who(), "the key '" + key + "'", "none");
   return {ids.begin(), ids.end()};
 }
 
@@ -116,9 +126,9 @@ Lines Config::MatchLines(Joints types) const {
   if (joints == tendons) {
     throw Error::Input(Who(), "one of the keys 'joint' and 'tendon'", joints ? "both" : "none");
   }
-  if (tendons) return {false, Match("tendon", mjOBJ_TENDON)};
+  if (tendons) return {false, Match(Place::kTendon)};
   const bool ball = types == Joints::kHingeSlideBall;
-  Lines lines{true, Match("joint", mjOBJ_JOINT)};
+  Lines lines{true, Match(Place::kJoint)};
   for (const int j : lines.ids) {
     const int type = m_->jnt_type[j];
     if (type == mjJNT_HINGE || type == mjJNT_SLIDE || (ball && type == mjJNT_BALL)) continue;

@@ -11,6 +11,18 @@
 
 namespace continuum {
 
+/// The names of our MuJoCo plugins begin with it.
+inline constexpr std::string_view kPluginPrefix = "continuum.";
+/// "continuum.stribeck": the MuJoCo plugin of an effect.
+inline std::string PluginName(std::string_view effect) {
+  return std::string(kPluginPrefix) + std::string(effect);
+}
+
+/// MuJoCo's type of the objects at a place; mjOBJ_UNKNOWN for the world.
+mjtObj ObjectType(Place place);
+/// The number of a model's objects at a place.
+int ObjectCount(const mjModel& m, Place place);
+
 /// Joints or tendons that a law acts on.
 struct Lines {
   bool joints;
@@ -33,9 +45,9 @@ class Config {
   /// The index of the option under choice.name, 0 when absent.
   int Read(const Choice& choice) const;
 
-  /// Ids of the objects that the names and globs (* ? [..]) under key match, ascending. Throws
-  /// Error when a name or glob matches nothing.
-  std::vector<int> Match(std::string_view key, mjtObj type) const;
+  /// Ids of the objects that the names and globs (* ? [..]) under the key of a place match,
+  /// ascending. Throws Error when a name or glob matches nothing.
+  std::vector<int> Match(Place place) const;
 
   /// What one of the keys 'joint' and 'tendon' matches. Throws Error when both or none are given,
   /// and for joints of other types.

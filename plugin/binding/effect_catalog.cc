@@ -29,13 +29,18 @@ constexpr Kind KindOf() {
 
 template <class E>
 EffectInfo InfoOf() {
-  EffectInfo info{E::kName, E::kSummary, E::kSource, KindOf<E>(), {}, {}, {}, false, {}};
+  EffectInfo info{E::kName, E::kSummary, E::kSource, KindOf<E>(), {}, {}, {}};
   info.places.assign(E::kPlaces.begin(), E::kPlaces.end());
   info.params.assign(E::kParams.begin(), E::kParams.end());
   const auto choices = ChoicesOf<E>();
   info.choices.assign(choices.begin(), choices.end());
   if constexpr (SignalLaw<E>) info.servo = E::kTap == Tap::kServoError;
   if constexpr (FormulaLaw<E>) info.text = E::kText;
+  if constexpr (requires { E::kNative; }) info.native = E::kNative;
+  if constexpr (requires { E::kCoulombLevel; }) info.coulomb_level = E::kCoulombLevel;
+  if constexpr (requires { E::kDamping; }) info.damping = E::kDamping;
+  if constexpr (requires { E::kLiteral; }) info.literal = E::kLiteral;
+  if constexpr (SegmentLaw<E>) info.arc_radius = E::kArcRadius;
   return info;
 }
 
@@ -66,16 +71,17 @@ const EffectInfo& EffectNamed(std::string_view name) {
   throw Error::Input("effect", all, "'" + std::string(name) + "'");
 }
 
+const EffectInfo* EffectOf(const mjModel& m, int instance) {
+  const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[instance]);
+  const std::string_view name = plugin ? plugin->name : "";
+  return name.starts_with(kPluginPrefix) ? &EffectNamed(name.substr(kPluginPrefix.size()))
+                                         : nullptr;
+}
+
 std::string_view KindName(Kind kind) {
   constexpr std::string_view names[] = {"force",  "friction", "path", "segment",
                                         "signal", "measure",  "edit"};
   return names[static_cast<int>(kind)];
-}
-
-std::string_view PlaceName(Place place) {
-  constexpr std::string_view names[] = {"joint", "tendon", "actuator", "body",
-                                        "site",  "sensor", "world"};
-  return names[static_cast<int>(place)];
 }
 
 std::string_view Becomes(Kind kind) {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <mujoco/mujoco.h>
 
 #include "effects/effect.h"
 
@@ -16,9 +19,14 @@ struct EffectInfo {
   std::vector<Place> places;
   std::vector<Param> params;
   std::vector<Choice> choices;
-  bool servo = false;  ///< a Signal at the error of a position servo
-  std::string_view
-      text;  ///< key of the formula, of an effect whose law is written where it is used
+  bool servo = false;            ///< a Signal at the error of a position servo
+  std::string_view text = {};    ///< key of the formula that a law of the MJCF is written under
+  std::string_view native = {};  ///< attribute of MuJoCo that an Edit is, in MJCF's words
+  /// Indices of parameters that the cards of frictions and segments speak of (effects/effect.h).
+  std::optional<std::size_t> coulomb_level = {}, damping = {}, literal = {}, arc_radius = {};
+
+  /// Whether it is a dry friction of constant level and nothing else.
+  bool IsConstantFriction() const { return coulomb_level && params.size() == 1; }
 };
 
 /// Every effect of the list, in its order.
@@ -27,10 +35,11 @@ const std::vector<EffectInfo>& Catalog();
 /// former, when there is none of this name.
 const EffectInfo& EffectNamed(std::string_view name);
 
+/// The effect of a plugin instance of a model; none where the instance is not one of ours.
+const EffectInfo* EffectOf(const mjModel& m, int instance);
+
 /// "friction", "force", …
 std::string_view KindName(EffectInfo::Kind kind);
-/// The MJCF key of a place: "joint".
-std::string_view PlaceName(Place place);
 /// "row", "force", "native", …: what the effect becomes in an extended model.
 std::string_view Becomes(EffectInfo::Kind kind);
 

@@ -45,7 +45,7 @@ void ActuatorInput::Shift(const mjModel& m, mjData& d, double change) const {
 
 std::vector<ActuatorInput> MatchInputs(const mjModel& m, const Config& config) {
   std::vector<ActuatorInput> inputs;
-  for (const int a : config.Match("actuator", mjOBJ_ACTUATOR)) {
+  for (const int a : config.Match(Place::kActuator)) {
     if (!IsUsable(m, a)) {
       throw Error::Input(config.Who() + ": actuator '" + mj_id2name(&m, mjOBJ_ACTUATOR, a) + "'",
                          "one control with a fixed gain, without dynamics or through a lag or an "

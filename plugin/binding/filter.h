@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "binding/bound.h"
+#include "binding/bound_law.h"
 
 namespace continuum {
 
@@ -34,7 +34,7 @@ class BoundFilter : public BoundLaw {
       : BoundLaw(ReadParams<E>(config)), inputs_(MatchInputs(m, config)), u_(inputs_.size()) {}
 
   static int StateSize(const mjModel&, const Config& config) {
-    return static_cast<int>(kZ * config.Match("actuator", mjOBJ_ACTUATOR).size());
+    return static_cast<int>(kZ * config.Match(Place::kActuator).size());
   }
 
   bool IsSignal() const override { return true; }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "binding/bound.h"
+#include "binding/bound_law.h"
 
 namespace continuum {
 

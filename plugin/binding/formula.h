@@ -65,7 +65,7 @@ class BoundFormulaFriction : public BoundLaw {
         rows_(m, config, JointsOf<FormulaFriction>(), instance),
         level_(ReadFormula<FormulaFriction>(config)) {}
   static int StateSize(const mjModel& m, const Config& config) {
-    return Rows::StateSize(m, config, JointsOf<FormulaFriction>());
+    return FrictionRows::StateSize(m, config, JointsOf<FormulaFriction>());
   }
 
   bool IsRow() const override { return true; }
@@ -74,7 +74,7 @@ class BoundFormulaFriction : public BoundLaw {
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double>) override {
     auto values = ValuesOf<FormulaFriction>(p_);
-    rows_.Write(m, d, z, stage, [&](const Row& row, double v) {
+    rows_.Write(m, d, z, stage, [&](const FrictionRow& row, double v) {
       values[0] = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.index];
       values[1] = v;
       values[2] = row.joint ? GearLoad(m, d, row.index, 0) : 0;
@@ -86,7 +86,7 @@ class BoundFormulaFriction : public BoundLaw {
   void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }
 
  private:
-  Rows rows_;
+  FrictionRows rows_;
   Expression level_;
 };
 

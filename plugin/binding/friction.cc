@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "binding/actuator_force.h"
 #include "effects/all.h"
 
 namespace continuum {
@@ -22,9 +21,9 @@ std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
     const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[j]);
     const auto add = [&]<class E>() {
       if constexpr (FrictionLaw<E> || std::same_as<E, FormulaFriction>) {
-        if (!plugin || plugin->name != "continuum." + std::string(E::kName)) return;
+        if (!plugin || plugin->name != PluginName(E::kName)) return;
         const Config config(m, j);
-        for (const Row& row : RowsOf(m, config, JointsOf<E>()))
+        for (const FrictionRow& row : FrictionRowsOf(m, config, JointsOf<E>()))
           taken.insert({row.joint, row.index});
       }
     };
@@ -34,60 +33,11 @@ std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
   return taken;
 }
 
-double ActuatorTorque(const mjModel& m, const mjData& d, int dof) {
-  double torque = 0;
-  for (int a = 0; a < m.nactuator; ++a) {
-    for (int o = 0; o < m.actuator_outnum[a]; ++o) {
-      const int row = m.actuator_outadr[a] + o, adr = d.moment_rowadr[row];
-      for (int k = adr; k < adr + d.moment_rownnz[row]; ++k) {
-        if (d.moment_colind[k] == dof) torque += d.actuator_moment[k] * LimitedForce(m, d, a, o);
-      }
-    }
-  }
-  const int j = m.dof_jntid[dof];
-  if (m.jnt_actfrclimited[j]) {
-    torque = std::clamp(torque, m.jnt_actfrcrange[2 * j], m.jnt_actfrcrange[2 * j + 1]);
-  }
-  return torque;
-}
-
-// Gravity on everything beyond the joint, about its axis.
-double GravityTorque(const mjModel& m, const mjData& d, int dof) {
-  if (m.opt.disableflags & mjDSBL_GRAVITY) return 0;
-  const int b = m.dof_bodyid[dof], root = m.body_rootid[b];
-  const double* cdof = d.cdof + 6 * dof;  // rotation, translation at the root's subtree_com
-  double arm[3], velocity[3];
-  mju_sub3(arm, d.subtree_com + 3 * b, d.subtree_com + 3 * root);
-  mju_cross(velocity, cdof, arm);
-  mju_addTo3(velocity, cdof + 3);
-  return m.body_subtreemass[b] * mju_dot3(velocity, m.opt.gravity);
-}
-
-// Forces on bodies (xfrc_applied), about the joint's axis.
-double AppliedTorque(const mjModel& m, const mjData& d, int dof) {
-  double torque = d.qfrc_applied[dof];
-  const double* cdof = d.cdof + 6 * dof;
-  const int first = m.dof_bodyid[dof];
-  for (int b = first; b < m.nbody; ++b) {
-    const double* wrench = d.xfrc_applied + 6 * b;
-    if (std::all_of(wrench, wrench + 6, [](double x) { return x == 0; })) continue;
-    int a = b;
-    while (a > first) a = m.body_parentid[a];
-    if (a != first) continue;
-    double arm[3], velocity[3];
-    mju_sub3(arm, d.xipos + 3 * b, d.subtree_com + 3 * m.body_rootid[b]);
-    mju_cross(velocity, cdof, arm);
-    mju_addTo3(velocity, cdof + 3);
-    torque += mju_dot3(velocity, wrench) + mju_dot3(cdof, wrench + 3);
-  }
-  return torque;
-}
-
 // Impedance of a row, unless the model says how hard it is; under the discrete integrator, where
 // the anchor does not act, whatever it says: as hard as the solver carries keeps the creep low.
 constexpr double kImpedance = 0.99, kDiscreteImpedance = 0.9999;
 
-void Harden(mjModel& m, const Row& row) {
+void Harden(mjModel& m, const FrictionRow& row) {
   double* const solref = (row.joint ? m.dof_solref : m.tendon_solref_fri) + mjNREF * row.index;
   double* const solimp = (row.joint ? m.dof_solimp : m.tendon_solimp_fri) + mjNIMP * row.index;
   const auto assign = [](double& to, double value) {
@@ -114,46 +64,25 @@ double Yield(const mjData& d, int r) {
 
 }  // namespace
 
-std::vector<Row> RowsOf(const mjModel& m, const Config& config, Joints types) {
-  const auto [joints, ids] = config.MatchLines(types);
-  std::vector<Row> rows;
-  for (const int id : ids) {
-    const bool ball = joints && m.jnt_type[id] == mjJNT_BALL;
-    const int index = joints ? m.jnt_dofadr[id] : id;
-    for (int k = 0; k < (ball ? 3 : 1); ++k) {
-      rows.push_back({joints, id, index + k, ball ? k : -1, true});
-    }
-  }
-  return rows;
-}
-
-double GearLoad(const mjModel& m, const mjData& d, int dof, int option) {
-  const double actuator = ActuatorTorque(m, d, dof);
-  if (option == 1) return std::abs(actuator);
-  const double external = d.qfrc_passive[dof] - d.qfrc_damper[dof] + GravityTorque(m, d, dof) +
-                          AppliedTorque(m, d, dof);
-  return 0.5 * std::abs(actuator - external);
-}
-
-Rows::Rows(const mjModel& m, const Config& config, Joints types, int instance)
-    : rows_(RowsOf(m, config, types)) {
+FrictionRows::FrictionRows(const mjModel& m, const Config& config, Joints types, int instance)
+    : rows_(FrictionRowsOf(m, config, types)) {
   const auto taken = RowsBelow(m, instance);
-  for (Row& row : rows_) row.owner = !taken.contains({row.joint, row.index});
+  for (FrictionRow& row : rows_) row.owner = !taken.contains({row.joint, row.index});
 }
 
-int Rows::StateSize(const mjModel& m, const Config& config, Joints types) {
-  return 2 * static_cast<int>(RowsOf(m, config, types).size());
+int FrictionRows::StateSize(const mjModel& m, const Config& config, Joints types) {
+  return 2 * static_cast<int>(FrictionRowsOf(m, config, types).size());
 }
 
-void Rows::Impose(mjModel& m) const {
-  for (const Row& row : rows_) {
+void FrictionRows::Impose(mjModel& m) const {
+  for (const FrictionRow& row : rows_) {
     double& loss = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
     if (loss == 0) loss = kRowMarker;
     Harden(m, row);
   }
 }
 
-bool Rows::Find(const mjData& d, const Row& row, int& r) {
+bool FrictionRows::Find(const mjData& d, const FrictionRow& row, int& r) {
   const int type = row.joint ? mjCNSTR_FRICTION_DOF : mjCNSTR_FRICTION_TENDON;
   for (int k = r; k < d.ne + d.nf; ++k) {
     if (d.efc_type[k] == type && d.efc_id[k] == row.index) {
@@ -164,7 +93,8 @@ bool Rows::Find(const mjData& d, const Row& row, int& r) {
   return false;
 }
 
-double Rows::OffAnchor(const mjModel& m, const mjData& d, const double* z, const Row& row) {
+double FrictionRows::OffAnchor(const mjModel& m, const mjData& d, const double* z,
+                               const FrictionRow& row) {
   if (row.axis < 0) {
     const double q = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.id];
     return z[0] != 0 ? q - z[1] : 0;
@@ -175,8 +105,8 @@ double Rows::OffAnchor(const mjModel& m, const mjData& d, const double* z, const
   return turn[row.axis];
 }
 
-void Rows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const Row& row, int r,
-                    double level) {
+void FrictionRows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage,
+                            const FrictionRow& row, int r, double level) {
   if (row.owner) {
     const double native = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
     d.efc_frictionloss[r] = level + (native == kRowMarker ? 0 : native);
@@ -192,7 +122,8 @@ void Rows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const 
   d.efc_pos[r] = off;
 }
 
-Rows::Sliding Rows::SlidingOf(const mjData& d, const double* z, const Row& row) {
+FrictionRows::Sliding FrictionRows::SlidingOf(const mjData& d, const double* z,
+                                              const FrictionRow& row) {
   if (row.axis < 0) return {z[0] == kHeld ? 0 : Speed(d, row), 1};
   const double* const ball = z - 2 * row.axis;  // the joint's first row
   if (ball[0] == kHeld) return {0, ball[5]};
@@ -201,7 +132,8 @@ Rows::Sliding Rows::SlidingOf(const mjData& d, const double* z, const Row& row) 
   return {v, v > 0 ? std::abs(turn[row.axis]) / v : 1};
 }
 
-void Rows::AdvanceLine(const mjModel& m, const mjData& d, const Row& row, double* z, int& r) {
+void FrictionRows::AdvanceLine(const mjModel& m, const mjData& d, const FrictionRow& row, double* z,
+                               int& r) {
   if (!Find(d, row, r)) return;
   const bool slides = Saturated(d, r);
   const double q = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.id];
@@ -209,7 +141,8 @@ void Rows::AdvanceLine(const mjModel& m, const mjData& d, const Row& row, double
   z[0] = slides ? kSlid : kHeld;
 }
 
-void Rows::AdvanceBall(const mjModel& m, const mjData& d, const Row* rows, double* z, int& r) {
+void FrictionRows::AdvanceBall(const mjModel& m, const mjData& d, const FrictionRow* rows,
+                               double* z, int& r) {
   double yield[3], force[3], limit[3];
   bool slides = false;
   for (int k = 0; k < 3; ++k) {
@@ -230,7 +163,7 @@ void Rows::AdvanceBall(const mjModel& m, const mjData& d, const Row* rows, doubl
   z[0] = slides ? kSlid : kHeld;
 }
 
-void Rows::Advance(const mjModel& m, const mjData& d, double* z) const {
+void FrictionRows::Advance(const mjModel& m, const mjData& d, double* z) const {
   int r = d.ne;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     if (rows_[k].axis < 0) {

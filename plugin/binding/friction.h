@@ -3,22 +3,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "binding/bound.h"
+#include "binding/bound_law.h"
+#include "binding/friction_row.h"
+#include "binding/gear_load.h"
 #include "binding/native_damping.h"
 
 namespace continuum {
-
-/// One friction row of MuJoCo's constraint solver: a degree of freedom or a tendon.
-struct Row {
-  bool joint;  ///< else a tendon
-  int id;      ///< of the joint or tendon
-  int index;   ///< of the degree of freedom or tendon
-  int axis;    ///< component of a ball joint, or −1
-  bool owner;  ///< the lowest instance on a row assigns level and anchor; others add their level
-};
-
-/// The rows of the joints or tendons that a configuration names, all as owners.
-std::vector<Row> RowsOf(const mjModel& m, const Config& config, Joints types);
 
 /// Friction rows that hold.
 ///
@@ -27,9 +17,9 @@ std::vector<Row> RowsOf(const mjModel& m, const Config& config, Joints types);
 ///
 ///   efc_aref = −B v − K (q − anchor),   K = 1/(2h)², B = 1/h                (1)
 ///
-/// It gives way by h² (1 − d) (1 + 4/d²) τ/I under a load τ on an inertia I. Rows with MuJoCo's
-/// default impedance get d = 0.99 (dof_solimp of the model, once), its own 0.9 to 0.95 would be ten
-/// times softer and let a sudden load overshoot by 7 %.
+/// It gives way by h² (1 − d) (1 + 4/d²) τ/I under a load τ on an inertia I. Rows with
+/// MuJoCo's default impedance get d = 0.99 (dof_solimp of the model, once), its own 0.9 to 0.95
+/// would be ten times softer and let a sudden load overshoot by 7 %.
 ///
 /// While |efc_force| has reached the level the anchor moves with q, at the distance at which the
 /// row would hold that force at rest:
@@ -50,13 +40,13 @@ std::vector<Row> RowsOf(const mjModel& m, const Config& config, Joints types);
 ///
 /// so that a load breaks it away at the same torque in all directions. The two states of a row are
 /// {Grasp, anchor}; a ball joint has six numbers, {Grasp, quaternion, share}.
-class Rows {
+class FrictionRows {
  public:
   /// Joints or tendons named in config.
-  Rows(const mjModel& m, const Config& config, Joints types, int instance);
+  FrictionRows(const mjModel& m, const Config& config, Joints types, int instance);
   static int StateSize(const mjModel& m, const Config& config, Joints types);
 
-  const std::vector<Row>& rows() const { return rows_; }
+  const std::vector<FrictionRow>& rows() const { return rows_; }
   void Impose(mjModel& m) const;
   /// Calls level(row, v) → torque for each row that exists at d, and writes it. v: speed of
   /// sliding.
@@ -64,7 +54,7 @@ class Rows {
   void Write(const mjModel& m, mjData& d, const double* z, Stage stage, Level&& level) const {
     int r = d.ne;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      const Row& row = rows_[k];
+      const FrictionRow& row = rows_[k];
       if (!Find(d, row, r)) continue;
       const double off = OffAnchor(m, d, z + 2 * k, row);
       const Sliding sliding = SlidingOf(d, z + 2 * k, row);
@@ -80,27 +70,26 @@ class Rows {
   struct Sliding {
     double v, share;
   };
-  static double Speed(const mjData& d, const Row& row) {
+  static double Speed(const mjData& d, const FrictionRow& row) {
     return row.joint ? d.qvel[row.index] : d.ten_velocity[row.index];
   }
-  static Sliding SlidingOf(const mjData& d, const double* z, const Row& row);
+  static Sliding SlidingOf(const mjData& d, const double* z, const FrictionRow& row);
 
   /// Moves r (ascending over calls) to the row's constraint; false when it has none.
-  static bool Find(const mjData& d, const Row& row, int& r);
-  static void WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const Row& row, int r,
-                       double level);
+  static bool Find(const mjData& d, const FrictionRow& row, int& r);
+  static void WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const FrictionRow& row,
+                       int r, double level);
   /// q − anchor; 0 before the first step.
-  static double OffAnchor(const mjModel& m, const mjData& d, const double* z, const Row& row);
+  static double OffAnchor(const mjModel& m, const mjData& d, const double* z,
+                          const FrictionRow& row);
   /// States of the row or of the three rows of a ball joint that begin at `rows`.
-  static void AdvanceLine(const mjModel& m, const mjData& d, const Row& row, double* z, int& r);
-  static void AdvanceBall(const mjModel& m, const mjData& d, const Row* rows, double* z, int& r);
+  static void AdvanceLine(const mjModel& m, const mjData& d, const FrictionRow& row, double* z,
+                          int& r);
+  static void AdvanceBall(const mjModel& m, const mjData& d, const FrictionRow* rows, double* z,
+                          int& r);
 
-  std::vector<Row> rows_;
+  std::vector<FrictionRow> rows_;
 };
-
-/// The load of a joint's gear [N*m] ≥ 0, at the current actuator_force (clamped here).
-/// option: index into kLoadOptions.
-double GearLoad(const mjModel& m, const mjData& d, int dof, int option);
 
 /// A Friction law on joints or tendons, as rows.
 template <FrictionLaw E>
@@ -110,8 +99,7 @@ class BoundFriction : public BoundLaw {
       : BoundLaw(ReadParams<E>(config)), rows_(m, config, JointsOf<E>(), instance) {
     if constexpr (kLoaded) load_ = config.Read(E::kChoices[0]);
     if constexpr (kDamped) {
-      damping_.emplace("continuum." + std::string(E::kName), E::kParams[E::kDamping].name,
-                       p_[E::kDamping]);
+      damping_.emplace(PluginName(E::kName), E::kParams[E::kDamping].name, p_[E::kDamping]);
     }
     if constexpr (requires { E::kLiteral; }) {
       const std::string name(E::kParams[E::kLiteral].name);
@@ -119,7 +107,7 @@ class BoundFriction : public BoundLaw {
     }
   }
   static int StateSize(const mjModel& m, const Config& config) {
-    return Rows::StateSize(m, config, JointsOf<E>());
+    return FrictionRows::StateSize(m, config, JointsOf<E>());
   }
 
   bool IsRow() const override { return true; }
@@ -135,7 +123,7 @@ class BoundFriction : public BoundLaw {
                 std::span<double> force) override {
     const auto p = AsParams<E>(p_);
     if constexpr (kBiased) std::fill(force.begin(), force.end(), 0.0);
-    rows_.Write(m, d, z, stage, [&](const Row& row, double v) {
+    rows_.Write(m, d, z, stage, [&](const FrictionRow& row, double v) {
       Rubbing<double> r{0, v, 0};
       if (!row.joint) r.q = d.ten_length[row.index];
       if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
@@ -154,7 +142,7 @@ class BoundFriction : public BoundLaw {
   static constexpr bool kBiased = BiasedFrictionLaw<E>;
   static_assert(!kBiased || (E::kPlaces.size() == 1 && E::kPlaces[0] == Place::kJoint));
 
-  Rows rows_;
+  FrictionRows rows_;
   int load_ = 0;
   std::string idle_;  ///< which parameter of the MJCF does not act
   std::optional<NativeDamping> damping_;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "binding/friction.h"
 #include "effects/all.h"
 
 namespace continuum {
@@ -18,10 +17,11 @@ std::map<int, double> SumsOf(const mjModel& m) {
     if (!plugin) continue;
     All::ForEach([&]<class E>() {
       if constexpr (requires { E::kDamping; }) {
-        if (plugin->name != "continuum." + std::string(E::kName)) return;
+        if (plugin->name != PluginName(E::kName)) return;
         const Config config(m, i);
         const double damping = config.Read(E::kParams[E::kDamping]);
-        for (const Row& row : RowsOf(m, config, JointsOf<E>())) sums[row.index] += damping;
+        for (const FrictionRow& row : FrictionRowsOf(m, config, JointsOf<E>()))
+          sums[row.index] += damping;
       }
     });
   }
@@ -30,15 +30,15 @@ std::map<int, double> SumsOf(const mjModel& m) {
 
 }  // namespace
 
-void NativeDamping::Refuse(const mjModel& m, const Row& row, double allowed) const {
+void NativeDamping::Refuse(const mjModel& m, const FrictionRow& row, double allowed) const {
   throw Error::Input(effect_ + ": joint '" + mj_id2name(&m, mjOBJ_JOINT, row.id) + "'",
                      "native damping 0 or equal to " + parameter_ + " = " + std::to_string(allowed),
                      std::to_string(m.dof_damping[row.index]));
 }
 
-void NativeDamping::ImposeSums(mjModel& m, const std::vector<Row>& rows) const {
+void NativeDamping::ImposeSums(mjModel& m, const std::vector<FrictionRow>& rows) const {
   const auto sums = SumsOf(m);
-  for (const Row& row : rows) {
+  for (const FrictionRow& row : rows) {
     double& native = m.dof_damping[row.index];
     const double sum = sums.at(row.index);
     foreign_.push_back(sum == 0 && native != 0);
@@ -47,7 +47,7 @@ void NativeDamping::ImposeSums(mjModel& m, const std::vector<Row>& rows) const {
   }
 }
 
-void NativeDamping::Impose(mjModel& m, const std::vector<Row>& rows, double own) const {
+void NativeDamping::Impose(mjModel& m, const std::vector<FrictionRow>& rows, double own) const {
   if (foreign_.empty()) ImposeSums(m, rows);
   if (own == mine_) return;
   for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -4,11 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "binding/config.h"
+#include "binding/friction_row.h"
 
 namespace continuum {
-
-struct Row;
 
 /// A parameter of a friction law that is the native damping of its joints.
 ///
@@ -22,11 +20,11 @@ class NativeDamping {
 
   /// Writes the native damping of the rows, of which `own` is this law's part. Throws Error where
   /// the joint has another of its own.
-  void Impose(mjModel& m, const std::vector<Row>& rows, double own) const;
+  void Impose(mjModel& m, const std::vector<FrictionRow>& rows, double own) const;
 
  private:
-  void ImposeSums(mjModel& m, const std::vector<Row>& rows) const;
-  [[noreturn]] void Refuse(const mjModel& m, const Row& row, double allowed) const;
+  void ImposeSums(mjModel& m, const std::vector<FrictionRow>& rows) const;
+  [[noreturn]] void Refuse(const mjModel& m, const FrictionRow& row, double allowed) const;
 
   std::string effect_, parameter_;
   mutable double mine_;  ///< this law's part so far, so that an edited value can follow

@@ -36,7 +36,7 @@ void Drive::Add(const mjModel& m, mjData& d, double change) const {
 
 std::vector<Drive> MatchDrives(const mjModel& m, const Config& config) {
   std::vector<Drive> drives;
-  for (const int t : config.Match("tendon", mjOBJ_TENDON)) {
+  for (const int t : config.Match(Place::kTendon)) {
     Drive drive{t, {}};
     for (int a = 0; a < m.nactuator; ++a) {
       if (m.actuator_trntype[a] != mjTRN_TENDON || m.actuator_trnid[2 * a] != t) continue;

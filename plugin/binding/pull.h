@@ -1,6 +1,6 @@
 #pragma once
 
-#include "binding/bound.h"
+#include "binding/bound_law.h"
 
 namespace continuum {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "binding/bound.h"
+#include "binding/bound_law.h"
 #include "effects/pcc_kinematics.h"
 
 namespace continuum {
@@ -84,9 +84,8 @@ class BoundSegment : public BoundLaw {
         chain_(m, config),
         chambers_(MatchChambers(m, config)) {
     chain_.RequireItsOwn(m, config);
-    for (std::size_t i = 0; i < p_.size(); ++i) {
-      if (E::kParams[i].name == "L0") chain_.RequireLength(config, "L0", p_[i]);
-    }
+    if constexpr (requires { E::kRestLength; })
+      chain_.RequireLength(config, E::kParams[E::kRestLength].name, p_[E::kRestLength]);
   }
   static int StateSize(const mjModel&, const Config&) { return 0; }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "binding/actuator_type.h"
-#include "binding/bound.h"
+#include "binding/bound_law.h"
 
 namespace continuum {
 
@@ -16,7 +16,7 @@ class BoundSignal : public BoundLaw {
 
  public:
   BoundSignal(const mjModel& m, const Config& config)
-      : BoundLaw(ReadParams<E>(config)), actuators_(config.Match("actuator", mjOBJ_ACTUATOR)) {
+      : BoundLaw(ReadParams<E>(config)), actuators_(config.Match(Place::kActuator)) {
     for (const int a : actuators_) {
       const double kp = m.actuator_gainprm[mjNGAIN * a], k = -m.actuator_biasprm[mjNBIAS * a + 1];
       const bool servo =

@@ -41,6 +41,7 @@ struct Braid {
                                       Param{"y_m", "m", -kInfinity, kInfinity, 0, kAsIs},
                                       Positive("A", "m^2", 39.3e-6),
                                       Magnitude("cot2_gamma", "1", 0.03)};
+  static constexpr std::size_t kRestLength = 0, kArcRadius = 1;
   template <class T>
   using Params = ParamsOf<Braid, T>;
 

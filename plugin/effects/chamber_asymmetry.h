@@ -22,6 +22,7 @@ struct ChamberAsymmetry {
   static constexpr std::array kPlaces{Place::kBody, Place::kActuator};
   static constexpr std::array kParams{Positive("d", "m", 0.05), Positive("A", "m^2", 31e-6),
                                       Signed("x_m", "m", 1e-4), Signed("y_m", "m", 1e-4)};
+  static constexpr std::size_t kArcRadius = 0;
   static constexpr std::string_view kActuations[] = {"tip", "volume"};
   static constexpr std::array kChoices{Choice{"actuation", kActuations}};
   template <class T>

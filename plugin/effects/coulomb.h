@@ -16,6 +16,7 @@ struct Coulomb {
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
   static constexpr Joints kJoints = Joints::kHingeSlideBall;
   static constexpr std::array kParams{Magnitude("tau_c", "N*m", 0.01)};
+  static constexpr std::size_t kCoulombLevel = 0;
 
   template <class T>
   static T Level(const Rubbing<T>&, const Vec<T, 1>& p) {

@@ -18,8 +18,14 @@ inline constexpr double kAsIs = std::numeric_limits<double>::quiet_NaN();
 template <class T, std::size_t N>
 using Vec = std::array<T, N>;
 
-/// What an effect acts on. The MJCF key of a binding is the lower-case name: joint="…".
+/// What an effect acts on.
 enum class Place { kJoint, kTendon, kActuator, kBody, kSite, kSensor, kWorld };
+inline constexpr std::array<std::string_view, 7> kPlaceNames{"joint", "tendon", "actuator", "body",
+                                                             "site",  "sensor", "world"};
+/// The name of a place, which is the MJCF key of a binding: joint="…".
+constexpr std::string_view PlaceName(Place place) {
+  return kPlaceNames[static_cast<std::size_t>(place)];
+}
 
 /// Joints that a law on joints takes: those of one coordinate and one direction (hinge, slide),
 /// which is what a law takes unless its kJoints says more, or ball joints too, where only the speed
@@ -124,7 +130,11 @@ struct Rubbing {
 };
 
 /// Friction: Level(rubbing, p) ≥ 0, the largest torque that dry friction can take. It becomes a row
-/// of MuJoCo's constraint solver (which holds, and slides at this level).
+/// of MuJoCo's constraint solver (which holds, and slides at this level). A card may say of a
+/// parameter, by its index, that
+///   kCoulombLevel  alone, the others null, it is Coulomb's constant level
+///   kDamping       it is the native damping of the joints
+///   kLiteral       only Literal(v, p), the equation as printed, reads it
 template <class E>
 concept FrictionLaw = Card<E> && requires(Rubbing<double> r, ParamsOf<E, double> p) {
   { E::template Level<double>(r, p) } -> std::same_as<double>;
@@ -146,8 +156,9 @@ concept PathLaw = Card<E> && requires(ParamsOf<E, double> p) {
 
 /// Segment: three coordinates of a soft segment, their rates and three pressures → the three forces
 /// that drive the coordinates, Eval(x, v, pressure, choice, p). Segment(p).d is the distance at
-/// which the first two are arc lengths. Chambers(p), of a law that stands for the whole segment,
-/// says where the pressures are; laws without it act beside such a one.
+/// which the first two are arc lengths, and its parameter kArcRadius. Chambers(p), of a law that
+/// stands for the whole segment, says where the pressures are; laws without it act beside such a
+/// one. kRestLength, where the card has it, is the index of the segment's length at rest.
 template <class E>
 concept SegmentLaw = Card<E> && requires(Vec<double, 3> x, ParamsOf<E, double> p) {
   { E::template Eval<double>(x, x, x, 0, p) } -> std::same_as<Vec<double, 3>>;
@@ -210,7 +221,8 @@ template <class E>
 concept MeasureLaw = ScalarMeasureLaw<E> || VectorMeasureLaw<E>;
 
 /// Edit: a native attribute of MuJoCo as an effect. Apply(element, p) edits one element of a model
-/// through Element's Get, Set, Add, Scale (names and units of MJCF).
+/// through Element's Get, Set, Add, Scale (names and units of MJCF). kNative, where the card has
+/// it, is the attribute that an experiment may fit in the effect's place.
 struct AnyElement {
   double Get(std::string_view) const;
   void Set(std::string_view, double);

@@ -19,6 +19,7 @@ struct LoadFriction {
   static constexpr std::array kPlaces{Place::kJoint};
   static constexpr Joints kJoints = Joints::kHingeSlideBall;
   static constexpr std::array kParams{Magnitude("tau_c", "N*m", 0.01), Magnitude("mu_l", "1", 0.1)};
+  static constexpr std::size_t kCoulombLevel = 0;
   static constexpr std::array kChoices{Choice{"load", kLoadOptions}};
 
   template <class T>

@@ -41,6 +41,7 @@ struct PccSegmentLaw {
                                       Signed("k_theta3", "N/m^3", 0),
                                       Magnitude("k_dL1", "N/m", 251.7274),
                                       Signed("k_dL3", "N/m^3", -4.2e4)};
+  static constexpr std::size_t kRestLength = 0, kArcRadius = 1;
   static constexpr std::string_view kActuations[] = {"tip", "volume"};
   static constexpr std::array kChoices{Choice{"actuation", kActuations}};
   template <class T>

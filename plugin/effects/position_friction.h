@@ -15,6 +15,7 @@ struct PositionFriction {
   static constexpr std::array kPlaces{Place::kJoint};
   static constexpr std::array kParams{Magnitude("tau_c", "N*m", 0.01), Signed("c", "N*m", 0),
                                       Signed("s", "N*m", 0)};
+  static constexpr std::size_t kCoulombLevel = 0;
 
   template <class T>
   static T Level(const Rubbing<T>& r, const Vec<T, 3>& p) {

@@ -9,12 +9,13 @@ namespace continuum {
 struct Stiffness {
   static constexpr std::string_view kName = "stiffness", kSource = "mujoco",
                                     kSummary = "another stiffness of the spring";
+  static constexpr std::string_view kNative = "stiffness";
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
   static constexpr std::array kParams{Param{"k", "N*m/rad", 0, kInfinity, 1, kAsIs}};
 
   template <class Element>
   static void Apply(Element& element, const Vec<double, 1>& p) {
-    element.Set("stiffness", p[0]);
+    element.Set(kNative, p[0]);
   }
 };
 

@@ -21,8 +21,7 @@ struct Stribeck {
   static constexpr std::array kParams{
       Magnitude("tau_mu", "N*m*s/rad", 0.01), Magnitude("tau_c", "N*m", 0.01),
       Magnitude("S", "1", 0.5), Positive("v_d", "rad/s", 0.3), Positive("k_v", "s/rad", 1000)};
-  static constexpr std::size_t kDamping = 0;  ///< this parameter is the joint's native damping
-  static constexpr std::size_t kLiteral = 4;  ///< only Literal reads this parameter
+  static constexpr std::size_t kDamping = 0, kCoulombLevel = 1, kLiteral = 4;
 
   template <class T>
   static T Level(const Rubbing<T>& r, const Vec<T, 5>& p) {

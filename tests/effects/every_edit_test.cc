@@ -32,6 +32,11 @@ class Element {
   void Add(std::string_view name, double value) { At(name) += value; }
   void Scale(std::string_view name, double factor) { At(name) *= factor; }
 
+  std::vector<std::string> Names() const {
+    std::vector<std::string> all;
+    for (const auto& [name, value] : values_) all.push_back(name);
+    return all;
+  }
   std::vector<Answer> Attributes() const {
     std::vector<Answer> all;
     for (const auto& [name, value] : values_) all.push_back({value, UnitOf(name)});
@@ -72,6 +77,25 @@ TYPED_TEST(EveryEdit, DoesNothingAtItsNullAndSomethingElsewhere) {
   bool changed = false;
   for (const Answer& a : Edited<E>({}, ActingParams<E>(rng))) changed |= a.value != kValue;
   EXPECT_TRUE(changed);
+}
+
+TYPED_TEST(EveryEdit, NamesTheAttributeWhoseValueItReplaces) {
+  using E = TypeParam;
+  const bool replaces = std::any_of(E::kParams.begin(), E::kParams.end(),
+                                    [](const Param& p) { return std::isnan(p.null); });
+  EXPECT_TRUE(!replaces || IsNativeEdit<E>::value);
+}
+
+template <class E>
+struct EveryNativeEdit : ::testing::Test {};
+TYPED_TEST_SUITE(EveryNativeEdit, NativeEdits::Into<Types>, EffectName);
+
+TYPED_TEST(EveryNativeEdit, EditsTheAttributeOnItsCard) {
+  using E = TypeParam;
+  std::mt19937 rng{0};
+  Element element({});
+  E::Apply(element, ActingParams<E>(rng));
+  EXPECT_EQ(element.Names(), std::vector<std::string>{std::string(E::kNative)});
 }
 
 }  // namespace

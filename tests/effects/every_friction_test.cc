@@ -57,6 +57,20 @@ TYPED_TEST(EveryBiasedFriction, OpposesEveryMotion) {
 }
 
 template <class E>
+struct EveryFrictionAboveCoulomb : ::testing::Test {};
+TYPED_TEST_SUITE(EveryFrictionAboveCoulomb, FrictionsAboveCoulomb::Into<Types>, EffectName);
+
+TYPED_TEST(EveryFrictionAboveCoulomb, IsCoulombsWhereItsOtherParametersAreNull) {
+  using E = TypeParam;
+  auto p = NullParams<E>();
+  p[E::kCoulombLevel] = 0.7;
+  for (unsigned k = 0; k < 100; ++k) {
+    Quantities si(k, {});
+    ASSERT_EQ(E::template Level<double>(Draw(si), p), 0.7);
+  }
+}
+
+template <class E>
 struct EveryPath : ::testing::Test {
   std::mt19937 rng{0};
 };

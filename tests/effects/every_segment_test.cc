@@ -28,6 +28,13 @@ TYPED_TEST(EverySegment, IsConsistentInItsUnits) {
   });
 }
 
+TYPED_TEST(EverySegment, HasTheArcRadiusOfItsCard) {
+  using E = TypeParam;
+  std::mt19937 rng{0};
+  const auto p = ActingParams<E>(rng);
+  EXPECT_EQ(E::template Segment<double>(p).d, p[E::kArcRadius]);
+}
+
 TYPED_TEST(EverySegment, DoesNothingAtItsNull) {
   using E = TypeParam;
   for (int option = 0; option < OptionsOf<E>(); ++option) {

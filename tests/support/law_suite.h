@@ -47,6 +47,12 @@ using IsFriction = std::bool_constant<FrictionLaw<E>>;
 template <class E>
 using IsBiasedFriction = std::bool_constant<BiasedFrictionLaw<E>>;
 template <class E>
+concept AboveCoulomb = FrictionLaw<E> && requires {
+  E::kCoulombLevel;
+};
+template <class E>
+using IsAboveCoulomb = std::bool_constant<AboveCoulomb<E>>;
+template <class E>
 using IsPath = std::bool_constant<PathLaw<E>>;
 template <class E>
 using IsSegment = std::bool_constant<SegmentLaw<E>>;
@@ -62,12 +68,19 @@ template <class E>
 using IsVectorMeasure = std::bool_constant<VectorMeasureLaw<E>>;
 template <class E>
 using IsEdit = std::bool_constant<EditLaw<E>>;
+template <class E>
+concept NativeEdit = EditLaw<E> && requires {
+  E::kNative;
+};
+template <class E>
+using IsNativeEdit = std::bool_constant<NativeEdit<E>>;
 
 /// One list for each typed suite of tests/effects.
 using Forces = All::Into<Where<IsForce>::Of>;
 using ForcesWithStates = All::Into<Where<IsForceWithStates>::Of>;
 using Frictions = All::Into<Where<IsFriction>::Of>;
 using BiasedFrictions = All::Into<Where<IsBiasedFriction>::Of>;
+using FrictionsAboveCoulomb = All::Into<Where<IsAboveCoulomb>::Of>;
 using Paths = All::Into<Where<IsPath>::Of>;
 using Segments = All::Into<Where<IsSegment>::Of>;
 using Gains = All::Into<Where<IsGain>::Of>;
@@ -76,6 +89,7 @@ using Pulls = All::Into<Where<IsPull>::Of>;
 using ScalarMeasures = All::Into<Where<IsScalarMeasure>::Of>;
 using VectorMeasures = All::Into<Where<IsVectorMeasure>::Of>;
 using Edits = All::Into<Where<IsEdit>::Of>;
+using NativeEdits = All::Into<Where<IsNativeEdit>::Of>;
 
 /// For TYPED_TEST_SUITE(Suite, Forces::Into<Types>, EffectName).
 template <class... E>

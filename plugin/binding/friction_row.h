@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "binding/config.h"
+
+namespace continuum {
+
+/// One row of MuJoCo's constraint solver that holds a dry friction: that of a degree of freedom or
+/// of a tendon.
+struct FrictionRow {
+  bool joint;  ///< else a tendon
+  int id;      ///< of the joint or tendon
+  int index;   ///< of the degree of freedom or tendon
+  int axis;    ///< component of a ball joint, or −1
+  bool owner;  ///< the lowest instance on a row assigns level and anchor; others add their level
+};
+
+/// The rows of the joints or tendons that a configuration names, all as owners.
+std::vector<FrictionRow> FrictionRowsOf(const mjModel& m, const Config& config, Joints types);
+
+}  // namespace continuum
