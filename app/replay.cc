@@ -10,7 +10,7 @@
 #include "app/console.h"
 #include "app/filming.h"
 #include "identification/candidates/hypothesis.h"
-#include "identification/problem/problem.h"
+#include "identification/identify.h"
 #include "sim/check/check.h"
 #include "sim/experiment/registration.h"
 #include "sim/film/video.h"
@@ -30,7 +30,7 @@ struct Options {
 // Names, units and known values, and the parameters as a fit of all logs would take them.
 void CheckAll(const Experiment& e, const ModelSpec& system) {
   CheckNames(e, system);
-  const Problem problem(e, system, {}, {}, std::vector<bool>(e.logs.size(), true));
+  CheckParameters(e, system);
 }
 
 // "plate3 validate loaded: off by 11.7 mm RMS, 10.3 mean, 3.1 % of its RMS, 5001 rows".

@@ -20,18 +20,6 @@ bool Foretold(const Uncertainty& u, const Vector& moved) {
   return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
 }
 
-// Of a fit that the user did not wait for.
-Uncertainty NotComputed(const Problem& problem, const Vector& x) {
-  const Vector none = Vector::Constant(x.size(), std::numeric_limits<double>::quiet_NaN());
-  return {.standard_error = none,
-          .lower = none,
-          .upper = none,
-          .correlation = none * none.transpose(),
-          .information = Matrix::Zero(x.size(), x.size()),
-          .at_bound = AtBounds(problem, x),
-          .lacks = "not computed: interrupted"};
-}
-
 // Where a log begins that the fit did not see was fitted to that log alone (FitStarts): so is its
 // error. Nothing where it diverges.
 std::optional<Uncertainty> OfOwnStart(const Problem& problem, const Vector& x,
@@ -73,6 +61,17 @@ void TakeStart(const Problem& problem, std::size_t log, const Uncertainty& own, 
 
 }  // namespace
 
+Uncertainty UnknownUncertainty(const Problem& problem, const Vector& x, const std::string& why) {
+  const Vector none = Vector::Constant(x.size(), std::numeric_limits<double>::quiet_NaN());
+  return {.standard_error = none,
+          .lower = none,
+          .upper = none,
+          .correlation = none * none.transpose(),
+          .information = Matrix::Zero(x.size(), x.size()),
+          .at_bound = AtBounds(problem, x),
+          .lacks = "not computed: " + why};
+}
+
 void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                     const std::vector<Matrix>& J, const std::vector<Matrix>& step,
                     const FitOptions& options, Uncertainty& u) {
@@ -107,13 +106,13 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   centered.Center();
   auto J = centered.Jacobian(x, r, problem.seen());
   KeepInvariances(problem, x, r, J);
-  if (StopRequested()) return NotComputed(problem, x);
+  if (StopRequested()) return UnknownUncertainty(problem, x, "interrupted");
   const double soft = problem.experiment().soft;
   Uncertainty u = UncertaintyOf(problem, x, r, J, {}, soft);
   if (problem.path() != Path::kStepped) return u;
   const auto step = problem.StepEffects(x, r, problem.seen());
   const auto own = OfOwnStarts(centered, x, r, soft);
-  if (StopRequested()) return NotComputed(problem, x);
+  if (StopRequested()) return UnknownUncertainty(problem, x, "interrupted");
   AllowForStep(problem, WeightedByCurvature(J, soft, r), WeightedByCurvature(step, soft, r), {}, u);
   FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
   if (progress)

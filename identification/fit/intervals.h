@@ -9,6 +9,10 @@
 
 namespace continuum {
 
+/// An uncertainty of which only at_bound is known; why: the user did not wait for it, or what
+/// failed.
+Uncertainty UnknownUncertainty(const Problem& problem, const Problem::Vector& x,
+                               const std::string& why);
 /// Where the time step moves a value by more than its standard error, a fit at a quarter of the
 /// step, from x, tells what a fine one gives: intervals are made anew to reach over that, and
 /// further (over twice its move, and by ReachFurther) where first order did not foretell half of

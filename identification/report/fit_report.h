@@ -1,16 +1,30 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
 #include <vector>
 
-#include "identification/result/free_parameter.h"
-#include "identification/result/uncertainty.h"
+#include "identification/result/identify_result.h"
 #include "sim/page/page.h"
 
 namespace continuum {
 
+/// Writes report.html of a fit. Parts that cannot be made leave a badge at their place and are
+/// added to `missing`.
+void WriteFitReport(const Experiment& experiment, const IdentifyResult& result,
+                    const std::filesystem::path& file, std::vector<MissingPart>& missing);
+
 /// Adds a table of the parameters of a fit with the values x, their standard errors and intervals;
-/// without the starts of trials.
+/// without the starts of trials. Throws Error where the uncertainty has other parameters.
 void AddParameterTable(Page& page, const std::vector<FreeParameter>& parameters,
                        const Eigen::VectorXd& x, const Uncertainty& uncertainty);
+
+/// Says of a fit that it was begun anew (Fit::anew).
+inline constexpr char kAnewInWords[] =
+    "begun anew where the equations of motion hold best along what was measured, as from its start "
+    "it ended far above the noise";
+
+/// Says that the residuals of a fit are far more than noise, and what to do; empty: they are not.
+std::string OverNoiseInWords(const IdentifyResult& result);
 
 }  // namespace continuum

@@ -1,0 +1,269 @@
+#include "identification/identify.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "identification/fit/intervals.h"
+#include "identification/fit/multi_start.h"
+#include "identification/fit/multiple_shooting.h"
+#include "identification/fit/prediction_error.h"
+#include "identification/fit/start_hint.h"
+#include "identification/fit/swarm_fit.h"
+#include "identification/fit/wide_slope_fit.h"
+#include "identification/inverse_dynamics/equation_error_fit.h"
+#include "identification/inverse_dynamics/regressor.h"
+#include "identification/problem/extended_model.h"
+#include "identification/problem/fitted_values.h"
+#include "identification/problem/path_choice.h"
+#include "identification/problem/start_checks.h"
+#include "identification/statistics/identifiability.h"
+#include "identification/statistics/noise_model.h"
+#include "sim/io/interrupt.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Options = IdentifyOptions;
+
+constexpr std::size_t kRowsAhead = 10;  // of a prediction
+
+const char* NameOf(FitMethod method) {
+  return method == FitMethod::kParticleSwarm ? "pso" : "regressor";
+}
+
+void RequireFit(const Problem& problem, const std::vector<bool>& use, const Options& o) {
+  const Experiment& e = problem.experiment();
+  const std::string file = e.file.string();
+  if (problem.parameters().empty())
+    throw Error::Input(file + ": parameters", "at least one that is not frozen",
+                       e.parameters.empty() ? "none" : "frozen ones only");
+  for (const auto& [option, given] :
+       {std::pair{"--starts", o.starts > 1}, {"--from", !o.from.empty()}})
+    if (given && o.method != FitMethod::kLevenbergMarquardt)
+      throw Error::Input(option, "--method lm", NameOf(o.method));
+  RequireStartModels(problem);
+  if (std::find(use.begin(), use.end(), true) == use.end())
+    throw Error::Input(file + ": logs", "at least one with use: train (or --all)", "none");
+}
+
+// Takes the path that was asked for, else the smooth one where it can go and gains by it. Returns
+// why it does not, if so.
+std::string TakePath(const Options& o, Problem& problem) {
+  if (o.path == Path::kStepped || o.method == FitMethod::kInverseModel) return "";
+  std::string why = SmoothObstacle(problem);
+  if (o.path == Path::kSmooth && !why.empty())
+    throw Error::Input("--path smooth", "a model that follows a smooth differential equation", why);
+  if (!o.path && why.empty()) why = SmoothCost(problem);
+  if (why.empty()) problem.Follow(Path::kSmooth);
+  return why;
+}
+
+void TakeDifferences(const Options& o, Problem& problem) {
+  if (o.differences == 0) return;
+  if (problem.path() == Path::kSmooth)
+    throw Error::Input("--differences", "the stepped path (--path stepped)",
+                       "the smooth one, which has none");
+  problem.DifferBy(o.differences);
+}
+
+std::string PathInWords(const Options& o, const Problem& problem) {
+  if (o.method == FitMethod::kInverseModel)
+    return "none, the inverse model along the measured motion";
+  if (problem.path() == Path::kSmooth) return "smooth, by CVODES and its sensitivities";
+  const std::string why = problem.NoClosedForm();
+  return why.empty() ? "stepped, by sensitivities of MuJoCo's own steps"
+                     : "stepped, by differences of MuJoCo's own steps (" + why + ")";
+}
+
+std::string HowSimulated(const Options& o, const Problem& problem, const std::string& not_smooth) {
+  return (not_smooth.empty() ? "" : "no smooth path: " + not_smooth + "\n") +
+         fmt::format("path: {}; {} parameters, {} logs", PathInWords(o, problem),
+                     problem.parameters().size(), problem.experiment().logs.size());
+}
+
+void FitSwarm(const Options& o, const Problem& problem, const std::vector<bool>& use,
+              IdentifyResult& all) {
+  SwarmFitOptions options{
+      .seed = o.seed, .soft = problem.experiment().soft, .progress = o.progress};
+  if (o.iterations > 0) options.iterations = o.iterations;
+  all.fit = FitBySwarm(problem, use, options);
+}
+
+void FitInverseModel(const Options& o, const Problem& problem, const std::vector<bool>& use,
+                     IdentifyResult& all) {
+  all.regression = FitByRegressor(problem, use, {o.cutoff});
+  all.fit.x = all.regression->x;
+  all.fit.cost = 0.5 * SumOfSquares(problem.Residuals(all.fit.x, use));
+  all.fit.seconds = all.regression->seconds;
+  all.fit.converged = true;
+  all.fit.message = "linear least squares";
+}
+
+FitOptions LeastSquaresOptions(const Options& o, const Problem& problem) {
+  constexpr int kIterations = 100;
+  return {.iterations = o.iterations > 0 ? o.iterations : kIterations,
+          .soft = problem.experiment().soft,
+          .progress = o.progress};
+}
+
+void FitLeastSquares(const Options& o, const Problem& problem, const Vector& start,
+                     const std::vector<bool>& use, IdentifyResult& all) {
+  const FitOptions options = LeastSquaresOptions(o, problem);
+  if (o.segments && o.from.empty()) all.segments = FitInPieces(problem, start, use, options);
+  const Vector& begin = all.segments ? all.segments->x : start;
+  if (o.starts > 1) {
+    all.starts = FitFromMany(problem, begin, use, o.starts, o.seed, options);
+    all.fit = all.starts->best;
+  } else {
+    all.fit = FitFar(problem, begin, use, options);
+  }
+  all.fit = FitByEquations(problem, std::move(all.fit), use, options);
+  if (all.starts) all.starts->best = all.fit;
+  if (all.segments) {
+    all.fit.seconds += all.segments->seconds;
+    all.fit.evaluations += all.segments->evaluations;
+  }
+}
+
+// Parameters for the model's own step: a few iterations from those of the differential equation.
+Vector FitForStep(const Problem& stepped, const Vector& x, const std::vector<bool>& use,
+                  FitOptions options) {
+  options.iterations = 2;
+  return FitParameters(stepped, x, use, options).x;
+}
+
+std::vector<Replayed> Predicted(const Problem& problem, const Vector& x) {
+  const Experiment& e = problem.experiment();
+  std::vector<Replayed> logs;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    Trace trace = problem.Predict(x, l);
+    auto score = ScoreLog(e, e.logs[l], trace);
+    logs.push_back({std::move(trace), std::move(score)});
+  }
+  return logs;
+}
+
+// Computes one after the other what is stated of a fit; each may fail by itself.
+class Statement {
+ public:
+  Statement(const Options& o, const Problem& problem, const std::vector<bool>& use,
+            IdentifyResult& all)
+      : o_(o), problem_(problem), use_(use), all_(all), residuals_(ResidualsOfAll()) {}
+
+  void Make() {
+    all_.logs = Predicted(problem_, all_.fit.x);
+    AddUncertainty();
+    if (all_.path == Path::kSmooth) AddModelStep();
+    Part("ahead", [&] { all_.ahead = PredictAhead(problem_, all_.fit.x, kRowsAhead); });
+    Part("fitted_model", [&] {
+      const Vector& x = all_.at_step ? all_.at_step->x : all_.fit.x;
+      all_.fitted = Extend(problem_, x, o_.folder, "fitted.xml");
+    });
+    Part("noise", [&] { AddNoise(); });
+    Part("divergence", [&] { AddDivergence(); });
+    AddStartHint();
+  }
+
+ private:
+  std::vector<Vector> ResidualsOfAll() const {
+    return problem_.Residuals(all_.fit.x, problem_.AllLogs());
+  }
+  bool Part(const std::string& name, const std::function<void()>& make) {
+    return MakePart(name, all_.missing, make);
+  }
+
+  void AddUncertainty() {
+    const Vector& x = all_.fit.x;
+    const bool made = Part("intervals", [&] {
+      all_.uncertainty = all_.regression ? all_.regression->uncertainty
+                                         : IntervalsOf(problem_, x, residuals_, o_.progress);
+    });
+    if (!made) all_.uncertainty = UnknownUncertainty(problem_, x, all_.missing.back().why);
+    Part("trade_offs", [&] { all_.trade_offs = TradeOffsOf(problem_, x, all_.uncertainty); });
+  }
+
+  // What the model gives at its own step, where the fit was one of its differential equation.
+  void AddModelStep() {
+    Part("at_step", [&] {
+      Problem stepped = problem_;
+      stepped.Follow(Path::kStepped);
+      AtModelStep at{problem_.system().model().opt.timestep, all_.fit.x, {}};
+      if (o_.for_step && all_.method == FitMethod::kLevenbergMarquardt) {
+        Part("for_step", [&] {
+          StopIfRequested();
+          at.x = FitForStep(stepped, at.x, use_, LeastSquaresOptions(o_, problem_));
+        });
+      }
+      at.logs = Predicted(stepped, at.x);
+      all_.at_step = std::move(at);
+    });
+  }
+
+  // Intervals are those of a model that is right, at the best of its local minima.
+  void AddNoise() {
+    const Noise noise = NoiseOf(problem_.experiment());
+    const double error = TypicalRms(problem_, residuals_, problem_.TrainLogs());
+    if (noise.rms > 0 && error > kFarOverNoise * noise.rms)
+      all_.over_noise = OverNoise{error / noise.rms, noise.source};
+  }
+
+  void AddDivergence() {
+    all_.divergence.assign(all_.logs.size(), "");
+    for (std::size_t l = 0; l < all_.logs.size(); ++l) {
+      if (all_.logs[l].trace.diverged || !residuals_[l].allFinite())
+        all_.divergence[l] = WhyItDiverges(problem_, all_.fit.x, l);
+    }
+  }
+
+  void AddStartHint() {
+    if (problem_.experiment().start != Experiment::Start::kMeasured) return;
+    Part("start_hint", [&] {
+      StopIfRequested();
+      all_.start_hint = StartHint(problem_, all_.fit.x, use_);
+    });
+  }
+
+  const Options& o_;
+  const Problem& problem_;
+  const std::vector<bool>& use_;
+  IdentifyResult& all_;
+  std::vector<Vector> residuals_;  // [log]
+};
+
+}  // namespace
+
+IdentifyResult Identify(const Experiment& e, const ModelSpec& system, const IdentifyOptions& o) {
+  const auto use = o.all_logs ? std::vector<bool>(e.logs.size(), true) : TrainLogs(e);
+  Problem problem(e, system, {}, {}, use);
+  RequireFit(problem, use, o);
+  const Vector start = o.from.empty() ? problem.Start() : FittedValues(o.from, problem);
+  const std::string not_smooth = TakePath(o, problem);
+  TakeDifferences(o, problem);
+  if (o.accepted) o.accepted(HowSimulated(o, problem, not_smooth));
+
+  IdentifyResult all;
+  all.method = o.method, all.path = problem.path();
+  all.parameters = problem.parameters(), all.channels = problem.channels();
+  if (o.method == FitMethod::kParticleSwarm) {
+    FitSwarm(o, problem, use, all);
+  } else if (o.method == FitMethod::kInverseModel) {
+    FitInverseModel(o, problem, use, all);
+  } else {
+    FitLeastSquares(o, problem, start, use, all);
+  }
+  auto unseen = use;
+  unseen.flip();
+  all.fit.x = FitStarts(problem, all.fit.x, unseen);
+  Statement(o, problem, use, all).Make();
+  return all;
+}
+
+void CheckParameters(const Experiment& e, const ModelSpec& system) {
+  const Problem problem(e, system, {}, {}, std::vector<bool>(e.logs.size(), true));
+}
+
+}  // namespace continuum

@@ -1,0 +1,90 @@
+#include "identification/report/fit_summary.h"
+
+#include <fmt/format.h>
+
+#include "identification/report/fit_report.h"
+
+namespace continuum {
+namespace {
+
+std::string NearerBound(const FreeParameter& p, double value) {
+  return value - p.lower < p.upper - value ? "its lower bound" : "its upper bound";
+}
+
+std::string ParameterLine(const FreeParameter& p, double value, const Uncertainty& u,
+                          Eigen::Index i) {
+  std::string range = u.known() ? fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i])
+                                : "interval not computed";
+  if (u.at_bound[i]) range = "at " + NearerBound(p, value) + "; " + range;
+  if (p.initial <= p.lower || p.initial >= p.upper)
+    range += "; it starts at " + NearerBound(p, p.initial);
+  const std::string unit = p.unit == "1" ? "" : " " + p.unit;
+  return fmt::format("{:<24} {:.6g}{} ({})\n", p.name, value, unit, range);
+}
+
+// Where trials begin is found by itself; what stops at a bound is worth a line.
+std::string ParameterLines(const IdentifyResult& result) {
+  std::string lines, starts;
+  for (Eigen::Index i = 0; i < result.fit.x.size(); ++i) {
+    const FreeParameter& p = result.parameters[i];
+    const double value = result.fit.x[i];
+    if (!p.IsStart()) {
+      lines += ParameterLine(p, value, result.uncertainty, i);
+    } else if (result.uncertainty.at_bound[i]) {
+      starts += fmt::format("{} = {:.4g} {} is at {}: does the log begin elsewhere?\n", p.name,
+                            value, p.unit, NearerBound(p, value));
+    }
+  }
+  return lines + starts;
+}
+
+std::string DivergenceLines(const Experiment& e, const IdentifyResult& result) {
+  std::string lines;
+  for (std::size_t l = 0; l < result.divergence.size(); ++l) {
+    if (!result.divergence[l].empty())
+      lines += fmt::format("log '{}' ({}) has no error, with the fitted parameters: {}\n",
+                           e.logs[l].label, e.logs[l].file.string(), result.divergence[l]);
+  }
+  return lines;
+}
+
+std::string ErrorLines(const Experiment& e, const IdentifyResult& result) {
+  std::vector<ChannelScore> scores;
+  for (const Replayed& log : result.logs)
+    scores.insert(scores.end(), log.score.begin(), log.score.end());
+  std::string lines =
+      ErrorInWords(e, PooledError(e, result.logs)) + MeanAbsoluteInWords(scores) + "\n";
+  if (result.at_step)
+    lines += "as the model steps: " + ErrorInWords(e, PooledError(e, result.at_step->logs)) + "\n";
+  if (result.regression)
+    lines +=
+        fmt::format("forces by the inverse model: error {:.3g} % (train) {:.3g} % (validate)\n",
+                    result.regression->train, result.regression->validate);
+  return lines;
+}
+
+std::string EffortLines(const IdentifyResult& result, const std::string& folder) {
+  std::string lines;
+  if (result.segments)
+    lines += fmt::format("in segments first: cost of the whole logs {:.4g} -> {:.4g}\n",
+                         result.segments->before, result.segments->after);
+  if (result.fit.anew) lines += std::string(kAnewInWords) + "\n";
+  if (result.starts) lines += result.starts->InWords() + "\n";
+  return lines + fmt::format("{} iterations, {} simulations, {:.1f} s; report: {}/report.html\n",
+                             result.fit.iterations, result.fit.evaluations, result.fit.seconds,
+                             folder);
+}
+
+}  // namespace
+
+std::string FitSummary(const Experiment& e, const IdentifyResult& result,
+                       const std::string& folder) {
+  std::string text = ParameterLines(result) + DivergenceLines(e, result) + ErrorLines(e, result) +
+                     EffortLines(result, folder);
+  for (const Confounding& t : result.trade_offs) text += t.text + "\n";
+  if (result.over_noise) text += OverNoiseInWords(result) + "\n";
+  if (!result.start_hint.empty()) text += result.start_hint + "\n";
+  return text;
+}
+
+}  // namespace continuum
