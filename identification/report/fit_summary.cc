@@ -1,8 +1,11 @@
 #include "identification/report/fit_summary.h"
 
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "identification/report/fit_report.h"
+#include "identification/report/parts.h"
 
 namespace continuum {
 namespace {
@@ -24,6 +27,7 @@ std::string ParameterLine(const FreeParameter& p, double value, const Uncertaint
 
 // Where trials begin is found by itself; what stops at a bound is worth a line.
 std::string ParameterLines(const IdentifyResult& result) {
+  RequireCount("standard errors", result.uncertainty.standard_error.size(), result.fit.x.size());
   std::string lines, starts;
   for (Eigen::Index i = 0; i < result.fit.x.size(); ++i) {
     const FreeParameter& p = result.parameters[i];
@@ -49,6 +53,7 @@ std::string DivergenceLines(const Experiment& e, const IdentifyResult& result) {
 }
 
 std::string ErrorLines(const Experiment& e, const IdentifyResult& result) {
+  RequireWhole(e, result.logs);
   std::vector<ChannelScore> scores;
   for (const Replayed& log : result.logs)
     scores.insert(scores.end(), log.score.begin(), log.score.end());
@@ -79,8 +84,12 @@ std::string EffortLines(const IdentifyResult& result, const std::string& folder)
 
 std::string FitSummary(const Experiment& e, const IdentifyResult& result,
                        const std::string& folder) {
-  std::string text = ParameterLines(result) + DivergenceLines(e, result) + ErrorLines(e, result) +
-                     EffortLines(result, folder);
+  std::string text;
+  std::vector<MissingPart> missing;
+  MakePart("parameters", missing, [&] { text += ParameterLines(result); });
+  text += DivergenceLines(e, result);
+  MakePart("error", missing, [&] { text += ErrorLines(e, result); });
+  text += MissingInWords(missing) + EffortLines(result, folder);
   for (const Confounding& t : result.trade_offs) text += t.text + "\n";
   if (result.over_noise) text += OverNoiseInWords(result) + "\n";
   if (!result.start_hint.empty()) text += result.start_hint + "\n";
