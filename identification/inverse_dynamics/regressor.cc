@@ -145,7 +145,7 @@ void PutInputs(const Experiment& e, const Log& log, const Wiring& wiring, std::s
 // Forces of one machine along a motion [row, free dof]: what is missing, what the actuators give;
 // and 1 where dry friction may hold.
 struct Forces {
-  Matrix missing, actuated, rests;
+  Matrix missing, actuated, stationary;
 };
 
 void Replace(const mjData& d, int actuator, double measured, Vector& force) {
@@ -179,9 +179,9 @@ Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
     PutInputs(e, log, wiring, k, inputs, d);
     Put(motion, k, ties, m, d);
     mj_inverse(&m, &d);
-    Eigen::RowVectorXd rests = Eigen::RowVectorXd::Zero(free);
-    MarkRests(ties, m, d, At(k, motion.v), motion.noise, rests);
-    forces.rests.row(k) = rests;
+    Eigen::RowVectorXd stationary = Eigen::RowVectorXd::Zero(free);
+    MarkStationary(ties, m, d, At(k, motion.v), motion.noise, stationary);
+    forces.stationary.row(k) = stationary;
     mj_fwdActuation(&m, &d);
     Vector actuated = Vector::Map(d.qfrc_actuator, m.nv);
     for (const auto& [actuator, force] : motion.pull) Replace(d, actuator, force[k], actuated);
@@ -220,10 +220,11 @@ Vector Inner(const Matrix& forces, const Vector& weight, double cutoff) {
 
 // Rows that say something, whatever friction there is: at the start, or with other parameters.
 Vector InformativeRows(const Problem& problem, const Motion& motion, const Vector& x,
-                       const Matrix& rests) {
+                       const Matrix& stationary) {
   Vector there = x;
   for (Eigen::Index k = 0; k < x.size(); ++k) there[k] += problem.StepOf(x, k, 0.2);
-  const Matrix all = Widened(rests.cwiseMax(ForcesOf(problem, motion, there).rests), motion.cutoff);
+  const Matrix all = WidenedByFilter(
+      stationary.cwiseMax(ForcesOf(problem, motion, there).stationary), motion.cutoff);
   return 1 - Inner(all, Vector::Ones(all.cols()), motion.cutoff).array();
 }
 
@@ -343,7 +344,7 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   Regression found;
   for (std::size_t l = 0; l < motions.size(); ++l) {
     const double cutoff = motions[l].cutoff;
-    const Vector told = InformativeRows(problem, motions[l], x, forces[l].rests);
+    const Vector told = InformativeRows(problem, motions[l], x, forces[l].stationary);
     equations.push_back({use[l], Inner(forces[l].missing, weight, cutoff),
                          Inner(forces[l].actuated, weight, cutoff), told,
                          Columns(problem, motions[l], x, forces[l].missing, weight, told)});

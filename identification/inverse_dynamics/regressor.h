@@ -16,7 +16,7 @@ struct RegressorOptions {
 /// at measured q, with v and a as its derivatives; f are measured actuator forces, or what the
 /// model gives under the logged inputs. F low-passes positions first and then both sides, without
 /// phase (gautier1997, janot2014). Each joint's equation is weighted by its RMS force; where dry
-/// friction may hold the joint it is left out (MarkRests), but counts in the errors. No
+/// friction may hold the joint it is left out (MarkStationary), but counts in the errors. No
 /// simulation: a start is not needed, but every joint (hinge or slide) must be measured, evenly in
 /// time; those that linear joint equalities tie to others follow them (Ties).
 ///

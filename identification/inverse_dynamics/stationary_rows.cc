@@ -26,15 +26,15 @@ Vector FrictionRow(const mjModel& m, const mjData& d, int row) {
 
 double SpeedNoise(const std::vector<double>& y, const std::vector<double>& filtered, double cutoff,
                   double h) {
-  double rest = 0;
-  for (std::size_t k = 0; k < y.size(); ++k) rest += std::pow(y[k] - filtered[k], 2);
-  const double sigma = std::sqrt(rest / static_cast<double>(y.size()) / (1 - 2 * cutoff));
+  double squares = 0;
+  for (std::size_t k = 0; k < y.size(); ++k) squares += std::pow(y[k] - filtered[k], 2);
+  const double sigma = std::sqrt(squares / static_cast<double>(y.size()) / (1 - 2 * cutoff));
   return sigma * 2 * std::numbers::pi / h * std::sqrt(2 * std::pow(cutoff, 3) / 3);
 }
 
-void MarkRests(const JointEqualities& ties, const mjModel& m, const mjData& d,
-               const std::vector<double>& v, const std::vector<double>& noise,
-               Eigen::Ref<Eigen::RowVectorXd> rests) {
+void MarkStationary(const JointEqualities& ties, const mjModel& m, const mjData& d,
+                    const std::vector<double>& v, const std::vector<double>& noise,
+                    Eigen::Ref<Eigen::RowVectorXd> stationary) {
   const auto free = static_cast<Eigen::Index>(ties.velocities());
   Vector seen(free);
   for (int row = 0; row < d.nefc; ++row) {
@@ -44,21 +44,21 @@ void MarkRests(const JointEqualities& ties, const mjModel& m, const mjData& d,
     const double speed = seen.dot(Vector::Map(v.data(), free));
     if (std::abs(speed) > kClear * seen.cwiseAbs().dot(Vector::Map(noise.data(), free))) continue;
     for (Eigen::Index i = 0; i < free; ++i) {
-      if (seen[i] != 0) rests[i] = 1;
+      if (seen[i] != 0) stationary[i] = 1;
     }
   }
 }
 
-Eigen::MatrixXd Widened(const Eigen::MatrixXd& rests, double cutoff) {
+Eigen::MatrixXd WidenedByFilter(const Eigen::MatrixXd& stationary, double cutoff) {
   const auto reach = static_cast<Eigen::Index>(std::lround(1 / cutoff));
-  Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(rests.rows(), rests.cols());
-  for (Eigen::Index i = 0; i < rests.cols(); ++i) {
-    for (Eigen::Index begin = 0, end; begin < rests.rows(); begin = end + 1) {
+  Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(stationary.rows(), stationary.cols());
+  for (Eigen::Index i = 0; i < stationary.cols(); ++i) {
+    for (Eigen::Index begin = 0, end; begin < stationary.rows(); begin = end + 1) {
       end = begin;
-      while (end < rests.rows() && rests(end, i) != 0) ++end;
+      while (end < stationary.rows() && stationary(end, i) != 0) ++end;
       if (end == begin || end - begin < reach) continue;
       const Eigen::Index from = std::max<Eigen::Index>(0, begin - reach);
-      wide.col(i).segment(from, std::min(end + reach, rests.rows()) - from).setOnes();
+      wide.col(i).segment(from, std::min(end + reach, stationary.rows()) - from).setOnes();
     }
   }
   return wide;

@@ -19,12 +19,12 @@ double SpeedNoise(const std::vector<double>& y, const std::vector<double>& filte
 /// Where dry friction holds, its force is any up to its level, and the inverse model knows only the
 /// level: such rows say nothing of it. After mj_inverse: marks the free joints whose equation
 /// contains friction at a speed that noise may have made. v, noise: of the free joints.
-void MarkRests(const JointEqualities& ties, const mjModel& m, const mjData& d,
-               const std::vector<double>& v, const std::vector<double>& noise,
-               Eigen::Ref<Eigen::RowVectorXd> rests);
+void MarkStationary(const JointEqualities& ties, const mjModel& m, const mjData& d,
+                    const std::vector<double>& v, const std::vector<double>& noise,
+                    Eigen::Ref<Eigen::RowVectorXd> stationary);
 
 /// Those marks [row, free joint] that last longer than a low-pass of this cutoff remembers (a joint
 /// that only reverses passes through), with the rows that the low-pass mixes with them.
-Eigen::MatrixXd Widened(const Eigen::MatrixXd& rests, double cutoff);
+Eigen::MatrixXd WidenedByFilter(const Eigen::MatrixXd& stationary, double cutoff);
 
 }  // namespace continuum

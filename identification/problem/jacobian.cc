@@ -79,7 +79,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
     for (const std::size_t k : columns) {
       if (parameters_[k].log[motions[i].front()]) left[i].push_back(k);
     }
-    left[i] = TangentColumns(x, motions[i], left[i], thread, J);
+    left[i] = ClosedFormColumns(x, motions[i], left[i], thread, J);
   });
   std::size_t exact = 0;  // simulations that gave columns in closed form
   for (std::size_t i = 0; i < motions.size(); ++i) {
@@ -137,10 +137,11 @@ std::string Problem::NoClosedForm() const {
   return StepSensitivity::Obstacle(*machine.model, Wiring(setup_, *machine.model));
 }
 
-std::vector<std::size_t> Problem::TangentColumns(const Vector& x,
-                                                 const std::vector<std::size_t>& motion,
-                                                 const std::vector<std::size_t>& columns,
-                                                 std::size_t thread, std::vector<Matrix>& J) const {
+std::vector<std::size_t> Problem::ClosedFormColumns(const Vector& x,
+                                                    const std::vector<std::size_t>& motion,
+                                                    const std::vector<std::size_t>& columns,
+                                                    std::size_t thread,
+                                                    std::vector<Matrix>& J) const {
   const std::size_t log = motion.front();
   const Experiment setup = MeasuredBy(x, log);
   if (!exact_ || path_ != Path::kStepped || columns.size() < kWorth || terms_.count > 0 ||
@@ -154,25 +155,25 @@ std::vector<std::size_t> Problem::TangentColumns(const Vector& x,
     const mjModel& m = *machine.model;
     if (!StepSensitivity::Obstacle(m, Wiring(setup, m)).empty()) return columns;
     PerturbedRun trial = TrialOf(std::move(machine), x, log);
-    std::vector<PerturbedRun> neighbours;
+    std::vector<PerturbedRun> perturbed;
     for (const std::size_t k : moving) {
       Vector moved = x;
-      moved[k] += StepOf(x, k, kMove);
-      neighbours.push_back(TrialOf(MachineAt(thread, moved, log, 0), moved, log));
+      moved[k] += StepOf(x, k, kPerturbation);
+      perturbed.push_back(TrialOf(MachineAt(thread, moved, log, 0), moved, log));
     }
-    traces = FollowSteps(trial, neighbours, setup, experiment_->logs[log]);
+    traces = SimulateStepped(trial, perturbed, setup, experiment_->logs[log]);
   } catch (const Error&) {  // of values that no machine has: differences look to the other side
     return columns;
   }
   for (std::size_t j = 0; j < moving.size(); ++j) {
     const std::size_t k = moving[j];
-    if (!traces.moved[j] || !ResidualOf(log, *traces.moved[j]).allFinite()) {
+    if (!traces.perturbed[j] || !ResidualOf(log, *traces.perturbed[j]).allFinite()) {
       left.push_back(k);
       continue;
     }
     for (const std::size_t l : motion) {
-      J[l].col(k) =
-          (ResidualOf(l, *traces.moved[j]) - ResidualOf(l, traces.trace)) / StepOf(x, k, kMove);
+      J[l].col(k) = (ResidualOf(l, *traces.perturbed[j]) - ResidualOf(l, traces.trace)) /
+                    StepOf(x, k, kPerturbation);
     }
   }
   return left;
@@ -206,21 +207,21 @@ void Problem::SensitivityColumns(const Vector& x,
     if (StopRequested()) return;
     const auto& [i, moving] = tasks[t];
     const std::size_t log = motions[i].front();
-    std::vector<std::unique_ptr<ContinuousDynamics>> neighbours;
+    std::vector<std::unique_ptr<ContinuousDynamics>> perturbed;
     for (const std::size_t k : moving) {
       Vector moved = x;
-      moved[k] += StepOf(x, k, kMove);
-      neighbours.push_back(FlowAt(thread, moved, log));
+      moved[k] += StepOf(x, k, kPerturbation);
+      perturbed.push_back(DynamicsAt(thread, moved, log));
     }
-    const auto flow = FlowAt(thread, x, log);
+    const auto dynamics = DynamicsAt(thread, x, log);
     const Log& logged = experiment_->logs[log];
     const Experiment measured = MeasuredBy(x, log);
-    SmoothTraces traces = FollowFlow(*flow, neighbours, measured, logged, how);
+    SmoothTraces traces = SimulateSmooth(*dynamics, perturbed, measured, logged, how);
     for (std::size_t j = 0; j < moving.size(); ++j) {
-      MeasureTrace(measured, flow->wiring(), logged, traces.moved[j]);
+      MeasureTrace(measured, dynamics->wiring(), logged, traces.perturbed[j]);
       for (const std::size_t l : motions[i]) {
-        J[l].col(moving[j]) = (ResidualOf(l, traces.moved[j]) - ResidualOf(l, traces.trace)) /
-                              StepOf(x, moving[j], kMove);
+        J[l].col(moving[j]) = (ResidualOf(l, traces.perturbed[j]) - ResidualOf(l, traces.trace)) /
+                              StepOf(x, moving[j], kPerturbation);
       }
     }
   });

@@ -35,7 +35,7 @@ std::string SmoothObstacle(const Problem& problem) {
   Problem::Vector beside = problem.Start();
   for (Eigen::Index k = 0; k < beside.size(); ++k) {
     if (problem.parameters()[k].change.attribute == "skew") return "the clock is a parameter";
-    beside[k] += problem.StepOf(beside, k, kMove);
+    beside[k] += problem.StepOf(beside, k, kPerturbation);
   }
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     std::string why = ObstacleOf(problem, beside, l);

@@ -7,7 +7,7 @@
 namespace continuum {
 
 /// What keeps the smooth path from following a problem's model at its start: dry friction, contacts
-/// or limits that act, delays, states that go in steps. Empty: nothing does. Simulates every log
+/// or limits that act, delays, discrete states. Empty: nothing does. Simulates every log
 /// once.
 std::string SmoothObstacle(const Problem& problem);
 

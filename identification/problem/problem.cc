@@ -101,7 +101,7 @@ void Problem::Follow(Path path) {
   for (const bool stiff : {false, true}) {
     solver_.stiff = stiff;
     const SmoothTraces traces =
-        FollowFlow(*FlowAt(0, Start(), 0), {}, setup_, experiment_->logs[0], solver_);
+        SimulateSmooth(*DynamicsAt(0, Start(), 0), {}, setup_, experiment_->logs[0], solver_);
     rates[stiff] = traces.trace.diverged ? std::numeric_limits<long>::max() : traces.work.rates;
   }
   solver_.stiff = rates[true] <= rates[false];
@@ -291,8 +291,8 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
   }
   if (path_ == Path::kSmooth) {
     try {
-      const auto flow = FlowAt(thread, x, log);
-      return FollowFlow(*flow, {}, setup, logged, solver_).trace;
+      const auto dynamics = DynamicsAt(thread, x, log);
+      return SimulateSmooth(*dynamics, {}, setup, logged, solver_).trace;
     } catch (const Error& error) {
       return Refused(logged, error);
     }
@@ -335,8 +335,8 @@ InitialState Problem::StartAt(ModelAndData& machine, const Vector& x, std::size_
   return state;
 }
 
-std::unique_ptr<ContinuousDynamics> Problem::FlowAt(std::size_t thread, const Vector& x,
-                                                    std::size_t log) const {
+std::unique_ptr<ContinuousDynamics> Problem::DynamicsAt(std::size_t thread, const Vector& x,
+                                                        std::size_t log) const {
   return std::make_unique<ContinuousDynamics>(systems_[thread].Build(ChangesFor(x, log)),
                                               *experiment_, experiment_->logs[log]);
 }

@@ -129,8 +129,8 @@ class Problem {
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
   ModelAndData MachineAt(std::size_t thread, const Vector& x, std::size_t log, double step) const;
   Trace Refused(const Log& log, const Error& error) const;
-  std::unique_ptr<ContinuousDynamics> FlowAt(std::size_t thread, const Vector& x,
-                                             std::size_t log) const;
+  std::unique_ptr<ContinuousDynamics> DynamicsAt(std::size_t thread, const Vector& x,
+                                                 std::size_t log) const;
   bool Measures(std::size_t k) const;
   /// Within the parameter's bounds.
   bool Allows(std::size_t k, double value) const;
@@ -139,9 +139,10 @@ class Problem {
                          const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
   PerturbedRun TrialOf(ModelAndData machine, const Vector& x, std::size_t log) const;
   /// By StepSensitivity, one simulation for all columns; returns those that are left.
-  std::vector<std::size_t> TangentColumns(const Vector& x, const std::vector<std::size_t>& motion,
-                                          const std::vector<std::size_t>& columns,
-                                          std::size_t thread, std::vector<Matrix>& J) const;
+  std::vector<std::size_t> ClosedFormColumns(const Vector& x,
+                                             const std::vector<std::size_t>& motion,
+                                             const std::vector<std::size_t>& columns,
+                                             std::size_t thread, std::vector<Matrix>& J) const;
   void SensitivityColumns(const Vector& x, const std::vector<std::vector<std::size_t>>& motions,
                           std::size_t first, bool rough, std::vector<Matrix>& J) const;
   enum class Side { kModel, kMeasurement, kStart };

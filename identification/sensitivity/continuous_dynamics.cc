@@ -8,13 +8,14 @@
 namespace continuum {
 namespace {
 
-std::string Rubs(const mjModel& m) {
+std::string DryFriction(const mjModel& m) {
   for (int i = 0; i < m.nv; ++i) {
     if (m.dof_frictionloss[i] > 0)
-      return "joint " + Called(m, mjOBJ_JOINT, m.dof_jntid[i]) + " rubs";
+      return "joint " + Called(m, mjOBJ_JOINT, m.dof_jntid[i]) + " has dry friction";
   }
   for (int i = 0; i < m.ntendon; ++i) {
-    if (m.tendon_frictionloss[i] > 0) return "tendon " + Called(m, mjOBJ_TENDON, i) + " rubs";
+    if (m.tendon_frictionloss[i] > 0)
+      return "tendon " + Called(m, mjOBJ_TENDON, i) + " has dry friction";
   }
   return "";
 }
@@ -40,9 +41,9 @@ std::string Switches(const mjModel& m, const mjData& d) {
     if (!name.starts_with("continuum.")) return instance + " is not one of ours";
     const BoundLaw& law = BoundOf(m, d, i);
     const double* const z = d.plugin_state + m.plugin_stateadr[i];
-    if (law.IsRow() || law.Answers()) return instance + " rubs";
+    if (law.IsRow() || law.Answers()) return instance + " has dry friction";
     if (m.plugin_statenum[i] > 0 && !law.Rates(m, d, z, rate.data()))
-      return instance + " goes in steps";
+      return instance + " has discrete states";
   }
   return "";
 }
@@ -77,7 +78,7 @@ bool BreaksAt(const Experiment& e, const Log& log, std::size_t row) {
 }
 
 std::string ContinuousDynamics::Obstacle(const mjModel& m, const mjData& d) {
-  for (const std::string& why : {Rubs(m), Delayed(m), Switches(m, d)}) {
+  for (const std::string& why : {DryFriction(m), Delayed(m), Switches(m, d)}) {
     if (!why.empty()) return why;
   }
   return JointEqualities(m).obstacle();

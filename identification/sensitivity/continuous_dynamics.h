@@ -22,7 +22,8 @@ bool BreaksAt(const Experiment& e, const Log& log, std::size_t row);
 /// (Ties). No other constraint acts: a model that needs one is refused by Obstacle.
 class ContinuousDynamics {
  public:
-  /// What keeps a model from being such an equation ("joint 'j1' rubs"); empty: nothing does.
+  /// What keeps a model from being such an equation ("joint 'j1' has dry friction"); empty: nothing
+  /// does.
   static std::string Obstacle(const mjModel& m, const mjData& d);
 
   /// Throws Error for names that the model lacks, and when the start cannot be found.

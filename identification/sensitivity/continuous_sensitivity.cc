@@ -5,39 +5,39 @@
 namespace continuum {
 namespace {
 
-// What a flow has that the closed form does not know; empty: nothing.
-std::string Obstacle(const ContinuousDynamics& flow) {
-  const mjModel& m = flow.model();
-  if (flow.tied()) return "joints are tied";
+// What the dynamics have that the closed form does not know; empty: nothing.
+std::string Obstacle(const ContinuousDynamics& dynamics) {
+  const mjModel& m = dynamics.model();
+  if (dynamics.tied()) return "joints are tied";
   if (m.nplugin > 0) return "an effect acts";
   const std::string why = ForceDerivatives::Obstacle(m);
-  return why.empty() ? SensorTangent::Obstacle(m, flow.wiring()) : why;
+  return why.empty() ? SensorDerivatives::Obstacle(m, dynamics.wiring()) : why;
 }
 
 }  // namespace
 
 ContinuousSensitivity::ContinuousSensitivity(
-    ContinuousDynamics& flow, const std::vector<std::unique_ptr<ContinuousDynamics>>& neighbours,
+    ContinuousDynamics& dynamics, const std::vector<std::unique_ptr<ContinuousDynamics>>& perturbed,
     double move)
-    : flow_(flow),
-      neighbours_(neighbours),
+    : dynamics_(dynamics),
+      perturbed_(perturbed),
       move_(move),
-      covered_(neighbours.size()),
-      tangent_(flow.model()),
-      rate_(flow.size()) {
-  if (!Obstacle(flow).empty()) return;
-  const mjModel& m = flow.model();
-  for (std::size_t k = 0; k < neighbours.size(); ++k) {
-    ModelDifference difference(m, neighbours[k]->model());
+      covered_(perturbed.size()),
+      derivatives_(dynamics.model()),
+      rate_(dynamics.size()) {
+  if (!Obstacle(dynamics).empty()) return;
+  const mjModel& m = dynamics.model();
+  for (std::size_t k = 0; k < perturbed.size(); ++k) {
+    ModelDifference difference(m, perturbed[k]->model());
     covered_[k] = difference.field.empty();
     if (!covered_[k]) continue;
-    difference.AddGated(flow.wiring());
+    difference.AddGated(dynamics.wiring());
     columns_.push_back(k);
     differences_.push_back(std::move(difference));
   }
   const auto count = static_cast<Eigen::Index>(columns_.size());
   const Eigen::Index nv = m.nv, na = m.na;
-  sensors_ = std::make_unique<SensorTangent>(m, flow.wiring());
+  sensors_ = std::make_unique<SensorDerivatives>(m, dynamics.wiring());
   inertia_.resize(nv, nv), follow_.resize(nv, 2 * nv + na), driven_.resize(nv, count);
   lag_.resize(na, 1 + count);
   in_.resize(2 * nv + na, count), out_.resize(nv, count);
@@ -46,21 +46,21 @@ ContinuousSensitivity::ContinuousSensitivity(
 void ContinuousSensitivity::At(double t, const double* y) {
   if (columns_.empty()) return;
   if (t == t_ && !y_.empty() && std::equal(y_.begin(), y_.end(), y)) return;
-  flow_.Rate(t, y, rate_.data());
-  t_ = t, y_.assign(y, y + flow_.size());
-  const mjModel& m = flow_.model();
-  const mjData& d = flow_.data();
-  tangent_.Update(m, d, d.qacc, d.qvel);
-  follow_ << tangent_.by_position(), tangent_.by_velocity(), tangent_.by_activation();
+  dynamics_.Rate(t, y, rate_.data());
+  t_ = t, y_.assign(y, y + dynamics_.size());
+  const mjModel& m = dynamics_.model();
+  const mjData& d = dynamics_.data();
+  derivatives_.Update(m, d, d.qacc, d.qvel);
+  follow_ << derivatives_.by_position(), derivatives_.by_velocity(), derivatives_.by_activation();
   driven_.setZero(), lag_.setZero();
   for (int a = 0; a < m.nactuator; ++a) {
     if (m.actuator_actadr[a] >= 0)
       lag_(m.actuator_actadr[a], 0) = RateOfActivation(m, d, a).by_itself;
   }
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    const mjModel& other = neighbours_[columns_[c]]->model();
+    const mjModel& other = perturbed_[columns_[c]]->model();
     const auto column = static_cast<Eigen::Index>(c);
-    tangent_.Differ(m, d, other, differences_[c], driven_.col(column).data());
+    derivatives_.Differ(m, d, other, differences_[c], driven_.col(column).data());
     for (const int a : differences_[c].activations) {
       lag_(m.actuator_actadr[a], 1 + column) =
           (RateOfActivation(other, d, a).value - RateOfActivation(m, d, a).value) / move_;
@@ -75,7 +75,7 @@ void ContinuousSensitivity::At(double t, const double* y) {
 
 void ContinuousSensitivity::Rates(const std::vector<double*>& s,
                                   const std::vector<double*>& rates) {
-  const Eigen::Index nv = flow_.model().nv, na = flow_.model().na;
+  const Eigen::Index nv = dynamics_.model().nv, na = dynamics_.model().na;
   for (std::size_t c = 0; c < columns_.size(); ++c)
     std::copy_n(s[columns_[c]], 2 * nv + na, in_.col(static_cast<Eigen::Index>(c)).data());
   out_ = driven_;
@@ -93,15 +93,15 @@ void ContinuousSensitivity::Rates(const std::vector<double*>& s,
 void ContinuousSensitivity::Observe(const std::vector<const double*>& s,
                                     const std::vector<Recorder*>& recorders) {
   if (columns_.empty()) return;
-  const mjModel& m = flow_.model();
-  mjData& d = flow_.data();
+  const mjModel& m = dynamics_.model();
+  mjData& d = dynamics_.data();
   mj_comPos(&m, &d);
   sensors_->Update(m, d);
   std::vector<double> dy(2 * m.nv);
   for (const std::size_t k : columns_) {
     for (std::size_t i = 0; i < dy.size(); ++i) dy[i] = move_ * s[k][i];
     sensors_->Move(d, dy.data(), dy.data() + m.nv);
-    flow_.Record(*recorders[k]);
+    dynamics_.Record(*recorders[k]);
     sensors_->Back(d);
   }
 }

@@ -16,8 +16,8 @@ int DofOf(const mjModel& m, int actuator) { return m.jnt_dofadr[m.actuator_trnid
 std::string ForceDerivatives::Obstacle(const mjModel& m) {
   if (m.nv == 0) return "nothing moves";
   if (m.opt.enableflags & mjENBL_SLEEP) return "what rests may sleep";
-  const std::string why = PullObstacle(m);
-  return why.empty() ? TendonTangent::Obstacle(m) : why;
+  const std::string why = NativeForceObstacle(m);
+  return why.empty() ? TendonDerivatives::Obstacle(m) : why;
 }
 
 ForceDerivatives::ForceDerivatives(const mjModel& m)
@@ -34,12 +34,12 @@ ForceDerivatives::ForceDerivatives(const mjModel& m)
 // What acts at d, but by the speeds that it feels: it is linear in them.
 ForceAlong ForceDerivatives::Joint(const mjModel& by, const mjData& d, int joint) const {
   const int i = by.jnt_dofadr[joint];
-  return PullOfJoint(by, d, joint, d.qvel[i]).Felt(felt_[i] - d.qvel[i]);
+  return JointForce(by, d, joint, d.qvel[i]).Felt(felt_[i] - d.qvel[i]);
 }
 
 ForceAlong ForceDerivatives::Tendon(const mjModel& by, const mjData& d, int tendon) const {
   const double rate = tendons_.Rate(by, d, tendon, d.qvel);
-  return PullOfTendon(by, d, tendon, rate).Felt(tendons_.Rate(by, d, tendon, felt_.data()) - rate);
+  return TendonForce(by, d, tendon, rate).Felt(tendons_.Rate(by, d, tendon, felt_.data()) - rate);
 }
 
 ForceAlong ForceDerivatives::Actuator(const mjModel& by, const mjData& d, int actuator) const {
@@ -48,7 +48,7 @@ ForceAlong ForceDerivatives::Actuator(const mjModel& by, const mjData& d, int ac
                                   : v[DofOf(by, actuator)];
   };
   const double now = rate(d.qvel);
-  return PullOfActuator(by, d, actuator, now, step_).Felt(rate(felt_.data()) - now);
+  return ActuatorForce(by, d, actuator, now, step_).Felt(rate(felt_.data()) - now);
 }
 
 void ForceDerivatives::PullAlong(const mjModel& m, const mjData& d, int actuator, double f,

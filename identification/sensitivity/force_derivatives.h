@@ -48,7 +48,7 @@ class ForceDerivatives {
   void PullAlong(const mjModel& m, const mjData& d, int actuator, double f, double* force) const;
 
   RigidBodyDerivatives rigid_;
-  TendonTangent tendons_;
+  TendonDerivatives tendons_;
   std::vector<double> a_, felt_;
   std::vector<ForceAlong> of_tendon_;
   double step_ = 0;

@@ -72,7 +72,7 @@ ForceAlong ForceAlong::Felt(double faster) const {
   return felt;
 }
 
-std::string PullObstacle(const mjModel& m) {
+std::string NativeForceObstacle(const mjModel& m) {
   for (int j = 0; j < m.njnt; ++j) {
     if (const std::string why = JointObstacle(m, j); !why.empty())
       return "joint " + Called(m, mjOBJ_JOINT, j) + " " + why;
@@ -93,7 +93,7 @@ std::string PullObstacle(const mjModel& m) {
   return "";
 }
 
-ForceAlong PullOfJoint(const mjModel& m, const mjData& d, int joint, double v) {
+ForceAlong JointForce(const mjModel& m, const mjData& d, int joint, double v) {
   ForceAlong pull;
   const int dof = m.jnt_dofadr[joint], adr = m.jnt_qposadr[joint];
   if (!(m.opt.disableflags & mjDSBL_SPRING)) {
@@ -107,7 +107,7 @@ ForceAlong PullOfJoint(const mjModel& m, const mjData& d, int joint, double v) {
   return pull;
 }
 
-ForceAlong PullOfTendon(const mjModel& m, const mjData& d, int tendon, double rate) {
+ForceAlong TendonForce(const mjModel& m, const mjData& d, int tendon, double rate) {
   ForceAlong pull;
   if (!(m.opt.disableflags & mjDSBL_SPRING) && m.tendon_stiffness[tendon] != 0) {
     const double* const rest = m.tendon_lengthspring + 2 * tendon;
@@ -138,7 +138,7 @@ Activation NextActivation(const mjModel& m, const mjData& d, int a, double step)
   return {act + span * rate.value, 1 + span * rate.by_itself};
 }
 
-ForceAlong PullOfActuator(const mjModel& m, const mjData& d, int a, double rate, double step) {
+ForceAlong ActuatorForce(const mjModel& m, const mjData& d, int a, double rate, double step) {
   ForceAlong pull;
   if (m.opt.disableflags & mjDSBL_ACTUATION) return pull;
   const double gear = m.actuator_gear[6 * m.actuator_outadr[a]];

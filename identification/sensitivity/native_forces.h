@@ -16,13 +16,12 @@ struct ForceAlong {
 };
 
 /// Spring and damper of a hinge or slide at d, at the speed v.
-ForceAlong PullOfJoint(const mjModel& m, const mjData& d, int joint, double v);
+ForceAlong JointForce(const mjModel& m, const mjData& d, int joint, double v);
 /// The same of a tendon.
-ForceAlong PullOfTendon(const mjModel& m, const mjData& d, int tendon, double rate);
+ForceAlong TendonForce(const mjModel& m, const mjData& d, int tendon, double rate);
 /// An actuator with fixed or affine gain and bias, along the joint or tendon that it pulls, of
 /// that rate; step: of the lag that acts early [s].
-ForceAlong PullOfActuator(const mjModel& m, const mjData& d, int actuator, double rate,
-                          double step);
+ForceAlong ActuatorForce(const mjModel& m, const mjData& d, int actuator, double rate, double step);
 /// What an actuator's activation becomes, and how this follows it: its rate (step: 0), or its value
 /// after a step [s].
 struct Activation {
@@ -32,6 +31,6 @@ Activation RateOfActivation(const mjModel& m, const mjData& d, int actuator);
 Activation NextActivation(const mjModel& m, const mjData& d, int actuator, double step);
 
 /// What has no closed form here ("actuator 'a1' is a muscle"); empty: nothing.
-std::string PullObstacle(const mjModel& m);
+std::string NativeForceObstacle(const mjModel& m);
 
 }  // namespace continuum

@@ -43,7 +43,7 @@ int BodyOf(const mjModel& m, int type, int id) {
 
 }  // namespace
 
-std::string SensorTangent::Obstacle(const mjModel& m, const Wiring& wiring) {
+std::string SensorDerivatives::Obstacle(const mjModel& m, const Wiring& wiring) {
   if (wiring.marked) return "a marker's offset";
   for (const auto& source : wiring.output) {
     if (source.kind != Output::Kind::kSensor) return "an actuator's force or control";
@@ -52,7 +52,7 @@ std::string SensorTangent::Obstacle(const mjModel& m, const Wiring& wiring) {
   return "";
 }
 
-SensorTangent::SensorTangent(const mjModel& m, const Wiring& wiring) : was_(m.nsensordata) {
+SensorDerivatives::SensorDerivatives(const mjModel& m, const Wiring& wiring) : was_(m.nsensordata) {
   for (const auto& source : wiring.output) {
     const int s = source.sensor;
     const auto known = [&](const Read& read) { return read.sensor == s; };
@@ -61,22 +61,22 @@ SensorTangent::SensorTangent(const mjModel& m, const Wiring& wiring) : was_(m.ns
     reads_.push_back({s, m.sensor_adr[s], m.sensor_dim[s],
                       frame ? -1 : m.jnt_dofadr[m.sensor_objid[s]],
                       m.sensor_type[s] == mjSENS_JOINTVEL});
-    lever_.emplace_back(3, frame ? m.nv : 0);
+    jacobian_.emplace_back(3, frame ? m.nv : 0);
   }
 }
 
-void SensorTangent::Update(const mjModel& m, const mjData& d) {
+void SensorDerivatives::Update(const mjModel& m, const mjData& d) {
   for (std::size_t r = 0; r < reads_.size(); ++r) {
     if (reads_[r].dof >= 0) continue;
     const int s = reads_[r].sensor, type = m.sensor_objtype[s], id = m.sensor_objid[s];
     const Vector3 point(FrameOf(d, type, id).position);
-    lever_[r].setZero();
+    jacobian_[r].setZero();
     for (int i = LastDof(m, BodyOf(m, type, id)); i >= 0; i = m.dof_parentid[i])
-      lever_[r].col(i) = LeverOf(m, d, i, point);
+      jacobian_[r].col(i) = LeverOf(m, d, i, point);
   }
 }
 
-void SensorTangent::Move(mjData& d, const double* dq, const double* dv) {
+void SensorDerivatives::Move(mjData& d, const double* dq, const double* dv) {
   for (std::size_t r = 0; r < reads_.size(); ++r) {
     const Read& read = reads_[r];
     std::copy_n(d.sensordata + read.address, read.size, &was_[read.address]);
@@ -84,12 +84,12 @@ void SensorTangent::Move(mjData& d, const double* dq, const double* dv) {
       d.sensordata[read.address] += read.speed ? dv[read.dof] : dq[read.dof];
     } else {
       Eigen::Map<Vector3>(d.sensordata + read.address) +=
-          lever_[r] * Eigen::Map<const Eigen::VectorXd>(dq, lever_[r].cols());
+          jacobian_[r] * Eigen::Map<const Eigen::VectorXd>(dq, jacobian_[r].cols());
     }
   }
 }
 
-void SensorTangent::Back(mjData& d) const {
+void SensorDerivatives::Back(mjData& d) const {
   for (const Read& read : reads_)
     std::copy_n(&was_[read.address], read.size, d.sensordata + read.address);
 }

@@ -9,13 +9,14 @@
 
 namespace continuum {
 
-/// How the sensors of an experiment's outputs follow positions and speeds [nv], in closed form, on
-/// hinges and slides: positions and speeds of joints, and where frames are in the world.
-class SensorTangent {
+/// Derivatives of the sensors of an experiment's outputs with respect to positions and speeds [nv],
+/// in closed form, on hinges and slides: positions and speeds of joints, and where frames are in
+/// the world.
+class SensorDerivatives {
  public:
   /// What an output is made of beyond that ("sensor 'tip_force'"); empty: nothing.
   static std::string Obstacle(const mjModel& m, const Wiring& wiring);
-  SensorTangent(const mjModel& m, const Wiring& wiring);
+  SensorDerivatives(const mjModel& m, const Wiring& wiring);
 
   /// At d, whose positions' frames and axes (mj_comPos) are known.
   void Update(const mjModel& m, const mjData& d);
@@ -30,7 +31,7 @@ class SensorTangent {
     bool speed;
   };
   std::vector<Read> reads_;
-  std::vector<Eigen::Matrix3Xd> lever_;  ///< [read] of frames, ∂p/∂q
+  std::vector<Eigen::Matrix3Xd> jacobian_;  ///< [read] of frames, ∂p/∂q
   std::vector<double> was_;
 };
 

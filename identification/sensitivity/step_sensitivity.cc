@@ -14,18 +14,18 @@ std::string StepSensitivity::Obstacle(const mjModel& m, const Wiring& wiring) {
   if (m.neq > 0) return "there are equalities";
   if (m.opt.noslip_iterations > 0) return "the solver has steps against slip";
   const std::string why = ForceDerivatives::Obstacle(m);
-  return why.empty() ? SensorTangent::Obstacle(m, wiring) : why;
+  return why.empty() ? SensorDerivatives::Obstacle(m, wiring) : why;
 }
 
 StepSensitivity::StepSensitivity(const mjModel& m, const Wiring& wiring,
-                                 std::vector<const mjModel*> neighbours, double move)
-    : neighbours_(std::move(neighbours)),
+                                 std::vector<const mjModel*> perturbed, double move)
+    : perturbed_(std::move(perturbed)),
       move_(move),
-      covered_(neighbours_.size()),
-      tangent_(m),
+      covered_(perturbed_.size()),
+      derivatives_(m),
       sensors_(m, wiring) {
-  for (std::size_t k = 0; k < neighbours_.size(); ++k) {
-    ModelDifference difference(m, *neighbours_[k]);
+  for (std::size_t k = 0; k < perturbed_.size(); ++k) {
+    ModelDifference difference(m, *perturbed_[k]);
     covered_[k] = difference.field.empty();
     if (!covered_[k]) continue;
     difference.AddGated(wiring);
@@ -53,28 +53,28 @@ void StepSensitivity::Before(const mjModel& m, const mjData& d) {
 
 // A row at rest gives less than its level.
 bool StepSensitivity::FindRows(const mjData& d) {
-  rubs_.clear();
+  friction_rows_.clear();
   for (int r = 0; r < d.nefc; ++r) {
     if (d.efc_type[r] != mjCNSTR_FRICTION_DOF) return false;
     const bool slides = std::abs(d.efc_force[r]) >= d.efc_frictionloss[r] * (1 - 1e-9);
-    rubs_.push_back({r, d.efc_id[r], slides});
+    friction_rows_.push_back({r, d.efc_id[r], slides});
   }
   return true;
 }
 
-// dF at the accelerations a and the speeds felt, of every covered neighbour.
+// dF at the accelerations a and the speeds felt, of every covered perturbed model.
 void StepSensitivity::Derive(const mjModel& m, const mjData& d, const double* a, const double* felt,
                              Matrix& force) {
-  tangent_.Update(m, d, a, felt, m.opt.timestep);
+  derivatives_.Update(m, d, a, felt, m.opt.timestep);
   force = Matrix::Zero(m.nv, static_cast<Eigen::Index>(columns_.size()));
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    tangent_.Differ(m, d, *neighbours_[columns_[c]], differences_[c],
-                    force.col(static_cast<Eigen::Index>(c)).data());
+    derivatives_.Differ(m, d, *perturbed_[columns_[c]], differences_[c],
+                        force.col(static_cast<Eigen::Index>(c)).data());
   }
   force /= move_;
-  force.noalias() += tangent_.by_position() * dq_;
-  force.noalias() += tangent_.by_velocity() * dv_;
-  if (m.na > 0) force.noalias() += tangent_.by_activation() * dw_;
+  force.noalias() += derivatives_.by_position() * dq_;
+  force.noalias() += derivatives_.by_velocity() * dv_;
+  if (m.na > 0) force.noalias() += derivatives_.by_activation() * dw_;
 }
 
 // df of (2).
@@ -82,30 +82,30 @@ bool StepSensitivity::AddFriction(const mjModel& m, const mjData& d, Matrix& for
   Derive(m, d, d.qacc, d.qvel, answer_);
   mj_fullM(&m, &d, inertia_.data());
   work_ = Matrix::Zero(answer_.rows(), answer_.cols());  // what f changes by itself
-  for (const Rub& rub : rubs_) {
-    const int i = rub.dof;
-    const double stiff = d.efc_D[rub.row];
+  for (const FrictionRow& row : friction_rows_) {
+    const int i = row.dof;
+    const double stiff = d.efc_D[row.row];
     for (std::size_t c = 0; c < columns_.size(); ++c) {
-      const mjModel& other = *neighbours_[columns_[c]];
+      const mjModel& other = *perturbed_[columns_[c]];
       double& change = work_(i, static_cast<Eigen::Index>(c));
-      if (rub.slides) {
+      if (row.slides) {
         const double level = (other.dof_frictionloss[i] - m.dof_frictionloss[i]) / move_;
-        change = std::copysign(level, d.efc_force[rub.row]);
+        change = std::copysign(level, d.efc_force[row.row]);
       } else {
         const double eased = other.dof_invweight0[i] / m.dof_invweight0[i] - 1;  // of R
-        change = -stiff * d.efc_KBIP[4 * rub.row + 1] * dv_(i, static_cast<Eigen::Index>(c)) -
-                 d.efc_force[rub.row] * eased / move_;
+        change = -stiff * d.efc_KBIP[4 * row.row + 1] * dv_(i, static_cast<Eigen::Index>(c)) -
+                 d.efc_force[row.row] * eased / move_;
       }
     }
-    if (!rub.slides) inertia_(i, i) += stiff;
+    if (!row.slides) inertia_(i, i) += stiff;
   }
   answer_ += work_;
   factor_.compute(inertia_);
   if (factor_.info() != Eigen::Success) return false;
   factor_.solveInPlace(answer_);  // da
   force += work_;
-  for (const Rub& rub : rubs_) {
-    if (!rub.slides) force.row(rub.dof) -= d.efc_D[rub.row] * answer_.row(rub.dof);
+  for (const FrictionRow& row : friction_rows_) {
+    if (!row.slides) force.row(row.dof) -= d.efc_D[row.row] * answer_.row(row.dof);
   }
   return true;
 }
@@ -117,7 +117,7 @@ void StepSensitivity::FollowLags(const mjModel& m, const mjData& d) {
     if (w >= 0) dw_.row(w) *= NextActivation(m, d, k, h).by_itself;
   }
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    const mjModel& other = *neighbours_[columns_[c]];
+    const mjModel& other = *perturbed_[columns_[c]];
     for (const int k : differences_[c].activations) {
       dw_(m.actuator_actadr[k], static_cast<Eigen::Index>(c)) +=
           (NextActivation(other, d, k, h).value - NextActivation(m, d, k, h).value) / move_;
@@ -129,8 +129,8 @@ void StepSensitivity::FollowLags(const mjModel& m, const mjData& d) {
 bool StepSensitivity::Follow(const mjModel& m, const mjData& d) {
   const double h = m.opt.timestep;
   Derive(m, d, a_.data(), after_.data(), force_);
-  const Matrix damping = tangent_.damping();
-  if (!rubs_.empty() && !AddFriction(m, d, force_)) return false;
+  const Matrix damping = derivatives_.damping();
+  if (!friction_rows_.empty() && !AddFriction(m, d, force_)) return false;
   mj_fullM(&m, &d, inertia_.data());
   inertia_ -= h * damping;
   factor_.compute(inertia_);

@@ -7,47 +7,48 @@
 namespace continuum {
 namespace {
 
-std::vector<double> Apart(const std::vector<double>& there, const std::vector<double>& here) {
+std::vector<double> Difference(const std::vector<double>& there, const std::vector<double>& here) {
   std::vector<double> s(here.size());
-  for (std::size_t i = 0; i < s.size(); ++i) s[i] = (there[i] - here[i]) / kMove;
+  for (std::size_t i = 0; i < s.size(); ++i) s[i] = (there[i] - here[i]) / kPerturbation;
   return s;
 }
 
-// The neighbours on their way beside the machine.
-class Company {
+// The perturbed models, followed beside the machine.
+class PerturbedRuns {
  public:
-  Company(const PerturbedRun& trial, std::vector<PerturbedRun>& neighbours, const Experiment& e,
-          const Log& log, const Wiring& wiring)
-      : neighbours_(neighbours), tangent_(*trial.machine.model, wiring, Models(neighbours), kMove) {
-    for (std::size_t k = 0; k < neighbours.size(); ++k) {
-      const PerturbedRun& other = neighbours[k];
+  PerturbedRuns(const PerturbedRun& trial, std::vector<PerturbedRun>& perturbed,
+                const Experiment& e, const Log& log, const Wiring& wiring)
+      : perturbed_(perturbed),
+        sensitivity_(*trial.machine.model, wiring, Models(perturbed), kPerturbation) {
+    for (std::size_t k = 0; k < perturbed.size(); ++k) {
+      const PerturbedRun& other = perturbed[k];
       inputs_.emplace_back(*other.machine.model, e, log, wiring);
       recorders_.emplace_back(*trial.machine.model, wiring, log.rows());
-      if (tangent_.Covers(k))
-        tangent_.Start(k, Apart(other.q, trial.q), Apart(other.v, trial.v),
-                       Apart(other.w, trial.w));
+      if (sensitivity_.Covers(k))
+        sensitivity_.Start(k, Difference(other.q, trial.q), Difference(other.v, trial.v),
+                           Difference(other.w, trial.w));
     }
   }
 
-  Hooks Along() {
+  Hooks MakeHooks() {
     Hooks hooks;
-    hooks.step = [this](const mjModel& m, mjData& d) { tangent_.Before(m, d); };
+    hooks.step = [this](const mjModel& m, mjData& d) { sensitivity_.Before(m, d); };
     hooks.row = [this](const mjModel& m, mjData& d, std::size_t row) {
-      for (std::size_t k = 0; k < neighbours_.size(); ++k)
-        inputs_[k].AtRow(*neighbours_[k].machine.data, row);  // its actuators are switched too
-      if (reaches_) tangent_.Observe(m, d, row, recorders_);
+      for (std::size_t k = 0; k < perturbed_.size(); ++k)
+        inputs_[k].AtRow(*perturbed_[k].machine.data, row);  // its actuators are switched too
+      if (closed_form_) sensitivity_.Observe(m, d, row, recorders_);
     };
     hooks.stepped = [this](const mjModel& m, mjData& d) {
-      reaches_ = reaches_ && tangent_.After(m, d);
+      closed_form_ = closed_form_ && sensitivity_.After(m, d);
     };
     return hooks;
   }
 
   std::optional<Trace> Release(std::size_t k) {
-    if (!reaches_ || !tangent_.Covers(k)) return {};
-    Trace moved;
-    recorders_[k].Release(moved);
-    return moved;
+    if (!closed_form_ || !sensitivity_.Covers(k)) return {};
+    Trace perturbed;
+    recorders_[k].Release(perturbed);
+    return perturbed;
   }
 
  private:
@@ -57,26 +58,26 @@ class Company {
     return models;
   }
 
-  std::vector<PerturbedRun>& neighbours_;
-  StepSensitivity tangent_;
+  std::vector<PerturbedRun>& perturbed_;
+  StepSensitivity sensitivity_;
   std::vector<Inputs> inputs_;
   std::vector<Recorder> recorders_;
-  bool reaches_ = true;  ///< the closed form, so far
+  bool closed_form_ = true;  ///< whether it has held so far
 };
 
 }  // namespace
 
-SteppedTraces FollowSteps(PerturbedRun& trial, std::vector<PerturbedRun>& neighbours,
-                          const Experiment& e, const Log& log) {
+SteppedTraces SimulateStepped(PerturbedRun& trial, std::vector<PerturbedRun>& perturbed,
+                              const Experiment& e, const Log& log) {
   SteppedTraces traces;
-  traces.moved.resize(neighbours.size());
+  traces.perturbed.resize(perturbed.size());
   const Wiring wiring(e, *trial.machine.model);
-  Company company(trial, neighbours, e, log, wiring);
-  traces.trace = Simulate(trial.machine, e, log, {trial.q, trial.v}, company.Along());
+  PerturbedRuns runs(trial, perturbed, e, log, wiring);
+  traces.trace = Simulate(trial.machine, e, log, {trial.q, trial.v}, runs.MakeHooks());
   if (traces.trace.diverged) return traces;
-  for (std::size_t k = 0; k < neighbours.size(); ++k) {
-    traces.moved[k] = company.Release(k);
-    if (traces.moved[k]) MeasureTrace(e, wiring, log, *traces.moved[k]);
+  for (std::size_t k = 0; k < perturbed.size(); ++k) {
+    traces.perturbed[k] = runs.Release(k);
+    if (traces.perturbed[k]) MeasureTrace(e, wiring, log, *traces.perturbed[k]);
   }
   return traces;
 }

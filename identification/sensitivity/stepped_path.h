@@ -13,18 +13,18 @@ struct PerturbedRun {
   std::vector<double> q, v, w;
 };
 
-/// What a machine and its neighbours say about the rows of one log, as MuJoCo steps them.
+/// One log simulated as MuJoCo steps it, with the traces of the perturbed models.
 struct SteppedTraces {
   Trace trace;
-  /// [neighbour] to first order; none where it has no closed form.
-  std::vector<std::optional<Trace>> moved;
+  /// [perturbed model] to first order; none where it has no closed form.
+  std::vector<std::optional<Trace>> perturbed;
 };
 
-/// Steps a machine once, and with it by StepSensitivity its neighbours, which are the same machine
-/// with one parameter moved by kMove times its typical size
+/// Simulates one log by MuJoCo's steps, and along with it by StepSensitivity the perturbed models:
+/// the same machine with one parameter moved by kPerturbation times its typical size
 /// (identification/sensitivity/smooth_path.h). The model has no obstacle to StepSensitivity.
-/// Without traces of neighbours where other rows of the constraint solver act on the way.
-SteppedTraces FollowSteps(PerturbedRun& trial, std::vector<PerturbedRun>& neighbours,
-                          const Experiment& e, const Log& log);
+/// Without their traces where other rows of the constraint solver act on the way.
+SteppedTraces SimulateStepped(PerturbedRun& trial, std::vector<PerturbedRun>& perturbed,
+                              const Experiment& e, const Log& log);
 
 }  // namespace continuum

@@ -22,7 +22,7 @@ std::vector<int> Chain(const mjModel& m, int site) {
 
 }  // namespace
 
-std::string TendonTangent::Obstacle(const mjModel& m) {
+std::string TendonDerivatives::Obstacle(const mjModel& m) {
   for (int t = 0; t < m.ntendon; ++t) {
     for (int w = m.tendon_adr[t]; w < m.tendon_adr[t] + m.tendon_num[t]; ++w) {
       if (m.wrap_type[w] == mjWRAP_SITE || m.wrap_type[w] == mjWRAP_JOINT) continue;
@@ -35,7 +35,7 @@ std::string TendonTangent::Obstacle(const mjModel& m) {
   return "";
 }
 
-TendonTangent::TendonTangent(const mjModel& m) : route_(m.ntendon), bent_(m.nv) {
+TendonDerivatives::TendonDerivatives(const mjModel& m) : route_(m.ntendon), bent_(m.nv) {
   for (int t = 0; t < m.ntendon; ++t) {
     const int first = m.tendon_adr[t];
     for (int w = first + 1; w < first + m.tendon_num[t]; ++w) {
@@ -43,30 +43,31 @@ TendonTangent::TendonTangent(const mjModel& m) : route_(m.ntendon), bent_(m.nv) 
       Segment segment{m.wrap_objid[w - 1], m.wrap_objid[w]};
       const auto before = Chain(m, segment.near), after = Chain(m, segment.far);
       const auto common = std::mismatch(before.begin(), before.end(), after.begin(), after.end());
-      for (auto i = common.first; i != before.end(); ++i) segment.levers.push_back({*i, -1});
-      for (auto i = common.second; i != after.end(); ++i) segment.levers.push_back({*i, 1});
-      if (!segment.levers.empty()) route_[t].push_back(std::move(segment));
+      for (auto i = common.first; i != before.end(); ++i) segment.joints.push_back({*i, -1});
+      for (auto i = common.second; i != after.end(); ++i) segment.joints.push_back({*i, 1});
+      if (!segment.joints.empty()) route_[t].push_back(std::move(segment));
     }
   }
 }
 
-void TendonTangent::Update(const mjModel& m, const mjData& d) {
+void TendonDerivatives::Update(const mjModel& m, const mjData& d) {
   for (auto& route : route_) {
     for (Segment& s : route) {
       const double *const near = d.site_xpos + 3 * s.near, *const far = d.site_xpos + 3 * s.far;
       s.along = At(far) - At(near);
       s.length = s.along.norm();
       if (s.length > mjMINVAL) s.along /= s.length;
-      for (Lever& lever : s.levers) {
-        lever.axis = At(d.cdof + 6 * lever.dof);
-        lever.moved = lever.sign * LeverOf(m, d, lever.dof, At(lever.sign > 0 ? far : near));
-        lever.arm = s.along.dot(lever.moved);
+      for (JointTerm& joint : s.joints) {
+        joint.axis = At(d.cdof + 6 * joint.dof);
+        joint.jacobian = joint.sign * LeverOf(m, d, joint.dof, At(joint.sign > 0 ? far : near));
+        joint.moment_arm = s.along.dot(joint.jacobian);
       }
     }
   }
 }
 
-double TendonTangent::Rate(const mjModel& m, const mjData& d, int tendon, const double* v) const {
+double TendonDerivatives::Rate(const mjModel& m, const mjData& d, int tendon,
+                               const double* v) const {
   double rate = 0;
   const int adr = m.ten_J_rowadr[tendon];
   for (int k = adr; k < adr + m.ten_J_rownnz[tendon]; ++k)
@@ -74,24 +75,25 @@ double TendonTangent::Rate(const mjModel& m, const mjData& d, int tendon, const 
   return rate;
 }
 
-void TendonTangent::ForceAlong(const mjModel& m, const mjData& d, int tendon, double f,
-                               double* force) const {
+void TendonDerivatives::ForceAlong(const mjModel& m, const mjData& d, int tendon, double f,
+                                   double* force) const {
   const int adr = m.ten_J_rowadr[tendon];
   for (int k = adr; k < adr + m.ten_J_rownnz[tendon]; ++k)
     force[m.ten_J_colind[k]] += f * d.ten_J[k];
 }
 
-void TendonTangent::Add(const mjModel& m, const mjData& d, int tendon, double f, double by_length,
-                        double by_rate, const double* v, Matrix& by_position, Matrix& by_velocity) {
+void TendonDerivatives::Add(const mjModel& m, const mjData& d, int tendon, double f,
+                            double by_length, double by_rate, const double* v, Matrix& by_position,
+                            Matrix& by_velocity) {
   std::fill(bent_.begin(), bent_.end(), 0.0);
   for (const Segment& s : route_[tendon]) {
     if (s.length <= mjMINVAL) continue;  // it has no direction
-    for (std::size_t a = 0; a < s.levers.size(); ++a) {
-      const Lever& i = s.levers[a];
+    for (std::size_t a = 0; a < s.joints.size(); ++a) {
+      const JointTerm& i = s.joints[a];
       for (std::size_t b = 0; b <= a; ++b) {
-        const Lever& j = s.levers[b];
-        double h = (i.moved.dot(j.moved) - i.arm * j.arm) / s.length;
-        if (i.sign == j.sign) h += s.along.dot(j.axis.cross(i.moved));  // j is before i, or i
+        const JointTerm& j = s.joints[b];
+        double h = (i.jacobian.dot(j.jacobian) - i.moment_arm * j.moment_arm) / s.length;
+        if (i.sign == j.sign) h += s.along.dot(j.axis.cross(i.jacobian));  // j is before i, or i
         by_position(i.dof, j.dof) += f * h;
         bent_[i.dof] += h * v[j.dof];
         if (a == b) continue;

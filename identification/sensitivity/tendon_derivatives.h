@@ -9,21 +9,21 @@
 
 namespace continuum {
 
-/// How the levers of tendons follow positions: with u a segment's direction, l its length and
-/// e_i = ∂(far − near)/∂q_i,
+/// Derivatives of tendons' moment arms with respect to positions: with u a segment's direction, l
+/// its length and e_i = ∂(far − near)/∂q_i,
 ///
 ///   ∂L/∂q_i = Σ u · e_i                                                          (1)
 ///   ∂²L/∂q_i∂q_j = Σ (e_i · e_j − (u · e_i)(u · e_j))/l + u · ∂e_i/∂q_j           (2)
 ///
 /// over the segments of a path through sites on hinges and slides, each moved only by the joints
 /// between its two ends. Tendons of joints have no second derivative.
-class TendonTangent {
+class TendonDerivatives {
  public:
   using Matrix = Eigen::MatrixXd;
 
   /// What keeps a model's tendons from it ("tendon 't1' wraps around a geom"); empty: nothing.
   static std::string Obstacle(const mjModel& m);
-  explicit TendonTangent(const mjModel& m);
+  explicit TendonDerivatives(const mjModel& m);
 
   /// At d, after a forward pass.
   void Update(const mjModel& m, const mjData& d);
@@ -37,16 +37,16 @@ class TendonTangent {
            double by_rate, const double* v, Matrix& by_position, Matrix& by_velocity);
 
  private:
-  struct Lever {
+  struct JointTerm {
     int dof;
     double sign;  ///< 1: it moves the far end, −1: the near one
-    Eigen::Vector3d axis = Eigen::Vector3d::Zero();   ///< of the joint, 0 for a slide
-    Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< e_i
-    double arm = 0;                                   ///< u · e_i
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero();      ///< of the joint, 0 for a slide
+    Eigen::Vector3d jacobian = Eigen::Vector3d::Zero();  ///< e_i
+    double moment_arm = 0;                               ///< u · e_i
   };
   struct Segment {
-    int near, far;                   ///< sites
-    std::vector<Lever> levers = {};  ///< of each side from the root on
+    int near, far;                       ///< sites
+    std::vector<JointTerm> joints = {};  ///< of each side from the root on
     double length = 0;
     Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< u
   };

@@ -39,7 +39,7 @@ TEST_F(IdentifyPath, GivesParametersForTheModelsStep) {
 
 TEST_F(IdentifyPath, IsSteppedWithDryFrictionAndSaysWhy) {
   Spoil("model.xml", "damping=\"0.1\"", "damping=\"0.1\" frictionloss=\"0.001\"");
-  const auto fit = Identify({}, "no smooth path: joint 'hinge' rubs");
+  const auto fit = Identify({}, "no smooth path: joint 'hinge' has dry friction");
   EXPECT_EQ(fit["path"], "stepped");
   EXPECT_FALSE(fit.contains("at_step"));
 }
@@ -67,7 +67,7 @@ TEST_F(IdentifyPath, NamesAChannelWithoutVarianceAndFitsBesideIt) {
 TEST_F(IdentifyPath, IsRefusedWhereItCannotGo) {
   Spoil("model.xml", "damping=\"0.1\"", "damping=\"0.1\" frictionloss=\"0.001\"");
   ExpectRefused({"identify", "experiment.yaml", "--path", "smooth", "--out", "out"},
-                {"--path smooth", "'hinge' rubs"});
+                {"--path smooth", "'hinge' has dry friction"});
 }
 
 TEST_F(IdentifyPath, FromSeveralStartsSaysWhereEachEnds) {

@@ -143,7 +143,7 @@ TYPED_TEST(DualsTest, SeeThatTheParametersOwnTermIsMissing) {
   EXPECT_GT(this->Error({.move = 0}), 0.1);
 }
 
-TYPED_TEST(DualsTest, SeeAFlippedSign) { EXPECT_GT(this->Error({.move = -kMove}), 0.1); }
+TYPED_TEST(DualsTest, SeeAFlippedSign) { EXPECT_GT(this->Error({.move = -kPerturbation}), 0.1); }
 
 TYPED_TEST(DualsTest, SeeThatErrorsAreNotControlled) {
   EXPECT_GT(this->Error({.how = {1e-2, 1e-2, false}}), 1e-4);

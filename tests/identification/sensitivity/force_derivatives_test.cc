@@ -169,23 +169,23 @@ void ExpectClose(const Matrix& exact, const Matrix& differences) {
 }
 
 void ExpectTangent(Bench& bench) {
-  ASSERT_EQ(Tangent::Obstacle(bench.m), "");
+  ASSERT_EQ(ForceDerivatives::Obstacle(bench.m), "");
   const Matrix by_position = bench.Differences(bench.d.qpos, bench.m.nq);
   const Matrix by_velocity = bench.Differences(bench.d.qvel, bench.m.nv);
   const Matrix by_activation = bench.Differences(bench.d.act, bench.m.na);
-  Tangent tangent(bench.m);
-  tangent.Update(bench.m, bench.d, bench.a.data(), bench.d.qvel);
-  ExpectClose(tangent.by_position(), by_position);
-  ExpectClose(tangent.by_velocity(), by_velocity);
-  ExpectClose(tangent.by_activation(), by_activation);
+  ForceDerivatives derivatives(bench.m);
+  derivatives.Update(bench.m, bench.d, bench.a.data(), bench.d.qvel);
+  ExpectClose(derivatives.by_position(), by_position);
+  ExpectClose(derivatives.by_velocity(), by_velocity);
+  ExpectClose(derivatives.by_activation(), by_activation);
 }
 
-TEST(Tangent, FollowsPositionsSpeedsAndActivations) {
+TEST(ForceDerivatives, FollowsPositionsSpeedsAndActivations) {
   Bench bench;
   ExpectTangent(bench);
 }
 
-TEST(Tangent, FollowsAnyTree) {
+TEST(ForceDerivatives, FollowsAnyTree) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
     SCOPED_TRACE(RandomModel(seed));
     Bench bench(RandomModel(seed));
@@ -194,7 +194,7 @@ TEST(Tangent, FollowsAnyTree) {
 }
 
 // Parameters that the closed form tells apart, by their fields in another model.
-TEST(Tangent, FollowsParameters) {
+TEST(ForceDerivatives, FollowsParameters) {
   const std::vector<Change> changes{{"joint:a", "stiffness", 4},
                                     {"joint:a", "springref", 0.6},
                                     {"joint:f", "damping", 0.4},
@@ -220,16 +220,16 @@ TEST(Tangent, FollowsParameters) {
     EXPECT_EQ(difference.field, "");
     const Vector changed = bench.Force(*other.model);
     const Vector expected = changed - bench.Force(bench.m);
-    Tangent tangent(bench.m);
-    tangent.Update(bench.m, bench.d, bench.a.data(), bench.d.qvel);
+    ForceDerivatives derivatives(bench.m);
+    derivatives.Update(bench.m, bench.d, bench.a.data(), bench.d.qvel);
     Vector more = Vector::Zero(bench.m.nv);
-    tangent.Differ(bench.m, bench.d, *other.model, difference, more.data());
+    derivatives.Differ(bench.m, bench.d, *other.model, difference, more.data());
     EXPECT_GT(expected.norm(), 0);
     EXPECT_LT((more - expected).norm(), 1e-9 * changed.norm());
   }
 }
 
-TEST(Tangent, NamesWhatItDoesNotCover) {
+TEST(ForceDerivatives, NamesWhatItDoesNotCover) {
   const auto field = [](const Change& change) {
     const ModelSpec system = ModelSpec::Parse(kModel);
     return ModelDifference(system.model(), *system.Build(std::vector{change}).model).field;
@@ -241,7 +241,7 @@ TEST(Tangent, NamesWhatItDoesNotCover) {
   const auto obstacle = [](const std::string& from, const std::string& to) {
     std::string xml = kModel;
     xml.replace(xml.find(from), from.size(), to);
-    return Tangent::Obstacle(ModelSpec::Parse(xml).model());
+    return ForceDerivatives::Obstacle(ModelSpec::Parse(xml).model());
   };
   EXPECT_NE(obstacle("<joint name=\"g\" axis=\"0 1 0\"/>", "<joint type=\"ball\"/>"), "");
   EXPECT_NE(obstacle("<motor name=\"weak\" joint=\"f\"", "<motor name=\"weak\" site=\"t\""), "");

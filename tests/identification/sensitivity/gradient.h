@@ -39,7 +39,7 @@ inline void PrintTo(const Gradient& g, std::ostream* out) {
 
 /// How sensitivities are found; a test of them has to see any other way.
 struct Sensitivities {
-  double move = kMove;  ///< relative, of the neighbour's parameter
+  double move = kPerturbation;  ///< relative, of the perturbed's parameter
   SolverOptions how{1e-10, 1e-13, false};
 };
 
@@ -53,15 +53,15 @@ inline std::unique_ptr<ContinuousDynamics> FlowBeside(const Experiment& e, const
 /// d channel / d ln(value) of the first log: [channel][row].
 inline std::vector<std::vector<double>> Slopes(const Experiment& e, const Gradient& g,
                                                const Sensitivities& s = {}) {
-  std::vector<std::unique_ptr<ContinuousDynamics>> neighbour;
-  neighbour.push_back(FlowBeside(e, g, s.move));
-  const auto flow = FlowBeside(e, g, 0);
-  SmoothTraces traces = FollowFlow(*flow, neighbour, e, e.logs[0], s.how);
-  MeasureTrace(e, flow->wiring(), e.logs[0], traces.moved[0]);
-  auto slopes = traces.moved[0].channel;
+  std::vector<std::unique_ptr<ContinuousDynamics>> perturbed;
+  perturbed.push_back(FlowBeside(e, g, s.move));
+  const auto dynamics = FlowBeside(e, g, 0);
+  SmoothTraces traces = SimulateSmooth(*dynamics, perturbed, e, e.logs[0], s.how);
+  MeasureTrace(e, dynamics->wiring(), e.logs[0], traces.perturbed[0]);
+  auto slopes = traces.perturbed[0].channel;
   for (std::size_t c = 0; c < slopes.size(); ++c) {
     for (std::size_t k = 0; k < slopes[c].size(); ++k)
-      slopes[c][k] = (slopes[c][k] - traces.trace.channel[c][k]) / kMove;
+      slopes[c][k] = (slopes[c][k] - traces.trace.channel[c][k]) / kPerturbation;
   }
   return slopes;
 }
@@ -89,8 +89,8 @@ inline std::vector<std::vector<double>> CentralDifferences(const Experiment& e, 
                                                                                 false}) {
   std::vector<Trace> runs;
   for (const int steps : {-2, -1, 1, 2}) {
-    const auto flow = FlowBeside(e, g, steps * step);
-    runs.push_back(FollowFlow(*flow, {}, e, e.logs[0], how).trace);
+    const auto dynamics = FlowBeside(e, g, steps * step);
+    runs.push_back(SimulateSmooth(*dynamics, {}, e, e.logs[0], how).trace);
   }
   auto slopes = runs[0].channel;
   for (std::size_t c = 0; c < slopes.size(); ++c) {

@@ -88,9 +88,9 @@ TEST_F(TiesTest, TwoJointsMoveByTheClosedForm) {
             "  - {column: a, unit: N, actuator: fx}\n  - {column: b, unit: N, actuator: fy}\n"
             "outputs:\n  - {column: x, unit: m, sensor: x, sigma: 1}\n"
             "  - {column: y, unit: m, sensor: y, sigma: 1}\nlogs: [{file: log.csv}]\n"));
-  ContinuousDynamics flow(ModelSpec::Load(e.model).Build(), e, e.logs[0]);
-  EXPECT_EQ(flow.size(), 2U);
-  const Trace trace = FollowFlow(flow, {}, e, e.logs[0], {1e-10, 1e-12, false}).trace;
+  ContinuousDynamics dynamics(ModelSpec::Load(e.model).Build(), e, e.logs[0]);
+  EXPECT_EQ(dynamics.size(), 2U);
+  const Trace trace = SimulateSmooth(dynamics, {}, e, e.logs[0], {1e-10, 1e-12, false}).trace;
   const double m = 0.5 + 2 / 4.0, k = 80 / 4.0, c = 0.8, force = 1 + 3 / 2.0 - 80 * 0.05 / 2;
   const double d = c / (2 * m), w = std::sqrt(k / m - d * d);
   for (int row = 0; row < 100; ++row) {
@@ -116,8 +116,8 @@ TEST_F(TiesTest, ATiedArmAgreesWithSmallStepsOfMuJoCo) {
   machine.model->opt.timestep = 5e-6;
   const Trace steps = Simulate(machine, e, e.logs[0]);
   for (const bool stiff : {false, true}) {
-    ContinuousDynamics flow(system.Build(), e, e.logs[0]);
-    const SmoothTraces traces = FollowFlow(flow, {}, e, e.logs[0], {1e-8, 1e-10, stiff});
+    ContinuousDynamics dynamics(system.Build(), e, e.logs[0]);
+    const SmoothTraces traces = SimulateSmooth(dynamics, {}, e, e.logs[0], {1e-8, 1e-10, stiff});
     ASSERT_FALSE(traces.trace.diverged) << traces.trace.Failure();
     EXPECT_LT(Apart(traces.trace, steps), 2e-4) << (stiff ? "BDF" : "Adams");
   }
@@ -131,9 +131,9 @@ TEST_F(TiesTest, TheActuatorAgreesWithSmallStepsOfMuJoCo) {
   machine.model->opt.integrator = mjINT_RK4;
   machine.model->opt.timestep = 2e-5;
   const Trace steps = Simulate(machine, e, e.logs[0]);
-  ContinuousDynamics flow(system.Build(), e, e.logs[0]);
-  EXPECT_EQ(flow.size(), 3U + 3U + 3U);
-  const SmoothTraces traces = FollowFlow(flow, {}, e, e.logs[0], {1e-8, 1e-10, false});
+  ContinuousDynamics dynamics(system.Build(), e, e.logs[0]);
+  EXPECT_EQ(dynamics.size(), 3U + 3U + 3U);
+  const SmoothTraces traces = SimulateSmooth(dynamics, {}, e, e.logs[0], {1e-8, 1e-10, false});
   ASSERT_FALSE(traces.trace.diverged) << traces.trace.Failure();
   EXPECT_LT(Apart(traces.trace, steps), 1e-3);
 }

@@ -46,8 +46,8 @@ TEST_F(SmoothTest, AgreesWithSmallStepsOfMuJoCo) {
   machine.model->opt.timestep = 1e-5;
   const Trace steps = Simulate(machine, e, e.logs[0]);
   for (const bool stiff : {false, true}) {
-    ContinuousDynamics flow(system.Build(), e, e.logs[0]);
-    const SmoothTraces traces = FollowFlow(flow, {}, e, e.logs[0], {1e-8, 1e-10, stiff});
+    ContinuousDynamics dynamics(system.Build(), e, e.logs[0]);
+    const SmoothTraces traces = SimulateSmooth(dynamics, {}, e, e.logs[0], {1e-8, 1e-10, stiff});
     ASSERT_FALSE(traces.trace.diverged) << traces.trace.Failure();
     EXPECT_LT(Apart(traces.trace, steps), 2e-4) << (stiff ? "BDF" : "Adams");
   }
@@ -143,8 +143,8 @@ TEST_F(SmoothTest, AgreesWithSmallStepsOfLawsWithStates) {
     ModelAndData machine = system.Build();
     machine.model->opt.timestep = 1e-5;
     const Trace steps = Simulate(machine, e, e.logs[0]);
-    ContinuousDynamics flow(system.Build(), e, e.logs[0]);
-    const SmoothTraces traces = FollowFlow(flow, {}, e, e.logs[0], {1e-8, 1e-10, false});
+    ContinuousDynamics dynamics(system.Build(), e, e.logs[0]);
+    const SmoothTraces traces = SimulateSmooth(dynamics, {}, e, e.logs[0], {1e-8, 1e-10, false});
     EXPECT_LT(Apart(traces.trace, steps), 1e-3) << law;
   }
 }
@@ -199,26 +199,26 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Obstacle{"NativeFriction",
                  Edited(SmoothArm(), "armature='2e-4'", "armature='2e-4' frictionloss='0.1'"), "",
-                 "'x0' rubs"},
+                 "'x0' has dry friction"},
         Obstacle{"FrictionThatAFitMayBring", SmoothArm(),
                  "parameters: [{name: f, target: 'joint:y1', attribute: frictionloss, initial: 0, "
                  "lower: 0, upper: 1}]\n",
-                 "'y1' rubs"},
+                 "'y1' has dry friction"},
         Obstacle{"OurFriction",
                  SmoothArm(Law("coulomb",
                                "<config key='joint' value='x0'/>"
                                "<config key='tau_c' value='0.1'/>")),
-                 "", "'x0' rubs"},
+                 "", "'x0' has dry friction"},
         Obstacle{"Cable",
                  SmoothArm(Law("capstan",
                                "<config key='tendon' value='ta'/>"
                                "<config key='mu' value='0.1'/>")),
-                 "", "continuum.capstan 'law' rubs"},
+                 "", "continuum.capstan 'law' has dry friction"},
         Obstacle{"SecondOrderLag",
                  SmoothArm(Law("pt2",
                                "<config key='actuator' value='pull'/>"
                                "<config key='w' value='20'/>")),
-                 "", "goes in steps"},
+                 "", "has discrete states"},
         Obstacle{"Delay",
                  Edited(SmoothArm(), "name='pull'", "name='pull' delay='0.02' nsample='40'"), "",
                  "'pull' has a delay"},

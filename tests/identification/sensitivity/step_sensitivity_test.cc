@@ -183,10 +183,10 @@ class ClosedFormFlowTest : public ClosedFormTest, public ::testing::WithParamInt
 TEST_P(ClosedFormFlowTest, AgreesWithTightCentralDifferences) {
   const Gradient& g = GetParam();
   const Experiment e = Read(0, "", "rest");
-  const auto flow = testing::FlowBeside(e, g, 0);
-  std::vector<std::unique_ptr<ContinuousDynamics>> neighbours;
-  neighbours.push_back(testing::FlowBeside(e, g, kMove));
-  EXPECT_TRUE(ContinuousSensitivity(*flow, neighbours, kMove).Covers(0));
+  const auto dynamics = testing::FlowBeside(e, g, 0);
+  std::vector<std::unique_ptr<ContinuousDynamics>> perturbed;
+  perturbed.push_back(testing::FlowBeside(e, g, kPerturbation));
+  EXPECT_TRUE(ContinuousSensitivity(*dynamics, perturbed, kPerturbation).Covers(0));
   // The fast joint at the end needs runs as exact as they can be.
   const auto reference = testing::CentralDifferences(e, g, 1e-2, {1e-13, 1e-15, false});
   EXPECT_LT(testing::SlopeError(testing::Slopes(e, g), reference), 1e-5);
