@@ -38,7 +38,7 @@ struct Instance {
   std::vector<int> signals;         ///< in the first instance: all signals, in the order they act
   std::vector<int> givers;          ///< in the last instance: all that give forces, itself included
   std::vector<int> forces;          ///< in the last instance: those of them that are no rows
-  std::vector<int> answers;         ///< in the last instance: those that depend on all other forces
+  std::vector<int> after_all;       ///< in the last instance: those that depend on all other forces
   std::vector<int> rows;            ///< in the last instance: all that are rows, itself included
   std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
   std::vector<double> next;         ///< our share, while it is summed up
@@ -81,7 +81,7 @@ void WarnOnce(const std::string& text) {
 // step. Only constants are assigned, so that every mjData of the model finds the same.
 mjModel& Mutable(const mjModel& m) { return const_cast<mjModel&>(m); }
 
-void WarnOfSilence(const mjModel& m, const Instance& self, const Config& config) {
+void WarnOfIdleLaws(const mjModel& m, const Instance& self, const Config& config) {
   const bool passive =
       !(m.opt.disableflags & mjDSBL_SPRING) || !(m.opt.disableflags & mjDSBL_DAMPER);
   if (self.bound->IsRow() && (m.opt.disableflags & (mjDSBL_FRICTIONLOSS | mjDSBL_CONSTRAINT))) {
@@ -102,7 +102,7 @@ void WarnOfSilence(const mjModel& m, const Instance& self, const Config& config)
   if (self.bound->GivesForce() && !passive) {
     WarnOnce(config.Who() + ": with springs and dampers disabled MuJoCo applies no passive forces");
   }
-  if (const std::string why = self.bound->Silence(m); !why.empty()) {
+  if (const std::string why = self.bound->WhyIdle(m); !why.empty()) {
     WarnOnce(config.Who() + ": " + why);
   }
 }
@@ -184,13 +184,13 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     bool last = true;
     for (int j = i + 1; j < m.nplugin; ++j) last &= !IsOurs(m, j);
     if (last) self->givers = Those(m, d, i, *self, &BoundLaw::GivesForce);
-    if (last) self->answers = Those(m, d, i, *self, &BoundLaw::Answers);
+    if (last) self->after_all = Those(m, d, i, *self, &BoundLaw::NeedsAllForces);
     if (last) self->rows = Those(m, d, i, *self, &BoundLaw::IsRow);
     if (last) self->forces = Less(self->givers, self->rows);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
     self->sum = self->next = self->before;
     FindSensors(m, i, *self, config);
-    WarnOfSilence(m, *self, config);
+    WarnOfIdleLaws(m, *self, config);
     instances.Put(d.plugin_data[i], std::move(self));
     if (last) OrderSignals(m, d, i);
     return 0;
@@ -257,13 +257,13 @@ void Sense(const mjModel& m, mjData& d, int i) {
 
 // Laws that depend on all other forces, one after the other. Those that are still to come give what
 // follows from their states.
-void Answer(const mjModel& m, mjData& d, Instance& last) {
-  if (last.answers.size() > 1) {
-    for (const int j : last.answers) Evaluate(m, d, j, Stage::kActuator);
+void EvaluateAfterAll(const mjModel& m, mjData& d, Instance& last) {
+  if (last.after_all.size() > 1) {
+    for (const int j : last.after_all) Evaluate(m, d, j, Stage::kActuator);
   }
-  for (const int j : last.answers) {
-    Total(m, d, last, Stage::kAnswer, last.givers, j);
-    Evaluate(m, d, j, Stage::kAnswer);
+  for (const int j : last.after_all) {
+    Total(m, d, last, Stage::kAfterAll, last.givers, j);
+    Evaluate(m, d, j, Stage::kAfterAll);
     Get(d, j)->changed = true;
     Sense(m, d, j);
   }
@@ -276,10 +276,10 @@ void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (stage == Stage::kActuator) {
     for (const int j : self.signals) Evaluate(m, d, j, stage);
   }
-  const bool later = stage == Stage::kActuator && self.bound->Answers();
+  const bool later = stage == Stage::kActuator && self.bound->NeedsAllForces();
   if (!self.bound->IsSignal() && !self.bound->IsRow() && !later) Evaluate(m, d, i, stage);
   if (!later) Sense(m, d, i);
-  if (stage == Stage::kActuator) Answer(m, d, self);
+  if (stage == Stage::kActuator) EvaluateAfterAll(m, d, self);
   // The load of a row is what all others do, but for what friction itself does.
   if (!self.givers.empty()) Total(m, d, self, stage, self.forces);
   for (const int j : self.rows) Evaluate(m, d, j, stage);
@@ -296,7 +296,7 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.force = a.force, b.changed = a.changed;
   b.sensors = a.sensors, b.signals = a.signals;
   b.givers = a.givers, b.forces = a.forces;
-  b.answers = a.answers, b.rows = a.rows;
+  b.after_all = a.after_all, b.rows = a.rows;
   b.before = a.before, b.sum = a.sum, b.next = a.next;
 }
 

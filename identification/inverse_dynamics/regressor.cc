@@ -45,7 +45,7 @@ void RequireMeasurable(const mjModel& m, const mjData& d) {
   }
   for (int i = 0; i < m.nplugin; ++i) {
     const BoundLaw& law = BoundOf(m, d, i);
-    if (law.Answers() || (m.plugin_statenum[i] > 0 && !law.IsRow()))
+    if (law.NeedsAllForces() || (m.plugin_statenum[i] > 0 && !law.IsRow()))
       refuse(std::string(mjp_getPluginAtSlot(m.plugin[i])->name));
   }
 }

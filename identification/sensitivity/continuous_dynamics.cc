@@ -41,7 +41,7 @@ std::string Switches(const mjModel& m, const mjData& d) {
     if (!name.starts_with("continuum.")) return instance + " is not one of ours";
     const BoundLaw& law = BoundOf(m, d, i);
     const double* const z = d.plugin_state + m.plugin_stateadr[i];
-    if (law.IsRow() || law.Answers()) return instance + " has dry friction";
+    if (law.IsRow() || law.NeedsAllForces()) return instance + " has dry friction";
     if (m.plugin_statenum[i] > 0 && !law.Rates(m, d, z, rate.data()))
       return instance + " has discrete states";
   }

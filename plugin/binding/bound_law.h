@@ -13,8 +13,8 @@ namespace continuum {
 
 /// When a law is evaluated: before the actuators (kPassive; actuator_force is the previous
 /// evaluation's), after them (kActuator; actuator_force is current and not yet clamped), or after
-/// all other forces (kAnswer; qfrc_passive holds everything but what this law gives).
-enum class Stage { kPassive, kActuator, kAnswer };
+/// all other forces (kAfterAll; qfrc_passive holds everything but what this law gives).
+enum class Stage { kPassive, kActuator, kAfterAll };
 
 /// A law bound to places of one model. The engine plugin and the identification both use it.
 ///
@@ -31,9 +31,9 @@ class BoundLaw {
   virtual bool GivesForce() const { return false; }
   virtual bool IsRow() const { return false; }
 
-  /// Whether the law depends on all other forces. It is then evaluated in kAnswer; in kActuator
+  /// Whether the law depends on all other forces. It is then evaluated in kAfterAll; in kActuator
   /// only where another such law has to know its force, which must follow from the states alone.
-  virtual bool Answers() const { return false; }
+  virtual bool NeedsAllForces() const { return false; }
 
   /// Whether the law changes what actuators give. It is then evaluated before all others, which see
   /// the changed forces whatever the order of the instances.
@@ -56,7 +56,7 @@ class BoundLaw {
   /// States as if the present controls had been there for ever.
   virtual void Settle(const mjModel&, const mjData&, double*) const {}
   /// Why the law does nothing at some of its places; empty: it acts.
-  virtual std::string Silence(const mjModel&) const { return ""; }
+  virtual std::string WhyIdle(const mjModel&) const { return ""; }
   /// What a sensor of this effect must be on; "" when this object will do.
   virtual std::string_view SensorPlace(const mjModel&, mjtObj /*kind*/, int /*id*/) const {
     return "an effect that has sensors";

@@ -7,12 +7,12 @@ namespace continuum {
 namespace {
 
 // Degrees of freedom that move one of two bodies only.
-void AddLevers(const mjModel& m, int near, int far, std::vector<Lever>& levers) {
+void AddEntries(const mjModel& m, int near, int far, std::vector<JacobianEntry>& entries) {
   while (near != far) {
     const bool outer = far > near;  // the higher index is no ancestor of the other
     int& body = outer ? far : near;
     for (int dof = m.body_dofadr[body]; dof < m.body_dofadr[body] + m.body_dofnum[body]; ++dof) {
-      levers.push_back({dof, outer ? 1.0 : -1.0});
+      entries.push_back({dof, outer ? 1.0 : -1.0});
     }
     body = m.body_parentid[body];
   }
@@ -40,8 +40,8 @@ Cable MakeCable(const mjModel& m, int tendon, const std::string& who) {
     }
   }
   for (int k = 0; k < cable.segments(); ++k) {
-    AddLevers(m, m.site_bodyid[cable.sites[k]], m.site_bodyid[cable.sites[k + 1]], cable.levers);
-    cable.begin.push_back(static_cast<int>(cable.levers.size()));
+    AddEntries(m, m.site_bodyid[cable.sites[k]], m.site_bodyid[cable.sites[k + 1]], cable.entries);
+    cable.begin.push_back(static_cast<int>(cable.entries.size()));
   }
   return cable;
 }

@@ -8,9 +8,9 @@
 
 namespace continuum {
 
-/// A degree of freedom that changes the length of a segment: it moves the far end (sign +1) or the
-/// near end (−1) of the segment and not the other.
-struct Lever {
+/// An entry of a segment's Jacobian dL/dq that is not zero. Its degree of freedom moves the far end
+/// (sign +1) or the near end (−1) of the segment and not the other.
+struct JacobianEntry {
   int dof;
   double sign;
 };
@@ -21,8 +21,8 @@ struct Cable {
   int tendon;
   std::vector<int> sites;
   std::vector<int> actuators;
-  std::vector<Lever> levers;  ///< of all segments
-  std::vector<int> begin;     ///< [segments + 1] of a segment's levers
+  std::vector<JacobianEntry> entries;  ///< of all segments
+  std::vector<int> begin;              ///< [segments + 1] of a segment's entries
 
   int segments() const { return static_cast<int>(sites.size()) - 1; }
   bool Rigid(int k) const { return begin[k] == begin[k + 1]; }

@@ -89,7 +89,7 @@ bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage
     base_[c] = std::max(0.0, BaseTension(m, d, cables_[c]));
   }
   if (stage == Stage::kActuator) Remember(z);
-  if (stage == Stage::kAnswer) Solve(m, d, z);
+  if (stage == Stage::kAfterAll) Solve(m, d, z);
   Add(force);
   return true;
 }

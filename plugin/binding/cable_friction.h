@@ -2,14 +2,14 @@
 
 #include "binding/bound_law.h"
 #include "binding/cable_geometry.h"
-#include "binding/sliding.h"
+#include "binding/cable_sliding.h"
 
 namespace continuum {
 
 /// Spatial tendons whose tension changes from contact to contact. The native tendon carries the
 /// base tension t_0 all along; this adds −Σ_k (t_k − t_0) dL_k/dq.
 ///
-/// The friction is found once all other forces are known (kAnswer), for the end of the step. In
+/// The friction is found once all other forces are known (kAfterAll), for the end of the step. In
 /// kPassive, all that mj_inverse calls, every contact keeps the ratio of the last answer.
 ///
 /// MuJoCo finds the constraint forces afterwards, so those of the last step stand in for them. This
@@ -38,7 +38,7 @@ class CableFriction : public BoundLaw {
   }
 
   bool GivesForce() const override { return true; }
-  bool Answers() const override { return true; }
+  bool NeedsAllForces() const override { return true; }
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double> force) override;
   void Advance(const mjModel& m, const mjData& d, double* z) override;
@@ -70,7 +70,7 @@ class CableFriction : public BoundLaw {
   std::vector<Cable> cables_;
   CableGeometry geometry_;
   std::vector<Group> groups_;
-  Sliding sliding_;
+  CableSliding sliding_;
   std::vector<double> band_, grown_;           ///< per segment: of its front contact, and exp of it
   std::vector<double> rho_, ratio_, tension_;  ///< ρ, exp of it; behind the contact [N]
   std::vector<double> base_, last_;            ///< t_0 of each cable, now and before [N]

@@ -24,16 +24,16 @@ CableGeometry::CableGeometry(const mjModel& m, std::span<const Cable> cables) : 
     for (int k = 0; k < cable.segments(); ++k) {
       near_.push_back(cable.sites[k]), far_.push_back(cable.sites[k + 1]);
       for (int l = cable.begin[k]; l < cable.begin[k + 1]; ++l) {
-        const Lever& lever = cable.levers[l];
-        dof.push_back(lever.dof), sign_.push_back(lever.sign);
-        root_.push_back(m.body_rootid[m.dof_bodyid[lever.dof]]);
+        const JacobianEntry& entry = cable.entries[l];
+        dof.push_back(entry.dof), sign_.push_back(entry.sign);
+        root_.push_back(m.body_rootid[m.dof_bodyid[entry.dof]]);
       }
       begin.push_back(static_cast<int>(dof.size()));
     }
     first.push_back(static_cast<int>(near_.size()));
   }
   for (auto* const each : {&theta, &slip, &x_, &y_, &z_, &half_}) each->assign(segments(), 0);
-  arm.assign(levers(), 0);
+  arm.assign(entries(), 0);
 }
 
 void CableGeometry::Update(const mjData& d) {

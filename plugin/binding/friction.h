@@ -112,7 +112,7 @@ class BoundFriction : public BoundLaw {
 
   bool IsRow() const override { return true; }
   bool GivesForce() const override { return kBiased; }
-  std::string Silence(const mjModel&) const override { return idle_; }
+  std::string WhyIdle(const mjModel&) const override { return idle_; }
 
   void Impose(mjModel& m) const override {
     rows_.Impose(m);
@@ -124,7 +124,7 @@ class BoundFriction : public BoundLaw {
     const auto p = AsParams<E>(p_);
     if constexpr (kBiased) std::fill(force.begin(), force.end(), 0.0);
     rows_.Write(m, d, z, stage, [&](const FrictionRow& row, double v) {
-      Rubbing<double> r{0, v, 0};
+      FrictionState<double> r{0, v, 0};
       if (!row.joint) r.q = d.ten_length[row.index];
       if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
       if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);

@@ -32,7 +32,7 @@ class BoundPull : public BoundLaw {
       : BoundLaw(ReadParams<E>(config)), drives_(MatchDrives(m, config)) {}
   static int StateSize(const mjModel&, const Config&) { return 0; }
 
-  std::string Silence(const mjModel& m) const override { return WithoutServo(m, drives_); }
+  std::string WhyIdle(const mjModel& m) const override { return WithoutServo(m, drives_); }
 
   bool IsSignal() const override { return true; }
 

@@ -14,10 +14,10 @@ inline constexpr std::array<std::string_view, 2> kCapstanOptions{"exponential", 
 ///   μ(θ) = mu + mu1 θ + mu2 θ²                                                  (3)
 ///
 /// and one at rest holds any ratio in between: the one that keeps it at rest, with s the direction
-/// at the end of the step (binding/sliding.h). (2) is Coulomb friction on the normal force of a
-/// sharp bend, (T_{i−1} − T_i) cos(θ/2) = μ (T_{i−1} + T_i) sin(θ/2). At t = 1 the bend locks: what
-/// is pulled hands on nothing, and no load draws the cable out. The band ends there, at the ratio
-/// 2·10⁶. Source: snake_arm, eq. 8 (1); eytelwein1808.
+/// at the end of the step (binding/cable_sliding.h). (2) is Coulomb friction on the normal force of
+/// a sharp bend, (T_{i−1} − T_i) cos(θ/2) = μ (T_{i−1} + T_i) sin(θ/2). At t = 1 the bend locks:
+/// what is pulled hands on nothing, and no load draws the cable out. The band ends there, at the
+/// ratio 2·10⁶. Source: snake_arm, eq. 8 (1); eytelwein1808.
 struct Capstan {
   static constexpr std::string_view kName = "capstan", kSource = "eytelwein1808",
                                     kSummary = "friction of a cable along its route";

@@ -19,7 +19,7 @@ struct Coulomb {
   static constexpr std::size_t kCoulombLevel = 0;
 
   template <class T>
-  static T Level(const Rubbing<T>&, const Vec<T, 1>& p) {
+  static T Level(const FrictionState<T>&, const Vec<T, 1>& p) {
     const auto& [tau_c] = p;
     return tau_c;  // (1)
   }

@@ -26,7 +26,7 @@ struct DirectionalFriction {
       Magnitude("b_plus", "N*m*s/rad", 0), Magnitude("b_minus", "N*m*s/rad", 0)};
 
   template <class T>
-  static T Level(const Rubbing<T>& r, const Vec<T, 4>& p) {
+  static T Level(const FrictionState<T>& r, const Vec<T, 4>& p) {
     const auto& [tau_c_plus, tau_c_minus, b_plus, b_minus] = p;
     const T mean = 0.5 * (tau_c_plus + tau_c_minus);
     return r.v > 0.0 ? T(mean + b_plus * r.v) : T(mean - b_minus * r.v);  // (2)

@@ -125,18 +125,18 @@ concept ForceLaw = Card<E> &&
 
 /// What the level of a dry friction may depend on: position, velocity, the load ≥ 0 [N*m].
 template <class T>
-struct Rubbing {
+struct FrictionState {
   T q, v, load;
 };
 
-/// Friction: Level(rubbing, p) ≥ 0, the largest torque that dry friction can take. It becomes a row
+/// Friction: Level(state, p) ≥ 0, the largest torque that dry friction can take. It becomes a row
 /// of MuJoCo's constraint solver (which holds, and slides at this level). A card may say of a
 /// parameter, by its index, that
 ///   kCoulombLevel  alone, the others null, it is Coulomb's constant level
 ///   kDamping       it is the native damping of the joints
 ///   kLiteral       only Literal(v, p), the equation as printed, reads it
 template <class E>
-concept FrictionLaw = Card<E> && requires(Rubbing<double> r, ParamsOf<E, double> p) {
+concept FrictionLaw = Card<E> && requires(FrictionState<double> r, ParamsOf<E, double> p) {
   { E::template Level<double>(r, p) } -> std::same_as<double>;
 };
 

@@ -23,7 +23,7 @@ struct LoadFriction {
   static constexpr std::array kChoices{Choice{"load", kLoadOptions}};
 
   template <class T>
-  static T Level(const Rubbing<T>& r, const Vec<T, 2>& p) {
+  static T Level(const FrictionState<T>& r, const Vec<T, 2>& p) {
     const auto& [tau_c, mu_l] = p;
     return tau_c + mu_l * r.load;  // (1)
   }

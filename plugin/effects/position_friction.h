@@ -18,7 +18,7 @@ struct PositionFriction {
   static constexpr std::size_t kCoulombLevel = 0;
 
   template <class T>
-  static T Level(const Rubbing<T>& r, const Vec<T, 3>& p) {
+  static T Level(const FrictionState<T>& r, const Vec<T, 3>& p) {
     const auto& [tau_c, c, s] = p;
     const T level = tau_c + c * cos(r.q) + s * sin(r.q);
     return level > 0.0 ? level : T(0);  // (1)

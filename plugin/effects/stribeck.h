@@ -24,7 +24,7 @@ struct Stribeck {
   static constexpr std::size_t kDamping = 0, kCoulombLevel = 1, kLiteral = 4;
 
   template <class T>
-  static T Level(const Rubbing<T>& r, const Vec<T, 5>& p) {
+  static T Level(const FrictionState<T>& r, const Vec<T, 5>& p) {
     const auto& [tau_mu, tau_c, S, v_d, k_v] = p;
     const T w = r.v / v_d;
     return tau_c * (1.0 + S * exp(-w * w));  // dry part of (1)
@@ -34,7 +34,7 @@ struct Stribeck {
   template <class T>
   static T Literal(const T& v, const Vec<T, 5>& p) {
     const auto& [tau_mu, tau_c, S, v_d, k_v] = p;
-    return tau_mu * v + tanh(k_v * v) * Level(Rubbing<T>{T(0), v, T(0)}, p);
+    return tau_mu * v + tanh(k_v * v) * Level(FrictionState<T>{T(0), v, T(0)}, p);
   }
 };
 

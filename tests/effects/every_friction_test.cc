@@ -6,7 +6,7 @@ namespace {
 
 using namespace testing;  // NOLINT: the lists of a typed suite
 
-Rubbing<double> Draw(Quantities& in) {
+FrictionState<double> Draw(Quantities& in) {
   return {in.Normal(1, "rad"), in.Normal(1, "rad/s"), std::abs(in.Normal(1, "N*m"))};
 }
 
@@ -19,7 +19,7 @@ TYPED_TEST_SUITE(EveryFriction, Frictions::Into<Types>, EffectName);
 TYPED_TEST(EveryFriction, IsConsistentInItsUnits) {
   using E = TypeParam;
   ExpectConsistentUnits<E>([](Quantities& in, const ParamsOf<E, double>& p) {
-    const Rubbing<double> r = Draw(in);
+    const FrictionState<double> r = Draw(in);
     std::vector<Answer> all{{E::template Level<double>(r, p), "N*m"}};
     if constexpr (BiasedFrictionLaw<E>) all.push_back({E::template Bias<double>(p), "N*m"});
     if constexpr (requires { E::kLiteral; })

@@ -79,7 +79,8 @@ double Reference(double torque, double t_end) {
   double v = 0, q = 0;
   const double h = 1e-5;
   const auto f = [&](double w) {
-    return (torque - kTauMu * w - Stribeck::Level(Rubbing<double>{0, w, 0}, kTableThree)) / 0.02;
+    return (torque - kTauMu * w - Stribeck::Level(FrictionState<double>{0, w, 0}, kTableThree)) /
+           0.02;
   };
   for (double t = 0; t < t_end - h / 2; t += h) {
     const double a = f(v), b = f(v + h / 2 * a), c = f(v + h / 2 * b), e = f(v + h * c);
@@ -113,7 +114,7 @@ TEST_P(Integrators, ReversesAsTheStiffReference) {
     while (d->time < 2) {
       d->ctrl[0] = 3 * kBreakaway * std::sin(2 * M_PI * d->time);
       for (double t = 0; t < h - kFine / 2; t += kFine) {
-        const double level = Stribeck::Level(Rubbing<double>{0, v, 0}, kTableThree),
+        const double level = Stribeck::Level(FrictionState<double>{0, v, 0}, kTableThree),
                      free = v + kFine / kInertia * (d->ctrl[0] - kTauMu * v),
                      stop = level * kFine / kInertia,
                      after = std::copysign(std::max(0.0, std::abs(free) - stop), free);

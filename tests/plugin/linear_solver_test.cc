@@ -1,4 +1,4 @@
-#include "binding/linear.h"
+#include "binding/linear_solver.h"
 
 #include <cmath>
 #include <random>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "binding/cable_geometry.h"
-#include "binding/linear.h"
+#include "binding/linear_solver.h"
 #include "binding/step_inertia.h"
 
 namespace continuum {
@@ -52,7 +52,7 @@ struct Bend {
 /// that break (2) then change their part: all together as long as that leaves fewer to change, else
 /// one by one (block principal pivoting; judice1994). Where that does not end, v_c grows until it
 /// does, and comes back from what was found.
-class Sliding {
+class CableSliding {
  public:
   struct World {
     const mjModel& m;
@@ -62,7 +62,7 @@ class Sliding {
     std::span<const double> last;   ///< the same in the last step [N]
     std::span<const double> force;  ///< F [nv]
   };
-  Sliding(const mjModel& m, const CableGeometry& geometry);
+  CableSliding(const mjModel& m, const CableGeometry& geometry);
 
   const StepInertia& inertia() const { return inertia_; }
   /// Finds side and tension of the bends, cable after cable, each from its base on.
@@ -88,7 +88,7 @@ class Sliding {
 
   StepInertia inertia_;
   BlockSolver solver_;
-  std::vector<int> place_;  ///< [levers] of its dof in inertia_
+  std::vector<int> place_;  ///< [entries] of its dof in inertia_
   std::vector<int> least_;  ///< [segments] the first place that moves it or what is distal of it
   double give_way_ = 0;     ///< v_c
   std::vector<Part> parts_;

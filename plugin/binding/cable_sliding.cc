@@ -1,4 +1,4 @@
-#include "binding/sliding.h"
+#include "binding/cable_sliding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,8 @@ int FirstGuess(const Bend& bend) {
 
 }  // namespace
 
-Sliding::Sliding(const mjModel& m, const CableGeometry& geometry) : inertia_(m, geometry.dof) {
+CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry)
+    : inertia_(m, geometry.dof) {
   const int n = inertia_.size();
   for (const int dof : geometry.dof) place_.push_back(inertia_.index(dof));
   least_.assign(geometry.segments(), n);
@@ -44,7 +45,7 @@ Sliding::Sliding(const mjModel& m, const CableGeometry& geometry) : inertia_(m, 
   follow_.resize(n), velocity_.resize(n), work_.resize(m.nv), none_.resize(m.nv);
 }
 
-void Sliding::Solve(const World& w, std::span<Bend> bends) {
+void CableSliding::Solve(const World& w, std::span<Bend> bends) {
   Guess(w, bends);
   GiveFresh(w, bends);
   if (AllSlide(w, bends)) return;
@@ -62,7 +63,7 @@ void Sliding::Solve(const World& w, std::span<Bend> bends) {
 }
 
 // Whether it found who slides which way.
-bool Sliding::Settle(const World& w, std::span<Bend> bends) {
+bool CableSliding::Settle(const World& w, std::span<Bend> bends) {
   auto fewest = static_cast<int>(bends.size()) + 1;
   int patience = kPatience;
   for (int round = 0; round < kRounds; ++round) {
@@ -78,7 +79,7 @@ bool Sliding::Settle(const World& w, std::span<Bend> bends) {
   return false;
 }
 
-void Sliding::Guess(const World& w, std::span<Bend> bends) {
+void CableSliding::Guess(const World& w, std::span<Bend> bends) {
   parts_.resize(bends.size());
   double before = 0;
   for (std::size_t g = 0; g < bends.size(); ++g) {
@@ -92,7 +93,8 @@ void Sliding::Guess(const World& w, std::span<Bend> bends) {
 
 // Of the speeds by this force and friction, if every bend slides as guessed. Damping, left out
 // here, only makes them smaller.
-void Sliding::Changes(const World& w, std::span<const Bend> bends, std::span<const double> force) {
+void CableSliding::Changes(const World& w, std::span<const Bend> bends,
+                           std::span<const double> force) {
   std::copy(force.begin(), force.end(), work_.begin());
   for (const Bend& bend : bends) {
     w.geometry.Add(bend.segment, w.base[bend.cable] - bend.tension, work_.data());
@@ -107,7 +109,7 @@ void Sliding::Changes(const World& w, std::span<const Bend> bends, std::span<con
   }
 }
 
-void Sliding::GiveFresh(const World& w, std::span<Bend> bends) {
+void CableSliding::GiveFresh(const World& w, std::span<Bend> bends) {
   const auto moves = [](const Bend& b) { return b.fresh && std::abs(b.speed) >= kMoving; };
   if (std::none_of(bends.begin(), bends.end(), moves)) return;
   Changes(w, bends, none_);
@@ -118,7 +120,7 @@ void Sliding::GiveFresh(const World& w, std::span<Bend> bends) {
 }
 
 // Whether nothing comes near to rest in this step.
-bool Sliding::AllSlide(const World& w, std::span<const Bend> bends) {
+bool CableSliding::AllSlide(const World& w, std::span<const Bend> bends) {
   const auto slides = [&](const Bend& bend, double v) {
     return bend.band == 0 || bend.given || -bend.side * v > kStart;
   };
@@ -132,7 +134,7 @@ bool Sliding::AllSlide(const World& w, std::span<const Bend> bends) {
   return true;
 }
 
-void Sliding::Assign(const World& w, std::span<const Bend> bends) {
+void CableSliding::Assign(const World& w, std::span<const Bend> bends) {
   int cable = -1;
   double expected = 0;  // tension by all ratios
   for (std::size_t g = 0; g < bends.size(); ++g) {
@@ -151,7 +153,7 @@ void Sliding::Assign(const World& w, std::span<const Bend> bends) {
 }
 
 // The place of the first dof that the friction of bends at rest depends on, or acts on.
-int Sliding::FirstAtRest(std::span<const Bend> bends) const {
+int CableSliding::FirstAtRest(std::span<const Bend> bends) const {
   int first = inertia_.size();
   for (const Bend& bend : bends) {
     if (bend.side == 0) first = std::min(first, least_[bend.segment]);
@@ -160,7 +162,8 @@ int Sliding::FirstAtRest(std::span<const Bend> bends) const {
 }
 
 // follow += f dv_g/dq̇ = −f Σ_{k ≥ g} dL_k/dq.
-void Sliding::Follow(const World& w, const Bend& bend, double f, std::span<double> follow) const {
+void CableSliding::Follow(const World& w, const Bend& bend, double f,
+                          std::span<double> follow) const {
   const CableGeometry& route = w.geometry;
   const int end = route.begin[route.first[bend.cable + 1]];
   for (int l = route.begin[bend.segment]; l < end; ++l) follow[place_[l]] -= f * route.arm[l];
@@ -168,7 +171,7 @@ void Sliding::Follow(const World& w, const Bend& bend, double f, std::span<doubl
 
 // (1) with t_g = constant − scale follow · (q̇⁺ − q̇), where follow collects the speeds of the bends
 // at rest from the base on.
-void Sliding::Assemble(const World& w, std::span<const Bend> bends) {
+void CableSliding::Assemble(const World& w, std::span<const Bend> bends) {
   const double h = w.m.opt.timestep;
   const int n = inertia_.size(), first = FirstAtRest(bends), rest = n - first;
   const std::span<double> block = solver_.Block(first);
@@ -199,7 +202,7 @@ void Sliding::Assemble(const World& w, std::span<const Bend> bends) {
 }
 
 // How many bends have to change their part. Tensions stay within the bands in any case.
-int Sliding::Judge(const World& w, std::span<Bend> bends) {
+int CableSliding::Judge(const World& w, std::span<Bend> bends) {
   double change = 0;
   speed_.resize(bends.size());
   for (std::size_t g = bends.size(); g-- > 0;) {
@@ -234,7 +237,7 @@ int Sliding::Judge(const World& w, std::span<Bend> bends) {
   return wrong;
 }
 
-void Sliding::Change(std::span<Bend> bends, bool one) {
+void CableSliding::Change(std::span<Bend> bends, bool one) {
   for (std::size_t g = bends.size(); g-- > 0;) {
     if (bends[g].side == parts_[g].better) continue;
     bends[g].side = parts_[g].better;
