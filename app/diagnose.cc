@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
+#include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/report/apply_extension.h"
 #include "identification/report/diagnosis_output.h"

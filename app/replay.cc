@@ -9,7 +9,7 @@
 
 #include "app/console.h"
 #include "app/filming.h"
-#include "identification/candidates/hypothesis.h"
+#include "identification/candidates/candidate_generator.h"
 #include "identification/identify.h"
 #include "sim/check/check.h"
 #include "sim/experiment/registration.h"

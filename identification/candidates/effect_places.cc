@@ -10,32 +10,6 @@
 namespace continuum {
 namespace {
 
-mjtObj TypeOf(Place place) {
-  switch (place) {
-    case Place::kJoint:
-      return mjOBJ_JOINT;
-    case Place::kTendon:
-      return mjOBJ_TENDON;
-    case Place::kActuator:
-      return mjOBJ_ACTUATOR;
-    default:
-      return mjOBJ_BODY;
-  }
-}
-
-int CountOf(const mjModel& m, Place place) {
-  switch (place) {
-    case Place::kJoint:
-      return static_cast<int>(m.njnt);
-    case Place::kTendon:
-      return static_cast<int>(m.ntendon);
-    case Place::kActuator:
-      return static_cast<int>(m.nu);
-    default:
-      return static_cast<int>(m.nbody);
-  }
-}
-
 // Whether an effect makes sense at one object of the model.
 bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
           const Experiment& experiment) {
@@ -61,6 +35,8 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
         return !in.column.empty() && name && in.actuator == name;
       });
     }
+    case Place::kSite:
+      return true;
     default: {  // bodies: the ends of the tree, or every one for what scales them
       if (id == 0) return false;
       if (effect.params.front().null == 1) return m.body_mass[id] > 0;
@@ -78,8 +54,8 @@ std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, P
                                    const std::string& glob, const Experiment& experiment) {
   if (place == Place::kWorld) return {"world"};
   std::vector<std::string> names;
-  for (int i = 0; i < CountOf(m, place); ++i) {
-    const char* name = mj_id2name(&m, TypeOf(place), i);
+  for (int i = 0; i < ObjectCount(m, place); ++i) {
+    const char* name = mj_id2name(&m, ObjectType(place), i);
     if (!name || !*name || !GlobMatches(glob, name)) continue;
     const bool chosen = glob != "*" && place == Place::kBody;
     if (chosen || Fits(m, effect, place, i, experiment)) names.emplace_back(name);
@@ -87,11 +63,11 @@ std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, P
   return names;
 }
 
-std::string Globs(const std::vector<std::string>& names) {
+std::string GlobsOf(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-std::string InWords(Place place, const std::vector<std::string>& names) {
+std::string PlaceText(Place place, const std::vector<std::string>& names) {
   if (place == Place::kWorld) return "world";
   std::string text(PlaceName(place));
   if (names.size() > 1) text = place == Place::kBody ? "bodies" : text + "s";

@@ -14,10 +14,11 @@ namespace continuum {
 std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
                                    const std::string& glob, const Experiment& experiment);
 
-/// Names as the text of a target or key that matches each of them.
-std::string Globs(const std::vector<std::string>& names);
+/// The text of a target or key that matches each of some names.
+std::string GlobsOf(const std::vector<std::string>& names);
 
-/// "joint q", "joints a, b", "world"; of more than six the number.
-std::string InWords(Place place, const std::vector<std::string>& names);
+/// A place for people: "joint q", "joints a, b", "world". Of more than six objects it has the
+/// number.
+std::string PlaceText(Place place, const std::vector<std::string>& names);
 
 }  // namespace continuum

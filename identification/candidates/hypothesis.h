@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "binding/effect_catalog.h"
-#include "identification/candidates/typical_sizes.h"
-#include "identification/fit/fit.h"
+#include "sim/experiment/experiment.h"
+#include "sim/model/model_spec.h"
 
 namespace continuum {
 
@@ -14,7 +14,7 @@ namespace continuum {
 struct Hypothesis {
   std::string effect;   ///< empty: the model as it is; of a law of the experiment: its name
   std::string variant;  ///< of a choice: "load=actuator"
-  std::string where;    ///< in words: "joint q"
+  std::string where;    ///< its place: "joint q"
   ModelSpec system;
   std::vector<Parameter> extra;  ///< free parameters of the effect
   EffectInstance instance;  ///< the plugin instance, for effects that need one (else no effect)
@@ -36,33 +36,10 @@ struct Hypothesis {
   double AtShare(std::size_t i, double value, double share) const;
   /// Whether it is one of the measurement: nothing of the model is other.
   bool OnlyMeasured() const;
-  /// The effect on whose card its parameters are.
+  /// The effect on whose card (EffectNamed) its parameters are.
   const std::string& Card() const { return instance.effect.empty() ? effect : instance.effect; }
   std::string Name() const { return variant.empty() ? effect : effect + " (" + variant + ")"; }
   std::string NameAtPlace() const { return Name() + " at " + where; }
 };
-
-/// Where effects are tried that the experiment gives no place: all objects of a kind together, and
-/// each where they are few; or what that leaves out, each of many, each of those that share a
-/// parameter of the experiment, and tendons beside joints.
-enum class SearchScope { kFew, kOthers };
-
-/// From where candidates are looked for.
-struct SearchBase {
-  const ModelSpec* system;            ///< with the causes that are taken for granted
-  std::vector<Parameter> given = {};  ///< free parameters of these
-  std::vector<Change> fitted = {};    ///< what a fit has made of the model
-};
-
-/// The candidates of an experiment that make sense in its model, one Hypothesis per effect, choice
-/// and place; skipped: one sentence for each that does not.
-std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const SearchBase& from,
-                                       const Sizes& sizes, std::vector<std::string>& skipped,
-                                       SearchScope places = SearchScope::kFew);
-
-/// Effects of the catalog that the experiment's list of candidates leaves out; none where it lists
-/// all, or none. names: the list to take in place of the experiment's, if any.
-std::vector<std::string> Unlisted(const Experiment& experiment,
-                                  const std::vector<std::string>& names);
 
 }  // namespace continuum

@@ -49,7 +49,7 @@ ParameterSize SizeOfError(const Param& card, const std::vector<std::string>& nam
 Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
                             const std::vector<std::string>& names, const Experiment& e,
                             const ModelSpec& system, const Sizes& sizes) {
-  const std::string where = names.empty() ? "clock" : InWords(Place::kSensor, names);
+  const std::string where = names.empty() ? "clock" : PlaceText(Place::kSensor, names);
   Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
   const Param& card = effect.params.front();
   const std::string name(card.name);
@@ -101,9 +101,9 @@ std::vector<std::vector<std::string>> OutputsTogether(const Experiment& e, const
 
 }  // namespace
 
-std::vector<Hypothesis> MeasureCandidates(const EffectInfo& effect, const Candidate& wanted,
-                                          const Experiment& e, const ModelSpec& system,
-                                          const Sizes& sizes) {
+std::vector<Hypothesis> MeasurementCandidates(const EffectInfo& effect, const Candidate& wanted,
+                                              const Experiment& e, const ModelSpec& system,
+                                              const Sizes& sizes) {
   const std::string_view name = effect.params.front().name;
   if (name == "skew") return {MeasureCandidate(effect, "time", {}, e, system, sizes)};
   const std::string glob =
@@ -111,7 +111,7 @@ std::vector<Hypothesis> MeasureCandidates(const EffectInfo& effect, const Candid
   std::vector<Hypothesis> all;
   for (const auto& names :
        OutputsTogether(e, system.model(), glob, name == "angle", name == "delay"))
-    all.push_back(MeasureCandidate(effect, "sensor:" + Globs(names), names, e, system, sizes));
+    all.push_back(MeasureCandidate(effect, "sensor:" + GlobsOf(names), names, e, system, sizes));
   return all;
 }
 

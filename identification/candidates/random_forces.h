@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "identification/candidates/hypothesis.h"
+#include "identification/candidates/typical_sizes.h"
 
 namespace continuum {
 

@@ -7,8 +7,9 @@
 
 namespace continuum {
 
-Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::string& target,
-                  const std::string& attribute, Change::Operation operation) {
+Parameter CandidateParameter(const Param& p, Place place, const Sizes& sizes,
+                             const std::string& target, const std::string& attribute,
+                             Change::Operation operation) {
   const auto [size, reach, typical] = SizeOf(p, place, sizes);
   Parameter out;
   out.name = p.name;
@@ -31,8 +32,8 @@ Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::st
   return out;
 }
 
-std::vector<std::vector<double>> StartsOf(const std::vector<Parameter>& extra,
-                                          const std::vector<double>& null) {
+std::vector<std::vector<double>> SearchStarts(const std::vector<Parameter>& extra,
+                                              const std::vector<double>& null) {
   std::vector<double> first;
   for (const Parameter& p : extra) first.push_back(p.initial);
   std::vector<std::vector<double>> starts{first};

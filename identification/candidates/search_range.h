@@ -9,21 +9,23 @@
 
 namespace continuum {
 
-/// A parameter of a candidate, free within bounds and from an initial value that its unit and the
-/// sizes of the experiment suggest.
-Parameter FreeOne(const Param& p, Place place, const Sizes& sizes, const std::string& target,
-                  const std::string& attribute, Change::Operation operation);
+/// A free parameter of a candidate. Its bounds and its initial value follow from its unit and the
+/// typical sizes of the experiment. Throws Error for a unit that has no size.
+Parameter CandidateParameter(const Param& p, Place place, const Sizes& sizes,
+                             const std::string& target, const std::string& attribute,
+                             Change::Operation operation);
 
-/// Values of a candidate's parameters to begin a search from: the initial ones; every nuisance
-/// (null: NaN) at three sizes; and what acts on an actuator in the other direction too, because
-/// where inputs rest at a bound the two directions are no mirror images.
-std::vector<std::vector<double>> StartsOf(const std::vector<Parameter>& extra,
-                                          const std::vector<double>& null);
+/// The points from which a search begins, each the values of all parameters of a candidate. The
+/// first has the initial values. In the others one parameter differs: a nuisance (null: NaN) is a
+/// fifth or five times as large, and what acts on an actuator has the other sign. Where inputs rest
+/// at a bound the two signs are no mirror images.
+std::vector<std::vector<double>> SearchStarts(const std::vector<Parameter>& extra,
+                                              const std::vector<double>& null);
 
-/// Widens the ranges that a fit has put at an end, ten times but within what the law allows;
-/// whether there were any. What the law does not know stays; so do factors (null: 1), as what has
-/// next to no mass would become a load, and laws with a nuisance (null: not finite), which at sizes
-/// without limit take the shape of others.
+/// Makes ten times as wide every range at whose end a fit has put the value, within what the law
+/// allows. Returns whether there were any. Three kinds stay: parameters that the law does not know;
+/// factors (null: 1), as a body with next to no mass would become a load; and laws with a nuisance
+/// (null: not finite), which at sizes without limit take the shape of others.
 bool Widen(std::vector<Parameter>& extra, const std::vector<double>& null,
            const std::vector<Param>& law, std::span<const double> values);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
 
 namespace continuum {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/candidates/search_range.h"
 #include "identification/diagnosis/candidate_search.h"

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/cause_pairs.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/fallback_force.h"

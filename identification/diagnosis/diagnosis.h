@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "identification/candidates/hypothesis.h"
+#include "identification/candidates/typical_sizes.h"
 #include "identification/diagnosis/screening.h"
 #include "identification/diagnosis/verdict.h"
 #include "identification/fit/cross_validation.h"

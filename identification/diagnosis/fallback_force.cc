@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "effects/formula.h"
 #include "error.h"
+#include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/fold_comparison.h"
 
 namespace continuum {
@@ -43,7 +45,7 @@ bool Helps(const FoldRecord& record) {
 std::vector<Hypothesis> Forces(std::size_t terms, const Experiment& e, const Diagnosis& d) {
   Experiment wanted = e;
   wanted.all_candidates = false;
-  wanted.candidates = {{"formula", "", false, Law(terms, d.sizes)}};
+  wanted.candidates = {{std::string(Formula::kName), "", false, Law(terms, d.sizes)}};
   std::vector<std::string> skipped;
   return MakeCandidates(wanted, {&d.system}, d.sizes, skipped);
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "effects/effect.h"
 #include "identification/candidates/random_forces.h"
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/equation_error.h"

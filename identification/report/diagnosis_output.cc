@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/diagnosis/condition_contrast.h"
 #include "identification/diagnosis/next_experiment.h"

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/candidates/hypothesis.h"
+#include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "support/pendulum.h"
 

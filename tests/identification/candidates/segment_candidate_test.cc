@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/candidates/hypothesis.h"
+#include "identification/candidates/candidate_generator.h"
 
 namespace continuum {
 namespace {

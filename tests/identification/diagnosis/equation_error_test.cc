@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
 #include "support/pendulum.h"
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
 #include "support/pendulum.h"
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "identification/candidates/hypothesis.h"
+#include "identification/candidates/candidate_generator.h"
 #include "identification/fit/fit.h"
 #include "identification/report/apply_extension.h"
 #include "sim/replay/replay.h"

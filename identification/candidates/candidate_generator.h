@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "identification/candidates/hypothesis.h"
+#include "identification/candidates/typical_sizes.h"
+
+namespace continuum {
+
+/// Where an effect is tried for which the experiment names no place.
+enum class SearchScope {
+  kFew,    ///< at all objects of a kind together, and at each where they are few
+  kOthers  ///< at the others: each of many, each that shares a parameter, tendons beside joints
+};
+
+/// The model that candidates extend.
+struct SearchBase {
+  const ModelSpec* system;            ///< with the causes that have been found
+  std::vector<Parameter> given = {};  ///< free parameters of these
+  std::vector<Change> fitted = {};    ///< what a fit has made of the model
+};
+
+/// The candidates of an experiment that make sense in its model, one Hypothesis per effect, choice
+/// and place. skipped: gets one sentence for each that does not. Throws Error for a place or a
+/// condition that the experiment names and does not have.
+std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const SearchBase& from,
+                                       const Sizes& sizes, std::vector<std::string>& skipped,
+                                       SearchScope places = SearchScope::kFew);
+
+/// Effects of the catalog that the experiment's list of candidates leaves out; none where it lists
+/// all, or none. names: the list to take in place of the experiment's, if any.
+std::vector<std::string> Unlisted(const Experiment& experiment,
+                                  const std::vector<std::string>& names);
+
+}  // namespace continuum
