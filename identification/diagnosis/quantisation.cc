@@ -26,11 +26,11 @@ Noise Quantisation::Corrected() const {
 double Quantisation::Inflation(const Remainder& left,
                                const std::vector<std::vector<Probe>>& candidates,
                                std::uint64_t seed) const {
-  std::mt19937_64 rng(seed);
+  Random64 random(seed);
   constexpr int kDraws = 40;
   double power = 0, count = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Problem::Vector z = left.Project(Draw(rng, false)).col(0);
+    const Problem::Vector z = left.Project(Draw(random, false)).col(0);
     for (const auto& probes : candidates) {
       for (const Probe& probe : probes) {
         for (const auto& column : probe.columns.colwise()) {
@@ -44,18 +44,18 @@ double Quantisation::Inflation(const Remainder& left,
 }
 
 Problem::Matrix Quantisation::Draws(const Remainder& left, int count, std::uint64_t seed) const {
-  std::mt19937_64 rng(seed);
+  Random64 random(seed);
   Problem::Matrix draws(left.residual().size(), count);
-  for (int i = 0; i < count; ++i) draws.col(i) = left.Project(Draw(rng, true)).col(0);
+  for (int i = 0; i < count; ++i) draws.col(i) = left.Project(Draw(random, true)).col(0);
   return draws;
 }
 
 // all: also the noise of channels that are not rounded.
-std::vector<Problem::Matrix> Quantisation::Draw(std::mt19937_64& rng, bool all) const {
+std::vector<Problem::Matrix> Quantisation::Draw(Random64& random, bool all) const {
   const auto& channels = problem_->channels();
   std::vector<Problem::Matrix> draw;
   std::vector<double> phase;
-  for (const std::size_t c : channels) phase.push_back(Phase(noise_->channel[c], rng));
+  for (const std::size_t c : channels) phase.push_back(Phase(noise_->channel[c], random));
   for (const Trace& trace : traces_) {
     const auto rows = static_cast<Eigen::Index>(trace.channel[channels.front()].size());
     Problem::Matrix log =
@@ -64,8 +64,8 @@ std::vector<Problem::Matrix> Quantisation::Draw(std::mt19937_64& rng, bool all) 
       const ChannelNoise& n = noise_->channel[channels[c]];
       if (!Rounded(n) && !all) continue;
       const auto& values = trace.channel[channels[c]];
-      const auto errors =
-          Rounded(n) ? RoundingErrors(n, values, phase[c], rng) : NoiseDraw(n, values.size(), rng);
+      const auto errors = Rounded(n) ? RoundingErrors(n, values, phase[c], random)
+                                     : NoiseDraw(n, values.size(), random);
       for (Eigen::Index k = 0; k < rows; ++k)
         log(static_cast<Eigen::Index>(c) * rows + k, 0) = errors[k] / problem_->scale(c);
     }

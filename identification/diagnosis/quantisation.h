@@ -21,7 +21,7 @@ class Quantisation {
   Problem::Matrix Draws(const Remainder& left, int count, std::uint64_t seed) const;
 
  private:
-  std::vector<Problem::Matrix> Draw(std::mt19937_64& rng, bool all) const;
+  std::vector<Problem::Matrix> Draw(Random64& random, bool all) const;
 
   const Problem* problem_;
   const Noise* noise_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include <Eigen/Dense>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -161,27 +160,27 @@ bool Rounded(const ChannelNoise& noise) {
   return noise.quantum > 0 && noise.before < noise.quantum / 2;
 }
 
-double Phase(const ChannelNoise& noise, std::mt19937_64& rng) {
-  return noise.quantum * std::uniform_real_distribution<double>()(rng);
+double Phase(const ChannelNoise& noise, Random64& random) {
+  return noise.quantum * random.Uniform();
 }
 
 std::vector<double> RoundingErrors(const ChannelNoise& noise, std::vector<double> values,
-                                   double phase, std::mt19937_64& rng) {
-  std::normal_distribution<double> normal;
+                                   double phase, Random64& random) {
+  random.BeginPair();
   for (double& y : values) {
-    const double noisy = y + phase + noise.before * normal(rng);
+    const double noisy = y + phase + noise.before * random.Normal();
     y = noise.quantum * std::round(noisy / noise.quantum) - y - phase;
   }
   return values;
 }
 
-std::vector<double> NoiseDraw(const ChannelNoise& noise, std::size_t rows, std::mt19937_64& rng) {
-  std::normal_distribution<double> normal;
-  const double offset = noise.offset * normal(rng);
+std::vector<double> NoiseDraw(const ChannelNoise& noise, std::size_t rows, Random64& random) {
+  random.BeginPair();
+  const double offset = noise.offset * random.Normal();
   std::vector<double> e;
   for (std::size_t k = 0; k < rows; ++k) {
     const bool begun = k >= noise.ar.size();  // as the whitening begins
-    double now = (begun ? noise.innovation : noise.rms) * normal(rng);
+    double now = (begun ? noise.innovation : noise.rms) * random.Normal();
     for (std::size_t i = 0; begun && i < noise.ar.size(); ++i) now += noise.ar[i] * e[k - 1 - i];
     e.push_back(now);
   }
@@ -192,10 +191,10 @@ std::vector<double> NoiseDraw(const ChannelNoise& noise, std::size_t rows, std::
 ChannelNoise RoundingNoise(const ChannelNoise& noise,
                            const std::vector<std::vector<double>>& values) {
   if (!Rounded(noise)) return noise;
-  std::mt19937_64 rng(1);
+  Random64 random(1);
   std::vector<std::vector<double>> errors;
   for (const auto& log : values)
-    errors.push_back(RoundingErrors(noise, log, Phase(noise, rng), rng));
+    errors.push_back(RoundingErrors(noise, log, Phase(noise, random), random));
   ChannelNoise out = NoiseFrom(errors);
   out.quantum = noise.quantum, out.before = noise.before;
   return out;

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <random>
 #include <string>
 #include <vector>
 
 #include "identification/result/noise.h"
+#include "sim/numerics/portable_random.h"
 #include "sim/simulation/score.h"
 
 namespace continuum {
@@ -28,14 +28,14 @@ ChannelNoise RoundingNoise(const ChannelNoise& noise,
 /// Whether a channel's values are rounded to steps larger than its noise.
 bool Rounded(const ChannelNoise& noise);
 /// Where the values that a model gives lie between two steps of a sensor: as good as random.
-double Phase(const ChannelNoise& noise, std::mt19937_64& rng);
+double Phase(const ChannelNoise& noise, Random64& random);
 /// One draw of a rounded channel's noise in one log; phase: the same in all logs of a sensor, so
 /// that repetitions of one motion share most of their errors.
 std::vector<double> RoundingErrors(const ChannelNoise& noise, std::vector<double> values,
-                                   double phase, std::mt19937_64& rng);
+                                   double phase, Random64& random);
 
 /// One draw of a channel's noise over so many rows, as its model says.
-std::vector<double> NoiseDraw(const ChannelNoise& noise, std::size_t rows, std::mt19937_64& rng);
+std::vector<double> NoiseDraw(const ChannelNoise& noise, std::size_t rows, Random64& random);
 
 /// Logs that repeat each other, one group per motion; logs without a replicate are in none.
 std::vector<std::vector<std::size_t>> ReplicateGroups(const Experiment& experiment);

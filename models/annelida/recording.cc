@@ -1,30 +1,14 @@
 #include "models/annelida/recording.h"
 
 #include <cmath>
-#include <numbers>
-#include <random>
 
 #include <fmt/format.h>
 
 #include "error.h"
+#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {
-
-class Noise {
- public:
-  explicit Noise(std::uint64_t seed) : random_(seed) {}
-
-  double operator()(double sigma) {
-    const double radius = std::sqrt(-2 * std::log(Uniform()));
-    return sigma * radius * std::cos(2 * std::numbers::pi * Uniform());
-  }
-
- private:
-  double Uniform() { return (static_cast<double>(random_() >> 11) + 0.5) * 0x1p-53; }
-
-  std::mt19937_64 random_;
-};
 
 std::string Header(bool rates) {
   std::string header = "time,cable1,cable2,cable3,cable4";
@@ -50,7 +34,8 @@ std::vector<PlanarState> Motion(const PlanarChain& chain, double stop, const Rec
 
 std::string Csv(const PlanarChain& chain, const Recorded& recorded,
                 const std::vector<PlanarState>& motion, std::uint64_t seed) {
-  Noise noise(seed);
+  Random random(seed);
+  const auto noise = [&](double sigma) { return sigma * random.Normal(); };
   std::string csv = Header(recorded.rates);
   for (int row = 0; row < recorded.rows; ++row) {
     const PlanarState& state = motion[row];

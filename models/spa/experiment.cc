@@ -1,8 +1,8 @@
 #include "models/spa/experiment.h"
 
-#include <random>
-
 #include <Eigen/LU>
+
+#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {
@@ -44,9 +44,13 @@ SpaRecording SpaRecordStep(const Spa<double>& spa, const Vector3d& pressure, con
   const SpaBase<double> base = SpaBase<double>::Hanging();
   const auto samples = SpaRespond(spa, SpaAtRest(spa, Vector3d::Zero(), base), input, period,
                                   [&](double) { return base; });
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  const auto draw = [&] { return Vector3d(normal(random), normal(random), normal(random)); };
+  Random32 random(seed);
+  const auto draw = [&] {
+    Vector3d noise;
+    for (const int i : {2, 1, 0})
+      noise[i] = random.Normal();  // published numbers hang on the order
+    return noise;
+  };
   SpaRecording recording{period, {}, {}, {}};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     recording.pressure.push_back(input[k] + noise.pressure * draw());

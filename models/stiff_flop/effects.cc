@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
-#include <random>
 #include <vector>
 
 #include "error.h"
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
+#include "sim/numerics/portable_random.h"
 
 /// Prints how far the eight models of Table 2 are apart, beside the errors that the paper published
 /// for them. Its measurements are not public: here the forward model `hooke+general+constant` with
@@ -47,16 +47,15 @@ Solution Require(const Solution& solution) {
 
 /// Random pressures [0, 60 kPa] of all lines under the module's own weight, as many as the paper
 /// had; their tips of the forward model, and each inverse model on them.
-class Random {
+class RandomCases {
  public:
   static constexpr int kCases = 43;
 
-  explicit Random(const Robot& robot) {
-    std::mt19937 source(4);
-    std::uniform_real_distribution<double> pressure(0, 60e3);
+  explicit RandomCases(const Robot& robot) {
+    Random32 random(4);
     for (int i = 0; i < kCases; ++i) {
       Case row{"", {}, {Vector3d::Zero(), robot.gravity}};
-      for (double& p : row.given) p = pressure(source);
+      for (double& p : row.given) p = random.Uniform(0, 60e3);
       const Solution solution = Require(SolveForward(robot.module, kRobot, row, false));
       applied_.push_back(row.given);
       row.given = ShapeOf(solution.tip, robot.module.l);
@@ -124,7 +123,7 @@ Robot Pairs(Robot robot, double E) {
 /// paper's, with one tube per line, on stiffer robots of two.
 void PrintTable2(const Robot& a, const Robot& b) {
   const Robot soft_a = Pairs(a, a.module.E), soft_b = Pairs(b, b.module.E);
-  const Random told_a(soft_a), untold_a(Pairs(a, kStiffA));
+  const RandomCases told_a(soft_a), untold_a(Pairs(a, kStiffA));
   const Loaded told_b(soft_b), untold_b(Pairs(b, kStiffB));
   fmt::print(
       "| body + chamber | CC published [kPa] | E, tubes told | one tube, robot of {:.0f} kPa |"
@@ -145,7 +144,7 @@ void PrintTable2(const Robot& a, const Robot& b) {
 
 /// Rows of Table 2 that differ in the braid alone, at other fibre angles of the models.
 void PrintBraid(const Robot& a) {
-  const Random random(Pairs(a, kStiffA));
+  const RandomCases cases(Pairs(a, kStiffA));
   fmt::print(
       "| gamma [deg] | elongation body: elongation less fixed braid | general body: elongation less"
       " constant | general+constant |\n|---|---|---|---|\n| published | +51 | +15 | 38 |\n");
@@ -153,7 +152,7 @@ void PrintBraid(const Robot& a) {
     Module module = a.module;
     module.gamma = degrees * std::numbers::pi / 180;
     const auto error = [&](BodyLaw body, ChamberLaw chamber) {
-      return random.Error(module, {body, chamber}) / 1e3;
+      return cases.Error(module, {body, chamber}) / 1e3;
     };
     const double best = error(kRobot.body, kRobot.chamber);
     fmt::print("| {:.2f} | {:+.2f} | {:+.2f} | {:.1f} |\n", degrees,

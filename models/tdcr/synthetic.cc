@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "error.h"
 #include "models/tdcr/model.h"
+#include "sim/numerics/portable_random.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -15,10 +15,9 @@ namespace {
 constexpr double kGravity = 9.81, kNoise = 0.041e-3, kMaxTension = 5;
 
 // Within 30 degrees of sideways, as a thread over a pulley pulls.
-Eigen::Vector3d Sideways(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> share(-1, 1);
-  const double azimuth = std::numbers::pi * share(random);
-  const double elevation = std::numbers::pi / 6 * share(random);
+Eigen::Vector3d Sideways(Random64& random) {
+  const double azimuth = std::numbers::pi * random.Uniform(-1, 1);
+  const double elevation = std::numbers::pi / 6 * random.Uniform(-1, 1);
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
           std::sin(elevation)};
 }
@@ -35,9 +34,7 @@ Robot Truth(const Robot& nominal) {
 }
 
 Experiment Synthesize(const Robot& nominal, int set, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> share(0, 1);
-  std::normal_distribution<double> noise(0, kNoise);
+  Random64 random(seed);
   Experiment experiment{nominal, {}, {}};
   experiment.nominal.gravity =
       set == 1 ? Eigen::Vector3d(0, 0, kGravity) : Eigen::Vector3d(-kGravity, 0, 0);
@@ -45,18 +42,19 @@ Experiment Synthesize(const Robot& nominal, int set, unsigned seed) {
   const int count = set == 1 ? 40 : 30;
   for (int i = 0; i < count; ++i) {
     Case c{fmt::format("{}.{}", set, i + 1), NoLoads(experiment.nominal)};
-    for (double& t : c.loads.tension) t = kMaxTension * share(random);
+    for (double& t : c.loads.tension) t = kMaxTension * random.Uniform();
     if (set == 2) {
       c.loads.tip_force = {-0.03 * kGravity, 0, 0};
     } else if (i % 2 == 1) {
-      c.loads.tip_force = 0.05 * kGravity * share(random) * Sideways(random);
+      const Eigen::Vector3d direction = Sideways(random);
+      c.loads.tip_force = 0.05 * kGravity * random.Uniform() * direction;
     }
     Loads loads = c.loads;
     loads.mu = truth.mu;
     const Solution solution = SolveCase(truth, loads, Method::kCrtFriction);
     if (!solution.outcome.ok()) throw Error::Job("synthetic case: " + solution.outcome.why);
     Measured m{c.name, i >= count - 10, truth.MeasuringToBase().transpose() * solution.disks};
-    for (double& coordinate : m.disks.reshaped()) coordinate += noise(random);
+    for (double& coordinate : m.disks.reshaped()) coordinate += kNoise * random.Normal();
     experiment.cases.push_back(std::move(c));
     experiment.measured.push_back(std::move(m));
   }

@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <map>
-#include <random>
 #include <set>
 
 #include <fmt/format.h>
@@ -39,7 +38,7 @@ std::vector<double> Values(const Problem::Vector& x) { return {x.begin(), x.end(
 
 nlohmann::json Solve(const Case& c, Experiment e, const ModelSpec& system, int starts,
                      double share) {
-  std::mt19937_64 rng(static_cast<std::uint64_t>(c.seed));
+  Random64 rng(static_cast<std::uint64_t>(c.seed));
   const ChannelNoise noise{{c.rho}, c.sigma * std::sqrt(1 - c.rho * c.rho), 0, c.sigma};
   for (Log& log : e.logs) {
     const auto errors = NoiseDraw(noise, kRows, rng);
