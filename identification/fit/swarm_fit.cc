@@ -3,26 +3,19 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <random>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "error.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/parallel.h"
+#include "sim/numerics/particle_swarm.h"
+#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {
 
 using Vector = Problem::Vector;
-
-// Clerc and Kennedy: χ and χ φ/2 for φ = 4.1.
-constexpr double kInertia = 0.7298, kPull = 1.49618;
-
-struct Particle {
-  Vector at, speed, best;
-  double cost = std::numeric_limits<double>::infinity();
-};
 
 void RequireBounds(const Problem& problem) {
   for (const FreeParameter& p : problem.parameters()) {
@@ -41,6 +34,22 @@ double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& 
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
+// Particles between the bounds, the first at the start.
+ParticleSwarm SwarmFor(const Problem& problem, const SwarmFitOptions& options) {
+  const auto n = static_cast<Eigen::Index>(problem.parameters().size());
+  Vector lower(n), upper(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    lower[k] = problem.parameters()[k].lower;
+    upper[k] = problem.parameters()[k].upper;
+  }
+  SwarmOptions swarm;
+  swarm.particles = options.particles;
+  swarm.pull = 1.49618;
+  swarm.moving = swarm.by_vector = true;
+  swarm.uniform = [random = Random64(options.seed)]() mutable { return random.Uniform(); };
+  return {lower, upper, std::move(swarm), problem.Start()};
+}
+
 }  // namespace
 
 Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use,
@@ -48,49 +57,23 @@ Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use,
   RequireBounds(problem);
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t before = problem.evaluations();
-  const auto n = static_cast<Eigen::Index>(problem.parameters().size());
-  Vector lower(n), range(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    lower[k] = problem.parameters()[k].lower;
-    range[k] = problem.parameters()[k].upper - lower[k];
-  }
-  std::mt19937_64 rng(options.seed);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  const auto random = [&] { return Vector::NullaryExpr(n, [&] { return uniform(rng); }).eval(); };
-  std::vector<Particle> swarm(options.particles);
-  for (Particle& p : swarm) {
-    p.at = lower + range.cwiseProduct(random());
-    p.speed = range.cwiseProduct(random() - random()) / 2;
-  }
-  swarm.front().at = problem.Start();
-
+  ParticleSwarm swarm = SwarmFor(problem, options);
   Fit fit;
-  fit.cost = std::numeric_limits<double>::infinity();
   for (; fit.iterations < options.iterations && !StopRequested(); ++fit.iterations) {
-    for (Particle& p : swarm) {
-      if (StopRequested()) break;
-      const double cost = CostAt(problem, p.at, use, options.soft);
-      if (cost < p.cost) p.cost = cost, p.best = p.at;
-      if (cost < fit.cost) fit.cost = cost, fit.x = p.at;
-    }
-    if (!std::isfinite(fit.cost)) {
+    swarm.Evaluate([&](const Vector& x) { return CostAt(problem, x, use, options.soft); });
+    if (!std::isfinite(swarm.best_cost())) {
       StopIfRequested();
       throw Error::Job("the simulation diverges at all particles");
     }
-    fit.trace.push_back(fit.cost);
+    fit.trace.push_back(swarm.best_cost());
     if (options.progress) {
       options.progress(fmt::format("generation {:2}  cost {:.6g}  {} simulations", fit.iterations,
-                                   fit.cost, problem.evaluations()));
+                                   swarm.best_cost(), problem.evaluations()));
     }
-    for (Particle& p : swarm) {
-      if (!p.best.size()) p.best = p.at;
-      p.speed = kInertia * p.speed + kPull * random().cwiseProduct(p.best - p.at) +
-                kPull * random().cwiseProduct(fit.x - p.at);
-      const Vector next = p.at + p.speed;
-      p.at = problem.Clamp(next);
-      p.speed = (next.array() == p.at.array()).select(p.speed, 0);
-    }
+    swarm.Move();
   }
+  fit.x = swarm.best();
+  fit.cost = swarm.best_cost();
   fit.converged = fit.iterations == options.iterations;
   fit.message = fit.converged ? "all generations done" : "interrupted";
   fit.evaluations = problem.evaluations() - before;

@@ -1,9 +1,15 @@
 #include "models/spa/identify.h"
 
+#include <functional>
+#include <utility>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "error.h"
+#include "sim/io/interrupt.h"
+#include "sim/numerics/particle_swarm.h"
+#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {
@@ -63,7 +69,7 @@ class Inner {
     double cost;
   };
 
-  Solution Solve(const std::array<double, 3>& p) const {
+  Solution Solve(const Eigen::Vector3d& p) const {
     SpaParameters<double> parameters = known_;
     parameters.x_m = p[0];
     parameters.y_m = p[1];
@@ -104,21 +110,38 @@ class Inner {
   Eigen::LLT<Matrix6> factor_;
 };
 
+// The best place within the box after all iterations of a swarm.
+Eigen::Vector3d Minimise(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper,
+                         const std::function<double(const Eigen::Vector3d&)>& cost,
+                         const SpaSwarm& options) {
+  SwarmOptions standard;
+  standard.uniform = [random = Random32(options.seed)]() mutable { return random.Uniform(); };
+  ParticleSwarm swarm(lower, upper, std::move(standard));
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    swarm.Evaluate([&](const Eigen::VectorXd& p) { return cost(p); });
+    StopIfRequested();
+    swarm.Move();
+    options.progress(iteration + 1, options.iterations);
+  }
+  if (swarm.best().size() == 0) throw Error::Job("soft actuator: no finite cost found");
+  return swarm.best();
+}
+
 bool Feasible(const Vector6& beta) { return beta.head<5>().minCoeff() > 0; }
 
 }  // namespace
 
 SpaParameters<double> SpaIdentify(const SpaParameters<double>& known, const SpaOptions& options,
                                   const std::vector<SpaRecordedTrial>& trials,
-                                  const SpaFilter& filter, const SwarmOptions& swarm) {
+                                  const SpaFilter& filter, const SpaSwarm& swarm) {
   SpaParameters<double> found = known;
   found.m = Mass(Spa<double>(known, options), trials);  // step 1
 
   const Inner inner(known, options, trials, found.m, filter);
   const double penalty = inner.Penalty();
-  const auto best = Swarm<3>(  // step 2
+  const Eigen::Vector3d best = Minimise(  // step 2
       {-5e-3, -5e-3, 0}, {5e-3, 5e-3, 30e-3},
-      [&](const std::array<double, 3>& p) {
+      [&](const Eigen::Vector3d& p) {
         const auto [beta, cost] = inner.Solve(p);
         return Feasible(beta) ? cost : cost + penalty;
       },

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "models/spa/experiment.h"
-#include "sim/numerics/particle_swarm.h"
 
 namespace continuum {
 
@@ -11,6 +11,13 @@ namespace continuum {
 struct SpaRecordedTrial {
   SpaRecording recording;
   SpaMotion motion;
+};
+
+/// The particle swarm of SpaIdentify.
+struct SpaSwarm {
+  int iterations = 40;
+  unsigned seed = 1;
+  std::function<void(int done, int of)> progress = [](int, int) {};
 };
 
 /// The paper's three steps. (1) m by least squares on the base force f_z. (2) A particle swarm over
@@ -21,6 +28,6 @@ struct SpaRecordedTrial {
 /// filter is SpaRegain's. Throws Error::Job when every particle is infeasible.
 SpaParameters<double> SpaIdentify(const SpaParameters<double>& known, const SpaOptions& options,
                                   const std::vector<SpaRecordedTrial>& trials,
-                                  const SpaFilter& filter, const SwarmOptions& swarm = {});
+                                  const SpaFilter& filter, const SpaSwarm& swarm = {});
 
 }  // namespace continuum

@@ -200,7 +200,7 @@ SpaRecipeResult RunSpaRecipe(const SpaFile& truth, const SpaRecipe& recipe) {
   const auto train = Record(spa, IdentificationSteps(), recipe, 1000 * recipe.seed);
   const auto validate = Record(spa, ValidationSteps(), recipe, 1000 * recipe.seed + 500);
 
-  SwarmOptions swarm;
+  SpaSwarm swarm;
   swarm.seed = recipe.seed;
   swarm.progress = recipe.progress;
   SpaRecipeResult result;

@@ -1,57 +1,60 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <functional>
 #include <limits>
-#include <random>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace continuum {
 
 struct SwarmOptions {
   int particles = 20, iterations = 40;
-  unsigned seed = 1;
-  std::function<void(int done, int of)> progress = [](int, int) {};
+  double inertia = 0.7298;  ///< share of its velocity that a particle keeps
+  double pull = 1.4962;     ///< towards its own best place and towards that of all
+  bool moving = false;      ///< particles start with random velocities instead of at rest
+  /// Whether the random numbers of a move are drawn coordinate by coordinate (own, all) or as two
+  /// whole vectors (all, own): published numbers hang on it.
+  bool by_vector = false;
+  std::function<double()> uniform;  ///< random numbers within [0, 1)
 };
 
-/// Minimises cost over a box by a particle swarm with the constriction coefficients 0.7298 and
-/// 1.4962; particles that leave the box stop at its wall. Returns the best point.
-template <std::size_t N, class Cost>
-std::array<double, N> Swarm(const std::array<double, N>& lower, const std::array<double, N>& upper,
-                            Cost&& cost, const SwarmOptions& options = {}) {
+/// Minimises a cost within a box by particle swarm optimisation, without derivatives: particles fly
+/// on by inertia and are pulled to the best places found, with the constriction factor of Clerc and
+/// Kennedy (2002). One that would leave the box stops at its wall.
+///
+///   v = inertia v + pull (u_1 (own best - x) + u_2 (best of all - x)),   x = x + v
+///
+/// Alternate Evaluate and Move.
+class ParticleSwarm {
+ public:
+  using Vector = Eigen::VectorXd;
+
+  /// Random places within [lower, upper]; the first particle at `first` where it is given.
+  ParticleSwarm(Vector lower, Vector upper, SwarmOptions options, const Vector& first = {});
+
+  /// The cost of every particle where it is, infinite or not a number where there is none. Ends
+  /// early when the user asks to stop (StopRequested).
+  void Evaluate(const std::function<double(const Vector&)>& cost);
+  void Move();
+
+  /// The best place so far and its cost; empty and infinite before any cost was finite.
+  const Vector& best() const { return best_; }
+  double best_cost() const { return best_cost_; }
+
+ private:
   struct Particle {
-    std::array<double, N> place, velocity{}, best;
+    Vector place, velocity, best = {};
     double best_cost = std::numeric_limits<double>::infinity();
   };
-  std::mt19937 random(options.seed);
-  std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<Particle> swarm(options.particles);
-  for (Particle& p : swarm) {
-    for (std::size_t i = 0; i < N; ++i)
-      p.place[i] = lower[i] + unit(random) * (upper[i] - lower[i]);
-  }
-  Particle best = swarm[0];
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    for (Particle& p : swarm) {
-      const double value = cost(p.place);
-      if (value < p.best_cost) p.best_cost = value, p.best = p.place;
-      if (value < best.best_cost) best = p;
-    }
-    for (Particle& p : swarm) {
-      for (std::size_t i = 0; i < N; ++i) {
-        p.velocity[i] =
-            0.7298 * p.velocity[i] + 1.4962 * (unit(random) * (p.best[i] - p.place[i]) +
-                                               unit(random) * (best.best[i] - p.place[i]));
-        const double next = p.place[i] + p.velocity[i];
-        p.place[i] = std::clamp(next, lower[i], upper[i]);
-        if (next != p.place[i]) p.velocity[i] = 0;
-      }
-    }
-    options.progress(iteration + 1, options.iterations);
-  }
-  return best.best;
-}
+
+  Vector Draw();
+
+  Vector lower_, upper_;
+  SwarmOptions options_;
+  std::vector<Particle> particles_;
+  Vector best_;
+  double best_cost_ = std::numeric_limits<double>::infinity();
+};
 
 }  // namespace continuum

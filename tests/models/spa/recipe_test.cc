@@ -75,19 +75,6 @@ TEST(Differentiate, IsExactForAQuartic) {
   for (int k = 2; k < 18; ++k) EXPECT_NEAR(rate[k], 4 * std::pow(0.1 * k, 3) - 1, 1e-12);
 }
 
-TEST(Swarm, FindsTheBottomOfABowlAndStaysInTheBox) {
-  const auto best = Swarm<3>({-1, -1, 0}, {1, 1, 2}, [](const std::array<double, 3>& p) {
-    for (int i = 0; i < 3; ++i) {
-      EXPECT_GE(p[i], i < 2 ? -1 : 0);
-      EXPECT_LE(p[i], i < 2 ? 1 : 2);
-    }
-    return std::pow(p[0] - 0.3, 2) + 2 * std::pow(p[1] + 0.4, 2) + std::pow(p[2] + 1, 2);
-  });
-  EXPECT_NEAR(best[0], 0.3, 1e-3);
-  EXPECT_NEAR(best[1], -0.4, 1e-3);
-  EXPECT_EQ(best[2], 0);
-}
-
 TEST(SpaFile, HoldsThePublishedTable) {
   const auto [p, options] = ReadSpa(kFile);
   EXPECT_EQ(p.x_m, -0.4e-3);
@@ -167,7 +154,7 @@ TEST(SpaIdentify, RecoversEveryParameterFromCleanRecordings) {
   known.r_ch = truth.r_ch;
   // 20 x 40 leaves T_PT1 0.6 % off; what remains after 150 is the filter's bias at the onset of
   // steps.
-  SwarmOptions swarm;
+  SpaSwarm swarm;
   swarm.iterations = 150;
   const auto found = SpaIdentify(known, options, trials, cutoff, swarm);
   EXPECT_NEAR(found.x_m, truth.x_m, 1e-7);
