@@ -3,15 +3,14 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
-#include "error.h"
 #include "models/annelida/annelida.h"
 #include "models/mjcf/tendon_arm.h"
 #include "models/spa/chain.h"
 #include "models/spa/parameters.h"
 #include "models/stiff_flop/mjcf.h"
 #include "models/tdcr/mjcf.h"
+#include "models/tool_main.h"
 #include "models/twin_pivot/mjcf.h"
 #include "sim/io/file.h"
 
@@ -51,26 +50,10 @@ int Main(int argc, char** argv) {
   app.add_option("robot", robot, "which robot")->required()->check(CLI::IsMember(robots));
   app.add_option("parameters", parameters, "its parameters (YAML)")->required();
   app.add_option("--out", out, "the MJCF file")->required();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  WriteFile(out, robots.at(robot)(parameters));
-  return 0;
+  return RunTool(app, argc, argv, [&] { WriteFile(out, robots.at(robot)(parameters)); });
 }
 
 }  // namespace
 }  // namespace continuum
 
-int main(int argc, char** argv) {
-  try {
-    return continuum::Main(argc, argv);
-  } catch (const continuum::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return error.exit_code();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return continuum::Main(argc, argv); }

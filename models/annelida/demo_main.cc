@@ -2,10 +2,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
-#include "error.h"
 #include "models/annelida/releases.h"
+#include "models/tool_main.h"
 #include "sim/io/file.h"
 
 namespace continuum {
@@ -24,32 +23,18 @@ int Main(int argc, char** argv) {
   app.add_option("--out", out, "folder for the logs")->capture_default_str();
   app.add_option("--releases", releases,
                  "folder for logs and experiment of the paper's identification instead");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  const AnnelidaParameters p = ReadAnnelida(parameters);
-  if (releases.empty()) {
-    WriteLogs(RecordDemo(p), out);
-    return 0;
-  }
-  WriteLogs(RecordReleases(p), releases);
-  WriteFile(releases / "experiment.yaml", ReleasesExperiment(folder / "annelida.xml"));
-  return 0;
+  return RunTool(app, argc, argv, [&] {
+    const AnnelidaParameters p = ReadAnnelida(parameters);
+    if (releases.empty()) {
+      WriteLogs(RecordDemo(p), out);
+      return;
+    }
+    WriteLogs(RecordReleases(p), releases);
+    WriteFile(releases / "experiment.yaml", ReleasesExperiment(folder / "annelida.xml"));
+  });
 }
 
 }  // namespace
 }  // namespace continuum
 
-int main(int argc, char** argv) {
-  try {
-    return continuum::Main(argc, argv);
-  } catch (const continuum::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return error.exit_code();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return continuum::Main(argc, argv); }

@@ -5,11 +5,10 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
-#include "error.h"
 #include "models/annelida/pictures.h"
 #include "models/annelida/study.h"
+#include "models/tool_main.h"
 #include "sim/io/file.h"
 
 namespace continuum {
@@ -178,43 +177,29 @@ int Main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--out", out, "folder for bend.csv, release.csv, shape.csv");
   app.add_option("--pictures", pictures, "folder for bend.png, bend.svg, release.svg");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  const AnnelidaParameters p = ReadAnnelida(folder / "annelida.yaml");
-  const ModelSpec system = ModelSpec::Load(folder / "annelida.xml");
-  const PlanarChain chain(p);
-  const BendAndRelease plan;
-  const Study runs{p,
-                   plan,
-                   BendMujoco(system, plan, 2e-3),
-                   BendMujoco(system, plan, 5e-4),
-                   BendMujoco(system, plan, 1e-4),
-                   BendChain(chain, plan, kFine)};
-  fmt::print("{}", Report(runs));
-  if (!pictures.empty()) WritePictures(runs, system, pictures);
-  if (!out.empty()) {
-    MakeFolder(out);
-    WriteFile(out / "bend.csv", BendCsv(runs));
-    WriteFile(out / "release.csv", ReleaseCsv(runs, chain));
-    WriteFile(out / "shape.csv", ShapeCsv(runs, chain));
-  }
-  return 0;
+  return RunTool(app, argc, argv, [&] {
+    const AnnelidaParameters p = ReadAnnelida(folder / "annelida.yaml");
+    const ModelSpec system = ModelSpec::Load(folder / "annelida.xml");
+    const PlanarChain chain(p);
+    const BendAndRelease plan;
+    const Study runs{p,
+                     plan,
+                     BendMujoco(system, plan, 2e-3),
+                     BendMujoco(system, plan, 5e-4),
+                     BendMujoco(system, plan, 1e-4),
+                     BendChain(chain, plan, kFine)};
+    fmt::print("{}", Report(runs));
+    if (!pictures.empty()) WritePictures(runs, system, pictures);
+    if (!out.empty()) {
+      MakeFolder(out);
+      WriteFile(out / "bend.csv", BendCsv(runs));
+      WriteFile(out / "release.csv", ReleaseCsv(runs, chain));
+      WriteFile(out / "shape.csv", ShapeCsv(runs, chain));
+    }
+  });
 }
 
 }  // namespace
 }  // namespace continuum
 
-int main(int argc, char** argv) {
-  try {
-    return continuum::Main(argc, argv);
-  } catch (const continuum::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return error.exit_code();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return continuum::Main(argc, argv); }

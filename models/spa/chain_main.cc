@@ -7,13 +7,12 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
-#include "error.h"
 #include "models/spa/chain_error.h"
 #include "models/spa/fold.h"
 #include "models/spa/links_chart.h"
 #include "models/spa/side_force.h"
+#include "models/tool_main.h"
 #include "sim/io/file.h"
 
 namespace continuum {
@@ -111,27 +110,13 @@ int Main(int argc, char** argv) {
   std::vector<std::string> chosen{"steps", "links", "timesteps", "free", "fold"};
   app.add_option("tables", chosen, "which, all by default")->check(CLI::IsMember(tables));
   app.add_option("--plot", plot, "SVG file of the table `links`");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  const SpaFile file = ReadSpa(CONTINUUM_SPA_FILE);
-  for (const std::string& table : chosen) tables.at(table)(file);
-  return 0;
+  return RunTool(app, argc, argv, [&] {
+    const SpaFile file = ReadSpa(CONTINUUM_SPA_FILE);
+    for (const std::string& table : chosen) tables.at(table)(file);
+  });
 }
 
 }  // namespace
 }  // namespace continuum
 
-int main(int argc, char** argv) {
-  try {
-    return continuum::Main(argc, argv);
-  } catch (const continuum::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return error.exit_code();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return continuum::Main(argc, argv); }

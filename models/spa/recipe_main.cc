@@ -6,11 +6,10 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
-#include "error.h"
 #include "models/spa/logs.h"
 #include "models/spa/recipe.h"
+#include "models/tool_main.h"
 #include "sim/io/file.h"
 
 namespace continuum {
@@ -39,37 +38,23 @@ int Main(int argc, char** argv) {
   app.add_option("--out", out, "write the tables to this file instead of stdout");
   app.add_option("--logs", logs,
                  "only write steps as logs and an experiment of `continuum identify` here");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  const SpaFile truth = ReadSpa(file);
-  if (!logs.empty()) {
-    WriteSpaLogs(truth, recipe.noise, recipe.seed, logs);
-    return 0;
-  }
-  recipe.progress = Progress;
-  const std::string tables = SpaTables(RunSpaRecipe(truth, recipe));
-  if (out.empty()) {
-    fmt::print("{}", tables);
-  } else {
-    WriteFile(out, tables);
-  }
-  return 0;
+  return RunTool(app, argc, argv, [&] {
+    const SpaFile truth = ReadSpa(file);
+    if (!logs.empty()) {
+      WriteSpaLogs(truth, recipe.noise, recipe.seed, logs);
+      return;
+    }
+    recipe.progress = Progress;
+    const std::string tables = SpaTables(RunSpaRecipe(truth, recipe));
+    if (out.empty()) {
+      fmt::print("{}", tables);
+    } else {
+      WriteFile(out, tables);
+    }
+  });
 }
 
 }  // namespace
 }  // namespace continuum
 
-int main(int argc, char** argv) {
-  try {
-    return continuum::Main(argc, argv);
-  } catch (const continuum::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return error.exit_code();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return continuum::Main(argc, argv); }
