@@ -26,7 +26,7 @@ void AddSolve(CLI::App& app, int& exit_code) {
       ->add_option("--out", request->out,
                    "Results (.csv or .json), or the calibrated robot (.yaml)")
       ->required();
-  solve->add_option("--plot", request->plot, "Picture of the shapes (.png or .svg)");
+  solve->add_option("--plot", request->plot, "Picture of the shapes (.png, .svg or .pdf)");
   solve->add_flag("--calibrate", request->calibrate,
                   "Fit the robot's parameters to the data instead of solving cases");
   solve->add_option("--hybrid", request->hybrid,

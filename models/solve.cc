@@ -1,6 +1,9 @@
 #include "models/solve.h"
 
 #include "error.h"
+#include "models/stiff_flop/solve.h"
+#include "models/tdcr/solve.h"
+#include "models/twin_pivot/solve.h"
 #include "sim/io/yaml.h"
 
 namespace continuum {

@@ -1,37 +1,12 @@
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <optional>
-#include <string>
+#include "models/statics/solve_request.h"
 
 namespace continuum {
 
-/// What `continuum solve` was asked to do; empty text or path: not given.
-struct SolveRequest {
-  std::filesystem::path robot;     ///< the robot's YAML file
-  std::filesystem::path input;     ///< CASES.csv
-  std::filesystem::path measured;  ///< MEASURED.csv
-  std::filesystem::path out;       ///< .csv, .json or .yaml, as the job asks
-  std::filesystem::path plot;      ///< picture of the shapes, .png or .svg
-  std::string method;
-  std::string hybrid;  ///< train or apply
-  bool calibrate = false;
-  bool cross_validate = false;  ///< tdcr: choose the training's penalty
-  bool sensitivity = false;
-  /// Told what was passed over: a sentence with file and line.
-  std::function<void(const std::string&)> warn = [](const std::string&) {};
-  std::optional<double> lambda;  ///< tdcr: penalty of the fit or of the hybrid's training
-};
-
-/// One static model each. @returns 0 when every case was solved, 1 when the results were written
-/// but some case failed. @throws Error for bad input (nothing is written then).
-int SolveTdcr(const SolveRequest& request);
-int SolveTwinPivot(const SolveRequest& request);
-int SolveStiffFlop(const SolveRequest& request);
-
-/// Hands the request to the model that the key `robot` (stiff_flop: `model`) of the YAML file
-/// names.
+/// Solves the statics of a robot: hands the request to the model that the key `robot` (stiff_flop:
+/// `model`) of the YAML file names. @returns 0 when every case was solved, 1 when the results were
+/// written but some case failed. @throws Error for bad input (nothing is written then).
 int Solve(const SolveRequest& request);
 
 }  // namespace continuum

@@ -1,4 +1,4 @@
-#include "models/solve.h"
+#include "models/stiff_flop/solve.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,8 @@
 
 #include "error.h"
 #include "models/statics/results.h"
-#include "models/statics/shape_plot.h"
+#include "models/statics/write_figure.h"
+#include "models/stiff_flop/figure.h"
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
 #include "sim/io/yaml.h"
@@ -98,22 +99,17 @@ void WriteRow(const Case& row, Direction direction, bool sensitivity, const Solu
   Set(results, {names.begin() + 3, names.end()}, solution.by_E);
 }
 
-void Plot(const SolveRequest& request, const Robot& robot, const Cases& cases,
+void Draw(const SolveRequest& request, const Robot& robot, const Cases& cases,
           const std::vector<Solution>& solved,
           const std::vector<std::vector<Eigen::Vector3d>>& lines) {
-  statics::Picture picture;
-  picture.title = "stiff_flop, module " + robot.name;
-  picture.views = {{{0, 1}, {2, 1}}};
+  statics::Figure figure = EmptyFigure(robot.module);
+  figure.title = "stiff_flop, module " + robot.name;
   for (std::size_t i = 0; i < cases.rows.size(); ++i) {
     if (solved[i].status != Status::kOk) continue;
-    statics::Shape shape;
-    shape.label = cases.rows[i].label;
-    for (const Eigen::Vector3d& point : lines[i]) {
-      shape.line.push_back({point.x(), point.y(), point.z()});
-    }
-    picture.shapes.push_back(std::move(shape));
+    figure.shapes.push_back(
+        ShapeOf(robot.module, cases.direction, cases.rows[i], solved[i], lines[i]));
   }
-  statics::WritePicture(request.plot, picture);
+  statics::WriteFigure(request.plot, figure);
 }
 
 }  // namespace
@@ -125,9 +121,7 @@ int SolveStiffFlop(const SolveRequest& request) {
   WarnOfTubesOutsideTheWall(request, robot);
   const Method method = Method::Parse(request.method, cases.direction);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
-  if (!request.plot.empty()) {
-    statics::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
-  }
+  if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
   std::vector<Solution> solved;
   statics::Results results(Columns(cases.direction, request.sensitivity));
   int failed = 0;
@@ -146,7 +140,7 @@ int SolveStiffFlop(const SolveRequest& request) {
     failed += solved.back().status != Status::kOk;
   }
   results.Write(request.out);
-  if (draw) Plot(request, robot, cases, solved, lines);
+  if (draw) Draw(request, robot, cases, solved, lines);
   return failed == 0 ? 0 : 1;
 }
 

@@ -1,20 +1,21 @@
-#include "models/solve.h"
+#include "models/tdcr/solve.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "error.h"
 #include "models/statics/results.h"
-#include "models/statics/shape_plot.h"
+#include "models/statics/write_figure.h"
 #include "models/tdcr/calibrate.h"
 #include "models/tdcr/columns.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/document.h"
 #include "models/tdcr/explained.h"
+#include "models/tdcr/figure.h"
 #include "models/tdcr/fit.h"
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/model.h"
@@ -27,6 +28,7 @@ using namespace tdcr;  // the model behind this front
 // One row of the results before it is written.
 struct Solved {
   std::string name;
+  Loads loads;
   Solution solution;
   const Measured* measured = nullptr;
 };
@@ -82,37 +84,15 @@ void AddShape(const Robot& robot, const Solved& s, statics::Results& results) {
   }
 }
 
-std::array<double, 3> Point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
-
-// The backbone between the disks, four points per arc: enough to look round.
-Eigen::Matrix3Xd Backbone(const Robot& robot, const Solution& solution) {
-  constexpr int kParts = 4;
-  Eigen::Matrix3Xd fine(3, kParts * robot.disks);
-  for (int i = 0; i < kParts * robot.disks; ++i) fine.col(i) = solution.u.col(i / kParts);
-  return Positions(robot.arc() / kParts, fine);
-}
-
-void Draw(const std::filesystem::path& path, const Robot& robot, const std::string& title,
-          const std::vector<Solved>& solved) {
-  statics::Picture picture;
-  picture.title = title;
+void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
+  statics::Figure figure = EmptyFigure(robot);
+  figure.title = "tdcr " + (request.method.empty() ? "eas" : request.method);
   for (const Solved& s : solved) {
     if (!s.solution.outcome.ok()) continue;
-    statics::Shape shape;
-    shape.label = s.name;
-    shape.line.push_back({0, 0, 0});
-    const Eigen::Matrix3Xd backbone = Backbone(robot, s.solution);
-    for (const auto& p : backbone.colwise()) shape.line.push_back(Point(p));
-    for (const auto& p : s.solution.disks.colwise()) shape.markers.push_back(Point(p));
-    if (s.measured != nullptr) {
-      const Eigen::Matrix3Xd points = robot.MeasuringToBase() * s.measured->disks;
-      for (int i = 0; i < robot.disks; ++i) {
-        if (s.measured->Has(i)) shape.measured.push_back(Point(points.col(i)));
-      }
-    }
-    picture.shapes.push_back(std::move(shape));
+    figure.shapes.push_back(ShapeOf(robot, s.loads, s.solution, s.measured));
+    figure.shapes.back().label = s.name;
   }
-  statics::WritePicture(path, picture);
+  statics::WriteFigure(request.plot, figure);
 }
 
 int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
@@ -134,9 +114,7 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     }
   }
   results.Write(request.out);
-  if (!request.plot.empty()) {
-    Draw(request.plot, robot, "tdcr " + (request.method.empty() ? "eas" : request.method), solved);
-  }
+  if (!request.plot.empty()) Draw(request, robot, solved);
   return all ? 0 : 1;
 }
 
@@ -199,7 +177,7 @@ int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
   if (!request.measured.empty()) RequireShared(cases, measured, request.measured.string());
   std::vector<Solved> solved;
   for (const Case& c : cases) {
-    Solved s{c.name, SolveCase(robot, c.loads, method), Find(measured, c.name)};
+    Solved s{c.name, c.loads, SolveCase(robot, c.loads, method), Find(measured, c.name)};
     if (hybrid != nullptr && s.solution.outcome.ok()) Apply(*hybrid, robot, c.loads, s.solution);
     solved.push_back(std::move(s));
   }
@@ -213,7 +191,8 @@ int FitShapes(const SolveRequest& request, const Robot& robot) {
   const double lambda = request.lambda.value_or(1e-7);
   std::vector<Solved> solved;
   for (const Measured& m : measured) {
-    solved.push_back({m.name, FitShape(robot, robot.MeasuringToBase() * m.disks, lambda), &m});
+    Solution solution = FitShape(robot, robot.MeasuringToBase() * m.disks, lambda);
+    solved.push_back({m.name, NoLoads(robot), std::move(solution), &m});
   }
   return Report(request, robot, solved);
 }
@@ -340,7 +319,7 @@ int SolveTdcr(const SolveRequest& request) {
     return CalibrateRobot(request, file, robot, ParseMethod(method));
   }
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
-  if (!request.plot.empty()) statics::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
+  if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
   if (method == "fit") return FitShapes(request, robot);
   const Method parsed = ParseMethod(method);
   Need(request.input, "--input", "the cases");

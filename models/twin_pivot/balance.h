@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "models/twin_pivot/joint.h"
+#include "models/twin_pivot/load.h"
+#include "models/twin_pivot/robot.h"
 
 namespace continuum::twin_pivot {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "models/twin_pivot/twin_pivot.h"
+#include "models/twin_pivot/robot.h"
 
 namespace continuum::twin_pivot {
 

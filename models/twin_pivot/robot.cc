@@ -1,6 +1,8 @@
+#include "models/twin_pivot/robot.h"
+
+#include <numeric>
 
 #include "error.h"
-#include "models/twin_pivot/twin_pivot.h"
 #include "sim/io/file.h"
 #include "sim/io/yaml.h"
 
@@ -68,6 +70,12 @@ void ReadFriction(const Yaml& node, Robot& robot) {
 }
 
 }  // namespace
+
+int Robot::Joints() const { return std::accumulate(discs.begin(), discs.end(), 0); }
+
+int Robot::Anchor(int cable) const {
+  return std::accumulate(discs.begin(), discs.begin() + cable / 4 + 1, 0);
+}
 
 Robot Robot::Read(const std::filesystem::path& file) {
   const Yaml yaml = Yaml::Read(file);

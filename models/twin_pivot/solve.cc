@@ -1,4 +1,4 @@
-#include "models/solve.h"
+#include "models/twin_pivot/solve.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -7,9 +7,10 @@
 
 #include "error.h"
 #include "models/statics/results.h"
-#include "models/statics/shape_plot.h"
+#include "models/statics/write_figure.h"
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
+#include "models/twin_pivot/figure.h"
 #include "models/twin_pivot/twin_pivot.h"
 #include "sim/io/file.h"
 
@@ -100,24 +101,16 @@ void WriteResults(const SolveRequest& request, const Robot& robot, const std::ve
   results.Write(request.out);
 }
 
-void Plot(const SolveRequest& request, const Robot& robot, const std::vector<Case>& cases,
+void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Case>& cases,
           const std::vector<Solution>& solved) {
-  statics::Picture picture;
-  picture.title = "twin_pivot: " + request.robot.filename().string();
-  picture.views = {{{0, 1}, {0, 2}}};
-  constexpr int kPerRod = 6;
+  statics::Figure figure = twin_pivot::EmptyFigure(robot);
+  figure.title = "twin_pivot: " + request.robot.filename().string();
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (!solved[i].outcome.ok()) continue;
-    statics::Shape shape;
-    shape.label = cases[i].label;
-    const auto points = twin_pivot::CentreLine(robot, solved[i].beta, kPerRod);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      shape.line.push_back({points[k].x(), points[k].y(), points[k].z()});
-      if (k % (kPerRod + 1) == 0) shape.markers.push_back(shape.line.back());
-    }
-    picture.shapes.push_back(std::move(shape));
+    figure.shapes.push_back(twin_pivot::ShapeOf(robot, cases[i].load, solved[i]));
+    figure.shapes.back().label = cases[i].label;
   }
-  statics::WritePicture(request.plot, picture);
+  statics::WriteFigure(request.plot, figure);
 }
 
 }  // namespace
@@ -128,13 +121,11 @@ int SolveTwinPivot(const SolveRequest& request) {
   if (request.calibrate) return Calibrate(request);
   const Method method = ReadMethod(request.method);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
-  if (!request.plot.empty()) {
-    statics::RequireExtension(request.plot, {".png", ".svg"}, "--plot");
-  }
+  if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
   const std::vector<Case> cases = twin_pivot::ReadCases(request.input, robot);
   const std::vector<Solution> solved = SolveCases(robot, cases, method);
   WriteResults(request, robot, cases, solved);
-  if (!request.plot.empty()) Plot(request, robot, cases, solved);
+  if (!request.plot.empty()) Draw(request, robot, cases, solved);
   for (const Solution& solution : solved) {
     if (!solution.outcome.ok()) return 1;
   }

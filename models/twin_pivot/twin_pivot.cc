@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "error.h"
 #include "models/twin_pivot/balance.h"
+#include "models/twin_pivot/geometry.h"
 #include "sim/io/file.h"
 
 namespace continuum::twin_pivot {
@@ -77,48 +77,7 @@ void RequirePositiveFriction(const Task& task, const VectorXd& beta) {
   }
 }
 
-std::vector<Joint<double>> JointsAt(const Robot& robot, const VectorXd& beta) {
-  std::vector<Joint<double>> joint;
-  for (const double b : beta) joint.emplace_back(robot, b);
-  return joint;
-}
-
 }  // namespace
-
-int Robot::Joints() const { return std::accumulate(discs.begin(), discs.end(), 0); }
-
-int Robot::Anchor(int cable) const {
-  return std::accumulate(discs.begin(), discs.begin() + cable / 4 + 1, 0);
-}
-
-Task::Task(const Robot& r, const Load& load, Method chosen)
-    : robot(r),
-      method(chosen),
-      joints(r.Joints()),
-      cables(r.Cables()),
-      m_D(r.m_D),
-      payload(load.condition == Condition::kV ? load.payload : 0),
-      gravity(load.gravity),
-      force(load.force),
-      moment(load.moment),
-      tension(load.tension),
-      reference(load.reference) {
-  const bool all = load.condition != Condition::kIV;
-  m_NiTi = all ? r.m_NiTi : 0;
-  rho = all ? r.rho_cable : 0;
-  m_CL = all ? r.m_CL : 0;
-  if (load.condition == Condition::kIII) {
-    friction.c = r.mu_const;
-  } else if (load.condition != Condition::kI) {
-    friction = r.friction;
-  }
-  for (int j = 0; j < cables; ++j) {
-    anchor.push_back(r.Anchor(j));
-    hole_y.push_back(r.r[j] * std::cos(r.phi[j]));
-    hole_z.push_back(r.r[j] * std::sin(r.phi[j]));
-  }
-  if (reference.size() == 0) reference = CableLengths(r, VectorXd::Zero(joints));
-}
 
 Solution Solve(const Robot& robot, const Load& load, Method method,
                const std::optional<VectorXd>& start) {
@@ -156,41 +115,6 @@ std::optional<Eigen::MatrixXd> ResidualSlope(const Robot& robot, const Load& loa
   Eigen::MatrixXd slope(task.joints, task.joints);
   if (!statics::Linearize(Balance{task, 1, 1, robot.eps}, beta, f, slope)) return std::nullopt;
   return slope;
-}
-
-Eigen::MatrixXd CableLengths(const Robot& robot, const VectorXd& beta) {
-  Eigen::MatrixXd length = Eigen::MatrixXd::Zero(robot.Joints(), robot.Cables());
-  const std::vector<Joint<double>> joint = JointsAt(robot, beta);
-  for (int j = 0; j < robot.Cables(); ++j) {
-    for (int m = 0; m < robot.Anchor(j); ++m) {
-      const double angle = robot.phi[j];
-      const double y = robot.r[j] * (m % 2 == 0 ? std::cos(angle) : std::sin(angle));
-      length(m, j) = joint[m].Length(y);
-    }
-  }
-  return length;
-}
-
-std::vector<Eigen::Vector3d> CentreLine(const Robot& robot, const VectorXd& beta, int per_rod) {
-  std::vector<Eigen::Vector3d> points = {Eigen::Vector3d::Zero()};
-  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  for (int m = 0; m < beta.size(); ++m) {
-    const Joint<double> joint(robot, beta[m]);
-    for (int i = 0; i < per_rod; ++i) {
-      const double share = static_cast<double>(i) / (per_rod - 1);
-      const auto c = Stumpff(share * beta[m]);
-      const double s = share * robot.L;
-      points.emplace_back(origin + frame * Eigen::Vector3d(0.5 * robot.h + s * c[1],
-                                                           s * share * beta[m] * c[2], 0));
-    }
-    origin += frame * Eigen::Vector3d(joint.origin.x, joint.origin.y, 0);
-    points.push_back(origin);
-    const double turn = m % 2 == 0 ? M_PI_2 : -M_PI_2;
-    frame = frame * Eigen::AngleAxisd(beta[m], Eigen::Vector3d::UnitZ()) *
-            Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX());
-  }
-  return points;
 }
 
 }  // namespace continuum::twin_pivot

@@ -27,7 +27,7 @@ std::size_t CharacterSize(std::string_view text) {
   return overlong || outside ? 0 : size;
 }
 
-std::string EscapeByte(char c) {
+std::string_view EscapeByte(char c) {
   switch (c) {
     case '&':
       return "&amp;";
@@ -40,28 +40,34 @@ std::string EscapeByte(char c) {
     case '\'':
       return "&#39;";
     default:
-      break;
+      return {};
   }
-  const bool control =
-      (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
-  return control ? std::string(kReplacement) : std::string(1, c);
+}
+
+bool IsControl(char c) {
+  return (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
 }
 
 }  // namespace
 
-std::string Escape(std::string_view text) {
+std::string ValidUtf8(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
     const std::size_t size = CharacterSize(text);
-    if (size == 0) {
-      out += kReplacement;
-    } else if (size == 1) {
-      out += EscapeByte(text[0]);
-    } else {
-      out += text.substr(0, size);
-    }
+    const bool valid = size > 1 || (size == 1 && !IsControl(text[0]));
+    out += valid ? text.substr(0, size) : kReplacement;
     text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return out;
+}
+
+std::string Escape(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : ValidUtf8(text)) {
+    const std::string_view escaped = EscapeByte(c);
+    out += escaped.empty() ? std::string_view(&c, 1) : escaped;
   }
   return out;
 }

@@ -7,8 +7,10 @@
 
 namespace continuum::page {
 
-/// Text for HTML content and quoted attributes. Bytes that are not UTF-8 and control characters
-/// become U+FFFD.
+/// The text with U+FFFD for bytes that are not UTF-8 and for control characters.
+std::string ValidUtf8(std::string_view text);
+
+/// Text for HTML content and quoted attributes, as ValidUtf8.
 std::string Escape(std::string_view text);
 
 /// Escaped text in which **bold** and `code` are marked up; unpaired marks stay as they are.

@@ -6,10 +6,8 @@
 #include <limits>
 
 #include "error.h"
-#include "models/statics/font.h"
 #include "models/statics/newton.h"
 #include "models/statics/results.h"
-#include "models/statics/shape_plot.h"
 #include "sim/io/file.h"
 
 namespace continuum::statics {
@@ -211,53 +209,6 @@ TEST(Results, KeepEveryDigitAndLeaveFailuresEmpty) {
   EXPECT_THAT(results.Json(), HasSubstr("F\xEF\xBF\xBDlle"));
   EXPECT_THROW(results.Set("y", 1.0), Error);
   EXPECT_THROW(results.Write("results.txt"), Error);
-}
-
-TEST(Plot, DrawsSvgAndPngOfAShape) {
-  Picture picture{"title <1>",
-                  {{{0, 2}, {1, 2}}},
-                  {{{{0, 0, 0}, {0.01, 0, 0.1}}, {{0.01, 0, 0.1}}, {{0.01, 0, 0.1}}, "case"}}};
-  EXPECT_THAT(Svg(picture), HasSubstr("title &lt;1>"));
-  EXPECT_THAT(Svg(picture), HasSubstr("<polyline"));
-  const auto file = std::filesystem::temp_directory_path() / "continuum_plot_test.png";
-  WritePicture(file, picture);
-  const std::string png = ReadFile(file);
-  EXPECT_EQ(png.substr(1, 3), "PNG");
-  EXPECT_EQ(png.substr(12, 4), "IHDR");
-  std::filesystem::remove(file);
-  EXPECT_THROW(WritePicture("shape.jpg", picture), Error);
-  picture.shapes.clear();
-  EXPECT_NO_THROW(Svg(picture));
-}
-
-TEST(Plot, TheLegendSaysHowManyCasesItLeavesOut) {
-  Picture picture{"", {{{0, 2}, {1, 2}}}, {}};
-  picture.shapes.assign(30, {{{0, 0, 0}, {0.01, 0, 0.1}}, {}, {}, "case"});
-  const std::string svg = Svg(picture);
-  const auto at = svg.find(">and 12 more<");
-  ASSERT_NE(at, std::string::npos);
-  const auto number = [](const std::string& text, std::size_t where) {
-    return std::stod(text.substr(text.find('"', where) + 1));
-  };
-  EXPECT_LT(number(svg, svg.rfind("y=", at)), number(svg, svg.find("height=")));
-}
-
-TEST(Plot, LongLabelsAreCutBetweenLetters) {
-  Picture picture{"", {{{0, 2}, {1, 2}}}, {}};
-  picture.shapes.push_back({{{0, 0, 0}, {0.01, 0, 0.1}},
-                            {},
-                            {},
-                            "x\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9"});
-  EXPECT_THAT(Svg(picture), HasSubstr("\u00e9\u00e9<"));
-}
-
-TEST(Font, TellsCapitalsFromSmallLetters) {
-  for (char small = 'a'; small <= 'z'; ++small) {
-    const Glyph* const one = FindGlyph(small);
-    const Glyph* const other = FindGlyph(static_cast<char>(small - 'a' + 'A'));
-    ASSERT_TRUE(one != nullptr && other != nullptr) << small;
-    EXPECT_FALSE(std::equal(std::begin(one->rows), std::end(one->rows), other->rows)) << small;
-  }
 }
 
 }  // namespace

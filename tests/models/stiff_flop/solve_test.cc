@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "models/solve.h"
 #include "models/stiff_flop/module.h"
+#include "models/stiff_flop/solve.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"
 

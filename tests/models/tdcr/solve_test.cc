@@ -6,10 +6,10 @@
 #include <random>
 
 #include "error.h"
-#include "models/solve.h"
 #include "models/tdcr/calibrate.h"
 #include "models/tdcr/fit.h"
 #include "models/tdcr/hybrid.h"
+#include "models/tdcr/solve.h"
 #include "models/tdcr/synthetic.h"
 #include "sim/io/file.h"
 

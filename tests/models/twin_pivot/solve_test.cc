@@ -7,9 +7,9 @@
 #include <random>
 
 #include "error.h"
-#include "models/solve.h"
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
+#include "models/twin_pivot/solve.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"
 

@@ -1,0 +1,58 @@
+#include "models/twin_pivot/geometry.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace continuum::twin_pivot {
+
+using Eigen::VectorXd;
+
+std::vector<Joint<double>> JointsAt(const Robot& robot, const VectorXd& beta) {
+  std::vector<Joint<double>> joint;
+  for (const double b : beta) joint.emplace_back(robot, b);
+  return joint;
+}
+
+Eigen::MatrixXd CableLengths(const Robot& robot, const VectorXd& beta) {
+  Eigen::MatrixXd length = Eigen::MatrixXd::Zero(robot.Joints(), robot.Cables());
+  const std::vector<Joint<double>> joint = JointsAt(robot, beta);
+  for (int j = 0; j < robot.Cables(); ++j) {
+    for (int m = 0; m < robot.Anchor(j); ++m) {
+      const double angle = robot.phi[j];
+      const double y = robot.r[j] * (m % 2 == 0 ? std::cos(angle) : std::sin(angle));
+      length(m, j) = joint[m].Length(y);
+    }
+  }
+  return length;
+}
+
+std::vector<Eigen::Isometry3d> DiscFrames(const Robot& robot, const VectorXd& beta) {
+  std::vector<Eigen::Isometry3d> frames = {Eigen::Isometry3d::Identity()};
+  for (int m = 0; m < beta.size(); ++m) {
+    const Joint<double> joint(robot, beta[m]);
+    const double turn = (m % 2 == 0 ? 0.5 : -0.5) * std::numbers::pi;
+    frames.push_back(frames.back() * Eigen::Translation3d(joint.origin.x, joint.origin.y, 0) *
+                     Eigen::AngleAxisd(beta[m], Eigen::Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX()));
+  }
+  return frames;
+}
+
+std::vector<Eigen::Vector3d> CentreLine(const Robot& robot, const VectorXd& beta, int per_rod) {
+  const std::vector<Eigen::Isometry3d> discs = DiscFrames(robot, beta);
+  std::vector<Eigen::Vector3d> points = {Eigen::Vector3d::Zero()};
+  for (int m = 0; m < beta.size(); ++m) {
+    const auto at = static_cast<std::size_t>(m);
+    for (int i = 0; i < per_rod; ++i) {
+      const double share = static_cast<double>(i) / (per_rod - 1);
+      const auto c = Stumpff(share * beta[m]);
+      const double s = share * robot.L;
+      points.emplace_back(discs[at] *
+                          Eigen::Vector3d(0.5 * robot.h + s * c[1], s * share * beta[m] * c[2], 0));
+    }
+    points.emplace_back(discs[at + 1].translation());
+  }
+  return points;
+}
+
+}  // namespace continuum::twin_pivot
