@@ -4,47 +4,75 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "sim/numerics/newton.h"
 
 namespace continuum {
 namespace {
 
+using Eigen::Matrix3d, Eigen::Vector3d;
 using Dual = ceres::Jet<double, 3>;
 
-SpaBase<Dual> AtRest(const SpaBase<double>& base) {
-  SpaBase<Dual> at_rest;
-  at_rest.R_WB = base.R_WB.cast<Dual>();
-  return at_rest;
-}
+// Generalized forces out of balance under constant pressures, in units of k_dL1 L0, by δ/L0.
+class Balance {
+ public:
+  Balance(const Spa<double>& spa, const Vector3d& pressure, const SpaBase<double>& base)
+      : spa_(spa), dual_(spa.parameters().Cast<Dual>(), spa.options()), pressure_(pressure) {
+    at_rest_.R_WB = base.R_WB;
+    dual_at_rest_.R_WB = base.R_WB.cast<Dual>();
+  }
+
+  bool operator()(const double* x, double* f) const {
+    const Vector3d delta = Vector3d(x) * spa_.parameters().L0;
+    (Eigen::Map<Vector3d>(f)) = Excess(spa_, delta, at_rest_) / Unit();
+    return true;
+  }
+
+  // False where the equilibrium would not be stable. The paper's tip load is a follower: its
+  // stiffness is not symmetric, stability is that of the symmetric part.
+  bool Jacobian(const Vector3d& x, Vector3d& f, Matrix3d& stiffness) const {
+    Eigen::Matrix<Dual, 3, 1> delta;
+    for (int i = 0; i < 3; ++i) delta[i] = Dual(x[i] * spa_.parameters().L0, i);
+    const Eigen::Matrix<Dual, 3, 1> excess = Excess(dual_, delta, dual_at_rest_);
+    for (int i = 0; i < 3; ++i) {
+      f[i] = excess[i].a / Unit();
+      stiffness.row(i) = excess[i].v.transpose() / spa_.parameters().k_dL1;
+    }
+    const Matrix3d symmetric = 0.5 * (stiffness + stiffness.transpose());
+    return symmetric.llt().info() == Eigen::Success;
+  }
+
+ private:
+  double Unit() const { return spa_.parameters().k_dL1 * spa_.parameters().L0; }
+
+  template <class T>
+  Eigen::Matrix<T, 3, 1> Excess(const Spa<T>& spa, const Eigen::Matrix<T, 3, 1>& delta,
+                                const SpaBase<T>& base) const {
+    SpaState<T> state;
+    state.delta = delta;
+    return spa.InverseDynamics(state, Eigen::Matrix<T, 3, 1>::Zero(), base).template tail<3>() -
+           spa.Actuation(delta, pressure_.cast<T>());
+  }
+
+  const Spa<double>& spa_;
+  Spa<Dual> dual_;
+  Vector3d pressure_;
+  SpaBase<double> at_rest_;
+  SpaBase<Dual> dual_at_rest_;
+};
 
 }  // namespace
 
-Eigen::Vector3d SpaEquilibrium(const Spa<double>& spa, const Eigen::Vector3d& pressure,
-                               const SpaBase<double>& base) {
-  const Spa<Dual> dual(spa.parameters().Cast<Dual>(), spa.options());
-  const SpaBase<Dual> at_rest = AtRest(base);
-  const double longest_step = 0.2 * spa.parameters().L0;
-  Eigen::Vector3d delta = Eigen::Vector3d::Zero();
-  for (int iteration = 0; iteration < 50; ++iteration) {
-    SpaState<Dual> state;
-    for (int i = 0; i < 3; ++i) state.delta[i] = Dual(delta[i], i);
-    const Eigen::Matrix<Dual, 3, 1> excess =
-        dual.InverseDynamics(state, Eigen::Matrix<Dual, 3, 1>::Zero(), at_rest).tail<3>() -
-        dual.Actuation(state.delta, pressure.cast<Dual>());
-    Eigen::Vector3d residual;
-    Eigen::Matrix3d stiffness;
-    for (int i = 0; i < 3; ++i) {
-      residual[i] = excess[i].a;
-      stiffness.row(i) = excess[i].v.transpose();
-    }
-    // The paper's tip load is a follower: its stiffness is not symmetric, stability is that of the
-    // symmetric part.
-    const Eigen::Matrix3d symmetric = 0.5 * (stiffness + stiffness.transpose());
-    if (!(symmetric.llt().info() == Eigen::Success)) break;
-    Eigen::Vector3d step = stiffness.partialPivLu().solve(residual);
-    if (step.norm() > longest_step) step *= longest_step / step.norm();
-    delta -= step;
-    if (step.norm() <= 1e-15 * spa.parameters().L0) return delta;
-  }
+Vector3d SpaEquilibrium(const Spa<double>& spa, const Vector3d& pressure,
+                        const SpaBase<double>& base) {
+  const Balance balance(spa, pressure, base);
+  numerics::Options options;
+  options.tolerance = 0;  // until rounding allows no further decrease
+  options.max_step = 0.2;
+  Vector3d x = Vector3d::Zero(), f;
+  Matrix3d stiffness;
+  const numerics::Outcome outcome = numerics::Newton(balance, x, options);
+  const Vector3d delta = spa.parameters().L0 * x;
+  if (outcome.ok() && balance.Jacobian(x, f, stiffness)) return delta;
   throw Error::Job(
       fmt::format("soft actuator: no stable equilibrium under {:.6g}, {:.6g}, {:.6g} Pa (last "
                   "tried δ = {:.6g}, "

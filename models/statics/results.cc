@@ -49,7 +49,7 @@ void Results::Set(const std::string& column, Cell cell) {
   cells_.back()[static_cast<std::size_t>(found - columns_.begin())] = std::move(cell);
 }
 
-void Results::Set(const Outcome& outcome, const std::string& status) {
+void Results::Set(const numerics::Outcome& outcome, const std::string& status) {
   const auto set = [&](const char* column, Cell cell) {
     if (std::find(columns_.begin(), columns_.end(), column) != columns_.end()) {
       Set(column, std::move(cell));

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "models/statics/newton.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::statics {
 
@@ -30,7 +30,7 @@ class Results {
   /// model).
   void Set(const std::string& column, Cell cell);
   /// Sets `status`, `iterations`, `residual` and `micros`, those of them that are columns.
-  void Set(const Outcome& outcome, const std::string& status);
+  void Set(const numerics::Outcome& outcome, const std::string& status);
 
   std::string Csv() const;
   std::string Json() const;

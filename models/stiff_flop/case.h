@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "models/statics/newton.h"
 #include "models/stiff_flop/module.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::stiff_flop {
 
@@ -46,7 +46,7 @@ struct BaseSection {
 /// Answer to a case; meaningful as far as `status` is kOk.
 struct Solution {
   Status status = Status::kNotConverged;
-  statics::Outcome outcome = {};
+  numerics::Outcome outcome = {};
   Eigen::Vector3d answer = Eigen::Vector3d::Zero();  ///< inverse: p; forward: kappa, phi, lambda_l
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();     ///< rho(l) [m]
   Eigen::Vector3d tangent = Eigen::Vector3d::UnitY();  ///< d_2(l)

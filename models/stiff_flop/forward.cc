@@ -7,6 +7,9 @@
 #include <optional>
 
 #include "models/stiff_flop/rod.h"
+#include "sim/numerics/continuation.h"
+#include "sim/numerics/newton.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::stiff_flop {
 namespace {
@@ -83,15 +86,15 @@ class Balance {
 
   /// Newton from the moments of the straight module, else along the rising load; then finer steps
   /// until they change nothing.
-  statics::Outcome Solve() {
+  numerics::Outcome Solve() {
     moment_ = Straight();
-    statics::Outcome outcome = Shoot(kFirstSteps);
+    numerics::Outcome outcome = Shoot(kFirstSteps);
     if (!trusted_) outcome = Recover(outcome);
     while (outcome.ok()) {
       const double change = ChangeOfHalvedSteps();
       if (change <= kDiscretisation) break;
       if (steps_ == kMostSteps) {
-        outcome.status = statics::Status::kNoConvergence;
+        outcome.status = numerics::Status::kNoConvergence;
         outcome.why = "the discretisation does not converge";
         break;
       }
@@ -122,15 +125,15 @@ class Balance {
     return y.cross(weight + tip) / Rod(module_, method_, row_, 1, 1).unit();
   }
 
-  static statics::Outcome After(const statics::Outcome& before, statics::Outcome outcome) {
+  static numerics::Outcome After(const numerics::Outcome& before, numerics::Outcome outcome) {
     outcome.iterations += before.iterations;
     return outcome;
   }
 
-  statics::Outcome Shoot(int steps) {
+  numerics::Outcome Shoot(int steps) {
     steps_ = steps;
     Rod rod(module_, method_, row_, 1, steps);
-    const statics::Outcome outcome = statics::Newton(Shooting{&rod}, moment_);
+    const numerics::Outcome outcome = numerics::Newton(Shooting{&rod}, moment_);
     stable_ = outcome.ok() && tip_.Find(rod, moment_) && rod.reserve().stiffness > 0 &&
               rod.reserve().plain;
     trusted_ = stable_ && tip_.determinant > 0;
@@ -140,16 +143,16 @@ class Balance {
 
   // Along the rising load. Past a bifurcation there may be no path to follow: a direct answer with
   // stable sections stays one.
-  statics::Outcome Recover(const statics::Outcome& direct) {
+  numerics::Outcome Recover(const numerics::Outcome& direct) {
     const Vector3d moment = moment_;
-    const statics::Outcome along = After(direct, Climb());
+    const numerics::Outcome along = After(direct, Climb());
     if (along.ok()) return After(along, Shoot(kFirstSteps));
     if (!stable_) return along;
     moment_ = moment;
     return direct;
   }
 
-  statics::Outcome Climb() {
+  numerics::Outcome Climb() {
     steps_ = 2 * kFirstSteps;
     moment_.setZero();
     std::optional<Rod> rod;
@@ -168,7 +171,7 @@ class Balance {
       last_determinant_ = tip.determinant;
       return true;
     };
-    return statics::Continue(at, moment_, {}, {}, on_branch);
+    return numerics::Continue(at, moment_, {}, {}, on_branch);
   }
 
   // How far tip (per l) and moment (per unit) move when every step is halved.
@@ -211,8 +214,8 @@ Solution SolveForward(const Module& module, const Method& method, const Case& ro
                       std::vector<Vector3d>* line) {
   Solution solution;
   Balance balance(module, method, row);
-  solution.outcome = statics::Timed([&] {
-    const statics::Outcome outcome = balance.Solve();
+  solution.outcome = numerics::Timed([&] {
+    const numerics::Outcome outcome = balance.Solve();
     if (!outcome.ok()) {
       solution.status = balance.Reason();
       return outcome;

@@ -1,4 +1,5 @@
 #include "models/stiff_flop/inverse.h"
+#include "sim/numerics/solver.h"
 
 #include <Eigen/LU>
 #include <cmath>
@@ -65,11 +66,11 @@ Solution SolveInverse(const Module& module, const Method& method, const Case& ro
                       bool sensitivity) {
   Solution solution;
   const Axis<double> axis = AxisOf(row.given);
-  solution.outcome = statics::Timed([&] {
-    statics::Outcome outcome;
+  solution.outcome = numerics::Timed([&] {
+    numerics::Outcome outcome;
     if (Margin(module, method, axis) <= 0) {
       solution.status = Status::kOutOfDomain;
-      outcome.status = statics::Status::kOutOfDomain;
+      outcome.status = numerics::Status::kOutOfDomain;
       outcome.why = "the section folds or a thread is straight";
       return outcome;
     }
@@ -81,7 +82,7 @@ Solution SolveInverse(const Module& module, const Method& method, const Case& ro
       outcome.why = "no pressures balance this shape, or its integrals do not converge";
       return outcome;
     }
-    outcome.status = statics::Status::kOk;
+    outcome.status = numerics::Status::kOk;
     solution.status = Status::kOk;
     solution.answer = module.E * p;
     if (sensitivity) {

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "error.h"
+#include "sim/numerics/levenberg_marquardt.h"
+#include "sim/numerics/linearize.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::stiff_flop {
 namespace {
@@ -51,7 +54,7 @@ struct Residuals {
 
   template <class X, class F, class J>
   bool Jacobian(const X& x, F& f, J& jacobian) const {
-    return statics::Differences(*this, x, 1e-4, f, jacobian);
+    return numerics::Differences(*this, x, 1e-4, f, jacobian);
   }
 };
 
@@ -74,18 +77,18 @@ Log Lines::Acting(const Log& log) const {
   return acting;
 }
 
-statics::Outcome FitLines(const Robot& robot, const Method& method, const Log& log,
-                          const LineEffects& effects, Lines& lines) {
+numerics::Outcome FitLines(const Robot& robot, const Method& method, const Log& log,
+                           const LineEffects& effects, Lines& lines) {
   const Log train = log.First(TrainRows(log));
   const std::vector<double> start = Unknowns(lines, effects);
   Eigen::VectorXd x =
       Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
-  statics::Options options;
+  numerics::Options options;
   options.max_iterations = 20;
   options.gradient = 1e-4;
   options.step = 1e-5;
   const Lines given = lines;
-  const auto outcome = statics::LevenbergMarquardt<Eigen::VectorXd>(
+  const auto outcome = numerics::LevenbergMarquardt<Eigen::VectorXd>(
       Residuals{robot, method, train, effects, given}, x,
       static_cast<Eigen::Index>(3 * train.time.size()), options);
   lines = WithUnknowns(given, effects, x.data());

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "models/stiff_flop/log.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::stiff_flop {
 
@@ -29,7 +30,7 @@ struct LineEffects {
 };
 
 /// Least squared marker distance over the train rows, registration fitted for each guess.
-statics::Outcome FitLines(const Robot& robot, const Method& method, const Log& log,
-                          const LineEffects& effects, Lines& lines);
+numerics::Outcome FitLines(const Robot& robot, const Method& method, const Log& log,
+                           const LineEffects& effects, Lines& lines);
 
 }  // namespace continuum::stiff_flop

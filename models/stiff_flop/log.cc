@@ -8,6 +8,9 @@
 #include "error.h"
 #include "models/stiff_flop/forward.h"
 #include "sim/io/mat_file.h"
+#include "sim/numerics/levenberg_marquardt.h"
+#include "sim/numerics/linearize.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::stiff_flop {
 namespace {
@@ -56,7 +59,25 @@ struct Residuals {
 
   template <class X, class F, class J>
   bool Jacobian(const X& x, F& f, J& jacobian) const {
-    return statics::Differences(*this, x, 1e-4, f, jacobian);
+    return numerics::Differences(*this, x, 1e-4, f, jacobian);
+  }
+};
+
+// Distances of the markers by the offset, for LevenbergMarquardt.
+struct MarkerDistances {
+  const std::vector<Solution>& shapes;
+  const Log& log;
+  std::size_t rows;
+
+  bool operator()(const double* offset, double* f) const {
+    const Eigen::Vector3d at(offset);
+    const Eigen::VectorXd distances = Distances(Align(shapes, log, rows, at), shapes, log, rows);
+    Eigen::Map<Eigen::VectorXd>(f, distances.size()) = distances;
+    return true;
+  }
+  bool Jacobian(const Eigen::Vector3d& x, Eigen::VectorXd& f, Eigen::MatrixX3d& slope) const {
+    constexpr double kProbe = 1e-4;  // m
+    return numerics::Differences(*this, x, kProbe, f, slope);
   }
 };
 
@@ -104,22 +125,11 @@ std::size_t TrainRows(const Log& log) {
 
 Registration Registration::Fit(const std::vector<Solution>& shapes, const Log& log,
                                std::size_t rows) {
-  constexpr double kProbe = 1e-4, kClose = 1e-9;  // m
-  const auto left = [&](const Eigen::Vector3d& offset) {
-    return Distances(Align(shapes, log, rows, offset), shapes, log, rows);
-  };
+  numerics::Options options;
+  options.step = 1e-7;  // of an offset of centimetres: 1 nm
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  for (int iteration = 0; iteration < 20; ++iteration) {
-    Eigen::MatrixX3d slope(3 * static_cast<Eigen::Index>(rows), 3);
-    for (int i = 0; i < 3; ++i) {
-      const Eigen::Vector3d step = kProbe * Eigen::Vector3d::Unit(i);
-      slope.col(i) = (left(offset + step) - left(offset - step)) / (2 * kProbe);
-    }
-    const Eigen::Vector3d move =
-        (slope.transpose() * slope).ldlt().solve(-slope.transpose() * left(offset));
-    offset += move;
-    if (move.norm() < kClose) break;
-  }
+  numerics::LevenbergMarquardt<Eigen::VectorXd>(MarkerDistances{shapes, log, rows}, offset,
+                                                3 * static_cast<Eigen::Index>(rows), options);
   return Align(shapes, log, rows, offset);
 }
 
@@ -169,17 +179,17 @@ bool MarkerResiduals(const Robot& robot, const Method& method, const Log& log, d
   return true;
 }
 
-statics::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
+numerics::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
   const Log train = log.First(TrainRows(log));
   Eigen::Vector2d x(1, robot.module.gamma);
-  statics::Bounds<2> bounds;
+  numerics::Bounds<2> bounds;
   bounds.lower = {0.2, std::numbers::pi / 4};
   bounds.upper = {5, std::numbers::pi / 2};
-  statics::Options options;
+  numerics::Options options;
   options.max_iterations = 12;
   options.gradient = 1e-4;
   options.step = 1e-5;
-  const statics::Outcome outcome = statics::LevenbergMarquardt<Eigen::VectorXd>(
+  const numerics::Outcome outcome = numerics::LevenbergMarquardt<Eigen::VectorXd>(
       Residuals{robot, method, train}, x, static_cast<Eigen::Index>(3 * train.time.size()), options,
       bounds);
   robot.module.E *= x[0];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/stiff_flop/case.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::stiff_flop {
 
@@ -58,6 +59,6 @@ bool MarkerResiduals(const Robot& robot, const Method& method, const Log& log, d
 
 /// E [Pa] and gamma [rad] of least squared marker distance over the train rows, registration fitted
 /// for each. Starts from the robot's own and changes them.
-statics::Outcome FitBraid(const Method& method, const Log& log, Robot& robot);
+numerics::Outcome FitBraid(const Method& method, const Log& log, Robot& robot);
 
 }  // namespace continuum::stiff_flop

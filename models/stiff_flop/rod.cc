@@ -7,6 +7,10 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 
 #include "models/stiff_flop/elastic.h"
+#include "sim/numerics/continuation.h"
+#include "sim/numerics/linearize.h"
+#include "sim/numerics/newton.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::stiff_flop {
 namespace {
@@ -92,7 +96,7 @@ void Rod::StartFrom(const Axis<double>& base) {
 
 // The section's root on the branch that starts unloaded: pressures and load rise together.
 bool Rod::Raise(const Eigen::Vector3d& load, Eigen::Vector3d& x,
-                const statics::Options& options) const {
+                const numerics::Options& options) const {
   const double r = module_.r_2;
   double fraction = 0;
   Axis<double> last{1, 0, 0};
@@ -108,22 +112,22 @@ bool Rod::Raise(const Eigen::Vector3d& load, Eigen::Vector3d& x,
     last = axis;
     return true;
   };
-  return statics::Continue(at, x, options, {}, on_branch).ok();
+  return numerics::Continue(at, x, options, {}, on_branch).ok();
 }
 
 bool Rod::SearchSection(const Eigen::Vector3d& load) {
-  statics::Options options;
+  numerics::Options options;
   options.tolerance = 1e-14;
   options.accept = 1e-12;
   options.max_iterations = 20;
   const double r = module_.r_2;
   Eigen::Vector3d x(section_.lambda, section_.k_1 * r, section_.k_2 * r);
   const SectionProblem problem{module_, method_, p_, load};
-  const bool solved = cold_ ? Raise(load, x, options) : statics::Newton(problem, x, options).ok();
+  const bool solved = cold_ ? Raise(load, x, options) : numerics::Newton(problem, x, options).ok();
   if (!solved) return false;
   Eigen::Vector3d f;
   Eigen::Matrix3d tangent;
-  if (!statics::Linearize(problem, x, f, tangent)) return false;
+  if (!numerics::Linearize(problem, x, f, tangent)) return false;
   solved_[next_] = {x, problem.Scaled(load), tangent.inverse()};
   return true;
 }
@@ -147,7 +151,7 @@ bool Rod::FollowNeighbour(const Eigen::Vector3d& load) {
   at.x += step;
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds; ++round) {
-    const double norm = statics::NormAt(problem, at.x, f);
+    const double norm = numerics::NormAt(problem, at.x, f);
     if (!(norm < 0.5 * last)) return false;
     if (round > 0) {
       const Eigen::Vector3d moved = at.inverse * (f - before);

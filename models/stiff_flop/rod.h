@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "models/statics/newton.h"
 #include "models/stiff_flop/case.h"
 #include "models/stiff_flop/tubes.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::stiff_flop {
 
@@ -91,7 +91,7 @@ class Rod {
   bool Strains(const Eigen::Matrix<Dual, 3, 1>& n, const Eigen::Matrix<Dual, 3, 1>& M,
                Strain<Dual>& strain);
   bool Raise(const Eigen::Vector3d& load, Eigen::Vector3d& x,
-             const statics::Options& options) const;
+             const numerics::Options& options) const;
   bool SolveSection(const Eigen::Vector3d& load);
   bool FollowNeighbour(const Eigen::Vector3d& load);
   bool SearchSection(const Eigen::Vector3d& load);

@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "error.h"
+#include "sim/numerics/levenberg_marquardt.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -160,8 +162,8 @@ class CalibrationProblem {
   mutable std::string failure_;
 };
 
-statics::Bounds<Eigen::Dynamic> Limits(int unknowns) {
-  statics::Bounds<Eigen::Dynamic> bounds;
+numerics::Bounds<Eigen::Dynamic> Limits(int unknowns) {
+  numerics::Bounds<Eigen::Dynamic> bounds;
   constexpr double kTurn = std::numbers::pi;
   bounds.lower = Eigen::VectorXd::Constant(unknowns, -kTurn);
   bounds.upper = Eigen::VectorXd::Constant(unknowns, kTurn);
@@ -208,18 +210,18 @@ Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>
         fmt::format("{}", problem.equations()));
   }
   const auto bounds = Limits(problem.unknowns());
-  statics::Options options;
+  numerics::Options options;
   options.tolerance = 0;
   options.gradient = 1e-9;  // of the differences in E and mu
   options.step = 1e-10;
   options.max_iterations = 2000;  // shapes of other cases: flat valleys
   Eigen::VectorXd best;
-  statics::Outcome outcome;
+  numerics::Outcome outcome;
   std::vector<Eigen::VectorXd> starts{problem.Start()};
   Eigen::VectorXd aligned = problem.Start();
   if (problem.Align(aligned)) starts.push_back(aligned);
   for (Eigen::VectorXd p : starts) {
-    const auto result = statics::LevenbergMarquardt<Eigen::VectorXd>(
+    const auto result = numerics::LevenbergMarquardt<Eigen::VectorXd>(
         problem, p, problem.equations(), options, bounds);
     if (result.ok() && result.residual < outcome.residual) {
       outcome = result;

@@ -10,7 +10,7 @@
 namespace continuum::tdcr {
 
 /// Kirchhoff rod (inextensible, unshearable) whose tendons run in frictionless channels along
-/// curves parallel to it, as a shooting problem for statics::Newton. Everything in units of L and
+/// curves parallel to it, as a shooting problem for numerics::Newton. Everything in units of L and
 /// EI/L.
 ///
 ///   w_k = e_3 + u x a_k              tendon k per unit of rod, |w_k| its stretch           (1)

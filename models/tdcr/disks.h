@@ -61,7 +61,7 @@ std::vector<Eigen::Matrix<double, 3, 6>> LinearGradient(double arc,
                                                         const Eigen::Matrix<double, 6, 1>& ends,
                                                         int n);
 
-/// The balance of moments of all arcs, (9)-(23), as a problem for statics::Newton.
+/// The balance of moments of all arcs, (9)-(23), as a problem for numerics::Newton.
 ///
 /// Unknowns: x = L (u_1, u_n) for C = 6 (Euler arc spline: the six equations (24)-(27)), or
 /// x = L (u_1, .., u_n) for a dynamic C (constant curvature piecewise: 3n equations). Residuals

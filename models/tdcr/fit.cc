@@ -1,11 +1,12 @@
 #include "models/tdcr/fit.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "models/tdcr/disks.h"
+#include "sim/numerics/levenberg_marquardt.h"
+#include "sim/numerics/newton.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -54,20 +55,37 @@ Ends ArcThrough(const Robot& robot, const Eigen::Vector3d& point, int disk) {
   return ends;
 }
 
-// Gauss-Newton steps as long as the gradient falls: the sum of squares itself stops changing when
-// the gradient is still at the root of the rounding. @returns the gradient's norm.
-double Polish(const ShapeProblem& problem, Ends& x) {
-  Eigen::VectorXd f(problem.equations());
-  Eigen::Matrix<double, -1, 6> jacobian(problem.equations(), 6);
-  double norm = std::numeric_limits<double>::infinity();
-  for (Ends trial = x;;) {
-    problem.Jacobian(trial, f, jacobian);
-    const Ends gradient = jacobian.transpose() * f;
-    if (!(2 * gradient.norm() < norm)) return norm;
-    norm = 2 * gradient.norm();
-    x = trial;
-    trial -= (jacobian.transpose() * jacobian).ldlt().solve(gradient);
+// Half the gradient of (8) over L^2 by L u, with its Gauss-Newton derivative: a root is sought
+// where the sum of squares itself has stopped to change, when the gradient is still at the root of
+// the rounding.
+struct HalfGradient {
+  using Matrix = Eigen::Matrix<double, 6, 6>;
+  const ShapeProblem& problem;
+
+  bool operator()(const double* x, double* gradient) const {
+    Ends g;
+    Matrix curvature;
+    if (!Jacobian(Ends(x), g, curvature)) return false;
+    (Eigen::Map<Ends>(gradient)) = g;
+    return true;
   }
+
+  bool Jacobian(const Ends& x, Ends& gradient, Matrix& curvature) const {
+    Eigen::VectorXd f(problem.equations());
+    Eigen::Matrix<double, -1, 6> slope(problem.equations(), 6);
+    if (!problem.Jacobian(x, f, slope)) return false;
+    gradient = slope.transpose() * f;
+    curvature = slope.transpose() * slope;
+    return true;
+  }
+};
+
+// Full steps as long as each halves the gradient. @returns the gradient's norm.
+double Polish(const ShapeProblem& problem, Ends& x) {
+  numerics::Options options;
+  options.tolerance = 0;
+  options.damped = false;
+  return 2 * numerics::Newton(HalfGradient{problem}, x, options).residual;
 }
 
 }  // namespace
@@ -78,17 +96,17 @@ Solution FitShape(const Robot& robot, const Eigen::Matrix3Xd& points, double lam
     if (!std::isnan(points(0, i))) problem.measured.push_back(i);
   }
   Solution best;
-  best.outcome = statics::Timed([&] {
-    statics::Options options;
+  best.outcome = numerics::Timed([&] {
+    numerics::Options options;
     options.tolerance = 0;
     options.max_iterations = 200;
-    statics::Outcome outcome;
+    numerics::Outcome outcome;
     Ends x = Ends::Zero();
     int iterations = 0;
     const int last = problem.measured.back();
     for (const Ends& start : {Ends(Ends::Zero()), ArcThrough(robot, points.col(last), last)}) {
       Ends trial = start;
-      const auto result = statics::LevenbergMarquardt<Eigen::VectorXd>(
+      const auto result = numerics::LevenbergMarquardt<Eigen::VectorXd>(
           problem, trial, problem.equations(), options);
       iterations += result.iterations;
       if (result.residual < outcome.residual) {

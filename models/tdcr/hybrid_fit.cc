@@ -2,8 +2,9 @@
 
 #include <cmath>
 
-#include "models/statics/newton.h"
 #include "models/tdcr/disks.h"
+#include "sim/numerics/levenberg_marquardt.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -90,14 +91,14 @@ std::optional<Eigen::MatrixXd> FitWeights(const Robot& robot, const Samples& sam
                                           double penalty) {
   const HybridProblem problem{robot, samples, penalty, Sizes(samples)};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.unknowns());
-  statics::Options options;
+  numerics::Options options;
   options.tolerance = 1e-14;
   options.gradient = 1e-9;
   options.decrease = 1e-6;  // along the flat valleys of weights that the shapes hardly tell apart
   options.step = 1e-10;
   options.max_iterations = 5000;
   const auto outcome =
-      statics::LevenbergMarquardt<Eigen::VectorXd>(problem, x, problem.equations(), options);
+      numerics::LevenbergMarquardt<Eigen::VectorXd>(problem, x, problem.equations(), options);
   if (!outcome.ok()) return std::nullopt;
   return problem.Weights(x);
 }

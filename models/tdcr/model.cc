@@ -5,15 +5,20 @@
 #include "error.h"
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
+#include "sim/numerics/continuation.h"
 #include "sim/numerics/decompositions.h"
+#include "sim/numerics/levenberg_marquardt.h"
+#include "sim/numerics/linearize.h"
+#include "sim/numerics/newton.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::tdcr {
 namespace {
 
-using statics::Outcome;
+using numerics::Outcome;
 
-statics::Options Limits() {
-  statics::Options options;
+numerics::Options Limits() {
+  numerics::Options options;
   options.tolerance = 1e-12;
   options.accept = 5e-10;
   options.max_step = 6;  // radians over the whole rod
@@ -25,17 +30,17 @@ template <class Balance, int N>
 Outcome Search(const Balance& balance, Eigen::Matrix<double, N, 1>& x) {
   using Vector = Eigen::Matrix<double, N, 1>;
   const Vector begin = x;
-  Outcome outcome = statics::Newton(balance, x, Limits());
+  Outcome outcome = numerics::Newton(balance, x, Limits());
   if (outcome.ok()) return outcome;
   x = begin;
-  statics::Options options = Limits();
+  numerics::Options options = Limits();
   options.max_iterations = 300;
   const int before = outcome.iterations;
-  outcome = statics::LevenbergMarquardt<Vector>(balance, x, x.size(), options);
+  outcome = numerics::LevenbergMarquardt<Vector>(balance, x, x.size(), options);
   outcome.iterations += before;
   if (outcome.residual <= options.tolerance) return outcome;
   const int spent = outcome.iterations;
-  outcome = statics::Newton(balance, x, Limits());
+  outcome = numerics::Newton(balance, x, Limits());
   outcome.iterations += spent;
   return outcome;
 }
@@ -48,7 +53,7 @@ bool Stable(const Balance& balance, const Eigen::Matrix<double, N, 1>& x) {
   using Matrix = Eigen::Matrix<double, N, N>;
   Vector f(x.size());
   Matrix jacobian(x.size(), x.size());
-  if (!statics::Linearize(balance, x, f, jacobian)) return false;
+  if (!numerics::Linearize(balance, x, f, jacobian)) return false;
   return LeastRealEigenvalue(balance.RelativeToUnloaded(jacobian)) > -0.01;
 }
 
@@ -63,14 +68,14 @@ Outcome FollowLoads(Balance& balance, Eigen::Matrix<double, N, 1>& x) {
     return balance;
   };
   const auto stable = [&](const auto& trial) { return Stable(balance, trial); };
-  statics::PathOptions path;
+  numerics::PathOptions path;
   path.tolerance = kOnTheWay;
-  Outcome outcome = statics::Continue(at, x, Limits(), path);
+  Outcome outcome = numerics::Continue(at, x, Limits(), path);
   if (!outcome.ok() || !stable(x)) {
     const int spent = outcome.iterations;
     x.setZero();
     path.first_step = path.largest_step = 0.05;
-    outcome = statics::Continue(at, x, Limits(), path, stable);
+    outcome = numerics::Continue(at, x, Limits(), path, stable);
     outcome.iterations += spent;
   }
   balance.SetLoad(1);
@@ -89,12 +94,12 @@ Outcome Equilibrium(Balance& balance, Eigen::Matrix<double, N, 1>& x, bool direc
   };
   if (start != nullptr && start->size() == x.size()) {
     x = *start;
-    outcome = statics::Newton(balance, x, Limits());
+    outcome = numerics::Newton(balance, x, Limits());
     if (done()) return outcome;
     x.setZero();
   }
   if (direct) {
-    outcome = statics::Newton(balance, x, Limits());
+    outcome = numerics::Newton(balance, x, Limits());
     if (done()) return outcome;
     x.setZero();
   }
@@ -108,7 +113,7 @@ Outcome Equilibrium(Balance& balance, Eigen::Matrix<double, N, 1>& x, bool direc
   if (!outcome.ok() && !std::isfinite(outcome.residual)) {
     const Eigen::Matrix<double, N, 1> straight = Eigen::Matrix<double, N, 1>::Zero(x.size());
     Eigen::Matrix<double, N, 1> f = straight;
-    outcome.residual = statics::NormAt(balance, straight, f);
+    outcome.residual = numerics::NormAt(balance, straight, f);
   }
   return outcome;
 }
@@ -120,7 +125,7 @@ bool Direct(const Robot& robot, const Loads& loads) {
 template <int C>
 Solution SolveDisks(const Robot& robot, const Loads& loads, const Eigen::VectorXd* start) {
   Solution solution;
-  solution.outcome = statics::Timed([&] {
+  solution.outcome = numerics::Timed([&] {
     DiskBalance<C> balance(robot, loads);
     typename DiskBalance<C>::Vector x = DiskBalance<C>::Vector::Zero(balance.unknowns());
     const Outcome outcome = Equilibrium(balance, x, Direct(robot, loads), start);
@@ -140,7 +145,7 @@ Solution SolveRod(const Robot& robot, const Loads& loads, bool friction,
                   const Eigen::VectorXd* start) {
   constexpr double kAccuracy = 2e-8;  // of L; the contract asks for 1e-7
   Solution solution;
-  solution.outcome = statics::Timed([&] {
+  solution.outcome = numerics::Timed([&] {
     RodBalance balance(robot, loads, friction, Steps(robot.disks));
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
     Outcome outcome = Equilibrium(balance, x, Direct(robot, loads), start);
@@ -155,7 +160,7 @@ Solution SolveRod(const Robot& robot, const Loads& loads, bool friction,
       solution.disks = fine.disks;
       if (error <= kAccuracy) break;
       if (refinement == 7) {
-        outcome.status = statics::Status::kNoConvergence;
+        outcome.status = numerics::Status::kNoConvergence;
         outcome.why = "the rod is too strongly bent for the integrator";
         break;
       }

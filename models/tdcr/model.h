@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "models/statics/newton.h"
 #include "models/tdcr/robot.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::tdcr {
 
@@ -17,7 +17,7 @@ enum class Method { kEas, kPcca, kCrt, kCrtFriction };
 Method ParseMethod(const std::string& name);
 
 struct Solution {
-  statics::Outcome outcome;
+  numerics::Outcome outcome;
   Eigen::VectorXd x;       ///< the unknowns of the method, for a warm start
   Eigen::Matrix3Xd u;      ///< kappa_x, kappa_y, tau of arcs 1..n [1/m]
   Eigen::Matrix3Xd disks;  ///< O_1..O_n [m], base frame

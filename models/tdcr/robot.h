@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "models/statics/newton.h"
 #include "sim/io/csv.h"
 #include "sim/io/yaml.h"
 

@@ -9,6 +9,10 @@
 #include "models/twin_pivot/balance.h"
 #include "models/twin_pivot/geometry.h"
 #include "sim/io/file.h"
+#include "sim/numerics/continuation.h"
+#include "sim/numerics/linearize.h"
+#include "sim/numerics/newton.h"
+#include "sim/numerics/solver.h"
 
 namespace continuum::twin_pivot {
 namespace {
@@ -18,8 +22,8 @@ using Eigen::VectorXd;
 // A contact this wide [m] is no obstacle to Newton: cables move by about as much.
 constexpr double kWidest = 1e-3;
 
-statics::Options Tolerances() {
-  statics::Options options;
+numerics::Options Tolerances() {
+  numerics::Options options;
   options.tolerance = 1e-13;
   options.accept = 1e-10;
   options.max_step = 1;
@@ -28,9 +32,9 @@ statics::Options Tolerances() {
 
 // Runs one stage from x; keeps the count of iterations, and x only when it succeeded.
 template <class Stage>
-bool Take(statics::Outcome& total, VectorXd& x, const Stage& stage) {
+bool Take(numerics::Outcome& total, VectorXd& x, const Stage& stage) {
   VectorXd trial = x;
-  statics::Outcome outcome = stage(trial);
+  numerics::Outcome outcome = stage(trial);
   outcome.iterations += total.iterations;
   total = outcome;
   if (total.ok()) x = trial;
@@ -40,19 +44,19 @@ bool Take(statics::Outcome& total, VectorXd& x, const Stage& stage) {
 // The root of problem_at(1): by Newton from x where that works, otherwise along the roots from that
 // of problem_at(0), which is `known`.
 template <class ProblemAt>
-bool Reach(statics::Outcome& total, VectorXd& x, const ProblemAt& problem_at, VectorXd known) {
+bool Reach(numerics::Outcome& total, VectorXd& x, const ProblemAt& problem_at, VectorXd known) {
   const auto newton = [&](VectorXd& y) {
-    return statics::Newton(problem_at(1.0), y, Tolerances());
+    return numerics::Newton(problem_at(1.0), y, Tolerances());
   };
   if (Take(total, x, newton)) return true;
   x = std::move(known);
   return Take(total, x,
-              [&](VectorXd& y) { return statics::Continue(problem_at, y, Tolerances()); });
+              [&](VectorXd& y) { return numerics::Continue(problem_at, y, Tolerances()); });
 }
 
 // Three stages: everything but friction; friction with contacts that turn widely; sharp contacts.
-statics::Outcome FindRoot(const Task& task, VectorXd& x) {
-  statics::Outcome total;
+numerics::Outcome FindRoot(const Task& task, VectorXd& x) {
+  numerics::Outcome total;
   const double eps = task.robot.eps;
   const double widest = std::max(kWidest, eps);
   const auto loaded = [&](double t) { return Balance{task, t, 0, widest}; };
@@ -84,7 +88,7 @@ Solution Solve(const Robot& robot, const Load& load, Method method,
   const Task task(robot, load, method);
   Solution solution;
   solution.beta = start ? *start : VectorXd::Zero(task.joints);
-  solution.outcome = statics::Timed([&] { return FindRoot(task, solution.beta); });
+  solution.outcome = numerics::Timed([&] { return FindRoot(task, solution.beta); });
   RequirePositiveFriction(task, solution.beta);
   if (!solution.outcome.ok()) {
     const auto f = Residual(robot, load, method, solution.beta);
@@ -113,7 +117,7 @@ std::optional<Eigen::MatrixXd> ResidualSlope(const Robot& robot, const Load& loa
   const Task task(robot, load, method);
   VectorXd f(task.joints);
   Eigen::MatrixXd slope(task.joints, task.joints);
-  if (!statics::Linearize(Balance{task, 1, 1, robot.eps}, beta, f, slope)) return std::nullopt;
+  if (!numerics::Linearize(Balance{task, 1, 1, robot.eps}, beta, f, slope)) return std::nullopt;
   return slope;
 }
 

@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "models/statics/newton.h"
 #include "models/twin_pivot/load.h"
 #include "models/twin_pivot/robot.h"
+#include "sim/numerics/solver.h"
 
 /// Kinetostatics of the twin-pivot cable robot: discs joined by pairs of short Ni-Ti rods that bend
 /// by turns about two crossed axes, pulled by four cables per section that rub in every disc.
@@ -20,7 +20,7 @@ namespace continuum::twin_pivot {
 /// beta_m [rad] and what follows from them. When the outcome is not ok, beta is the last root found
 /// on the way, the residual is |f| there, and the rest is empty.
 struct Solution {
-  statics::Outcome outcome;
+  numerics::Outcome outcome;
   Eigen::VectorXd beta;
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< O_n [m]
   Eigen::MatrixXd tension;  ///< F_mj in every joint, joints x cables [N], 0 beyond the anchor

@@ -7,6 +7,8 @@
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/model.h"
+#include "sim/numerics/linearize.h"
+#include "sim/numerics/newton.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -236,7 +238,7 @@ void CompareJacobians(double size) {
   for (double& component : x) component = size * share(random);
   typename Balance::Matrix exact = Balance::Matrix::Zero(x.size(), x.size()), rough = exact;
   ASSERT_TRUE(balance.Jacobian(x, f, exact));
-  ASSERT_TRUE(statics::Differences(ByDifferences<C>{balance}, x, 1e-6, g, rough));
+  ASSERT_TRUE(numerics::Differences(ByDifferences<C>{balance}, x, 1e-6, g, rough));
   EXPECT_EQ(f, g);
   // Differences of step 1e-6 leave 1e-12 of third derivatives and 1e-10 of rounding.
   EXPECT_LT((exact - rough).cwiseAbs().maxCoeff(), 5e-9);
@@ -327,7 +329,7 @@ TEST(Tdcr, CosseratRodIsWithinItsAccuracyOfFourfoldSteps) {
     const Solution s = SolveCase(robot, loads, Method::kCrt);
     RodBalance fine(robot, loads, false, 16);
     Eigen::Vector3d x = s.x;
-    ASSERT_TRUE(statics::Newton(fine, x).ok());
+    ASSERT_TRUE(numerics::Newton(fine, x).ok());
     EXPECT_LT((fine.Integrate(x).disks - s.disks).colwise().norm().maxCoeff(), 1e-7 * robot.length);
   }
 }
