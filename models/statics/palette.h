@@ -8,7 +8,7 @@
 namespace continuum::statics {
 
 /// Colour and dashes of case `index`: 28 cases differ by colour, by dashes or both, so that they
-/// are told by colour-blind readers and in a grey print. Colours of Okabe and Ito, "Color universal
+/// can be distinguished by colour-blind readers and in a grey print. Colours of Okabe and Ito, "Color universal
 /// design", 2008, without their yellow.
 Pen CasePen(std::size_t index);
 

@@ -19,7 +19,7 @@ struct SolveRequest {
   bool calibrate = false;
   bool cross_validate = false;  ///< tdcr: choose the training's penalty
   bool sensitivity = false;
-  /// Told what was passed over: a sentence with file and line.
+  /// Called for what was not used: a sentence with file and line.
   std::function<void(const std::string&)> warn = [](const std::string&) {};
   std::optional<double> lambda;  ///< tdcr: penalty of the fit or of the hybrid's training
 };

@@ -119,15 +119,15 @@ Robot Pairs(Robot robot, double E) {
   return robot;
 }
 
-/// Errors of the models when they are told the robot's own E and tubes, and when they are the
+/// Errors of the models when they have the robot's own E and tubes, and when they are the
 /// paper's, with one tube per line, on stiffer robots of two.
 void PrintTable2(const Robot& a, const Robot& b) {
   const Robot soft_a = Pairs(a, a.module.E), soft_b = Pairs(b, b.module.E);
-  const RandomCases told_a(soft_a), untold_a(Pairs(a, kStiffA));
-  const Loaded told_b(soft_b), untold_b(Pairs(b, kStiffB));
+  const RandomCases same_a(soft_a), stiff_a(Pairs(a, kStiffA));
+  const Loaded same_b(soft_b), stiff_b(Pairs(b, kStiffB));
   fmt::print(
-      "| body + chamber | CC published [kPa] | E, tubes told | one tube, robot of {:.0f} kPa |"
-      " VC published [mm] | told | one tube, robot of {:.0f} kPa "
+      "| body + chamber | CC published [kPa] | same E and tubes | one tube, robot of {:.0f} kPa |"
+      " VC published [mm] | same E and tubes | one tube, robot of {:.0f} kPa "
       "|\n|---|---|---|---|---|---|---|\n",
       kStiffA / 1e3, kStiffB / 1e3);
   for (std::size_t i = 0; i < kTable2.size(); ++i) {
@@ -135,11 +135,11 @@ void PrintTable2(const Robot& a, const Robot& b) {
     const Published& paper = kTable2[i];
     fmt::print("| {} | {:.0f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | {:.1f} |\n",
                method.Name(Direction::kInverse), paper.kpa,
-               told_a.Error(soft_a.module, method) / 1e3, untold_a.Error(a.module, method) / 1e3,
-               paper.mm, told_b.Distance(soft_b.module, method) * 1e3,
-               untold_b.Distance(b.module, method) * 1e3);
+               same_a.Error(soft_a.module, method) / 1e3, stiff_a.Error(a.module, method) / 1e3,
+               paper.mm, same_b.Distance(soft_b.module, method) * 1e3,
+               stiff_b.Distance(b.module, method) * 1e3);
   }
-  fmt::print("\nMean |p| of the inverse cases: {:.0f} kPa.\n\n", told_a.MeanPressure() / 1e3);
+  fmt::print("\nMean |p| of the inverse cases: {:.0f} kPa.\n\n", same_a.MeanPressure() / 1e3);
 }
 
 /// Rows of Table 2 that differ in the braid alone, at other fibre angles of the models.

@@ -44,13 +44,13 @@ struct Task {
 ///
 /// @returns false when a contact would lock, s w >= 1.
 template <class T>
-bool CableForces(const Task& task, const std::vector<Joint<T>>& joint, double rub, double eps,
+bool CableForces(const Task& task, const std::vector<Joint<T>>& joint, double friction, double eps,
                  std::vector<T>& force) {
   using std::tanh;
   force.assign(task.joints * task.cables, T(0));
   std::vector<T> w;
-  for (const Joint<T>& at : joint) w.push_back(rub * Rub(task.friction, at.beta));
-  const bool slides = rub != 0 && task.HasFriction();
+  for (const Joint<T>& at : joint) w.push_back(friction * FrictionShare(task.friction, at.beta));
+  const bool slides = friction != 0 && task.HasFriction();
   std::vector<T> change(task.joints + 1, T(0));
   for (int j = 0; j < task.cables; ++j) {
     const int last = task.anchor[j];
@@ -132,11 +132,12 @@ T CrossZ(const T& ax, const T& ay, const Vector<T>& b) {
 ///         - rods E I_z beta_m / L
 ///
 /// Three passes over the joints, O(n): cable forces, the base frame's vectors outward, masses
-/// inward. `load` scales everything that acts, `rub` the friction; for continuation.
+/// inward. `load` scales everything that acts, `friction` the coefficients of friction; for
+/// continuation.
 struct Balance {
   const Task& task;
   double load = 1;
-  double rub = 1;
+  double friction = 1;
   double eps = 1e-6;
 
   template <class T>
@@ -148,7 +149,7 @@ struct Balance {
       joint.emplace_back(task.robot, beta[m]);
     }
     std::vector<T> cable;
-    if (!CableForces(task, joint, rub, eps, cable)) return false;
+    if (!CableForces(task, joint, friction, eps, cable)) return false;
     Moments(joint, cable, f);
     return true;
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include <Eigen/QR>
+
 #include "error.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"

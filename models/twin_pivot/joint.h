@@ -89,10 +89,11 @@ struct Joint {
   Planar<T> Hole(double y) const { return {rod_end.x - y * sine, rod_end.y + y * cosine}; }
 };
 
-/// w = mu(theta) sin(theta), theta = |beta|/2: the share of its tension by which a cable rubs on
-/// either side of the joint. The kink at beta = 0 gets the slope of its middle, 0.
+/// Friction between a cable and the disc on either side of a joint, as a share of the tension:
+/// w = mu(theta) sin(theta), theta = |beta|/2. The kink at beta = 0 gets the slope of its middle,
+/// 0.
 template <class T>
-T Rub(const Friction& friction, const T& beta) {
+T FrictionShare(const Friction& friction, const T& beta) {
   const double theta = 0.5 * std::abs(Value(beta));
   const double direction = (Value(beta) > 0) - (Value(beta) < 0);
   const double mu = friction.At(theta);

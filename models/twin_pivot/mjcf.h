@@ -13,7 +13,7 @@ namespace continuum::twin_pivot {
 /// its ends do, to the fourth order of the angle: chord 2 (L/6) cos(beta/2) + 2L/3 against
 /// L sin(beta/2)/(beta/2). So joint m is bend<m>_in and bend<m>_out, each of twice its stiffness,
 /// about z (m odd) or -y. Cables run straight from disc to disc through sites on both faces, where
-/// `continuum.capstan` rubs with mu(theta) of the file. Weights are lumped where the model has
+/// `continuum.capstan` has the mu(theta) of the file. Weights are lumped where the model has
 /// them: rods at their middle, a cable's piece by halves at its two holes, locks in the last disc.
 /// Body `tip` (O_n, mass 0) takes a payload, actuators tip_fx .. a force in the base frame, sensor
 /// tip_pos is in the base frame.

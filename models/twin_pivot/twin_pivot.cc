@@ -61,8 +61,8 @@ numerics::Outcome FindRoot(const Task& task, VectorXd& x) {
   const double widest = std::max(kWidest, eps);
   const auto loaded = [&](double t) { return Balance{task, t, 0, widest}; };
   if (!Reach(total, x, loaded, VectorXd::Zero(task.joints)) || !task.HasFriction()) return total;
-  const auto rubbed = [&](double t) { return Balance{task, 1, t, widest}; };
-  if (!Reach(total, x, rubbed, x) || widest == eps) return total;
+  const auto with_friction = [&](double t) { return Balance{task, 1, t, widest}; };
+  if (!Reach(total, x, with_friction, x) || widest == eps) return total;
   const auto sharpened = [&](double t) {
     return Balance{task, 1, 1, std::pow(widest, 1 - t) * std::pow(eps, t)};
   };

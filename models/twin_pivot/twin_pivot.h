@@ -9,7 +9,8 @@
 #include "sim/numerics/solver.h"
 
 /// Kinetostatics of the twin-pivot cable robot: discs joined by pairs of short Ni-Ti rods that bend
-/// by turns about two crossed axes, pulled by four cables per section that rub in every disc.
+/// by turns about two crossed axes, pulled by four cables per section with dry friction in every
+/// disc.
 ///
 /// Base frame {O_0} at the centre of the fixed disc: X along the straight robot, Y up. SI units.
 /// Source: Yang, Yang, Sun, Chen, "Comprehensive kinetostatic modeling and morphology
