@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "models/twin_pivot/bench.h"
+#include "models/twin_pivot/geometry.h"
 
 namespace continuum::twin_pivot {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "models/twin_pivot/again.h"
 #include "models/twin_pivot/bench.h"
+#include "models/twin_pivot/geometry.h"
 #include "models/twin_pivot/joint.h"
 
 namespace continuum::twin_pivot {
