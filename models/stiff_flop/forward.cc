@@ -1,5 +1,6 @@
 #include "models/stiff_flop/forward.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
