@@ -113,13 +113,14 @@ FitOptions LeastSquaresOptions(const Options& o, const Problem& problem) {
 void FitLeastSquares(const Options& o, const Problem& problem, const Vector& start,
                      const std::vector<bool>& use, IdentifyResult& all) {
   const FitOptions options = LeastSquaresOptions(o, problem);
-  if (o.segments && o.from.empty()) all.segments = FitInPieces(problem, start, use, options);
+  if (o.segments && o.from.empty())
+    all.segments = FitByMultipleShooting(problem, start, use, options);
   const Vector& begin = all.segments ? all.segments->x : start;
   if (o.starts > 1) {
     all.starts = FitFromMany(problem, begin, use, o.starts, o.seed, options);
     all.fit = all.starts->best;
   } else {
-    all.fit = FitFar(problem, begin, use, options);
+    all.fit = FitWithWideSlopes(problem, begin, use, options);
   }
   all.fit = FitByEquations(problem, std::move(all.fit), use, options);
   if (all.starts) all.starts->best = all.fit;
@@ -183,7 +184,7 @@ class Statement {
                                          : IntervalsOf(problem_, x, residuals_, o_.progress);
     });
     if (!made) all_.uncertainty = UnknownUncertainty(problem_, x, all_.missing.back().why);
-    Part("trade_offs", [&] { all_.trade_offs = TradeOffsOf(problem_, x, all_.uncertainty); });
+    Part("trade_offs", [&] { all_.trade_offs = ConfoundingsOf(problem_, x, all_.uncertainty); });
   }
 
   // What the model gives at its own step, where the fit was one of its differential equation.

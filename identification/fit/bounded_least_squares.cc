@@ -17,7 +17,7 @@ Problem::Vector Unscaled(const Problem& problem, const double* y) {
   return problem.Clamp(x);
 }
 
-std::pair<double, double> Soften(double r, double soft) {
+std::pair<double, double> SoftL1(double r, double soft) {
   if (soft == 0) return {r, 1};
   const double root = std::sqrt(1 + r * r / (soft * soft));
   const double w = std::copysign(soft * std::sqrt(2 * (root - 1)), r);

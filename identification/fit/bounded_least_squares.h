@@ -13,7 +13,7 @@ Problem::Vector Scaled(const Problem& problem, const Problem::Vector& x);
 Problem::Vector Unscaled(const Problem& problem, const double* y);
 
 /// w with ½ w² = ρ(r), the soft L1 loss of FitOptions (soft 0: w = r), and dw/dr.
-std::pair<double, double> Soften(double r, double soft);
+std::pair<double, double> SoftL1(double r, double soft);
 
 /// When bounded Levenberg-Marquardt ends, and who watches it.
 struct Search {

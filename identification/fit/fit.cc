@@ -26,8 +26,8 @@ class Cost : public ceres::CostFunction {
   Cost(const Problem& problem, const std::vector<bool>& use, const FitOptions& options,
        const Whitening& whitening, Eigen::Index residuals)
       : problem_(problem), use_(use), options_(options), whitening_(whitening) {
-    seam_rows_ = Seams({}, 0).rows();
-    set_num_residuals(static_cast<int>(residuals + seam_rows_));
+    continuity_rows_ = Defects({}, 0).rows();
+    set_num_residuals(static_cast<int>(residuals + continuity_rows_));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
   }
 
@@ -44,41 +44,42 @@ class Cost : public ceres::CostFunction {
     const Vector all = whitening_.Stack(r_, use_);
     if (!all.allFinite()) return false;
     for (Eigen::Index k = 0; k < all.size(); ++k)
-      residuals[k] = Soften(all[k], options_.soft).first;
+      residuals[k] = SoftL1(all[k], options_.soft).first;
     const std::vector<Matrix> r(r_.begin(), r_.end());
-    Eigen::Map<Vector>(residuals + all.size(), seam_rows_) = Seams(r, 1);
+    Eigen::Map<Vector>(residuals + all.size(), continuity_rows_) = Defects(r, 1);
     if (!jacobians || !jacobians[0]) return true;
     Derive();
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
         jacobians[0], num_residuals(), x.size());
     out.topRows(all.size()) = whitening_.Stack(J_, use_);
     for (Eigen::Index k = 0; k < all.size(); ++k)
-      out.row(k) *= Soften(all[k], options_.soft).second;
-    out.bottomRows(seam_rows_) = Seams(J_, x.size());
+      out.row(k) *= SoftL1(all[k], options_.soft).second;
+    out.bottomRows(continuity_rows_) = Defects(J_, x.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) out.col(i) *= parameters[i].scale;
     return out.allFinite();
   }
 
  private:
-  // By how much residuals, or columns of their Jacobian, differ at the seams; all of one channel
-  // follow each other in a log.
-  Matrix Seams(const std::vector<Matrix>& of, Eigen::Index columns) const {
+  // By how much residuals, or columns of their Jacobian, differ where segments meet; all of one
+  // channel follow each other in a log.
+  Matrix Defects(const std::vector<Matrix>& of, Eigen::Index columns) const {
     const auto channels = static_cast<Eigen::Index>(problem_.channels().size());
     Eigen::Index rows = 0;
-    for (const Seam& seam : options_.seams) rows += channels * seam.rows;
+    for (const ContinuityCondition& condition : options_.continuity)
+      rows += channels * condition.rows;
     Matrix all(rows, columns);
     if (columns == 0) return all;
     rows = 0;
-    for (const Seam& seam : options_.seams) {
-      const Matrix &before = of[seam.before], &after = of[seam.after];
+    for (const ContinuityCondition& condition : options_.continuity) {
+      const Matrix &before = of[condition.before], &after = of[condition.after];
       const Eigen::Index long_before = before.rows() / channels,
                          long_after = after.rows() / channels;
       for (Eigen::Index c = 0; c < channels; ++c) {
-        all.middleRows(rows, seam.rows) =
-            options_.seam_weight *
-            (before.middleRows((c + 1) * long_before - seam.rows, seam.rows) -
-             after.middleRows(c * long_after, seam.rows));
-        rows += seam.rows;
+        all.middleRows(rows, condition.rows) =
+            options_.continuity_weight *
+            (before.middleRows((c + 1) * long_before - condition.rows, condition.rows) -
+             after.middleRows(c * long_after, condition.rows));
+        rows += condition.rows;
       }
     }
     return all;
@@ -120,7 +121,7 @@ class Cost : public ceres::CostFunction {
   const std::vector<bool>& use_;
   const FitOptions& options_;
   const Whitening& whitening_;
-  Eigen::Index seam_rows_;
+  Eigen::Index continuity_rows_;
   mutable Vector x_;
   mutable std::vector<Vector> r_;  // at x_
   mutable std::vector<Matrix> J_;
@@ -131,9 +132,9 @@ class Cost : public ceres::CostFunction {
   mutable Derived derived_;  // where J_ is known
 };
 
-class Watch : public ceres::IterationCallback {
+class Monitor : public ceres::IterationCallback {
  public:
-  Watch(const Problem& problem, const FitOptions& options, Fit& fit)
+  Monitor(const Problem& problem, const FitOptions& options, Fit& fit)
       : problem_(problem), options_(options), fit_(fit) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
     const bool taken = s.step_is_successful || s.iteration == 0;
@@ -215,7 +216,7 @@ double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& 
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const Vector r = whitening.Stack(problem.Residuals(x, use), use);
   if (!r.allFinite()) return std::numeric_limits<double>::infinity();
-  return 0.5 * r.unaryExpr([&](double v) { return Soften(v, options.soft).first; }).squaredNorm();
+  return 0.5 * r.unaryExpr([&](double v) { return SoftL1(v, options.soft).first; }).squaredNorm();
 }
 
 Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<bool>& use,
@@ -242,7 +243,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
 
   Cost cost(problem, use, options, whitening, all.size());
   cost.Know(fit.x, std::move(r), std::move(J));
-  Watch watch(problem, options, fit);
+  Monitor watch(problem, options, fit);
   Vector y = Scaled(problem, fit.x);
   const auto summary = Minimize(problem, cost, {options.iterations, options.tolerance, &watch}, y);
   fit.iterations = static_cast<int>(summary.iterations.size()) - 1;

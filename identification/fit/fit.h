@@ -10,9 +10,9 @@
 
 namespace continuum {
 
-/// Two logs that are pieces of one: the last rows of one are the first of the other, and what is
-/// simulated there should be equal.
-struct Seam {
+/// A condition that two segments of one log meet: the last rows of one are the first of the other,
+/// and what is simulated there should be equal.
+struct ContinuityCondition {
   std::size_t before, after;
   Eigen::Index rows;
 };
@@ -27,8 +27,8 @@ struct FitOptions {
   bool idle = false;
   /// Of the residuals, when their noise is known; none: as they are.
   const Whitening* whitening = nullptr;
-  std::vector<Seam> seams = {};
-  double seam_weight = 1;  ///< of a difference of residuals there, against the residuals
+  std::vector<ContinuityCondition> continuity = {};
+  double continuity_weight = 1;  ///< of a difference of residuals there, against the residuals
   /// Give up when even four more steps as good as the last would leave the cost above this.
   double hopeless = std::numeric_limits<double>::infinity();
   int patience = 1;  ///< steps in a row that must look so
@@ -43,11 +43,12 @@ void RequireFinite(const Problem& problem, const Problem::Vector& x,
                    const std::string& when);
 
 /// PooledRms of residuals; under a robust loss without outliers, which count as three standard
-/// deviations (of which the median tells).
+/// deviations (estimated from the median).
 double TypicalRms(const Problem& problem, std::vector<Problem::Vector> residuals,
                   const std::vector<bool>& use);
 
-/// ½ Σ ρ(r) of whitened residuals, what a fit lowers but for seams; infinite where it diverges.
+/// ½ Σ ρ(r) of whitened residuals, what a fit lowers but for continuity; infinite where it
+/// diverges.
 double CostAt(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,
               const FitOptions& options);
 

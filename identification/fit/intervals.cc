@@ -15,9 +15,9 @@ using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
 // Whether first order said, to half of it, what a quarter of the step changes.
-bool Foretold(const Uncertainty& u, const Vector& moved) {
-  const Vector told = u.step / kWholeStep, wrong = moved - told;
-  return wrong.dot(u.information * wrong) < 0.25 * told.dot(u.information * told);
+bool FirstOrderHolds(const Uncertainty& u, const Vector& moved) {
+  const Vector predicted = u.step / kWholeStep, wrong = moved - predicted;
+  return wrong.dot(u.information * wrong) < 0.25 * predicted.dot(u.information * predicted);
 }
 
 // Where a log begins that the fit did not see was fitted to that log alone (FitStarts): so is its
@@ -90,14 +90,14 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
   }
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
-  const bool foretold = Foretold(u, moved);
-  const auto slopes = foretold ? J : Secants(problem, x, r, J, step, whitening);
+  const bool first_order_holds = FirstOrderHolds(u, moved);
+  const auto slopes = first_order_holds ? J : Secants(problem, x, r, J, step, whitening);
   u = UncertaintyOf(problem, x, r, slopes, whitening, options.soft);
-  ReachOver(problem, moved, u);
-  if (foretold) return;
+  WidenByStep(problem, moved, u);
+  if (first_order_holds) return;
   const Vector more = (kWholeRoot - kWholeStep) * moved;
   Widen(problem, more.cwiseMin(0), more.cwiseMax(0), u);
-  ReachFurther(problem, x, slopes, step, whitening, u);
+  WidenByStepSize(problem, x, slopes, step, whitening, u);
 }
 
 Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,

@@ -13,18 +13,22 @@ namespace continuum {
 /// failed.
 Uncertainty UnknownUncertainty(const Problem& problem, const Problem::Vector& x,
                                const std::string& why);
-/// Where the time step moves a value by more than its standard error, a fit at a quarter of the
-/// step, from x, tells what a fine one gives: intervals are made anew to reach over that, and
-/// further (over twice its move, and by ReachFurther) where first order did not foretell half of
-/// it. r, J, step: of the logs of the fit, as above; u: after AllowForStep.
+/// Extends intervals to what a fine time step would give, by a fit at a quarter of the step.
+///
+/// Does so where the time step moves a value by more than its standard error. Intervals reach over
+/// that fit's values, and further (over twice its move, and by WidenByStepSize) where first order
+/// did not predict half of it. r [log], J [log][rows × parameters] and step (Problem::StepEffects):
+/// of the logs of the fit, at x; u: after AllowForStep.
 void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
                     const std::vector<Problem::Matrix>& step, const FitOptions& options,
                     Uncertainty& u);
-/// All of these in one, from the logs of the fit; of where another log begins from that log alone,
-/// given all else: what a fit.json states. r: residuals at x; the loss of the experiment may be
-/// robust. Derivatives are central differences: one-sided ones bend what the step is said to
-/// change. Once the user has asked to stop, errors, intervals and correlations are not known (NaN).
+/// Standard errors, 95 % intervals and correlations as a fit.json states them: from the logs of the
+/// fit, and of the initial state of another log from that log alone, given all else.
+///
+/// r: residuals [log] at x; the loss of the experiment may be robust. Derivatives are central
+/// differences: one-sided ones bend what the step is said to change. Once the user has asked to
+/// stop, errors, intervals and correlations are not known (NaN).
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r,
                         const std::function<void(const std::string&)>& progress = {});

@@ -50,7 +50,7 @@ MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
     own.patience = 10;  // far away, steps say little of the next ones
     own.idle |= k > 0;  // far away a parameter may have none
     try {
-      Fit fit = FitFar(problem, all.starts.back().x, use, own);
+      Fit fit = FitWithWideSlopes(problem, all.starts.back().x, use, own);
       all.starts.back().cost = fit.cost;
       evaluations += fit.evaluations;
       if (fit.cost < all.best.cost) all.best = std::move(fit);

@@ -15,10 +15,10 @@ namespace continuum {
 namespace {
 
 constexpr double kLong = 20;            // [s]
-constexpr std::size_t kLeastRows = 10;  // of a piece
+constexpr std::size_t kLeastRows = 10;  // of a segment
 
-bool IsLong(const Log& log, std::size_t pieces) {
-  return log.rows() >= pieces * kLeastRows && log.time.back() - log.time[0] > kLong;
+bool IsLong(const Log& log, std::size_t segments) {
+  return log.rows() >= segments * kLeastRows && log.time.back() - log.time[0] > kLong;
 }
 
 bool HasPlainJoints(const mjModel& m) {
@@ -29,7 +29,7 @@ bool HasPlainJoints(const mjModel& m) {
   return true;
 }
 
-bool MayBeCut(const Problem& problem, const std::vector<bool>& use, std::size_t pieces) {
+bool MayBeSegmented(const Problem& problem, const std::vector<bool>& use, std::size_t segments) {
   constexpr double kMostWork = 2e10;  // of a least squares solution: seconds
   const Experiment& e = problem.experiment();
   const mjModel& m = problem.system().model();
@@ -37,48 +37,48 @@ bool MayBeCut(const Problem& problem, const std::vector<bool>& use, std::size_t 
   bool any = false;
   for (std::size_t l = 0; l < use.size(); ++l) {
     if (!use[l]) continue;
-    const bool is_long = IsLong(e.logs[l], pieces);
+    const bool is_long = IsLong(e.logs[l], segments);
     any |= is_long;
     rows += static_cast<double>(e.logs[l].rows() * problem.channels().size());
-    starts += 2.0 * static_cast<double>(m.njnt) * (is_long ? static_cast<double>(pieces) : 1);
+    starts += 2.0 * static_cast<double>(m.njnt) * (is_long ? static_cast<double>(segments) : 1);
   }
   const auto own = [](const Parameter& p) { return p.per == Parameter::Per::kLog; };
   return any && rows * starts * starts < kMostWork && !e.quasi_static && HasPlainJoints(m) &&
          std::none_of(e.parameters.begin(), e.parameters.end(), own);
 }
 
-constexpr std::size_t kFew = 16, kMany = 64;  // pieces of a long log
+constexpr std::size_t kFew = 16, kMany = 64;  // segments of a long log
 
-struct Parts {
+struct SegmentedLogs {
   Experiment experiment;
-  std::vector<Seam> seams;
+  std::vector<ContinuityCondition> continuity;
 };
 
-// A twentieth of a piece is the next one's too, three rows at least.
-void AddPieces(const Log& log, std::size_t pieces, Parts& cut) {
-  const std::size_t length = log.rows() / pieces, shared = std::max<std::size_t>(3, length / 20);
-  for (std::size_t k = 0; k < pieces; ++k) {
+// A twentieth of a segment is the next one's too, three rows at least.
+void AddSegments(const Log& log, std::size_t segments, SegmentedLogs& cut) {
+  const std::size_t length = log.rows() / segments, shared = std::max<std::size_t>(3, length / 20);
+  for (std::size_t k = 0; k < segments; ++k) {
     const std::size_t first = k * length;
     const std::size_t last =
-        k + 1 == pieces ? log.rows() - 1 : std::min(log.rows(), first + length + shared) - 1;
-    Log piece = Piece(log, first, last);
-    piece.label = fmt::format("{}, part {}", log.label, k + 1);
-    if (k > 0) piece.start.clear();
-    cut.experiment.logs.push_back(std::move(piece));
+        k + 1 == segments ? log.rows() - 1 : std::min(log.rows(), first + length + shared) - 1;
+    Log segment = SegmentOf(log, first, last);
+    segment.label = fmt::format("{}, part {}", log.label, k + 1);
+    if (k > 0) segment.start.clear();
+    cut.experiment.logs.push_back(std::move(segment));
     const std::size_t here = cut.experiment.logs.size() - 1;
-    if (k > 0) cut.seams.push_back({here - 1, here, static_cast<Eigen::Index>(shared)});
+    if (k > 0) cut.continuity.push_back({here - 1, here, static_cast<Eigen::Index>(shared)});
   }
 }
 
-Parts CutUp(const Experiment& e, const std::vector<bool>& use, std::size_t pieces) {
-  Parts cut{e, {}};
+SegmentedLogs Segmented(const Experiment& e, const std::vector<bool>& use, std::size_t segments) {
+  SegmentedLogs cut{e, {}};
   cut.experiment.logs.clear();
   cut.experiment.start = Experiment::Start::kEstimate;
   for (std::size_t l = 0; l < use.size(); ++l) {
     Log log = e.logs[l];
     log.train = use[l];
-    if (log.train && IsLong(log, pieces)) {
-      AddPieces(log, pieces, cut);
+    if (log.train && IsLong(log, segments)) {
+      AddSegments(log, segments, cut);
     } else {
       cut.experiment.logs.push_back(std::move(log));
     }
@@ -98,36 +98,37 @@ double CostOf(const Problem& problem, const Problem::Vector& x, const std::vecto
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
-struct Search {
+struct SegmentFit {
   const Problem& problem;
   const std::vector<bool>& use;
   const FitOptions& options;
   ShootingSegments found;
-  Problem::Vector x;  // where the last pieces ended
+  Problem::Vector x;  // where the last segments ended
 
-  // Fits pieces with these weights of their seams, one after the other.
+  // Fits segments with these weights of their continuity conditions, one after the other.
   void Cut(std::size_t count, const std::vector<double>& weights) {
-    const auto cut = CutUp(problem.experiment(), use, count);
-    const Problem pieces(cut.experiment, problem.system());
-    Problem::Vector y = Shared(problem, x, pieces.Start());
+    const auto cut = Segmented(problem.experiment(), use, count);
+    const Problem segments(cut.experiment, problem.system());
+    Problem::Vector y = Shared(problem, x, segments.Start());
     FitOptions own = options;
-    own.idle = true, own.tolerance = 1e-3, own.seams = cut.seams;
+    own.idle = true, own.tolerance = 1e-3, own.continuity = cut.continuity;
     for (const double weight : weights) {
       if (StopRequested()) break;
-      own.seam_weight = weight;
+      own.continuity_weight = weight;
       own.progress = [&](const std::string& line) {
         if (options.progress)
-          options.progress(fmt::format("{} pieces, seams {}: {}", count, weight, line));
+          options.progress(
+              fmt::format("{} segments, weight of their ends {}: {}", count, weight, line));
       };
       try {
-        y = FitParameters(pieces, y, pieces.TrainLogs(), own).x;
+        y = FitParameters(segments, y, segments.TrainLogs(), own).x;
       } catch (const Error& error) {
         if (error.kind() != Error::Kind::kJob) throw;
         break;  // it diverges
       }
       Consider(FitStarts(problem, Shared(problem, y, x), use));
     }
-    found.evaluations += pieces.evaluations();
+    found.evaluations += segments.evaluations();
   }
 
   void Consider(const Problem::Vector& whole) {
@@ -139,31 +140,32 @@ struct Search {
 
 }  // namespace
 
-Log Piece(const Log& log, std::size_t first, std::size_t last) {
-  Log piece = log;
+Log SegmentOf(const Log& log, std::size_t first, std::size_t last) {
+  Log segment = log;
   const auto cut = [&](auto& column) {
     using Column = std::remove_reference_t<decltype(column)>;
     if (!column.empty()) column = Column(column.begin() + first, column.begin() + last + 1);
   };
-  cut(piece.time);
-  for (auto* const columns : {&piece.input, &piece.measured}) {
+  cut(segment.time);
+  for (auto* const columns : {&segment.input, &segment.measured}) {
     for (auto& column : *columns) cut(column);
   }
-  for (auto& column : piece.enable) cut(column);
-  return piece;
+  for (auto& column : segment.enable) cut(column);
+  return segment;
 }
 
-std::optional<ShootingSegments> FitInPieces(const Problem& problem, const Problem::Vector& x,
-                                            const std::vector<bool>& use,
-                                            const FitOptions& options) {
+std::optional<ShootingSegments> FitByMultipleShooting(const Problem& problem,
+                                                      const Problem::Vector& x,
+                                                      const std::vector<bool>& use,
+                                                      const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t evaluations = problem.evaluations();
-  Search search{problem, use, options, {x, CostOf(problem, x, use)}, x};
-  search.found.after = search.found.before;
-  if (MayBeCut(problem, use, kMany)) search.Cut(kMany, {0});
-  if (MayBeCut(problem, use, kFew)) search.Cut(kFew, {0, 1, 10, 100});
-  if (search.found.evaluations == 0) return {};
-  ShootingSegments& found = search.found;
+  SegmentFit fit{problem, use, options, {x, CostOf(problem, x, use)}, x};
+  fit.found.after = fit.found.before;
+  if (MayBeSegmented(problem, use, kMany)) fit.Cut(kMany, {0});
+  if (MayBeSegmented(problem, use, kFew)) fit.Cut(kFew, {0, 1, 10, 100});
+  if (fit.found.evaluations == 0) return {};
+  ShootingSegments& found = fit.found;
   found.evaluations += problem.evaluations() - evaluations;
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return found;

@@ -12,7 +12,7 @@
 namespace continuum {
 namespace {
 
-constexpr std::size_t kMost = 100;  // starts in a log
+constexpr std::size_t kMostStarts = 100;  // starts in a log
 
 struct Sum {
   double squares = 0;
@@ -55,19 +55,19 @@ std::optional<PredictionError> PredictAhead(const Problem& problem, const Proble
     const Log& log = e.logs[l];
     const Experiment measured = problem.MeasuredBy(x, l);
     const auto changes = problem.ChangesFor(x, l);
-    const std::size_t stride = std::max(rows, log.rows() / kMost);
+    const std::size_t stride = std::max(rows, log.rows() / kMostStarts);
     auto memories = Memories(problem, x, l, stride);
     for (std::size_t first = 0; first + rows < log.rows(); first += stride) {
       auto state = StateAt(problem.system().model(), measured, log, first);
       if (!state) continue;
       state->memory = std::move(memories[first]);
       ModelAndData machine = problem.system().Build(changes);
-      const Log piece = Piece(log, first, first + rows);
-      const Trace trace = Simulate(machine, measured, piece, *state);
-      const auto residuals = Residuals(measured, piece, trace);
+      const Log segment = SegmentOf(log, first, first + rows);
+      const Trace trace = Simulate(machine, measured, segment, *state);
+      const auto residuals = Residuals(measured, segment, trace);
       for (std::size_t c = 0; c < residuals.size(); ++c)
         sums[log.train ? 0 : 1][c].Add(residuals[c].back());
-      seconds.push_back(piece.time.back() - piece.time.front());
+      seconds.push_back(segment.time.back() - segment.time.front());
     }
   }
   if (seconds.empty()) return {};

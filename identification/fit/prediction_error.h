@@ -8,12 +8,12 @@
 
 namespace continuum {
 
-/// How well a model goes on with a measured motion: it starts anew at every rows-th row (in long
-/// logs at a hundred rows), from the state measured there (StateAt), and is compared with the
-/// measurement so many rows later. What the state does not tell (activations, the past of delays,
-/// friction and hysteresis) is what free simulation has there.
+/// Predicts the motion a few rows ahead from measured states, and compares with the measurement.
 ///
-/// None where the outputs do not give the state, or no log is as long.
+/// A prediction begins at every rows-th row (in long logs at a hundred rows), at the state measured
+/// there (StateAt), and ends so many rows later. What the measured state lacks (activations, the
+/// past of delays, friction and hysteresis) is taken from free simulation at that row. None where
+/// the outputs do not give the state, or no log is as long.
 std::optional<PredictionError> PredictAhead(const Problem& problem, const Problem::Vector& x,
                                             std::size_t rows);
 

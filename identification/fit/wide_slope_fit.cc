@@ -46,8 +46,8 @@ Fit FitWide(const Problem& problem, const Problem::Vector& x, const std::vector<
 
 }  // namespace
 
-Fit FitFar(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,
-           const FitOptions& options) {
+Fit FitWithWideSlopes(const Problem& problem, const Problem::Vector& x,
+                      const std::vector<bool>& use, const FitOptions& options) {
   constexpr double kLower = 1e-3;  // of the cost, that is worth another fit
   constexpr int kFits = 4;
   Fit best = FitParameters(problem, x, use, options);

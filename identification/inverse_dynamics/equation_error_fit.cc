@@ -141,7 +141,7 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
     tell("no");
     return best;
   }
-  Fit fit = FitFar(problem, equations->x, use, own);
+  Fit fit = FitWithWideSlopes(problem, equations->x, use, own);
   fit.evaluations += best.evaluations, fit.seconds = before + spent();
   fit.anew = true;
   return fit;

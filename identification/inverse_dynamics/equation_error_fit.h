@@ -19,10 +19,10 @@ struct EquationFit {
 ///
 ///   min Σ_j Σ_rows f_j² / |f_j|²,   then   min Σ_j Σ_rows a_j² / |a_j|²
 ///
-/// No simulation drifts in them, and most parameters enter f linearly: this cost has one valley
+/// No simulation drifts in them, and most parameters enter f linearly: this cost has one minimum
 /// where that of the motion has many. But inertias multiply the noise of measured accelerations,
 /// which draws them down; to a it is only added. A start for a fit, no more, as differences of
-/// measured rows tell less than the motion does. Outliers spoil it, under a robust loss
+/// measured rows hold less than the motion does. Outliers spoil it, under a robust loss
 /// too. Parameters that neither sees stay at x. Logs count in which every joint is measured in all
 /// rows; nothing where there is none.
 std::optional<EquationFit> FitEquations(const Problem& problem, const Problem::Vector& x,

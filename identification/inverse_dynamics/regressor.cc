@@ -65,10 +65,10 @@ double EvenStep(const Log& log) {
 // What one log says about every joint, filtered once.
 struct Motion {
   std::size_t log;
-  double step, cutoff;                                    // cutoff: share of the sampling rate
-  std::vector<std::vector<double>> q, v, a;               // [free dof][row]
-  std::vector<double> noise;                              // [free dof], of v
-  std::vector<std::pair<int, std::vector<double>>> pull;  // actuator, its measured force
+  double step, cutoff;                       // cutoff: share of the sampling rate
+  std::vector<std::vector<double>> q, v, a;  // [free dof][row]
+  std::vector<double> noise;                 // [free dof], of v
+  std::vector<std::pair<int, std::vector<double>>> actuator_force;  // actuator, its measured force
 };
 
 Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double cutoff) {
@@ -97,7 +97,7 @@ Motion MotionOf(const Experiment& e, const mjModel& m, std::size_t index, double
       }
     }
     if (force) {
-      motion.pull.emplace_back(source.address, std::move(y));
+      motion.actuator_force.emplace_back(source.address, std::move(y));
     } else {
       const auto i = joint - dofs.begin();
       motion.q[i] = LowPass(y, motion.cutoff);
@@ -124,8 +124,8 @@ std::vector<double> At(std::size_t row, const std::vector<std::vector<double>>& 
 }
 
 // Puts a machine at one row of a motion; joints that are tied to others follow.
-void Put(const Motion& motion, std::size_t row, const JointEqualities& ties, const mjModel& m,
-         mjData& d) {
+void SetState(const Motion& motion, std::size_t row, const JointEqualities& ties, const mjModel& m,
+              mjData& d) {
   const auto q = At(row, motion.q), v = At(row, motion.v), a = At(row, motion.a);
   ties.Spread(m, q.data(), a.data(), d);
   mju_copy(d.qacc, d.qvel, static_cast<int>(m.nv));
@@ -133,7 +133,7 @@ void Put(const Motion& motion, std::size_t row, const JointEqualities& ties, con
 }
 
 // Held inputs act half a period after their rows on the average.
-void PutInputs(const Experiment& e, const Log& log, const Wiring& wiring, std::size_t row,
+void SetInputs(const Experiment& e, const Log& log, const Wiring& wiring, std::size_t row,
                Inputs& inputs, mjData& d) {
   inputs.AtRow(d, row);
   for (std::size_t i = 0; row > 0 && i < e.inputs.size(); ++i) {
@@ -176,15 +176,16 @@ Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
     return on_free.transpose();
   };
   for (Eigen::Index k = 0; k < rows; ++k) {
-    PutInputs(e, log, wiring, k, inputs, d);
-    Put(motion, k, ties, m, d);
+    SetInputs(e, log, wiring, k, inputs, d);
+    SetState(motion, k, ties, m, d);
     mj_inverse(&m, &d);
     Eigen::RowVectorXd stationary = Eigen::RowVectorXd::Zero(free);
     MarkStationary(ties, m, d, At(k, motion.v), motion.noise, stationary);
     forces.stationary.row(k) = stationary;
     mj_fwdActuation(&m, &d);
     Vector actuated = Vector::Map(d.qfrc_actuator, m.nv);
-    for (const auto& [actuator, force] : motion.pull) Replace(d, actuator, force[k], actuated);
+    for (const auto& [actuator, force] : motion.actuator_force)
+      Replace(d, actuator, force[k], actuated);
     forces.actuated.row(k) = freely(actuated);
     const auto held = Vector::Map(d.qfrc_constraint, m.nv);
     friction.row(k) = freely(held);
@@ -207,9 +208,9 @@ Forces ForcesOf(const Problem& problem, const Motion& motion, const Vector& x) {
 // The equations of one log, without the ends that the filter has to guess.
 struct Equations {
   bool train;
-  Vector e, f;  // missing and actuator force, dof after dof
-  Vector told;  // 0 where dry friction may hold, else 1
-  Matrix Y;     // ∂e/∂p
+  Vector e, f;         // missing and actuator force, dof after dof
+  Vector informative;  // 0 where dry friction may hold, else 1
+  Matrix Y;            // ∂e/∂p
 };
 
 Vector Inner(const Matrix& forces, const Vector& weight, double cutoff) {
@@ -240,7 +241,7 @@ Vector Weights(const std::vector<Forces>& forces) {
 }
 
 Matrix Columns(const Problem& problem, const Motion& motion, const Vector& x, const Matrix& missing,
-               const Vector& weight, const Vector& told) {
+               const Vector& weight, const Vector& informative) {
   const Vector base = Inner(missing, weight, motion.cutoff);
   Matrix Y(base.size(), x.size());
   for (Eigen::Index k = 0; k < x.size(); ++k) {
@@ -256,8 +257,8 @@ Matrix Columns(const Problem& problem, const Motion& motion, const Vector& x, co
       return (Inner(ForcesOf(problem, motion, there).missing, weight, motion.cutoff) - base) / by;
     };
     Y.col(k) = moved(step);
-    const double bend = told.cwiseProduct(moved(2 * step) - Y.col(k)).norm();
-    const double size = told.cwiseProduct(Y.col(k)).norm();
+    const double bend = informative.cwiseProduct(moved(2 * step) - Y.col(k)).norm();
+    const double size = informative.cwiseProduct(Y.col(k)).norm();
     if (bend > kLinear * size) {
       throw Error::Input("--method regressor", "parameters that enter the forces linearly",
                          fmt::format("'{}', whose effect changes by {:.2g} % over {:g} {}", p.name,
@@ -285,8 +286,8 @@ Vector Solve(const Problem& problem, const Vector& x, const std::vector<Equation
   for (Eigen::Index k = 0; k < n; ++k) scale[k] = problem.parameters()[k].scale;
   for (const Equations& q : equations) {
     if (!q.train) continue;
-    H += q.Y.transpose() * q.told.asDiagonal() * q.Y;
-    g += q.Y.transpose() * q.told.cwiseProduct(q.e);
+    H += q.Y.transpose() * q.informative.asDiagonal() * q.Y;
+    g += q.Y.transpose() * q.informative.cwiseProduct(q.e);
   }
   H = scale.asDiagonal() * H * scale.asDiagonal();
   g = scale.cwiseProduct(g);
@@ -298,7 +299,7 @@ Vector Solve(const Problem& problem, const Vector& x, const std::vector<Equation
   const Vector size = H.diagonal().cwiseSqrt();
   const Matrix unit = size.cwiseInverse().asDiagonal() * H * size.cwiseInverse().asDiagonal();
   if (unit.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() < 1e-10)
-    throw Error::Job("the logs do not tell the parameters apart");
+    throw Error::Job("the logs do not distinguish the parameters");
   std::vector<bool> fixed(n, false);
   Vector change = Vector::Zero(n);
   for (bool again = true; again;) {
@@ -344,11 +345,11 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   Regression found;
   for (std::size_t l = 0; l < motions.size(); ++l) {
     const double cutoff = motions[l].cutoff;
-    const Vector told = InformativeRows(problem, motions[l], x, forces[l].stationary);
+    const Vector informative = InformativeRows(problem, motions[l], x, forces[l].stationary);
     equations.push_back({use[l], Inner(forces[l].missing, weight, cutoff),
-                         Inner(forces[l].actuated, weight, cutoff), told,
-                         Columns(problem, motions[l], x, forces[l].missing, weight, told)});
-    if (use[l]) found.rows += static_cast<std::size_t>(told.sum());
+                         Inner(forces[l].actuated, weight, cutoff), informative,
+                         Columns(problem, motions[l], x, forces[l].missing, weight, informative)});
+    if (use[l]) found.rows += static_cast<std::size_t>(informative.sum());
   }
   found.x = Solve(problem, x, equations);
   const Vector change = found.x - x;
@@ -357,8 +358,8 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   std::vector<Scores> scores;
   for (const Equations& q : equations) {
     if (!q.train) continue;
-    scores.push_back({q.told.cwiseProduct(q.e + q.Y * change), q.told.asDiagonal() * q.Y,
-                      Vector::Ones(q.e.size())});
+    scores.push_back({q.informative.cwiseProduct(q.e + q.Y * change),
+                      q.informative.asDiagonal() * q.Y, Vector::Ones(q.e.size())});
   }
   found.uncertainty = UncertaintyFrom(problem, found.x, scores);
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -24,7 +24,7 @@ std::string Quoted(const std::string& text) {
 }
 
 std::string SettingsYaml(const Problem& problem, const Problem::Vector& x, std::size_t log) {
-  // What a log alone puts on top of the model is told by itself, not in what lies beneath.
+  // What a log alone puts on top of the model is written by itself, not in what lies beneath.
   std::vector<Change> beneath, on_top;
   const auto common = problem.CommonChanges(x);
   for (const Change& c : problem.ChangesFor(x, log)) {

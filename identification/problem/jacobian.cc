@@ -34,7 +34,7 @@ std::vector<Problem::Matrix> Problem::Jacobian(const Vector& x, const std::vecto
   }
   std::vector<std::size_t> columns;
   for (std::size_t k = first; k < parameters_.size(); ++k) {
-    if (path_ == Path::kStepped || Measures(k)) columns.push_back(k);
+    if (path_ == Path::kStepped || IsOfMeasurement(k)) columns.push_back(k);
   }
   DifferenceColumns(x, r, motions, columns, J);
   if (path_ == Path::kSmooth) SensitivityColumns(x, motions, first, rough, J);
@@ -56,11 +56,11 @@ std::vector<Problem::Matrix> Problem::StartJacobian(const Vector& x, const std::
 }
 
 // Whether a parameter changes how a motion is measured, not the motion.
-bool Problem::Measures(std::size_t k) const {
+bool Problem::IsOfMeasurement(std::size_t k) const {
   return SideOf(parameters_[k].change) == Side::kMeasurement;
 }
 
-bool Problem::Allows(std::size_t k, double value) const {
+bool Problem::WithinBounds(std::size_t k, double value) const {
   return value >= parameters_[k].lower && value <= parameters_[k].upper;
 }
 
@@ -95,7 +95,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
       beside[k] += by;
       return Run(thread, beside, motions[i].front());
     };
-    const bool room = Allows(k, x[k] - step);
+    const bool room = WithinBounds(k, x[k] - step);
     Trace there = moved(step), back;
     bool both = central_ && room;
     if (both) back = moved(-step);
@@ -111,7 +111,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
   evaluations_ += (central_ ? 2 : 1) * tasks.size() + exact;
 }
 
-PerturbedRun Problem::TrialOf(ModelAndData machine, const Vector& x, std::size_t log) const {
+PerturbedRun Problem::RunOf(ModelAndData machine, const Vector& x, std::size_t log) const {
   PerturbedRun trial{std::move(machine), {}, {}, {}};
   const Log& logged = experiment_->logs[log];
   InitialState start = StartAt(trial.machine, x, log);
@@ -133,7 +133,7 @@ std::string Problem::NoClosedForm() const {
   if (!exact_) return "as asked for";
   if (terms_.count > 0) return "a force of free form acts";
   if (experiment_->quasi_static) return "the logs are quasi-static";
-  const ModelAndData machine = MachineAt(0, Start(), 0, 0);
+  const ModelAndData machine = ModelAt(0, Start(), 0, 0);
   return StepSensitivity::Obstacle(*machine.model, Wiring(setup_, *machine.model));
 }
 
@@ -148,18 +148,18 @@ std::vector<std::size_t> Problem::ClosedFormColumns(const Vector& x,
       experiment_->quasi_static || setup.skew != experiment_->skew || StopRequested())
     return columns;
   std::vector<std::size_t> left, moving;
-  for (const std::size_t k : columns) (Measures(k) ? left : moving).push_back(k);
+  for (const std::size_t k : columns) (IsOfMeasurement(k) ? left : moving).push_back(k);
   SteppedTraces traces;
   try {
-    ModelAndData machine = MachineAt(thread, x, log, 0);
+    ModelAndData machine = ModelAt(thread, x, log, 0);
     const mjModel& m = *machine.model;
     if (!StepSensitivity::Obstacle(m, Wiring(setup, m)).empty()) return columns;
-    PerturbedRun trial = TrialOf(std::move(machine), x, log);
+    PerturbedRun trial = RunOf(std::move(machine), x, log);
     std::vector<PerturbedRun> perturbed;
     for (const std::size_t k : moving) {
       Vector moved = x;
       moved[k] += StepOf(x, k, kPerturbation);
-      perturbed.push_back(TrialOf(MachineAt(thread, moved, log, 0), moved, log));
+      perturbed.push_back(RunOf(ModelAt(thread, moved, log, 0), moved, log));
     }
     traces = SimulateStepped(trial, perturbed, setup, experiment_->logs[log]);
   } catch (const Error&) {  // of values that no machine has: differences look to the other side
@@ -192,7 +192,7 @@ void Problem::SensitivityColumns(const Vector& x,
   for (std::size_t i = 0; i < motions.size(); ++i) {
     std::vector<std::size_t> moving;
     for (std::size_t k = first; k < parameters_.size(); ++k) {
-      if (!Measures(k) && parameters_[k].log[motions[i].front()]) moving.push_back(k);
+      if (!IsOfMeasurement(k) && parameters_[k].log[motions[i].front()]) moving.push_back(k);
     }
     for (std::size_t s = 0; s < shares; ++s) {
       const auto at = [&](std::size_t share) {

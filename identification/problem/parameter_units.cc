@@ -27,7 +27,7 @@ Motion MotionOf(const mjModel& m, std::string_view kind, std::string_view globs)
 }
 
 // A unit of turns, read for another motion.
-std::string Read(std::string unit, Motion motion) {
+std::string UnitForMotion(std::string unit, Motion motion) {
   using Pair = std::pair<std::string_view, std::string_view>;
   const std::string turn = unit;
   for (const auto& [old, by] : {Pair{"kg*m^2", "kg"}, Pair{"N*m", "N"}, Pair{"rad", "m"}}) {
@@ -50,14 +50,14 @@ std::string PluginUnit(const mjModel& m, const Parameter& p) {
       if (param.name != p.attribute) continue;
       // The angles of a path are those at which a cable wraps its contacts.
       const Motion motion = PathLaw<E> ? Motion::kTurn : MotionOf(m, kind, config.Get(kind));
-      unit = Read(std::string(param.unit), motion);
+      unit = UnitForMotion(std::string(param.unit), motion);
     }
   });
   return unit;
 }
 
 // Whether the first number of the dynamics of all these actuators is the time of a lag.
-bool Lags(const mjModel& m, std::string_view globs) {
+bool HasLag(const mjModel& m, std::string_view globs) {
   bool lags = false;
   for (int i = 0; i < m.nu; ++i) {
     const char* const name = mj_id2name(&m, mjOBJ_ACTUATOR, i);
@@ -92,10 +92,11 @@ std::string UnitOf(const ModelSpec& system, const Parameter& p) {
   const std::size_t colon = p.target.find(':');
   const std::string kind = p.target.substr(0, colon);
   const std::string globs = colon == p.target.npos ? "" : p.target.substr(colon + 1);
-  if (kind == "actuator" && p.attribute == "dynprm[0]" && Lags(m, globs)) return "s";
+  if (kind == "actuator" && p.attribute == "dynprm[0]" && HasLag(m, globs)) return "s";
   const Motion motion = MotionOf(m, kind, globs);
-  if (IsNativeEffect({p.target, p.attribute})) return Read(UnitOfNativeEffect(p.attribute), motion);
-  return Read(AttributeUnit(p.attribute.substr(0, p.attribute.find('['))), motion);
+  if (IsNativeEffect({p.target, p.attribute}))
+    return UnitForMotion(UnitOfNativeEffect(p.attribute), motion);
+  return UnitForMotion(AttributeUnit(p.attribute.substr(0, p.attribute.find('['))), motion);
 }
 
 }  // namespace continuum

@@ -14,7 +14,7 @@ std::string ObstacleOf(const Problem& problem, const Problem::Vector& x, std::si
 }
 
 // Whether a contact or a limit acts on the way; of the rows the first d.ne are equalities.
-std::string Touches(const Problem& problem, std::size_t log) {
+std::string ContactObstacle(const Problem& problem, std::size_t log) {
   ModelAndData machine = problem.system().Build(problem.ChangesFor(problem.Start(), log));
   double when = -1;
   Hooks hooks;
@@ -39,7 +39,7 @@ std::string SmoothObstacle(const Problem& problem) {
   }
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     std::string why = ObstacleOf(problem, beside, l);
-    if (why.empty()) why = Touches(problem, l);
+    if (why.empty()) why = ContactObstacle(problem, l);
     if (!why.empty()) return why;
   }
   return "";

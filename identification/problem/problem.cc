@@ -20,7 +20,7 @@
 namespace continuum {
 namespace {
 
-// Of a parameter that is above zero its start tells, however wide the bounds are.
+// The start of a parameter that is above zero says its size, however wide the bounds are.
 double TypicalSize(double initial, double lower, double upper) {
   const double range = upper - lower;
   const double size = lower > 0 ? initial : std::max(std::abs(initial), 1e-3 * range);
@@ -58,7 +58,7 @@ Problem::Problem(const Experiment& experiment, const ModelSpec& system,
     if (!geoms) systems_.back().DropVisuals();
   }
   for (const Parameter& p : experiment.parameters) Expand(p);
-  RefuseTwice(experiment.parameters, system);
+  RefuseDuplicates(experiment.parameters, system);
   const Wiring wiring(experiment, system.model());
   for (const Parameter& p : RegistrationParameters(experiment, wiring, system.model())) Expand(p);
   for (FreeParameter& p : StartParameters(experiment, system)) parameters_.push_back(std::move(p));
@@ -172,24 +172,24 @@ std::string Problem::GroupOf(const Parameter& p, const Log& log) const {
   return p.per == Parameter::Per::kLog ? log.label : log.condition;
 }
 
-// Every value needs a log that tells it.
+// Every value needs a log that determines it.
 void Problem::RequireSeen(const Parameter& p) const {
   const auto& logs = experiment_->logs;
-  std::set<std::string> told;
+  std::set<std::string> named;
   for (std::size_t l = 0; l < logs.size(); ++l)
-    if (seen_[l]) told.insert(GroupOf(p, logs[l]));
+    if (seen_[l]) named.insert(GroupOf(p, logs[l]));
   for (const Log& log : logs) {
     const std::string name = GroupOf(p, log);
-    if (told.contains(name)) continue;
+    if (named.contains(name)) continue;
     if (p.per == Parameter::Per::kLog)
       throw Error::Input(
           p.where + ".per",
           "`use: train` in every log where each has a value of its own (or `identify --all`, or "
           "`per: condition`)",
           "log '" + name +
-              "' with `use: validate`, which no fit sees: nothing would tell its value");
+              "' with `use: validate`, which no fit sees: nothing would determine its value");
     throw Error::Input(p.where + ".per", "a train log of every condition (or `identify --all`)",
-                       "none of '" + name + "': nothing would tell its value");
+                       "none of '" + name + "': nothing would determine its value");
   }
 }
 
@@ -265,7 +265,7 @@ std::vector<Change> Problem::CommonChanges(const Vector& x) const {
 
 // Of values that no machine has, or whose model does not compile: as much a step to be rejected as
 // one that diverges.
-Trace Problem::Refused(const Log& log, const Error& error) const {
+Trace Problem::Rejected(const Log& log, const Error& error) const {
   Trace trace;
   trace.diverged = true;
   trace.diverged_at = log.time.front();
@@ -294,14 +294,14 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
       const auto dynamics = DynamicsAt(thread, x, log);
       return SimulateSmooth(*dynamics, {}, setup, logged, solver_).trace;
     } catch (const Error& error) {
-      return Refused(logged, error);
+      return Rejected(logged, error);
     }
   }
   ModelAndData machine;
   try {
-    machine = MachineAt(thread, x, log, step);
+    machine = ModelAt(thread, x, log, step);
   } catch (const Error& error) {
-    return Refused(logged, error);
+    return Rejected(logged, error);
   }
   const InitialState start = StartAt(machine, x, log);
   Hooks hooks;
@@ -319,8 +319,8 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
 }
 
 // As it steps.
-ModelAndData Problem::MachineAt(std::size_t thread, const Vector& x, std::size_t log,
-                                double step) const {
+ModelAndData Problem::ModelAt(std::size_t thread, const Vector& x, std::size_t log,
+                              double step) const {
   auto changes = ChangesFor(x, log);
   if (const double h = step > 0 ? step : step_; h > 0) changes.push_back({"option", "timestep", h});
   return systems_[thread].Build(changes);
@@ -330,8 +330,8 @@ InitialState Problem::StartAt(ModelAndData& machine, const Vector& x, std::size_
   const auto changes = ChangesAt(x, log, Side::kStart);
   if (changes.empty()) return {};
   InitialState state = StartOf(machine, setup_, experiment_->logs[log]);
-  for (const Change& c : changes) PutStart(*machine.model, c, state);
-  PutTied(machine, state);
+  for (const Change& c : changes) SetInitialState(*machine.model, c, state);
+  SetTiedJoints(machine, state);
   return state;
 }
 
@@ -398,7 +398,7 @@ std::vector<Problem::Vector> Problem::Residuals(const Vector& x,
 }
 
 // The same motion, measured later.
-Trace Problem::Later(const Trace& trace, const Vector& x, std::size_t log, double delay) const {
+Trace Problem::Delayed(const Trace& trace, const Vector& x, std::size_t log, double delay) const {
   Experiment setup = MeasuredBy(x, log);
   for (Output& out : setup.outputs) out.measurement.delay += delay;
   Trace later = trace;
@@ -414,7 +414,7 @@ std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::ve
   ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
     const std::size_t first = motions[i].front();
     const Trace quarter = Run(thread, x, first, h / 4), half = Run(thread, x, first, h / 2);
-    const Trace later = Later(Run(thread, x, first), x, first, h);
+    const Trace later = Delayed(Run(thread, x, first), x, first, h);
     for (const std::size_t l : motions[i]) {
       out[l].resize(r[l].size(), 3);
       out[l].col(0) = r[l] - ResidualOf(l, quarter);

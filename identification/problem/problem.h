@@ -43,7 +43,7 @@ class Problem {
 
   /// extra: parameters beyond the experiment's own; seen: the logs of the fit, empty: those that
   /// train. Throws Error (key and file) for targets that match nothing, starts outside the bounds
-  /// and values of single logs or conditions that no log of the fit tells.
+  /// and values of single logs or conditions that no log of the fit determines.
   Problem(const Experiment& experiment, const ModelSpec& system, std::vector<Parameter> extra = {},
           ForceTerms terms = {}, std::vector<bool> seen = {});
   /// From now on along this path (SmoothObstacle says where the smooth one cannot go).
@@ -127,17 +127,17 @@ class Problem {
   bool SameMotion(std::size_t a, std::size_t b) const;
   std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
-  ModelAndData MachineAt(std::size_t thread, const Vector& x, std::size_t log, double step) const;
-  Trace Refused(const Log& log, const Error& error) const;
+  ModelAndData ModelAt(std::size_t thread, const Vector& x, std::size_t log, double step) const;
+  Trace Rejected(const Log& log, const Error& error) const;
   std::unique_ptr<ContinuousDynamics> DynamicsAt(std::size_t thread, const Vector& x,
                                                  std::size_t log) const;
-  bool Measures(std::size_t k) const;
+  bool IsOfMeasurement(std::size_t k) const;
   /// Within the parameter's bounds.
-  bool Allows(std::size_t k, double value) const;
+  bool WithinBounds(std::size_t k, double value) const;
   void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                          const std::vector<std::vector<std::size_t>>& motions,
                          const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
-  PerturbedRun TrialOf(ModelAndData machine, const Vector& x, std::size_t log) const;
+  PerturbedRun RunOf(ModelAndData machine, const Vector& x, std::size_t log) const;
   /// By StepSensitivity, one simulation for all columns; returns those that are left.
   std::vector<std::size_t> ClosedFormColumns(const Vector& x,
                                              const std::vector<std::size_t>& motion,
@@ -149,7 +149,7 @@ class Problem {
   static Side SideOf(const Change& change);
   std::vector<Change> ChangesAt(const Vector& x, std::size_t log, Side side) const;
   Vector ResidualOf(std::size_t log, const Trace& trace) const;
-  Trace Later(const Trace& trace, const Vector& x, std::size_t log, double delay) const;
+  Trace Delayed(const Trace& trace, const Vector& x, std::size_t log, double delay) const;
 
   const Experiment* experiment_;
   std::vector<bool> seen_;

@@ -37,7 +37,7 @@ std::string JointName(const mjModel& m, int joint) {
 }
 
 // Those that no equality ties to others.
-std::vector<int> JointsThatStart(const mjModel& m) {
+std::vector<int> IndependentJoints(const mjModel& m) {
   const JointEqualities ties(m);
   std::vector<int> joints;
   for (int j = 0; j < m.njnt; ++j) {
@@ -62,7 +62,7 @@ std::vector<FreeParameter> StartParameters(const Experiment& e, const ModelSpec&
     const InitialState start = StartOf(machine, e, log);
     std::vector<bool> own(e.logs.size(), false);
     own[l] = true;
-    for (const int j : JointsThatStart(m)) {
+    for (const int j : IndependentJoints(m)) {
       const std::string joint = JointName(m, j);
       const double travel = Travel(m, j, e, log);
       const double fast = 10 * travel;  // 1/s: back and forth three times a second
@@ -88,7 +88,7 @@ std::vector<FreeParameter> StartParameters(const Experiment& e, const ModelSpec&
   return all;
 }
 
-void PutStart(const mjModel& m, const Change& change, InitialState& state) {
+void SetInitialState(const mjModel& m, const Change& change, InitialState& state) {
   const int joint = mj_name2id(&m, mjOBJ_JOINT, change.target.substr(6).c_str());
   if (change.attribute == kPosition) {
     state.qpos[m.jnt_qposadr[joint]] = change.value;
@@ -97,7 +97,7 @@ void PutStart(const mjModel& m, const Change& change, InitialState& state) {
   }
 }
 
-void PutTied(ModelAndData& machine, InitialState& state) {
+void SetTiedJoints(ModelAndData& machine, InitialState& state) {
   const JointEqualities ties(*machine.model);
   if (ties.none() || !ties.obstacle().empty()) return;
   std::vector<double> q(ties.positions()), v(ties.velocities());

@@ -15,8 +15,8 @@ namespace continuum {
 std::vector<FreeParameter> StartParameters(const Experiment& experiment, const ModelSpec& system);
 
 /// Moves a state to where such parameters are.
-void PutStart(const mjModel& m, const Change& change, InitialState& state);
+void SetInitialState(const mjModel& m, const Change& change, InitialState& state);
 /// Moves the joints that are tied to others to where these are.
-void PutTied(ModelAndData& machine, InitialState& state);
+void SetTiedJoints(ModelAndData& machine, InitialState& state);
 
 }  // namespace continuum

@@ -13,7 +13,7 @@ namespace continuum {
 namespace {
 
 constexpr std::size_t kLags = 100;
-constexpr std::size_t kColours = 6;  // that a page tells apart
+constexpr std::size_t kColours = 6;  // that a page distinguishes
 constexpr std::size_t kOpen = 6;     // plots that need no folding
 constexpr std::size_t kPoints = 400, kClasses = 20;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

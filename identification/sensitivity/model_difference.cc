@@ -11,7 +11,7 @@
 namespace continuum {
 namespace {
 
-// Fields that are told apart by the lists of a difference, and those that no motion without
+// Fields that are distinguished by the lists of a difference, and those that no motion without
 // contacts depends on, or that follow from others at compile time.
 bool IsSeen(std::string_view field) {
   static const std::set<std::string_view> seen{

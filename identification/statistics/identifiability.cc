@@ -13,9 +13,9 @@ namespace {
 using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
-constexpr double kPoor = 0.01;     // of an eigenvalue
-constexpr double kNothing = 1e-8;  // nobody sees a difference
-constexpr double kNone = 1e-12;    // below this, rounding decides
+constexpr double kPoor = 0.01;          // of an eigenvalue
+constexpr double kUnobservable = 1e-8;  // nobody sees a difference
+constexpr double kNone = 1e-12;         // below this, rounding decides
 constexpr double kTakesPart = 0.05, kAlike = 0.1;
 constexpr double kTied = kTakesPart * kTakesPart;  // of a projector
 
@@ -34,7 +34,7 @@ std::string Combinations(std::size_t count) {
 }
 
 // What stays the same when parameters move by these shares of their values, the first one by 1.
-std::string Constant(const std::vector<std::string>& names, const Vector& move) {
+std::string WellDetermined(const std::vector<std::string>& names, const Vector& move) {
   if (move.size() == 2) {
     if (std::abs(move[0] - move[1]) < kAlike) return "only " + names[0] + "/" + names[1] + " is";
     if (std::abs(move[0] + move[1]) < kAlike) return "only " + names[0] + "*" + names[1] + " is";
@@ -44,16 +44,18 @@ std::string Constant(const std::vector<std::string>& names, const Vector& move) 
 }
 
 // The first names, and how many others there are.
-std::string Shown(const std::vector<std::string>& names) {
-  std::vector<std::string> shown(names.begin(), names.begin() + std::min(names.size(), kMostNames));
-  if (names.size() > kMostNames) shown.push_back(fmt::format("{} more", names.size() - kMostNames));
-  return Joined(shown);
+std::string Listed(const std::vector<std::string>& names) {
+  std::vector<std::string> listed(names.begin(),
+                                  names.begin() + std::min(names.size(), kMostNames));
+  if (names.size() > kMostNames)
+    listed.push_back(fmt::format("{} more", names.size() - kMostNames));
+  return Joined(listed);
 }
 
 std::string Sentence(const std::vector<std::string>& names, const std::string& changes,
                      double freedom, const std::string& constant) {
   const bool exact = std::isinf(freedom);
-  std::string text = Shown(names) + " trade off: " + changes +
+  std::string text = Listed(names) + " trade off: " + changes +
                      (exact ? " leave everything as it is"
                             : fmt::format(" show {:.0f} times less than one alone", freedom));
   if (!constant.empty()) text += "; " + constant + (exact ? " determined" : " well determined");
@@ -82,7 +84,7 @@ double FreedomOf(double eigenvalue) {
   return eigenvalue < kNone ? std::numeric_limits<double>::infinity() : 1 / std::sqrt(eigenvalue);
 }
 
-Group Alone(const Vector& direction, double eigenvalue) {
+Group SingleDirection(const Vector& direction, double eigenvalue) {
   Group group{{}, direction, FreedomOf(eigenvalue)};
   const double least = kTakesPart * direction.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < direction.size(); ++i)
@@ -105,7 +107,7 @@ std::vector<Eigen::Index> TiedTo(Eigen::Index first, const Matrix& P) {
 
 // Directions that show nothing mix with each other at will. Their projector does not: what it
 // leaves unconnected has nothing to do with each other.
-std::vector<Group> Together(const Matrix& directions, double eigenvalue) {
+std::vector<Group> ConnectedGroups(const Matrix& directions, double eigenvalue) {
   const Matrix P = directions * directions.transpose();
   std::vector<bool> done(P.rows(), false);
   std::vector<Group> groups;
@@ -118,19 +120,19 @@ std::vector<Group> Together(const Matrix& directions, double eigenvalue) {
     const Eigen::SelfAdjointEigenSolver<Matrix> modes(own);
     const Eigen::Index count = (modes.eigenvalues().array() > 0.5).count();
     const Matrix moves = modes.eigenvectors().rightCols(count);
-    groups.push_back(count == 1 ? Alone(moves, eigenvalue)
+    groups.push_back(count == 1 ? SingleDirection(moves, eigenvalue)
                                 : Group{part, moves, FreedomOf(eigenvalue)});
   }
   return groups;
 }
 
 std::vector<Group> GroupsOf(const Vector& values, const Matrix& vectors) {
-  const Eigen::Index nothing = (values.array() < kNothing).count();
+  const Eigen::Index nothing = (values.array() < kUnobservable).count();
   std::vector<Group> groups;
-  if (nothing > 0) groups = Together(vectors.leftCols(nothing), values[nothing - 1]);
+  if (nothing > 0) groups = ConnectedGroups(vectors.leftCols(nothing), values[nothing - 1]);
   const std::size_t unseen = groups.size();
   for (Eigen::Index k = nothing; k < values.size() && values[k] < kPoor; ++k)
-    groups.push_back(Alone(vectors.col(k), values[k]));
+    groups.push_back(SingleDirection(vectors.col(k), values[k]));
   for (std::size_t i = unseen; i < groups.size(); ++i) {
     for (std::size_t j = 0; j < groups.size(); ++j) {
       const auto &whole = groups[i].part, &some = groups[j].part;
@@ -145,34 +147,34 @@ std::vector<Group> GroupsOf(const Vector& values, const Matrix& vectors) {
 Confounding ConfoundingOf(const Problem& problem, const Vector& x, const Vector& one,
                           const std::vector<Eigen::Index>& inside, const Group& group) {
   Confounding found{{}, group.freedom, ""};
-  std::vector<Eigen::Index> whose;  // of all parameters
+  std::vector<Eigen::Index> members;  // of all parameters
   for (const Eigen::Index i : group.part) {
-    whose.push_back(inside[i]);
+    members.push_back(inside[i]);
     found.names.push_back(problem.parameters()[inside[i]].name);
   }
   const auto moves = static_cast<std::size_t>(group.directions.cols());
-  const std::string combinations = Combinations(whose.size() - moves - group.within);
+  const std::string combinations = Combinations(members.size() - moves - group.within);
   if (moves > 1) {
     found.text = Sentence(found.names, fmt::format("{} independent changes of them", moves),
                           group.freedom, combinations);
     return found;
   }
-  const Vector values = x(whose);
+  const Vector values = x(members);
   const bool relative = (values.array() != 0).all();
   Vector move = group.directions.col(0).cwiseProduct(one)(group.part);
   if (relative) move = move.cwiseQuotient(values);
   move /= move[0];
   const std::string constant = !relative          ? ""
                                : group.within > 0 ? combinations
-                                                  : Constant(found.names, move);
+                                                  : WellDetermined(found.names, move);
   found.text = Sentence(found.names, Changes(found.names, move, relative), group.freedom, constant);
   return found;
 }
 
 }  // namespace
 
-std::vector<Confounding> TradeOffsOf(const Problem& problem, const Vector& x,
-                                     const Uncertainty& u) {
+std::vector<Confounding> ConfoundingsOf(const Problem& problem, const Vector& x,
+                                        const Uncertainty& u) {
   std::vector<Eigen::Index> inside;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     if (!u.at_bound[i] && u.information(i, i) > 0) inside.push_back(i);

@@ -34,7 +34,7 @@ class InformationModes {
 Problem::Matrix InformationIn(const std::vector<Problem::Matrix>& J);
 
 /// Takes out of J what rounding and the curvature of wide differences show along invariances. Where
-/// J has a mode that says next to nothing, differences over a millionth of each scale tell whether
+/// J has a mode that says next to nothing, differences over a millionth of each scale show whether
 /// that is nothing: sensitivities of a smooth path are exact, and a machine that sticks from step
 /// to step has no such differences. r: residuals at x.
 void KeepInvariances(const Problem& problem, const Problem::Vector& x,

@@ -150,8 +150,8 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   for (Eigen::Index i = 0; i < n; ++i) {
     if (u.at_bound[i]) u.information.row(i).setZero(), u.information.col(i).setZero();
   }
-  const Eigen::Index told = (H.diagonal().array() > 0).count();
-  const double freedom = std::max(2.0, independent - static_cast<double>(told));
+  const Eigen::Index determined = (H.diagonal().array() > 0).count();
+  const double freedom = std::max(2.0, independent - static_cast<double>(determined));
   const InformationModes modes(H);
   const Matrix Hi = modes.Inverse(), along = modes.AlongInvariances();
   const double few = std::max(1.0, independent / freedom);
@@ -160,7 +160,7 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
   for (Eigen::Index a = 0; a < n; ++a) {
     const FreeParameter& p = problem.parameters()[a];
     const double unknown = (p.upper - p.lower) / std::sqrt(12.0);
-    if (rows <= told || !(H(a, a) > 0)) {
+    if (rows <= determined || !(H(a, a) > 0)) {
       u.standard_error[a] = unknown;
       u.lower[a] = p.lower, u.upper[a] = p.upper;
       continue;
@@ -183,7 +183,7 @@ Problem AtQuarter(const Problem& problem) {
   return fine;
 }
 
-void ReachOver(const Problem& problem, const Vector& quarter, Uncertainty& u) {
+void WidenByStep(const Problem& problem, const Vector& quarter, Uncertainty& u) {
   u.step = kWholeStep * quarter;
   Widen(problem, u.step.cwiseMin(0), u.step.cwiseMax(0), u);
 }
@@ -196,7 +196,7 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
     if (!J[l].size()) continue;
     pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
   }
-  ReachOver(problem, InformationModes(u.information).Inverse() * pull, u);
+  WidenByStep(problem, InformationModes(u.information).Inverse() * pull, u);
 }
 
 std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
@@ -231,8 +231,8 @@ std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::
   return secants;
 }
 
-void ReachFurther(const Problem& problem, const Vector& x, const std::vector<Matrix>& J,
-                  const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
+void WidenByStepSize(const Problem& problem, const Vector& x, const std::vector<Matrix>& J,
+                     const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
   std::vector<Vector> effect(step.size());
   for (std::size_t l = 0; l < step.size(); ++l) {
     if (step[l].size()) effect[l] = kWholeStep * step[l].col(0);

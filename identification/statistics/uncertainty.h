@@ -27,11 +27,11 @@ struct Scores {
 ///
 /// with Bartlett weights and Andrews' bandwidth for AR(1) scores (heteroskedasticity and
 /// autocorrelation consistent, newey1987, andrews1991; of what lasts long it sees too little). Of
-/// each parameter the larger variance counts. n: independent rows, k: parameters that they tell of.
-/// Intervals end at the bounds; that of a parameter at a bound goes from there inwards, and as its
-/// true value may lie inside, it counts as free for the others too. One without effect may be
-/// anything that its bounds allow (standard error: that of an even distribution); so may all where
-/// rows are no more than parameters.
+/// each parameter the larger variance counts. n: independent rows, k: parameters that they
+/// determine. Intervals end at the bounds; that of a parameter at a bound goes from there inwards,
+/// and as its true value may lie inside, it counts as free for the others too. One without effect
+/// may be anything that its bounds allow (standard error: that of an even distribution); so may all
+/// where rows are no more than parameters.
 Uncertainty UncertaintyFrom(const Problem& problem, const Problem::Vector& x,
                             const std::vector<Scores>& blocks);
 /// The same with one block per counted channel of every log that has a Jacobian.
@@ -58,11 +58,12 @@ inline constexpr double kWholeRoot = 2;
 /// The same problem at a quarter of its time step.
 Problem AtQuarter(const Problem& problem);
 
-/// The robot has no time step, a simulation has. Intervals reach over what the same fit gives at a
-/// fine one too, x + step, which is kept. quarter: what a quarter of the step h changes of x:
+/// Extends intervals to the value that the same fit gives at a fine time step, x + step, which is
+/// kept: the robot has no time step, a simulation has. quarter: what a quarter of the step h
+/// changes of x,
 ///
 ///   step = 4/3 quarter
-void ReachOver(const Problem& problem, const Problem::Vector& quarter, Uncertainty& u);
+void WidenByStep(const Problem& problem, const Problem::Vector& quarter, Uncertainty& u);
 /// The same to first order. With s, what the step h adds to the residuals (the first column of
 /// Problem::StepEffects, h against h/4):
 ///
@@ -70,19 +71,20 @@ void ReachOver(const Problem& problem, const Problem::Vector& quarter, Uncertain
 void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
                   const std::vector<Problem::Matrix>& step, const Whitening& whitening,
                   Uncertainty& u);
-/// J with mean slopes for columns: over the distance at which a parameter changes the residuals r
-/// at x as much as the time step does. Where the cost is full of valleys, slopes within one say
-/// little.
+/// Mean slopes in place of J's [log][rows × parameters]: over the distance at which a parameter
+/// changes the residuals r at x as much as the time step does. Where the cost has many local
+/// minima, slopes within one mean little.
 std::vector<Problem::Matrix> Secants(const Problem& problem, const Problem::Vector& x,
                                      const std::vector<Problem::Vector>& r,
                                      const std::vector<Problem::Matrix>& J,
                                      const std::vector<Problem::Matrix>& step,
                                      const Whitening& whitening);
-/// Where first order did not foretell that (machines stick and slip, and the cost has many
-/// valleys), s says how large the step's effect is, not where it pulls: intervals reach further to
-/// both sides, by those of UncertaintyOf with 4/3 s for residuals.
-void ReachFurther(const Problem& problem, const Problem::Vector& x,
-                  const std::vector<Problem::Matrix>& J, const std::vector<Problem::Matrix>& step,
-                  const Whitening& whitening, Uncertainty& u);
+/// Extends intervals to both sides by those of UncertaintyOf with 4/3 s for residuals: where first
+/// order did not predict the effect of the time step (machines stick and slip, and the cost has
+/// many local minima), s says how large that effect is, not its direction.
+void WidenByStepSize(const Problem& problem, const Problem::Vector& x,
+                     const std::vector<Problem::Matrix>& J,
+                     const std::vector<Problem::Matrix>& step, const Whitening& whitening,
+                     Uncertainty& u);
 
 }  // namespace continuum

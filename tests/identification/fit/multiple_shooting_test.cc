@@ -42,12 +42,12 @@ TEST_F(PiecesTest, WhereALongLogFallsOutOfStepItsPiecesLeadToTheTruth) {
   const Problem problem(e, system);
   const auto use = problem.TrainLogs();
   const Fit alone = FitParameters(problem, problem.Start(), use);
-  EXPECT_GT(std::abs(alone.x[0] - 5), 0.5) << "what the pieces are for";
-  const auto pieces = FitInPieces(problem, problem.Start(), use, {});
-  ASSERT_TRUE(pieces);
-  EXPECT_LT(pieces->after, 0.1 * pieces->before);
-  EXPECT_GT(pieces->evaluations, 16u);
-  const Fit fit = FitParameters(problem, pieces->x, use);
+  EXPECT_GT(std::abs(alone.x[0] - 5), 0.5) << "what the segments are for";
+  const auto segments = FitByMultipleShooting(problem, problem.Start(), use, {});
+  ASSERT_TRUE(segments);
+  EXPECT_LT(segments->after, 0.1 * segments->before);
+  EXPECT_GT(segments->evaluations, 16u);
+  const Fit fit = FitParameters(problem, segments->x, use);
   EXPECT_NEAR(fit.x[0], 5, 0.02);
   EXPECT_LT(fit.cost, 0.01 * alone.cost);
 }
@@ -56,7 +56,7 @@ TEST_F(PiecesTest, HeavySeamsMakeTwoPiecesOneMotion) {
   Experiment e = Ringing(6);
   const Log log = e.logs[0];
   constexpr std::size_t kShared = 10;
-  e.logs = {Piece(log, 0, 300 + kShared - 1), Piece(log, 300, log.rows() - 1)};
+  e.logs = {SegmentOf(log, 0, 300 + kShared - 1), SegmentOf(log, 300, log.rows() - 1)};
   e.logs[1].label = "second";
   e.start = Experiment::Start::kEstimate;
   const ModelSpec system = Model();
@@ -64,7 +64,7 @@ TEST_F(PiecesTest, HeavySeamsMakeTwoPiecesOneMotion) {
   const auto use = problem.AllLogs();
   const auto gap = [&](double weight) {
     FitOptions options;
-    options.seams = {{0, 1, kShared}}, options.seam_weight = weight;
+    options.continuity = {{0, 1, kShared}}, options.continuity_weight = weight;
     const auto r = problem.Residuals(FitParameters(problem, problem.Start(), use, options).x, use);
     return (r[0].tail(kShared) - r[1].head(kShared)).norm();
   };
@@ -76,7 +76,7 @@ TEST_F(PiecesTest, HeavySeamsMakeTwoPiecesOneMotion) {
 TEST_F(PiecesTest, ShortLogsAreNotCut) {
   const Experiment e = Ringing(19);
   const Problem problem(e, Model());
-  EXPECT_FALSE(FitInPieces(problem, problem.Start(), problem.TrainLogs(), {}));
+  EXPECT_FALSE(FitByMultipleShooting(problem, problem.Start(), problem.TrainLogs(), {}));
 }
 
 TEST_F(PiecesTest, NorLogsWithValuesOfTheirOwn) {
@@ -84,7 +84,7 @@ TEST_F(PiecesTest, NorLogsWithValuesOfTheirOwn) {
                                        "  - {name: b, target: 'joint:hinge', attribute: damping, "
                                        "initial: 0.01, lower: 0.001, upper: 1, per: log}\n");
   const Problem problem(e, Model());
-  EXPECT_FALSE(FitInPieces(problem, problem.Start(), problem.TrainLogs(), {}));
+  EXPECT_FALSE(FitByMultipleShooting(problem, problem.Start(), problem.TrainLogs(), {}));
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST_F(Far, LeavesTheValleyWhereFittingAlongSlopesEnds) {
   const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   const auto logs = problem.TrainLogs();
   const Fit near = FitParameters(problem, problem.Start(), logs);
-  const Fit far = FitFar(problem, problem.Start(), logs);
+  const Fit far = FitWithWideSlopes(problem, problem.Start(), logs);
   EXPECT_LT(far.cost, 0.01 * near.cost);
   const double expected[] = {truth.tau_c, truth.stiffness, truth.damping, truth.inertia};
   for (int k = 0; k < 4; ++k) EXPECT_NEAR(far.x[k], expected[k], 0.02 * expected[k]) << k;
@@ -70,7 +70,8 @@ TEST_F(Far, TakesNoMoreIterationsThanAllowedAndTracesEach) {
       "upper: 300}\n");
   const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
   for (const int most : {1, 4, 8, 50}) {
-    const Fit fit = FitFar(problem, problem.Start(), problem.TrainLogs(), {.iterations = most});
+    const Fit fit =
+        FitWithWideSlopes(problem, problem.Start(), problem.TrainLogs(), {.iterations = most});
     EXPECT_LE(fit.iterations, most);
     EXPECT_EQ(std::ssize(fit.trace), fit.iterations + 1) << most;
     EXPECT_EQ(fit.trace.back(), fit.cost) << most;

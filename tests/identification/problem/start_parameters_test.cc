@@ -99,7 +99,7 @@ TEST_F(StartsTest, OfTiedJointsAreThoseOfTheOthers) {
   ASSERT_EQ(problem.parameters().size(), 2 + 2 * e.logs.size());
   ModelAndData machine = system.Build();
   InitialState state{{0, 0.4}, {0, 1}};
-  PutTied(machine, state);
+  SetTiedJoints(machine, state);
   EXPECT_THAT(state.qpos, ::testing::ElementsAre(::testing::DoubleEq(0.4), 0.4));
   EXPECT_THAT(state.qvel, ::testing::ElementsAre(0.5, 1));
 }

@@ -49,7 +49,7 @@ TEST_F(TradeOffTest, SaysWhichParametersTradeOff) {
     const auto x = problem.Start();
     const auto r = problem.Residuals(x, problem.AllLogs());
     const auto J = problem.Jacobian(x, r, problem.AllLogs());
-    return TradeOffsOf(problem, x, UncertaintyOf(problem, x, r, J));
+    return ConfoundingsOf(problem, x, UncertaintyOf(problem, x, r, J));
   };
   EXPECT_TRUE(trade_offs(kK + ", " + kC + ", " + kM).empty());
   const auto all = trade_offs(kK + ", " + kC + ", " + kM + ", " + kG);
@@ -71,7 +71,7 @@ TEST_F(TradeOffTest, TellsSeveralTiesOfTheSameParametersOnce) {
   const Problem problem(e, system);
   const auto x = problem.Start();
   const auto u = IntervalsOf(problem, x, problem.Residuals(x, problem.AllLogs()));
-  const auto ties = TradeOffsOf(problem, x, u);
+  const auto ties = ConfoundingsOf(problem, x, u);
   ASSERT_EQ(ties.size(), 1u);
   EXPECT_EQ(ties[0].text,
             "k, c, m, g and u trade off: 2 independent changes of them leave everything as it is; "
@@ -92,7 +92,7 @@ TEST_F(TradeOffTest, TellsTiesThatHaveNothingToDoWithEachOtherApart) {
   const Problem problem(e, system);
   const auto x = problem.Start();
   const auto u = IntervalsOf(problem, x, problem.Residuals(x, problem.AllLogs()));
-  const auto ties = TradeOffsOf(problem, x, u);
+  const auto ties = ConfoundingsOf(problem, x, u);
   ASSERT_EQ(ties.size(), 2u);
   EXPECT_THAT(ties[0].names, ElementsAre("k", "t"));
   EXPECT_THAT(ties[0].text, HasSubstr("only one combination of them is determined"));
@@ -115,7 +115,7 @@ TEST_F(TradeOffTest, WhatNothingDeterminesReachesOverItsBounds) {
       EXPECT_EQ(u.lower[i], p.lower) << p.name;
       EXPECT_EQ(u.upper[i], p.upper) << p.name;
     }
-    const auto ties = TradeOffsOf(problem, x, u);
+    const auto ties = ConfoundingsOf(problem, x, u);
     ASSERT_EQ(ties.size(), 1u) << parameters;
     EXPECT_THAT(ties[0].text, HasSubstr("leave everything as it is"));
     if (x.size() == 2) {
