@@ -16,6 +16,7 @@
 #include "sim/io/json.h"
 #include "sim/io/output_folder.h"
 #include "sim/replay/replay.h"
+#include "sim/simulation/registration_fit.h"
 
 namespace continuum {
 namespace {

@@ -19,6 +19,8 @@
 #include "sim/io/interrupt.h"
 #include "sim/io/output_folder.h"
 #include "sim/replay/replay.h"
+#include "sim/replay/replay_report.h"
+#include "sim/simulation/registration_fit.h"
 
 namespace continuum {
 namespace {

@@ -7,6 +7,7 @@
 #include "sim/film/film_recipe.h"
 #include "sim/film/video.h"
 #include "sim/io/output_folder.h"
+#include "sim/simulation/registration_fit.h"
 
 namespace continuum {
 namespace {

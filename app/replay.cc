@@ -16,6 +16,7 @@
 #include "sim/film/video.h"
 #include "sim/io/file.h"
 #include "sim/io/output_folder.h"
+#include "sim/replay/replay_report.h"
 #include "sim/replay/sensor_score.h"
 
 namespace continuum {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "effects/effect.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 

@@ -11,6 +11,7 @@
 #include "identification/candidates/random_forces.h"
 #include "identification/fit/intervals.h"
 #include "identification/inverse_dynamics/equation_error_fit.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

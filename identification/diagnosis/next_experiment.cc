@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 #include "sim/io/units.h"
 
 namespace continuum {

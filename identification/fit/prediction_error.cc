@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "identification/fit/multiple_shooting.h"
+#include "sim/simulation/initial_state.h"
 #include "sim/simulation/score.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "sim/experiment/measurement_model.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

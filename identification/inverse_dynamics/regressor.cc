@@ -16,6 +16,7 @@
 #include "sim/experiment/measurement_model.h"
 #include "sim/model/joint_equalities.h"
 #include "sim/simulation/input_signals.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "sim/experiment/registration.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 #include "sim/model/asset_folders.h"
 
 namespace continuum {

@@ -9,7 +9,10 @@
 #include "identification/sensitivity/stepped_path.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
+#include "sim/simulation/initial_state.h"
 #include "sim/simulation/input_signals.h"
+#include "sim/simulation/trace_measurement.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

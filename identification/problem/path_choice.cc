@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "identification/sensitivity/smooth_path.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

@@ -16,6 +16,11 @@
 #include "sim/experiment/measurement_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/numerics/parallel.h"
+#include "sim/simulation/initial_state.h"
+#include "sim/simulation/registration_fit.h"
+#include "sim/simulation/simulate.h"
+#include "sim/simulation/trace_measurement.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

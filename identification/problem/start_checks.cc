@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "sim/model/attribute_bounds.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

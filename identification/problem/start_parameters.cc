@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "sim/model/joint_equalities.h"
+#include "sim/simulation/initial_state.h"
 
 namespace continuum {
 namespace {

@@ -15,6 +15,7 @@
 #include "identification/report/line_diff.h"
 #include "sim/io/file.h"
 #include "sim/replay/replay.h"
+#include "sim/replay/replay_report.h"
 
 namespace continuum {
 namespace {

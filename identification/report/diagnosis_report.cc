@@ -7,6 +7,7 @@
 #include "identification/report/diagnosis_output.h"
 #include "identification/report/fit_report.h"
 #include "sim/replay/replay.h"
+#include "sim/replay/replay_report.h"
 
 namespace continuum {
 namespace {

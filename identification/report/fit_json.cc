@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/report/parts.h"
+#include "sim/replay/replay_report.h"
 
 namespace continuum {
 namespace {

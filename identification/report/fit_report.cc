@@ -7,6 +7,7 @@
 
 #include "identification/report/parts.h"
 #include "identification/report/residual_plots.h"
+#include "sim/replay/replay_report.h"
 
 namespace continuum {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "identification/report/fit_report.h"
 #include "identification/report/parts.h"
+#include "sim/replay/replay_report.h"
 
 namespace continuum {
 namespace {

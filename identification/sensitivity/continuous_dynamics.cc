@@ -4,6 +4,7 @@
 
 #include "engine.h"
 #include "sim/model/mujoco_handles.h"
+#include "sim/simulation/initial_state.h"
 
 namespace continuum {
 namespace {

@@ -6,6 +6,7 @@
 #include "sim/model/joint_equalities.h"
 #include "sim/simulation/input_signals.h"
 #include "sim/simulation/output_recorder.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 

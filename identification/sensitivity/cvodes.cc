@@ -1,4 +1,5 @@
 #include "identification/sensitivity/cvodes.h"
+#include "sim/simulation/simulate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "identification/sensitivity/model_difference.h"
+#include "sim/simulation/wiring.h"
 
 #include <algorithm>
 #include <set>

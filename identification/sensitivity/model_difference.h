@@ -7,6 +7,7 @@
 #include <mujoco/mujoco.h>
 
 #include "sim/simulation/simulate.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 

@@ -5,6 +5,7 @@
 #include "sim/model/mujoco_handles.h"
 #include "sim/model/object_frame.h"
 #include "sim/model/point_jacobian.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

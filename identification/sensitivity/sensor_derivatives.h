@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/simulation/simulate.h"
+#include "sim/simulation/wiring.h"
 
 #include <Eigen/Core>
 

@@ -1,6 +1,7 @@
 #include "identification/sensitivity/smooth_path.h"
 
 #include "identification/sensitivity/continuous_sensitivity.h"
+#include "sim/simulation/trace_measurement.h"
 
 namespace continuum {
 namespace {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/simulation/output_recorder.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 

@@ -9,6 +9,7 @@
 #include "identification/sensitivity/force_derivatives.h"
 #include "identification/sensitivity/sensor_derivatives.h"
 #include "sim/simulation/output_recorder.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 

@@ -3,6 +3,9 @@
 #include "identification/sensitivity/smooth_path.h"
 #include "identification/sensitivity/step_sensitivity.h"
 #include "sim/simulation/input_signals.h"
+#include "sim/simulation/simulate.h"
+#include "sim/simulation/trace_measurement.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

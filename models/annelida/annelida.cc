@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "models/mjcf/mjcf_builder.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 #include "sim/io/yaml.h"
 
 namespace continuum {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum {
 namespace {

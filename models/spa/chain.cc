@@ -5,7 +5,7 @@
 
 #include "error.h"
 #include "models/mjcf/soft_segment.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum {
 namespace {

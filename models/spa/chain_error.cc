@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 #include "sim/model/model_spec.h"
 
 namespace continuum {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum {
 namespace {

@@ -1,4 +1,5 @@
 #include "models/spa/recipe.h"
+#include "sim/simulation/simulate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
+#include "sim/io/decimal.h"
 #include "sim/io/file.h"
 
 namespace continuum::statics {

@@ -4,7 +4,7 @@
 #include "error.h"
 #include "models/stiff_flop/case.h"
 #include "sim/io/csv.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum::stiff_flop {
 namespace {

@@ -11,6 +11,7 @@
 #include "sim/numerics/continuation.h"
 #include "sim/numerics/newton.h"
 #include "sim/numerics/solver.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum::stiff_flop {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "effects/braid.h"
 #include "models/stiff_flop/elastic.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum::stiff_flop {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 #include "sim/io/yaml.h"
 
 namespace continuum::stiff_flop {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/io/decimal.h"
 #include "sim/io/file.h"
 
 namespace continuum::tdcr {

@@ -4,7 +4,7 @@
 
 #include "error.h"
 #include "models/tdcr/columns.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum::tdcr {
 namespace {

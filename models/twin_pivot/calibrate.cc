@@ -8,7 +8,7 @@
 
 #include "error.h"
 #include "sim/io/csv.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum::twin_pivot {
 namespace {

@@ -9,7 +9,7 @@
 #include "error.h"
 #include "models/mjcf/mjcf_builder.h"
 #include "models/mjcf/slow_pull.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum::twin_pivot {
 namespace {

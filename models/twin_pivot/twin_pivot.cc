@@ -8,6 +8,7 @@
 #include "error.h"
 #include "models/twin_pivot/balance.h"
 #include "models/twin_pivot/geometry.h"
+#include "sim/io/decimal.h"
 #include "sim/io/file.h"
 #include "sim/numerics/continuation.h"
 #include "sim/numerics/linearize.h"

@@ -6,10 +6,15 @@
 
 #include "error.h"
 #include "sim/check/against_model.h"
+#include "sim/check/check.h"
 #include "sim/check/series_statistics.h"
 #include "sim/experiment/registration.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/units.h"
+#include "sim/simulation/registration_fit.h"
+#include "sim/simulation/simulate.h"
+#include "sim/simulation/trace_measurement.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <set>
 #include <string>
+#include <vector>
 
-#include "sim/check/rules.h"
-#include "sim/simulation/simulate.h"
+#include "sim/check/findings.h"
+#include "sim/experiment/experiment.h"
+#include "sim/model/model_spec.h"
+#include "sim/simulation/trace.h"
 
 namespace continuum {
 

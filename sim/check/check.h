@@ -3,27 +3,13 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
+#include "sim/check/findings.h"
 #include "sim/experiment/experiment.h"
 #include "sim/model/model_spec.h"
 
 namespace continuum {
-
-/// Something worth knowing about a log before anything is fitted to it.
-struct Finding {
-  /// kInfo describes, kWarning is a likely defect, kError makes a result worthless.
-  enum class Severity { kInfo, kWarning, kError };
-
-  std::string log;      ///< label; empty: the whole experiment
-  std::string channel;  ///< column; empty: the whole log
-  std::string what;     ///< kind in snake_case: "gap", "stale", "unit_suspect", …
-  std::string text;     ///< one plain sentence with numbers and units
-  std::string gist;     ///< text without the list of further places at its end
-  double begin = 0;     ///< [s] where it is; the whole log when it is everywhere
-  double end = 0;       ///< [s]
-  Severity severity = Severity::kInfo;
-};
 
 /// What the logs say by themselves: clock, duplicated rows, missing, stale, repeated, jumping,
 /// clipped and constant columns, quantisation, columns that copy another, velocities that are not

@@ -3,10 +3,11 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "sim/check/check.h"
 #include "sim/check/finding_groups.h"
-#include "sim/check/rules.h"
+#include "sim/check/findings.h"
 
 namespace continuum {
 namespace {

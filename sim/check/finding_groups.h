@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/check/check.h"
+#include "sim/check/findings.h"
 
 namespace continuum {
 

@@ -10,6 +10,7 @@
 #include "sim/check/series_statistics.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/units.h"
+#include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {

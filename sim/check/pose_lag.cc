@@ -11,6 +11,7 @@
 #include "sim/check/against_model.h"
 #include "sim/check/series_statistics.h"
 #include "sim/experiment/measurement_model.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

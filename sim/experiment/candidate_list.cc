@@ -6,6 +6,7 @@
 #include "effects/all.h"
 #include "error.h"
 #include "sim/experiment/formula_candidate.h"
+#include "sim/io/yaml.h"
 
 namespace continuum {
 namespace {

@@ -6,6 +6,8 @@
 
 namespace continuum {
 
+class Yaml;
+
 /// The list under `candidates`: "all", names of effects, maps. Throws Error (file:line: key), also
 /// for a candidate that is listed twice and for different laws of one name.
 std::vector<Candidate> ReadCandidates(const Yaml& list);

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum {
 namespace {

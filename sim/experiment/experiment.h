@@ -1,13 +1,15 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "sim/io/yaml.h"
+#include "sim/experiment/registration.h"
 #include "sim/model/change.h"
 
 namespace continuum {
@@ -43,31 +45,6 @@ struct Output {
 
   bool quaternion() const { return columns.size() == 4; }
   const std::string& name() const { return columns.front(); }
-};
-
-/// Where and when the outputs were measured, beside what each output's Measurement says:
-///
-///   p_meas(t) = R (p + Q o)(t − s) + T
-///
-/// of every position (framepos): R(rotation) and T turn and shift the world into the frame of the
-/// measurement, o is the offset of the marker in the axes Q of the sensor's object, s the shift of
-/// the outputs' clock against that of the inputs. R turns other vectors and orientations too.
-struct Registration {
-  enum class Part { kAbsent, kKnown, kEstimate };
-  using Vector = std::array<double, 3>;
-  Part frame = Part::kAbsent, marker = Part::kAbsent, clock = Part::kAbsent;
-  Vector rotation{}, translation{};      ///< rotation vector [rad], [m]
-  std::map<std::string, Vector> offset;  ///< of each sensor's marker [m]; "": of all others
-  double clock_shift = 0;                ///< [s], positive: outputs are late
-
-  bool has_frame() const {
-    return frame != Part::kAbsent || rotation != Vector{} || translation != Vector{};
-  }
-  bool has_marker() const { return marker != Part::kAbsent || !offset.empty(); }
-  bool has_clock() const { return clock != Part::kAbsent || clock_shift != 0; }
-  bool estimates() const {
-    return frame == Part::kEstimate || marker == Part::kEstimate || clock == Part::kEstimate;
-  }
 };
 
 /// A recorded trial: rows of numbers in SI.

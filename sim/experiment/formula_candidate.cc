@@ -1,12 +1,13 @@
 #include "sim/experiment/formula_candidate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "binding/expression.h"
 #include "effects/all.h"
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/yaml.h"
 
 namespace continuum {
 namespace {

@@ -4,6 +4,8 @@
 
 namespace continuum {
 
+class Yaml;
+
 /// Reads a candidate whose law is written in the experiment, of effect `formula` (key `force`) or
 /// `formula_friction` (key `level`). Throws Error (file:line: key).
 Candidate ReadWrittenLaw(const Yaml& y, const std::string& effect);

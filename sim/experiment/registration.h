@@ -1,12 +1,38 @@
 #pragma once
 
+#include <array>
+#include <map>
+#include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
-#include "sim/simulation/simulate.h"
+#include <nlohmann/json_fwd.hpp>
 
 namespace continuum {
+
+/// Where and when the outputs were measured, beside what each output's Measurement says:
+///
+///   p_meas(t) = R (p + Q o)(t − s) + T
+///
+/// of every position (framepos): R(rotation) and T turn and shift the world into the frame of the
+/// measurement, o is the offset of the marker in the axes Q of the sensor's object, s the shift of
+/// the outputs' clock against that of the inputs. R turns other vectors and orientations too.
+struct Registration {
+  enum class Part { kAbsent, kKnown, kEstimate };
+  using Vector = std::array<double, 3>;
+  Part frame = Part::kAbsent, marker = Part::kAbsent, clock = Part::kAbsent;
+  Vector rotation{}, translation{};      ///< rotation vector [rad], [m]
+  std::map<std::string, Vector> offset;  ///< of each sensor's marker [m]; "": of all others
+  double clock_shift = 0;                ///< [s], positive: outputs are late
+
+  bool has_frame() const {
+    return frame != Part::kAbsent || rotation != Vector{} || translation != Vector{};
+  }
+  bool has_marker() const { return marker != Part::kAbsent || !offset.empty(); }
+  bool has_clock() const { return clock != Part::kAbsent || clock_shift != 0; }
+  bool estimates() const {
+    return frame == Part::kEstimate || marker == Part::kEstimate || clock == Part::kEstimate;
+  }
+};
 
 /// The offset of the marker of an output's sensor ("tip_pos" or "tip_pos[1]") [m]; zero without.
 Registration::Vector OffsetOf(const Registration& r, const std::string& source);
@@ -16,24 +42,6 @@ Registration::Vector OffsetOf(const Registration& r, const std::string& source);
 /// other names.
 double& RegistrationValue(Registration& r, const std::string& attribute);
 bool IsRegistration(const std::string& attribute);
-
-/// What a registration leaves to be estimated, as parameters of a fit, from its present values.
-std::vector<Parameter> RegistrationParameters(const Experiment& e, const Wiring& wiring,
-                                              const mjModel& m);
-
-/// Least squares of what the registration leaves to be estimated, over the train logs; traces: of
-/// all logs, as simulated. The frame starts from the closed form (Kabsch) over all positions that
-/// are measured in all three directions, so it may be turned by any angle; the clock starts from
-/// its present shift.
-///
-/// Throws Error (kInput) when the logs do not determine it: fewer than three rows, points on a
-/// line, a marker that only translates, a part that changes nothing.
-Registration Registered(const Experiment& e, const Wiring& wiring, const mjModel& m,
-                        const std::vector<Trace>& traces);
-
-/// The experiment with its registration estimated from its train logs as the model simulates them;
-/// the same where nothing is to be estimated.
-Experiment Registered(const Experiment& e, const ModelSpec& system);
 
 /// Values and units; null when there is no registration.
 nlohmann::json RegistrationJson(const Registration& r);

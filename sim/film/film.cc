@@ -10,9 +10,11 @@
 #include "error.h"
 #include "sim/film/measured_points.h"
 #include "sim/film/video.h"
-#include "sim/io/file.h"
-#include "sim/model/mujoco_handles.h"
+#include "sim/io/decimal.h"
+#include "sim/model/effect_kind.h"
 #include "sim/numerics/round_number.h"
+#include "sim/simulation/simulate.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {
@@ -74,8 +76,8 @@ std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
     const auto& [low, high] = *options.tension;
     return ColorBar{"cable tension [N]", Decimal(low), Decimal(high)};
   }
-  if (HasEffect(m, "capstan")) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
-  if (!HasEffect(m, "pcc_segment")) return std::nullopt;
+  if (HasPathLaw(m)) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
+  if (!HasChamberLaw(m)) return std::nullopt;
   double full = 0;  // all chambers are alike
   for (int a = 0; a < m.nu; ++a) {
     if (!m.actuator_ctrllimited[a]) return std::nullopt;
@@ -251,7 +253,7 @@ Outlook LookAhead(const Experiment& e, const ModelSpec& system, const Log& log,
   look.row = [&](const mjModel& m, mjData& d, std::size_t row) {
     if (!clock.Due(row)) return;
     ahead.framing.Include(m, d);
-    if (!options.tension && !HasEffect(m, "capstan")) ahead.Include(TensionsOf(m, d));
+    if (!options.tension && !HasPathLaw(m)) ahead.Include(TensionsOf(m, d));
     if (!options.ghost) return;
     if (const mjData* const ghost = measured.At(row))
       ahead.framing.Include(m, *ghost);

@@ -5,7 +5,8 @@
 #include <numbers>
 
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
+#include "sim/io/yaml.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {

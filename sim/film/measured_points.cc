@@ -7,6 +7,7 @@
 #include "sim/experiment/measurement_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/model/object_frame.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/simulation/simulate.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 

@@ -3,7 +3,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstdint>
@@ -12,11 +11,20 @@
 #include <iterator>
 
 #include "error.h"
-#include "sim/io/output_folder.h"
 
 namespace continuum {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr int kLinks = 40;  // as many as Linux follows
+
+// Standard output and its like, also when it happens to be a file.
+bool IsStandardStream(const fs::path& path) {
+  std::error_code failed;
+  const std::string text = fs::absolute(path, failed).lexically_normal().string();
+  return text == "/dev/stdout" || text == "/dev/stderr" || text.starts_with("/dev/fd/") ||
+         text.starts_with("/proc/");
+}
 
 void WriteInPlace(const fs::path& path, std::string_view content) {
   std::ofstream out(path, std::ios::binary | std::ios::app);
@@ -53,6 +61,23 @@ void RemoveLeftBehind(const fs::path& folder, const std::string& before, const s
 }
 
 }  // namespace
+
+fs::path ThroughLinks(const fs::path& path) {
+  std::error_code failed;
+  fs::path target = path;
+  for (int hop = 0; hop < kLinks && fs::is_symlink(target, failed); ++hop) {
+    if (IsStandardStream(target)) break;
+    const fs::path next = fs::read_symlink(target, failed);
+    if (failed) break;
+    target = target.parent_path() / next;
+  }
+  return target;
+}
+
+bool IsStream(const fs::path& path) {
+  std::error_code failed;
+  return IsStandardStream(path) || fs::is_other(path, failed);
+}
 
 void RequireFile(const fs::path& path) {
   std::error_code failed;
@@ -109,12 +134,6 @@ void MakeFolder(const fs::path& path) {
   if (failed || !fs::is_directory(path)) {
     throw Error::Input(path.string(), "a folder that can be written", failed.message());
   }
-}
-
-std::string Decimal(double value) {
-  std::array<char, 32> buffer;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
 }
 
 }  // namespace continuum

@@ -6,6 +6,12 @@
 
 namespace continuum {
 
+/// The file that writing to path changes: the end of its symbolic links, whether it exists or not.
+std::filesystem::path ThroughLinks(const std::filesystem::path& path);
+
+/// Pipes, terminals and other devices; and standard output, also when it happens to be a file.
+bool IsStream(const std::filesystem::path& path);
+
 /// Throws Error for a file that may never end (a pipe, a device), a folder and what memory cannot
 /// hold. One that does not exist is left to its reader.
 void RequireFile(const std::filesystem::path& path);
@@ -23,8 +29,5 @@ void MakeFolder(const std::filesystem::path& path);
 /// A temporary name beside path, for writers that need a real file; rename it over path when done.
 /// What processes that were killed left behind under such names is removed.
 std::filesystem::path Aside(const std::filesystem::path& path);
-
-/// The shortest decimal text that reads back as exactly this number.
-std::string Decimal(double value);
 
 }  // namespace continuum

@@ -1,5 +1,7 @@
 #include "sim/io/json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "error.h"
 #include "sim/io/file.h"
 

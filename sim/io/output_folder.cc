@@ -13,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLinks = 40;  // as many as Linux follows
-
 void RequireOutput(const fs::path& folder, const std::string& name,
                    const std::vector<fs::path>& inputs) {
   if (!name.ends_with('/')) return RequireWritable(folder / name, inputs);
@@ -25,32 +23,7 @@ void RequireOutput(const fs::path& folder, const std::string& name,
   RequireWritable(inner / "log.csv", inputs);
 }
 
-// Standard output and its like, also when it happens to be a file.
-bool IsStandardStream(const fs::path& path) {
-  std::error_code failed;
-  const std::string text = fs::absolute(path, failed).lexically_normal().string();
-  return text == "/dev/stdout" || text == "/dev/stderr" || text.starts_with("/dev/fd/") ||
-         text.starts_with("/proc/");
-}
-
 }  // namespace
-
-fs::path ThroughLinks(const fs::path& path) {
-  std::error_code failed;
-  fs::path target = path;
-  for (int hop = 0; hop < kLinks && fs::is_symlink(target, failed); ++hop) {
-    if (IsStandardStream(target)) break;
-    const fs::path next = fs::read_symlink(target, failed);
-    if (failed) break;
-    target = target.parent_path() / next;
-  }
-  return target;
-}
-
-bool IsStream(const fs::path& path) {
-  std::error_code failed;
-  return IsStandardStream(path) || fs::is_other(path, failed);
-}
 
 void RequireWritable(const fs::path& path, const std::vector<fs::path>& inputs) {
   const fs::path target = ThroughLinks(path);

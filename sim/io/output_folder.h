@@ -6,12 +6,6 @@
 
 namespace continuum {
 
-/// The file that writing to path changes: the end of its symbolic links, whether it exists or not.
-std::filesystem::path ThroughLinks(const std::filesystem::path& path);
-
-/// Pipes, terminals and other devices; and standard output, also when it happens to be a file.
-bool IsStream(const std::filesystem::path& path);
-
 /// Throws Error where WriteFile would, and where it would write over one of the job's own inputs:
 /// to be asked before long work, not after it.
 void RequireWritable(const std::filesystem::path& path,

@@ -4,14 +4,85 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <sstream>
+
+#include <yaml-cpp/eventhandler.h>
 
 #include "error.h"
+#include "sim/io/decimal.h"
 #include "sim/io/excerpt.h"
 #include "sim/io/file.h"
-#include "sim/io/repeated_keys.h"
 #include "sim/io/units.h"
 
 namespace continuum {
+namespace {
+
+// Reads the text as events: aliases are not followed, so a file that repeats itself or contains
+// itself costs no more than its length.
+class Keys : public YAML::EventHandler {
+ public:
+  explicit Keys(const std::string& name) : name_(name) {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override { Item(); }
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override { Item(); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string& value) override {
+    if (IsKey()) Add(mark.line + 1, value);
+    Item();
+  }
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    Item();
+    open_.push_back({.is_map = false});
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    Item();
+    open_.push_back({.is_map = true});
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+ private:
+  struct Collection {
+    bool is_map = false;
+    std::size_t items = 0;                 // keys and values so far
+    std::map<std::string, int> keys = {};  // with their lines
+  };
+
+  bool IsKey() const {
+    return !open_.empty() && open_.back().is_map && open_.back().items % 2 == 0;
+  }
+
+  void Item() {
+    if (!open_.empty()) ++open_.back().items;
+  }
+
+  void Add(int line, const std::string& key) {
+    const auto [first, added] = open_.back().keys.emplace(key, line);
+    if (added) return;
+    throw Error::Input(
+        name_ + ":" + std::to_string(line), "different keys",
+        "'" + Shown(key) + "' twice, first in line " + std::to_string(first->second));
+  }
+
+  const std::string& name_;
+  std::vector<Collection> open_;
+};
+
+// Throws Error (file:line) when a map has a key twice: the tree would take one of the two values
+// and say nothing. Throws YAML::Exception for what is no YAML.
+void RefuseRepeatedKeys(const std::string& text, const std::string& name) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  Keys keys(name);
+  parser.HandleNextDocument(keys);
+}
+
+}  // namespace
 
 Yaml Yaml::Read(const std::filesystem::path& file) { return Parse(ReadFile(file), file.string()); }
 
@@ -87,6 +158,25 @@ void Yaml::Only(std::initializer_list<std::string_view> allowed) const {
 std::string Yaml::Text() const {
   if (!node_.IsScalar()) throw Error::Input(Where(), "a text", Found());
   return node_.Scalar();
+}
+
+std::string Yaml::TextOr(const std::string& key, const std::string& fallback) const {
+  const auto found = Find(key);
+  return found ? found->Text() : fallback;
+}
+
+void Yaml::RefuseOption(const std::string& options) const {
+  throw Error::Input(Where(), options, "'" + Text() + "'");
+}
+
+std::filesystem::path Yaml::File(const std::string& expected) const {
+  const std::filesystem::path file = std::filesystem::path(file_).parent_path() / Text();
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw Error::Input(Where(), expected, "no file " + file.string());
+  if (std::filesystem::is_directory(file, ignored))
+    throw Error::Input(Where(), expected, "a folder");
+  return file;
 }
 
 double Yaml::Number() const {

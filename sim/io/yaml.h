@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -40,6 +41,13 @@ class Yaml {
   bool IsList() const { return node_.IsSequence(); }
   bool IsScalar() const { return node_.IsScalar(); }
   std::string Text() const;
+  /// The text at a key of a map, or the fallback where the key is absent.
+  std::string TextOr(const std::string& key, const std::string& fallback) const;
+  /// The value of the option that the text names; throws Error, listing all, for another text.
+  template <class T>
+  T OneOf(const std::vector<std::pair<std::string, T>>& options) const;
+  /// The file of this name, from the folder of the YAML file; throws Error when there is none.
+  std::filesystem::path File(const std::string& expected) const;
   double Number() const;  ///< finite
   double Number(double lower, double upper) const;
   /// The number at a key of a map, or the fallback where the key is absent.
@@ -59,8 +67,22 @@ class Yaml {
   Yaml(YAML::Node node, std::string file, std::string path)
       : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)) {}
 
+  /// Throws Error: one of the options was expected here.
+  [[noreturn]] void RefuseOption(const std::string& options) const;
+
   YAML::Node node_;
   std::string file_, path_;
 };
+
+template <class T>
+T Yaml::OneOf(const std::vector<std::pair<std::string, T>>& options) const {
+  const std::string text = Text();
+  std::string all;
+  for (const auto& [name, value] : options) {
+    if (text == name) return value;
+    all += (all.empty() ? "" : " | ") + name;
+  }
+  RefuseOption(all);
+}
 
 }  // namespace continuum

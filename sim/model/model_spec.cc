@@ -5,9 +5,9 @@
 #include <sstream>
 #include <vector>
 
-#include "effects/all.h"
 #include "engine.h"
 #include "error.h"
+#include "sim/io/decimal.h"
 #include "sim/io/file.h"
 #include "sim/model/asset_folders.h"
 #include "sim/model/native_effect.h"
@@ -137,24 +137,6 @@ void AddInstance(std::string& xml, const EffectInstance& effect) {
 bool LiesOnTop(const Change& change) {
   return IsNativeEffect(change) || IsWeight(change.target, change.attribute) ||
          IsForceScale(change);
-}
-
-std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter) {
-  std::string all = "no parameters";
-  std::size_t index = 0;
-  bool found = false;
-  const auto look = [&]<class E>() {
-    if (plugin != "continuum." + std::string(E::kName)) return;
-    all.clear();
-    for (std::size_t i = 0; i < E::kParams.size(); ++i) {
-      all += (i ? ", " : "") + std::string(E::kParams[i].name);
-      if (parameter == E::kParams[i].name) found = true, index = i;
-    }
-  };
-  All::ForEach(look);
-  FormulaLaws::ForEach(look);
-  if (!found) throw Error::Input(plugin, "one of the parameters " + all, "'" + parameter + "'");
-  return index;
 }
 
 ModelSpec ModelSpec::Load(const std::filesystem::path& model) {

@@ -80,7 +80,4 @@ class ModelSpec {
 /// native effect, a point_mass or a force_scale.
 bool LiesOnTop(const Change& change);
 
-/// Index of a parameter on an effect's card; throws Error when the effect has none of this name.
-std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter);
-
 }  // namespace continuum

@@ -4,7 +4,6 @@
 
 #include "effects/all.h"
 #include "error.h"
-#include "sim/model/model_spec.h"
 #include "sim/model/spec_element.h"
 
 namespace continuum {
@@ -74,6 +73,24 @@ void Apply(Target& target, std::span<const Change> changes, const Change& change
 }
 
 }  // namespace
+
+std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter) {
+  std::string all = "no parameters";
+  std::size_t index = 0;
+  bool found = false;
+  const auto look = [&]<class E>() {
+    if (plugin != "continuum." + std::string(E::kName)) return;
+    all.clear();
+    for (std::size_t i = 0; i < E::kParams.size(); ++i) {
+      all += (i ? ", " : "") + std::string(E::kParams[i].name);
+      if (parameter == E::kParams[i].name) found = true, index = i;
+    }
+  };
+  All::ForEach(look);
+  FormulaLaws::ForEach(look);
+  if (!found) throw Error::Input(plugin, "one of the parameters " + all, "'" + parameter + "'");
+  return index;
+}
 
 bool IsWorld(std::string_view target) {
   return target == "option" || target.substr(0, target.find(':')) == "world";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +26,10 @@ bool RepeatsEffect(std::span<const Change> changes, std::size_t index);
 /// when there is no native effect or parameter of this name.
 void ApplyNativeEffect(SpecElement& element, std::span<const Change> changes, const Change& change);
 void ApplyNativeEffect(mjOption& world, std::span<const Change> changes, const Change& change);
+
+/// Index of a parameter on the card of an effect, by the name of its plugin ("continuum.dahl").
+/// Throws Error when the effect has none of this name.
+std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter);
 
 /// The value of a parameter at which its effect is absent; 0 when that is what the model has.
 double NullOfNativeEffect(const std::string& attribute);

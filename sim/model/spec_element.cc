@@ -1,123 +1,41 @@
 #include "sim/model/spec_element.h"
 
-#include <cmath>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <numbers>
-#include <type_traits>
+#include <utility>
 
-#include <mujoco/mjspecmacro.h>
-
-#include <Eigen/Dense>
-
-#include "binding/actuator_type.h"
 #include "binding/config.h"
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
+#include "sim/model/actuator_edit.h"
+#include "sim/model/body_inertia.h"
+#include "sim/model/spec_fields.h"
 
 namespace continuum {
 namespace {
 
-struct Field {
-  double* data;
-  int size;
-};
-using Fields = std::map<std::string, Field, std::less<>>;
+const char* const kFrame = "external_force_frame";
 
-template <class T>
-void Put(Fields& fields, const char* name, T* data, int size) {
-  if constexpr (std::is_same_v<T, double>) fields[name] = {data, size};
-}
-
-// Every double of a specification struct under its own name, from MuJoCo's lists of members.
-#define X(type, name, size) Put(fields, #name, &s->name, size);
-#define XVEC(type, name, size) Put(fields, #name, &s->name[0], size);
-Fields Of(mjsJoint* s) {
-  Fields fields;
-  MJSJOINT_FIELDS
-  return fields;
-}
-Fields Of(mjsBody* s) {
-  Fields fields;
-  MJSBODY_FIELDS
-  return fields;
-}
-Fields Of(mjsSite* s) {
-  Fields fields;
-  MJSSITE_FIELDS
-  return fields;
-}
-Fields Of(mjsGeom* s) {
-  Fields fields;
-  MJSGEOM_FIELDS
-  return fields;
-}
-Fields Of(mjsTendon* s) {
-  Fields fields;
-  MJSTENDON_FIELDS
-  return fields;
-}
-Fields Of(mjsActuator* s) {
-  Fields fields;
-  MJSACTUATOR_FIELDS
-  return fields;
-}
-Fields Of(mjsSensor* s) {
-  Fields fields;
-  MJSSENSOR_FIELDS
-  return fields;
-}
-#undef X
-#undef XVEC
-
-Fields FieldsOf(mjsElement* e) {
-  switch (e->elemtype) {
-    case mjOBJ_JOINT:
-      return Of(mjs_asJoint(e));
-    case mjOBJ_BODY:
-      return Of(mjs_asBody(e));
-    case mjOBJ_SITE:
-      return Of(mjs_asSite(e));
-    case mjOBJ_GEOM:
-      return Of(mjs_asGeom(e));
-    case mjOBJ_TENDON:
-      return Of(mjs_asTendon(e));
-    case mjOBJ_ACTUATOR:
-      return Of(mjs_asActuator(e));
-    case mjOBJ_SENSOR:
-      return Of(mjs_asSensor(e));
-    default:
-      return {};
-  }
+// An actuator of the constant force 1 at a site, along gear in the axes of the world.
+mjsActuator& MakeForce(mjSpec* spec, const std::string& name, const std::string& site) {
+  mjsActuator& a = *mjs_addActuator(spec, nullptr);
+  mjs_setName(a.element, name.c_str());
+  a.type = mjACTUATOR_GENERAL;
+  a.trntype = mjTRN_SITE;
+  mjs_setString(a.target, site.c_str());
+  mjs_setString(a.refsite, kFrame);
+  a.gaintype = mjGAIN_FIXED, a.gainprm[0] = 0;
+  a.biastype = mjBIAS_AFFINE, a.biasprm[0] = 1;
+  for (double& g : a.gear) g = 0;
+  return a;
 }
 
-// "gear[2]" → ("gear", 2); no index is 0.
-std::pair<std::string, int> SplitIndex(std::string_view attribute) {
-  const std::size_t open = attribute.find('[');
-  if (open == attribute.npos) return {std::string(attribute), 0};
-  int index = -1;
-  if (attribute.ends_with(']')) {
-    index = 0;
-    for (const char c : attribute.substr(open + 1, attribute.size() - open - 2)) {
-      index = c >= '0' && c <= '9' && index >= 0 ? 10 * index + (c - '0') : -1;
-    }
-  }
-  return {std::string(attribute.substr(0, open)), index};
-}
-
-const std::map<std::string, mjtObj, std::less<>>& Kinds() {
-  static const std::map<std::string, mjtObj, std::less<>> kinds{
-      {"joint", mjOBJ_JOINT},  {"body", mjOBJ_BODY},     {"site", mjOBJ_SITE},
-      {"geom", mjOBJ_GEOM},    {"tendon", mjOBJ_TENDON}, {"actuator", mjOBJ_ACTUATOR},
-      {"sensor", mjOBJ_SENSOR}};
-  return kinds;
-}
-
-std::string KindName(mjtObj kind) {
-  for (const auto& [name, value] : Kinds()) {
-    if (value == kind) return name;
-  }
-  return "element";
+mjsElement* MakeSite(mjsBody* body, const std::string& name) {
+  mjsSite* const site = mjs_addSite(body, nullptr);
+  mjs_setName(site->element, name.c_str());
+  return site->element;
 }
 
 }  // namespace
@@ -185,7 +103,8 @@ double* SpecElement::Address(std::string_view attribute, double& unit) const {
 }
 
 double SpecElement::Get(std::string_view attribute) const {
-  if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return BodyMass();
+  if (element_->elemtype == mjOBJ_BODY && attribute == "mass")
+    return BodyMass(*spec_, *mjs_asBody(element_), *compiled_);
   if (element_->elemtype == mjOBJ_TENDON) {
     if (attribute == "springlength" || attribute == "springlength[0]") return RestLength(0);
     if (attribute == "springlength[1]") return RestLength(1);
@@ -204,8 +123,10 @@ double SpecElement::Get(std::string_view attribute) const {
 }
 
 void SpecElement::Set(std::string_view attribute, double value) {
-  if (element_->elemtype == mjOBJ_BODY && attribute == "mass") return SetBodyMass(value);
-  if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return AddPointMass(value);
+  if (element_->elemtype == mjOBJ_BODY && attribute == "mass")
+    return SetBodyMass(*spec_, *mjs_asBody(element_), *compiled_, value);
+  if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass")
+    return AddPointMass(*spec_, *mjs_asBody(element_), *compiled_, value);
   if (element_->elemtype == mjOBJ_TENDON && attribute.starts_with("springlength")) {
     double* const ends = mjs_asTendon(element_)->springlength;
     const bool both = attribute == "springlength";
@@ -214,8 +135,8 @@ void SpecElement::Set(std::string_view attribute, double value) {
     if (both) return;
   }
   if (element_->elemtype == mjOBJ_ACTUATOR) {
-    if (attribute == "lag") return SetLag(value);
-    if (attribute == "delay") return SetDelay(value);
+    if (attribute == "lag") return SetLag(*mjs_asActuator(element_), value);
+    if (attribute == "delay") return SetDelay(*mjs_asActuator(element_), value);
     if (attribute == "force_scale") return Scale("force_scale", value);
     if (attribute == "kp") {
       mjsActuator& a = Affine();
@@ -235,7 +156,8 @@ void SpecElement::Set(std::string_view attribute, double value) {
 }
 
 void SpecElement::Add(std::string_view attribute, double value) {
-  if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass") return AddPointMass(value);
+  if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass")
+    return AddPointMass(*spec_, *mjs_asBody(element_), *compiled_, value);
   const bool place = element_->elemtype == mjOBJ_BODY || element_->elemtype == mjOBJ_SITE;
   if (place && attribute.starts_with("force[")) return AddForce(attribute, value);
   if (element_->elemtype == mjOBJ_ACTUATOR && attribute == "input") {
@@ -290,137 +212,35 @@ void SpecElement::RequireOrder(std::string_view attribute) const {
                      Decimal(index == 0 ? low : high));
 }
 
-// An actuator with fixed gain and at most affine bias, written with <general>.
+// Made once per place; another extension of the same model adds to it.
+void SpecElement::AddForce(std::string_view attribute, double newtons) {
+  const int axis = attribute == "force[0]" ? 0 : attribute == "force[1]" ? 1 : 2;
+  const bool body = element_->elemtype == mjOBJ_BODY;
+  const std::string name = "external_force_" + std::string(body ? "body_" : "site_") + Name();
+  mjsElement* const present = mjs_findElement(spec_, mjOBJ_ACTUATOR, name.c_str());
+  if (present) {
+    others_.push_back(SpecElement(spec_, present, compiled_).Save());
+    mjs_asActuator(present)->gear[axis] += newtons;
+    return;
+  }
+  const auto created = [&](mjsElement* e) { others_.push_back({e, {}, spec_}); };
+  if (!mjs_findElement(spec_, mjOBJ_SITE, kFrame)) {
+    created(MakeSite(mjs_findBody(spec_, "world"), kFrame));
+  }
+  if (body) created(MakeSite(mjs_asBody(element_), name));
+  mjsActuator& force = MakeForce(spec_, name, body ? name : Name());
+  created(force.element);
+  force.gear[axis] = newtons;
+}
+
 mjsActuator& SpecElement::Affine() {
   mjsActuator& a = *mjs_asActuator(element_);
-  if (a.gaintype != mjGAIN_FIXED || (a.biastype != mjBIAS_NONE && a.biastype != mjBIAS_AFFINE)) {
-    throw Error::Input(Who(), "an actuator with a fixed gain and an affine bias",
-                       ActuatorType(a.gaintype, a.biastype, a.dyntype));
-  }
-  a.type = mjACTUATOR_GENERAL;
-  if (a.biastype == mjBIAS_NONE) {
-    a.biastype = mjBIAS_AFFINE;
-    for (double& b : a.biasprm) b = 0;
-  }
+  MakeAffine(a);
   return a;
 }
 
-void SpecElement::SetLag(double lag) {
-  mjsActuator& a = *mjs_asActuator(element_);
-  const bool lagged = a.dyntype == mjDYN_FILTER || a.dyntype == mjDYN_FILTEREXACT;
-  if (a.dyntype != mjDYN_NONE && !lagged) {
-    throw Error::Input(Who(), "an actuator without dynamics or with a first-order lag",
-                       ActuatorType(a.gaintype, a.biastype, a.dyntype));
-  }
-  a.type = mjACTUATOR_GENERAL;
-  if (lag <= 0) {
-    a.dyntype = mjDYN_NONE, a.actdim = -1;
-    return;
-  }
-  if (!lagged) a.actearly = 1;  // else it would be a step late however short
-  a.dyntype = mjDYN_FILTEREXACT;
-  a.dynprm[0] = lag;
-}
-
-void SpecElement::SetDelay(double delay) {
-  if (delay < 0) throw Error::Input(Who() + ": delay", "a number >= 0", std::to_string(delay));
-  mjsActuator& a = *mjs_asActuator(element_);
-  a.delay = delay;
-  if (delay == 0) a.nsample = 0;
-  if (delay > 0 && a.nsample == 0) a.interp = 1;
-}
-
 void SpecElement::CoverDelay() {
-  mjsActuator& a = *mjs_asActuator(element_);
-  if (a.delay <= 0) return;
-  const double samples = 8 * (a.delay / spec_->option.timestep + 4);
-  a.nsample = std::max(a.nsample, static_cast<int>(std::min(samples, 1e6)));
-}
-
-// Of the specification where it says so, else what compilation found in the geoms.
-double SpecElement::BodyMass() const {
-  const mjsBody& body = *mjs_asBody(element_);
-  if (body.explicitinertial && spec_->compiler.inertiafromgeom != mjINERTIAFROMGEOM_TRUE)
-    return body.mass;
-  return compiled_->body_mass[mj_name2id(compiled_, mjOBJ_BODY, Name().c_str())];
-}
-
-// Makes the inertia that compilation found explicit, with a quaternion, so that it can be edited.
-void SpecElement::FreezeInertia() {
-  if (spec_->compiler.inertiafromgeom == mjINERTIAFROMGEOM_TRUE ||
-      spec_->compiler.settotalmass > 0) {
-    throw Error::Input(Who() + ": mass",
-                       "a <compiler> without inertiafromgeom=\"true\" and settotalmass",
-                       "one that overrides the mass of a body");
-  }
-  mjsBody& body = *mjs_asBody(element_);
-  if (body.explicitinertial) {
-    const char* const failed = mjs_resolveOrientation(body.iquat, spec_->compiler.degree,
-                                                      spec_->compiler.eulerseq, &body.ialt);
-    if (failed) throw Error::Input(Who() + ": inertial", failed);
-    body.ialt.type = mjORIENTATION_QUAT;
-    return;
-  }
-  const int b = mj_name2id(compiled_, mjOBJ_BODY, Name().c_str());
-  body.explicitinertial = 1;
-  body.mass = compiled_->body_mass[b];
-  const bool massless = body.mass == 0;  // its compiled centre means nothing
-  for (int i = 0; i < 3; ++i) {
-    body.ipos[i] = massless ? 0 : compiled_->body_ipos[3 * b + i];
-    body.inertia[i] = compiled_->body_inertia[3 * b + i];
-  }
-  const double unit[4] = {1, 0, 0, 0};
-  for (int i = 0; i < 4; ++i) body.iquat[i] = massless ? unit[i] : compiled_->body_iquat[4 * b + i];
-  body.ialt.type = mjORIENTATION_QUAT;
-  body.fullinertia[0] = NAN;
-}
-
-void SpecElement::SetBodyMass(double mass) {
-  FreezeInertia();
-  mjsBody& body = *mjs_asBody(element_);
-  const double factor = body.mass > 0 ? mass / body.mass : 0;
-  body.mass = mass;
-  for (double& i : body.inertia) i *= factor;
-  if (std::isfinite(body.fullinertia[0])) {
-    for (double& i : body.fullinertia) i *= factor;
-  }
-}
-
-// Adds a point mass at the body's origin: centre and inertia by the parallel-axis theorem.
-void SpecElement::AddPointMass(double added) {
-  if (added == 0) return;
-  FreezeInertia();
-  mjsBody& body = *mjs_asBody(element_);
-  using Eigen::Matrix3d, Eigen::Vector3d;
-  Matrix3d inertia;
-  if (std::isfinite(body.fullinertia[0])) {
-    const double* const f = body.fullinertia;
-    inertia << f[0], f[3], f[4], f[3], f[1], f[5], f[4], f[5], f[2];
-  } else {
-    double r[9];
-    mju_quat2Mat(r, body.iquat);
-    const Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r);
-    inertia = R * Eigen::Map<const Vector3d>(body.inertia).asDiagonal() * R.transpose();
-  }
-  const auto steiner = [](double m, const Vector3d& r) -> Matrix3d {
-    return m * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
-  };
-  const Vector3d centre = Eigen::Map<const Vector3d>(body.ipos);
-  const double total = body.mass + added;
-  const Vector3d moved = centre * (body.mass / total);
-  inertia += steiner(body.mass, centre - moved) + steiner(added, moved);
-  body.mass = total;
-  for (int i = 0; i < 3; ++i) body.ipos[i] = moved[i];
-  // A point alone has no inertia; the compiler asks for some: that of a ball of 0.1 mm, however
-  // light.
-  if (inertia.eigenvalues().real().minCoeff() <= 1e-12)
-    inertia.diagonal().array() += std::max(4e-9 * total, 1e-13);
-  const double full[6] = {inertia(0, 0), inertia(1, 1), inertia(2, 2),
-                          inertia(0, 1), inertia(0, 2), inertia(1, 2)};
-  std::copy(full, full + 6, body.fullinertia);
-  const double unit[4] = {1, 0, 0, 0};
-  std::copy(unit, unit + 4, body.iquat);
-  for (double& i : body.inertia) i = 0;
+  continuum::CoverDelay(*mjs_asActuator(element_), spec_->option.timestep);
 }
 
 std::vector<SpecElement> Elements(mjSpec* spec, mjtObj kind, const mjModel* compiled) {
@@ -433,10 +253,10 @@ std::vector<SpecElement> Elements(mjSpec* spec, mjtObj kind, const mjModel* comp
 std::vector<SpecElement> MatchElements(mjSpec* spec, const mjModel* compiled,
                                        const std::string& target, const std::string& where) {
   const std::size_t colon = target.find(':');
-  const auto kind = Kinds().find(target.substr(0, colon));
-  if (colon == target.npos || kind == Kinds().end()) {
+  const auto kind = ElementKinds().find(target.substr(0, colon));
+  if (colon == target.npos || kind == ElementKinds().end()) {
     std::string all = "option, plugin:NAME";
-    for (const auto& [name, type] : Kinds()) all += ", " + name + ":GLOB";
+    for (const auto& [name, type] : ElementKinds()) all += ", " + name + ":GLOB";
     throw Error::Input(where, "a target such as " + all, "'" + target + "'");
   }
   const std::string globs = target.substr(colon + 1);

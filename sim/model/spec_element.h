@@ -59,14 +59,8 @@ class SpecElement {
 
  private:
   double* Address(std::string_view attribute, double& unit) const;
-  double BodyMass() const;
   double RestLength(int end) const;
-  void FreezeInertia();
-  void SetBodyMass(double mass);
-  void AddPointMass(double mass);
   void AddForce(std::string_view attribute, double newtons);
-  void SetLag(double lag);
-  void SetDelay(double delay);
   mjsActuator& Affine();
 
   mjSpec* spec_;

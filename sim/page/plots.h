@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "sim/page/page.h"
+#include "sim/page/plot_spec.h"
 
 namespace continuum::page {
 
@@ -11,8 +11,5 @@ namespace continuum::page {
 std::string ScatterHtml(const ScatterSpec& spec);
 std::string BarsHtml(const BarsSpec& spec);
 std::string HeatMapHtml(const HeatMapSpec& spec);
-
-/// What stands in place of a plot that has nothing to show.
-std::string NothingToPlot();
 
 }  // namespace continuum::page

@@ -137,6 +137,8 @@ std::string StyleName(Style style, std::size_t index) {
   return fmt::format("palette{}", index % kPalette);
 }
 
+std::string NothingToPlot() { return "<div class=\"nothing\">no finite value to plot</div>"; }
+
 std::string LegendKey(const std::string& name, const std::string& style, const std::string& kind,
                       bool value) {
   return fmt::format("<span class=\"key {} {}\"><i></i>{}{}</span>", kind, style, Escape(name),

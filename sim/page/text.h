@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/page/page.h"
+#include "sim/page/plot_spec.h"
 
 namespace continuum::page {
 
@@ -33,6 +33,9 @@ std::string Readable(double value, int digits = 3);
 
 /// CSS class and colour variable of a style; `index` picks the palette's colour for kAuto.
 std::string StyleName(Style style, std::size_t index);
+
+/// What stands in place of a plot that has nothing to show.
+std::string NothingToPlot();
 
 /// One entry of a legend; kind "line", "dot" or "band". With `value`, a place for the hovered
 /// value.

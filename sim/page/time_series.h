@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/page/page.h"
+#include "sim/page/plot_spec.h"
 
 namespace continuum::page {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
-#include "sim/simulation/simulate.h"
+#include "sim/experiment/experiment.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 

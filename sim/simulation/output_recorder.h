@@ -1,6 +1,9 @@
 #pragma once
 
-#include "sim/simulation/simulate.h"
+#include <cstddef>
+
+#include "sim/simulation/trace.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 

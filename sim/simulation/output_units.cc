@@ -4,7 +4,7 @@
 
 #include "sim/experiment/measurement_model.h"
 #include "sim/io/units.h"
-#include "sim/simulation/simulate.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

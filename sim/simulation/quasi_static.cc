@@ -9,8 +9,11 @@
 #include "effects/all.h"
 #include "error.h"
 #include "sim/simulation/critical_damping.h"
+#include "sim/simulation/initial_state.h"
 #include "sim/simulation/input_signals.h"
 #include "sim/simulation/output_recorder.h"
+#include "sim/simulation/trace_measurement.h"
+#include "sim/simulation/wiring.h"
 
 namespace continuum {
 namespace {

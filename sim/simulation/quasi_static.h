@@ -1,6 +1,8 @@
 #pragma once
 
-#include "sim/simulation/simulate.h"
+#include "sim/experiment/experiment.h"
+#include "sim/model/model_spec.h"
+#include "sim/simulation/trace.h"
 
 namespace continuum {
 

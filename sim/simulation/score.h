@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/simulation/simulate.h"
+#include "sim/experiment/experiment.h"
+#include "sim/simulation/trace.h"
 
 namespace continuum {
 

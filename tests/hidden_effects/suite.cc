@@ -9,6 +9,7 @@
 
 #include "hidden_effects/robots.h"
 #include "identification/report/diagnosis_output.h"
+#include "sim/io/decimal.h"
 #include "sim/io/file.h"
 
 namespace continuum::hidden {

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/experiment/experiment.h"
+#include "sim/io/decimal.h"
 #include "sim/io/file.h"
 
 namespace continuum::testing {

@@ -12,6 +12,7 @@
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "sim/experiment/registration.h"
+#include "sim/simulation/registration_fit.h"
 
 namespace continuum::speed {
 namespace {

@@ -2,8 +2,9 @@
 
 #include "identification/fit/fit.h"
 #include "identification/problem/extended_model.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 #include "sim/replay/replay.h"
+#include "sim/simulation/registration_fit.h"
 #include "support/measured_arm.h"
 
 namespace continuum {

@@ -10,6 +10,7 @@
 
 #include "gradient.h"
 #include "identification/problem/path_choice.h"
+#include "sim/simulation/simulate.h"
 #include "smooth_arm.h"
 #include "support/pendulum.h"
 

@@ -11,6 +11,7 @@
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/solve.h"
 #include "models/tdcr/synthetic.h"
+#include "sim/io/decimal.h"
 #include "sim/io/file.h"
 
 namespace continuum::tdcr {

@@ -12,6 +12,7 @@
 #include "models/twin_pivot/cases.h"
 #include "models/twin_pivot/solve.h"
 #include "sim/io/csv.h"
+#include "sim/io/decimal.h"
 #include "sim/io/file.h"
 
 namespace continuum::twin_pivot {

@@ -9,7 +9,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 #include "support/scratch.h"
 
 namespace continuum {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "sim/io/file.h"
+#include "sim/simulation/simulate.h"
+#include "sim/simulation/wiring.h"
 #include "support/measured_arm.h"
 
 namespace continuum {

@@ -8,7 +8,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "error.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum {
 namespace {

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
+#include "sim/simulation/trace_measurement.h"
+#include "sim/simulation/wiring.h"
 #include "support/scratch.h"
 
 namespace continuum {

@@ -1,0 +1,36 @@
+#include "sim/check/findings.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace continuum {
+
+void Findings::Add(Severity severity, const std::string& channel, const std::string& what,
+                   const std::string& text) {
+  const bool has_time = log_ && !log_->time.empty();
+  Add(severity, channel, what, text, has_time ? log_->time.front() : 0,
+      has_time ? log_->time.back() : 0);
+}
+void Findings::Add(Severity severity, const std::string& channel, const std::string& what,
+                   const std::string& gist, double begin, double end, const std::string& places) {
+  findings_.push_back(
+      {log_ ? log_->label : "", channel, what, gist + places, gist, begin, end, severity});
+}
+
+bool Findings::Has(const std::string& channel, const std::string& what) const {
+  return std::any_of(findings_.begin(), findings_.end(), [&](const Finding& f) {
+    return f.channel == channel && f.severity != Severity::kInfo &&
+           (what.empty() || f.what == what);
+  });
+}
+
+std::string Clock(double time) {
+  return std::abs(time) < 1000 ? fmt::format("{:.4g} s", time) : fmt::format("{:.3f} s", time);
+}
+
+std::string Amount(double value, const std::string& unit) {
+  return fmt::format("{:.3g}{}", value, unit == "1" ? "" : " " + unit);
+}
+
+}  // namespace continuum

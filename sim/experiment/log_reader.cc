@@ -1,0 +1,191 @@
+#include "sim/experiment/log_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "effects/effect.h"
+#include "error.h"
+#include "sim/io/csv.h"
+#include "sim/io/decimal.h"
+#include "sim/io/mat_file.h"
+#include "sim/io/units.h"
+#include "sim/io/yaml.h"
+
+namespace continuum {
+namespace {
+
+// The numbers of a log's file, whatever its format.
+class Recording {
+ public:
+  Recording(const std::filesystem::path& file, const std::string& variable) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".mat") {
+      mat_ = ReadMat(file, variable);
+      name_ = file.string();
+    } else {
+      table_ = CsvTable::Read(file);
+      name_ = file.string();
+    }
+  }
+
+  std::size_t rows() const { return table_ ? table_->rows() : mat_->values.front().size(); }
+  std::string Where(std::size_t row) const {
+    return table_ ? table_->Where(row) : name_ + ", row " + std::to_string(row + 1);
+  }
+  bool Flag(std::size_t row, const std::string& column) const {
+    return table_ ? table_->Flag(row, column) : Number(row, column, false) != 0;
+  }
+  double Number(std::size_t row, const std::string& column, bool may_miss) const {
+    if (table_) return may_miss ? table_->NumberOrNan(row, column) : table_->Number(row, column);
+    const auto found = std::find(mat_->names.begin(), mat_->names.end(), column);
+    if (found == mat_->names.end()) {
+      std::string all;
+      for (const auto& name : mat_->names) all += (all.empty() ? "" : ", ") + name;
+      throw Error::Input(name_, "a column '" + column + "'", all);
+    }
+    const double value = mat_->values[found - mat_->names.begin()][row];
+    if (std::abs(value) <= CsvTable::kLargest || (may_miss && std::isnan(value))) return value;
+    throw Error::Input(Where(row) + ", column '" + column + "'", "a number within +-1e100",
+                       std::isnan(value) ? "none" : Decimal(value));
+  }
+
+ private:
+  std::optional<CsvTable> table_;
+  std::optional<Columns> mat_;
+  std::string name_;
+};
+
+std::vector<Change> ReadSettings(const Yaml& y) {
+  std::vector<Change> settings;
+  for (const auto& target : y.Keys()) {
+    const Yaml attributes = y.At(target);
+    for (const auto& attribute : attributes.Keys()) {
+      settings.push_back({target, attribute, attributes.At(attribute).Number()});
+    }
+  }
+  return settings;
+}
+
+std::string Listed(const std::vector<double>& numbers) {
+  std::string text = "[";
+  for (const double x : numbers) text += (text.size() > 1 ? ", " : "") + Decimal(x);
+  return text + "]";
+}
+
+std::map<std::string, std::array<double, 2>> ReadStart(const Yaml& y) {
+  std::map<std::string, std::array<double, 2>> start;
+  for (const auto& joint : y.Keys()) {
+    const auto numbers = y.At(joint).Numbers();
+    if (numbers.size() != 2)
+      throw Error::Input(y.At(joint).Where(), "[position, speed]", Listed(numbers));
+    start[joint] = {numbers[0], numbers[1]};
+  }
+  return start;
+}
+
+// Rows that were written twice are the usual cause.
+Error TimeGoesBack(const Experiment& e, const Recording& rec, std::size_t row) {
+  const double now = rec.Number(row, e.time_column, false);
+  std::string found = Decimal(now) + " after " + Decimal(rec.Number(row - 1, e.time_column, false));
+  for (std::size_t k = 0; k < row; ++k) {
+    if (rec.Number(k, e.time_column, false) != now) continue;
+    found += ", as in " + rec.Where(k) + ": are rows there twice?";
+    break;
+  }
+  return Error::Input(rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
+                      found);
+}
+
+// Reads the times, of the rows within the log's window; returns these rows.
+std::vector<std::size_t> ReadTimes(Log& log, const Experiment& e, const Recording& rec,
+                                   double time_unit) {
+  const std::vector<double>& window = log.window;
+  double last = -kInfinity;
+  std::vector<std::size_t> kept;
+  for (std::size_t row = 0; row < rec.rows(); ++row) {
+    const double t = rec.Number(row, e.time_column, false) * time_unit;
+    if (!(t > last)) throw TimeGoesBack(e, rec, row);
+    last = t;
+    if (!window.empty() && (t < window[0] || t > window[1])) continue;
+    kept.push_back(row);
+    log.time.push_back(t * (1 + e.skew));
+  }
+  if (kept.size() < 2) {
+    const std::string in = window.empty() ? "" : " within its window, " + Listed(window) + " s";
+    const std::string rows = rec.rows() > 0 && kept.empty()
+                                 ? "none: it ends at " + Decimal(last) + " s"
+                                 : std::to_string(kept.size());
+    throw Error::Input(log.file.string() + in, "at least two rows", rows);
+  }
+  return kept;
+}
+
+void ReadInputs(Log& log, const Experiment& e, const Recording& rec,
+                const std::vector<std::size_t>& kept) {
+  for (const Input& in : e.inputs) {
+    std::vector<double> values;
+    std::vector<bool> on;
+    const double factor = UnitFactor(in.unit, "");
+    for (const std::size_t row : kept) {
+      values.push_back(in.column.empty() ? 0 : factor * rec.Number(row, in.column, false));
+      if (!in.enable.empty()) on.push_back(rec.Flag(row, in.enable));
+    }
+    log.input.push_back(std::move(values));
+    log.enable.push_back(std::move(on));
+  }
+}
+
+void ReadChannels(Log& log, const Experiment& e, const Recording& rec,
+                  const std::vector<std::size_t>& kept) {
+  for (const auto& channel : e.channels) {
+    std::vector<double> values;
+    for (const std::size_t row : kept) {
+      values.push_back(channel.factor * rec.Number(row, channel.name, true));
+    }
+    if (std::all_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) {
+      throw Error::Input(log.file.string() + ", column '" + channel.name + "'",
+                         "at least one number", "none");
+    }
+    log.measured.push_back(std::move(values));
+  }
+}
+
+}  // namespace
+
+Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
+  y.Only({"file", "variable", "trial", "use", "window", "condition", "set", "start"});
+  Log log;
+  log.file = y.At("file").File("a log file");
+  log.label = log.file.stem().string();
+  log.trial = y.TextOr("trial", log.label);
+  log.condition = y.TextOr("condition", "");
+  if (const auto use = y.Find("use")) {
+    log.train = use->OneOf<bool>({{"train", true}, {"validate", false}});
+  }
+  log.variable = y.TextOr("variable", "");
+  if (const auto w = y.Find("window")) {
+    log.window = w->Numbers();
+    if (log.window.size() != 2 || !(log.window[0] < log.window[1])) {
+      throw Error::Input(w->Where(), "[begin, end] in s", Listed(log.window));
+    }
+    log.label += "_" + w->Items()[0].Text() + "_" + w->Items()[1].Text();
+  }
+  if (const auto set = y.Find("set")) log.set = ReadSettings(*set), log.set_where = set->Where();
+  if (const auto start = y.Find("start")) log.start = ReadStart(*start);
+  const Recording recording(log.file, log.variable);
+  const auto kept = ReadTimes(log, e, recording, time_unit);
+  ReadInputs(log, e, recording, kept);
+  ReadChannels(log, e, recording, kept);
+  return log;
+}
+
+}  // namespace continuum
