@@ -10,8 +10,8 @@
 #include "sim/io/decimal.h"
 #include "sim/io/file.h"
 #include "sim/model/asset_folders.h"
+#include "sim/model/mjcf_document.h"
 #include "sim/model/native_effect.h"
-#include "sim/model/plugin_config_check.h"
 #include "sim/model/spec_element.h"
 
 namespace continuum {
@@ -92,44 +92,6 @@ void ApplyToPlugin(mjModel& m, mjData& d, const Change& change) {
   double& value = values[IndexOn(m, instance, change.attribute)];
   value = Changed(value, change);
   SetParameters(m, d, instance, values);
-}
-
-// Sets <config key= value=> of an instance in MJCF text as MuJoCo writes it.
-void SetConfig(std::string& xml, const std::string& instance, const std::string& key,
-               const std::string& value) {
-  const std::size_t begin = xml.find("<instance name=\"" + instance + "\"");
-  if (begin == xml.npos)
-    throw Error::Input("plugin:" + instance, "an instance in the MJCF", "none");
-  const std::size_t open_end = xml.find('>', begin);
-  if (xml[open_end - 1] == '/') {  // <instance name="…"/>
-    xml.replace(open_end - 1, 2, ">\n        </instance>");
-  }
-  const std::size_t end = xml.find("</instance>", begin);
-  const std::string head = "<config key=\"" + key + "\" value=\"";
-  const std::size_t found = xml.find(head, begin);
-  if (found < end) {
-    const std::size_t from = found + head.size();
-    xml.replace(from, xml.find('"', from) - from, value);
-  } else {
-    const std::size_t line = xml.rfind('\n', end);
-    xml.insert(line, "\n        " + head + value + "\"/>");
-  }
-}
-
-void AddInstance(std::string& xml, const EffectInstance& effect) {
-  std::string text = "    <plugin plugin=\"continuum." + effect.effect +
-                     "\">\n      <instance name=\"" + effect.name + "\">\n";
-  for (const auto& [key, value] : effect.config) {
-    text += "        <config key=\"" + key + "\" value=\"" + value + "\"/>\n";
-  }
-  text += "      </instance>\n    </plugin>\n";
-  const std::size_t end = xml.find("</extension>");
-  if (end != xml.npos) {
-    xml.insert(xml.rfind('\n', end) + 1, text);
-  } else {
-    const std::size_t root = xml.find('>', xml.find("<mujoco"));
-    xml.insert(root + 1, "\n  <extension>\n" + text + "  </extension>\n");
-  }
 }
 
 }  // namespace
@@ -317,6 +279,20 @@ double ModelSpec::ValueAfter(std::span<const Change> changes, const std::string&
   return value;
 }
 
+std::string ModelSpec::SavedXml() const {
+  std::string xml(1 << 16, '\0');
+  char error[1000] = "";
+  while (true) {
+    const int length = mj_saveXMLString(spec_.get(), xml.data(), static_cast<int>(xml.size()),
+                                        error, sizeof error);
+    if (length < 0) throw Error::Job(name_ + ": " + OneLine(error));
+    if (length == 0) break;
+    xml.resize(static_cast<std::size_t>(length) + 1);
+  }
+  xml.resize(xml.find('\0'));
+  return xml;
+}
+
 std::string ModelSpec::Xml(std::span<const Change> changes, std::span<const EffectInstance> added,
                            const std::filesystem::path& folder) const {
   const Edits edits(*this, changes);
@@ -325,43 +301,26 @@ std::string ModelSpec::Xml(std::span<const Change> changes, std::span<const Effe
   spec_->compiler.discardvisual = 0;
   spec_->compiler.savecompiled = 0;
   spec_->compiler.savecanonical = 0;
-  std::string xml(1 << 16, '\0');
-  char error[1000] = "";
-  while (true) {
-    const int length = mj_saveXMLString(spec_.get(), xml.data(), static_cast<int>(xml.size()),
-                                        error, sizeof error);
-    if (length < 0) throw Error::Job(name_ + ": " + OneLine(error));
-    if (length == 0) {
-      xml.resize(xml.find('\0'));
-      break;
-    }
-    xml.resize(static_cast<std::size_t>(length) + 1);
-  }
-  for (const EffectInstance& effect : added) AddInstance(xml, effect);
+  const std::string xml = SavedXml();
+  if (added.empty() && std::none_of(changes.begin(), changes.end(), IsPlugin)) return xml;
+  MjcfDocument document(xml);
+  for (const EffectInstance& effect : added) document.AddInstance(effect);
   for (const Change& change : changes) {
     if (!IsPlugin(change)) continue;
     const double value = Changed(
         change.operation == Change::Operation::kSet ? 0 : Value(change.target, change.attribute),
         change);
-    SetConfig(xml, change.target.substr(kPluginTarget.size()), change.attribute, Decimal(value));
+    document.SetConfig(change.target.substr(kPluginTarget.size()), change.attribute,
+                       Decimal(value));
   }
-  return xml;
+  return document.Text();
 }
 
 ModelSpec ModelSpec::Replacing(const std::string& instance, const EffectInstance& by) const {
-  std::string xml = Xml();
-  const std::size_t begin = xml.find("<instance name=\"" + instance + "\"");
-  if (begin == xml.npos)
-    throw Error::Input("plugin:" + instance, "an instance in the MJCF", "none");
-  const std::string close = "</instance>";
-  const std::size_t end = xml.find(close, begin) + close.size();
-  xml.erase(begin, end - begin);
-  const std::size_t open = xml.rfind("<plugin ", begin);
-  const std::size_t shut = xml.find("</plugin>", open);
-  if (xml.find("<instance", open) > shut)
-    xml.erase(open, shut + 9 - open);  // nothing is left in it
-  AddInstance(xml, by);
-  return Parse(xml, folder_, name_);
+  MjcfDocument document(Xml());
+  document.RemoveInstance(instance);
+  document.AddInstance(by);
+  return Parse(document.Text(), folder_, name_);
 }
 
 ModelSpec ModelSpec::With(std::span<const Change> changes,

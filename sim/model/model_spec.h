@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "sim/model/change.h"
+#include "sim/model/effect_instance.h"
 #include "sim/model/mujoco_handles.h"
 
 namespace continuum {
@@ -15,12 +15,6 @@ namespace continuum {
 struct ModelAndData {
   Owned<mjModel> model;
   Owned<mjData> data;
-};
-
-/// One plugin instance to be added to a model.
-struct EffectInstance {
-  std::string effect, name;
-  std::vector<std::pair<std::string, std::string>> config;
 };
 
 /// A model specification that compiles with other values and effects. Not thread-safe: every thread
@@ -66,6 +60,8 @@ class ModelSpec {
 
  private:
   ModelSpec() = default;
+
+  std::string SavedXml() const;
 
   // Edits of the specification that are taken back at the end of a scope (mj_copySpec would lose
   // plugin instances that nothing refers to).
