@@ -78,7 +78,7 @@ void RunDiagnose(const Options& o) {
                                    "fallback.xml",   "fallback.yaml", "simulated/",
                                    kNextInputs,      "report.html"};
   if (o.video) outputs.push_back("extended.mp4");
-  const OutFolder made(o.out, outputs, {read.file, read.model});
+  const OutputFolder made(o.out, outputs, {read.file, read.model});
   const Experiment e = Registered(read, system);
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress("files");

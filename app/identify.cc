@@ -73,9 +73,9 @@ void RunIdentify(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
   const ModelSpec system = ModelSpec::Load(read.model);
   CheckNames(read, system);
-  const OutFolder made(o.out,
-                       {"fit.json", "fitted.xml", "fitted.yaml", "simulated/", "report.html"},
-                       {read.file, read.model});
+  const OutputFolder made(o.out,
+                          {"fit.json", "fitted.xml", "fitted.yaml", "simulated/", "report.html"},
+                          {read.file, read.model});
   const Experiment e = Registered(read, system);
   IdentifyOptions options = ReadOptions(o);
   options.accepted = [&](const std::string& how) {

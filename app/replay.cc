@@ -60,7 +60,7 @@ void RunReplay(const Options& o) {
     RequireFilm(folder / "replay.mp4", film.width, film.height, film.fps);
     outputs.push_back("replay.mp4");
   }
-  const OutFolder made(o.out, outputs, {e.file, e.model});
+  const OutputFolder made(o.out, outputs, {e.file, e.model});
   const auto logs = Replay(e, system, ShowProgress);
   EndProgress();
   std::vector<Trace> traces;
@@ -76,8 +76,8 @@ void RunReplay(const Options& o) {
     }
   }
   PrintSensors(ScoreSensors(e, logs));
-  std::printf("all: %s%s\n", ErrorInWords(e, PooledError(e, logs)).c_str(),
-              MeanAbsoluteInWords(scores).c_str());
+  std::printf("all: %s%s\n", ErrorText(e, PooledError(e, logs)).c_str(),
+              MeanAbsoluteErrorText(scores).c_str());
   for (const auto& line : RegistrationLines(e.registration)) std::printf("%s\n", line.c_str());
   auto errors = ErrorsJson(e, logs);
   const auto registration = RegistrationJson(e.registration);

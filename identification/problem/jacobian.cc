@@ -125,7 +125,7 @@ PerturbedRun Problem::RunOf(ModelAndData machine, const Vector& x, std::size_t l
   Inputs inputs(m, setup_, logged, wiring);
   inputs.AtRow(d, 0);
   Settle(m, d);
-  inputs.AllOn();
+  inputs.EnableAll();
   trial.q = std::move(start.qpos), trial.v = std::move(start.qvel);
   trial.w.assign(d.act, d.act + m.na);
   return trial;

@@ -66,7 +66,7 @@ class FitPage {
     RequireWhole(e_, result_.logs);
     const Fit& fit = result_.fit;
     page_.Badge(fit.converged ? Tone::kGood : Tone::kWarn,
-                ErrorInWords(e_, PooledError(e_, result_.logs)),
+                ErrorText(e_, PooledError(e_, result_.logs)),
                 fmt::format("{} iterations, {} simulations, {:.1f} s; {}.", fit.iterations,
                             fit.evaluations, fit.seconds, fit.message) +
                     (fit.anew ? fmt::format(" The fit was {}.", kAnewInWords) : "") +

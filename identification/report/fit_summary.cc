@@ -59,9 +59,9 @@ std::string ErrorLines(const Experiment& e, const IdentifyResult& result) {
   for (const Replayed& log : result.logs)
     scores.insert(scores.end(), log.score.begin(), log.score.end());
   std::string lines =
-      ErrorInWords(e, PooledError(e, result.logs)) + MeanAbsoluteInWords(scores) + "\n";
+      ErrorText(e, PooledError(e, result.logs)) + MeanAbsoluteErrorText(scores) + "\n";
   if (result.at_step)
-    lines += "as the model steps: " + ErrorInWords(e, PooledError(e, result.at_step->logs)) + "\n";
+    lines += "as the model steps: " + ErrorText(e, PooledError(e, result.at_step->logs)) + "\n";
   if (result.regression)
     lines +=
         fmt::format("forces by the inverse model: error {:.3g} % (train) {:.3g} % (validate)\n",

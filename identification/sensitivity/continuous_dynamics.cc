@@ -151,7 +151,7 @@ void ContinuousDynamics::Rate(double t, const double* y, double* rate) {
   const mjModel& m = *machine_.model;
   mjData& d = *machine_.data;
   Load(y);
-  if (linear_ && row_ + 1 < log_.rows()) inputs_.Between(d, row_, t);
+  if (linear_ && row_ + 1 < log_.rows()) inputs_.Interpolate(d, row_, t);
   mj_forwardSkip(&m, &d, mjSTAGE_NONE, 1);
   if (!ties_.none()) ties_.Accelerate(m, d);
   for (int j = 0; j < m.njnt; ++j) {

@@ -73,7 +73,7 @@ void SensorDerivatives::Update(const mjModel& m, const mjData& d) {
     const Vector3 point(FrameOf(d, type, id).position);
     jacobian_[r].setZero();
     for (int i = LastDof(m, BodyOf(m, type, id)); i >= 0; i = m.dof_parentid[i])
-      jacobian_[r].col(i) = LeverOf(m, d, i, point);
+      jacobian_[r].col(i) = PointJacobian(m, d, i, point);
   }
 }
 

@@ -59,7 +59,8 @@ void TendonDerivatives::Update(const mjModel& m, const mjData& d) {
       if (s.length > mjMINVAL) s.along /= s.length;
       for (JointTerm& joint : s.joints) {
         joint.axis = At(d.cdof + 6 * joint.dof);
-        joint.jacobian = joint.sign * LeverOf(m, d, joint.dof, At(joint.sign > 0 ? far : near));
+        joint.jacobian =
+            joint.sign * PointJacobian(m, d, joint.dof, At(joint.sign > 0 ? far : near));
         joint.moment_arm = s.along.dot(joint.jacobian);
       }
     }

@@ -98,7 +98,7 @@ std::vector<std::vector<std::size_t>> ReplicateGroups(const Experiment& e) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
-      return Replicates(e.logs[group[0]], e.logs[l]);
+      return AreReplicates(e.logs[group[0]], e.logs[l]);
     });
     if (same != groups.end()) {
       same->push_back(l);

@@ -35,7 +35,7 @@ std::vector<std::string> Unused(const CsvTable& table, const std::vector<std::st
     names += (names.empty() ? "'" : ", '") + column + "'";
   }
   if (names.empty()) return {};
-  return {table.name() + ":1: not used: " + Shown(names, kShown)};
+  return {table.name() + ":1: not used: " + Excerpt(names, kShown)};
 }
 
 }  // namespace

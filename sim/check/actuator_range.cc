@@ -9,20 +9,20 @@
 namespace continuum {
 namespace {
 
-struct Beyond {
+struct Exceedance {
   std::size_t rows = 0, first = 0, worst = 0;
   double by = 0;  // of the worst row
 };
 
-Beyond BeyondRange(const std::vector<double>& u, const double* range) {
-  Beyond beyond;
+Exceedance ExceedanceOf(const std::vector<double>& u, const double* range) {
+  Exceedance exceedance;
   for (std::size_t k = 0; k < u.size(); ++k) {
     const double by = std::max(range[0] - u[k], u[k] - range[1]);
     if (!(by > 1e-9 * (range[1] - range[0]))) continue;
-    if (beyond.rows++ == 0) beyond.first = k;
-    if (by > beyond.by) beyond.worst = k, beyond.by = by;
+    if (exceedance.rows++ == 0) exceedance.first = k;
+    if (by > exceedance.by) exceedance.worst = k, exceedance.by = by;
   }
-  return beyond;
+  return exceedance;
 }
 
 // Rows on a limit: what was asked beyond it the log does not show. A limit of 0 is where a cable or
@@ -56,15 +56,16 @@ void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings
     const double* const range = m.actuator_ctrlrange + 2 * a;
     CheckLimit(in, log, log.input[i], range[0], "smallest", out);
     CheckLimit(in, log, log.input[i], range[1], "largest", out);
-    const Beyond beyond = BeyondRange(log.input[i], range);
-    if (beyond.rows == 0) continue;
-    const double unit = UnitFactor(in.unit, ""), t = log.time[beyond.worst];
-    out.Add(Finding::Severity::kWarning, in.column, "out_of_range",
-            fmt::format("leaves the range of actuator '{}', {:.4g} to {}, in {} of {} rows, most "
-                        "by {} at t = {}: the model clamps it there",
-                        in.actuator, range[0] / unit, Amount(range[1] / unit, in.unit), beyond.rows,
-                        log.rows(), Amount(beyond.by / unit, in.unit), Clock(t)),
-            log.time[beyond.first], t);
+    const Exceedance exceedance = ExceedanceOf(log.input[i], range);
+    if (exceedance.rows == 0) continue;
+    const double unit = UnitFactor(in.unit, ""), t = log.time[exceedance.worst];
+    out.Add(
+        Finding::Severity::kWarning, in.column, "out_of_range",
+        fmt::format("leaves the range of actuator '{}', {:.4g} to {}, in {} of {} rows, most "
+                    "by {} at t = {}: the model clamps it there",
+                    in.actuator, range[0] / unit, Amount(range[1] / unit, in.unit), exceedance.rows,
+                    log.rows(), Amount(exceedance.by / unit, in.unit), Clock(t)),
+        log.time[exceedance.first], t);
   }
 }
 

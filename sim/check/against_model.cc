@@ -261,7 +261,7 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const ModelSpec& 
     for (Finding& f : found.Take()) all.push_back(std::move(f));
   }
   RegisterTraces(system, e, traces, all);
-  InputTrials trials(e, system);
+  InputMistakes trials(e, system);
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     if (traces[l].channel.empty()) continue;
     Findings found(&e.logs[l]);

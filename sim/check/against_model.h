@@ -23,45 +23,44 @@ struct Compared {
 /// The channels with at least 20 such rows; no quaternions.
 std::vector<Compared> Compare(const Experiment& e, const Log& log, const Trace& trace);
 
-/// Deviation of the difference: what is left beside an offset.
+/// Standard deviation of a − b: the error without its offset.
 double Misfit(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Rows in which an input leaves the range of its actuator, where the model clamps it, and inputs
 /// that are on a limit in many rows.
 void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings& out);
 
-/// Columns that are shifted in time against the pose: where a log measures the joints that move and
-/// something that they determine, the model's kinematics tell without its forces. Not with a
-/// registration. Returns the columns that were judged.
+/// Finds columns that are shifted in time against the pose. Where a log measures the joints and
+/// sensors that joints determine, the kinematics of the model suffice: no force is needed. Nothing
+/// is judged with a registration. Returns the columns that were judged.
 std::set<std::string> CheckPose(const Experiment& e, const Log& log, const ModelSpec& system,
                                 Findings& out);
 
-/// Tries mistakes in the inputs of logs that the model does not explain: another sign or unit (of
-/// one input, or of all that have one dimension), two inputs swapped. Each is tried where its input
-/// moves most, in a window of a bounded number of time steps, so that long logs cost no more than
-/// short ones.
-class InputTrials {
+/// Looks for mistakes in the inputs of logs that the model does not explain: a wrong sign or unit
+/// (of one input, or of all of one dimension), or two inputs swapped. Each is simulated in a window
+/// of bounded length where its input moves most, so that long logs cost no more than short ones.
+class InputMistakes {
  public:
-  InputTrials(const Experiment& e, const ModelSpec& system) : experiment_(e), system_(system) {}
+  InputMistakes(const Experiment& e, const ModelSpec& system) : experiment_(e), system_(system) {}
 
   /// trace: the whole log as simulated.
   void Run(const Log& whole, const Trace& trace, Findings& out);
 
  private:
   /// A window of a log and how far the model is off in it.
-  struct Excerpt {
+  struct Window {
     Log log;
     double plain;
   };
-  Excerpt Where(const Log& whole, const Trace& trace, std::size_t input) const;
+  Window WindowOf(const Log& whole, const Trace& trace, std::size_t input) const;
   std::size_t End(const Log& whole, std::size_t first) const;
   double ErrorOf(const Log& log);
   double RelativeError(const Log& log, const Trace& trace) const;
-  std::vector<std::vector<std::size_t>> Alike() const;
-  void TryMistakes(Excerpt& excerpt, const std::vector<std::size_t>& inputs, Findings& out);
-  void TrySwap(Excerpt& excerpt, std::size_t i, std::size_t j, Findings& out);
-  void Tell(const Excerpt& excerpt, const std::string& column, const char* what,
-            const std::string& text, Findings& out);
+  std::vector<std::vector<std::size_t>> InputsOfOneDimension() const;
+  void TryMistakes(Window& window, const std::vector<std::size_t>& inputs, Findings& out);
+  void TrySwap(Window& window, std::size_t i, std::size_t j, Findings& out);
+  void ReportIfExplained(const Window& window, const std::string& column, const char* what,
+                         const std::string& text, Findings& out);
 
   const Experiment& experiment_;
   const ModelSpec& system_;

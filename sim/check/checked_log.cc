@@ -62,7 +62,7 @@ void MarkDisturbed(CheckedLog& checked) {
   }
 }
 
-CheckedLog Prepare(const Experiment& e, const Log& log) {
+CheckedLog CheckedLogOf(const Experiment& e, const Log& log) {
   const double period = Median(Differences(log.time));
   CheckedLog checked{&e, &log, {}, period, period, {}};
   std::set<std::string> seen;  // a column may drive several actuators
@@ -129,7 +129,7 @@ bool CheckedColumn::constant() const {
 
 std::vector<CheckedLog> PrepareLogs(const Experiment& e) {
   std::vector<CheckedLog> logs;
-  for (const Log& log : e.logs) logs.push_back(Prepare(e, log));
+  for (const Log& log : e.logs) logs.push_back(CheckedLogOf(e, log));
   if (!logs.empty()) ShareQuanta(logs);
   SharePeriods(logs);
   ShareBends(logs);

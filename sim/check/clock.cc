@@ -24,7 +24,7 @@ void ReportGaps(const std::vector<double>& time, std::vector<std::size_t> gaps, 
           fmt::format("the clock has gaps after {} of {} rows, which are {:.4g} s apart: {}; the "
                       "inputs are held over a gap, windows beside it begin anew",
                       count, time.size(), period, place(gaps.front())),
-          time[gaps.front()], time[gaps.front() + 1], Further(gaps, count, place));
+          time[gaps.front()], time[gaps.front() + 1], FurtherPlaces(gaps, count, place));
 }
 
 void ReportJitter(const std::vector<double>& time, const std::vector<double>& steps, double period,

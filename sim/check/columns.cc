@@ -47,7 +47,7 @@ bool CheckVariance(const CheckedColumn& c, Findings& out) {
   if (!c.constant()) return true;
   const auto severity = c.input ? Severity::kInfo : Severity::kWarning;
   out.Add(severity, c.name, "no_variance",
-          fmt::format("no variance: every value is {}, so it tells nothing{}",
+          fmt::format("no variance: every value is {}, so it has no information{}",
                       Amount(c.value.empty() ? 0 : c.value.front(), c.unit),
                       c.input ? "" : " but that this does not move"));
   return false;
@@ -129,7 +129,7 @@ void CheckJumps(const CheckedColumn& c, const std::vector<bool>& disturbed, Find
   out.Add(Severity::kWarning, c.name, "jump",
           fmt::format("jumps far out of its neighbours' range in {} of {} rows, most by {}", count,
                       c.row.size(), place(jumps.front())),
-          t, t, Further(jumps, count, place));
+          t, t, FurtherPlaces(jumps, count, place));
 }
 
 void ReportRefresh(const CheckedColumn& c, const Refresh& r, bool often, Findings& out) {
@@ -190,7 +190,7 @@ void ReportDuplicates(const Log& log, const std::vector<std::size_t>& rows, Find
   out.Add(Severity::kWarning, "", "duplicated_rows",
           fmt::format("{} of {} rows repeat the row before in every column: row {}", rows.size(),
                       log.rows(), place(rows.front())),
-          log.time[rows.front()], log.time[rows.back()], Further(rows, rows.size(), place));
+          log.time[rows.front()], log.time[rows.back()], FurtherPlaces(rows, rows.size(), place));
 }
 
 // A unit that the size of the values makes unlikely.
@@ -223,14 +223,14 @@ void CheckColumns(const CheckedLog& log, Findings& out) {
     if (!CheckFrozenEnd(c, out)) CheckSaturation(c, out);
     CheckMagnitude(c, out);
     const Refresh& r = refresh[i];
-    std::size_t told = 0;  // as duplicated rows
+    std::size_t known = 0;  // repeats that are duplicated rows
     for (const std::size_t row : duplicated) {
       const auto k = std::lower_bound(c.row.begin(), c.row.end(), row) - c.row.begin();
-      told += static_cast<std::size_t>(k) < c.row.size() && c.row[k] == row && r.repeated[k];
+      known += static_cast<std::size_t>(k) < c.row.size() && c.row[k] == row && r.repeated[k];
     }
     // A command may hold a level now and then.
     const bool often = r.repeats >= 5 && r.share() >= (c.input ? 0.3 : 0.005);
-    if ((often || r.frozen > 0) && 2 * told <= r.repeats + r.frozen)
+    if ((often || r.frozen > 0) && 2 * known <= r.repeats + r.frozen)
       ReportRefresh(c, r, often, out);
     CheckJumps(r.share() > 0.1 ? Fresh(c) : c, log.disturbed, out);
   }

@@ -61,7 +61,7 @@ void CheckExcitation(const CheckedLog& log, Findings& out) {
                     Amount(*low, c.unit), Amount(*high, c.unit), reversals,
                     reversals == 1 ? "" : "s", still,
                     reversals == 0 ? ": friction and hysteresis, which show when the direction "
-                                     "turns, cannot be told from stiffness"
+                                     "turns, cannot be distinguished from stiffness"
                                    : ""));
   }
   if (!driven) {
@@ -69,7 +69,7 @@ void CheckExcitation(const CheckedLog& log, Findings& out) {
   } else if (rest <
              std::max(20 * log.period, 0.02 * (log.log->time.back() - log.log->time.front()))) {
     out.Add(Severity::kInfo, "", "excitation",
-            "the inputs never rest together: static friction and a bias cannot be told apart");
+            "the inputs never rest together: static friction and a bias cannot be distinguished");
   }
 }
 

@@ -25,7 +25,7 @@ std::size_t CheckReplicates(const Experiment& e, Findings& out) {
   for (const auto& [name, logs] : recorded) {
     const Log& first = *logs.front();
     const auto other = std::find_if(logs.begin(), logs.end(),
-                                    [&](const Log* log) { return !Replicates(first, *log); });
+                                    [&](const Log* log) { return !AreReplicates(first, *log); });
     replicated += logs.size() > 1 && other == logs.end();
     if (other == logs.end()) continue;
     out.Add(Severity::kWarning, "", "trial",

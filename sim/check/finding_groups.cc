@@ -56,7 +56,7 @@ std::string RangeOf(const std::vector<Cut>& cuts, std::size_t number) {
 std::string Merged(const std::vector<const Finding*>& members) {
   if (members.size() == 1) return members.front()->text;
   std::vector<Cut> cuts;
-  for (const Finding* f : members) cuts.push_back(CutAtNumbers(f->gist));
+  for (const Finding* f : members) cuts.push_back(CutAtNumbers(f->summary));
   std::string text = cuts.front().words.front();
   for (std::size_t i = 0; i < cuts.front().numbers.size(); ++i)
     text += RangeOf(cuts, i) + cuts.front().words[i + 1];
@@ -74,7 +74,7 @@ std::vector<FindingGroup> Grouped(const std::vector<Finding>& findings) {
   std::map<std::tuple<Finding::Severity, std::string, std::vector<std::string>>, std::size_t> known;
   for (const Finding& f : findings) {
     const auto [it, added] =
-        known.try_emplace({f.severity, f.what, CutAtNumbers(f.gist).words}, groups.size());
+        known.try_emplace({f.severity, f.what, CutAtNumbers(f.summary).words}, groups.size());
     if (added) groups.emplace_back();
     FindingGroup& group = groups[it->second];
     group.members.push_back(&f);

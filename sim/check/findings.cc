@@ -13,9 +13,10 @@ void Findings::Add(Severity severity, const std::string& channel, const std::str
       has_time ? log_->time.back() : 0);
 }
 void Findings::Add(Severity severity, const std::string& channel, const std::string& what,
-                   const std::string& gist, double begin, double end, const std::string& places) {
+                   const std::string& summary, double begin, double end,
+                   const std::string& places) {
   findings_.push_back(
-      {log_ ? log_->label : "", channel, what, gist + places, gist, begin, end, severity});
+      {log_ ? log_->label : "", channel, what, summary + places, summary, begin, end, severity});
 }
 
 bool Findings::Has(const std::string& channel, const std::string& what) const {

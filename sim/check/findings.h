@@ -19,7 +19,7 @@ struct Finding {
   std::string channel;  ///< column; empty: the whole log
   std::string what;     ///< kind in snake_case: "gap", "stale", "unit_suspect", …
   std::string text;     ///< one plain sentence with numbers and units
-  std::string gist;     ///< text without the list of further places at its end
+  std::string summary;  ///< text without the list of further places at its end
   double begin = 0;     ///< [s] where it is; the whole log when it is everywhere
   double end = 0;       ///< [s]
   Severity severity = Severity::kInfo;
@@ -35,7 +35,7 @@ class Findings {
            const std::string& text);
   /// places: the end of the text, a list of further places.
   void Add(Severity severity, const std::string& channel, const std::string& what,
-           const std::string& gist, double begin, double end, const std::string& places = "");
+           const std::string& summary, double begin, double end, const std::string& places = "");
   /// Whether something was said of a channel that is more than information; of one kind, if given.
   bool Has(const std::string& channel, const std::string& what = "") const;
   std::vector<Finding> Take() { return std::move(findings_); }
@@ -48,9 +48,10 @@ class Findings {
 /// "0.0123 rad"; the unit "1" is left out.
 std::string Amount(double value, const std::string& unit);
 
-/// The second and third of count places, and how many more there are: ", … and 4 more".
+/// The second and third of `count` places as a list, and how many more there are: ", … and 4
+/// more".
 template <class Place, class Text>
-std::string Further(const std::vector<Place>& places, std::size_t count, const Text& text) {
+std::string FurtherPlaces(const std::vector<Place>& places, std::size_t count, const Text& text) {
   std::string list;
   for (std::size_t i = 1; i < std::min<std::size_t>(places.size(), 3); ++i)
     list += ", " + text(places[i]);

@@ -66,7 +66,7 @@ Trace Cut(const Trace& whole, std::size_t first, std::size_t last) {
 }  // namespace
 
 // The row after the last of a window that begins at a row.
-std::size_t InputTrials::End(const Log& whole, std::size_t first) const {
+std::size_t InputMistakes::End(const Log& whole, std::size_t first) const {
   const double h = system_.model().opt.timestep;
   const std::size_t least = std::min(whole.rows(), first + kLeastRows);
   std::size_t end = first;
@@ -81,8 +81,8 @@ std::size_t InputTrials::End(const Log& whole, std::size_t first) const {
 
 // A machine that starts at rest is only known at the beginning: the window then grows until the
 // input has moved.
-InputTrials::Excerpt InputTrials::Where(const Log& whole, const Trace& trace,
-                                        std::size_t input) const {
+InputMistakes::Window InputMistakes::WindowOf(const Log& whole, const Trace& trace,
+                                              std::size_t input) const {
   const Values& u = whole.input[input];
   const auto range = [&](std::size_t first, std::size_t last) {
     const auto begin = u.begin() + static_cast<std::ptrdiff_t>(first);
@@ -101,24 +101,24 @@ InputTrials::Excerpt InputTrials::Where(const Log& whole, const Trace& trace,
       if (range(begin, end) > 1.1 * range(first, last)) first = begin, last = end;
     }
   }
-  Excerpt excerpt{Cut(whole, first, last), 0};
-  excerpt.plain = RelativeError(excerpt.log, Cut(trace, first, last));
-  return excerpt;
+  Window window{Cut(whole, first, last), 0};
+  window.plain = RelativeError(window.log, Cut(trace, first, last));
+  return window;
 }
 
-void InputTrials::Run(const Log& whole, const Trace& trace, Findings& out) {
-  std::vector<Excerpt> excerpts;
+void InputMistakes::Run(const Log& whole, const Trace& trace, Findings& out) {
+  std::vector<Window> windows;
   for (std::size_t i = 0; i < experiment_.inputs.size(); ++i)
-    excerpts.push_back(Where(whole, trace, i));
-  for (const auto& group : Alike()) TryMistakes(excerpts[group.front()], group, out);
-  for (std::size_t i = 0; i < excerpts.size(); ++i) TryMistakes(excerpts[i], {i}, out);
-  for (std::size_t i = 0; i < excerpts.size(); ++i) {
-    for (std::size_t j = i + 1; j < excerpts.size(); ++j) TrySwap(excerpts[i], i, j, out);
+    windows.push_back(WindowOf(whole, trace, i));
+  for (const auto& group : InputsOfOneDimension()) TryMistakes(windows[group.front()], group, out);
+  for (std::size_t i = 0; i < windows.size(); ++i) TryMistakes(windows[i], {i}, out);
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    for (std::size_t j = i + 1; j < windows.size(); ++j) TrySwap(windows[i], i, j, out);
   }
 }
 
 // Mean square over channels of misfit over deviation; infinite where the simulation failed.
-double InputTrials::RelativeError(const Log& log, const Trace& trace) const {
+double InputMistakes::RelativeError(const Log& log, const Trace& trace) const {
   double sum = 0, count = 0;
   for (const Compared& p : Compare(experiment_, log, trace)) {
     const double deviation = Deviation(p.measured);
@@ -129,7 +129,7 @@ double InputTrials::RelativeError(const Log& log, const Trace& trace) const {
   return count > 0 ? sum / count : HUGE_VAL;
 }
 
-double InputTrials::ErrorOf(const Log& log) {
+double InputMistakes::ErrorOf(const Log& log) {
   --budget_;
   ModelAndData machine = system_.Build(log.set);
   Trace trace;
@@ -143,58 +143,59 @@ double InputTrials::ErrorOf(const Log& log) {
 }
 
 // Inputs of one dimension, which one mistake may concern together.
-std::vector<std::vector<std::size_t>> InputTrials::Alike() const {
-  std::map<std::array<int, 4>, std::vector<std::size_t>> alike;
+std::vector<std::vector<std::size_t>> InputMistakes::InputsOfOneDimension() const {
+  std::map<std::array<int, 4>, std::vector<std::size_t>> of_dimension;
   for (std::size_t i = 0; i < experiment_.inputs.size(); ++i) {
     const Input& in = experiment_.inputs[i];
-    if (!in.column.empty()) alike[ParseUnit(in.unit, "").dimension].push_back(i);
+    if (!in.column.empty()) of_dimension[ParseUnit(in.unit, "").dimension].push_back(i);
   }
   std::vector<std::vector<std::size_t>> groups;
-  for (auto& [dimension, inputs] : alike) {
+  for (auto& [dimension, inputs] : of_dimension) {
     if (inputs.size() > 1) groups.push_back(std::move(inputs));
   }
   return groups;
 }
 
-void InputTrials::TryMistakes(Excerpt& excerpt, const std::vector<std::size_t>& inputs,
-                              Findings& out) {
-  const auto moves = [&](std::size_t i) { return RangeOf(excerpt.log.input[i]) > 0; };
-  if (!(excerpt.plain > 0.5) || std::none_of(inputs.begin(), inputs.end(), moves)) return;
+void InputMistakes::TryMistakes(Window& window, const std::vector<std::size_t>& inputs,
+                                Findings& out) {
+  const auto moves = [&](std::size_t i) { return RangeOf(window.log.input[i]) > 0; };
+  if (!(window.plain > 0.5) || std::none_of(inputs.begin(), inputs.end(), moves)) return;
   const Unit unit = ParseUnit(experiment_.inputs[inputs.front()].unit, "");
-  const auto original = excerpt.log.input;
+  const auto original = window.log.input;
   const bool one = inputs.size() == 1;
   const std::string column = one ? experiment_.inputs[inputs.front()].column : "";
   for (const Mistake& mistake : kMistakes) {
     if (mistake.unit && !unit.any && unit.dimension != ParseUnit(mistake.unit, "").dimension)
       continue;
     for (const std::size_t i : inputs) {
-      for (double& value : excerpt.log.input[i]) value *= mistake.factor;
+      for (double& value : window.log.input[i]) value *= mistake.factor;
     }
     const std::string which =
         one ? "this input" : "every input in " + experiment_.inputs[inputs.front()].unit;
-    Tell(excerpt, column, mistake.what, which + " " + mistake.text, out);
-    excerpt.log.input = original;
+    ReportIfExplained(window, column, mistake.what, which + " " + mistake.text, out);
+    window.log.input = original;
   }
 }
 
-void InputTrials::TrySwap(Excerpt& excerpt, std::size_t i, std::size_t j, Findings& out) {
+void InputMistakes::TrySwap(Window& window, std::size_t i, std::size_t j, Findings& out) {
   const auto &a = experiment_.inputs[i], &b = experiment_.inputs[j];
   if (a.unit != b.unit || a.column.empty() || b.column.empty()) return;
-  auto& input = excerpt.log.input;
-  if (!(excerpt.plain > 0.1) || input[i] == input[j]) return;
+  auto& input = window.log.input;
+  if (!(window.plain > 0.1) || input[i] == input[j]) return;
   std::swap(input[i], input[j]);
-  Tell(excerpt, a.column, "swapped", "this input is swapped with '" + b.column + "'", out);
+  ReportIfExplained(window, a.column, "swapped", "this input is swapped with '" + b.column + "'",
+                    out);
   std::swap(input[i], input[j]);
 }
 
-void InputTrials::Tell(const Excerpt& excerpt, const std::string& column, const char* what,
-                       const std::string& text, Findings& out) {
+void InputMistakes::ReportIfExplained(const Window& window, const std::string& column,
+                                      const char* what, const std::string& text, Findings& out) {
   if (budget_ <= 0) return;
-  const double error = ErrorOf(excerpt.log);
-  if (!(error < std::min(0.1 * excerpt.plain, 0.25))) return;
+  const double error = ErrorOf(window.log);
+  if (!(error < std::min(0.1 * window.plain, 0.25))) return;
   out.Add(Severity::kWarning, column, what,
           fmt::format("the simulation fits if {}: relative error {:.2g} instead of {:.2g}", text,
-                      std::sqrt(error), std::sqrt(excerpt.plain)));
+                      std::sqrt(error), std::sqrt(window.plain)));
 }
 
 }  // namespace continuum

@@ -20,14 +20,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // A column of the log and where MuJoCo has its number: in qpos or in sensordata.
-struct Place {
+struct ColumnAddress {
   std::size_t channel;
   int address;
 };
 
 // What a log measures of the pose: joints, and sensors that all joints determine.
 struct Pose {
-  std::vector<Place> joints, others;
+  std::vector<ColumnAddress> joints, others;
   bool whole;  // every joint; else the rest is taken to stand still
 };
 
@@ -56,7 +56,7 @@ constexpr std::size_t kReach = 3;  // rows on either side of a secant: noise is 
 std::vector<std::size_t> RowsOf(const Log& log, const Pose& pose) {
   std::vector<std::size_t> rows;
   for (std::size_t k = kReach; k + kReach < log.rows() && rows.size() < 2000; ++k) {
-    const auto missing = [&](const Place& p) {
+    const auto missing = [&](const ColumnAddress& p) {
       const auto& x = log.measured[p.channel];
       return !std::isfinite(x[k - kReach]) || !std::isfinite(x[k]) || !std::isfinite(x[k + kReach]);
     };
@@ -74,9 +74,9 @@ struct Motion {
   std::vector<MatrixXd> by_joint;
 };
 
-class Poses {
+class PoseKinematics {
  public:
-  Poses(const Experiment& e, const Log& log, const Pose& pose, ModelAndData& machine)
+  PoseKinematics(const Experiment& e, const Log& log, const Pose& pose, ModelAndData& machine)
       : e_(e), log_(log), pose_(pose), m_(*machine.model), d_(*machine.data) {}
 
   Motion Of(const std::vector<std::size_t>& rows) {
@@ -87,8 +87,8 @@ class Poses {
     motion.by_joint.assign(pose_.others.size(), MatrixXd(n, joints));
     for (Eigen::Index i = 0; i < n; ++i) {
       const std::size_t k = rows[i];
-      for (const Place& j : pose_.joints) d_.qpos[j.address] = Measured(j, k);
-      const VectorXd here = Look();
+      for (const ColumnAddress& j : pose_.joints) d_.qpos[j.address] = Measured(j, k);
+      const VectorXd here = EvaluateSensors();
       for (Eigen::Index j = 0; j < joints; ++j) {
         const VectorXd speed = Speed(pose_.joints[j], k);
         for (std::size_t o = 0; o < pose_.others.size(); ++o)
@@ -106,10 +106,10 @@ class Poses {
   }
 
  private:
-  double Measured(const Place& p, std::size_t row) const {
+  double Measured(const ColumnAddress& p, std::size_t row) const {
     return SignalOf(e_, p.channel, log_.measured[p.channel][row]);
   }
-  VectorXd Look() {
+  VectorXd EvaluateSensors() {
     mj_fwdPosition(&m_, &d_);
     mj_sensorPos(&m_, &d_);
     VectorXd seen(static_cast<Eigen::Index>(pose_.others.size()));
@@ -118,13 +118,13 @@ class Poses {
     return seen;
   }
   // Of the others, as one joint moves.
-  VectorXd Speed(const Place& joint, std::size_t row) {
+  VectorXd Speed(const ColumnAddress& joint, std::size_t row) {
     double& q = d_.qpos[joint.address];
     const double here = q;
     q = Measured(joint, row + kReach);
-    const VectorXd after = Look();
+    const VectorXd after = EvaluateSensors();
     q = Measured(joint, row - kReach);
-    const VectorXd before = Look();
+    const VectorXd before = EvaluateSensors();
     q = here;
     return (after - before) / (log_.time[row + kReach] - log_.time[row - kReach]);
   }
@@ -137,14 +137,14 @@ class Poses {
 };
 
 // How late a column would be [s] if it alone were, and what of the rest that explains.
-struct Late {
+struct Delay {
   double seconds = 0, sd = 0, explained = 0, share = 0;
 };
 
 // rest ≈ late · pattern, in units of the channel's own motion; sd for noise that lasts ten rows.
 // The share is of what is more than white noise.
-Late FitLate(const std::vector<VectorXd>& rest, const std::vector<VectorXd>& pattern,
-             const std::vector<double>& unit) {
+Delay FitDelay(const std::vector<VectorXd>& rest, const std::vector<VectorXd>& pattern,
+               const std::vector<double>& unit) {
   double rr = 0, rp = 0, pp = 0, white = 0;
   const auto rows = static_cast<double>(rest.front().size());
   for (std::size_t o = 0; o < rest.size(); ++o) {
@@ -160,14 +160,14 @@ Late FitLate(const std::vector<VectorXd>& rest, const std::vector<VectorXd>& pat
           explained / std::max(rr - white, explained)};
 }
 
-void Tell(const std::string& column, const Late& late, double period, const std::string& against,
-          Findings& out) {
-  const double rows = std::abs(late.seconds) / period;
+void ReportLag(const std::string& column, const Delay& delay, double period,
+               const std::string& against, Findings& out) {
+  const double rows = std::abs(delay.seconds) / period;
   out.Add(Finding::Severity::kWarning, column, "lag",
           fmt::format("is {} {} by {} ({:.1f} rows) by the kinematics of the model alone: the "
                       "column is shifted",
-                      late.seconds > 0 ? "late against" : "ahead of", against,
-                      Amount(1e3 * std::abs(late.seconds), "ms"), rows));
+                      delay.seconds > 0 ? "late against" : "ahead of", against,
+                      Amount(1e3 * std::abs(delay.seconds), "ms"), rows));
 }
 
 // Whether joints that are not measured move, by the sensors that see them too.
@@ -181,16 +181,16 @@ bool Moves(const Motion& motion, const std::vector<double>& unit) {
 }
 
 // Columns that are late on their own, those of the joints behind the others.
-std::vector<Late> LateColumns(const Motion& motion, const std::vector<double>& unit) {
-  std::vector<Late> late;
+std::vector<Delay> DelaysOfColumns(const Motion& motion, const std::vector<double>& unit) {
+  std::vector<Delay> delay;
   for (std::size_t o = 0; o < motion.rest.size(); ++o)
-    late.push_back(FitLate({motion.rest[o]}, {-motion.own[o]}, {unit[o]}));
+    delay.push_back(FitDelay({motion.rest[o]}, {-motion.own[o]}, {unit[o]}));
   for (Eigen::Index j = 0; j < motion.by_joint.front().cols(); ++j) {
     std::vector<VectorXd> pattern;
     for (const MatrixXd& by : motion.by_joint) pattern.emplace_back(by.col(j));
-    late.push_back(FitLate(motion.rest, pattern, unit));
+    delay.push_back(FitDelay(motion.rest, pattern, unit));
   }
-  return late;
+  return delay;
 }
 
 // A column that is refreshed now and then is late by itself, and makes others look so.
@@ -201,21 +201,21 @@ bool Repeats(const std::vector<double>& x) {
 }
 
 // What is believed of them: some of the others, or the one joint that says more than they do.
-std::vector<Late> Believed(std::vector<Late> late, std::size_t others, double period) {
+std::vector<Delay> PlausibleDelays(std::vector<Delay> delay, std::size_t others, double period) {
   constexpr double kShare = 0.4;  // joints that move together look late together
-  for (Late& l : late) {
+  for (Delay& l : delay) {
     if (std::abs(l.seconds) < std::max(0.7 * period, 4 * l.sd) || l.share < kShare) l = {};
   }
-  const auto first_joint = late.begin() + static_cast<std::ptrdiff_t>(others);
-  const auto joint = std::max_element(first_joint, late.end(),
+  const auto first_joint = delay.begin() + static_cast<std::ptrdiff_t>(others);
+  const auto joint = std::max_element(first_joint, delay.end(),
                                       [](auto& a, auto& b) { return a.explained < b.explained; });
   double by_others = 0;
-  for (auto l = late.begin(); l != first_joint; ++l) by_others += l->explained;
+  for (auto l = delay.begin(); l != first_joint; ++l) by_others += l->explained;
   const bool one_joint = joint->explained > by_others;
-  for (auto l = late.begin(); l != late.end(); ++l) {
+  for (auto l = delay.begin(); l != delay.end(); ++l) {
     if (one_joint ? l != joint : l >= first_joint) *l = {};
   }
-  return late;
+  return delay;
 }
 
 }  // namespace
@@ -229,22 +229,23 @@ std::set<std::string> CheckPose(const Experiment& e, const Log& log, const Model
   const std::vector<std::size_t> rows = pose ? RowsOf(log, *pose) : std::vector<std::size_t>();
   if (rows.size() < 100) return {};
   std::vector<double> unit;
-  for (const Place& o : pose->others) unit.push_back(Deviation(log.measured[o.channel]));
-  std::vector<Place> places = pose->others;
-  places.insert(places.end(), pose->joints.begin(), pose->joints.end());
-  const auto repeats = [&](const Place& p) { return Repeats(log.measured[p.channel]); };
-  if (std::any_of(places.begin(), places.end(), repeats)) return {};
-  const Motion motion = Poses(e, log, *pose, machine).Of(rows);
+  for (const ColumnAddress& o : pose->others) unit.push_back(Deviation(log.measured[o.channel]));
+  std::vector<ColumnAddress> columns = pose->others;
+  columns.insert(columns.end(), pose->joints.begin(), pose->joints.end());
+  const auto repeats = [&](const ColumnAddress& p) { return Repeats(log.measured[p.channel]); };
+  if (std::any_of(columns.begin(), columns.end(), repeats)) return {};
+  const Motion motion = PoseKinematics(e, log, *pose, machine).Of(rows);
   if (!pose->whole && Moves(motion, unit)) return {};
   const double period = Median(Differences(log.time));
-  const std::vector<Late> late = Believed(LateColumns(motion, unit), pose->others.size(), period);
+  const std::vector<Delay> delay =
+      PlausibleDelays(DelaysOfColumns(motion, unit), pose->others.size(), period);
   std::set<std::string> judged;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const std::string& column = e.channels[places[i].channel].name;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string& column = e.channels[columns[i].channel].name;
     judged.insert(column);
     const bool joint = i >= pose->others.size();
-    if (late[i].explained > 0)
-      Tell(column, late[i], period, joint ? "the other outputs" : "the measured joints", out);
+    if (delay[i].explained > 0)
+      ReportLag(column, delay[i], period, joint ? "the other outputs" : "the measured joints", out);
   }
   return judged;
 }

@@ -140,12 +140,12 @@ std::size_t DistinctValues(const Values& x, std::size_t limit) {
 
 double QuantumOf(const Values& x) {
   // Values that come twice in a row are the sensor's own even in a log that was resampled.
-  Values twice;
+  Values repeated;
   for (std::size_t k = 1; k < x.size(); ++k) {
-    if (x[k] == x[k - 1]) twice.push_back(x[k]);
+    if (x[k] == x[k - 1]) repeated.push_back(x[k]);
   }
   const double range = RangeOf(x);
-  const double quantum = GridOf(twice, range);
+  const double quantum = GridOf(repeated, range);
   return quantum > 0 ? quantum : GridOf(x, range);
 }
 

@@ -77,7 +77,7 @@ std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
     return ColorBar{"cable tension [N]", Decimal(low), Decimal(high)};
   }
   if (HasPathLaw(m)) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
-  if (!HasChamberLaw(m)) return std::nullopt;
+  if (!HasSegmentLaw(m)) return std::nullopt;
   double full = 0;  // all chambers are alike
   for (int a = 0; a < m.nu; ++a) {
     if (!m.actuator_ctrllimited[a]) return std::nullopt;
@@ -107,7 +107,7 @@ void ColorTendons(const mjModel& m, const mjData& d, const std::array<double, 2>
   for (int g = 0; g < scene.ngeom; ++g) {
     mjvGeom& geom = scene.geoms[g];
     if (geom.objtype != mjOBJ_TENDON) continue;
-    if (geom.category == mjCAT_DECOR)  // by an effect, which knows the tension of each piece
+    if (geom.category == mjCAT_DECOR)  // by an effect, which knows the tension of each segment
       tension[geom.objid] = kEffectFull * (geom.rgba[0] - bar.from[0]) / (bar.to[0] - bar.from[0]);
     const auto share = static_cast<float>(
         std::clamp((tension[geom.objid] - range[0]) / (range[1] - range[0]), 0.0, 1.0));
@@ -131,7 +131,7 @@ void Connect(const Arrow& arrow, const mjModel& m, int type, const double* from,
 
 void DrawAround(const Arrow& arrow, const mjModel& m, const double* center, const double* torque,
                 mjvScene& scene) {
-  constexpr int kPieces = 24, kHead = 6;
+  constexpr int kSegments = 24, kHead = 6;
   double axis[3], side[3], top[3] = {0, 0, 1};
   mju_copy3(axis, torque);
   const double size = mju_normalize3(axis);
@@ -140,17 +140,17 @@ void DrawAround(const Arrow& arrow, const mjModel& m, const double* center, cons
   mju_normalize3(side);
   mju_cross(top, side, axis);
   const double angle = std::min(arrow.length * size / arrow.radius, 1.8 * std::numbers::pi);
-  const auto at = [&](int piece, double* point) {
-    const double turn = angle * (static_cast<double>(piece) / kPieces - 0.5);
+  const auto at = [&](int segment, double* point) {
+    const double turn = angle * (static_cast<double>(segment) / kSegments - 0.5);
     mju_addScl3(point, center, top, arrow.radius * std::cos(turn));
     mju_addToScl3(point, side, arrow.radius * std::sin(turn));
   };
   double from[3], to[3];
-  for (int piece = 0; piece < kPieces - kHead; ++piece) {
-    at(piece, from), at(piece + 1, to);
+  for (int segment = 0; segment < kSegments - kHead; ++segment) {
+    at(segment, from), at(segment + 1, to);
     Connect(arrow, m, mjGEOM_CAPSULE, from, to, scene);
   }
-  at(kPieces - kHead, from), at(kPieces, to);
+  at(kSegments - kHead, from), at(kSegments, to);
   Connect(arrow, m, mjGEOM_ARROW, from, to, scene);
 }
 

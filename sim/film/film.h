@@ -51,7 +51,8 @@ void Decorate(const FilmOptions& options, const mjModel& m, const mjData& d, mjv
 /// pale and without a line, as the simulation went on.
 void DrawMeasured(const MeasuredPoint& point, const mjModel& m, mjvScene& scene);
 
-/// What the film of a log will show, found by simulating it beforehand.
+/// The ranges of positions and tensions in a log, found by simulating it before it is drawn. Camera
+/// and colours follow from them.
 struct Outlook {
   Framing framing;      ///< of all poses, those that were measured too
   bool marked = false;  ///< whether positions without a pose are measured in some frame

@@ -22,7 +22,7 @@ std::vector<double> Count(const Yaml& y, std::size_t count, const char* expected
 }
 
 // At t, of points in order of time; a later point of the same time counts.
-double Between(const std::vector<std::vector<double>>& points, double t) {
+double InterpolateLinearly(const std::vector<std::vector<double>>& points, double t) {
   const auto next = std::upper_bound(points.begin(), points.end(), t,
                                      [](double time, const auto& p) { return time < p[0]; });
   if (next == points.begin()) return points.front()[1];
@@ -40,7 +40,7 @@ std::vector<double> ReadPoints(const Yaml& y, const std::vector<double>& time) {
   }
   if (points.empty()) throw Error::Input(y.Where(), "at least one point", "none");
   std::vector<double> values;
-  for (const double t : time) values.push_back(Between(points, t + 1e-9));
+  for (const double t : time) values.push_back(InterpolateLinearly(points, t + 1e-9));
   return values;
 }
 

@@ -15,7 +15,7 @@ namespace {
 using Vector = std::array<double, 3>;
 
 // The row in which a late clock shows what another row's time had.
-std::size_t RowShown(const Log& log, std::size_t row, double shift) {
+std::size_t RowOfClock(const Log& log, std::size_t row, double shift) {
   const auto next = std::lower_bound(log.time.begin(), log.time.end(), log.time[row] + shift);
   if (next == log.time.begin()) return 0;
   if (next == log.time.end()) return log.rows() - 1;
@@ -29,28 +29,29 @@ std::map<int, Directions> PositionSensors(const Experiment& e, const Wiring& wir
   std::map<int, Directions> sensors;
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const auto& source = wiring.output[e.channels[c].output];
-    if (source.seen == Wiring::Source::Seen::kPoint) sensors[source.sensor][source.component] = c;
+    if (source.geometry == Wiring::Source::Geometry::kPoint)
+      sensors[source.sensor][source.component] = c;
   }
   std::erase_if(sensors, [](const auto& sensor) { return sensor.second.size() < 2; });
   return sensors;
 }
 
 // From the frame of a sensor into that of the measurement, y = R x + T, and back.
-class Camera {
+class MeasurementFrame {
  public:
-  explicit Camera(const Registration& r) : shift_(r.translation) {
+  explicit MeasurementFrame(const Registration& r) : shift_(r.translation) {
     Vector axis = r.rotation;
     const double angle = mju_normalize3(axis.data());
     mju_axisAngle2Quat(turn_, axis.data(), angle);
     mju_negQuat(back_, turn_);
   }
-  Vector Sees(const Vector& x) const {
+  Vector FromSensor(const Vector& x) const {
     Vector y;
     mju_rotVecQuat(y.data(), x.data(), turn_);
     mju_addTo3(y.data(), shift_.data());
     return y;
   }
-  Vector Finds(const Vector& y) const {
+  Vector ToSensor(const Vector& y) const {
     Vector x, shifted = y;
     mju_subFrom3(shifted.data(), shift_.data());
     mju_rotVecQuat(x.data(), shifted.data(), back_);
@@ -101,10 +102,10 @@ std::optional<MeasuredRow> FindMeasured(const Log& log, std::size_t row,
 std::vector<MeasuredPoint> MeasuredPoints(const Experiment& e, const Wiring& wiring, const Log& log,
                                           std::size_t row, const mjModel& m, const mjData& d) {
   std::vector<MeasuredPoint> points;
-  const std::size_t shown = RowShown(log, row, e.registration.clock_shift);
-  const Camera camera(e.registration);
+  const std::size_t clock_row = RowOfClock(log, row, e.registration.clock_shift);
+  const MeasurementFrame frame_of_measurement(e.registration);
   for (const auto& [sensor, channels] : PositionSensors(e, wiring)) {
-    const auto found = FindMeasured(log, shown, [&log, &c = channels](std::size_t k) {
+    const auto found = FindMeasured(log, clock_row, [&log, &c = channels](std::size_t k) {
       return std::all_of(c.begin(), c.end(), [&](const auto& direction) {
         return std::isfinite(log.measured[direction.second][k]);
       });
@@ -119,9 +120,9 @@ std::vector<MeasuredPoint> MeasuredPoints(const Experiment& e, const Wiring& wir
     p.held = found->gap > 1;
     mju_mulMatVec3(p.simulated.data(), object.axes, offset.data());
     mju_addTo3(p.simulated.data(), object.position);
-    Vector y = camera.Sees(frame.Of(p.simulated));
+    Vector y = frame_of_measurement.FromSensor(frame.Of(p.simulated));
     for (const auto& [i, c] : channels) y[i] = SignalOf(e, c, log.measured[c][found->row]);
-    p.measured = frame.InWorld(camera.Finds(y));
+    p.measured = frame.InWorld(frame_of_measurement.ToSensor(y));
     points.push_back(p);
   }
   return points;

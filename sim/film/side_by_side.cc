@@ -99,14 +99,14 @@ void DrawSideBySide(const Side& left, const Side& right, std::size_t log,
   beside.Include(ahead);
   Ruler ruler;
   Frames one(left, log, options, ahead, ruler), other(right, log, options, beside, ruler);
-  Image shown[2];
+  Image frames[2];
   for (;;) {
     std::optional<Image> next[2] = {one.Next(), other.Next()};
     if (!next[0] && !next[1]) return;
     for (int i = 0; i < 2; ++i) {
-      if (next[i]) shown[i] = *std::move(next[i]);
+      if (next[i]) frames[i] = *std::move(next[i]);
     }
-    take(Joined(shown[0], shown[1]));
+    take(Joined(frames[0], frames[1]));
   }
 }
 

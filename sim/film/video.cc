@@ -171,7 +171,7 @@ class VideoWriter::Impl {
         target_(ThroughLinks(path)),
         width_(width),
         height_(height),
-        partial_(Aside(target_)) {
+        partial_(TemporaryPath(target_)) {
     try {
       film_ = std::make_unique<Film>(partial_.path(), width, height, fps);
     } catch (const Error& e) {

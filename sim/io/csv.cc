@@ -13,7 +13,7 @@
 namespace continuum {
 namespace {
 
-constexpr std::size_t kShown = 500;  // characters of a list of columns
+constexpr std::size_t kColumnListLength = 500;  // characters of a list of columns
 
 std::string_view Trim(std::string_view s) {
   const auto blank = " \t\r";
@@ -81,7 +81,7 @@ CsvTable CsvTable::Parse(std::string_view text, std::string name) {
       for (const std::string& name : t.columns_) {
         if (name.empty()) throw Error::Input(where, "a name for every column", "an empty one");
         if (!names.insert(name).second) {
-          throw Error::Input(where, "different column names", "'" + Shown(name) + "' twice");
+          throw Error::Input(where, "different column names", "'" + Excerpt(name) + "' twice");
         }
       }
     } else if (cells.size() != t.columns_.size()) {
@@ -109,7 +109,8 @@ std::size_t CsvTable::Column(std::string_view column) const {
   if (c != columns_.end()) return static_cast<std::size_t>(c - columns_.begin());
   std::string all;
   for (const auto& name : columns_) all += (all.empty() ? "" : ", ") + name;
-  throw Error::Input(name_ + ":1", "a column '" + std::string(column) + "'", Shown(all, kShown));
+  throw Error::Input(name_ + ":1", "a column '" + std::string(column) + "'",
+                     Excerpt(all, kColumnListLength));
 }
 
 std::string CsvTable::Where(std::size_t row) const {
@@ -139,7 +140,7 @@ double CsvTable::Number(std::size_t row, std::string_view column) const {
   if (read && std::abs(value) <= kLargest) return value;
   throw Error::Input(Where(row) + ", column '" + std::string(column) + "'",
                      read ? "a number within +-1e100" : "a finite number",
-                     cell.empty() ? "an empty cell" : "'" + Shown(cell) + "'");
+                     cell.empty() ? "an empty cell" : "'" + Excerpt(cell) + "'");
 }
 
 bool CsvTable::Flag(std::size_t row, std::string_view column) const {

@@ -101,12 +101,12 @@ std::string ReadFile(const fs::path& path) {
   return text;
 }
 
-fs::path Aside(const fs::path& path) {
+fs::path TemporaryPath(const fs::path& path) {
   const std::string before = "." + path.filename().string() + ".";
   const std::string after = ".tmp" + path.extension().string();
   RemoveLeftBehind(path.parent_path(), before, after);
-  fs::path aside = path;
-  return aside.replace_filename(before + std::to_string(getpid()) + after);
+  fs::path temporary = path;
+  return temporary.replace_filename(before + std::to_string(getpid()) + after);
 }
 
 void WriteFile(const fs::path& path, std::string_view content) {
@@ -116,15 +116,15 @@ void WriteFile(const fs::path& path, std::string_view content) {
   if (fs::is_symlink(target, failed)) {
     throw Error::Input(path.string(), "a writable file", "symbolic links without an end");
   }
-  const fs::path aside = Aside(target);
-  std::ofstream out(aside, std::ios::binary | std::ios::trunc);
+  const fs::path temporary = TemporaryPath(target);
+  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
   if (out) out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
   const std::string reason = out ? "" : std::strerror(errno);
-  if (out) fs::rename(aside, target, failed);
+  if (out) fs::rename(temporary, target, failed);
   if (out && !failed) return;
   std::error_code ignored;
-  fs::remove(aside, ignored);
+  fs::remove(temporary, ignored);
   throw Error::Input(path.string(), "a writable file", out ? failed.message() : reason);
 }
 

@@ -28,6 +28,6 @@ void MakeFolder(const std::filesystem::path& path);
 
 /// A temporary name beside path, for writers that need a real file; rename it over path when done.
 /// What processes that were killed left behind under such names is removed.
-std::filesystem::path Aside(const std::filesystem::path& path);
+std::filesystem::path TemporaryPath(const std::filesystem::path& path);
 
 }  // namespace continuum

@@ -6,7 +6,7 @@
 
 namespace continuum {
 
-/// A file of ours read back. Throws Error when it cannot be read or is no JSON.
+/// Reads a JSON file. Throws Error (file) when it cannot be read or is no JSON.
 nlohmann::json ReadJson(const std::filesystem::path& file);
 
 }  // namespace continuum

@@ -36,15 +36,15 @@ void RequireWritable(const fs::path& path, const std::vector<fs::path>& inputs) 
   if (fs::is_directory(target, failed)) {
     throw Error::Input(path.string(), "a writable file", "a folder");
   }
-  const fs::path aside = Aside(target);
-  std::ofstream probe(aside);
+  const fs::path temporary = TemporaryPath(target);
+  std::ofstream probe(temporary);
   if (!probe) throw Error::Input(path.string(), "a writable file", std::strerror(errno));
   probe.close();
-  fs::remove(aside, failed);
+  fs::remove(temporary, failed);
 }
 
-OutFolder::OutFolder(const fs::path& path, const std::vector<std::string>& outputs,
-                     const std::vector<fs::path>& inputs) {
+OutputFolder::OutputFolder(const fs::path& path, const std::vector<std::string>& outputs,
+                           const std::vector<fs::path>& inputs) {
   std::error_code ignored;
   for (fs::path p = fs::absolute(path, ignored).lexically_normal();
        p.has_relative_path() && !fs::exists(p, ignored); p = p.parent_path()) {
@@ -59,9 +59,9 @@ OutFolder::OutFolder(const fs::path& path, const std::vector<std::string>& outpu
   }
 }
 
-OutFolder::~OutFolder() { RemoveEmpty(); }
+OutputFolder::~OutputFolder() { RemoveEmpty(); }
 
-void OutFolder::RemoveEmpty() {
+void OutputFolder::RemoveEmpty() {
   std::error_code not_empty;
   for (const fs::path& p : made_) fs::remove(p, not_empty);
 }

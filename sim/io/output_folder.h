@@ -13,15 +13,15 @@ void RequireWritable(const std::filesystem::path& path,
 
 /// A folder for the outputs of a job, made before it starts. Folders that it made and that are
 /// still empty when it ends are taken away again.
-class OutFolder {
+class OutputFolder {
  public:
   /// outputs: what the job will write there, folders with a "/" at their end; inputs: what it
   /// reads. Throws Error when the folder cannot be made, or one of the outputs not be written or is
   /// an input.
-  OutFolder(const std::filesystem::path& path, const std::vector<std::string>& outputs,
-            const std::vector<std::filesystem::path>& inputs = {});
-  OutFolder(const OutFolder&) = delete;
-  ~OutFolder();
+  OutputFolder(const std::filesystem::path& path, const std::vector<std::string>& outputs,
+               const std::vector<std::filesystem::path>& inputs = {});
+  OutputFolder(const OutputFolder&) = delete;
+  ~OutputFolder();
 
  private:
   void RemoveEmpty();

@@ -66,7 +66,7 @@ class Keys : public YAML::EventHandler {
     if (added) return;
     throw Error::Input(
         name_ + ":" + std::to_string(line), "different keys",
-        "'" + Shown(key) + "' twice, first in line " + std::to_string(first->second));
+        "'" + Excerpt(key) + "' twice, first in line " + std::to_string(first->second));
   }
 
   const std::string& name_;
@@ -110,7 +110,7 @@ std::string Yaml::Found() const {
   if (!node_.IsDefined() || node_.IsNull()) return "nothing";
   if (node_.IsMap()) return "a map";
   if (node_.IsSequence()) return "a list";
-  return "'" + Shown(node_.Scalar()) + "'";
+  return "'" + Excerpt(node_.Scalar()) + "'";
 }
 
 bool Yaml::Has(const std::string& key) const { return node_.IsMap() && node_[key].IsDefined(); }

@@ -1,47 +1,32 @@
 #include "sim/model/effect_kind.h"
 
-#include <string>
-
-#include "effects/all.h"
+#include "binding/effect_catalog.h"
 
 namespace continuum {
 namespace {
 
-// Calls use<E>() with the law of a plugin instance, if it is on the list.
-template <class Use>
-void WithLaw(const mjModel& m, int instance, Use&& use) {
-  const std::string plugin = mjp_getPluginAtSlot(m.plugin[instance])->name;
-  All::ForEach([&]<class E>() {
-    if (plugin == "continuum." + std::string(E::kName)) use.template operator()<E>();
-  });
+bool IsKind(const mjModel& m, int instance, EffectInfo::Kind kind) {
+  const EffectInfo* const effect = EffectOf(m, instance);
+  return effect && effect->kind == kind;
 }
 
-template <class E>
-constexpr bool HasChambers() {
-  return SegmentLaw<E> && requires(ParamsOf<E, double> p) { E::template Chambers<double>(p); };
+bool HasKind(const mjModel& m, EffectInfo::Kind kind) {
+  for (int i = 0; i < m.nplugin; ++i) {
+    if (IsKind(m, i, kind)) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
-bool HasPathLaw(const mjModel& m) {
-  bool found = false;
-  for (int i = 0; i < m.nplugin; ++i) WithLaw(m, i, [&]<class E>() { found |= PathLaw<E>; });
-  return found;
-}
+bool HasPathLaw(const mjModel& m) { return HasKind(m, EffectInfo::Kind::kPath); }
 
-bool HasChamberLaw(const mjModel& m) {
-  bool found = false;
-  for (int i = 0; i < m.nplugin; ++i) WithLaw(m, i, [&]<class E>() { found |= HasChambers<E>(); });
-  return found;
-}
+bool HasSegmentLaw(const mjModel& m) { return HasKind(m, EffectInfo::Kind::kSegment); }
 
 std::vector<double> FrictionlessPath(const mjModel& m, int instance) {
   std::vector<double> none;
-  WithLaw(m, instance, [&]<class E>() {
-    if constexpr (PathLaw<E>) {
-      for (const Param& p : E::kParams) none.push_back(p.null);
-    }
-  });
+  if (!IsKind(m, instance, EffectInfo::Kind::kPath)) return none;
+  for (const Param& p : EffectOf(m, instance)->params) none.push_back(p.null);
   return none;
 }
 

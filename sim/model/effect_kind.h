@@ -6,13 +6,13 @@
 
 namespace continuum {
 
-/// Whether an effect of the model knows the tension of cables along their way, and colours them by
-/// it (PathLaw).
+/// Whether an effect of the model gives the friction of a cable along its path (PathLaw). Such
+/// effects colour cables by their tension.
 bool HasPathLaw(const mjModel& m);
 
-/// Whether an effect of the model stands for a soft segment with its chambers, and colours them by
-/// their pressure (SegmentLaw with Chambers).
-bool HasChamberLaw(const mjModel& m);
+/// Whether an effect of the model drives a soft segment (SegmentLaw). Such effects colour chambers
+/// by their pressure.
+bool HasSegmentLaw(const mjModel& m);
 
 /// The parameters, in the order of the card, at which the path law of a plugin instance has no
 /// friction; empty when the instance is none.

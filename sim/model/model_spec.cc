@@ -58,14 +58,14 @@ bool IsPlugin(const Change& change) { return change.target.starts_with(kPluginTa
 // A body's mass scales its inertia, so that comes first: an inertia that is given is the body's. A
 // weight that is put on a body comes last: what scales the body does not scale that. So does what
 // scales an actuator's force: a gain that is given is the actuator's.
-constexpr int kTurns = 3;
+constexpr int kPasses = 3;
 bool IsWeight(const std::string& target, const std::string& attribute) {
   return target.starts_with("body:") && attribute == "point_mass";
 }
 bool IsForceScale(const Change& change) {
   return change.target.starts_with("actuator:") && change.attribute == "force_scale";
 }
-int TurnOf(const Change& change) {
+int PassOf(const Change& change) {
   if (IsWeight(change.target, change.attribute) || IsForceScale(change)) return 2;
   return change.target.starts_with("body:") && change.attribute == "mass" ? 0 : 1;
 }
@@ -146,9 +146,9 @@ class ModelSpec::Edits {
   Edits(const ModelSpec& system, std::span<const Change> changes)
       : spec_(*system.spec_), option_(spec_.option), compiler_(spec_.compiler) {
     try {
-      for (int turn = 0; turn < kTurns; ++turn) {
+      for (int pass = 0; pass < kPasses; ++pass) {
         for (std::size_t i = 0; i < changes.size(); ++i) {
-          if (!IsPlugin(changes[i]) && !RepeatsEffect(changes, i) && TurnOf(changes[i]) == turn)
+          if (!IsPlugin(changes[i]) && !RepeatsEffect(changes, i) && PassOf(changes[i]) == pass)
             Apply(system, changes, changes[i]);
         }
       }

@@ -11,7 +11,7 @@
 
 namespace continuum {
 
-/// A compiled model of one's own with its data.
+/// A compiled model and its data, owned together.
 struct ModelAndData {
   Owned<mjModel> model;
   Owned<mjData> data;
@@ -42,8 +42,8 @@ class ModelSpec {
   ModelAndData Build(std::span<const Change> changes = {}) const;
   /// The value that a change would replace.
   double Value(const std::string& target, const std::string& attribute) const;
-  /// The value after changes. What lies on top (LiesOnTop) is in it, so that it comes twice where
-  /// it is told beside it.
+  /// The value of an attribute after changes. It includes what lies on top of the element
+  /// (LiesOnTop): whoever lists such a change beside the value counts it twice.
   double ValueAfter(std::span<const Change> changes, const std::string& target,
                     const std::string& attribute) const;
   /// Names of the elements that a target names ("option" and "plugin:NAME" are their own), in the

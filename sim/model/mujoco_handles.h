@@ -8,6 +8,7 @@
 
 namespace continuum {
 
+/// Frees what MuJoCo allocates.
 struct MujocoDeleter {
   void operator()(mjSpec* s) const { mj_deleteSpec(s); }
   void operator()(mjModel* m) const { mj_deleteModel(m); }

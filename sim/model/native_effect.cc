@@ -12,9 +12,10 @@ namespace {
 constexpr std::string_view kPrefix = "effect:";
 
 // "effect:NAME.PARAM" in parts; PARAM is empty for the first.
-struct Named {
+struct EffectParameter {
   std::string effect, parameter;
-  explicit Named(const std::string& attribute) : effect(attribute.substr(kPrefix.size())) {
+  explicit EffectParameter(const std::string& attribute)
+      : effect(attribute.substr(kPrefix.size())) {
     const std::size_t dot = effect.find('.');
     if (dot == effect.npos) return;
     parameter = effect.substr(dot + 1);
@@ -26,9 +27,9 @@ struct Named {
 };
 
 // The options of a model as an element: what belongs to the world.
-class World {
+class WorldElement {
  public:
-  explicit World(mjOption& option) : option_(option) {}
+  explicit WorldElement(mjOption& option) : option_(option) {}
   double Get(std::string_view name) const { return OptionAttribute(option_, name, "world"); }
   void Set(std::string_view name, double value) { OptionAttribute(option_, name, "world") = value; }
   void Add(std::string_view name, double value) { Set(name, Get(name) + value); }
@@ -43,7 +44,7 @@ double Null(const Param& param) { return std::isnan(param.null) ? 0 : param.null
 // Calls use<E>() for the native effect of this name.
 template <class Use>
 void WithNative(const std::string& attribute, Use&& use) {
-  const std::string name = Named(attribute).effect;
+  const std::string name = EffectParameter(attribute).effect;
   bool known = false;
   All::ForEach([&]<class E>() {
     if constexpr (EditLaw<E>) {
@@ -53,9 +54,9 @@ void WithNative(const std::string& attribute, Use&& use) {
   if (!known) throw Error::Input(attribute, "a native effect", "'" + name + "'");
 }
 
-bool Together(const Change& a, const Change& b) {
+bool OfOneEffect(const Change& a, const Change& b) {
   return IsNativeEffect(a) && IsNativeEffect(b) && a.target == b.target &&
-         Named(a.attribute).effect == Named(b.attribute).effect;
+         EffectParameter(a.attribute).effect == EffectParameter(b.attribute).effect;
 }
 
 template <class Target>
@@ -64,8 +65,8 @@ void Apply(Target& target, std::span<const Change> changes, const Change& change
     ParamsOf<E, double> p;
     for (std::size_t i = 0; i < p.size(); ++i) p[i] = Null(E::kParams[i]);
     for (const Change& c : changes) {
-      if (!Together(c, change)) continue;
-      double& value = p[Named(c.attribute).Index()];
+      if (!OfOneEffect(c, change)) continue;
+      double& value = p[EffectParameter(c.attribute).Index()];
       value = Changed(value, c);
     }
     E::Apply(target, p);
@@ -100,7 +101,7 @@ bool IsNativeEffect(const Change& change) { return change.attribute.starts_with(
 
 bool RepeatsEffect(std::span<const Change> changes, std::size_t index) {
   for (std::size_t i = 0; i < index; ++i) {
-    if (Together(changes[i], changes[index])) return true;
+    if (OfOneEffect(changes[i], changes[index])) return true;
   }
   return false;
 }
@@ -111,19 +112,21 @@ void ApplyNativeEffect(SpecElement& element, std::span<const Change> changes,
 }
 
 void ApplyNativeEffect(mjOption& world, std::span<const Change> changes, const Change& change) {
-  World element(world);
+  WorldElement element(world);
   Apply(element, changes, change);
 }
 
 double NullOfNativeEffect(const std::string& attribute) {
   double null = 0;
-  WithNative(attribute, [&]<class E>() { null = Null(E::kParams[Named(attribute).Index()]); });
+  WithNative(attribute,
+             [&]<class E>() { null = Null(E::kParams[EffectParameter(attribute).Index()]); });
   return null;
 }
 
 std::string UnitOfNativeEffect(const std::string& attribute) {
   std::string unit;
-  WithNative(attribute, [&]<class E>() { unit = E::kParams[Named(attribute).Index()].unit; });
+  WithNative(attribute,
+             [&]<class E>() { unit = E::kParams[EffectParameter(attribute).Index()].unit; });
   return unit;
 }
 

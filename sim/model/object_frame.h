@@ -4,7 +4,7 @@
 
 namespace continuum {
 
-/// Where an object of a sensor is in the world: position [3] and axes [9], row by row.
+/// Position [3] and rotation matrix [9, row by row] of a sensor's object in the world.
 struct ObjectFrame {
   const double *position, *axes;
 };

@@ -14,8 +14,8 @@ inline int LastDof(const mjModel& m, int body) {
 
 /// ∂p/∂q of a point [m] that moves with a degree of freedom of a hinge or slide, where d knows the
 /// axes (mj_comPos).
-inline Eigen::Vector3d LeverOf(const mjModel& m, const mjData& d, int dof,
-                               const Eigen::Vector3d& point) {
+inline Eigen::Vector3d PointJacobian(const mjModel& m, const mjData& d, int dof,
+                                     const Eigen::Vector3d& point) {
   const double* const axis = d.cdof + 6 * dof;  // turn and shift about the tree's centre of mass
   const Eigen::Vector3d centre(d.subtree_com + 3 * m.body_rootid[m.dof_bodyid[dof]]);
   return Eigen::Vector3d(axis + 3) + Eigen::Vector3d(axis).cross(point - centre);

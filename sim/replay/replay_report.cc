@@ -33,7 +33,7 @@ void AddRegistration(Page& page, const Registration& r) {
 
 }  // namespace
 
-std::string ErrorInWords(const Experiment& e, const SplitError& error) {
+std::string ErrorText(const Experiment& e, const SplitError& error) {
   std::string text;
   const auto say = [&](bool train, const char* use, double value) {
     const auto used = [&](const Log& log) { return log.train == train; };
@@ -130,7 +130,7 @@ void WriteReplayReport(const Experiment& e, const std::vector<Replayed>& logs,
                        const std::filesystem::path& file) {
   Page page("Replay",
             e.model.filename().string() + " against " + std::to_string(logs.size()) + " logs");
-  page.Badge(Tone::kInfo, ErrorInWords(e, PooledError(e, logs)),
+  page.Badge(Tone::kInfo, ErrorText(e, PooledError(e, logs)),
              "root mean square over all samples, channels and logs; the model as it stands");
   page.Heading("Errors");
   std::vector<std::vector<std::string>> rows;

@@ -12,7 +12,7 @@
 namespace continuum {
 
 /// "error 0.1 m RMS on train, 0.2 on validate", of the uses that logs have.
-std::string ErrorInWords(const Experiment& experiment, const SplitError& error);
+std::string ErrorText(const Experiment& experiment, const SplitError& error);
 
 /// errors.json: pooled errors, per log and channel what ChannelScore holds, and what ScoreSensors
 /// says.

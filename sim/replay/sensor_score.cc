@@ -68,7 +68,7 @@ struct Sums {
   }
 };
 
-// Logs that are told together.
+// Logs that are scored together.
 struct Group {
   std::string use, condition;  // empty: any
 

@@ -112,11 +112,11 @@ void CriticalDamping::Update(mjModel& m, mjData& d) {
     lack[i] = std::max(0.0, turn * (2 - turn) / h - own);
     slowest_ = std::max(slowest_, std::min(TimeConstant(omega, own + lack[i]), kSlowest));
   }
-  brake_ = mass * V * lack.asDiagonal() * V.transpose() * mass;
+  critical_ = mass * V * lack.asDiagonal() * V.transpose() * mass;
 }
 
-VectorXd CriticalDamping::Brake(const mjData& d) const {
-  return -brake_ * VectorXd::Map(d.qvel, brake_.cols());
+VectorXd CriticalDamping::Force(const mjData& d) const {
+  return -critical_ * VectorXd::Map(d.qvel, critical_.cols());
 }
 
 }  // namespace continuum

@@ -6,25 +6,25 @@
 
 namespace continuum {
 
-/// Small motions of a machine around a state, without dry friction, contacts and limits.
+/// The damping that a machine lacks to be critically damped in all its small motions around a
+/// state. Dry friction, contacts and limits are left out.
 class CriticalDamping {
  public:
-  /// Measures damping at d; Update must follow. d is left as it was, but for what the next step
-  /// computes anew.
+  /// Measures the machine's own damping at d by differences; Update must follow. The state of d
+  /// stays as it was.
   CriticalDamping(mjModel& m, mjData& d);
 
-  /// Measures stiffness at d.
+  /// Measures stiffness and inertia at d, and computes the missing damping anew.
   void Update(mjModel& m, mjData& d);
 
-  /// What critical damping of all modes lacks: the force −C v of (1) in
-  /// sim/simulation/quasi_static.h.
-  Eigen::VectorXd Brake(const mjData& d) const;
+  /// The force −C v [nv] of (1) in sim/simulation/quasi_static.h, which critical damping lacks.
+  Eigen::VectorXd Force(const mjData& d) const;
   /// Time constant of the slowest mode with that damping [s].
   double slowest() const { return slowest_; }
 
  private:
-  Eigen::MatrixXd damping_;  ///< −∂f/∂v
-  Eigen::MatrixXd brake_;    ///< C
+  Eigen::MatrixXd damping_;   ///< −∂f/∂v
+  Eigen::MatrixXd critical_;  ///< C
   double slowest_ = 0;
 };
 

@@ -79,7 +79,7 @@ class Balance {
     return false;
   }
 
-  void AllOn() { inputs_.AllOn(); }
+  void EnableAll() { inputs_.EnableAll(); }
 
  private:
   // M·qacc: what is not balanced.
@@ -121,7 +121,7 @@ InitialState Equilibrium(ModelAndData& machine, const Experiment& e, const Log& 
   Balance balance(machine, e, log);
   bool balanced = false;
   for (const double load : {0.25, 0.5, 0.75, 1.0}) balanced = balance.Find(load);
-  balance.AllOn();
+  balance.EnableAll();
   if (!balanced)
     throw Error::Job(log.label + ": no static equilibrium was found under the first inputs");
   const mjData& d = *machine.data;

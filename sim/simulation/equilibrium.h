@@ -6,8 +6,9 @@
 
 namespace continuum {
 
-/// Static equilibrium under the first inputs, without friction, lags settled. Throws Error (kJob)
-/// when there is none near qpos0.
+/// The static equilibrium of a machine under the first inputs of a log, without friction and with
+/// lags in their steady state. Newton's method from qpos0, the load in four steps. Throws Error
+/// (kJob) when none is found.
 InitialState Equilibrium(ModelAndData& machine, const Experiment& e, const Log& log);
 
 }  // namespace continuum

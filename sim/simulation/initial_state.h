@@ -14,21 +14,23 @@ namespace continuum {
 /// activations, the past of its delays, states of effects, its clock.
 inline constexpr int kMemory = mjSTATE_TIME | mjSTATE_ACT | mjSTATE_HISTORY | mjSTATE_PLUGIN;
 
-/// Parts of the state of a simulation as mj_getState gives them; to be put back by mj_setState.
+/// The chosen parts (mjtState) of a simulation's state, as mj_getState orders them. mj_setState
+/// puts them back.
 std::vector<double> StateOf(const mjModel& m, const mjData& d, int parts);
-/// InitialState::memory as it is now.
+/// The part of the state that is neither position nor velocity: InitialState::memory.
 inline std::vector<double> MemoryOf(const mjModel& m, const mjData& d) {
   return StateOf(m, d, kMemory);
 }
 
-/// The state in which the experiment's start, and the log's own, leaves a log's trial: qpos0 at
-/// rest, the equilibrium, what joint sensors measure in the first row, or (estimate) also their
-/// slope there. Throws Error for joints that the log's start names and that are no hinge or slide.
+/// The initial state of a log as the experiment's key `start` defines it: qpos0 at rest, the static
+/// equilibrium, what joint sensors measure in the first row, or (estimate) also the slope of the
+/// measured positions there. The log's own key `start` replaces single joints. Throws Error for
+/// joints there that are neither hinge nor slide.
 InitialState StartOf(ModelAndData& machine, const Experiment& e, const Log& log);
 
-/// The state at a row as it was measured: positions of the row, speeds those of a joint velocity's
-/// output, else the slope of a line through the row and its next two neighbours to each side.
-/// None where some joint is not measured there, or is no hinge or slide.
+/// The measured state of all joints at a row, or nothing where a joint is not measured or is
+/// neither hinge nor slide. Velocities are measured ones, else slopes of a least-squares line
+/// through the row and its next two neighbours on either side.
 std::optional<InitialState> StateAt(const mjModel& m, const Experiment& e, const Log& log,
                                     std::size_t row);
 

@@ -41,7 +41,7 @@ void Inputs::Switch(std::size_t row) {
   }
 }
 
-void Inputs::Between(mjData& d, std::size_t row, double t) const {
+void Inputs::Interpolate(mjData& d, std::size_t row, double t) const {
   const double share = (t - log_.time[row]) / (log_.time[row + 1] - log_.time[row]);
   for (std::size_t i = 0; i < gates_.size(); ++i) {
     if (!experiment_.inputs[i].linear) continue;
@@ -50,13 +50,12 @@ void Inputs::Between(mjData& d, std::size_t row, double t) const {
   }
 }
 
-void Inputs::OnTheWay(mjData& d, const std::vector<double>& from, std::size_t to,
-                      double share) const {
+void Inputs::Blend(mjData& d, const std::vector<double>& from, std::size_t to, double share) const {
   for (std::size_t i = 0; i < gates_.size(); ++i)
     d.ctrl[wiring_.actuator[i]] = from[i] + share * (log_.input[i][to] - from[i]);
 }
 
-void Inputs::AllOn() {
+void Inputs::EnableAll() {
   for (Gate& gate : gates_) gate.Switch(true);
 }
 

@@ -8,8 +8,8 @@
 
 namespace continuum {
 
-/// Gain and bias of an actuator with an enable column, so that "off" can take them away: neither
-/// torque nor back-EMF.
+/// Switches an actuator on and off as its enable column says. Off, gain and bias are zero: the
+/// actuator gives neither torque nor back-EMF.
 class Gate {
  public:
   Gate(mjModel& m, int actuator);
@@ -24,20 +24,22 @@ class Gate {
   std::vector<double> gain_, bias_;
 };
 
-/// The inputs of one log on one machine.
+/// Writes the inputs of one log into the controls of a simulation (mjData::ctrl).
 class Inputs {
  public:
   Inputs(mjModel& m, const Experiment& e, const Log& log, const Wiring& wiring);
 
-  /// The values of a row, its enable columns included.
+  /// Sets all controls to the values of a row, and switches actuators as its enable columns say.
   void AtRow(mjData& d, std::size_t row);
-  /// Between a row and the next, at a time of the log [s]: only what is linear there.
-  void Between(mjData& d, std::size_t row, double t) const;
-  /// Of all inputs (held ones too), a share of the way from one row's values to another's.
-  void OnTheWay(mjData& d, const std::vector<double>& from, std::size_t to, double share) const;
-  /// The enable columns of a row.
+  /// Sets the controls that are interpolated linearly to their value at a time t of the log [s],
+  /// between a row and the next.
+  void Interpolate(mjData& d, std::size_t row, double t) const;
+  /// Sets all controls (held ones too) to from + share (u − from), with u the values of row `to`
+  /// and share from 0 to 1. from: [inputs].
+  void Blend(mjData& d, const std::vector<double>& from, std::size_t to, double share) const;
+  /// Switches actuators on and off as the enable columns of a row say.
   void Switch(std::size_t row);
-  void AllOn();
+  void EnableAll();
 
  private:
   const Experiment& experiment_;
@@ -46,7 +48,8 @@ class Inputs {
   std::vector<Gate> gates_;
 };
 
-/// Lags and delays as if the present inputs, as the engine clamps them, had been there for ever.
+/// Brings lags and delays of actuators and effects to their steady state under the present
+/// controls, clamped as the engine clamps them.
 void Settle(const mjModel& m, mjData& d);
 
 }  // namespace continuum

@@ -84,8 +84,8 @@ Controls ReadControls(const OpenLoopOptions& o, const mjModel& m) {
 }
 
 // What makes a run too long: the options that were given, else what stands in for them.
-std::string Blame(const std::vector<std::pair<std::string, double>>& options,
-                  const std::string& otherwise) {
+std::string GivenOptions(const std::vector<std::pair<std::string, double>>& options,
+                         const std::string& otherwise) {
   std::string all;
   for (const auto& [name, value] : options) {
     if (value > 0) all += (all.empty() ? "" : " and ") + name;
@@ -104,8 +104,8 @@ double EndOf(const OpenLoopOptions& o, const Controls& c) {
 
 void CheckSteps(const OpenLoopOptions& o, double begin, double end, double timestep) {
   if ((end - begin) / timestep <= kMostSteps) return;
-  throw Error::Input(Blame({{"--until", o.until}, {"--timestep", o.timestep}},
-                           o.input.empty() ? o.model : o.input),
+  throw Error::Input(GivenOptions({{"--until", o.until}, {"--timestep", o.timestep}},
+                                  o.input.empty() ? o.model : o.input),
                      fmt::format("at most {:g} time steps of {} s", kMostSteps, Decimal(timestep)),
                      Decimal(end - begin) + " s");
 }
@@ -116,10 +116,10 @@ std::set<double> Written(const OpenLoopOptions& o, const Controls& c, double end
   const double begin = c.time.front(), count = (end - begin) / period;
   if (!(count < kMostRows)) {
     throw Error::Input(
-        Blame({{"--until", o.until},
-               {"--every", o.every},
-               {"--timestep", o.every > 0 ? 0 : o.timestep}},
-              o.input.empty() ? o.model : o.input),
+        GivenOptions({{"--until", o.until},
+                      {"--every", o.every},
+                      {"--timestep", o.every > 0 ? 0 : o.timestep}},
+                     o.input.empty() ? o.model : o.input),
         fmt::format("an end and a period that give at most {:g} rows", kMostRows),
         fmt::format("{} s from {} s to {} s", Decimal(period), Decimal(begin), Decimal(end)));
   }
@@ -176,9 +176,9 @@ std::string SensorHeader(const mjModel& m) {
   std::string text = "time";
   for (int s = 0; s < m.nsensor; ++s) {
     const char* const name = mj_id2name(&m, mjOBJ_SENSOR, s);
-    const std::string shown = name && *name ? name : fmt::format("sensor{}", s);
+    const std::string column = name && *name ? name : fmt::format("sensor{}", s);
     for (int c = 0; c < m.sensor_dim[s]; ++c) {
-      text += "," + shown + (m.sensor_dim[s] > 1 ? fmt::format("[{}]", c) : "");
+      text += "," + column + (m.sensor_dim[s] > 1 ? fmt::format("[{}]", c) : "");
     }
   }
   return text + "\n";

@@ -9,7 +9,7 @@
 
 namespace continuum {
 
-using Seen = Wiring::Source::Seen;
+using Geometry = Wiring::Source::Geometry;
 
 Recorder::Recorder(const mjModel& m, const Wiring& wiring, std::size_t rows)
     : m_(m), wiring_(wiring), axes_(wiring.output.size()) {
@@ -17,7 +17,7 @@ Recorder::Recorder(const mjModel& m, const Wiring& wiring, std::size_t rows)
   for (std::size_t o = 0; o < wiring.output.size(); ++o) {
     const auto& source = wiring.output[o];
     raw_.emplace_back(source.size, std::vector<double>(rows, kMissing));
-    if (wiring.marked && source.seen == Seen::kPoint)
+    if (wiring.marked && source.geometry == Geometry::kPoint)
       axes_[o].assign(9, std::vector<double>(rows, kMissing));
   }
 }
@@ -48,11 +48,11 @@ void Recorder::Release(Trace& trace) {
   trace.axes = std::move(axes_);
 }
 
-bool Healthy(const mjModel& m, const mjData& d) {
+bool Diverged(const mjModel& m, const mjData& d) {
   for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC, mjWARN_BADCTRL}) {
-    if (d.warning[kind].number > 0) return false;
+    if (d.warning[kind].number > 0) return true;
   }
-  return std::all_of(d.qpos, d.qpos + m.nq, [](double q) { return std::isfinite(q); });
+  return !std::all_of(d.qpos, d.qpos + m.nq, [](double q) { return std::isfinite(q); });
 }
 
 }  // namespace continuum

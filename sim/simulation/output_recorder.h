@@ -7,14 +7,14 @@
 
 namespace continuum {
 
-/// Collects what an experiment's outputs read, row by row.
+/// Records the sensors and actuator numbers that an experiment's outputs refer to, row by row.
 class Recorder {
  public:
   Recorder(const mjModel& m, const Wiring& wiring, std::size_t rows);
 
-  /// Reads d as a forward pass or a step has left it.
+  /// Reads the numbers of one row from d, after a forward pass or a step.
   void Take(const mjData& d, std::size_t row);
-  /// Hands raw and axes over; what was not taken is NaN.
+  /// Moves what was recorded into trace.raw and trace.axes; rows that were not recorded are NaN.
   void Release(Trace& trace);
 
  private:
@@ -23,7 +23,8 @@ class Recorder {
   Trace::Raw raw_, axes_;
 };
 
-/// Whether a simulation still gives numbers.
-bool Healthy(const mjModel& m, const mjData& d);
+/// Whether a simulation has diverged: a warning of the engine about bad numbers, or a position that
+/// is not finite.
+bool Diverged(const mjModel& m, const mjData& d);
 
 }  // namespace continuum

@@ -51,12 +51,12 @@ void RefuseCreep(const mjModel& m) {
 class QuasiStaticRun {
  public:
   QuasiStaticRun(ModelAndData& machine, const Experiment& e, const Log& log, const Wiring& wiring,
-                 const Hooks& hooks, const QuasiStaticOptions& pace)
+                 const Hooks& hooks, const QuasiStaticOptions& options)
       : m_(*machine.model),
         d_(*machine.data),
         log_(log),
         hooks_(hooks),
-        pace_(pace),
+        options_(options),
         inputs_(m_, e, log, wiring) {
     for (std::size_t i = 0; i < log.input.size(); ++i) {
       const auto [low, high] = std::minmax_element(log.input[i].begin(), log.input[i].end());
@@ -73,42 +73,43 @@ class QuasiStaticRun {
       if (risen) range_[i] = std::max(range_[i], std::abs(log_.input[i][0]));
     }
     inputs_.Switch(0);
-    inputs_.OnTheWay(d_, from_, 0, 0);
+    inputs_.Blend(d_, from_, 0, 0);
     Settle(m_, d_);
-    modes_.emplace(m_, d_);
-    modes_->Update(m_, d_);
+    damping_.emplace(m_, d_);
+    damping_->Update(m_, d_);
   }
 
   // Moves to a row and waits there; false when there is no rest.
-  bool Reach(std::size_t row) {
-    const double way = WayTo(row);
+  bool MoveTo(std::size_t row) {
+    const double way = LargestShareTo(row);
     if (row > 0) inputs_.Switch(row);
-    moved_ += way;
-    if (moved_ > kFar || (row > 0 && Switched(row))) modes_->Update(m_, d_), moved_ = 0;
+    since_update_ += way;
+    if (since_update_ > kFar || (row > 0 && Switched(row)))
+      damping_->Update(m_, d_), since_update_ = 0;
     const double h = m_.opt.timestep;
-    const int ramp = Steps(pace_.crossing * way);
-    for (int step = 1; step <= ramp && Healthy(m_, d_); ++step) {
-      inputs_.OnTheWay(d_, from_, row, static_cast<double>(step) / ramp);
+    const int ramp = Steps(options_.crossing_time * way);
+    for (int step = 1; step <= ramp && !Diverged(m_, d_); ++step) {
+      inputs_.Blend(d_, from_, row, static_cast<double>(step) / ramp);
       Step();
     }
-    inputs_.OnTheWay(d_, from_, row, 1);
-    bool rests = ramp == 0 && row > 0 && !Switched(row);  // nothing has changed
-    for (double waited = 0; !rests && waited < pace_.patience; waited += kGrace) {
+    inputs_.Blend(d_, from_, row, 1);
+    bool at_rest = ramp == 0 && row > 0 && !Switched(row);  // nothing has changed
+    for (double waited = 0; !at_rest && waited < options_.longest_wait; waited += kGrace) {
       if (waited > 0) Refine(h);
-      rests = Wait(kGrace);
-      if (!Healthy(m_, d_)) break;
+      at_rest = Wait(kGrace);
+      if (Diverged(m_, d_)) break;
     }
     m_.opt.timestep = h;
-    if (!rests) return false;
+    if (!at_rest) return false;
     for (std::size_t i = 0; i < from_.size(); ++i) from_[i] = log_.input[i][row];
     mj_forward(&m_, &d_);
     return true;
   }
 
-  std::string WhyNot(std::size_t row) const {
+  std::string Failure(std::size_t row) const {
     const std::string place =
         fmt::format("row {} of {} ({:g} s)", row + 1, log_.rows(), log_.time[row]);
-    if (!Healthy(m_, d_)) return "the simulation diverges at " + place;
+    if (Diverged(m_, d_)) return "the simulation diverges at " + place;
     const int dof = static_cast<int>(
         std::max_element(d_.qvel, d_.qvel + m_.nv,
                          [](double a, double b) { return std::abs(a) < std::abs(b); }) -
@@ -118,14 +119,14 @@ class QuasiStaticRun {
     return fmt::format("no rest at {}: joint '{}' still moves at {:.3g} {}/s after {:.3g} s", place,
                        name ? name : "", d_.qvel[dof],
                        m_.jnt_type[joint] == mjJNT_SLIDE ? "m" : "rad",
-                       pace_.patience * modes_->slowest());
+                       options_.longest_wait * damping_->slowest());
   }
 
-  void End() { inputs_.AllOn(); }
+  void End() { inputs_.EnableAll(); }
 
  private:
   // The largest share of its range that an input has to go.
-  double WayTo(std::size_t row) const {
+  double LargestShareTo(std::size_t row) const {
     double way = 0;
     for (std::size_t i = 0; i < range_.size(); ++i) {
       if (range_[i] > 0) way = std::max(way, std::abs(log_.input[i][row] - from_[i]) / range_[i]);
@@ -138,14 +139,14 @@ class QuasiStaticRun {
   }
   // Of a duration in time constants of the slowest mode.
   int Steps(double duration) const {
-    return static_cast<int>(std::ceil(duration * modes_->slowest() / m_.opt.timestep));
+    return static_cast<int>(std::ceil(duration * damping_->slowest() / m_.opt.timestep));
   }
   // Until the machine rests; false when it does not.
   bool Wait(double duration) {
     const int steps = Steps(duration);
-    for (int step = 0; step < steps && Healthy(m_, d_); ++step) {
+    for (int step = 0; step < steps && !Diverged(m_, d_); ++step) {
       Step();
-      if (Rests()) return true;
+      if (IsAtRest()) return true;
     }
     return false;
   }
@@ -153,25 +154,26 @@ class QuasiStaticRun {
   // say by a cable that was slack.
   void Refine(double usual) {
     m_.opt.timestep = std::max(0.5 * m_.opt.timestep, usual / 8);
-    modes_->Update(m_, d_);
+    damping_->Update(m_, d_);
   }
   void Step() {
     Settle(m_, d_);
     mju_zero(d_.qfrc_applied, static_cast<int>(m_.nv));
     if (hooks_.step) hooks_.step(m_, d_);
-    const Eigen::VectorXd brake = modes_->Brake(d_);
-    mju_addTo(d_.qfrc_applied, brake.data(), static_cast<int>(m_.nv));
+    const Eigen::VectorXd damping = damping_->Force(d_);
+    mju_addTo(d_.qfrc_applied, damping.data(), static_cast<int>(m_.nv));
     before_.assign(d_.qvel, d_.qvel + m_.nv);
     mj_step(&m_, &d_);
     mju_zero(d_.qfrc_applied, static_cast<int>(m_.nv));
   }
   // By the acceleration that the step had: in qacc friction that holds light links leaves what its
   // solver tolerates.
-  bool Rests() const {
-    const double t = modes_->slowest(), h = m_.opt.timestep;
+  bool IsAtRest() const {
+    const double t = damping_->slowest(), h = m_.opt.timestep;
     for (int i = 0; i < m_.nv; ++i) {
       const double a = (d_.qvel[i] - before_[i]) / h;
-      if (std::abs(d_.qvel[i]) * t > pace_.rest || std::abs(a) * t * t > pace_.rest) return false;
+      if (std::abs(d_.qvel[i]) * t > options_.rest || std::abs(a) * t * t > options_.rest)
+        return false;
     }
     return true;
   }
@@ -180,19 +182,19 @@ class QuasiStaticRun {
   mjData& d_;
   const Log& log_;
   const Hooks& hooks_;
-  const QuasiStaticOptions& pace_;
+  const QuasiStaticOptions& options_;
   Inputs inputs_;
   std::vector<double> range_, from_;  // of each input
   std::vector<double> before_;        // speeds before the last step
-  std::optional<CriticalDamping> modes_;
-  double moved_ = 0;
+  std::optional<CriticalDamping> damping_;
+  double since_update_ = 0;
 };
 
 }  // namespace
 
 Trace SimulateAtRest(ModelAndData& machine, const Experiment& e, const Log& log,
                      const InitialState& initial, const Hooks& hooks,
-                     const QuasiStaticOptions& pace) {
+                     const QuasiStaticOptions& options) {
   const InitialState start = initial.qpos.empty() ? StartOf(machine, e, log) : initial;
   const bool risen = initial.qpos.empty() && e.start == Experiment::Start::kRest;
   mjModel& m = *machine.model;
@@ -200,21 +202,21 @@ Trace SimulateAtRest(ModelAndData& machine, const Experiment& e, const Log& log,
   m.opt.disableflags |= mjDSBL_AUTORESET;
   RefuseCreep(m);
   const Wiring wiring(e, m);
-  QuasiStaticRun walk(machine, e, log, wiring, hooks, pace);
-  walk.Begin(start, risen);
+  QuasiStaticRun run(machine, e, log, wiring, hooks, options);
+  run.Begin(start, risen);
   Recorder recorder(m, wiring, log.rows());
   Trace trace;
   for (std::size_t row = 0; row < log.rows() && !trace.diverged; ++row) {
-    if (walk.Reach(row)) {
+    if (run.MoveTo(row)) {
       recorder.Take(d, row);
       if (hooks.row) hooks.row(m, d, row);
       continue;
     }
     trace.diverged = true;
     trace.diverged_at = log.time[row];
-    trace.why = walk.WhyNot(row);
+    trace.why = run.Failure(row);
   }
-  walk.End();
+  run.End();
   recorder.Release(trace);
   MeasureTrace(e, wiring, log, trace);
   return trace;

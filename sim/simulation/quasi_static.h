@@ -6,12 +6,12 @@
 
 namespace continuum {
 
-/// How slowly a quasi-static simulation moves, in time constants of the machine's slowest mode.
+/// How slowly a quasi-static simulation moves and when it takes the machine to be at rest. Times
+/// are in time constants τ of the machine's slowest mode.
 struct QuasiStaticOptions {
-  double crossing = 50;   ///< for an input to cross the range that it has in the log
-  double patience = 500;  ///< that a row waits for rest after its ramp
-  /// Rest: within the slowest time constant τ neither speed nor acceleration would carry a joint
-  /// farther, |v| τ and |a| τ² [rad or m].
+  double crossing_time = 50;  ///< for an input to cross the range that it has in the log
+  double longest_wait = 500;  ///< that a row waits for rest after its ramp
+  /// Largest |v| τ and |a| τ² of a joint at rest [rad or m].
   double rest = 1e-6;
 };
 

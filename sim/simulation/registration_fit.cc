@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd, Eigen::Vector3d, Eigen::Matrix3d;
 using Part = Registration::Part;
-using Seen = Wiring::Source::Seen;
+using Geometry = Wiring::Source::Geometry;
 
 constexpr char kAxis[] = "xyz";
 constexpr const char* kTarget = "registration";
@@ -48,7 +48,7 @@ std::vector<Point> PointsOf(const Experiment& e, const Wiring& wiring) {
   std::map<int, std::map<int, std::size_t>> found;  // sensor, component → channel
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     const auto& source = wiring.output[e.channels[c].output];
-    if (source.seen == Seen::kPoint) found[source.sensor].emplace(source.component, c);
+    if (source.geometry == Geometry::kPoint) found[source.sensor].emplace(source.component, c);
   }
   std::vector<Point> points;
   for (const auto& [sensor, channels] : found) {
@@ -251,7 +251,7 @@ class Search {
     for (Eigen::Index i = 0; i < v.size(); ++i) {
       if (std::abs(v[i]) > 0.2) confused += (confused.empty() ? "" : ", ") + free_[i].name;
     }
-    throw Error::Input(Where(e_), "train logs that tell its parts apart",
+    throw Error::Input(Where(e_), "train logs that distinguish its parts",
                        confused + " do the same to all outputs");
   }
 
@@ -289,7 +289,7 @@ std::vector<Parameter> RegistrationParameters(const Experiment& e, const Wiring&
   if (e.registration.marker == Part::kEstimate) {
     std::set<int> seen;
     for (const auto& source : wiring.output) {
-      if (source.seen != Seen::kPoint || !seen.insert(source.sensor).second) continue;
+      if (source.geometry != Geometry::kPoint || !seen.insert(source.sensor).second) continue;
       const std::string sensor = mj_id2name(&m, mjOBJ_SENSOR, source.sensor);
       three("marker_" + sensor, "marker:" + sensor, 1);
     }
@@ -308,8 +308,9 @@ Registration Registered(const Experiment& e, const Wiring& wiring, const mjModel
     throw Error::Input(Where(e), "a train log to estimate it from", "none");
   if (start.frame == Part::kEstimate) {
     const Cloud cloud = CloudOf(e, wiring, traces);
-    const bool turns = std::any_of(wiring.output.begin(), wiring.output.end(),
-                                   [](const auto& source) { return source.seen == Seen::kTurn; });
+    const bool turns =
+        std::any_of(wiring.output.begin(), wiring.output.end(),
+                    [](const auto& source) { return source.geometry == Geometry::kRotation; });
     if (!turns) RequireSpread(e, cloud.from);
     if (cloud.from.cols() >= 3) StartFrame(cloud, start);
   }

@@ -135,7 +135,7 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
   return scores;
 }
 
-std::string MeanAbsoluteInWords(const std::vector<ChannelScore>& scores) {
+std::string MeanAbsoluteErrorText(const std::vector<ChannelScore>& scores) {
   double sum = 0;
   for (const ChannelScore& s : scores) {
     if (s.unit != scores.front().unit || !std::isfinite(s.mae)) return "";

@@ -33,10 +33,11 @@ std::vector<ChannelScore> ScoreLog(const Experiment& e, const Log& log, const Tr
 
 /// "; mean absolute error averaged over logs and channels 0.0736 rad"; empty when the scores have
 /// several units, or a log diverges.
-std::string MeanAbsoluteInWords(const std::vector<ChannelScore>& scores);
+std::string MeanAbsoluteErrorText(const std::vector<ChannelScore>& scores);
 
-/// One unit for all channels, so that errors can be pooled: the channels' own when they share one,
-/// else "std", that of each channel's measured train rows (of turns from the mean orientation).
+/// The unit in which errors of several channels are pooled: their own when they share one. Else
+/// "std": each channel is divided by the standard deviation of its measured train rows (an
+/// orientation by that of its rotation from the mean).
 class Pool {
  public:
   explicit Pool(const Experiment& e);

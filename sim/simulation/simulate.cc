@@ -78,7 +78,7 @@ class TimedRun {
     if (all == 0) EvaluateRow(row);  // the next row is at the same time but for rounding
     for (int step = 0; step < all; ++step) {
       m_.opt.timestep = step < steps ? h_ : remainder;
-      if (step > 0) inputs_.Between(d_, row, begin + step * h_);
+      if (step > 0) inputs_.Interpolate(d_, row, begin + step * h_);
       if (hooks_.step) hooks_.step(m_, d_);
       if (step == 0) {
         StepFromRow(row);
@@ -86,7 +86,7 @@ class TimedRun {
         mj_step(&m_, &d_);
       }
       if (hooks_.stepped) hooks_.stepped(m_, d_);
-      if (Healthy(m_, d_)) continue;
+      if (!Diverged(m_, d_)) continue;
       trace.diverged = true;
       trace.diverged_at = begin + step * h_;
       return false;
@@ -103,7 +103,7 @@ class TimedRun {
 
   void Release(Trace& trace) {
     m_.opt.timestep = h_;
-    inputs_.AllOn();
+    inputs_.EnableAll();
     recorder_.Release(trace);
   }
 

@@ -9,28 +9,31 @@
 
 namespace continuum {
 
-/// Where a trial begins; empty: as the experiment says.
+/// The state in which the simulation of a log begins. Empty: the one that the experiment asks for.
 struct InitialState {
-  std::vector<double> qpos, qvel;
-  std::vector<double> memory = {};  ///< MemoryOf; empty: settled under the first inputs
+  std::vector<double> qpos, qvel;   ///< [nq], [nv] as in mjData
+  std::vector<double> memory = {};  ///< MemoryOf; empty: steady state under the first inputs
 };
 
-/// What the simulation says about the channels of an experiment, at the rows of one log.
+/// The simulated counterpart of a log: a value for every channel and row of the log.
 struct Trace {
   using Raw = std::vector<std::vector<std::vector<double>>>;
-  std::vector<std::vector<double>> channel;  ///< [channel][row] SI, as it would be measured
+  /// [channels x rows] in SI, as the experiment would measure it: with registration, delay, bias.
+  std::vector<std::vector<double>> channel;
   bool diverged = false;
   double diverged_at = 0;  ///< [s]
-  /// [output][component][row] of whole sensors, before they are measured.
+  /// [outputs x components x rows] of whole sensors in the frame of the model.
   Raw raw = {};
-  /// [output][element][row] axes (row by row) in which a marker's offset is given; of positions
-  /// only, and only where the experiment's registration has a marker.
+  /// [outputs x 9 x rows] rotation matrices (row by row) of the objects to which markers are fixed.
+  /// Of positions only, and only where the experiment's registration has a marker.
   Raw axes = {};
-  std::string why = {};  ///< it ended before the last row, where that is more than divergence
+  std::string why = {};  ///< reason of an end before the last row, other than divergence
 
+  /// One sentence: why the simulation ended before the last row.
   std::string Failure() const;
 };
 
+/// Functions of the caller that a simulation calls on its way.
 struct Hooks {
   /// At every row, with the state that the row sees and all that follows from it; must not write.
   std::function<void(const mjModel&, mjData&, std::size_t row)> row = {};

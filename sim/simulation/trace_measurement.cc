@@ -32,26 +32,26 @@ double At(const std::vector<double>& time, const std::vector<double>& y, double 
   return y[i - 1] + s * (from + s * (3 * rise - 2 * from - to + s * (from + to - 2 * rise)));
 }
 
-using Seen = Wiring::Source::Seen;
+using Geometry = Wiring::Source::Geometry;
 
 // R (p + Q o) + T, R v or R q.
-void Register(Record& record, const Registration& r, Seen seen, const Record& axes,
+void Register(Record& record, const Registration& r, Geometry geometry, const Record& axes,
               const Registration::Vector& offset) {
-  if (seen == Seen::kAsIs) return;
+  if (geometry == Geometry::kNone) return;
   double quat[4], unit[3] = {r.rotation[0], r.rotation[1], r.rotation[2]};
   const double angle = mju_normalize3(unit);
   mju_axisAngle2Quat(quat, unit, angle);
   for (std::size_t k = 0; k < record.front().size(); ++k) {
     double y[4], out[4];
     for (std::size_t c = 0; c < record.size(); ++c) y[c] = record[c][k];
-    if (seen == Seen::kTurn) {
+    if (geometry == Geometry::kRotation) {
       mju_mulQuat(out, quat, y);
     } else {
       for (int c = 0; c < 3 && !axes.empty(); ++c) {
         for (int i = 0; i < 3; ++i) y[c] += axes[3 * c + i][k] * offset[i];
       }
       mju_rotVecQuat(out, y, quat);
-      for (int c = 0; c < 3 && seen == Seen::kPoint; ++c) out[c] += r.translation[c];
+      for (int c = 0; c < 3 && geometry == Geometry::kPoint; ++c) out[c] += r.translation[c];
     }
     for (std::size_t c = 0; c < record.size(); ++c) record[c][k] = out[c];
   }
@@ -104,7 +104,7 @@ void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Tra
     const Output& out = e.outputs[o];
     Record record = trace.raw[o];
     if (r.has_frame() || r.has_marker())
-      Register(record, r, wiring.output[o].seen, trace.axes[o], OffsetOf(r, out.source));
+      Register(record, r, wiring.output[o].geometry, trace.axes[o], OffsetOf(r, out.source));
     Measure(record, out.measurement, r.clock_shift, log.time, UnitFactor(out.unit, ""));
     if (out.quaternion()) {
       for (auto& component : record) trace.channel.push_back(std::move(component));

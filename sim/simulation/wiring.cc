@@ -19,14 +19,14 @@ std::string NamesOf(const mjModel& m, mjtObj type, int count) {
   return all.empty() ? "none" : all;
 }
 
-std::string Place(const std::string& where, const std::string& what) {
+std::string Located(const std::string& where, const std::string& what) {
   return where.empty() ? what : where + ": " + what;
 }
 
 int ActuatorId(const mjModel& m, const std::string& name, const std::string& where) {
   const int id = mj_name2id(&m, mjOBJ_ACTUATOR, name.c_str());
   if (id >= 0) return id;
-  throw Error::Input(Place(where, "actuator '" + name + "'"), "an actuator of the model",
+  throw Error::Input(Located(where, "actuator '" + name + "'"), "an actuator of the model",
                      NamesOf(m, mjOBJ_ACTUATOR, static_cast<int>(m.nu)));
 }
 
@@ -47,13 +47,13 @@ void CheckTurn(const Output& out, int dim) {
                          (dim == 1 ? " number" : " numbers"));
 }
 
-Wiring::Source::Seen SeenOf(int type) {
-  using Seen = Wiring::Source::Seen;
+Wiring::Source::Geometry GeometryOf(int type) {
+  using Geometry = Wiring::Source::Geometry;
   switch (type) {
     case mjSENS_FRAMEPOS:
-      return Seen::kPoint;
+      return Geometry::kPoint;
     case mjSENS_FRAMEQUAT:
-      return Seen::kTurn;
+      return Geometry::kRotation;
     case mjSENS_FRAMEXAXIS:
     case mjSENS_FRAMEYAXIS:
     case mjSENS_FRAMEZAXIS:
@@ -62,9 +62,9 @@ Wiring::Source::Seen SeenOf(int type) {
     case mjSENS_FRAMELINACC:
     case mjSENS_FRAMEANGACC:
     case mjSENS_SUBTREELINVEL:
-      return Seen::kVector;
+      return Geometry::kVector;
     default:
-      return Seen::kAsIs;
+      return Geometry::kNone;
   }
 }
 
@@ -79,22 +79,23 @@ Wiring::Source SensorSource(const mjModel& m, const Output& out) {
     name.resize(open);
     id = mj_name2id(&m, mjOBJ_SENSOR, name.c_str());
   } else if (id >= 0 && m.sensor_dim[id] > 1 && !out.quaternion()) {
-    throw Error::Input(Place(out.where, "sensor '" + name + "'"),
+    throw Error::Input(Located(out.where, "sensor '" + name + "'"),
                        "a component such as '" + name + "[0]'", "none");
   }
   if (id < 0) {
-    throw Error::Input(Place(out.where, "sensor '" + out.source + "'"), "a sensor of the model",
+    throw Error::Input(Located(out.where, "sensor '" + out.source + "'"), "a sensor of the model",
                        NamesOf(m, mjOBJ_SENSOR, static_cast<int>(m.nsensor)));
   }
   const int dim = m.sensor_dim[id];
   if (component >= dim || (out.quaternion() && dim != 4)) {
     throw Error::Input(
-        Place(out.where, "sensor '" + out.source + "'"),
+        Located(out.where, "sensor '" + out.source + "'"),
         out.quaternion() ? "a quaternion" : "a component below " + std::to_string(dim),
         out.quaternion() ? std::to_string(dim) + " numbers" : std::to_string(component));
   }
   CheckTurn(out, dim);
-  return {Output::Kind::kSensor, m.sensor_adr[id], dim, component, SeenOf(m.sensor_type[id]), id};
+  return {
+      Output::Kind::kSensor, m.sensor_adr[id], dim, component, GeometryOf(m.sensor_type[id]), id};
 }
 
 // A marker belongs to a position that is measured.
@@ -102,13 +103,13 @@ void CheckMarkers(const Experiment& e, const mjModel& m, const Wiring& wiring) {
   std::set<std::string> points;
   std::string all;
   for (const auto& source : wiring.output) {
-    if (source.seen != Wiring::Source::Seen::kPoint) continue;
+    if (source.geometry != Wiring::Source::Geometry::kPoint) continue;
     const std::string name = mj_id2name(&m, mjOBJ_SENSOR, source.sensor);
     if (points.insert(name).second) all += (all.empty() ? "" : ", ") + name;
   }
   for (const auto& [sensor, offset] : e.registration.offset) {
     if (sensor.empty() ? points.empty() : !points.contains(sensor)) {
-      throw Error::Input(Place(e.file.string(), "registration.marker"),
+      throw Error::Input(Located(e.file.string(), "registration.marker"),
                          "a position sensor (framepos) of the outputs",
                          "'" + sensor + "' (" + (all.empty() ? "there is none" : all) + ")");
     }

@@ -8,21 +8,23 @@
 
 namespace continuum {
 
-/// Names of an experiment resolved in a model. Throws Error for unknown actuators and sensors.
+/// Where the inputs and outputs of an experiment are in a model: indices instead of names. Throws
+/// Error for actuators and sensors that the model lacks.
 struct Wiring {
+  /// Where an output is recorded.
   struct Source {
     Output::Kind kind;
     int address;    ///< of the first number, in sensordata or actuator_force
-    int size;       ///< numbers recorded: 1, or the whole sensor
-    int component;  ///< of the channel among them
-    /// What a registration does to it: nothing; R p + T; R v; R q.
-    enum class Seen { kAsIs, kPoint, kVector, kTurn } seen = Seen::kAsIs;
-    int sensor = -1;
+    int size;       ///< how many numbers are recorded: 1, or those of the whole sensor
+    int component;  ///< index of the channel among these numbers
+    /// How a registration transforms it: not at all; R p + T; R v; R q.
+    enum class Geometry { kNone, kPoint, kVector, kRotation } geometry = Geometry::kNone;
+    int sensor = -1;  ///< id; −1: a number of an actuator
   };
-  std::vector<int> actuator;   ///< of each input
-  std::vector<Source> output;  ///< of each output
-  std::vector<bool> gated;     ///< inputs with an enable column
-  bool marked = false;         ///< whether positions are those of markers
+  std::vector<int> actuator;   ///< [inputs] ids
+  std::vector<Source> output;  ///< [outputs]
+  std::vector<bool> gated;     ///< [inputs] whether there is an enable column
+  bool marked = false;         ///< whether positions are those of markers, not of sensors
 
   Wiring(const Experiment& e, const mjModel& m);
 };

@@ -301,7 +301,7 @@ TEST(Check, ExcitationAndWhatItCannotShowAreTold) {
   EXPECT_THAT(Find(steps, "excitation", "u1")->text,
               HasSubstr("between -0.5 rad and 1 rad with 2 reversals; its longest rest is 5 s"));
   const auto sines = CheckLogs(With(Record({Sines, Sines})));
-  EXPECT_THAT(Report(sines), HasSubstr("static friction and a bias cannot be told apart"));
+  EXPECT_THAT(Report(sines), HasSubstr("static friction and a bias cannot be distinguished"));
 }
 
 TEST(Check, TheExperimentsLimitsAreTold) {

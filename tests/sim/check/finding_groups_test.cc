@@ -10,9 +10,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Severity = Finding::Severity;
 
-Finding Warning(const std::string& log, const std::string& channel, const std::string& gist,
+Finding Warning(const std::string& log, const std::string& channel, const std::string& summary,
                 const std::string& places = "") {
-  return {log, channel, "jump", gist + places, gist, 0.5, 0.5, Severity::kWarning};
+  return {log, channel, "jump", summary + places, summary, 0.5, 0.5, Severity::kWarning};
 }
 
 TEST(FindingGroups, TellOneThingOnceWithTheRangesOfItsNumbers) {

@@ -53,29 +53,29 @@ TEST_F(Written, LeavesNothingWhereItFails) {
 
 TEST_F(Written, FoldersGoAgainWhileTheyAreEmpty) {
   {
-    const OutFolder made(scratch_ / "a/b/c", {"file", "folder/"});
+    const OutputFolder made(scratch_ / "a/b/c", {"file", "folder/"});
     EXPECT_TRUE(Exists("a/b/c"));
   }
   EXPECT_FALSE(Exists("a"));
   {
-    const OutFolder made(scratch_ / "a/b/c", {"file", "folder/"});
+    const OutputFolder made(scratch_ / "a/b/c", {"file", "folder/"});
     scratch_.Write("a/b/file", "");
   }
   EXPECT_FALSE(Exists("a/b/c"));
   EXPECT_TRUE(Exists("a/b/file"));
-  { const OutFolder old(scratch_ / "a", {}); }
+  { const OutputFolder old(scratch_ / "a", {}); }
   EXPECT_TRUE(Exists("a/b/file"));
 }
 
 TEST_F(Written, OutputsMustBePossibleInTheirFolder) {
   fs::create_directories(scratch_ / "out/there");
   scratch_.Write("out/file", "precious");
-  EXPECT_NO_THROW(OutFolder(scratch_ / "out", {"file", "new", "there/", "not_yet/"}));
+  EXPECT_NO_THROW(OutputFolder(scratch_ / "out", {"file", "new", "there/", "not_yet/"}));
   EXPECT_EQ(Scratch::Text(scratch_ / "out/file"), "precious");
   EXPECT_FALSE(Exists("out/new"));
-  EXPECT_THROW(OutFolder(scratch_ / "out", {"there"}), Error);
-  EXPECT_THROW(OutFolder(scratch_ / "out", {"file/"}), Error);
-  EXPECT_THROW(OutFolder(scratch_ / "out/file", {}), Error);
+  EXPECT_THROW(OutputFolder(scratch_ / "out", {"there"}), Error);
+  EXPECT_THROW(OutputFolder(scratch_ / "out", {"file/"}), Error);
+  EXPECT_THROW(OutputFolder(scratch_ / "out/file", {}), Error);
   EXPECT_THROW(RequireWritable(scratch_ / "out/file/below"), Error);
 }
 
@@ -85,7 +85,7 @@ TEST_F(Written, AnOutputIsNoInputOfItsJob) {
   for (const char* name : {"model.xml", "./model.xml", "link.xml"})
     EXPECT_THROW(RequireWritable(scratch_ / name, {model}), Error) << name;
   EXPECT_NO_THROW(RequireWritable(scratch_ / "other.xml", {model, ""}));
-  EXPECT_THROW(OutFolder(scratch_.folder(), {"other.xml", "model.xml"}, {model}), Error);
+  EXPECT_THROW(OutputFolder(scratch_.folder(), {"other.xml", "model.xml"}, {model}), Error);
   EXPECT_EQ(Scratch::Text(model), "precious");
 }
 

@@ -153,7 +153,7 @@ TEST_F(QuasiStatic, HalvingTheSpeedDoesNotMoveTheAnswer) {
   auto trial = Read(Chain(), kWay, {"x", "y"});
   const Trace usual = Run(trial);
   QuasiStaticOptions slow;
-  slow.crossing *= 2;
+  slow.crossing_time *= 2;
   const Trace half = Run(trial, slow);
   for (std::size_t k = 0; k < kWay.size(); ++k) {
     for (std::size_t c = 0; c < 2; ++c)
@@ -210,7 +210,7 @@ TEST_F(QuasiStatic, ARowWithoutRestIsNamed) {
       <actuator><motor name="a" joint="x"/></actuator><sensor><jointpos name="x" joint="x"/></sensor>)";
   auto trial = Read(model, {1, 2, 4, 2}, {"x"});
   QuasiStaticOptions pace;
-  pace.crossing = pace.patience =
+  pace.crossing_time = pace.longest_wait =
       1;  // nothing holds the mass: its slowest mode is the longest that counts, 5 s
   const Trace trace = Run(trial, pace);
   EXPECT_TRUE(trace.diverged);
