@@ -11,7 +11,7 @@
 #include "identification/candidates/effect_places.h"
 #include "identification/candidates/present_friction.h"
 #include "identification/candidates/search_range.h"
-#include "sim/io/file.h"
+#include "sim/io/decimal.h"
 
 namespace continuum {
 namespace {
