@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/model/joint_equalities.h"
+#include "sim/model/model_spec.h"
 #include "sim/simulation/input_signals.h"
 #include "sim/simulation/output_recorder.h"
 #include "sim/simulation/wiring.h"

@@ -1,5 +1,4 @@
 #include "identification/sensitivity/cvodes.h"
-#include "sim/simulation/simulate.h"
 
 #include <algorithm>
 #include <cmath>

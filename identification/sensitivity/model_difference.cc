@@ -1,5 +1,4 @@
 #include "identification/sensitivity/model_difference.h"
-#include "sim/simulation/wiring.h"
 
 #include <algorithm>
 #include <set>

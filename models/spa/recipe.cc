@@ -1,5 +1,4 @@
 #include "models/spa/recipe.h"
-#include "sim/simulation/simulate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,6 @@
 #include "sim/numerics/continuation.h"
 #include "sim/numerics/newton.h"
 #include "sim/numerics/solver.h"
-#include "sim/simulation/simulate.h"
 
 namespace continuum::stiff_flop {
 namespace {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/sensitivity/smooth_path.h"
+#include "sim/model/model_spec.h"
 #include "sim/simulation/trace_measurement.h"
 
 namespace continuum::testing {

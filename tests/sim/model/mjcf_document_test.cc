@@ -129,9 +129,8 @@ TEST(MjcfDocument, NamesAndValuesMayHoldCharactersOfXml) {
   EXPECT_EQ(with.Value("plugin:" + name, "tau_c"), 0.1);
   const ModelSpec changed = with.With({{{"plugin:" + name, "tau_c", 0.25}}}, {});
   EXPECT_EQ(changed.Value("plugin:" + name, "tau_c"), 0.25);
-  const ModelSpec other =
-      changed.Replacing(name, {"viscous", name, {{"joint", joint}, {"b", "3"}}});
-  EXPECT_EQ(other.Value("plugin:" + name, "b"), 3);
+  const EffectInstance spring{"cubic_stiffness", name, {{"joint", joint}, {"k3", "3"}}};
+  EXPECT_EQ(changed.Replacing(name, spring).Value("plugin:" + name, "k3"), 3);
 }
 
 TEST(MjcfDocument, TextThatIsNoMjcfIsRefused) {
