@@ -15,7 +15,7 @@ constexpr double kPageWidth = 510, kLegendWidth = 130, kLeft = 40, kGap = 46, kT
 constexpr double kBelow = 44;         // ticks, axis title and space between rows
 constexpr double kBottom = 28;        // ticks and axis title under the last row
 constexpr double kTallest = 250;      // height of a panel
-constexpr double kLeastHeight = 216;  // room for the legend
+constexpr double kLeastHeight = 204;  // room for the legend
 // Shares of the reach.
 constexpr double kLongestForce = 0.25, kMargin = 0.08, kNarrowest = 0.4;
 

@@ -25,6 +25,7 @@ class Legend {
     Many(figure_) ? ColourBar() : Cases();
     at_.y() += 4;
     if (!Many(figure_)) Drives();
+    if (!Many(figure_) && Any([](const Shape& s) { return !s.mount.empty(); })) Mount();
     if (Any([](const Shape& s) { return !s.measured.empty(); })) Measured();
     if (!Many(figure_)) Forces();
   }
@@ -68,8 +69,17 @@ class Legend {
     }
   }
 
+  void Mount() {
+    Row(
+        [&](const auto& left, const auto& right) {
+          canvas_.Stroke({left, right}, {kInk.Faded(0.6), 0.7});
+        },
+        "mount beyond the tip");
+  }
+
   void Measured() {
-    Row([&](const auto& left, const auto& right) { DrawCross(0.5 * (left + right), 2.2, canvas_); },
+    Row([&](const auto& left,
+            const auto& right) { DrawCross(0.5 * (left + right), 2.2, kInk, canvas_); },
         "measured");
   }
 
@@ -82,12 +92,12 @@ class Legend {
     at_.y() += 2;
     DrawArrow(at_, at_ + Vector2d(length, 0), {kInk, 1.1, {}, false}, canvas_);
     canvas_.Text(at_ + Vector2d(std::max(length, kSample) + 5, 0),
-                 fmt::format("{} N at the tip", ScaleNumber(newtons)), {0, 0.5}, kSmall);
+                 fmt::format("force of {} N", ScaleNumber(newtons)), {0, 0.5}, kSmall);
     at_.y() += kLine;
   }
 
   void ColourBar() {
-    constexpr double kWidth = 9, kHeight = 130;
+    constexpr double kWidth = 9, kHeight = 110;
     canvas_.Text(at_, fmt::format("{} cases", figure_.shapes.size()), {0, 0.5}, kSmall);
     at_.y() += kLine;
     canvas_.Text(at_, Fitting(figure_.load_name, kTextWidth + 25, kSmall, canvas_), {0, 0.5},

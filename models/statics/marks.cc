@@ -46,9 +46,10 @@ void DrawAcross(const PagePoint& at, bool away, const Pen& pen, Canvas& canvas) 
   canvas.Stroke({at + Vector2d(-r, r), at + Vector2d(r, -r)}, pen);
 }
 
-void DrawCross(const PagePoint& at, double half, Canvas& canvas) {
-  canvas.Stroke({at + Vector2d(-half, -half), at + Vector2d(half, half)}, {kInk, 0.6});
-  canvas.Stroke({at + Vector2d(-half, half), at + Vector2d(half, -half)}, {kInk, 0.6});
+void DrawCross(const PagePoint& at, double half, const Colour& colour, Canvas& canvas) {
+  const Pen pen{colour, 0.28 * half};
+  canvas.Stroke({at + Vector2d(-half, -half), at + Vector2d(half, half)}, pen);
+  canvas.Stroke({at + Vector2d(-half, half), at + Vector2d(half, -half)}, pen);
 }
 
 // Andrew's monotone chain.

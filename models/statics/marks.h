@@ -23,7 +23,7 @@ void DrawArrow(const PagePoint& tail, const PagePoint& head, const Pen& pen, Can
 void DrawAcross(const PagePoint& at, bool away, const Pen& pen, Canvas& canvas);
 
 /// A measured place.
-void DrawCross(const PagePoint& at, double half, Canvas& canvas);
+void DrawCross(const PagePoint& at, double half, const Colour& colour, Canvas& canvas);
 
 /// The convex hull of points, as a polygon.
 std::vector<PagePoint> Hull(std::vector<PagePoint> points);

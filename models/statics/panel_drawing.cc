@@ -94,14 +94,14 @@ class PanelDrawing {
     }
   }
 
-  // What the robot stands on, behind its base.
-  void Plate() {
+  Stroke PlateOutline() const {
     const Vector3d normal = Vector3d::Unit(figure_.axis);
-    const double thickness = 0.25 * figure_.base_radius;
-    canvas_.Fill(
-        Outline(panel_, {-0.5 * thickness * normal, normal, figure_.base_radius, thickness}),
-        kPlate);
+    const double thickness = 0.15 * figure_.base_radius;
+    return Outline(panel_, {-0.5 * thickness * normal, normal, figure_.base_radius, thickness});
   }
+
+  // What the robot stands on, behind its base.
+  void Plate() { canvas_.Fill(PlateOutline(), kPlate); }
 
   // One of many: a line and its tip.
   void Thread(std::size_t i) {
@@ -109,7 +109,7 @@ class PanelDrawing {
     const Colour colour = Viridis(LoadsOf(figure_).Share(shape.load));
     canvas_.Stroke(OnPage(panel_, shape.backbone), {colour.Faded(0.35), 0.5});
     canvas_.Dot(panel_.At(shape.backbone.back()), 1.4, colour);
-    Crosses(shape, 1.6);
+    Crosses(shape, 1, colour);
   }
 
   void Robot(std::size_t i) {
@@ -130,7 +130,7 @@ class PanelDrawing {
     if (!shape.mount.empty())
       canvas_.Stroke(OnPage(panel_, shape.mount), {pen.colour.Faded(0.6), 0.7});
     canvas_.Dot(panel_.At(shape.backbone.back()), 1.5, pen.colour);
-    Crosses(shape, 2.2);
+    Crosses(shape, 2.2, pen.colour);
   }
 
   // A soft body or a thick rod at its true width.
@@ -140,8 +140,8 @@ class PanelDrawing {
     canvas_.Stroke(OnPage(panel_, shape.backbone), {colour.Faded(0.1), width, {}, false});
   }
 
-  void Crosses(const Shape& shape, double half) {
-    for (const Vector3d& p : shape.measured) DrawCross(panel_.At(p), half, canvas_);
+  void Crosses(const Shape& shape, double half, const Colour& colour) {
+    for (const Vector3d& p : shape.measured) DrawCross(panel_.At(p), half, colour, canvas_);
   }
 
   void Force(std::size_t i) {
@@ -158,9 +158,10 @@ class PanelDrawing {
     }
   }
 
-  // Points of the robots within a square at a corner of the panel.
+  // Points of the robots and of their plate within a square at a corner of the panel.
   int Crowd(const PagePoint& middle, double half) const {
     int crowd = 0;
+    for (const PagePoint& p : PlateOutline()) crowd += (p - middle).cwiseAbs().maxCoeff() < half;
     for (const std::size_t i : panel_.shapes) {
       const Shape& shape = figure_.shapes[i];
       for (const Line* line : {&shape.backbone, &shape.measured}) {
