@@ -12,10 +12,9 @@ using Eigen::AlignedBox2d, Eigen::Vector2d, Eigen::Vector3d;
 
 // Measures of the page [pt]. The width is that of a paper's two columns.
 constexpr double kPageWidth = 510, kLegendWidth = 130, kLeft = 40, kGap = 46, kTop = 34;
-constexpr double kBelow = 44;         // ticks, axis title and space between rows
-constexpr double kBottom = 28;        // ticks and axis title under the last row
-constexpr double kTallest = 250;      // height of a panel
-constexpr double kLeastHeight = 204;  // room for the legend
+constexpr double kBelow = 44;     // ticks, axis title and space between rows
+constexpr double kBottom = 28;    // ticks and axis title under the last row
+constexpr double kTallest = 250;  // height of a panel
 // Shares of the reach.
 constexpr double kLongestForce = 0.25, kMargin = 0.08, kNarrowest = 0.4;
 
@@ -87,6 +86,13 @@ std::vector<Panel> PanelsOf(const Figure& figure) {
 AlignedBox2d Widened(const AlignedBox2d& box, const Vector2d& size) {
   const Vector2d half = 0.5 * box.sizes().cwiseMax(size);
   return {box.center() - half, box.center() + half};
+}
+
+// Lower end of the longest legend [pt]: a line for each case, two kinds of drives, mount, measured
+// places and the scale of the forces; or the colour bar.
+double LegendEnd(const Figure& figure) {
+  if (Many(figure)) return kTop + 170;
+  return kTop + kLegendLine * static_cast<double>(figure.shapes.size() + 6);
 }
 
 void SetRange(const Figure& figure, const Layout& layout, Panel& panel) {
@@ -169,7 +175,7 @@ Layout LayoutOf(const Figure& figure) {
   for (Panel& panel : layout.panels) SetRange(figure, layout, panel);
   const double bottom = Place(layout.panels);
   layout.legend = {kPageWidth - kLegendWidth + 14, kTop};
-  layout.size = {kPageWidth, std::max(bottom, kLeastHeight)};
+  layout.size = {kPageWidth, std::max(bottom, LegendEnd(figure))};
   return layout;
 }
 

@@ -64,6 +64,9 @@ struct LoadRange {
 };
 LoadRange LoadsOf(const Figure& figure);
 
+/// Distance between the lines of the legend [pt].
+inline constexpr double kLegendLine = 12;
+
 /// The page of a figure: panels in rows of two at one scale, a legend at the right.
 struct Layout {
   PagePoint size;

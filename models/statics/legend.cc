@@ -31,7 +31,7 @@ class Legend {
   }
 
  private:
-  static constexpr double kLine = 12, kSample = 20, kTextWidth = 88;
+  static constexpr double kSample = 20, kTextWidth = 88;
 
   bool Any(const std::function<bool(const Shape&)>& is) const {
     return std::any_of(figure_.shapes.begin(), figure_.shapes.end(), is);
@@ -43,7 +43,7 @@ class Legend {
     sample(at_, at_ + Vector2d(kSample, 0));
     canvas_.Text(at_ + Vector2d(kSample + 5, 0), Fitting(text, kTextWidth, kSmall, canvas_),
                  {0, 0.5}, kSmall);
-    at_.y() += kLine;
+    at_.y() += kLegendLine;
   }
 
   void Cases() {
@@ -93,13 +93,13 @@ class Legend {
     DrawArrow(at_, at_ + Vector2d(length, 0), {kInk, 1.1, {}, false}, canvas_);
     canvas_.Text(at_ + Vector2d(std::max(length, kSample) + 5, 0),
                  fmt::format("force of {} N", ScaleNumber(newtons)), {0, 0.5}, kSmall);
-    at_.y() += kLine;
+    at_.y() += kLegendLine;
   }
 
   void ColourBar() {
     constexpr double kWidth = 9, kHeight = 110;
     canvas_.Text(at_, fmt::format("{} cases", figure_.shapes.size()), {0, 0.5}, kSmall);
-    at_.y() += kLine;
+    at_.y() += kLegendLine;
     canvas_.Text(at_, Fitting(figure_.load_name, kTextWidth + 25, kSmall, canvas_), {0, 0.5},
                  kSmall);
     at_.y() += 9;
@@ -112,7 +112,7 @@ class Legend {
       canvas_.Stroke({at, at + Vector2d(2.5, 0)}, {kInk, 0.5});
       canvas_.Text(at + Vector2d(5, 0), ScaleNumber(n * step), {0, 0.5}, kSmall);
     }
-    at_.y() += kHeight + kLine;
+    at_.y() += kHeight + kLegendLine;
   }
 
   // The colours from the lowest to the highest load, in a frame. Steps overlap: no white shows.

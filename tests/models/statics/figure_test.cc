@@ -105,7 +105,7 @@ TEST(Figure, KeepsAllInkOnThePage) {
   for (const std::size_t count : {std::size_t{1}, kMostNamed, kMostNamed + 1, std::size_t{200}}) {
     Figure figure = Figured(count, kDown);
     figure.shapes[0].force = {3, 0, -2};
-    figure.shapes[0].gravity = kLevel;
+    figure.shapes[0].mount = {{0, 0, 0.1}, {0, 0, 0.11}};
     figure.shapes[0].measured = {{0.05, 0.01, 0.02}};
     figure.shapes[0].label = std::string(300, 'W');
     const Eigen::Vector4d ink = InkExtents([&](Canvas& c) { DrawFigure(figure, c); });
