@@ -3,7 +3,6 @@
 #include <numeric>
 
 #include "error.h"
-#include "models/twin_pivot/twin_pivot.h"
 #include "sim/io/decimal.h"
 #include "sim/io/file.h"
 #include "sim/io/yaml.h"
