@@ -127,39 +127,31 @@ std::string ParameterYaml(const Problem& problem, const FreeParameter& p, double
       Decimal(std::min(p.lower, start)), Decimal(std::max(p.upper, start)));
 }
 
-}  // namespace
+std::string LogYaml(const Problem& problem, const Problem::Vector& x,
+                    const std::filesystem::path& folder, std::size_t l) {
+  const Log& log = problem.experiment().logs[l];
+  std::string y = fmt::format("  - {{file: {}", Quoted(RelativePath(log.file, folder).string()));
+  if (!log.variable.empty()) y += ", variable: " + Quoted(log.variable);
+  y += fmt::format(", trial: {}, use: {}", Quoted(log.trial), log.train ? "train" : "validate");
+  if (!log.window.empty())
+    y += fmt::format(", window: [{}, {}]", Decimal(log.window[0]), Decimal(log.window[1]));
+  if (!log.condition.empty()) y += ", condition: " + Quoted(log.condition);
+  return y + SettingsYaml(problem, x, l) + StartYaml(problem, x, l) + "}\n";
+}
 
-ExtendedModel Extend(const Problem& problem, const Problem::Vector& x,
-                     const std::filesystem::path& folder, const std::string& model) {
-  const Experiment& e = problem.experiment();
-  const Experiment measured = problem.MeasuredBy(x, 0);
-  std::string y = "format: 1\nmodel: " + model + "\nlogs:\n";
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    const Log& log = e.logs[l];
-    y += fmt::format("  - {{file: {}", Quoted(RelativePath(log.file, folder).string()));
-    if (!log.variable.empty()) y += ", variable: " + Quoted(log.variable);
-    y += fmt::format(", trial: {}, use: {}", Quoted(log.trial), log.train ? "train" : "validate");
-    if (!log.window.empty()) {
-      y += fmt::format(", window: [{}, {}]", Decimal(log.window[0]), Decimal(log.window[1]));
-    }
-    if (!log.condition.empty()) y += ", condition: " + Quoted(log.condition);
-    y += SettingsYaml(problem, x, l) + StartYaml(problem, x, l) + "}\n";
-  }
-  y += fmt::format("time: {{column: {}, unit: {}, skew: {}}}\n", Quoted(e.time_column),
-                   Quoted(e.time_unit), Decimal(measured.skew));
-  const char* const starts[] = {"rest", "equilibrium", "measured", "estimate"};
-  y += fmt::format("start: {}\n", starts[static_cast<int>(e.start)]);
-  if (e.quasi_static) y += "quasi_static: true\n";
-  y += RegistrationYaml(measured.registration) + "inputs:\n";
+std::string InputsYaml(const Experiment& e) {
+  if (e.inputs.empty()) return "";
+  std::string y = "inputs:\n";
   for (const Input& in : e.inputs) {
     y += "  - {actuator: " + Quoted(in.actuator) + ", unit: " + Quoted(in.unit);
     if (!in.column.empty()) y += ", column: " + Quoted(in.column);
     if (!in.enable.empty()) y += ", enable: " + Quoted(in.enable);
     y += in.linear ? ", interpolate: linear}\n" : "}\n";
   }
-  if (e.inputs.empty()) y.replace(y.rfind("inputs:\n"), 8, "");
-  y += "outputs:\n";
-  for (const Output& out : measured.outputs) y += OutputYaml(out);
+  return y;
+}
+
+std::string ParametersYaml(const Problem& problem, const Problem::Vector& x) {
   std::string parameters;
   std::set<std::string> names;
   for (std::size_t i = 0; i < problem.parameters().size(); ++i) {
@@ -168,12 +160,33 @@ ExtendedModel Extend(const Problem& problem, const Problem::Vector& x,
     if (common && !p.change.target.empty() && !p.IsStart())
       parameters += ParameterYaml(problem, p, x[static_cast<Eigen::Index>(i)], names);
   }
-  if (!parameters.empty()) y += "parameters:\n" + parameters;
+  return parameters.empty() ? "" : "parameters:\n" + parameters;
+}
+
+std::string FoldsYaml(const Experiment& e) {
   const char* const folds[] = {"trial", "condition", "window"};
-  y += "folds: [";
+  std::string y = "folds: [";
   for (const auto f : e.folds)
     y += std::string(y.back() == '[' ? "" : ", ") + folds[static_cast<int>(f)];
-  y += "]\n";
+  return y + "]\n";
+}
+
+}  // namespace
+
+ExtendedModel Extend(const Problem& problem, const Problem::Vector& x,
+                     const std::filesystem::path& folder, const std::string& model) {
+  const Experiment& e = problem.experiment();
+  const Experiment measured = problem.MeasuredBy(x, 0);
+  std::string y = "format: 1\nmodel: " + model + "\nlogs:\n";
+  for (std::size_t l = 0; l < e.logs.size(); ++l) y += LogYaml(problem, x, folder, l);
+  y += fmt::format("time: {{column: {}, unit: {}, skew: {}}}\n", Quoted(e.time_column),
+                   Quoted(e.time_unit), Decimal(measured.skew));
+  const char* const starts[] = {"rest", "equilibrium", "measured", "estimate"};
+  y += fmt::format("start: {}\n", starts[static_cast<int>(e.start)]);
+  if (e.quasi_static) y += "quasi_static: true\n";
+  y += RegistrationYaml(measured.registration) + InputsYaml(e) + "outputs:\n";
+  for (const Output& out : measured.outputs) y += OutputYaml(out);
+  y += ParametersYaml(problem, x) + FoldsYaml(e);
   if (e.soft > 0) y += "loss: {soft_l1: " + Decimal(e.soft) + "}\n";
   return {problem.system().Xml(problem.CommonChanges(x), {}, folder), y};
 }

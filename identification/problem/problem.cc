@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -32,6 +31,15 @@ double TypicalSize(double initial, double lower, double upper) {
   return std::isfinite(size) && size > 0 ? std::min(size, range) : 1;
 }
 
+// Whether a parameter or a log changes a geom, so that those without contacts have to stay.
+bool ChangesGeoms(const Experiment& e) {
+  const auto is_geom = [](const auto& change) { return change.target.starts_with("geom:"); };
+  bool geoms = std::any_of(e.parameters.begin(), e.parameters.end(), is_geom);
+  for (const Log& log : e.logs)
+    geoms = geoms || std::any_of(log.set.begin(), log.set.end(), is_geom);
+  return geoms;
+}
+
 }  // namespace
 
 std::vector<bool> TrainLogs(const Experiment& experiment) {
@@ -54,10 +62,7 @@ Problem::Problem(const Experiment& experiment, const ModelSpec& system,
       terms_(std::move(terms)) {
   setup_.logs.clear();
   memory_.resize(experiment.logs.size());
-  const auto is_geom = [](const auto& change) { return change.target.starts_with("geom:"); };
-  bool geoms = std::any_of(experiment.parameters.begin(), experiment.parameters.end(), is_geom);
-  for (const Log& log : experiment.logs)
-    geoms = geoms || std::any_of(log.set.begin(), log.set.end(), is_geom);
+  const bool geoms = ChangesGeoms(experiment);
   for (std::size_t t = 0; t < ThreadCount(); ++t) {
     systems_.push_back(system);
     if (!geoms) systems_.back().DropVisuals();
@@ -83,6 +88,11 @@ Problem::Problem(const Experiment& experiment, const ModelSpec& system,
     while (!SameMotion(first, l)) ++first;
     motion_.push_back(first);
   }
+  FindScales();
+}
+
+void Problem::FindScales() {
+  const Experiment& experiment = *experiment_;
   const Pool pool(experiment);
   bool sigma = true;
   for (const Output& out : experiment.outputs) sigma &= out.sigma > 0 || out.weight == 0;
@@ -119,20 +129,18 @@ void Problem::StepBy(double h) {
   memory_.assign(memory_.size(), {});
 }
 
-void Problem::Expand(const Parameter& p) {
-  const auto& logs = experiment_->logs;
-  const auto at = [&](const std::function<double()>& read) {
-    try {
-      return read();
-    } catch (const Error& e) {
-      throw Error::Input(p.where, e.what());
-    }
-  };
-  const double present = at([&] {
+double Problem::PresentValue(const Parameter& p) const {
+  try {
     return IsMeasurement(p.target, p.attribute)
                ? MeasurementValue(*experiment_, p.target, p.attribute)
                : system().Value(p.target, p.attribute);
-  });
+  } catch (const Error& e) {
+    throw Error::Input(p.where, e.what());
+  }
+}
+
+void Problem::Expand(const Parameter& p) {
+  const double present = PresentValue(p);
   const std::string unit = IsMeasurement(p.target, p.attribute)
                                ? MeasurementUnit(*experiment_, p.target, p.attribute)
                                : UnitOf(system(), p);
@@ -156,12 +164,18 @@ void Problem::Expand(const Parameter& p) {
   }
   free.scale = TypicalSize(free.initial, free.lower, free.upper);
   if (p.per == Parameter::Per::kAll) {
-    for (const Log& log : logs)
+    for (const Log& log : experiment_->logs)
       free.log.push_back(p.condition.empty() || p.condition == log.condition);
     parameters_.push_back(free);
-    return;
+  } else {
+    ExpandGroups(p, free);
   }
+}
+
+// One for each log or condition.
+void Problem::ExpandGroups(const Parameter& p, const FreeParameter& free) {
   RequireSeen(p);
+  const auto& logs = experiment_->logs;
   std::set<std::string> groups;
   for (const Log& log : logs) groups.insert(GroupOf(p, log));
   for (const std::string& name : groups) {

@@ -121,7 +121,11 @@ class Problem {
   double scale(std::size_t counted) const { return scale_[counted]; }
 
  private:
+  void FindScales();
   void Expand(const Parameter& p);
+  void ExpandGroups(const Parameter& p, const FreeParameter& free);
+  /// What the model or the experiment has.
+  double PresentValue(const Parameter& p) const;
   std::string GroupOf(const Parameter& p, const Log& log) const;
   void RequireSeen(const Parameter& p) const;
   bool SameMotion(std::size_t a, std::size_t b) const;

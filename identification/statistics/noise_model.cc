@@ -200,55 +200,71 @@ ChannelNoise RoundingNoise(const ChannelNoise& noise,
   return out;
 }
 
+namespace {
+
+bool HasSigmas(const Experiment& e, const Pool& pool) {
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    if (pool.counts(c) && !(e.outputs[e.channels[c].output].sigma > 0)) return false;
+  }
+  return true;
+}
+
+// Third differences, of the size of white noise.
+std::vector<double> ThirdDifferences(const std::vector<double>& y) {
+  std::vector<double> d;
+  for (std::size_t k = 3; k < y.size(); ++k)
+    d.push_back((y[k] - 3 * y[k - 1] + 3 * y[k - 2] - y[k - 3]) / std::sqrt(20.0));
+  return d;
+}
+
+double NoiseByDifferences(const Experiment& e, const Pool& pool) {
+  Pool::Sum sum;
+  for (const Log& log : e.logs) {
+    auto third = log.measured;
+    for (auto& y : third) {
+      if (y.size() >= 4) y = ThirdDifferences(y);
+    }
+    pool.Add(third, sum);
+  }
+  return sum.Rms();
+}
+
+// groups: of replicates; empty: by sigma.
+ChannelNoise NoiseOfChannel(const Experiment& e, std::size_t c,
+                            const std::vector<std::vector<std::size_t>>& groups) {
+  ChannelNoise noise;
+  noise.innovation = noise.rms = e.outputs[e.channels[c].output].sigma * e.channels[c].factor;
+  if (!groups.empty()) {
+    std::vector<std::vector<double>> samples;
+    for (const auto& group : groups) {
+      for (auto& sample : Deviations(e, group, c)) samples.push_back(std::move(sample));
+    }
+    noise = NoiseFrom(samples);
+  }
+  std::vector<const std::vector<double>*> measured;
+  for (const Log& log : e.logs) measured.push_back(&log.measured[c]);
+  if (const double quantum = QuantumOf(measured); quantum > 0) AddQuantum(noise, quantum);
+  return noise;
+}
+
+}  // namespace
+
 Noise NoiseOf(const Experiment& e) {
   const Pool pool(e);
   Noise noise;
   const auto groups = ReplicateGroups(e);
   for (const auto& group : groups) noise.pairs += group.size() * (group.size() - 1) / 2;
+  noise.source = noise.pairs > 0      ? "replicates"
+                 : HasSigmas(e, pool) ? "sigma"
+                 : e.quasi_static     ? "not known"
+                                      : "differences";
+  if (noise.source == "differences") noise.rms = NoiseByDifferences(e, pool);
+  if (noise.source != "replicates" && noise.source != "sigma") return noise;
   double squares = 0, counted = 0;
-  bool sigma = true;
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
-    const Output& out = e.outputs[e.channels[c].output];
-    sigma &= out.sigma > 0 || !pool.counts(c);
-  }
-  noise.source = noise.pairs > 0  ? "replicates"
-                 : sigma          ? "sigma"
-                 : e.quasi_static ? "not known"
-                                  : "differences";
-  if (noise.source == "not known") return noise;
-  if (noise.source == "differences") {
-    Pool::Sum sum;
-    for (const Log& log : e.logs) {
-      auto third = log.measured;
-      for (auto& y : third) {
-        if (y.size() < 4) continue;
-        std::vector<double> d;
-        for (std::size_t k = 3; k < y.size(); ++k) {
-          d.push_back((y[k] - 3 * y[k - 1] + 3 * y[k - 2] - y[k - 3]) / std::sqrt(20.0));
-        }
-        y = std::move(d);
-      }
-      pool.Add(third, sum);
-    }
-    noise.rms = sum.Rms();
-    return noise;
-  }
-  for (std::size_t c = 0; c < e.channels.size(); ++c) {
-    const Output& out = e.outputs[e.channels[c].output];
-    ChannelNoise one;
-    one.innovation = one.rms = out.sigma * e.channels[c].factor;
-    if (noise.source == "replicates") {
-      std::vector<std::vector<double>> samples;
-      for (const auto& group : groups) {
-        for (auto& sample : Deviations(e, group, c)) samples.push_back(std::move(sample));
-      }
-      one = NoiseFrom(samples);
-    }
-    std::vector<const std::vector<double>*> measured;
-    for (const Log& log : e.logs) measured.push_back(&log.measured[c]);
-    if (const double quantum = QuantumOf(measured); quantum > 0) AddQuantum(one, quantum);
-    noise.channel.push_back(one);
+    noise.channel.push_back(NoiseOfChannel(e, c, groups));
     if (!pool.counts(c)) continue;
+    const ChannelNoise& one = noise.channel.back();
     const double total = std::hypot(one.rms, one.offset) / pool.scale(c);
     squares += total * total, counted += 1;
   }

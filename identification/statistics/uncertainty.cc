@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
 #include <Eigen/Dense>
 #include <boost/math/distributions/students_t.hpp>
 
-#include "error.h"
 #include "identification/statistics/information_modes.h"
-#include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {
@@ -125,18 +121,13 @@ Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::ve
   return UncertaintyFrom(problem, x, blocks);
 }
 
-Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
-                            const std::vector<Scores>& blocks) {
-  const Eigen::Index n = x.size();
-  Uncertainty u;
-  u.standard_error.resize(n), u.lower.resize(n), u.upper.resize(n);
-  u.correlation = Matrix::Identity(n, n);
-  if (n == 0) return u;
-  Matrix H = Matrix::Zero(n, n), S = H, modelled = H;
-  double independent = 0;  // rows, for the quantile
-  Eigen::Index rows = 0;
-  for (const Scores& all : blocks) {
-    const Scores block = Measured(all);
+namespace {
+
+// What all blocks together say of n parameters.
+struct Evidence {
+  explicit Evidence(Eigen::Index n) : H(Matrix::Zero(n, n)), S(H), modelled(H) {}
+
+  void Add(const Scores& block) {
     const Matrix scores = block.r.asDiagonal() * block.J;
     const double bandwidth = Bandwidth(scores);
     H += block.J.transpose() * block.curvature.asDiagonal() * block.J;
@@ -145,22 +136,45 @@ Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
     independent += static_cast<double>(block.r.size()) / bandwidth;
     rows += block.r.size();
   }
-  u.information = H;
-  u.at_bound = AtBounds(problem, x);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (u.at_bound[i]) u.information.row(i).setZero(), u.information.col(i).setZero();
+  Eigen::Index determined() const { return (H.diagonal().array() > 0).count(); }
+  // Whether it says anything of one parameter.
+  bool Sees(Eigen::Index a) const { return rows > determined() && H(a, a) > 0; }
+
+  Matrix H, S, modelled;
+  double independent = 0;  // rows
+  Eigen::Index rows = 0;
+};
+
+Matrix InformationInside(Matrix H, const std::vector<bool>& at_bound) {
+  for (Eigen::Index i = 0; i < H.rows(); ++i) {
+    if (at_bound[i]) H.row(i).setZero(), H.col(i).setZero();
   }
-  const Eigen::Index determined = (H.diagonal().array() > 0).count();
-  const double freedom = std::max(2.0, independent - static_cast<double>(determined));
-  const InformationModes modes(H);
+  return H;
+}
+
+}  // namespace
+
+Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
+                            const std::vector<Scores>& blocks) {
+  const Eigen::Index n = x.size();
+  Uncertainty u;
+  u.standard_error.resize(n), u.lower.resize(n), u.upper.resize(n);
+  u.correlation = Matrix::Identity(n, n);
+  if (n == 0) return u;
+  Evidence all(n);
+  for (const Scores& block : blocks) all.Add(Measured(block));
+  u.at_bound = AtBounds(problem, x);
+  u.information = InformationInside(all.H, u.at_bound);
+  const double freedom = std::max(2.0, all.independent - static_cast<double>(all.determined()));
+  const InformationModes modes(all.H);
   const Matrix Hi = modes.Inverse(), along = modes.AlongInvariances();
-  const double few = std::max(1.0, independent / freedom);
-  const Matrix cov = few * Hi * modelled * Hi + along, robust = few * Hi * S * Hi + along;
+  const double few = std::max(1.0, all.independent / freedom);
+  const Matrix cov = few * Hi * all.modelled * Hi + along, robust = few * Hi * all.S * Hi + along;
   const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
   for (Eigen::Index a = 0; a < n; ++a) {
     const FreeParameter& p = problem.parameters()[a];
     const double unknown = (p.upper - p.lower) / std::sqrt(12.0);
-    if (rows <= determined || !(H(a, a) > 0)) {
+    if (!all.Sees(a)) {
       u.standard_error[a] = unknown;
       u.lower[a] = p.lower, u.upper[a] = p.upper;
       continue;
