@@ -41,7 +41,7 @@ std::string StartHint(const Problem& problem, const Problem::Vector& x,
     return fmt::format(
         "the logs begin elsewhere, or faster, than their first rows measure: with 'start: "
         "estimate' "
-        "{:.3g} % of the cost would go",
+        "{:.3g} % of the cost would be removed",
         100 * gain / before);
   } catch (const Error&) {
     return "";  // joints whose start cannot be a parameter

@@ -43,7 +43,7 @@ class FitPage {
     page_.Heading("Convergence");
     Part("convergence", [&] { AddConvergence(); });
     if (result_.starts) Part("starts", [&] { AddStarts(*result_.starts); });
-    page_.Heading("What remains");
+    page_.Heading("Residuals");
     Part("residuals", [&] {
       RequireWhole(e_, result_.logs);
       AddResiduals(page_, e_, result_.channels, result_.logs);
@@ -76,7 +76,8 @@ class FitPage {
   // What else has to be known before the values are read.
   void AddWarnings() {
     const std::string beyond = OverNoiseInWords(result_);
-    if (!beyond.empty()) page_.Badge(Tone::kWarn, "More than noise is left", beyond + ".");
+    if (!beyond.empty())
+      page_.Badge(Tone::kWarn, "Residuals exceed the measurement noise", beyond + ".");
     for (std::size_t l = 0; l < result_.divergence.size(); ++l) {
       if (!result_.divergence[l].empty())
         page_.Badge(Tone::kWarn, "Log " + e_.logs[l].label + " has no error",
@@ -128,7 +129,7 @@ class FitPage {
     }
     page_.Heading("Starts");
     page_.Table(header, rows,
-                {all.InWords() + "; those that cannot come near it any more give up."});
+                {all.InWords() + "; starts that cannot come near it any more are given up."});
   }
 
   void AddErrors() {
@@ -208,8 +209,9 @@ void AddParameterTable(Page& page, const std::vector<FreeParameter>& parameters,
 std::string OverNoiseInWords(const IdentifyResult& result) {
   if (!result.over_noise) return "";
   return fmt::format(
-      "what remains is {:.0f} times the measurement noise ({}): the model lacks something "
-      "(`continuum diagnose` says what) or a better fit is elsewhere (`--starts 8`); intervals "
+      "residuals are {:.0f} times the measurement noise ({}): the model lacks something "
+      "(`continuum diagnose` finds the cause) or a better fit is elsewhere (`--starts 8`); "
+      "intervals "
       "allow for neither",
       result.over_noise->times, result.over_noise->source);
 }

@@ -19,10 +19,10 @@ void WriteFitReport(const Experiment& experiment, const IdentifyResult& result,
 void AddParameterTable(Page& page, const std::vector<FreeParameter>& parameters,
                        const Eigen::VectorXd& x, const Uncertainty& uncertainty);
 
-/// Says of a fit that it was begun anew (Fit::anew).
+/// Says that a fit was started again elsewhere (Fit::anew).
 inline constexpr char kAnewInWords[] =
-    "begun anew where the equations of motion hold best along what was measured, as from its start "
-    "it ended far above the noise";
+    "started again where the equations of motion fit the measured motion best, as the first fit "
+    "ended far above the noise";
 
 /// Says that the residuals of a fit are far more than noise, and what to do; empty: they are not.
 std::string OverNoiseInWords(const IdentifyResult& result);

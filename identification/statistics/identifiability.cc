@@ -56,7 +56,7 @@ std::string Sentence(const std::vector<std::string>& names, const std::string& c
                      double freedom, const std::string& constant) {
   const bool exact = std::isinf(freedom);
   std::string text = Listed(names) + " trade off: " + changes +
-                     (exact ? " leave everything as it is"
+                     (exact ? " change nothing that is measured"
                             : fmt::format(" show {:.0f} times less than one alone", freedom));
   if (!constant.empty()) text += "; " + constant + (exact ? " determined" : " well determined");
   return text;

@@ -53,7 +53,7 @@ def identify(experiment: Document, out: StrPath | None = None, *, method: str = 
 
     method: lm | pso | regressor. path: auto | smooth | stepped. starts: fit from so many, keep the
     best. seed belongs to starts and pso, cutoff [Hz] to regressor; None: what the method likes.
-    all: the validate logs too. whole: no pieces first. from_: an earlier fit to start from."""
+    all: the validate logs too. whole: no segments first. from_: an earlier fit to start from."""
     options = {"method": method, "path": path, "iterations": iterations, "starts": starts,
                "seed": seed, "cutoff": cutoff, "all": all, "for_step": for_step, "whole": whole}
     with as_file(from_ or "", "from") as (fit, rename):

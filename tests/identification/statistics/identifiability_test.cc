@@ -73,9 +73,10 @@ TEST_F(TradeOffTest, TellsSeveralTiesOfTheSameParametersOnce) {
   const auto u = IntervalsOf(problem, x, problem.Residuals(x, problem.AllLogs()));
   const auto ties = ConfoundingsOf(problem, x, u);
   ASSERT_EQ(ties.size(), 1u);
-  EXPECT_EQ(ties[0].text,
-            "k, c, m, g and u trade off: 2 independent changes of them leave everything as it is; "
-            "only 3 combinations of them are determined");
+  EXPECT_EQ(
+      ties[0].text,
+      "k, c, m, g and u trade off: 2 independent changes of them change nothing that is measured; "
+      "only 3 combinations of them are determined");
 }
 
 // A spring beside the joint's, and two factors of the same force.
@@ -117,7 +118,7 @@ TEST_F(TradeOffTest, WhatNothingDeterminesReachesOverItsBounds) {
     }
     const auto ties = ConfoundingsOf(problem, x, u);
     ASSERT_EQ(ties.size(), 1u) << parameters;
-    EXPECT_THAT(ties[0].text, HasSubstr("leave everything as it is"));
+    EXPECT_THAT(ties[0].text, HasSubstr("change nothing that is measured"));
     if (x.size() == 2) {
       EXPECT_NEAR(u.correlation(0, 1), -1, 1e-3);
     }
