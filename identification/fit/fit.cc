@@ -12,6 +12,7 @@
 #include "identification/fit/bounded_least_squares.h"
 #include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/decompositions.h"
 #include "sim/numerics/parallel.h"
 
 namespace continuum {

@@ -15,6 +15,7 @@
 #include "identification/statistics/uncertainty.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/model/joint_equalities.h"
+#include "sim/numerics/decompositions.h"
 #include "sim/simulation/input_signals.h"
 #include "sim/simulation/wiring.h"
 

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <Eigen/Dense>
 
+#include "sim/numerics/decompositions.h"
+
 namespace continuum {
 namespace {
 
@@ -182,7 +184,8 @@ std::vector<Confounding> ConfoundingsOf(const Problem& problem, const Vector& x,
   if (inside.size() < 2) return {};
   const Matrix H = u.information(inside, inside);
   const Vector one = H.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix> modes(one.asDiagonal() * H * one.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Matrix> modes(
+      Matrix(one.asDiagonal() * H * one.asDiagonal()));
   const auto is_start = [&](auto i) { return problem.parameters()[inside[i]].IsStart(); };
   std::vector<Confounding> all;
   for (Group& group : GroupsOf(modes.eigenvalues(), modes.eigenvectors())) {

@@ -1,6 +1,6 @@
 #include "identification/statistics/information_modes.h"
 
-#include <Eigen/Dense>
+#include "sim/numerics/decompositions.h"
 
 namespace continuum {
 namespace {
@@ -16,7 +16,8 @@ constexpr double kPoor = 1e-6;   // worth a second look
 InformationModes::InformationModes(const Matrix& H)
     : unit_(H.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 1; })) {
   if (H.rows() == 0) return;
-  const Eigen::SelfAdjointEigenSolver<Matrix> modes(unit_.asDiagonal() * H * unit_.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Matrix> modes(
+      Matrix(unit_.asDiagonal() * H * unit_.asDiagonal()));
   values_ = modes.eigenvalues(), vectors_ = modes.eigenvectors();
   none_ = (values_.array() < kNone).count();
 }

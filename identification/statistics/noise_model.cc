@@ -8,6 +8,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "sim/experiment/replicates.h"
+#include "sim/numerics/decompositions.h"
 
 namespace continuum {
 namespace {

@@ -18,7 +18,7 @@ const std::map<std::string, Unit>& Units() {
         force{1, 1, -2, 0}, energy{2, 1, -2, 0}, power{2, 1, -3, 0}, pressure{-1, 1, -2, 0},
         voltage{2, 1, -3, -1}, current{0, 0, 0, 1};
     std::map<std::string, Unit> all{{"1", {1}}, {"%", {0.01}}, {"step", {1}}};
-    const auto add = [&](const Dimension& d, std::map<std::string, double> factors) {
+    const auto add = [&](const Dimension& d, const std::map<std::string, double>& factors) {
       for (const auto& [name, factor] : factors) all[name] = {factor, d, false};
     };
     add({}, {{"rad", 1}, {"mrad", 1e-3}, {"deg", kPi / 180}});

@@ -1,6 +1,17 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+// Sources that include this header take these from decompositions.cc: Eigen's factorisations of
+// dense matrices cost the compiler some 3 s each. Expressions are evaluated before,
+// `Solver(Matrix(A.transpose() * A))`, as only factorisations of plain matrices are here.
+extern template Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& Eigen::SelfAdjointEigenSolver<
+    Eigen::MatrixXd>::compute<Eigen::MatrixXd>(const Eigen::EigenBase<Eigen::MatrixXd>&, int);
+extern template Eigen::LDLT<Eigen::MatrixXd>&
+Eigen::LDLT<Eigen::MatrixXd>::compute<Eigen::MatrixXd>(const Eigen::EigenBase<Eigen::MatrixXd>&);
+extern template void Eigen::LDLT<Eigen::MatrixXd>::_solve_impl_transposed<true>(
+    const Eigen::VectorXd&, Eigen::VectorXd&) const;
 
 namespace continuum {
 
