@@ -122,6 +122,7 @@ struct Bad {
   const char *name, *old, *by;
   std::vector<std::string> words;
 };
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 class BadDiagnosis : public testing::AppBench, public ::testing::WithParamInterface<Bad> {};
 INSTANTIATE_TEST_SUITE_P(
     Files, BadDiagnosis,

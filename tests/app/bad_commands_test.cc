@@ -15,6 +15,7 @@ struct Bad {
   const char* name;
   std::vector<std::string> arguments, words;
 };
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 
 class BadCommand : public testing::AppBench, public ::testing::WithParamInterface<Bad> {};
 

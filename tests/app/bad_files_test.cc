@@ -9,6 +9,7 @@ struct Bad {
   std::string by;
   std::vector<std::string> words;
 };
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 
 class BadFile : public testing::AppBench, public ::testing::WithParamInterface<Bad> {};
 

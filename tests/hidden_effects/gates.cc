@@ -59,20 +59,23 @@ Case Background(const std::vector<std::string>& effects, std::uint64_t seed) {
 void AddForNoise(NoiseKind noise, std::vector<Gate>& gates) {
   std::string kind(kNoiseNames[static_cast<int>(noise)]);
   std::erase_if(kind, [](unsigned char c) { return !std::isalnum(c); });
+  const bool is_long = noise != NoiseKind::kWhite;  // sanitized, one kind stands for all
   std::vector<Case> none;
   for (std::uint64_t seed = 1001; seed <= 1004; ++seed) none.push_back({{}, 1, noise, seed});
-  gates.push_back({"NothingIsNamedWhereNothingIsHidden_" + kind, false, none, IsQuiet});
+  gates.push_back({"NothingIsNamedWhereNothingIsHidden_" + kind, false, none, IsQuiet, is_long});
   // These logs tell them from all others; at twice a moderate size they are well above slow noise.
   gates.push_back({"ClearOnesAreNamed_" + kind,
                    true,
                    {{{"payload"}, 2, noise, 2001},
                     {{"cubic_stiffness"}, 2, noise, 2002},
                     {{"sensor_scale"}, 2, noise, 2003}},
-                   AreClear});
+                   AreClear,
+                   is_long});
   gates.push_back({"WithoutACandidateItGetsNoOtherName_" + kind,
                    true,
                    {{{"payload"}, 4, noise, 3001, false}},
-                   All<HasNoOtherName>});
+                   All<HasNoOtherName>,
+                   is_long});
 }
 
 void AddForArm(std::vector<Gate>& gates) {
@@ -129,7 +132,8 @@ void AddForOthers(std::vector<Gate>& gates) {
   gates.push_back({"APayloadIsFoundWhereAnotherLeadsAtFirst",
                    true,
                    {White("spa", "payload", 2, 4, {"payload", "armature"})},
-                   All<IsNamed>});
+                   All<IsNamed>,
+                   true});
   // A Stribeck excess does nothing without its Coulomb level, and its speed nothing without it:
   // from one start the fit ends far off, and a second cause is called in.
   gates.push_back(

@@ -20,6 +20,7 @@ struct Gate {
   bool finds;  ///< whether something is hidden that has to be found
   std::vector<Case> cases;
   bool (*holds)(const std::vector<Asked>& asked);
+  bool is_long = false;  ///< left to `scripts/test long` under sanitizers
 };
 
 /// The small suite; `continuum_hidden_effects` asks hundreds of cases.

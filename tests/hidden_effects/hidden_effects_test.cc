@@ -1,11 +1,16 @@
+// ctest labels: slow
 #include <unistd.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "hidden_effects/gates.h"
+#include "support/long_test.h"
 
 namespace continuum::hidden {
+
+static void PrintTo(const Gate& gate, std::ostream* out) { *out << gate.name; }
+
 namespace {
 
 class HiddenEffects : public ::testing::TestWithParam<Gate> {
@@ -34,6 +39,7 @@ INSTANTIATE_TEST_SUITE_P(Small, HiddenEffects, ::testing::ValuesIn(Gates()),
 
 // One test for each gate, so that they run side by side.
 TEST_P(HiddenEffects, PassTheGate) {
+  if (GetParam().is_long) CONTINUUM_LONG_IF_SANITIZED("several whole diagnoses");
   std::vector<Asked> asked;
   for (const Case& c : GetParam().cases) asked.push_back({c, Ask(c)});
   EXPECT_TRUE(GetParam().holds(asked)) << told_;

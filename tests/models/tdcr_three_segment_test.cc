@@ -1,3 +1,4 @@
+// ctest labels: real-data
 #include <cmath>
 
 #include <gtest/gtest.h>

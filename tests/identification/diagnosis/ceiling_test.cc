@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include <algorithm>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include "identification/diagnosis/diagnosis.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include "identification/diagnosis/fallback_force.h"
 
 #include <cmath>

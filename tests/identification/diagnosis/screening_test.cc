@@ -1,9 +1,12 @@
+// ctest labels: slow
 #include "identification/diagnosis/screening.h"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
+
+#include "support/long_test.h"
 
 namespace continuum {
 namespace {
@@ -43,6 +46,7 @@ TEST_F(Screened, AForbiddenSignExplainsNothing) {
 
 // 400 draws of noise: the share below 5 % is within three standard errors (1.1 %).
 TEST_F(Screened, TheBestOfManyIsSignificantInFivePercentOfPureNoise) {
+  CONTINUUM_LONG_IF_SANITIZED("400 screenings");
   std::vector<std::vector<Probe>> candidates;
   const Vector common = Normal();
   for (int i = 0; i < 12; ++i) {
@@ -59,6 +63,7 @@ TEST_F(Screened, TheBestOfManyIsSignificantInFivePercentOfPureNoise) {
 
 // One of so many candidates is likely to be beyond all of so few draws: no alarm by itself.
 TEST_F(Screened, ManyCandidatesRaiseNoMoreAlarmsWithFewDraws) {
+  CONTINUUM_LONG_IF_SANITIZED("400 screenings");
   std::vector<std::vector<Probe>> candidates;
   for (int i = 0; i < 60; ++i) candidates.push_back({OneWay(Normal(), i % 3 - 1)});
   int alarms = 0;

@@ -1,3 +1,4 @@
+// ctest labels: slow real-data
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,6 +8,7 @@
 
 #include "identification/diagnosis/diagnosis.h"
 #include "sim/simulation/simulate.h"
+#include "support/long_test.h"
 #include "support/real_log.h"
 
 namespace continuum {
@@ -49,6 +51,7 @@ TEST_F(ServoPendulum, CoulombAndViscousFrictionRefittedLeave60Mrad) {
 
 // On logs of one machine without replicates, left-out groups decide; a delay explains nothing.
 TEST_F(ServoPendulum, TheDiagnosisPrefersFrictionThatGrowsWithTheLoadToADelay) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   DiagnosisOptions options;
   options.candidates = {"load_friction", "dead_time"};
   options.placebos = 2;

@@ -1,3 +1,4 @@
+// ctest labels: real-data
 #include <cmath>
 #include <map>
 #include <string>

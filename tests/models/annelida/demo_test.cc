@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include "models/annelida/demo.h"
 
 #include <cmath>

@@ -125,6 +125,7 @@ struct Case {
   Vector3d pressure;
   bool moving;
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 class SpaChainStep : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Spa, SpaChainStep,
                          ::testing::Values(Case{"OneChamber", {75e3, 0, 0}, false},

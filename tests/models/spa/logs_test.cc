@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include "models/spa/logs.h"
 
 #include <gtest/gtest.h>

@@ -63,7 +63,13 @@ struct Case {
   bool moving;
   SpaOptions Options() const { return {mass, actuation}; }
   SpaBaseMotion Base() const { return moving ? Moving() : Fixed(); }
+  std::string Name() const {
+    return fmt::format("{}{}{}", mass == SpaMass::kArc ? "Arc" : "Centroid",
+                       actuation == SpaActuation::kTip ? "Tip" : "Volume",
+                       moving ? "Moving" : "Fixed");
+  }
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.Name(); }
 
 class Response : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Spa, Response,
@@ -71,12 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Spa, Response,
                                            Case{SpaMass::kCentroid, SpaActuation::kTip, true},
                                            Case{SpaMass::kArc, SpaActuation::kTip, true},
                                            Case{SpaMass::kArc, SpaActuation::kVolume, false}),
-                         [](const auto& info) {
-                           return fmt::format(
-                               "{}{}{}", info.param.mass == SpaMass::kArc ? "Arc" : "Centroid",
-                               info.param.actuation == SpaActuation::kTip ? "Tip" : "Volume",
-                               info.param.moving ? "Moving" : "Fixed");
-                         });
+                         [](const auto& info) { return info.param.Name(); });
 
 TEST_P(Response, EnergyBalancesTheWorkTo1e8PerSecond) {
   const Spa<double> spa(Table(), GetParam().Options());

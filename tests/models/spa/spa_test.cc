@@ -7,6 +7,11 @@
 #include <Eigen/Eigenvalues>
 
 namespace continuum {
+
+static void PrintTo(SpaMass mass, std::ostream* out) {
+  *out << (mass == SpaMass::kArc ? "Arc" : "Centroid");
+}
+
 namespace {
 
 using Vector3 = Eigen::Vector3d;
@@ -48,9 +53,7 @@ class BothMasses : public ::testing::TestWithParam<SpaMass> {
   SpaOptions Options() const { return {GetParam(), SpaActuation::kTip, {1.2, -3.4, -9.1}}; }
 };
 INSTANTIATE_TEST_SUITE_P(Spa, BothMasses, ::testing::Values(SpaMass::kCentroid, SpaMass::kArc),
-                         [](const auto& mass) {
-                           return mass.param == SpaMass::kArc ? "Arc" : "Centroid";
-                         });
+                         ::testing::PrintToStringParamName());
 
 using Dual = ceres::Jet<double, 18>;  // by (q, q̇)
 

@@ -8,6 +8,12 @@
 #include "models/stiff_flop/chamber.h"
 
 namespace continuum::stiff_flop {
+
+static void PrintTo(BodyLaw law, std::ostream* out) {
+  constexpr const char* kNames[] = {"Fixed", "Elongation", "Simple", "Planar", "General"};
+  *out << kNames[static_cast<int>(law)];
+}
+
 namespace {
 
 using std::numbers::pi;
@@ -175,7 +181,8 @@ TEST(StiffFlopChamber, MarginEndsWhereTheThreadIsStraightOrTheWallFolds) {
 }
 
 class StiffFlopBody : public testing::TestWithParam<BodyLaw> {};
-INSTANTIATE_TEST_SUITE_P(All, StiffFlopBody, testing::ValuesIn(kBodies));
+INSTANTIATE_TEST_SUITE_P(All, StiffFlopBody, testing::ValuesIn(kBodies),
+                         testing::PrintToStringParamName());
 
 TEST_P(StiffFlopBody, StraightBodyOnlyContracts) {
   if (GetParam() == BodyLaw::kFixed) return;

@@ -1,3 +1,4 @@
+// ctest labels: real-data
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>

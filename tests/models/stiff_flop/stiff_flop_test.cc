@@ -10,6 +10,13 @@
 #include "models/stiff_flop/inverse.h"
 
 namespace continuum::stiff_flop {
+
+static void PrintTo(const Method& method, std::ostream* out) {
+  std::string name = method.Name(Direction::kInverse);
+  std::replace(name.begin(), name.end(), '+', '_');
+  *out << name;
+}
+
 namespace {
 
 using Eigen::Vector3d;
@@ -52,11 +59,8 @@ class StiffFlop : public testing::TestWithParam<Method> {
     return SolveForward(module, GetParam(), row, sensitivity);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Table2, StiffFlop, testing::ValuesIn(Method::All()), [](const auto& info) {
-  std::string name = info.param.Name(Direction::kInverse);
-  std::replace(name.begin(), name.end(), '+', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Table2, StiffFlop, testing::ValuesIn(Method::All()),
+                         testing::PrintToStringParamName());
 
 TEST_P(StiffFlop, InverseNeedsNoPressureUnloadedAndStraight) {
   const Solution solution = Inverse(Loose(), Free({0, 0, 1}));

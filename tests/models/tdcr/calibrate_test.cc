@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include "models/tdcr/calibrate.h"
 
 #include <gtest/gtest.h>

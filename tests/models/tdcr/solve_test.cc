@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -11,6 +12,11 @@
 #include "sim/numerics/newton.h"
 
 namespace continuum::tdcr {
+
+static void PrintTo(Method method, std::ostream* out) {
+  *out << (method == Method::kEas ? "eas" : method == Method::kPcca ? "pcca" : "crt");
+}
+
 namespace {
 
 const Method kMethods[] = {Method::kEas, Method::kPcca, Method::kCrt};
@@ -46,11 +52,8 @@ Loads Random(const Robot& robot, std::mt19937& random, double tension = 5, doubl
 }
 
 class EveryMethod : public testing::TestWithParam<Method> {};
-INSTANTIATE_TEST_SUITE_P(Tdcr, EveryMethod, testing::ValuesIn(kMethods), [](const auto& info) {
-  return std::string(info.param == Method::kEas    ? "eas"
-                     : info.param == Method::kPcca ? "pcca"
-                                                   : "crt");
-});
+INSTANTIATE_TEST_SUITE_P(Tdcr, EveryMethod, testing::ValuesIn(kMethods),
+                         testing::PrintToStringParamName());
 
 TEST_P(EveryMethod, WithoutLoadsIsExactlyStraight) {
   const Robot robot = Bare();

@@ -1,3 +1,4 @@
+// ctest labels: real-data
 #include <filesystem>
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// ctest labels: browser
 #include "sim/page/page.h"
 
 #include <fmt/core.h>
