@@ -21,7 +21,7 @@ namespace continuum {
 namespace {
 
 constexpr int kRecoverable = 1, kFatal = -1;
-constexpr long kMostSteps = 100000;  // between two times that are asked for
+constexpr long kMostInternalSteps = 100000;  // between two times that are asked for
 
 void Require(bool done) {
   if (!done) throw std::bad_alloc();
@@ -76,7 +76,7 @@ struct Cvodes::Solver {
     Set(CVodeSetErrHandlerFn(memory.get(), Quiet, nullptr));
     Set(CVodeSetUserData(memory.get(), this));
     Set(CVodeSStolerances(memory.get(), how.relative, how.absolute));
-    Set(CVodeSetMaxNumSteps(memory.get(), kMostSteps));
+    Set(CVodeSetMaxNumSteps(memory.get(), kMostInternalSteps));
     if (how.stiff) {
       matrix.reset(SUNDenseMatrix(n, n, made));
       linear.reset(SUNLinSol_Dense(y.get(), matrix.get(), made));
