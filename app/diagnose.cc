@@ -8,11 +8,15 @@
 #include "app/console.h"
 #include "binding/effect_catalog.h"
 #include "error.h"
+#include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/extension.h"
 #include "identification/report/apply_extension.h"
 #include "identification/report/diagnosis_output.h"
+#include "identification/report/parts.h"
 #include "sim/experiment/registration.h"
 #include "sim/film/side_by_side.h"
 #include "sim/io/file.h"
+#include "sim/io/interrupt.h"
 #include "sim/io/json.h"
 #include "sim/io/output_folder.h"
 #include "sim/replay/replay.h"
@@ -28,11 +32,9 @@ struct Options {
   bool video = false;
 };
 
-std::string ComparisonLine(const char* when, const nlohmann::json& d) {
-  return fmt::format("{:<6} {:<12} validate {:.4g} -> {:.4g}\n", when,
-                     d.at("verdict").get<std::string>(),
-                     d.at("error").at("before").at("validate").get<double>(),
-                     d.at("error").at("after").at("validate").get<double>());
+std::string ComparisonLine(const char* when, const std::string& verdict, double before,
+                           double after) {
+  return fmt::format("{:<6} {:<12} validate {:.4g} -> {:.4g}\n", when, verdict, before, after);
 }
 
 std::string OldComparison(const std::string& file, const Experiment& e) {
@@ -43,7 +45,11 @@ std::string OldComparison(const std::string& file, const Experiment& e) {
     const nlohmann::json then = old.value("channels", channels);
     if (then != channels)
       throw Error::Input(file, "a diagnosis of the channels " + channels.dump(), then.dump());
-    return "compared with " + file + ":\n" + ComparisonLine("then", old);
+    const auto& error = old.at("error");
+    return "compared with " + file + ":\n" +
+           ComparisonLine("then", old.at("verdict").get<std::string>(),
+                          error.at("before").at("validate").get<double>(),
+                          error.at("after").at("validate").get<double>());
   } catch (const nlohmann::json::exception& e) {
     throw Error::Input(file, "a diagnosis.json", e.what());
   }
@@ -60,6 +66,23 @@ void CheckCandidate(const std::string& name, const Experiment& e) {
   }
 }
 
+// Up to two held-out logs, before and after.
+void Film(const Experiment& e, const ModelSpec& system, const std::filesystem::path& folder) {
+  FilmOptions film;
+  film.progress = ShowProgress;
+  std::vector<std::size_t> shown;
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    if (!e.logs[l].train && shown.size() < 2) shown.push_back(l);
+  }
+  if (shown.empty()) shown.push_back(0);
+  const Experiment extended = Experiment::Read(folder / "extended.yaml");
+  const ModelSpec extended_system = ModelSpec::Load(folder / "extended.xml");
+  FilmSideBySide({e, system, "before"}, {extended, extended_system, "after"}, shown,
+                 folder / "extended.mp4", film);
+  EndProgress();
+  std::printf("video     %s\n", (folder / "extended.mp4").c_str());
+}
+
 void RunDiagnose(const Options& o) {
   const Experiment read = Experiment::Read(o.experiment);
   const ModelSpec system = ModelSpec::Load(read.model);
@@ -74,35 +97,29 @@ void RunDiagnose(const Options& o) {
   options.seed = o.seed;
   options.progress = ShowProgress;
   CheckNames(read, system);
-  std::vector<std::string> outputs{"diagnosis.json", "extended.xml",  "extended.yaml",
-                                   "fallback.xml",   "fallback.yaml", "simulated/",
+  std::vector<std::string> outputs{"diagnosis.json", kExtendedModel,      kExtendedExperiment,
+                                   kFallbackModel,   kFallbackExperiment, "simulated/",
                                    kNextInputs,      "report.html"};
   if (o.video) outputs.push_back("extended.mp4");
   const OutputFolder made(o.out, outputs, {read.file, read.model});
   const Experiment e = Registered(read, system);
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress("files");
-  const DiagnosisFiles told = WriteDiagnosis(e, d, o.out);
+  MakeFolder(o.out);
+  const ExtensionRun run = MeasureExtension(e, d, o.out);
+  const auto missing = WriteDiagnosis(e, d, run, o.out);
   EndProgress();
-  std::fputs(Summary(e, d, told).c_str(), stdout);
-  if (!old.empty())
-    std::fputs((old + ComparisonLine("now", DiagnosisJson(e, d, told))).c_str(), stdout);
-  const std::filesystem::path folder = o.out;
-  if (o.video) {
-    FilmOptions film;
-    film.progress = ShowProgress;
-    std::vector<std::size_t> shown;
-    for (std::size_t l = 0; l < e.logs.size(); ++l) {
-      if (!e.logs[l].train && shown.size() < 2) shown.push_back(l);
-    }
-    if (shown.empty()) shown.push_back(0);
-    const Experiment extended = Experiment::Read(folder / "extended.yaml");
-    const ModelSpec extended_system = ModelSpec::Load(folder / "extended.xml");
-    FilmSideBySide({e, system, "before"}, {extended, extended_system, "after"}, shown,
-                   folder / "extended.mp4", film);
-    EndProgress();
-    std::printf("video     %s\n", (folder / "extended.mp4").c_str());
+  StopIfRequested();  // the files hold what there is
+  std::fputs(Summary(e, d, run).c_str(), stdout);
+  std::fputs(MissingInWords(missing).c_str(), stdout);
+  if (!old.empty()) {
+    std::fputs(
+        (old + ComparisonLine("now", d.verdict.word(), d.before.error.validate, run.after.validate))
+            .c_str(),
+        stdout);
   }
+  const std::filesystem::path folder = o.out;
+  if (o.video) Film(e, system, folder);
   std::printf("report    %s (%.0f s)\n", (folder / "report.html").c_str(), d.seconds);
 }
 

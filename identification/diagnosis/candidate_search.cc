@@ -7,6 +7,8 @@
 #include <Eigen/Dense>
 
 #include "error.h"
+#include "identification/diagnosis/lack_of_fit.h"
+#include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/quantisation.h"
 #include "identification/statistics/uncertainty.h"
 
@@ -14,80 +16,85 @@ namespace continuum {
 namespace {
 constexpr int kDraws = 399;  // of rounding errors
 
-// Nested fits are as far apart as the larger one gains; others that gain as much are farther. Where
-// the noise is not known: they are as near as nothing to what either changes.
-bool SaysTheSame(const CandidateFitter& trials, const CandidateResult& b,
-                 const CandidateResult& a) {
-  constexpr double kNoise = 10;      // of twice the log-likelihood
-  constexpr double kNothing = 0.02;  // of the squares that one takes off
-  if (!a.fits || !b.fits) return false;
-  const double gain = b.likelihood - a.likelihood;
-  const bool known = trials.whitening.active();
-  if (known && std::abs(gain) > 3 * kNoise) return false;
-  const auto train = TrainLogs(*trials.experiment);
+bool FollowsTheSameMotion(const CandidateFitter& fitter, const CandidateResult& b,
+                          const CandidateResult& a) {
+  if (!a.was_fitted || !b.was_fitted) return false;
+  const auto train = TrainLogs(*fitter.experiment);
   std::vector<Problem::Vector> between(train.size());
   for (std::size_t l = 0; l < train.size(); ++l)
     if (train[l]) between[l] = b.fitted.residuals[l] - a.fitted.residuals[l];
-  const double apart = trials.whitening.Stack(between, train).squaredNorm();
-  return apart < (known ? 2 * std::max(gain, 0.0) + kNoise : kNothing * a.likelihood);
+  const double difference = fitter.whitening.Stack(between, train).squaredNorm();
+  return SaysTheSame({b.likelihood - a.likelihood, difference, a.likelihood},
+                     fitter.whitening.active(), fitter.criteria);
+}
+
+// The experiment with the candidates of the options, if any, in place of its own.
+Experiment Asking(const Experiment& experiment, const DiagnosisOptions& options) {
+  Experiment wanted = experiment;
+  if (options.candidates.empty()) return wanted;
+  wanted.all_candidates = false;
+  wanted.candidates.clear();
+  for (const auto& name : options.candidates) {
+    const Candidate* const written = experiment.Written(name);
+    wanted.candidates.push_back(written ? *written : Candidate{name, "", false});
+  }
+  return wanted;
 }
 
 }  // namespace
 
-bool Contains(const CandidateFitter& trials, const CandidateResult& b, const CandidateResult& a) {
-  if (b.hypothesis.extra.size() > a.hypothesis.extra.size() && SaysTheSame(trials, b, a))
+bool Contains(const CandidateFitter& fitter, const CandidateResult& b, const CandidateResult& a) {
+  if (b.hypothesis.extra.size() > a.hypothesis.extra.size() && FollowsTheSameMotion(fitter, b, a))
     return true;
   if (a.probes.empty() || b.probes.empty()) return false;
   const Problem::Matrix &A = a.probes.front().AtStart(), &B = b.probes.front().AtStart();
   if (A.cols() >= B.cols()) return false;
   const Problem::Matrix rest = A - B * B.completeOrthogonalDecomposition().solve(A);
-  return rest.squaredNorm() < 0.01 * A.squaredNorm();
+  return Contains(rest.squaredNorm(), A.squaredNorm(), fitter.criteria);
 }
 
-CandidateSearch::CandidateSearch(const CandidateFitter& trials, const Base& base,
-                                 const Noise& noise, const Sizes& sizes,
-                                 const DiagnosisOptions& options, SearchScope places)
-    : trials_(trials),
+CandidateSearch::CandidateSearch(const SearchContext& context, const BaseFit& base,
+                                 SearchScope scope)
+    : fitter_(context.fitter),
       base_(base),
-      base_problem_(*trials.experiment, *base.system, base.given),
-      noise_(noise),
-      sizes_(sizes),
-      options_(options) {
-  Experiment wanted = *trials.experiment;
-  if (!options.candidates.empty()) {
-    wanted.all_candidates = false;
-    wanted.candidates.clear();
-    for (const auto& name : options.candidates) {
-      const Candidate* const written = trials.experiment->Written(name);
-      wanted.candidates.push_back(written ? *written : Candidate{name, "", false});
-    }
-  }
+      base_problem_(*context.fitter.experiment, *base.system, base.given),
+      noise_(context.noise),
+      sizes_(context.sizes),
+      options_(context.options),
+      criteria_(context.fitter.criteria) {
   const SearchBase here{base.system, base.given, base_problem_.CommonChanges(base.fitted->fit.x)};
-  for (Hypothesis& h : MakeCandidates(wanted, here, sizes, skipped, places)) {
+  const Experiment wanted = Asking(*fitter_.experiment, options_);
+  for (Hypothesis& h : MakeCandidates(wanted, here, sizes_, skipped, scope)) {
     candidates.push_back({std::move(h)});
     candidates.back().record.name = candidates.back().hypothesis.Name();
   }
 }
 
-void CandidateSearch::Screen() {
-  const Remainder left = trials_.LeftBy(*base_.fitted);
-  left_ = left.cost();
-  base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*trials_.experiment));
-  std::vector<std::vector<Probe>> probes;
+void CandidateSearch::ProbeAll(const ProjectedResidual& residual,
+                               std::vector<std::vector<Probe>>& probes) {
   for (CandidateResult& c : candidates) {
     options_.Say("screen " + c.hypothesis.Name());
     probes.emplace_back();
     try {
-      Problem problem = c.ProblemOf(*trials_.experiment);
+      Problem problem = ProblemOf(c, *fitter_.experiment);
       if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
-      probes.back() = trials_.Probes(c.hypothesis, problem, *base_.fitted, left);
+      probes.back() = ProbesOf(c.hypothesis, problem, *base_.fitted, residual,
+                               fitter_.whitening.active(), criteria_);
     } catch (const Error& error) {
       c.error = error.what();
     }
   }
+}
+
+void CandidateSearch::Screen() {
+  const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
+  base_squares_ = residual.cost();
+  base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
+  std::vector<std::vector<Probe>> probes;
+  ProbeAll(residual, probes);
   options_.Say("significance");
   const Significance found =
-      noise_.known() ? Significant(left, probes) : BestOfProbes(probes, left.residual());
+      noise_.known() ? Significant(residual, probes) : BestOfProbes(probes, residual.vector());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     CandidateResult& c = candidates[i];
     c.explained = found.explained[i];
@@ -97,52 +104,43 @@ void CandidateSearch::Screen() {
     if (c.probes.empty()) continue;
     const std::size_t best = found.best[i];
     const Probe& probe = c.probes[best];
-    c.start =
-        trials_.StartFrom(c.hypothesis, *base_.fitted, probe, ExplainedBy(probe, left.residual()));
-    c.rivals = StartsAsGood(c, best, left);
+    c.start = StartFrom(c.hypothesis, *base_.fitted, probe, ExplainedBy(probe, residual.vector()),
+                        1, criteria_);
+    c.other_starts = OtherStarts(c, best, residual);
     std::swap(c.probes[0], c.probes[best]);
   }
 }
 
-Significance CandidateSearch::Significant(const Remainder& left,
+Significance CandidateSearch::Significant(const ProjectedResidual& residual,
                                           const std::vector<std::vector<Probe>>& probes) {
-  const Quantisation rounding(base_problem_, noise_, base_.fitted->fit.x);
+  const Quantisation quantisation(base_problem_, noise_, base_.fitted->fit.x);
   Problem::Matrix draws;
-  if (rounding.any()) {
-    inflation_ = rounding.Inflation(left, probes, options_.seed);
-    draws = rounding.Draws(left, kDraws, options_.seed);
+  if (quantisation.any()) {
+    inflation_ = quantisation.Inflation(residual, probes, options_.seed);
+    draws = quantisation.Draws(residual, kDraws, options_.seed);
   }
-  return SignificanceOf(probes, left.residual(), options_.seed, draws);
+  return SignificanceOf(probes, residual.vector(), options_.seed, draws);
 }
 
 // First order says little of what acts on top of another amplitude, as a Stribeck excess, nor of
 // what belongs to it, as its speed: starts that explain as much as the best, with little and much
 // of it.
-std::vector<Problem::Vector> CandidateSearch::StartsAsGood(const CandidateResult& c,
-                                                           std::size_t best,
-                                                           const Remainder& left) const {
-  constexpr double kAsGood = 0.99;
+std::vector<Problem::Vector> CandidateSearch::OtherStarts(const CandidateResult& c,
+                                                          std::size_t best,
+                                                          const ProjectedResidual& residual) const {
   std::set<std::size_t> seen;
   std::vector<Problem::Vector> starts;
   for (const Probe& probe : c.probes) {
     const auto& on_top = probe.on_top;
     if (std::find(on_top.begin(), on_top.end(), true) == on_top.end()) continue;
-    const Explained e = ExplainedBy(probe, left.residual());
-    if (e.amount < kAsGood * c.explained || !seen.insert(probe.start).second) continue;
+    const Explained e = ExplainedBy(probe, residual.vector());
+    if (!IsAsGood(e.amount, c.explained, criteria_) || !seen.insert(probe.start).second) continue;
     for (const double excess : {1.0, 10.0}) {
       if (&probe == &c.probes[best] && excess == 1) continue;  // where the fit begins anyway
-      starts.push_back(trials_.StartFrom(c.hypothesis, *base_.fitted, probe, e, excess));
+      starts.push_back(StartFrom(c.hypothesis, *base_.fitted, probe, e, excess, criteria_));
     }
   }
   return starts;
-}
-
-double CandidateSearch::smallest_p() const { return smallest_p_; }
-
-bool CandidateSearch::SomethingIsLeft() const {
-  const Fitted& f = *base_.fitted;
-  return smallest_p_ < LikelihoodRules{}.level ||
-         f.cost > kModelLimited * kModelLimited * f.freedom;
 }
 
 double CandidateSearch::MostExplained() const {
@@ -151,17 +149,17 @@ double CandidateSearch::MostExplained() const {
   return best;
 }
 
-double CandidateSearch::Promise() const {
-  const double left = base_.fitted->cost - base_.fitted->freedom;
-  return left > 0 ? MostExplained() / left : 0;
+double CandidateSearch::ExplainableShare() const {
+  const double above = base_.fitted->cost - base_.fitted->sensitivities.value().freedom;
+  return above > 0 ? MostExplained() / above : 0;
 }
 
 void CandidateSearch::Join(CandidateSearch other) {
   for (CandidateResult& c : other.candidates) {
-    c.likelihood = Likelihood(c.fitted);  // in this round's unit of noise
+    c.likelihood = Likelihood(c.fitted);  // in this search's unit of noise
     candidates.push_back(std::move(c));
   }
-  for (CandidateResult& c : other.left_behind) left_behind.push_back(std::move(c));
+  for (CandidateResult& c : other.dismissed) dismissed.push_back(std::move(c));
   for (std::string& s : other.skipped) skipped.push_back(std::move(s));
   Rank();
 }
@@ -182,12 +180,12 @@ double CandidateSearch::Likelihood(const Fitted& fitted) const {
 void CandidateSearch::Dismiss() {
   std::vector<CandidateResult> kept;
   for (CandidateResult& c : candidates) {
-    if (c.fits) {
+    if (c.was_fitted) {
       kept.push_back(std::move(c));
     } else if (!c.error.empty()) {
       skipped.push_back(c.hypothesis.Name() + ": " + c.error);
     } else {
-      left_behind.push_back(std::move(c));
+      dismissed.push_back(std::move(c));
     }
   }
   candidates = std::move(kept);
@@ -196,70 +194,81 @@ void CandidateSearch::Dismiss() {
 
 void CandidateSearch::Rank() {
   smallest_p_ = 1;
-  for (const auto* all : {&candidates, &left_behind}) {
+  for (const auto* all : {&candidates, &dismissed}) {
     for (const CandidateResult& c : *all) smallest_p_ = std::min(smallest_p_, c.p);
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.likelihood > b.likelihood; });
-  TellApart();
+  ComputeLambda();
 }
 
 // |v − P v|², v what the leading candidate's directions explain, P onto the other's directions.
-void CandidateSearch::TellApart() {
+void CandidateSearch::ComputeLambda() {
   if (!noise_.known() || candidates.empty() || candidates.front().probes.empty()) return;
-  const Remainder left = trials_.LeftBy(*base_.fitted);
+  const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
   const Probe& lead = candidates.front().probes.front();
-  const Problem::Vector v = lead.columns * ExplainedBy(lead, left.residual()).coefficients;
+  const Problem::Vector v = lead.columns * ExplainedBy(lead, residual.vector()).coefficients;
   for (CandidateResult& c : candidates) {
     if (c.probes.empty()) continue;
     const Problem::Matrix& B = c.probes.front().columns;
-    c.apart = (v - B * B.completeOrthogonalDecomposition().solve(v)).squaredNorm() / inflation_;
+    c.lambda = (v - B * B.completeOrthogonalDecomposition().solve(v)).squaredNorm() / inflation_;
   }
 }
 
 const CandidateResult* CandidateSearch::leading() const {
-  return candidates.empty() || !candidates.front().fits ? nullptr : &candidates.front();
+  return candidates.empty() || !candidates.front().was_fitted ? nullptr : &candidates.front();
 }
 
-double CandidateSearch::BestLeaves() const {
+double CandidateSearch::BestOverNoise() const {
   const Fitted& best = leading() ? leading()->fitted : *base_.fitted;
-  return std::sqrt(best.cost / best.freedom);
+  return std::sqrt(best.cost / (best.complete() ? best.sensitivities->freedom : 0));
 }
 
-LackOfFit CandidateSearch::LackOf(const CandidateResult& c) const {
-  const Problem problem = c.ProblemOf(*trials_.experiment);
-  return c.finer ? LackAt(AtQuarter(problem), c, *c.finer) : LackAt(problem, c, c.fitted);
+LackOfFit CandidateSearch::TestsOf(const CandidateResult& c) const {
+  const Problem problem = ProblemOf(c, *fitter_.experiment);
+  return c.at_quarter_step ? LackAt(AtQuarter(problem), c, *c.at_quarter_step)
+                           : LackAt(problem, c, c.fitted);
 }
 LackOfFit CandidateSearch::LackAt(const Problem& problem, const CandidateResult& c,
                                   const Fitted& fitted) const {
-  return trials_.LackIn(problem, c.hypothesis.Free(), fitted, sizes_, inflation_, options_.seed);
+  return TestLackOfFit(fitter_, problem, c.hypothesis.Free(), fitted, sizes_, inflation_,
+                       options_.seed);
 }
-LackOfFit CandidateSearch::LackOfBase() const {
-  return trials_.LackIn(base_problem_, base_.given, *base_.fitted, sizes_, inflation_,
-                        options_.seed);
+
+LackOfFit CandidateSearch::LackOf(const CandidateResult* c) const {
+  LackOfFit lack = c ? TestsOf(*c)
+                     : TestLackOfFit(fitter_, base_problem_, base_.given, *base_.fitted, sizes_,
+                                     inflation_, options_.seed);
+  lack.of_step = lack.significant(criteria_) &&
+                 fitter_.ExplainedByStep(c ? c->fitted : *base_.fitted) &&
+                 (!c || FallsWithStep(*c));
+  return lack;
 }
 
 // What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly,
-// and a fit may end in another valley.
-bool CandidateSearch::GoesWithTheStep(const CandidateResult& c) const {
+// and a fit may end in another local minimum.
+bool CandidateSearch::FallsWithStep(const CandidateResult& c) const {
   options_.Say("at a fine step " + c.hypothesis.Name());
-  const Problem fine = AtQuarter(c.ProblemOf(*trials_.experiment));
+  const Problem fine = AtQuarter(ProblemOf(c, *fitter_.experiment));
   try {
-    if (FallsTo(fine, c, c.finer ? *c.finer : trials_.GoOn(fine, c.fitted))) return true;
+    const Fitted& known = c.at_quarter_step ? *c.at_quarter_step : fitter_.Continue(fine, c.fitted);
+    if (FallsAt(fine, c, known)) return true;
     Fitted anew = c.fitted;
-    anew.fit.x = BestOf(fine, FromTheOutset(fine, c));
-    return FallsTo(fine, c, trials_.GoOn(fine, anew));
+    anew.fit.x = BestOf(fine, ExperimentStarts(fine, c));
+    return FallsAt(fine, c, fitter_.Continue(fine, anew));
   } catch (const Error&) {
     return true;  // it diverges there
   }
 }
 
-bool CandidateSearch::FallsTo(const Problem& fine, const CandidateResult& c,
+bool CandidateSearch::FallsAt(const Problem& fine, const CandidateResult& c,
                               const Fitted& finer) const {
-  constexpr double kFalls = 0.75;  // to first order it falls to a sixteenth
-  const auto excess = [](const Remainder& left) { return left.cost() - left.freedom(); };
-  const double before = excess(trials_.LeftBy(c.fitted)), after = excess(trials_.LeftBy(finer));
-  return after < kFalls * before || LackAt(fine, c, finer).smallest() >= LikelihoodRules{}.lack;
+  const auto excess = [&](const Fitted& f) {
+    const ProjectedResidual residual = fitter_.ProjectedResidualOf(f);
+    return residual.cost() - residual.freedom();
+  };
+  return continuum::FallsWithStep(excess(c.fitted), excess(finer), criteria_) ||
+         !LackAt(fine, c, finer).significant(criteria_);
 }
 
 std::vector<LikelihoodRecord> CandidateSearch::Records() const {
@@ -269,10 +278,10 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
                             c.hypothesis.extra.size(),
                             c.likelihood,
                             {},
-                            TakenOff(c.fitted) / inflation_,
+                            StepReduction(c.fitted) / inflation_,
                             c.listed};
     for (std::size_t a = 0; a < candidates.size(); ++a) {
-      if (&candidates[a] != &c && Contains(trials_, c, candidates[a])) record.contains.push_back(a);
+      if (&candidates[a] != &c && Contains(fitter_, c, candidates[a])) record.contains.push_back(a);
     }
     records.push_back(std::move(record));
   }

@@ -2,104 +2,117 @@
 
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/search_rules.h"
 
 namespace continuum {
 
 /// A fitted model from which to look for one more cause.
-struct Base {
+struct BaseFit {
   const ModelSpec* system;
   std::vector<Parameter> given;  ///< free parameters of causes that the system has already
   const Fitted* fitted;          ///< complete
 };
 
+/// What the searches of one diagnosis share.
+struct SearchContext {
+  const CandidateFitter& fitter;
+  const Noise& noise;
+  const Sizes& sizes;
+  const DiagnosisOptions& options;
+};
+
 /// Whether b can imitate whatever a does: its directions span a's, or with more parameters it was
 /// fitted to the same motion.
-bool Contains(const CandidateFitter& trials, const CandidateResult& b, const CandidateResult& a);
+bool Contains(const CandidateFitter& fitter, const CandidateResult& b, const CandidateResult& a);
 
 /// One search for one more cause: all candidates to first order, then fits of those that matter.
 /// Where the noise is not known nothing is significant, and first order is taken less literally.
 class CandidateSearch {
  public:
-  CandidateSearch(const CandidateFitter& trials, const Base& base, const Noise& noise,
-                  const Sizes& sizes, const DiagnosisOptions& options,
-                  SearchScope places = SearchScope::kFew);
+  CandidateSearch(const SearchContext& context, const BaseFit& base,
+                  SearchScope scope = SearchScope::kFew);
 
-  /// What every candidate could explain of what the base leaves, and how often noise alone would
-  /// let the best of so many do as well.
+  /// What every candidate could explain of the base's residual, and how often noise alone would let
+  /// the best of so many do as well.
   void Screen();
-  /// Fits those that first order does not leave far behind, if a candidate is significant or what
-  /// is left is plainly not noise; then best first, the others left behind. beside: a round from
+  /// Fits those that come near the best to first order, if a candidate is significant or the
+  /// residual is plainly not noise; then best first, the others dismissed. beside: a search from
   /// the same base that has been fitted, whose best they have to come near.
   void Fit(const CandidateSearch* beside = nullptr);
   /// Fits the best candidates once more, from where the experiment begins instead of where the base
   /// ended; whether any of them is better there.
-  bool StartAnew();
-  /// Takes the candidates of a round from the same base as well.
+  bool RefitFromExperimentStart();
+  /// Takes the candidates of a search from the same base as well.
   void Join(CandidateSearch other);
   /// Takes those of them that were fitted, behind its own, as not listed.
   void JoinUnlisted(CandidateSearch other);
 
-  /// A candidate that was left behind or not fitted to the end, with a complete fit. Throws Error
+  /// A candidate that was dismissed or not fitted to the end, with a complete fit. Throws Error
   /// when it diverges.
   CandidateResult FitAlone(CandidateResult candidate) const;
 
-  /// Root of the whitened sum of squares that the best model leaves, over what noise would leave.
-  double BestLeaves() const;
-  /// The best model of this round: the leading candidate, or null for the base.
+  /// Root of the whitened sum of squares of the best model, over what noise would make it.
+  double BestOverNoise() const;
+  /// The best model of this search: the leading candidate, or null for the base.
   const CandidateResult* leading() const;
-  LackOfFit LackOf(const CandidateResult& candidate) const;
-  LackOfFit LackOfBase() const;
-  /// Whether what a fit leaves falls with the time step, at a quarter of it, as what the step adds.
-  bool GoesWithTheStep(const CandidateResult& candidate) const;
+  /// Tests of a complete fit's residual.
+  LackOfFit TestsOf(const CandidateResult& candidate) const;
+  /// The same of the leading candidate's or the base's, with whether the time-discretisation error
+  /// explains them.
+  LackOfFit LackOf(const CandidateResult* candidate) const;
+  /// Whether a fit's squares above the noise fall with the time step, at a quarter of it, as the
+  /// time-discretisation error does.
+  bool FallsWithStep(const CandidateResult& candidate) const;
   /// For JudgeLikelihoods, of the fitted candidates.
   std::vector<LikelihoodRecord> Records() const;
-  double smallest_p() const;  ///< of all candidates that are not skipped, fitted or not
-  /// How much of what the base leaves above the noise the best candidate explains, to first order.
-  double Promise() const;
+  double smallest_p() const { return smallest_p_; }  ///< of all candidates that are not skipped
+  /// How much of the base's squares above the noise the best candidate explains, to first order.
+  double ExplainableShare() const;
 
-  std::vector<CandidateResult> candidates;   ///< after Fit: the fitted ones
-  std::vector<CandidateResult> left_behind;  ///< by the screen, without a fit
+  std::vector<CandidateResult> candidates;  ///< after Fit: the fitted ones
+  std::vector<CandidateResult> dismissed;   ///< by the screen, without a fit
   std::vector<std::string> skipped;
 
-  static constexpr double kModelLimited = 3;  ///< times the noise: more is plainly not noise
-
  private:
-  Significance Significant(const Remainder& left, const std::vector<std::vector<Probe>>& probes);
-  bool SomethingIsLeft() const;
+  void ProbeAll(const ProjectedResidual& residual, std::vector<std::vector<Probe>>& probes);
+  Significance Significant(const ProjectedResidual& residual,
+                           const std::vector<std::vector<Probe>>& probes);
   double MostExplained() const;
-  double HowMuchIsNeeded() const;
-  bool NearTheNoise(const Fitted& fitted) const;
+  double Threshold() const;
+  bool ReachesNoise(const Fitted& fitted) const;
   double Likelihood(const Fitted& fitted) const;
   void FitOne(CandidateResult& c, double rival) const;
-  static std::vector<Problem::Vector> FromTheOutset(const Problem& problem,
-                                                    const CandidateResult& c);
-  bool FitAnew(CandidateResult& c) const;
-  bool FallsTo(const Problem& fine, const CandidateResult& c, const Fitted& finer) const;
-  void GoOn(const Problem& problem, CandidateResult& c, double rival) const;
-  void FitBeyond(CandidateResult& c, double rival) const;
-  void SecondChances();
-  std::vector<Problem::Vector> StartsAsGood(const CandidateResult& c, std::size_t best,
-                                            const Remainder& left) const;
+  static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,
+                                                       const CandidateResult& c);
+  bool RefitFromStart(CandidateResult& c) const;
+  bool FallsAt(const Problem& fine, const CandidateResult& c, const Fitted& finer) const;
+  void Continue(const Problem& problem, CandidateResult& c, double rival) const;
+  void WidenRanges(CandidateResult& c, double rival) const;
+  void FinishAbandoned();
+  std::vector<Problem::Vector> OtherStarts(const CandidateResult& c, std::size_t best,
+                                           const ProjectedResidual& residual) const;
   Problem::Vector BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;
-  static double TakenOff(const Fitted& fitted);
-  void CompleteTheBest(double best);
-  void AtAFineStep(CandidateResult& c) const;
+  static double StepReduction(const Fitted& fitted);
+  void CompleteCompetitive(double best);
+  bool CompleteOne(CandidateResult& c, double best) const;
+  void RefitAtQuarterStep(CandidateResult& c) const;
   LackOfFit LackAt(const Problem& problem, const CandidateResult& c, const Fitted& fitted) const;
   static bool RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x);
   std::string FlawOf(const Problem& problem, const Fitted& fitted) const;
   void Dismiss();
   void Rank();
-  void TellApart();
+  void ComputeLambda();
 
-  const CandidateFitter& trials_;
-  Base base_;
+  const CandidateFitter& fitter_;
+  BaseFit base_;
   Problem base_problem_;
   const Noise& noise_;
   const Sizes& sizes_;
   const DiagnosisOptions& options_;
+  const Criteria& criteria_;
   double smallest_p_ = 1;
-  double inflation_ = 1;  // of what rounding errors explain over whitened noise
-  double left_ = 0;       // squares that the base leaves
+  double inflation_ = 1;     // of what rounding errors explain over whitened noise
+  double base_squares_ = 0;  // of the base's residual
 };
 
 }  // namespace continuum

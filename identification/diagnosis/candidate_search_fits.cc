@@ -5,104 +5,96 @@
 #include "error.h"
 #include "identification/candidates/search_range.h"
 #include "identification/diagnosis/candidate_search.h"
+#include "identification/diagnosis/probing.h"
 #include "identification/statistics/uncertainty.h"
 
-// The fits of a round: who gets one, from where, and how far.
+// The fits of a search: who gets one, from where, and how far.
 namespace continuum {
-namespace {
-constexpr double kRival = 0.3;       // of what the best of a list explains: may yet outdo it
-constexpr double kWorthAFit = 0.04;  // of the squares, where 0.19 of them would make a name
-constexpr double kOutdoes = 0.1;     // of the best: hardly what comes near the noise besides
-}  // namespace
 
-// Where little is to be explained first order is right to a few units, else wrong about sizes by
-// factors but not by orders of magnitude.
-double CandidateSearch::HowMuchIsNeeded() const {
-  if (!noise_.known()) return kWorthAFit * left_;
-  const double best = MostExplained();
-  return std::max(std::min(best - 15, 45.0), 0.02 * best);
+double CandidateSearch::Threshold() const {
+  return FitThreshold(MostExplained(), base_squares_, noise_.known(), criteria_);
 }
 
-// Whether a fit leaves hardly more than the noise and what the time step adds.
-bool CandidateSearch::NearTheNoise(const Fitted& fitted) const {
-  constexpr double kNoise = 1.1, kStep = 1.25;  // of their errors: more is plainly another cause
-  return fitted.error.train < std::hypot(kNoise * noise_.rms, kStep * noise_.step);
+bool CandidateSearch::ReachesNoise(const Fitted& fitted) const {
+  return continuum::ReachesNoise(fitted.error.train, {noise_.rms, noise_.step}, criteria_);
 }
 
 // The likeliest first, so that the others know what to reach; nobody where only noise is left.
 void CandidateSearch::Fit(const CandidateSearch* beside) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.explained > b.explained; });
-  double needed = !noise_.known() || SomethingIsLeft() ? HowMuchIsNeeded() : kInfinity;
+  const bool signal = HasSignal(smallest_p_, base_.fitted->cost,
+                                base_.fitted->sensitivities.value().freedom, criteria_);
+  double needed = !noise_.known() || signal ? Threshold() : kInfinity;
   const CandidateResult* const known = beside ? beside->leading() : nullptr;
-  if (beside) needed = std::max(needed, kRival * beside->MostExplained());
+  if (beside) needed = std::max(needed, UnlistedThreshold(beside->MostExplained(), criteria_));
   double rival = known ? known->fitted.fit.cost : kInfinity;
   for (CandidateResult& c : candidates) {
     if (!c.error.empty() || c.explained < needed) continue;
     options_.Say("fit " + c.hypothesis.Name());
     try {
-      FitOne(c, rival + 0.5 * TakenOff(*base_.fitted));
+      FitOne(c, rival + 0.5 * StepReduction(*base_.fitted));
       if (!noise_.known()) continue;
       rival = std::min(rival, c.fitted.fit.cost);
-      if (NearTheNoise(c.fitted)) needed = std::max(needed, kOutdoes * MostExplained());
+      if (ReachesNoise(c.fitted))
+        needed = std::max(needed, FitThresholdAtNoise(MostExplained(), criteria_));
     } catch (const Error& error) {
       c.error = error.what();
     }
   }
-  SecondChances();
-  CompleteTheBest(known ? known->fitted.cost : kInfinity);
+  FinishAbandoned();
+  CompleteCompetitive(known ? known->fitted.cost : kInfinity);
   Dismiss();
 }
 
 // Where no fit comes near the noise and what the time step adds, those that were given up as too
 // far behind go on to their end, the likeliest first: what a fit gains early says little where a
-// swing is out of phase with the measured one. Until one of this round comes near.
-void CandidateSearch::SecondChances() {
-  constexpr std::size_t kMost = 6;
+// swing is out of phase with the measured one. Until one of this search comes near.
+void CandidateSearch::FinishAbandoned() {
   if (!noise_.known()) return;
   for (const CandidateResult& c : candidates) {
-    if (c.fits && NearTheNoise(c.fitted)) return;
+    if (c.was_fitted && ReachesNoise(c.fitted)) return;
   }
   std::size_t tried = 0;
   for (CandidateResult& c : candidates) {
-    if (tried == kMost || c.explained < kOutdoes * MostExplained()) return;
-    if (!c.fits || c.fitted.fit.converged) continue;
+    if (!WorthFinishing(tried, c.explained, MostExplained(), criteria_)) return;
+    if (!c.was_fitted || c.fitted.fit.converged) continue;
     options_.Say("fit to the end " + c.hypothesis.Name());
     ++tried;
     try {
       FitOne(c, kInfinity);
-      if (NearTheNoise(c.fitted)) return;
+      if (ReachesNoise(c.fitted)) return;
     } catch (const Error&) {
       continue;  // the fit that was given up stands
     }
   }
 }
 
-// Where joints stick and slip a fit from what the base has become ends in a neighbouring valley.
-bool CandidateSearch::StartAnew() {
-  constexpr std::size_t kMost = 4;
+// Where joints stick and slip a fit from what the base has become ends in a neighbouring local
+// minimum.
+bool CandidateSearch::RefitFromExperimentStart() {
   std::vector<CandidateResult*> best;
   for (CandidateResult& c : candidates) {
-    if (c.fits && c.listed) best.push_back(&c);
+    if (c.was_fitted && c.listed) best.push_back(&c);
   }
   std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) {
     return a->fitted.fit.cost < b->fitted.fit.cost;
   });
-  best.resize(std::min(best.size(), kMost));
+  best.resize(std::min(best.size(), static_cast<std::size_t>(criteria_.fresh_starts)));
   bool better = false;
   for (CandidateResult* const c : best) {
     options_.Say("fit anew " + c->hypothesis.Name());
-    better = FitAnew(*c) || better;
+    better = RefitFromStart(*c) || better;
   }
   if (!better) return false;
-  CompleteTheBest(kInfinity);
+  CompleteCompetitive(kInfinity);
   Dismiss();
   return true;
 }
 
 // What the experiment begins with, and all or part of what the candidate's fit has found.
-std::vector<Problem::Vector> CandidateSearch::FromTheOutset(const Problem& problem,
-                                                            const CandidateResult& c) {
+std::vector<Problem::Vector> CandidateSearch::ExperimentStarts(const Problem& problem,
+                                                               const CandidateResult& c) {
   const Hypothesis& h = c.hypothesis;
   const auto own = static_cast<Eigen::Index>(h.extra.size());
   std::vector<Problem::Vector> starts;
@@ -110,7 +102,7 @@ std::vector<Problem::Vector> CandidateSearch::FromTheOutset(const Problem& probl
     Problem::Vector x = problem.Start();
     x.tail(own) = c.fitted.fit.x.tail(own);
     for (const std::size_t a : h.Amplitudes()) {
-      double& value = x[c.own() + static_cast<Eigen::Index>(a)];
+      double& value = x[c.first_extra() + static_cast<Eigen::Index>(a)];
       value = h.AtShare(a, value, share);
     }
     starts.push_back(problem.Clamp(x));
@@ -118,15 +110,14 @@ std::vector<Problem::Vector> CandidateSearch::FromTheOutset(const Problem& probl
   return starts;
 }
 
-bool CandidateSearch::FitAnew(CandidateResult& c) const {
-  constexpr double kGain = 0.5;  // of half the whitened squares
-  const Problem problem = c.ProblemOf(*trials_.experiment);
+bool CandidateSearch::RefitFromStart(CandidateResult& c) const {
+  const Problem problem = ProblemOf(c, *fitter_.experiment);
   try {
-    const Problem::Vector start = BestOf(problem, FromTheOutset(problem, c));
-    Fitted fitted = trials_.Fit(problem, start, c.fitted.fit.cost);
-    if (!(fitted.fit.cost < c.fitted.fit.cost - kGain)) return false;
+    const Problem::Vector start = BestOf(problem, ExperimentStarts(problem, c));
+    Fitted fitted = fitter_.Fit(problem, start, c.fitted.fit.cost);
+    if (!(fitted.fit.cost < c.fitted.fit.cost - criteria_.still_gains)) return false;
     c.fitted = std::move(fitted);
-    c.finer.reset();
+    c.at_quarter_step.reset();
     return true;
   } catch (const Error&) {
     return false;  // the fit that is there stands
@@ -135,43 +126,43 @@ bool CandidateSearch::FitAnew(CandidateResult& c) const {
 
 // From the start that is best after a few iterations, of the screen or of the hypothesis.
 void CandidateSearch::FitOne(CandidateResult& c, double rival) const {
-  const Problem problem = c.ProblemOf(*trials_.experiment);
-  std::vector<Problem::Vector> starts = c.rivals;
+  const Problem problem = ProblemOf(c, *fitter_.experiment);
+  std::vector<Problem::Vector> starts = c.other_starts;
   if (c.start.size() > 0) starts.insert(starts.begin(), c.start);
   const bool crooked = !noise_.known() && c.hypothesis.extra.size() > 1;  // first order may mislead
   if (crooked || starts.empty()) {
     for (const auto& own : c.hypothesis.starts) starts.push_back(Append(base_.fitted->fit.x, own));
   }
-  c.fitted = trials_.Fit(problem, BestOf(problem, starts), rival);
-  c.fits = true;
-  GoOn(problem, c, rival);
-  FitBeyond(c, rival);
+  c.fitted = fitter_.Fit(problem, BestOf(problem, starts), rival);
+  c.was_fitted = true;
+  Continue(problem, c, rival);
+  WidenRanges(c, rival);
 }
 
 // In what size an effect is looked for is a guess: a fit that ends there goes on beyond.
-void CandidateSearch::FitBeyond(CandidateResult& c, double rival) const {
+void CandidateSearch::WidenRanges(CandidateResult& c, double rival) const {
   constexpr int kTimes = 3;
   Hypothesis& h = c.hypothesis;
   const std::vector<Param>& law = EffectNamed(h.Card()).params;
   for (int i = 0; i < kTimes; ++i) {
-    if (!Widen(h.extra, h.null, law, {c.fitted.fit.x.data() + c.own(), h.extra.size()})) return;
-    const Problem problem = c.ProblemOf(*trials_.experiment);
-    c.fitted = trials_.Fit(problem, c.fitted.fit.x, rival);
-    GoOn(problem, c, rival);
+    if (!Widen(h.extra, h.null, law, {c.fitted.fit.x.data() + c.first_extra(), h.extra.size()}))
+      return;
+    const Problem problem = ProblemOf(c, *fitter_.experiment);
+    c.fitted = fitter_.Fit(problem, c.fitted.fit.x, rival);
+    Continue(problem, c, rival);
   }
 }
 
-// A fit that is out of iterations while every one of them still gains goes on, as along a valley
-// in which a stiffness of the model makes room for one of the candidate.
-void CandidateSearch::GoOn(const Problem& problem, CandidateResult& c, double rival) const {
+// A fit that is out of iterations while every one of them still gains goes on, as along a valley of
+// the cost in which a stiffness of the model makes room for one of the candidate.
+void CandidateSearch::Continue(const Problem& problem, CandidateResult& c, double rival) const {
   constexpr int kTimes = 3;
-  // By the last step: of half the whitened squares, or of any in parts of them.
-  constexpr double kGain = 0.5, kShare = 1e-3;
   for (int i = 0; i < kTimes; ++i) {
     const continuum::Fit& f = c.fitted.fit;
-    const double least = noise_.known() ? kGain : kShare * f.cost;
-    if (f.iterations < trials_.iterations || !(f.LastGain() > least)) return;
-    Fitted next = trials_.Fit(problem, f.x, rival);
+    if (f.iterations < fitter_.iterations ||
+        !StillGains(f.LastGain(), f.cost, noise_.known(), criteria_))
+      return;
+    Fitted next = fitter_.Fit(problem, f.x, rival);
     if (!(next.fit.cost < f.cost)) return;
     c.fitted = std::move(next);
   }
@@ -179,8 +170,8 @@ void CandidateSearch::GoOn(const Problem& problem, CandidateResult& c, double ri
 
 CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
   FitOne(c, kInfinity);
-  const Problem problem = c.ProblemOf(*trials_.experiment);
-  trials_.Complete(problem, c.fitted);
+  const Problem problem = ProblemOf(c, *fitter_.experiment);
+  fitter_.Complete(problem, c.fitted);
   if (const std::string flaw = FlawOf(problem, c.fitted); !flaw.empty()) throw Error::Job(flaw);
   c.likelihood = Likelihood(c.fitted);
   return c;
@@ -191,7 +182,7 @@ Problem::Vector CandidateSearch::BestOf(const Problem& problem,
   if (starts.size() == 1) return starts.front();
   FitOptions options{4, 1e-3};
   options.idle = true;
-  if (trials_.whitening.active()) options.whitening = &trials_.whitening;
+  if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;
   double best_cost = kInfinity;
   Problem::Vector best;
   for (const auto& start : starts) {
@@ -208,65 +199,73 @@ Problem::Vector CandidateSearch::BestOf(const Problem& problem,
 
 // By what the time step leaves open: a fit that imitates it has less to spare than the others.
 // Nothing where the step of zero fits worse.
-double CandidateSearch::TakenOff(const Fitted& f) { return std::max(0.0, 2 * f.fit.cost - f.cost); }
+double CandidateSearch::StepReduction(const Fitted& f) {
+  return std::max(0.0, 2 * f.fit.cost - f.cost);
+}
 
-// Sensitivities are dear: only those get theirs that may come near the best with them. What the
-// time step leaves open takes about as much off everybody's cost. best: the least cost that is
+// Sensitivities are expensive: only those get theirs that may come near the best with them. What
+// the time step leaves open takes about as much off everybody's cost. best: the least cost that is
 // known already.
-void CandidateSearch::CompleteTheBest(double best) {
+void CandidateSearch::CompleteCompetitive(double best) {
   std::vector<CandidateResult*> order;
   for (CandidateResult& c : candidates) {
-    if (c.fits) order.push_back(&c);
+    if (c.was_fitted) order.push_back(&c);
   }
   std::stable_sort(order.begin(), order.end(),
                    [](const auto* a, const auto* b) { return a->fitted.cost < b->fitted.cost; });
-  constexpr double kNear = 50;
-  double taken_off = TakenOff(*base_.fitted);
+  double step_reduction = StepReduction(*base_.fitted);
   for (CandidateResult* const c : order) {
-    const double plain = c->fitted.cost;
-    if (noise_.known() && !c->fitted.complete && plain - best < kNear + 2 * taken_off) {
-      options_.Say("sensitivities of " + c->hypothesis.Name());
-      const Problem problem = c->ProblemOf(*trials_.experiment);
-      trials_.Complete(problem, c->fitted);
-      Problem::Vector x = c->fitted.fit.x;
-      if (RaiseDelays(*c, problem.step(), x)) AtAFineStep(*c);
-      c->error = c->finer ? FlawOf(AtQuarter(problem), *c->finer) : FlawOf(problem, c->fitted);
-      c->fits = c->error.empty();
-      if (!c->fits) continue;
-      const double behind = c->fitted.cost - best, promise = base_.fitted->cost - best;
-      if (!c->finer && behind < std::min(TakenOff(c->fitted), promise)) AtAFineStep(*c);
+    if (noise_.known() && !c->fitted.complete() &&
+        WorthCompleting(c->fitted.cost, best, step_reduction, criteria_)) {
+      if (!CompleteOne(*c, best)) continue;
       best = std::min(best, c->fitted.cost);
-      taken_off = std::max(taken_off, TakenOff(c->fitted));
+      step_reduction = std::max(step_reduction, StepReduction(c->fitted));
     }
     c->likelihood = Likelihood(c->fitted);
   }
 }
 
-// To the engine a delay shorter than a step is a whole one: a fit cannot tell which.
+// Whether it can be judged.
+bool CandidateSearch::CompleteOne(CandidateResult& c, double best) const {
+  options_.Say("sensitivities of " + c.hypothesis.Name());
+  const Problem problem = ProblemOf(c, *fitter_.experiment);
+  fitter_.Complete(problem, c.fitted);
+  Problem::Vector x = c.fitted.fit.x;
+  if (RaiseDelays(c, problem.step(), x)) RefitAtQuarterStep(c);
+  c.error = c.at_quarter_step ? FlawOf(AtQuarter(problem), *c.at_quarter_step)
+                              : FlawOf(problem, c.fitted);
+  c.was_fitted = c.error.empty();
+  if (!c.was_fitted) return false;
+  const double behind = c.fitted.cost - best, promise = base_.fitted->cost - best;
+  if (!c.at_quarter_step && behind < std::min(StepReduction(c.fitted), promise))
+    RefitAtQuarterStep(c);
+  return true;
+}
+
+// To the engine a delay shorter than a step is a whole one: a fit cannot find out which.
 bool CandidateSearch::RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x) {
   bool raised = false;
   for (std::size_t i = 0; i < c.hypothesis.extra.size(); ++i) {
     const Parameter& p = c.hypothesis.extra[i];
-    double& value = x[c.own() + static_cast<Eigen::Index>(i)];
+    double& value = x[c.first_extra() + static_cast<Eigen::Index>(i)];
     if (p.name != "delay" || !p.target.starts_with("actuator:") || value >= step) continue;
     value = step, raised = true;
   }
   return raised;
 }
 
-// Where the step's effect is not of first order a finer step may leave less. The values remain
-// those of the coarse one.
-void CandidateSearch::AtAFineStep(CandidateResult& c) const {
-  constexpr double kRough = 0.15;
-  const Problem problem = c.ProblemOf(*trials_.experiment);
+// Where the time-discretisation error is not of first order a finer step may fit better. The values
+// remain those of the coarse one.
+void CandidateSearch::RefitAtQuarterStep(CandidateResult& c) const {
+  const Problem problem = ProblemOf(c, *fitter_.experiment);
   Fitted from = c.fitted;
   const bool raised = RaiseDelays(c, problem.step(), from.fit.x);
-  if (!raised && trials_.LeftBy(c.fitted).roughness() < kRough) return;
+  if (!raised && !IsRough(fitter_.ProjectedResidualOf(c.fitted).roughness(), criteria_)) return;
   try {
-    Fitted finer = trials_.GoOn(AtQuarter(problem), from);
+    Fitted finer = fitter_.Continue(AtQuarter(problem), from);
     if (!(finer.cost < c.fitted.cost)) return;
     c.fitted.cost = finer.cost;
-    c.finer = std::move(finer);
+    c.at_quarter_step = std::move(finer);
   } catch (const Error&) {
     return;  // it diverges there
   }
@@ -276,9 +275,10 @@ void CandidateSearch::AtAFineStep(CandidateResult& c) const {
 // open is free to vary: a fit that is mostly that explains anything.
 std::string CandidateSearch::FlawOf(const Problem& problem, const Fitted& fitted) const {
   if (!std::isfinite(fitted.cost)) return "the simulation diverges next to its fit";
-  const double removed = Beyond(base_.fitted->error.train, fitted.error.train);
-  const bool resolved = trials_.StepEffect(problem, fitted) <
-                        trials_.StepEffect(problem, *base_.fitted) + removed + 0.1 * noise_.rms;
+  const double removed = WithoutPart(base_.fitted->error.train, fitted.error.train);
+  const bool resolved =
+      IsResolved(fitter_.StepError(problem, fitted), fitter_.StepError(problem, *base_.fitted),
+                 removed, noise_.rms, criteria_);
   return resolved ? "" : "the time step adds more to its fit than it removes";
 }
 

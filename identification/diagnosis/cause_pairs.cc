@@ -10,63 +10,56 @@
 namespace continuum {
 namespace {
 
-constexpr std::size_t kBases = 4;   // single causes that are tried as one of two
-constexpr double kPromising = 0.5;  // of what a first cause leaves, where that may be the time step
-
 std::string Key(const Hypothesis& h) { return h.Name() + " at " + h.where; }
 
 // Whether the interval of a size leaves out its absence. It reaches over what the time step does.
-bool IsThere(const Hypothesis& h, const Fitted& f, Eigen::Index begin) {
+bool IsThere(const Hypothesis& h, const Uncertainty& u, Eigen::Index begin) {
   for (const std::size_t a : h.Amplitudes()) {
     const Eigen::Index i = begin + static_cast<Eigen::Index>(a);
     const double null = std::min(h.null[a], h.extra[a].upper);
-    if (null < f.uncertainty.lower[i] || null > f.uncertainty.upper[i]) return true;
+    if (null < u.lower[i] || null > u.upper[i]) return true;
   }
   return false;
 }
 
-// A first cause, and the round for a second beside it.
+// A first cause, and the search for a second beside it.
 struct Beside {
   const CandidateResult* first;
-  CandidateSearch round;
+  CandidateSearch search;
 };
 
 // One pair that was fitted.
 struct Fitting {
   std::size_t base;    // index of its Beside
-  std::size_t second;  // index in its round
+  std::size_t second;  // index in its search
   const CandidateResult *a, *b;
 
   double likelihood() const { return a->likelihood + b->likelihood; }
   bool BothAreThere() const {
-    if (!b->fitted.complete) return true;  // plainly behind
+    if (!b->fitted.complete()) return true;  // plainly behind
+    const Uncertainty& u = b->fitted.sensitivities->uncertainty;
     const auto first = static_cast<Eigen::Index>(a->hypothesis.extra.size());
-    return IsThere(a->hypothesis, b->fitted, b->own() - first) &&
-           IsThere(b->hypothesis, b->fitted, b->own());
+    return IsThere(a->hypothesis, u, b->first_extra() - first) &&
+           IsThere(b->hypothesis, u, b->first_extra());
   }
   bool Has(const std::string& effect) const {
     return a->hypothesis.effect == effect || b->hypothesis.effect == effect;
   }
 };
 
-class Search {
+class PairSearch {
  public:
-  Search(const CandidateFitter& trials, const CandidateSearch& single, bool excused,
-         const Noise& noise, const Sizes& sizes, const DiagnosisOptions& options)
-      : trials_(trials),
-        single_(single),
-        excused_(excused),
-        noise_(noise),
-        sizes_(sizes),
-        options_(options) {}
+  PairSearch(const SearchContext& context, const CandidateSearch& single, bool of_step)
+      : context_(context), criteria_(context.fitter.criteria), single_(single), of_step_(of_step) {}
 
   std::optional<Pair> Run() {
     std::set<std::string> effects;
     for (const CandidateResult& c : single_.candidates) {
-      if (c.fitted.complete && effects.size() < 2 && effects.insert(c.hypothesis.effect).second)
+      if (c.fitted.complete() && static_cast<double>(effects.size()) < criteria_.pair_singles &&
+          effects.insert(c.hypothesis.effect).second)
         Await(c);
     }
-    while (!waiting_.empty() && tried_.size() < kBases) {
+    while (!waiting_.empty() && static_cast<double>(tried_.size()) < criteria_.pair_bases) {
       const CandidateResult* const base = waiting_.front();
       waiting_.pop_front();
       Extend(*base);
@@ -81,25 +74,24 @@ class Search {
 
   // The best second cause beside a first; it is the next first.
   void Extend(const CandidateResult& first) {
-    options_.Say("a second cause beside " + Key(first.hypothesis));
-    const Base base{&first.hypothesis.system, first.hypothesis.Free(), &first.fitted};
-    CandidateSearch round(trials_, base, noise_, sizes_, options_);
-    round.Screen();
-    if (!(round.smallest_p() < LikelihoodRules{}.level)) return;
-    if (excused_ && round.Promise() < kPromising) return;
-    round.Fit();
-    if (!round.leading()) return;
-    const std::string partner = Key(round.leading()->hypothesis);
-    tried_.push_back({&first, std::move(round)});
+    context_.options.Say("a second cause beside " + Key(first.hypothesis));
+    const BaseFit base{&first.hypothesis.system, first.hypothesis.Free(), &first.fitted};
+    CandidateSearch search(context_, base);
+    search.Screen();
+    if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
+    search.Fit();
+    if (!search.leading()) return;
+    const std::string partner = Key(search.leading()->hypothesis);
+    tried_.push_back({&first, std::move(search)});
     if (const CandidateResult* const next = Alone(partner)) Await(*next);
   }
 
   // The fit of a cause without another; null when it has none.
   const CandidateResult* Alone(const std::string& key) {
-    for (const auto* all : {&single_.candidates, &single_.left_behind}) {
+    for (const auto* all : {&single_.candidates, &single_.dismissed}) {
       for (const CandidateResult& c : *all) {
         if (Key(c.hypothesis) != key) continue;
-        if (c.fitted.complete) return &c;
+        if (c.fitted.complete()) return &c;
         try {
           return &alone_.emplace_back(single_.FitAlone(c));
         } catch (const Error&) {
@@ -114,7 +106,7 @@ class Search {
   std::vector<Fitting> All() const {
     std::map<std::set<std::string>, Fitting> all;
     for (std::size_t t = 0; t < tried_.size(); ++t) {
-      const auto& candidates = tried_[t].round.candidates;
+      const auto& candidates = tried_[t].search.candidates;
       for (std::size_t i = 0; i < candidates.size(); ++i) {
         const Fitting one{t, i, tried_[t].first, &candidates[i]};
         if (!one.BothAreThere()) continue;
@@ -133,9 +125,9 @@ class Search {
 
   // A pair contains another when they share a cause and its other one contains the other's.
   bool Inside(const Fitting& outer, const Fitting& inner) const {
-    return (outer.base == inner.base && Contains(trials_, *outer.b, *inner.b)) ||
+    return (outer.base == inner.base && Contains(context_.fitter, *outer.b, *inner.b)) ||
            (Key(outer.b->hypothesis) == Key(inner.b->hypothesis) &&
-            Contains(trials_, *outer.a, *inner.a));
+            Contains(context_.fitter, *outer.a, *inner.a));
   }
 
   std::vector<LikelihoodRecord> RecordsOf(const std::vector<Fitting>& pairs) const {
@@ -156,16 +148,13 @@ class Search {
     const auto pairs = All();
     if (pairs.empty()) return {};
     const auto records = RecordsOf(pairs);
-    Verdict verdict = JudgeLikelihoods(records, 1, 0);
+    Verdict verdict = JudgeLikelihoods(records, {}, 0, criteria_);
     if (verdict.named.empty()) return {};
     const Fitting& best = pairs[verdict.named.front()];
-    if (!best.b->fitted.complete) return {};  // those before it were no two causes
-    const CandidateSearch& round = tried_[best.base].round;
-    const LackOfFit lack = round.LackOf(*best.b);
-    LikelihoodRules rules;
-    rules.excused = lack.smallest() < rules.lack && !excused_ &&
-                    trials_.WithinStep(best.b->fitted) && round.GoesWithTheStep(*best.b);
-    verdict = JudgeLikelihoods(records, lack.smallest(), 0, rules);
+    if (!best.b->fitted.complete()) return {};  // those before it were no two causes
+    const CandidateSearch& search = tried_[best.base].search;
+    const LackOfFit lack = of_step_ ? search.TestsOf(*best.b) : search.LackOf(best.b);
+    verdict = JudgeLikelihoods(records, lack, 0, criteria_);
     if (verdict.named.empty()) return {};
     const auto equivalent = OthersForFirst(pairs, verdict);
     auto tried = List(pairs);
@@ -174,7 +163,7 @@ class Search {
       if (pairs[n].base == best.base) seconds.push_back(pairs[n].second);
     }
     verdict.named = seconds;
-    return Pair{std::move(tried_[best.base].round),
+    return Pair{std::move(tried_[best.base].search),
                 best.a->hypothesis,
                 best.a->likelihood,
                 equivalent,
@@ -207,12 +196,10 @@ class Search {
     return list;
   }
 
-  const CandidateFitter& trials_;
+  const SearchContext context_;
+  const Criteria& criteria_;
   const CandidateSearch& single_;
-  bool excused_;
-  const Noise& noise_;
-  const Sizes& sizes_;
-  const DiagnosisOptions& options_;
+  bool of_step_;
   std::deque<const CandidateResult*> waiting_;
   std::set<std::string> known_;
   std::deque<CandidateResult> alone_;  // where single_ has no complete fit
@@ -221,10 +208,9 @@ class Search {
 
 }  // namespace
 
-std::optional<Pair> FindPair(const CandidateFitter& trials, const CandidateSearch& single,
-                             bool excused, const Noise& noise, const Sizes& sizes,
-                             const DiagnosisOptions& options) {
-  return Search(trials, single, excused, noise, sizes, options).Run();
+std::optional<Pair> FindPair(const SearchContext& context, const CandidateSearch& single,
+                             bool of_step) {
+  return PairSearch(context, single, of_step).Run();
 }
 
 }  // namespace continuum

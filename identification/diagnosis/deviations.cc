@@ -58,13 +58,13 @@ std::size_t Peak(const std::vector<double>& residual) {
   return peak;
 }
 
-struct Ranked {
-  double size;
+struct SizedDeviation {
+  double size;  // root mean square, in units of what the channel moves
   Deviation deviation;
 };
 
-Ranked Largest(const Experiment& e, const Log& log, const Trace& trace, std::size_t c,
-               const std::vector<double>& residual, double size) {
+SizedDeviation Largest(const Experiment& e, const Log& log, const Trace& trace, std::size_t c,
+                       const std::vector<double>& residual, double size) {
   const auto& channel = e.channels[c];
   const std::size_t peak = Peak(residual);
   const std::string when = WhenInWords(log, residual, peak);
@@ -84,8 +84,9 @@ Ranked Largest(const Experiment& e, const Log& log, const Trace& trace, std::siz
 
 }  // namespace
 
-std::vector<Deviation> FindWrong(const Experiment& e, const std::vector<Trace>& simulated) {
-  std::vector<Ranked> all;
+std::vector<Deviation> FindDeviations(const Experiment& e, const std::vector<Trace>& simulated) {
+  constexpr std::size_t kMost = 6;
+  std::vector<SizedDeviation> all;
   const Pool pool(e);
   std::set<std::pair<std::string, std::string>> seen;  // replicates need no second mention
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
@@ -101,10 +102,9 @@ std::vector<Deviation> FindWrong(const Experiment& e, const std::vector<Trace>& 
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.size > b.size; });
-  std::vector<Deviation> wrong;
-  for (std::size_t i = 0; i < std::min<std::size_t>(6, all.size()); ++i)
-    wrong.push_back(all[i].deviation);
-  return wrong;
+  std::vector<Deviation> largest;
+  for (std::size_t i = 0; i < std::min(kMost, all.size()); ++i) largest.push_back(all[i].deviation);
+  return largest;
 }
 
 }  // namespace continuum

@@ -2,125 +2,156 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <map>
-#include <random>
+#include <functional>
 
 #include <fmt/format.h>
 
 #include "error.h"
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/cause_pairs.h"
+#include "identification/diagnosis/condition_contrast.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/fallback_force.h"
 #include "identification/diagnosis/fold_comparison.h"
+#include "identification/diagnosis/gain_interval.h"
+#include "identification/diagnosis/log_requirements.h"
 #include "identification/diagnosis/next_experiment.h"
 #include "identification/diagnosis/quantisation.h"
+#include "identification/fit/cross_validation.h"
 #include "identification/problem/start_checks.h"
+#include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
 
 namespace continuum {
 namespace {
 
-// A copy of a log is no replicate: the noise between them is none.
-void RequireOwnRecordings(const Experiment& e) {
-  for (const auto& group : ReplicateGroups(e)) {
-    for (std::size_t b = 1; b < group.size(); ++b) {
-      for (std::size_t a = 0; a < b; ++a) {
-        const Log &first = e.logs[group[a]], &copy = e.logs[group[b]];
-        if (first.measured != copy.measured) continue;
-        throw Error::Input(copy.file.string(), "a recording of its own",
-                           "the values of " + first.file.string() + ": a copy is no replicate");
-      }
-    }
-  }
-}
-
 class Session {
  public:
   Session(const Experiment& experiment, const ModelSpec& system, const DiagnosisOptions& options)
       : e_(experiment), options_(options), null_(experiment, system), d_(experiment, system) {
-    trials_.experiment = &e_;
-    trials_.iterations = options.iterations;
+    fitter_.experiment = &e_;
+    fitter_.iterations = options.iterations;
+    fitter_.criteria = d_.criteria = options.criteria;
   }
 
   Diagnosis Run() {
     const auto begin = std::chrono::steady_clock::now();
-    const auto train = TrainLogs(e_);
-    if (std::find(train.begin(), train.end(), true) == train.end()) {
-      throw Error::Input(e_.file.string() + ": logs", "at least one with use: train", "none");
-    }
-    RequireOwnRecordings(e_);
-    d_.noise = NoiseOf(e_);
-    d_.folds = FoldsOf(e_);
-    if (!d_.noise.known()) RequireFolds();  // before long work
-    RequireStartModels(null_);
+    CheckLogs();
     FitNull();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
-    d_.noise.step = trials_.StepEffect(null_, d_.before);
-    CandidateSearch round(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_);
-    round.Screen();
-    round.Fit();
-    if (d_.noise.known()) {
-      Judge(round);
-      LookAtOtherPlaces(round);
-      if (d_.verdict.text == "unexplained" && round.StartAnew()) Judge(round);
-      LookBeyondTheList(round);
-      auto pair = MayBeTwo(round) ? FindPair(trials_, round, excused_, d_.noise, d_.sizes, options_)
-                                  : std::nullopt;
-      d_.noise_limited = pair || beyond_ || round.BestLeaves() < CandidateSearch::kModelLimited;
-      if (pair) {
-        JudgePair(*pair);
-      } else {
-        Take(round);
-      }
-    } else {
-      Take(round);
-    }
-    LookAtTheEquation();
+    d_.noise.step = fitter_.StepError(null_, d_.before);
+    Search();
+    Part("view by the missing force", [&] { CompareByEquation(); });
     if (d_.noise_limited) {
-      NameOnce();
+      MergePlaces();
+      CompleteNamed();
       FitFinely();
       ScoreFolds();
     } else {
       CompareFolds();
-      NameOnce();
+      MergePlaces();
+      CompleteNamed();
     }
-    BootstrapGain();
-    if (d_.verdict.text == "unexplained") FallBack();
-    options_.Say("next experiment");
-    d_.next = ProposeNext(trials_, d_);
+    Part("interval of the gain", [&] { SetGainInterval(); });
+    if (d_.Is(Verdict::Kind::kUnexplained)) Part("fallback", [&] { FallBack(); });
+    Part("next experiment", [&] {
+      options_.Say("next experiment");
+      d_.next = ProposeNext(fitter_, d_);
+    });
+    Describe();
     d_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(d_);
   }
 
  private:
-  // Twice where values are rounded: a model tells how they move between the steps.
-  void FitNull() {
-    options_.Say("null fit");
-    if (d_.noise.known()) trials_.whitening = Whitening(null_, d_.noise);
-    d_.before = trials_.FitNull(null_);
-    if (d_.noise.known()) {
-      const Quantisation rounding(null_, d_.noise, d_.before.fit.x);
-      if (rounding.any()) {
-        d_.noise = rounding.Corrected();
-        trials_.whitening = Whitening(null_, d_.noise);
-        d_.before = trials_.Fit(null_, d_.before.fit.x);
-      }
-    }
-    trials_.Complete(null_, d_.before);
+  // One that the verdict does not depend on.
+  void Part(const std::string& name, const std::function<void()>& make) {
+    MakePart(name, d_.missing, make);
+    StopIfRequested();
   }
 
-  void Take(CandidateSearch& round) {
-    d_.candidates = std::move(round.candidates);
-    for (const CandidateResult& c : round.left_behind) {
+  // What is stated beside the verdict.
+  void Describe() {
+    Part("parameters", [&] {
+      d_.parameters_before = null_.parameters();
+      const Problem last = d_.chosen() ? ProblemOf(*d_.chosen(), e_) : null_;
+      d_.parameters = last.parameters();
+      d_.changes = last.CommonChanges(d_.last().fit.x);
+    });
+    Part("missing force", [&] { d_.missing_force = FindMissingForce(null_, d_.before.fit.x); });
+    Part("contrast of the conditions", [&] {
+      d_.contrast = ConditionContrast(null_, d_.before.residuals);
+      for (CandidateResult& c : d_.candidates)
+        c.contrast = ConditionContrast(null_, c.fitted.residuals);
+    });
+  }
+
+  // Before long work.
+  void CheckLogs() {
+    RequireTrainLogs(e_);
+    RequireOwnRecordings(e_);
+    d_.noise = NoiseOf(e_);
+    d_.folds = FoldsOf(e_);
+    if (!d_.noise.known()) RequireFolds(e_, d_.folds);
+    RequireStartModels(null_);
+  }
+
+  // Twice where values are rounded: a model shows how they move between the steps.
+  void FitNull() {
+    options_.Say("null fit");
+    if (d_.noise.known()) fitter_.whitening = Whitening(null_, d_.noise);
+    d_.before = fitter_.FitNull(null_);
+    if (d_.noise.known()) {
+      const Quantisation quantisation(null_, d_.noise, d_.before.fit.x);
+      if (quantisation.any()) {
+        d_.noise = quantisation.Corrected();
+        fitter_.whitening = Whitening(null_, d_.noise);
+        d_.before = fitter_.Fit(null_, d_.before.fit.x);
+      }
+    }
+    fitter_.Complete(null_, d_.before);
+  }
+
+  SearchContext Context(const DiagnosisOptions& options) const {
+    return {fitter_, d_.noise, d_.sizes, options};
+  }
+  BaseFit Base() const { return {&d_.system, {}, &d_.before}; }
+
+  // Candidates, and where the noise is known a verdict by their likelihoods.
+  void Search() {
+    CandidateSearch search(Context(options_), Base());
+    search.Screen();
+    search.Fit();
+    if (!d_.noise.known()) {
+      Take(search);
+      return;
+    }
+    Judge(search);
+    TryOtherPlaces(search);
+    if (d_.Is(Verdict::Kind::kUnexplained) && search.RefitFromExperimentStart()) Judge(search);
+    CompareUnlisted(search);
+    const bool two = search.leading() && MayBeTwo(d_.verdict, d_.lack_of_fit, search.smallest_p(),
+                                                  search.BestOverNoise(), d_.criteria);
+    auto pair = two ? FindPair(Context(options_), search, d_.lack_of_fit.of_step) : std::nullopt;
+    d_.noise_limited =
+        pair || d_.verdict.unlisted_explains || search.BestOverNoise() < d_.criteria.model_limited;
+    if (pair) {
+      JudgePair(*pair);
+    } else {
+      Take(search);
+    }
+  }
+
+  void Take(CandidateSearch& search) {
+    d_.candidates = std::move(search.candidates);
+    for (const CandidateResult& c : search.dismissed) {
       d_.dismissed.push_back(
           {c.hypothesis.effect, c.hypothesis.variant, c.hypothesis.where, c.explained, c.p});
     }
-    for (std::string& s : round.skipped) d_.skipped.push_back(std::move(s));
+    for (std::string& s : search.skipped) d_.skipped.push_back(std::move(s));
   }
 
-  void LookAtTheEquation() {
+  void CompareByEquation() {
     options_.Say("missing force");
     const EquationErrors view(e_, d_.system, d_.before);
     ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {
@@ -128,121 +159,109 @@ class Session {
     });
   }
 
-  // No single candidate leaves noise, or only by the time step's leave; and what the best leaves is
-  // not a hundred times the noise.
-  bool MayBeTwo(const CandidateSearch& round) const {
-    constexpr double kHopeless = 10;
-    const bool more =
-        d_.verdict.text == "unexplained" || (excused_ && d_.verdict.text != "adequate");
-    return more && !beyond_ && round.leading() && round.smallest_p() < LikelihoodRules{}.level &&
-           round.BestLeaves() < kHopeless;
-  }
-
   // Likelihoods have judged; the folds show what that is worth.
   void ScoreFolds() {
     if (d_.folds.empty()) return;
     options_.Say("folds");
-    trials_.AddFolds(null_, d_.folds, d_.before);
-    for (const std::size_t i : d_.verdict.named) RecordFolds(trials_, d_, d_.candidates[i]);
+    fitter_.AddFolds(null_, d_.folds, d_.before);
+    for (const std::size_t i : d_.verdict.named) RecordFolds(fitter_, d_, d_.candidates[i]);
     d_.ceiling_error = {d_.noise.rms, d_.noise.rms};
     d_.ceiling_by = "noise alone";
   }
 
-  // By likelihoods, which are calibrated where noise is all that the best model leaves.
-  void Judge(CandidateSearch& round) {
-    options_.Say("what is left");
-    const CandidateResult* const best = round.leading();
-    d_.lack = best ? round.LackOf(*best) : round.LackOfBase();
-    excused_ = d_.lack.smallest() < LikelihoodRules{}.lack &&
-               trials_.WithinStep(best ? best->fitted : d_.before) &&
-               (!best || round.GoesWithTheStep(*best));
-    Decide(round);
+  // By likelihoods, which are calibrated where noise is the whole residual of the best model.
+  void Judge(CandidateSearch& search) {
+    options_.Say("lack of fit");
+    d_.lack_of_fit = search.LackOf(search.leading());
+    Decide(search);
   }
 
-  void Decide(CandidateSearch& round) {
-    const auto records = round.Records();
-    SetProbabilities(round.candidates, records);
-    d_.verdict = JudgeLikelihoods(records, d_.lack.smallest(), round.smallest_p(), Rules());
+  void Decide(CandidateSearch& search) {
+    const auto records = search.Records();
+    SetProbabilities(search.candidates, records);
+    d_.verdict = JudgeLikelihoods(records, d_.lack_of_fit, search.smallest_p(), d_.criteria);
     const auto& named = d_.verdict.named;
-    const bool coarse = excused_ || d_.noise.step > d_.noise.rms;
-    if (coarse && !named.empty() && !MoreThanStep(round.candidates[named.front()].fitted))
-      d_.verdict = {"adequate", {}, "no candidate does more than the time step; try a finer one"};
+    const bool coarse = d_.lack_of_fit.of_step || d_.noise.step > d_.noise.rms;
+    if (coarse && !named.empty() && !MoreThanStep(search.candidates[named.front()].fitted))
+      d_.verdict = {Verdict::Kind::kAdequate,
+                    {},
+                    "no candidate does more than the time step; try a finer one"};
   }
 
   // Where no effect explains it at all joints together it may be at one of them.
-  void LookAtOtherPlaces(CandidateSearch& round) {
-    if (d_.verdict.text != "unexplained") return;
-    CandidateSearch others(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options_,
-                           SearchScope::kOthers);
+  void TryOtherPlaces(CandidateSearch& search) {
+    if (!d_.Is(Verdict::Kind::kUnexplained)) return;
+    CandidateSearch others(Context(options_), Base(), SearchScope::kOthers);
     others.Screen();
-    others.Fit(&round);
+    others.Fit(&search);
     if (others.candidates.empty()) return;
-    round.Join(std::move(others));
-    Judge(round);
+    search.Join(std::move(others));
+    Judge(search);
   }
 
-  // A name that stands only because the list leaves its rival out is none.
-  void LookBeyondTheList(CandidateSearch& round) {
+  // A name that stands only because the list omits its rival is none.
+  void CompareUnlisted(CandidateSearch& search) {
     DiagnosisOptions options = options_;
     options.candidates = Unlisted(e_, options_.candidates);
-    if (options.candidates.empty() || d_.verdict.text == "adequate") return;
-    CandidateSearch beyond(trials_, {&d_.system, {}, &d_.before}, d_.noise, d_.sizes, options);
-    beyond.Screen();
-    beyond.Fit(&round);
-    const bool unexplained = d_.verdict.text == "unexplained";
-    const CandidateResult* const best = beyond.leading();
-    const bool judged = best && best->fitted.complete;  // else plainly behind
-    beyond_ = unexplained && judged && beyond.LackOf(*best).smallest() >= LikelihoodRules{}.lack;
-    const std::string name = beyond_ ? best->hypothesis.NameAtPlace() : "";
-    const std::size_t listed = round.candidates.size();
-    round.JoinUnlisted(std::move(beyond));
-    Decide(round);
-    if (beyond_) d_.verdict.reason += fmt::format("; {}, which is not listed, is enough", name);
-    beyond_ = beyond_ || (!unexplained && d_.verdict.text == "unexplained");
-    // Only what was asked for is a candidate; of the others those stay that the verdict tells of.
+    if (options.candidates.empty() || d_.Is(Verdict::Kind::kAdequate)) return;
+    CandidateSearch unlisted(Context(options), Base());
+    unlisted.Screen();
+    unlisted.Fit(&search);
+    const CandidateResult* const best = unlisted.leading();
+    const bool judged = best && best->fitted.complete();  // else plainly behind
+    const bool enough = d_.Is(Verdict::Kind::kUnexplained) && judged &&
+                        !unlisted.TestsOf(*best).significant(d_.criteria);
+    const std::string name = enough ? best->hypothesis.NameAtPlace() : "";
+    const std::size_t listed = search.candidates.size();
+    search.JoinUnlisted(std::move(unlisted));
+    Decide(search);
+    if (enough) {
+      d_.verdict.reason += fmt::format("; {}, which is not listed, is enough", name);
+      d_.verdict.unlisted_explains = true;
+    }
+    KeepListed(search, listed);
+  }
+
+  // Only what was asked for is a candidate; of the others those stay that the verdict is about.
+  void KeepListed(CandidateSearch& search, std::size_t listed) {
     for (std::size_t& i : d_.verdict.unlisted) {
-      d_.unlisted.push_back(std::move(round.candidates[i]));
+      d_.unlisted.push_back(std::move(search.candidates[i]));
       i = d_.unlisted.size() - 1;
     }
-    round.candidates.erase(round.candidates.begin() + static_cast<std::ptrdiff_t>(listed),
-                           round.candidates.end());
+    search.candidates.erase(search.candidates.begin() + static_cast<std::ptrdiff_t>(listed),
+                            search.candidates.end());
   }
 
   // Whether a fit takes more off the error than the time step may have put there.
   bool MoreThanStep(const Fitted& f) const {
-    return Beyond(d_.before.error.train, f.error.train) > d_.noise.step;
+    return WithoutPart(d_.before.error.train, f.error.train) > d_.noise.step;
   }
 
-  LikelihoodRules Rules() const {
-    LikelihoodRules rules;
-    rules.excused = excused_;
-    return rules;
-  }
-
-  static void SetProbabilities(std::vector<CandidateResult>& candidates,
-                               const std::vector<LikelihoodRecord>& records) {
-    const auto probability = ProbabilitiesOf(records);
+  void SetProbabilities(std::vector<CandidateResult>& candidates,
+                        const std::vector<LikelihoodRecord>& records) const {
+    const auto probability = ProbabilitiesOf(records, d_.criteria);
     for (std::size_t i = 0; i < records.size(); ++i) candidates[i].probability = probability[i];
   }
 
   // Likelihoods of both together, over the model without either.
   void JudgePair(Pair& pair) {
     d_.verdict = pair.verdict;
-    d_.lack = pair.lack;
-    SetProbabilities(pair.round.candidates, pair.round.Records());
-    for (CandidateResult& c : pair.round.candidates) c.likelihood += pair.first_likelihood;
-    Take(pair.round);
+    d_.lack_of_fit = pair.lack_of_fit;
+    SetProbabilities(pair.search.candidates, pair.search.Records());
+    for (CandidateResult& c : pair.search.candidates) c.likelihood += pair.first_likelihood;
+    Take(pair.search);
     d_.pairs = std::move(pair.tried);
     d_.partner = {std::move(pair.first), std::move(pair.equivalent)};
-    d_.verdict.reason =
-        fmt::format("no single candidate leaves only noise, two do: {} at {} beside this; {}",
-                    d_.partner->hypothesis.Name(), d_.partner->hypothesis.where, d_.verdict.reason);
+    d_.verdict.reason = fmt::format(
+        "the residual of no single candidate is only noise, that of two is: {} at {} beside this; "
+        "{}",
+        d_.partner->hypothesis.Name(), d_.partner->hypothesis.where, d_.verdict.reason);
     const bool one = d_.verdict.named.size() == 1 && d_.partner->equivalent.empty();
-    d_.verdict.text = one ? "named" : "ambiguous";
+    d_.verdict.kind = one ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
   }
 
-  // One effect at several places is one name: the data do not tell the places apart.
-  void NameOnce() {
+  // One effect at several places is one name: the data do not distinguish the places.
+  void MergePlaces() {
     auto& named = d_.verdict.named;
     if (named.size() < 2) return;
     const std::string& effect = d_.candidates[named.front()].hypothesis.effect;
@@ -250,119 +269,72 @@ class Session {
     for (const std::size_t i : named) {
       const Hypothesis& h = d_.candidates[i].hypothesis;
       if (h.effect != effect) return;
-      places += (places.empty() ? "" : " or ") + (h.variant.empty() ? h.where : h.NameAtPlace());
+      places += (places.empty() ? "" : " from ") + (h.variant.empty() ? h.where : h.NameAtPlace());
     }
     if (!d_.partner) {
-      d_.verdict.text = "named";
+      d_.verdict.kind = Verdict::Kind::kNamed;
       d_.verdict.reason = d_.noise_limited
-                              ? "it leaves " + LeftInWords(d_.lack.smallest(), Rules())
+                              ? "its residual shows " + ResidualInWords(d_.lack_of_fit, d_.criteria)
                               : "it passes all rules and is clearly better than every other effect";
     } else if (d_.partner->equivalent.empty()) {
-      d_.verdict.text = "named";
+      d_.verdict.kind = Verdict::Kind::kNamed;
     }
-    d_.verdict.reason += "; the data do not tell " + places + " apart";
+    d_.verdict.reason += "; the data do not distinguish " + places;
     named.resize(1);
+  }
+
+  // A rival that is far behind on one of the scales has no intervals so far.
+  void CompleteNamed() {
+    for (const std::size_t i : d_.verdict.named) {
+      CandidateResult& c = d_.candidates[i];
+      if (c.fitted.complete()) continue;
+      options_.Say("sensitivities of " + c.hypothesis.Name());
+      try {
+        fitter_.Complete(ProblemOf(c, e_), c.fitted);
+      } catch (const Error&) {
+        StopIfRequested();  // else it goes without
+      }
+    }
   }
 
   void FitFinely() {
     for (const std::size_t i : d_.verdict.named) {
       CandidateResult& c = d_.candidates[i];
+      if (!c.fitted.complete()) continue;
       options_.Say("at a fine step " + c.hypothesis.Name());
-      trials_.FitFinely(c.ProblemOf(e_), c.fitted);
+      fitter_.FitFinely(ProblemOf(c, e_), c.fitted);
     }
   }
 
-  // Not where forces of many more terms reach less than half of what it is asked for.
   void FallBack() {
-    if (!d_.noise_limited && CeilingGain(d_) < 0.5 * continuum::Rules{}.median_gain) return;
-    d_.fallback = FindFallback(trials_, d_, options_);
+    if (!WorthFallback(CeilingGain(d_), d_.noise_limited, d_.criteria)) return;
+    d_.fallback = FindFallback(fitter_, d_, options_);
     if (d_.fallback && !d_.noise_limited)
       RaiseCeiling(d_, "the force of the fallback", d_.fallback->fitted.folds,
                    d_.fallback->fitted.error);
   }
 
-  void RequireFolds() const {
-    if (!d_.folds.empty()) return;
-    throw Error::Input(e_.file.string() + ": folds",
-                       "at least two groups of logs to leave out in turn", "one");
-  }
-
   void CompareFolds() {
-    RequireFolds();
+    RequireFolds(e_, d_.folds);
     d_.verdict = {};
     d_.unlisted.clear();
-    CompareByFolds(trials_, options_, d_);
+    CompareByFolds(fitter_, options_, d_);
   }
 
-  // Of each held-out trial, replicates together: squared errors before and after. Where they are
-  // too few to say how the gain varies, of the folds.
-  std::vector<std::pair<double, double>> HeldOut(const CandidateResult& chosen) const {
-    constexpr std::size_t kEnough = 3;
-    std::map<std::string, std::pair<double, double>> trials;
-    for (std::size_t l = 0; l < e_.logs.size(); ++l) {
-      if (e_.logs[l].train) continue;
-      std::vector<bool> one(e_.logs.size(), false);
-      one[l] = true;
-      const auto sum = [&](const Fitted& f) {
-        return std::pow(null_.PooledRms(f.residuals, one), 2) *
-               static_cast<double>(e_.logs[l].rows());
-      };
-      auto& [before, after] = trials[e_.logs[l].trial];
-      before += sum(d_.before), after += sum(chosen.fitted);
-    }
-    std::vector<std::pair<double, double>> squares;
-    for (const auto& [name, pair] : trials) squares.push_back(pair);
-    const auto &before = d_.before.folds.error, &after = chosen.fitted.folds.error;
-    if (squares.size() >= kEnough || after.size() <= squares.size() ||
-        before.size() != after.size())
-      return squares;
-    squares.clear();
-    for (std::size_t f = 0; f < after.size(); ++f)
-      squares.emplace_back(before[f] * before[f], after[f] * after[f]);
-    return squares;
-  }
-
-  // Trials left out in turn may all gain less than the validate logs do, or more.
-  void BootstrapGain() {
-    const CandidateResult* chosen = d_.chosen();
-    if (!chosen) return;
-    const auto squares = HeldOut(*chosen);
-    if (squares.empty()) return;
+  void SetGainInterval() {
     options_.Say("gain");
-    std::mt19937_64 rng(options_.seed);
-    std::vector<double> gains;
-    for (int k = 0; k < 2000; ++k) {
-      double before = 0, after = 0;
-      for (std::size_t i = 0; i < squares.size(); ++i) {
-        const auto& s = squares[rng() % squares.size()];
-        before += s.first, after += s.second;
-      }
-      gains.push_back(before > 0 ? 1 - std::sqrt(after / before) : 0);
-    }
-    std::sort(gains.begin(), gains.end());
-    d_.gain_low = gains[gains.size() * 25 / 1000];
-    d_.gain_high = gains[gains.size() * 975 / 1000];
-    const double before = d_.before.error.validate, after = chosen->fitted.error.validate;
-    if (!(before > 0)) return;
-    d_.gain_low = std::min(d_.gain_low, 1 - after / before);
-    d_.gain_high = std::max(d_.gain_high, 1 - after / before);
+    const GainInterval interval = BootstrapGain(null_, d_, options_.seed);
+    d_.gain_low = interval.low, d_.gain_high = interval.high;
   }
 
   const Experiment& e_;
   const DiagnosisOptions& options_;
   Problem null_;
   Diagnosis d_;
-  CandidateFitter trials_;
-  bool excused_ = false;  // what is left is significant, but within what the time step adds
-  bool beyond_ = false;   // what is there is an effect that is not listed
+  CandidateFitter fitter_;
 };
 
 }  // namespace
-
-void DiagnosisOptions::Say(const std::string& text) const {
-  StopIfRequested();
-  if (progress) progress(text);
-}
 
 Diagnosis Diagnose(const Experiment& experiment, const ModelSpec& system,
                    const DiagnosisOptions& options) {

@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 
+#include "identification/diagnosis/candidate_fitter.h"
+
 namespace continuum {
 namespace {
 
@@ -40,17 +42,17 @@ Vector EquationErrors::Stacked(const Problem& problem, const Vector& x) const {
 
 std::optional<ByEquation> EquationErrors::Of(const CandidateResult& c) const {
   constexpr double kNothing = 1e-6;  // of the missing force
-  if (!any() || !c.fits || !c.hypothesis.given.empty()) return {};
+  if (!any() || !c.was_fitted || !c.hypothesis.given.empty()) return {};
   Vector x = c.fitted.fit.x;
   x.head(x_.size()) = x_;
-  Vector d = missing_ - Stacked(c.ProblemOf(experiment_), x);
+  Vector d = missing_ - Stacked(ProblemOf(c, experiment_), x);
   if (!d.allFinite() || d.norm() < kNothing * missing_.norm()) return {};
   d -= basis_ * (basis_.transpose() * d);
   const double amplitude = std::max(0.0, d.dot(force_) / std::max(d.squaredNorm(), 1e-300));
-  const Vector left = force_ - amplitude * d;
+  const Vector residual = force_ - amplitude * d;
   ByEquation result;
-  result.share = 1 - left.squaredNorm() / force_.squaredNorm();
-  result.before = PerLog(force_), result.after = PerLog(left);
+  result.share = 1 - residual.squaredNorm() / force_.squaredNorm();
+  result.before = PerLog(force_), result.after = PerLog(residual);
   return result;
 }
 
@@ -65,12 +67,13 @@ std::vector<double> EquationErrors::PerLog(const Vector& r) const {
   return roots;
 }
 
-bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b) {
+bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b,
+                             const Criteria& criteria) {
   if (!a.by_equation || !b.by_equation) return false;
   FoldRecord first, second;
   first.before = second.before = a.by_equation->before;
   first.after = a.by_equation->after, second.after = b.by_equation->after;
-  return ClearlyBetter(first, second, Rules{}.apart);
+  return ClearlyBetter(first, second, criteria.fold_margin, criteria);
 }
 
 }  // namespace continuum

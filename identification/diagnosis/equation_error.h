@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/result.h"
 #include "identification/inverse_dynamics/missing_force.h"
 
 namespace continuum {
@@ -41,6 +41,7 @@ class EquationErrors {
 };
 
 /// Whether the missing force speaks for another candidate than b: a explains it clearly better.
-bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b);
+bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b,
+                             const Criteria& criteria = {});
 
 }  // namespace continuum

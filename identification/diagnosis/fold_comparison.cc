@@ -10,6 +10,7 @@
 #include "identification/candidates/random_forces.h"
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/equation_error.h"
+#include "identification/fit/cross_validation.h"
 
 namespace continuum {
 namespace {
@@ -24,18 +25,18 @@ double GainOver(const FoldScores& before, const FoldScores& after) {
   return Median(Gains(record));
 }
 
-class Comparison {
+class FoldComparison {
  public:
-  Comparison(const CandidateFitter& trials, const DiagnosisOptions& options, Diagnosis& d)
-      : trials_(trials), e_(*trials.experiment), options_(options), d_(d) {}
+  FoldComparison(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d)
+      : fitter_(fitter), e_(*fitter.experiment), options_(options), d_(d) {}
 
   void Run() {
     options_.Say("folds");
-    trials_.AddFolds(Problem(e_, d_.system), d_.folds, d_.before);
+    fitter_.AddFolds(Problem(e_, d_.system), d_.folds, d_.before);
     for (CandidateResult& c : d_.candidates) {
-      if (c.fitted.error.train > (1 - Rules{}.fit_gain) * d_.before.error.train) continue;
+      if (!WorthFolds(d_.before.error.train, c.fitted.error.train, d_.criteria)) continue;
       options_.Say("folds of " + c.hypothesis.Name());
-      RecordFolds(trials_, d_, c);
+      RecordFolds(fitter_, d_, c);
     }
     RunCeiling();
     RunPlacebos();
@@ -48,7 +49,8 @@ class Comparison {
     const Problem problem(e_, d_.system, {}, terms);
     Vector x = Vector::Zero(d_.before.fit.x.size() + static_cast<Eigen::Index>(terms.count));
     x.head(d_.before.fit.x.size()) = d_.before.fit.x;
-    const auto J = problem.Jacobian(x, d_.before.residuals, problem.AllLogs(), d_.before.jacobian);
+    const auto J = problem.Jacobian(x, d_.before.residuals, problem.AllLogs(),
+                                    d_.before.sensitivities.value().jacobian);
     if (error) {
       auto validate = problem.TrainLogs();
       validate.flip();
@@ -89,7 +91,7 @@ class Comparison {
       std::vector<CandidateResult*> open = alike;
       std::vector<double> gains;
       const auto done = [&](const CandidateResult* c) {
-        return !Failures(c->record).empty() || LostTooOften(*c, gains);
+        return !Failures(c->record, d_.criteria).empty() || LostTooOften(*c, gains);
       };
       for (int k = 0; k < options_.placebos; ++k) {
         std::erase_if(open, done);
@@ -112,7 +114,7 @@ class Comparison {
 
   bool LostTooOften(const CandidateResult& c, const std::vector<double>& placebos) const {
     const double lost = static_cast<double>(placebos.size()) - Beaten(c.record, placebos);
-    return lost > (1 - Rules{}.placebo_share) * options_.placebos + 1e-9;
+    return lost > (1 - d_.criteria.placebo_share) * options_.placebos + 1e-9;
   }
 
   bool Known() const { return d_.noise.known() && d_.noise.rms > 0; }
@@ -124,38 +126,38 @@ class Comparison {
     });
     std::vector<FoldRecord> records;
     for (CandidateResult& c : d_.candidates) {
-      c.failures = Failures(c.record);
-      if (Known()) c.record.remaining = c.fitted.error.train / Floor();
+      c.failures = Failures(c.record, d_.criteria);
+      if (Known()) c.record.over_noise = c.fitted.error.train / Floor();
       c.record.contains.clear();
       for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
         const CandidateResult& other = d_.candidates[i];
-        if (&other != &c && Contains(trials_, c, other)) c.record.contains.push_back(i);
+        if (&other != &c && Contains(fitter_, c, other)) c.record.contains.push_back(i);
       }
       records.push_back(c.record);
     }
-    const double over = Known() ? d_.before.error.train / Floor() : 0;
-    Rules rules;
-    // Replicates tell the noise whatever the model: then nothing above it may remain unexplained.
-    if (d_.noise.source == "replicates") rules.noise_limited = kInfinity;
+    ErrorLevel error{.over_noise = Known() ? d_.before.error.train / Floor() : 0,
+                     .ceiling_gain = CeilingGain(d_),
+                     .over_scatter = 0,
+                     .replicated = d_.noise.source == "replicates"};
     if (d_.noise.source == "differences" && d_.noise.rms > 0)
-      rules.over_scatter = d_.before.error.train / d_.noise.rms;
-    d_.verdict = Judge(records, over, CeilingGain(d_), rules);
-    if (d_.verdict.text == "named") HearTheEquation();
+      error.over_scatter = d_.before.error.train / d_.noise.rms;
+    d_.verdict = JudgeFolds(records, error, d_.criteria);
+    if (d_.Is(Verdict::Kind::kNamed)) CheckAgainstMissingForce();
   }
 
   // A name that the missing force at the measured states speaks against is none.
-  void HearTheEquation() {
+  void CheckAgainstMissingForce() {
     const std::size_t named = d_.verdict.named.front();
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
       const CandidateResult& c = d_.candidates[i];
-      const bool rival =
-          i != named && !Related(i, named) && ClearlyBetterByEquation(c, d_.candidates[named]);
+      const bool rival = i != named && !Related(i, named) &&
+                         ClearlyBetterByEquation(c, d_.candidates[named], d_.criteria);
       if (rival && (!best || c.by_equation->share > d_.candidates[*best].by_equation->share))
         best = i;
     }
     if (!best) return;
-    d_.verdict.text = "ambiguous";
+    d_.verdict.kind = Verdict::Kind::kAmbiguous;
     d_.verdict.named.push_back(*best);
     d_.verdict.reason += fmt::format(
         " on the logs left out, but {} explains the missing force at the measured states better",
@@ -172,7 +174,7 @@ class Comparison {
            holds(a, b) || holds(b, a);
   }
 
-  const CandidateFitter& trials_;
+  const CandidateFitter& fitter_;
   const Experiment& e_;
   const DiagnosisOptions& options_;
   Diagnosis& d_;
@@ -188,13 +190,13 @@ void RaiseCeiling(Diagnosis& d, const std::string& by, const FoldScores& folds,
   d.ceiling = folds, d.ceiling_error = error, d.ceiling_by = by;
 }
 
-void RecordFolds(const CandidateFitter& trials, const Diagnosis& d, CandidateResult& c) {
-  const Problem problem = c.ProblemOf(*trials.experiment);
-  if (!c.fitted.complete) trials.Complete(problem, c.fitted);
-  trials.AddFolds(problem, d.folds, c.fitted);
+void RecordFolds(const CandidateFitter& fitter, const Diagnosis& d, CandidateResult& c) {
+  const Problem problem = ProblemOf(c, *fitter.experiment);
+  if (!c.fitted.complete()) fitter.Complete(problem, c.fitted);
+  fitter.AddFolds(problem, d.folds, c.fitted);
   c.record.before = d.before.folds.error;
   c.record.after = c.fitted.folds.error;
-  const Eigen::Index own = c.own();
+  const Eigen::Index own = c.first_extra();
   const std::span<const double> values(c.fitted.fit.x.data() + own, c.hypothesis.extra.size());
   const std::size_t main = c.hypothesis.Main(values);
   const double null = std::isinf(c.hypothesis.null[main]) ? 0 : c.hypothesis.null[main];
@@ -202,9 +204,9 @@ void RecordFolds(const CandidateFitter& trials, const Diagnosis& d, CandidateRes
     c.record.amplitude.push_back(x[own + static_cast<Eigen::Index>(main)] - null);
 }
 
-void CompareByFolds(const CandidateFitter& trials, const DiagnosisOptions& options,
+void CompareByFolds(const CandidateFitter& fitter, const DiagnosisOptions& options,
                     Diagnosis& diagnosis) {
-  Comparison(trials, options, diagnosis).Run();
+  FoldComparison(fitter, options, diagnosis).Run();
 }
 
 }  // namespace continuum

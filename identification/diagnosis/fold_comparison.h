@@ -4,10 +4,11 @@
 
 namespace continuum {
 
-/// Compares fitted candidates where the model leaves more than noise, or nobody knows the noise:
-/// only what holds on logs left out counts, beside random forces and the best of them. Orders
+/// Compares fitted candidates by cross-validation, where the residual of the best model is more
+/// than noise or nobody knows the noise: only what holds on logs left out counts, beside random
+/// forces and the best of them. Orders
 /// the candidates and fills in records, ceiling and verdict.
-void CompareByFolds(const CandidateFitter& trials, const DiagnosisOptions& options,
+void CompareByFolds(const CandidateFitter& fitter, const DiagnosisOptions& options,
                     Diagnosis& diagnosis);
 
 /// Takes what something reached on the folds for the ceiling where it is more than was known.
@@ -18,7 +19,7 @@ void RaiseCeiling(Diagnosis& diagnosis, const std::string& by, const FoldScores&
 double CeilingGain(const Diagnosis& diagnosis);
 
 /// One candidate's record over the folds; the model's own before it.
-void RecordFolds(const CandidateFitter& trials, const Diagnosis& diagnosis,
+void RecordFolds(const CandidateFitter& fitter, const Diagnosis& diagnosis,
                  CandidateResult& candidate);
 
 }  // namespace continuum

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "identification/diagnosis/search_rules.h"
 #include "sim/io/decimal.h"
 #include "sim/io/units.h"
 
@@ -17,8 +18,6 @@ namespace {
 
 using Signal = std::vector<double>;
 
-constexpr double kTooClose = 15;           // of separation
-constexpr std::size_t kRivals = 3;         // of the chosen one that are looked at
 constexpr double kWeights[] = {0.1, 0.5};  // known ones to add, of the mean mass of a body
 constexpr double kTau = 2 * std::numbers::pi;
 
@@ -94,7 +93,7 @@ std::vector<Variation> Library() {
 
 class Proposal {
  public:
-  Proposal(const CandidateFitter& trials, const Diagnosis& d) : e_(*trials.experiment), d_(d) {}
+  Proposal(const CandidateFitter& fitter, const Diagnosis& d) : e_(*fitter.experiment), d_(d) {}
 
   NextExperiment Run() {
     NextExperiment best;
@@ -114,9 +113,9 @@ class Proposal {
     }
     if (best.input.empty())
       best.input = "slow and fast motions over the whole range";
-    else if (best.separation < kTooClose) {
+    else if (!Distinguishes(best.separation, d_.criteria)) {
       best.log.reset();
-      best.input = "no change of these inputs tells them apart (the best: " + best.input +
+      best.input = "no change of these inputs distinguishes them (the best: " + best.input +
                    "): add a sensor, or fix one of them by a known mass or a separate measurement";
     }
     return best;
@@ -126,9 +125,10 @@ class Proposal {
   void Consider(const Log& log, const std::string& words, NextExperiment& best) const {
     double least = std::numeric_limits<double>::infinity();
     try {
-      const std::size_t rivals = std::min(kRivals + 1, d_.verdict.named.size());
+      const std::size_t rivals =
+          std::min(static_cast<std::size_t>(d_.criteria.next_rivals) + 1, d_.verdict.named.size());
       for (std::size_t i = 1; i < rivals; ++i)
-        least = std::min(least, Apart(log, d_.candidates[d_.verdict.named[i]]));
+        least = std::min(least, Distance(log, d_.candidates[d_.verdict.named[i]]));
     } catch (const Error&) {
       return;  // a simulation diverges under these inputs
     }
@@ -136,7 +136,7 @@ class Proposal {
   }
 
   // Either may be the larger model, which can do what the other does.
-  double Apart(const Log& log, const CandidateResult& rival) const {
+  double Distance(const Log& log, const CandidateResult& rival) const {
     return std::max(Separation(log, *d_.chosen(), rival), Separation(log, rival, *d_.chosen()));
   }
 
@@ -150,32 +150,33 @@ class Proposal {
     e.logs[0].start.clear();
     e.logs[0].measured = Moves(e, truth);
     const Problem::Vector x = ValuesOf(rival);
-    const Problem problem = ProblemOf(e, rival);
+    const Problem problem = ProblemFor(e, rival);
     const auto all = problem.AllLogs();
     const auto r = problem.Residuals(x, all);
     if (!r[0].allFinite()) throw Error::Job("diverged");
     const auto J = problem.Jacobian(x, r, all);
     const Whitening whitening = d_.noise.known() ? Whitening(problem, d_.noise) : Whitening();
     const std::vector<bool> free(static_cast<std::size_t>(x.size()), false);
-    const Remainder left(whitening, all, r, J, free, {Problem::Matrix(r[0].size(), 0)});
-    if (d_.noise.known()) return left.cost();
+    const ProjectedResidual residual(whitening, all, r, J, free, {Problem::Matrix(r[0].size(), 0)},
+                                     d_.criteria);
+    if (d_.noise.known()) return residual.cost();
     // In pooled units, which are those of the experiment's error.
-    return left.cost() / std::pow(d_.chosen()->fitted.error.train, 2);
+    return residual.cost() / std::pow(d_.chosen()->fitted.error.train, 2);
   }
 
   std::vector<Signal> Moves(const Experiment& e, const CandidateResult& c) const {
-    Trace trace = ProblemOf(e, c).Predict(ValuesOf(c), 0);
+    Trace trace = ProblemFor(e, c).Predict(ValuesOf(c), 0);
     if (trace.diverged) throw Error::Job("diverged");
     return std::move(trace.channel);
   }
 
   // A new log begins at rest.
   Problem::Vector ValuesOf(const CandidateResult& c) const {
-    return c.ProblemOf(e_).WithoutStarts(c.fitted.fit.x);
+    return ProblemOf(c, e_).WithoutStarts(c.fitted.fit.x);
   }
 
-  Problem ProblemOf(const Experiment& e, const CandidateResult& c) const {
-    Problem problem = c.ProblemOf(e);
+  Problem ProblemFor(const Experiment& e, const CandidateResult& c) const {
+    Problem problem = ProblemOf(c, e);
     if (problem.Start().size() != ValuesOf(c).size())
       throw Error::Job("parameters of single logs say nothing about a new one");
     return problem;
@@ -223,8 +224,8 @@ class Proposal {
 
 }  // namespace
 
-NextExperiment ProposeNext(const CandidateFitter& trials, const Diagnosis& diagnosis) {
-  return diagnosis.verdict.named.size() < 2 ? NextExperiment{} : Proposal(trials, diagnosis).Run();
+NextExperiment ProposeNext(const CandidateFitter& fitter, const Diagnosis& diagnosis) {
+  return diagnosis.verdict.named.size() < 2 ? NextExperiment{} : Proposal(fitter, diagnosis).Run();
 }
 
 std::string NextCsv(const Experiment& e, const Log& next) {

@@ -23,14 +23,14 @@ Noise Quantisation::Corrected() const {
   return noise;
 }
 
-double Quantisation::Inflation(const Remainder& left,
+double Quantisation::Inflation(const ProjectedResidual& residual,
                                const std::vector<std::vector<Probe>>& candidates,
                                std::uint64_t seed) const {
   Random64 random(seed);
   constexpr int kDraws = 40;
   double power = 0, count = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Problem::Vector z = left.Project(Draw(random, false)).col(0);
+    const Problem::Vector z = residual.Project(Draw(random, false)).col(0);
     for (const auto& probes : candidates) {
       for (const Probe& probe : probes) {
         for (const auto& column : probe.columns.colwise()) {
@@ -43,10 +43,11 @@ double Quantisation::Inflation(const Remainder& left,
   return count > 0 ? std::max(1.0, power / count) : 1;
 }
 
-Problem::Matrix Quantisation::Draws(const Remainder& left, int count, std::uint64_t seed) const {
+Problem::Matrix Quantisation::Draws(const ProjectedResidual& residual, int count,
+                                    std::uint64_t seed) const {
   Random64 random(seed);
-  Problem::Matrix draws(left.residual().size(), count);
-  for (int i = 0; i < count; ++i) draws.col(i) = left.Project(Draw(random, true)).col(0);
+  Problem::Matrix draws(residual.vector().size(), count);
+  for (int i = 0; i < count; ++i) draws.col(i) = residual.Project(Draw(random, true)).col(0);
   return draws;
 }
 

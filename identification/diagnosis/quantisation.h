@@ -4,8 +4,8 @@
 
 namespace continuum {
 
-/// What values rounded to steps larger than their noise do to a diagnosis. x: the fitted model,
-/// which is simulated only where some are.
+/// The noise of values that are rounded to steps larger than their noise, in a diagnosis. x: the
+/// fitted model, which is simulated only where some are.
 class Quantisation {
  public:
   Quantisation(const Problem& problem, const Noise& noise, const Problem::Vector& x);
@@ -15,10 +15,10 @@ class Quantisation {
   Noise Corrected() const;
   /// Rounding errors are neither normal nor stationary: how much more of them than of whitened
   /// noise the directions of the candidates take up, by draws; at least 1.
-  double Inflation(const Remainder& left, const std::vector<std::vector<Probe>>& candidates,
-                   std::uint64_t seed) const;
-  /// Draws of the noise of all channels, as they stand in what a fit leaves; one column each.
-  Problem::Matrix Draws(const Remainder& left, int count, std::uint64_t seed) const;
+  double Inflation(const ProjectedResidual& residual,
+                   const std::vector<std::vector<Probe>>& candidates, std::uint64_t seed) const;
+  /// Draws of the noise of all channels, projected as the residual of a fit; one column each.
+  Problem::Matrix Draws(const ProjectedResidual& residual, int count, std::uint64_t seed) const;
 
  private:
   std::vector<Problem::Matrix> Draw(Random64& random, bool all) const;

@@ -17,19 +17,15 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-// Of steps by which a log may be early or late: when within a step a row was taken and an input
-// came is a matter of convention.
-constexpr double kLate = 0.15;
-// Times its deviation: more is a cause, as a delay of several steps.
-constexpr double kFarthest = 2;
+constexpr int kDraws = 1999;  // of white noise
 
-// How well a step's difference to a finer one foretells that to the limit, in units of itself:
+// How well a step's difference to a finer one predicts that to the limit, in units of itself:
 // well where it is of first order, not at all where joints stick and slip.
-double Spread(const Matrix& S) {
-  constexpr double kLeast = 0.1, kMost = 3, kOfDeviation = 4;  // second order leaves twice that
+double Spread(const Matrix& S, const Criteria& criteria) {
   const double effect = S.col(0).norm();
-  if (!(effect > 0)) return kMost;
-  return std::clamp(kOfDeviation * S.col(2).norm() / effect, kLeast, kMost);
+  if (!(effect > 0)) return criteria.step_most_spread;
+  return std::clamp<double>(criteria.step_varies * S.col(2).norm() / effect,
+                            criteria.step_least_spread, criteria.step_most_spread);
 }
 
 // Takes columns that r wants more of than they can be, one after the other, out of A's last ones
@@ -53,7 +49,7 @@ void Limit(Matrix& A, Vector& r, Eigen::Index free, std::vector<double> most) {
 }
 
 // Least squares of z + C a; coefficients of a forbidden sign are put to zero one after the other.
-// What is left of C is decomposed once for any number of z.
+// Each subset of C's columns is decomposed once for any number of z.
 class Explainer {
  public:
   explicit Explainer(Probe probe) : probe_(std::move(probe)) {}
@@ -62,17 +58,17 @@ class Explainer {
     const Eigen::Index k = probe_.columns.cols();
     std::vector<bool> out(k, false);
     while (true) {
-      const Left& left = Without(out);
+      const Subset& subset = Without(out);
       Explained e{0, Vector::Zero(k)};
-      if (left.in.empty()) return e;
-      const Vector a = -left.solver.solve(z);
+      if (subset.in.empty()) return e;
+      const Vector a = -subset.solver.solve(z);
       Eigen::Index worst = -1;
-      for (std::size_t i = 0; i < left.in.size(); ++i) {
-        if (probe_.sign[left.in[i]] * a[i] < 0) worst = left.in[i];
-        e.coefficients[left.in[i]] = a[i];
+      for (std::size_t i = 0; i < subset.in.size(); ++i) {
+        if (probe_.sign[subset.in[i]] * a[i] < 0) worst = subset.in[i];
+        e.coefficients[subset.in[i]] = a[i];
       }
       if (worst < 0) {
-        e.amount = std::max(0.0, z.squaredNorm() - (z + left.columns * a).squaredNorm());
+        e.amount = std::max(0.0, z.squaredNorm() - (z + subset.columns * a).squaredNorm());
         return e;
       }
       out[worst] = true;
@@ -80,30 +76,30 @@ class Explainer {
   }
 
  private:
-  struct Left {
+  struct Subset {
     std::vector<Eigen::Index> in;
     Matrix columns;
     Eigen::CompleteOrthogonalDecomposition<Matrix> solver;
   };
 
-  const Left& Without(const std::vector<bool>& out) {
-    const auto [at, fresh] = left_.try_emplace(out);
-    Left& left = at->second;
-    if (!fresh) return left;
+  const Subset& Without(const std::vector<bool>& out) {
+    const auto [at, fresh] = subsets_.try_emplace(out);
+    Subset& subset = at->second;
+    if (!fresh) return subset;
     for (Eigen::Index i = 0; i < probe_.columns.cols(); ++i) {
-      if (!out[i] && probe_.columns.col(i).squaredNorm() > 0) left.in.push_back(i);
+      if (!out[i] && probe_.columns.col(i).squaredNorm() > 0) subset.in.push_back(i);
     }
-    left.columns = probe_.columns(Eigen::all, left.in);
-    if (!left.in.empty()) left.solver.compute(left.columns);
-    return left;
+    subset.columns = probe_.columns(Eigen::all, subset.in);
+    if (!subset.in.empty()) subset.solver.compute(subset.columns);
+    return subset;
   }
 
   Probe probe_;
-  std::map<std::vector<bool>, Left> left_;
+  std::map<std::vector<bool>, Subset> subsets_;
 };
 
 // A candidate in the few dimensions that any candidate reaches.
-struct Small {
+struct ReducedCandidate {
   std::vector<Explainer> probes;
   double Best(const Vector& z, std::size_t* which = nullptr) {
     double best = 0;
@@ -150,6 +146,85 @@ class Tail {
   double share_ = 0, mean_ = 1, ninth_ = 0;  // of the positive ones, a ninth of 1/shape
 };
 
+// The columns of all probes beside each other.
+Matrix AllColumns(const std::vector<std::vector<Probe>>& candidates, Eigen::Index rows) {
+  Eigen::Index columns = 0;
+  for (const auto& probes : candidates) {
+    for (const Probe& p : probes) columns += p.columns.cols();
+  }
+  Matrix all(rows, columns);
+  columns = 0;
+  for (const auto& probes : candidates) {
+    for (const Probe& p : probes) {
+      all.middleCols(columns, p.columns.cols()) = p.columns;
+      columns += p.columns.cols();
+    }
+  }
+  return all;
+}
+
+// The few dimensions that any probe reaches.
+class ProbeSpan {
+ public:
+  explicit ProbeSpan(const Matrix& all) : qr_(all), size_(std::min(all.rows(), all.cols())) {}
+
+  Matrix Projected(const Matrix& any) const {
+    return (qr_.householderQ().transpose() * any).topRows(size_);
+  }
+  std::vector<ReducedCandidate> Reduced(const std::vector<std::vector<Probe>>& candidates) const {
+    const Matrix within = qr_.matrixQR().topRows(size_).template triangularView<Eigen::Upper>();
+    std::vector<ReducedCandidate> reduced(candidates.size());
+    Eigen::Index column = 0;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      for (const Probe& p : candidates[c]) {
+        reduced[c].probes.emplace_back(Probe{within.middleCols(column, p.columns.cols()), p.sign});
+        column += p.columns.cols();
+      }
+    }
+    return reduced;
+  }
+  Matrix WhiteNoise(int draws, std::uint64_t seed) const {
+    Random random(seed);
+    Matrix noise(size_, draws);
+    for (double& v : noise.reshaped()) v = random.Normal();
+    return noise;
+  }
+
+ private:
+  Eigen::HouseholderQR<Matrix> qr_;
+  Eigen::Index size_;
+};
+
+// [candidate, draw] how often noise explains as much as a candidate does of this draw; the last
+// draw is the measurement, of which it explains so much.
+Matrix TailProbabilities(std::vector<ReducedCandidate>& candidates, const Matrix& noise,
+                         const std::vector<double>& explained) {
+  Matrix p(static_cast<Eigen::Index>(candidates.size()), noise.cols() + 1);
+  p.rightCols(1) = Eigen::Map<const Vector>(explained.data(), p.rows());
+  ParallelFor(candidates.size(), [&](std::size_t, std::size_t c) {
+    for (Eigen::Index d = 0; d < noise.cols(); ++d) p(c, d) = candidates[c].Best(noise.col(d));
+    const Tail tail(p.row(c));
+    for (double& amount : p.row(c)) amount = tail(amount);
+  });
+  return p;
+}
+
+// [candidate] the share of draws in which some candidate is as improbable as this one is with the
+// measurement.
+std::vector<double> FamilyWise(const Matrix& p) {
+  const Eigen::Index draws = p.cols() - 1;
+  std::vector<double> smallest;
+  for (Eigen::Index d = 0; d < draws; ++d) smallest.push_back(p.col(d).minCoeff());
+  std::sort(smallest.begin(), smallest.end());
+  std::vector<double> family_wise;
+  for (Eigen::Index c = 0; c < p.rows(); ++c) {
+    const auto as_small =
+        std::upper_bound(smallest.begin(), smallest.end(), p(c, draws)) - smallest.begin();
+    family_wise.push_back((static_cast<double>(as_small) + 1) / static_cast<double>(draws + 1));
+  }
+  return family_wise;
+}
+
 }  // namespace
 
 Matrix Basis(const Matrix& A) {
@@ -164,9 +239,11 @@ Matrix Basis(const Matrix& A) {
   return qr.householderQ() * Matrix::Identity(A.rows(), qr.rank());
 }
 
-Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
-                     const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
-                     const std::vector<bool>& fixed, const std::vector<Matrix>& step)
+ProjectedResidual::ProjectedResidual(const Whitening& whitening, const std::vector<bool>& use,
+                                     const std::vector<Vector>& residuals,
+                                     const std::vector<Matrix>& jacobian,
+                                     const std::vector<bool>& fixed,
+                                     const std::vector<Matrix>& step, const Criteria& criteria)
     : whitening_(&whitening), use_(use) {
   const Matrix J = whitening.Stack(jacobian, use);
   const Matrix S = whitening.Stack(step, use);
@@ -174,8 +251,8 @@ Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
   std::vector<double> spread;
   if (S.cols() > 0) {
     r -= kWholeStep * S.col(0);
-    roughness_ = Spread(S);
-    spread = {roughness_, kLate};
+    roughness_ = Spread(S, criteria);
+    spread = {roughness_, criteria.late};
   }
   const auto n = r.size(), priors = static_cast<Eigen::Index>(spread.size());
   Matrix A = Matrix::Zero(n + priors, J.cols() + priors);  // the last rows are the priors of S
@@ -187,7 +264,7 @@ Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
   for (Eigen::Index i = 0; i < priors; ++i) {
     A.col(free + i).head(n) = S.col(i);
     A(n + i, free + i) = 1 / spread[i];
-    most.push_back(kFarthest * spread[i]);
+    most.push_back(criteria.step_farthest * spread[i]);
   }
   Vector padded = Vector::Zero(n + priors);
   padded.head(n) = r;
@@ -199,12 +276,12 @@ Remainder::Remainder(const Whitening& whitening, const std::vector<bool>& use,
   freedom_ = measured - static_cast<double>(free);
 }
 
-Remainder::Matrix Remainder::Out(Matrix columns) const {
+ProjectedResidual::Matrix ProjectedResidual::Out(Matrix columns) const {
   columns -= basis_ * (basis_.transpose() * columns);
   return columns;
 }
 
-Remainder::Matrix Remainder::Project(const std::vector<Matrix>& columns) const {
+ProjectedResidual::Matrix ProjectedResidual::Project(const std::vector<Matrix>& columns) const {
   const Matrix stacked = whitening_->Stack(columns, use_);
   Matrix padded = Matrix::Zero(residual_.size(), stacked.cols());
   padded.topRows(stacked.rows()) = stacked;
@@ -217,7 +294,7 @@ Significance BestOfProbes(const std::vector<std::vector<Probe>>& candidates, con
   Significance out;
   for (const auto& probes : candidates) {
     out.best.push_back(0);
-    Small whole{{probes.begin(), probes.end()}};
+    ReducedCandidate whole{{probes.begin(), probes.end()}};
     out.explained.push_back(whole.Best(z, &out.best.back()));
     out.p.push_back(1);
   }
@@ -227,64 +304,19 @@ Significance BestOfProbes(const std::vector<std::vector<Probe>>& candidates, con
 // Everything happens in the span of all probes: z and draws of noise are projected into it once.
 Significance SignificanceOf(const std::vector<std::vector<Probe>>& candidates, const Vector& z,
                             std::uint64_t seed, const Matrix& given) {
-  const int count = given.cols() > 0 ? static_cast<int>(given.cols()) : 1999;
   Significance out;
   out.explained.assign(candidates.size(), 0);
   out.best.assign(candidates.size(), 0);
   out.p.assign(candidates.size(), 1);
-  Eigen::Index columns = 0;
-  for (const auto& probes : candidates) {
-    for (const Probe& p : probes) columns += p.columns.cols();
-  }
-  if (columns == 0) return out;
-  Matrix all(z.size(), columns);
-  columns = 0;
-  for (const auto& probes : candidates) {
-    for (const Probe& p : probes) {
-      all.middleCols(columns, p.columns.cols()) = p.columns;
-      columns += p.columns.cols();
-    }
-  }
-  const Eigen::HouseholderQR<Matrix> qr(all);
-  const Eigen::Index span = std::min(all.rows(), all.cols());
-  const auto projected = [&](const Matrix& any) -> Matrix {
-    return (qr.householderQ().transpose() * any).topRows(span);
-  };
-  const Matrix within = qr.matrixQR().topRows(span).template triangularView<Eigen::Upper>();
-  std::vector<Small> small(candidates.size());
-  columns = 0;
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    for (const Probe& p : candidates[c]) {
-      small[c].probes.emplace_back(Probe{within.middleCols(columns, p.columns.cols()), p.sign});
-      columns += p.columns.cols();
-    }
-  }
-  const Vector here = projected(z);
-  for (std::size_t c = 0; c < small.size(); ++c)
-    out.explained[c] = small[c].Best(here, &out.best[c]);
-
-  Random random(seed);
-  Matrix noise(span, count);
-  if (given.cols() > 0) {
-    noise = projected(given);
-  } else {
-    for (double& v : noise.reshaped()) v = random.Normal();
-  }
-  Matrix draws(static_cast<Eigen::Index>(small.size()), count + 1);  // z itself is the last
-  draws.rightCols(1) = Eigen::Map<const Vector>(out.explained.data(), draws.rows());
-  ParallelFor(small.size(), [&](std::size_t, std::size_t c) {
-    for (int d = 0; d < count; ++d) draws(c, d) = small[c].Best(noise.col(d));
-    const Tail tail(draws.row(c));
-    for (double& amount : draws.row(c)) amount = tail(amount);
-  });
-  std::vector<double> smallest;
-  for (int d = 0; d < count; ++d) smallest.push_back(draws.col(d).minCoeff());
-  std::sort(smallest.begin(), smallest.end());
-  for (std::size_t c = 0; c < small.size(); ++c) {
-    const auto as_small =
-        std::upper_bound(smallest.begin(), smallest.end(), draws(c, count)) - smallest.begin();
-    out.p[c] = (static_cast<double>(as_small) + 1) / (count + 1);
-  }
+  const Matrix all = AllColumns(candidates, z.size());
+  if (all.cols() == 0) return out;
+  const ProbeSpan span(all);
+  std::vector<ReducedCandidate> reduced = span.Reduced(candidates);
+  const Vector here = span.Projected(z);
+  for (std::size_t c = 0; c < reduced.size(); ++c)
+    out.explained[c] = reduced[c].Best(here, &out.best[c]);
+  const Matrix noise = given.cols() > 0 ? span.Projected(given) : span.WhiteNoise(kDraws, seed);
+  out.p = FamilyWise(TailProbabilities(reduced, noise, out.explained));
   return out;
 }
 

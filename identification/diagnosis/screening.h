@@ -4,15 +4,20 @@
 #include <string>
 #include <vector>
 
+#include "identification/diagnosis/criteria.h"
 #include "identification/fit/fit.h"
 
 namespace continuum {
 
-/// What the data say against a fitted model, to first order: its whitened residuals r over the
-/// train logs after projecting out whatever may move freely,   z = M r,   M = I − A A⁺,
-/// with A the sensitivities of the fitted parameters and, with priors and within limits, what the
-/// time step adds. r is extrapolated to a step of zero; the prior is as wide as that is uncertain.
-class Remainder {
+/// The residual of a fitted model, whitened, to first order free of whatever may vary: what the
+/// data say against the model.
+///
+///   z = M r,   M = I − A A⁺
+///
+/// r: whitened residuals over the train logs; A: the sensitivities of the fitted parameters and,
+/// with priors and within limits, what the time step adds. r is extrapolated to a step of zero; the
+/// prior is as wide as that is uncertain.
+class ProjectedResidual {
  public:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
@@ -20,11 +25,13 @@ class Remainder {
   /// residuals, jacobian: [log] at the optimum; fixed: parameters that a bound holds; step: [log]
   /// Problem::StepEffects, which may be there in part, or no columns where the step does not
   /// matter.
-  Remainder(const Whitening& whitening, const std::vector<bool>& use,
-            const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
-            const std::vector<bool>& fixed, const std::vector<Matrix>& step);
+  ProjectedResidual(const Whitening& whitening, const std::vector<bool>& use,
+                    const std::vector<Vector>& residuals, const std::vector<Matrix>& jacobian,
+                    const std::vector<bool>& fixed, const std::vector<Matrix>& step,
+                    const Criteria& criteria = {});
 
-  const Vector& residual() const { return residual_; }
+  /// z: the rows of the train logs, then one for each prior.
+  const Vector& vector() const { return residual_; }
   /// |z|², the whitened sum of squares at the optimum to first order.
   double cost() const { return residual_.squaredNorm(); }
   /// M applied to columns given per log.

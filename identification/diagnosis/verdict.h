@@ -1,55 +1,90 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "identification/diagnosis/criteria.h"
 
 namespace continuum {
 
-/// One candidate's record over the folds, and what random forces with as many parameters reached.
+/// What a diagnosis concludes.
+struct Verdict {
+  enum class Kind {
+    kAdequate,    ///< the model needs no further cause
+    kNamed,       ///< one cause
+    kAmbiguous,   ///< several causes that the data do not distinguish
+    kUnexplained  ///< something is missing that no candidate explains
+  };
+  Kind kind = Kind::kUnexplained;
+  std::vector<std::size_t> named = {};     ///< candidates: one when named, more when ambiguous
+  std::string reason = {};                 ///< one sentence
+  std::vector<std::size_t> unlisted = {};  ///< candidates nobody asked for that do as well
+  bool unlisted_explains = false;          ///< unexplained, but not by one that nobody asked for
+
+  /// "adequate", "named", "ambiguous" or "unexplained".
+  std::string word() const;
+};
+
+/// One candidate's cross-validation, and that of random forces with as many parameters.
 struct FoldRecord {
-  std::string name;
-  /// Error left out, per fold, without and with the candidate; after: empty for a hopeless one.
-  std::vector<double> before, after;
-  std::vector<double> amplitude;           ///< of its main parameter, per fold
-  std::vector<double> placebo_gains;       ///< median gain of each placebo
-  double remaining = 0;                    ///< error of its fit over the noise; 0: noise not known
+  std::string name = {};
+  /// Error on the logs left out [fold], without and with the candidate; after: empty when it was
+  /// not worth the folds.
+  std::vector<double> before = {}, after = {};
+  std::vector<double> amplitude = {};      ///< [fold] value of its main parameter, from absence
+  std::vector<double> placebo_gains = {};  ///< [random force] median gain over the folds
+  double over_noise = 0;                   ///< error of its fit over the noise; 0: noise not known
   std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
 };
 
-/// The rules of a name on model-limited data.
-struct Rules {
-  double folds_better = 0.8;      ///< share of folds in which the error must fall, or be less
-  double median_gain = 0.10;      ///< and by how much in the median
-  double fit_gain = 0.05;         ///< and where it was fitted, to be worth the folds
-  double amplitude_spread = 0.3;  ///< over the folds, about its median, with one sign
-  double placebo_share = 0.95;    ///< of placebos that it must beat
-  /// Of a rival's error a better one must remove at least this in the median, and what that share
-  /// of the placebos removes of the error without any: what else is wrong favours one or the other.
-  double apart = 0.05;
-  double noise_reached = 1.25;  ///< error over noise up to which nothing is left to explain
-  double noise_limited = 3;     ///< above it the data are model-limited: something always is left
-  /// Remaining error over the scatter from row to row, where the noise is not known better.
-  double over_scatter = 0;
-  double too_much = 10;  ///< times that scatter: plainly no noise
-};
-
-/// 1 − after/before per fold, and its median.
+/// 1 − after/before [fold].
 std::vector<double> Gains(const FoldRecord& record);
+/// The middle value, or the mean of the two middle ones; 0 of none.
 double Median(std::vector<double> values);
 
-/// How many placebos a candidate beats.
+/// How many random forces a candidate beats in its median gain.
 double Beaten(const FoldRecord& candidate, const std::vector<double>& placebo_gains);
 
-/// Which rules a candidate fails, in words; empty when it may be named.
-std::vector<std::string> Failures(const FoldRecord& record, const Rules& rules = {});
+/// The rules that a candidate fails, one sentence each; empty when it may be named.
+std::vector<std::string> Failures(const FoldRecord& record, const Criteria& criteria = {});
+
+/// Whether the error falls in enough folds, and by enough in the median.
+bool HelpsOnFolds(const FoldRecord& record, const Criteria& criteria = {});
 
 /// Whether a is better than b in paired folds: by more than one standard error of the mean
-/// difference, in four of five of them, and by more than a margin in the median.
-bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin = 0);
+/// difference, in enough of them, and by more than a margin [share of b's error] in the median.
+bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin = 0,
+                   const Criteria& criteria = {});
 
-/// One candidate where noise is all that its fit leaves.
+/// What is known of the model's error beside the folds.
+struct ErrorLevel {
+  double over_noise = 0;    ///< of the present model; 0: noise not known
+  double ceiling_gain = 0;  ///< median share of the error that any smooth force removes
+  double over_scatter = 0;  ///< over the scatter from row to row, where no noise is known better
+  bool replicated = false;  ///< the noise comes from replicates: model error is none of it
+};
+
+/// The verdict by cross-validation.
+Verdict JudgeFolds(const std::vector<FoldRecord>& candidates, const ErrorLevel& error,
+                   const Criteria& criteria = {});
+
+/// Tests of the residual of a fitted model against directions that belong to no candidate.
+struct LackOfFit {
+  double force = 1;      ///< p-value of smooth forces of angle, speed and load
+  double channel = 1;    ///< p-value of constants and shifts in time of the channels
+  bool of_step = false;  ///< significant, but explained by the time-discretisation error
+
+  double smallest() const { return std::min(force, channel); }
+  bool significant(const Criteria& criteria = {}) const {
+    return smallest() < criteria.lack_of_fit;
+  }
+};
+
+/// One candidate where noise is the whole residual of its fit.
 struct LikelihoodRecord {
-  std::string name;
+  std::string name = {};
   std::size_t parameters = 0;
   double likelihood = 0;                   ///< twice the logarithm gained over the model without it
   std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
@@ -57,46 +92,20 @@ struct LikelihoodRecord {
   bool listed = true;  ///< whether it was asked for: only then it can be named
 };
 
-struct LikelihoodRules {
-  double level = 0.045;  ///< family-wise, of any name at all
-  double lack = 0.002;   ///< below it something is left that no name covers; each of two tests
-  double apart = 5;      ///< likelihood by which a rival must fall behind
-  double deeper = 2.8;   ///< score by which a law must beat one that it contains (99 %)
-  /// Share of what is put down to the time step that its first order may miss: names that are
-  /// closer are not told apart.
-  double step = 0.005;
-  double parameter = 3.84;  ///< what another parameter must gain (95 % of chi-squared)
-  bool excused = false;     ///< what is left is no more than the time step adds: no sign of a cause
-};
-
-struct Verdict {
-  std::string text;                        ///< adequate | named | ambiguous | unexplained
-  std::vector<std::size_t> named;          ///< one when named, two or more when ambiguous
-  std::string reason;                      ///< one sentence
-  std::vector<std::size_t> unlisted = {};  ///< that nobody asked for, and that do as well
-};
-
-/// What the folds allow one to say. noise_over: remaining error of the present model over the
-/// noise, 0 when the noise is unknown; ceiling_gain: median share of the error that any smooth
-/// force removed on left-out folds.
-Verdict Judge(const std::vector<FoldRecord>& candidates, double noise_over, double ceiling_gain,
-              const Rules& rules = {});
-
-/// What the likelihoods allow one to say. lack: p-value of what the best listed candidate (or,
-/// without a significant one, the present model) leaves; p: family-wise, of the best. A name that
-/// one that is not listed clearly outdoes is none; one that does as well is told beside it.
-Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, double lack, double p,
-                         const LikelihoodRules& rules = {});
-
-/// What a model leaves whose remainder noise alone would exceed with this probability (from the
-/// level rules.lack on), as in "it leaves nothing but noise".
-std::string LeftInWords(double lack, const LikelihoodRules& rules = {});
-
 /// Likelihood less what its parameters gain from noise alone.
-double ScoreOf(const LikelihoodRecord& record, const LikelihoodRules& rules = {});
+double ScoreOf(const LikelihoodRecord& record, const Criteria& criteria = {});
 
-/// Posterior probabilities of the candidates by Schwarz-like scores, equal before.
+/// Posterior probabilities of the candidates, each as likely before: exp(score/2), normalised.
 std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candidates,
-                                    const LikelihoodRules& rules = {});
+                                    const Criteria& criteria = {});
+
+/// The verdict by likelihood. lack: of the best listed candidate or, without a significant one, of
+/// the present model; p: family-wise, of the best. A name that an unlisted candidate clearly
+/// outdoes is none; one that does as well stands beside it.
+Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const LackOfFit& lack,
+                         double p, const Criteria& criteria = {});
+
+/// What a residual shows that is not significant: "nothing but noise".
+std::string ResidualInWords(const LackOfFit& lack, const Criteria& criteria = {});
 
 }  // namespace continuum

@@ -1,10 +1,11 @@
-// A diagnosis told on the terminal.
+#include "identification/report/diagnosis_summary.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "identification/report/diagnosis_output.h"
+#include "identification/diagnosis/gain.h"
 
 namespace continuum {
 namespace {
@@ -26,21 +27,25 @@ std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Inde
   std::string text;
   for (std::size_t k = 0; k < h.extra.size(); ++k) {
     const Eigen::Index at = begin + static_cast<Eigen::Index>(k);
-    text += fmt::format(", {} = {:.4g}{}", h.extra[k].name, fitted.fit.x[at],
-                        IntervalInWords(fitted.uncertainty, fitted.fit.x[at], at));
+    text += fmt::format(
+        ", {} = {:.4g}{}", h.extra[k].name, fitted.fit.x[at],
+        fitted.complete() ? IntervalInWords(fitted.sensitivities->uncertainty, fitted.fit.x[at], at)
+                          : "");
   }
   return text;
 }
 
 // The experiment's own parameters that a fit has put at a bound.
-std::string BoundsInWords(const Problem& null, const Fitted& fitted) {
+std::string BoundsInWords(const std::vector<FreeParameter>& parameters, const Fitted& fitted) {
   std::string text;
-  const auto& bound = fitted.uncertainty.at_bound;
-  for (std::size_t i = 0; i < std::min(bound.size(), null.parameters().size()); ++i) {
-    const FreeParameter& p = null.parameters()[i];
+  if (!fitted.complete()) return text;
+  const auto& bound = fitted.sensitivities->uncertainty.at_bound;
+  for (std::size_t i = 0; i < std::min(bound.size(), parameters.size()); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (bound[i] && !p.IsStart())
-      text += fmt::format("{}{} = {:.4g}", text.empty() ? "" : ", ", p.name, fitted.fit.x[at]);
+    if (bound[i] && !parameters[i].IsStart()) {
+      text += fmt::format("{}{} = {:.4g}", text.empty() ? "" : ", ", parameters[i].name,
+                          fitted.fit.x[at]);
+    }
   }
   return text.empty() ? "" : "at bound  " + text + "\n";
 }
@@ -61,61 +66,95 @@ std::string Ranking(const Experiment& e, const Diagnosis& d) {
   return text;
 }
 
-}  // namespace
-
-std::string Summary(const Experiment& e, const Diagnosis& d, const DiagnosisFiles& told) {
-  const Gain gain = GainOf(d, told.after);
-  const std::string unit = d.pool.unit();
-  std::string text = fmt::format("verdict   {}: {}\n", d.verdict.text, d.verdict.reason);
-  const auto tell = [&](const CandidateResult& c, const std::string& how, const std::string& note) {
+// What is named, and what the data do not distinguish from it.
+std::string CausesInWords(const Diagnosis& d) {
+  std::string text;
+  const auto add = [&](const CandidateResult& c, const std::string& how, const std::string& note) {
     text += fmt::format("{} {}{}{}\n", how, c.hypothesis.NameAtPlace(), note,
-                        ValuesInWords(c.hypothesis, c.fitted, c.own()));
+                        ValuesInWords(c.hypothesis, c.fitted, c.first_extra()));
   };
   for (const std::size_t i : d.verdict.named)
-    tell(d.candidates[i], i == d.verdict.named.front() ? "cause    " : "   or    ", "");
-  for (const CandidateResult& c : d.unlisted) tell(c, "   or    ", " (not listed)");
-  if (d.partner && d.chosen()) {
-    text += fmt::format(
-        "and       {} at {}{}", d.partner->hypothesis.Name(), d.partner->hypothesis.where,
-        ValuesInWords(d.partner->hypothesis, d.chosen()->fitted, d.before.fit.x.size()));
-    for (const std::string& other : d.partner->equivalent) text += ", or " + other;
-    text += "\n";
-  }
-  text += fmt::format("error     train {:.4g} -> {:.4g} {u}, validate {:.4g} -> {:.4g} {u}\n",
-                      d.before.error.train, told.after.train, d.before.error.validate,
-                      told.after.validate, fmt::arg("u", unit));
+    add(d.candidates[i], i == d.verdict.named.front() ? "cause    " : "   or    ", "");
+  for (const CandidateResult& c : d.unlisted) add(c, "   or    ", " (not listed)");
+  if (!d.partner || !d.chosen()) return text;
+  text +=
+      fmt::format("and       {} at {}{}", d.partner->hypothesis.Name(), d.partner->hypothesis.where,
+                  ValuesInWords(d.partner->hypothesis, d.chosen()->fitted, d.before.fit.x.size()));
+  for (const std::string& other : d.partner->equivalent) text += ", or " + other;
+  return text + "\n";
+}
+
+std::string ErrorsInWords(const Diagnosis& d, const TwoErrors& after) {
+  const Gain gain = GainOf(d, after);
+  const std::string unit = d.pool.unit();
+  std::string text = fmt::format(
+      "error     train {:.4g} -> {:.4g} {u}, validate {:.4g} -> {:.4g} {u}\n", d.before.error.train,
+      after.train, d.before.error.validate, after.validate, fmt::arg("u", unit));
   text += fmt::format(
       "gain      {:.0f} % of the held-out error ({:.0f} .. {:.0f} %), {:.0f} % of what is "
       "explainable\n",
       100 * gain.removed, 100 * d.gain_low, 100 * d.gain_high, 100 * gain.explainable);
-  text +=
-      d.noise.rms > 0
-          ? fmt::format(
-                "noise     {:.3g} {} ({}), time step {:.3g}; what remains is {:.1f} times both\n",
-                d.noise.rms, unit, d.noise.source, d.noise.step,
-                told.after.train / std::hypot(d.noise.rms, d.noise.step))
-          : fmt::format("noise     not known, time step {:.3g} {}\n", d.noise.step, unit);
+  text += d.noise.rms > 0
+              ? fmt::format(
+                    "noise     {:.3g} {} ({}), time step {:.3g}; the error is {:.1f} times both\n",
+                    d.noise.rms, unit, d.noise.source, d.noise.step,
+                    after.train / std::hypot(d.noise.rms, d.noise.step))
+              : fmt::format("noise     not known, time step {:.3g} {}\n", d.noise.step, unit);
   if (d.noise_limited) {
     text += fmt::format(
-        "left      p = {:.2g} (smooth forces), {:.2g} (channels); significant below {:g}{}\n",
-        d.lack.force, d.lack.channel, LikelihoodRules{}.lack,
-        d.noise.step > 0 ? ", without what the time step adds" : "");
+        "residual  p = {:.2g} (smooth forces), {:.2g} (channels); significant below {:g}{}\n",
+        d.lack_of_fit.force, d.lack_of_fit.channel, +d.criteria.lack_of_fit,
+        d.noise.step > 0 ? ", without the time-discretisation error" : "");
   } else {
     text += fmt::format("ceiling   {:.4g} {} on validate with {}\n", d.ceiling_error.validate, unit,
                         d.ceiling_by);
   }
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, told.wrong.size()); ++i) {
-    const Deviation& w = told.wrong[i];
+  return text;
+}
+
+std::string DeviationsInWords(const Diagnosis& d, const std::vector<Deviation>& deviations) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, deviations.size()); ++i) {
+    const Deviation& one = deviations[i];
     text += fmt::format("{}{} {} at {}: the simulation {}\n",
-                        d.verdict.text == "adequate" ? "largest   " : "wrong     ", w.log,
-                        w.channel, w.when, w.what);
+                        d.Is(Verdict::Kind::kAdequate) ? "largest   " : "wrong     ", one.log,
+                        one.channel, one.when, one.what);
   }
-  text += BoundsInWords(Problem(e, d.system), d.chosen() ? d.chosen()->fitted : d.before);
-  if (const std::string between = BetweenInWords(e, d); !between.empty())
-    text += "between   " + between + "\n";
-  if (d.fallback) {
-    text += fmt::format("fallback  {}, in {}\n", FallbackInWords(d), kFallbackModel);
+  return text;
+}
+
+}  // namespace
+
+std::string FallbackInWords(const Diagnosis& d) {
+  const CandidateResult& c = *d.fallback;
+  return fmt::format(
+      "no cause, but a smooth force at {} takes {:.0f} % off the error in the median of the folds",
+      c.hypothesis.where, 100 * Median(Gains(c.record)));
+}
+
+std::string ContrastInWords(const Diagnosis& d) {
+  if (!d.contrast) return "";
+  std::string text = fmt::format(
+      "runs under different conditions differ by {:.4g} {} beyond the "
+      "model",
+      *d.contrast, d.pool.unit());
+  const CandidateResult* best = nullptr;
+  for (const CandidateResult& c : d.candidates) {
+    if (c.contrast && (!best || *c.contrast < *best->contrast)) best = &c;
   }
+  if (best)
+    text += fmt::format(", {:.4g} with {}", *best->contrast, best->hypothesis.NameAtPlace());
+  return text + "; what it gets wrong in both cancels";
+}
+
+std::string Summary(const Experiment& e, const Diagnosis& d, const ExtensionRun& run) {
+  std::string text = fmt::format("verdict   {}: {}\n", d.verdict.word(), d.verdict.reason);
+  text += CausesInWords(d) + ErrorsInWords(d, run.after) + DeviationsInWords(d, run.deviations);
+  text += BoundsInWords(d.parameters_before, d.last());
+  if (const std::string contrast = ContrastInWords(d); !contrast.empty())
+    text += "between   " + contrast + "\n";
+  if (d.fallback) text += fmt::format("fallback  {}, in {}\n", FallbackInWords(d), kFallbackModel);
   text += Ranking(e, d);
   if (d.verdict.named.size() > 1)
     text += fmt::format("next      {} (separation {:.3g}){}\n", d.next.input, d.next.separation,

@@ -46,15 +46,21 @@ void RequireCount(const std::string& what, std::size_t found, std::size_t expect
   if (found != expected) throw Error::Job(fmt::format("{}: {} of {}", what, found, expected));
 }
 
-void RequireWhole(const Experiment& e, const std::vector<Replayed>& logs) {
+void RequireWhole(const Experiment& e, const std::vector<Trace>& logs) {
   RequireCount("simulated logs", logs.size(), e.logs.size());
   for (std::size_t l = 0; l < logs.size(); ++l) {
-    const auto& channels = logs[l].trace.channel;
+    const auto& channels = logs[l].channel;
     const std::string of = "log '" + e.logs[l].label + "', simulated ";
     RequireCount(of + "channels", channels.size(), e.channels.size());
     for (const auto& channel : channels)
       RequireCount(of + "rows", channel.size(), e.logs[l].rows());
   }
+}
+
+void RequireWhole(const Experiment& e, const std::vector<Replayed>& logs) {
+  std::vector<Trace> traces;
+  for (const Replayed& log : logs) traces.push_back(log.trace);
+  RequireWhole(e, traces);
 }
 
 }  // namespace continuum

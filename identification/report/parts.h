@@ -28,6 +28,7 @@ std::string MissingInWords(const std::vector<MissingPart>& missing);
 
 /// Throws Error (kJob) where simulated logs lack channels or rows of the experiment, or a result
 /// lacks entries: "standard errors: 2 of 3".
+void RequireWhole(const Experiment& experiment, const std::vector<Trace>& logs);
 void RequireWhole(const Experiment& experiment, const std::vector<Replayed>& logs);
 void RequireCount(const std::string& what, std::size_t found, std::size_t expected);
 

@@ -8,7 +8,8 @@
 #include <fmt/format.h>
 
 #include "hidden_effects/robots.h"
-#include "identification/report/diagnosis_output.h"
+#include "identification/diagnosis/gain.h"
+#include "identification/report/diagnosis_summary.h"
 #include "sim/io/decimal.h"
 #include "sim/io/file.h"
 
@@ -158,7 +159,7 @@ double ClosestTo(const CandidateResult& lead, const Diagnosis& d) {
   double closest = 1e9;
   for (const CandidateResult& c : d.candidates) {
     if (c.hypothesis.effect != lead.hypothesis.effect && !c.probes.empty())
-      closest = std::min(closest, c.apart);
+      closest = std::min(closest, c.lambda);
   }
   return closest;
 }
@@ -167,18 +168,18 @@ Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
   const Experiment e = Experiment::Read(file);
   const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model));
   Answer a;
-  a.verdict = d.verdict.text;
+  a.verdict = d.verdict.word();
   a.seconds = d.seconds;
   a.explained = GainOf(d, d.after()).explainable;
   a.next = Separation(d);
   for (const CandidateResult& one : d.candidates) a.p = std::min(a.p, one.p);
   for (const Dismissed& one : d.dismissed) a.p = std::min(a.p, one.p);
-  a.lack = d.lack.smallest();
+  a.lack = d.lack_of_fit.smallest();
   if (d.noise_limited && d.chosen()) a.closest = ClosestTo(d.candidates.front(), d);
   a.next_experiment = d.next;
-  DiagnosisFiles told;
-  told.after = d.after();
-  a.detail = Summary(e, d, told);
+  ExtensionRun run;
+  run.after = d.after();
+  a.detail = Summary(e, d, run);
   if (d.noise_limited && !d.partner && d.chosen()) {
     for (const CandidateResult& one : d.candidates)
       a.stated[one.hypothesis.effect] += one.probability;
@@ -196,9 +197,10 @@ Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
     a.truth = h.null + h.size * c.factor;
     for (std::size_t k = 0; k < one.hypothesis.extra.size(); ++k) {
       if (one.hypothesis.extra[k].name != h.parameter) continue;
-      const Eigen::Index at = one.own() + static_cast<Eigen::Index>(k);
+      const Eigen::Index at = one.first_extra() + static_cast<Eigen::Index>(k);
       a.value = one.fitted.fit.x[at];
-      a.low = one.fitted.uncertainty.lower[at], a.high = one.fitted.uncertainty.upper[at];
+      a.low = one.fitted.sensitivities->uncertainty.lower[at],
+      a.high = one.fitted.sensitivities->uncertainty.upper[at];
     }
   }
   if (d.partner && d.chosen()) {

@@ -47,7 +47,7 @@ void Measure(const std::string& name, const Experiment& e) {
     if (part.wall > 0)
       fmt::print("  {:<32} {:8.2f} {:8.2f}\n", part.name, part.wall, part.processor);
   }
-  fmt::print("  {:<32} {:8.2f} {:8.2f}{}\n", d.verdict.text + " after", d.seconds, processor,
+  fmt::print("  {:<32} {:8.2f} {:8.2f}{}\n", d.verdict.word() + " after", d.seconds, processor,
              Load());
   if (d.chosen()) fmt::print("  {}\n", d.chosen()->hypothesis.NameAtPlace());
 }

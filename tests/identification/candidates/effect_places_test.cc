@@ -166,17 +166,17 @@ class Carts : public testing::Bench {
 TEST_F(Carts, OneSpringThatIsStiffIsNamedThoughAllAreFittedTogether) {
   AddTrials(1.1, 1);
   const Diagnosis d = Ask("[stiffness, payload, coulomb, input_gain]");
-  ASSERT_EQ(d.verdict.text, "named") << d.verdict.reason;
+  ASSERT_EQ(d.verdict.word(), "named") << d.verdict.reason;
   EXPECT_EQ(d.chosen()->hypothesis.NameAtPlace(), "stiffness at joint x1");
-  EXPECT_NEAR(d.chosen()->fitted.fit.x[d.chosen()->own()], 66, 0.5);
+  EXPECT_NEAR(d.chosen()->fitted.fit.x[d.chosen()->first_extra()], 66, 0.5);
 }
 
 TEST_F(Carts, OneSensorThatReadsTooMuchIsNamed) {
   AddTrials(1, 1.1);
   const Diagnosis d = Ask("[sensor_scale, sensor_bias, payload, input_offset]");
-  ASSERT_THAT(d.verdict.text, AnyOf("named", "ambiguous")) << d.verdict.reason;
+  ASSERT_THAT(d.verdict.word(), AnyOf("named", "ambiguous")) << d.verdict.reason;
   EXPECT_EQ(d.chosen()->hypothesis.NameAtPlace(), "sensor_scale at sensor x1");
-  EXPECT_NEAR(d.chosen()->fitted.fit.x[d.chosen()->own()], 1.1, 0.005);
+  EXPECT_NEAR(d.chosen()->fitted.fit.x[d.chosen()->first_extra()], 1.1, 0.005);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "binding/expression.h"
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/report/diagnosis_output.h"
+#include "support/diagnosis_files.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -83,8 +83,7 @@ TEST_F(WrittenLawTest, IsJudgedAsTheSameLawOfTheList) {
 TEST_F(WrittenLawTest, IsWrittenIntoTheModelWithItsFormula) {
   const Experiment e = ReadWith(kLevel);
   const Diagnosis d = Ask(e);
-  const DiagnosisFiles told = WriteDiagnosis(e, d, folder_ / "out");
-  const auto json = DiagnosisJson(e, d, told);
+  const auto json = testing::WriteFiles(e, d, folder_ / "out").json;
   ASSERT_THAT(json.at("causes"), SizeIs(1)) << json.at("reason");
   const auto& level = json.at("causes")[0].at("parameters").at("level");
   EXPECT_EQ(level.at("unit"), "N*m");

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/diagnosis/fold_comparison.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "support/pendulum.h"
 
 namespace continuum {

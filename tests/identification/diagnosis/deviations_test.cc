@@ -33,7 +33,7 @@ Experiment With(const std::vector<std::string>& columns, const std::string& unit
 
 TEST(Deviation, IsFoundWhereTheFirstRowWasNotMeasured) {
   const Experiment e = With({"x"}, "mm", 1e-3, {{kNan, 0.001, 0.002, 0.001}});
-  const auto wrong = FindWrong(e, {{{{0, 0.001, 0.005, 0.001}}}});
+  const auto wrong = FindDeviations(e, {{{{0, 0.001, 0.005, 0.001}}}});
   ASSERT_THAT(wrong, SizeIs(1));
   EXPECT_EQ(wrong[0].when, "0.20 s");
   EXPECT_EQ(wrong[0].what, "is 3 mm too high");
@@ -42,7 +42,7 @@ TEST(Deviation, IsFoundWhereTheFirstRowWasNotMeasured) {
 TEST(Deviation, OfAnOrientationIsATurnAboutAnAxis) {
   const double c = std::cos(0.1), s = std::sin(0.1);
   const Experiment e = With({"qw", "qx", "qy", "qz"}, "rad", 1, {{1, 1}, {0, 0}, {0, 0}, {0, 0}});
-  const auto wrong = FindWrong(e, {{{{1, c}, {0, 0}, {0, -s}, {0, 0}}}});
+  const auto wrong = FindDeviations(e, {{{{1, c}, {0, 0}, {0, -s}, {0, 0}}}});
   ASSERT_THAT(wrong, SizeIs(1));
   EXPECT_EQ(wrong[0].channel, "qy");
   EXPECT_THAT(wrong[0].what, HasSubstr("turned by -0.2 rad about y"));

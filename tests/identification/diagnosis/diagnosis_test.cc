@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "identification/diagnosis/condition_contrast.h"
+#include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/next_experiment.h"
-#include "identification/report/diagnosis_output.h"
+#include "support/diagnosis_files.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -64,12 +64,12 @@ class DiagnosisTest : public Bench {
     return Diagnose(e, ModelSpec::Load(Write("model.xml", Pendulum().Xml())), options);
   }
   static std::string Described(const Diagnosis& d) {
-    std::string text = d.verdict.text + ": " + d.verdict.reason + "\n";
+    std::string text = d.verdict.word() + ": " + d.verdict.reason + "\n";
     text += fmt::format("  validate error {:.3g}, with a smooth force {:.3g}, after {:.3g}\n",
                         d.before.error.validate, d.ceiling_error.validate, d.after().validate);
     for (const CandidateResult& c : d.candidates) {
-      text += fmt::format("  {}: median gain {:.3f}, {:.2f} times the noise left\n",
-                          c.hypothesis.Name(), Median(Gains(c.record)), c.record.remaining);
+      text += fmt::format("  {}: median gain {:.3f}, error {:.2f} times the noise\n",
+                          c.hypothesis.Name(), Median(Gains(c.record)), c.record.over_noise);
       for (const auto& failure : c.failures) text += "    " + failure + "\n";
     }
     return text;
@@ -84,7 +84,7 @@ TEST_F(DiagnosisTest, NamesAHiddenPayload) {
   AddTrials(truth);
   const Experiment e = ReadWith(kCandidates);
   const Diagnosis d = Ask(e);
-  EXPECT_EQ(d.verdict.text, "named") << Described(d);
+  EXPECT_EQ(d.verdict.word(), "named") << Described(d);
   ASSERT_THAT(d.verdict.named, SizeIs(1)) << Described(d);
   const CandidateResult& cause = *d.chosen();
   EXPECT_EQ(cause.hypothesis.effect, "payload");
@@ -106,14 +106,13 @@ TEST_F(DiagnosisTest, TellsWhatIsNotListedAndWouldDoAsWell) {
   AddTrials(truth);
   const Experiment e = ReadWith("link_mass, coulomb");
   const Diagnosis d = Ask(e);
-  ASSERT_EQ(d.verdict.text, "named") << Described(d);
+  ASSERT_EQ(d.verdict.word(), "named") << Described(d);
   EXPECT_EQ(d.chosen()->hypothesis.effect, "link_mass");
   std::vector<std::string> beside;
   for (const CandidateResult& c : d.unlisted) beside.push_back(c.hypothesis.effect);
   EXPECT_THAT(beside, ::testing::Contains("payload")) << Described(d);
   EXPECT_THAT(d.verdict.reason, HasSubstr("not listed"));
-  WriteDiagnosis(e, d, folder_ / "out");
-  const auto json = nlohmann::json::parse(ReadFile(folder_ / "out" / "diagnosis.json"));
+  const auto json = testing::WriteFiles(e, d, folder_ / "out").json;
   EXPECT_THAT(json.at("causes").at(0).at("equivalent"), ::testing::Contains("payload"));
 }
 
@@ -122,7 +121,7 @@ TEST_F(DiagnosisTest, NoNameStandsThatOneOutsideTheListClearlyOutdoes) {
   truth.tau_c = 0.01;
   AddTrials(truth);
   const Diagnosis d = Ask(ReadWith("maxwell, payload"));
-  EXPECT_EQ(d.verdict.text, "unexplained") << Described(d);
+  EXPECT_EQ(d.verdict.word(), "unexplained") << Described(d);
   EXPECT_THAT(d.verdict.reason, HasSubstr("not listed")) << Described(d);
 }
 
@@ -130,7 +129,7 @@ TEST_F(DiagnosisTest, FindsNothingWhereNothingIsHidden) {
   AddTrials({});
   const Experiment e = ReadWith(kCandidates);
   const Diagnosis d = Ask(e);
-  EXPECT_EQ(d.verdict.text, "adequate") << Described(d);
+  EXPECT_EQ(d.verdict.word(), "adequate") << Described(d);
   EXPECT_THAT(d.verdict.named, IsEmpty());
   EXPECT_EQ(d.chosen(), nullptr);
   EXPECT_LT(d.before.error.train, 1.1 * kNoise);
@@ -151,7 +150,7 @@ TEST_F(DiagnosisTest, NamesBacklashWhenItIsAmongTheCandidates) {
   AddTrials(truth);
   const Experiment e = ReadWith("backlash, payload, input_gain");
   const Diagnosis d = Ask(e);
-  EXPECT_EQ(d.verdict.text, "named") << Described(d);
+  EXPECT_EQ(d.verdict.word(), "named") << Described(d);
   ASSERT_NE(d.chosen(), nullptr);
   EXPECT_EQ(d.chosen()->hypothesis.effect, "backlash");
   EXPECT_NEAR(d.chosen()->fitted.fit.x[1], truth.gap, 0.02 * truth.gap);
@@ -167,8 +166,8 @@ TEST_P(Unlisted, BacklashIsNotGivenAnotherName) {
   AddTrials(truth);
   const Experiment e = ReadWith("payload, coulomb, input_gain");
   const Diagnosis d = Ask(e);
-  EXPECT_NE(d.verdict.text, "named") << Described(d);
-  EXPECT_NE(d.verdict.text, "adequate") << Described(d);
+  EXPECT_NE(d.verdict.word(), "named") << Described(d);
+  EXPECT_NE(d.verdict.word(), "adequate") << Described(d);
 }
 
 TEST_F(DiagnosisTest, NothingIsNamedWhenInputsBelongToOtherLogs) {
@@ -181,8 +180,8 @@ TEST_F(DiagnosisTest, NothingIsNamedWhenInputsBelongToOtherLogs) {
     e.logs[l].input = logs[(l + 2) % logs.size()].input;
   }
   const Diagnosis d = Ask(e);
-  EXPECT_NE(d.verdict.text, "named") << Described(d);
-  EXPECT_NE(d.verdict.text, "adequate") << Described(d);
+  EXPECT_NE(d.verdict.word(), "named") << Described(d);
+  EXPECT_NE(d.verdict.word(), "adequate") << Described(d);
 }
 
 TEST_F(DiagnosisTest, NothingIsNamedWhenTheInputsHaveTheOtherSign) {
@@ -194,7 +193,7 @@ TEST_F(DiagnosisTest, NothingIsNamedWhenTheInputsHaveTheOtherSign) {
     for (double& u : log.input[0]) u = -u;
   }
   const Diagnosis d = Ask(e);
-  EXPECT_NE(d.verdict.text, "named") << Described(d);
+  EXPECT_NE(d.verdict.word(), "named") << Described(d);
 }
 
 TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
@@ -204,12 +203,12 @@ TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
   const Experiment e = ReadWith("payload, stiffness");
   Diagnosis d = Ask(e, 2);
   ASSERT_THAT(d.candidates, SizeIs(2)) << Described(d);
-  CandidateFitter trials;
-  trials.experiment = &e;
+  CandidateFitter fitter;
+  fitter.experiment = &e;
   d.verdict.named = {0};
-  EXPECT_EQ(ProposeNext(trials, d).input, "");
+  EXPECT_EQ(ProposeNext(fitter, d).input, "");
   d.verdict.named = {0, 1};
-  const NextExperiment parts = ProposeNext(trials, d);
+  const NextExperiment parts = ProposeNext(fitter, d);
   EXPECT_GT(parts.separation, 15);
   EXPECT_THAT(parts.input, Not(HasSubstr("no change")));
   ASSERT_TRUE(parts.log);
@@ -218,7 +217,7 @@ TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'),
             static_cast<std::ptrdiff_t>(parts.log->rows() + 1));
   d.candidates[1] = CandidateResult(d.candidates[0]);
-  const NextExperiment same = ProposeNext(trials, d);
+  const NextExperiment same = ProposeNext(fitter, d);
   EXPECT_LT(same.separation, 1e-6);
   EXPECT_THAT(same.input, HasSubstr("no change of these inputs"));
   EXPECT_FALSE(same.log);
@@ -231,16 +230,16 @@ TEST_F(DiagnosisTest, AFitAtAFineStepTellsHowFarTheStepMovesAValue) {
   const Experiment e = ReadWith("payload");
   const ModelSpec coarse = ModelSpec::Load(Write("model.xml", Pendulum().Xml("", 4e-3)));
   const Problem problem(e, coarse);
-  CandidateFitter trials;
-  trials.experiment = &e;
-  Fitted fitted = trials.FitAll(problem, problem.Start());
-  fitted.uncertainty.step *= 2;  // a first order that is no good
-  trials.FitFinely(problem, fitted);
+  CandidateFitter fitter;
+  fitter.experiment = &e;
+  Fitted fitted = fitter.FitAll(problem, problem.Start());
+  fitted.sensitivities->uncertainty.step *= 2;  // a first order that is no good
+  fitter.FitFinely(problem, fitted);
   const double x = fitted.fit.x[0], off = truth.damping - x;
-  EXPECT_GT(std::abs(off), 5 * fitted.uncertainty.standard_error[0]);
-  EXPECT_NEAR(fitted.uncertainty.step[0], off, 0.1 * std::abs(off));
-  EXPECT_LE(fitted.uncertainty.lower[0], std::min(x, truth.damping));
-  EXPECT_GE(fitted.uncertainty.upper[0], std::max(x, truth.damping));
+  EXPECT_GT(std::abs(off), 5 * fitted.sensitivities->uncertainty.standard_error[0]);
+  EXPECT_NEAR(fitted.sensitivities->uncertainty.step[0], off, 0.1 * std::abs(off));
+  EXPECT_LE(fitted.sensitivities->uncertainty.lower[0], std::min(x, truth.damping));
+  EXPECT_GE(fitted.sensitivities->uncertainty.upper[0], std::max(x, truth.damping));
 }
 
 TEST_F(DiagnosisTest, ACopyOfALogIsNoReplicate) {
@@ -299,21 +298,21 @@ TEST_F(PerCondition, EachGetsItsOwnValue) {
   AddConditions();
   const Experiment e = ReadWith("payload, {effect: payload, per: condition}, input_gain");
   const Diagnosis d = Ask(e);
-  ASSERT_EQ(d.verdict.text, "named") << Described(d);
+  ASSERT_EQ(d.verdict.word(), "named") << Described(d);
   const CandidateResult& c = *d.chosen();
   EXPECT_THAT(c.hypothesis.where, HasSubstr("per condition"));
   ASSERT_THAT(c.hypothesis.extra, SizeIs(2));
   EXPECT_EQ(c.hypothesis.extra[1].name, "mass[loaded]");
-  EXPECT_NEAR(c.fitted.fit.x[c.own()], 0.02, 0.002);
-  EXPECT_NEAR(c.fitted.fit.x[c.own() + 1], 0.08, 0.002);
-  const Problem problem(e, d.system);
-  EXPECT_NEAR(BetweenConditions(problem, c.fitted.residuals), kNoise, 0.2 * kNoise);
-  EXPECT_GT(BetweenConditions(problem, d.before.residuals), 5 * kNoise);
-  const auto told = WriteDiagnosis(e, d, folder_ / "out");  // by extended.yaml
-  EXPECT_THAT(Summary(e, d, told), HasSubstr("between   the conditions' runs are"));
-  EXPECT_NEAR(told.after.validate, d.after().validate, 0.02 * d.after().validate);
-  const auto json = DiagnosisJson(e, d, told);
-  const auto& best = json.at("candidates").at(0);
+  EXPECT_NEAR(c.fitted.fit.x[c.first_extra()], 0.02, 0.002);
+  EXPECT_NEAR(c.fitted.fit.x[c.first_extra() + 1], 0.08, 0.002);
+  ASSERT_TRUE(c.contrast && d.contrast);
+  EXPECT_NEAR(*c.contrast, kNoise, 0.2 * kNoise);
+  EXPECT_GT(*d.contrast, 5 * kNoise);
+  const auto files = testing::WriteFiles(e, d, folder_ / "out");  // by extended.yaml
+  EXPECT_THAT(Summary(e, d, files.run),
+              HasSubstr("between   runs under different conditions differ by"));
+  EXPECT_NEAR(files.run.after.validate, d.after().validate, 0.02 * d.after().validate);
+  const auto& best = files.json.at("candidates").at(0);
   EXPECT_NEAR(best.at("values").at("mass[loaded]"), 0.08, 0.002);
 }
 
@@ -338,16 +337,17 @@ TEST_F(DiagnosisTest, WritesFilesThatReproduceTheNamedModel) {
   const Experiment e = ReadWith("payload, input_gain");
   const Diagnosis d = Ask(e, 2);
   ASSERT_NE(d.chosen(), nullptr) << Described(d);
-  const auto told = WriteDiagnosis(e, d, folder_ / "out");
-  EXPECT_NEAR(told.after.train, d.after().train, 0.02 * d.after().train);
-  EXPECT_NEAR(told.after.validate, d.after().validate, 0.02 * d.after().validate);
-  const auto json = nlohmann::json::parse(ReadFile(folder_ / "out" / "diagnosis.json"));
-  EXPECT_EQ(json["verdict"], d.verdict.text);
-  EXPECT_EQ(json["candidates"].size(), d.candidates.size());
+  const auto files = testing::WriteFiles(e, d, folder_ / "out");
+  EXPECT_THAT(files.missing, IsEmpty());
+  EXPECT_FALSE(files.json.contains("missing"));
+  EXPECT_NEAR(files.run.after.train, d.after().train, 0.02 * d.after().train);
+  EXPECT_NEAR(files.run.after.validate, d.after().validate, 0.02 * d.after().validate);
+  EXPECT_EQ(files.json["verdict"], d.verdict.word());
+  EXPECT_EQ(files.json["candidates"].size(), d.candidates.size());
   for (const char* file : {"extended.xml", "extended.yaml", "report.html"}) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
   }
-  EXPECT_THAT(Summary(e, d, told), HasSubstr("payload"));
+  EXPECT_THAT(Summary(e, d, files.run), HasSubstr("payload"));
 }
 
 }  // namespace

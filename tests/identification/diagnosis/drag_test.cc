@@ -98,7 +98,7 @@ class Drag : public testing::Bench {
 TEST_F(Drag, IsUnexplainedWhateverIsAsked) {
   AddTrials();
   for (const std::string candidates : {"all", "[clock_skew]"})
-    EXPECT_EQ(Ask(candidates).verdict.text, "unexplained") << candidates;
+    EXPECT_EQ(Ask(candidates).verdict.word(), "unexplained") << candidates;
 }
 
 }  // namespace

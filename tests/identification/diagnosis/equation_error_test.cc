@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/candidates/candidate_generator.h"
-#include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/probing.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -48,7 +48,7 @@ class ByEquationTest : public Bench {
     for (Hypothesis& h : MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped)) {
       if (h.effect != effect) continue;
       CandidateResult c{std::move(h)};
-      c.fits = true;
+      c.was_fitted = true;
       c.fitted.fit.x = Append(null.Start(), {value});
       return c;
     }

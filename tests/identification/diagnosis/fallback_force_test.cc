@@ -7,8 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/report/diagnosis_output.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "sim/replay/replay.h"
+#include "support/diagnosis_files.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -46,16 +47,16 @@ class FallbackTest : public Bench {
 
 TEST_F(FallbackTest, WhatNobodyExplainsGetsAForceWithoutACause) {
   const Diagnosis d = Ask("sensor_bias", 0.2, 0);
-  ASSERT_EQ(d.verdict.text, "unexplained");
+  ASSERT_EQ(d.verdict.word(), "unexplained");
   ASSERT_TRUE(d.fallback);
   EXPECT_EQ(d.fallback->hypothesis.where, "joint hinge");
   EXPECT_LT(d.fallback->fitted.error.validate, 0.7 * d.before.error.validate);
   const auto out = folder_ / "out";
-  const DiagnosisFiles told = WriteDiagnosis(e_, d, out);
-  const auto json = DiagnosisJson(e_, d, told);
+  const auto files = testing::WriteFiles(e_, d, out);
+  const auto& json = files.json;
   EXPECT_THAT(json.at("fallback").at("label"), HasSubstr("no cause"));
   EXPECT_TRUE(json.at("causes").empty());
-  EXPECT_THAT(Summary(e_, d, told), HasSubstr("fallback  no cause"));
+  EXPECT_THAT(Summary(e_, d, files.run), HasSubstr("fallback  no cause"));
   Experiment files = Experiment::Read(out / kFallbackExperiment);
   const SplitError error = PooledError(files, Replay(files, ModelSpec::Load(out / kFallbackModel)));
   EXPECT_NEAR(error.validate, d.fallback->fitted.error.validate, 1e-6);
@@ -77,21 +78,21 @@ TEST_F(FallbackTest, IsNotLookedForWhereForcesReachNothing) {
   options.placebos = 0;
   options.progress = [&](const std::string& text) { said += text + "\n"; };
   const Diagnosis d = Diagnose(e_, ModelSpec::Load(Write("model.xml", Pendulum().Xml())), options);
-  EXPECT_EQ(d.verdict.text, "unexplained") << d.verdict.reason;
+  EXPECT_EQ(d.verdict.word(), "unexplained") << d.verdict.reason;
   EXPECT_FALSE(d.fallback);
   EXPECT_THAT(said, ::testing::Not(HasSubstr("a force without a cause")));
 }
 
 TEST_F(FallbackTest, WhatHasACauseGetsNone) {
   const Diagnosis d = Ask("payload", 0.1, 0.1);
-  ASSERT_EQ(d.verdict.text, "named");
+  ASSERT_EQ(d.verdict.word(), "named");
   EXPECT_FALSE(d.fallback);
   const auto out = folder_ / "out";
   MakeFolder(out);
   Write("out/fallback.xml", "of an earlier diagnosis");
-  const DiagnosisFiles told = WriteDiagnosis(e_, d, out);
+  const auto files = testing::WriteFiles(e_, d, out);
   EXPECT_FALSE(std::filesystem::exists(out / kFallbackModel));
-  EXPECT_TRUE(DiagnosisJson(e_, d, told).at("fallback").is_null());
+  EXPECT_TRUE(files.json.at("fallback").is_null());
 }
 
 }  // namespace

@@ -7,7 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "identification/report/diagnosis_output.h"
+#include "identification/diagnosis/diagnosis.h"
+#include "support/diagnosis_files.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -87,10 +88,10 @@ TEST_F(OneSided, ADeadPressureIsAnOffsetOfTheInputs) {
           "parameters:\n  - {name: k, target: 'joint:x', attribute: stiffness, lower: 10, upper: "
           "100}\ncandidates: [{effect: input_offset, where: 'actuator:*'}, input_gain]\n"));
   const Diagnosis d = Diagnose(e, ModelSpec::Load(Write("model.xml", Xml())), {});
-  ASSERT_EQ(d.verdict.text, "named") << d.verdict.reason;
+  ASSERT_EQ(d.verdict.word(), "named") << d.verdict.reason;
   EXPECT_EQ(d.chosen()->hypothesis.effect, "input_offset");
-  EXPECT_NEAR(d.chosen()->fitted.fit.x[d.chosen()->own()], -kDead, 0.02 * kDead);
-  WriteDiagnosis(e, d, folder_ / "out");
+  EXPECT_NEAR(d.chosen()->fitted.fit.x[d.chosen()->first_extra()], -kDead, 0.02 * kDead);
+  testing::WriteFiles(e, d, folder_ / "out");
   const std::string page = ReadFile(folder_ / "out" / "report.html");
   EXPECT_THAT(page, HasSubstr("missing force [N]"));
   EXPECT_THAT(page, Not(HasSubstr("[rad")));

@@ -2,6 +2,7 @@
 
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/probing.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -22,13 +23,13 @@ TEST_F(ProbeTest, NothingIsSimulatedTwice) {
   const Experiment e = ReadExperiment("candidates: [stribeck]\n");
   const ModelSpec system = ModelSpec::Load(Write("model.xml", Pendulum().Xml()));
   const Problem null(e, system);
-  const CandidateFitter trials{&e, {}};
-  const Fitted fitted = trials.FitAll(null, null.Start());
+  const CandidateFitter fitter{&e};
+  const Fitted fitted = fitter.FitAll(null, null.Start());
   std::vector<std::string> skipped;
   const auto all = MakeCandidates(e, {&system}, SizesOf(null, fitted.fit.x), skipped);
   ASSERT_EQ(all.size(), 1u);
   const Problem problem(e, all[0].system, all[0].Free());
-  const auto probes = trials.Probes(all[0], problem, fitted, trials.LeftBy(fitted));
+  const auto probes = ProbesOf(all[0], problem, fitted, fitter.ProjectedResidualOf(fitted), false);
   ASSERT_EQ(probes.size(), all[0].starts.size());  // all at their starts
   for (const Probe& probe : probes) EXPECT_EQ(probe.on_top, (std::vector<bool>{false, true}));
   EXPECT_EQ(problem.evaluations(), 3 * probes.size());  // the friction, the excess, and both

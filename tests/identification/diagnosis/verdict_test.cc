@@ -24,7 +24,7 @@ FoldRecord Good() {
   r.after = {0.50, 0.52, 0.48, 0.51, 0.49, 0.50, 0.52, 0.48, 0.51, 0.49};
   r.amplitude.assign(10, 2.0);
   r.placebo_gains.assign(20, 0.05);
-  r.remaining = 1.0;
+  r.over_noise = 1.0;
   return r;
 }
 
@@ -36,10 +36,10 @@ FoldRecord RunnerUp() {
   return r;
 }
 
-constexpr double kNoisy = 10;  // present error over the noise: something is left to explain
-constexpr double kCeiling = 0.9;
+// The present error is ten times the noise: there is something to explain.
+constexpr ErrorLevel kKnown{.over_noise = 10, .ceiling_gain = 0.9};
 
-std::string TextOf(const FoldRecord& r) { return Judge({r}, kNoisy, kCeiling).text; }
+std::string TextOf(const FoldRecord& r) { return JudgeFolds({r}, kKnown).word(); }
 
 TEST(Gains, AreTheRelativeFallOfTheErrorPerFold) {
   FoldRecord r;
@@ -199,11 +199,11 @@ TEST(ClearlyBetter, WeighsFoldsByTheirOwnError) {
 
 TEST(ClearlyBetter, IsNeverSoForEquals) { EXPECT_FALSE(ClearlyBetter(Good(), Good())); }
 
-TEST(Judge, NamesTheBestOfTwoThatTheFoldsTellApart) {
+TEST(Judge, NamesTheBestOfTwoThatTheFoldsDistinguish) {
   for (const bool first : {true, false}) {
     const auto records = first ? std::vector{Good(), RunnerUp()} : std::vector{RunnerUp(), Good()};
-    const Verdict v = Judge(records, kNoisy, kCeiling);
-    EXPECT_EQ(v.text, "named");
+    const Verdict v = JudgeFolds(records, kKnown);
+    EXPECT_EQ(v.word(), "named");
     EXPECT_THAT(v.named, ElementsAre(first ? 0 : 1));
   }
 }
@@ -211,116 +211,114 @@ TEST(Judge, NamesTheBestOfTwoThatTheFoldsTellApart) {
 TEST(Judge, AnEqualRunnerUpMakesItAmbiguous) {
   FoldRecord twin = Good();
   std::swap(twin.after[0], twin.after[1]);
-  const Verdict v = Judge({Good(), RunnerUp(), twin}, kNoisy, kCeiling);
-  EXPECT_EQ(v.text, "ambiguous");
+  const Verdict v = JudgeFolds({Good(), RunnerUp(), twin}, kKnown);
+  EXPECT_EQ(v.word(), "ambiguous");
   EXPECT_THAT(v.named, UnorderedElementsAre(0, 2));
 }
 
 TEST(Judge, ARivalThatFailsARuleStillStandsInTheWayOfAName) {
   FoldRecord rival = Good();
   rival.amplitude[0] = -2;
-  EXPECT_EQ(Judge({Good(), rival}, kNoisy, kCeiling).text, "ambiguous");
+  EXPECT_EQ(JudgeFolds({Good(), rival}, kKnown).word(), "ambiguous");
 }
 
 TEST(Judge, OneWithLessThanHalfTheGainIsNoRival) {
   FoldRecord erratic = Good();
   for (std::size_t f = 0; f < 10; ++f) erratic.after[f] = f < 4 ? 0 : 0.99;
   ASSERT_FALSE(ClearlyBetter(Good(), erratic));
-  EXPECT_EQ(Judge({Good(), erratic}, kNoisy, kCeiling).text, "named");
+  EXPECT_EQ(JudgeFolds({Good(), erratic}, kKnown).word(), "named");
 }
 
 TEST(Judge, TwiceTheNoiseLeftIsUnexplained) {
   FoldRecord r = Good();
-  r.remaining = 1.2;
+  r.over_noise = 1.2;
   EXPECT_EQ(TextOf(r), "named");
-  r.remaining = 2;
+  r.over_noise = 2;
   EXPECT_EQ(TextOf(r), "unexplained");
-  EXPECT_THAT(Judge({r}, kNoisy, kCeiling).named, IsEmpty());
-  EXPECT_THAT(Judge({r}, kNoisy, kCeiling).reason, HasSubstr("2.0 times the noise"));
+  EXPECT_THAT(JudgeFolds({r}, kKnown).named, IsEmpty());
+  EXPECT_THAT(JudgeFolds({r}, kKnown).reason, HasSubstr("2.0 times the noise"));
 }
 
 TEST(Judge, NamesOnModelLimitedDataWhereSomethingIsAlwaysLeft) {
   FoldRecord r = Good();
-  r.remaining = 4;
+  r.over_noise = 4;
   EXPECT_EQ(TextOf(r), "named");
 }
 
 TEST(Judge, IsAdequateAtTheNoiseWhateverTheCandidatesSay) {
-  const Verdict v = Judge({Good()}, 1.05, kCeiling);
-  EXPECT_EQ(v.text, "adequate");
+  const Verdict v = JudgeFolds({Good()}, {1.05, 0.9});
+  EXPECT_EQ(v.word(), "adequate");
   EXPECT_THAT(v.named, IsEmpty());
-  EXPECT_EQ(Judge({Good()}, 1.15, kCeiling).text, "named");
+  EXPECT_EQ(JudgeFolds({Good()}, {1.15, 0.9}).word(), "named");
 }
 
 TEST(Judge, WithoutNoiseItIsAdequateOnlyWhenNoForceHelps) {
   FoldRecord bad = Good();
   bad.after = bad.before;
-  EXPECT_EQ(Judge({bad}, 0, 0.05).text, "adequate");
-  EXPECT_EQ(Judge({bad}, 0, 0.15).text, "unexplained");
-  Rules rough;
-  rough.over_scatter = 70;
-  EXPECT_EQ(Judge({bad}, 0, 0.05, rough).text, "unexplained");
-  EXPECT_EQ(Judge({bad}, kNoisy, 0.05).text, "unexplained");
-  EXPECT_EQ(Judge({Good()}, 0, 0.05).text, "named");
+  EXPECT_EQ(JudgeFolds({bad}, {0, 0.05}).word(), "adequate");
+  EXPECT_EQ(JudgeFolds({bad}, {0, 0.15}).word(), "unexplained");
+  EXPECT_EQ(JudgeFolds({bad}, {0, 0.05, 70}).word(), "unexplained");
+  EXPECT_EQ(JudgeFolds({bad}, {10, 0.05}).word(), "unexplained");
+  EXPECT_EQ(JudgeFolds({Good()}, {0, 0.05}).word(), "named");
 }
 
 TEST(Judge, IsUnexplainedWithoutCandidates) {
-  const Verdict v = Judge({}, kNoisy, kCeiling);
-  EXPECT_EQ(v.text, "unexplained");
+  const Verdict v = JudgeFolds({}, kKnown);
+  EXPECT_EQ(v.word(), "unexplained");
   EXPECT_THAT(v.named, IsEmpty());
   EXPECT_FALSE(v.reason.empty());
 }
 
 TEST(Likelihoods, NothingSignificantIsAdequateUnlessSomethingElseIsLeft) {
   const std::vector<LikelihoodRecord> none;
-  EXPECT_EQ(JudgeLikelihoods(none, 0.5, 0.3).text, "adequate");
-  EXPECT_EQ(JudgeLikelihoods(none, 1e-4, 0.3).text, "unexplained");
+  EXPECT_EQ(JudgeLikelihoods(none, {0.5}, 0.3).word(), "adequate");
+  EXPECT_EQ(JudgeLikelihoods(none, {1e-4}, 0.3).word(), "unexplained");
 }
 
 TEST(JudgeLikelihoods, NothingIsNamedThatNoFitConfirms) {
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, 0.5, 1e-3).text, "adequate");
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, 1e-4, 1e-3).text, "unexplained");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, {0.5}, 1e-3).word(), "adequate");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, {1e-4}, 1e-3).word(), "unexplained");
 }
 
 TEST(Likelihoods, NoiseIsSaidOnlyWhereNoTestDoubtsIt) {
   const std::vector<LikelihoodRecord> clear{{"a", 1, 10}, {"b", 1, 40}};
-  EXPECT_THAT(JudgeLikelihoods(clear, 0.5, 1e-3).reason, HasSubstr("nothing but noise"));
-  const auto doubtful = JudgeLikelihoods(clear, 0.004, 1e-3);
-  EXPECT_EQ(doubtful.text, "named");
+  EXPECT_THAT(JudgeLikelihoods(clear, {0.5}, 1e-3).reason, HasSubstr("nothing but noise"));
+  const auto doubtful = JudgeLikelihoods(clear, {0.004}, 1e-3);
+  EXPECT_EQ(doubtful.word(), "named");
   EXPECT_THAT(doubtful.reason, HasSubstr("significant at the level 0.002 (p = 0.004)"));
-  EXPECT_THAT(JudgeLikelihoods({}, 0.004, 0.3).reason, HasSubstr("at the level 0.002"));
+  EXPECT_THAT(JudgeLikelihoods({}, {0.004}, 0.3).reason, HasSubstr("at the level 0.002"));
 }
 
 TEST(Likelihoods, TheClearlyLikeliestIsNamed) {
-  const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 34}}, 0.5, 1e-3);
-  EXPECT_EQ(v.text, "named");
+  const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 34}}, {0.5}, 1e-3);
+  EXPECT_EQ(v.word(), "named");
   EXPECT_THAT(v.named, ElementsAre(1));
 }
 
 TEST(Likelihoods, OnesThatAreNotFarBehindAreKept) {
-  const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 36}}, 0.5, 1e-3);
-  EXPECT_EQ(v.text, "ambiguous");
+  const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 36}}, {0.5}, 1e-3);
+  EXPECT_EQ(v.word(), "ambiguous");
   EXPECT_THAT(v.named, ElementsAre(1, 2));
 }
 
 TEST(Likelihoods, AnotherParameterMustEarnItsPlace) {
   // 3 more for one more parameter is less than 95 % of chance gives.
-  const auto v = JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 43}}, 0.5, 1e-3);
+  const auto v = JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 43}}, {0.5}, 1e-3);
   EXPECT_EQ(v.named.front(), 0u);
 }
 
 TEST(Likelihoods, ALawThatContainsAnotherIsNamedOnlyWhenItClearlyBeatsIt) {
   const std::vector<std::size_t> inner{0};
-  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 46, inner}}, 0.5, 1e-3).named,
+  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 46, inner}}, {0.5}, 1e-3).named,
               ElementsAre(0));
-  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 60, inner}}, 0.5, 1e-3).named,
+  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 60, inner}}, {0.5}, 1e-3).named,
               ElementsAre(1));
 }
 
 TEST(Likelihoods, OnesWithinAShareOfWhatTheTimeStepLeavesOpenAreKept) {
   const auto named = [](double step) {
     return JudgeLikelihoods(
-               {{"a", 1, 300, {}, 9000}, {"b", 1, 330, {}, step}, {"c", 1, 50, {}, 9000}}, 0.5,
+               {{"a", 1, 300, {}, 9000}, {"b", 1, 330, {}, step}, {"c", 1, 50, {}, 9000}}, {0.5},
                1e-3)
         .named;
   };
@@ -331,7 +329,7 @@ TEST(Likelihoods, OnesWithinAShareOfWhatTheTimeStepLeavesOpenAreKept) {
 TEST(Likelihoods, OfALawAndOneThatItContainsThePlainOneIsKeptBesideAnother) {
   const std::vector<std::size_t> inner{0};
   EXPECT_THAT(
-      JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 44, inner}, {"other", 1, 42}}, 0.5, 1e-3)
+      JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 44, inner}, {"other", 1, 42}}, {0.5}, 1e-3)
           .named,
       ElementsAre(2, 0));
 }
@@ -342,42 +340,42 @@ LikelihoodRecord Unlisted(double likelihood, std::vector<std::size_t> contains =
 }
 
 TEST(Likelihoods, ANameThatOneOutsideTheListClearlyOutdoesIsNone) {
-  const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(46)}, 0.5, 1e-3);
-  EXPECT_EQ(v.text, "unexplained");
+  const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(46)}, {0.5}, 1e-3);
+  EXPECT_EQ(v.word(), "unexplained");
   EXPECT_THAT(v.reason, HasSubstr("a, is clearly outdone by unlisted, which is not listed"));
 }
 
 TEST(Likelihoods, OneOutsideTheListThatDoesAsWellIsToldBesideTheName) {
   for (const double as_well : {36.0, 44.0}) {
-    const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(as_well)}, 0.5, 1e-3);
-    EXPECT_EQ(v.text, "named");
+    const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(as_well)}, {0.5}, 1e-3);
+    EXPECT_EQ(v.word(), "named");
     EXPECT_THAT(v.named, ElementsAre(0));
     EXPECT_THAT(v.unlisted, ElementsAre(1));
     EXPECT_THAT(v.reason, HasSubstr("not listed, but as likely (within 5): unlisted"));
   }
-  EXPECT_THAT(JudgeLikelihoods({{"a", 1, 40}, Unlisted(34)}, 0.5, 1e-3).unlisted, IsEmpty());
+  EXPECT_THAT(JudgeLikelihoods({{"a", 1, 40}, Unlisted(34)}, {0.5}, 1e-3).unlisted, IsEmpty());
 }
 
 TEST(Likelihoods, APlainLawOutsideTheListDoesNotTakeTheNameOfOneThatContainsIt) {
   const std::vector<std::size_t> inner{0};
-  const auto v = JudgeLikelihoods({Unlisted(40), {"rich", 2, 44, inner}}, 0.5, 1e-3);
+  const auto v = JudgeLikelihoods({Unlisted(40), {"rich", 2, 44, inner}}, {0.5}, 1e-3);
   EXPECT_THAT(v.named, ElementsAre(1));
   EXPECT_THAT(v.unlisted, ElementsAre(0));
 }
 
 TEST(Likelihoods, ARichLawOutsideTheListHasNothingToAdd) {
   const std::vector<std::size_t> inner{0};
-  const auto v = JudgeLikelihoods({{"plain", 1, 40}, Unlisted(42, inner)}, 0.5, 1e-3);
+  const auto v = JudgeLikelihoods({{"plain", 1, 40}, Unlisted(42, inner)}, {0.5}, 1e-3);
   EXPECT_THAT(v.named, ElementsAre(0));
   EXPECT_THAT(v.unlisted, IsEmpty());
 }
 
 TEST(Likelihoods, NothingOutsideTheListMakesANameWhereNoneOfItHelps) {
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 2}, Unlisted(400)}, 0.5, 1e-3).text, "adequate");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 2}, Unlisted(400)}, {0.5}, 1e-3).word(), "adequate");
 }
 
 TEST(Likelihoods, NoNameWhenTheBestLeavesMoreThanNoise) {
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 4000}}, 1e-6, 1e-3).text, "unexplained");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 4000}}, {1e-6}, 1e-3).word(), "unexplained");
 }
 
 TEST(Likelihoods, ProbabilitiesAddUpToOne) {

@@ -68,11 +68,11 @@ TEST(AnnelidaDemo, TheIntervalOfThePayloadHoldsIt) {
   options.candidates = {"payload"};
   const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model), options);
   ASSERT_NE(d.chosen(), nullptr) << d.verdict.reason;
-  EXPECT_EQ(d.verdict.text, "named") << d.verdict.reason;
+  EXPECT_EQ(d.verdict.word(), "named") << d.verdict.reason;
   const Fitted& fitted = d.chosen()->fitted;
-  const Eigen::Index mass = d.chosen()->own();
-  EXPECT_LT(fitted.uncertainty.lower[mass], DemoTruth().payload);
-  EXPECT_GT(fitted.uncertainty.upper[mass], DemoTruth().payload);
+  const Eigen::Index mass = d.chosen()->first_extra();
+  EXPECT_LT(fitted.sensitivities->uncertainty.lower[mass], DemoTruth().payload);
+  EXPECT_GT(fitted.sensitivities->uncertainty.upper[mass], DemoTruth().payload);
   EXPECT_NEAR(fitted.fit.x[mass], DemoTruth().payload, 0.05 * DemoTruth().payload);
 }
 

@@ -1,0 +1,63 @@
+#include "identification/diagnosis/extension.h"
+
+#include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/next_experiment.h"
+#include "identification/problem/extended_model.h"
+#include "sim/io/file.h"
+#include "sim/replay/replay.h"
+
+namespace continuum {
+namespace {
+
+// A problem for the hypothesis that was chosen, or the null one.
+Problem LastProblem(const Experiment& e, const Diagnosis& d) {
+  return d.chosen() ? ProblemOf(*d.chosen(), e) : Problem(e, d.system);
+}
+
+void WriteExtended(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder,
+                   ExtensionRun& run) {
+  for (const char* const file : {kExtendedModel, kExtendedExperiment})
+    std::filesystem::remove(folder / file);  // of an earlier diagnosis
+  run.extended = Extend(LastProblem(e, d), d.last().fit.x, folder, kExtendedModel);
+  run.model_before = d.system.Xml({}, {}, folder);
+  WriteFile(folder / kExtendedModel, run.extended.xml);
+  WriteFile(folder / kExtendedExperiment, run.extended.yaml);
+}
+
+void RunExtended(const std::filesystem::path& folder, ExtensionRun& run) {
+  Experiment extended = Experiment::Read(folder / kExtendedExperiment);
+  const auto replayed = Replay(extended, ModelSpec::Load(folder / kExtendedModel));
+  const SplitError error = PooledError(extended, replayed);
+  run.after = {error.train, error.validate};
+  for (const Replayed& r : replayed) run.after_traces.push_back(r.trace);
+}
+
+}  // namespace
+
+ExtensionRun MeasureExtension(const Experiment& e, const Diagnosis& d,
+                              const std::filesystem::path& folder) {
+  ExtensionRun run;
+  run.after = d.after();
+  if (MakePart("extended model", run.missing, [&] { WriteExtended(e, d, folder, run); }))
+    MakePart("errors of the extended files", run.missing, [&] { RunExtended(folder, run); });
+  if (d.fallback) {
+    MakePart("fallback", run.missing, [&] {
+      run.fallback =
+          Extend(ProblemOf(*d.fallback, e), d.fallback->fitted.fit.x, folder, kFallbackModel);
+    });
+  }
+  if (d.next.log) {
+    MakePart("inputs of the next experiment", run.missing,
+             [&] { run.next_inputs = NextCsv(e, *d.next.log); });
+  }
+  MakePart("deviations", run.missing, [&] {
+    const Problem null(e, d.system);
+    for (std::size_t l = 0; l < e.logs.size(); ++l)
+      run.before_traces.push_back(null.Predict(d.before.fit.x, l));
+    run.deviations = FindDeviations(e, run.before_traces);
+  });
+  MakePart("log check", run.missing, [&] { run.findings = CheckLogs(e); });
+  return run;
+}
+
+}  // namespace continuum

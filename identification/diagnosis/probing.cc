@@ -1,0 +1,196 @@
+#include "identification/diagnosis/probing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "error.h"
+#include "identification/diagnosis/search_rules.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+// The share at which a parameter comes to its bound.
+double MostShare(const Hypothesis& h, const std::vector<double>& start, std::size_t i) {
+  const Parameter& p = h.extra[i];
+  if (std::isinf(h.null[i])) return start[i] / p.lower;
+  const double step = start[i] - h.null[i];
+  return ((step > 0 ? p.upper : p.lower) - h.null[i]) / step;
+}
+
+// Tries the amplitudes of a candidate one by one, beside the fit without it.
+class Prober {
+ public:
+  Prober(const Hypothesis& h, const Problem& problem, const Fitted& null,
+         const ProjectedResidual& residual, bool calibrated, const Criteria& criteria)
+      : h_(h),
+        problem_(problem),
+        null_(null),
+        residual_(residual),
+        criteria_(criteria),
+        amplitudes_(h.Amplitudes()),
+        target_(ProbeTarget(residual.cost(), residual.freedom(), calibrated, criteria)) {}
+
+  Probe AtStart(std::size_t start) const {
+    Probe probe;
+    probe.start = start, probe.share.assign(amplitudes_.size(), 1);
+    probe.columns.resize(residual_.vector().size(), static_cast<Eigen::Index>(amplitudes_.size()));
+    for (std::size_t a = 0; a < amplitudes_.size(); ++a) {
+      probe.columns.col(static_cast<Eigen::Index>(a)) = Direction(start, a, 1);
+      const std::size_t i = amplitudes_[a];
+      const bool one_way = h_.extra[i].lower >= h_.null[i] || h_.extra[i].upper <= h_.null[i];
+      probe.sign.push_back(one_way ? 1 : 0);
+    }
+    return probe;
+  }
+
+  // The shares at which amplitudes that do far too much do what is wanted: such a probe shows its
+  // own curvature.
+  std::vector<double> Less(const Probe& whole) const {
+    std::vector<double> share;
+    for (std::size_t a = 0; a < amplitudes_.size(); ++a)
+      share.push_back(SmallerShare(Norm(whole, a), target_, criteria_));
+    return share;
+  }
+  // And those that do far too little: a direction that free parameters may follow for as long as it
+  // is short.
+  std::vector<double> More(const Probe& whole) const {
+    std::vector<double> share;
+    for (std::size_t a = 0; a < amplitudes_.size(); ++a) {
+      const double most = MostShare(h_, h_.starts[whole.start], amplitudes_[a]);
+      share.push_back(LargerShare(Norm(whole, a), target_, most, criteria_));
+    }
+    return share;
+  }
+
+  // An amplitude that does nothing alone, as the excess of a friction that is not there, on top of
+  // the others.
+  Probe OnTop(Probe probe) const {
+    probe.on_top.assign(amplitudes_.size(), false);
+    if (amplitudes_.size() < 2) return probe;
+    for (std::size_t a = 0; a < amplitudes_.size(); ++a) {
+      if (Norm(probe, a) > 0) continue;
+      std::vector<double> others = probe.share;
+      others[a] = 0;
+      try {
+        probe.columns.col(static_cast<Eigen::Index>(a)) = Difference(
+            Residuals(probe.start, others), Residuals(probe.start, probe.share), probe.share[a]);
+        probe.on_top[a] = Norm(probe, a) > 0;
+      } catch (const Error&) {
+        continue;  // all of them are too much for the simulation
+      }
+    }
+    return probe;
+  }
+
+  // The same probe at other shares; simulates only what is other.
+  Probe At(const Probe& whole, const std::vector<double>& share) const {
+    Probe probe = whole;
+    for (std::size_t a = 0; a < share.size(); ++a) {
+      if (share[a] == whole.share[a]) continue;
+      probe.columns.col(static_cast<Eigen::Index>(a)) = Direction(whole.start, a, share[a]);
+      probe.whole = whole.columns;
+    }
+    probe.share = share;
+    return probe;
+  }
+
+ private:
+  static double Norm(const Probe& probe, std::size_t a) {
+    return probe.columns.col(static_cast<Eigen::Index>(a)).norm();
+  }
+
+  // What one amplitude does to the residual, per share of its start.
+  Vector Direction(std::size_t start, std::size_t one, double share) const {
+    std::vector<double> shares(amplitudes_.size(), 0);
+    shares[one] = share;
+    return Difference(null_.residuals, Residuals(start, shares), share);
+  }
+
+  const std::vector<Vector>& Residuals(std::size_t start, const std::vector<double>& share) const {
+    std::vector<double> own = h_.starts[start];
+    for (std::size_t a = 0; a < amplitudes_.size(); ++a)
+      own[amplitudes_[a]] = h_.AtShare(amplitudes_[a], own[amplitudes_[a]], share[a]);
+    const auto known = simulated_.find(own);
+    return known != simulated_.end() ? known->second : simulated_[own] = Simulate(own);
+  }
+  std::vector<Vector> Simulate(const std::vector<double>& own) const {
+    const auto train = problem_.TrainLogs();
+    auto r = problem_.Residuals(Append(null_.fit.x, own), train);
+    for (std::size_t l = 0; l < train.size(); ++l) {
+      if (train[l] && !r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
+    }
+    return r;
+  }
+  Vector Difference(const std::vector<Vector>& from, const std::vector<Vector>& to,
+                    double share) const {
+    const auto train = problem_.TrainLogs();
+    std::vector<Matrix> column(train.size());
+    for (std::size_t l = 0; l < train.size(); ++l) {
+      if (train[l]) column[l] = (to[l] - from[l]) / share;
+    }
+    return residual_.Project(column);
+  }
+
+  const Hypothesis& h_;
+  const Problem& problem_;
+  const Fitted& null_;
+  const ProjectedResidual& residual_;
+  const Criteria& criteria_;
+  std::vector<std::size_t> amplitudes_;
+  double target_;  // norm of a probe that does what is to be explained
+  /// Residuals by the values of extra: directions on top of others begin where those ended.
+  mutable std::map<std::vector<double>, std::vector<Vector>> simulated_ = {};
+};
+
+}  // namespace
+
+Vector Append(const Vector& known, const std::vector<double>& own) {
+  Vector x(known.size() + static_cast<Eigen::Index>(own.size()));
+  x.head(known.size()) = known;
+  std::copy(own.begin(), own.end(), x.data() + known.size());
+  return x;
+}
+
+std::vector<Probe> ProbesOf(const Hypothesis& h, const Problem& problem, const Fitted& null,
+                            const ProjectedResidual& residual, bool calibrated,
+                            const Criteria& criteria) {
+  const Prober prober(h, problem, null, residual, calibrated, criteria);
+  std::vector<Probe> probes;
+  for (std::size_t start = 0; start < h.starts.size(); ++start) {
+    const Probe whole = prober.AtStart(start);
+    const std::vector<double> less = prober.Less(whole), more = prober.More(whole);
+    probes.push_back(prober.OnTop(prober.At(whole, less)));
+    if (more == whole.share) continue;
+    try {
+      probes.push_back(prober.OnTop(prober.At(whole, more)));
+    } catch (const Error&) {
+      continue;  // too much for the simulation
+    }
+  }
+  return probes;
+}
+
+Vector StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,
+                 const Explained& explained, double excess, const Criteria& criteria) {
+  const auto amplitudes = h.Amplitudes();
+  const std::vector<double>& start = h.starts[probe.start];
+  std::vector<double> own = start;
+  for (std::size_t a = 0; a < amplitudes.size(); ++a) {
+    const auto k = static_cast<Eigen::Index>(a);
+    double share = 0;  // of one that does nothing
+    if (probe.columns.col(k).squaredNorm() > 0) {
+      share = probe.on_top[a] ? excess * probe.share[a]
+                              : StartShare(explained.coefficients[k], probe.share[a], criteria);
+    }
+    own[amplitudes[a]] = h.AtShare(amplitudes[a], start[amplitudes[a]], share);
+  }
+  for (std::size_t i = 0; i < own.size(); ++i)
+    own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);
+  return Append(null.fit.x, own);
+}
+
+}  // namespace continuum

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identification/candidates/hypothesis.h"
+#include "identification/candidates/typical_sizes.h"
+#include "identification/diagnosis/screening.h"
+#include "identification/diagnosis/verdict.h"
+#include "identification/inverse_dynamics/missing_force.h"
+#include "identification/result/fit.h"
+#include "identification/result/folds.h"
+#include "identification/result/free_parameter.h"
+#include "identification/result/missing_parts.h"
+#include "identification/result/noise.h"
+#include "identification/result/uncertainty.h"
+
+namespace continuum {
+
+struct DiagnosisOptions {
+  std::vector<std::string> candidates = {};  ///< names; empty: those of the experiment
+  int placebos = 20;                         ///< random forces to compare with
+  int iterations = 15;                       ///< of each fit
+  std::uint64_t seed = 1;                    ///< of everything random
+  std::function<void(const std::string&)> progress = {};
+  Criteria criteria = {};  ///< others than the defaults: for tests
+
+  /// Reports what comes next. Throws Error (kJob) when the user has asked to stop.
+  void Say(const std::string& text) const;
+};
+
+struct TwoErrors {
+  double train = 0, validate = 0;  ///< pooled RMS
+};
+
+/// What is known of a model next to its fit. It is expensive, so that only those fits have it that
+/// may matter to the verdict.
+struct Sensitivities {
+  std::vector<Problem::Matrix> jacobian;  ///< [train log] of the residuals; after folds [log]
+  std::vector<Problem::Matrix> step;      ///< [train log] Problem::StepEffects
+  Uncertainty uncertainty;
+  double freedom = 0;  ///< what noise alone would make Fitted::cost; 0 where it is not known
+};
+
+/// A model after its fit.
+struct Fitted {
+  Fit fit;
+  std::vector<Problem::Vector> residuals;  ///< [log] at the optimum
+  TwoErrors error;
+  double cost = 0;  ///< whitened sum of squares; to first order once sensitivities are known
+  std::optional<Sensitivities> sensitivities = {};
+  FoldScores folds = {};  ///< empty where it was not cross-validated
+
+  bool complete() const { return sensitivities.has_value(); }
+};
+
+/// How a candidate explains the missing force (identification/diagnosis/equation_error.h).
+struct ByEquation {
+  double share = 0;                   ///< of its squares
+  std::vector<double> before, after;  ///< [train log] norm of its residual without and with it
+};
+
+/// A candidate, and all that was found of it.
+struct CandidateResult {
+  Hypothesis hypothesis;
+  std::vector<Probe> probes = {};  ///< one for each start: directions from the fit without it
+  Problem::Vector start = {};      ///< of its fit, when the screen found one
+  std::vector<Problem::Vector> other_starts = {};  ///< that the screen finds as good
+  bool was_fitted = false;
+  Fitted fitted = {};                          ///< empty where it was not fitted
+  std::optional<Fitted> at_quarter_step = {};  ///< where first order in the step does not hold
+  FoldRecord record = {};
+  std::optional<ByEquation> by_equation = {};  ///< none where it does nothing to the missing force
+  std::vector<std::string> failures = {};      ///< rules that it fails, one sentence each
+  std::string error = "";                      ///< why it could not be tried; empty: it could
+  bool listed = true;      ///< else it was looked at because it might outdo those that are
+  double explained = 0;    ///< of the whitened sum of squares, to first order from the null fit
+  double p = 1;            ///< family-wise, of explained
+  double likelihood = 0;   ///< twice the logarithm of the likelihood gained by its fit
+  double probability = 0;  ///< among all candidates, each as likely before; noise-limited only
+  /// How well the data distinguish it from the leading candidate, to first order [squares]: what it
+  /// cannot imitate of what that explains.
+  double lambda = 0;
+  std::optional<double> contrast = {};  ///< ConditionContrast; none without such pairs of logs
+
+  /// Where the values of hypothesis.extra begin in fitted.fit.x.
+  Eigen::Index first_extra() const {
+    return fitted.fit.x.size() - static_cast<Eigen::Index>(hypothesis.extra.size());
+  }
+};
+
+/// A cause that acts together with the one that the candidates are compared for.
+struct Partner {
+  Hypothesis hypothesis;
+  std::vector<std::string> equivalent;  ///< effects that the data do not distinguish from it
+};
+
+/// Two causes that were fitted together, and what both gain in twice the log-likelihood.
+struct PairTried {
+  std::string first, second;
+  double likelihood;
+};
+
+/// A candidate that was not fitted, as to first order it explains too little.
+struct Dismissed {
+  std::string effect, variant, where;
+  double explained = 0, p = 1;
+};
+
+/// What to measure next to distinguish the models of an ambiguous set.
+struct NextExperiment {
+  std::string input;            ///< in words; empty: none is needed
+  double separation = 0;        ///< expected; see ProposeNext
+  std::optional<Log> log = {};  ///< its inputs and what it sets; none where nothing helps
+};
+
+/// What a diagnosis found.
+struct Diagnosis {
+  Diagnosis(const Experiment& experiment, const ModelSpec& null) : pool(experiment), system(null) {}
+
+  Pool pool;
+  ModelSpec system;   ///< the model before
+  Criteria criteria;  ///< by which everything was judged
+  Noise noise;
+  Sizes sizes;
+  std::vector<Fold> folds;
+  Fitted before;
+  std::vector<CandidateResult> candidates;  ///< best first
+  std::vector<CandidateResult> unlisted;    ///< that nobody asked for, and that matter
+  std::optional<Partner> partner;           ///< of all candidates: their systems have it
+  std::vector<PairTried> pairs;             ///< where no single candidate was enough; best first
+  std::vector<Dismissed> dismissed;
+  bool noise_limited = false;  ///< the best residual is noise: likelihoods judge, else folds
+  LackOfFit lack_of_fit;       ///< of the model that the verdict is about
+  std::vector<std::string> skipped;
+  Verdict verdict;  ///< indices into candidates, and into unlisted
+  /// The best that anything reached on the folds, forces without a name among it; empty where the
+  /// data are noise-limited.
+  FoldScores ceiling;
+  TwoErrors ceiling_error;  ///< of the same; the noise where the data are noise-limited
+  std::string ceiling_by;   ///< what reached it, in words
+  std::optional<CandidateResult> fallback;  ///< where nothing explains it (fallback_force.h)
+  NextExperiment next;
+  MissingForce missing_force;      ///< of the model before; no joint where it cannot be shown
+  std::optional<double> contrast;  ///< ConditionContrast of the model before
+  std::vector<FreeParameter> parameters_before, parameters;  ///< of before, and of last()
+  std::vector<Change> changes;         ///< of last(), that hold for every log alike
+  std::vector<MissingPart> missing;    ///< what could not be computed; the verdict stands without
+  double gain_low = 0, gain_high = 0;  ///< 95 % interval, over held-out trials or the folds
+  double seconds = 0;
+
+  bool Is(Verdict::Kind kind) const { return verdict.kind == kind; }
+  /// The model to extend to, if any: the one that is named, or the best of an ambiguous set.
+  const CandidateResult* chosen() const {
+    return verdict.named.empty() ? nullptr : &candidates[verdict.named.front()];
+  }
+  /// The fit of that model, or of the model before.
+  const Fitted& last() const { return chosen() ? chosen()->fitted : before; }
+  const TwoErrors& after() const { return last().error; }
+};
+
+}  // namespace continuum

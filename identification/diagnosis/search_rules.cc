@@ -1,0 +1,129 @@
+#include "identification/diagnosis/search_rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace continuum {
+
+double ProbeTarget(double squares, double freedom, bool calibrated, const Criteria& criteria) {
+  return calibrated ? std::sqrt(std::max<double>(criteria.probe_least, squares - freedom))
+                    : std::sqrt(0.5 * squares);
+}
+
+double SmallerShare(double norm, double target, const Criteria& criteria) {
+  return norm > criteria.probe_far * target ? target / norm : 1;
+}
+
+double LargerShare(double norm, double target, double most, const Criteria& criteria) {
+  return norm > 0 && criteria.probe_far * norm < target ? std::min(target / norm, most) : 1;
+}
+
+double StartShare(double explained, double probed, const Criteria& criteria) {
+  const double least = criteria.start_share * probed;
+  return std::abs(explained) > least ? explained : least;
+}
+
+bool IsAsGood(double explained, double best, const Criteria& criteria) {
+  return explained >= criteria.as_good * best;
+}
+
+bool ReachesNoise(double error, const ErrorParts& parts, const Criteria& criteria) {
+  return error < std::hypot(criteria.at_noise * parts.noise, criteria.step_tolerance * parts.step);
+}
+
+bool HasSignal(double smallest_p, double squares, double freedom, const Criteria& criteria) {
+  return smallest_p < criteria.significance ||
+         squares > criteria.model_limited * criteria.model_limited * freedom;
+}
+
+// Where little is to be explained first order is right to a few units, else wrong about sizes by
+// factors but not by orders of magnitude.
+double FitThreshold(double most, double squares, bool noise_known, const Criteria& criteria) {
+  if (!noise_known) return criteria.worth_a_fit * squares;
+  const double near = std::min<double>(most - criteria.fit_behind, criteria.fit_always);
+  return std::max(near, criteria.fit_share * most);
+}
+
+double FitThresholdAtNoise(double most, const Criteria& criteria) {
+  return criteria.outdoes * most;
+}
+
+double UnlistedThreshold(double most, const Criteria& criteria) {
+  return criteria.rival_share * most;
+}
+
+bool WorthFinishing(std::size_t finished, double explained, double most, const Criteria& criteria) {
+  return static_cast<double>(finished) < criteria.second_chances &&
+         explained >= FitThresholdAtNoise(most, criteria);
+}
+
+double HopelessCost(double rival, const Criteria& criteria) {
+  return criteria.hopeless_factor * rival + criteria.hopeless_offset;
+}
+
+bool StillGains(double last_gain, double cost, bool noise_known, const Criteria& criteria) {
+  return last_gain > (noise_known ? +criteria.still_gains : criteria.still_gains_share * cost);
+}
+
+bool WorthCompleting(double squares, double best, double step_reduction, const Criteria& criteria) {
+  return squares - best < criteria.completed_within + 2 * step_reduction;
+}
+
+bool ExplainedByStep(double squares, double freedom, double step_squares,
+                     const Criteria& criteria) {
+  const double most = criteria.step_tolerance * criteria.step_tolerance * step_squares;
+  return step_squares > criteria.step_seen && squares - freedom <= most;
+}
+
+bool FallsWithStep(double before, double after, const Criteria& criteria) {
+  return after < criteria.step_falls * before;
+}
+
+bool IsRough(double roughness, const Criteria& criteria) {
+  return roughness >= criteria.step_rough;
+}
+
+bool IsResolved(double step, double base_step, double removed, double noise,
+                const Criteria& criteria) {
+  return step < base_step + removed + criteria.step_resolved * noise;
+}
+
+// Nested fits are as far apart as the larger one gains; others that gain as much are farther. Where
+// the noise is not known they are as near as nothing to what either changes.
+bool SaysTheSame(const FitPair& pair, bool noise_known, const Criteria& criteria) {
+  if (!noise_known) return pair.difference < criteria.same_share * pair.likelihood;
+  return std::abs(pair.gain) <= criteria.same_gain &&
+         pair.difference < 2 * std::max(pair.gain, 0.0) + criteria.same_noise;
+}
+
+bool Contains(double missed, double squares, const Criteria& criteria) {
+  return missed < criteria.contained * squares;
+}
+
+bool WorthFolds(double before, double after, const Criteria& criteria) {
+  return after <= (1 - criteria.fit_gain) * before;
+}
+
+// No single candidate's residual is noise, or only by the time step's leave; and the best one's is
+// not a hundred times the noise's squares.
+bool MayBeTwo(const Verdict& verdict, const LackOfFit& lack, double smallest_p, double over_noise,
+              const Criteria& criteria) {
+  const bool more = verdict.kind == Verdict::Kind::kUnexplained ||
+                    (lack.of_step && verdict.kind != Verdict::Kind::kAdequate);
+  return more && !verdict.unlisted_explains && smallest_p < criteria.significance &&
+         over_noise < criteria.pair_hopeless;
+}
+
+bool WorthPartner(double smallest_p, double share, bool of_step, const Criteria& criteria) {
+  return smallest_p < criteria.significance && (!of_step || share >= criteria.pair_share);
+}
+
+bool WorthFallback(double ceiling_gain, bool noise_limited, const Criteria& criteria) {
+  return noise_limited || ceiling_gain >= criteria.fallback_ceiling * criteria.median_gain;
+}
+
+bool Distinguishes(double separation, const Criteria& criteria) {
+  return separation >= criteria.separation;
+}
+
+}  // namespace continuum
