@@ -1,5 +1,6 @@
 #include "identification/report/fit_summary.h"
 
+#include <functional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -86,11 +87,15 @@ std::string EffortLines(const IdentifyResult& result, const std::string& folder)
 std::string FitSummary(const Experiment& e, const IdentifyResult& result,
                        const std::string& folder) {
   std::string text;
-  std::vector<MissingPart> missing;
-  MakePart("parameters", missing, [&] { text += ParameterLines(result); });
+  const auto add = [&](const std::string& name, const std::function<std::string()>& make) {
+    std::vector<MissingPart> missing;
+    MakePart(name, missing, [&] { text += make(); });
+    text += MissingInWords(missing);
+  };
+  add("parameters", [&] { return ParameterLines(result); });
   text += DivergenceLines(e, result);
-  MakePart("error", missing, [&] { text += ErrorLines(e, result); });
-  text += MissingInWords(missing) + EffortLines(result, folder);
+  add("error", [&] { return ErrorLines(e, result); });
+  text += EffortLines(result, folder);
   for (const Confounding& t : result.trade_offs) text += t.text + "\n";
   if (result.over_noise) text += OverNoiseInWords(result) + "\n";
   if (!result.start_hint.empty()) text += result.start_hint + "\n";
