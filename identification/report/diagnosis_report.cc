@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "identification/diagnosis/gain.h"
+#include "identification/report/candidate_tables.h"
 #include "identification/report/diagnosis_output.h"
 #include "identification/report/fit_report.h"
 #include "identification/report/line_diff.h"
@@ -107,10 +108,10 @@ class DiagnosisPage {
       return;
     }
     Shares();
-    if (d_.noise_limited) LikelihoodTable();
-    FoldTable();
+    if (d_.noise_limited) AddLikelihoodTable(page_, d_);
+    AddFoldTable(page_, d_);
     AddMissing(page_, "view by the missing force", missing_);
-    SecondView();
+    AddSecondView(page_, d_);
     WhyNotTheOthers();
     AddMissing(page_, "next experiment", missing_);
     if (d_.verdict.named.size() > 1) NextExperimentText();
@@ -169,76 +170,6 @@ class DiagnosisPage {
                     d_.next.input, d_.next.separation,
                     d_.noise.known() ? "" : " if the residual were white noise",
                     d_.next.log ? fmt::format(" Its inputs: {}.", kNextInputs) : ""));
-  }
-
-  // What the missing force itself says, without a simulation.
-  void SecondView() {
-    std::vector<const CandidateResult*> seen;
-    for (const auto& c : d_.candidates) {
-      if (c.by_equation) seen.push_back(&c);
-    }
-    if (seen.empty()) return;
-    constexpr std::size_t kShown = 6;
-    std::stable_sort(seen.begin(), seen.end(), [](const auto* a, const auto* b) {
-      return a->by_equation->share > b->by_equation->share;
-    });
-    BarsSpec bars{"A second view: share of the missing force that each candidate explains",
-                  {"of its squares", "%"},
-                  {},
-                  {}};
-    for (const CandidateResult* c : seen) {
-      if (bars.bars.size() == kShown) break;
-      const bool chosen = c == d_.chosen();
-      bars.bars.push_back({c->hypothesis.NameAtPlace(), 100 * c->by_equation->share, 0, chosen});
-    }
-    page_.Bars(bars);
-    page_.Paragraph(
-        "From the measured states alone, without simulating: sensor noise, twice differentiated, "
-        "is most of this force on many logs, so that small shares may be all there is to explain. "
-        "Only candidates that were fitted are here.");
-  }
-
-  void LikelihoodTable() {
-    std::vector<std::vector<std::string>> rows;
-    for (const auto& c : d_.candidates) {
-      rows.push_back({c.hypothesis.Name(), c.hypothesis.where,
-                      c.fitted.complete() ? fmt::format("{:.1f}", c.likelihood) : "",
-                      std::to_string(c.hypothesis.extra.size()), fmt::format("{:.2g}", c.p),
-                      fmt::format("{:.3f}", c.probability), fmt::format("{:.1f}", c.lambda)});
-    }
-    for (const auto& c : d_.dismissed) {
-      rows.push_back({c.effect, c.where, "", "", fmt::format("{:.2g}", c.p), "", ""});
-    }
-    page_.Table(
-        {"candidate", "where", "2 ln L gained", "parameters", "p, family-wise", "posterior",
-         "lambda"},
-        rows,
-        {"Twice the log-likelihood over the model without it, empty for those left far behind; p: "
-         "how often noise alone lets one of all candidates do as well to first order; posterior: "
-         "each candidate as likely before; lambda: what of the best candidate this one cannot "
-         "imitate on these logs" +
-         fmt::format(" (below about {:g} they are hard to distinguish). The residual of the best "
-                     "one has p = {:.2g} against smooth forces and {:.2g} against shifts of the "
-                     "channels.",
-                     +rules().separation, d_.lack_of_fit.force, d_.lack_of_fit.channel)});
-  }
-
-  void FoldTable() {
-    if (d_.before.folds.error.empty()) return;
-    std::vector<std::string> header{"candidate"};
-    for (const Fold& f : d_.folds) header.push_back("without " + f.name);
-    std::vector<std::vector<std::string>> rows{{"as it is"}};
-    for (const double error : d_.before.folds.error)
-      rows[0].push_back(fmt::format("{:.4g}", error));
-    for (const auto& c : d_.candidates) {
-      if (c.record.after.empty()) continue;
-      rows.push_back({c.hypothesis.NameAtPlace()});
-      for (const double error : c.record.after) rows.back().push_back(fmt::format("{:.4g}", error));
-    }
-    if (!d_.ceiling.error.empty()) rows.push_back({"ceiling: " + d_.ceiling_by});
-    for (const double error : d_.ceiling.error) rows.back().push_back(fmt::format("{:.4g}", error));
-    page_.Table(header, rows,
-                {"Error [" + unit_ + "] on the logs left out, after refitting on the others."});
   }
 
   void TheExtension() {
