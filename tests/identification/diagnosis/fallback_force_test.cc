@@ -57,8 +57,9 @@ TEST_F(FallbackTest, WhatNobodyExplainsGetsAForceWithoutACause) {
   EXPECT_THAT(json.at("fallback").at("label"), HasSubstr("no cause"));
   EXPECT_TRUE(json.at("causes").empty());
   EXPECT_THAT(Summary(e_, d, files.run), HasSubstr("fallback  no cause"));
-  Experiment files = Experiment::Read(out / kFallbackExperiment);
-  const SplitError error = PooledError(files, Replay(files, ModelSpec::Load(out / kFallbackModel)));
+  Experiment written = Experiment::Read(out / kFallbackExperiment);
+  const auto logs = Replay(written, ModelSpec::Load(out / kFallbackModel));
+  const SplitError error = PooledError(written, logs);
   EXPECT_NEAR(error.validate, d.fallback->fitted.error.validate, 1e-6);
 }
 

@@ -59,7 +59,9 @@ class DiagnosisOutput : public Bench {
 };
 
 void ExpectFinite(const nlohmann::json& json, const std::string& where) {
-  if (json.is_number_float()) EXPECT_TRUE(std::isfinite(json.get<double>())) << where;
+  if (json.is_number_float()) {
+    EXPECT_TRUE(std::isfinite(json.get<double>())) << where;
+  }
   if (!json.is_structured()) return;
   for (const auto& [key, value] : json.items()) ExpectFinite(value, where + "." + key);
 }
