@@ -166,7 +166,7 @@ TEST_F(RegressorTest, RefusesWhatItCannotSee) {
                       "parameters:\n  - {name: a, target: 'body:arm', attribute: mass, lower: 0.1, "
                       "upper: 1}\n  - {name: b, target: 'body:arm', attribute: mass, lower: 0.1, "
                       "upper: 1, operation: add, initial: 0.2}\n"),
-              HasSubstr("apart"));
+              HasSubstr("distinguish"));
 }
 
 TEST_F(RegressorTest, ASwarmFindsThePlaceButNotThePoint) {
