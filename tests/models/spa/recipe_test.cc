@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "models/spa/filter.h"
+#include "print_mass.h"
 #include "sim/io/file.h"
 
 namespace continuum {

@@ -6,11 +6,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-namespace continuum {
+#include "print_mass.h"
 
-static void PrintTo(SpaMass mass, std::ostream* out) {
-  *out << (mass == SpaMass::kArc ? "Arc" : "Centroid");
-}
+namespace continuum {
 
 namespace {
 
