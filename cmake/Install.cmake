@@ -21,4 +21,4 @@ install(FILES LICENSE DESTINATION share/mujoco_continuum)
 install(DIRECTORY models DESTINATION share/mujoco_continuum FILES_MATCHING
   PATTERN *.xml PATTERN *.yaml PATTERN *.csv PATTERN README.md PATTERN import.py
   PATTERN importer.py
-  PATTERN generator EXCLUDE PATTERN images EXCLUDE PATTERN solver EXCLUDE)
+  PATTERN mjcf EXCLUDE PATTERN images EXCLUDE PATTERN statics EXCLUDE)

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
+
+#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {
@@ -46,12 +47,12 @@ GainInterval BootstrapGain(const Problem& null, const Diagnosis& d, std::uint64_
   if (!d.chosen()) return {};
   const auto squares = HeldOutSquares(null, d, *d.chosen());
   if (squares.empty()) return {};
-  std::mt19937_64 rng(seed);
+  Random64 rng(seed);
   std::vector<double> gains;
   for (int k = 0; k < kDraws; ++k) {
     double before = 0, after = 0;
     for (std::size_t i = 0; i < squares.size(); ++i) {
-      const auto& s = squares[rng() % squares.size()];
+      const auto& s = squares[rng.Bits() % squares.size()];
       before += s.first, after += s.second;
     }
     gains.push_back(before > 0 ? 1 - std::sqrt(after / before) : 0);
