@@ -119,8 +119,10 @@ void RunDiagnose(const Options& o) {
         stdout);
   }
   const std::filesystem::path folder = o.out;
-  if (o.video) Film(e, system, folder);
+  if (o.video && !run.extended.xml.empty()) Film(e, system, folder);
   std::printf("report    %s (%.0f s)\n", (folder / "report.html").c_str(), d.seconds);
+  if (run.extended.xml.empty())
+    throw Error::Job("there is no extended model: diagnosis.json says why, under 'missing'");
 }
 
 struct ApplyOptions {

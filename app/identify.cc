@@ -88,6 +88,8 @@ void RunIdentify(const Options& o) {
   std::fputs(FitSummary(e, result, o.out).c_str(), stdout);
   std::fputs(MissingInWords(missing).c_str(), stdout);
   StopIfRequested();  // the files hold the best so far
+  if (result.fitted.xml.empty())
+    throw Error::Job("there is no fitted model: fit.json says why, under 'missing'");
   if (!result.fit.converged) throw Error::Job("the fit did not converge: " + result.fit.message);
 }
 

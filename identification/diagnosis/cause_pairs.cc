@@ -42,9 +42,6 @@ struct Fitting {
     return IsThere(a->hypothesis, u, b->first_extra() - first) &&
            IsThere(b->hypothesis, u, b->first_extra());
   }
-  bool Has(const std::string& effect) const {
-    return a->hypothesis.effect == effect || b->hypothesis.effect == effect;
-  }
 };
 
 class PairSearch {

@@ -164,7 +164,9 @@ class Session {
     if (d_.folds.empty()) return;
     options_.Say("folds");
     fitter_.AddFolds(null_, d_.folds, d_.before);
-    for (const std::size_t i : d_.verdict.named) RecordFolds(fitter_, d_, d_.candidates[i]);
+    for (const std::size_t i : d_.verdict.named) {
+      if (d_.candidates[i].fitted.complete()) RecordFolds(fitter_, d_, d_.candidates[i]);
+    }
     d_.ceiling_error = {d_.noise.rms, d_.noise.rms};
     d_.ceiling_by = "noise alone";
   }
@@ -269,7 +271,7 @@ class Session {
     for (const std::size_t i : named) {
       const Hypothesis& h = d_.candidates[i].hypothesis;
       if (h.effect != effect) return;
-      places += (places.empty() ? "" : " from ") + (h.variant.empty() ? h.where : h.NameAtPlace());
+      places += (places.empty() ? "" : ", ") + (h.variant.empty() ? h.where : h.NameAtPlace());
     }
     if (!d_.partner) {
       d_.verdict.kind = Verdict::Kind::kNamed;
@@ -279,7 +281,7 @@ class Session {
     } else if (d_.partner->equivalent.empty()) {
       d_.verdict.kind = Verdict::Kind::kNamed;
     }
-    d_.verdict.reason += "; the data do not distinguish " + places;
+    d_.verdict.reason += "; the data do not distinguish these places: " + places;
     named.resize(1);
   }
 
@@ -323,8 +325,7 @@ class Session {
 
   void SetGainInterval() {
     options_.Say("gain");
-    const GainInterval interval = BootstrapGain(null_, d_, options_.seed);
-    d_.gain_low = interval.low, d_.gain_high = interval.high;
+    d_.gain_interval = BootstrapGain(null_, d_, options_.seed);
   }
 
   const Experiment& e_;

@@ -14,14 +14,10 @@ Problem LastProblem(const Experiment& e, const Diagnosis& d) {
   return d.chosen() ? ProblemOf(*d.chosen(), e) : Problem(e, d.system);
 }
 
-void WriteExtended(const Experiment& e, const Diagnosis& d, const std::filesystem::path& folder,
-                   ExtensionRun& run) {
-  for (const char* const file : {kExtendedModel, kExtendedExperiment})
-    std::filesystem::remove(folder / file);  // of an earlier diagnosis
-  run.extended = Extend(LastProblem(e, d), d.last().fit.x, folder, kExtendedModel);
-  run.model_before = d.system.Xml({}, {}, folder);
-  WriteFile(folder / kExtendedModel, run.extended.xml);
-  WriteFile(folder / kExtendedExperiment, run.extended.yaml);
+// What cannot be written ends the job: only what cannot be made is a missing part.
+void WriteExtended(const ExtendedModel& extended, const std::filesystem::path& folder) {
+  WriteOrRemove(folder / kExtendedModel, extended.xml);
+  WriteOrRemove(folder / kExtendedExperiment, extended.yaml);
 }
 
 void RunExtended(const std::filesystem::path& folder, ExtensionRun& run) {
@@ -38,7 +34,12 @@ ExtensionRun MeasureExtension(const Experiment& e, const Diagnosis& d,
                               const std::filesystem::path& folder) {
   ExtensionRun run;
   run.after = d.after();
-  if (MakePart("extended model", run.missing, [&] { WriteExtended(e, d, folder, run); }))
+  const bool made = MakePart("extended model", run.missing, [&] {
+    run.model_before = d.system.Xml({}, {}, folder);
+    run.extended = Extend(LastProblem(e, d), d.last().fit.x, folder, kExtendedModel);
+  });
+  WriteExtended(run.extended, folder);
+  if (made)
     MakePart("errors of the extended files", run.missing, [&] { RunExtended(folder, run); });
   if (d.fallback) {
     MakePart("fallback", run.missing, [&] {

@@ -33,7 +33,8 @@ struct ExtensionRun {
 
 /// Writes extended.xml and extended.yaml of a diagnosis into a folder, which must exist, and runs
 /// them from there, so that the errors are those of the files. A part that fails costs only itself:
-/// without that run `after` holds the errors of the fit.
+/// without that run `after` holds the errors of the fit. Throws Error when the folder cannot be
+/// written.
 ExtensionRun MeasureExtension(const Experiment& experiment, const Diagnosis& diagnosis,
                               const std::filesystem::path& folder);
 

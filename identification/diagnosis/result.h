@@ -31,6 +31,11 @@ struct DiagnosisOptions {
   void Say(const std::string& text) const;
 };
 
+/// 95 % interval of the share of the held-out error that an extension removes.
+struct GainInterval {
+  double low = 0, high = 0;
+};
+
 struct TwoErrors {
   double train = 0, validate = 0;  ///< pooled RMS
 };
@@ -146,9 +151,9 @@ struct Diagnosis {
   MissingForce missing_force;      ///< of the model before; no joint where it cannot be shown
   std::optional<double> contrast;  ///< ConditionContrast of the model before
   std::vector<FreeParameter> parameters_before, parameters;  ///< of before, and of last()
-  std::vector<Change> changes;         ///< of last(), that hold for every log alike
-  std::vector<MissingPart> missing;    ///< what could not be computed; the verdict stands without
-  double gain_low = 0, gain_high = 0;  ///< 95 % interval, over held-out trials or the folds
+  std::vector<Change> changes;       ///< of last(), that hold for every log alike
+  std::vector<MissingPart> missing;  ///< what could not be computed; the verdict stands without
+  std::optional<GainInterval> gain_interval;  ///< over held-out trials or the folds; none: failed
   double seconds = 0;
 
   bool Is(Verdict::Kind kind) const { return verdict.kind == kind; }

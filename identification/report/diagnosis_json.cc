@@ -65,13 +65,18 @@ nlohmann::json OrNull(const std::optional<double>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
-nlohmann::json FallbackJson(const Diagnosis& d) {
+// The name of a file that was made.
+nlohmann::json NameIf(bool made, const char* name) {
+  return made ? nlohmann::json(name) : nlohmann::json(nullptr);
+}
+
+nlohmann::json FallbackJson(const Diagnosis& d, const ExtensionRun& run) {
   if (!d.fallback) return nullptr;
   const CandidateResult& c = *d.fallback;
   return {{"label", "no cause: a smooth force that was fitted to the residual"},
           {"where", c.hypothesis.where},
-          {"model", kFallbackModel},
-          {"experiment", kFallbackExperiment},
+          {"model", NameIf(run.fallback.has_value(), kFallbackModel)},
+          {"experiment", NameIf(run.fallback.has_value(), kFallbackExperiment)},
           {"folds", c.record.after},
           {"error", {{"train", c.fitted.error.train}, {"validate", c.fitted.error.validate}}}};
 }
@@ -142,8 +147,10 @@ nlohmann::json AlternativesJson(const Diagnosis& d) {
 
 nlohmann::json GainJson(const Diagnosis& d, const TwoErrors& after) {
   const Gain gain = GainOf(d, after);
+  nlohmann::json interval = nullptr;
+  if (d.gain_interval) interval = {d.gain_interval->low, d.gain_interval->high};
   return {{"validate_error_removed", gain.removed},
-          {"ci95", {d.gain_low, d.gain_high}},
+          {"ci95", interval},
           {"explainable_error_removed", gain.explainable}};
 }
 
@@ -154,14 +161,14 @@ nlohmann::json DeviationsJson(const std::vector<Deviation>& deviations) {
   return json;
 }
 
-nlohmann::json NextJson(const Diagnosis& d) {
+nlohmann::json NextJson(const Diagnosis& d, const ExtensionRun& run) {
   auto alternatives = nlohmann::json::array();
   for (const std::size_t i : d.verdict.named)
     alternatives.push_back(d.candidates[i].hypothesis.Name());
   return {{"for", d.verdict.named.size() > 1 ? alternatives : nlohmann::json::array()},
           {"input", d.next.input},
           {"expected_separation", d.next.separation},
-          {"file", d.next.log ? nlohmann::json(kNextInputs) : nlohmann::json(nullptr)},
+          {"file", NameIf(!run.next_inputs.empty(), kNextInputs)},
           {"set", NextSettings(d)}};
 }
 
@@ -260,8 +267,8 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
   json["error"] = {{"unit", d.pool.unit()},
                    {"before", ErrorJson(d.before.error)},
                    {"after", ErrorJson(run.after)}};
-  json["extended_model"] = kExtendedModel;
-  json["extended_experiment"] = kExtendedExperiment;
+  json["extended_model"] = NameIf(!run.extended.xml.empty(), kExtendedModel);
+  json["extended_experiment"] = NameIf(!run.extended.yaml.empty(), kExtendedExperiment);
   json["skipped"] = d.skipped;
   json["seconds"] = d.seconds;
   json["lack_of_fit"] = {{"force", d.lack_of_fit.force}, {"channel", d.lack_of_fit.channel}};
@@ -278,7 +285,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
                           {"after", OrNull(chosen ? chosen->contrast : d.contrast)}};
   });
   part("wrong", [&] { return DeviationsJson(run.deviations); });
-  part("next_experiment", [&] { return NextJson(d); });
+  part("next_experiment", [&] { return NextJson(d, run); });
   part("adequacy", [&] { return AdequacyJson(d, run.after); });
   part("folds", [&] { return FoldsJson(d); });
   part("candidates", [&] { return CandidatesJson(d); });
@@ -287,7 +294,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
     return ParametersJson(d.parameters, d.last().fit.x, d.last().sensitivities.value().uncertainty);
   });
   part("extension", [&] { return ChangesJson(d.changes, AddedBy(d)); });
-  part("fallback", [&] { return FallbackJson(d); });
+  part("fallback", [&] { return FallbackJson(d, run); });
   return json;
 }
 

@@ -8,19 +8,6 @@
 #include "sim/replay/replay_report.h"
 
 namespace continuum {
-namespace {
-
-// Or takes away what an earlier diagnosis left there.
-void WriteOrRemove(const std::filesystem::path& file, const std::string& text) {
-  if (text.empty()) {
-    std::filesystem::remove(file);
-  } else {
-    WriteFile(file, text);
-  }
-}
-
-}  // namespace
-
 std::vector<MissingPart> WriteDiagnosis(const Experiment& e, const Diagnosis& d,
                                         const ExtensionRun& run,
                                         const std::filesystem::path& folder) {
@@ -29,12 +16,9 @@ std::vector<MissingPart> WriteDiagnosis(const Experiment& e, const Diagnosis& d,
   WriteOrRemove(folder / kFallbackModel, run.fallback ? run.fallback->xml : "");
   WriteOrRemove(folder / kFallbackExperiment, run.fallback ? run.fallback->yaml : "");
   WriteOrRemove(folder / kNextInputs, run.next_inputs);
-  if (!run.after_traces.empty()) {
-    MakePart("simulated", missing, [&] {
-      RequireWhole(e, run.after_traces);
-      WriteSimulated(e, run.after_traces, folder / "simulated");
-    });
-  }
+  if (!run.after_traces.empty() &&
+      MakePart("simulated", missing, [&] { RequireWhole(e, run.after_traces); }))
+    WriteSimulated(e, run.after_traces, folder / "simulated");
   nlohmann::json json = DiagnosisJson(e, d, run, missing);
   AddMissing(json, missing);
   WriteFile(folder / "diagnosis.json", json.dump(2) + "\n");

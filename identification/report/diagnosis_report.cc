@@ -199,14 +199,18 @@ class DiagnosisPage {
         {"model", "train [" + unit_ + "]", "validate [" + unit_ + "]"},
         {row("before", d_.before.error), row("after", run_.after),
          row(d_.noise_limited ? "noise (floor)" : "ceiling: " + d_.ceiling_by, d_.ceiling_error)},
-        {fmt::format(
-            "Free simulation of every log. Noise: {}. {:.0f} % of the held-out error "
-            "removed, {:.0f} … {:.0f} % (95 %, whole trials resampled); {:.0f} % of what is "
-            "explainable above the noise.",
-            NoiseInWords(), 100 * gain.removed, 100 * d_.gain_low, 100 * d_.gain_high,
-            100 * gain.explainable)});
+        {fmt::format("Free simulation of every log. Noise: {}. {:.0f} % of the held-out error "
+                     "removed, {}; {:.0f} % of what is explainable above the noise.",
+                     NoiseInWords(), 100 * gain.removed, GainIntervalInWords(),
+                     100 * gain.explainable)});
     if (const std::string contrast = ContrastInWords(d_); !contrast.empty())
       page_.Paragraph("Between conditions: " + contrast + ".");
+  }
+
+  std::string GainIntervalInWords() const {
+    if (!d_.gain_interval) return "interval not computed";
+    return fmt::format("{:.0f} … {:.0f} % (95 %, whole trials resampled)",
+                       100 * d_.gain_interval->low, 100 * d_.gain_interval->high);
   }
 
   std::string NoiseInWords() const {

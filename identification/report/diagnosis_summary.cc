@@ -91,9 +91,12 @@ std::string ErrorsInWords(const Diagnosis& d, const TwoErrors& after) {
       "error     train {:.4g} -> {:.4g} {u}, validate {:.4g} -> {:.4g} {u}\n", d.before.error.train,
       after.train, d.before.error.validate, after.validate, fmt::arg("u", unit));
   text += fmt::format(
-      "gain      {:.0f} % of the held-out error ({:.0f} .. {:.0f} %), {:.0f} % of what is "
-      "explainable\n",
-      100 * gain.removed, 100 * d.gain_low, 100 * d.gain_high, 100 * gain.explainable);
+      "gain      {:.0f} % of the held-out error ({}), {:.0f} % of what is explainable\n",
+      100 * gain.removed,
+      d.gain_interval ? fmt::format("{:.0f} .. {:.0f} %", 100 * d.gain_interval->low,
+                                    100 * d.gain_interval->high)
+                      : "interval not computed",
+      100 * gain.explainable);
   text += d.noise.rms > 0
               ? fmt::format(
                     "noise     {:.3g} {} ({}), time step {:.3g}; the error is {:.1f} times both\n",

@@ -18,10 +18,8 @@ std::vector<MissingPart> WriteFit(const Experiment& e, const IdentifyResult& res
   const bool whole = MakePart("simulated", missing, [&] { RequireWhole(e, result.logs); });
   AddMissing(json, missing);
   WriteFile(folder / "fit.json", json.dump(2) + "\n");
-  if (!result.fitted.xml.empty()) {
-    WriteFile(folder / "fitted.xml", result.fitted.xml);
-    WriteFile(folder / "fitted.yaml", result.fitted.yaml);
-  }
+  WriteOrRemove(folder / "fitted.xml", result.fitted.xml);
+  WriteOrRemove(folder / "fitted.yaml", result.fitted.yaml);
   if (whole) {
     std::vector<Trace> traces;
     for (const Replayed& log : result.logs) traces.push_back(log.trace);

@@ -128,6 +128,14 @@ void WriteFile(const fs::path& path, std::string_view content) {
   throw Error::Input(path.string(), "a writable file", out ? failed.message() : reason);
 }
 
+void WriteOrRemove(const std::filesystem::path& path, std::string_view content) {
+  if (content.empty()) {
+    std::filesystem::remove(path);
+  } else {
+    WriteFile(path, content);
+  }
+}
+
 void MakeFolder(const fs::path& path) {
   std::error_code failed;
   fs::create_directories(path, failed);

@@ -22,6 +22,8 @@ std::string ReadFile(const std::filesystem::path& path);
 /// Writes the whole file or nothing (aside, then renamed); follows symbolic links, writes pipes and
 /// devices in place. Throws Error when the folder is missing, not writable or full.
 void WriteFile(const std::filesystem::path& path, std::string_view content);
+/// The same; without content it removes the file that an earlier job left there.
+void WriteOrRemove(const std::filesystem::path& path, std::string_view content);
 
 /// Creates the folder (and its parents). Throws Error when that is impossible.
 void MakeFolder(const std::filesystem::path& path);

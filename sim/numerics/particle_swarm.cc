@@ -47,9 +47,14 @@ void ParticleSwarm::Move() {
     }
     if (p.best.size() == 0) p.best = p.place;
     const Vector& goal = best_.size() > 0 ? best_ : p.best;
-    p.velocity =
-        options_.inertia * p.velocity +
-        options_.pull * (own.cwiseProduct(p.best - p.place) + all.cwiseProduct(goal - p.place));
+    const Vector to_own = own.cwiseProduct(p.best - p.place);
+    const Vector to_all = all.cwiseProduct(goal - p.place);
+    p.velocity = options_.inertia * p.velocity;
+    if (options_.by_vector) {  // rounded as in the published runs
+      p.velocity = p.velocity + options_.pull * to_own + options_.pull * to_all;
+    } else {
+      p.velocity += options_.pull * (to_own + to_all);
+    }
     const Vector next = p.place + p.velocity;
     p.place = next.cwiseMax(lower_).cwiseMin(upper_);
     p.velocity = (next.array() == p.place.array()).select(p.velocity, 0);

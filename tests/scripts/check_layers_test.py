@@ -60,6 +60,27 @@ class Layers(unittest.TestCase):
         self.write("models/spa/table.h", "namespace continuum::spa { struct CsvTable {}; }")
         self.assertEqual(self.faults(), "")
 
+    def test_a_type_of_a_source_in_a_namespace_with_a_name_is_one_too(self):
+        self.write("sim/io/mat.cc", "namespace continuum { struct [[nodiscard]] CsvTable final : Base<int> { char c = '{'; }; }")
+        self.assertIn("two types continuum::CsvTable: sim/io/csv.h, sim/io/mat.cc", self.faults())
+
+    def test_a_type_that_no_other_source_sees_is_none(self):
+        self.write("sim/io/mat.cc", "namespace continuum {\nnamespace {\nstruct CsvTable {};\n}\n}")
+        self.assertEqual(self.faults(), "")
+
+    def test_braces_and_slashes_in_literals_and_comments_do_not_count(self):
+        self.write("sim/io/mat.h", 'namespace continuum {\ninline auto f() { return "http://x{"; }  /* { */\nstruct CsvTable {};\n}')
+        self.assertIn("two types continuum::CsvTable", self.faults())
+
+    def test_an_include_is_found_however_it_is_spelt(self):
+        self.write("sim/io/csv.cc", '  #  include <sim/model/model_spec.h>')
+        self.assertIn("sim/io/csv.cc: may not include sim/model/model_spec.h", self.faults())
+
+    def test_the_name_of_an_effect_outside_its_card_is_one(self):
+        self.write("plugin/effects/dahl.h", 'struct Dahl { static constexpr std::string_view kName = "dahl"; };')
+        self.write("sim/io/csv.cc", 'const char* name = "continuum.dahl";')
+        self.assertIn("dahl", self.faults())
+
     def test_a_folder_that_is_in_no_table_is_one(self):
         self.write("sim/attic/old.h", "")
         self.assertIn("sim/attic/old.h: the folder is not in the table", self.faults())

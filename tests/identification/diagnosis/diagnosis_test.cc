@@ -96,7 +96,8 @@ TEST_F(DiagnosisTest, NamesAHiddenPayload) {
   EXPECT_EQ(d.noise.pairs, 4u);
   EXPECT_NEAR(d.noise.rms, kNoise, 0.1 * kNoise);
   EXPECT_LT(d.after().validate, 0.2 * d.before.error.validate);
-  EXPECT_GT(d.gain_low, 0.8);
+  ASSERT_TRUE(d.gain_interval);
+  EXPECT_GT(d.gain_interval->low, 0.8);
 }
 
 // Of one pendulum nobody can tell its bob from a payload where the bob hangs.

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "error.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/report/parts.h"
 #include "support/diagnosis_files.h"
@@ -102,13 +103,29 @@ TEST_F(DiagnosisOutput, WithoutAnUncertaintyLacksTheParametersOnly) {
   EXPECT_THAT(MissingInWords(files.missing), HasSubstr("not in the report: parameters"));
 }
 
-TEST_F(DiagnosisOutput, WithoutTheExtendedFilesHasTheErrorsOfTheFit) {
+TEST_F(DiagnosisOutput, WhatCannotBeWrittenEndsTheJob) {
   std::filesystem::create_directories(Out() / kExtendedModel / "in the way");
-  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
-  ASSERT_EQ(files.missing.size(), 1u);
-  EXPECT_EQ(files.missing[0].name, "extended model");
-  EXPECT_EQ(files.json.at("error").at("after").at("train"), d_->after().train);
+  EXPECT_THROW(MeasureExtension(e_, *d_, Out()), Error);
+}
+
+TEST_F(DiagnosisOutput, WithoutTheExtendedFilesHasTheErrorsOfTheFitAndNamesNoFile) {
+  MakeFolder(Out());
+  ExtensionRun run;
+  run.after = d_->after();
+  run.missing.push_back({"extended model", "it cannot be made"});
+  const auto missing = WriteDiagnosis(e_, *d_, run, Out());
+  ASSERT_EQ(missing.size(), 1u);
+  const auto json = ReadJson(Out() / "diagnosis.json");
+  EXPECT_EQ(json.at("error").at("after").at("train"), d_->after().train);
+  EXPECT_TRUE(json.at("extended_model").is_null());
   EXPECT_THAT(Page(), HasSubstr("Not in this report: extended model"));
+}
+
+TEST_F(DiagnosisOutput, WithoutAnIntervalOfTheGainStatesNone) {
+  d_->gain_interval.reset();
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  EXPECT_TRUE(files.json.at("gain").at("ci95").is_null());
+  EXPECT_THAT(Page(), HasSubstr("interval not computed"));
 }
 
 TEST_F(DiagnosisOutput, WithoutRowsOfATraceLacksWhatIsDrawnOfItOnly) {
