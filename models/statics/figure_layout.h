@@ -64,6 +64,10 @@ struct LoadRange {
 };
 LoadRange LoadsOf(const Figure& figure);
 
+/// The figure with the number of each case for its load, where all loads are alike to a thousandth:
+/// colours would spread what is rounding.
+Figure ColouredByOrderWhereLoadsAreAlike(Figure figure);
+
 /// Distance between the lines of the legend [pt].
 inline constexpr double kLegendLine = 12;
 

@@ -38,9 +38,10 @@ void DrawFigure(const Figure& figure, Canvas& canvas) {
 
 void WriteFigure(const std::filesystem::path& path, const Figure& figure) {
   RequireFigureEnding(path);
-  const PageNames names{figure.title, Description(figure)};
-  WriteFile(path, Render(path.extension().string(), FigureSize(figure), names,
-                         [&](Canvas& canvas) { DrawFigure(figure, canvas); }));
+  const Figure drawn = ColouredByOrderWhereLoadsAreAlike(figure);
+  const PageNames names{drawn.title, Description(drawn)};
+  WriteFile(path, Render(path.extension().string(), FigureSize(drawn), names,
+                         [&](Canvas& canvas) { DrawFigure(drawn, canvas); }));
 }
 
 }  // namespace continuum::statics

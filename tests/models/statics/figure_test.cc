@@ -170,6 +170,16 @@ TEST(FigureLayout, SpreadsTheLoadsOverTheColourBar) {
   EXPECT_EQ(LoadsOf(Figured(1)).Share(0), 0.5);
 }
 
+TEST(FigureLayout, ColoursTheOrderOfCasesWhoseLoadsAreAlike) {
+  Figure alike = Figured(5);
+  for (Shape& shape : alike.shapes) shape.load = 36 + 1e-4 * shape.load;
+  const Figure drawn = ColouredByOrderWhereLoadsAreAlike(alike);
+  EXPECT_EQ(drawn.load_name, "number of the case");
+  EXPECT_EQ(LoadsOf(drawn).low, 1);
+  EXPECT_EQ(LoadsOf(drawn).high, 5);
+  EXPECT_EQ(ColouredByOrderWhereLoadsAreAlike(Figured(5)).load_name, Figured(5).load_name);
+}
+
 TEST(Palette, EveryNamedCaseHasALineOfItsOwn) {
   std::set<std::tuple<double, double, double, std::vector<double>>> seen;
   for (std::size_t i = 0; i < 28; ++i) {
