@@ -7,14 +7,11 @@
 
 #include "error.h"
 #include "identification/fit/intervals.h"
-#include "identification/fit/multi_start.h"
-#include "identification/fit/multiple_shooting.h"
 #include "identification/fit/prediction_error.h"
 #include "identification/fit/start_hint.h"
 #include "identification/fit/swarm_fit.h"
-#include "identification/fit/wide_slope_fit.h"
-#include "identification/inverse_dynamics/equation_error_fit.h"
 #include "identification/inverse_dynamics/regressor.h"
+#include "identification/inverse_dynamics/search_fit.h"
 #include "identification/problem/extended_model.h"
 #include "identification/problem/fitted_values.h"
 #include "identification/problem/path_choice.h"
@@ -113,21 +110,10 @@ FitOptions LeastSquaresOptions(const Options& o, const Problem& problem) {
 void FitLeastSquares(const Options& o, const Problem& problem, const Vector& start,
                      const std::vector<bool>& use, IdentifyResult& all) {
   const FitOptions options = LeastSquaresOptions(o, problem);
-  if (o.segments && o.from.empty())
-    all.segments = FitByMultipleShooting(problem, start, use, options);
-  const Vector& begin = all.segments ? all.segments->x : start;
-  if (o.starts > 1) {
-    all.starts = FitFromMany(problem, begin, use, o.starts, o.seed, options);
-    all.fit = all.starts->best;
-  } else {
-    all.fit = FitWithWideSlopes(problem, begin, use, options);
-  }
-  all.fit = FitByEquations(problem, std::move(all.fit), use, options);
-  if (all.starts) all.starts->best = all.fit;
-  if (all.segments) {
-    all.fit.seconds += all.segments->seconds;
-    all.fit.evaluations += all.segments->evaluations;
-  }
+  const FitSearch search{o.starts, o.seed, o.segments && o.from.empty()};
+  SearchedFit found = FitBySearch(problem, start, use, search, options);
+  all.fit = std::move(found.fit);
+  all.segments = std::move(found.segments), all.starts = std::move(found.starts);
 }
 
 // Parameters for the model's own step: a few iterations from those of the differential equation.

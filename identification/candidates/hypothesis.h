@@ -34,6 +34,10 @@ struct Hypothesis {
   std::vector<std::size_t> Amplitudes() const;
   /// The value of extra[i] at a share of what `value` does; at none the effect is absent.
   double AtShare(std::size_t i, double value, double share) const;
+  /// Whether extra[i] may leave the value at which the effect is absent on one side only.
+  bool OneSign(std::size_t i) const {
+    return extra[i].lower >= null[i] || extra[i].upper <= null[i];
+  }
   /// Whether it is one of the measurement: nothing of the model is other.
   bool OnlyMeasured() const;
   /// The effect on whose card (EffectNamed) its parameters are.

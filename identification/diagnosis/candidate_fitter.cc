@@ -6,7 +6,7 @@
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/fit/intervals.h"
-#include "identification/inverse_dynamics/equation_error_fit.h"
+#include "identification/inverse_dynamics/search_fit.h"
 #include "identification/statistics/uncertainty.h"
 #include "sim/simulation/simulate.h"
 
@@ -47,6 +47,15 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
   options.hopeless = HopelessCost(rival, criteria);
   options.idle = idle;
   f.fit = FitParameters(problem, start, train, options);
+  if (getenv("CDEBUG")) {
+    fprintf(stderr, "FIT %s it %d conv %d cost", f.fit.message.c_str(), f.fit.iterations, f.fit.converged);
+    for (double v : f.fit.trace) fprintf(stderr, " %.5g", v);
+    fprintf(stderr, " | start");
+    for (double v : start) fprintf(stderr, " %.4g", v);
+    fprintf(stderr, " | end");
+    for (double v : f.fit.x) fprintf(stderr, " %.4g", v);
+    fprintf(stderr, "\n");
+  }
   f.fit.x = FitStarts(problem, f.fit.x, validate);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
   RequireFinite(problem, f.fit.x, f.residuals, problem.AllLogs(), "with the fitted parameters");
@@ -55,12 +64,14 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
   return f;
 }
 
+// As `identify` does, then in units of the noise.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
-  Fitted f = Fit(problem, problem.Start(), std::numeric_limits<double>::infinity(), false);
-  FitOptions again = Options();
-  again.iterations += f.fit.iterations;
-  const auto found = FitByEquations(problem, f.fit, TrainLogs(*experiment), again);
-  return found.cost < f.fit.cost ? Fit(problem, found.x) : f;
+  constexpr int kIterations = 100;
+  if (getenv("CSKIP")) return Fit(problem, problem.Start(), std::numeric_limits<double>::infinity(), false);
+  const FitOptions options{.iterations = kIterations};
+  const SearchedFit found =
+      FitBySearch(problem, problem.Start(), TrainLogs(*experiment), {}, options);
+  return Fit(problem, found.fit.x, std::numeric_limits<double>::infinity(), false);
 }
 
 void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {

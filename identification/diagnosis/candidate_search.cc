@@ -7,10 +7,13 @@
 #include <Eigen/Dense>
 
 #include "error.h"
+#include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/lack_of_fit.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/quantisation.h"
 #include "identification/statistics/uncertainty.h"
+#include "sim/io/interrupt.h"
+#include "sim/numerics/parallel.h"
 
 namespace continuum {
 namespace {
@@ -109,6 +112,33 @@ void CandidateSearch::Screen() {
     c.other_starts = OtherStarts(c, best, residual);
     std::swap(c.probes[0], c.probes[best]);
   }
+  LookAtForces();
+}
+
+// First order is blind where an effect is large or the base far off; the missing force is not.
+void CandidateSearch::LookAtForces() {
+  options_.Say("missing force");
+  const EquationErrors view(base_problem_, base_.fitted->fit.x);
+  if (!view.any()) return;
+  ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
+    CandidateResult& c = candidates[i];
+    if (!c.error.empty() || StopRequested()) return;
+    try {
+      const auto found = view.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment));
+      if (!found) return;
+      c.force_share = found->share;
+      c.other_starts.push_back(found->x);
+      c.other_starts.push_back(found->together);
+    } catch (const Error&) {
+      return;  // no machine has such parameters, or it diverges: the other views are left
+    }
+  });
+}
+
+double CandidateSearch::MostOfForce() const {
+  double best = 0;
+  for (const CandidateResult& c : candidates) best = std::max(best, c.force_share);
+  return best;
 }
 
 Significance CandidateSearch::Significant(const ProjectedResidual& residual,
@@ -271,6 +301,11 @@ bool CandidateSearch::FallsAt(const Problem& fine, const CandidateResult& c,
          !LackAt(fine, c, finer).significant(criteria_);
 }
 
+BaseSquares CandidateSearch::Base() const {
+  return {base_.fitted->cost / inflation_,
+          base_.fitted->sensitivities.value().freedom / inflation_};
+}
+
 std::vector<LikelihoodRecord> CandidateSearch::Records() const {
   std::vector<LikelihoodRecord> records;
   for (const CandidateResult& c : candidates) {
@@ -279,7 +314,8 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
                             c.likelihood,
                             {},
                             StepReduction(c.fitted) / inflation_,
-                            c.listed};
+                            c.listed,
+                            KinOf(c.hypothesis.Card())};
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(fitter_, c, candidates[a])) record.contains.push_back(a);
     }

@@ -32,8 +32,9 @@ class CandidateSearch {
   CandidateSearch(const SearchContext& context, const BaseFit& base,
                   SearchScope scope = SearchScope::kFew);
 
-  /// What every candidate could explain of the base's residual, and how often noise alone would let
-  /// the best of so many do as well.
+  /// What every candidate could explain of the base's residual, to first order and of the missing
+  /// force at the measured states, and how often noise alone would let the best of so many do as
+  /// well.
   void Screen();
   /// Fits those that come near the best to first order, if a candidate is significant or the
   /// residual is plainly not noise; then best first, the others dismissed. beside: a search from
@@ -65,6 +66,8 @@ class CandidateSearch {
   bool FallsWithStep(const CandidateResult& candidate) const;
   /// For JudgeLikelihoods, of the fitted candidates.
   std::vector<LikelihoodRecord> Records() const;
+  /// The same of the base.
+  BaseSquares Base() const;
   double smallest_p() const { return smallest_p_; }  ///< of all candidates that are not skipped
   /// How much of the base's squares above the noise the best candidate explains, to first order.
   double ExplainableShare() const;
@@ -77,7 +80,10 @@ class CandidateSearch {
   void ProbeAll(const ProjectedResidual& residual, std::vector<std::vector<Probe>>& probes);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);
+  void LookAtForces();
   double MostExplained() const;
+  double MostOfForce() const;
+  bool IsWorthAFit(const CandidateResult& c, double needed) const;
   double Threshold() const;
   bool ReachesNoise(const Fitted& fitted) const;
   double Likelihood(const Fitted& fitted) const;

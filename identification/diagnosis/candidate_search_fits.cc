@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "binding/effect_catalog.h"
 #include "error.h"
@@ -19,6 +20,12 @@ bool CandidateSearch::ReachesNoise(const Fitted& fitted) const {
   return continuum::ReachesNoise(fitted.error.train, {noise_.rms, noise_.step}, criteria_);
 }
 
+// By first order, or by the missing force: dropped only when both say no.
+bool CandidateSearch::IsWorthAFit(const CandidateResult& c, double needed) const {
+  return c.explained >= needed ||
+         (needed < kInfinity && ExplainsForce(c.force_share, MostOfForce(), criteria_));
+}
+
 // The likeliest first, so that the others know what to reach; nobody where only noise is left.
 void CandidateSearch::Fit(const CandidateSearch* beside) {
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -30,7 +37,7 @@ void CandidateSearch::Fit(const CandidateSearch* beside) {
   if (beside) needed = std::max(needed, UnlistedThreshold(beside->MostExplained(), criteria_));
   double rival = known ? known->fitted.fit.cost : kInfinity;
   for (CandidateResult& c : candidates) {
-    if (!c.error.empty() || c.explained < needed) continue;
+    if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
     options_.Say("fit " + c.hypothesis.Name());
     try {
       FitOne(c, rival + 0.5 * StepReduction(*base_.fitted));
@@ -177,20 +184,30 @@ CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
   return c;
 }
 
+// The start that is best after a few iterations, of those that are best as they are.
 Problem::Vector CandidateSearch::BestOf(const Problem& problem,
                                         const std::vector<Problem::Vector>& starts) const {
+  constexpr std::size_t kTried = 3;
   if (starts.size() == 1) return starts.front();
   FitOptions options{4, 1e-3};
   options.idle = true;
   if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;
+  const auto train = problem.TrainLogs();
+  std::vector<std::pair<double, const Problem::Vector*>> order;
+  for (const auto& start : starts)
+    order.emplace_back(CostAt(problem, problem.Clamp(start), train, options), &start);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (order.size() > kTried) order.resize(kTried);
   double best_cost = kInfinity;
   Problem::Vector best;
-  for (const auto& start : starts) {
+  for (const auto& [cost, start] : order) {
+    if (!(cost < kInfinity)) continue;  // it diverges there; elsewhere it may not
     try {
-      const continuum::Fit fit = FitParameters(problem, start, problem.TrainLogs(), options);
+      const continuum::Fit fit = FitParameters(problem, *start, train, options);
       if (fit.cost < best_cost) best_cost = fit.cost, best = fit.x;
     } catch (const Error&) {
-      continue;  // this start diverges; another may not
+      continue;
     }
   }
   if (best.size() == 0) throw Error::Job("the simulation diverges from every start");

@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "error.h"
 
 namespace continuum {
@@ -49,11 +51,12 @@ class PairSearch {
   PairSearch(const SearchContext& context, const CandidateSearch& single, bool of_step)
       : context_(context), criteria_(context.fitter.criteria), single_(single), of_step_(of_step) {}
 
-  std::optional<Pair> Run() {
-    std::set<std::string> effects;
+  PairsFound Run() {
+    std::set<std::string> families;
     for (const CandidateResult& c : single_.candidates) {
-      if (c.fitted.complete() && static_cast<double>(effects.size()) < criteria_.pair_singles &&
-          effects.insert(c.hypothesis.effect).second)
+      const std::string family = KinOf(c.hypothesis.Card()).family;
+      if (c.fitted.complete() && static_cast<double>(families.size()) < criteria_.pair_singles &&
+          families.insert(family.empty() ? c.hypothesis.effect : family).second)
         Await(c);
     }
     while (!waiting_.empty() && static_cast<double>(tried_.size()) < criteria_.pair_bases) {
@@ -61,7 +64,11 @@ class PairSearch {
       waiting_.pop_front();
       Extend(*base);
     }
-    return Best();
+    const auto pairs = All();
+    PairsFound found;
+    found.tried = List(pairs);
+    if (!pairs.empty()) TakeBest(pairs, found);
+    return found;
   }
 
  private:
@@ -133,6 +140,7 @@ class PairSearch {
       const Hypothesis &a = p.a->hypothesis, &b = p.b->hypothesis;
       LikelihoodRecord record{
           a.Name() + " and " + b.Name(), a.extra.size() + b.extra.size(), p.likelihood(), {}};
+      record.kin = KinOf(a.Card(), b.Card());
       for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (&pairs[i] != &p && Inside(p, pairs[i])) record.contains.push_back(i);
       }
@@ -141,32 +149,44 @@ class PairSearch {
     return records;
   }
 
-  std::optional<Pair> Best() {
-    const auto pairs = All();
-    if (pairs.empty()) return {};
+  void TakeBest(const std::vector<Fitting>& pairs, PairsFound& found) {
     const auto records = RecordsOf(pairs);
-    Verdict verdict = JudgeLikelihoods(records, {}, 0, criteria_);
-    if (verdict.named.empty()) return {};
-    const Fitting& best = pairs[verdict.named.front()];
-    if (!best.b->fitted.complete()) return {};  // those before it were no two causes
+    const Verdict likeliest = JudgeLikelihoods(records, {}, 0, single_.Base(), criteria_);
+    if (likeliest.named.empty()) return;
+    const Fitting& best = pairs[likeliest.named.front()];
+    if (!best.b->fitted.complete()) return;  // those before it were no two causes
+    const double share = ShareOf({"", 0, best.b->likelihood}, single_.Base());
+    if (share < criteria_.second_share) {
+      found.would_take = InWords(best);
+      return;
+    }
     const CandidateSearch& search = tried_[best.base].search;
     const LackOfFit lack = of_step_ ? search.TestsOf(*best.b) : search.LackOf(best.b);
-    verdict = JudgeLikelihoods(records, lack, 0, criteria_);
-    if (verdict.named.empty()) return {};
-    const auto equivalent = OthersForFirst(pairs, verdict);
-    auto tried = List(pairs);
-    std::vector<std::size_t> seconds;
-    for (const std::size_t n : verdict.named) {
-      if (pairs[n].base == best.base) seconds.push_back(pairs[n].second);
+    Verdict verdict = JudgeLikelihoods(records, lack, 0, single_.Base(), criteria_);
+    if (verdict.named.empty()) {
+      found.would_take = InWords(best);
+      return;
     }
-    verdict.named = seconds;
-    return Pair{std::move(tried_[best.base].search),
-                best.a->hypothesis,
-                best.a->likelihood,
-                equivalent,
-                std::move(verdict),
-                lack,
-                std::move(tried)};
+    const auto equivalent = OthersForFirst(pairs, verdict);
+    for (auto* const some : {&verdict.named, &verdict.siblings}) {
+      std::vector<std::size_t> seconds;
+      for (const std::size_t n : *some) {
+        if (pairs[n].base == best.base) seconds.push_back(pairs[n].second);
+      }
+      *some = seconds;
+    }
+    if (verdict.named.empty()) return;
+    verdict.leading = verdict.named.front();
+    found.best.emplace(Pair{std::move(tried_[best.base].search), best.a->hypothesis,
+                            best.a->likelihood, equivalent, std::move(verdict), lack});
+  }
+
+  std::string InWords(const Fitting& pair) const {
+    const BaseSquares base = single_.Base();
+    const double left = base.squares - base.freedom - pair.a->likelihood;
+    return fmt::format("{} beside {} takes {:.0f} % of that", pair.b->hypothesis.NameAtPlace(),
+                       pair.a->hypothesis.NameAtPlace(),
+                       100 * std::clamp(pair.b->likelihood / std::max(left, 1e-300), 0.0, 1.0));
   }
 
   // Effects of pairs in the set that are neither of the best pair's, nor stand for its second.
@@ -186,6 +206,7 @@ class PairSearch {
     return others;
   }
 
+  // All that was fitted, best first.
   static std::vector<PairTried> List(const std::vector<Fitting>& pairs) {
     std::vector<PairTried> list;
     for (const Fitting& p : pairs)
@@ -205,8 +226,7 @@ class PairSearch {
 
 }  // namespace
 
-std::optional<Pair> FindPair(const SearchContext& context, const CandidateSearch& single,
-                             bool of_step) {
+PairsFound FindPair(const SearchContext& context, const CandidateSearch& single, bool of_step) {
   return PairSearch(context, single, of_step).Run();
 }
 

@@ -4,7 +4,7 @@
 
 namespace continuum {
 
-/// Two causes that act together and whose residual is noise.
+/// Two causes that act together.
 struct Pair {
   CandidateSearch search;  ///< for the second cause: its base has the first
   Hypothesis first;
@@ -12,17 +12,22 @@ struct Pair {
   std::vector<std::string> equivalent;  ///< effects that could stand for the first
   Verdict verdict;                      ///< on the second; indices into search.candidates
   LackOfFit lack_of_fit;
-  std::vector<PairTried> tried;  ///< best first
 };
 
-/// Looks for two causes when no single one's residual is noise: forward from the best single
-/// candidates, and backward, since the first may have been taken for two that together do better:
-/// the partner that was found becomes the base, until nothing changes.
+struct PairsFound {
+  std::optional<Pair> best = {};      ///< none: no second cause takes enough
+  std::vector<PairTried> tried = {};  ///< best first
+  std::string would_take = {};        ///< what a second cause that is not named takes, in words
+};
+
+/// Looks for two causes when one is not enough: forward from the best single candidates, and
+/// backward, since the first may have been taken for two that together do better: the partner that
+/// was found becomes the base, until nothing changes.
 ///
-/// single: a search that has been fitted; of_step: the time-discretisation error may explain the
-/// residual of its best, so that a second cause must explain most of it. Nothing when no pair's
-/// residual is noise.
-std::optional<Pair> FindPair(const SearchContext& context, const CandidateSearch& single,
-                             bool of_step);
+/// A second cause is named when it takes second_share of what can be explained at all, both are
+/// there beyond their intervals, and both together leave noise or take the main share. What takes
+/// less is only told. single: a search that has been fitted; of_step: the time-discretisation error
+/// may explain the residual of its best, so that a second cause must explain most of it.
+PairsFound FindPair(const SearchContext& context, const CandidateSearch& single, bool of_step);
 
 }  // namespace continuum

@@ -70,6 +70,13 @@ struct Criteria {
                      "by which a law must beat, beyond parameter_cost, one that it contains: 6.64 "
                      "in all, 99 % of chi-squared with one degree of freedom",
                      "Wilks 1938, Ann. Math. Stat. 9:60"};
+  Rule left_share{"left_share", 0.2, "share of the squares above the noise that the best leaves",
+                  "what else is wrong with a model favours one rival or the other by as much"};
+  Rule main_share{"main_share", 0.75, "share of the squares above the noise",
+                  "a main cause takes at least half of the error off that noise does not explain"};
+  Rule family_share{"family_share", 0.95, "share of what the best of the family explains",
+                    "a richer law of one family must explain more than what is left of a plain one "
+                    "by the way in which friction is simulated"};
   Rule step_share{"step_share", 0.005, "share of what is put down to the time step",
                   "first order in the step may miss that much: closer candidates are not "
                   "distinguished"};
@@ -128,6 +135,10 @@ struct Criteria {
   Rule fit_share{"fit_share", 0.02, "share of what the best explains",
                  "but never where it is a fiftieth: first order is wrong by factors, not by orders "
                  "of magnitude"};
+  Rule force_least{"force_least", 0.05, "share of the missing force's squares",
+                   "noise of the accelerations lets a candidate explain less by chance"};
+  Rule force_share{"force_share", 0.5, "share of what the best explains of the missing force",
+                   "one that explains less may be the cause only where first order sees it"};
   Rule rival_share{"rival_share", 0.3, "share of what the best of the list explains",
                    "a candidate that is not on the list may outdo it from here on"};
   Rule outdoes{"outdoes", 0.1, "share of what the best explains",
@@ -149,10 +160,13 @@ struct Criteria {
                     "fitted again from the experiment's own start where nothing explains it"};
 
   // Two causes.
-  Rule pair_hopeless{"pair_hopeless", 10, "times the noise",
+  Rule pair_hopeless{"pair_hopeless", 100, "times the noise",
                      "where the best single cause has a larger residual, one more is not enough"};
-  Rule pair_singles{"pair_singles", 2, "effects", "from which the search for two causes starts"};
+  Rule pair_singles{"pair_singles", 3, "families", "from which the search for two causes starts"};
   Rule pair_bases{"pair_bases", 4, "candidates", "tried as one of two causes: each is a search"};
+  Rule second_share{"second_share", 0.02, "share of the squares above the noise",
+                    "what is left by the way in which a cause is simulated is less: a second "
+                    "cause of that size is told, not named"};
   Rule pair_share{"pair_share", 0.5, "share of the squares above the noise",
                   "a second cause must explain where the time step may explain them too"};
 
@@ -186,6 +200,9 @@ inline constexpr std::array kAllRules{
     &Criteria::parameter_cost,
     &Criteria::rival_margin,
     &Criteria::nested_margin,
+    &Criteria::left_share,
+    &Criteria::main_share,
+    &Criteria::family_share,
     &Criteria::step_share,
     &Criteria::plain_noise,
     &Criteria::step_seen,
@@ -210,6 +227,8 @@ inline constexpr std::array kAllRules{
     &Criteria::fit_behind,
     &Criteria::fit_always,
     &Criteria::fit_share,
+    &Criteria::force_least,
+    &Criteria::force_share,
     &Criteria::rival_share,
     &Criteria::outdoes,
     &Criteria::hopeless_factor,
@@ -222,6 +241,7 @@ inline constexpr std::array kAllRules{
     &Criteria::pair_hopeless,
     &Criteria::pair_singles,
     &Criteria::pair_bases,
+    &Criteria::second_share,
     &Criteria::pair_share,
     &Criteria::fallback_ceiling,
     &Criteria::fallback_size,

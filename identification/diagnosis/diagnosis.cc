@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include "identification/diagnosis/log_requirements.h"
 #include "identification/diagnosis/next_experiment.h"
 #include "identification/diagnosis/quantisation.h"
+#include "identification/diagnosis/remaining.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
@@ -47,6 +49,7 @@ class Session {
       CompleteNamed();
       FitFinely();
       ScoreFolds();
+      ConfirmOnFolds();
     } else {
       CompareFolds();
       MergePlaces();
@@ -78,12 +81,22 @@ class Session {
       d_.parameters = last.parameters();
       d_.changes = last.CommonChanges(d_.last().fit.x);
     });
+    Part("what remains", [&] { SetRemaining(); });
     Part("missing force", [&] { d_.missing_force = FindMissingForce(null_, d_.before.fit.x); });
     Part("contrast of the conditions", [&] {
       d_.contrast = ConditionContrast(null_, d_.before.residuals);
       for (CandidateResult& c : d_.candidates)
         c.contrast = ConditionContrast(null_, c.fitted.residuals);
     });
+  }
+
+  void SetRemaining() {
+    const Problem last = d_.chosen() ? ProblemOf(*d_.chosen(), e_) : null_;
+    std::string would_take = std::move(d_.remaining.would_take);
+    d_.remaining = RemainingOf(last, d_.last(), d_.noise);
+    if (d_.verdict.complete) return;
+    if (would_take.empty()) would_take = WouldTake(d_);
+    d_.remaining.would_take = std::move(would_take);
   }
 
   // Before long work.
@@ -128,18 +141,29 @@ class Session {
     }
     Judge(search);
     TryOtherPlaces(search);
-    if (d_.Is(Verdict::Kind::kUnexplained) && search.RefitFromExperimentStart()) Judge(search);
+    if (SomethingIsLeft(search) && search.RefitFromExperimentStart()) Judge(search);
     CompareUnlisted(search);
     const bool two = search.leading() && MayBeTwo(d_.verdict, d_.lack_of_fit, search.smallest_p(),
                                                   search.BestOverNoise(), d_.criteria);
-    auto pair = two ? FindPair(Context(options_), search, d_.lack_of_fit.of_step) : std::nullopt;
-    d_.noise_limited =
-        pair || d_.verdict.unlisted_explains || search.BestOverNoise() < d_.criteria.model_limited;
-    if (pair) {
-      JudgePair(*pair);
+    PairsFound pairs =
+        two ? FindPair(Context(options_), search, d_.lack_of_fit.of_step) : PairsFound{};
+    d_.pairs = std::move(pairs.tried);
+    d_.remaining.would_take = std::move(pairs.would_take);
+    d_.noise_limited = pairs.best || !d_.Is(Verdict::Kind::kUnexplained) ||
+                       d_.verdict.unlisted_explains ||
+                       search.BestOverNoise() < d_.criteria.model_limited;
+    if (pairs.best) {
+      JudgePair(*pairs.best);
     } else {
       Take(search);
     }
+  }
+
+  // Whether the verdict may be another one with a better fit.
+  bool SomethingIsLeft(const CandidateSearch& search) const {
+    if (d_.Is(Verdict::Kind::kUnexplained)) return true;
+    return !d_.verdict.complete && 1 - d_.verdict.leading_share > d_.criteria.second_share &&
+           search.BestOverNoise() > d_.criteria.near_noise;
   }
 
   void Take(CandidateSearch& search) {
@@ -153,7 +177,7 @@ class Session {
 
   void CompareByEquation() {
     options_.Say("missing force");
-    const EquationErrors view(e_, d_.system, d_.before);
+    const EquationErrors view(null_, d_.before.fit.x);
     ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {
       d_.candidates[i].by_equation = view.Of(d_.candidates[i]);
     });
@@ -171,6 +195,23 @@ class Session {
     d_.ceiling_by = "noise alone";
   }
 
+  // A name by likelihoods that leaves more than noise stands only where it helps on logs left out.
+  void ConfirmOnFolds() {
+    if (!d_.chosen() || d_.verdict.complete || d_.chosen()->record.after.empty()) return;
+    const double floor = std::hypot(d_.noise.rms, d_.noise.step);
+    const double possible = std::max(0.0, 1 - floor / d_.before.error.train);
+    const bool held_out = d_.chosen()->fitted.error.validate <= d_.before.error.validate;
+    if (held_out && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
+    const std::string name = d_.chosen()->hypothesis.NameAtPlace();
+    d_.verdict.kind = Verdict::Kind::kUnexplained;
+    d_.verdict.leading = d_.verdict.named.front();
+    d_.verdict.named.clear(), d_.verdict.siblings.clear();
+    d_.verdict.reason = fmt::format(
+        "the best candidate, {}, does not lower the error of logs left out as it does that of its "
+        "own",
+        name);
+  }
+
   // By likelihoods, which are calibrated where noise is the whole residual of the best model.
   void Judge(CandidateSearch& search) {
     options_.Say("lack of fit");
@@ -181,18 +222,21 @@ class Session {
   void Decide(CandidateSearch& search) {
     const auto records = search.Records();
     SetProbabilities(search.candidates, records);
-    d_.verdict = JudgeLikelihoods(records, d_.lack_of_fit, search.smallest_p(), d_.criteria);
+    d_.verdict =
+        JudgeLikelihoods(records, d_.lack_of_fit, search.smallest_p(), search.Base(), d_.criteria);
     const auto& named = d_.verdict.named;
     const bool coarse = d_.lack_of_fit.of_step || d_.noise.step > d_.noise.rms;
-    if (coarse && !named.empty() && !MoreThanStep(search.candidates[named.front()].fitted))
+    if (coarse && !named.empty() && !MoreThanStep(search.candidates[named.front()].fitted)) {
       d_.verdict = {Verdict::Kind::kAdequate,
                     {},
                     "no candidate does more than the time step; try a finer one"};
+      d_.verdict.complete = true;
+    }
   }
 
   // Where no effect explains it at all joints together it may be at one of them.
   void TryOtherPlaces(CandidateSearch& search) {
-    if (!d_.Is(Verdict::Kind::kUnexplained)) return;
+    if (!SomethingIsLeft(search)) return;
     CandidateSearch others(Context(options_), Base(), SearchScope::kOthers);
     others.Screen();
     others.Fit(&search);
@@ -252,12 +296,9 @@ class Session {
     SetProbabilities(pair.search.candidates, pair.search.Records());
     for (CandidateResult& c : pair.search.candidates) c.likelihood += pair.first_likelihood;
     Take(pair.search);
-    d_.pairs = std::move(pair.tried);
     d_.partner = {std::move(pair.first), std::move(pair.equivalent)};
-    d_.verdict.reason = fmt::format(
-        "the residual of no single candidate is only noise, that of two is: {} at {} beside this; "
-        "{}",
-        d_.partner->hypothesis.Name(), d_.partner->hypothesis.where, d_.verdict.reason);
+    d_.verdict.reason = fmt::format("no single candidate is enough, two are: {} beside this; {}",
+                                    d_.partner->hypothesis.NameAtPlace(), d_.verdict.reason);
     const bool one = d_.verdict.named.size() == 1 && d_.partner->equivalent.empty();
     d_.verdict.kind = one ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
   }

@@ -1,47 +1,93 @@
 #include "identification/diagnosis/equation_error.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Dense>
 
 #include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/probing.h"
+#include "identification/diagnosis/search_rules.h"
+#include "sim/numerics/parallel.h"
 
 namespace continuum {
 namespace {
 
 using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+constexpr double kNothing = 1e-6;  // of the missing force
 
 }  // namespace
 
-EquationErrors::EquationErrors(const Experiment& experiment, const ModelSpec& system,
-                               const Fitted& base)
-    : experiment_(experiment), x_(base.fit.x) {
-  const Problem problem(experiment, system);
-  const auto joints = MissingForces(problem, x_, problem.TrainLogs());
+EquationErrors::EquationErrors(const Problem& base, const Vector& x)
+    : experiment_(base.experiment()), x_(x) {
+  const auto joints = MissingForces(base, x_, base.TrainLogs());
   if (joints.empty()) return;
   units_ = StackedForces(joints, &MissingForce::force);
   for (const MissingForce& joint : joints)
     log_.insert(log_.end(), joint.log.begin(), joint.log.end());
   missing_ = units_.Of(joints);
-  const auto count = static_cast<Eigen::Index>(problem.parameters().size());
-  Problem::Matrix columns = Problem::Matrix::Zero(missing_.size(), count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    if (problem.parameters()[k].IsStart()) continue;
+  columns_ = Matrix::Zero(missing_.size(), x_.size());
+  ParallelFor(static_cast<std::size_t>(x_.size()), [&](std::size_t thread, std::size_t i) {
+    if (base.parameters()[i].IsStart()) return;
+    const auto k = static_cast<Eigen::Index>(i);
+    const double step = base.StepOf(x_, i, 1e-3);
     Vector moved = x_;
-    moved[k] += problem.StepOf(x_, k, 1e-3);
-    const Vector column = Stacked(problem, moved) - missing_;
-    if (column.norm() > 1e-12) columns.col(k) = column;
-  }
-  basis_ = Basis(columns);
+    moved[k] += step;
+    const Vector column = (Stacked(base, moved, thread) - missing_) / step;
+    if (column.allFinite() && column.norm() * std::abs(step) > 1e-12) columns_.col(k) = column;
+  });
+  basis_ = Basis(columns_);
   force_ = missing_ - basis_ * (basis_.transpose() * missing_);
 }
 
-Vector EquationErrors::Stacked(const Problem& problem, const Vector& x) const {
-  return units_.Of(MissingForces(problem, x, problem.TrainLogs()));
+Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::size_t thread) const {
+  return units_.Of(MissingForces(problem, x, problem.TrainLogs(), thread));
+}
+
+std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
+                                                     const Problem& problem) const {
+  std::optional<EquationStart> best;
+  if (!any() || h.OnlyMeasured()) return best;
+  for (const auto& start : h.starts) {
+    auto one = From(h, problem, start);
+    if (one && (!best || one->share > best->share)) best = std::move(one);
+  }
+  return best;
+}
+
+// Each amplitude by itself, the others absent; sizes by least squares, of allowed signs.
+std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Problem& problem,
+                                                  const std::vector<double>& start) const {
+  const auto amplitudes = h.Amplitudes();
+  const auto count = static_cast<Eigen::Index>(amplitudes.size());
+  Matrix D = Matrix::Zero(missing_.size(), count);
+  Probe probe;
+  for (Eigen::Index a = 0; a < count; ++a) {
+    const std::size_t only = amplitudes[static_cast<std::size_t>(a)];
+    std::vector<double> own = start;
+    for (const std::size_t i : amplitudes) own[i] = h.AtShare(i, start[i], i == only ? 1 : 0);
+    const Vector d = Stacked(problem, Append(x_, own)) - missing_;
+    if (d.allFinite() && d.norm() > kNothing * missing_.norm()) D.col(a) = d;
+    probe.sign.push_back(h.OneSign(only) ? 1 : 0);
+  }
+  if (!(D.norm() > 0)) return {};
+  probe.columns = D - basis_ * (basis_.transpose() * D);
+  const Explained e = ExplainedBy(probe, force_);
+  std::vector<double> own = start;
+  for (Eigen::Index a = 0; a < count; ++a) {
+    const std::size_t i = amplitudes[static_cast<std::size_t>(a)];
+    own[i] = h.AtShare(i, start[i], StartShare(e.coefficients[a], 1));
+    own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);
+  }
+  const Vector beside =
+      x_ - columns_.completeOrthogonalDecomposition().solve(missing_ + D * e.coefficients);
+  return EquationStart{e.amount / force_.squaredNorm(), problem.Clamp(Append(x_, own)),
+                       problem.Clamp(Append(beside, own))};
 }
 
 std::optional<ByEquation> EquationErrors::Of(const CandidateResult& c) const {
-  constexpr double kNothing = 1e-6;  // of the missing force
   if (!any() || !c.was_fitted || !c.hypothesis.given.empty()) return {};
   Vector x = c.fitted.fit.x;
   x.head(x_.size()) = x_;

@@ -8,28 +8,44 @@
 
 namespace continuum {
 
+/// What a candidate explains of the missing force, and where its fit may begin.
+struct EquationStart {
+  double share = 0;  ///< of the squares of the missing force
+  /// Parameters of the base and of the candidate: those of the base as they were fitted without it,
+  /// and as the missing force wants them beside it.
+  Problem::Vector x, together;
+};
+
 /// A second view of the candidates, in which nothing is simulated for long: the missing force f at
 /// the measured states (identification/inverse_dynamics/missing_force.h) as a sum of what the
 /// fitted parameters p and one candidate do there,
 ///
 ///   f ≈ Σ a_i ∂f/∂p_i + b (f(p) − f(p, candidate)),   b ≥ 0,
 ///
-/// by least squares over the train logs, every joint in units of its own missing force; the
-/// candidate with the sizes that its fit gave it. What drifts, swings out of phase or hides behind
-/// the time step in free simulation does not here; noise of the accelerations does.
+/// by least squares over the train logs, every joint in units of its own missing force. What
+/// drifts, swings out of phase or hides behind the time step in free simulation does not here;
+/// noise of the accelerations does.
 class EquationErrors {
  public:
-  /// base: the fitted model without a candidate.
-  EquationErrors(const Experiment& experiment, const ModelSpec& system, const Fitted& base);
+  /// base: the problem without a candidate, fitted at x.
+  EquationErrors(const Problem& base, const Problem::Vector& x);
 
   /// Whether every joint is measured, so that there is anything to see.
   bool any() const { return force_.size() > 0; }
-  /// Of a fitted candidate; nothing where it does nothing to f, as effects on the sensors.
+  /// What a candidate explains with sizes of its own, and where its fit may begin: of all its
+  /// starts the best. Effects are linear in their sizes here, however large they are. Nothing where
+  /// it does nothing to f. problem: of the candidate.
+  std::optional<EquationStart> StartOf(const Hypothesis& hypothesis, const Problem& problem) const;
+  /// Of a fitted candidate with the sizes that its fit gave it; nothing where it does nothing to f,
+  /// as effects on the sensors.
   std::optional<ByEquation> Of(const CandidateResult& candidate) const;
 
  private:
   std::vector<double> PerLog(const Problem::Vector& r) const;
-  Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x) const;
+  Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x,
+                          std::size_t thread = 0) const;
+  std::optional<EquationStart> From(const Hypothesis& hypothesis, const Problem& problem,
+                                    const std::vector<double>& start) const;
 
   const Experiment& experiment_;
   Problem::Vector x_;
@@ -37,6 +53,7 @@ class EquationErrors {
   std::vector<std::size_t> log_;  // of every number
   Problem::Vector missing_;       // f
   Problem::Vector force_;         // f, less what the parameters explain of it
+  Problem::Matrix columns_;       // [parameter] ∂f/∂p
   Problem::Matrix basis_;         // orthonormal, of what the parameters do
 };
 

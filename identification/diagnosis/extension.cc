@@ -9,9 +9,11 @@
 namespace continuum {
 namespace {
 
-// A problem for the hypothesis that was chosen, or the null one.
-Problem LastProblem(const Experiment& e, const Diagnosis& d) {
-  return d.chosen() ? ProblemOf(*d.chosen(), e) : Problem(e, d.system);
+// With the cause that was chosen, or the model before.
+ExtendedModel Extended(const Experiment& e, const Diagnosis& d, const CandidateResult* chosen,
+                       const std::filesystem::path& folder) {
+  return chosen ? Extend(ProblemOf(*chosen, e), chosen->fitted.fit.x, folder, kExtendedModel)
+                : Extend(Problem(e, d.system), d.before.fit.x, folder, kExtendedModel);
 }
 
 // What cannot be written ends the job: only what cannot be made is a missing part.
@@ -28,19 +30,27 @@ void RunExtended(const std::filesystem::path& folder, ExtensionRun& run) {
   for (const Replayed& r : replayed) run.after_traces.push_back(r.trace);
 }
 
+// With a cause, or without one (null).
+void WriteAndRun(const Experiment& e, const Diagnosis& d, const CandidateResult* chosen,
+                 const std::filesystem::path& folder, ExtensionRun& run) {
+  run.after = chosen ? chosen->fitted.error : d.before.error;
+  run.after_traces.clear();
+  const bool made = MakePart("extended model", run.missing,
+                             [&] { run.extended = Extended(e, d, chosen, folder); });
+  WriteExtended(run.extended, folder);
+  if (made)
+    MakePart("errors of the extended files", run.missing, [&] { RunExtended(folder, run); });
+}
+
 }  // namespace
 
 ExtensionRun MeasureExtension(const Experiment& e, const Diagnosis& d,
                               const std::filesystem::path& folder) {
   ExtensionRun run;
-  run.after = d.after();
-  const bool made = MakePart("extended model", run.missing, [&] {
-    run.model_before = d.system.Xml({}, {}, folder);
-    run.extended = Extend(LastProblem(e, d), d.last().fit.x, folder, kExtendedModel);
-  });
-  WriteExtended(run.extended, folder);
-  if (made)
-    MakePart("errors of the extended files", run.missing, [&] { RunExtended(folder, run); });
+  MakePart("model before", run.missing, [&] { run.model_before = d.system.Xml({}, {}, folder); });
+  WriteAndRun(e, d, d.chosen(), folder, run);
+  run.offered = d.chosen() && !(run.after.validate > d.before.error.validate);
+  if (d.chosen() && !run.offered) WriteAndRun(e, d, nullptr, folder, run);
   if (d.fallback) {
     MakePart("fallback", run.missing, [&] {
       run.fallback =

@@ -23,18 +23,21 @@ struct ExtensionRun {
   std::string model_before;               ///< MJCF of the model before, as beside the extended one
   std::optional<ExtendedModel> fallback;  ///< none where the diagnosis has none
   std::string next_inputs;                ///< CSV of the next experiment; empty: there is none
-  TwoErrors after;                        ///< of the extended files, simulated as the model steps
-  std::vector<Trace> before_traces;       ///< [log]
-  std::vector<Trace> after_traces;        ///< [log] of the extended files; empty: not simulated
-  std::vector<Deviation> deviations;      ///< of the model before
-  std::vector<Finding> findings;          ///< of the log check
-  std::vector<MissingPart> missing;       ///< parts of this that could not be made
+  /// Whether the extended files hold a cause: never one that raises the held-out error.
+  bool offered = false;
+  TwoErrors after;                    ///< of the extended files, simulated as the model steps
+  std::vector<Trace> before_traces;   ///< [log]
+  std::vector<Trace> after_traces;    ///< [log] of the extended files; empty: not simulated
+  std::vector<Deviation> deviations;  ///< of the model before
+  std::vector<Finding> findings;      ///< of the log check
+  std::vector<MissingPart> missing;   ///< parts of this that could not be made
 };
 
 /// Writes extended.xml and extended.yaml of a diagnosis into a folder, which must exist, and runs
-/// them from there, so that the errors are those of the files. A part that fails costs only itself:
-/// without that run `after` holds the errors of the fit. Throws Error when the folder cannot be
-/// written.
+/// them from there, so that the errors are those of the files. Where these are larger on the logs
+/// held out than those of the model before, the files hold that model with its fitted parameters. A
+/// part that fails costs only itself: without that run `after` holds the errors of the fit. Throws
+/// Error when the folder cannot be written.
 ExtensionRun MeasureExtension(const Experiment& experiment, const Diagnosis& diagnosis,
                               const std::filesystem::path& folder);
 

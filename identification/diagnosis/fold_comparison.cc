@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "effects/effect.h"
 #include "identification/candidates/random_forces.h"
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/equation_error.h"
@@ -128,6 +127,7 @@ class FoldComparison {
     for (CandidateResult& c : d_.candidates) {
       c.failures = Failures(c.record, d_.criteria);
       if (Known()) c.record.over_noise = c.fitted.error.train / Floor();
+      c.record.kin = KinOf(c.hypothesis.Card());
       c.record.contains.clear();
       for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
         const CandidateResult& other = d_.candidates[i];
@@ -137,8 +137,7 @@ class FoldComparison {
     }
     ErrorLevel error{.over_noise = Known() ? d_.before.error.train / Floor() : 0,
                      .ceiling_gain = CeilingGain(d_),
-                     .over_scatter = 0,
-                     .replicated = d_.noise.source == "replicates"};
+                     .over_scatter = 0};
     if (d_.noise.source == "differences" && d_.noise.rms > 0)
       error.over_scatter = d_.before.error.train / d_.noise.rms;
     d_.verdict = JudgeFolds(records, error, d_.criteria);
@@ -171,7 +170,8 @@ class FoldComparison {
       return std::find(contains.begin(), contains.end(), inner) != contains.end();
     };
     return d_.candidates[a].hypothesis.effect == d_.candidates[b].hypothesis.effect ||
-           holds(a, b) || holds(b, a);
+           d_.candidates[a].record.kin.Of(d_.candidates[b].record.kin) || holds(a, b) ||
+           holds(b, a);
   }
 
   const CandidateFitter& fitter_;

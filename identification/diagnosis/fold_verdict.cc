@@ -55,15 +55,33 @@ class FoldJudge {
 
   Verdict Run() const {
     if (error_.over_noise > 0 && error_.over_noise < criteria_.at_noise) {
-      return {Verdict::Kind::kAdequate,
-              {},
-              fmt::format("the model's error is {:.2f} times the noise", error_.over_noise)};
+      return Adequate(
+          fmt::format("the model's error is {:.2f} times the noise", error_.over_noise));
     }
-    return passing_.empty() ? WithoutAName() : Name();
+    Verdict verdict = passing_.empty() ? WithoutAName() : Name();
+    if (verdict.kind == Verdict::Kind::kAdequate || order_.empty()) return verdict;
+    const std::size_t leading = passing_.empty() ? order_.front() : verdict.named.front();
+    if (!(Gain(leading) > 0)) return verdict;
+    verdict.leading = leading, verdict.leading_share = Share(leading);
+    return verdict;
   }
 
  private:
   double Gain(std::size_t i) const { return Median(Gains(candidates_[i])); }
+
+  double Squares(std::size_t i) const { return SquaresOf(Gain(i)); }
+  static double SquaresOf(double gain) { return 1 - (1 - gain) * (1 - gain); }
+
+  // Of the squares that the best of all forces takes off, or this candidate where that is more.
+  double Share(std::size_t i) const {
+    return std::clamp(Squares(i) / SquaresOf(std::max(error_.ceiling_gain, Gain(i))), 0.0, 1.0);
+  }
+
+  static Verdict Adequate(std::string reason) {
+    Verdict verdict{Verdict::Kind::kAdequate, {}, std::move(reason)};
+    verdict.complete = true;
+    return verdict;
+  }
 
   Verdict WithoutAName() const {
     if (error_.over_scatter > criteria_.scatter_limit) {
@@ -74,11 +92,10 @@ class FoldJudge {
                           error_.over_scatter)};
     }
     if (error_.over_noise == 0 && error_.ceiling_gain < criteria_.median_gain) {
-      return {Verdict::Kind::kAdequate,
-              {},
-              fmt::format("no candidate and no smooth force removes {:.0f} % of the error, and "
-                          "without replicates the noise is not known",
-                          100 * criteria_.median_gain)};
+      return Adequate(
+          fmt::format("no candidate and no smooth force removes {:.0f} % of the error, and "
+                      "without replicates the noise is not known",
+                      100 * criteria_.median_gain));
     }
     return {Verdict::Kind::kUnexplained, {}, "no candidate passes all rules"};
   }
@@ -87,16 +104,12 @@ class FoldJudge {
     const double margin = std::max<double>(
         criteria_.fold_margin, OfPlacebos(candidates_[passing_.front()].placebo_gains, criteria_));
     const std::size_t best = Plainest(margin);
-    if (ShowsAnotherCause(candidates_[best].over_noise)) {
-      return {Verdict::Kind::kUnexplained,
-              {},
-              fmt::format("the error with the best candidate, {}, is {:.1f} times the noise: "
-                          "another cause is at work, or one more",
-                          candidates_[best].name, candidates_[best].over_noise)};
-    }
     Verdict verdict{Verdict::Kind::kNamed, {best}};
+    verdict.complete =
+        candidates_[best].over_noise > 0 && candidates_[best].over_noise < criteria_.near_noise;
     for (const std::size_t i : order_) {
-      if (i != best && IsRival(i, best, margin)) verdict.named.push_back(i);
+      if (i == best || !IsRival(i, best, margin)) continue;
+      (AreKin(i, best) ? verdict.siblings : verdict.named).push_back(i);
     }
     if (verdict.named.size() > 1) {
       verdict.kind = Verdict::Kind::kAmbiguous;
@@ -108,28 +121,35 @@ class FoldJudge {
     return verdict;
   }
 
-  // On model-limited data something always does, unless replicates show that it is no noise.
-  bool ShowsAnotherCause(double over_noise) const {
-    return over_noise > criteria_.near_noise &&
-           (error_.replicated || over_noise < criteria_.model_limited);
+  bool AreKin(std::size_t a, std::size_t b) const {
+    return candidates_[a].kin.Of(candidates_[b].kin);
+  }
+  bool IsPlainer(std::size_t a, std::size_t b) const {
+    return Holds(candidates_[b].contains, a) ||
+           (AreKin(a, b) && candidates_[a].kin.depth < candidates_[b].kin.depth);
   }
 
-  // Only as deep as the folds allow: the plainest of those that the better one contains, unless it
-  // is clearly worse.
+  // Only as deep as the folds allow: the plainest of those that the better one contains or is of
+  // one family with, unless it is clearly worse.
   std::size_t Plainest(double margin) const {
-    std::size_t best = passing_.front();
+    const std::size_t first = passing_.front();
+    std::size_t best = first;
     for (const std::size_t i : passing_) {
-      if (Holds(candidates_[best].contains, i) &&
-          !ClearlyBetter(candidates_[passing_.front()], candidates_[i], margin, criteria_))
+      const bool most = AreKin(i, first) && Squares(i) >= criteria_.family_share * Squares(first);
+      if (IsPlainer(i, best) &&
+          (most || !ClearlyBetter(candidates_[first], candidates_[i], margin, criteria_)))
         best = i;
     }
     return best;
   }
 
-  // One that contains the best says no more.
+  // One that contains the best says no more. Of another family it is behind where the best of the
+  // named one's is clearly better.
   bool IsRival(std::size_t i, std::size_t best, double margin) const {
+    const std::size_t first = passing_.front();
+    const std::size_t judge = AreKin(i, best) || !AreKin(first, best) ? best : first;
     return Gain(i) >= criteria_.rival_gain * Gain(best) &&
-           !ClearlyBetter(candidates_[best], candidates_[i], margin, criteria_) &&
+           !ClearlyBetter(candidates_[judge], candidates_[i], margin, criteria_) &&
            !Holds(candidates_[i].contains, best);
   }
 
@@ -195,11 +215,23 @@ std::vector<std::string> Failures(const FoldRecord& record, const Criteria& crit
   return failures;
 }
 
-bool HelpsOnFolds(const FoldRecord& record, const Criteria& criteria) {
+namespace {
+
+bool Helps(const FoldRecord& record, double least, const Criteria& criteria) {
   const auto gains = Gains(record);
-  return Median(gains) >= criteria.median_gain &&
-         static_cast<double>(FoldsBetter(gains)) >=
-             criteria.folds_better * static_cast<double>(gains.size());
+  return Median(gains) >= least && EnoughFolds(FoldsBetter(gains), gains.size(), criteria);
+}
+
+}  // namespace
+
+bool HelpsOnFolds(const FoldRecord& record, const Criteria& criteria) {
+  return Helps(record, criteria.median_gain, criteria);
+}
+
+// What takes main_share of the squares takes half of the error.
+bool HoldsOnFolds(const FoldRecord& record, double possible, const Criteria& criteria) {
+  const double half = 1 - std::sqrt(1 - criteria.main_share);
+  return Helps(record, std::min<double>(criteria.median_gain, half * possible), criteria);
 }
 
 bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin,

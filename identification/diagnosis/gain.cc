@@ -35,7 +35,7 @@ double Share(const Diagnosis& d, const CandidateResult& c) {
 }
 
 bool ModelLimited(const Diagnosis& d, const TwoErrors& after) {
-  return !d.noise_limited && after.train > d.criteria.model_limited * d.noise.rms;
+  return after.train > d.criteria.model_limited * std::hypot(d.noise.rms, d.noise.step);
 }
 
 double Separation(const Diagnosis& d) {

@@ -41,8 +41,7 @@ class Prober {
     for (std::size_t a = 0; a < amplitudes_.size(); ++a) {
       probe.columns.col(static_cast<Eigen::Index>(a)) = Direction(start, a, 1);
       const std::size_t i = amplitudes_[a];
-      const bool one_way = h_.extra[i].lower >= h_.null[i] || h_.extra[i].upper <= h_.null[i];
-      probe.sign.push_back(one_way ? 1 : 0);
+      probe.sign.push_back(h_.OneSign(i) ? 1 : 0);
     }
     return probe;
   }

@@ -73,6 +73,7 @@ struct CandidateResult {
   std::vector<Probe> probes = {};  ///< one for each start: directions from the fit without it
   Problem::Vector start = {};      ///< of its fit, when the screen found one
   std::vector<Problem::Vector> other_starts = {};  ///< that the screen finds as good
+  double force_share = 0;  ///< of the missing force's squares that it explains at measured states
   bool was_fitted = false;
   Fitted fitted = {};                          ///< empty where it was not fitted
   std::optional<Fitted> at_quarter_step = {};  ///< where first order in the step does not hold
@@ -114,6 +115,13 @@ struct Dismissed {
   double explained = 0, p = 1;
 };
 
+/// What the model that a verdict leaves still gets wrong.
+struct Remaining {
+  double over_noise = 0;   ///< its error over the noise; 0: the noise is not known
+  std::string where;       ///< "q3 of log pull_2"; empty: nowhere in particular
+  std::string would_take;  ///< what would take it, in words; empty: nothing that was tried
+};
+
 /// What to measure next to distinguish the models of an ambiguous set.
 struct NextExperiment {
   std::string input;            ///< in words; empty: none is needed
@@ -137,7 +145,8 @@ struct Diagnosis {
   std::optional<Partner> partner;           ///< of all candidates: their systems have it
   std::vector<PairTried> pairs;             ///< where no single candidate was enough; best first
   std::vector<Dismissed> dismissed;
-  bool noise_limited = false;  ///< the best residual is noise: likelihoods judge, else folds
+  bool noise_limited = false;  ///< likelihoods judged, else the folds
+  Remaining remaining;         ///< of the model that the verdict leaves
   LackOfFit lack_of_fit;       ///< of the model that the verdict is about
   std::vector<std::string> skipped;
   Verdict verdict;  ///< indices into candidates, and into unlisted

@@ -52,6 +52,10 @@ double UnlistedThreshold(double most, const Criteria& criteria) {
   return criteria.rival_share * most;
 }
 
+bool ExplainsForce(double share, double most, const Criteria& criteria) {
+  return share >= std::max<double>(criteria.force_least, criteria.force_share * most);
+}
+
 bool WorthFinishing(std::size_t finished, double explained, double most, const Criteria& criteria) {
   return static_cast<double>(finished) < criteria.second_chances &&
          explained >= FitThresholdAtNoise(most, criteria);
@@ -104,12 +108,13 @@ bool WorthFolds(double before, double after, const Criteria& criteria) {
   return after <= (1 - criteria.fit_gain) * before;
 }
 
-// No single candidate's residual is noise, or only by the time step's leave; and the best one's is
-// not a hundred times the noise's squares.
+// Something is left that matters, or only the time step may have left it; and the best one's
+// residual is not a hundred times the noise's squares.
 bool MayBeTwo(const Verdict& verdict, const LackOfFit& lack, double smallest_p, double over_noise,
               const Criteria& criteria) {
-  const bool more = verdict.kind == Verdict::Kind::kUnexplained ||
-                    (lack.of_step && verdict.kind != Verdict::Kind::kAdequate);
+  const bool adequate = verdict.kind == Verdict::Kind::kAdequate;
+  const bool more = !adequate && (!verdict.complete || lack.of_step) &&
+                    1 - verdict.leading_share >= criteria.second_share;
   return more && !verdict.unlisted_explains && smallest_p < criteria.significance &&
          over_noise < criteria.pair_hopeless;
 }

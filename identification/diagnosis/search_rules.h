@@ -48,6 +48,10 @@ double FitThresholdAtNoise(double most, const Criteria& criteria = {});
 /// The same for candidates that nobody asked for. most: what the best one explains that was.
 double UnlistedThreshold(double most, const Criteria& criteria = {});
 
+/// Whether a candidate explains so much of the missing force that it is fitted, whatever first
+/// order says. most: what the best one explains; all are shares of its squares.
+bool ExplainsForce(double share, double most, const Criteria& criteria = {});
+
 /// Whether an abandoned fit goes on to its end where none reaches the noise. finished: so many did.
 bool WorthFinishing(std::size_t finished, double explained, double most,
                     const Criteria& criteria = {});

@@ -6,14 +6,21 @@
 
 #include <fmt/format.h>
 
+#include "binding/effect_catalog.h"
+
 namespace continuum {
 namespace {
 
 // Candidates in the order of their scores, where one of them has to be named.
 class Ranking {
  public:
-  Ranking(const std::vector<LikelihoodRecord>& candidates, const Criteria& criteria)
-      : candidates_(candidates), criteria_(criteria), order_(candidates.size()) {
+  Ranking(const std::vector<LikelihoodRecord>& candidates, const BaseSquares& base,
+          const Criteria& criteria)
+      : candidates_(candidates), base_(base), criteria_(criteria), order_(candidates.size()) {
+    double most = 0;
+    for (const LikelihoodRecord& one : candidates) most = std::max(most, one.likelihood);
+    left_ = std::max(0.0, base.squares - most - base.freedom);
+    if (base.freedom > 0) scale_ = std::max(1.0, (base.squares - most) / base.freedom);
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::sort(order_.begin(), order_.end(), [&](auto a, auto b) { return Score(a) > Score(b); });
   }
@@ -24,31 +31,46 @@ class Ranking {
                          [&](std::size_t i) { return candidates_[i].listed; });
   }
   const LikelihoodRecord& of(std::size_t i) const { return candidates_[i]; }
+  double share(std::size_t i) const { return ShareOf(candidates_[i], base_); }
 
-  /// The first, or the best of those that it contains and does not clearly beat: only as deep as
-  /// the data allow.
+  /// The first, or the plainest of its family or of what it contains that it does not clearly beat:
+  /// only as deep as the data allow.
   std::size_t Best() const {
     const std::size_t f = first();
+    std::size_t best = f;
     for (const std::size_t i : order_) {
-      if (candidates_[i].listed && Contains(f, i) && !Behind(f, i, criteria_.nested_margin))
-        return i;
+      if (candidates_[i].listed && IsPlainer(i, best) && IsEnough(i, f)) best = i;
     }
-    return f;
+    return best;
   }
 
-  /// One that was not asked for and does clearly better; null when there is none.
+  /// Others of the best one's family that do as well, or better.
+  std::vector<std::size_t> Siblings(std::size_t best) const {
+    std::vector<std::size_t> siblings;
+    for (const std::size_t i : order_) {
+      if (i != best && candidates_[i].listed && AreKin(i, best) && IsEnough(i, first()) &&
+          !AddsNothing(i, best))
+        siblings.push_back(i);
+    }
+    return siblings;
+  }
+
+  /// One of another family that was not asked for and does clearly better; null when there is none.
   const LikelihoodRecord* Outdoing(std::size_t best) const {
-    const std::size_t top = order_.front();
-    const bool outdoes = !candidates_[top].listed && Behind(top, best, criteria_.rival_margin);
-    return outdoes ? &candidates_[top] : nullptr;
+    for (const std::size_t i : order_) {
+      if (!candidates_[i].listed && !AreKin(i, best) && IsBehind(i, first()))
+        return &candidates_[i];
+    }
+    return nullptr;
   }
 
-  /// Those that the data do not distinguish from the best, which comes first. Of a law and one that
-  /// it contains the plain one says it, unless only the complicated one was asked for.
+  /// The best, and those of other families that the data do not distinguish from the best of its
+  /// own. Of a law and one that it contains the plain one says it, unless only the complicated one
+  /// was asked for.
   std::vector<std::size_t> Near(std::size_t best) const {
     std::vector<std::size_t> near{best};
     for (const std::size_t i : order_) {
-      if (i != best && !AddsNothing(i, best) && !Behind(best, i, criteria_.rival_margin))
+      if (i != best && !AreKin(i, best) && !AddsNothing(i, best) && !IsBehind(first(), i))
         near.push_back(i);
     }
     const auto all = near;
@@ -60,19 +82,41 @@ class Ranking {
     return near;
   }
 
-  double Score(std::size_t i) const { return ScoreOf(candidates_[i], criteria_); }
-  /// By how much the next one is behind.
+  double Score(std::size_t i) const {
+    const double extra = static_cast<double>(candidates_[i].parameters) - 1;
+    return candidates_[i].likelihood - scale_ * criteria_.parameter_cost * extra;
+  }
+  /// By how much the next one of another family is behind.
   double Lead(std::size_t best) const {
-    if (order_.size() < 2) return Score(best);
-    return Score(best) - Score(order_[best == order_[0] ? 1 : 0]);
+    for (const std::size_t i : order_) {
+      if (i != best && !AreKin(i, best)) return Score(best) - Score(i);
+    }
+    return Score(best);
   }
 
  private:
+  bool AreKin(std::size_t a, std::size_t b) const {
+    return candidates_[a].kin.Of(candidates_[b].kin);
+  }
+  bool IsPlainer(std::size_t a, std::size_t b) const {
+    return Contains(b, a) || (AreKin(a, b) && candidates_[a].kin.depth < candidates_[b].kin.depth);
+  }
+  // Whether a says what the first one of its family says, but for what a richer law has to earn.
+  bool IsEnough(std::size_t a, std::size_t first) const {
+    const bool most =
+        AreKin(a, first) &&
+        candidates_[a].likelihood >= criteria_.family_share * candidates_[first].likelihood;
+    return most || !Behind(first, a, criteria_.nested_margin);
+  }
+  bool IsBehind(std::size_t best, std::size_t rival) const {
+    return Behind(best, rival,
+                  std::max<double>(criteria_.rival_margin, criteria_.left_share * left_ / scale_));
+  }
   // By the smaller of both time-discretisation errors: one that leans on it far more than the other
   // does not profit from it.
   bool Behind(std::size_t i, std::size_t j, double least) const {
     const double open = criteria_.step_share * std::min(candidates_[i].step, candidates_[j].step);
-    return Score(i) - Score(j) >= std::max(least, open);
+    return Score(i) - Score(j) >= std::max(scale_ * least, open);
   }
   bool Contains(std::size_t a, std::size_t b) const {
     const auto& inner = candidates_[a].contains;
@@ -80,11 +124,14 @@ class Ranking {
   }
   // To the one that it contains. Where only the time step leaves that open, both stay.
   bool AddsNothing(std::size_t a, std::size_t b) const {
-    return Contains(a, b) && Score(a) - Score(b) < criteria_.nested_margin;
+    return Contains(a, b) && Score(a) - Score(b) < scale_ * criteria_.nested_margin;
   }
 
   const std::vector<LikelihoodRecord>& candidates_;
+  const BaseSquares& base_;
   const Criteria& criteria_;
+  double left_ = 0;   // squares above the noise that the best one leaves
+  double scale_ = 1;  // squares that the best one leaves over those of noise
   std::vector<std::size_t> order_;
 };
 
@@ -93,14 +140,28 @@ Verdict Adequate(const LackOfFit& lack, double p, const Criteria& criteria) {
       p < criteria.significance
           ? "no candidate's fit gains more than its parameters gain from noise alone"
           : fmt::format("noise alone lets the best candidate do as well with p = {:.2g}", p);
-  return {Verdict::Kind::kAdequate,
-          {},
-          fmt::format("the model's residual shows {}: {}", ResidualInWords(lack, criteria), why)};
+  Verdict verdict{Verdict::Kind::kAdequate};
+  verdict.reason =
+      fmt::format("the model's residual shows {}: {}", ResidualInWords(lack, criteria), why);
+  verdict.complete = true;
+  return verdict;
 }
 
-Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack,
+// What the residual of a named cause shows.
+std::string Shows(const Ranking& all, std::size_t best, const LackOfFit& lack, bool more,
+                  const Criteria& criteria) {
+  if (!more) return "its residual shows " + ResidualInWords(lack, criteria);
+  return fmt::format(
+      "it explains {:.0f} % of what noise does not, and its residual shows more than "
+      "noise",
+      100 * all.share(best));
+}
+
+Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool more,
              const Criteria& criteria) {
   Verdict verdict{Verdict::Kind::kNamed};
+  verdict.complete = !more;
+  verdict.siblings = all.Siblings(best);
   std::string unlisted;
   bool close = true;
   for (const std::size_t i : all.Near(best)) {
@@ -110,8 +171,10 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack,
     close = close && all.Score(best) - all.Score(i) < criteria.rival_margin;
   }
   const std::string near = fmt::format("within {:g}{}", +criteria.rival_margin,
-                                       close ? "" : " or what the time step leaves open");
-  const std::string shows = "its residual shows " + ResidualInWords(lack, criteria);
+                                       close  ? ""
+                                       : more ? " or what else is left"
+                                              : " or what the time step leaves open");
+  const std::string shows = Shows(all, best, lack, more, criteria);
   if (verdict.named.size() > 1) {
     verdict.kind = Verdict::Kind::kAmbiguous;
     verdict.reason =
@@ -133,6 +196,18 @@ Verdict Unexplained(std::string reason) {
 }
 
 }  // namespace
+
+Kin KinOf(std::string_view effect) {
+  const Kinship& kin = EffectNamed(effect).kin;
+  return {std::string(kin.family), kin.depth};
+}
+
+Kin KinOf(std::string_view effect, std::string_view other) {
+  Kin a = KinOf(effect), b = KinOf(other);
+  if (a.family.empty()) a.family = effect;
+  if (b.family.empty()) b.family = other;
+  return {std::min(a.family, b.family) + " and " + std::max(a.family, b.family), a.depth + b.depth};
+}
 
 std::string Verdict::word() const {
   switch (kind) {
@@ -170,8 +245,13 @@ std::string ResidualInWords(const LackOfFit& lack, const Criteria& criteria) {
                      +criteria.lack_of_fit, lack.smallest());
 }
 
+double ShareOf(const LikelihoodRecord& record, const BaseSquares& base) {
+  const double above = base.squares - base.freedom;
+  return above > 0 ? std::clamp(record.likelihood / above, 0.0, 1.0) : 1;
+}
+
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const LackOfFit& lack,
-                         double p, const Criteria& criteria) {
+                         double p, const BaseSquares& base, const Criteria& criteria) {
   // First order may promise what no fit keeps.
   const bool kept = std::any_of(candidates.begin(), candidates.end(), [&](const auto& c) {
     return c.listed && ScoreOf(c, criteria) > criteria.parameter_cost;
@@ -181,22 +261,24 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
   if (!any && more)
     return Unexplained("the residual shows something beside noise that no candidate explains");
   if (!any) return Adequate(lack, p, criteria);
-  const Ranking all(candidates, criteria);
-  if (more) {
-    return Unexplained(fmt::format(
-        "the residual of the best candidate, {}, shows more than noise (p = {:.2g}): another cause "
-        "is at work, or one more",
-        all.of(all.first()).name, lack.smallest()));
-  }
+  const Ranking all(candidates, base, criteria);
   const std::size_t best = all.Best();
-  if (const LikelihoodRecord* const other = all.Outdoing(best)) {
-    Verdict verdict = Unexplained(
+  Verdict verdict;
+  if (more && all.share(all.first()) < criteria.main_share) {
+    verdict = Unexplained(fmt::format(
+        "the best candidate, {}, explains {:.0f} % of what noise does not, and {:.0f} % are asked "
+        "for: another cause is at work, or one more",
+        all.of(all.first()).name, 100 * all.share(all.first()), 100 * criteria.main_share));
+  } else if (const LikelihoodRecord* const other = all.Outdoing(best)) {
+    verdict = Unexplained(
         fmt::format("the best candidate, {}, is clearly outdone by {}, which is not listed",
                     all.of(best).name, other->name));
     verdict.unlisted_explains = true;
-    return verdict;
+  } else {
+    verdict = Name(all, best, lack, more, criteria);
   }
-  return Name(all, best, lack, criteria);
+  verdict.leading = best, verdict.leading_share = all.share(best);
+  return verdict;
 }
 
 }  // namespace continuum

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,10 +23,28 @@ struct Verdict {
   std::string reason = {};                 ///< one sentence
   std::vector<std::size_t> unlisted = {};  ///< candidates nobody asked for that do as well
   bool unlisted_explains = false;          ///< unexplained, but not by one that nobody asked for
+  /// Candidates of the named one's family that do as well, or better by less than a richer law has
+  /// to earn.
+  std::vector<std::size_t> siblings = {};
+  bool complete = false;                    ///< what the verdict leaves looks like noise
+  std::optional<std::size_t> leading = {};  ///< the candidate that comes closest; none: none helps
+  double leading_share = 0;                 ///< what it takes of what can be explained [squares]
 
   /// "adequate", "named", "ambiguous" or "unexplained".
   std::string word() const;
 };
+
+/// The family of one cause, or of several that act together, and how much more than its plainest
+/// law it says.
+struct Kin {
+  std::string family = {};  ///< empty: none
+  int depth = 0;
+
+  bool Of(const Kin& other) const { return !family.empty() && family == other.family; }
+};
+Kin KinOf(std::string_view effect);
+/// Of two causes that act together, in any order.
+Kin KinOf(std::string_view effect, std::string_view other);
 
 /// One candidate's cross-validation, and that of random forces with as many parameters.
 struct FoldRecord {
@@ -37,6 +56,7 @@ struct FoldRecord {
   std::vector<double> placebo_gains = {};  ///< [random force] median gain over the folds
   double over_noise = 0;                   ///< error of its fit over the noise; 0: noise not known
   std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
+  Kin kin = {};
 };
 
 /// 1 − after/before [fold].
@@ -53,6 +73,10 @@ std::vector<std::string> Failures(const FoldRecord& record, const Criteria& crit
 /// Whether the error falls in enough folds, and by enough in the median.
 bool HelpsOnFolds(const FoldRecord& record, const Criteria& criteria = {});
 
+/// The same of a cause that leaves more than noise. possible: the share of the error that noise
+/// leaves open; where that is small half of it is enough.
+bool HoldsOnFolds(const FoldRecord& record, double possible, const Criteria& criteria = {});
+
 /// Whether a is better than b in paired folds: by more than one standard error of the mean
 /// difference, in enough of them, and by more than a margin [share of b's error] in the median.
 bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin = 0,
@@ -63,7 +87,6 @@ struct ErrorLevel {
   double over_noise = 0;    ///< of the present model; 0: noise not known
   double ceiling_gain = 0;  ///< median share of the error that any smooth force removes
   double over_scatter = 0;  ///< over the scatter from row to row, where no noise is known better
-  bool replicated = false;  ///< the noise comes from replicates: model error is none of it
 };
 
 /// The verdict by cross-validation.
@@ -90,20 +113,38 @@ struct LikelihoodRecord {
   std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do
   double step = 0;     ///< how much of its misfit is put down to the time step, in the same unit
   bool listed = true;  ///< whether it was asked for: only then it can be named
+  Kin kin = {};
+};
+
+/// The model without a candidate, by the same measure: whitened squares, and how many of them noise
+/// alone would make.
+struct BaseSquares {
+  double squares = 0, freedom = 0;
 };
 
 /// Likelihood less what its parameters gain from noise alone.
 double ScoreOf(const LikelihoodRecord& record, const Criteria& criteria = {});
+
+/// What a candidate takes of the squares that noise does not explain, 0 to 1.
+double ShareOf(const LikelihoodRecord& record, const BaseSquares& base);
 
 /// Posterior probabilities of the candidates, each as likely before: exp(score/2), normalised.
 std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candidates,
                                     const Criteria& criteria = {});
 
 /// The verdict by likelihood. lack: of the best listed candidate or, without a significant one, of
-/// the present model; p: family-wise, of the best. A name that an unlisted candidate clearly
-/// outdoes is none; one that does as well stands beside it.
+/// the present model; p: family-wise, of the best. A name that an unlisted candidate of another
+/// family clearly outdoes is none; one that does as well stands beside it.
+///
+/// One scale for all data: with c the squares that the best model leaves and ν those of noise, a
+/// rival of another family is behind when it leaves more by
+///
+///   max(rival_margin · max(1, c/ν), left_share · (c − ν)),
+///
+/// which is the calibrated test where only noise is left (c = ν). Where more is left the best one
+/// is named if it takes the main share of what noise does not explain.
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const LackOfFit& lack,
-                         double p, const Criteria& criteria = {});
+                         double p, const BaseSquares& base, const Criteria& criteria = {});
 
 /// What a residual shows that is not significant: "nothing but noise".
 std::string ResidualInWords(const LackOfFit& lack, const Criteria& criteria = {});

@@ -133,10 +133,19 @@ nlohmann::json CausesJson(const Diagnosis& d) {
     if (!known) equivalent.push_back(name);
   };
   for (std::size_t i = 1; i < d.verdict.named.size(); ++i) add(d.candidates[d.verdict.named[i]]);
+  for (const std::size_t i : d.verdict.siblings) add(d.candidates[i]);
   for (const CandidateResult& c : d.unlisted) add(c);
   json.push_back(CauseJson(d, *d.chosen(), equivalent));
   if (d.partner) json.push_back(PartnerJson(d));
   return json;
+}
+
+nlohmann::json LeadingJson(const Diagnosis& d) {
+  if (!d.verdict.leading || *d.verdict.leading >= d.candidates.size()) return nullptr;
+  const CandidateResult& c = d.candidates[*d.verdict.leading];
+  return {{"effect", c.hypothesis.effect},
+          {"where", c.hypothesis.where},
+          {"share", d.verdict.leading_share}};
 }
 
 nlohmann::json AlternativesJson(const Diagnosis& d) {
@@ -264,6 +273,12 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
   json["channels"] = ChannelNames(e);
   json["verdict"] = d.verdict.word();
   json["reason"] = d.verdict.reason;
+  json["complete"] = d.verdict.complete;
+  json["remaining"] = {{"over_noise", d.remaining.over_noise},
+                       {"where", d.remaining.where},
+                       {"would_take", d.remaining.would_take}};
+  json["leading"] = LeadingJson(d);
+  json["offered"] = NameIf(run.offered, kExtendedModel);
   json["error"] = {{"unit", d.pool.unit()},
                    {"before", ErrorJson(d.before.error)},
                    {"after", ErrorJson(run.after)}};
@@ -293,7 +308,10 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
   part("parameters", [&] {
     return ParametersJson(d.parameters, d.last().fit.x, d.last().sensitivities.value().uncertainty);
   });
-  part("extension", [&] { return ChangesJson(d.changes, AddedBy(d)); });
+  part("extension", [&] {
+    const bool all = run.offered || !d.chosen();
+    return all ? ChangesJson(d.changes, AddedBy(d)) : ChangesJson({}, {});
+  });
   part("fallback", [&] { return FallbackJson(d, run); });
   return json;
 }

@@ -22,6 +22,7 @@ struct EffectInfo {
   bool servo = false;            ///< a Signal at the error of a position servo
   std::string_view text = {};    ///< key of the formula that a law of the MJCF is written under
   std::string_view native = {};  ///< attribute of MuJoCo that an Edit is, in MJCF's words
+  Kinship kin = {};              ///< its family; none where that has no name
   /// Indices of parameters that the cards of frictions and segments speak of (effects/effect.h).
   std::optional<std::size_t> coulomb_level = {}, damping = {}, literal = {}, arc_radius = {};
 

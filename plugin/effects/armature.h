@@ -9,6 +9,7 @@ struct Armature {
   static constexpr std::string_view kName = "armature", kSource = "mujoco",
                                     kSummary = "another inertia of rotor and gear";
   static constexpr std::string_view kNative = "armature";
+  static constexpr Kinship kKin{kInertia};
   static constexpr std::array kPlaces{Place::kJoint};
   static constexpr std::array kParams{Param{"armature", "kg*m^2", 0, kInfinity, 1e-3, kAsIs}};
 

@@ -37,6 +37,7 @@ namespace continuum {
 struct BoucWen {
   static constexpr std::string_view kName = "bouc_wen", kSource = "ikhouane2005",
                                     kSummary = "smooth hysteresis with a tunable knee";
+  static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
   static constexpr Units kPort{"rad", "N*m"};
   static constexpr std::array kStates{State{"w", "1"}};

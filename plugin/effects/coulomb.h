@@ -13,6 +13,7 @@ namespace continuum {
 struct Coulomb {
   static constexpr std::string_view kName = "coulomb", kSource = "coulomb1785",
                                     kSummary = "dry friction of constant level";
+  static constexpr Kinship kKin{kDryFriction};
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
   static constexpr Joints kJoints = Joints::kHingeSlideBall;
   static constexpr std::array kParams{Magnitude("tau_c", "N*m", 0.01)};

@@ -15,6 +15,7 @@ namespace continuum {
 struct Dahl {
   static constexpr std::string_view kName = "dahl", kSource = "dahl1968",
                                     kSummary = "friction with elastic presliding (hysteresis)";
+  static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
   static constexpr Units kPort{"rad", "N*m"};
   static constexpr std::array kStates{State{"z", "1"}};

@@ -9,6 +9,7 @@ namespace continuum {
 struct DeadTime {
   static constexpr std::string_view kName = "dead_time", kSource = "mujoco",
                                     kSummary = "an input that arrives late";
+  static constexpr Kinship kKin{kLateness};
   static constexpr std::array kPlaces{Place::kActuator};
   static constexpr std::array kParams{Param{"delay", "s", 0, 1, 0.01, 0}};
 

@@ -20,6 +20,7 @@ namespace continuum {
 struct DirectionalFriction {
   static constexpr std::string_view kName = "directional_friction", kSource = "armstrong1994",
                                     kSummary = "friction that differs with the direction";
+  static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint};
   static constexpr std::array kParams{
       Magnitude("tau_c_plus", "N*m", 0.01), Magnitude("tau_c_minus", "N*m", 0.01),

@@ -57,6 +57,15 @@ struct Choice {
 struct Units {
   std::string_view x, force;
 };
+
+/// Laws that one log seldom tells apart, as they are the same physics in other words: a family. Of
+/// those that do as well the plainest speaks for all (depth 0; deeper ones say more).
+struct Kinship {
+  std::string_view family;
+  int depth = 0;
+};
+inline constexpr std::string_view kDryFriction = "dry friction", kLateness = "lateness",
+                                  kInertia = "mass";
 struct State {
   std::string_view name, unit;
 };
@@ -73,7 +82,7 @@ constexpr Param Signed(std::string_view name, std::string_view unit, double init
   return {name, unit, -kInfinity, kInfinity, initial, 0};
 }
 
-/// What every effect says of itself.
+/// What every effect says of itself. kKin, where the card has it, is its Kinship.
 template <class E>
 concept Card = requires {
   std::string_view{E::kName};

@@ -9,6 +9,7 @@ namespace continuum {
 struct LinkMass {
   static constexpr std::string_view kName = "link_mass", kSource = "mujoco",
                                     kSummary = "another mass of a body, inertia in proportion";
+  static constexpr Kinship kKin{kInertia};
   static constexpr std::array kPlaces{Place::kBody};
   static constexpr std::array kParams{Param{"scale", "1", 0, kInfinity, 1, 1}};
 

@@ -20,6 +20,7 @@ namespace continuum {
 struct Lugre {
   static constexpr std::string_view kName = "lugre", kSource = "canudas1995",
                                     kSummary = "dry friction with presliding and breakaway";
+  static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
   static constexpr Units kPort{"rad", "N*m"};
   static constexpr std::array kStates{State{"z", "1"}};

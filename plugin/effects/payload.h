@@ -8,6 +8,7 @@ namespace continuum {
 struct Payload {
   static constexpr std::string_view kName = "payload", kSource = "mujoco",
                                     kSummary = "an additional mass on a body";
+  static constexpr Kinship kKin{kInertia};
   static constexpr std::array kPlaces{Place::kBody};
   static constexpr std::array kParams{Magnitude("mass", "kg", 0.01)};
 

@@ -12,6 +12,7 @@ namespace continuum {
 struct PositionFriction {
   static constexpr std::string_view kName = "position_friction", kSource = "armstrong1994",
                                     kSummary = "dry friction that varies with the joint's angle";
+  static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint};
   static constexpr std::array kParams{Magnitude("tau_c", "N*m", 0.01), Signed("c", "N*m", 0),
                                       Signed("s", "N*m", 0)};

@@ -9,6 +9,7 @@ namespace continuum {
 struct Pt1 {
   static constexpr std::string_view kName = "pt1", kSource = "mujoco",
                                     kSummary = "an input with a first-order lag";
+  static constexpr Kinship kKin{kLateness};
   static constexpr std::array kPlaces{Place::kActuator};
   static constexpr std::array kParams{Param{"T", "s", 0, 10, 0.02, 0}};
 

@@ -14,6 +14,7 @@ namespace continuum {
 struct Pt2 {
   static constexpr std::string_view kName = "pt2", kSource = "ogata2010",
                                     kSummary = "an input with a second-order lag";
+  static constexpr Kinship kKin{kLateness, 1};
   static constexpr std::array kPlaces{Place::kActuator};
   static constexpr Tap kTap = Tap::kInput;
   static constexpr std::array kStates{State{"y", "input"}, State{"dy", "input/s"}};

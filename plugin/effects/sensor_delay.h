@@ -8,6 +8,7 @@ namespace continuum {
 struct SensorDelay {
   static constexpr std::string_view kName = "sensor_delay", kSource = "doebelin2003",
                                     kSummary = "a sensor that reports late";
+  static constexpr Kinship kKin{kLateness};
   static constexpr std::array kPlaces{Place::kSensor};
   static constexpr std::array kParams{Param{"delay", "s", 0, 1, 0.01, 0}};
 

@@ -16,6 +16,7 @@ namespace continuum {
 struct Stribeck {
   static constexpr std::string_view kName = "stribeck", kSource = "snake_arm",
                                     kSummary = "dry friction that is larger at rest, and viscous";
+  static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint};
   static constexpr Joints kJoints = Joints::kHingeSlideBall;
   static constexpr std::array kParams{

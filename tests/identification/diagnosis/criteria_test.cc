@@ -115,7 +115,7 @@ Judged Lead(double lead, std::size_t parameters = 1, std::vector<std::size_t> co
   return [=](const Criteria& c) {
     const LikelihoodRecord plain{"plain", 1, 1000, {}, step};
     const LikelihoodRecord rich{"rich", parameters, 1000 + lead, contains, step};
-    const Verdict v = JudgeLikelihoods({plain, rich}, {}, 1e-3, c);
+    const Verdict v = JudgeLikelihoods({plain, rich}, {}, 1e-3, {}, c);
     return v.word() + fmt::format(" {}", fmt::join(v.named, ","));
   };
 }
@@ -123,7 +123,7 @@ std::vector<Judged> LackLevel() {
   std::vector<Judged> judged;
   for (const double factor : {kBelow, kAbove}) {
     judged.push_back([=](const Criteria& c) {
-      return JudgeLikelihoods({{"cause", 1, 100}}, {0.002 * factor}, 1e-3, c).word();
+      return JudgeLikelihoods({{"cause", 1, 100}}, {0.002 * factor}, 1e-3, {}, c).word();
     });
   }
   return judged;
@@ -180,11 +180,11 @@ std::map<std::string, std::vector<Judged>> Examples() {
     return JudgeFolds({}, {0, 0, over}, c).kind == Verdict::Kind::kUnexplained;
   });
   e["significance"] = AroundBoundary(0.045, [](double p, const Criteria& c) {
-    return JudgeLikelihoods({{"cause", 1, 100}}, {}, p, c).named.size() == 1;
+    return JudgeLikelihoods({{"cause", 1, 100}}, {}, p, {}, c).named.size() == 1;
   });
   e["lack_of_fit"] = LackLevel();
   e["parameter_cost"] = AroundBoundary(3.84, [](double likelihood, const Criteria& c) {
-    return JudgeLikelihoods({{"cause", 1, likelihood}}, {}, 1e-3, c).named.size() == 1;
+    return JudgeLikelihoods({{"cause", 1, likelihood}}, {}, 1e-3, {}, c).named.size() == 1;
   });
   e["rival_margin"] = {Lead(5 * kBelow), Lead(5 * kAbove)};
   e["nested_margin"] = {Lead(3.84 + 2.8 * kBelow, 2, {0}), Lead(3.84 + 2.8 * kAbove, 2, {0})};

@@ -36,6 +36,9 @@ FoldRecord RunnerUp() {
   return r;
 }
 
+// Only noise is left, whatever was explained: nothing is known of the model before.
+constexpr BaseSquares kCalibrated{};
+
 // The present error is ten times the noise: there is something to explain.
 constexpr ErrorLevel kKnown{.over_noise = 10, .ceiling_gain = 0.9};
 
@@ -271,48 +274,56 @@ TEST(Judge, IsUnexplainedWithoutCandidates) {
 
 TEST(Likelihoods, NothingSignificantIsAdequateUnlessSomethingElseIsLeft) {
   const std::vector<LikelihoodRecord> none;
-  EXPECT_EQ(JudgeLikelihoods(none, {0.5}, 0.3).word(), "adequate");
-  EXPECT_EQ(JudgeLikelihoods(none, {1e-4}, 0.3).word(), "unexplained");
+  EXPECT_EQ(JudgeLikelihoods(none, {0.5}, 0.3, kCalibrated).word(), "adequate");
+  EXPECT_EQ(JudgeLikelihoods(none, {1e-4}, 0.3, kCalibrated).word(), "unexplained");
 }
 
 TEST(JudgeLikelihoods, NothingIsNamedThatNoFitConfirms) {
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, {0.5}, 1e-3).word(), "adequate");
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, {1e-4}, 1e-3).word(), "unexplained");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, {0.5}, 1e-3, kCalibrated).word(),
+            "adequate");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 3}, {"b", 2, 7}}, {1e-4}, 1e-3, kCalibrated).word(),
+            "unexplained");
 }
 
 TEST(Likelihoods, NoiseIsSaidOnlyWhereNoTestDoubtsIt) {
   const std::vector<LikelihoodRecord> clear{{"a", 1, 10}, {"b", 1, 40}};
-  EXPECT_THAT(JudgeLikelihoods(clear, {0.5}, 1e-3).reason, HasSubstr("nothing but noise"));
-  const auto doubtful = JudgeLikelihoods(clear, {0.004}, 1e-3);
+  EXPECT_THAT(JudgeLikelihoods(clear, {0.5}, 1e-3, kCalibrated).reason,
+              HasSubstr("nothing but noise"));
+  const auto doubtful = JudgeLikelihoods(clear, {0.004}, 1e-3, kCalibrated);
   EXPECT_EQ(doubtful.word(), "named");
   EXPECT_THAT(doubtful.reason, HasSubstr("significant at the level 0.002 (p = 0.004)"));
-  EXPECT_THAT(JudgeLikelihoods({}, {0.004}, 0.3).reason, HasSubstr("at the level 0.002"));
+  EXPECT_THAT(JudgeLikelihoods({}, {0.004}, 0.3, kCalibrated).reason,
+              HasSubstr("at the level 0.002"));
 }
 
 TEST(Likelihoods, TheClearlyLikeliestIsNamed) {
-  const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 34}}, {0.5}, 1e-3);
+  const auto v =
+      JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 34}}, {0.5}, 1e-3, kCalibrated);
   EXPECT_EQ(v.word(), "named");
   EXPECT_THAT(v.named, ElementsAre(1));
 }
 
 TEST(Likelihoods, OnesThatAreNotFarBehindAreKept) {
-  const auto v = JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 36}}, {0.5}, 1e-3);
+  const auto v =
+      JudgeLikelihoods({{"a", 1, 10}, {"b", 1, 40}, {"c", 1, 36}}, {0.5}, 1e-3, kCalibrated);
   EXPECT_EQ(v.word(), "ambiguous");
   EXPECT_THAT(v.named, ElementsAre(1, 2));
 }
 
 TEST(Likelihoods, AnotherParameterMustEarnItsPlace) {
   // 3 more for one more parameter is less than 95 % of chance gives.
-  const auto v = JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 43}}, {0.5}, 1e-3);
+  const auto v = JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 43}}, {0.5}, 1e-3, kCalibrated);
   EXPECT_EQ(v.named.front(), 0u);
 }
 
 TEST(Likelihoods, ALawThatContainsAnotherIsNamedOnlyWhenItClearlyBeatsIt) {
   const std::vector<std::size_t> inner{0};
-  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 46, inner}}, {0.5}, 1e-3).named,
-              ElementsAre(0));
-  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 60, inner}}, {0.5}, 1e-3).named,
-              ElementsAre(1));
+  EXPECT_THAT(
+      JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 46, inner}}, {0.5}, 1e-3, kCalibrated).named,
+      ElementsAre(0));
+  EXPECT_THAT(
+      JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 60, inner}}, {0.5}, 1e-3, kCalibrated).named,
+      ElementsAre(1));
 }
 
 TEST(Likelihoods, OnesWithinAShareOfWhatTheTimeStepLeavesOpenAreKept) {
@@ -328,10 +339,10 @@ TEST(Likelihoods, OnesWithinAShareOfWhatTheTimeStepLeavesOpenAreKept) {
 
 TEST(Likelihoods, OfALawAndOneThatItContainsThePlainOneIsKeptBesideAnother) {
   const std::vector<std::size_t> inner{0};
-  EXPECT_THAT(
-      JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 44, inner}, {"other", 1, 42}}, {0.5}, 1e-3)
-          .named,
-      ElementsAre(2, 0));
+  EXPECT_THAT(JudgeLikelihoods({{"plain", 1, 40}, {"rich", 2, 44, inner}, {"other", 1, 42}}, {0.5},
+                               1e-3, kCalibrated)
+                  .named,
+              ElementsAre(2, 0));
 }
 
 // One that nobody asked for, in a list of others.
@@ -340,42 +351,45 @@ LikelihoodRecord Unlisted(double likelihood, std::vector<std::size_t> contains =
 }
 
 TEST(Likelihoods, ANameThatOneOutsideTheListClearlyOutdoesIsNone) {
-  const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(46)}, {0.5}, 1e-3);
+  const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(46)}, {0.5}, 1e-3, kCalibrated);
   EXPECT_EQ(v.word(), "unexplained");
   EXPECT_THAT(v.reason, HasSubstr("a, is clearly outdone by unlisted, which is not listed"));
 }
 
 TEST(Likelihoods, OneOutsideTheListThatDoesAsWellIsToldBesideTheName) {
   for (const double as_well : {36.0, 44.0}) {
-    const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(as_well)}, {0.5}, 1e-3);
+    const auto v = JudgeLikelihoods({{"a", 1, 40}, Unlisted(as_well)}, {0.5}, 1e-3, kCalibrated);
     EXPECT_EQ(v.word(), "named");
     EXPECT_THAT(v.named, ElementsAre(0));
     EXPECT_THAT(v.unlisted, ElementsAre(1));
     EXPECT_THAT(v.reason, HasSubstr("not listed, but as likely (within 5): unlisted"));
   }
-  EXPECT_THAT(JudgeLikelihoods({{"a", 1, 40}, Unlisted(34)}, {0.5}, 1e-3).unlisted, IsEmpty());
+  EXPECT_THAT(JudgeLikelihoods({{"a", 1, 40}, Unlisted(34)}, {0.5}, 1e-3, kCalibrated).unlisted,
+              IsEmpty());
 }
 
 TEST(Likelihoods, APlainLawOutsideTheListDoesNotTakeTheNameOfOneThatContainsIt) {
   const std::vector<std::size_t> inner{0};
-  const auto v = JudgeLikelihoods({Unlisted(40), {"rich", 2, 44, inner}}, {0.5}, 1e-3);
+  const auto v = JudgeLikelihoods({Unlisted(40), {"rich", 2, 44, inner}}, {0.5}, 1e-3, kCalibrated);
   EXPECT_THAT(v.named, ElementsAre(1));
   EXPECT_THAT(v.unlisted, ElementsAre(0));
 }
 
 TEST(Likelihoods, ARichLawOutsideTheListHasNothingToAdd) {
   const std::vector<std::size_t> inner{0};
-  const auto v = JudgeLikelihoods({{"plain", 1, 40}, Unlisted(42, inner)}, {0.5}, 1e-3);
+  const auto v =
+      JudgeLikelihoods({{"plain", 1, 40}, Unlisted(42, inner)}, {0.5}, 1e-3, kCalibrated);
   EXPECT_THAT(v.named, ElementsAre(0));
   EXPECT_THAT(v.unlisted, IsEmpty());
 }
 
 TEST(Likelihoods, NothingOutsideTheListMakesANameWhereNoneOfItHelps) {
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 2}, Unlisted(400)}, {0.5}, 1e-3).word(), "adequate");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 2}, Unlisted(400)}, {0.5}, 1e-3, kCalibrated).word(),
+            "adequate");
 }
 
 TEST(Likelihoods, NoNameWhenTheBestLeavesMoreThanNoise) {
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 4000}}, {1e-6}, 1e-3).word(), "unexplained");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 4000}}, {1e-6}, 1e-3, kCalibrated).word(), "unexplained");
 }
 
 TEST(Likelihoods, ProbabilitiesAddUpToOne) {

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "identification/diagnosis/result.h"
+
+namespace continuum {
+
+/// How much of a fitted model's error is left over the noise, and where most of it is: the channel
+/// and the log with the largest error. would_take is not filled in.
+Remaining RemainingOf(const Problem& problem, const Fitted& fitted, const Noise& noise);
+
+/// What would take what a verdict leaves, in words: a smooth force, a shift or constants of the
+/// channels, or one of them beside its leading candidate; empty where no test shows anything.
+std::string WouldTake(const Diagnosis& diagnosis);
+
+}  // namespace continuum
