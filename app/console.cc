@@ -1,8 +1,10 @@
 #include "app/console.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <charconv>
+#include <chrono>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -11,6 +13,17 @@ namespace continuum {
 namespace {
 
 bool open_line = false;
+
+// Of the terminal on stderr.
+std::size_t Columns() {
+  constexpr std::size_t kUsual = 80;
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : kUsual;
+}
+
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 template <class Number>
 CLI::Validator Within(const std::string& range, Number lower, Number upper) {
@@ -26,12 +39,14 @@ CLI::Validator Within(const std::string& range, Number lower, Number upper) {
 
 }  // namespace
 
-void ShowProgress(const std::string& text) {
+void ShowProgress(const Progress& progress) {
+  static ProgressText text;
   if (isatty(STDERR_FILENO)) {
-    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    const std::string line = text.Line(progress, Now(), Columns() - 1);
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
     open_line = true;
-  } else {
-    std::fprintf(stderr, "%s\n", text.c_str());
+  } else if (const std::string line = text.Beginning(progress); !line.empty()) {
+    std::fprintf(stderr, "%s\n", line.c_str());
   }
   std::fflush(stderr);
 }

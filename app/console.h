@@ -6,10 +6,12 @@
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>
 
+#include "sim/io/progress.h"
+
 namespace continuum {
 
-/// Progress on stderr: one line that is rewritten on a terminal, plain lines otherwise.
-void ShowProgress(const std::string& text);
+/// Progress on stderr: one line that is rewritten on a terminal, else a line for each new stage.
+void ShowProgress(const Progress& progress);
 /// Ends a rewritten line.
 void EndProgress();
 

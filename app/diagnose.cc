@@ -104,7 +104,7 @@ void RunDiagnose(const Options& o) {
   const OutputFolder made(o.out, outputs, {read.file, read.model});
   const Experiment e = Registered(read, system);
   const Diagnosis d = Diagnose(e, system, options);
-  ShowProgress("files");
+  ShowProgress(ProgressOf(DiagnosisStage::kFiles));
   MakeFolder(o.out);
   const ExtensionRun run = MeasureExtension(e, d, o.out);
   const auto missing = WriteDiagnosis(e, d, run, o.out);

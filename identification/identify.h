@@ -8,6 +8,7 @@
 
 #include "identification/result/identify_result.h"
 #include "sim/experiment/experiment.h"
+#include "sim/io/progress.h"
 #include "sim/model/model_spec.h"
 
 namespace continuum {
@@ -29,8 +30,8 @@ struct IdentifyOptions {
 
   /// Called once, when the job is accepted and before it begins, with how logs are simulated.
   std::function<void(const std::string& how)> accepted = {};
-  /// One line per step of the work.
-  std::function<void(const std::string&)> progress = {};
+  /// Called after each step of the work.
+  ProgressCallback progress = {};
 };
 
 /// Fits the parameters of an experiment to its train logs, and computes all that is stated of them:

@@ -76,7 +76,7 @@ CandidateSearch::CandidateSearch(const SearchContext& context, const BaseFit& ba
 void CandidateSearch::ProbeAll(const ProjectedResidual& residual,
                                std::vector<std::vector<Probe>>& probes) {
   for (CandidateResult& c : candidates) {
-    options_.Say("screen " + c.hypothesis.Name());
+    options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name(), probes.size(), candidates.size());
     probes.emplace_back();
     try {
       Problem problem = ProblemOf(c, *fitter_.experiment);
@@ -95,7 +95,7 @@ void CandidateSearch::Screen() {
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
   std::vector<std::vector<Probe>> probes;
   ProbeAll(residual, probes);
-  options_.Say("significance");
+  options_.Say(DiagnosisStage::kScreen, "significance", candidates.size(), candidates.size());
   const Significance found =
       noise_.known() ? Significant(residual, probes) : BestOfProbes(probes, residual.vector());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -117,7 +117,7 @@ void CandidateSearch::Screen() {
 
 // First order is blind where an effect is large or the base far off; the missing force is not.
 void CandidateSearch::LookAtForces() {
-  options_.Say("missing force");
+  options_.Say(DiagnosisStage::kScreen, "missing force");
   const EquationErrors view(base_problem_, base_.fitted->fit.x);
   if (!view.any()) return;
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
@@ -278,7 +278,7 @@ LackOfFit CandidateSearch::LackOf(const CandidateResult* c) const {
 // What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly,
 // and a fit may end in another local minimum.
 bool CandidateSearch::FallsWithStep(const CandidateResult& c) const {
-  options_.Say("at a fine step " + c.hypothesis.Name());
+  options_.Say(DiagnosisStage::kFits, "at a fine step, " + c.hypothesis.Name());
   const Problem fine = AtQuarter(ProblemOf(c, *fitter_.experiment));
   try {
     const Fitted& known = c.at_quarter_step ? *c.at_quarter_step : fitter_.Continue(fine, c.fitted);

@@ -87,6 +87,7 @@ class CandidateSearch {
   double Threshold() const;
   bool ReachesNoise(const Fitted& fitted) const;
   double Likelihood(const Fitted& fitted) const;
+  void SayFit(const CandidateResult& c, double needed) const;
   void FitOne(CandidateResult& c, double rival) const;
   static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,
                                                        const CandidateResult& c);
@@ -114,7 +115,7 @@ class CandidateSearch {
   Problem base_problem_;
   const Noise& noise_;
   const Sizes& sizes_;
-  const DiagnosisOptions& options_;
+  const DiagnosisOptions options_;
   const Criteria& criteria_;
   double smallest_p_ = 1;
   double inflation_ = 1;     // of what rounding errors explain over whitened noise

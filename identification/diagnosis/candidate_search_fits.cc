@@ -26,6 +26,14 @@ bool CandidateSearch::IsWorthAFit(const CandidateResult& c, double needed) const
          (needed < kInfinity && ExplainsForce(c.force_share, MostOfForce(), criteria_));
 }
 
+// Those behind it are less likely, and not fitted where they explain less than is needed.
+void CandidateSearch::SayFit(const CandidateResult& c, double needed) const {
+  const auto done = static_cast<std::size_t>(&c - candidates.data());
+  const auto wanted = std::count_if(candidates.begin(), candidates.end(),
+                                    [&](const auto& other) { return IsWorthAFit(other, needed); });
+  options_.Say(DiagnosisStage::kFits, c.hypothesis.Name(), done, static_cast<std::size_t>(wanted));
+}
+
 // The likeliest first, so that the others know what to reach; nobody where only noise is left.
 void CandidateSearch::Fit(const CandidateSearch* beside) {
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -38,7 +46,7 @@ void CandidateSearch::Fit(const CandidateSearch* beside) {
   double rival = known ? known->fitted.fit.cost : kInfinity;
   for (CandidateResult& c : candidates) {
     if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
-    options_.Say("fit " + c.hypothesis.Name());
+    SayFit(c, needed);
     try {
       FitOne(c, rival + 0.5 * StepReduction(*base_.fitted));
       if (!noise_.known()) continue;
@@ -66,7 +74,7 @@ void CandidateSearch::FinishAbandoned() {
   for (CandidateResult& c : candidates) {
     if (!WorthFinishing(tried, c.explained, MostExplained(), criteria_)) return;
     if (!c.was_fitted || c.fitted.fit.converged) continue;
-    options_.Say("fit to the end " + c.hypothesis.Name());
+    options_.Say(DiagnosisStage::kFits, "to the end, " + c.hypothesis.Name());
     ++tried;
     try {
       FitOne(c, kInfinity);
@@ -90,7 +98,7 @@ bool CandidateSearch::RefitFromExperimentStart() {
   best.resize(std::min(best.size(), static_cast<std::size_t>(criteria_.fresh_starts)));
   bool better = false;
   for (CandidateResult* const c : best) {
-    options_.Say("fit anew " + c->hypothesis.Name());
+    options_.Say(DiagnosisStage::kFits, "anew, " + c->hypothesis.Name());
     better = RefitFromStart(*c) || better;
   }
   if (!better) return false;
@@ -244,7 +252,7 @@ void CandidateSearch::CompleteCompetitive(double best) {
 
 // Whether it can be judged.
 bool CandidateSearch::CompleteOne(CandidateResult& c, double best) const {
-  options_.Say("sensitivities of " + c.hypothesis.Name());
+  options_.Say(DiagnosisStage::kFits, "sensitivities of " + c.hypothesis.Name());
   const Problem problem = ProblemOf(c, *fitter_.experiment);
   fitter_.Complete(problem, c.fitted);
   Problem::Vector x = c.fitted.fit.x;

@@ -78,9 +78,10 @@ class PairSearch {
 
   // The best second cause beside a first; it is the next first.
   void Extend(const CandidateResult& first) {
-    context_.options.Say("a second cause beside " + Key(first.hypothesis));
+    const auto inside = context_.options.Inside(DiagnosisStage::kSecondCause,
+                                                "beside " + Key(first.hypothesis), tried_.size());
     const BaseFit base{&first.hypothesis.system, first.hypothesis.Free(), &first.fitted};
-    CandidateSearch search(context_, base);
+    CandidateSearch search({context_.fitter, context_.noise, context_.sizes, inside}, base);
     search.Screen();
     if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
     search.Fit();

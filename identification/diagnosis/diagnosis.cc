@@ -58,7 +58,7 @@ class Session {
     Part("interval of the gain", [&] { SetGainInterval(); });
     if (d_.Is(Verdict::Kind::kUnexplained)) Part("fallback", [&] { FallBack(); });
     Part("next experiment", [&] {
-      options_.Say("next experiment");
+      options_.Say(DiagnosisStage::kNextExperiment);
       d_.next = ProposeNext(fitter_, d_);
     });
     Describe();
@@ -111,7 +111,7 @@ class Session {
 
   // Twice where values are rounded: a model shows how they move between the steps.
   void FitNull() {
-    options_.Say("null fit");
+    options_.Say(DiagnosisStage::kNullFit);
     if (d_.noise.known()) fitter_.whitening = Whitening(null_, d_.noise);
     d_.before = fitter_.FitNull(null_);
     if (d_.noise.known()) {
@@ -176,7 +176,7 @@ class Session {
   }
 
   void CompareByEquation() {
-    options_.Say("missing force");
+    options_.Say(DiagnosisStage::kJudgement, "missing force");
     const EquationErrors view(null_, d_.before.fit.x);
     ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {
       d_.candidates[i].by_equation = view.Of(d_.candidates[i]);
@@ -186,7 +186,7 @@ class Session {
   // Likelihoods have judged; the folds show what that is worth.
   void ScoreFolds() {
     if (d_.folds.empty()) return;
-    options_.Say("folds");
+    options_.Say(DiagnosisStage::kJudgement, "folds");
     fitter_.AddFolds(null_, d_.folds, d_.before);
     for (const std::size_t i : d_.verdict.named) {
       if (d_.candidates[i].fitted.complete()) RecordFolds(fitter_, d_, d_.candidates[i]);
@@ -214,7 +214,7 @@ class Session {
 
   // By likelihoods, which are calibrated where noise is the whole residual of the best model.
   void Judge(CandidateSearch& search) {
-    options_.Say("lack of fit");
+    options_.Say(DiagnosisStage::kFits, "lack of fit");
     d_.lack_of_fit = search.LackOf(search.leading());
     Decide(search);
   }
@@ -237,7 +237,8 @@ class Session {
   // Where no effect explains it at all joints together it may be at one of them.
   void TryOtherPlaces(CandidateSearch& search) {
     if (!SomethingIsLeft(search)) return;
-    CandidateSearch others(Context(options_), Base(), SearchScope::kOthers);
+    const auto inside = options_.Inside(DiagnosisStage::kOtherCandidates, "at other places");
+    CandidateSearch others(Context(inside), Base(), SearchScope::kOthers);
     others.Screen();
     others.Fit(&search);
     if (others.candidates.empty()) return;
@@ -247,7 +248,7 @@ class Session {
 
   // A name that stands only because the list omits its rival is none.
   void CompareUnlisted(CandidateSearch& search) {
-    DiagnosisOptions options = options_;
+    auto options = options_.Inside(DiagnosisStage::kOtherCandidates, "not listed");
     options.candidates = Unlisted(e_, options_.candidates);
     if (options.candidates.empty() || d_.Is(Verdict::Kind::kAdequate)) return;
     CandidateSearch unlisted(Context(options), Base());
@@ -331,7 +332,7 @@ class Session {
     for (const std::size_t i : d_.verdict.named) {
       CandidateResult& c = d_.candidates[i];
       if (c.fitted.complete()) continue;
-      options_.Say("sensitivities of " + c.hypothesis.Name());
+      options_.Say(DiagnosisStage::kJudgement, "sensitivities of " + c.hypothesis.Name());
       try {
         fitter_.Complete(ProblemOf(c, e_), c.fitted);
       } catch (const Error&) {
@@ -344,7 +345,7 @@ class Session {
     for (const std::size_t i : d_.verdict.named) {
       CandidateResult& c = d_.candidates[i];
       if (!c.fitted.complete()) continue;
-      options_.Say("at a fine step " + c.hypothesis.Name());
+      options_.Say(DiagnosisStage::kJudgement, "at a fine step, " + c.hypothesis.Name());
       fitter_.FitFinely(ProblemOf(c, e_), c.fitted);
     }
   }
@@ -365,7 +366,7 @@ class Session {
   }
 
   void SetGainInterval() {
-    options_.Say("gain");
+    options_.Say(DiagnosisStage::kGain);
     d_.gain_interval = BootstrapGain(null_, d_, options_.seed);
   }
 

@@ -52,7 +52,7 @@ std::optional<CandidateResult> FindFallback(const CandidateFitter& fitter, const
   for (const std::size_t terms : kOrders) {
     for (Hypothesis& h : Forces(terms, *fitter.experiment, d)) {
       CandidateResult c{std::move(h)};
-      options.Say("a force without a cause at " + c.hypothesis.where);
+      options.Say(DiagnosisStage::kFallback, "at " + c.hypothesis.where);
       try {
         const Problem problem = ProblemOf(c, *fitter.experiment);
         c.fitted = fitter.Fit(problem, Append(d.before.fit.x, c.hypothesis.null));

@@ -30,11 +30,13 @@ class FoldComparison {
       : fitter_(fitter), e_(*fitter.experiment), options_(options), d_(d) {}
 
   void Run() {
-    options_.Say("folds");
+    options_.Say(DiagnosisStage::kJudgement, "folds");
     fitter_.AddFolds(Problem(e_, d_.system), d_.folds, d_.before);
-    for (CandidateResult& c : d_.candidates) {
+    for (std::size_t done = 0; done < d_.candidates.size(); ++done) {
+      CandidateResult& c = d_.candidates[done];
       if (!WorthFolds(d_.before.error.train, c.fitted.error.train, d_.criteria)) continue;
-      options_.Say("folds of " + c.hypothesis.Name());
+      options_.Say(DiagnosisStage::kJudgement, "folds of " + c.hypothesis.Name(), done,
+                   d_.candidates.size());
       RecordFolds(fitter_, d_, c);
     }
     RunCeiling();
@@ -62,7 +64,7 @@ class FoldComparison {
   }
 
   void RunCeiling() {
-    options_.Say("ceiling");
+    options_.Say(DiagnosisStage::kJudgement, "ceiling");
     RaiseCeiling(d_, "the model as it is", d_.before.folds, d_.before.error);
     Raise("a smooth force without a name", RandomForce(kTerms, true, d_.sizes, options_.seed));
     if (!e_.quasi_static)  // there nothing moves
@@ -95,8 +97,9 @@ class FoldComparison {
       for (int k = 0; k < options_.placebos; ++k) {
         std::erase_if(open, done);
         if (open.empty()) break;
-        options_.Say(fmt::format("random force {} of {} with {} parameter(s)", k + 1,
-                                 options_.placebos, count));
+        options_.Say(DiagnosisStage::kJudgement,
+                     fmt::format("random forces, {} parameter(s)", count),
+                     static_cast<std::size_t>(k), static_cast<std::size_t>(options_.placebos));
         gains.push_back(GainOfPlacebo(count, k));
       }
       for (CandidateResult* const c : alike) c->record.placebo_gains = gains;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,19 +15,43 @@
 #include "identification/result/missing_parts.h"
 #include "identification/result/noise.h"
 #include "identification/result/uncertainty.h"
+#include "sim/io/progress.h"
 
 namespace continuum {
+
+/// What a diagnosis does, in this order. It passes over what a case does not need.
+enum class DiagnosisStage {
+  kNullFit,
+  kScreen,
+  kFits,
+  kOtherCandidates,  ///< at other places, and effects that nobody asked for
+  kSecondCause,
+  kJudgement,  ///< folds, ceiling, random forces, sensitivities of what is named
+  kGain,
+  kFallback,
+  kNextExperiment,
+  kFiles
+};
+
+/// That a stage goes on: step `done` of `of`, on what.
+Progress ProgressOf(DiagnosisStage stage, const std::string& at = "", std::size_t done = 0,
+                    std::size_t of = 0);
 
 struct DiagnosisOptions {
   std::vector<std::string> candidates = {};  ///< names; empty: those of the experiment
   int placebos = 20;                         ///< random forces to compare with
   int iterations = 15;                       ///< of each fit
   std::uint64_t seed = 1;                    ///< of everything random
-  std::function<void(const std::string&)> progress = {};
+  ProgressCallback progress = {};
   Criteria criteria = {};  ///< others than the defaults: for tests
 
-  /// Reports what comes next. Throws Error (kJob) when the user has asked to stop.
-  void Say(const std::string& text) const;
+  /// Reports what comes next, after `done` steps of `of`. Throws Error (kJob) when the user has
+  /// asked to stop.
+  void Say(DiagnosisStage stage, const std::string& at = "", std::size_t done = 0,
+           std::size_t of = 0) const;
+  /// The same options for work whose reports are part of this stage.
+  DiagnosisOptions Inside(DiagnosisStage stage, const std::string& at, std::size_t done = 0,
+                          std::size_t of = 0) const;
 };
 
 /// 95 % interval of the share of the held-out error that an extension removes.

@@ -141,8 +141,9 @@ class Monitor : public ceres::IterationCallback {
     const bool taken = s.step_is_successful || s.iteration == 0;
     fit_.trace.push_back(taken ? s.cost : fit_.trace.back());
     if (options_.progress) {
-      options_.progress(fmt::format("iteration {:2}  cost {:.6g}  {} simulations", s.iteration,
-                                    s.cost, problem_.evaluations()));
+      options_.progress(
+          {"fit", static_cast<std::size_t>(s.iteration), 0,
+           fmt::format("cost {:.6g}, {} simulations", s.cost, problem_.evaluations())});
     }
     if (s.step_is_successful && s.iteration >= 2)
       lost_ = s.cost > options_.hopeless + kMore * s.cost_change ? lost_ + 1 : 0;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "identification/result/fit.h"
 #include "identification/statistics/whitening.h"
+#include "sim/io/progress.h"
 
 namespace continuum {
 
@@ -32,8 +32,8 @@ struct FitOptions {
   /// Give up when even four more steps as good as the last would leave the cost above this.
   double hopeless = std::numeric_limits<double>::infinity();
   int patience = 1;  ///< steps in a row that must look so
-  /// One line per iteration: cost and evaluations so far.
-  std::function<void(const std::string&)> progress = {};
+  /// Called after each iteration, with cost and evaluations so far.
+  ProgressCallback progress = {};
 };
 
 /// Throws Error (kJob; file of the log, time, parameter) when the simulation of a log in use

@@ -101,7 +101,7 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
 }
 
 Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
-                        const std::function<void(const std::string&)>& progress) {
+                        const ProgressCallback& progress) {
   Problem centered = problem;
   centered.Center();
   auto J = centered.Jacobian(x, r, problem.seen());
@@ -115,8 +115,7 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   if (StopRequested()) return UnknownUncertainty(problem, x, "interrupted");
   AllowForStep(problem, WeightedByCurvature(J, soft, r), WeightedByCurvature(step, soft, r), {}, u);
   FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
-  if (progress)
-    few.progress = [&](const std::string& line) { progress("at a fine step: " + line); };
+  few.progress = Within({"fit at a fine step"}, progress);
   ReachByFineFit(centered, x, r, J, step, few, u);
   for (std::size_t l = 0; l < own.size(); ++l)
     if (own[l]) TakeStart(problem, l, *own[l], u);

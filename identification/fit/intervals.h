@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,6 +30,6 @@ void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
 /// stop, errors, intervals and correlations are not known (NaN).
 Uncertainty IntervalsOf(const Problem& problem, const Problem::Vector& x,
                         const std::vector<Problem::Vector>& r,
-                        const std::function<void(const std::string&)>& progress = {});
+                        const ProgressCallback& progress = {});
 
 }  // namespace continuum

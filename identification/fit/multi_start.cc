@@ -43,9 +43,11 @@ MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
   MultiStart all;
   all.best.cost = kInfinity;
   for (int k = 0; k < starts && !StopRequested(); ++k) {
-    if (options.progress) options.progress(fmt::format("start {} of {}", k + 1, starts));
     all.starts.push_back({k == 0 ? x : RandomStart(problem, random), kInfinity});
     FitOptions own = options;
+    own.progress = Within(
+        {"fits from several starts", static_cast<std::size_t>(k), static_cast<std::size_t>(starts)},
+        options.progress);
     own.hopeless = all.best.cost;
     own.patience = 10;  // far away, steps say little of the next ones
     own.idle |= k > 0;  // far away a parameter may have none

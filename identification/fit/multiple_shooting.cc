@@ -115,11 +115,8 @@ struct SegmentFit {
     for (const double weight : weights) {
       if (StopRequested()) break;
       own.continuity_weight = weight;
-      own.progress = [&](const std::string& line) {
-        if (options.progress)
-          options.progress(
-              fmt::format("{} segments, weight of their ends {}: {}", count, weight, line));
-      };
+      const std::string which = fmt::format("{} segments, weight of their ends {}", count, weight);
+      own.progress = Within({"fit of segments", 0, 0, which}, options.progress);
       try {
         y = FitParameters(segments, y, segments.TrainLogs(), own).x;
       } catch (const Error& error) {

@@ -50,6 +50,13 @@ ParticleSwarm SwarmFor(const Problem& problem, const SwarmFitOptions& options) {
   return {lower, upper, std::move(swarm), problem.Start()};
 }
 
+void Say(const SwarmFitOptions& options, int generations, double cost, std::size_t simulations) {
+  if (!options.progress) return;
+  options.progress({"particle swarm", static_cast<std::size_t>(generations),
+                    static_cast<std::size_t>(options.iterations),
+                    fmt::format("cost {:.6g}, {} simulations", cost, simulations)});
+}
+
 }  // namespace
 
 Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use,
@@ -66,10 +73,7 @@ Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use,
       throw Error::Job("the simulation diverges at all particles");
     }
     fit.trace.push_back(swarm.best_cost());
-    if (options.progress) {
-      options.progress(fmt::format("generation {:2}  cost {:.6g}  {} simulations", fit.iterations,
-                                   swarm.best_cost(), problem.evaluations()));
-    }
+    Say(options, fit.iterations + 1, swarm.best_cost(), problem.evaluations());
     swarm.Move();
   }
   fit.x = swarm.best();

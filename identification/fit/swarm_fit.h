@@ -10,7 +10,7 @@ struct SwarmFitOptions {
   int particles = 20, iterations = 40;
   std::uint64_t seed = 1;
   double soft = 0;  ///< as of FitOptions
-  std::function<void(const std::string&)> progress = {};
+  ProgressCallback progress = {};
 };
 
 /// Particle swarm optimisation within the bounds, a baseline without derivatives: constriction

@@ -32,9 +32,7 @@ Fit FitWide(const Problem& problem, const Problem::Vector& x, const std::vector<
   Problem wide = problem;
   wide.DifferBy(0.2);
   options.tolerance = 1e-3, options.idle = true;
-  options.progress = [tell = options.progress](const std::string& line) {
-    if (tell) tell("slopes over a fifth: " + line);
-  };
+  options.progress = Within({"fit with wide slopes"}, options.progress);
   const int most = std::exchange(options.iterations, 1);
   Fit first = FitParameters(wide, x, use, options);
   if (first.cost >= first.trace.front() || most == first.iterations) return first;

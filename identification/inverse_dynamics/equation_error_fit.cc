@@ -119,17 +119,16 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
   const auto spent = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  const auto tell = [&](const std::string& line) {
-    if (options.progress) options.progress("by the equations of motion: " + line);
-  };
+  const Progress stage{"fit from the equations of motion"};
   const Noise noise = NoiseOf(problem.experiment());
   const double left = TypicalRms(problem, problem.Residuals(best.x, use), use);
   FitOptions own = options;
-  own.iterations -= best.iterations, own.idle = true, own.progress = tell;
+  own.iterations -= best.iterations, own.idle = true,
+                                     own.progress = Within(stage, options.progress);
   const bool lost = noise.rms > 0 && left > kFarOverNoise * noise.rms &&
                     left > kOutOfStep * problem.PooledRms(Deviations(problem), use);
   if (!lost || own.iterations <= 0 || StopRequested()) return best;
-  tell("is there a better start?");
+  if (options.progress) options.progress(stage);
   const auto equations = FitEquations(problem, best.x, use);
   if (equations) best.evaluations += equations->evaluations;
   best.seconds = before + spent();
@@ -137,10 +136,7 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
     best.converged = false, best.message = "interrupted";
     return best;
   }
-  if (!equations || !(CostAt(problem, equations->x, use, options) < best.cost)) {
-    tell("no");
-    return best;
-  }
+  if (!equations || !(CostAt(problem, equations->x, use, options) < best.cost)) return best;
   Fit fit = FitWithWideSlopes(problem, equations->x, use, own);
   fit.evaluations += best.evaluations, fit.seconds = before + spent();
   fit.anew = true;

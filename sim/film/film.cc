@@ -308,8 +308,9 @@ void FilmExperiment(const Experiment& e, const ModelSpec& system,
                     const std::vector<std::size_t>& logs, const std::filesystem::path& file,
                     const FilmOptions& options) {
   VideoWriter video(file, options.width, options.height, options.fps);
+  std::size_t done = 0;
   for (const std::size_t l : logs) {
-    if (options.progress) options.progress("film of " + e.logs[l].label);
+    if (options.progress) options.progress({"film", done++, logs.size(), e.logs[l].label});
     DrawFrames(e, system, e.logs[l], options, [&](Image image) { video.Add(std::move(image)); });
   }
   video.Finish();

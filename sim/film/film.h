@@ -9,6 +9,7 @@
 
 #include "sim/film/measured_points.h"
 #include "sim/film/renderer.h"
+#include "sim/io/progress.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
@@ -41,7 +42,7 @@ struct FilmOptions {
   /// The measured pose, translucent, where joint sensors measure all of it; else green balls where
   /// positions are measured.
   bool ghost = true;
-  std::function<void(const std::string&)> progress = {};
+  ProgressCallback progress = {};
 };
 
 /// What options add to the scene of a pose: arrows, colours of tendons.

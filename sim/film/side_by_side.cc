@@ -113,8 +113,10 @@ void DrawSideBySide(const Side& left, const Side& right, std::size_t log,
 void FilmSideBySide(const Side& left, const Side& right, const std::vector<std::size_t>& logs,
                     const std::filesystem::path& file, const FilmOptions& options) {
   VideoWriter video(file, 2 * options.width, options.height, options.fps);
+  std::size_t done = 0;
   for (const std::size_t l : logs) {
-    if (options.progress) options.progress("film of " + left.experiment.logs[l].label);
+    if (options.progress)
+      options.progress({"film", done++, logs.size(), left.experiment.logs[l].label});
     DrawSideBySide(left, right, l, options, [&](Image image) { video.Add(std::move(image)); });
   }
   video.Finish();

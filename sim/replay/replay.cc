@@ -28,11 +28,10 @@ void CheckNames(const Experiment& e, const ModelSpec& system) {
 }
 
 std::vector<Replayed> Replay(Experiment& e, const ModelSpec& system,
-                             const std::function<void(const std::string&)>& progress) {
+                             const ProgressCallback& progress) {
   std::vector<Trace> traces;
   for (const Log& log : e.logs) {
-    if (progress)
-      progress(fmt::format("log {} of {}: {}", traces.size() + 1, e.logs.size(), log.label));
+    if (progress) progress({"replay", traces.size(), e.logs.size(), log.label});
     ModelAndData machine = system.Build(log.set);
     traces.push_back(Simulate(machine, e, log, {}, Hooks::Stoppable()));
     if (traces.back().diverged) throw Error::Job(log.label + ": " + traces.back().Failure());

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "sim/experiment/experiment.h"
+#include "sim/io/progress.h"
 #include "sim/model/model_spec.h"
 #include "sim/simulation/score.h"
 #include "sim/simulation/trace.h"
@@ -25,7 +25,7 @@ void CheckNames(const Experiment& experiment, const ModelSpec& system);
 /// Every log of an experiment as it stands; what its registration leaves open is estimated from the
 /// train logs and written into it. Throws Error (kJob) when a simulation diverges or finds no rest.
 std::vector<Replayed> Replay(Experiment& experiment, const ModelSpec& system,
-                             const std::function<void(const std::string&)>& progress = {});
+                             const ProgressCallback& progress = {});
 
 /// Pooled RMS of the train and validate logs.
 struct SplitError {

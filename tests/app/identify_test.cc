@@ -71,7 +71,7 @@ TEST_F(IdentifyPath, IsRefusedWhereItCannotGo) {
 }
 
 TEST_F(IdentifyPath, FromSeveralStartsSaysWhereEachEnds) {
-  const auto fit = Identify({"--starts", "3", "--seed", "5"}, "start 3 of 3");
+  const auto fit = Identify({"--starts", "3", "--seed", "5"}, "fits from several starts (3 steps)");
   ASSERT_EQ(fit["starts"].size(), 3u);
   for (const auto& start : fit["starts"])
     EXPECT_GE(start["cost"].get<double>(), fit["cost"].get<double>());
@@ -83,8 +83,8 @@ TEST_F(IdentifyPath, FromSeveralStartsSaysWhereEachEnds) {
 }
 
 TEST_F(IdentifyPath, GoesOnFromAnEarlierFit) {
-  const auto short_one = Identify({"--iterations", "50"}, "iteration");
-  const auto on = Identify({"--from", "out/fit.json"}, "iteration");
+  const auto short_one = Identify({"--iterations", "50"}, "\nfit\n");
+  const auto on = Identify({"--from", "out/fit.json"}, "\nfit\n");
   EXPECT_EQ(on["trace"][0], short_one["cost"]);
   EXPECT_LE(on["iterations"].get<int>(), 2);
   files_.Write("other.json", R"({"parameters": [{"name": "mass", "value": 1}]})");

@@ -46,22 +46,18 @@ class Stop : public testing::AppBench {
   }
 };
 
-TEST_F(Stop, EndsAReplay) {
-  ExpectStops({"replay", "experiment.yaml", "--out", "out"}, "log 1 of 1");
-}
+TEST_F(Stop, EndsAReplay) { ExpectStops({"replay", "experiment.yaml", "--out", "out"}, "replay"); }
 
 TEST_F(Stop, EndsAReplayThatIsTerminated) {
-  ExpectStops({"replay", "experiment.yaml", "--out", "out"}, "log 1 of 1", SIGTERM);
+  ExpectStops({"replay", "experiment.yaml", "--out", "out"}, "replay", SIGTERM);
 }
 
-TEST_F(Stop, EndsAFilm) {
-  ExpectStops({"render", "experiment.yaml", "--out", "x.mp4"}, "film of log");
-}
+TEST_F(Stop, EndsAFilm) { ExpectStops({"render", "experiment.yaml", "--out", "x.mp4"}, "film"); }
 
 TEST_F(Stop, OfAFitLeavesTheBestSoFar) {
   WriteLongLog();
-  const Finished f = Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"},
-                               "iteration  0");
+  const Finished f =
+      Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"}, "\nfit\n");
   EXPECT_EQ(f.signal, 0);
   EXPECT_EQ(f.exit_code, 1) << f.err;
   EXPECT_THAT(f.err, HasSubstr("interrupted"));
@@ -72,8 +68,8 @@ TEST_F(Stop, OfAFitSaysThatIntervalsAndCorrelationsAreNotKnown) {
   WriteLongLog();
   Spoil("experiment.yaml", "upper: 1}",
         "upper: 1}, {name: m, target: \"body:link\", attribute: mass, lower: 0.5, upper: 2}");
-  const Finished f = Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"},
-                               "iteration  1");
+  const Finished f =
+      Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"}, "\nfit\n");
   EXPECT_THAT(f.out, HasSubstr("interval not computed"));
   const auto fit = nlohmann::json::parse(Scratch::Text(files_ / "out/fit.json"));
   EXPECT_EQ(fit["intervals"], "not computed: interrupted");
@@ -90,7 +86,7 @@ TEST_F(Stop, OfASwarmIsHeardBetweenItsParticles) {
   Spoil("model.xml", "timestep=\"0.01\"", "timestep=\"0.002\"");
   const Finished f = Interrupt(
       {"identify", "experiment.yaml", "--path", "stepped", "--method", "pso", "--out", "out"},
-      "generation  0");
+      "particle swarm");
   EXPECT_EQ(f.exit_code, 1) << f.err;
   EXPECT_THAT(f.err, HasSubstr("interrupted"));
   const auto fit = nlohmann::json::parse(Scratch::Text(files_ / "out/fit.json"));

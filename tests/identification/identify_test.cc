@@ -74,8 +74,8 @@ TEST_F(IdentifyTest, OnTheSmoothPathAlsoSimulatesAsTheModelSteps) {
 // Where the fit at a fine step fails in a way that nobody thought of.
 TEST_F(IdentifyTest, APartThatThrowsCostsOnlyItself) {
   options_.path = Path::kStepped;
-  options_.progress = [](const std::string& line) {
-    if (line.starts_with("at a fine step")) throw std::runtime_error("no terminal");
+  options_.progress = [](const Progress& progress) {
+    if (progress.stage == "fit at a fine step") throw std::runtime_error("no terminal");
   };
   const IdentifyResult result = Result();
   ASSERT_THAT(result.missing, SizeIs(1));

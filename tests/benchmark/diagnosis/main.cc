@@ -37,7 +37,7 @@ void Measure(const std::string& name, const Experiment& e) {
              system.model().nq + system.model().nv, Load());
   Split split;
   DiagnosisOptions options;
-  options.progress = [&](const std::string& said) { split.Next(said); };
+  options.progress = [&](const Progress& p) { split.Next(p.stage + ": " + p.at); };
   const Diagnosis d = Diagnose(e, system, options);
   split.Stop();
   double processor = 0;

@@ -7,8 +7,7 @@
 
 namespace continuum::speed {
 
-/// Where the time of a diagnosis goes, by what it says of its progress. All that a search for a
-/// second cause takes is one part.
+/// Where the time of a diagnosis goes, by what it says of its progress.
 class Split {
  public:
   struct Part {
@@ -20,9 +19,7 @@ class Split {
   /// What follows belongs to what is said now.
   void Next(const std::string& said) {
     Stop();
-    Part* const part = PartOf(said);
-    const bool inner = now_ && now_->name == kSecond && part >= &parts_[1] && part <= &parts_[4];
-    if (part && !inner) now_ = part;
+    if (Part* const part = PartOf(said)) now_ = part;
   }
   void Stop() {
     const auto wall = std::chrono::steady_clock::now();
@@ -43,20 +40,23 @@ class Split {
     return nullptr;
   }
 
-  static constexpr const char* kSecond = "second cause";
   std::vector<Part> parts_{{"null fit", "null fit"},
+                           {"screen: significance", "bootstrap of p-values"},
                            {"screen", "sensitivities of all candidates"},
-                           {"significance", "bootstrap of p-values"},
-                           {"fit", "refits"},
-                           {"sensitivities", "sensitivities of the best"},
-                           {"what is left", "lack of fit"},
-                           {"a second cause", kSecond},
-                           {"at a fine step", "fit at a fine step"},
-                           {"folds", "folds"},
-                           {"ceiling", "ceiling"},
-                           {"random force", "placebos"},
+                           {"fits: sensitivities", "sensitivities of the best"},
+                           {"fits: lack of fit", "lack of fit"},
+                           {"fits: at a fine step", "fit at a fine step"},
+                           {"fits", "refits"},
+                           {"other candidates", "other places, other effects"},
+                           {"second cause", "second cause"},
+                           {"judgement: missing force", "missing force"},
+                           {"judgement: at a fine step", "fit at a fine step"},
+                           {"judgement: folds", "folds"},
+                           {"judgement: ceiling", "ceiling"},
+                           {"judgement: random forces", "placebos"},
+                           {"judgement", "sensitivities of the named"},
                            {"gain", "bootstrap of the gain"},
-                           {"a force without", "force without a cause"},
+                           {"force without a cause", "force without a cause"},
                            {"next experiment", "next experiment"}};
   Part* now_ = nullptr;
   std::chrono::steady_clock::time_point wall_;
