@@ -9,6 +9,7 @@
 #include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/effort.h"
 #include "identification/diagnosis/extension.h"
 #include "identification/report/apply_extension.h"
 #include "identification/report/diagnosis_output.h"
@@ -26,7 +27,7 @@ namespace continuum {
 namespace {
 
 struct Options {
-  std::string experiment, out, candidates, compare;
+  std::string experiment, out, candidates, compare, effort = "normal";
   int placebos = 20;
   std::uint64_t seed = 1;
   bool video = false;
@@ -95,6 +96,7 @@ void RunDiagnose(const Options& o) {
   }
   options.placebos = o.placebos;
   options.seed = o.seed;
+  options.effort = EffortNamed(o.effort);
   options.progress = ShowProgress;
   CheckNames(read, system);
   std::vector<std::string> outputs{"diagnosis.json", kExtendedModel,      kExtendedExperiment,
@@ -103,6 +105,7 @@ void RunDiagnose(const Options& o) {
   if (o.video) outputs.push_back("extended.mp4");
   const OutputFolder made(o.out, outputs, {read.file, read.model});
   const Experiment e = Registered(read, system);
+  const GracefulEnd graceful;
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress(ProgressOf(DiagnosisStage::kFiles));
   MakeFolder(o.out);
@@ -123,6 +126,7 @@ void RunDiagnose(const Options& o) {
   std::printf("report    %s (%.0f s)\n", (folder / "report.html").c_str(), d.seconds);
   if (run.extended.xml.empty())
     throw Error::Job("there is no extended model: diagnosis.json says why, under 'missing'");
+  if (d.interrupted) throw Error::Job("interrupted: the files hold what was found so far");
 }
 
 struct ApplyOptions {
@@ -149,6 +153,10 @@ void AddDiagnose(CLI::App& app) {
                   "folder for diagnosis.json, extended.xml, extended.yaml, simulated/, report.html")
       ->required();
   sub->add_option("--candidates", o->candidates, "effects to try, separated by commas");
+  sub->add_option("--effort", o->effort,
+                  "quick (10 s on two cores), normal (60 s) or thorough (no limit)")
+      ->check(CLI::IsMember({"quick", "normal", "thorough"}))
+      ->capture_default_str();
   sub->add_option("--compare", o->compare, "an earlier diagnosis.json");
   sub->add_option("--placebos", o->placebos, "random forces to compare with")
       ->check(WholeNumberWithin(0, 1000))

@@ -26,14 +26,15 @@ double WithoutPart(double error, double part) {
 FitOptions CandidateFitter::Options() const {
   FitOptions options{iterations, 1e-4};  // first order does the rest
   options.whitening = &whitening;
-  options.idle = true;
+  options.idle = true, options.rough = true;
+  options.until = until;
   return options;
 }
 
 // For fits that begin next to their end.
 FitOptions CandidateFitter::FewSteps() const {
   FitOptions options = Options();
-  options.iterations = 5;
+  options.iterations = 5, options.rough = false;
   return options;
 }
 
@@ -48,7 +49,8 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
   options.idle = idle;
   f.fit = FitParameters(problem, start, train, options);
   if (getenv("CDEBUG")) {
-    fprintf(stderr, "FIT %s it %d conv %d cost", f.fit.message.c_str(), f.fit.iterations, f.fit.converged);
+    fprintf(stderr, "FIT %s it %d conv %d cost", f.fit.message.c_str(), f.fit.iterations,
+            f.fit.converged);
     for (double v : f.fit.trace) fprintf(stderr, " %.5g", v);
     fprintf(stderr, " | start");
     for (double v : start) fprintf(stderr, " %.4g", v);
@@ -67,8 +69,9 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
 // As `identify` does, then in units of the noise.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr int kIterations = 100;
-  if (getenv("CSKIP")) return Fit(problem, problem.Start(), std::numeric_limits<double>::infinity(), false);
-  const FitOptions options{.iterations = kIterations};
+  if (getenv("CSKIP"))
+    return Fit(problem, problem.Start(), std::numeric_limits<double>::infinity(), false);
+  const FitOptions options{.iterations = kIterations, .until = until};
   const SearchedFit found =
       FitBySearch(problem, problem.Start(), TrainLogs(*experiment), {}, options);
   return Fit(problem, found.fit.x, std::numeric_limits<double>::infinity(), false);

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/lack_of_fit.h"
@@ -18,6 +19,13 @@
 namespace continuum {
 namespace {
 constexpr int kDraws = 399;  // of rounding errors
+
+// A friction whose level may be constant, and one whose level is, at the same place.
+bool ContainsByCard(const Hypothesis& b, const Hypothesis& a) {
+  const EffectInfo &rich = EffectNamed(b.Card()), &plain = EffectNamed(a.Card());
+  return a.where == b.where && rich.coulomb_level && !rich.IsConstantFriction() &&
+         plain.IsConstantFriction();
+}
 
 bool FollowsTheSameMotion(const CandidateFitter& fitter, const CandidateResult& b,
                           const CandidateResult& a) {
@@ -47,6 +55,7 @@ Experiment Asking(const Experiment& experiment, const DiagnosisOptions& options)
 }  // namespace
 
 bool Contains(const CandidateFitter& fitter, const CandidateResult& b, const CandidateResult& a) {
+  if (ContainsByCard(b.hypothesis, a.hypothesis)) return true;
   if (b.hypothesis.extra.size() > a.hypothesis.extra.size() && FollowsTheSameMotion(fitter, b, a))
     return true;
   if (a.probes.empty() || b.probes.empty()) return false;
@@ -78,6 +87,10 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual,
   for (CandidateResult& c : candidates) {
     options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name(), probes.size(), candidates.size());
     probes.emplace_back();
+    if (fitter_.TimeIsOver()) {
+      left_out.push_back("a look at " + c.hypothesis.NameAtPlace());
+      continue;
+    }
     try {
       Problem problem = ProblemOf(c, *fitter_.experiment);
       if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
@@ -107,8 +120,8 @@ void CandidateSearch::Screen() {
     if (c.probes.empty()) continue;
     const std::size_t best = found.best[i];
     const Probe& probe = c.probes[best];
-    c.start = StartFrom(c.hypothesis, *base_.fitted, probe, ExplainedBy(probe, residual.vector()),
-                        1, criteria_);
+    c.start = StartFrom(c.hypothesis, *base_.fitted, probe,
+                        PlainlyExplainedBy(probe, residual.vector()), 1, criteria_);
     c.other_starts = OtherStarts(c, best, residual);
     std::swap(c.probes[0], c.probes[best]);
   }
@@ -122,7 +135,7 @@ void CandidateSearch::LookAtForces() {
   if (!view.any()) return;
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
     CandidateResult& c = candidates[i];
-    if (!c.error.empty() || StopRequested()) return;
+    if (!c.error.empty() || StopRequested() || fitter_.TimeIsOver()) return;
     try {
       const auto found = view.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment));
       if (!found) return;
@@ -191,6 +204,7 @@ void CandidateSearch::Join(CandidateSearch other) {
   }
   for (CandidateResult& c : other.dismissed) dismissed.push_back(std::move(c));
   for (std::string& s : other.skipped) skipped.push_back(std::move(s));
+  for (std::string& s : other.left_out) left_out.push_back(std::move(s));
   Rank();
 }
 
@@ -200,6 +214,7 @@ void CandidateSearch::JoinUnlisted(CandidateSearch other) {
     c.likelihood = Likelihood(c.fitted);
     candidates.push_back(std::move(c));
   }
+  for (std::string& s : other.left_out) left_out.push_back(std::move(s));
 }
 
 // Twice the logarithm of what a fit gains over the base.
@@ -306,6 +321,13 @@ BaseSquares CandidateSearch::Base() const {
           base_.fitted->sensitivities.value().freedom / inflation_};
 }
 
+double CandidateSearch::ErrorShare(const Fitted& fitted) const {
+  const double floor = std::hypot(noise_.rms, noise_.step);
+  const auto above = [&](double error) { return std::pow(WithoutPart(error, floor), 2); };
+  const double before = above(base_.fitted->error.train);
+  return before > 0 ? 1 - above(fitted.error.train) / before : 1;
+}
+
 std::vector<LikelihoodRecord> CandidateSearch::Records() const {
   std::vector<LikelihoodRecord> records;
   for (const CandidateResult& c : candidates) {
@@ -315,7 +337,8 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
                             {},
                             StepReduction(c.fitted) / inflation_,
                             c.listed,
-                            KinOf(c.hypothesis.Card())};
+                            KinOf(c.hypothesis.Card()),
+                            ErrorShare(c.fitted)};
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(fitter_, c, candidates[a])) record.contains.push_back(a);
     }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/search_rules.h"
@@ -38,8 +40,9 @@ class CandidateSearch {
   void Screen();
   /// Fits those that come near the best to first order, if a candidate is significant or the
   /// residual is plainly not noise; then best first, the others dismissed. beside: a search from
-  /// the same base that has been fitted, whose best they have to come near.
-  void Fit(const CandidateSearch* beside = nullptr);
+  /// the same base that has been fitted, whose best they have to come near; limit: of fits.
+  void Fit(const CandidateSearch* beside = nullptr,
+           std::size_t limit = std::numeric_limits<std::size_t>::max());
   /// Fits the best candidates once more, from where the experiment begins instead of where the base
   /// ended; whether any of them is better there.
   bool RefitFromExperimentStart();
@@ -68,6 +71,8 @@ class CandidateSearch {
   std::vector<LikelihoodRecord> Records() const;
   /// The same of the base.
   BaseSquares Base() const;
+  /// What a fit takes of the base's squared error above the noise and what the time step adds.
+  double ErrorShare(const Fitted& fitted) const;
   double smallest_p() const { return smallest_p_; }  ///< of all candidates that are not skipped
   /// How much of the base's squares above the noise the best candidate explains, to first order.
   double ExplainableShare() const;
@@ -75,6 +80,7 @@ class CandidateSearch {
   std::vector<CandidateResult> candidates;  ///< after Fit: the fitted ones
   std::vector<CandidateResult> dismissed;   ///< by the screen, without a fit
   std::vector<std::string> skipped;
+  std::vector<std::string> left_out;  ///< for lack of time
 
  private:
   void ProbeAll(const ProjectedResidual& residual, std::vector<std::vector<Probe>>& probes);
@@ -85,7 +91,10 @@ class CandidateSearch {
   double MostOfForce() const;
   bool IsWorthAFit(const CandidateResult& c, double needed) const;
   double Threshold() const;
+  double Promise(const CandidateResult& c, double most, double most_of_force) const;
+  void Order();
   bool ReachesNoise(const Fitted& fitted) const;
+  bool TakesMainShare(const Fitted& fitted) const;
   double Likelihood(const Fitted& fitted) const;
   void SayFit(const CandidateResult& c, double needed) const;
   void FitOne(CandidateResult& c, double rival) const;

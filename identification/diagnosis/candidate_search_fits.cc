@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "binding/effect_catalog.h"
@@ -34,24 +35,59 @@ void CandidateSearch::SayFit(const CandidateResult& c, double needed) const {
   options_.Say(DiagnosisStage::kFits, c.hypothesis.Name(), done, static_cast<std::size_t>(wanted));
 }
 
-// The likeliest first, so that the others know what to reach; nobody where only noise is left.
-void CandidateSearch::Fit(const CandidateSearch* beside) {
+// By whichever view promises more, as a share of what the best one promises there.
+double CandidateSearch::Promise(const CandidateResult& c, double most, double most_of_force) const {
+  const bool by_force = ExplainsForce(c.force_share, most_of_force, criteria_);
+  return std::max(most > 0 ? c.explained / most : 0, by_force ? c.force_share / most_of_force : 0);
+}
+
+// The plainest law of a family goes first at a place, as if it promised what the best of them does:
+// what it leaves decides whether a richer one is needed.
+void CandidateSearch::Order() {
+  constexpr double kRicher = 0.8;
+  const double most = MostExplained(), most_of_force = MostOfForce();
+  const auto group = [](const CandidateResult& c) {
+    return std::pair(KinOf(c.hypothesis.Card()).family, c.hypothesis.where);
+  };
+  std::map<std::pair<std::string, std::string>, double> best;
+  for (const CandidateResult& c : candidates) {
+    double& promise = best[group(c)];
+    promise = std::max(promise, Promise(c, most, most_of_force));
+  }
+  const auto key = [&](const CandidateResult& c) {
+    const Kin kin = KinOf(c.hypothesis.Card());
+    if (kin.family.empty()) return Promise(c, most, most_of_force);
+    return kin.depth == 0 ? best.at(group(c)) : kRicher * Promise(c, most, most_of_force);
+  };
+  for (CandidateResult& c : candidates) c.promise = key(c);
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto& a, const auto& b) { return a.explained > b.explained; });
+                   [](const auto& a, const auto& b) { return a.promise > b.promise; });
+}
+
+// The most promising first, so that the others know what to reach; nobody where only noise is left.
+void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
+  Order();
   const bool signal = HasSignal(smallest_p_, base_.fitted->cost,
                                 base_.fitted->sensitivities.value().freedom, criteria_);
   double needed = !noise_.known() || signal ? Threshold() : kInfinity;
   const CandidateResult* const known = beside ? beside->leading() : nullptr;
   if (beside) needed = std::max(needed, UnlistedThreshold(beside->MostExplained(), criteria_));
   double rival = known ? known->fitted.fit.cost : kInfinity;
+  std::size_t fits = 0;
   for (CandidateResult& c : candidates) {
     if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
+    if (fits == limit) break;
+    if (fitter_.TimeIsOver()) {
+      left_out.push_back("a fit of " + c.hypothesis.NameAtPlace());
+      continue;
+    }
     SayFit(c, needed);
+    ++fits;
     try {
       FitOne(c, rival + 0.5 * StepReduction(*base_.fitted));
       if (!noise_.known()) continue;
       rival = std::min(rival, c.fitted.fit.cost);
-      if (ReachesNoise(c.fitted))
+      if (ReachesNoise(c.fitted) || TakesMainShare(c.fitted))
         needed = std::max(needed, FitThresholdAtNoise(MostExplained(), criteria_));
     } catch (const Error& error) {
       c.error = error.what();
@@ -62,17 +98,23 @@ void CandidateSearch::Fit(const CandidateSearch* beside) {
   Dismiss();
 }
 
+bool CandidateSearch::TakesMainShare(const Fitted& fitted) const {
+  const BaseSquares base = Base();
+  return ShareOf({"", 0, Likelihood(fitted)}, base) >= criteria_.main_share;
+}
+
 // Where no fit comes near the noise and what the time step adds, those that were given up as too
 // far behind go on to their end, the likeliest first: what a fit gains early says little where a
 // swing is out of phase with the measured one. Until one of this search comes near.
 void CandidateSearch::FinishAbandoned() {
   if (!noise_.known()) return;
   for (const CandidateResult& c : candidates) {
-    if (c.was_fitted && ReachesNoise(c.fitted)) return;
+    if (c.was_fitted && (ReachesNoise(c.fitted) || TakesMainShare(c.fitted))) return;
   }
   std::size_t tried = 0;
   for (CandidateResult& c : candidates) {
-    if (!WorthFinishing(tried, c.explained, MostExplained(), criteria_)) return;
+    if (!WorthFinishing(tried, c.explained, MostExplained(), criteria_) || fitter_.TimeIsOver())
+      return;
     if (!c.was_fitted || c.fitted.fit.converged) continue;
     options_.Say(DiagnosisStage::kFits, "to the end, " + c.hypothesis.Name());
     ++tried;
@@ -98,6 +140,7 @@ bool CandidateSearch::RefitFromExperimentStart() {
   best.resize(std::min(best.size(), static_cast<std::size_t>(criteria_.fresh_starts)));
   bool better = false;
   for (CandidateResult* const c : best) {
+    if (fitter_.TimeIsOver()) break;
     options_.Say(DiagnosisStage::kFits, "anew, " + c->hypothesis.Name());
     better = RefitFromStart(*c) || better;
   }
@@ -195,10 +238,11 @@ CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
 // The start that is best after a few iterations, of those that are best as they are.
 Problem::Vector CandidateSearch::BestOf(const Problem& problem,
                                         const std::vector<Problem::Vector>& starts) const {
-  constexpr std::size_t kTried = 3;
+  constexpr std::size_t kTried = 2;
+  constexpr double kNear = 2;  // times the best cost
   if (starts.size() == 1) return starts.front();
   FitOptions options{4, 1e-3};
-  options.idle = true;
+  options.idle = true, options.rough = true, options.until = fitter_.until;
   if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;
   const auto train = problem.TrainLogs();
   std::vector<std::pair<double, const Problem::Vector*>> order;
@@ -210,7 +254,7 @@ Problem::Vector CandidateSearch::BestOf(const Problem& problem,
   double best_cost = kInfinity;
   Problem::Vector best;
   for (const auto& [cost, start] : order) {
-    if (!(cost < kInfinity)) continue;  // it diverges there; elsewhere it may not
+    if (!(cost < kInfinity) || cost > kNear * order.front().first) continue;
     try {
       const continuum::Fit fit = FitParameters(problem, *start, train, options);
       if (fit.cost < best_cost) best_cost = fit.cost, best = fit.x;

@@ -12,6 +12,8 @@
 namespace continuum {
 namespace {
 
+constexpr std::size_t kSeconds = 6;  // that are fitted beside one first cause
+
 std::string Key(const Hypothesis& h) { return h.Name() + " at " + h.where; }
 
 // Whether the interval of a size leaves out its absence. It reaches over what the time step does.
@@ -52,14 +54,9 @@ class PairSearch {
       : context_(context), criteria_(context.fitter.criteria), single_(single), of_step_(of_step) {}
 
   PairsFound Run() {
-    std::set<std::string> families;
-    for (const CandidateResult& c : single_.candidates) {
-      const std::string family = KinOf(c.hypothesis.Card()).family;
-      if (c.fitted.complete() && static_cast<double>(families.size()) < criteria_.pair_singles &&
-          families.insert(family.empty() ? c.hypothesis.effect : family).second)
-        Await(c);
-    }
-    while (!waiting_.empty() && static_cast<double>(tried_.size()) < criteria_.pair_bases) {
+    for (const CandidateResult* const c : FirstCauses()) Await(*c);
+    while (!waiting_.empty() && static_cast<double>(tried_.size()) < criteria_.pair_bases &&
+           !context_.fitter.TimeIsOver()) {
       const CandidateResult* const base = waiting_.front();
       waiting_.pop_front();
       Extend(*base);
@@ -72,6 +69,28 @@ class PairSearch {
   }
 
  private:
+  // The best of each family, or the plainest of it that explains nearly as much.
+  std::vector<const CandidateResult*> FirstCauses() const {
+    std::vector<const CandidateResult*> firsts;
+    std::map<std::string, std::size_t> known;  // by family
+    for (const CandidateResult& c : single_.candidates) {
+      if (!c.fitted.complete()) continue;
+      const Kin kin = KinOf(c.hypothesis.Card());
+      const auto [at, fresh] =
+          known.try_emplace(kin.family.empty() ? c.hypothesis.effect : kin.family, firsts.size());
+      if (fresh) {
+        if (static_cast<double>(firsts.size()) < criteria_.pair_singles) firsts.push_back(&c);
+        continue;
+      }
+      if (at->second >= firsts.size()) continue;
+      const CandidateResult*& first = firsts[at->second];
+      if (kin.depth < KinOf(first->hypothesis.Card()).depth &&
+          c.likelihood >= criteria_.family_share * first->likelihood)
+        first = &c;
+    }
+    return firsts;
+  }
+
   void Await(const CandidateResult& c) {
     if (known_.insert(Key(c.hypothesis)).second) waiting_.push_back(&c);
   }
@@ -84,7 +103,7 @@ class PairSearch {
     CandidateSearch search({context_.fitter, context_.noise, context_.sizes, inside}, base);
     search.Screen();
     if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
-    search.Fit();
+    search.Fit(nullptr, kSeconds);
     if (!search.leading()) return;
     const std::string partner = Key(search.leading()->hypothesis);
     tried_.push_back({&first, std::move(search)});
@@ -142,6 +161,7 @@ class PairSearch {
       LikelihoodRecord record{
           a.Name() + " and " + b.Name(), a.extra.size() + b.extra.size(), p.likelihood(), {}};
       record.kin = KinOf(a.Card(), b.Card());
+      record.error_share = single_.ErrorShare(p.b->fitted);
       for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (&pairs[i] != &p && Inside(p, pairs[i])) record.contains.push_back(i);
       }
@@ -156,8 +176,7 @@ class PairSearch {
     if (likeliest.named.empty()) return;
     const Fitting& best = pairs[likeliest.named.front()];
     if (!best.b->fitted.complete()) return;  // those before it were no two causes
-    const double share = ShareOf({"", 0, best.b->likelihood}, single_.Base());
-    if (share < criteria_.second_share) {
+    if (SecondShare(best) < criteria_.second_share) {
       found.would_take = InWords(best);
       return;
     }
@@ -179,7 +198,15 @@ class PairSearch {
     if (verdict.named.empty()) return;
     verdict.leading = verdict.named.front();
     found.best.emplace(Pair{std::move(tried_[best.base].search), best.a->hypothesis,
-                            best.a->likelihood, equivalent, std::move(verdict), lack});
+                            best.a->likelihood, equivalent, std::move(verdict), lack,
+                            best.a->likelihood >= best.b->likelihood});
+  }
+
+  // What the second cause takes of what can be explained at all, by the view that gives it more.
+  double SecondShare(const Fitting& pair) const {
+    const double whitened = ShareOf({"", 0, pair.b->likelihood}, single_.Base());
+    return std::max(whitened,
+                    single_.ErrorShare(pair.b->fitted) - single_.ErrorShare(pair.a->fitted));
   }
 
   std::string InWords(const Fitting& pair) const {

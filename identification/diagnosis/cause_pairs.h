@@ -12,6 +12,7 @@ struct Pair {
   std::vector<std::string> equivalent;  ///< effects that could stand for the first
   Verdict verdict;                      ///< on the second; indices into search.candidates
   LackOfFit lack_of_fit;
+  bool first_is_main;  ///< it takes more than the second does
 };
 
 struct PairsFound {

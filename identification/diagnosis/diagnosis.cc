@@ -1,7 +1,6 @@
 #include "identification/diagnosis/diagnosis.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 
@@ -11,6 +10,7 @@
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/cause_pairs.h"
 #include "identification/diagnosis/condition_contrast.h"
+#include "identification/diagnosis/effort.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/fallback_force.h"
 #include "identification/diagnosis/fold_comparison.h"
@@ -30,19 +30,23 @@ namespace {
 class Session {
  public:
   Session(const Experiment& experiment, const ModelSpec& system, const DiagnosisOptions& options)
-      : e_(experiment), options_(options), null_(experiment, system), d_(experiment, system) {
+      : e_(experiment),
+        options_(options),
+        time_(options.effort),
+        null_(experiment, system),
+        d_(experiment, system) {
     fitter_.experiment = &e_;
     fitter_.iterations = options.iterations;
     fitter_.criteria = d_.criteria = options.criteria;
   }
 
   Diagnosis Run() {
-    const auto begin = std::chrono::steady_clock::now();
     CheckLogs();
     FitNull();
     d_.sizes = SizesOf(null_, d_.before.fit.x);
     d_.noise.step = fitter_.StepError(null_, d_.before);
     Search();
+    Begin(DiagnosisStage::kJudgement);
     Part("view by the missing force", [&] { CompareByEquation(); });
     if (d_.noise_limited) {
       MergePlaces();
@@ -56,13 +60,10 @@ class Session {
       CompleteNamed();
     }
     Part("interval of the gain", [&] { SetGainInterval(); });
-    if (d_.Is(Verdict::Kind::kUnexplained)) Part("fallback", [&] { FallBack(); });
-    Part("next experiment", [&] {
-      options_.Say(DiagnosisStage::kNextExperiment);
-      d_.next = ProposeNext(fitter_, d_);
-    });
+    FindWhatHelps();
     Describe();
-    d_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    MarkAsInterrupted();
+    d_.seconds = time_.seconds();
     return std::move(d_);
   }
 
@@ -71,6 +72,35 @@ class Session {
   void Part(const std::string& name, const std::function<void()>& make) {
     MakePart(name, d_.missing, make);
     StopIfRequested();
+  }
+
+  // From now on fits end when the time of this stage is over.
+  void Begin(DiagnosisStage stage) { fitter_.until = time_.EndOf(stage); }
+
+  // Whether there is time for something that a verdict stands without.
+  bool HasTimeFor(const std::string& what) {
+    if (!fitter_.TimeIsOver()) return true;
+    d_.left_out.push_back(what);
+    return false;
+  }
+
+  void FindWhatHelps() {
+    Begin(DiagnosisStage::kFallback);
+    if (d_.Is(Verdict::Kind::kUnexplained) && HasTimeFor("a force without a cause"))
+      Part("fallback", [&] { FallBack(); });
+    Begin(DiagnosisStage::kNextExperiment);
+    if (d_.verdict.named.size() > 1 && !HasTimeFor("the next experiment")) return;
+    Part("next experiment", [&] {
+      options_.Say(DiagnosisStage::kNextExperiment);
+      d_.next = ProposeNext(fitter_, d_);
+    });
+  }
+
+  void MarkAsInterrupted() {
+    d_.interrupted = EndRequested();
+    if (!d_.interrupted) return;
+    d_.verdict.complete = false;
+    d_.verdict.reason = "interrupted, the best so far: " + d_.verdict.reason;
   }
 
   // What is stated beside the verdict.
@@ -112,6 +142,7 @@ class Session {
   // Twice where values are rounded: a model shows how they move between the steps.
   void FitNull() {
     options_.Say(DiagnosisStage::kNullFit);
+    Begin(DiagnosisStage::kNullFit);
     if (d_.noise.known()) fitter_.whitening = Whitening(null_, d_.noise);
     d_.before = fitter_.FitNull(null_);
     if (d_.noise.known()) {
@@ -133,20 +164,25 @@ class Session {
   // Candidates, and where the noise is known a verdict by their likelihoods.
   void Search() {
     CandidateSearch search(Context(options_), Base());
+    Begin(DiagnosisStage::kScreen);
     search.Screen();
+    Begin(DiagnosisStage::kFits);
     search.Fit();
     if (!d_.noise.known()) {
       Take(search);
       return;
     }
     Judge(search);
+    Begin(DiagnosisStage::kOtherCandidates);
     TryOtherPlaces(search);
     if (SomethingIsLeft(search) && search.RefitFromExperimentStart()) Judge(search);
     CompareUnlisted(search);
+    Begin(DiagnosisStage::kSecondCause);
     const bool two = search.leading() && MayBeTwo(d_.verdict, d_.lack_of_fit, search.smallest_p(),
                                                   search.BestOverNoise(), d_.criteria);
-    PairsFound pairs =
-        two ? FindPair(Context(options_), search, d_.lack_of_fit.of_step) : PairsFound{};
+    PairsFound pairs = two && HasTimeFor("a second cause")
+                           ? FindPair(Context(options_), search, d_.lack_of_fit.of_step)
+                           : PairsFound{};
     d_.pairs = std::move(pairs.tried);
     d_.remaining.would_take = std::move(pairs.would_take);
     d_.noise_limited = pairs.best || !d_.Is(Verdict::Kind::kUnexplained) ||
@@ -173,6 +209,7 @@ class Session {
           {c.hypothesis.effect, c.hypothesis.variant, c.hypothesis.where, c.explained, c.p});
     }
     for (std::string& s : search.skipped) d_.skipped.push_back(std::move(s));
+    for (std::string& s : search.left_out) d_.left_out.push_back(std::move(s));
   }
 
   void CompareByEquation() {
@@ -236,7 +273,7 @@ class Session {
 
   // Where no effect explains it at all joints together it may be at one of them.
   void TryOtherPlaces(CandidateSearch& search) {
-    if (!SomethingIsLeft(search)) return;
+    if (!SomethingIsLeft(search) || !HasTimeFor("candidates at other places")) return;
     const auto inside = options_.Inside(DiagnosisStage::kOtherCandidates, "at other places");
     CandidateSearch others(Context(inside), Base(), SearchScope::kOthers);
     others.Screen();
@@ -251,6 +288,7 @@ class Session {
     auto options = options_.Inside(DiagnosisStage::kOtherCandidates, "not listed");
     options.candidates = Unlisted(e_, options_.candidates);
     if (options.candidates.empty() || d_.Is(Verdict::Kind::kAdequate)) return;
+    if (!HasTimeFor("effects that are not listed")) return;
     CandidateSearch unlisted(Context(options), Base());
     unlisted.Screen();
     unlisted.Fit(&search);
@@ -297,7 +335,7 @@ class Session {
     SetProbabilities(pair.search.candidates, pair.search.Records());
     for (CandidateResult& c : pair.search.candidates) c.likelihood += pair.first_likelihood;
     Take(pair.search);
-    d_.partner = {std::move(pair.first), std::move(pair.equivalent)};
+    d_.partner = {std::move(pair.first), std::move(pair.equivalent), pair.first_is_main};
     d_.verdict.reason = fmt::format("no single candidate is enough, two are: {} beside this; {}",
                                     d_.partner->hypothesis.NameAtPlace(), d_.verdict.reason);
     const bool one = d_.verdict.named.size() == 1 && d_.partner->equivalent.empty();
@@ -372,6 +410,7 @@ class Session {
 
   const Experiment& e_;
   const DiagnosisOptions& options_;
+  TimeBudget time_;
   Problem null_;
   Diagnosis d_;
   CandidateFitter fitter_;

@@ -74,7 +74,7 @@ std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Pro
   }
   if (!(D.norm() > 0)) return {};
   probe.columns = D - basis_ * (basis_.transpose() * D);
-  const Explained e = ExplainedBy(probe, force_);
+  const Explained e = PlainlyExplainedBy(probe, force_);
   std::vector<double> own = start;
   for (Eigen::Index a = 0; a < count; ++a) {
     const std::size_t i = amplitudes[static_cast<std::size_t>(a)];

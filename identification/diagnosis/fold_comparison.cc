@@ -154,6 +154,7 @@ class FoldComparison {
     for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
       const CandidateResult& c = d_.candidates[i];
       const bool rival = i != named && !Related(i, named) &&
+                         GainOf(c) >= d_.criteria.rival_gain * GainOf(d_.candidates[named]) &&
                          ClearlyBetterByEquation(c, d_.candidates[named], d_.criteria);
       if (rival && (!best || c.by_equation->share > d_.candidates[*best].by_equation->share))
         best = i;
@@ -165,6 +166,8 @@ class FoldComparison {
         " on the logs left out, but {} explains the missing force at the measured states better",
         d_.candidates[*best].hypothesis.NameAtPlace());
   }
+
+  static double GainOf(const CandidateResult& c) { return Median(Gains(c.record)); }
 
   // One effect, or one that can do what the other does.
   bool Related(std::size_t a, std::size_t b) const {

@@ -37,11 +37,15 @@ enum class DiagnosisStage {
 Progress ProgressOf(DiagnosisStage stage, const std::string& at = "", std::size_t done = 0,
                     std::size_t of = 0);
 
+/// How long a diagnosis may take on two cores: ten seconds, a minute, or as long as it needs.
+enum class Effort { kQuick, kNormal, kThorough };
+
 struct DiagnosisOptions {
   std::vector<std::string> candidates = {};  ///< names; empty: those of the experiment
   int placebos = 20;                         ///< random forces to compare with
   int iterations = 15;                       ///< of each fit
   std::uint64_t seed = 1;                    ///< of everything random
+  Effort effort = Effort::kThorough;
   ProgressCallback progress = {};
   Criteria criteria = {};  ///< others than the defaults: for tests
 
@@ -96,6 +100,7 @@ struct CandidateResult {
   std::vector<Probe> probes = {};  ///< one for each start: directions from the fit without it
   Problem::Vector start = {};      ///< of its fit, when the screen found one
   std::vector<Problem::Vector> other_starts = {};  ///< that the screen finds as good
+  double promise = 0;      ///< in which order candidates are fitted: most first
   double force_share = 0;  ///< of the missing force's squares that it explains at measured states
   bool was_fitted = false;
   Fitted fitted = {};                          ///< empty where it was not fitted
@@ -124,6 +129,7 @@ struct CandidateResult {
 struct Partner {
   Hypothesis hypothesis;
   std::vector<std::string> equivalent;  ///< effects that the data do not distinguish from it
+  bool main = true;                     ///< it takes more of the error than the other one
 };
 
 /// Two causes that were fitted together, and what both gain in twice the log-likelihood.
@@ -172,7 +178,9 @@ struct Diagnosis {
   Remaining remaining;         ///< of the model that the verdict leaves
   LackOfFit lack_of_fit;       ///< of the model that the verdict is about
   std::vector<std::string> skipped;
-  Verdict verdict;  ///< indices into candidates, and into unlisted
+  std::vector<std::string> left_out;  ///< what there was no time for, in words
+  bool interrupted = false;           ///< by the user: the best so far
+  Verdict verdict;                    ///< indices into candidates, and into unlisted
   /// The best that anything reached on the folds, forces without a name among it; empty where the
   /// data are noise-limited.
   FoldScores ceiling;

@@ -74,6 +74,9 @@ struct Explained {
   Eigen::VectorXd coefficients;
 };
 Explained ExplainedBy(const Probe& probe, const Eigen::VectorXd& z);
+/// The same with only one coefficient, where that explains nearly as much; else with all. Laws of
+/// several amplitudes that do nearly the same would begin with large ones that cancel.
+Explained PlainlyExplainedBy(const Probe& probe, const Eigen::VectorXd& z);
 
 /// What several candidates explain, each with one or more probes (the best counts), and their
 /// family-wise significance: the share of draws of white noise in which some candidate does as

@@ -17,10 +17,9 @@ class Ranking {
   Ranking(const std::vector<LikelihoodRecord>& candidates, const BaseSquares& base,
           const Criteria& criteria)
       : candidates_(candidates), base_(base), criteria_(criteria), order_(candidates.size()) {
-    double most = 0;
-    for (const LikelihoodRecord& one : candidates) most = std::max(most, one.likelihood);
-    left_ = std::max(0.0, base.squares - most - base.freedom);
-    if (base.freedom > 0) scale_ = std::max(1.0, (base.squares - most) / base.freedom);
+    for (const LikelihoodRecord& one : candidates) most_ = std::max(most_, one.likelihood);
+    left_ = std::max(0.0, base.squares - most_ - base.freedom);
+    if (base.freedom > 0) scale_ = std::max(1.0, (base.squares - most_) / base.freedom);
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::sort(order_.begin(), order_.end(), [&](auto a, auto b) { return Score(a) > Score(b); });
   }
@@ -109,8 +108,9 @@ class Ranking {
     return most || !Behind(first, a, criteria_.nested_margin);
   }
   bool IsBehind(std::size_t best, std::size_t rival) const {
-    return Behind(best, rival,
-                  std::max<double>(criteria_.rival_margin, criteria_.left_share * left_ / scale_));
+    const double left =
+        std::max<double>(criteria_.left_share * left_, criteria_.structure_share * most_);
+    return Behind(best, rival, std::max<double>(criteria_.rival_margin, left / scale_));
   }
   // By the smaller of both time-discretisation errors: one that leans on it far more than the other
   // does not profit from it.
@@ -130,6 +130,7 @@ class Ranking {
   const std::vector<LikelihoodRecord>& candidates_;
   const BaseSquares& base_;
   const Criteria& criteria_;
+  double most_ = 0;   // squares that the best one explains
   double left_ = 0;   // squares above the noise that the best one leaves
   double scale_ = 1;  // squares that the best one leaves over those of noise
   std::vector<std::size_t> order_;
@@ -247,7 +248,8 @@ std::string ResidualInWords(const LackOfFit& lack, const Criteria& criteria) {
 
 double ShareOf(const LikelihoodRecord& record, const BaseSquares& base) {
   const double above = base.squares - base.freedom;
-  return above > 0 ? std::clamp(record.likelihood / above, 0.0, 1.0) : 1;
+  const double share = above > 0 ? record.likelihood / above : 1;
+  return std::clamp(std::min(share, record.error_share), 0.0, 1.0);
 }
 
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const LackOfFit& lack,

@@ -114,6 +114,8 @@ struct LikelihoodRecord {
   double step = 0;     ///< how much of its misfit is put down to the time step, in the same unit
   bool listed = true;  ///< whether it was asked for: only then it can be named
   Kin kin = {};
+  double error_share =
+      1;  ///< of the squared error above noise and step that it takes, in plain rows
 };
 
 /// The model without a candidate, by the same measure: whitened squares, and how many of them noise
@@ -125,7 +127,8 @@ struct BaseSquares {
 /// Likelihood less what its parameters gain from noise alone.
 double ScoreOf(const LikelihoodRecord& record, const Criteria& criteria = {});
 
-/// What a candidate takes of the squares that noise does not explain, 0 to 1.
+/// What a candidate takes of the squares that noise does not explain, 0 to 1: of the whitened ones,
+/// or of those of the plain error where that is less.
 double ShareOf(const LikelihoodRecord& record, const BaseSquares& base);
 
 /// Posterior probabilities of the candidates, each as likely before: exp(score/2), normalised.
@@ -139,10 +142,10 @@ std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candida
 /// One scale for all data: with c the squares that the best model leaves and ν those of noise, a
 /// rival of another family is behind when it leaves more by
 ///
-///   max(rival_margin · max(1, c/ν), left_share · (c − ν)),
+///   max(rival_margin · max(1, c/ν), left_share · (c − ν), structure_share · e),
 ///
-/// which is the calibrated test where only noise is left (c = ν). Where more is left the best one
-/// is named if it takes the main share of what noise does not explain.
+/// e what it explains; which is the calibrated test where only noise is left (c = ν). Where more is
+/// left the best one is named if it takes the main share of what noise does not explain.
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const LackOfFit& lack,
                          double p, const BaseSquares& base, const Criteria& criteria = {});
 

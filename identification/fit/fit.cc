@@ -87,12 +87,12 @@ class Cost : public ceres::CostFunction {
   }
 
   // J_ at x_: updated (Broyden) along the step from where it was known, if the residuals changed
-  // almost as it said; as it was, if they hardly changed; else anew. By differences it is always
-  // made anew: they see stick and slip.
+  // almost as it said; as it was, if they hardly changed; else anew. By differences it is made anew
+  // unless rough slopes will do: they see stick and slip.
   void Derive() const {
     if (!J_.empty() && derived_.x == x_) return;
-    if (J_.empty() || problem_.path() == Path::kStepped || !Updated())
-      J_ = problem_.Jacobian(x_, r_, use_, {}, true);
+    const bool anew = problem_.path() == Path::kStepped && !options_.rough;
+    if (J_.empty() || anew || !Updated()) J_ = problem_.Jacobian(x_, r_, use_, {}, true);
     derived_ = {x_, r_};
   }
   bool Updated() const {
@@ -148,11 +148,13 @@ class Monitor : public ceres::IterationCallback {
     if (s.step_is_successful && s.iteration >= 2)
       lost_ = s.cost > options_.hopeless + kMore * s.cost_change ? lost_ + 1 : 0;
     settled_ = Settled(s);
-    return StopRequested() || lost_ >= options_.patience || settled_
+    out_of_time_ = EndRequested() || std::chrono::steady_clock::now() > options_.until;
+    return StopRequested() || lost_ >= options_.patience || settled_ || out_of_time_
                ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                : ceres::SOLVER_CONTINUE;
   }
   bool settled() const { return settled_; }
+  bool out_of_time() const { return out_of_time_; }
 
  private:
   // Whether a step failed from which little was expected: then the simulation's own errors decide.
@@ -169,12 +171,14 @@ class Monitor : public ceres::IterationCallback {
   const FitOptions& options_;
   Fit& fit_;
   int lost_ = 0;  // steps in a row
-  bool settled_ = false;
+  bool settled_ = false, out_of_time_ = false;
 };
 
 // Why a fit ended.
-std::string InWords(const ceres::Solver::Summary& summary, bool settled, const FitOptions& o) {
-  if (settled) return "a further step gains less than the errors of the simulation";
+std::string InWords(const ceres::Solver::Summary& summary, const Monitor& watch,
+                    const FitOptions& o) {
+  if (watch.out_of_time()) return "out of time";
+  if (watch.settled()) return "a further step gains less than the errors of the simulation";
   if (summary.termination_type == ceres::USER_SUCCESS)
     return StopRequested() ? "interrupted" : "given up: it cannot come near a better one";
   if (summary.termination_type == ceres::CONVERGENCE)
@@ -252,7 +256,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   fit.x = Unscaled(problem, y.data());
   fit.cost = summary.final_cost;
   fit.converged = summary.termination_type == ceres::CONVERGENCE || watch.settled();
-  fit.message = InWords(summary, watch.settled(), options);
+  fit.message = InWords(summary, watch, options);
   fit.evaluations = problem.evaluations() - before;
   fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return fit;

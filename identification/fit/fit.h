@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <limits>
 #include <string>
 #include <vector>
@@ -32,6 +33,11 @@ struct FitOptions {
   /// Give up when even four more steps as good as the last would leave the cost above this.
   double hopeless = std::numeric_limits<double>::infinity();
   int patience = 1;  ///< steps in a row that must look so
+  /// Slopes by differences are carried on from step to step (Broyden) for as long as they foretell
+  /// what a step does: enough to compare models, at a fraction of the simulations.
+  bool rough = false;
+  /// When to end with what has been reached.
+  std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();
   /// Called after each iteration, with cost and evaluations so far.
   ProgressCallback progress = {};
 };

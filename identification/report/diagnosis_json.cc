@@ -136,7 +136,7 @@ nlohmann::json CausesJson(const Diagnosis& d) {
   for (const std::size_t i : d.verdict.siblings) add(d.candidates[i]);
   for (const CandidateResult& c : d.unlisted) add(c);
   json.push_back(CauseJson(d, *d.chosen(), equivalent));
-  if (d.partner) json.push_back(PartnerJson(d));
+  if (d.partner) json.insert(d.partner->main ? json.begin() : json.end(), PartnerJson(d));
   return json;
 }
 
@@ -285,6 +285,8 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
   json["extended_model"] = NameIf(!run.extended.xml.empty(), kExtendedModel);
   json["extended_experiment"] = NameIf(!run.extended.yaml.empty(), kExtendedExperiment);
   json["skipped"] = d.skipped;
+  json["left_out"] = d.left_out;
+  json["interrupted"] = d.interrupted;
   json["seconds"] = d.seconds;
   json["lack_of_fit"] = {{"force", d.lack_of_fit.force}, {"channel", d.lack_of_fit.channel}};
   const auto part = [&](const char* key, const std::function<nlohmann::json()>& make) {
