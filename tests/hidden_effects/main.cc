@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "binding/effect_catalog.h"
+#include "hidden_effects/outside/cases.h"
 #include "hidden_effects/pictures.h"
 #include "hidden_effects/report.h"
 #include "support/json_lines.h"
@@ -123,7 +124,7 @@ int Main(int argc, char** argv) {
   std::string out, only, keep, pictures, robot = "arm";
   int repeats = 1;
   bool write = false, verbose = false, told = false, quick = false, background = false,
-       spoilt = false, follow = false;
+       spoilt = false, outside = false, follow = false;
   app.add_option("--out", out, "one JSON line per case")->required();
   app.add_option("--robot", robot, "arm, servo, silverbox, bouc_wen, spa or annelida")
       ->capture_default_str();
@@ -132,6 +133,9 @@ int Main(int argc, char** argv) {
                "one log in windows, in which much else is wrong too, of the arm");
   app.add_flag("--spoilt", spoilt,
                "logs of the arm that are turned, late, of flipped or of other inputs");
+  app.add_flag(
+      "--outside", outside,
+      "machines whose masses and lengths are 1 % off their models (--quick: some of them)");
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
   app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
@@ -147,6 +151,7 @@ int Main(int argc, char** argv) {
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
   auto cases = background ? BackgroundCases(repeats)
                : spoilt   ? SpoiltCases(repeats)
+               : outside  ? OutsideCases(quick)
                : quick    ? QuickCases(robot)
                           : Cases(robot, repeats);
   if (told) cases = DescribedCases(std::move(cases));

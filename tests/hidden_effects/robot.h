@@ -31,7 +31,9 @@ struct Robot {
   std::vector<double> sigma;                 ///< of the noise of each output
   double period = 0.01;                      ///< s
   std::size_t rows = 400;
-  int trials = 3;                            ///< the last is to validate
+  int trials = 3;
+  int held_out = 1;      ///< trials that validate, the last ones
+  bool outside = false;  ///< of the outside suite: it has other masses than its model
   std::vector<std::string> conditions = {};  ///< [trial] YAML of what its logs set, if anything
   std::vector<Hidden> effects = {};
   std::function<Columns(int trial, std::mt19937_64&)> drive = {};

@@ -15,4 +15,12 @@ Robot BoucWenRobot();
 Robot SoftActuatorRobot();  ///< one arc of models/spa for a chain of ten links, position of the tip
 Robot SnakeArmRobot();      ///< models/annelida in a plane, without dry friction: angles and tip
 
+// The outside suite (outside/cases.h).
+Robot PendulumRobot();    ///< one link let go anywhere, its motor switched on and off
+Robot ValveRobot();       ///< a piston on a spring, behind a valve of first order
+Robot TwoLinkRobot();     ///< two links on position servos with a limit
+Robot SnakeRobot();       ///< five links and two cables through sites, pulled by tensions
+Robot WinchSnakeRobot();  ///< the same, its cables wound up by position servos
+Robot SoftRobot();        ///< one soft arc with three chambers, in a plane
+
 }  // namespace continuum::hidden

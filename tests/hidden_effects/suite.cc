@@ -17,12 +17,13 @@ namespace continuum::hidden {
 namespace {
 
 constexpr int kReplicates = 2;
+constexpr double kOff = 0.01;  // of the masses and lengths of a machine of the outside suite
 
 // The line of a log in the experiment.
 std::string LogLine(const Robot& robot, int trial, const std::string& name) {
   const std::string set = robot.conditions.empty() ? "" : ", " + robot.conditions[trial];
   return fmt::format("  - {{file: {}.csv, trial: trial{}, use: {}{}}}\n", name, trial,
-                     trial + 1 < robot.trials ? "train" : "validate", set);
+                     trial + robot.held_out < robot.trials ? "train" : "validate", set);
 }
 
 void Spoil(const std::string& how, Columns& u, Columns& y) {
@@ -49,6 +50,12 @@ Amounts AmountsOf(const Case& c) {
   const Robot& robot = RobotNamed(c.robot);
   Amounts hidden;
   for (const auto& name : c.effects) hidden.emplace_back(name, robot.Named(name).size * c.factor);
+  if (!robot.outside) return hidden;
+  std::mt19937_64 rng(c.seed);
+  for (const char* const what : {"heavier", "longer"})
+    hidden.emplace_back(what, rng() % 2 ? kOff : -kOff);
+  hidden.emplace_back("law", static_cast<double>(c.law));
+  if (c.one_joint) hidden.emplace_back("one joint", 1);
   return hidden;
 }
 
@@ -101,8 +108,10 @@ std::string CandidatesOf(const Case& c) {
 }
 
 const Robot& RobotNamed(const std::string& name) {
-  static const std::vector<Robot> all{ArmRobot(),     ServoRobot(),        SilverboxRobot(),
-                                      BoucWenRobot(), SoftActuatorRobot(), SnakeArmRobot()};
+  static const std::vector<Robot> all{ArmRobot(),      ServoRobot(),        SilverboxRobot(),
+                                      BoucWenRobot(),  SoftActuatorRobot(), SnakeArmRobot(),
+                                      PendulumRobot(), ValveRobot(),        TwoLinkRobot(),
+                                      SnakeRobot(),    WinchSnakeRobot(),   SoftRobot()};
   for (const Robot& robot : all) {
     if (robot.name == name) return robot;
   }
@@ -123,6 +132,8 @@ std::string Case::Name() const {
   if (robot != "arm") text = robot + " " + text;
   if (background) text = "background " + text;
   if (!spoilt.empty()) text = spoilt + " " + text;
+  if (law != Law::kStick) text += " " + std::string(kLawNames[static_cast<int>(law)]);
+  if (one_joint) text += " at one joint";
   return fmt::format("{} x{:g} {} seed {}{}", text, factor, kNoiseNames[static_cast<int>(noise)],
                      seed,
                      told     ? " told"
@@ -147,9 +158,11 @@ std::filesystem::path WriteCase(const Case& c, const std::filesystem::path& fold
     for (const auto& name : WriteReplicates(c, fmt::format("trial{}", trial), u, y, folder, rng))
       logs += LogLine(robot, trial, name);
   }
+  const bool all = robot.outside && c.listed && !c.told && c.among.empty();
+  const std::string candidates = all ? "all" : "[" + CandidatesOf(c) + "]";
   WriteFile(folder / "experiment.yaml", "format: 1\nmodel: robot.xml\nstart: rest\n" +
-                                            robot.experiment + "logs:\n" + logs + "candidates: [" +
-                                            CandidatesOf(c) + "]\n");
+                                            robot.experiment + "logs:\n" + logs +
+                                            "candidates: " + candidates + "\n");
   return folder / "experiment.yaml";
 }
 
@@ -195,6 +208,7 @@ Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
     if (one.hypothesis.effect != c.effects.front()) continue;
     const Hidden& h = RobotNamed(c.robot).Named(c.effects.front());
     a.truth = h.null + h.size * c.factor;
+    if (!one.fitted.complete()) continue;
     for (std::size_t k = 0; k < one.hypothesis.extra.size(); ++k) {
       if (one.hypothesis.extra[k].name != h.parameter) continue;
       const Eigen::Index at = one.first_extra() + static_cast<Eigen::Index>(k);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hidden_effects/noise.h"
+#include "hidden_effects/outside/dry_friction.h"
 #include "hidden_effects/robot.h"
 #include "identification/diagnosis/diagnosis.h"
 
@@ -27,6 +28,8 @@ struct Case {
   /// ms, inputs "flipped" in sign or "exchanged" for others; empty: nothing.
   std::string spoilt = "";
   std::vector<std::string> among = {};  ///< the candidates; empty: all
+  Law law = Law::kStick;                ///< of dry friction in the outside suite
+  bool one_joint = false;               ///< there, dry friction of the first joint only
 
   std::string Name() const;
 };
