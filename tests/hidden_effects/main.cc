@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "binding/effect_catalog.h"
+#include "hidden_effects/child.h"
 #include "hidden_effects/outside/cases.h"
 #include "hidden_effects/pictures.h"
 #include "hidden_effects/report.h"
@@ -109,24 +110,43 @@ std::vector<Case> DescribedCases(std::vector<Case> cases) {
   return cases;
 }
 
+// Of a case that ended without a diagnosis.
+nlohmann::json NoAnswer(const Case& c, const std::string& why) {
+  Answer none;
+  none.verdict = "no answer";
+  nlohmann::json line = LineOf(c, none);
+  line["what"] = why;
+  return line;
+}
+
 nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool follow, bool verbose) {
   try {
     const Answer a = follow ? SolveAndFollow(c, folder) : Solve(c, folder);
-    if (verbose) fmt::print("{}\n", a.detail);
+    if (verbose) fmt::print("{}\n", a.detail), std::fflush(stdout);
     return LineOf(c, a);
   } catch (const std::exception& e) {
-    return {{"case", c.Name()}, {"verdict", "error"}, {"what", e.what()}};
+    return NoAnswer(c, e.what());
   }
+}
+
+// In a process of its own: a crash or a case without an end costs no other.
+nlohmann::json LineApart(const Case& c, const std::filesystem::path& folder, bool follow,
+                         bool verbose, double limit) {
+  const ChildAnswer child = InChild([&] { return Line(c, folder, follow, verbose).dump(); }, limit);
+  if (child.text) return nlohmann::json::parse(*child.text);
+  return NoAnswer(c, child.late ? fmt::format("more than {:g} s", limit) : "crash");
 }
 
 int Main(int argc, char** argv) {
   CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
   std::string out, only, keep, pictures, robot = "arm";
   int repeats = 1;
+  double limit = 600;
   bool write = false, verbose = false, told = false, quick = false, background = false,
        spoilt = false, outside = false, follow = false;
   app.add_option("--out", out, "one JSON line per case")->required();
-  app.add_option("--robot", robot, "arm, servo, silverbox, bouc_wen, spa or annelida")
+  app.add_option("--robot", robot,
+                 "arm, servo, silverbox, bouc_wen, spa or annelida; of --outside all")
       ->capture_default_str();
   app.add_flag("--quick", quick, "white noise, two sizes of every effect, nothing hidden twice");
   app.add_flag("--background", background,
@@ -137,6 +157,8 @@ int Main(int argc, char** argv) {
       "--outside", outside,
       "machines whose masses and lengths are 1 % off their models (--quick: some of them)");
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
+  app.add_option("--limit", limit, "seconds for a case; later it has no answer")
+      ->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
   app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
   app.add_option("--pictures", pictures, "a folder for confusion, power and calibration as SVG");
@@ -165,7 +187,7 @@ int Main(int argc, char** argv) {
       WriteCase(cases[i], folder);
       continue;
     }
-    const nlohmann::json line = Line(cases[i], folder, follow, verbose);
+    const nlohmann::json line = LineApart(cases[i], folder, follow, verbose, limit);
     testing::AppendJsonLine(out, line);
     fmt::print(stderr, "{}/{} {}: {} {} {:.1f} s\n", i + 1, cases.size(), name,
                line.at("verdict").get<std::string>(),

@@ -12,10 +12,19 @@ double NumberOr(const nlohmann::json& json, double other) {
   return json.is_number() ? json.get<double>() : other;
 }
 
+std::string SuiteOf(const Case& c) {
+  if (c.background) return "background";
+  if (RobotNamed(c.robot).outside) return "outside";
+  return c.spoilt.empty() ? "robots" : "spoilt";
+}
+
 }  // namespace
 
 nlohmann::json LineOf(const Case& c, const Answer& a) {
   nlohmann::json line{{"case", c.Name()},
+                      {"robot", c.robot},
+                      {"suite", SuiteOf(c)},
+                      {"spoilt", c.spoilt},
                       {"effects", c.effects},
                       {"listed", c.listed},
                       {"factor", c.factor},
@@ -24,6 +33,8 @@ nlohmann::json LineOf(const Case& c, const Answer& a) {
                       {"named", a.named},
                       {"partner", a.partner},
                       {"right", InSet(c, a)},
+                      {"exact", InSetExactly(c, a)},
+                      {"sibling", !c.effects.empty() && Sibling(c, a)},
                       {"unique", Unique(a)},
                       {"truth", a.truth},
                       {"value", a.value},
@@ -35,7 +46,11 @@ nlohmann::json LineOf(const Case& c, const Answer& a) {
                       {"next", a.next},
                       {"closest", a.closest},
                       {"stated", a.stated},
-                      {"seconds", a.seconds}};
+                      {"seconds", a.seconds},
+                      {"cpu", a.cpu},
+                      {"screened", a.screened},
+                      {"leading", a.leading}};
+  if (a.complete) line["complete"] = *a.complete;
   if (a.followed) {
     const Followed& f = *a.followed;
     line["followed"] = {{"input", f.input},
@@ -46,6 +61,21 @@ nlohmann::json LineOf(const Case& c, const Answer& a) {
   }
   return line;
 }
+
+namespace {
+
+// What lines of older files lack.
+void ReadMore(const nlohmann::json& line, Outcome& o) {
+  o.robot = line.value("robot", ""), o.suite = line.value("suite", "robots");
+  o.spoilt = line.value("spoilt", "");
+  o.exact = line.value("exact", o.right), o.sibling = line.value("sibling", false);
+  o.cpu = line.value("cpu", o.seconds), o.p = line.value("p", 1.0);
+  o.explained = line.contains("explained") ? NumberOr(line["explained"], 0) : 0;
+  o.screened = line.value("screened", ""), o.leading = line.value("leading", "");
+  if (line.contains("complete")) o.complete = line["complete"].get<bool>();
+}
+
+}  // namespace
 
 std::vector<Outcome> OutcomesOf(const std::vector<nlohmann::json>& lines) {
   std::vector<Outcome> outcomes;
@@ -61,6 +91,7 @@ std::vector<Outcome> OutcomesOf(const std::vector<nlohmann::json>& lines) {
     o.high = NumberOr(line.at("high"), std::numeric_limits<double>::infinity());
     if (line.contains("stated")) o.stated = line.at("stated");
     o.seconds = line.at("seconds"), o.closest = line.value("closest", 0.0);
+    ReadMore(line, o);
     if (line.contains("followed")) {
       const auto& f = line["followed"];
       o.followed = {f.at("right").get<bool>(), f.at("unique").get<bool>()};

@@ -14,15 +14,22 @@ namespace continuum::hidden {
 /// One case of the suite and what became of it, as its line of the suite's file says.
 struct Outcome {
   std::string name, noise, verdict;
+  std::string robot, suite, spoilt;  ///< suite: robots, background, spoilt or outside
   std::vector<std::string> effects, named, partner;
   bool listed = true;
   double factor = 1;
-  bool right = false;   ///< the truth is in the set
-  bool unique = false;  ///< one name
+  bool right = false;    ///< the truth is in the set
+  bool unique = false;   ///< one name
+  bool exact = false;    ///< right by the very name, not by one of its family
+  bool sibling = false;  ///< it holds what is declared to look the same
   double truth = 0, value = 0, low = 0, high = 0;
   std::map<std::string, double> stated;  ///< probability of every effect
-  double seconds = 0;
-  double closest = 0;  ///< how far the closest other effect is, λ
+  double seconds = 0, cpu = 0;
+  double p = 1;                       ///< to first order
+  double explained = 0;               ///< of the explainable error on logs left out
+  std::string screened, leading;      ///< best to first order; closest where nothing is named
+  std::optional<bool> complete = {};  ///< whether what is left looks like noise
+  double closest = 0;                 ///< how far the closest other effect is, λ
   struct Followed {
     bool right, unique;
   };
@@ -33,7 +40,7 @@ struct Outcome {
 };
 
 nlohmann::json LineOf(const Case& c, const Answer& a);
-/// Of the lines of a file; lines of cases that failed are left out.
+/// Of the lines of a file. Cases without an answer have the verdict "no answer".
 std::vector<Outcome> OutcomesOf(const std::vector<nlohmann::json>& lines);
 
 }  // namespace continuum::hidden

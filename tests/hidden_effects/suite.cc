@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "hidden_effects/families.h"
 #include "hidden_effects/robots.h"
 #include "identification/diagnosis/gain.h"
 #include "identification/report/diagnosis_summary.h"
@@ -179,14 +181,22 @@ double ClosestTo(const CandidateResult& lead, const Diagnosis& d) {
 
 Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
   const Experiment e = Experiment::Read(file);
+  const std::clock_t before = std::clock();
   const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model));
   Answer a;
+  a.cpu = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   a.verdict = d.verdict.word();
   a.seconds = d.seconds;
   a.explained = GainOf(d, d.after()).explainable;
   a.next = Separation(d);
-  for (const CandidateResult& one : d.candidates) a.p = std::min(a.p, one.p);
-  for (const Dismissed& one : d.dismissed) a.p = std::min(a.p, one.p);
+  double most = 0;
+  const auto screen = [&](const std::string& effect, double explained, double p) {
+    a.p = std::min(a.p, p);
+    if (explained > most) most = explained, a.screened = effect;
+  };
+  for (const CandidateResult& one : d.candidates)
+    screen(one.hypothesis.effect, one.explained, one.p);
+  for (const Dismissed& one : d.dismissed) screen(one.effect, one.explained, one.p);
   a.lack = d.lack_of_fit.smallest();
   if (d.noise_limited && d.chosen()) a.closest = ClosestTo(d.candidates.front(), d);
   a.next_experiment = d.next;
@@ -266,16 +276,40 @@ Answer SolveAndFollow(const Case& c, const std::filesystem::path& folder) {
   return first;
 }
 
-bool InSet(const Case& c, const Answer& a) {
-  if (c.effects.empty()) return false;
-  const std::vector<std::string> first{c.effects.front()}, last{c.effects.back()};
-  if (c.effects.size() == 1) return a.partner.empty() && Share(a.named, first);
+namespace {
+
+// Whether an answer holds one name of each, of a single one as the only cause.
+bool Holds(const std::vector<std::vector<std::string>>& truths, const Answer& a) {
+  if (truths.empty()) return false;
+  const auto& first = truths.front();
+  const auto& last = truths.back();
+  if (truths.size() == 1) return a.partner.empty() && Share(a.named, first);
   return (Share(a.named, first) && Share(a.partner, last)) ||
          (Share(a.named, last) && Share(a.partner, first));
 }
 
+}  // namespace
+
+bool InSet(const Case& c, const Answer& a) {
+  std::vector<std::vector<std::string>> truths;
+  for (const auto& effect : c.effects) {
+    const bool made_otherwise = c.law != Law::kStick && IsDryFriction(effect);
+    truths.push_back(made_otherwise ? FamilyOf(effect) : std::vector{effect});
+  }
+  return Holds(truths, a);
+}
+
+bool InSetExactly(const Case& c, const Answer& a) {
+  std::vector<std::vector<std::string>> truths;
+  for (const auto& effect : c.effects) truths.push_back({effect});
+  return Holds(truths, a);
+}
+
 bool Sibling(const Case& c, const Answer& a) {
-  return Share(a.named, RobotNamed(c.robot).Named(c.effects.front()).siblings);
+  const std::string& effect = c.effects.front();
+  const Robot& robot = RobotNamed(c.robot);
+  return Share(a.named, robot.Named(effect).siblings) ||
+         (robot.outside && Share(a.named, FamilyOf(effect)));
 }
 
 bool Unique(const Answer& a) { return a.verdict == "named" && a.named.size() == 1; }

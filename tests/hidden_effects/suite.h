@@ -53,7 +53,10 @@ struct Answer {
   double lack = 1;       ///< p-value of what the model that is left standing leaves
   double next = 0;       ///< likelihood between the two best
   double closest = 0;    ///< how far the closest other effect is from the likeliest, to first order
-  double seconds = 0;
+  double seconds = 0, cpu = 0;        ///< by the clock, and of all processors together
+  std::string screened = "";          ///< the effect that explains most to first order
+  std::optional<bool> complete = {};  ///< whether what is left looks like noise, where it is said
+  std::string leading = "";           ///< what came closest where nothing is named
   /// Probability of every effect, at whatever place; empty where none is stated or two act.
   std::map<std::string, double> stated = {};
   std::string detail;  ///< the summary
@@ -77,9 +80,13 @@ Answer Solve(const Case& c, const std::filesystem::path& folder);
 /// with logs of that.
 Answer SolveAndFollow(const Case& c, const std::filesystem::path& folder);
 
-/// Whether the answer holds the truth (of two effects: both), and whether it is one name.
+/// Whether the answer holds the truth (of two effects: both), and whether it is one name. Where
+/// dry friction is made by another law than the tool's (Case::law), any of its family is the truth.
 bool InSet(const Case& c, const Answer& a);
-/// Whether it holds a declared sibling of the first hidden effect.
+/// The same, by the very name.
+bool InSetExactly(const Case& c, const Answer& a);
+/// Whether it holds a declared sibling of the first hidden effect; in the outside suite its family
+/// too.
 bool Sibling(const Case& c, const Answer& a);
 bool Unique(const Answer& a);
 

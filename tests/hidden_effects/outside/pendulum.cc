@@ -87,7 +87,7 @@ struct Pendulum : Outside {
 };
 
 const std::vector<Part<Pendulum>> kParts{
-    {{"payload", "mass", 0.5, 0, {"link_mass"}}, [](Pendulum& p, double v) { p.payload = v; }},
+    {{"payload", "mass", 0.5}, [](Pendulum& p, double v) { p.payload = v; }},
     {{"coulomb", "tau_c", 0.03}, [](Pendulum& p, double v) { p.friction.tau_c = v; }},
     {{"stribeck", "tau_c", 0.03},
      [](Pendulum& p, double v) { p.friction.tau_c = v, p.friction.S = 0.8; }},

@@ -193,7 +193,7 @@ parameters:
 template <class Plant>
 std::vector<Part<Plant>> Parts() {
   return {
-      {{"payload", "mass", 0.03, 0, {"link_mass"}}, [](Plant& p, double v) { p.payload = v; }},
+      {{"payload", "mass", 0.03}, [](Plant& p, double v) { p.payload = v; }},
       {{"armature", "armature", 5e-5}, [](Plant& p, double v) { p.armature = v; }},
       {{"coulomb", "tau_c", 0.02},
        [](Plant& p, double v) {
@@ -208,7 +208,8 @@ std::vector<Part<Plant>> Parts() {
       {{"tendon_stretch", "compliance", 2e-4}, [](Plant& p, double v) { p.stretch = v; }},
       {{"slack", "length", 3e-3}, [](Plant& p, double v) { p.slack = v; }},
       {{"input_gain", "gain", 0.05, 1}, [](Plant& p, double v) { p.signals.gain = 1 + v; }},
-      {{"dead_time", "delay", 0.015}, [](Plant& p, double v) { p.signals.dead_time = v; }},
+      {{"dead_time", "delay", 0.015, 0, {"sensor_delay"}},
+       [](Plant& p, double v) { p.signals.dead_time = v; }},
       {{"pt1", "T", 0.02}, [](Plant& p, double v) { p.signals.lag = v; }},
   };
 }

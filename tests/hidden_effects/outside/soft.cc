@@ -183,7 +183,8 @@ const std::vector<Part<Soft>> kParts{
     {{"cubic_stiffness", "k3", 20}, [](Soft& s, double v) { s.cubic = v; }},
     {{"dahl", "f", 0.02}, [](Soft& s, double v) { s.hysteresis = v; }},
     {{"input_gain", "gain", 0.04, 1}, [](Soft& s, double v) { s.signals.gain = 1 + v; }},
-    {{"dead_time", "delay", 0.015}, [](Soft& s, double v) { s.signals.dead_time = v; }},
+    {{"dead_time", "delay", 0.015, 0, {"sensor_delay"}},
+     [](Soft& s, double v) { s.signals.dead_time = v; }},
     {{"pt1", "T", 0.02}, [](Soft& s, double v) { s.signals.lag = v; }},
 };
 

@@ -101,12 +101,12 @@ struct TwoLink : Outside {
 };
 
 const std::vector<Part<TwoLink>> kParts{
-    {{"payload", "mass", 0.08, 0, {"link_mass"}}, [](TwoLink& p, double v) { p.payload = v; }},
+    {{"payload", "mass", 0.08}, [](TwoLink& p, double v) { p.payload = v; }},
     {{"armature", "armature", 0.02, 0.02}, [](TwoLink& p, double v) { p.armature = v; }},
     {{"coulomb", "tau_c", 0.2},
      [](TwoLink& p, double v) { p.friction[0].tau_c = p.friction[1].tau_c = v; }},
     {{"one joint", "", 1}, [](TwoLink& p, double) { p.friction[1] = {}; }},
-    {{"directional_friction", "tau_c_plus", 0.3, 0, {"coulomb"}},
+    {{"directional_friction", "tau_c_plus", 0.3},
      [](TwoLink& p, double v) {
        for (auto& f : p.friction) f.tau_c = v / 1.5, f.lean = 0.5;
      }},
@@ -117,7 +117,8 @@ const std::vector<Part<TwoLink>> kParts{
        for (auto& f : p.friction) f.tau_c = v, f.S = 0.8;
      }},
     {{"backlash", "gap", 0.02}, [](TwoLink& p, double v) { p.gap = v; }},
-    {{"dead_time", "delay", 0.015}, [](TwoLink& p, double v) { p.signals.dead_time = v; }},
+    {{"dead_time", "delay", 0.015, 0, {"sensor_delay"}},
+     [](TwoLink& p, double v) { p.signals.dead_time = v; }},
     {{"pt1", "T", 0.015}, [](TwoLink& p, double v) { p.signals.lag = v; }},
     {{"sensor_bias", "bias", 0.01}, [](TwoLink& p, double v) { p.signals.bias = v; }},
     {{"sensor_delay", "delay", 0.008, 0, {"dead_time"}},

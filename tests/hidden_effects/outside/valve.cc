@@ -53,13 +53,10 @@ struct Valve : Outside {
       joint.law = p.law, joint.friction[0] = p.friction;
     }
     void Step(const std::vector<double>& u, double h) {
-      if (!started) known = hidden = u[0];
-      started = true;
-      known += (1 - std::exp(-h / kValve)) * (u[0] - known);
-      hidden = p.lag > 0 ? hidden + (1 - std::exp(-h / p.lag)) * (known - hidden) : known;
+      force_of_valve += (1 - std::exp(-h / (kValve + p.lag))) * (u[0] - force_of_valve);
       joint.q += h / 2 * joint.v;
       const double x = joint.q[0];
-      const double force = hidden - 120 * x - p.cubic * x * x * x - p.creep * (x - crept);
+      const double force = force_of_valve - 120 * x - p.cubic * x * x * x - p.creep * (x - crept);
       crept += (1 - std::exp(-h / p.creep_time)) * (x - crept);
       joint.Push(Joints<1>::Matrix(2 * p.heavier + p.payload), One(force), One(8), One(0), h);
       joint.q += h / 2 * joint.v;
@@ -68,14 +65,14 @@ struct Valve : Outside {
 
     const Valve& p;
     Joints<1> joint;
-    double known = 0, hidden = 0, crept = 0;
-    bool started = false;
+    double force_of_valve = 0, crept = 0;
   };
 };
 
 const std::vector<Part<Valve>> kParts{
     {{"pt1", "T", 0.02}, [](Valve& p, double v) { p.lag = v; }},
-    {{"dead_time", "delay", 0.015}, [](Valve& p, double v) { p.signals.dead_time = v; }},
+    {{"dead_time", "delay", 0.015, 0, {"sensor_delay"}},
+     [](Valve& p, double v) { p.signals.dead_time = v; }},
     {{"coulomb", "tau_c", 0.6}, [](Valve& p, double v) { p.friction.tau_c = v; }},
     {{"stribeck", "tau_c", 0.6},
      [](Valve& p, double v) { p.friction.tau_c = v, p.friction.S = 0.8, p.friction.v_s = 0.03; }},
