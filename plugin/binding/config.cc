@@ -11,10 +11,30 @@
 namespace continuum {
 namespace {
 
+constexpr std::string_view kSpaces = " \t\n\v\f\r";
+constexpr std::string_view kMeaning = "*?[\\";  // characters that a glob does not take as they are
+
 std::string Short(double x) {
   std::ostringstream out;
   out << x;
   return out.str();
+}
+
+std::string NameOf(const mjModel& m, Place place, int id) {
+  const char* const name = mj_id2name(&m, ObjectType(place), id);
+  return name ? name : "";
+}
+
+// How an object is named that a word did not find.
+std::string Hint(const mjModel& m, Place place) {
+  bool spaces = false, names = false;
+  for (int i = 0; i < ObjectCount(m, place); ++i) {
+    const std::string name = NameOf(m, place, i);
+    names |= !name.empty();
+    spaces |= name.find(' ') != name.npos;
+  }
+  if (spaces) return "; a space in a name is written '\\ '";
+  return names || ObjectCount(m, place) == 0 ? "" : "; give it a name: here none has one";
 }
 
 }  // namespace
@@ -26,7 +46,8 @@ mjtObj ObjectType(Place place) {
 }
 
 int ObjectCount(const mjModel& m, Place place) {
-  const std::array<long long, 7> counts{m.njnt, m.ntendon, m.nu, m.nbody, m.nsite, m.nsensor, 0};
+  const std::array<long long, 7> counts{m.njnt,    m.ntendon, m.nactuator, m.nbody, m.nsite,
+                                        m.nsensor, 0};
   return static_cast<int>(counts[static_cast<std::size_t>(place)]);
 }
 
@@ -44,20 +65,46 @@ std::string_view JointType(int type) {
 }
 
 bool GlobMatches(const std::string& glob, const std::string& name) {
-  return fnmatch(glob.c_str(), name.c_str(), 0) == 0;
+  return glob == name || fnmatch(glob.c_str(), name.c_str(), 0) == 0;
 }
 
 std::vector<std::string> Words(std::string_view text) {
-  std::istringstream in{std::string(text)};
   std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
+  bool inside = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool space = kSpaces.find(text[i]) != kSpaces.npos;
+    if (!space && !inside) words.emplace_back();
+    inside = !space;
+    if (space) continue;
+    words.back() += text[i];
+    if (text[i] == '\\' && i + 1 < text.size()) words.back() += text[++i];
+  }
   return words;
 }
 
 bool AnyGlobMatches(std::string_view globs, const std::string& name) {
   const auto all = Words(globs);
-  return std::any_of(all.begin(), all.end(),
-                     [&](const std::string& glob) { return GlobMatches(glob, name); });
+  return globs == name || std::any_of(all.begin(), all.end(), [&](const std::string& glob) {
+           return GlobMatches(glob, name);
+         });
+}
+
+std::string Escaped(const std::string& name) {
+  std::string word;
+  for (const char c : name) {
+    if (kSpaces.find(c) != kSpaces.npos || kMeaning.find(c) != kMeaning.npos) word += '\\';
+    word += c;
+  }
+  return word;
+}
+
+std::string Unescaped(const std::string& word) {
+  std::string name;
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    if (word[i] == '\\' && i + 1 < word.size()) ++i;
+    name += word[i];
+  }
+  return name;
 }
 
 std::string_view Config::Get(std::string_view key) const {
@@ -102,19 +149,19 @@ int Config::Read(const Choice& choice) const {
 }
 
 std::vector<int> Config::Match(Place place) const {
-  const std::string key(PlaceName(place));
-  const mjtObj type = ObjectType(place);
-  const int count = ObjectCount(*m_, place);
+  const std::string key(PlaceName(place)), text(Get(key));
+  const int whole = mj_name2id(m_, ObjectType(place), text.c_str());
+  if (whole >= 0 && !text.empty()) return {whole};  // also with spaces in it
   std::set<int> ids;
-  for (const std::string& word : Words(Get(key))) {
-    const std::size_t before = ids.size();
+  for (const std::string& word : Words(text)) {
     bool known = false;
-    for (int i = 0; i < count; ++i) {
-      const char* name = mj_id2name(m_, type, i);
-      if (name && GlobMatches(word, name)) known = true, ids.insert(i);
+    for (int i = 0; i < ObjectCount(*m_, place); ++i) {
+      const std::string name = NameOf(*m_, place, i);
+      if (!name.empty() && GlobMatches(word, name)) known = true, ids.insert(i);
     }
-    if (!known && before == ids.size()) {
-      throw Error::Input(Who() + ": " + key, "no " + key + " '" + word + "' in the model");
+    if (!known) {
+      throw Error::Input(Who() + ": " + key,
+                         "no " + key + " '" + word + "' in the model" + Hint(*m_, place));
     }
   }
   if (ids.empty()) throw Error::Input(Who(), "the key '" + key + "'", "none");

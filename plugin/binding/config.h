@@ -61,14 +61,20 @@ class Config {
 /// The type of a joint in words: "a hinge joint".
 std::string_view JointType(int type);
 
-/// Whether a glob (* ? [..]) matches the whole name.
+/// Whether a glob (* ? [..]) matches the whole name. A backslash takes the meaning of the character
+/// after it; a text that is the name itself matches it whatever its characters mean.
 bool GlobMatches(const std::string& glob, const std::string& name);
 
-/// The words of a text.
+/// The words of a text. A space after a backslash belongs to its word.
 std::vector<std::string> Words(std::string_view text);
 
 /// Whether one of several globs, separated by spaces, matches the whole name.
 bool AnyGlobMatches(std::string_view globs, const std::string& name);
+
+/// The glob that matches this name and no other, as one word: of "joint[0] a" it is joint\[0]\ a.
+std::string Escaped(const std::string& name);
+/// The name that such a word stands for.
+std::string Unescaped(const std::string& word);
 
 template <class E>
 std::vector<double> ReadParams(const Config& config) {

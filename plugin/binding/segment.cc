@@ -22,7 +22,8 @@ std::vector<int> Named(const mjModel& m, const Config& config, const std::string
                        std::to_string(names.size()));
   }
   std::vector<int> ids;
-  for (const std::string& name : names) {
+  for (const std::string& word : names) {
+    const std::string name = Unescaped(word);
     ids.push_back(mj_name2id(&m, type, name.c_str()));
     if (ids.back() < 0) {
       throw Error::Input(config.Who() + ": " + key, "no " + key + " '" + name + "' in the model");
