@@ -1,60 +1,35 @@
 #include "identification/candidates/candidate_generator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "binding/config.h"
 #include "binding/effect_catalog.h"
 #include "error.h"
+#include "identification/candidates/conflicts.h"
 #include "identification/candidates/effect_places.h"
 #include "identification/candidates/measurement_candidates.h"
 #include "identification/candidates/model_candidates.h"
-#include "identification/candidates/present_friction.h"
-#include "identification/candidates/search_range.h"
+#include "identification/candidates/per_condition.h"
 
 namespace continuum {
 namespace {
 
-// Why candidates are skipped.
-constexpr const char* kHasIt = "the model has it already";
-constexpr const char* kFitsIt = "the experiment fits it already";
-
-bool IsFitted(const Experiment& e, const std::string& kind, const std::string& attribute) {
-  return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const Parameter& p) {
-    return p.target.starts_with(kind + ":") && p.attribute == attribute;
-  });
-}
-
-// Whether a parameter of the experiment says already what an effect is at some objects, out of all
-// of their kind: not where they are some of several that share one.
-bool IsFitted(const Experiment& e, const EffectInfo& effect, Place place,
-              const std::vector<std::string>& names, const std::vector<std::string>& all) {
-  if (effect.native.empty()) return false;
-  const std::string kind = std::string(PlaceName(place)) + ":";
-  return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const Parameter& p) {
-    if (!p.target.starts_with(kind) || p.attribute != effect.native) return false;
-    const auto acts = [&](const std::string& name) {
-      return AnyGlobMatches(p.target.substr(kind.size()), name);
-    };
-    const auto here = std::count_if(names.begin(), names.end(), acts);
-    return here > 0 &&
-           (here < std::ssize(names) || here == std::count_if(all.begin(), all.end(), acts));
-  });
-}
+using Kind = EffectInfo::Kind;
+using Names = std::vector<std::string>;
 
 // So many objects are few: each is tried too, beside all of them together.
 constexpr std::size_t kFew = 4;
 
 // The objects at which an effect that has no place is tried, out of those of one kind. first:
 // whether it is the kind that it usually acts on; together: whether it may act on all of them.
-std::vector<std::vector<std::string>> ObjectsToTry(const std::vector<std::string>& names,
-                                                   Place place, bool first, bool together,
-                                                   SearchScope places) {
-  std::vector<std::vector<std::string>> chosen;
-  const bool others = places == SearchScope::kOthers;
+std::vector<Names> ObjectsToTry(const Names& names, Place place, bool first, bool together,
+                                SearchScope scope) {
+  std::vector<Names> chosen;
+  const bool others = scope == SearchScope::kOthers;
   if (!first && place != Place::kTendon) return chosen;
   if (together && others != first) chosen.push_back(names);
   const bool one_by_one = (names.size() > kFew || !first || !together) == others;
@@ -63,185 +38,202 @@ std::vector<std::vector<std::string>> ObjectsToTry(const std::vector<std::string
   return chosen;
 }
 
-// Whether a model has an instance of an effect.
-bool HasInstanceOf(const mjModel& m, const EffectInfo& effect) {
-  for (int i = 0; i < m.nplugin; ++i) {
-    const EffectInfo* const other = EffectOf(m, i);
-    if (other && other->name == effect.name) return true;
+// The candidates of one entry of the list.
+class Entry {
+ public:
+  Entry(const Candidate& wanted, const CandidateContext& context, SearchScope scope,
+        std::vector<Hypothesis>& all, Names& skipped)
+      : effect_(EffectNamed(wanted.effect)),
+        wanted_(wanted),
+        c_(context),
+        scope_(scope),
+        all_(all),
+        skipped_(skipped) {}
+
+  void Add() {
+    Check();
+    // Of segments and sensors the other places leave nothing out.
+    const bool few = scope_ == SearchScope::kFew;
+    if (effect_.kind == Kind::kSegment) {
+      if (few) AddBesideSegments();
+    } else if (effect_.kind == Kind::kMeasure) {
+      if (few) AddMeasured();
+    } else {
+      AddAtObjects();
+    }
   }
-  return false;
-}
 
-// Why a dry friction makes no sense on joints that have one.
-std::string WhyNoFriction(const EffectInfo& effect, const PresentFriction& present) {
-  if (!present) return "";
-  if (present.effect->name == effect.name) return kHasIt;
-  return effect.IsConstantFriction() ? "the model has dry friction" : "";
-}
-
-// Why an effect makes no sense at places of a model; empty when it does.
-std::string WhyNot(const EffectInfo& effect, Place place, const std::vector<std::string>& names,
-                   const Experiment& e, const mjModel& m) {
-  using Kind = EffectInfo::Kind;
-  if (effect.kind == Kind::kFriction)
-    return WhyNoFriction(effect, PresentFrictionOn(m, place, names));
-  if (effect.kind == Kind::kPath) return HasInstanceOf(m, effect) ? kHasIt : "";
-  if (effect.kind != Kind::kEdit) return "";
-  if (IsFitted(e, effect, place, names, PlacesFor(m, effect, place, "*", e))) return kFitsIt;
-  if (effect.native != "damping" || place != Place::kJoint) return "";
-  const PresentFriction present = PresentFrictionOn(m, place, names);
-  if (!present || !present.effect->damping) return "";
-  return fmt::format("the model's {} has it: fit its {}", present.effect->name,
-                     present.effect->params[*present.effect->damping].name);
-}
-
-// One hypothesis, or one for each option of a friction's choice.
-void AddAt(const EffectInfo& effect, const Candidate& wanted, Place place,
-           const std::vector<std::string>& names, const Experiment& e, const SearchBase& from,
-           const Sizes& sizes, std::vector<Hypothesis>& all) {
-  const ModelSpec& system = *from.system;
-  if (wanted.law) {
-    all.push_back(FormulaCandidate(effect, *wanted.law, place, names, system));
-    return;
+ private:
+  const mjModel& model() const { return c_.from.system->model(); }
+  bool anywhere() const { return wanted_.where.empty(); }
+  // What follows the kind of object in `where`.
+  std::string Globs() const {
+    return anywhere() ? "*" : wanted_.where.substr(wanted_.where.find(':') + 1);
   }
-  if (effect.kind == EffectInfo::Kind::kEdit) {
-    all.push_back(EditCandidate(effect, place, names, e, system, from.fitted, sizes));
-    return;
-  }
-  const bool choice = effect.kind == EffectInfo::Kind::kFriction && !effect.choices.empty();
-  const std::size_t options = choice ? effect.choices.front().options.size() : 1;
-  for (std::size_t o = 0; o < options; ++o)
-    all.push_back(PluginCandidate(effect, place, names, system, sizes, static_cast<int>(o)));
-}
 
-// Why a law of soft segments was not added; empty when it was.
-std::string AddBesideSegments(const EffectInfo& effect, const Experiment& e,
-                              const ModelSpec& system, const Sizes& sizes,
-                              std::vector<Hypothesis>& all) {
-  const mjModel& m = system.model();
-  if (HasInstanceOf(m, effect)) return kHasIt;
-  const auto segments = SegmentsFor(m, effect);
-  if (segments.empty()) return "no soft segment in the model";
-  for (const Param& p : effect.params) {
-    if (!std::isnan(p.null) && IsFitted(e, "plugin", std::string(p.name))) return kFitsIt;
+  void Check() const {
+    if (!wanted_.per_condition) return;
+    if (effect_.kind == Kind::kMeasure)
+      throw Error::Input(
+          fmt::format("{}: candidates: {}: per", c_.experiment.file.string(), wanted_.Name()),
+          "an effect of the model", "one of the measurement");
+    TrainedConditions(c_.experiment, wanted_.Name());
   }
-  for (const int i : segments) all.push_back(SegmentCandidate(effect, i, system, sizes));
-  return "";
-}
 
-// At objects of the model. Throws Error where the experiment asks for a place that it has not.
-void AddAtObjects(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
-                  const SearchBase& from, const Sizes& sizes, SearchScope places,
-                  std::vector<Hypothesis>& all, std::vector<std::string>& skipped) {
-  const mjModel& m = from.system->model();
-  const std::size_t colon = wanted.where.find(':');
-  const bool anywhere = wanted.where.empty(), few = places == SearchScope::kFew;
-  bool first = true;
-  for (const Place place : effect.places) {
-    if (anywhere ? place == Place::kSite : wanted.where.substr(0, colon) != PlaceName(place))
-      continue;  // a site is a body's
-    const std::string glob = anywhere ? "*" : wanted.where.substr(colon + 1);
-    const auto names = PlacesFor(m, effect, place, glob, e);
-    if (names.empty()) continue;
-    const auto why = [&](const std::vector<std::string>& some) {
-      return wanted.law ? "" : WhyNot(effect, place, some, e, m);
+  void Skip(const std::string& why) {
+    const std::string text = wanted_.Name() + why;
+    if (std::find(skipped_.begin(), skipped_.end(), text) == skipped_.end())
+      skipped_.push_back(text);
+  }
+
+  void AddBesideSegments() {
+    const std::string why = ConflictBesideSegments(effect_, c_.experiment, model());
+    if (!why.empty()) return Skip(": " + why);
+    const Names segments = SegmentsFor(model(), effect_);
+    if (segments.empty()) Skip(": no soft segment in the model");
+    for (const std::string& segment : segments) TryAt({Place::kBody, {segment}});
+  }
+
+  void AddMeasured() {
+    if (IsOfClock(effect_)) return TryAt({Place::kSensor, {}});
+    const auto sets = OutputsTogether(effect_, Globs(), c_.experiment, model());
+    if (sets.empty()) Skip(": no output that it acts on");
+    for (const Names& names : sets) TryAt({Place::kSensor, names});
+  }
+
+  // At objects of the model. Throws Error where the experiment asks for a place that it has not.
+  void AddAtObjects() {
+    const std::size_t colon = wanted_.where.find(':');
+    bool first = true;
+    for (const Place place : effect_.places) {
+      if (anywhere() ? place == Place::kSite : wanted_.where.substr(0, colon) != PlaceName(place))
+        continue;  // a site is a body's
+      const Names names = PlacesFor(model(), effect_, place, Globs(), c_.experiment);
+      if (names.empty()) continue;
+      if (!AddAtPlace(place, names, first)) return;
+      first = false;
+    }
+    if (!first) return;
+    if (!anywhere() && !IsInModel()) {
+      throw Error::Input(
+          fmt::format("{}: candidates: {}", c_.experiment.file.string(), wanted_.Name()),
+          "a place in the model where the effect can act", wanted_.where);
+    }
+    Skip(anywhere() ? ": " + WhyNowhere() : " at " + wanted_.where + ": it cannot act there");
+  }
+
+  // Returns whether other kinds of objects are to be tried too.
+  bool AddAtPlace(Place place, const Names& names, bool first) {
+    const bool few = scope_ == SearchScope::kFew;
+    const std::string conflict = Conflict(place, names);
+    if (few && first && !conflict.empty()) {
+      Skip(": " + conflict);
+      return false;
+    }
+    std::vector<Names> chosen;
+    if (anywhere()) chosen = ObjectsToTry(names, place, first, conflict.empty(), scope_);
+    if (!anywhere() && few) chosen.push_back(names);
+    for (const Names& some : chosen) {
+      if (Conflict(place, some).empty()) TryAt({place, some});
+    }
+    return true;
+  }
+
+  std::string Conflict(Place place, const Names& names) const {
+    return wanted_.law ? "" : ConflictAt(effect_, place, names, c_.experiment, model());
+  }
+
+  // Whether `where` names anything of a kind on which the effect may act.
+  bool IsInModel() const {
+    const std::string kind = wanted_.where.substr(0, wanted_.where.find(':'));
+    return std::any_of(effect_.places.begin(), effect_.places.end(), [&](Place place) {
+      return kind == PlaceName(place) && !NamesLike(model(), place, Globs()).empty();
+    });
+  }
+
+  std::string WhyNowhere() const {
+    for (const Place place : effect_.places) {
+      const int count = ObjectCount(model(), place);
+      if (count > 0 && NamesLike(model(), place, "*").empty())
+        return fmt::format("no {} of the model has a name to bind it to", PlaceName(place));
+    }
+    return "nothing in the model to bind it to";
+  }
+
+  // Where the model cannot have it on all of the objects, on those where it can.
+  void TryAt(const ObjectSet& objects) {
+    for (int option = 0; option < OptionCount(effect_, wanted_); ++option) {
+      const std::string why = TryAt(objects, option);
+      if (why.empty()) continue;
+      const Names able = Able(objects, option, why);
+      if (!able.empty()) TryAt({objects.place, able}, option);
+    }
+  }
+
+  // Returns why the model cannot have it; empty when it can.
+  std::string TryAt(const ObjectSet& objects, int option) {
+    try {
+      Take(HypothesisAt(effect_, wanted_, objects, option, c_));
+      return "";
+    } catch (const Error& error) {
+      return error.what();
+    }
+  }
+
+  // Those objects of several on which the model can have it one by one, if they are fewer; says why
+  // of the others. why: of all together.
+  Names Able(const ObjectSet& objects, int option, std::string why) {
+    Names able, others;
+    for (const std::string& name : objects.names) {
+      try {
+        if (objects.names.size() > 1) {
+          HypothesisAt(effect_, wanted_, {objects.place, {name}}, option, c_);
+          able.push_back(name);
+          continue;
+        }
+      } catch (const Error& error) {
+        if (others.empty()) why = error.what();
+      }
+      others.push_back(name);
+    }
+    if (others.empty()) others = std::exchange(able, {});
+    const std::string where =
+        objects.names.empty() ? "" : " at " + PlaceText(objects.place, others);
+    Skip(where + ": " + why);
+    return able;
+  }
+
+  // Places may be spelt in several ways: of one hypothesis there is one.
+  void Take(Hypothesis h) {
+    const auto same = [&](const Hypothesis& other) {
+      return other.NameAtPlace() == h.NameAtPlace();
     };
-    const bool together = why(names).empty();
-    if (few && first && !together) return skipped.push_back(wanted.Name() + ": " + why(names));
-    std::vector<std::vector<std::string>> chosen;
-    if (anywhere) chosen = ObjectsToTry(names, place, first, together, places);
-    if (!anywhere && few) chosen.push_back(names);
-    for (const auto& some : chosen) {
-      if (why(some).empty()) AddAt(effect, wanted, place, some, e, from, sizes, all);
-    }
-    first = false;
+    if (std::none_of(all_.begin(), all_.end(), same)) all_.push_back(std::move(h));
   }
-  if (!first) return;
-  if (!anywhere) {
-    throw Error::Input(fmt::format("{}: candidates: {}", e.file.string(), wanted.Name()),
-                       "a place in the model where the effect can act", wanted.where);
-  }
-  skipped.push_back(wanted.Name() + ": nothing in the model to bind it to");
-}
 
-void AddEffect(const EffectInfo& effect, const Candidate& wanted, const Experiment& e,
-               const SearchBase& from, const Sizes& sizes, SearchScope places,
-               std::vector<Hypothesis>& all, std::vector<std::string>& skipped) {
-  const auto skip = [&](const std::string& why) { skipped.push_back(wanted.Name() + ": " + why); };
-  const bool few = places == SearchScope::kFew;  // of segments and sensors these leave nothing out
-  if (effect.kind == EffectInfo::Kind::kSegment) {
-    const std::string why = few ? AddBesideSegments(effect, e, *from.system, sizes, all) : "";
-    if (!why.empty()) skip(why);
-  } else if (effect.kind == EffectInfo::Kind::kMeasure) {
-    if (!few) return;
-    auto found = MeasurementCandidates(effect, wanted, e, *from.system, sizes);
-    if (found.empty()) skip("no output that it acts on");
-    std::move(found.begin(), found.end(), std::back_inserter(all));
-  } else {
-    AddAtObjects(effect, wanted, e, from, sizes, places, all, skipped);
-  }
-}
+  const EffectInfo& effect_;
+  const Candidate& wanted_;
+  const CandidateContext& c_;
+  SearchScope scope_;
+  std::vector<Hypothesis>& all_;
+  Names& skipped_;
+};
 
-// The conditions of an experiment, all of which it can be trained on.
-std::set<std::string> Conditions(const Experiment& e, const std::string& candidate) {
-  const std::string where = fmt::format("{}: candidates: {}: per", e.file.string(), candidate);
-  std::set<std::string> all, trained;
-  for (const Log& log : e.logs) {
-    if (log.condition.empty()) continue;
-    all.insert(log.condition);
-    if (log.train) trained.insert(log.condition);
-  }
-  if (all.size() < 2)
-    throw Error::Input(where, "logs of two conditions or more", std::to_string(all.size()));
-  for (const std::string& name : all) {
-    if (!trained.contains(name))
-      throw Error::Input(where, "a train log of every condition", "none of '" + name + "'");
-  }
+std::vector<Candidate> WholeCatalog() {
+  std::vector<Candidate> all;
+  for (const EffectInfo& effect : Catalog()) all.push_back({std::string(effect.name), "", false});
   return all;
-}
-
-// The same effect with values of its own under each condition.
-void Multiply(Hypothesis& h, const std::set<std::string>& conditions) {
-  std::vector<Parameter> extra;
-  std::vector<double> null;
-  for (std::size_t i = 0; i < h.extra.size(); ++i) {
-    for (const std::string& name : conditions) {
-      extra.push_back(h.extra[i]);
-      extra.back().name += "[" + name + "]";
-      extra.back().condition = name;
-      null.push_back(h.null[i]);
-    }
-  }
-  h.extra = std::move(extra), h.null = std::move(null);
-  h.where += ", per condition";
 }
 
 }  // namespace
 
 std::vector<Hypothesis> MakeCandidates(const Experiment& e, const SearchBase& from,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
-                                       SearchScope places) {
+                                       SearchScope scope) {
+  const CandidateContext context{e, from, sizes};
   std::vector<Hypothesis> all;
-  if (e.all_candidates) {
-    for (const EffectInfo& effect : Catalog())
-      AddEffect(effect, {std::string(effect.name), "", false}, e, from, sizes, places, all,
-                skipped);
-  } else {
-    std::vector<Candidate> seen;
-    for (const Candidate& c : e.candidates) {
-      if (std::find(seen.begin(), seen.end(), c) != seen.end()) continue;
-      seen.push_back(c);
-      const EffectInfo& effect = EffectNamed(c.effect);
-      if (c.per_condition && effect.kind == EffectInfo::Kind::kMeasure)
-        throw Error::Input(fmt::format("{}: candidates: {}: per", e.file.string(), c.Name()),
-                           "an effect of the model", "one of the measurement");
-      const std::size_t first = all.size();
-      AddEffect(effect, c, e, from, sizes, places, all, skipped);
-      for (std::size_t i = first; c.per_condition && i < all.size(); ++i)
-        Multiply(all[i], Conditions(e, c.Name()));
-    }
-  }
-  for (Hypothesis& h : all) h.starts = SearchStarts(h.extra, h.null), h.given = from.given;
+  for (const Candidate& c : e.all_candidates ? WholeCatalog() : e.candidates)
+    Entry(c, context, scope, all, skipped).Add();
   return all;
 }
 

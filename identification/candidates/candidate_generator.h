@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "identification/candidates/hypothesis.h"
+#include "identification/candidates/object_sets.h"
 #include "identification/candidates/typical_sizes.h"
 
 namespace continuum {
@@ -14,16 +15,10 @@ enum class SearchScope {
   kOthers  ///< at the others: each of many, each that shares a parameter, tendons beside joints
 };
 
-/// The model that candidates extend.
-struct SearchBase {
-  const ModelSpec* system;            ///< with the causes that have been found
-  std::vector<Parameter> given = {};  ///< free parameters of these
-  std::vector<Change> fitted = {};    ///< what a fit has made of the model
-};
-
 /// The candidates of an experiment that make sense in its model, one Hypothesis per effect, choice
-/// and place. skipped: gets one sentence for each that does not. Throws Error for a place or a
-/// condition that the experiment names and does not have.
+/// and place. skipped: gets one sentence for each that does not, and for the objects of a place
+/// that an effect cannot act on: it acts on the others. Throws Error for a place or a condition
+/// that the experiment names and does not have.
 std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const SearchBase& from,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
                                        SearchScope places = SearchScope::kFew);

@@ -50,21 +50,31 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
 
 }  // namespace
 
-std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
-                                   const std::string& glob, const Experiment& experiment) {
-  if (place == Place::kWorld) return {"world"};
+std::vector<std::string> NamesLike(const mjModel& m, Place place, const std::string& globs) {
   std::vector<std::string> names;
   for (int i = 0; i < ObjectCount(m, place); ++i) {
-    const char* name = mj_id2name(&m, ObjectType(place), i);
-    if (!name || !*name || !GlobMatches(glob, name)) continue;
-    const bool chosen = glob != "*" && place == Place::kBody;
-    if (chosen || Fits(m, effect, place, i, experiment)) names.emplace_back(name);
+    const char* const name = mj_id2name(&m, ObjectType(place), i);
+    if (name && *name && AnyGlobMatches(globs, name)) names.emplace_back(name);
   }
   return names;
 }
 
+std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
+                                   const std::string& globs, const Experiment& experiment) {
+  if (place == Place::kWorld) return {"world"};
+  std::vector<std::string> names = NamesLike(m, place, globs);
+  if (globs != "*" && place == Place::kBody) return names;  // as chosen
+  std::erase_if(names, [&](const std::string& name) {
+    const int id = mj_name2id(&m, ObjectType(place), name.c_str());
+    return !Fits(m, effect, place, id, experiment);
+  });
+  return names;
+}
+
 std::string GlobsOf(const std::vector<std::string>& names) {
-  return fmt::format("{}", fmt::join(names, " "));
+  std::vector<std::string> words;
+  for (const std::string& name : names) words.push_back(Escaped(name));
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
 std::string PlaceText(Place place, const std::vector<std::string>& names) {

@@ -10,9 +10,13 @@
 
 namespace continuum {
 
-/// Names of the objects of a model, among those that match a glob, where an effect makes sense.
+/// Names of the objects of a model, among those that match one of some globs, where an
+/// effect makes sense.
 std::vector<std::string> PlacesFor(const mjModel& m, const EffectInfo& effect, Place place,
-                                   const std::string& glob, const Experiment& experiment);
+                                   const std::string& globs, const Experiment& experiment);
+
+/// Names of the objects of a model at a place that match one of some globs, in its order.
+std::vector<std::string> NamesLike(const mjModel& m, Place place, const std::string& globs);
 
 /// The text of a target or key that matches each of some names.
 std::string GlobsOf(const std::vector<std::string>& names);

@@ -26,6 +26,11 @@ struct Hypothesis {
   /// Free parameters of the causes that its system has already; they come before extra.
   std::vector<Parameter> given = {};
 
+  Candidate candidate = {};               ///< what the experiment asks for
+  int option = 0;                         ///< of the effect's choice
+  Place place = Place::kWorld;            ///< kind of the objects on which it acts
+  std::vector<std::string> objects = {};  ///< their names (ObjectSet)
+
   std::vector<Parameter> Free() const;  ///< given and extra
   /// Which of extra (values: theirs) says how large the effect is: the largest, in units of its
   /// bounds, of those that say whether the effect is there.

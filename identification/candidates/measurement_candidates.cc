@@ -8,11 +8,13 @@
 #include "error.h"
 #include "identification/candidates/effect_places.h"
 #include "identification/candidates/parameter_size.h"
+#include "identification/candidates/shared_value.h"
 #include "sim/experiment/measurement_model.h"
-#include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 namespace {
+
+const std::string kSensor = "sensor:";
 
 // How far the measured values of some outputs reach [their unit].
 double OutputSize(const Experiment& e, const std::vector<std::string>& columns) {
@@ -45,73 +47,114 @@ ParameterSize SizeOfError(const Param& card, const std::vector<std::string>& nam
                      "'" + std::string(card.unit) + "'");
 }
 
-// An effect of the measurement on some outputs (or on the clock): nothing of the model changes.
-Hypothesis MeasureCandidate(const EffectInfo& effect, const std::string& target,
-                            const std::vector<std::string>& names, const Experiment& e,
-                            const ModelSpec& system, const Sizes& sizes) {
+// Of a sensor that is called "s[0]", or of a component that is named like this.
+std::string SensorOf(const Output& out, const mjModel& m) {
+  const bool whole = mj_name2id(&m, mjOBJ_SENSOR, out.source.c_str()) >= 0;
+  return whole ? out.source : out.source.substr(0, out.source.rfind('['));
+}
+
+// What a parameter of the measurement is for each of some outputs, or for the clock.
+std::vector<double> PresentValues(const Param& card, const std::vector<std::string>& names,
+                                  const Experiment& e) {
+  const std::string attribute(card.name);
+  if (names.empty()) return {MeasurementValue(e, "time", attribute)};
+  std::vector<double> values;
+  for (const std::string& name : names)
+    values.push_back(MeasurementValue(e, kSensor + Escaped(name), attribute));
+  return values;
+}
+
+// Whether it turns sensors of three components.
+bool Turns(const EffectInfo& effect) { return effect.params.front().name == "angle"; }
+
+// An output on which an effect may act.
+struct UsableOutput {
+  std::string name, sensor, unit;
+};
+
+std::vector<UsableOutput> Usable(const EffectInfo& effect, const std::string& globs,
+                                 const Experiment& e, const mjModel& m) {
+  std::vector<UsableOutput> all;
+  for (const Output& out : e.outputs) {
+    if (out.kind != Output::Kind::kSensor || out.weight == 0 || out.quaternion()) continue;
+    const std::string sensor = SensorOf(out, m);
+    if (!AnyGlobMatches(globs, sensor) && !AnyGlobMatches(globs, out.name())) continue;
+    const int id = mj_name2id(&m, mjOBJ_SENSOR, sensor.c_str());
+    if (Turns(effect) && (id < 0 || m.sensor_dim[id] != 3)) continue;
+    const std::string& name = Turns(effect) ? sensor : out.name();
+    const auto same = [&](const UsableOutput& other) { return other.name == name; };
+    if (std::none_of(all.begin(), all.end(), same)) all.push_back({name, sensor, out.unit});
+  }
+  return all;
+}
+
+// A bias of millimetres is none of degrees.
+void RequireOneUnit(const Param& card, const std::vector<std::string>& names, const Experiment& e) {
+  if (!card.unit.starts_with("output")) return;
+  const Output* first = nullptr;
+  for (const Output& out : e.outputs) {
+    if (std::find(names.begin(), names.end(), out.name()) == names.end()) continue;
+    if (!first) first = &out;
+    if (out.unit != first->unit)
+      throw Error::Input("outputs '" + first->name() + "' and '" + out.name() + "'", "one unit",
+                         first->unit + " and " + out.unit);
+  }
+}
+
+}  // namespace
+
+bool IsOfClock(const EffectInfo& effect) { return effect.params.front().name == "skew"; }
+
+Hypothesis MeasurementCandidate(const EffectInfo& effect, const std::vector<std::string>& names,
+                                const Experiment& e, const ModelSpec& system, const Sizes& sizes) {
   const std::string where = names.empty() ? "clock" : PlaceText(Place::kSensor, names);
   Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
   const Param& card = effect.params.front();
-  const std::string name(card.name);
-  const auto [size, reach, typical] = SizeOfError(card, names, e, sizes);
+  RequireOneUnit(card, names, e);
+  const SharedValue shared = SharedValueOf(PresentValues(card, names, e));
+  const bool factor = card.null == 1 || shared.operation == Change::Operation::kScale;
+  const double null = shared.null;
   Parameter p;
-  p.name = name;
-  p.target = target, p.attribute = name;
+  p.name = card.name, p.attribute = card.name;
+  p.name += shared.suffix;
+  p.target = names.empty() ? "time" : kSensor + GlobsOf(names);
+  p.operation = shared.operation;
   p.has_initial = true;
   p.where = "candidate";
-  const double null = MeasurementValue(e, target, name);
-  const bool factor = card.null == 1, late = card.unit == "s";
-  p.initial = null + typical * size;
-  p.upper = null + (factor ? 9 * std::abs(null) : reach * size);
-  p.lower = factor ? 0.1 * null : late ? 0 : null - size;
+  const auto [size, reach, typical] = SizeOfError(card, names, e, sizes);
+  p.initial = factor ? null * (1 + typical) : null + typical * size;
+  p.lower = factor ? std::min(0.1 * null, 10 * null) : card.unit == "s" ? 0 : null - size;
+  p.upper = factor ? std::max(0.1 * null, 10 * null) : null + reach * size;
   h.extra.push_back(p);
   h.null.push_back(null);
   return h;
 }
 
-// Outputs that one cause may act on alike: all of a unit, those of each sensor among them, each
-// alone; late ones also all of any unit, as the input is. turned: those of sensors with three
-// components.
-std::vector<std::vector<std::string>> OutputsTogether(const Experiment& e, const mjModel& m,
-                                                      const std::string& glob, bool turned,
-                                                      bool late) {
+std::vector<std::string> OutputsFor(const EffectInfo& effect, const std::string& globs,
+                                    const Experiment& e, const mjModel& m) {
+  std::vector<std::string> names;
+  for (const UsableOutput& out : Usable(effect, globs, e, m)) names.push_back(out.name);
+  return names;
+}
+
+std::vector<std::vector<std::string>> OutputsTogether(const EffectInfo& effect,
+                                                      const std::string& globs, const Experiment& e,
+                                                      const mjModel& m) {
   std::map<std::string, std::vector<std::string>> units, sensors;
   std::vector<std::string> every;
-  for (const Output& out : e.outputs) {
-    if (out.kind != Output::Kind::kSensor || out.weight == 0 || out.quaternion()) continue;
-    const std::string sensor = out.source.substr(0, out.source.find('['));
-    if (!GlobMatches(glob, sensor) && !GlobMatches(glob, out.name())) continue;
-    const int id = mj_name2id(&m, mjOBJ_SENSOR, sensor.c_str());
-    if (turned && (id < 0 || m.sensor_dim[id] != 3)) continue;
-    const std::string& name = turned ? sensor : out.name();
-    if (std::find(every.begin(), every.end(), name) != every.end()) continue;
-    every.push_back(name), units[out.unit].push_back(name), sensors[sensor].push_back(name);
+  for (const UsableOutput& out : Usable(effect, globs, e, m)) {
+    every.push_back(out.name);
+    units[out.unit].push_back(out.name), sensors[out.sensor].push_back(out.name);
   }
   std::vector<std::vector<std::string>> all;
   const auto add = [&](const std::vector<std::string>& names) {
     if (!names.empty() && std::find(all.begin(), all.end(), names) == all.end())
       all.push_back(names);
   };
-  if (late) add(every);
+  if (effect.params.front().name == "delay") add(every);
   for (const auto& [unit, names] : units) add(names);
   for (const auto& [sensor, names] : sensors) add(names);
   for (const auto& name : every) add({name});
-  return all;
-}
-
-}  // namespace
-
-std::vector<Hypothesis> MeasurementCandidates(const EffectInfo& effect, const Candidate& wanted,
-                                              const Experiment& e, const ModelSpec& system,
-                                              const Sizes& sizes) {
-  const std::string_view name = effect.params.front().name;
-  if (name == "skew") return {MeasureCandidate(effect, "time", {}, e, system, sizes)};
-  const std::string glob =
-      wanted.where.empty() ? "*" : wanted.where.substr(wanted.where.find(':') + 1);
-  std::vector<Hypothesis> all;
-  for (const auto& names :
-       OutputsTogether(e, system.model(), glob, name == "angle", name == "delay"))
-    all.push_back(MeasureCandidate(effect, "sensor:" + GlobsOf(names), names, e, system, sizes));
   return all;
 }
 

@@ -8,9 +8,11 @@
 
 #include "binding/config.h"
 #include "binding/expression.h"
+#include "error.h"
 #include "identification/candidates/effect_places.h"
 #include "identification/candidates/present_friction.h"
 #include "identification/candidates/search_range.h"
+#include "identification/candidates/shared_value.h"
 #include "sim/io/decimal.h"
 
 namespace continuum {
@@ -46,6 +48,25 @@ std::optional<double> FixedValue(const EffectInfo& effect, std::size_t i,
   return std::nullopt;
 }
 
+// Where the effect is another value of an attribute of the model.
+void AddAttribute(const EffectInfo& effect, Param param, Place place,
+                  const std::vector<std::string>& names, const ModelSpec& system,
+                  const std::vector<Change>& fitted, const Sizes& sizes, Hypothesis& h) {
+  const std::string kind = std::string(PlaceName(place)) + ":", attribute(effect.native);
+  std::vector<double> values;
+  for (const std::string& name : names)
+    values.push_back(system.ValueAfter(fitted, kind + Escaped(name), attribute));
+  const SharedValue shared = SharedValueOf(values);
+  param.null = shared.null;
+  if (shared.operation == Change::Operation::kScale) param.unit = "1";
+  if (shared.operation == Change::Operation::kAdd)
+    param.lower -= *std::min_element(values.begin(), values.end());
+  h.extra.push_back(
+      CandidateParameter(param, place, sizes, kind + GlobsOf(names), attribute, shared.operation));
+  h.extra.back().name += shared.suffix;
+  h.null.push_back(param.null);
+}
+
 }  // namespace
 
 Hypothesis EditCandidate(const EffectInfo& effect, Place place,
@@ -55,13 +76,14 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place,
   Hypothesis h{std::string(effect.name), "", PlaceText(place, names), system, {}, {}, "", {}};
   const std::string target =
       place == Place::kWorld ? "world" : std::string(PlaceName(place)) + ":" + GlobsOf(names);
-  for (Param param : effect.params) {
-    const bool as_is = std::isnan(param.null);  // the effect is an attribute of the model
-    if (as_is) param.null = system.ValueAfter(fitted, target, std::string(effect.native));
-    h.extra.push_back(CandidateParameter(
-        param, place, sizes, target,
-        as_is ? std::string(effect.native) : fmt::format("effect:{}.{}", effect.name, param.name),
-        Change::Operation::kSet));
+  for (const Param& param : effect.params) {
+    if (std::isnan(param.null)) {
+      AddAttribute(effect, param, place, names, system, fitted, sizes, h);
+      continue;
+    }
+    h.extra.push_back(CandidateParameter(param, place, sizes, target,
+                                         fmt::format("effect:{}.{}", effect.name, param.name),
+                                         Change::Operation::kSet));
     h.null.push_back(param.null);
   }
   return h;
@@ -126,8 +148,8 @@ Hypothesis FormulaCandidate(const EffectInfo& effect, const WrittenLaw& law, Pla
   return h;
 }
 
-std::vector<int> SegmentsFor(const mjModel& m, const EffectInfo& effect) {
-  std::vector<int> found;
+std::vector<std::string> SegmentsFor(const mjModel& m, const EffectInfo& effect) {
+  std::vector<std::string> found;
   for (int i = 0; i < m.nplugin; ++i) {
     const EffectInfo* const other = EffectOf(m, i);
     if (!other || other->name == effect.name || other->kind != EffectInfo::Kind::kSegment) continue;
@@ -135,15 +157,18 @@ std::vector<int> SegmentsFor(const mjModel& m, const EffectInfo& effect) {
       return !std::isnan(p.null) || std::any_of(other->params.begin(), other->params.end(),
                                                 [&](const Param& q) { return q.name == p.name; });
     });
-    if (all) found.push_back(i);
+    const char* const name = mj_id2name(&m, mjOBJ_PLUGIN, i);
+    if (all && name) found.emplace_back(name);
   }
   return found;
 }
 
-Hypothesis SegmentCandidate(const EffectInfo& effect, int segment, const ModelSpec& system,
-                            Sizes sizes) {
-  const Config config(system.model(), segment);
-  const std::string name = mj_id2name(&system.model(), mjOBJ_PLUGIN, segment);
+Hypothesis SegmentCandidate(const EffectInfo& effect, const std::vector<std::string>& names,
+                            const ModelSpec& system, Sizes sizes) {
+  if (names.size() != 1)
+    throw Error::Input(std::string(effect.name), "one soft segment", std::to_string(names.size()));
+  const std::string& name = names.front();
+  const Config config(system.model(), mj_name2id(&system.model(), mjOBJ_PLUGIN, name.c_str()));
   EffectInstance added{std::string(effect.name), FreshInstance(system.model()), {}};
   const auto copy = [&](std::string_view key) {
     if (const auto text = config.Get(key); !text.empty()) added.config.emplace_back(key, text);

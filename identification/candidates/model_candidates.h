@@ -26,13 +26,13 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
 Hypothesis FormulaCandidate(const EffectInfo& effect, const WrittenLaw& law, Place place,
                             const std::vector<std::string>& names, const ModelSpec& system);
 
-/// The plugin instances of soft segments that have all that an effect beside them takes from them:
-/// the parameters without a null on its card.
-std::vector<int> SegmentsFor(const mjModel& m, const EffectInfo& effect);
+/// Names of the plugin instances of soft segments that have all that an effect beside them takes
+/// from them: the parameters without a null on its card.
+std::vector<std::string> SegmentsFor(const mjModel& m, const EffectInfo& effect);
 
 /// The same for a law beside a soft segment of the model, whose places, choices and geometry are
-/// the segment's. segment: its plugin instance.
-Hypothesis SegmentCandidate(const EffectInfo& effect, int segment, const ModelSpec& system,
-                            Sizes sizes);
+/// the segment's. names: of its plugin instance, which is one. Throws Error for several.
+Hypothesis SegmentCandidate(const EffectInfo& effect, const std::vector<std::string>& names,
+                            const ModelSpec& system, Sizes sizes);
 
 }  // namespace continuum
