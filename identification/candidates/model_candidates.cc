@@ -73,6 +73,8 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place,
                          const std::vector<std::string>& names, const Experiment& e,
                          const ModelSpec& system, const std::vector<Change>& fitted, Sizes sizes) {
   if (place == Place::kActuator) sizes.input = InputSize(e, names);
+  if (place == Place::kBody || place == Place::kSite)
+    sizes.lever = LeverOf(system.model(), place, names);
   Hypothesis h{std::string(effect.name), "", PlaceText(place, names), system, {}, {}, "", {}};
   const std::string target =
       place == Place::kWorld ? "world" : std::string(PlaceName(place)) + ":" + GlobsOf(names);
@@ -115,8 +117,10 @@ Hypothesis PluginCandidate(const EffectInfo& effect, Place place,
       added.config.emplace_back(p.name, Decimal(*fixed));
       continue;
     }
-    Parameter free = CandidateParameter(p, place, sizes, "plugin:" + added.name,
-                                        std::string(p.name), Change::Operation::kSet);
+    Parameter free = effect.kind == EffectInfo::Kind::kPath
+                         ? CableParameter(p, sizes, "plugin:" + added.name)
+                         : CandidateParameter(p, place, sizes, "plugin:" + added.name,
+                                              std::string(p.name), Change::Operation::kSet);
     added.config.emplace_back(p.name, Decimal(free.initial));
     h.extra.push_back(std::move(free));
     h.null.push_back(p.null);

@@ -73,7 +73,7 @@ Hypothesis HypothesisAt(const EffectInfo& effect, const Candidate& wanted, const
   h.candidate = wanted, h.option = option;
   h.place = objects.place, h.objects = objects.names;
   if (wanted.per_condition) SplitByCondition(h, TrainedConditions(c.experiment, wanted.Name()));
-  h.starts = SearchStarts(h.extra, h.null);
+  h.starts = SearchStarts(h, effect.params, c.sizes);
   h.given = c.from.given;
   return h;
 }

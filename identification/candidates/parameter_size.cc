@@ -5,26 +5,10 @@
 #include <string>
 
 #include "error.h"
-#include "sim/io/units.h"
+#include "identification/candidates/unit_powers.h"
 
 namespace continuum {
 namespace {
-
-// The powers of a unit's factors: N*m/rad^3 is {N: 1, m: 1, rad: -3}. A joule is N*m.
-using Powers = std::map<std::string, int>;
-
-Powers PowersOf(std::string_view unit) {
-  Powers all;
-  for (const auto& [name, power] : FactorsOf(std::string(unit))) {
-    if (name == "J") {
-      all["N"] += power, all["m"] += power;
-    } else if (name != "1") {
-      all[name] += power;
-    }
-  }
-  std::erase_if(all, [](const auto& one) { return one.second == 0; });
-  return all;
-}
 
 // Sizes as the coordinates of a place have them.
 struct LocalSizes {
@@ -35,6 +19,7 @@ struct LocalSizes {
   double lever = line ? all.torque / all.tension : 1;  ///< makes a torque of a tension
   double angle = lever * all.angle;
   double velocity = lever * all.velocity;
+  bool part = place == Place::kBody || place == Place::kSite;  ///< where a force acts at a distance
 };
 
 using SizeRule = ParameterSize (*)(const LocalSizes&);
@@ -52,7 +37,7 @@ const std::map<Powers, SizeRule>& Rules() {
        [](Local) {
          return Size{1, 10, 0.1};
        }},
-      {PowersOf("N"), Force},
+      {PowersOf("N"), [](Local s) { return Size{s.part ? s.force / s.all.lever : s.force}; }},
       {PowersOf("N*m"), Force},
       {PowersOf("rad"),
        [](Local s) {
@@ -77,8 +62,6 @@ const std::map<Powers, SizeRule>& Rules() {
        }},
       {PowersOf("kg*m^2"), [](Local s) { return Size{s.all.inertia}; }},
       {PowersOf("1/rad"), [](Local s) { return Size{50 / s.angle}; }},
-      // On a cable rad is the wrap angle of a contact, of about one.
-      {PowersOf("1/rad^2"), [](Local s) { return Size{s.line ? 1 : 1 / (s.angle * s.angle)}; }},
       {PowersOf("m/N"), [](Local s) { return Size{0.01 / s.all.tension}; }},
       {PowersOf("s"), [](Local s) {
          return Size{4 * s.all.period, 25, 0.125};
@@ -105,6 +88,15 @@ double Product(const Powers& powers, const LocalSizes& s, const Param& p) {
 }
 
 }  // namespace
+
+ParameterSize SizeAlongCable(const Param& param, const Sizes& sizes) {
+  // The cable wraps a contact by as much as the joint beside it turns.
+  const LocalSizes local{sizes, Place::kJoint};
+  const Powers powers = PowersOf(param.unit);
+  const auto rule = Rules().find(powers);
+  return powers.empty() && rule != Rules().end() ? rule->second(local)
+                                                 : ParameterSize{Product(powers, local, param)};
+}
 
 ParameterSize SizeOf(const Param& param, Place place, const Sizes& sizes) {
   const LocalSizes local{sizes, place};

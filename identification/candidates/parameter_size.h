@@ -17,4 +17,7 @@ struct ParameterSize {
 /// Error for a unit that is not made of 1, N, J, m, kg, s, rad and input.
 ParameterSize SizeOf(const Param& param, Place place, const Sizes& sizes);
 
+/// The same for a law of a cable's contacts, whose angles are those by which the cable wraps them.
+ParameterSize SizeAlongCable(const Param& param, const Sizes& sizes);
+
 }  // namespace continuum

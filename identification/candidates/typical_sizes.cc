@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "effects/effect.h"
+#include "binding/config.h"
+#include "sim/model/mujoco_handles.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
@@ -27,7 +28,7 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
       for (int i = 0; i < m.nq; ++i) {
         lower = std::min(lower, d.qpos[i]), upper = std::max(upper, d.qpos[i]);
       }
-      for (int i = 0; i < m.nu; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
+      for (int i = 0; i < m.nout; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
     };
     Simulate(machine, e, e.logs[l], {}, hooks);
   }
@@ -45,12 +46,29 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
   }
   s.step = m.opt.timestep;
   std::vector<double> intervals;
+  s.duration = 0;
   for (const Log& log : e.logs) {
+    s.duration = std::max(s.duration, log.time.back() - log.time.front());
     for (std::size_t k = 1; k < log.rows(); ++k) intervals.push_back(log.time[k] - log.time[k - 1]);
   }
   std::nth_element(intervals.begin(), intervals.begin() + intervals.size() / 2, intervals.end());
   s.period = intervals[intervals.size() / 2];
   return s;
+}
+
+double LeverOf(const mjModel& m, Place place, const std::vector<std::string>& names) {
+  const Owned<mjData> d(mj_makeData(&m));
+  mj_kinematics(&m, d.get());
+  mj_comPos(&m, d.get());
+  std::vector<double> moved(3 * static_cast<std::size_t>(m.nv));
+  double longest = 0;
+  for (const std::string& name : names) {
+    const int id = mj_name2id(&m, ObjectType(place), name.c_str());
+    (place == Place::kSite ? mj_jacSite : mj_jacBody)(&m, d.get(), moved.data(), nullptr, id);
+    for (int v = 0; v < m.nv; ++v)
+      longest = std::max(longest, std::hypot(moved[v], moved[m.nv + v], moved[2 * m.nv + v]));
+  }
+  return longest > 0 ? longest : 1;
 }
 
 double InputSize(const Experiment& e, const std::vector<std::string>& actuators) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "effects/effect.h"
 #include "identification/problem/problem.h"
 
 namespace continuum {
@@ -14,13 +15,19 @@ struct Sizes {
   double robot = 1;      ///< mass of all of them [kg]
   double inertia = 1;    ///< inertia that a joint sees [kg*m^2]
   double length = 1;     ///< typical shift of a part [m]
+  double lever = 1;      ///< from the joints to the bodies or sites in question [m]
   double input = 1;      ///< largest control of the actuators in question [their unit]
   double period = 0.01;  ///< median sampling interval [s]
   double step = 0.002;   ///< of the model [s]
+  double duration = 1;   ///< of the longest log [s]
 };
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
 
 /// Largest control that the logs give to some actuators [their unit]; 1 where they give none.
 double InputSize(const Experiment& experiment, const std::vector<std::string>& actuators);
+
+/// The longest lever arm of some bodies or sites about the joints that carry them, in the model's
+/// reference pose [m]; 1 where no joint moves them. A slide joint counts as 1.
+double LeverOf(const mjModel& m, Place place, const std::vector<std::string>& names);
 
 }  // namespace continuum

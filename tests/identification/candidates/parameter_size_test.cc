@@ -83,7 +83,6 @@ TEST(ParameterSize, OfAUnitWithARuleOfItsOwnIsWhatItAlwaysWas) {
       EXPECT_EQ(found.typical, row.typical) << row.unit;
     }
   }
-  EXPECT_EQ(SizeOfUnit("1/rad^2", Place::kTendon).size, 1);
 }
 
 TEST(ParameterSize, OfAnyOtherUnitIsTheProductOfItsFactors) {
@@ -116,6 +115,25 @@ TEST(ParameterSize, OfAProductFollowsTheUnitsOfTheExperiment) {
   const double size = SizeOfUnit("N*m*s^3/rad^3", Place::kTendon).size;
   EXPECT_NEAR(SizeOfUnit("N*m*s^3/rad^3", Place::kTendon, other).size, in(size, "N*s^3/m^3"),
               1e-12 * in(size, "N*s^3/m^3"));
+}
+
+// A cable wraps a contact by about the angle of the joint beside it, not by its own travel: a
+// coefficient that says how friction grows with that angle is a friction coefficient over it.
+TEST(ParameterSize, AlongACableIsOverTheAngleOfAJoint) {
+  const auto size = [](const std::string& unit) {
+    return SizeAlongCable({"x", unit, -kInfinity, kInfinity, 0, 0}, kSizes).size;
+  };
+  EXPECT_EQ(size("1"), 1);
+  EXPECT_DOUBLE_EQ(size("1/rad"), 1 / 1.3);
+  EXPECT_DOUBLE_EQ(size("1/rad^2"), 1 / (1.3 * 1.3));
+}
+
+TEST(ParameterSize, OfAForceOnABodyIsThatOfATorqueOverItsLever) {
+  Sizes sizes = kSizes;
+  sizes.lever = 0.25;
+  for (const Place place : {Place::kBody, Place::kSite})
+    EXPECT_DOUBLE_EQ(SizeOfUnit("N", place, sizes).size, 0.7 / 0.25);
+  EXPECT_DOUBLE_EQ(SizeOfUnit("N", Place::kTendon, sizes).size, 31);
 }
 
 TEST(ParameterSize, OfAnUnknownUnitIsAnErrorThatNamesIt) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "binding/effect_catalog.h"
+#include "identification/candidates/candidate_generator.h"
 
 namespace continuum {
 namespace {
@@ -47,6 +48,92 @@ TEST(SearchRange, ALawWithAShapeOfItsOwnStaysWithinItsRange) {
   extra[1].name = "width", extra[1].upper = 3;
   EXPECT_FALSE(Widen(extra, {0, std::nan("")}, law, std::vector<double>{2, 3}));
   EXPECT_EQ(extra[0].upper, 2);
+}
+
+// The starts of an effect on a joint and a servo, as values of its parameters.
+std::vector<std::vector<double>> StartsOf(const std::string& effect, const Sizes& sizes,
+                                          bool per_condition = false) {
+  const ModelSpec model = ModelSpec::Parse(R"(<mujoco><option integrator="implicitfast"/><worldbody>
+    <body><joint name="q" axis="0 1 0"/><geom size=".1"/></body></worldbody>
+    <actuator><position name="a" joint="q" kp="1"/></actuator></mujoco>)");
+  Experiment e;
+  e.all_candidates = false;
+  e.candidates = {{effect, "", per_condition}};
+  e.inputs = {{"u", "rad", "a", "", false, ""}};
+  e.logs.resize(2);
+  for (std::size_t l = 0; l < 2; ++l) {
+    e.logs[l].input = {{0, 1}};
+    e.logs[l].condition = l ? "warm" : "cold";
+  }
+  std::vector<std::string> skipped;
+  const auto all = MakeCandidates(e, {&model}, sizes, skipped);
+  EXPECT_FALSE(all.empty()) << effect;
+  return all.front().starts;
+}
+
+// The ratio by which a value is off from the nearest one of a parameter in some starts.
+double Off(const std::vector<std::vector<double>>& starts, std::size_t parameter, double value) {
+  double least = kInfinity;
+  for (const auto& start : starts)
+    least = std::min(least, std::abs(std::log(start[parameter] / value)));
+  return std::exp(least);
+}
+
+// Half of a third of a decade; half of a sixth of two and a half.
+constexpr double kNear = 1.48, kNearOfSeven = 1.62;
+
+TEST(SearchRange, ATimeOfCreepIsTriedFromAFewSamplesToTheLengthOfALog) {
+  Sizes sizes;
+  sizes.period = 0.01, sizes.duration = 4;
+  const auto starts = StartsOf("maxwell", sizes);
+  EXPECT_LE(starts.size(), 7u);
+  for (const double tau : {0.03, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 4.0})
+    EXPECT_LT(Off(starts, 1, tau), kNear) << tau;
+  for (const auto& start : starts) EXPECT_EQ(start[0], starts.front()[0]);
+}
+
+TEST(SearchRange, OfALongLogSevenTimesAreTriedEvenly) {
+  Sizes sizes;
+  sizes.period = 0.001, sizes.duration = 300;
+  const auto starts = StartsOf("maxwell", sizes);
+  EXPECT_EQ(starts.size(), 7u);
+  EXPECT_LT(Off(starts, 1, 0.003), 1.01);
+  EXPECT_LT(Off(starts, 1, 300), 1.01);
+}
+
+TEST(SearchRange, ASpeedAWidthAndAFrequencyAreTriedOverTwoDecades) {
+  Sizes sizes;
+  sizes.velocity = 2, sizes.angle = 1, sizes.torque = 1;
+  sizes.period = 0.01, sizes.duration = 2, sizes.step = 0.001;
+  for (const double v : {0.02, 0.1, 0.5, 2.0})
+    EXPECT_LT(Off(StartsOf("stribeck", sizes), 2, v), kNear) << v;
+  for (const double width : {0.003, 0.01, 0.1, 0.5})  // rad
+    EXPECT_LT(Off(StartsOf("bouc_wen", sizes), 1, 1 / width), kNearOfSeven) << width;
+  for (const double w : {0.8, 5.0, 20.0, 80.0})
+    EXPECT_LT(Off(StartsOf("pt2", sizes), 0, w), kNearOfSeven) << w;
+}
+
+TEST(SearchRange, ShapesUnderSeveralConditionsAreTriedTogether) {
+  Sizes sizes;
+  sizes.period = 0.01, sizes.duration = 4;
+  const auto starts = StartsOf("maxwell", sizes, true);
+  EXPECT_EQ(starts.size(), StartsOf("maxwell", sizes).size());
+  for (const auto& start : starts) {
+    ASSERT_EQ(start.size(), 4u);
+    EXPECT_EQ(start[2], start[3]);
+  }
+}
+
+TEST(TypicalSizes, ALeverIsTheLongestFromAJointToThePart) {
+  const ModelSpec model = ModelSpec::Parse(R"(<mujoco><worldbody>
+    <body name="near"><joint axis="0 1 0"/><geom size=".01" pos=".1 0 0"/>
+      <body name="far" pos=".4 0 0"><joint axis="0 0 1"/><geom size=".01" pos=".3 0 0"/>
+        <site name="tip" pos="0 0 .3"/></body></body>
+    <body name="fixed" pos="9 0 0"/></worldbody></mujoco>)");
+  EXPECT_NEAR(LeverOf(model.model(), Place::kBody, {"far"}), 0.4, 1e-12);
+  EXPECT_NEAR(LeverOf(model.model(), Place::kSite, {"tip"}), 0.5, 1e-12);
+  EXPECT_EQ(LeverOf(model.model(), Place::kBody, {"near"}), 1);  // its origin is in the axis
+  EXPECT_EQ(LeverOf(model.model(), Place::kBody, {"fixed"}), 1);
 }
 
 }  // namespace
