@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace continuum::random_diagnoses {
+
+/// What became of some work in a process of its own.
+struct Ended {
+  int exit_code = -1;
+  int signal = 0;         ///< that ended it, or 0
+  bool too_long = false;  ///< it was ended after its time
+  double seconds = 0;
+  std::string text;                ///< what the work returned
+  std::vector<std::string> trace;  ///< innermost first, where a signal ended it
+};
+
+/// Does work in a process of its own, of which nothing is left in this one whatever happens. limit:
+/// seconds of processor time, of all its threads together; ten times as many on the clock.
+Ended InChild(const std::function<std::string()>& work, unsigned limit);
+
+}  // namespace continuum::random_diagnoses
