@@ -1,5 +1,7 @@
 #include "sim/experiment/candidate_list.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -41,11 +43,26 @@ Candidate ReadCandidate(const Yaml& y) {
   return c;
 }
 
+bool SameNumber(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+bool SameParameter(const Parameter& a, const Parameter& b) {
+  return a.name == b.name && a.unit == b.unit && a.initial == b.initial && a.lower == b.lower &&
+         a.upper == b.upper;
+}
+
+bool SameLaw(const Candidate& a, const Candidate& b) {
+  const WrittenLaw &x = *a.law, &y = *b.law;
+  return a.effect == b.effect && x.formula == y.formula &&
+         std::equal(x.parameters.begin(), x.parameters.end(), y.parameters.begin(),
+                    y.parameters.end(), SameParameter) &&
+         std::equal(x.null.begin(), x.null.end(), y.null.begin(), y.null.end(), SameNumber);
+}
+
 // Results go by the name: another law of that name would hide behind the first.
 void RequireNew(const Candidate& c, const std::vector<std::pair<Candidate, std::string>>& before,
                 const Yaml& y) {
   for (const auto& [other, where] : before) {
-    const bool other_law = c.law && other.law && c.law->formula != other.law->formula;
+    const bool other_law = c.law && other.law && !SameLaw(c, other);
     if (c == other || (other_law && c.Name() == other.Name()))
       throw Error::Input(y.Where(), "a candidate that is not yet there",
                          "'" + c.Name() + "' again, as in " + where);

@@ -8,6 +8,7 @@
 
 #include "random_diagnoses/child.h"
 #include "random_diagnoses/run_case.h"
+#include "support/long_test.h"
 
 namespace continuum::random_diagnoses {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 class RandomDiagnosis : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(RandomDiagnosis, EndsWithAVerdictOrAMessage) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   const Outcome outcome = RunCase(GetParam(), 120);
   EXPECT_TRUE(outcome.problems.empty()) << OutcomeJson(outcome).dump(1);
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "identification/diagnosis/diagnosis.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -34,6 +35,7 @@ std::vector<double> Creeping(const std::vector<double>& u, double tau) {
 class HiddenCreep : public testing::Bench, public ::testing::WithParamInterface<double> {};
 
 TEST_P(HiddenCreep, IsNamedWithItsTime) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   const double tau = GetParam();
   for (int trial = 0; trial < 2; ++trial) {
     const auto u = testing::Command(trial, kRows);

@@ -203,6 +203,11 @@ TEST_F(ExperimentFile, ErrorsNameLineAndKey) {
                                      "b*v*abs(v), where: 'joint:other'}"),
               AllOf(HasSubstr("e.yaml:4: candidates[1]"), HasSubstr("'drag' again, as in"),
                     HasSubstr("e.yaml:3")));
+  std::string wider = law;
+  wider.replace(wider.find("upper: 2"), 8, "upper: 3");
+  EXPECT_THAT(Wrong("format: 1", "format: 1\ncandidates:\n  - " + law + "b*v}\n  - " + wider +
+                                     "b*v, where: 'joint:other'}"),
+              AllOf(HasSubstr("e.yaml:4: candidates[1]"), HasSubstr("'drag' again, as in")));
   EXPECT_THAT(Wrong("format: 1", "format: [1"), HasSubstr("e.yaml:"));
   EXPECT_THAT(Wrong("inputs: [{", "inputs: [{column: T1, actuator: cable1}, {"),
               HasSubstr("'cable1' twice"));
