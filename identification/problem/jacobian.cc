@@ -115,7 +115,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
 }
 
 PerturbedRun Problem::RunOf(ModelAndData machine, const Vector& x, std::size_t log) const {
-  PerturbedRun trial{std::move(machine), {}, {}, {}};
+  PerturbedRun trial{std::move(machine), {}, {}, {}, {}};
   const Log& logged = experiment_->logs[log];
   InitialState start = StartAt(trial.machine, x, log);
   if (start.qpos.empty()) start = StartOf(trial.machine, setup_, logged);
@@ -128,6 +128,7 @@ PerturbedRun Problem::RunOf(ModelAndData machine, const Vector& x, std::size_t l
   inputs.EnableAll();
   trial.q = std::move(start.qpos), trial.v = std::move(start.qvel);
   trial.w.assign(d.act, d.act + m.na);
+  trial.z.assign(d.plugin_state, d.plugin_state + m.npluginstate);
   return trial;
 }
 
@@ -137,7 +138,7 @@ std::string Problem::NoClosedForm() const {
   if (terms_.count > 0) return "a force of free form acts";
   if (experiment_->quasi_static) return "the logs are quasi-static";
   const ModelAndData machine = ModelAt(0, Start(), 0, 0);
-  return StepSensitivity::Obstacle(*machine.model, Wiring(setup_, *machine.model));
+  return StepSensitivity::Obstacle(*machine.model, *machine.data, Wiring(setup_, *machine.model));
 }
 
 std::vector<std::size_t> Problem::ClosedFormColumns(const Vector& x,
@@ -156,7 +157,7 @@ std::vector<std::size_t> Problem::ClosedFormColumns(const Vector& x,
   try {
     ModelAndData machine = ModelAt(thread, x, log, 0);
     const mjModel& m = *machine.model;
-    if (!StepSensitivity::Obstacle(m, Wiring(setup, m)).empty()) return columns;
+    if (!StepSensitivity::Obstacle(m, *machine.data, Wiring(setup, m)).empty()) return columns;
     PerturbedRun trial = RunOf(std::move(machine), x, log);
     std::vector<PerturbedRun> perturbed;
     for (const std::size_t k : moving) {

@@ -50,6 +50,7 @@ void ContinuousSensitivity::At(double t, const double* y) {
   t_ = t, y_.assign(y, y + dynamics_.size());
   const mjModel& m = dynamics_.model();
   const mjData& d = dynamics_.data();
+  derivatives_.Place(m, d);
   derivatives_.Update(m, d, d.qacc, d.qvel);
   follow_ << derivatives_.by_position(), derivatives_.by_velocity(), derivatives_.by_activation();
   driven_.setZero(), lag_.setZero();

@@ -20,35 +20,45 @@ std::string ForceDerivatives::Obstacle(const mjModel& m) {
   return why.empty() ? TendonDerivatives::Obstacle(m) : why;
 }
 
-ForceDerivatives::ForceDerivatives(const mjModel& m)
-    : rigid_(m),
+ForceDerivatives::ForceDerivatives(const mjModel& m, const Parts& parts)
+    : parts_(parts),
+      rigid_(m),
       tendons_(m),
+      v_(m.nv),
       a_(m.nv),
       felt_(m.nv),
       of_tendon_(m.ntendon),
+      pull_(m.ntendon),
       by_position_(m.nv, m.nv),
       by_velocity_(m.nv, m.nv),
       by_activation_(m.nv, m.na),
       damping_(m.nv, m.nv) {}
 
-// What acts at d, but by the speeds that it feels: it is linear in them.
+// Spring and damper at the rate that is felt; at_rest: the same at no rate.
+ForceAlong ForceDerivatives::Weighed(ForceAlong at_rest, double felt) const {
+  at_rest.f = parts_.springs * at_rest.f + parts_.dampers * at_rest.by_rate * felt;
+  at_rest.by_length *= parts_.springs, at_rest.by_rate *= parts_.dampers;
+  return at_rest;
+}
+
 ForceAlong ForceDerivatives::Joint(const mjModel& by, const mjData& d, int joint) const {
-  const int i = by.jnt_dofadr[joint];
-  return JointForce(by, d, joint, d.qvel[i]).Felt(felt_[i] - d.qvel[i]);
+  return Weighed(JointForce(by, d, joint, 0), felt_[by.jnt_dofadr[joint]]);
 }
 
 ForceAlong ForceDerivatives::Tendon(const mjModel& by, const mjData& d, int tendon) const {
-  const double rate = tendons_.Rate(by, d, tendon, d.qvel);
-  return TendonForce(by, d, tendon, rate).Felt(tendons_.Rate(by, d, tendon, felt_.data()) - rate);
+  return Weighed(TendonForce(by, d, tendon, 0), tendons_.Rate(by, d, tendon, FeltByAll().data()));
 }
 
+// What acts at d, but by the speeds that it feels: it is linear in them.
 ForceAlong ForceDerivatives::Actuator(const mjModel& by, const mjData& d, int actuator) const {
   const auto rate = [&](const double* v) {
     return OnTendon(by, actuator) ? tendons_.Rate(by, d, by.actuator_trnid[2 * actuator], v)
                                   : v[DofOf(by, actuator)];
   };
   const double now = rate(d.qvel);
-  return ActuatorForce(by, d, actuator, now, step_).Felt(rate(felt_.data()) - now);
+  return ActuatorForce(by, d, actuator, now, step_)
+      .Felt(rate(FeltByAll().data()) - now)
+      .Times(parts_.actuators);
 }
 
 void ForceDerivatives::PullAlong(const mjModel& m, const mjData& d, int actuator, double f,
@@ -62,7 +72,8 @@ void ForceDerivatives::PullAlong(const mjModel& m, const mjData& d, int actuator
 
 void ForceDerivatives::Update(const mjModel& m, const mjData& d, const double* a,
                               const double* felt, double step) {
-  a_.assign(a, a + m.nv), felt_.assign(felt, felt + m.nv), step_ = step;
+  v_.assign(d.qvel, d.qvel + m.nv), a_.assign(a, a + m.nv);
+  felt_.assign(felt, felt + m.nv), step_ = step;
   for (Matrix* all : {&by_position_, &by_velocity_, &by_activation_}) all->setZero();
   for (int t = 0; t < m.ntendon; ++t) of_tendon_[t] = Tendon(m, d, t);
   for (int j = 0; j < m.njnt; ++j) {
@@ -70,6 +81,7 @@ void ForceDerivatives::Update(const mjModel& m, const mjData& d, const double* a
     const ForceAlong pull = Joint(m, d, j);
     by_position_(i, i) += pull.by_length, by_velocity_(i, i) += pull.by_rate;
   }
+  damping_ = by_velocity_;
   for (int k = 0; k < m.nactuator; ++k) {
     const ForceAlong pull = Actuator(m, d, k);
     if (OnTendon(m, k)) {
@@ -81,15 +93,18 @@ void ForceDerivatives::Update(const mjModel& m, const mjData& d, const double* a
     if (pull.by_activation != 0)
       PullAlong(m, d, k, pull.by_activation, by_activation_.col(m.actuator_actadr[k]).data());
   }
-  tendons_.Update(m, d);
   for (int t = 0; t < m.ntendon; ++t) {
-    const ForceAlong& pull = of_tendon_[t];
+    ForceAlong& pull = of_tendon_[t];
+    pull.f += pull_[t];
     if (pull.f == 0 && pull.by_length == 0 && pull.by_rate == 0) continue;
-    tendons_.Add(m, d, t, pull.f, pull.by_length, pull.by_rate, felt, by_position_, by_velocity_);
+    tendons_.Add(m, d, t, pull.f, pull.by_length, pull.by_rate, FeltByAll().data(), by_position_,
+                 by_velocity_);
   }
-  damping_ = by_velocity_;
-  rigid_.Update(m, d, a);
-  rigid_.Add(-1, by_position_, by_velocity_);
+  if (parts_.all_felt) damping_ = by_velocity_;
+  if (parts_.motion == 0) return;
+  if (!parts_.moves) std::fill(v_.begin(), v_.end(), 0.0), a_ = v_;
+  rigid_.Update(m, d, v_.data(), a_.data());
+  rigid_.Add(-parts_.motion, by_position_, by_velocity_);
 }
 
 void ForceDerivatives::Differ(const mjModel& m, const mjData& d, const mjModel& other,
@@ -97,14 +112,15 @@ void ForceDerivatives::Differ(const mjModel& m, const mjData& d, const mjModel& 
   for (const int j : difference.joints)
     force[m.jnt_dofadr[j]] += Joint(other, d, j).f - Joint(m, d, j).f;
   for (const int i : difference.armatures)
-    force[i] -= (other.dof_armature[i] - m.dof_armature[i]) * a_[i];
+    force[i] -= parts_.motion * (other.dof_armature[i] - m.dof_armature[i]) * a_[i];
   for (const int t : difference.tendons)
     tendons_.ForceAlong(m, d, t, Tendon(other, d, t).f - Tendon(m, d, t).f, force);
   for (const int k : difference.actuators)
     PullAlong(m, d, k, Actuator(other, d, k).f - Actuator(m, d, k).f, force);
+  if (parts_.motion == 0) return;
   for (const auto& body : difference.bodies)
-    rigid_.AddBody(m, d, body.id, body.inertia.data(), -1, force);
-  if (difference.gravity) rigid_.AddGravity(m, other, force);
+    rigid_.AddBody(m, d, body.id, body.inertia.data(), -parts_.motion, force);
+  if (difference.gravity) rigid_.AddGravity(m, other, parts_.motion, force);
 }
 
 }  // namespace continuum

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,24 @@ class ForceDerivatives {
  public:
   using Matrix = Eigen::MatrixXd;
 
+  /// What of the forces counts, and how often.
+  struct Parts {
+    double springs = 1, dampers = 1, actuators = 1, motion = 1;
+    bool moves = true;  ///< false: only gravity of the motion
+    /// Whether tendons and actuators feel the speeds of the step's end as joints do.
+    bool all_felt = true;
+  };
+
   /// What a model has beyond that ("actuator 'a1' has dynamics of its own"); empty: nothing.
   static std::string Obstacle(const mjModel& m);
-  explicit ForceDerivatives(const mjModel& m);
+  explicit ForceDerivatives(const mjModel& m) : ForceDerivatives(m, Parts{}) {}
+  ForceDerivatives(const mjModel& m, const Parts& parts);
 
+  /// Takes up where tendons are at d, after a forward pass; before Update.
+  void Place(const mjModel& m, const mjData& d) { tendons_.Update(m, d); }
+  const TendonDerivatives& tendons() const { return tendons_; }
+  /// What else pulls along tendons [ntendon], as given forces.
+  void Pull(std::span<const double> pull) { pull_.assign(pull.begin(), pull.end()); }
   /// At d, after a forward pass; a: accelerations [nv]; felt: speeds that dampers and actuators
   /// feel [nv], those of d, or of the step's end where a method is implicit in them; step: of lags
   /// that act early [s].
@@ -42,15 +57,19 @@ class ForceDerivatives {
               const ModelDifference& difference, double* force) const;
 
  private:
+  const std::vector<double>& FeltByAll() const { return parts_.all_felt ? felt_ : v_; }
+  ForceAlong Weighed(ForceAlong at_rest, double felt) const;
   ForceAlong Joint(const mjModel& by, const mjData& d, int joint) const;
   ForceAlong Tendon(const mjModel& by, const mjData& d, int tendon) const;
   ForceAlong Actuator(const mjModel& by, const mjData& d, int actuator) const;
   void PullAlong(const mjModel& m, const mjData& d, int actuator, double f, double* force) const;
 
+  Parts parts_;
   RigidBodyDerivatives rigid_;
   TendonDerivatives tendons_;
-  std::vector<double> a_, felt_;
+  std::vector<double> v_, a_, felt_;
   std::vector<ForceAlong> of_tendon_;
+  std::vector<double> pull_;
   double step_ = 0;
   Matrix by_position_, by_velocity_, by_activation_, damping_;
 };

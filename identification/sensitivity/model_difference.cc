@@ -14,15 +14,41 @@ namespace {
 // Fields that are distinguished by the lists of a difference, and those that no motion without
 // contacts depends on, or that follow from others at compile time.
 bool IsSeen(std::string_view field) {
-  static const std::set<std::string_view> seen{
-      "jnt_stiffness",      "qpos_spring",      "dof_damping",         "dof_armature",
-      "dof_frictionloss",   "tendon_stiffness", "tendon_damping",      "tendon_lengthspring",
-      "actuator_gainprm",   "actuator_biasprm", "actuator_gear",       "actuator_forcerange",
-      "actuator_ctrlrange", "actuator_dynprm",  "body_mass",           "body_ipos",
-      "body_iquat",         "body_inertia",     "body_subtreemass",    "body_invweight0",
-      "body_sameframe",     "body_simple",      "dof_invweight0",      "dof_M0",
-      "dof_length",         "dof_simplenum",    "tendon_length0",      "tendon_invweight0",
-      "actuator_acc0",      "actuator_length0", "actuator_lengthrange"};
+  static const std::set<std::string_view> seen{"jnt_stiffness",
+                                               "qpos_spring",
+                                               "dof_damping",
+                                               "dof_armature",
+                                               "dof_frictionloss",
+                                               "tendon_stiffness",
+                                               "tendon_damping",
+                                               "tendon_lengthspring",
+                                               "actuator_gainprm",
+                                               "actuator_biasprm",
+                                               "actuator_gear",
+                                               "actuator_forcerange",
+                                               "actuator_ctrlrange",
+                                               "actuator_dynprm",
+                                               "body_mass",
+                                               "body_ipos",
+                                               "body_iquat",
+                                               "body_inertia",
+                                               "body_subtreemass",
+                                               "body_invweight0",
+                                               "body_sameframe",
+                                               "body_simple",
+                                               "dof_invweight0",
+                                               "dof_M0",
+                                               "dof_length",
+                                               "dof_simplenum",
+                                               "tendon_length0",
+                                               "tendon_invweight0",
+                                               "actuator_acc0",
+                                               "actuator_length0",
+                                               "actuator_lengthrange",
+                                               "plugin_attr",
+                                               "plugin_attradr",
+                                               "npluginattr",
+                                               "nbuffer"};
   return seen.contains(field) || field.starts_with("geom_") || field.starts_with("bvh_") ||
          field.starts_with("cam_") || field.starts_with("light_") || field.starts_with("mat_");
 }
@@ -35,7 +61,7 @@ bool Same(const T* a, const T* b, std::size_t n) {
 // By MuJoCo's own lists of the sizes and the arrays of a model.
 std::string OtherField(const mjModel* m, const mjModel* other) {
 #define X(name) \
-  if (m->name != other->name) return #name;
+  if (!IsSeen(#name) && m->name != other->name) return #name;
   MJMODEL_SIZES
 #undef X
 #undef MJ_M

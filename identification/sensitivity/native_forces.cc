@@ -72,6 +72,10 @@ ForceAlong ForceAlong::Felt(double faster) const {
   return felt;
 }
 
+ForceAlong ForceAlong::Times(double factor) const {
+  return {factor * f, factor * by_length, factor * by_rate, factor * by_activation};
+}
+
 std::string NativeForceObstacle(const mjModel& m) {
   for (int j = 0; j < m.njnt; ++j) {
     if (const std::string why = JointObstacle(m, j); !why.empty())

@@ -13,6 +13,7 @@ struct ForceAlong {
   ForceAlong& operator+=(const ForceAlong& more);
   /// The same where a faster rate is felt.
   ForceAlong Felt(double faster) const;
+  ForceAlong Times(double factor) const;
 };
 
 /// Spring and damper of a hinge or slide at d, at the speed v.

@@ -79,23 +79,24 @@ RigidBodyDerivatives::RigidBodyDerivatives(const mjModel& m)
   }
 }
 
-void RigidBodyDerivatives::Update(const mjModel& m, const mjData& d, const double* a) {
+void RigidBodyDerivatives::Update(const mjModel& m, const mjData& d, const double* v,
+                                  const double* a) {
   velocity_[0].setZero(), rate_[0].setZero();
   if (!(m.opt.disableflags & mjDSBL_GRAVITY)) rate_[0].tail<3>() = -At(m.opt.gravity);
   for (int b = 1; b < m.nbody; ++b) {
-    Vector6 v = velocity_[m.body_parentid[b]], rate = rate_[m.body_parentid[b]];
+    Vector6 twist = velocity_[m.body_parentid[b]], rate = rate_[m.body_parentid[b]];
     for (int i = m.body_dofadr[b], end = i + m.body_dofnum[b]; i < end; ++i) {
       axis_[i] = SpatialAt(d.cdof + 6 * i);
-      psi_[i] = CrossMotion(v, axis_[i]);
-      x_[i] = CrossMotion(rate, axis_[i]) + CrossMotion(v, psi_[i]);
-      rate += axis_[i] * a[i] + psi_[i] * d.qvel[i];
-      v += axis_[i] * d.qvel[i];
+      psi_[i] = CrossMotion(twist, axis_[i]);
+      x_[i] = CrossMotion(rate, axis_[i]) + CrossMotion(twist, psi_[i]);
+      rate += axis_[i] * a[i] + psi_[i] * v[i];
+      twist += axis_[i] * v[i];
     }
-    velocity_[b] = v, rate_[b] = rate;
+    velocity_[b] = twist, rate_[b] = rate;
     inertia_[b] = SpatialInertia(d.cinert + 10 * b);
-    const Vector6 momentum = inertia_[b] * v;
-    force_[b] = inertia_[b] * rate + CrossForce(v, momentum);
-    turn_[b] = Turn(v, inertia_[b], momentum);
+    const Vector6 momentum = inertia_[b] * twist;
+    force_[b] = inertia_[b] * rate + CrossForce(twist, momentum);
+    turn_[b] = Turn(twist, inertia_[b], momentum);
   }
   for (int b = static_cast<int>(m.nbody) - 1; b > 0; --b) {
     const int p = m.body_parentid[b];
@@ -147,12 +148,13 @@ void RigidBodyDerivatives::AddBody(const mjModel& m, const mjData& d, int body,
   for (int i = last_[body]; i >= 0; i = parent_[i]) force[i] += factor * axis_[i].dot(wrench);
 }
 
-void RigidBodyDerivatives::AddGravity(const mjModel& m, const mjModel& other, double* force) const {
+void RigidBodyDerivatives::AddGravity(const mjModel& m, const mjModel& other, double factor,
+                                      double* force) const {
   if (m.opt.disableflags & mjDSBL_GRAVITY) return;
   Vector6 more = Vector6::Zero();
   more.tail<3>() = At(other.opt.gravity) - At(m.opt.gravity);
   for (std::size_t i = 0; i < axis_.size(); ++i)
-    force[i] += axis_[i].dot(inertia_[body_[i]] * more);
+    force[i] += factor * axis_[i].dot(inertia_[body_[i]] * more);
 }
 
 }  // namespace continuum

@@ -28,16 +28,16 @@ class RigidBodyDerivatives {
 
   explicit RigidBodyDerivatives(const mjModel& m);
 
-  /// Takes up d, after a forward pass, with the accelerations a [nv].
-  void Update(const mjModel& m, const mjData& d, const double* a);
+  /// Takes up d, after a forward pass, with the speeds v and the accelerations a [nv].
+  void Update(const mjModel& m, const mjData& d, const double* v, const double* a);
   /// Adds ∂τ/∂q and ∂τ/∂q̇ [nv × nv] times a factor.
   void Add(double factor, Matrix& by_position, Matrix& by_velocity) const;
   /// Adds to force [nv] what inertia, added to a body in its own frame, needs: (mass [kg], mass
   /// times centre [kg m], inertia about the body's origin xx yy zz xy xz yz [kg m²]).
   void AddBody(const mjModel& m, const mjData& d, int body, const double inertia[10], double factor,
                double* force) const;
-  /// Adds to force [nv] the weight of the gravity of another model less that of m.
-  void AddGravity(const mjModel& m, const mjModel& other, double* force) const;
+  /// Adds to force [nv] the weight of the gravity of another model less that of m, times a factor.
+  void AddGravity(const mjModel& m, const mjModel& other, double factor, double* force) const;
 
  private:
   std::vector<int> parent_;               ///< [dof] the one before, −1: the world

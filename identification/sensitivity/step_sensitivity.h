@@ -1,79 +1,97 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
+#include "identification/sensitivity/effect_derivatives.h"
 #include "identification/sensitivity/force_derivatives.h"
 #include "identification/sensitivity/sensor_derivatives.h"
+#include "identification/sensitivity/solver_rows.h"
 #include "sim/simulation/output_recorder.h"
 #include "sim/simulation/wiring.h"
 
 namespace continuum {
 
-/// Derivatives of MuJoCo's own steps (implicitfast) with respect to parameters, in closed form.
-/// With F of ForceDerivatives, D what the method knows of ∂τ/∂q̇ and f the forces of dry friction,
+/// Derivatives of MuJoCo's own steps (implicitfast, Euler) with respect to parameters, in closed
+/// form. With F of ForceDerivatives, E the forces of effects, D what the method knows of ∂τ/∂q̇ and
+/// f the forces of the constraint solver,
 ///
-///   M a = F₀ + f,   (M − h D) a* = F₀ + f,   q̇⁺ = q̇ + h a*,   q⁺ = q + h q̇⁺       (1)
+///   M a = F₀ + E + Jᵀ f,   (M − h D) a* = F₀ + E + Jᵀ f,   q̇⁺ = q̇ + h a*,   q⁺ = q + h q̇⁺   (1)
 ///
-/// are two equations for the step: the solver's a, which f follows, and a* of the method, whose
-/// forces are those of F at the speeds q̇⁺. Of a joint with dry friction, f is its level where it
-/// slides, and where it rests the spring and damper of the solver, f = −R⁻¹ (a + B q̇), so that by
-/// the implicit function theorem
+/// are two equations for the step: the solver's a, which f follows (SolverRows), and a* of the
+/// method, whose forces are those of F at the speeds q̇⁺. To first order
 ///
-///   (M + R⁻¹) da = dF(a) − R⁻¹ B dq̇ + …,   (M − h D) da* = dF(a*) + df             (2)
+///   (M + Σ_hold D_r JᵀJ) da = dF(a) + dE + Jᵀ df,   (M − h D) da* = dF(a*) + dE + Jᵀ df (2)
 ///
-/// Which joints slide is taken from the step.
+/// States of effects are states like others: their next values follow what their laws read.
 class StepSensitivity {
  public:
   using Matrix = Eigen::MatrixXd;
 
   /// What keeps a model from it ("the integrator is RK4"); empty: nothing.
-  static std::string Obstacle(const mjModel& m, const Wiring& wiring);
+  static std::string Obstacle(const mjModel& m, const mjData& d, const Wiring& wiring);
 
   /// perturbed: the same machine with one parameter moved; move: as ContinuousSensitivity has it.
-  StepSensitivity(const mjModel& m, const Wiring& wiring, std::vector<const mjModel*> perturbed,
-                  double move);
+  StepSensitivity(const ModelAndData& machine, const Wiring& wiring,
+                  const std::vector<const ModelAndData*>& perturbed, double move);
   /// Whether a perturbed model differs by what the closed form knows.
   bool Covers(std::size_t k) const { return covered_[k]; }
   /// The state from which a covered perturbed model starts less the machine's, by the move.
-  void Start(std::size_t k, const std::vector<double>& dq, const std::vector<double>& dv,
-             const std::vector<double>& dw);
+  struct State {
+    std::vector<double> q, v, w, z;  ///< positions, speeds, activations, states of effects
+  };
+  void Start(std::size_t k, const State& difference);
 
   /// Around every step: takes up the state it starts from; follows it. False: it has no closed
-  /// form, as a row of the constraint solver acts that is no joint's friction.
+  /// form, as there is a row of the constraint solver that SolverRows does not know.
   void Before(const mjModel& m, const mjData& d);
   bool After(const mjModel& m, mjData& d);
   /// Lets recorders [perturbed model] see a row, with d as a step that began there, or a forward
   /// pass, has left it.
   void Observe(const mjModel& m, mjData& d, std::size_t row, std::span<Recorder> recorders);
 
+  /// What states change by: positions, speeds, states of effects [number, covered perturbed model].
+  const NumberTangents& numbers() const { return *numbers_; }
+  const Tangents& activation() const { return activation_; }
+
  private:
-  struct FrictionRow {
-    int row, dof;
-    bool slides;
-  };
-  bool FindRows(const mjData& d);
+  void FollowTendons(const mjModel& m, const mjData& d);
+  void FollowEffects(const mjModel& m, const mjData& d);
+  void FollowLoad(const mjModel& m, const mjData& d, const ForceDerivatives::Parts& parts,
+                  Number::Kind torque);
+  void AddEffects(const mjModel& m, const mjData& d, double factor, Tangents& force) const;
+  void Differ(const mjModel& m, const mjData& d, const ForceDerivatives& derivatives,
+              Tangents& force);
   void Derive(const mjModel& m, const mjData& d, const double* a, const double* felt,
-              Matrix& force);
-  bool AddFriction(const mjModel& m, const mjData& d, Matrix& force);
+              Tangents& force);
+  bool FollowRows(const mjModel& m, const mjData& d);
+  bool Solve(Tangents& force);
   bool Follow(const mjModel& m, const mjData& d);
   void FollowLags(const mjModel& m, const mjData& d);
+  void FollowStates(const mjModel& m);
   void SwapState(mjData& d);
+  Tangents& Of(Number::Kind kind) { return (*numbers_)[kind]; }
+  const Tangents& Of(Number::Kind kind) const { return (*numbers_)[kind]; }
 
-  std::vector<const mjModel*> perturbed_;
+  std::vector<const ModelAndData*> perturbed_;  ///< those that are covered
   double move_;
   std::vector<bool> covered_;
   std::vector<std::size_t> columns_;
   std::vector<ModelDifference> differences_;
   ForceDerivatives derivatives_;
   SensorDerivatives sensors_;
-  std::vector<FrictionRow> friction_rows_;
-  std::vector<double> q_, v_, w_, after_, a_;  ///< of Before; a*
-  Matrix dq_, dv_, dw_;                        ///< [·, covered]
-  Matrix inertia_, force_, answer_, work_;
+  std::optional<EffectDerivatives> effects_;
+  std::optional<SolverRows> rows_;
+  std::optional<NumberTangents> numbers_;
+  Tangents activation_;                            ///< dw
+  std::vector<double> q_, v_, w_, z_, after_, a_;  ///< of Before; a*
+  std::vector<double> q_after_, pull_;
+  Matrix inertia_, differ_;
+  Tangents force_, answer_;
   Eigen::LLT<Matrix> factor_;
 };
 

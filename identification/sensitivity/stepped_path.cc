@@ -22,14 +22,14 @@ class PerturbedRuns {
   PerturbedRuns(const PerturbedRun& trial, std::vector<PerturbedRun>& perturbed,
                 const Experiment& e, const Log& log, const Wiring& wiring)
       : perturbed_(perturbed),
-        sensitivity_(*trial.machine.model, wiring, Models(perturbed), kPerturbation) {
+        sensitivity_(trial.machine, wiring, Machines(perturbed), kPerturbation) {
     for (std::size_t k = 0; k < perturbed.size(); ++k) {
       const PerturbedRun& other = perturbed[k];
       inputs_.emplace_back(*other.machine.model, e, log, wiring);
       recorders_.emplace_back(*trial.machine.model, wiring, log.rows());
       if (sensitivity_.Covers(k))
-        sensitivity_.Start(k, Difference(other.q, trial.q), Difference(other.v, trial.v),
-                           Difference(other.w, trial.w));
+        sensitivity_.Start(k, {Difference(other.q, trial.q), Difference(other.v, trial.v),
+                               Difference(other.w, trial.w), Difference(other.z, trial.z)});
     }
   }
 
@@ -55,10 +55,10 @@ class PerturbedRuns {
   }
 
  private:
-  static std::vector<const mjModel*> Models(const std::vector<PerturbedRun>& trials) {
-    std::vector<const mjModel*> models;
-    for (const PerturbedRun& trial : trials) models.push_back(trial.machine.model.get());
-    return models;
+  static std::vector<const ModelAndData*> Machines(const std::vector<PerturbedRun>& trials) {
+    std::vector<const ModelAndData*> machines;
+    for (const PerturbedRun& trial : trials) machines.push_back(&trial.machine);
+    return machines;
   }
 
   std::vector<PerturbedRun>& perturbed_;

@@ -7,10 +7,10 @@
 
 namespace continuum {
 
-/// A machine with where its trial begins: positions, speeds and activations.
+/// A machine with where its trial begins: positions, speeds, activations, states of effects.
 struct PerturbedRun {
   ModelAndData machine;
-  std::vector<double> q, v, w;
+  std::vector<double> q, v, w, z;
 };
 
 /// One log simulated as MuJoCo steps it, with the traces of the perturbed models.

@@ -83,10 +83,8 @@ void TendonDerivatives::ForceAlong(const mjModel& m, const mjData& d, int tendon
     force[m.ten_J_colind[k]] += f * d.ten_J[k];
 }
 
-void TendonDerivatives::Add(const mjModel& m, const mjData& d, int tendon, double f,
-                            double by_length, double by_rate, const double* v, Matrix& by_position,
-                            Matrix& by_velocity) {
-  std::fill(bent_.begin(), bent_.end(), 0.0);
+template <class Fn>
+void TendonDerivatives::ForEachCurvature(int tendon, Fn&& fn) const {
   for (const Segment& s : route_[tendon]) {
     if (s.length <= mjMINVAL) continue;  // it has no direction
     for (std::size_t a = 0; a < s.joints.size(); ++a) {
@@ -95,14 +93,31 @@ void TendonDerivatives::Add(const mjModel& m, const mjData& d, int tendon, doubl
         const JointTerm& j = s.joints[b];
         double h = (i.jacobian.dot(j.jacobian) - i.moment_arm * j.moment_arm) / s.length;
         if (i.sign == j.sign) h += s.along.dot(j.axis.cross(i.jacobian));  // j is before i, or i
-        by_position(i.dof, j.dof) += f * h;
-        bent_[i.dof] += h * v[j.dof];
-        if (a == b) continue;
-        by_position(j.dof, i.dof) += f * h;
-        bent_[j.dof] += h * v[i.dof];
+        fn(i.dof, j.dof, h);
       }
     }
   }
+}
+
+void TendonDerivatives::AddBend(int tendon, double factor, const double* x,
+                                std::span<double> bend) const {
+  ForEachCurvature(tendon, [&](int i, int j, double h) {
+    bend[i] += factor * h * x[j];
+    if (i != j) bend[j] += factor * h * x[i];
+  });
+}
+
+void TendonDerivatives::Add(const mjModel& m, const mjData& d, int tendon, double f,
+                            double by_length, double by_rate, const double* v, Matrix& by_position,
+                            Matrix& by_velocity) {
+  std::fill(bent_.begin(), bent_.end(), 0.0);
+  ForEachCurvature(tendon, [&](int i, int j, double h) {
+    by_position(i, j) += f * h;
+    bent_[i] += h * v[j];
+    if (i == j) return;
+    by_position(j, i) += f * h;
+    bent_[j] += h * v[i];
+  });
   const int adr = m.ten_J_rowadr[tendon], end = adr + m.ten_J_rownnz[tendon];
   for (int k = adr; k < end; ++k) {
     const int i = m.ten_J_colind[k];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ class TendonDerivatives {
   double Rate(const mjModel& m, const mjData& d, int tendon, const double* v) const;
   /// force[nv] += f ∂L/∂q.
   void ForceAlong(const mjModel& m, const mjData& d, int tendon, double f, double* force) const;
+  /// bend[nv] += factor ∂²L x.
+  void AddBend(int tendon, double factor, const double* x, std::span<double> bend) const;
   /// Adds of a pull f(L, L̇) along a tendon what follows positions and speeds [nv × nv]:
   ///   f_L ∂L/∂q ∂L/∂qᵀ + f_L̇ ∂L/∂q (v ∂²L)ᵀ + f ∂²L   and   f_L̇ ∂L/∂q ∂L/∂qᵀ    (3)
   void Add(const mjModel& m, const mjData& d, int tendon, double f, double by_length,
@@ -50,6 +53,10 @@ class TendonDerivatives {
     double length = 0;
     Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< u
   };
+  /// Calls fn(i, j, ∂²L/∂q_i∂q_j) for all j up to i of every segment; neither twice.
+  template <class Fn>
+  void ForEachCurvature(int tendon, Fn&& fn) const;
+
   std::vector<std::vector<Segment>> route_;  ///< [tendon]
   std::vector<double> bent_;                 ///< [nv] v ∂²L
 };

@@ -8,6 +8,7 @@
 #include <mujoco/mujoco.h>
 
 #include "binding/config.h"
+#include "binding/law_slopes.h"
 
 namespace continuum {
 
@@ -53,6 +54,12 @@ class BoundLaw {
   virtual bool Rates(const mjModel&, const mjData&, const double* /*z*/, double* /*rate*/) const {
     return false;
   }
+  /// Why Differentiate knows nothing of this law in this model ("its geometry moves"); empty: it
+  /// does.
+  virtual std::string WhyNoSlopes(const mjModel&) const { return "its slopes are not known"; }
+  /// Adds how force, rows and next states follow what they are made of, in the step that has been
+  /// taken. d: after the step, but with the positions and speeds that it began with.
+  virtual void Differentiate(const mjModel&, const mjData&, const StepTaken&, LawSlopes&) const {}
   /// States as if the present controls had been there for ever.
   virtual void Settle(const mjModel&, const mjData&, double*) const {}
   /// Why the law does nothing at some of its places; empty: it acts.

@@ -52,34 +52,80 @@ void Where(double*& top) {
   top[-1] = top[-1] > 0 ? top[0] : top[1];
 }
 
+void WhereSlopes(const double* x, double* slopes) {
+  slopes[0] = 0, slopes[1] = x[0] > 0, slopes[2] = !(x[0] > 0);
+}
+
+template <double (*F)(double)>
+void OneSlope(const double* x, double* slopes) {
+  slopes[0] = F(x[0]);
+}
+template <double (*Fx)(double, double), double (*Fy)(double, double)>
+void TwoSlopes(const double* x, double* slopes) {
+  slopes[0] = Fx(x[0], x[1]), slopes[1] = Fy(x[0], x[1]);
+}
+
+// ∂ x^y / ∂x and ∂y.
+double PowerByBase(double x, double y) { return y == 0 ? 0 : y * std::pow(x, y - 1); }
+double PowerByExponent(double x, double y) { return x > 0 ? std::pow(x, y) * std::log(x) : 0; }
+double Square(double x) { return x * x; }
+
 struct Function {
   std::string_view name;
   std::size_t arguments;
   void (*run)(double*& top);
+  void (*slopes)(const double* arguments, double* slopes);
 };
 constexpr std::array kFunctions{
-    Function{"abs", 1, One<[](double x) { return std::abs(x); }>},
-    Function{"sign", 1, One<[](double x) { return static_cast<double>((x > 0) - (x < 0)); }>},
-    Function{"sqrt", 1, One<[](double x) { return std::sqrt(x); }>},
-    Function{"exp", 1, One<[](double x) { return std::exp(x); }>},
-    Function{"log", 1, One<[](double x) { return std::log(x); }>},
-    Function{"sin", 1, One<[](double x) { return std::sin(x); }>},
-    Function{"cos", 1, One<[](double x) { return std::cos(x); }>},
-    Function{"tan", 1, One<[](double x) { return std::tan(x); }>},
-    Function{"tanh", 1, One<[](double x) { return std::tanh(x); }>},
-    Function{"atan", 1, One<[](double x) { return std::atan(x); }>},
-    Function{"min", 2, Two<[](double x, double y) { return std::min(x, y); }>},
-    Function{"max", 2, Two<[](double x, double y) { return std::max(x, y); }>},
-    Function{"atan2", 2, Two<[](double x, double y) { return std::atan2(x, y); }>},
-    Function{"pow", 2, Two<[](double x, double y) { return std::pow(x, y); }>},
-    Function{"where", 3, Where},
+    Function{"abs", 1, One<[](double x) { return std::abs(x); }>,
+             OneSlope<[](double x) { return x < 0 ? -1.0 : 1.0; }>},
+    Function{"sign", 1, One<[](double x) { return static_cast<double>((x > 0) - (x < 0)); }>,
+             OneSlope<[](double) { return 0.0; }>},
+    Function{"sqrt", 1, One<[](double x) { return std::sqrt(x); }>,
+             OneSlope<[](double x) { return 0.5 / std::sqrt(x); }>},
+    Function{"exp", 1, One<[](double x) { return std::exp(x); }>,
+             OneSlope<[](double x) { return std::exp(x); }>},
+    Function{"log", 1, One<[](double x) { return std::log(x); }>,
+             OneSlope<[](double x) { return 1 / x; }>},
+    Function{"sin", 1, One<[](double x) { return std::sin(x); }>,
+             OneSlope<[](double x) { return std::cos(x); }>},
+    Function{"cos", 1, One<[](double x) { return std::cos(x); }>,
+             OneSlope<[](double x) { return -std::sin(x); }>},
+    Function{"tan", 1, One<[](double x) { return std::tan(x); }>,
+             OneSlope<[](double x) { return 1 + Square(std::tan(x)); }>},
+    Function{"tanh", 1, One<[](double x) { return std::tanh(x); }>,
+             OneSlope<[](double x) { return 1 - Square(std::tanh(x)); }>},
+    Function{"atan", 1, One<[](double x) { return std::atan(x); }>,
+             OneSlope<[](double x) { return 1 / (1 + x * x); }>},
+    Function{"min", 2, Two<[](double x, double y) { return std::min(x, y); }>,
+             TwoSlopes<[](double x, double y) { return y < x ? 0.0 : 1.0; },
+                       [](double x, double y) { return y < x ? 1.0 : 0.0; }>},
+    Function{"max", 2, Two<[](double x, double y) { return std::max(x, y); }>,
+             TwoSlopes<[](double x, double y) { return x < y ? 0.0 : 1.0; },
+                       [](double x, double y) { return x < y ? 1.0 : 0.0; }>},
+    Function{"atan2", 2, Two<[](double x, double y) { return std::atan2(x, y); }>,
+             TwoSlopes<[](double x, double y) { return y / (x * x + y * y); },
+                       [](double x, double y) { return -x / (x * x + y * y); }>},
+    Function{"pow", 2, Two<[](double x, double y) { return std::pow(x, y); }>,
+             TwoSlopes<PowerByBase, PowerByExponent>},
+    Function{"where", 3, Where, WhereSlopes},
 };
-constexpr Function kNegate{"-", 1, One<[](double x) { return -x; }>};
-constexpr Function kAdd{"+", 2, Two<[](double x, double y) { return x + y; }>};
-constexpr Function kSubtract{"-", 2, Two<[](double x, double y) { return x - y; }>};
-constexpr Function kMultiply{"*", 2, Two<[](double x, double y) { return x * y; }>};
-constexpr Function kDivide{"/", 2, Two<[](double x, double y) { return x / y; }>};
-constexpr Function kPower{"^", 2, Two<[](double x, double y) { return std::pow(x, y); }>};
+constexpr Function kNegate{"-", 1, One<[](double x) { return -x; }>,
+                           OneSlope<[](double) { return -1.0; }>};
+constexpr Function kAdd{
+    "+", 2, Two<[](double x, double y) { return x + y; }>,
+    TwoSlopes<[](double, double) { return 1.0; }, [](double, double) { return 1.0; }>};
+constexpr Function kSubtract{
+    "-", 2, Two<[](double x, double y) { return x - y; }>,
+    TwoSlopes<[](double, double) { return 1.0; }, [](double, double) { return -1.0; }>};
+constexpr Function kMultiply{
+    "*", 2, Two<[](double x, double y) { return x * y; }>,
+    TwoSlopes<[](double, double y) { return y; }, [](double x, double) { return x; }>};
+constexpr Function kDivide{"/", 2, Two<[](double x, double y) { return x / y; }>,
+                           TwoSlopes<[](double, double y) { return 1 / y; },
+                                     [](double x, double y) { return -x / (y * y); }>};
+constexpr Function kPower{"^", 2, Two<[](double x, double y) { return std::pow(x, y); }>,
+                          TwoSlopes<PowerByBase, PowerByExponent>};
 
 const Function* FunctionNamed(std::string_view name) {
   const auto found = std::find_if(kFunctions.begin(), kFunctions.end(),
@@ -148,7 +194,7 @@ class Parser {
     values_.push_back(part ? values_[step.index] : number ? step.number : kVaries);
   }
   void Call(const Function& f) {
-    steps_.push_back({Step::Kind::kFunction, 0, 0, f.run});
+    steps_.push_back({Step::Kind::kFunction, 0, 0, f.run, f.arguments, f.slopes});
     const auto arguments = values_.end() - static_cast<std::ptrdiff_t>(f.arguments);
     const bool constant =
         std::none_of(arguments, values_.end(), [](double x) { return std::isnan(x); });
@@ -292,6 +338,37 @@ double Expression::operator()(std::span<const double> values) const {
         break;
     }
   }
+  return top[-1];
+}
+
+double Expression::Differentiate(std::span<const double> values, std::span<double> slopes) const {
+  const std::size_t n = values.size();
+  std::vector<double> stack(kStack), of(kStack * n);  // [place on the stack, variable]
+  double* top = stack.data();
+  const auto row = [&](const double* place) { return of.data() + (place - stack.data()) * n; };
+  for (const Step& step : steps_) {
+    if (step.kind != Step::Kind::kFunction) {
+      const bool part = step.kind == Step::Kind::kPart;
+      const bool variable = step.kind == Step::Kind::kVariable;
+      *top = part ? stack[step.index] : variable ? values[step.index] : step.number;
+      if (part) std::copy_n(of.data() + step.index * n, n, row(top));
+      if (!part) std::fill_n(row(top), n, 0.0);
+      if (variable) row(top)[step.index] = 1;
+      ++top;
+      continue;
+    }
+    double partial[3];
+    double* const first = top - step.arguments;
+    step.slopes(first, partial);
+    for (std::size_t i = 0; i < n; ++i) {
+      double sum = 0;  // what follows nothing counts nothing, however steep
+      for (std::size_t k = 0; k < step.arguments; ++k)
+        if (const double by = row(first + k)[i]; by != 0) sum += partial[k] * by;
+      row(first)[i] = sum;
+    }
+    step.function(top);
+  }
+  std::copy_n(row(top - 1), n, slopes.begin());
   return top[-1];
 }
 

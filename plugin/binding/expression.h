@@ -26,6 +26,8 @@ class Expression {
 
   /// values: of the variables, in their order.
   double operator()(std::span<const double> values) const;
+  /// The same with its derivatives with respect to the variables, 0 where it does not follow them.
+  double Differentiate(std::span<const double> values, std::span<double> slopes) const;
 
   /// Whether a variable can have this name: a letter or "_", then letters, digits and "_"; not pi
   /// and not a function.
@@ -41,6 +43,9 @@ class Expression {
     double number = 0;
     std::size_t index = 0;
     void (*function)(double*& top) = nullptr;
+    std::size_t arguments = 0;
+    /// Writes the derivatives of a function with respect to its arguments.
+    void (*slopes)(const double* arguments, double* slopes) = nullptr;
   };
 
  private:

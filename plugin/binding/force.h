@@ -22,6 +22,28 @@ struct Line {
     const int adr = m.jnt_qposadr[id];
     return {d.qpos[adr] - m.qpos_spring[adr], d.qvel[dof]};
   }
+  /// The same where a step ends, as MuJoCo has it then: a tendon is still where it began.
+  Port<double> After(const mjModel& m, const mjData& d, const StepTaken& step) const {
+    if (!joint) return At(m, d);
+    const int adr = m.jnt_qposadr[id];
+    return {step.qpos[adr] - m.qpos_spring[adr], step.qvel[dof]};
+  }
+  /// The same as functions of the numbers of Numbers().
+  template <std::size_t N>
+  Port<Dual<N>> DualAt(const mjModel& m, const mjData& d) const {
+    const Port<double> at = At(m, d);
+    Port<Dual<N>> dual{{at.x, 0}, {at.v, 2}};
+    const double* const rest = m.tendon_lengthspring + 2 * id;
+    if (!joint && at.x == 0 && rest[0] != rest[1]) dual.x.d[0] = 0;
+    dual.x.d[1] = -dual.x.d[0];
+    return dual;
+  }
+  /// Position, rest and speed, where a step begins.
+  std::array<Number, 3> Numbers(const Port<double>& at) const {
+    using Kind = Number::Kind;
+    if (joint) return {{{Kind::kPosition, dof}, {Kind::kSpringRest, dof}, {Kind::kSpeed, dof}}};
+    return {{{Kind::kLength, id}, {Kind::kTendonRest, 2 * id + (at.x > 0)}, {Kind::kRate, id}}};
+  }
   void Add(const mjModel& m, const mjData& d, double f, std::span<double> force) const {
     if (joint) {
       force[dof] += f;
@@ -70,6 +92,18 @@ class BoundForce : public BoundLaw {
     }
   }
 
+  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
+
+  void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
+                     LawSlopes& slopes) const override {
+    int state = 0;
+    for (const Line& line : lines_) {
+      DifferentiateForce(m, d, line, step.z + state, state, slopes);
+      DifferentiateStep(m, d, line, step, state, slopes);
+      state += kZ;
+    }
+  }
+
   bool Rates(const mjModel& m, const mjData& d, const double* z, double* rate) const override {
     const auto p = AsParams<E>(p_);
     for (const Line& line : lines_) {
@@ -81,6 +115,51 @@ class BoundForce : public BoundLaw {
   }
 
  private:
+  // Position, rest, speed; states; parameters.
+  static constexpr std::size_t kN = 3 + kZ + kParamCount<E>;
+  using T = Dual<kN>;
+
+  static std::array<Number, kN> NumbersOf(const std::array<Number, 3>& port, int state) {
+    std::array<Number, kN> numbers;
+    std::copy(port.begin(), port.end(), numbers.begin());
+    for (int i = 0; i < kZ; ++i) numbers[3 + i] = {Number::Kind::kState, state + i};
+    for (std::size_t i = 3 + kZ; i < kN; ++i)
+      numbers[i] = {Number::Kind::kParameter, static_cast<int>(i) - 3 - kZ};
+    return numbers;
+  }
+  static Vec<T, kZ> DualLoad(const double* z) {
+    Vec<T, kZ> state;
+    for (int i = 0; i < kZ; ++i) state[i] = T(z[i], 3 + i);
+    return state;
+  }
+
+  void DifferentiateForce(const mjModel& m, const mjData& d, const Line& line, const double* z,
+                          int state, LawSlopes& slopes) const {
+    const auto p = DualParams<kN>(AsParams<E>(p_), 3 + kZ);
+    const T force = E::template Eval<T>(line.DualAt<kN>(m, d), DualLoad(z), p).force;
+    const auto by = NumbersOf(line.Numbers(line.At(m, d)), state);
+    const Number of =
+        line.joint ? Number{Number::Kind::kForce, line.dof} : Number{Number::Kind::kPull, line.id};
+    Put(slopes.forces, of, force, by, -1);
+    if (!line.joint) slopes.pulls.push_back({line.id, -force.a});
+  }
+
+  void DifferentiateStep(const mjModel& m, const mjData& d, const Line& line, const StepTaken& step,
+                         int state, LawSlopes& slopes) const {
+    if constexpr (kZ > 0) {
+      const auto p = DualParams<kN>(AsParams<E>(p_), 3 + kZ);
+      Port<T> port = line.DualAt<kN>(m, d);
+      const Port<double> after = line.After(m, d, step);
+      port.x.a = after.x, port.v.a = after.v;
+      auto by = NumbersOf(line.Numbers(after), state);
+      if (line.joint) {
+        by[0].kind = Number::Kind::kPositionAfter, by[2].kind = Number::Kind::kSpeedAfter;
+      }
+      const auto next = E::template Step<T>(DualLoad(step.z + state), port, m.opt.timestep, p);
+      for (int i = 0; i < kZ; ++i) Put(slopes.next, {Number::Kind::kNext, state + i}, next[i], by);
+    }
+  }
+
   static Vec<double, kZ> Load(const double* z) {
     Vec<double, kZ> state;
     std::copy_n(z, kZ, state.begin());

@@ -28,6 +28,15 @@ FormulaValues<E> ValuesOf(const std::vector<double>& p) {
   return values;
 }
 
+/// Adds the derivatives of a formula that are not zero.
+template <std::size_t N>
+void Put(std::vector<Slope>& to, Number of, const Vec<double, N>& slopes, const Vec<Number, N>& by,
+         double factor = 1) {
+  for (std::size_t i = 0; i < N; ++i) {
+    if (slopes[i] != 0) to.push_back({of, by[i], factor * slopes[i]});
+  }
+}
+
 /// A written force on joints or tendons.
 class BoundFormula : public BoundLaw {
  public:
@@ -43,16 +52,42 @@ class BoundFormula : public BoundLaw {
                 std::span<double> force) override {
     if (stage != Stage::kPassive) return false;
     std::fill(force.begin(), force.end(), 0.0);
-    auto values = ValuesOf<Formula>(p_);
-    for (const Line& line : lines_) {
-      values[0] = line.joint ? d.qpos[m.jnt_qposadr[line.id]] : d.ten_length[line.id];
-      values[1] = line.joint ? d.qvel[line.dof] : d.ten_velocity[line.id];
-      line.Add(m, d, -force_(values), force);
-    }
+    for (const Line& line : lines_) line.Add(m, d, -force_(At(m, d, line)), force);
     return true;
   }
 
+  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
+
+  void Differentiate(const mjModel& m, const mjData& d, const StepTaken&,
+                     LawSlopes& slopes) const override {
+    for (const Line& line : lines_) {
+      FormulaValues<Formula> by_value;
+      const double force = force_.Differentiate(At(m, d, line), by_value);
+      const Number of = line.joint ? Number{Number::Kind::kForce, line.dof}
+                                   : Number{Number::Kind::kPull, line.id};
+      Put(slopes.forces, of, by_value, NumbersOf(line), -1);
+      if (!line.joint) slopes.pulls.push_back({line.id, -force});
+    }
+  }
+
  private:
+  using Values = FormulaValues<Formula>;
+  Values At(const mjModel& m, const mjData& d, const Line& line) const {
+    auto values = ValuesOf<Formula>(p_);
+    values[0] = line.joint ? d.qpos[m.jnt_qposadr[line.id]] : d.ten_length[line.id];
+    values[1] = line.joint ? d.qvel[line.dof] : d.ten_velocity[line.id];
+    return values;
+  }
+  static Vec<Number, std::tuple_size_v<Values>> NumbersOf(const Line& line) {
+    using Kind = Number::Kind;
+    Vec<Number, std::tuple_size_v<Values>> numbers;
+    numbers[0] = line.joint ? Number{Kind::kPosition, line.dof} : Number{Kind::kLength, line.id};
+    numbers[1] = line.joint ? Number{Kind::kSpeed, line.dof} : Number{Kind::kRate, line.id};
+    for (std::size_t i = 2; i < numbers.size(); ++i)
+      numbers[i] = {Kind::kParameter, static_cast<int>(i) - 2};
+    return numbers;
+  }
+
   std::vector<Line> lines_;
   Expression force_;
 };
@@ -73,19 +108,40 @@ class BoundFormulaFriction : public BoundLaw {
 
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double>) override {
-    auto values = ValuesOf<FormulaFriction>(p_);
     rows_.Write(m, d, z, stage, [&](const FrictionRow& row, double v) {
-      values[0] = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.index];
-      values[1] = v;
-      values[2] = row.joint ? GearLoad(m, d, row.index, 0) : 0;
-      return std::max(0.0, level_(values));
+      return std::max(0.0, level_(At(m, d, row, v)));
     });
     return false;
+  }
+
+  std::string WhyNoSlopes(const mjModel& m) const override { return rows_.WhyNoSlopes(m); }
+
+  void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
+                     LawSlopes& slopes) const override {
+    rows_.Differentiate(d, step, slopes, [&](const FrictionRow& row, int r, double v, bool moves) {
+      FormulaValues<FormulaFriction> by_value;
+      if (level_.Differentiate(At(m, d, row, v), by_value) <= 0) return;
+      const double torque = row.joint ? GearTorque(m, d, row.index, 0) : 0;
+      by_value[2] *= torque < 0 ? -LoadOf(1, 0) : LoadOf(1, 0);
+      if (!moves) by_value[1] = 0;
+      if (!row.joint) by_value[2] = 0;
+      Put(slopes.levels, {Number::Kind::kLevel, r}, by_value,
+          NumbersOf<kParamCount<FormulaFriction>>(row, 0));
+    });
   }
 
   void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }
 
  private:
+  FormulaValues<FormulaFriction> At(const mjModel& m, const mjData& d, const FrictionRow& row,
+                                    double v) const {
+    auto values = ValuesOf<FormulaFriction>(p_);
+    values[0] = PositionOf(m, d, row);
+    values[1] = v;
+    values[2] = row.joint ? GearLoad(m, d, row.index, 0) : 0;
+    return values;
+  }
+
   FrictionRows rows_;
   Expression level_;
 };

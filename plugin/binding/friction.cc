@@ -174,4 +174,29 @@ void FrictionRows::Advance(const mjModel& m, const mjData& d, double* z) const {
   }
 }
 
+std::string FrictionRows::WhyNoSlopes(const mjModel& m) const {
+  if (m.opt.integrator == mjINT_DISCRETE) return "its rows are folded into the inertia";
+  const auto ball = [](const FrictionRow& row) { return row.axis >= 0; };
+  return std::any_of(rows_.begin(), rows_.end(), ball) ? "it acts on a ball joint" : "";
+}
+
+void FrictionRows::DifferentiateAnchor(const mjData& d, const FrictionRow& row, int r, double grasp,
+                                       int state, LawSlopes& slopes) {
+  using Kind = Number::Kind;
+  const Number anchor{Kind::kState, state}, next{Kind::kNext, state};
+  const int at = row.joint ? row.index : row.id;
+  if (row.owner && grasp != kUnknown) {
+    slopes.levels.push_back(
+        {{Kind::kOffset, r}, {row.joint ? Kind::kPosition : Kind::kLength, at}, 1});
+    slopes.levels.push_back({{Kind::kOffset, r}, anchor, -1});
+  }
+  const bool slides = Saturated(d, r);
+  if (grasp != kUnknown && !slides) {
+    slopes.next.push_back({next, anchor, 1});
+    return;
+  }
+  slopes.next.push_back({next, {row.joint ? Kind::kPositionAfter : Kind::kLength, at}, 1});
+  if (slides) slopes.next.push_back({next, {Kind::kYield, r}, -1});  // (2)
+}
+
 }  // namespace continuum

@@ -63,6 +63,22 @@ class FrictionRows {
   }
   void Advance(const mjModel& m, const mjData& d, double* z) const;
 
+  /// Why Differentiate does not know these rows ("a ball joint"); empty: it does.
+  std::string WhyNoSlopes(const mjModel& m) const;
+  /// Adds the slopes of anchors, and calls level(row, r, v, moves) for each row that exists: it is
+  /// constraint r, v: speed of sliding, which follows the state where it moves.
+  template <class Level>
+  void Differentiate(const mjData& d, const StepTaken& step, LawSlopes& slopes,
+                     Level&& level) const {
+    int r = d.ne;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (!Find(d, rows_[k], r)) continue;
+      const double* const z = step.z + 2 * k;
+      DifferentiateAnchor(d, rows_[k], r, z[0], static_cast<int>(2 * k + 1), slopes);
+      level(rows_[k], r, SlidingOf(d, z, rows_[k]).v, z[0] != kHeld);
+    }
+  }
+
  private:
   /// Grasp: what a row did in the last step.
   static constexpr double kUnknown = 0, kHeld = 1, kSlid = 2;
@@ -83,6 +99,9 @@ class FrictionRows {
   static double OffAnchor(const mjModel& m, const mjData& d, const double* z,
                           const FrictionRow& row);
   /// States of the row or of the three rows of a ball joint that begin at `rows`.
+  /// state: number of the anchor; grasp: of the last step.
+  static void DifferentiateAnchor(const mjData& d, const FrictionRow& row, int r, double grasp,
+                                  int state, LawSlopes& slopes);
   static void AdvanceLine(const mjModel& m, const mjData& d, const FrictionRow& row, double* z,
                           int& r);
   static void AdvanceBall(const mjModel& m, const mjData& d, const FrictionRow* rows, double* z,
@@ -90,6 +109,23 @@ class FrictionRows {
 
   std::vector<FrictionRow> rows_;
 };
+
+/// Position of a row's joint or tendon.
+inline double PositionOf(const mjModel& m, const mjData& d, const FrictionRow& row) {
+  return row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.index];
+}
+
+/// What the level of a row follows: position, speed, torque of the load, P parameters.
+template <std::size_t P>
+std::array<Number, 3 + P> NumbersOf(const FrictionRow& row, int load) {
+  using Kind = Number::Kind;
+  std::array<Number, 3 + P> numbers;
+  numbers[0] = {row.joint ? Kind::kPosition : Kind::kLength, row.index};
+  numbers[1] = {row.joint ? Kind::kSpeed : Kind::kRate, row.index};
+  numbers[2] = {load == 0 ? Kind::kTorqueTransmitted : Kind::kTorqueActuator, row.index};
+  for (std::size_t i = 0; i < P; ++i) numbers[3 + i] = {Kind::kParameter, static_cast<int>(i)};
+  return numbers;
+}
 
 /// A Friction law on joints or tendons, as rows.
 template <FrictionLaw E>
@@ -135,6 +171,29 @@ class BoundFriction : public BoundLaw {
   }
 
   void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }
+
+  std::string WhyNoSlopes(const mjModel& m) const override { return rows_.WhyNoSlopes(m); }
+
+  void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
+                     LawSlopes& slopes) const override {
+    constexpr std::size_t kN = 3 + kParamCount<E>;
+    using T = Dual<kN>;
+    const auto p = DualParams<kN>(AsParams<E>(p_), 3);
+    rows_.Differentiate(d, step, slopes, [&](const FrictionRow& row, int r, double v, bool moves) {
+      FrictionState<T> at{T(PositionOf(m, d, row), 0), moves ? T(v, 1) : T(v), T(0)};
+      double sign = 1;
+      if constexpr (kLoaded) {
+        const double torque = GearTorque(m, d, row.index, load_);
+        at.load = T(LoadOf(torque, load_), 2), sign = torque < 0 ? -1 : 1;
+      }
+      auto by = NumbersOf<kParamCount<E>>(row, load_);
+      Dual<kN> level = E::template Level<T>(at, p);
+      level.d[2] *= sign * LoadOf(1, load_);
+      Put(slopes.levels, {Number::Kind::kLevel, r}, level, by);
+      if constexpr (kBiased)
+        Put(slopes.forces, {Number::Kind::kForce, row.index}, E::template Bias<T>(p), by);
+    });
+  }
 
  private:
   static constexpr bool kLoaded = ChoicesOf<E>().size() > 0;

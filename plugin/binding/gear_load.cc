@@ -60,12 +60,16 @@ double AppliedTorque(const mjModel& m, const mjData& d, int dof) {
 
 }  // namespace
 
-double GearLoad(const mjModel& m, const mjData& d, int dof, int option) {
+double GearTorque(const mjModel& m, const mjData& d, int dof, int option) {
   const double actuator = ActuatorTorque(m, d, dof);
-  if (option == 1) return std::abs(actuator);
+  if (option == 1) return actuator;
   const double external = d.qfrc_passive[dof] - d.qfrc_damper[dof] + GravityTorque(m, d, dof) +
                           AppliedTorque(m, d, dof);
-  return 0.5 * std::abs(actuator - external);
+  return actuator - external;
+}
+
+double GearLoad(const mjModel& m, const mjData& d, int dof, int option) {
+  return LoadOf(GearTorque(m, d, dof, option), option);
 }
 
 }  // namespace continuum

@@ -174,6 +174,7 @@ void ExpectTangent(Bench& bench) {
   const Matrix by_velocity = bench.Differences(bench.d.qvel, bench.m.nv);
   const Matrix by_activation = bench.Differences(bench.d.act, bench.m.na);
   ForceDerivatives derivatives(bench.m);
+  derivatives.Place(bench.m, bench.d);
   derivatives.Update(bench.m, bench.d, bench.a.data(), bench.d.qvel);
   ExpectClose(derivatives.by_position(), by_position);
   ExpectClose(derivatives.by_velocity(), by_velocity);
@@ -221,6 +222,7 @@ TEST(ForceDerivatives, FollowsParameters) {
     const Vector changed = bench.Force(*other.model);
     const Vector expected = changed - bench.Force(bench.m);
     ForceDerivatives derivatives(bench.m);
+    derivatives.Place(bench.m, bench.d);
     derivatives.Update(bench.m, bench.d, bench.a.data(), bench.d.qvel);
     Vector more = Vector::Zero(bench.m.nv);
     derivatives.Differ(bench.m, bench.d, *other.model, difference, more.data());

@@ -159,12 +159,14 @@ TEST_F(ClosedFormTest, FollowsAFrictionThatSlides) {
             "");
 }
 
-// What nobody can see in the model: a joint comes to its limit on the way.
-TEST_F(ClosedFormTest, LeavesALogWithALimitToDifferences) {
+// What nobody can see in the model: the arm touches something on the way.
+TEST_F(ClosedFormTest, LeavesALogWithAContactToDifferences) {
   Read(0, kParameters, "rest");
   std::string model = Arm(0);
-  const std::string joint = "name='x0'";
-  model.replace(model.find(joint), joint.size(), joint + " range='-0.05 0.05' limited='true'");
+  const std::string body = "<site name='a2'", wall = "<worldbody>";
+  model.insert(model.find(body), "<geom size='0.01' pos='0 0 -0.1' mass='0'/>");
+  model.insert(model.find(wall) + wall.size(),
+               "<geom type='plane' pos='0 0.03 0' size='1 1 1' zaxis='0 -1 0'/>");
   Write("model.xml", model);
   const Experiment e = Experiment::Read(folder_ / "e.yaml");
   const ModelSpec system = ModelSpec::Load(e.model);

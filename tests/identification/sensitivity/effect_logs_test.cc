@@ -1,0 +1,93 @@
+// Sensitivities of whole logs with effects, in closed form, against narrow differences.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "identification/problem/problem.h"
+#include "random_laws.h"
+#include "support/pendulum.h"
+
+namespace continuum {
+namespace {
+
+using testing::RandomLaw;
+using testing::RandomNumbers;
+
+class EffectLogsTest : public testing::Bench, public ::testing::WithParamInterface<RandomLaw> {
+ protected:
+  Experiment Read(const RandomLaw& law) const {
+    RandomNumbers number(3, 0);
+    Write("model.xml", testing::RandomArm(law, number, "implicitfast"));
+    std::string csv = "time,pull,swing,turn,wind,x0,y2,x1,ex,ez\n";
+    for (int k = 0; k < 60; ++k) {
+      const double t = 0.0105 * k;
+      csv +=
+          fmt::format("{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},0,0,0,0,0\n", t, k < 35 ? 5.0 : 2.0,
+                      0.9 * std::sin(7 * t), 0.8 * std::sin(5 * t), -0.2 + 0.1 * std::sin(4 * t));
+    }
+    Write("log.csv", csv);
+    std::string parameters =
+        "parameters:\n"
+        "  - {name: m, target: 'body:link1', attribute: mass, initial: 0.1, lower: 0.01, upper: "
+        "1}\n"
+        "  - {name: k, target: 'joint:y2', attribute: stiffness, initial: 0.5, lower: 0, upper: "
+        "9}\n"
+        "  - {name: j, target: 'joint:y1', attribute: armature, initial: 1e-4, lower: 0, upper: "
+        "1}\n"
+        "  - {name: kp, target: 'actuator:servo', attribute: kp, initial: 0.8, lower: 0, upper: "
+        "9}\n";
+    for (const auto& [key, range] : law.parameters) {
+      const double middle = 0.4 * range.first + 0.6 * range.second;
+      parameters += fmt::format(
+          "  - {{name: {0}, target: 'plugin:law', attribute: {0}, initial: {1}, lower: {2}, upper: "
+          "{3}}}\n",
+          key, middle, middle - 10 * std::abs(middle) * (range.first < 0), 10 * std::abs(middle));
+    }
+    return Experiment::Read(
+        Write("e.yaml",
+              "format: 1\nmodel: model.xml\ntime: {column: time, unit: s}\nstart: rest\ninputs:\n"
+              "  - {column: pull, unit: N, actuator: pull}\n"
+              "  - {column: swing, unit: N, actuator: lagged}\n"
+              "  - {column: turn, unit: rad, actuator: servo, interpolate: linear}\n"
+              "  - {column: wind, unit: m, actuator: winch}\n"
+              "outputs:\n"
+              "  - {column: x0, unit: rad, sensor: x0, sigma: 1}\n"
+              "  - {column: y2, unit: rad/s, sensor: y2, sigma: 1}\n"
+              "  - {column: x1, unit: rad, sensor: x1, sigma: 1}\n"
+              "  - {column: ex, unit: m, sensor: 'end[0]', sigma: 1}\n"
+              "  - {column: ez, unit: m, sensor: 'end[2]', sigma: 1}\n"
+              "logs:\n  - {file: log.csv, use: train}\n" +
+                  parameters));
+  }
+};
+
+TEST_P(EffectLogsTest, HaveTheSensitivitiesOfNarrowDifferences) {
+  const Experiment e = Read(GetParam());
+  const ModelSpec system = ModelSpec::Load(e.model);
+  const Problem problem(e, system);
+  ASSERT_EQ(problem.NoClosedForm(), "");
+  Problem differences(e, system);
+  differences.DifferBy(GetParam().reach);
+  differences.Center();
+  const auto use = problem.AllLogs();
+  const auto x = problem.Start();
+  const auto r = problem.Residuals(x, use);
+  const std::size_t before = problem.evaluations();
+  const auto found = problem.Jacobian(x, r, use)[0], expected = differences.Jacobian(x, r, use)[0];
+  EXPECT_EQ(problem.evaluations() - before, 1u);
+  for (Eigen::Index k = 0; k < expected.cols(); ++k) {
+    const double size = expected.col(k).cwiseAbs().maxCoeff();
+    EXPECT_GT(size, 0) << problem.parameters()[k].name;
+    EXPECT_LT((found.col(k) - expected.col(k)).cwiseAbs().maxCoeff() / size, GetParam().error)
+        << problem.parameters()[k].name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Law, EffectLogsTest, ::testing::ValuesIn(testing::RandomLaws()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace continuum

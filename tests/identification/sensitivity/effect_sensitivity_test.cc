@@ -1,0 +1,222 @@
+// Sensitivities of single steps with effects, in closed form, against central differences of the
+// step on machines drawn at random.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "identification/sensitivity/step_sensitivity.h"
+#include "random_laws.h"
+#include "sim/model/model_spec.h"
+#include "support/pendulum.h"
+
+namespace continuum {
+namespace {
+
+using testing::RandomLaw;
+using testing::RandomNumbers;
+using Vector = Eigen::VectorXd;
+
+constexpr double kMove = 5e-7, kReach = 2e-6;
+constexpr int kParts = mjSTATE_FULLPHYSICS | mjSTATE_WARMSTART;
+
+// What decides which branch a step takes: which rows slide, and which way.
+std::vector<int> Branch(const mjModel& m, const mjData& d) {
+  std::vector<int> branch;
+  for (int r = 0; r < d.nefc; ++r) {
+    const bool friction =
+        d.efc_type[r] == mjCNSTR_FRICTION_DOF || d.efc_type[r] == mjCNSTR_FRICTION_TENDON;
+    const bool full = std::abs(d.efc_force[r]) >= d.efc_frictionloss[r] * (1 - 1e-9);
+    branch.push_back(d.efc_type[r]);
+    branch.push_back(friction ? full * (d.efc_force[r] > 0 ? 1 : -1) : d.efc_force[r] > 0);
+  }
+  for (int a = 0; a < m.nactuator; ++a) branch.push_back(d.actuator_force[a] > 0);
+  return branch;
+}
+
+// A machine, and the same moved along a direction of all its numbers.
+struct Machines {
+  ModelAndData here, perturbed, above, below;
+
+  template <class Xml>
+  explicit Machines(const Xml& xml)
+      : here(Built(xml, 0)),
+        perturbed(Built(xml, kMove)),
+        above(Built(xml, kReach)),
+        below(Built(xml, -kReach)) {}
+  template <class Xml>
+  static ModelAndData Built(const Xml& xml, double along) {
+    return ModelSpec::Parse(xml(along)).Build();
+  }
+};
+
+struct State {
+  Vector q, v, w, z;
+  static State Of(const ModelAndData& machine) {
+    const mjModel& m = *machine.model;
+    const mjData& d = *machine.data;
+    return {Vector::Map(d.qpos, m.nq), Vector::Map(d.qvel, m.nv), Vector::Map(d.act, m.na),
+            Vector::Map(d.plugin_state, m.npluginstate)};
+  }
+};
+
+void Drive(ModelAndData& machine, int step, double phase) {
+  mjData& d = *machine.data;
+  const double t = 2e-3 * step;
+  d.ctrl[0] = 5 + 4 * std::sin(9 * t + phase);
+  d.ctrl[1] = 0.9 * std::sin(7 * t + 2 * phase);
+  d.ctrl[2] = 0.8 * std::sin(5 * t + 3 * phase);
+  d.ctrl[3] = -0.2 + 0.1 * std::sin(4 * t + phase);
+}
+
+// The state after a step from a state moved along a direction; its branch.
+struct Moved {
+  State after;
+  std::vector<int> branch;
+};
+Moved Step(ModelAndData& machine, const std::vector<double>& from, const State& along, double by,
+           int step, double phase) {
+  const mjModel& m = *machine.model;
+  mjData& d = *machine.data;
+  mj_setState(&m, &d, from.data(), kParts);
+  for (int i = 0; i < m.nv; ++i) d.qpos[i] += by * along.q[i], d.qvel[i] += by * along.v[i];
+  for (int i = 0; i < m.na; ++i) d.act[i] += by * along.w[i];
+  for (int i = 0; i < m.npluginstate; ++i) d.plugin_state[i] += by * along.z[i];
+  Drive(machine, step, phase);
+  mj_step(&m, &d);
+  return {State::Of(machine), Branch(m, d)};
+}
+
+// Largest error of a block over its largest number.
+double Error(const Vector& found, const Vector& expected) {
+  if (found.size() == 0) return 0;
+  return (found - expected).cwiseAbs().maxCoeff() / std::max(expected.cwiseAbs().maxCoeff(), 1e-6);
+}
+
+std::vector<double> Listed(const Vector& x) { return {x.begin(), x.end()}; }
+
+// What a derivative may be wrong by.
+enum class Mutation { kNone, kFlippedParameters, kNoPositions, kNoStates };
+
+class Comparison {
+ public:
+  explicit Comparison(Machines& machines, unsigned seed, Mutation mutation = Mutation::kNone)
+      : machines_(machines), mutation_(mutation), rng_(seed), phase_(seed) {}
+
+  // The worst error of some steps along a motion; < 0: all were near to a switch.
+  double Worst(int steps, int every) {
+    double worst = -1;
+    for (int step = 0; step < steps; ++step) {
+      if (step % every == every - 1) worst = std::max(worst, ErrorOf(step));
+      Drive(machines_.here, step, phase_);
+      mj_step(machines_.here.model.get(), machines_.here.data.get());
+    }
+    return worst;
+  }
+
+ private:
+  State Direction() {
+    const mjModel& m = *machines_.here.model;
+    const mjData& d = *machines_.here.data;
+    const auto some = [&](Eigen::Index n) {
+      return Vector(Vector::NullaryExpr(
+          n, [&] { return std::uniform_real_distribution<double>(-1, 1)(rng_); }));
+    };
+    State along{some(m.nv), some(m.nv), some(m.na), some(m.npluginstate)};
+    for (int i = 0; i < m.npluginstate; ++i) {
+      const double z = d.plugin_state[i];
+      if (z == 0 || z == 1 || z == 2) along.z[i] = 0;  // what a row did, or nothing yet
+    }
+    return along;
+  }
+
+  double ErrorOf(int step) {
+    const mjModel& m = *machines_.here.model;
+    mjData& d = *machines_.here.data;
+    std::vector<double> from(mj_stateSize(&m, kParts));
+    mj_getState(&m, &d, from.data(), kParts);
+    const State along = Direction();
+    const Moved up = Step(machines_.above, from, along, kReach, step, phase_),
+                down = Step(machines_.below, from, along, -kReach, step, phase_);
+    const bool flipped = mutation_ == Mutation::kFlippedParameters;
+    StepSensitivity sensitivity(machines_.here, Wiring({}, m), {&machines_.perturbed},
+                                flipped ? -kMove : kMove);
+    EXPECT_EQ(ModelDifference(m, *machines_.perturbed.model).field, "");
+    const double q = mutation_ != Mutation::kNoPositions, z = mutation_ != Mutation::kNoStates;
+    sensitivity.Start(0,
+                      {Listed(q * along.q), Listed(along.v), Listed(along.w), Listed(z * along.z)});
+    mj_setState(&m, &d, from.data(), kParts);
+    Drive(machines_.here, step, phase_);
+    sensitivity.Before(m, d);
+    mj_step(&m, &d);
+    const auto branch = Branch(m, d);
+    EXPECT_TRUE(sensitivity.After(m, d));
+    mj_setState(&m, &d, from.data(), kParts);
+    if (branch != up.branch || branch != down.branch) return -1;
+    return Compare(sensitivity, up.after, down.after);
+  }
+
+  static double Compare(const StepSensitivity& s, const State& up, const State& down) {
+    using Kind = Number::Kind;
+    const auto slope = [](const Vector& a, const Vector& b) -> Vector {
+      return (a - b) / (2 * kReach);
+    };
+    const auto& n = s.numbers();
+    return std::max({Error(n[Kind::kPosition].col(0), slope(up.q, down.q)),
+                     Error(n[Kind::kSpeed].col(0), slope(up.v, down.v)),
+                     Error(s.activation().col(0), slope(up.w, down.w)),
+                     Error(n[Kind::kState].col(0), slope(up.z, down.z))});
+  }
+
+  Machines& machines_;
+  Mutation mutation_;
+  std::mt19937 rng_;
+  double phase_;
+};
+
+constexpr unsigned kMachines = 50;
+
+Machines MachinesOf(const RandomLaw& law, unsigned seed) {
+  return Machines([&](double along) {
+    RandomNumbers number(seed, along);
+    return RandomArm(law, number, seed % 2 ? "implicitfast" : "Euler");
+  });
+}
+
+class EffectSensitivityTest : public ::testing::TestWithParam<RandomLaw> {};
+
+TEST_P(EffectSensitivityTest, AreThoseOfSingleSteps) {
+  unsigned compared = 0;
+  for (unsigned seed = 0; seed < kMachines; ++seed) {
+    Machines machines = MachinesOf(GetParam(), seed);
+    const Wiring wiring({}, *machines.here.model);
+    ASSERT_EQ(StepSensitivity::Obstacle(*machines.here.model, *machines.here.data, wiring), "");
+    const double error = Comparison(machines, seed).Worst(60, 15);
+    compared += error >= 0;
+    EXPECT_LT(error, 1e-5) << "machine " << seed;
+  }
+  EXPECT_GT(compared, kMachines * 9 / 10);  // the others were near to a switch
+}
+
+// What such a comparison must not let pass.
+TEST_P(EffectSensitivityTest, SeesWhatIsLeftOut) {
+  constexpr unsigned kSome = 8;
+  for (const Mutation mutation :
+       {Mutation::kFlippedParameters, Mutation::kNoPositions, Mutation::kNoStates}) {
+    unsigned seen = 0;
+    for (unsigned seed = 0; seed < kSome; ++seed) {
+      Machines machines = MachinesOf(GetParam(), seed);
+      if (mutation == Mutation::kNoStates && machines.here.model->npluginstate == 0) ++seen;
+      seen += Comparison(machines, seed, mutation).Worst(60, 15) > 1e-4;
+    }
+    EXPECT_GE(seen, kSome / 2) << static_cast<int>(mutation);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Law, EffectSensitivityTest, ::testing::ValuesIn(testing::RandomLaws()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace continuum

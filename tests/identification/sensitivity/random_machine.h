@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace continuum::testing {
+
+/// Numbers of a machine drawn at random, each with a random direction in which all move together.
+class RandomNumbers {
+ public:
+  RandomNumbers(unsigned seed, double along) : rng_(seed), along_(along) {}
+
+  /// Between two numbers, moved by `along` times itself or its opposite.
+  std::string operator()(double lower, double upper) {
+    const double value = std::uniform_real_distribution<double>(lower, upper)(rng_);
+    const double slope = Direction();
+    return fmt::format("{:.17g}", value + along_ * slope * std::max(std::abs(value), 1e-3));
+  }
+  /// The same without a direction.
+  std::string Fixed(double lower, double upper) {
+    return fmt::format("{:.17g}", std::uniform_real_distribution<double>(lower, upper)(rng_));
+  }
+  double Direction() { return std::uniform_real_distribution<double>(-1, 1)(rng_); }
+
+ private:
+  std::mt19937 rng_;
+  double along_;
+};
+
+/// A law with the ranges of its parameters, and where it acts.
+struct RandomLaw {
+  std::string name, effect, place;
+  std::vector<std::pair<std::string, std::pair<double, double>>> parameters;
+  std::string more = {};                ///< further keys
+  std::string joints = {}, cable = {};  ///< further attributes of all joints, of the cable 'tb'
+  std::string equality = {};            ///< further elements
+  /// Reach of differences over whole logs, as a share of a parameter, and their own error: laws
+  /// that walk through a step by shorter ones, as long as precision needs, are that smooth.
+  double reach = 1e-6, error = 1e-5;
+};
+inline void PrintTo(const RandomLaw& law, std::ostream* out) { *out << law.name; }
+
+inline std::string Instance(const RandomLaw& law, RandomNumbers& number) {
+  std::string keys = law.place + law.more;
+  for (const auto& [key, range] : law.parameters) {
+    keys += fmt::format("<config key='{}' value='{}'/>", key, number(range.first, range.second));
+  }
+  if (law.effect.empty()) return "";
+  return fmt::format("<plugin plugin='continuum.{}'><instance name='law'>{}</instance></plugin>",
+                     law.effect, keys);
+}
+
+/// Three links on hinges and a slide, with a cable through sites, a tendon of joints, a lagged
+/// motor and a position servo.
+inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
+                             const std::string& integrator) {
+  const std::string plugins = Instance(law, number);
+  std::string bodies, close;
+  for (int i = 0; i < 3; ++i) {
+    bodies += fmt::format(
+        "<body name='link{0}' pos='0 0 {1}'><joint name='x{0}' axis='1 {2} 0' stiffness='{3}' "
+        "damping='{4}' armature='{5}' springref='{6}' {9}/><joint name='y{0}' axis='0 1 "
+        "{2}' stiffness='{3}' damping='{4}' {9}/><inertial pos='{7} 0 -0.05' mass='{8}' "
+        "diaginertia='1e-4 1.2e-4 4e-5'/><site name='a{0}' pos='0.03 0.01 -0.1'/>"
+        "<site name='b{0}' pos='-0.01 0.03 -0.1'/>",
+        i, i ? -0.1 : 0, number.Fixed(-0.3, 0.3), number(0.3, 0.9), number(0.01, 0.03),
+        number(1e-4, 3e-4), number(-4, 4), number(0, 5e-3), number(0.05, 0.15), law.joints);
+    close += "</body>";
+  }
+  return fmt::format(
+      "<mujoco><option timestep='2e-3' integrator='{}' tolerance='0' iterations='50'/>"
+      "<extension>{}</extension><worldbody><site name='a' pos='0.03 0.01 0'/>"
+      "<site name='b' pos='-0.01 0.03 0'/>{}{}</worldbody>"
+      "<tendon><spatial name='ta' damping='{}'><site site='a'/><site site='a0'/>"
+      "<site site='a1'/><site site='a2'/></spatial><spatial name='tb' stiffness='{}' {}>"
+      "<site site='b'/><site site='b0'/><site site='b1'/></spatial>"
+      "<fixed name='tf'><joint joint='x0' coef='1'/><joint joint='y2' coef='-0.5'/></fixed>"
+      "</tendon>{}<actuator><general name='pull' tendon='ta' gainprm='{}'/>"
+      "<general name='lagged' joint='y0' dyntype='filterexact' dynprm='{}' gainprm='0.3' "
+      "gear='1.5'/><position name='servo' joint='x1' kp='{}' kv='{}'/>"
+      "<position name='winch' tendon='tb' gear='-1' kp='{}'/></actuator>"
+      "<sensor><jointpos name='x0' joint='x0'/><jointvel name='y2' joint='y2'/>"
+      "<jointpos name='x1' joint='x1'/><framepos name='end' objtype='site' objname='a2'/></sensor>"
+      "</mujoco>",
+      integrator, plugins, bodies, close, number(0.1, 0.5), number(5, 20), law.cable, law.equality,
+      number(-1.2, -0.8), number(0.02, 0.05), number(0.5, 1), number(0.002, 0.01), number(20, 60));
+}
+
+}  // namespace continuum::testing
