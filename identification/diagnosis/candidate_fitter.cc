@@ -48,16 +48,6 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
   options.hopeless = HopelessCost(rival, criteria);
   options.idle = idle;
   f.fit = FitParameters(problem, start, train, options);
-  if (getenv("CDEBUG")) {
-    fprintf(stderr, "FIT %s it %d conv %d cost", f.fit.message.c_str(), f.fit.iterations,
-            f.fit.converged);
-    for (double v : f.fit.trace) fprintf(stderr, " %.5g", v);
-    fprintf(stderr, " | start");
-    for (double v : start) fprintf(stderr, " %.4g", v);
-    fprintf(stderr, " | end");
-    for (double v : f.fit.x) fprintf(stderr, " %.4g", v);
-    fprintf(stderr, "\n");
-  }
   f.fit.x = FitStarts(problem, f.fit.x, validate);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
   RequireFinite(problem, f.fit.x, f.residuals, problem.AllLogs(), "with the fitted parameters");
@@ -69,8 +59,6 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
 // As `identify` does, then in units of the noise.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr int kIterations = 100;
-  if (getenv("CSKIP"))
-    return Fit(problem, problem.Start(), std::numeric_limits<double>::infinity(), false);
   const FitOptions options{.iterations = kIterations, .until = until};
   const SearchedFit found =
       FitBySearch(problem, problem.Start(), TrainLogs(*experiment), {}, options);

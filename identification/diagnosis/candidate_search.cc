@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <set>
 
 #include <Eigen/Dense>
@@ -82,32 +83,51 @@ CandidateSearch::CandidateSearch(const SearchContext& context, const BaseFit& ba
   }
 }
 
-void CandidateSearch::ProbeAll(const ProjectedResidual& residual,
-                               std::vector<std::vector<Probe>>& probes) {
-  for (CandidateResult& c : candidates) {
-    options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name(), probes.size(), candidates.size());
-    probes.emplace_back();
-    if (fitter_.TimeIsOver()) {
-      left_out.push_back("a look at " + c.hypothesis.NameAtPlace());
-      continue;
-    }
-    try {
-      Problem problem = ProblemOf(c, *fitter_.experiment);
-      if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
-      probes.back() = ProbesOf(c.hypothesis, problem, *base_.fitted, residual,
-                               fitter_.whitening.active(), criteria_);
-    } catch (const Error& error) {
-      c.error = error.what();
-    }
+void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
+                               const StartRange& starts) {
+  try {
+    Problem problem = ProblemOf(c, *fitter_.experiment);
+    if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
+    const auto more = ProbesOf(c.hypothesis, problem, *base_.fitted, residual,
+                               fitter_.whitening.active(), starts, criteria_);
+    c.probes.insert(c.probes.end(), more.begin(), more.end());
+    for (const Probe& probe : more)
+      c.explained = std::max(c.explained, ExplainedBy(probe, residual.vector()).amount);
+  } catch (const Error& error) {
+    if (c.probes.empty()) c.error = error.what();
   }
+}
+
+// From the first start of each; then from the others of those that are not hopeless there.
+void CandidateSearch::ProbeAll(const ProjectedResidual& residual) {
+  std::mutex mutex;
+  std::size_t done = 0;
+  const auto say = [&](CandidateResult& c, const char* look) {
+    const std::lock_guard lock(mutex);
+    const std::size_t all = candidates.size();
+    options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name(), std::min(done++, all), all);
+    if (fitter_.TimeIsOver()) left_out.push_back(look + c.hypothesis.NameAtPlace());
+    return !fitter_.TimeIsOver();
+  };
+  ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
+    if (say(candidates[i], "a look at ")) ProbeOne(candidates[i], residual, {});
+  });
+  const double least = criteria_.fit_share * MostExplained();
+  ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
+    CandidateResult& c = candidates[i];
+    const std::size_t starts = c.hypothesis.starts.size();
+    if (c.explained < least || c.probes.empty() || starts < 2) return;
+    if (say(c, "other shapes of ")) ProbeOne(c, residual, {1, starts});
+  });
 }
 
 void CandidateSearch::Screen() {
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
   base_squares_ = residual.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
+  ProbeAll(residual);
   std::vector<std::vector<Probe>> probes;
-  ProbeAll(residual, probes);
+  for (const CandidateResult& c : candidates) probes.push_back(c.probes);
   options_.Say(DiagnosisStage::kScreen, "significance", candidates.size(), candidates.size());
   const Significance found =
       noise_.known() ? Significant(residual, probes) : BestOfProbes(probes, residual.vector());
@@ -115,7 +135,6 @@ void CandidateSearch::Screen() {
     CandidateResult& c = candidates[i];
     c.explained = found.explained[i];
     c.p = found.p[i];
-    c.probes = std::move(probes[i]);
     smallest_p_ = std::min(smallest_p_, c.p);
     if (c.probes.empty()) continue;
     const std::size_t best = found.best[i];
@@ -137,7 +156,8 @@ void CandidateSearch::LookAtForces() {
     CandidateResult& c = candidates[i];
     if (!c.error.empty() || StopRequested() || fitter_.TimeIsOver()) return;
     try {
-      const auto found = view.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment));
+      const std::size_t best = c.probes.empty() ? 0 : c.probes.front().start;
+      const auto found = view.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment), best);
       if (!found) return;
       c.force_share = found->share;
       c.other_starts.push_back(found->x);
@@ -217,7 +237,6 @@ void CandidateSearch::JoinUnlisted(CandidateSearch other) {
   for (std::string& s : other.left_out) left_out.push_back(std::move(s));
 }
 
-// Twice the logarithm of what a fit gains over the base.
 double CandidateSearch::Likelihood(const Fitted& fitted) const {
   return (base_.fitted->cost - fitted.cost) / inflation_;
 }

@@ -4,6 +4,7 @@
 
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/search_rules.h"
 
 namespace continuum {
@@ -71,6 +72,8 @@ class CandidateSearch {
   std::vector<LikelihoodRecord> Records() const;
   /// The same of the base.
   BaseSquares Base() const;
+  /// Twice the logarithm of what a fit gains over the base.
+  double Likelihood(const Fitted& fitted) const;
   /// What a fit takes of the base's squared error above the noise and what the time step adds.
   double ErrorShare(const Fitted& fitted) const;
   double smallest_p() const { return smallest_p_; }  ///< of all candidates that are not skipped
@@ -83,7 +86,8 @@ class CandidateSearch {
   std::vector<std::string> left_out;  ///< for lack of time
 
  private:
-  void ProbeAll(const ProjectedResidual& residual, std::vector<std::vector<Probe>>& probes);
+  void ProbeOne(CandidateResult& c, const ProjectedResidual& residual, const StartRange& starts);
+  void ProbeAll(const ProjectedResidual& residual);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);
   void LookAtForces();
@@ -93,9 +97,9 @@ class CandidateSearch {
   double Threshold() const;
   double Promise(const CandidateResult& c, double most, double most_of_force) const;
   void Order();
+  std::vector<CandidateResult*> NextWave(double needed, std::size_t most, std::size_t& next);
   bool ReachesNoise(const Fitted& fitted) const;
   bool TakesMainShare(const Fitted& fitted) const;
-  double Likelihood(const Fitted& fitted) const;
   void SayFit(const CandidateResult& c, double needed) const;
   void FitOne(CandidateResult& c, double rival) const;
   static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,

@@ -9,9 +9,14 @@
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/statistics/uncertainty.h"
+#include "sim/io/interrupt.h"
+#include "sim/numerics/parallel.h"
 
 // The fits of a search: who gets one, from where, and how far.
 namespace continuum {
+namespace {
+constexpr std::size_t kWave = 4;  // candidates that are fitted beside each other
+}
 
 double CandidateSearch::Threshold() const {
   return FitThreshold(MostExplained(), base_squares_, noise_.known(), criteria_);
@@ -73,29 +78,47 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
   const CandidateResult* const known = beside ? beside->leading() : nullptr;
   if (beside) needed = std::max(needed, UnlistedThreshold(beside->MostExplained(), criteria_));
   double rival = known ? known->fitted.fit.cost : kInfinity;
-  std::size_t fits = 0;
-  for (CandidateResult& c : candidates) {
-    if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
-    if (fits == limit) break;
-    if (fitter_.TimeIsOver()) {
-      left_out.push_back("a fit of " + c.hypothesis.NameAtPlace());
-      continue;
-    }
-    SayFit(c, needed);
-    ++fits;
-    try {
-      FitOne(c, rival + 0.5 * StepReduction(*base_.fitted));
-      if (!noise_.known()) continue;
-      rival = std::min(rival, c.fitted.fit.cost);
-      if (ReachesNoise(c.fitted) || TakesMainShare(c.fitted))
+  std::size_t next = 0;
+  while (limit > 0) {
+    const auto wave = NextWave(needed, std::min(limit, kWave), next);
+    if (wave.empty()) break;
+    limit -= wave.size();
+    SayFit(*wave.front(), needed);
+    ParallelFor(wave.size(), [&](std::size_t, std::size_t i) {
+      try {
+        FitOne(*wave[i], rival + 0.5 * StepReduction(*base_.fitted));
+      } catch (const Error& error) {
+        wave[i]->error = error.what();
+      }
+    });
+    StopIfRequested();
+    for (const CandidateResult* const c : wave) {
+      if (!noise_.known() || !c->was_fitted) continue;
+      rival = std::min(rival, c->fitted.fit.cost);
+      if (ReachesNoise(c->fitted) || TakesMainShare(c->fitted))
         needed = std::max(needed, FitThresholdAtNoise(MostExplained(), criteria_));
-    } catch (const Error& error) {
-      c.error = error.what();
     }
   }
   FinishAbandoned();
   CompleteCompetitive(known ? known->fitted.cost : kInfinity);
   Dismiss();
+}
+
+// Those that are fitted beside each other, from the next one on: as many whatever the machine, as
+// what one reaches decides about those behind it.
+std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size_t most,
+                                                        std::size_t& next) {
+  std::vector<CandidateResult*> wave;
+  for (; next < candidates.size() && wave.size() < most; ++next) {
+    CandidateResult& c = candidates[next];
+    if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
+    if (fitter_.TimeIsOver()) {
+      left_out.push_back("a fit of " + c.hypothesis.NameAtPlace());
+    } else {
+      wave.push_back(&c);
+    }
+  }
+  return wave;
 }
 
 bool CandidateSearch::TakesMainShare(const Fitted& fitted) const {

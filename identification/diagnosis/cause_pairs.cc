@@ -54,7 +54,9 @@ class PairSearch {
       : context_(context), criteria_(context.fitter.criteria), single_(single), of_step_(of_step) {}
 
   PairsFound Run() {
-    for (const CandidateResult* const c : FirstCauses()) Await(*c);
+    for (const CandidateResult* const c : FirstCauses()) {
+      if (const CandidateResult* const complete = Completed(*c)) Await(*complete);
+    }
     while (!waiting_.empty() && static_cast<double>(tried_.size()) < criteria_.pair_bases &&
            !context_.fitter.TimeIsOver()) {
       const CandidateResult* const base = waiting_.front();
@@ -74,7 +76,7 @@ class PairSearch {
     std::vector<const CandidateResult*> firsts;
     std::map<std::string, std::size_t> known;  // by family
     for (const CandidateResult& c : single_.candidates) {
-      if (!c.fitted.complete()) continue;
+      if (!c.was_fitted) continue;
       const Kin kin = KinOf(c.hypothesis.Card());
       const auto [at, fresh] =
           known.try_emplace(kin.family.empty() ? c.hypothesis.effect : kin.family, firsts.size());
@@ -89,6 +91,20 @@ class PairSearch {
         first = &c;
     }
     return firsts;
+  }
+
+  // With sensitivities; null where it diverges next to its fit.
+  const CandidateResult* Completed(const CandidateResult& c) {
+    if (c.fitted.complete()) return &c;
+    try {
+      CandidateResult& own = alone_.emplace_back(c);
+      context_.fitter.Complete(ProblemOf(c, *context_.fitter.experiment), own.fitted);
+      own.likelihood = single_.Likelihood(own.fitted);
+      return &own;
+    } catch (const Error&) {
+      alone_.pop_back();
+      return nullptr;
+    }
   }
 
   void Await(const CandidateResult& c) {

@@ -46,15 +46,13 @@ Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::siz
   return units_.Of(MissingForces(problem, x, problem.TrainLogs(), thread));
 }
 
-std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
-                                                     const Problem& problem) const {
-  std::optional<EquationStart> best;
-  if (!any() || h.OnlyMeasured()) return best;
-  for (const auto& start : h.starts) {
-    auto one = From(h, problem, start);
-    if (one && (!best || one->share > best->share)) best = std::move(one);
-  }
-  return best;
+std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h, const Problem& problem,
+                                                     std::size_t other) const {
+  if (!any() || h.OnlyMeasured()) return {};
+  auto best = From(h, problem, h.starts.front());
+  if (other == 0) return best;
+  auto second = From(h, problem, h.starts.at(other));
+  return second && (!best || second->share > best->share) ? second : best;
 }
 
 // Each amplitude by itself, the others absent; sizes by least squares, of allowed signs.

@@ -32,10 +32,11 @@ class EquationErrors {
 
   /// Whether every joint is measured, so that there is anything to see.
   bool any() const { return force_.size() > 0; }
-  /// What a candidate explains with sizes of its own, and where its fit may begin: of all its
-  /// starts the best. Effects are linear in their sizes here, however large they are. Nothing where
-  /// it does nothing to f. problem: of the candidate.
-  std::optional<EquationStart> StartOf(const Hypothesis& hypothesis, const Problem& problem) const;
+  /// What a candidate explains with sizes of its own, and where its fit may begin: from its first
+  /// start or from another one, whichever is better. Effects are linear in their sizes here,
+  /// however large they are. Nothing where it does nothing to f. problem: of the candidate.
+  std::optional<EquationStart> StartOf(const Hypothesis& hypothesis, const Problem& problem,
+                                       std::size_t other = 0) const;
   /// Of a fitted candidate with the sizes that its fit gave it; nothing where it does nothing to f,
   /// as effects on the sensors.
   std::optional<ByEquation> Of(const CandidateResult& candidate) const;

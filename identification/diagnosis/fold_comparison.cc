@@ -32,9 +32,13 @@ class FoldComparison {
   void Run() {
     options_.Say(DiagnosisStage::kJudgement, "folds");
     fitter_.AddFolds(Problem(e_, d_.system), d_.folds, d_.before);
+    std::stable_sort(d_.candidates.begin(), d_.candidates.end(), [](const auto& a, const auto& b) {
+      return a.fitted.error.train < b.fitted.error.train;
+    });
     for (std::size_t done = 0; done < d_.candidates.size(); ++done) {
       CandidateResult& c = d_.candidates[done];
       if (!WorthFolds(d_.before.error.train, c.fitted.error.train, d_.criteria)) continue;
+      if (!HasTimeFor("folds of " + c.hypothesis.NameAtPlace())) continue;
       options_.Say(DiagnosisStage::kJudgement, "folds of " + c.hypothesis.Name(), done,
                    d_.candidates.size());
       RecordFolds(fitter_, d_, c);
@@ -66,13 +70,21 @@ class FoldComparison {
   void RunCeiling() {
     options_.Say(DiagnosisStage::kJudgement, "ceiling");
     RaiseCeiling(d_, "the model as it is", d_.before.folds, d_.before.error);
-    Raise("a smooth force without a name", RandomForce(kTerms, true, d_.sizes, options_.seed));
-    if (!e_.quasi_static)  // there nothing moves
-      Raise("a friction without a name", RandomFriction(kTerms, d_.sizes, options_.seed));
+    if (HasTimeFor("forces without a name")) {
+      Raise("a smooth force without a name", RandomForce(kTerms, true, d_.sizes, options_.seed));
+      if (!e_.quasi_static)  // there nothing moves
+        Raise("a friction without a name", RandomFriction(kTerms, d_.sizes, options_.seed));
+    }
     for (const CandidateResult& c : d_.candidates) {
       if (!c.record.after.empty())
         RaiseCeiling(d_, c.hypothesis.NameAtPlace(), c.fitted.folds, c.fitted.error);
     }
+  }
+
+  bool HasTimeFor(const std::string& what) {
+    if (!fitter_.TimeIsOver()) return true;
+    d_.left_out.push_back(what);
+    return false;
   }
 
   void Raise(const std::string& by, const ForceTerms& terms) {
@@ -96,7 +108,7 @@ class FoldComparison {
       };
       for (int k = 0; k < options_.placebos; ++k) {
         std::erase_if(open, done);
-        if (open.empty()) break;
+        if (open.empty() || !HasTimeFor("some of the random forces")) break;
         options_.Say(DiagnosisStage::kJudgement,
                      fmt::format("random forces, {} parameter(s)", count),
                      static_cast<std::size_t>(k), static_cast<std::size_t>(options_.placebos));

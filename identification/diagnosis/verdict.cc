@@ -105,12 +105,16 @@ class Ranking {
     const bool most =
         AreKin(a, first) &&
         candidates_[a].likelihood >= criteria_.family_share * candidates_[first].likelihood;
-    return most || !Behind(first, a, criteria_.nested_margin);
+    return most || !Behind(first, a, AtLeast(criteria_.nested_margin));
   }
   bool IsBehind(std::size_t best, std::size_t rival) const {
+    return Behind(best, rival, AtLeast(criteria_.rival_margin));
+  }
+  // A margin, or what else is wrong with a model may make of one.
+  double AtLeast(double margin) const {
     const double left =
         std::max<double>(criteria_.left_share * left_, criteria_.structure_share * most_);
-    return Behind(best, rival, std::max<double>(criteria_.rival_margin, left / scale_));
+    return std::max(margin, left / scale_);
   }
   // By the smaller of both time-discretisation errors: one that leans on it far more than the other
   // does not profit from it.
@@ -124,7 +128,7 @@ class Ranking {
   }
   // To the one that it contains. Where only the time step leaves that open, both stay.
   bool AddsNothing(std::size_t a, std::size_t b) const {
-    return Contains(a, b) && Score(a) - Score(b) < scale_ * criteria_.nested_margin;
+    return Contains(a, b) && Score(a) - Score(b) < scale_ * AtLeast(criteria_.nested_margin);
   }
 
   const std::vector<LikelihoodRecord>& candidates_;

@@ -44,10 +44,27 @@ struct Quartic {
     }
   }
 
+  // The same around another row of evenly spaced ones.
+  Quartic At(std::size_t k) const {
+    Quartic other = *this;
+    other.begin = k - kHalf;
+    return other;
+  }
+
   double Of(const std::vector<double>& y, const Eigen::VectorXd& weights) const {
     return Eigen::Map<const Eigen::VectorXd>(y.data() + begin, weights.size()).dot(weights);
   }
 };
+
+// Whether the rows around one are as far apart as those around the row before it.
+bool IsSpacedAsBefore(const std::vector<double>& t, std::size_t k) {
+  constexpr double kEqual = 1e-9;  // of a spacing
+  const double first = t[k - kHalf] - t[k - kHalf - 1], last = t[k + kHalf] - t[k + kHalf - 1];
+  for (std::size_t i = k - kHalf; i < k + kHalf; ++i) {
+    if (std::abs(t[i + 1] - t[i] - first) > kEqual * last) return false;
+  }
+  return true;
+}
 
 // The channel that measures each joint; empty when one is not measured.
 std::map<int, std::size_t> JointChannels(const Experiment& e, const mjModel& m) {
@@ -74,7 +91,13 @@ class LogForces {
         log_(problem.experiment().logs[log]),
         index_(log),
         machine_(problem.system(thread).Build(problem.ChangesFor(x, log))) {
-    for (std::size_t k = kHalf; k + kHalf < log_.rows(); ++k) fits_.emplace_back(log_.time, k);
+    for (std::size_t k = kHalf; k + kHalf < log_.rows(); ++k) {
+      if (!fits_.empty() && IsSpacedAsBefore(log_.time, k)) {
+        fits_.push_back(fits_.back().At(k));
+      } else {
+        fits_.emplace_back(log_.time, k);
+      }
+    }
     for (const auto& [joint, channel] : JointChannels(e_, *machine_.model)) {
       std::vector<double> y = log_.measured[channel];
       for (double& value : y) value = SignalOf(e_, channel, value);

@@ -9,13 +9,22 @@
 
 namespace continuum {
 
+namespace {
+thread_local bool is_parallel = false;
+}
+
 std::size_t ThreadCount() { return std::max(1u, std::thread::hardware_concurrency()); }
 
 void ParallelFor(std::size_t n, const std::function<void(std::size_t, std::size_t)>& work) {
+  if (is_parallel) {
+    for (std::size_t i = 0; i < n; ++i) work(0, i);
+    return;
+  }
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;
   std::mutex mutex;
   const auto run = [&](std::size_t thread) {
+    is_parallel = true;
     try {
       for (std::size_t i = next++; i < n; i = next++) work(thread, i);
     } catch (...) {
@@ -23,6 +32,7 @@ void ParallelFor(std::size_t n, const std::function<void(std::size_t, std::size_
       const std::lock_guard lock(mutex);
       if (!failure) failure = std::current_exception();
     }
+    is_parallel = false;
   };
   std::vector<std::thread> threads;
   for (std::size_t t = 1; t < std::min(n, ThreadCount()); ++t) threads.emplace_back(run, t);

@@ -11,7 +11,8 @@ namespace continuum {
 std::size_t ThreadCount();
 
 /// Calls work(thread, i) for all i < n on ThreadCount() threads; an exception of any call is
-/// rethrown when all have ended.
+/// rethrown when all have ended. Within such work another ParallelFor runs on its thread alone, as
+/// thread 0.
 void ParallelFor(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work);
 
 }  // namespace continuum
