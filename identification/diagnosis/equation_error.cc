@@ -79,8 +79,9 @@ std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Pro
     own[i] = h.AtShare(i, start[i], StartShare(e.coefficients[a], 1));
     own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);
   }
-  const Vector beside =
-      x_ - columns_.completeOrthogonalDecomposition().solve(missing_ + D * e.coefficients);
+  Vector beside = x_;
+  if (x_.size() > 0)
+    beside -= columns_.completeOrthogonalDecomposition().solve(missing_ + D * e.coefficients);
   return EquationStart{e.amount / force_.squaredNorm(), problem.Clamp(Append(x_, own)),
                        problem.Clamp(Append(beside, own))};
 }

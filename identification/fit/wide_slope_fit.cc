@@ -49,7 +49,7 @@ Fit FitWithWideSlopes(const Problem& problem, const Problem::Vector& x,
   constexpr double kLower = 1e-3;  // of the cost, that is worth another fit
   constexpr int kFits = 4;
   Fit best = FitParameters(problem, x, use, options);
-  const bool may_go_on = problem.path() == Path::kStepped;
+  const bool may_go_on = problem.path() == Path::kStepped && x.size() > 0;
   for (int k = 1; k < kFits && may_go_on && !StopRequested(); ++k) {
     FitOptions left = options;
     left.iterations -= best.iterations;
