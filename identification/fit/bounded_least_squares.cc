@@ -2,7 +2,16 @@
 
 #include <cmath>
 
+#include <glog/logging.h>
+
 namespace continuum {
+namespace {
+
+// Why a solve is given up stands in its summary. Ceres also writes it to glog, which prints it on
+// the terminal of whoever links this.
+void SilenceCeres() { FLAGS_minloglevel = google::GLOG_FATAL; }
+
+}  // namespace
 
 Problem::Vector Scaled(const Problem& problem, const Problem::Vector& x) {
   Problem::Vector y = problem.Clamp(x);
@@ -48,6 +57,7 @@ ceres::Solver::Summary Minimize(const Problem& problem, ceres::CostFunction& cos
   solver.line_search_interpolation_type = ceres::BISECTION;
   solver.max_num_line_search_step_size_iterations = 3;
   solver.logging_type = ceres::SILENT;
+  SilenceCeres();
   if (search.watch) solver.callbacks.push_back(search.watch);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &ceres, &summary);
