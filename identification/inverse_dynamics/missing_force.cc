@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <string>
 
 #include <Eigen/Dense>
 
@@ -12,6 +14,7 @@
 namespace continuum {
 namespace {
 
+constexpr double kStill = 1e-2;  // of the largest motion: less is none
 constexpr std::size_t kHalf = 5, kRows = 2 * kHalf + 1, kTerms = 5;
 
 double Square(double x) { return x * x; }
@@ -66,7 +69,7 @@ bool IsSpacedAsBefore(const std::vector<double>& t, std::size_t k) {
   return true;
 }
 
-// The channel that measures each joint; empty when one is not measured.
+// The channel that measures each joint, of those that are measured.
 std::map<int, std::size_t> JointChannels(const Experiment& e, const mjModel& m) {
   std::map<int, std::size_t> channels;
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
@@ -75,8 +78,19 @@ std::map<int, std::size_t> JointChannels(const Experiment& e, const mjModel& m) 
     const int id = mj_name2id(&m, mjOBJ_SENSOR, out.source.c_str());
     if (id >= 0 && m.sensor_type[id] == mjSENS_JOINTPOS) channels[m.sensor_objid[id]] = c;
   }
-  if (channels.size() != static_cast<std::size_t>(m.njnt)) channels.clear();
   return channels;
+}
+
+// Joints without a channel; none that could only be at rest in several directions.
+std::optional<std::vector<int>> OtherJoints(const mjModel& m,
+                                            const std::map<int, std::size_t>& measured) {
+  std::vector<int> others;
+  for (int joint = 0; joint < m.njnt; ++joint) {
+    if (measured.contains(joint)) continue;
+    if (m.jnt_type[joint] != mjJNT_HINGE && m.jnt_type[joint] != mjJNT_SLIDE) return {};
+    others.push_back(joint);
+  }
+  return others;
 }
 
 struct Motion {
@@ -98,7 +112,9 @@ class LogForces {
         fits_.emplace_back(log_.time, k);
       }
     }
-    for (const auto& [joint, channel] : JointChannels(e_, *machine_.model)) {
+    const auto channels = JointChannels(e_, *machine_.model);
+    others_ = OtherJoints(*machine_.model, channels).value();
+    for (const auto& [joint, channel] : channels) {
       std::vector<double> y = log_.measured[channel];
       for (double& value : y) value = SignalOf(e_, channel, value);
       Motion& motion = measured_[joint];
@@ -106,15 +122,18 @@ class LogForces {
         motion.angle.push_back(fit.Of(y, fit.value));
         motion.velocity.push_back(fit.Of(y, fit.slope));
         motion.acceleration.push_back(fit.Of(y, fit.curvature));
+        reach_ = std::max(reach_, std::abs(motion.angle.back() - motion.angle.front()));
       }
       model_[joint].resize(log_.rows(), 0);
       load_[joint].resize(log_.rows(), 0);
     }
   }
 
-  // Appended to those of other logs, joint by joint.
-  void AddTo(std::vector<MissingForce>& all) {
+  // Appended to those of other logs, joint by joint. Nothing where a joint moves that is not
+  // measured: returns false.
+  bool AddTo(std::vector<MissingForce>& all) {
     Drive();
+    if (moved_) return false;
     mjModel& m = *machine_.model;
     mjData& d = *machine_.data;
     all.resize(measured_.size());
@@ -138,9 +157,28 @@ class LogForces {
         out.acceleration.push_back(lack[m.jnt_dofadr[joint]]);
       }
     }
+    for (MissingForce& one : all) one.at_rest = Names(m, others_);
+    return true;
   }
 
  private:
+  static std::vector<std::string> Names(const mjModel& m, const std::vector<int>& joints) {
+    std::vector<std::string> names;
+    for (const int joint : joints) {
+      const char* const name = mj_id2name(&m, mjOBJ_JOINT, joint);
+      names.push_back(name ? name : "joint " + std::to_string(joint));
+    }
+    return names;
+  }
+
+  // Whether joints without a channel leave where they begin.
+  void Watch(const mjModel& m, const mjData& d) {
+    if (start_.empty())
+      for (const int joint : others_) start_.push_back(d.qpos[m.jnt_qposadr[joint]]);
+    for (std::size_t i = 0; i < others_.size(); ++i)
+      moved_ = moved_ || std::abs(d.qpos[m.jnt_qposadr[others_[i]]] - start_[i]) > kStill * reach_;
+  }
+
   Eigen::VectorXd Lack(std::size_t k) const {
     const mjModel& m = *machine_.model;
     Eigen::VectorXd lack = Eigen::VectorXd::Zero(m.nv);
@@ -174,6 +212,7 @@ class LogForces {
     hooks.step = [&](const mjModel& m, mjData& d) {
       if (next >= log_.rows() || d.time < log_.time[next] - log_.time[0] - 1e-9) return;
       arrive(m, d, next);
+      Watch(m, d);
       const bool seen = next >= kHalf && next + kHalf < log_.rows();
       if (seen) Place(m, d, next - kHalf);
       for (const auto& [joint, motion] : measured_) speed[joint] = d.qvel[m.jnt_dofadr[joint]];
@@ -191,13 +230,18 @@ class LogForces {
   std::size_t index_;
   ModelAndData machine_;
   std::vector<Quartic> fits_;
+  std::vector<int> others_;    // joints that are not measured
+  std::vector<double> start_;  // of them
+  double reach_ = 0;           // of the measured ones, from where they begin
+  bool moved_ = false;
   std::map<int, Motion> measured_;
   std::map<int, std::vector<double>> model_, load_;
 };
 
 bool EveryRowIsThere(const Experiment& e, const mjModel& m, const Log& log) {
   const auto channels = JointChannels(e, m);
-  return !channels.empty() && std::all_of(channels.begin(), channels.end(), [&](const auto& one) {
+  if (channels.empty() || !OtherJoints(m, channels)) return false;
+  return std::all_of(channels.begin(), channels.end(), [&](const auto& one) {
     const std::vector<double>& y = log.measured[one.second];
     return std::none_of(y.begin(), y.end(), [](double v) { return std::isnan(v); });
   });
@@ -232,8 +276,9 @@ Problem::Vector StackedForces::Of(const std::vector<MissingForce>& joints) const
 bool MeasuresEveryJoint(const Problem& problem, std::size_t log) {
   const Experiment& e = problem.experiment();
   const Log& rows = e.logs[log];
-  return !e.quasi_static && rows.rows() >= kRows &&
-         EveryRowIsThere(e, problem.system().model(), rows);
+  const mjModel& m = problem.system().model();
+  return !e.quasi_static && rows.rows() >= kRows && std::ssize(JointChannels(e, m)) == m.njnt &&
+         EveryRowIsThere(e, m, rows);
 }
 
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
@@ -244,7 +289,7 @@ std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::V
     const Log& log = e.logs[l];
     if (!use[l] || log.rows() < kRows) continue;
     if (e.quasi_static || !EveryRowIsThere(e, problem.system().model(), log)) return {};
-    LogForces(problem, x, l, thread).AddTo(all);
+    if (!LogForces(problem, x, l, thread).AddTo(all)) return {};
   }
   return all;
 }

@@ -22,7 +22,8 @@ namespace continuum {
 /// end of a log are left out.
 struct MissingForce {
   std::string joint;
-  bool slides = false;  ///< the joint: m and N, else rad and N m
+  std::vector<std::string> at_rest;  ///< joints that are not measured, and that nothing moves
+  bool slides = false;               ///< the joint: m and N, else rad and N m
   std::vector<std::size_t> log;
   std::vector<double> time, angle, velocity, load, force;  ///< SI
   std::vector<double> acceleration;  ///< a_measured − F a_model: what noise there is, is added
@@ -49,8 +50,9 @@ class StackedForces {
 /// Whether every joint is measured in all rows of a log, which are enough.
 bool MeasuresEveryJoint(const Problem& problem, std::size_t log);
 
-/// On every joint, of the logs in use; none when not every joint is measured in all their rows.
-/// thread: of parallel work.
+/// On every measured joint, of the logs in use; none when not every joint is measured in all their
+/// rows. A hinge or slide that is not measured counts as at rest where the model leaves it there,
+/// as those across the plane in which an arm moves. thread: of parallel work.
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
                                         const std::vector<bool>& use, std::size_t thread = 0);
 
