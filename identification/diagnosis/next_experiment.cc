@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "identification/diagnosis/search_rules.h"
+#include "sim/io/csv.h"
 #include "sim/io/decimal.h"
 #include "sim/io/units.h"
 
@@ -245,7 +246,7 @@ std::string NextCsv(const Experiment& e, const Log& next) {
     add(in.enable, Signal(next.enable[i].begin(), next.enable[i].end()), 1);
   }
   std::string text;
-  for (const auto& [name, values] : columns) text += (text.empty() ? "" : ",") + name;
+  for (const auto& [name, values] : columns) text += (text.empty() ? "" : ",") + CsvCell(name);
   for (std::size_t k = 0; k < next.rows(); ++k) {
     for (std::size_t c = 0; c < columns.size(); ++c)
       text += (c ? "," : "\n") + Decimal(columns[c].second[k]);

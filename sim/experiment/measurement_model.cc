@@ -21,8 +21,9 @@ const std::map<std::string, Member, std::less<>>& Members() {
   return members;
 }
 
-// globs: one or several, separated by spaces.
+// globs: one or several, separated by spaces; or the name of one, spaces and all.
 bool Matches(const Output& out, const std::string& globs) {
+  if (globs == out.name() || globs == out.source) return true;
   const std::string sensor = out.source.substr(0, out.source.find('['));
   return AnyGlobMatches(globs, out.source) || AnyGlobMatches(globs, sensor) ||
          AnyGlobMatches(globs, out.name());

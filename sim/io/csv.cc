@@ -156,4 +156,12 @@ std::vector<double> CsvTable::Numbers(std::string_view column) const {
   return values;
 }
 
+std::string CsvCell(const std::string& text) {
+  const bool plain = text.find_first_of(",\"\r\n") == text.npos;
+  if (plain && (text.empty() || (text.front() != ' ' && text.back() != ' '))) return text;
+  std::string quoted;
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return "\"" + quoted + "\"";
+}
+
 }  // namespace continuum

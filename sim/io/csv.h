@@ -47,4 +47,8 @@ class CsvTable {
   std::vector<int> lines_;
 };
 
+/// A cell as CSV writes it: in quotes where it has a comma, a quote, a line
+/// break, or a blank at an end.
+std::string CsvCell(const std::string& text);
+
 }  // namespace continuum

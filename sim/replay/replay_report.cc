@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/experiment/registration.h"
+#include "sim/io/csv.h"
 #include "sim/io/decimal.h"
 #include "sim/io/output_manifest.h"
 #include "sim/replay/sensor_score.h"
@@ -87,7 +88,8 @@ void WriteSimulated(const Experiment& e, const std::vector<Trace>& traces,
   for (std::size_t l = 0; l < traces.size(); ++l) {
     const Log& log = e.logs[l];
     std::string text = "time";
-    for (const auto& c : e.channels) text += "," + c.name + "," + c.name + "_measured";
+    for (const auto& c : e.channels)
+      text += "," + CsvCell(c.name) + "," + CsvCell(c.name + "_measured");
     text += "\n";
     for (std::size_t k = 0; k < log.rows(); ++k) {
       text += Decimal(log.time[k]);

@@ -114,12 +114,6 @@ RC_GTEST_PROP(CsvTable, NeverFailsOnArbitraryCsvExceptWithAnError, ()) {
   }
 }
 
-std::string Quoted(const std::string& cell) {
-  std::string out = "\"";
-  for (const char c : cell) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
 RC_GTEST_PROP(CsvTable, RoundTripsNamesAndNumbersExactly, ()) {
   const auto names = *rc::gen::unique<std::vector<std::string>>(rc::gen::nonEmpty(
       rc::gen::container<std::string>(rc::gen::element('a', 'B', '[', ']', ',', '"', ' ', '_'))));
@@ -127,7 +121,7 @@ RC_GTEST_PROP(CsvTable, RoundTripsNamesAndNumbersExactly, ()) {
   const auto rows = *rc::gen::container<std::vector<std::vector<double>>>(
       rc::gen::container<std::vector<double>>(names.size(), rc::gen::arbitrary<double>()));
   std::string text;
-  for (std::size_t c = 0; c < names.size(); ++c) text += (c ? "," : "") + Quoted(names[c]);
+  for (std::size_t c = 0; c < names.size(); ++c) text += (c ? "," : "") + CsvCell(names[c]);
   for (const auto& row : rows) {
     text += "\n";
     for (std::size_t c = 0; c < names.size(); ++c) text += (c ? "," : "") + Decimal(row[c]);
