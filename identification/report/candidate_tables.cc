@@ -38,7 +38,8 @@ void AddLikelihoodTable(Page& page, const Diagnosis& d) {
     rows.push_back({c.hypothesis.Name(), c.hypothesis.where,
                     c.fitted.complete() ? fmt::format("{:.1f}", c.likelihood) : "",
                     std::to_string(c.hypothesis.extra.size()), fmt::format("{:.2g}", c.p),
-                    fmt::format("{:.3f}", c.probability), fmt::format("{:.1f}", c.lambda)});
+                    d.Is(Verdict::Kind::kUnexplained) ? "" : fmt::format("{:.3f}", c.probability),
+                    fmt::format("{:.1f}", c.lambda)});
   }
   for (const auto& c : d.dismissed) {
     rows.push_back({c.effect, c.where, "", "", fmt::format("{:.2g}", c.p), "", ""});
@@ -49,7 +50,8 @@ void AddLikelihoodTable(Page& page, const Diagnosis& d) {
       rows,
       {"Twice the log-likelihood over the model without it, empty where it was not completed; p: "
        "how often noise alone lets one of all candidates do as well to first order; posterior: "
-       "each candidate as likely before; lambda: what of the best candidate this one cannot "
+       "each candidate as likely before, and none where no candidate explains the data; lambda: "
+       "what of the best candidate this one cannot "
        "imitate on these logs" +
        fmt::format(" (below about {:g} they are hard to distinguish). The residual of the best "
                    "one has p = {:.2g} against smooth forces and {:.2g} against shifts of the "

@@ -5,10 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "binding/effect_catalog.h"
 #include "identification/diagnosis/gain.h"
 #include "identification/report/apply_extension.h"
+#include "identification/report/diagnosis_words.h"
 #include "identification/report/fit_json.h"
+#include "identification/report/model_changes.h"
 
 namespace continuum {
 namespace {
@@ -26,16 +27,14 @@ nlohmann::json ParametersOf(const Hypothesis& h, const Fitted& fitted, Eigen::In
   nlohmann::json parameters = nlohmann::json::object();
   for (std::size_t i = 0; i < h.extra.size(); ++i) {
     const Eigen::Index at = begin + static_cast<Eigen::Index>(i);
-    std::string unit = h.extra[i].unit.empty() ? "1" : h.extra[i].unit;
-    for (const Param& p : EffectNamed(h.Card()).params) {
-      if (p.name == h.extra[i].name) unit = p.unit;
-    }
+    const std::string unit = UnitOfExtra(h, i);
     nlohmann::json interval = nullptr;  // of a fit that has none
     if (fitted.complete()) {
       const Uncertainty& u = fitted.sensitivities->uncertainty;
       interval = {u.lower[at], u.upper[at]};
     }
-    parameters[h.extra[i].name] = {{"value", fitted.fit.x[at]}, {"unit", unit}, {"ci95", interval}};
+    parameters[h.extra[i].name] = {
+        {"value", fitted.fit.x[at]}, {"unit", unit.empty() ? "1" : unit}, {"ci95", interval}};
   }
   return parameters;
 }
@@ -198,8 +197,11 @@ nlohmann::json FoldsJson(const Diagnosis& d) {
   auto json = nlohmann::json::array();
   const auto& after = d.chosen() ? d.chosen()->record.after : d.before.folds.error;
   for (std::size_t f = 0; f < after.size(); ++f) {
-    json.push_back(
-        {{"left_out", d.folds[f].name}, {"before", d.before.folds.error[f]}, {"after", after[f]}});
+    const double before = d.before.folds.error[f];
+    json.push_back({{"left_out", d.folds[f].name},
+                    {"before", before},
+                    {"after", after[f]},
+                    {"worse", after[f] > before}});
   }
   return json;
 }
@@ -273,6 +275,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
   json["channels"] = ChannelNames(e);
   json["verdict"] = d.verdict.word();
   json["reason"] = d.verdict.reason;
+  json["certainty"] = InWords(CertaintyOf(d));
   json["complete"] = d.verdict.complete;
   json["remaining"] = {{"over_noise", d.remaining.over_noise},
                        {"where", d.remaining.where},

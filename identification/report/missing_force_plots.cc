@@ -41,6 +41,15 @@ void Scatter(Page& page, const MissingForce& f, const std::vector<double>& x, co
   page.Scatter(spec);
 }
 
+std::string AtRestInWords(const MissingForce& f) {
+  constexpr std::size_t kShown = 6;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kShown, f.at_rest.size()); ++i)
+    names += (i ? ", " : "") + f.at_rest[i];
+  if (f.at_rest.size() > kShown) names += ", …";
+  return "Not measured, and taken as at rest since the model does not move them: " + names + ".";
+}
+
 }  // namespace
 
 void AddMissingForce(Page& page, const MissingForce& f) {
@@ -48,10 +57,11 @@ void AddMissingForce(Page& page, const MissingForce& f) {
     page.Paragraph("The missing force cannot be shown: not every joint is measured.");
     return;
   }
-  page.Heading("The missing force on joint " + f.joint, 3);
-  page.Paragraph(
-      "Mass times the difference between the measured acceleration and the model's at the measured "
-      "state. Line: median in bins, band: quartiles.");
+  page.Paragraph("**On joint " + f.joint +
+                 "**, where most is missing. Mass times the difference between the measured "
+                 "acceleration and the model's at the measured "
+                 "state. Line: median in bins, band: quartiles.");
+  if (!f.at_rest.empty()) page.Paragraph(AtRestInWords(f));
   Scatter(page, f, f.angle, f.slides ? Axis{"position", "m"} : Axis{"angle", "rad"});
   Scatter(page, f, f.velocity, {"velocity", f.slides ? "m/s" : "rad/s"});
   Scatter(page, f, f.load, f.slides ? Axis{"actuator force", "N"} : Axis{"actuator torque", "N*m"});

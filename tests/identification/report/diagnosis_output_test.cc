@@ -9,7 +9,9 @@
 
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/report/diagnosis_words.h"
 #include "identification/report/parts.h"
+#include "sim/io/csv.h"
 #include "support/diagnosis_files.h"
 #include "support/pendulum.h"
 
@@ -45,15 +47,31 @@ class DiagnosisOutput : public Bench {
       }
     }
     e_ = ReadExperiment("candidates: [payload, input_gain]\n");
-    DiagnosisOptions options;
-    options.placebos = 0;
     d_ = std::make_unique<Diagnosis>(
-        Diagnose(e_, ModelSpec::Load(Write("model.xml", Pendulum().Xml())), options));
+        Found(e_, ModelSpec::Load(Write("model.xml", Pendulum().Xml()))));
     ASSERT_EQ(d_->verdict.word(), "named") << d_->verdict.reason;
     ASSERT_GT(d_->candidates.size(), 1u);
   }
+  // Of the same logs in every test: diagnosed once.
+  static const Diagnosis& Found(const Experiment& e, const ModelSpec& model) {
+    DiagnosisOptions options;
+    options.placebos = 0;
+    static const Diagnosis found = Diagnose(e, model, options);
+    return found;
+  }
   std::filesystem::path Out() const { return folder_ / "out"; }
   std::string Page() const { return ReadFile(Out() / "report.html"); }
+  // What a reader sees who opens nothing.
+  std::string FirstPage() const {
+    std::string text;
+    const std::string page = Page().substr(0, Page().find("</main>"));  // without scripts
+    for (std::size_t at = 0; at < page.size();) {
+      const std::size_t fold = page.find("<details>", at), end = page.find("</details>", fold);
+      text += page.substr(at, fold - at);
+      at = fold == page.npos ? page.size() : end;
+    }
+    return text;
+  }
 
   Experiment e_;
   std::unique_ptr<Diagnosis> d_;
@@ -87,7 +105,8 @@ TEST_F(DiagnosisOutput, OfARivalWithoutAnIntervalLacksTheIntervalOnly) {
   EXPECT_TRUE(rival.at("value").is_number());
   EXPECT_TRUE(rival.at("ci95").is_null());
   EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr("\n   or     input_gain"));
-  EXPECT_THAT(Page(), HasSubstr("payload or input_gain"));
+  EXPECT_THAT(FirstPage(), HasSubstr("payload at body tip or input_gain at actuator servo"));
+  EXPECT_THAT(FirstPage(), HasSubstr("<strong>cannot say</strong>"));
 }
 
 TEST_F(DiagnosisOutput, WithoutAnUncertaintyLacksTheParametersOnly) {
@@ -98,8 +117,8 @@ TEST_F(DiagnosisOutput, WithoutAnUncertaintyLacksTheParametersOnly) {
   EXPECT_TRUE(files.json.at("parameters").is_null());
   EXPECT_EQ(files.json.at("verdict"), "named");
   EXPECT_TRUE(files.json.at("error").at("after").at("validate").is_number());
-  EXPECT_THAT(Page(), HasSubstr("Not in this report: the extension"));
-  EXPECT_THAT(Page(), HasSubstr("Held-out error"));
+  EXPECT_THAT(Page(), HasSubstr("Not in this report: Parameters"));
+  EXPECT_THAT(FirstPage(), HasSubstr("of the held-out error is removed"));
   EXPECT_THAT(MissingInWords(files.missing), HasSubstr("not in the report: parameters"));
 }
 
@@ -134,9 +153,9 @@ TEST_F(DiagnosisOutput, WithoutRowsOfATraceLacksWhatIsDrawnOfItOnly) {
   run.after_traces[0].channel[0].clear();
   std::vector<std::string> names;
   for (const MissingPart& part : WriteDiagnosis(e_, *d_, run, Out())) names.push_back(part.name);
-  EXPECT_THAT(names, ElementsAre("simulated", "what is wrong", "the residual"));
-  EXPECT_THAT(Page(), HasSubstr("Not in this report: the residual"));
-  EXPECT_THAT(Page(), HasSubstr("The missing force on joint hinge"));
+  EXPECT_THAT(names, ElementsAre("simulated", "what is wrong", "Other deviations", "All logs"));
+  EXPECT_THAT(Page(), HasSubstr("Not in this report: what is wrong"));
+  EXPECT_THAT(Page(), HasSubstr("<strong>On joint hinge</strong>"));
 }
 
 TEST_F(DiagnosisOutput, NamesWhatTheDiagnosisLacks) {
@@ -144,6 +163,135 @@ TEST_F(DiagnosisOutput, NamesWhatTheDiagnosisLacks) {
   const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
   EXPECT_THAT(files.json.at("missing"), ElementsAre("next experiment: it diverges"));
   EXPECT_THAT(Page(), HasSubstr("Not in this report: next experiment"));
+}
+
+// Nothing on the first page needs a word that only the details explain.
+void ExpectNoStatistics(const std::string& page) {
+  for (const char* word : {"2 ln L", "lambda", "posterior", "p = ", "family-wise", "likelihood"})
+    EXPECT_THAT(page, Not(HasSubstr(word)));
+}
+
+TEST_F(DiagnosisOutput, OfANamedCauseSaysWhatHowSureWhatChangesAndWhatItGains) {
+  d_->unlisted.clear();
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  const std::string page = FirstPage();
+  ExpectNoStatistics(page);
+  EXPECT_THAT(page, HasSubstr("Cause: payload at body tip"));
+  EXPECT_THAT(page, HasSubstr("<strong>sure</strong>"));
+  EXPECT_THAT(page, HasSubstr("adds <strong>payload</strong> at body tip: mass 0.0"));
+  EXPECT_THAT(page, HasSubstr(GainInWords(*d_, files.run)));
+  EXPECT_THAT(page, Not(HasSubstr("&lt;body")));  // lines of the MJCF are folded away
+  EXPECT_THAT(Page(), HasSubstr("2 ln L"));
+}
+
+TEST_F(DiagnosisOutput, StatesTheIntervalWhereverItStatesTheGain) {
+  d_->gain_interval = {0.123, 0.987};
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  const std::string interval = "95 %: 12 … 99 %", page = FirstPage();
+  const auto first = page.find(interval);  // in the banner, and under its own heading
+  ASSERT_NE(first, page.npos);
+  EXPECT_NE(page.find(interval, first + 1), page.npos);
+  EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr(interval));
+  EXPECT_EQ(files.json.at("gain").at("ci95"), nlohmann::json({0.123, 0.987}));
+}
+
+TEST_F(DiagnosisOutput, ShowsAFoldThatGetsWorse) {
+  FoldRecord& record = d_->candidates[0].record;
+  ASSERT_GE(record.after.size(), 2u);
+  record.after[1] = 2 * record.before[1];
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  const std::string name = d_->folds[1].name;
+  EXPECT_THAT(FirstPage(), HasSubstr("fitted without " + name + ", the error there rises"));
+  EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr("worse     fitted without " + name));
+  EXPECT_FALSE(files.json.at("folds").at(0).at("worse"));
+  EXPECT_TRUE(files.json.at("folds").at(1).at("worse"));
+}
+
+TEST_F(DiagnosisOutput, MarksAValueAtABound) {
+  auto& bound = d_->candidates[0].fitted.sensitivities->uncertainty.at_bound;
+  bound.assign(bound.size(), true);
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  EXPECT_THAT(FirstPage(), HasSubstr("at its lower bound"));
+  EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr("at its lower bound"));
+}
+
+TEST_F(DiagnosisOutput, OfTheUnexplainedShowsTheMissingForceAndNoProbability) {
+  d_->verdict = {Verdict::Kind::kUnexplained, {}, "no candidate passes all rules (p = 0.01)"};
+  d_->verdict.leading = 0;
+  d_->verdict.leading_share = 0.37;
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  const std::string page = FirstPage();
+  ExpectNoStatistics(page);
+  EXPECT_THAT(page, HasSubstr("no candidate explains it"));
+  EXPECT_THAT(page, HasSubstr("payload at body tip comes closest: it takes 37 %"));
+  EXPECT_THAT(page, HasSubstr("missing force [N*m]"));
+  EXPECT_THAT(page, HasSubstr("No cause was added"));
+  EXPECT_THAT(Page(), Not(HasSubstr("1.000")));
+  EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr("verdict   unexplained (cannot say)"));
+}
+
+TEST_F(DiagnosisOutput, OfAnAdequateModelAsksForNothing) {
+  d_->verdict = {Verdict::Kind::kAdequate, {}, "the error is noise"};
+  d_->verdict.complete = true;
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  const std::string page = FirstPage();
+  ExpectNoStatistics(page);
+  EXPECT_THAT(page, HasSubstr("The model follows these logs"));
+  EXPECT_THAT(page, Not(HasSubstr(">The cause<")));
+  EXPECT_THAT(page, Not(HasSubstr("of the held-out error")));
+  EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr("verdict   adequate (sure)"));
+}
+
+// A channel as people name it: with blanks, a comma, and marks of a glob and of HTML.
+TEST_F(Bench, AChannelOfAnyNameSurvivesADiagnosis) {
+  const std::string name = "joint angle, [left] <1>*";
+  for (int t = 0; t < 2; ++t) {
+    const auto u = Command(t, 60);
+    const std::string log = "run " + std::to_string(t);
+    AddLog(log, t ? "use: validate" : "use: train", u,
+           Noisy(Pendulum().Run(u, testing::kPeriod), 1e-3, 0, 10 + static_cast<unsigned>(t)));
+    std::string csv = ReadFile(folder_ / (log + ".csv"));
+    Write(log + ".csv", csv.replace(csv.find(",q\n"), 3, ",\"" + name + "\"\n"));
+  }
+  const Experiment e = Experiment::Read(
+      Write("experiment.yaml", "format: 1\nmodel: model.xml\nstart: rest\nlogs:\n" + logs_ +
+                                   "inputs: [{actuator: servo, column: u, unit: rad}]\noutputs:\n"
+                                   "  - {column: \"" +
+                                   name +
+                                   "\", unit: rad, sensor: angle, sigma: 0.001}\n"
+                                   "candidates: [sensor_bias, sensor_delay]\n"));
+  const Diagnosis d = Diagnose(e, ModelSpec::Load(Write("model.xml", Pendulum().Xml())), {});
+  const DiagnosisFiles files = WriteFiles(e, d, folder_ / "out");
+  EXPECT_THAT(files.missing, IsEmpty());
+  EXPECT_THAT(files.json.at("channels"), ElementsAre(name));
+  const std::string page = ReadFile(folder_ / "out/report.html");
+  EXPECT_THAT(page, HasSubstr("joint angle, [left] &lt;1&gt;*"));
+  const auto simulated = CsvTable::Read(folder_ / "out/simulated/run 0.csv");
+  EXPECT_THAT(simulated.columns(), ElementsAre("time", name, name + "_measured"));
+}
+
+TEST_F(DiagnosisOutput, OfACauseThatRaisesTheErrorSaysThatItIsNotOffered) {
+  MakeFolder(Out());
+  ExtensionRun run = MeasureExtension(e_, *d_, Out());
+  ASSERT_TRUE(run.offered);
+  run.offered = false;
+  WriteDiagnosis(e_, *d_, run, Out());
+  const std::string page = FirstPage();
+  EXPECT_THAT(page, HasSubstr("not offered"));
+  EXPECT_THAT(page, HasSubstr("No cause was added"));
+  EXPECT_THAT(page, Not(HasSubstr("adds <strong>payload")));
+  EXPECT_THAT(page, Not(HasSubstr("error is removed")));
+}
+
+TEST_F(DiagnosisOutput, IsOnlyLikelyWhereMoreThanNoiseIsLeft) {
+  d_->unlisted.clear();
+  ASSERT_EQ(CertaintyOf(*d_), Certainty::kSure);
+  d_->noise_limited = false;
+  EXPECT_EQ(CertaintyOf(*d_), Certainty::kLikely);
+  EXPECT_THAT(WhyInWords(*d_), HasSubstr("times the noise"));
+  d_->noise = {};
+  EXPECT_EQ(CertaintyOf(*d_), Certainty::kLikely);
+  EXPECT_THAT(WhyInWords(*d_), HasSubstr("how large their noise is"));
 }
 
 }  // namespace

@@ -1,0 +1,247 @@
+#include "identification/report/diagnosis_words.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "identification/diagnosis/gain.h"
+#include "identification/report/model_changes.h"
+
+namespace continuum {
+namespace {
+
+using Kind = Verdict::Kind;
+
+double Floor(const Diagnosis& d) { return std::hypot(d.noise.rms, d.noise.step); }
+
+// How many times what noise and time step make an error is; 0 where the noise is not known.
+double TimesFloor(const Diagnosis& d, const TwoErrors& error) {
+  return d.noise.known() && Floor(d) > 0 ? error.train / Floor(d) : 0;
+}
+
+bool OnlyNoiseRemains(const Diagnosis& d, const TwoErrors& error) {
+  return d.verdict.complete && TimesFloor(d, error) > 0;
+}
+
+// Other places at which the named effect does as well.
+std::vector<std::string> OpenPlaces(const Diagnosis& d) {
+  std::vector<std::string> places;
+  if (!d.chosen() || !d.noise_limited) return places;
+  const Hypothesis& h = d.chosen()->hypothesis;
+  for (const CandidateResult& c : d.candidates) {
+    const bool same = &c != d.chosen() && c.hypothesis.Name() == h.Name() && c.fitted.complete();
+    if (same && d.chosen()->likelihood - c.likelihood < d.criteria.rival_margin)
+      places.push_back(c.hypothesis.where);
+  }
+  return places;
+}
+
+std::string Siblings(const Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const std::size_t i : d.verdict.siblings)
+    if (i < d.candidates.size()) names.push_back(d.candidates[i].hypothesis.NameAtPlace());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// What keeps a named cause from being sure, one sentence each.
+std::vector<std::string> Doubts(const Diagnosis& d) {
+  std::vector<std::string> doubts;
+  if (!d.noise.known()) {
+    doubts.emplace_back("These logs do not show how large their noise is.");
+  } else if (!d.verdict.complete || !d.noise_limited) {
+    doubts.push_back(fmt::format("The error with it is still {:.1f} times the noise.",
+                                 TimesFloor(d, d.after())));
+  }
+  if (const auto places = OpenPlaces(d); !places.empty())
+    doubts.push_back(fmt::format("It fits as well at {}.", fmt::join(places, " and at ")));
+  if (!d.verdict.siblings.empty())
+    doubts.push_back(fmt::format("Relatives of it fit as well: {}.", Siblings(d)));
+  for (const CandidateResult& c : d.unlisted) {
+    doubts.push_back(
+        fmt::format("{}, which was not asked for, fits as well.", c.hypothesis.NameAtPlace()));
+  }
+  if (d.gain_interval && !(d.gain_interval->low > 0))
+    doubts.emplace_back("On some of the logs left out it may not help.");
+  return doubts;
+}
+
+std::string Closest(const Diagnosis& d) {
+  const auto leading = d.verdict.leading;
+  if (!leading || *leading >= d.candidates.size()) return "";
+  return fmt::format(" {} comes closest: it takes {:.0f} % of what can be explained.",
+                     d.candidates[*leading].hypothesis.NameAtPlace(),
+                     100 * d.verdict.leading_share);
+}
+
+std::string Sentence(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+// A reason without "(p = 0.001)", which belongs to the details.
+std::string WithoutP(std::string reason) {
+  for (auto at = reason.find(" (p = "); at != reason.npos; at = reason.find(" (p = "))
+    reason.erase(at, reason.find(')', at) - at + 1);
+  return reason;
+}
+
+std::string WhyUnexplained(const Diagnosis& d) {
+  if (d.verdict.unlisted_explains) return Sentence(WithoutP(d.verdict.reason) + ".");
+  return "No candidate explains enough of it." + Closest(d);
+}
+
+std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
+
+std::string IntervalInWords(const Diagnosis& d) {
+  if (!d.gain_interval) return " (interval not computed)";
+  return fmt::format(" (95 %: {:.0f} … {:.0f} %)", 100 * d.gain_interval->low,
+                     100 * d.gain_interval->high);
+}
+
+// Where no log is kept for validation.
+std::string GainOfFolds(const Diagnosis& d) {
+  return Percent(Median(Gains(d.chosen()->record))) +
+         " of the error is removed, in the median of the logs that were left out in turn" +
+         IntervalInWords(d);
+}
+
+}  // namespace
+
+std::string HeadlineOf(const Diagnosis& d) {
+  switch (d.verdict.kind) {
+    case Kind::kAdequate:
+      return "The model follows these logs";
+    case Kind::kNamed:
+      return (d.partner ? "Causes: " : "Cause: ") + CausesInWords(d);
+    case Kind::kAmbiguous:
+      return "Cause: " + CausesInWords(d);
+    case Kind::kUnexplained:
+      break;
+  }
+  if (d.verdict.unlisted_explains)
+    return "Something is missing in the model, and none of the candidates asked for explains it";
+  return "Something is missing in the model, and no candidate explains it";
+}
+
+std::string DeviationInWords(const Deviation& d) {
+  return fmt::format("**{}**, {} at {}: the simulation {}.", d.log, d.channel, d.when, d.what);
+}
+
+std::string InWords(Certainty certainty) {
+  switch (certainty) {
+    case Certainty::kSure:
+      return "sure";
+    case Certainty::kLikely:
+      return "likely";
+    case Certainty::kCannotSay:
+      break;
+  }
+  return "cannot say";
+}
+
+Certainty CertaintyOf(const Diagnosis& d) {
+  if (d.Is(Kind::kAmbiguous) || d.Is(Kind::kUnexplained)) return Certainty::kCannotSay;
+  if (d.Is(Kind::kAdequate)) return d.noise.known() ? Certainty::kSure : Certainty::kLikely;
+  return Doubts(d).empty() ? Certainty::kSure : Certainty::kLikely;
+}
+
+std::string WhyInWords(const Diagnosis& d) {
+  switch (d.verdict.kind) {
+    case Kind::kAdequate:
+      return d.noise.known()
+                 ? "The error is what the noise and the model's own time step make."
+                 : "No candidate lowers the error, but these logs do not show how large their "
+                   "noise is.";
+    case Kind::kAmbiguous:
+      return "These logs do not distinguish the causes.";
+    case Kind::kUnexplained:
+      return WhyUnexplained(d);
+    case Kind::kNamed:
+      break;
+  }
+  const auto doubts = Doubts(d);
+  if (doubts.empty())
+    return "With it the error is what the noise and the time step make, and every other candidate "
+           "does clearly worse.";
+  return fmt::format("It does clearly better than every other candidate. {}",
+                     fmt::join(doubts, " "));
+}
+
+std::string CausesInWords(const Diagnosis& d) {
+  std::string text;
+  for (const std::size_t i : d.verdict.named)
+    text += (text.empty() ? "" : " or ") + d.candidates[i].hypothesis.NameAtPlace();
+  if (d.partner && !text.empty()) text = d.partner->hypothesis.NameAtPlace() + " and " + text;
+  return text;
+}
+
+std::string GainInWords(const Diagnosis& d, const ExtensionRun& run) {
+  if (!d.chosen()) return "none, as nothing was added";
+  if (!run.offered && run.extended.xml.size() > 0)
+    return "the held-out error does not fall, so the extension is not offered";
+  if (!(d.before.error.validate > 0)) return GainOfFolds(d);
+  const double removed = GainOf(d, run.after).removed;
+  const std::string much = removed < 0 ? "the held-out error rises by " + Percent(-removed)
+                                       : Percent(removed) + " of the held-out error is removed";
+  return much + IntervalInWords(d);
+}
+
+std::vector<std::string> WorseFoldsInWords(const Diagnosis& d) {
+  std::vector<std::string> worse;
+  if (!d.chosen()) return worse;
+  const FoldRecord& record = d.chosen()->record;
+  for (std::size_t f = 0; f < std::min(record.after.size(), d.folds.size()); ++f) {
+    if (!(record.after[f] > record.before[f])) continue;
+    worse.push_back(fmt::format("fitted without {}, the error there rises: {:.4g} → {:.4g} {}",
+                                d.folds[f].name, record.before[f], record.after[f], d.pool.unit()));
+  }
+  return worse;
+}
+
+std::string RemainsInWords(const Diagnosis& d, const ExtensionRun& run) {
+  const std::string unit = d.pool.unit();
+  std::string text = fmt::format("The error is {:.3g} {} on the train logs", run.after.train, unit);
+  const double times = TimesFloor(d, run.after);
+  if (OnlyNoiseRemains(d, run.after))
+    return text + ", which is what noise and time step make. Nothing else shows in these logs.";
+  text += times == 0 ? ". These logs do not show how much of it is noise."
+                     : fmt::format(", {:.1f} times what noise and time step make.", times);
+  if (!d.remaining.where.empty()) text += " It is largest in " + d.remaining.where + ".";
+  if (!d.remaining.would_take.empty()) text += " " + Sentence(d.remaining.would_take) + ".";
+  return text;
+}
+
+std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& d,
+                                          const ExtensionRun& run) {
+  std::vector<std::string> steps;
+  const bool extended = run.offered && !run.extended.xml.empty();
+  for (const std::string& bound : AtBoundInWords(d, run))
+    steps.push_back(fmt::format("Check {}: the best value may lie beyond.", bound));
+  if (d.Is(Kind::kAmbiguous) && !d.next.input.empty()) {
+    steps.push_back(d.next.log ? fmt::format("To find out which, record: {} (inputs in `{}`).",
+                                             d.next.input, kNextInputs)
+                               : Sentence(d.next.input + "."));
+  }
+  if (extended && d.Is(Kind::kNamed))
+    steps.push_back(fmt::format("Simulate with `{}` in place of the model.", kExtendedModel));
+  if (extended && d.Is(Kind::kNamed) && !OnlyNoiseRemains(d, run.after))
+    steps.push_back(
+        fmt::format("Look for what is left: `continuum diagnose {}`.", kExtendedExperiment));
+  if (d.Is(Kind::kUnexplained)) {
+    if (!e.all_candidates)
+      steps.emplace_back("Try every effect: write `candidates: all` in the experiment.");
+    if (d.missing_force.joint.empty())
+      steps.emplace_back("Measure every joint: then the report shows which force is missing.");
+    if (d.fallback)
+      steps.push_back(fmt::format("Until then `{}` simulates with {}.", kFallbackModel,
+                                  "a smooth force that has no cause"));
+  }
+  if (d.noise.source != "replicates")
+    steps.emplace_back("Record each trial twice: only that shows how large the noise is.");
+  return steps;
+}
+
+}  // namespace continuum

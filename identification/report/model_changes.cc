@@ -1,0 +1,163 @@
+#include "identification/report/model_changes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "binding/effect_catalog.h"
+#include "error.h"
+#include "sim/experiment/measurement_model.h"
+
+namespace continuum {
+namespace {
+
+std::string Value(double value) { return fmt::format("{:.3g}", value); }
+
+// " N m/rad"; nothing for a pure number.
+std::string Unit(std::string unit) {
+  if (unit.empty() || unit == "1") return "";
+  std::replace(unit.begin(), unit.end(), '*', ' ');
+  return " " + unit;
+}
+
+// "joint bend*" of "joint:bend*".
+std::string Place(std::string target) {
+  const auto colon = target.find(':');
+  if (colon != target.npos) target[colon] = ' ';
+  return target;
+}
+
+std::string Interval(const Uncertainty& u, Eigen::Index at) {
+  if (u.lower.size() <= at || !std::isfinite(u.upper[at] - u.lower[at])) return "";
+  return fmt::format("95 %: {} … {}", Value(u.lower[at]), Value(u.upper[at]));
+}
+
+bool AtBound(const Fitted& f, Eigen::Index at) {
+  if (!f.complete()) return false;
+  const auto& bound = f.sensitivities->uncertainty.at_bound;
+  return static_cast<std::size_t>(at) < bound.size() && bound[static_cast<std::size_t>(at)];
+}
+
+std::string NearerBound(double value, double lower, double upper) {
+  return value - lower < upper - value ? "lower" : "upper";
+}
+
+// What a model or an experiment has before; none where it has no such value.
+std::optional<double> Before(const Diagnosis& d, const FreeParameter& p) {
+  if (IsMeasurement(p.change.target, p.change.attribute)) return p.initial;
+  try {
+    return d.system.Value(p.change.target, p.change.attribute);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+std::string NameOf(const FreeParameter& p) {
+  const auto of = p.name.find('[');
+  return fmt::format("{} of {}{}", p.change.attribute, Place(p.change.target),
+                     of == p.name.npos ? "" : " " + p.name.substr(of));
+}
+
+// "1.238 → 1.251", "times 1.05"; empty where nothing changes.
+std::string FromTo(const Diagnosis& d, const FreeParameter& p, double after) {
+  const bool scales = p.change.operation == Change::Operation::kScale;
+  if (scales || p.change.operation == Change::Operation::kAdd) {
+    const std::string none = scales ? "1" : "0";
+    return Value(after) == none ? "" : (scales ? "times " : "plus ") + Value(after);
+  }
+  const auto before = Before(d, p);
+  if (!before) return Value(after);
+  return Value(*before) == Value(after) ? "" : Value(*before) + " → " + Value(after);
+}
+
+// Whose values the extended files hold.
+const Fitted& FitOf(const Diagnosis& d, const ExtensionRun& run) {
+  return run.offered ? d.last() : d.before;
+}
+
+std::string FittedInWords(const Diagnosis& d, const Fitted& fitted, std::size_t i) {
+  const FreeParameter& p = d.parameters_before[i];
+  const auto at = static_cast<Eigen::Index>(i);
+  const double after = fitted.fit.x[at];
+  const std::string step = FromTo(d, p, after);
+  if (step.empty()) return "";
+  std::string text = NameOf(p) + ": " + step + Unit(p.unit);
+  if (AtBound(fitted, at))
+    text += ", **at its " + NearerBound(after, p.lower, p.upper) + " bound**";
+  return text;
+}
+
+std::string AddedInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin) {
+  return fmt::format("{} **{}** at {}: {}{}", h.OnlyMeasured() ? "measures with" : "adds", h.Name(),
+                     h.where, ValuesInWords(h, fitted, begin),
+                     h.replaces.empty() ? "" : "; it takes the place of " + h.replaces);
+}
+
+}  // namespace
+
+std::string UnitOfExtra(const Hypothesis& h, std::size_t i) {
+  const std::string name = h.extra[i].name.substr(0, h.extra[i].name.find('['));  // of a condition
+  for (const Param& p : EffectNamed(h.Card()).params) {
+    if (p.name == name) return p.unit == "1" ? "" : std::string(p.unit);
+  }
+  return h.extra[i].unit;
+}
+
+std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin) {
+  std::string text;
+  for (std::size_t i = 0; i < h.extra.size(); ++i) {
+    const Eigen::Index at = begin + static_cast<Eigen::Index>(i);
+    const double value = fitted.fit.x[at];
+    const double null = i < h.null.size() ? h.null[i] : 0;
+    const bool from = std::isfinite(null) && null != 0;
+    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", h.extra[i].name,
+                        from ? Value(null) + " → " : "", Value(value), Unit(UnitOfExtra(h, i)));
+    std::string notes = fitted.complete() ? Interval(fitted.sensitivities->uncertainty, at) : "";
+    if (AtBound(fitted, at))
+      notes += fmt::format("{}**at its {} bound**", notes.empty() ? "" : "; ",
+                           NearerBound(value, h.extra[i].lower, h.extra[i].upper));
+    if (!notes.empty()) text += " (" + notes + ")";
+  }
+  return text;
+}
+
+std::vector<std::string> ChangesInWords(const Diagnosis& d, const ExtensionRun& run) {
+  std::vector<std::string> changes;
+  const bool added = run.offered && d.chosen();
+  if (added && d.partner)
+    changes.push_back(AddedInWords(d.partner->hypothesis, d.last(), d.before.fit.x.size()));
+  if (added)
+    changes.push_back(AddedInWords(d.chosen()->hypothesis, d.last(), d.chosen()->first_extra()));
+  for (std::string& one : FittedValuesInWords(d, run)) changes.push_back(std::move(one));
+  return changes;
+}
+
+std::vector<std::string> FittedValuesInWords(const Diagnosis& d, const ExtensionRun& run) {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < d.parameters_before.size(); ++i) {
+    if (d.parameters_before[i].IsStart()) continue;
+    std::string one = FittedInWords(d, FitOf(d, run), i);
+    if (!one.empty()) values.push_back(std::move(one));
+  }
+  return values;
+}
+
+std::vector<std::string> AtBoundInWords(const Diagnosis& d, const ExtensionRun& run) {
+  std::vector<std::string> all;
+  const Fitted& fitted = FitOf(d, run);
+  const auto& parameters = run.offered ? d.parameters : d.parameters_before;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const FreeParameter& p = parameters[i];
+    if (p.IsStart() || at >= fitted.fit.x.size() || !AtBound(fitted, at)) continue;
+    const double value = fitted.fit.x[at];
+    all.push_back(fmt::format("{} = {}{}, its {} bound", p.name, Value(value), Unit(p.unit),
+                              NearerBound(value, p.lower, p.upper)));
+  }
+  return all;
+}
+
+}  // namespace continuum
