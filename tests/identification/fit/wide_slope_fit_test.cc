@@ -79,5 +79,13 @@ TEST_F(Far, TakesNoMoreIterationsThanAllowedAndTracesEach) {
   }
 }
 
+TEST_F(Far, HasNothingToFitWithoutParameters) {
+  const auto u = Shaken::Steps();
+  AddLog("shaken", "use: train", u, Shaken().Run(u));
+  const Experiment experiment = ReadExperiment("");
+  const Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
+  EXPECT_EQ(FitWithWideSlopes(problem, problem.Start(), problem.TrainLogs()).x.size(), 0);
+}
+
 }  // namespace
 }  // namespace continuum
