@@ -13,6 +13,7 @@
 #include "identification/candidates/present_friction.h"
 #include "identification/candidates/search_range.h"
 #include "identification/candidates/shared_value.h"
+#include "identification/problem/parameter_units.h"
 #include "sim/io/decimal.h"
 
 namespace continuum {
@@ -63,7 +64,10 @@ void AddAttribute(const EffectInfo& effect, Param param, Place place,
     param.lower -= *std::min_element(values.begin(), values.end());
   h.extra.push_back(
       CandidateParameter(param, place, sizes, kind + GlobsOf(names), attribute, shared.operation));
-  h.extra.back().name += shared.suffix;
+  if (!shared.suffix.empty()) {
+    h.extra.back().name += shared.suffix;
+    h.extra.back().unit = UnitOf(system, h.extra.back());  // no card has this name
+  }
   h.null.push_back(param.null);
 }
 

@@ -126,6 +126,7 @@ TEST_F(Sets, LeaveAttributesThatDifferAsTheyAreWhereTheEffectIsAbsent) {
   ASSERT_THAT(scaled.extra, SizeIs(1));
   EXPECT_EQ(scaled.extra[0].operation, Change::Operation::kScale);
   EXPECT_EQ(scaled.extra[0].name, "k_factor");
+  EXPECT_EQ(scaled.extra[0].unit, "1");
   EXPECT_EQ(scaled.null, std::vector<double>{1});
   const Hypothesis same = At(all, {"j2", "j3"}, context_);
   EXPECT_EQ(same.extra[0].operation, Change::Operation::kSet);
@@ -135,6 +136,7 @@ TEST_F(Sets, LeaveAttributesThatDifferAsTheyAreWhereTheEffectIsAbsent) {
   const Hypothesis added = At(all, {"j1", "j2"}, {experiment_, base, sizes_});
   EXPECT_EQ(added.extra[0].operation, Change::Operation::kAdd);
   EXPECT_EQ(added.extra[0].name, "k_added");
+  EXPECT_EQ(added.extra[0].unit, "N*m/rad");
   EXPECT_EQ(added.null, std::vector<double>{0});
   EXPECT_GE(added.extra[0].lower, 0);
   for (const Hypothesis& h : {scaled, same, added}) {
