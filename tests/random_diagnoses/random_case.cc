@@ -116,7 +116,7 @@ class Case {
       }
       mj_forward(&m, &d);
       for (std::size_t i = 0; i < measured_.size(); ++i) text += Cell(m, d, i, i == stuck, noise);
-      while (d.time < t + kPeriod - 1e-9) mj_step(&m, &d);
+      for (long k = std::lround(kPeriod / m.opt.timestep); k > 0; --k) mj_step(&m, &d);
     }
     return text + "\n";
   }
