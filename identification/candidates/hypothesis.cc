@@ -31,6 +31,17 @@ double Hypothesis::AtShare(std::size_t i, double value, double share) const {
   return share > 0 ? value / share : extra[i].upper;
 }
 
+std::vector<std::size_t> Hypothesis::StartsOfShape(bool first) const {
+  std::vector<std::size_t> out;
+  for (std::size_t s = 0; s < starts.size(); ++s) {
+    bool same = true;
+    for (std::size_t i = 0; i < null.size(); ++i)
+      same = same && (!std::isnan(null[i]) || starts[s][i] == starts.front()[i]);
+    if (same == first) out.push_back(s);
+  }
+  return out;
+}
+
 bool Hypothesis::OnlyMeasured() const {
   return !extra.empty() && std::all_of(extra.begin(), extra.end(), [](const Parameter& p) {
     return IsMeasurement(p.target, p.attribute);

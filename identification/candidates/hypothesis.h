@@ -39,6 +39,9 @@ struct Hypothesis {
   std::vector<std::size_t> Amplitudes() const;
   /// The value of extra[i] at a share of what `value` does; at none the effect is absent.
   double AtShare(std::size_t i, double value, double share) const;
+  /// Indices of the starts whose nuisances (null: NaN), which shape the effect, are those of the
+  /// first start, or are others.
+  std::vector<std::size_t> StartsOfShape(bool first) const;
   /// Whether extra[i] may leave the value at which the effect is absent on one side only.
   bool OneSign(std::size_t i) const {
     return extra[i].lower >= null[i] || extra[i].upper <= null[i];

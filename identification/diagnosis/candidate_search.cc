@@ -84,7 +84,7 @@ CandidateSearch::CandidateSearch(const SearchContext& context, const BaseFit& ba
 }
 
 void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
-                               const StartRange& starts) {
+                               const std::vector<std::size_t>& starts) {
   try {
     Problem problem = ProblemOf(c, *fitter_.experiment);
     if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
@@ -98,7 +98,7 @@ void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& resi
   }
 }
 
-// From the first start of each; then from the others of those that are not hopeless there.
+// In the first shape of each; then in the others of those that are not hopeless in that.
 void CandidateSearch::ProbeAll(const ProjectedResidual& residual) {
   std::mutex mutex;
   std::size_t done = 0;
@@ -110,14 +110,15 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual) {
     return !fitter_.TimeIsOver();
   };
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
-    if (say(candidates[i], "a look at ")) ProbeOne(candidates[i], residual, {});
+    CandidateResult& c = candidates[i];
+    if (say(c, "a look at ")) ProbeOne(c, residual, c.hypothesis.StartsOfShape(true));
   });
   const double least = criteria_.fit_share * MostExplained();
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
     CandidateResult& c = candidates[i];
-    const std::size_t starts = c.hypothesis.starts.size();
-    if (c.explained < least || c.probes.empty() || starts < 2) return;
-    if (say(c, "other shapes of ")) ProbeOne(c, residual, {1, starts});
+    const auto others = c.hypothesis.StartsOfShape(false);
+    if (c.explained < least || c.probes.empty() || others.empty()) return;
+    if (say(c, "other shapes of ")) ProbeOne(c, residual, others);
   });
 }
 

@@ -86,7 +86,8 @@ class CandidateSearch {
   std::vector<std::string> left_out;  ///< for lack of time
 
  private:
-  void ProbeOne(CandidateResult& c, const ProjectedResidual& residual, const StartRange& starts);
+  void ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
+                const std::vector<std::size_t>& starts);
   void ProbeAll(const ProjectedResidual& residual);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);

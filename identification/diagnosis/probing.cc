@@ -156,11 +156,10 @@ Vector Append(const Vector& known, const std::vector<double>& own) {
 
 std::vector<Probe> ProbesOf(const Hypothesis& h, const Problem& problem, const Fitted& null,
                             const ProjectedResidual& residual, bool calibrated,
-                            const StartRange& starts, const Criteria& criteria) {
+                            const std::vector<std::size_t>& starts, const Criteria& criteria) {
   const Prober prober(h, problem, null, residual, calibrated, criteria);
   std::vector<Probe> probes;
-  const std::size_t last = std::min(starts.last, h.starts.size());
-  for (std::size_t start = starts.first; start < last; ++start) {
+  for (const std::size_t start : starts) {
     const Probe whole = prober.AtStart(start);
     const std::vector<double> less = prober.Less(whole), more = prober.More(whole);
     probes.push_back(prober.OnTop(prober.At(whole, less)));

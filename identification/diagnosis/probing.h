@@ -4,12 +4,8 @@
 
 namespace continuum {
 
-/// Which of a hypothesis' starts.
-struct StartRange {
-  std::size_t first = 0, last = 1;  ///< last: behind them; as far as there are any
-};
-
-/// Directions in which a candidate moves the residuals, one probe or two for each of some starts.
+/// Directions in which a candidate moves the residuals, one probe or two for each of some of its
+/// starts.
 ///
 /// Each amplitude is simulated by itself beside the fit without the candidate; where it does far
 /// more than is to be explained it is probed at a share of its start, where it does far less once
@@ -17,7 +13,7 @@ struct StartRange {
 /// Error when the simulation diverges at a start.
 std::vector<Probe> ProbesOf(const Hypothesis& h, const Problem& problem, const Fitted& null,
                             const ProjectedResidual& residual, bool calibrated,
-                            const StartRange& starts, const Criteria& criteria = {});
+                            const std::vector<std::size_t>& starts, const Criteria& criteria = {});
 
 /// Where to begin a candidate's fit: a start of its own, with sizes from its probe. What does
 /// nothing without the others begins at excess times its start, as first order says little of it.

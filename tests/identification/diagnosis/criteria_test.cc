@@ -113,17 +113,58 @@ std::vector<Judged> LeastFolds() {
 Judged Lead(double lead, std::size_t parameters = 1, std::vector<std::size_t> contains = {},
             double step = 0) {
   return [=](const Criteria& c) {
-    const LikelihoodRecord plain{"plain", 1, 1000, {}, step};
-    const LikelihoodRecord rich{"rich", parameters, 1000 + lead, contains, step};
+    const LikelihoodRecord plain{"plain", 1, 500, {}, step};
+    const LikelihoodRecord rich{"rich", parameters, 500 + lead, contains, step};
     const Verdict v = JudgeLikelihoods({plain, rich}, {}, 1e-3, {}, c);
     return v.word() + fmt::format(" {}", fmt::join(v.named, ","));
   };
 }
+// A model with 100 squares of noise, and two causes of other families that leave so many squares
+// above that.
+constexpr double kNoise = 100;
+Judged TwoThatLeave(double squares, double best, double rival) {
+  return [=](const Criteria& c) {
+    const double before = kNoise + squares;
+    return JudgeLikelihoods({{"best", 1, squares - best}, {"rival", 1, squares - rival}}, {1e-9},
+                            1e-3, {before, kNoise}, c)
+        .word();
+  };
+}
+std::vector<Judged> Left() {
+  return {TwoThatLeave(4000, 800, 800 + 160 * kBelow), TwoThatLeave(4000, 800, 800 + 160 * kAbove)};
+}
+std::vector<Judged> Structure() {
+  const double most = 1e6;
+  return {TwoThatLeave(most, 1, 1 + 2000 * kBelow), TwoThatLeave(most, 1, 1 + 2000 * kAbove)};
+}
+std::vector<Judged> MainShare() {
+  std::vector<Judged> judged;
+  for (const double share : {0.5, 0.8}) {
+    judged.push_back([=](const Criteria& c) {
+      return JudgeLikelihoods({{"cause", 1, share * 1000}}, {1e-9}, 1e-3, {1000 + kNoise, kNoise},
+                              c)
+          .word();
+    });
+  }
+  return judged;
+}
+std::vector<Judged> FamilyShare() {
+  std::vector<Judged> judged;
+  for (const double share : {0.6, 0.97}) {
+    judged.push_back([=](const Criteria& c) {
+      LikelihoodRecord plain{"plain", 1, share * 1000}, rich{"rich", 1, 1000};
+      plain.kin = {"family", 0}, rich.kin = {"family", 1};
+      return fmt::format("{}", JudgeLikelihoods({plain, rich}, {}, 1e-3, {}, c).named.front());
+    });
+  }
+  return judged;
+}
+
 std::vector<Judged> LackLevel() {
   std::vector<Judged> judged;
   for (const double factor : {kBelow, kAbove}) {
     judged.push_back([=](const Criteria& c) {
-      return JudgeLikelihoods({{"cause", 1, 100}}, {0.002 * factor}, 1e-3, {}, c).word();
+      return Text(JudgeLikelihoods({{"cause", 1, 100}}, {0.002 * factor}, 1e-3, {}, c).complete);
     });
   }
   return judged;
@@ -171,11 +212,10 @@ std::map<std::string, std::vector<Judged>> Examples() {
     return JudgeFolds({}, {over}, c).kind == Verdict::Kind::kAdequate;
   });
   e["near_noise"] = AroundBoundary(1.25, [](double over, const Criteria& c) {
-    return JudgeFolds({Folds(0.5, over)}, {20, 0.9, 0, true}, c).named.size() == 1;
+    return JudgeFolds({Folds(0.5, over)}, kKnown, c).complete;
   });
-  e["model_limited"] = AroundBoundary(3, [](double over, const Criteria& c) {
-    return JudgeFolds({Folds(0.5, over)}, kKnown, c).named.size() == 1;
-  });
+  e["model_limited"] = AroundBoundary(
+      3, [](double over, const Criteria& c) { return HasSignal(1, over * over * 100, 100, c); });
   e["scatter_limit"] = AroundBoundary(10, [](double over, const Criteria& c) {
     return JudgeFolds({}, {0, 0, over}, c).kind == Verdict::Kind::kUnexplained;
   });
@@ -188,6 +228,10 @@ std::map<std::string, std::vector<Judged>> Examples() {
   });
   e["rival_margin"] = {Lead(5 * kBelow), Lead(5 * kAbove)};
   e["nested_margin"] = {Lead(3.84 + 2.8 * kBelow, 2, {0}), Lead(3.84 + 2.8 * kAbove, 2, {0})};
+  e["left_share"] = Left();
+  e["structure_share"] = Structure();
+  e["main_share"] = MainShare();
+  e["family_share"] = FamilyShare();
   e["step_share"] = {Lead(50 * kBelow, 1, {}, 10'000), Lead(50 * kAbove, 1, {}, 10'000)};
   e["plain_noise"] = AroundBoundary(0.05, [](double p, const Criteria& c) {
     return ResidualInWords({p}, c) == "nothing but noise";
@@ -230,6 +274,10 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["fit_behind"] = Number([](const Criteria& c) { return FitThreshold(40, 100, true, c); });
   e["fit_always"] = Number([](const Criteria& c) { return FitThreshold(500, 1000, true, c); });
   e["fit_share"] = Number([](const Criteria& c) { return FitThreshold(10'000, 1e5, true, c); });
+  e["force_least"] = AroundBoundary(
+      0.05, [](double share, const Criteria& c) { return ExplainsForce(share, 0, c); });
+  e["force_share"] = AroundBoundary(
+      0.5, [](double share, const Criteria& c) { return ExplainsForce(share, 1, c); });
   e["rival_share"] = Number([](const Criteria& c) { return UnlistedThreshold(100, c); });
   e["outdoes"] = AroundBoundary(
       10, [](double explained, const Criteria& c) { return WorthFinishing(0, explained, 100, c); });
@@ -244,8 +292,14 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["second_chances"] = AroundBoundary(6, [](double finished, const Criteria& c) {
     return WorthFinishing(static_cast<std::size_t>(finished), 100, 100, c);
   });
-  e["pair_hopeless"] = AroundBoundary(
-      10, [](double over, const Criteria& c) { return MayBeTwo(kUnexplained, {}, 1e-3, over, c); });
+  e["second_share"] = AroundBoundary(0.05, [](double left, const Criteria& c) {
+    Verdict named{Verdict::Kind::kNamed};
+    named.leading_share = 1 - left;
+    return MayBeTwo(named, {}, 1e-3, 2, c);
+  });
+  e["pair_hopeless"] = AroundBoundary(100, [](double over, const Criteria& c) {
+    return MayBeTwo(kUnexplained, {}, 1e-3, over, c);
+  });
   e["pair_share"] = AroundBoundary(
       0.5, [](double share, const Criteria& c) { return WorthPartner(1e-3, share, true, c); });
   e["fallback_ceiling"] = AroundBoundary(

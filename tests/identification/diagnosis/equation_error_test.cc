@@ -55,9 +55,8 @@ class ByEquationTest : public Bench {
     throw std::out_of_range(effect);
   }
   static EquationErrors View(const Experiment& e, const ModelSpec& system) {
-    Fitted base;
-    base.fit.x = Problem(e, system).Start();
-    return {e, system, base};
+    const Problem base(e, system);
+    return {base, base.Start()};
   }
 };
 

@@ -232,20 +232,51 @@ TEST(Judge, OneWithLessThanHalfTheGainIsNoRival) {
   EXPECT_EQ(JudgeFolds({Good(), erratic}, kKnown).word(), "named");
 }
 
-TEST(Judge, TwiceTheNoiseLeftIsUnexplained) {
-  FoldRecord r = Good();
-  r.over_noise = 1.2;
-  EXPECT_EQ(TextOf(r), "named");
-  r.over_noise = 2;
-  EXPECT_EQ(TextOf(r), "unexplained");
-  EXPECT_THAT(JudgeFolds({r}, kKnown).named, IsEmpty());
-  EXPECT_THAT(JudgeFolds({r}, kKnown).reason, HasSubstr("2.0 times the noise"));
+TEST(Judge, WhatIsLeftTakesNoNameAwayButIsSaid) {
+  for (const double over : {1.2, 2.0, 40.0}) {
+    FoldRecord r = Good();
+    r.over_noise = over;
+    const Verdict v = JudgeFolds({r}, kKnown);
+    EXPECT_EQ(v.word(), "named") << over;
+    EXPECT_EQ(v.complete, over < 1.25) << over;
+    EXPECT_EQ(v.leading, 0u);
+  }
 }
 
-TEST(Judge, NamesOnModelLimitedDataWhereSomethingIsAlwaysLeft) {
+TEST(Judge, OfAFamilyThePlainestThatIsNotClearlyWorseIsNamed) {
+  FoldRecord plain = Good(), rich = Good();
+  plain.kin = {"friction", 0}, rich.kin = {"friction", 1};
+  for (double& a : rich.after) a -= 0.005;
+  const Verdict v = JudgeFolds({rich, plain}, kKnown);
+  EXPECT_EQ(v.word(), "named");
+  EXPECT_THAT(v.named, ElementsAre(1));
+  EXPECT_THAT(v.siblings, ElementsAre(0));
+}
+
+TEST(Judge, ARichLawThatIsClearlyBetterIsNamed) {
+  FoldRecord plain = Good(), rich = Good();
+  plain.kin = {"friction", 0}, rich.kin = {"friction", 1};
+  for (double& a : rich.after) a -= 0.3;
+  const Verdict v = JudgeFolds({rich, plain}, kKnown);
+  EXPECT_THAT(v.named, ElementsAre(0));
+}
+
+TEST(Judge, WhereNothingPassesItSaysWhatComesClosest) {
   FoldRecord r = Good();
-  r.over_noise = 4;
-  EXPECT_EQ(TextOf(r), "named");
+  r.amplitude[0] = -2;
+  const Verdict v = JudgeFolds({r}, kKnown);
+  EXPECT_EQ(v.word(), "unexplained");
+  EXPECT_EQ(v.leading, 0u);
+  EXPECT_GT(v.leading_share, 0.5);
+}
+
+TEST(HoldsOnFolds, AsksForHalfOfWhatNoiseLeavesOpen) {
+  FoldRecord r = Good();
+  r.after.assign(10, 0.97);
+  EXPECT_FALSE(HoldsOnFolds(r, 0.5));
+  EXPECT_TRUE(HoldsOnFolds(r, 0.05));
+  r.after[0] = r.after[1] = r.after[2] = 1.01;
+  EXPECT_FALSE(HoldsOnFolds(r, 0.05));
 }
 
 TEST(Judge, IsAdequateAtTheNoiseWhateverTheCandidatesSay) {
@@ -330,7 +361,7 @@ TEST(Likelihoods, OnesWithinAShareOfWhatTheTimeStepLeavesOpenAreKept) {
   const auto named = [](double step) {
     return JudgeLikelihoods(
                {{"a", 1, 300, {}, 9000}, {"b", 1, 330, {}, step}, {"c", 1, 50, {}, 9000}}, {0.5},
-               1e-3)
+               1e-3, kCalibrated)
         .named;
   };
   EXPECT_THAT(named(1000), ElementsAre(1));
@@ -388,8 +419,65 @@ TEST(Likelihoods, NothingOutsideTheListMakesANameWhereNoneOfItHelps) {
             "adequate");
 }
 
-TEST(Likelihoods, NoNameWhenTheBestLeavesMoreThanNoise) {
-  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 4000}}, {1e-6}, 1e-3, kCalibrated).word(), "unexplained");
+// 5000 squares above 100 of noise.
+constexpr BaseSquares kLoud{5100, 100};
+
+TEST(Likelihoods, TheMainCauseIsNamedWhereMoreThanNoiseIsLeft) {
+  const auto v = JudgeLikelihoods({{"a", 1, 4800}, {"b", 1, 3000}}, {1e-6}, 1e-3, kLoud);
+  EXPECT_EQ(v.word(), "named");
+  EXPECT_FALSE(v.complete);
+  EXPECT_NEAR(v.leading_share, 0.96, 1e-12);
+  EXPECT_TRUE(JudgeLikelihoods({{"a", 1, 5000}}, {0.5}, 1e-3, kLoud).complete);
+}
+
+TEST(Likelihoods, WhatTakesLessThanTheMainShareLeadsButIsNotNamed) {
+  const auto v = JudgeLikelihoods({{"a", 1, 3000}}, {1e-6}, 1e-3, kLoud);
+  EXPECT_EQ(v.word(), "unexplained");
+  EXPECT_THAT(v.named, IsEmpty());
+  EXPECT_EQ(v.leading, 0u);
+  EXPECT_NEAR(v.leading_share, 0.6, 1e-12);
+}
+
+TEST(Likelihoods, TheShareOfThePlainErrorCountsToo) {
+  LikelihoodRecord a{"a", 1, 4800};
+  a.error_share = 0.6;
+  EXPECT_EQ(JudgeLikelihoods({a}, {1e-6}, 1e-3, kLoud).word(), "unexplained");
+}
+
+// The best leaves 200 squares above the noise: a rival that leaves 20 more is not behind on that
+// scale, though twenty is much for noise.
+TEST(Likelihoods, RivalsAreBehindByWhatIsLeftNotByNoiseAlone) {
+  const auto verdict = [](double rival) {
+    return JudgeLikelihoods({{"a", 1, 4800}, {"b", 1, rival}}, {1e-6}, 1e-3, kLoud).word();
+  };
+  EXPECT_EQ(verdict(4780), "ambiguous");
+  EXPECT_EQ(verdict(4700), "named");
+}
+
+// Lengths that are wrong by a per cent leave that much of a large effect.
+TEST(Likelihoods, OfALargeEffectTwoThatExplainItAllAreNotDistinguished) {
+  constexpr BaseSquares kHuge{1e7, 1000};
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 9.998e6}, {"b", 1, 9.985e6}}, {1e-6}, 1e-3, kHuge).word(),
+            "ambiguous");
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 9.998e6}, {"b", 1, 9.9e6}}, {1e-6}, 1e-3, kHuge).word(),
+            "named");
+}
+
+TEST(Likelihoods, SiblingsMakeNoSet) {
+  LikelihoodRecord plain{"plain", 1, 4700}, rich{"rich", 2, 4790}, other{"other", 1, 4000};
+  plain.kin = {"friction", 0}, rich.kin = {"friction", 1};
+  const auto v = JudgeLikelihoods({rich, plain, other}, {1e-6}, 1e-3, kLoud);
+  EXPECT_EQ(v.word(), "named");
+  EXPECT_THAT(v.named, ElementsAre(1));
+  EXPECT_THAT(v.siblings, ElementsAre(0));
+}
+
+TEST(Kin, IsOfOneFamilyInAnyOrderOfTwoCauses) {
+  EXPECT_TRUE(KinOf("coulomb").Of(KinOf("dahl")));
+  EXPECT_FALSE(KinOf("coulomb").Of(KinOf("pt1")));
+  EXPECT_FALSE(KinOf("viscous").Of(KinOf("viscous")));
+  EXPECT_TRUE(KinOf("coulomb", "payload").Of(KinOf("armature", "dahl")));
+  EXPECT_LT(KinOf("coulomb").depth, KinOf("dahl").depth);
 }
 
 TEST(Likelihoods, ProbabilitiesAddUpToOne) {
