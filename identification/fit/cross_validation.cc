@@ -1,5 +1,6 @@
 #include "identification/fit/cross_validation.h"
 
+#include <cmath>
 #include <algorithm>
 #include <map>
 
@@ -24,6 +25,10 @@ std::vector<Fold> FoldsOf(const Experiment& e) {
   return folds;
 }
 
+// What a model that diverges on logs that it was not fitted to is off, over what it is off where it
+// was.
+constexpr double kDiverged = 1e6;
+
 FoldScores CrossValidate(const Problem& problem, const Problem::Vector& x,
                          const std::vector<Problem::Vector>& r,
                          const std::vector<Problem::Matrix>& J, const std::vector<Fold>& folds) {
@@ -34,7 +39,9 @@ FoldScores CrossValidate(const Problem& problem, const Problem::Vector& x,
     const auto refitted = RefitByChords(problem, x, r, J, kept);
     scores.x.push_back(FitStarts(problem, refitted, fold.left_out));
     const auto there = problem.Residuals(scores.x.back(), fold.left_out);
-    scores.error.push_back(problem.PooledRms(there, fold.left_out));
+    const double error = problem.PooledRms(there, fold.left_out);
+    scores.error.push_back(std::isfinite(error) ? error
+                                                : kDiverged * problem.PooledRms(r, fold.left_out));
   }
   return scores;
 }
