@@ -2,10 +2,12 @@
 
 #include <poll.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 
 namespace continuum::hidden {
@@ -13,7 +15,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-[[noreturn]] void Answer(const std::function<std::string()>& work, int out) {
+[[noreturn]] void Answer(const std::function<std::string()>& work, double limit, int out) {
+  const auto seconds = static_cast<rlim_t>(std::ceil(limit));
+  const rlimit processor{seconds, seconds + 1};
+  setrlimit(RLIMIT_CPU, &processor);
   const std::string text = work();
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t n = write(out, text.data() + done, text.size() - done);
@@ -45,17 +50,18 @@ ChildAnswer InChild(const std::function<std::string()>& work, double limit) {
   if (child < 0) throw std::runtime_error("no process");
   if (child == 0) {
     close(ends[0]);
-    Answer(work, ends[1]);
+    Answer(work, limit, ends[1]);
   }
   close(ends[1]);
   ChildAnswer answer;
   std::string text;
-  const auto end = Clock::now() + std::chrono::milliseconds(static_cast<long>(1000 * limit));
+  const auto end = Clock::now() + std::chrono::milliseconds(static_cast<long>(20'000 * limit));
   answer.late = !ReadUntil(end, ends[0], text);
   if (answer.late) kill(child, SIGKILL);
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
+  answer.late |= WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
   if (!answer.late && WIFEXITED(status) && WEXITSTATUS(status) == 0) answer.text = text;
   return answer;
 }

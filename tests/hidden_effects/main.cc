@@ -134,17 +134,33 @@ nlohmann::json LineApart(const Case& c, const std::filesystem::path& folder, boo
                          bool verbose, double limit) {
   const ChildAnswer child = InChild([&] { return Line(c, folder, follow, verbose).dump(); }, limit);
   if (child.text) return nlohmann::json::parse(*child.text);
-  return NoAnswer(c, child.late ? fmt::format("more than {:g} s", limit) : "crash");
+  return NoAnswer(c,
+                  child.late ? fmt::format("more than {:g} s of processor time", limit) : "crash");
+}
+
+// Prints what the lines of files say, and draws it into a folder, if one is named.
+int Show(const std::vector<std::string>& files, const std::string& pictures) {
+  std::vector<nlohmann::json> lines;
+  for (const auto& file : files) {
+    for (auto& line : testing::ReadJsonLines(file)) lines.push_back(std::move(line));
+  }
+  const auto outcomes = OutcomesOf(lines);
+  fmt::print("{}", Report(outcomes));
+  if (!pictures.empty()) WritePictures(outcomes, pictures);
+  return 0;
 }
 
 int Main(int argc, char** argv) {
   CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
   std::string out, only, keep, pictures, robot = "arm";
+  std::vector<std::string> tables;
   int repeats = 1;
-  double limit = 600;
+  double limit = 1200;
   bool write = false, verbose = false, told = false, quick = false, background = false,
        spoilt = false, outside = false, follow = false;
-  app.add_option("--out", out, "one JSON line per case")->required();
+  app.add_option("--out", out, "one JSON line per case");
+  app.add_option("--table", tables, "files of earlier runs: print what they measure together, only")
+      ->check(CLI::ExistingFile);
   app.add_option("--robot", robot,
                  "arm, servo, silverbox, bouc_wen, spa or annelida; of --outside all")
       ->capture_default_str();
@@ -157,7 +173,7 @@ int Main(int argc, char** argv) {
       "--outside", outside,
       "machines whose masses and lengths are 1 % off their models (--quick: some of them)");
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
-  app.add_option("--limit", limit, "seconds for a case; later it has no answer")
+  app.add_option("--limit", limit, "processor seconds for a case; later it has no answer")
       ->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
   app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
@@ -167,6 +183,8 @@ int Main(int argc, char** argv) {
   app.add_flag("--follow", follow, "run the experiment that a set proposes, and diagnose again");
   app.add_flag("--verbose", verbose, "print each summary");
   CLI11_PARSE(app, argc, argv);
+  if (!tables.empty()) return Show(tables, pictures);
+  if (out.empty()) return app.exit(CLI::RequiredError("--out"));
   std::set<std::string> done;
   for (const auto& line : testing::ReadJsonLines(out)) done.insert(line.at("case"));
   const auto temporary =
@@ -194,10 +212,7 @@ int Main(int argc, char** argv) {
                line.value("named", nlohmann::json::array()).dump(), line.value("seconds", 0.0));
   }
   std::filesystem::remove_all(temporary);
-  const auto outcomes = OutcomesOf(testing::ReadJsonLines(out));
-  fmt::print("{}", Report(outcomes));
-  if (!pictures.empty()) WritePictures(outcomes, pictures);
-  return 0;
+  return Show({out}, pictures);
 }
 
 }  // namespace

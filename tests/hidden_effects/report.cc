@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "hidden_effects/measures.h"
+
 namespace continuum::hidden {
 namespace {
 
@@ -143,8 +145,8 @@ std::string CoverageText(const std::vector<Outcome>& outcomes) {
 }  // namespace
 
 std::string Report(const std::vector<Outcome>& outcomes) {
-  return ByEffect(Counts(outcomes)) + ApartText(outcomes) + FollowedText(outcomes) +
-         MatrixText(Worth(outcomes)) + MatrixText(Confusion(outcomes)) +
+  return MeasureTable(MeasuresOf(outcomes)) + ByEffect(Counts(outcomes)) + ApartText(outcomes) +
+         FollowedText(outcomes) + MatrixText(Worth(outcomes)) + MatrixText(Confusion(outcomes)) +
          PowerText(PowerOf(outcomes)) + ReliabilityText(ReliabilityOf(outcomes)) +
          CoverageText(outcomes);
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "binding/effect_catalog.h"
+#include "hidden_effects/families.h"
 
 namespace continuum::hidden {
 namespace {
@@ -71,10 +72,13 @@ double ErrorOf(const Outcome& o) {
 }  // namespace
 
 std::string GroupOf(const std::string& effect) {
+  if (IsDryFriction(effect)) return "dry friction";
+  if (const auto family = FamilyOf(effect); family.size() > 1)
+    return family.front() == "payload" ? "mass" : "lateness";
   const EffectInfo& info = EffectNamed(effect);
   if (info.kind == EffectInfo::Kind::kMeasure) return "measurement";
   if (info.places.front() == Place::kActuator) return "input";
-  if (info.kind == EffectInfo::Kind::kEdit) return "mass and load";
+  if (info.kind == EffectInfo::Kind::kEdit) return "load";
   return std::string(KindName(info.kind));
 }
 

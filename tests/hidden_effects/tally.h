@@ -15,7 +15,8 @@ struct Matrix {
   std::vector<std::vector<int>> count;  ///< [row][column]
 };
 
-/// Of what kind an effect is: "friction", "force", "mass and load", "input", "measurement", …
+/// Of what family an effect is ("dry friction", "lateness", "mass"), or else of what kind
+/// ("friction", "force", "load", "input", "measurement", …).
 std::string GroupOf(const std::string& effect);
 
 /// What is hidden, by group, against the group of the likeliest name.

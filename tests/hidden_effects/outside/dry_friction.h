@@ -13,9 +13,9 @@ namespace continuum::hidden {
 ///   kBristles a spring that gives 0.2 mrad (0.2 mm) before it slides
 ///   kNative   MuJoCo's own frictionloss, at a step of 0.1 ms (native.h)
 enum class Law { kStick, kTanh, kBristles, kNative };
-constexpr std::array<std::string_view, 4> kLawNames{"stick", "tanh", "bristles", "native"};
+inline constexpr std::array<std::string_view, 4> kLawNames{"stick", "tanh", "bristles", "native"};
 
-constexpr double kTanhSpeed = 2e-3, kGive = 2e-4;
+inline constexpr double kTanhSpeed = 2e-3, kGive = 2e-4;
 
 /// Level of a joint's dry friction [N m] or [N] at speed v and load.
 ///

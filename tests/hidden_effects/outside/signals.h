@@ -9,8 +9,8 @@
 
 namespace continuum::hidden {
 
-constexpr double kRowPeriod = 0.01;  // s, of all logs of the outside suite
-constexpr long kStepsPerRow = 400;   // of 25 us
+inline constexpr double kRowPeriod = 0.01;  // s, of all logs of the outside suite
+inline constexpr long kStepsPerRow = 400;   // of 25 us
 
 /// What may be wrong on the way in and on the way out of a machine.
 struct Signals {

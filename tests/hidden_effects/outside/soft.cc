@@ -195,7 +195,7 @@ Robot SoftRobot() {
               {"x", "z"}, {3e-4, 3e-4}, kRowPeriod};
   robot.trials = 4;
   robot.drive = [rows = robot.rows](int trial, std::mt19937_64& rng) {
-    const std::vector<double> bend = StepsAndSines(trial % 3, 8e4, rows, kRowPeriod, rng);
+    const std::vector<double> bend = StepsAndSines(trial % 3, 5e4, rows, kRowPeriod, rng);
     Columns u(3);
     for (const double b : bend) {
       u[0].push_back(std::max(0.0, b));
