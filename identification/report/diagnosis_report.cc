@@ -33,7 +33,7 @@ class DiagnosisPage {
     Part("the cause", [&] { TheCause(); });
     Part("the extension", [&] { TheExtension(); });
     Part("the gain", [&] { TheGain(); });
-    Part("what remains", [&] { WhatRemains(); });
+    Part("what is still wrong", [&] { WhatRemains(); });
     Part("next", [&] { WhatNext(); });
     AddDetails(page_, e_, d_, run_, missing_);
     page_.Write(file);
@@ -46,6 +46,9 @@ class DiagnosisPage {
   bool Is(Verdict::Kind kind) const { return d_.Is(kind); }
 
   void VerdictBox() {
+    if (d_.interrupted)
+      page_.Badge(Tone::kWarn, "Interrupted: this is the best so far",
+                  "Run it again to the end before you rely on it.");
     const bool good = Is(Verdict::Kind::kNamed) || Is(Verdict::Kind::kAdequate);
     page_.Badge(good ? Tone::kGood : Tone::kWarn, HeadlineOf(d_), BadgeDetail());
   }
@@ -153,7 +156,7 @@ class DiagnosisPage {
   }
 
   void WhatRemains() {
-    page_.Heading("What remains");
+    page_.Heading("What is still wrong");
     page_.Paragraph(RemainsInWords(d_, run_));
     AddMissing(page_, "fallback", missing_);
     if (d_.fallback)

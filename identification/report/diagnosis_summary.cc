@@ -122,10 +122,11 @@ std::string ContrastInWords(const Diagnosis& d) {
 }
 
 std::string Summary(const Experiment& e, const Diagnosis& d, const ExtensionRun& run) {
-  std::string text = fmt::format("verdict   {} ({}): {}\n", d.verdict.word(),
-                                 InWords(CertaintyOf(d)), WhyInWords(d));
+  std::string text = fmt::format("verdict   {}{} ({}): {}\n",
+                                 d.interrupted ? "interrupted, the best so far: " : "",
+                                 d.verdict.word(), InWords(CertaintyOf(d)), WhyInWords(d));
   text += CauseLines(d) + ChangeLines(d, run) + ErrorLines(d, run);
-  text += "remains   " + RemainsInWords(d, run) + "\n";
+  text += "residual  " + RemainsInWords(d, run) + "\n";
   text += DeviationLines(d, run.deviations);
   for (const std::string& bound : AtBoundInWords(d, run)) text += "at bound  " + bound + "\n";
   if (const std::string contrast = ContrastInWords(d); !contrast.empty())

@@ -76,6 +76,16 @@ std::string Closest(const Diagnosis& d) {
                      100 * d.verdict.leading_share);
 }
 
+// "a, b, c and 12 more".
+std::string FirstOf(const std::vector<std::string>& all) {
+  constexpr std::size_t kShown = 4;
+  const std::size_t shown = std::min(kShown, all.size());
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(shown);
+  std::string text = fmt::format("{}", fmt::join(all.begin(), end, ", "));
+  if (all.size() > shown) text += fmt::format(" and {} more", all.size() - shown);
+  return text;
+}
+
 std::string Sentence(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;
@@ -144,6 +154,7 @@ std::string InWords(Certainty certainty) {
 
 Certainty CertaintyOf(const Diagnosis& d) {
   if (d.Is(Kind::kAmbiguous) || d.Is(Kind::kUnexplained)) return Certainty::kCannotSay;
+  if (d.interrupted) return Certainty::kLikely;
   if (d.Is(Kind::kAdequate)) return d.noise.known() ? Certainty::kSure : Certainty::kLikely;
   return Doubts(d).empty() ? Certainty::kSure : Certainty::kLikely;
 }
@@ -174,8 +185,9 @@ std::string CausesInWords(const Diagnosis& d) {
   std::string text;
   for (const std::size_t i : d.verdict.named)
     text += (text.empty() ? "" : " or ") + d.candidates[i].hypothesis.NameAtPlace();
-  if (d.partner && !text.empty()) text = d.partner->hypothesis.NameAtPlace() + " and " + text;
-  return text;
+  if (!d.partner || text.empty()) return text;
+  const std::string partner = d.partner->hypothesis.NameAtPlace();
+  return d.partner->main ? partner + " and " + text : text + " and " + partner;
 }
 
 std::string GainInWords(const Diagnosis& d, const ExtensionRun& run) {
@@ -229,7 +241,7 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
     steps.push_back(fmt::format("Simulate with `{}` in place of the model.", kExtendedModel));
   if (extended && d.Is(Kind::kNamed) && !OnlyNoiseRemains(d, run.after))
     steps.push_back(
-        fmt::format("Look for what is left: `continuum diagnose {}`.", kExtendedExperiment));
+        fmt::format("Look for the next cause: `continuum diagnose {}`.", kExtendedExperiment));
   if (d.Is(Kind::kUnexplained)) {
     if (!e.all_candidates)
       steps.emplace_back("Try every effect: write `candidates: all` in the experiment.");
@@ -239,6 +251,9 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
       steps.push_back(fmt::format("Until then `{}` simulates with {}.", kFallbackModel,
                                   "a smooth force that has no cause"));
   }
+  if (!d.left_out.empty())
+    steps.push_back(fmt::format("There was no time for {}. `--effort thorough` takes it.",
+                                FirstOf(d.left_out)));
   if (d.noise.source != "replicates")
     steps.emplace_back("Record each trial twice: only that shows how large the noise is.");
   return steps;

@@ -283,6 +283,18 @@ TEST_F(DiagnosisOutput, OfACauseThatRaisesTheErrorSaysThatItIsNotOffered) {
   EXPECT_THAT(page, Not(HasSubstr("error is removed")));
 }
 
+TEST_F(DiagnosisOutput, SaysWhatThereWasNoTimeForAndThatItWasInterrupted) {
+  d_->left_out = {"folds of dahl"};
+  d_->interrupted = true;
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  EXPECT_THAT(FirstPage(), HasSubstr("Interrupted"));
+  EXPECT_THAT(FirstPage(), HasSubstr("folds of dahl"));
+  const std::string summary = Summary(e_, *d_, files.run);
+  EXPECT_THAT(summary, HasSubstr("folds of dahl"));
+  EXPECT_THAT(summary, HasSubstr("verdict   interrupted, the best so far: named"));
+  EXPECT_NE(CertaintyOf(*d_), Certainty::kSure);
+}
+
 TEST_F(DiagnosisOutput, IsOnlyLikelyWhereMoreThanNoiseIsLeft) {
   d_->unlisted.clear();
   ASSERT_EQ(CertaintyOf(*d_), Certainty::kSure);
