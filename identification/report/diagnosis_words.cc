@@ -100,7 +100,9 @@ std::string WithoutP(std::string reason) {
 
 std::string WhyUnexplained(const Diagnosis& d) {
   if (d.verdict.unlisted_explains) return Sentence(WithoutP(d.verdict.reason) + ".");
-  return "No candidate explains enough of it." + Closest(d);
+  return (d.left_out.empty() ? "No candidate explains enough of it."
+                             : "No candidate that there was time for explains enough of it.") +
+         Closest(d);
 }
 
 std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
@@ -133,6 +135,8 @@ std::string HeadlineOf(const Diagnosis& d) {
   }
   if (d.verdict.unlisted_explains)
     return "Something is missing in the model, and none of the candidates asked for explains it";
+  if (!d.left_out.empty())
+    return "Something is missing in the model, and there was no time to find out what";
   return "Something is missing in the model, and no candidate explains it";
 }
 
@@ -243,7 +247,7 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
     steps.push_back(
         fmt::format("Look for the next cause: `continuum diagnose {}`.", kExtendedExperiment));
   if (d.Is(Kind::kUnexplained)) {
-    if (!e.all_candidates)
+    if (!e.all_candidates && d.left_out.empty())
       steps.emplace_back("Try every effect: write `candidates: all` in the experiment.");
     if (d.missing_force.joint.empty())
       steps.emplace_back("Measure every joint: then the report shows which force is missing.");

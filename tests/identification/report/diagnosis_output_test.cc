@@ -230,6 +230,14 @@ TEST_F(DiagnosisOutput, OfTheUnexplainedShowsTheMissingForceAndNoProbability) {
   EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr("verdict   unexplained (cannot say)"));
 }
 
+TEST_F(DiagnosisOutput, OfTheUnexplainedDoesNotBlameCandidatesThatItHadNoTimeFor) {
+  d_->verdict = {Verdict::Kind::kUnexplained, {}, "no candidate passes all rules"};
+  d_->left_out = {"a fit of dahl at joint hinge"};
+  WriteFiles(e_, *d_, Out());
+  EXPECT_THAT(FirstPage(), HasSubstr("no time to find out what"));
+  EXPECT_THAT(FirstPage(), Not(HasSubstr("no candidate explains it")));
+}
+
 TEST_F(DiagnosisOutput, OfAnAdequateModelAsksForNothing) {
   d_->verdict = {Verdict::Kind::kAdequate, {}, "the error is noise"};
   d_->verdict.complete = true;
