@@ -1,10 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <limits>
 
 #include "identification/diagnosis/result.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/parallel.h"
 
 namespace continuum {
 
@@ -14,10 +14,10 @@ struct CandidateFitter {
   Whitening whitening = {};  ///< inactive when the noise is not known
   int iterations = 15;
   Criteria criteria = {};
-  /// When fits end with what they have reached, and new ones are not begun.
-  std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();
+  /// ProcessorSeconds at which fits end with what they have reached, and new ones are not begun.
+  double until = std::numeric_limits<double>::infinity();
 
-  bool TimeIsOver() const { return EndRequested() || std::chrono::steady_clock::now() > until; }
+  bool TimeIsOver() const { return EndRequested() || ProcessorSeconds() > until; }
 
   /// Fits on the train logs and scores train and validate; rival: cost of a fit that this one must
   /// come near to be worth its iterations; idle: FitOptions::idle. Throws Error when it diverges.

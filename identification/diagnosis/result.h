@@ -37,7 +37,7 @@ enum class DiagnosisStage {
 Progress ProgressOf(DiagnosisStage stage, const std::string& at = "", std::size_t done = 0,
                     std::size_t of = 0);
 
-/// How long a diagnosis may take on two cores: ten seconds, a minute, or as long as it needs.
+/// How long a diagnosis may take on two idle cores: ten seconds, a minute, or as long as it needs.
 enum class Effort { kQuick, kNormal, kThorough };
 
 struct DiagnosisOptions {

@@ -63,13 +63,14 @@ class Ranking {
     return nullptr;
   }
 
-  /// The best, and those of other families that the data do not distinguish from the best of its
-  /// own. Of a law and one that it contains the plain one says it, unless only the complicated one
-  /// was asked for.
+  /// The best, and those of other families, or not asked for, that the data do not distinguish from
+  /// the best of its own. Of a law and one that it contains the plain one says it, unless only the
+  /// complicated one was asked for.
   std::vector<std::size_t> Near(std::size_t best) const {
     std::vector<std::size_t> near{best};
     for (const std::size_t i : order_) {
-      if (i != best && !AreKin(i, best) && !AddsNothing(i, best) && !IsBehind(first(), i))
+      const bool sibling = AreKin(i, best) && candidates_[i].listed;
+      if (i != best && !sibling && !AddsNothing(i, best) && !IsBehind(first(), i))
         near.push_back(i);
     }
     const auto all = near;

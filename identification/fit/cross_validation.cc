@@ -1,7 +1,7 @@
 #include "identification/fit/cross_validation.h"
 
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace continuum {

@@ -148,7 +148,7 @@ class Monitor : public ceres::IterationCallback {
     if (s.step_is_successful && s.iteration >= 2)
       lost_ = s.cost > options_.hopeless + kMore * s.cost_change ? lost_ + 1 : 0;
     settled_ = Settled(s);
-    out_of_time_ = EndRequested() || std::chrono::steady_clock::now() > options_.until;
+    out_of_time_ = EndRequested() || ProcessorSeconds() > options_.until;
     return StopRequested() || lost_ >= options_.patience || settled_ || out_of_time_
                ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                : ceres::SOLVER_CONTINUE;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <limits>
 #include <string>
 #include <vector>
@@ -36,8 +35,8 @@ struct FitOptions {
   /// Slopes by differences are carried on from step to step (Broyden) for as long as they foretell
   /// what a step does: enough to compare models, at a fraction of the simulations.
   bool rough = false;
-  /// When to end with what has been reached.
-  std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();
+  /// ProcessorSeconds at which to end with what has been reached.
+  double until = std::numeric_limits<double>::infinity();
   /// Called after each iteration, with cost and evaluations so far.
   ProgressCallback progress = {};
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -14,6 +15,10 @@ thread_local bool is_parallel = false;
 }
 
 std::size_t ThreadCount() { return std::max(1u, std::thread::hardware_concurrency()); }
+
+double ProcessorSeconds() {
+  return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
+}
 
 void ParallelFor(std::size_t n, const std::function<void(std::size_t, std::size_t)>& work) {
   if (is_parallel) {
