@@ -14,9 +14,14 @@ namespace {
 // Candidates in the order of their scores, where one of them has to be named.
 class Ranking {
  public:
-  Ranking(const std::vector<LikelihoodRecord>& candidates, const BaseSquares& base,
+  // more: the best one's residual is more than noise.
+  Ranking(const std::vector<LikelihoodRecord>& candidates, const BaseSquares& base, bool more,
           const Criteria& criteria)
-      : candidates_(candidates), base_(base), criteria_(criteria), order_(candidates.size()) {
+      : candidates_(candidates),
+        base_(base),
+        more_(more),
+        criteria_(criteria),
+        order_(candidates.size()) {
     for (const LikelihoodRecord& one : candidates) most_ = std::max(most_, one.likelihood);
     left_ = std::max(0.0, base.squares - most_ - base.freedom);
     if (base.freedom > 0) scale_ = std::max(1.0, (base.squares - most_) / base.freedom);
@@ -113,6 +118,7 @@ class Ranking {
   }
   // A margin, or what else is wrong with a model may make of one.
   double AtLeast(double margin) const {
+    if (!more_) return margin;
     const double left =
         std::max<double>(criteria_.left_share * left_, criteria_.structure_share * most_);
     return std::max(margin, left / scale_);
@@ -134,6 +140,7 @@ class Ranking {
 
   const std::vector<LikelihoodRecord>& candidates_;
   const BaseSquares& base_;
+  bool more_;
   const Criteria& criteria_;
   double most_ = 0;   // squares that the best one explains
   double left_ = 0;   // squares above the noise that the best one leaves
@@ -268,7 +275,7 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
   if (!any && more)
     return Unexplained("the residual shows something beside noise that no candidate explains");
   if (!any) return Adequate(lack, p, criteria);
-  const Ranking all(candidates, base, criteria);
+  const Ranking all(candidates, base, more, criteria);
   const std::size_t best = all.Best();
   Verdict verdict;
   if (more && all.share(all.first()) < criteria.main_share) {
