@@ -1,7 +1,5 @@
 #include "hidden_effects/measures.h"
 
-#include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <map>
 
@@ -9,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "hidden_effects/child.h"
 #include "hidden_effects/outside/cases.h"
 
 namespace continuum::hidden {
@@ -122,19 +119,6 @@ TEST(OutsideCases, HaveNamesOfTheirOwnAndAQuickPart) {
   for (const Case& c : OutsideCases(false)) ++names[c.Name()];
   for (const auto& [name, n] : names) EXPECT_EQ(n, 1) << name;
   for (const Case& c : OutsideCases(true)) EXPECT_TRUE(names.contains(c.Name()));
-}
-
-TEST(Child, AnswersAndMayCrashOrTakeTooLong) {
-  EXPECT_EQ(InChild([] { return std::string(100'000, 'x'); }, 60).text->size(), 100'000u);
-  const ChildAnswer crashed = InChild([]() -> std::string { std::abort(); }, 60);
-  EXPECT_FALSE(crashed.text || crashed.late);
-  const ChildAnswer late = InChild(
-      []() -> std::string {
-        for (std::clock_t busy = 0;;) busy = std::max(busy, std::clock());
-      },
-      1);
-  EXPECT_TRUE(late.late);
-  EXPECT_FALSE(late.text);
 }
 
 }  // namespace

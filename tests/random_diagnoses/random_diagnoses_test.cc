@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "random_diagnoses/child.h"
 #include "random_diagnoses/run_case.h"
+#include "support/child.h"
 #include "support/long_test.h"
 
 namespace continuum::random_diagnoses {
@@ -24,11 +24,13 @@ TEST_P(RandomDiagnosis, EndsWithAVerdictOrAMessage) {
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomDiagnosis, ::testing::Range<std::uint64_t>(1, 9));
 
 TEST(Child, LeavesWhatItReturnsOrWhatEndedIt) {
-  EXPECT_EQ(InChild([] { return "done"; }, 10).text, "done");
-  const Ended crashed = InChild([]() -> std::string { std::abort(); }, 10);
+  EXPECT_EQ(testing::InChild([] { return "done"; }, 10).text, "done");
+  EXPECT_EQ(testing::InChild([] { return std::string(100'000, 'x'); }, 60).text.size(), 100'000u);
+  const testing::Ended crashed = testing::InChild([]() -> std::string { std::abort(); }, 10);
   EXPECT_EQ(crashed.signal, SIGABRT);
   EXPECT_FALSE(crashed.trace.empty());
-  const Ended quit = InChild([]() -> std::string { std::exit(3); }, 10);
+  EXPECT_FALSE(crashed.too_long);
+  const testing::Ended quit = testing::InChild([]() -> std::string { std::exit(3); }, 10);
   EXPECT_EQ(quit.exit_code, 3);
   EXPECT_EQ(quit.text, "");
   volatile bool forever = true;
@@ -36,8 +38,9 @@ TEST(Child, LeavesWhatItReturnsOrWhatEndedIt) {
     while (forever) continue;
     return std::string();
   };
-  const Ended slow = InChild(spin, 1);
+  const testing::Ended slow = testing::InChild(spin, 1);
   EXPECT_TRUE(slow.too_long);
+  EXPECT_EQ(slow.text, "");
 }
 
 }  // namespace

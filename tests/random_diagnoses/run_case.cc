@@ -12,12 +12,12 @@
 #include "identification/diagnosis/extension.h"
 #include "identification/report/diagnosis_json.h"
 #include "identification/report/diagnosis_output.h"
-#include "random_diagnoses/child.h"
 #include "random_diagnoses/random_case.h"
 #include "sim/io/file.h"
 #include "sim/io/json.h"
 #include "sim/replay/replay.h"
 #include "sim/simulation/registration_fit.h"
+#include "support/child.h"
 #include "support/scratch.h"
 
 namespace continuum::random_diagnoses {
@@ -97,7 +97,7 @@ Outcome RunCase(std::uint64_t seed, unsigned limit, const std::filesystem::path&
   const testing::Scratch scratch;
   const std::filesystem::path folder = keep.empty() ? scratch.folder() : keep;
   MakeFolder(folder);
-  const Ended ended = InChild(
+  const testing::Ended ended = testing::InChild(
       [&] {
         return Work(seed, folder).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
       },

@@ -1,4 +1,4 @@
-#include "random_diagnoses/child.h"
+#include "support/child.h"
 
 #include <execinfo.h>
 #include <fcntl.h>
@@ -12,16 +12,14 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 #include "support/scratch.h"
 
-namespace continuum::random_diagnoses {
+namespace continuum::testing {
 namespace {
 
 int trace_to = -1;  // a file
-
-constexpr unsigned kWaits =
-    10;  // a machine is shared: so much longer than the time of its processor
 
 void WriteTrace(int signal) {
   std::array<void*, 40> frames;
@@ -50,16 +48,17 @@ std::vector<std::string> LinesOf(const std::string& text) {
 
 }  // namespace
 
-Ended InChild(const std::function<std::string()>& work, unsigned limit) {
-  const testing::Scratch scratch;
+Ended InChild(const std::function<std::string()>& work, unsigned limit, unsigned waits) {
+  const Scratch scratch;
   const std::string trace = scratch / "trace", result = scratch / "result";
   const auto begin = std::chrono::steady_clock::now();
   const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("no process");
   if (child == 0) {
     CatchCrashes(trace);
     const rlimit time{limit, limit + 1};
     setrlimit(RLIMIT_CPU, &time);
-    alarm(kWaits * limit);
+    alarm(waits * limit);
     std::ofstream(result) << work();
     _exit(0);
   }
@@ -70,9 +69,9 @@ Ended InChild(const std::function<std::string()>& work, unsigned limit) {
   if (WIFSIGNALED(status)) ended.signal = WTERMSIG(status);
   ended.too_long = ended.signal == SIGALRM || ended.signal == SIGXCPU;
   ended.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  ended.text = testing::Scratch::Text(result);
-  ended.trace = LinesOf(testing::Scratch::Text(trace));
+  ended.text = Scratch::Text(result);
+  ended.trace = LinesOf(Scratch::Text(trace));
   return ended;
 }
 
-}  // namespace continuum::random_diagnoses
+}  // namespace continuum::testing
