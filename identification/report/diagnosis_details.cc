@@ -193,11 +193,13 @@ class DiagnosisDetails {
     const Criteria& c = rules();
     if (d_.noise_limited) {
       return fmt::format(
-          "Noise is the whole residual of the best model, so likelihoods are calibrated. A cause "
-          "is named when noise alone would let one of the candidates do as well in less than "
-          "{:.2g} % of such data, the residual has nothing that smooth forces or shifts of the "
-          "channels explain, and every rival is clearly less likely.",
-          Percent(c.significance));
+          "A cause is named by its likelihood, when noise alone would let one of the candidates do "
+          "as well in less than {:.2g} % of such data and every rival of another family is clearly "
+          "behind. Where its residual has more than noise, which smooth forces or shifts of the "
+          "channels explain, it also has to take {:.0f} % of the squared error above the noise, "
+          "and "
+          "to help on logs left out.",
+          Percent(c.significance), Percent(c.main_share));
     }
     return fmt::format(
         "A cause is named when the error falls in at least {better:.0f} % of the folds and by at "
