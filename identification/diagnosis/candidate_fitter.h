@@ -18,6 +18,12 @@ struct CandidateFitter {
   double until = std::numeric_limits<double>::infinity();
 
   bool TimeIsOver() const { return EndRequested() || ProcessorSeconds() > until; }
+  /// Whether there is time for something that a verdict stands without; if not, it is left out.
+  bool HasTimeFor(const std::string& what, std::vector<std::string>& left_out) const {
+    if (!TimeIsOver()) return true;
+    left_out.push_back(what);
+    return false;
+  }
 
   /// Fits on the train logs and scores train and validate; rival: cost of a fit that this one must
   /// come near to be worth its iterations; idle: FitOptions::idle. Throws Error when it diverges.

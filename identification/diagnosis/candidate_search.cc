@@ -106,8 +106,7 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual) {
     const std::lock_guard lock(mutex);
     const std::size_t all = candidates.size();
     options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name(), std::min(done++, all), all);
-    if (fitter_.TimeIsOver()) left_out.push_back(look + c.hypothesis.NameAtPlace());
-    return !fitter_.TimeIsOver();
+    return fitter_.HasTimeFor(look + c.hypothesis.NameAtPlace(), left_out);
   };
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
     CandidateResult& c = candidates[i];
@@ -122,13 +121,13 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual) {
   });
 }
 
-void CandidateSearch::Screen() {
+void CandidateSearch::Screen(const EquationErrors& forces) {
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
   base_squares_ = residual.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
   ProbeAll(residual);
   std::vector<std::vector<Probe>> probes;
-  for (const CandidateResult& c : candidates) probes.push_back(c.probes);
+  for (CandidateResult& c : candidates) probes.push_back(std::move(c.probes));
   options_.Say(DiagnosisStage::kScreen, "significance", candidates.size(), candidates.size());
   const Significance found =
       noise_.known() ? Significant(residual, probes) : BestOfProbes(probes, residual.vector());
@@ -136,6 +135,7 @@ void CandidateSearch::Screen() {
     CandidateResult& c = candidates[i];
     c.explained = found.explained[i];
     c.p = found.p[i];
+    c.probes = std::move(probes[i]);
     smallest_p_ = std::min(smallest_p_, c.p);
     if (c.probes.empty()) continue;
     const std::size_t best = found.best[i];
@@ -145,20 +145,19 @@ void CandidateSearch::Screen() {
     c.other_starts = OtherStarts(c, best, residual);
     std::swap(c.probes[0], c.probes[best]);
   }
-  LookAtForces();
+  LookAtForces(forces);
 }
 
 // First order is blind where an effect is large or the base far off; the missing force is not.
-void CandidateSearch::LookAtForces() {
+void CandidateSearch::LookAtForces(const EquationErrors& forces) {
   options_.Say(DiagnosisStage::kScreen, "missing force");
-  const EquationErrors view(base_problem_, base_.fitted->fit.x);
-  if (!view.any()) return;
+  if (!forces.any()) return;
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
     CandidateResult& c = candidates[i];
     if (!c.error.empty() || StopRequested() || fitter_.TimeIsOver()) return;
     try {
       const std::size_t best = c.probes.empty() ? 0 : c.probes.front().start;
-      const auto found = view.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment), best);
+      const auto found = forces.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment), best);
       if (!found) return;
       c.force_share = found->share;
       c.other_starts.push_back(found->x);

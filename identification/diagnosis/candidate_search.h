@@ -4,6 +4,7 @@
 
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/search_rules.h"
 
@@ -37,8 +38,8 @@ class CandidateSearch {
 
   /// What every candidate could explain of the base's residual, to first order and of the missing
   /// force at the measured states, and how often noise alone would let the best of so many do as
-  /// well.
-  void Screen();
+  /// well. forces: that are missing at the base.
+  void Screen(const EquationErrors& forces);
   /// Fits those that come near the best to first order, if a candidate is significant or the
   /// residual is plainly not noise; then best first, the others dismissed. beside: a search from
   /// the same base that has been fitted, whose best they have to come near; limit: of fits.
@@ -91,7 +92,7 @@ class CandidateSearch {
   void ProbeAll(const ProjectedResidual& residual);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);
-  void LookAtForces();
+  void LookAtForces(const EquationErrors& forces);
   double MostExplained() const;
   double MostOfForce() const;
   bool IsWorthAFit(const CandidateResult& c, double needed) const;

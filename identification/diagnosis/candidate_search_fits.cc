@@ -64,9 +64,8 @@ void CandidateSearch::Order() {
     if (kin.family.empty()) return Promise(c, most, most_of_force);
     return kin.depth == 0 ? best.at(group(c)) : kRicher * Promise(c, most, most_of_force);
   };
-  for (CandidateResult& c : candidates) c.promise = key(c);
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto& a, const auto& b) { return a.promise > b.promise; });
+                   [&](const auto& a, const auto& b) { return key(a) > key(b); });
 }
 
 // The most promising first, so that the others know what to reach; nobody where only noise is left.
@@ -112,11 +111,7 @@ std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size
   for (; next < candidates.size() && wave.size() < most; ++next) {
     CandidateResult& c = candidates[next];
     if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
-    if (fitter_.TimeIsOver()) {
-      left_out.push_back("a fit of " + c.hypothesis.NameAtPlace());
-    } else {
-      wave.push_back(&c);
-    }
+    if (fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out)) wave.push_back(&c);
   }
   return wave;
 }

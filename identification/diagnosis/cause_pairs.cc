@@ -77,16 +77,14 @@ class PairSearch {
     std::map<std::string, std::size_t> known;  // by family
     for (const CandidateResult& c : single_.candidates) {
       if (!c.was_fitted) continue;
-      const Kin kin = KinOf(c.hypothesis.Card());
-      const auto [at, fresh] =
-          known.try_emplace(kin.family.empty() ? c.hypothesis.effect : kin.family, firsts.size());
+      const auto [at, fresh] = known.try_emplace(FamilyOf(c.hypothesis.Card()), firsts.size());
       if (fresh) {
         if (static_cast<double>(firsts.size()) < criteria_.pair_singles) firsts.push_back(&c);
         continue;
       }
       if (at->second >= firsts.size()) continue;
       const CandidateResult*& first = firsts[at->second];
-      if (kin.depth < KinOf(first->hypothesis.Card()).depth &&
+      if (KinOf(c.hypothesis.Card()).PlainerThan(KinOf(first->hypothesis.Card())) &&
           c.likelihood >= criteria_.family_share * first->likelihood)
         first = &c;
     }
@@ -117,7 +115,8 @@ class PairSearch {
                                                 "beside " + Key(first.hypothesis), tried_.size());
     const BaseFit base{&first.hypothesis.system, first.hypothesis.Free(), &first.fitted};
     CandidateSearch search({context_.fitter, context_.noise, context_.sizes, inside}, base);
-    search.Screen();
+    search.Screen(
+        EquationErrors(ProblemOf(first, *context_.fitter.experiment), first.fitted.fit.x));
     if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
     search.Fit(nullptr, kSeconds);
     if (!search.leading()) return;

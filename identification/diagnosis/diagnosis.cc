@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -77,12 +78,7 @@ class Session {
   // From now on fits end when the time of this stage is over.
   void Begin(DiagnosisStage stage) { fitter_.until = time_.EndOf(stage); }
 
-  // Whether there is time for something that a verdict stands without.
-  bool HasTimeFor(const std::string& what) {
-    if (!fitter_.TimeIsOver()) return true;
-    d_.left_out.push_back(what);
-    return false;
-  }
+  bool HasTimeFor(const std::string& what) { return fitter_.HasTimeFor(what, d_.left_out); }
 
   void FindWhatHelps() {
     Begin(DiagnosisStage::kFallback);
@@ -165,7 +161,8 @@ class Session {
   void Search() {
     CandidateSearch search(Context(options_), Base());
     Begin(DiagnosisStage::kScreen);
-    search.Screen();
+    forces_.emplace(null_, d_.before.fit.x);
+    search.Screen(*forces_);
     Begin(DiagnosisStage::kFits);
     search.Fit();
     if (!d_.noise.known()) {
@@ -214,9 +211,8 @@ class Session {
 
   void CompareByEquation() {
     options_.Say(DiagnosisStage::kJudgement, "missing force");
-    const EquationErrors view(null_, d_.before.fit.x);
     ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {
-      d_.candidates[i].by_equation = view.Of(d_.candidates[i]);
+      d_.candidates[i].by_equation = forces_->Of(d_.candidates[i]);
     });
   }
 
@@ -263,12 +259,8 @@ class Session {
         JudgeLikelihoods(records, d_.lack_of_fit, search.smallest_p(), search.Base(), d_.criteria);
     const auto& named = d_.verdict.named;
     const bool coarse = d_.lack_of_fit.of_step || d_.noise.step > d_.noise.rms;
-    if (coarse && !named.empty() && !MoreThanStep(search.candidates[named.front()].fitted)) {
-      d_.verdict = {Verdict::Kind::kAdequate,
-                    {},
-                    "no candidate does more than the time step; try a finer one"};
-      d_.verdict.complete = true;
-    }
+    if (coarse && !named.empty() && !MoreThanStep(search.candidates[named.front()].fitted))
+      d_.verdict = Verdict::Adequate("no candidate does more than the time step; try a finer one");
   }
 
   // Where no effect explains it at all joints together it may be at one of them.
@@ -276,7 +268,7 @@ class Session {
     if (!SomethingIsLeft(search) || !HasTimeFor("candidates at other places")) return;
     const auto inside = options_.Inside(DiagnosisStage::kOtherCandidates, "at other places");
     CandidateSearch others(Context(inside), Base(), SearchScope::kOthers);
-    others.Screen();
+    others.Screen(*forces_);
     others.Fit(&search);
     if (others.candidates.empty()) return;
     search.Join(std::move(others));
@@ -290,7 +282,7 @@ class Session {
     if (options.candidates.empty() || d_.Is(Verdict::Kind::kAdequate)) return;
     if (!HasTimeFor("effects that are not listed")) return;
     CandidateSearch unlisted(Context(options), Base());
-    unlisted.Screen();
+    unlisted.Screen(*forces_);
     unlisted.Fit(&search);
     const CandidateResult* const best = unlisted.leading();
     const bool judged = best && best->fitted.complete();  // else plainly behind
@@ -414,6 +406,7 @@ class Session {
   Problem null_;
   Diagnosis d_;
   CandidateFitter fitter_;
+  std::optional<EquationErrors> forces_;  // that are missing at the null fit
 };
 
 }  // namespace

@@ -81,11 +81,7 @@ class FoldComparison {
     }
   }
 
-  bool HasTimeFor(const std::string& what) {
-    if (!fitter_.TimeIsOver()) return true;
-    d_.left_out.push_back(what);
-    return false;
-  }
+  bool HasTimeFor(const std::string& what) const { return fitter_.HasTimeFor(what, d_.left_out); }
 
   void Raise(const std::string& by, const ForceTerms& terms) {
     TwoErrors error;

@@ -55,7 +55,7 @@ class FoldJudge {
 
   Verdict Run() const {
     if (error_.over_noise > 0 && error_.over_noise < criteria_.at_noise) {
-      return Adequate(
+      return Verdict::Adequate(
           fmt::format("the model's error is {:.2f} times the noise", error_.over_noise));
     }
     Verdict verdict = passing_.empty() ? WithoutAName() : Name();
@@ -77,12 +77,6 @@ class FoldJudge {
     return std::clamp(Squares(i) / SquaresOf(std::max(error_.ceiling_gain, Gain(i))), 0.0, 1.0);
   }
 
-  static Verdict Adequate(std::string reason) {
-    Verdict verdict{Verdict::Kind::kAdequate, {}, std::move(reason)};
-    verdict.complete = true;
-    return verdict;
-  }
-
   Verdict WithoutAName() const {
     if (error_.over_scatter > criteria_.scatter_limit) {
       return {Verdict::Kind::kUnexplained,
@@ -92,7 +86,7 @@ class FoldJudge {
                           error_.over_scatter)};
     }
     if (error_.over_noise == 0 && error_.ceiling_gain < criteria_.median_gain) {
-      return Adequate(
+      return Verdict::Adequate(
           fmt::format("no candidate and no smooth force removes {:.0f} % of the error, and "
                       "without replicates the noise is not known",
                       100 * criteria_.median_gain));
@@ -125,8 +119,7 @@ class FoldJudge {
     return candidates_[a].kin.Of(candidates_[b].kin);
   }
   bool IsPlainer(std::size_t a, std::size_t b) const {
-    return Holds(candidates_[b].contains, a) ||
-           (AreKin(a, b) && candidates_[a].kin.depth < candidates_[b].kin.depth);
+    return Holds(candidates_[b].contains, a) || candidates_[a].kin.PlainerThan(candidates_[b].kin);
   }
 
   // Only as deep as the folds allow: the plainest of those that the better one contains or is of

@@ -100,7 +100,6 @@ struct CandidateResult {
   std::vector<Probe> probes = {};  ///< one for each start: directions from the fit without it
   Problem::Vector start = {};      ///< of its fit, when the screen found one
   std::vector<Problem::Vector> other_starts = {};  ///< that the screen finds as good
-  double promise = 0;      ///< in which order candidates are fitted: most first
   double force_share = 0;  ///< of the missing force's squares that it explains at measured states
   bool was_fitted = false;
   Fitted fitted = {};                          ///< empty where it was not fitted

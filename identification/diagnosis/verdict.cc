@@ -87,10 +87,7 @@ class Ranking {
     return near;
   }
 
-  double Score(std::size_t i) const {
-    const double extra = static_cast<double>(candidates_[i].parameters) - 1;
-    return candidates_[i].likelihood - scale_ * criteria_.parameter_cost * extra;
-  }
+  double Score(std::size_t i) const { return ScoreOf(candidates_[i], criteria_, scale_); }
   /// By how much the next one of another family is behind.
   double Lead(std::size_t best) const {
     for (const std::size_t i : order_) {
@@ -104,7 +101,7 @@ class Ranking {
     return candidates_[a].kin.Of(candidates_[b].kin);
   }
   bool IsPlainer(std::size_t a, std::size_t b) const {
-    return Contains(b, a) || (AreKin(a, b) && candidates_[a].kin.depth < candidates_[b].kin.depth);
+    return Contains(b, a) || candidates_[a].kin.PlainerThan(candidates_[b].kin);
   }
   // Whether a says what the first one of its family says, but for what a richer law has to earn.
   bool IsEnough(std::size_t a, std::size_t first) const {
@@ -153,11 +150,8 @@ Verdict Adequate(const LackOfFit& lack, double p, const Criteria& criteria) {
       p < criteria.significance
           ? "no candidate's fit gains more than its parameters gain from noise alone"
           : fmt::format("noise alone lets the best candidate do as well with p = {:.2g}", p);
-  Verdict verdict{Verdict::Kind::kAdequate};
-  verdict.reason =
-      fmt::format("the model's residual shows {}: {}", ResidualInWords(lack, criteria), why);
-  verdict.complete = true;
-  return verdict;
+  return Verdict::Adequate(
+      fmt::format("the model's residual shows {}: {}", ResidualInWords(lack, criteria), why));
 }
 
 // What the residual of a named cause shows.
@@ -215,11 +209,20 @@ Kin KinOf(std::string_view effect) {
   return {std::string(kin.family), kin.depth};
 }
 
+std::string FamilyOf(std::string_view effect) {
+  const Kin kin = KinOf(effect);
+  return kin.family.empty() ? std::string(effect) : kin.family;
+}
+
 Kin KinOf(std::string_view effect, std::string_view other) {
-  Kin a = KinOf(effect), b = KinOf(other);
-  if (a.family.empty()) a.family = effect;
-  if (b.family.empty()) b.family = other;
-  return {std::min(a.family, b.family) + " and " + std::max(a.family, b.family), a.depth + b.depth};
+  const std::string a = FamilyOf(effect), b = FamilyOf(other);
+  return {std::min(a, b) + " and " + std::max(a, b), KinOf(effect).depth + KinOf(other).depth};
+}
+
+Verdict Verdict::Adequate(std::string reason) {
+  Verdict verdict{Kind::kAdequate, {}, std::move(reason)};
+  verdict.complete = true;
+  return verdict;
 }
 
 std::string Verdict::word() const {
@@ -236,8 +239,9 @@ std::string Verdict::word() const {
   return "";
 }
 
-double ScoreOf(const LikelihoodRecord& record, const Criteria& criteria) {
-  return record.likelihood - criteria.parameter_cost * static_cast<double>(record.parameters - 1);
+double ScoreOf(const LikelihoodRecord& record, const Criteria& criteria, double scale) {
+  const double extra = static_cast<double>(record.parameters) - 1;
+  return record.likelihood - scale * criteria.parameter_cost * extra;
 }
 
 std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candidates,

@@ -30,6 +30,9 @@ struct Verdict {
   std::optional<std::size_t> leading = {};  ///< the candidate that comes closest; none: none helps
   double leading_share = 0;                 ///< what it takes of what can be explained [squares]
 
+  /// That nothing is left to explain.
+  static Verdict Adequate(std::string reason);
+
   /// "adequate", "named", "ambiguous" or "unexplained".
   std::string word() const;
 };
@@ -41,8 +44,12 @@ struct Kin {
   int depth = 0;
 
   bool Of(const Kin& other) const { return !family.empty() && family == other.family; }
+  /// Whether it is a plainer law of the other one's family.
+  bool PlainerThan(const Kin& other) const { return Of(other) && depth < other.depth; }
 };
 Kin KinOf(std::string_view effect);
+/// Its family, or the effect itself where it has none.
+std::string FamilyOf(std::string_view effect);
 /// Of two causes that act together, in any order.
 Kin KinOf(std::string_view effect, std::string_view other);
 
@@ -124,8 +131,8 @@ struct BaseSquares {
   double squares = 0, freedom = 0;
 };
 
-/// Likelihood less what its parameters gain from noise alone.
-double ScoreOf(const LikelihoodRecord& record, const Criteria& criteria = {});
+/// Likelihood less what its parameters gain from noise alone. scale: of that noise's squares.
+double ScoreOf(const LikelihoodRecord& record, const Criteria& criteria = {}, double scale = 1);
 
 /// What a candidate takes of the squares that noise does not explain, 0 to 1: of the whitened ones,
 /// or of those of the plain error where that is less.
