@@ -98,8 +98,9 @@ void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& resi
   }
 }
 
-// In the first shape of each; then in the others of those that are not hopeless in that.
-void CandidateSearch::ProbeAll(const ProjectedResidual& residual) {
+// Every candidate in its first shape and in that which the missing force wants; in all its shapes
+// where it is not hopeless in those, or where there is no missing force to see.
+void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forces) {
   std::mutex mutex;
   std::size_t done = 0;
   const auto say = [&](CandidateResult& c, const char* look) {
@@ -108,14 +109,20 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual) {
     options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name(), std::min(done++, all), all);
     return fitter_.HasTimeFor(look + c.hypothesis.NameAtPlace(), left_out);
   };
+  const double most_of_force = MostOfForce();
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
     CandidateResult& c = candidates[i];
-    if (say(c, "a look at ")) ProbeOne(c, residual, c.hypothesis.StartsOfShape(true));
+    if (!say(c, "a look at ")) return;
+    auto starts = c.hypothesis.StartsOfShape(true);
+    if (c.force_start > 0 && ExplainsForce(c.force_share, most_of_force, criteria_))
+      starts.push_back(c.force_start);
+    ProbeOne(c, residual, starts);
   });
-  const double least = criteria_.fit_share * MostExplained();
+  const double least = sees_forces ? criteria_.fit_share * MostExplained() : 0;
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
     CandidateResult& c = candidates[i];
-    const auto others = c.hypothesis.StartsOfShape(false);
+    auto others = c.hypothesis.StartsOfShape(false);
+    std::erase(others, c.force_start);
     if (c.explained < least || c.probes.empty() || others.empty()) return;
     if (say(c, "other shapes of ")) ProbeOne(c, residual, others);
   });
@@ -125,7 +132,8 @@ void CandidateSearch::Screen(const EquationErrors& forces) {
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
   base_squares_ = residual.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
-  ProbeAll(residual);
+  LookAtForces(forces);
+  ProbeAll(residual, forces.any());
   std::vector<std::vector<Probe>> probes;
   for (CandidateResult& c : candidates) probes.push_back(std::move(c.probes));
   options_.Say(DiagnosisStage::kScreen, "significance", candidates.size(), candidates.size());
@@ -142,10 +150,10 @@ void CandidateSearch::Screen(const EquationErrors& forces) {
     const Probe& probe = c.probes[best];
     c.start = StartFrom(c.hypothesis, *base_.fitted, probe,
                         PlainlyExplainedBy(probe, residual.vector()), 1, criteria_);
-    c.other_starts = OtherStarts(c, best, residual);
+    const auto others = OtherStarts(c, best, residual);
+    c.other_starts.insert(c.other_starts.begin(), others.begin(), others.end());
     std::swap(c.probes[0], c.probes[best]);
   }
-  LookAtForces(forces);
 }
 
 // First order is blind where an effect is large or the base far off; the missing force is not.
@@ -154,12 +162,11 @@ void CandidateSearch::LookAtForces(const EquationErrors& forces) {
   if (!forces.any()) return;
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
     CandidateResult& c = candidates[i];
-    if (!c.error.empty() || StopRequested() || fitter_.TimeIsOver()) return;
+    if (StopRequested() || fitter_.TimeIsOver()) return;
     try {
-      const std::size_t best = c.probes.empty() ? 0 : c.probes.front().start;
-      const auto found = forces.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment), best);
+      const auto found = forces.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment));
       if (!found) return;
-      c.force_share = found->share;
+      c.force_share = found->share, c.force_start = found->start;
       c.other_starts.push_back(found->x);
       c.other_starts.push_back(found->together);
     } catch (const Error&) {

@@ -89,7 +89,7 @@ class CandidateSearch {
  private:
   void ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
                 const std::vector<std::size_t>& starts);
-  void ProbeAll(const ProjectedResidual& residual);
+  void ProbeAll(const ProjectedResidual& residual, bool sees_forces);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);
   void LookAtForces(const EquationErrors& forces);

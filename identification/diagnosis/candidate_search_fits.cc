@@ -7,6 +7,7 @@
 #include "error.h"
 #include "identification/candidates/search_range.h"
 #include "identification/diagnosis/candidate_search.h"
+#include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/statistics/uncertainty.h"
 #include "sim/io/interrupt.h"
@@ -104,13 +105,18 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
 }
 
 // Those that are fitted beside each other, from the next one on: as many whatever the machine, as
-// what one reaches decides about those behind it.
+// what one reaches decides about those behind it. A richer law waits for the plain one of its
+// family, to begin where that has ended.
 std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size_t most,
                                                         std::size_t& next) {
   std::vector<CandidateResult*> wave;
   for (; next < candidates.size() && wave.size() < most; ++next) {
     CandidateResult& c = candidates[next];
     if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
+    const bool waits = std::any_of(wave.begin(), wave.end(), [&](const CandidateResult* plain) {
+      return IsPlainerThan(plain->hypothesis, c.hypothesis);
+    });
+    if (waits) break;
     if (fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out)) wave.push_back(&c);
   }
   return wave;
@@ -208,6 +214,11 @@ void CandidateSearch::FitOne(CandidateResult& c, double rival) const {
   const bool crooked = !noise_.known() && c.hypothesis.extra.size() > 1;  // first order may mislead
   if (crooked || starts.empty()) {
     for (const auto& own : c.hypothesis.starts) starts.push_back(Append(base_.fitted->fit.x, own));
+  }
+  for (const CandidateResult& plain : candidates) {
+    if (!plain.was_fitted || !IsPlainerThan(plain.hypothesis, c.hypothesis)) continue;
+    const auto more = StartsFromPlain(plain, c.hypothesis);
+    starts.insert(starts.end(), more.begin(), more.end());
   }
   c.fitted = fitter_.Fit(problem, BestOf(problem, starts), rival);
   c.was_fitted = true;

@@ -46,18 +46,21 @@ Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::siz
   return units_.Of(MissingForces(problem, x, problem.TrainLogs(), thread));
 }
 
-std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h, const Problem& problem,
-                                                     std::size_t other) const {
+std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
+                                                     const Problem& problem) const {
   if (!any() || h.OnlyMeasured()) return {};
-  auto best = From(h, problem, h.starts.front());
-  if (other == 0) return best;
-  auto second = From(h, problem, h.starts.at(other));
-  return second && (!best || second->share > best->share) ? second : best;
+  std::optional<EquationStart> best = From(h, problem, 0);
+  for (const std::size_t other : h.StartsOfShape(false)) {
+    auto next = From(h, problem, other);
+    if (next && (!best || next->share > best->share)) best = std::move(next);
+  }
+  return best;
 }
 
 // Each amplitude by itself, the others absent; sizes by least squares, of allowed signs.
 std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Problem& problem,
-                                                  const std::vector<double>& start) const {
+                                                  std::size_t which) const {
+  const std::vector<double>& start = h.starts[which];
   const auto amplitudes = h.Amplitudes();
   const auto count = static_cast<Eigen::Index>(amplitudes.size());
   Matrix D = Matrix::Zero(missing_.size(), count);
@@ -82,7 +85,7 @@ std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Pro
   Vector beside = x_;
   if (x_.size() > 0)
     beside -= columns_.completeOrthogonalDecomposition().solve(missing_ + D * e.coefficients);
-  return EquationStart{e.amount / force_.squaredNorm(), problem.Clamp(Append(x_, own)),
+  return EquationStart{which, e.amount / force_.squaredNorm(), problem.Clamp(Append(x_, own)),
                        problem.Clamp(Append(beside, own))};
 }
 

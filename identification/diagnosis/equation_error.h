@@ -10,7 +10,8 @@ namespace continuum {
 
 /// What a candidate explains of the missing force, and where its fit may begin.
 struct EquationStart {
-  double share = 0;  ///< of the squares of the missing force
+  std::size_t start = 0;  ///< of the hypothesis, whose shape it has
+  double share = 0;       ///< of the squares of the missing force
   /// Parameters of the base and of the candidate: those of the base as they were fitted without it,
   /// and as the missing force wants them beside it.
   Problem::Vector x, together;
@@ -32,11 +33,10 @@ class EquationErrors {
 
   /// Whether every joint is measured, so that there is anything to see.
   bool any() const { return force_.size() > 0; }
-  /// What a candidate explains with sizes of its own, and where its fit may begin: from its first
-  /// start or from another one, whichever is better. Effects are linear in their sizes here,
-  /// however large they are. Nothing where it does nothing to f. problem: of the candidate.
-  std::optional<EquationStart> StartOf(const Hypothesis& hypothesis, const Problem& problem,
-                                       std::size_t other = 0) const;
+  /// What a candidate explains with sizes of its own, and where its fit may begin: in the best of
+  /// its shapes. Effects are linear in their sizes here, however large they are. Nothing where it
+  /// does nothing to f. problem: of the candidate.
+  std::optional<EquationStart> StartOf(const Hypothesis& hypothesis, const Problem& problem) const;
   /// Of a fitted candidate with the sizes that its fit gave it; nothing where it does nothing to f,
   /// as effects on the sensors.
   std::optional<ByEquation> Of(const CandidateResult& candidate) const;
@@ -46,7 +46,7 @@ class EquationErrors {
   Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x,
                           std::size_t thread = 0) const;
   std::optional<EquationStart> From(const Hypothesis& hypothesis, const Problem& problem,
-                                    const std::vector<double>& start) const;
+                                    std::size_t start) const;
 
   const Experiment& experiment_;
   Problem::Vector x_;

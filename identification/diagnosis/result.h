@@ -101,6 +101,7 @@ struct CandidateResult {
   Problem::Vector start = {};      ///< of its fit, when the screen found one
   std::vector<Problem::Vector> other_starts = {};  ///< that the screen finds as good
   double force_share = 0;  ///< of the missing force's squares that it explains at measured states
+  std::size_t force_start = 0;  ///< start of the shape in which it does
   bool was_fitted = false;
   Fitted fitted = {};                          ///< empty where it was not fitted
   std::optional<Fitted> at_quarter_step = {};  ///< where first order in the step does not hold

@@ -12,6 +12,7 @@
 #include "hidden_effects/outside/cases.h"
 #include "hidden_effects/pictures.h"
 #include "hidden_effects/report.h"
+#include "identification/diagnosis/effort.h"
 #include "support/child.h"
 #include "support/json_lines.h"
 
@@ -158,6 +159,7 @@ int Main(int argc, char** argv) {
   std::string out, only, keep, pictures, robot = "arm";
   std::vector<std::string> tables;
   int repeats = 1;
+  std::string effort = "thorough";
   double limit = 1200;
   bool write = false, verbose = false, told = false, quick = false, background = false,
        spoilt = false, outside = false, follow = false;
@@ -176,6 +178,9 @@ int Main(int argc, char** argv) {
       "--outside", outside,
       "machines whose masses and lengths are 1 % off their models (--quick: some of them)");
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
+  app.add_option("--effort", effort, "quick, normal or thorough")
+      ->check(CLI::IsMember({"quick", "normal", "thorough"}))
+      ->capture_default_str();
   app.add_option("--limit", limit, "processor seconds for a case; later it has no answer")
       ->capture_default_str();
   app.add_option("--only", only, "cases whose name holds this");
@@ -197,6 +202,7 @@ int Main(int argc, char** argv) {
                : outside  ? OutsideCases(quick)
                : quick    ? QuickCases(robot)
                           : Cases(robot, repeats);
+  for (Case& c : cases) c.effort = EffortNamed(effort);
   if (told) cases = DescribedCases(std::move(cases));
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const std::string name = cases[i].Name();

@@ -31,6 +31,7 @@ nlohmann::json LineOf(const Case& c, const Answer& a) {
                       {"noise", kNoiseNames[static_cast<int>(c.noise)]},
                       {"verdict", a.verdict},
                       {"named", a.named},
+                      {"relatives", a.relatives},
                       {"partner", a.partner},
                       {"right", InSet(c, a)},
                       {"exact", InSetExactly(c, a)},

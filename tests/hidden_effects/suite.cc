@@ -179,16 +179,8 @@ double ClosestTo(const CandidateResult& lead, const Diagnosis& d) {
   return closest;
 }
 
-Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
-  const Experiment e = Experiment::Read(file);
-  const std::clock_t before = std::clock();
-  const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model));
-  Answer a;
-  a.cpu = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
-  a.verdict = d.verdict.word();
-  a.seconds = d.seconds;
-  a.explained = GainOf(d, d.after()).explainable;
-  a.next = Separation(d);
+// What the screen saw, to first order.
+void ReadScreen(const Diagnosis& d, Answer& a) {
   double most = 0;
   const auto screen = [&](const std::string& effect, double explained, double p) {
     a.p = std::min(a.p, p);
@@ -197,39 +189,70 @@ Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
   for (const CandidateResult& one : d.candidates)
     screen(one.hypothesis.effect, one.explained, one.p);
   for (const Dismissed& one : d.dismissed) screen(one.effect, one.explained, one.p);
-  a.lack = d.lack_of_fit.smallest();
-  if (d.noise_limited && d.chosen()) a.closest = ClosestTo(d.candidates.front(), d);
-  a.next_experiment = d.next;
-  ExtensionRun run;
-  run.after = d.after();
-  a.detail = Summary(e, d, run);
-  if (d.noise_limited && !d.partner && d.chosen()) {
-    for (const CandidateResult& one : d.candidates)
-      a.stated[one.hypothesis.effect] += one.probability;
+}
+
+// The size that was found of what is hidden.
+void ReadSize(const Case& c, const CandidateResult& one, Answer& a) {
+  if (c.effects.empty() || c.background) return;  // its size is not c's
+  if (one.hypothesis.effect != c.effects.front()) return;
+  const Hidden& h = RobotNamed(c.robot).Named(c.effects.front());
+  a.truth = h.null + h.size * c.factor;
+  if (!one.fitted.complete()) return;
+  for (std::size_t k = 0; k < one.hypothesis.extra.size(); ++k) {
+    if (one.hypothesis.extra[k].name != h.parameter) continue;
+    const Eigen::Index at = one.first_extra() + static_cast<Eigen::Index>(k);
+    a.value = one.fitted.fit.x[at];
+    a.low = one.fitted.sensitivities->uncertainty.lower[at],
+    a.high = one.fitted.sensitivities->uncertainty.upper[at];
+  }
+}
+
+void AddOnce(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+void ReadNames(const Case& c, const Diagnosis& d, Answer& a) {
+  for (const std::size_t i : d.verdict.siblings) {
+    ReadSize(c, d.candidates[i], a);
+    AddOnce(d.candidates[i].hypothesis.effect, a.relatives);
   }
   std::vector<const CandidateResult*> set;
   for (const std::size_t i : d.verdict.named) set.push_back(&d.candidates[i]);
   for (const CandidateResult& one : d.unlisted) set.push_back(&one);
-  for (const CandidateResult* const member : set) {
-    const CandidateResult& one = *member;
-    if (std::find(a.named.begin(), a.named.end(), one.hypothesis.effect) == a.named.end())
-      a.named.push_back(one.hypothesis.effect);
-    if (c.effects.empty() || c.background) continue;  // its size is not c's
-    if (one.hypothesis.effect != c.effects.front()) continue;
-    const Hidden& h = RobotNamed(c.robot).Named(c.effects.front());
-    a.truth = h.null + h.size * c.factor;
-    if (!one.fitted.complete()) continue;
-    for (std::size_t k = 0; k < one.hypothesis.extra.size(); ++k) {
-      if (one.hypothesis.extra[k].name != h.parameter) continue;
-      const Eigen::Index at = one.first_extra() + static_cast<Eigen::Index>(k);
-      a.value = one.fitted.fit.x[at];
-      a.low = one.fitted.sensitivities->uncertainty.lower[at],
-      a.high = one.fitted.sensitivities->uncertainty.upper[at];
-    }
+  for (const CandidateResult* const one : set) {
+    ReadSize(c, *one, a);
+    AddOnce(one->hypothesis.effect, a.named);
   }
   if (d.partner && d.chosen()) {
     a.partner = {d.partner->hypothesis.effect};
     for (const auto& other : d.partner->equivalent) a.partner.push_back(other);
+  }
+  if (d.verdict.leading) a.leading = d.candidates[*d.verdict.leading].hypothesis.effect;
+}
+
+Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
+  const Experiment e = Experiment::Read(file);
+  const std::clock_t before = std::clock();
+  DiagnosisOptions options;
+  options.effort = c.effort;
+  const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model), options);
+  Answer a;
+  a.cpu = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+  a.verdict = d.verdict.word(), a.complete = d.verdict.complete;
+  a.seconds = d.seconds;
+  a.explained = GainOf(d, d.after()).explainable;
+  a.next = Separation(d);
+  a.lack = d.lack_of_fit.smallest();
+  a.next_experiment = d.next;
+  ExtensionRun run;
+  run.after = d.after();
+  a.detail = Summary(e, d, run);
+  ReadScreen(d, a);
+  ReadNames(c, d, a);
+  if (!d.noise_limited || !d.chosen()) return a;
+  a.closest = ClosestTo(d.candidates.front(), d);
+  for (const CandidateResult& one : d.candidates) {
+    if (!d.partner) a.stated[one.hypothesis.effect] += one.probability;
   }
   return a;
 }
@@ -278,14 +301,17 @@ Answer SolveAndFollow(const Case& c, const std::filesystem::path& folder) {
 
 namespace {
 
-// Whether an answer holds one name of each, of a single one as the only cause.
+// Whether an answer holds one name of each, of a single one as the only cause. Relatives that fit
+// as well belong to the answer.
 bool Holds(const std::vector<std::vector<std::string>>& truths, const Answer& a) {
   if (truths.empty()) return false;
+  std::vector<std::string> set = a.named;
+  set.insert(set.end(), a.relatives.begin(), a.relatives.end());
   const auto& first = truths.front();
   const auto& last = truths.back();
-  if (truths.size() == 1) return a.partner.empty() && Share(a.named, first);
-  return (Share(a.named, first) && Share(a.partner, last)) ||
-         (Share(a.named, last) && Share(a.partner, first));
+  if (truths.size() == 1) return a.partner.empty() && Share(set, first);
+  return (Share(set, first) && Share(a.partner, last)) ||
+         (Share(set, last) && Share(a.partner, first));
 }
 
 }  // namespace

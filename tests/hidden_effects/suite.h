@@ -30,6 +30,7 @@ struct Case {
   std::vector<std::string> among = {};  ///< the candidates; empty: all
   Law law = Law::kStick;                ///< of dry friction in the outside suite
   bool one_joint = false;               ///< there, dry friction of the first joint only
+  Effort effort = Effort::kThorough;    ///< of the diagnosis
 
   std::string Name() const;
 };
@@ -46,6 +47,7 @@ struct Followed {
 struct Answer {
   std::string verdict;
   std::vector<std::string> named;                  ///< effects, likeliest first
+  std::vector<std::string> relatives = {};         ///< of the named one, that fit as well
   std::vector<std::string> partner = {};           ///< of a second cause beside those
   double truth = 0, value = 0, low = 0, high = 0;  ///< of the first effect, when it is in named
   double explained = 0;  ///< explainable error removed on the validate logs

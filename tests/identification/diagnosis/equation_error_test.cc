@@ -111,6 +111,28 @@ TEST_F(ByEquationTest, TheTruthExplainsTheMissingForceAndAnotherDoesNot) {
   EXPECT_FALSE(ClearlyBetterByEquation(coulomb, payload));
 }
 
+TEST_F(ByEquationTest, OfSeveralShapesItFindsTheBest) {
+  Pendulum truth;
+  truth.payload = 0.05;
+  const Experiment e = Logs(truth, "dahl");
+  const ModelSpec system = Model();
+  const Problem null(e, system);
+  std::vector<std::string> skipped;
+  const auto all = MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped);
+  ASSERT_EQ(all.size(), 1u);
+  const Problem problem(e, all[0].system, all[0].Free());
+  const auto best = View(e, system).StartOf(all[0], problem);
+  ASSERT_TRUE(best.has_value());
+  Hypothesis only = all[0];
+  for (const auto& start : all[0].starts) {
+    only.starts = {start};
+    const auto one = View(e, system).StartOf(only, problem);
+    EXPECT_LE(one ? one->share : 0, best->share);
+  }
+  only.starts = {all[0].starts[best->start]};
+  EXPECT_EQ(View(e, system).StartOf(only, problem)->share, best->share);
+}
+
 TEST_F(ByEquationTest, AnEffectOnTheSensorsAloneIsNotSeen) {
   const Experiment e = Logs({}, "sensor_delay, payload");
   const ModelSpec system = Model();
