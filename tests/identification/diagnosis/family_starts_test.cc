@@ -24,7 +24,8 @@ class FamilyStartsTest : public Bench {
   void SetUp() override {
     const auto u = Command(1, kRows);
     AddLog("t", "trial: t, use: train", u, Pendulum().Run(u, testing::kPeriod));
-    const ModelSpec& system = system_.emplace(ModelSpec::Load(Write("model.xml", Pendulum().Xml())));
+    const ModelSpec& system =
+        system_.emplace(ModelSpec::Load(Write("model.xml", Pendulum().Xml())));
     experiment_ = ReadExperiment("candidates: all\n");
     const Problem null(experiment_, system);
     base_ = null.Start();
