@@ -49,6 +49,17 @@ std::optional<double> FixedValue(const EffectInfo& effect, std::size_t i,
   return std::nullopt;
 }
 
+// What an effect that adds to an attribute may take away: the least that any element has.
+double LeastValue(std::string_view attribute, Place place, const std::vector<std::string>& names,
+                  const ModelSpec& system, const std::vector<Change>& fitted) {
+  double least = kInfinity;
+  for (const std::string& name : names) {
+    const std::string element = std::string(PlaceName(place)) + ":" + Escaped(name);
+    least = std::min(least, system.ValueAfter(fitted, element, std::string(attribute)));
+  }
+  return least;
+}
+
 // Where the effect is another value of an attribute of the model.
 void AddAttribute(const EffectInfo& effect, Param param, Place place,
                   const std::vector<std::string>& names, const ModelSpec& system,
@@ -91,6 +102,8 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place,
                                          fmt::format("effect:{}.{}", effect.name, param.name),
                                          Change::Operation::kSet));
     h.null.push_back(param.null);
+    if (!effect.adds_to.empty())
+      h.extra.back().lower = -LeastValue(effect.adds_to, place, names, system, fitted);
   }
   return h;
 }

@@ -1,5 +1,6 @@
 #include "identification/candidates/parameter_size.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -26,6 +27,14 @@ using SizeRule = ParameterSize (*)(const LocalSizes&);
 
 ParameterSize Slope(const LocalSizes& s) { return {s.force / (0.02 * s.lever * s.all.angle)}; }
 ParameterSize Force(const LocalSizes& s) { return {s.force}; }
+
+// A light robot of many links carries more than a few of them weigh; and whatever a model weighs,
+// its machine may carry what the forces on it lift.
+ParameterSize Mass(const LocalSizes& s) {
+  constexpr double kGravity = 9.81;  // m/s^2
+  const double lifted = s.all.torque / (kGravity * (s.part ? s.all.lever : 1));
+  return {s.all.mass, 5 * std::max(s.all.robot, lifted) / s.all.mass};
+}
 
 // Units whose size is not the product of those of their factors: a spring is felt within a
 // fiftieth of the range, a delay lasts a few samples.
@@ -55,11 +64,7 @@ const std::map<Powers, SizeRule>& Rules() {
        [](Local s) {
          return Size{s.all.torque / std::pow(s.all.angle, 3), 100};
        }},
-      // A light robot of many links carries more than a few of them weigh.
-      {PowersOf("kg"),
-       [](Local s) {
-         return Size{s.all.mass, 5 * s.all.robot / s.all.mass};
-       }},
+      {PowersOf("kg"), Mass},
       {PowersOf("kg*m^2"), [](Local s) { return Size{s.all.inertia}; }},
       {PowersOf("1/rad"), [](Local s) { return Size{50 / s.angle}; }},
       {PowersOf("m/N"), [](Local s) { return Size{0.01 / s.all.tension}; }},

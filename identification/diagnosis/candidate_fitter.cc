@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/fit/intervals.h"
@@ -56,12 +57,12 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
   return f;
 }
 
-// As `identify` does, then in units of the noise.
+// As `identify` does, of many logs with those for a look, then with all and in units of the noise.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr int kIterations = 100;
   const FitOptions options{.iterations = kIterations, .until = until};
   const SearchedFit found =
-      FitBySearch(problem, problem.Start(), TrainLogs(*experiment), {}, options);
+      FitBySearch(problem, problem.Start(), LogsForALook(*experiment), {}, options);
   return Fit(problem, found.fit.x, std::numeric_limits<double>::infinity(), false);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include <Eigen/Dense>
@@ -98,6 +99,19 @@ void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& resi
   }
 }
 
+// Those that only the sensors show at once, as nothing is simulated for them; the others by what
+// they explain of the missing force.
+std::vector<CandidateResult*> CandidateSearch::InOrderOfForce() {
+  std::vector<CandidateResult*> order;
+  for (CandidateResult& c : candidates) order.push_back(&c);
+  const auto promise = [](const CandidateResult* c) {
+    return c->hypothesis.OnlyMeasured() ? kInfinity : c->force_promise;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const auto* a, const auto* b) { return promise(a) > promise(b); });
+  return order;
+}
+
 // Every candidate in its first shape and in that which the missing force wants; in all its shapes
 // where it is not hopeless in those, or where there is no missing force to see.
 void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forces) {
@@ -109,18 +123,17 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
     options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name(), std::min(done++, all), all);
     return fitter_.HasTimeFor(look + c.hypothesis.NameAtPlace(), left_out);
   };
-  const double most_of_force = MostOfForce();
-  ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
-    CandidateResult& c = candidates[i];
+  const std::vector<CandidateResult*> order = InOrderOfForce();
+  ParallelFor(order.size(), [&](std::size_t, std::size_t i) {
+    CandidateResult& c = *order[i];
     if (!say(c, "a look at ")) return;
     auto starts = c.hypothesis.StartsOfShape(true);
-    if (c.force_start > 0 && ExplainsForce(c.force_share, most_of_force, criteria_))
-      starts.push_back(c.force_start);
+    if (c.force_start > 0) starts.push_back(c.force_start);
     ProbeOne(c, residual, starts);
   });
   const double least = sees_forces ? criteria_.fit_share * MostExplained() : 0;
-  ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
-    CandidateResult& c = candidates[i];
+  ParallelFor(order.size(), [&](std::size_t, std::size_t i) {
+    CandidateResult& c = *order[i];
     auto others = c.hypothesis.StartsOfShape(false);
     std::erase(others, c.force_start);
     if (c.explained < least || c.probes.empty() || others.empty()) return;
@@ -128,12 +141,12 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
   });
 }
 
-void CandidateSearch::Screen(const EquationErrors& forces) {
+void CandidateSearch::Screen(const std::vector<EquationErrors>& views) {
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
   base_squares_ = residual.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
-  LookAtForces(forces);
-  ProbeAll(residual, forces.any());
+  for (const EquationErrors& view : views) LookAtForces(view);
+  ProbeAll(residual, !views.empty() && views.front().any());
   std::vector<std::vector<Probe>> probes;
   for (CandidateResult& c : candidates) probes.push_back(std::move(c.probes));
   options_.Say(DiagnosisStage::kScreen, "significance", candidates.size(), candidates.size());
@@ -156,29 +169,32 @@ void CandidateSearch::Screen(const EquationErrors& forces) {
   }
 }
 
-// First order is blind where an effect is large or the base far off; the missing force is not.
-void CandidateSearch::LookAtForces(const EquationErrors& forces) {
+// First order is blind where an effect is large or the base far off; the missing force is not. It
+// decides who comes first: everybody is looked at, however little time there is.
+void CandidateSearch::LookAtForces(const EquationErrors& view) {
   options_.Say(DiagnosisStage::kScreen, "missing force");
-  if (!forces.any()) return;
+  if (!view.any()) return;
+  std::vector<std::optional<EquationStart>> found(candidates.size());
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
-    CandidateResult& c = candidates[i];
-    if (StopRequested() || fitter_.TimeIsOver()) return;
+    const Hypothesis& h = candidates[i].hypothesis;
+    if (StopRequested()) return;
     try {
-      const auto found = forces.StartOf(c.hypothesis, ProblemOf(c, *fitter_.experiment));
-      if (!found) return;
-      c.force_share = found->share, c.force_start = found->start;
-      c.other_starts.push_back(found->x);
-      c.other_starts.push_back(found->together);
+      found[i] = view.StartOf(h, Problem(*fitter_.experiment, h.system, h.Free()));
     } catch (const Error&) {
       return;  // no machine has such parameters, or it diverges: the other views are left
     }
   });
-}
-
-double CandidateSearch::MostOfForce() const {
-  double best = 0;
-  for (const CandidateResult& c : candidates) best = std::max(best, c.force_share);
-  return best;
+  double most = 0;
+  for (const auto& one : found) most = std::max(most, one ? one->share : 0);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!found[i]) continue;
+    CandidateResult& c = candidates[i];
+    c.other_starts.push_back(found[i]->x);
+    c.other_starts.push_back(found[i]->together);
+    const double promise = found[i]->share / most;
+    if (!ExplainsForce(found[i]->share, most, criteria_) || promise <= c.force_promise) continue;
+    c.force_promise = promise, c.force_start = found[i]->start;
+  }
 }
 
 Significance CandidateSearch::Significant(const ProjectedResidual& residual,
@@ -364,7 +380,8 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
                             StepReduction(c.fitted) / inflation_,
                             c.listed,
                             KinOf(c.hypothesis.Card()),
-                            ErrorShare(c.fitted)};
+                            ErrorShare(c.fitted),
+                            c.fitted.error.validate};
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(fitter_, c, candidates[a])) record.contains.push_back(a);
     }

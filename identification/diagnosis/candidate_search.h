@@ -39,7 +39,7 @@ class CandidateSearch {
   /// What every candidate could explain of the base's residual, to first order and of the missing
   /// force at the measured states, and how often noise alone would let the best of so many do as
   /// well. forces: that are missing at the base.
-  void Screen(const EquationErrors& forces);
+  void Screen(const std::vector<EquationErrors>& views);
   /// Fits those that come near the best to first order, if a candidate is significant or the
   /// residual is plainly not noise; then best first, the others dismissed. beside: a search from
   /// the same base that has been fitted, whose best they have to come near; limit: of fits.
@@ -89,15 +89,15 @@ class CandidateSearch {
  private:
   void ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
                 const std::vector<std::size_t>& starts);
+  std::vector<CandidateResult*> InOrderOfForce();
   void ProbeAll(const ProjectedResidual& residual, bool sees_forces);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);
-  void LookAtForces(const EquationErrors& forces);
+  void LookAtForces(const EquationErrors& view);
   double MostExplained() const;
-  double MostOfForce() const;
   bool IsWorthAFit(const CandidateResult& c, double needed) const;
   double Threshold() const;
-  double Promise(const CandidateResult& c, double most, double most_of_force) const;
+  static double Promise(const CandidateResult& c, double most);
   void Order();
   std::vector<CandidateResult*> NextWave(double needed, std::size_t most, std::size_t& next);
   bool ReachesNoise(const Fitted& fitted) const;

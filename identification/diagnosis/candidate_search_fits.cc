@@ -7,6 +7,7 @@
 #include "error.h"
 #include "identification/candidates/search_range.h"
 #include "identification/diagnosis/candidate_search.h"
+#include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/statistics/uncertainty.h"
@@ -29,8 +30,7 @@ bool CandidateSearch::ReachesNoise(const Fitted& fitted) const {
 
 // By first order, or by the missing force: dropped only when both say no.
 bool CandidateSearch::IsWorthAFit(const CandidateResult& c, double needed) const {
-  return c.explained >= needed ||
-         (needed < kInfinity && ExplainsForce(c.force_share, MostOfForce(), criteria_));
+  return c.explained >= needed || (needed < kInfinity && c.force_promise > 0);
 }
 
 // Those behind it are less likely, and not fitted where they explain less than is needed.
@@ -42,28 +42,27 @@ void CandidateSearch::SayFit(const CandidateResult& c, double needed) const {
 }
 
 // By whichever view promises more, as a share of what the best one promises there.
-double CandidateSearch::Promise(const CandidateResult& c, double most, double most_of_force) const {
-  const bool by_force = ExplainsForce(c.force_share, most_of_force, criteria_);
-  return std::max(most > 0 ? c.explained / most : 0, by_force ? c.force_share / most_of_force : 0);
+double CandidateSearch::Promise(const CandidateResult& c, double most) {
+  return std::max(most > 0 ? c.explained / most : 0, c.force_promise);
 }
 
 // The plainest law of a family goes first at a place, as if it promised what the best of them does:
 // what it leaves decides whether a richer one is needed.
 void CandidateSearch::Order() {
   constexpr double kRicher = 0.8;
-  const double most = MostExplained(), most_of_force = MostOfForce();
+  const double most = MostExplained();
   const auto group = [](const CandidateResult& c) {
     return std::pair(KinOf(c.hypothesis.Card()).family, c.hypothesis.where);
   };
   std::map<std::pair<std::string, std::string>, double> best;
   for (const CandidateResult& c : candidates) {
     double& promise = best[group(c)];
-    promise = std::max(promise, Promise(c, most, most_of_force));
+    promise = std::max(promise, Promise(c, most));
   }
   const auto key = [&](const CandidateResult& c) {
     const Kin kin = KinOf(c.hypothesis.Card());
-    if (kin.family.empty()) return Promise(c, most, most_of_force);
-    return kin.depth == 0 ? best.at(group(c)) : kRicher * Promise(c, most, most_of_force);
+    if (kin.family.empty()) return Promise(c, most);
+    return kin.depth == 0 ? best.at(group(c)) : kRicher * Promise(c, most);
   };
   std::stable_sort(candidates.begin(), candidates.end(),
                    [&](const auto& a, const auto& b) { return key(a) > key(b); });
@@ -264,7 +263,8 @@ CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
   return c;
 }
 
-// The start that is best after a few iterations, of those that are best as they are.
+// The start that is best after a few iterations, of those that are best as they are, in the logs
+// for a look.
 Problem::Vector CandidateSearch::BestOf(const Problem& problem,
                                         const std::vector<Problem::Vector>& starts) const {
   constexpr std::size_t kTried = 2;
@@ -273,10 +273,10 @@ Problem::Vector CandidateSearch::BestOf(const Problem& problem,
   FitOptions options{4, 1e-3};
   options.idle = true, options.rough = true, options.until = fitter_.until;
   if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;
-  const auto train = problem.TrainLogs();
+  const auto logs = LogsForALook(*fitter_.experiment);
   std::vector<std::pair<double, const Problem::Vector*>> order;
   for (const auto& start : starts)
-    order.emplace_back(CostAt(problem, problem.Clamp(start), train, options), &start);
+    order.emplace_back(CostAt(problem, problem.Clamp(start), logs, options), &start);
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   if (order.size() > kTried) order.resize(kTried);
@@ -285,7 +285,7 @@ Problem::Vector CandidateSearch::BestOf(const Problem& problem,
   for (const auto& [cost, start] : order) {
     if (!(cost < kInfinity) || cost > kNear * order.front().first) continue;
     try {
-      const continuum::Fit fit = FitParameters(problem, *start, train, options);
+      const continuum::Fit fit = FitParameters(problem, *start, logs, options);
       if (fit.cost < best_cost) best_cost = fit.cost, best = fit.x;
     } catch (const Error&) {
       continue;

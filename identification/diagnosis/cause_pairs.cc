@@ -115,8 +115,8 @@ class PairSearch {
                                                 "beside " + Key(first.hypothesis), tried_.size());
     const BaseFit base{&first.hypothesis.system, first.hypothesis.Free(), &first.fitted};
     CandidateSearch search({context_.fitter, context_.noise, context_.sizes, inside}, base);
-    search.Screen(
-        EquationErrors(ProblemOf(first, *context_.fitter.experiment), first.fitted.fit.x));
+    const Experiment& e = *context_.fitter.experiment;
+    search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))});
     if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
     search.Fit(nullptr, kSeconds);
     if (!search.leading()) return;

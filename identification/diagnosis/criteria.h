@@ -80,6 +80,9 @@ struct Criteria {
   Rule family_share{"family_share", 0.95, "share of what the best of the family explains",
                     "a richer law of one family must explain more than what is left of a plain one "
                     "by the way in which friction is simulated"};
+  Rule earned_share{"earned_share", 0.1, "share of the error of logs left out",
+                    "where more than noise is left a law that contains another one makes up for "
+                    "some of it: it must also help where it was not fitted"};
   Rule step_share{"step_share", 0.005, "share of what is put down to the time step",
                   "first order in the step may miss that much: closer candidates are not "
                   "distinguished"};
@@ -186,28 +189,39 @@ struct Criteria {
 
 /// Every rule once, for what walks over them.
 inline constexpr std::array kAllRules{
-    &Criteria::folds_better,     &Criteria::median_gain,      &Criteria::fit_gain,
-    &Criteria::amplitude_spread, &Criteria::placebo_share,    &Criteria::fold_margin,
-    &Criteria::rival_gain,       &Criteria::least_folds,      &Criteria::at_noise,
-    &Criteria::near_noise,       &Criteria::model_limited,    &Criteria::scatter_limit,
-    &Criteria::significance,     &Criteria::lack_of_fit,      &Criteria::parameter_cost,
-    &Criteria::rival_margin,     &Criteria::nested_margin,    &Criteria::left_share,
-    &Criteria::structure_share,  &Criteria::main_share,       &Criteria::family_share,
-    &Criteria::step_share,       &Criteria::plain_noise,      &Criteria::step_seen,
-    &Criteria::step_tolerance,   &Criteria::step_falls,       &Criteria::step_rough,
-    &Criteria::step_resolved,    &Criteria::step_varies,      &Criteria::step_least_spread,
-    &Criteria::step_most_spread, &Criteria::step_farthest,    &Criteria::late,
-    &Criteria::probe_far,        &Criteria::probe_least,      &Criteria::start_share,
-    &Criteria::as_good,          &Criteria::contained,        &Criteria::same_noise,
-    &Criteria::same_gain,        &Criteria::same_share,       &Criteria::worth_a_fit,
-    &Criteria::fit_behind,       &Criteria::fit_always,       &Criteria::fit_share,
-    &Criteria::force_least,      &Criteria::force_share,      &Criteria::rival_share,
-    &Criteria::outdoes,          &Criteria::hopeless_factor,  &Criteria::hopeless_offset,
-    &Criteria::completed_within, &Criteria::still_gains,      &Criteria::still_gains_share,
-    &Criteria::second_chances,   &Criteria::fresh_starts,     &Criteria::pair_hopeless,
-    &Criteria::pair_singles,     &Criteria::pair_bases,       &Criteria::second_share,
-    &Criteria::pair_share,       &Criteria::fallback_ceiling, &Criteria::fallback_size,
-    &Criteria::separation,       &Criteria::next_rivals,
+    &Criteria::folds_better,      &Criteria::median_gain,
+    &Criteria::fit_gain,          &Criteria::amplitude_spread,
+    &Criteria::placebo_share,     &Criteria::fold_margin,
+    &Criteria::rival_gain,        &Criteria::least_folds,
+    &Criteria::at_noise,          &Criteria::near_noise,
+    &Criteria::model_limited,     &Criteria::scatter_limit,
+    &Criteria::significance,      &Criteria::lack_of_fit,
+    &Criteria::parameter_cost,    &Criteria::rival_margin,
+    &Criteria::nested_margin,     &Criteria::left_share,
+    &Criteria::structure_share,   &Criteria::main_share,
+    &Criteria::family_share,      &Criteria::earned_share,
+    &Criteria::step_share,        &Criteria::plain_noise,
+    &Criteria::step_seen,         &Criteria::step_tolerance,
+    &Criteria::step_falls,        &Criteria::step_rough,
+    &Criteria::step_resolved,     &Criteria::step_varies,
+    &Criteria::step_least_spread, &Criteria::step_most_spread,
+    &Criteria::step_farthest,     &Criteria::late,
+    &Criteria::probe_far,         &Criteria::probe_least,
+    &Criteria::start_share,       &Criteria::as_good,
+    &Criteria::contained,         &Criteria::same_noise,
+    &Criteria::same_gain,         &Criteria::same_share,
+    &Criteria::worth_a_fit,       &Criteria::fit_behind,
+    &Criteria::fit_always,        &Criteria::fit_share,
+    &Criteria::force_least,       &Criteria::force_share,
+    &Criteria::rival_share,       &Criteria::outdoes,
+    &Criteria::hopeless_factor,   &Criteria::hopeless_offset,
+    &Criteria::completed_within,  &Criteria::still_gains,
+    &Criteria::still_gains_share, &Criteria::second_chances,
+    &Criteria::fresh_starts,      &Criteria::pair_hopeless,
+    &Criteria::pair_singles,      &Criteria::pair_bases,
+    &Criteria::second_share,      &Criteria::pair_share,
+    &Criteria::fallback_ceiling,  &Criteria::fallback_size,
+    &Criteria::separation,        &Criteria::next_rivals,
 };
 static_assert(sizeof(Criteria) == kAllRules.size() * sizeof(Rule), "a rule is missing above");
 

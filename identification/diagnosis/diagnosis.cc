@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -157,13 +158,23 @@ class Session {
   }
   BaseFit Base() const { return {&d_.system, {}, &d_.before}; }
 
+  // The force that is missing at the null fit; and with the values of the experiment, as a fit that
+  // leaves much has made up for what the model lacks.
+  void LookAtForces() {
+    const std::vector<bool> use = LogsForALook(e_);
+    views_.emplace_back(null_, d_.before.fit.x, use);
+    const double floor = std::hypot(d_.noise.rms, d_.noise.step);
+    if (d_.before.error.train > d_.criteria.model_limited * floor || !d_.noise.known())
+      views_.emplace_back(null_, null_.Start(), use);
+  }
+
   // Candidates, and where the noise is known a verdict by their likelihoods.
   void Search() {
     CandidateSearch search(Context(options_), Base());
     Begin(DiagnosisStage::kScreen);
-    forces_.emplace(null_, d_.before.fit.x);
-    search.Screen(*forces_);
-    Begin(DiagnosisStage::kFits);
+    LookAtForces();
+    search.Screen(views_);
+    Begin(d_.noise.known() ? DiagnosisStage::kFits : DiagnosisStage::kOtherCandidates);
     search.Fit();
     if (!d_.noise.known()) {
       Take(search);
@@ -211,8 +222,9 @@ class Session {
 
   void CompareByEquation() {
     options_.Say(DiagnosisStage::kJudgement, "missing force");
+    const EquationErrors forces(null_, d_.before.fit.x, TrainLogs(e_));
     ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {
-      d_.candidates[i].by_equation = forces_->Of(d_.candidates[i]);
+      d_.candidates[i].by_equation = forces.Of(d_.candidates[i]);
     });
   }
 
@@ -268,7 +280,7 @@ class Session {
     if (!SomethingIsLeft(search) || !HasTimeFor("candidates at other places")) return;
     const auto inside = options_.Inside(DiagnosisStage::kOtherCandidates, "at other places");
     CandidateSearch others(Context(inside), Base(), SearchScope::kOthers);
-    others.Screen(*forces_);
+    others.Screen(views_);
     others.Fit(&search);
     if (others.candidates.empty()) return;
     search.Join(std::move(others));
@@ -282,7 +294,7 @@ class Session {
     if (options.candidates.empty() || d_.Is(Verdict::Kind::kAdequate)) return;
     if (!HasTimeFor("effects that are not listed")) return;
     CandidateSearch unlisted(Context(options), Base());
-    unlisted.Screen(*forces_);
+    unlisted.Screen(views_);
     unlisted.Fit(&search);
     const CandidateResult* const best = unlisted.leading();
     const bool judged = best && best->fitted.complete();  // else plainly behind
@@ -406,7 +418,7 @@ class Session {
   Problem null_;
   Diagnosis d_;
   CandidateFitter fitter_;
-  std::optional<EquationErrors> forces_;  // that are missing at the null fit
+  std::vector<EquationErrors> views_;  // of the missing force, for a look
 };
 
 }  // namespace

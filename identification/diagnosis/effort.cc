@@ -32,13 +32,13 @@ double ShareAtEndOf(DiagnosisStage stage) {
     case DiagnosisStage::kScreen:
       return 0.4;
     case DiagnosisStage::kFits:
-      return 0.55;
+      return 0.58;
     case DiagnosisStage::kOtherCandidates:
       return 0.65;
     case DiagnosisStage::kSecondCause:
       return 0.85;
     case DiagnosisStage::kJudgement:
-      return 0.95;
+      return 0.97;
     default:
       return 1;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -20,9 +21,9 @@ constexpr double kNothing = 1e-6;  // of the missing force
 
 }  // namespace
 
-EquationErrors::EquationErrors(const Problem& base, const Vector& x)
-    : experiment_(base.experiment()), x_(x) {
-  const auto joints = MissingForces(base, x_, base.TrainLogs());
+EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector<bool> use)
+    : experiment_(base.experiment()), x_(x), use_(std::move(use)) {
+  const auto joints = MissingForces(base, x_, use_);
   if (joints.empty()) return;
   units_ = StackedForces(joints, &MissingForce::force);
   for (const MissingForce& joint : joints)
@@ -43,7 +44,7 @@ EquationErrors::EquationErrors(const Problem& base, const Vector& x)
 }
 
 Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::size_t thread) const {
-  return units_.Of(MissingForces(problem, x, problem.TrainLogs(), thread));
+  return units_.Of(MissingForces(problem, x, use_, thread));
 }
 
 std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
@@ -113,6 +114,19 @@ std::vector<double> EquationErrors::PerLog(const Vector& r) const {
     if (sum > 0) roots.push_back(std::sqrt(sum));
   }
   return roots;
+}
+
+std::vector<bool> LogsForALook(const Experiment& e) {
+  constexpr std::size_t kRows = 4000;
+  const std::vector<bool> train = TrainLogs(e);
+  std::size_t rows = 0, logs = 0;
+  for (std::size_t l = 0; l < train.size(); ++l)
+    if (train[l]) rows += e.logs[l].rows(), ++logs;
+  const std::size_t every = std::max<std::size_t>(1, std::min(logs / 2, rows / kRows));
+  std::vector<bool> use(train.size(), false);
+  for (std::size_t l = 0, nth = 0; l < train.size(); ++l)
+    if (train[l]) use[l] = nth++ % every == 0;
+  return use;
 }
 
 bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b,

@@ -23,13 +23,13 @@ struct EquationStart {
 ///
 ///   f ≈ Σ a_i ∂f/∂p_i + b (f(p) − f(p, candidate)),   b ≥ 0,
 ///
-/// by least squares over the train logs, every joint in units of its own missing force. What
+/// by least squares over train logs, every joint in units of its own missing force. What
 /// drifts, swings out of phase or hides behind the time step in free simulation does not here;
 /// noise of the accelerations does.
 class EquationErrors {
  public:
-  /// base: the problem without a candidate, fitted at x.
-  EquationErrors(const Problem& base, const Problem::Vector& x);
+  /// base: the problem without a candidate, fitted at x; use: logs.
+  EquationErrors(const Problem& base, const Problem::Vector& x, std::vector<bool> use);
 
   /// Whether every joint is measured, so that there is anything to see.
   bool any() const { return force_.size() > 0; }
@@ -50,6 +50,7 @@ class EquationErrors {
 
   const Experiment& experiment_;
   Problem::Vector x_;
+  std::vector<bool> use_;  // logs
   StackedForces units_;
   std::vector<std::size_t> log_;  // of every number
   Problem::Vector missing_;       // f
@@ -57,6 +58,10 @@ class EquationErrors {
   Problem::Matrix columns_;       // [parameter] ∂f/∂p
   Problem::Matrix basis_;         // orthonormal, of what the parameters do
 };
+
+/// Train logs that are enough for a first look at every candidate: evenly over all of them, and
+/// thousands of rows, not tens of thousands.
+std::vector<bool> LogsForALook(const Experiment& experiment);
 
 /// Whether the missing force speaks for another candidate than b: a explains it clearly better.
 bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b,

@@ -38,7 +38,8 @@ class FoldComparison {
     for (std::size_t done = 0; done < d_.candidates.size(); ++done) {
       CandidateResult& c = d_.candidates[done];
       if (!WorthFolds(d_.before.error.train, c.fitted.error.train, d_.criteria)) continue;
-      if (!HasTimeFor("folds of " + c.hypothesis.NameAtPlace())) continue;
+      c.record.no_time = !HasTimeFor("folds of " + c.hypothesis.NameAtPlace());
+      if (c.record.no_time) continue;
       options_.Say(DiagnosisStage::kJudgement, "folds of " + c.hypothesis.Name(), done,
                    d_.candidates.size());
       RecordFolds(fitter_, d_, c);

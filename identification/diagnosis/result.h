@@ -100,7 +100,9 @@ struct CandidateResult {
   std::vector<Probe> probes = {};  ///< one for each start: directions from the fit without it
   Problem::Vector start = {};      ///< of its fit, when the screen found one
   std::vector<Problem::Vector> other_starts = {};  ///< that the screen finds as good
-  double force_share = 0;  ///< of the missing force's squares that it explains at measured states
+  /// What it explains of the missing force at measured states, over what the best one does; 0 where
+  /// that is too little.
+  double force_promise = 0;
   std::size_t force_start = 0;  ///< start of the shape in which it does
   bool was_fitted = false;
   Fitted fitted = {};                          ///< empty where it was not fitted

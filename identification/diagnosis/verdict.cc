@@ -48,13 +48,14 @@ class Ranking {
     return best;
   }
 
-  /// Others of the best one's family that do as well, or better.
+  /// Others of the best one's family that do as well, or better; and laws that contain it and do
+  /// better where they were fitted alone.
   std::vector<std::size_t> Siblings(std::size_t best) const {
     std::vector<std::size_t> siblings;
     for (const std::size_t i : order_) {
-      if (i != best && candidates_[i].listed && AreKin(i, best) && IsEnough(i, first()) &&
-          !AddsNothing(i, best))
-        siblings.push_back(i);
+      if (i == best || !candidates_[i].listed) continue;
+      const bool kin = AreKin(i, best) && IsEnough(i, first()) && !AddsNothing(i, best);
+      if (kin || (HasNotEarned(i, best) && IsBehind(i, best))) siblings.push_back(i);
     }
     return siblings;
   }
@@ -108,7 +109,13 @@ class Ranking {
     const bool most =
         AreKin(a, first) &&
         candidates_[a].likelihood >= criteria_.family_share * candidates_[first].likelihood;
-    return most || !Behind(first, a, AtLeast(criteria_.nested_margin));
+    return most || HasNotEarned(first, a) || !Behind(first, a, AtLeast(criteria_.nested_margin));
+  }
+  // Where more than noise is left, a law that contains another one makes up for some of that.
+  bool HasNotEarned(std::size_t rich, std::size_t plain) const {
+    const double before = candidates_[plain].held_out, after = candidates_[rich].held_out;
+    return more_ && Contains(rich, plain) && before > 0 &&
+           after > (1 - criteria_.earned_share) * before;
   }
   bool IsBehind(std::size_t best, std::size_t rival) const {
     return Behind(best, rival, AtLeast(criteria_.rival_margin));
@@ -132,7 +139,8 @@ class Ranking {
   }
   // To the one that it contains. Where only the time step leaves that open, both stay.
   bool AddsNothing(std::size_t a, std::size_t b) const {
-    return Contains(a, b) && Score(a) - Score(b) < scale_ * AtLeast(criteria_.nested_margin);
+    return HasNotEarned(a, b) ||
+           (Contains(a, b) && Score(a) - Score(b) < scale_ * AtLeast(criteria_.nested_margin));
   }
 
   const std::vector<LikelihoodRecord>& candidates_;

@@ -23,8 +23,8 @@ struct Verdict {
   std::string reason = {};                 ///< one sentence
   std::vector<std::size_t> unlisted = {};  ///< candidates nobody asked for that do as well
   bool unlisted_explains = false;          ///< unexplained, but not by one that nobody asked for
-  /// Candidates of the named one's family that do as well, or better by less than a richer law has
-  /// to earn.
+  /// Candidates of the named one's family, or that contain it, that do as well, or better by less
+  /// than a richer law has to earn.
   std::vector<std::size_t> siblings = {};
   bool complete = false;                    ///< what the verdict leaves looks like noise
   std::optional<std::size_t> leading = {};  ///< the candidate that comes closest; none: none helps
@@ -59,6 +59,7 @@ struct FoldRecord {
   /// Error on the logs left out [fold], without and with the candidate; after: empty when it was
   /// not worth the folds.
   std::vector<double> before = {}, after = {};
+  bool no_time = false;                    ///< for its folds
   std::vector<double> amplitude = {};      ///< [fold] value of its main parameter, from absence
   std::vector<double> placebo_gains = {};  ///< [random force] median gain over the folds
   double over_noise = 0;                   ///< error of its fit over the noise; 0: noise not known
@@ -123,6 +124,7 @@ struct LikelihoodRecord {
   Kin kin = {};
   double error_share =
       1;  ///< of the squared error above noise and step that it takes, in plain rows
+  double held_out = 0;  ///< error of the logs left out with it; 0: there are none
 };
 
 /// The model without a candidate, by the same measure: whitened squares, and how many of them noise

@@ -37,6 +37,7 @@ EffectInfo InfoOf() {
   if constexpr (SignalLaw<E>) info.servo = E::kTap == Tap::kServoError;
   if constexpr (FormulaLaw<E>) info.text = E::kText;
   if constexpr (requires { E::kNative; }) info.native = E::kNative;
+  if constexpr (requires { E::kAddsTo; }) info.adds_to = E::kAddsTo;
   if constexpr (requires { E::kKin; }) info.kin = E::kKin;
   if constexpr (requires { E::kCoulombLevel; }) info.coulomb_level = E::kCoulombLevel;
   if constexpr (requires { E::kDamping; }) info.damping = E::kDamping;

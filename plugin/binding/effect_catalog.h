@@ -19,10 +19,11 @@ struct EffectInfo {
   std::vector<Place> places;
   std::vector<Param> params;
   std::vector<Choice> choices;
-  bool servo = false;            ///< a Signal at the error of a position servo
-  std::string_view text = {};    ///< key of the formula that a law of the MJCF is written under
-  std::string_view native = {};  ///< attribute of MuJoCo that an Edit is, in MJCF's words
-  Kinship kin = {};              ///< its family; none where that has no name
+  bool servo = false;             ///< a Signal at the error of a position servo
+  std::string_view text = {};     ///< key of the formula that a law of the MJCF is written under
+  std::string_view native = {};   ///< attribute of MuJoCo that an Edit is, in MJCF's words
+  std::string_view adds_to = {};  ///< that of an element to which an Edit's value is added
+  Kinship kin = {};               ///< its family; none where that has no name
   /// Indices of parameters that the cards of frictions and segments speak of (effects/effect.h).
   std::optional<std::size_t> coulomb_level = {}, damping = {}, literal = {}, arc_radius = {};
 

@@ -169,10 +169,6 @@ void SpecElement::Add(std::string_view attribute, double value) {
   const bool lag = element_->elemtype == mjOBJ_ACTUATOR && attribute == "lag";
   const bool delay = element_->elemtype == mjOBJ_ACTUATOR && attribute == "delay";
   if ((lag || delay) && value == 0) return;
-  if (lag && Get("lag") > 0) {
-    throw Error::Input(Who(), "an actuator without a lag",
-                       "one of " + std::to_string(Get("lag")) + " s");
-  }
   Set(attribute, Get(attribute) + value);
 }
 

@@ -42,6 +42,11 @@ Found Ask(const ModelSpec& model, const std::string& effect, const std::string& 
   Experiment e;
   e.all_candidates = false;
   e.candidates = {{effect, where, false}};
+  for (int a = 0; a < model.model().nactuator; ++a) {
+    e.inputs.emplace_back();
+    e.inputs.back().column = "u";
+    e.inputs.back().actuator = mj_id2name(&model.model(), mjOBJ_ACTUATOR, a);
+  }
   Found found;
   found.candidates = MakeCandidates(e, {&model}, {}, found.skipped);
   return found;
@@ -97,6 +102,19 @@ TEST(CandidateGenerator, SaysWhichParameterOfTheModelToFitInstead) {
   EXPECT_THAT(Ask(stribeck, "stribeck", "joint:q").skipped,
               ElementsAre("stribeck: the model has it already"));
   EXPECT_THAT(Ask(ModelWith("", ""), "viscous", "joint:q").skipped, IsEmpty());
+}
+
+// The model's own lag may be too long as well as too short.
+TEST(CandidateGenerator, AnInputOfALaggedActuatorMayComeLaterOrSooner) {
+  const ModelSpec model = ModelSpec::Parse(R"(<mujoco><worldbody>
+    <body><joint name="q"/><geom size="0.1"/></body></worldbody><actuator>
+    <general name="valve" joint="q" dyntype="filterexact" dynprm="0.05"/>
+    <motor name="motor" joint="q" delay="0.02" nsample="20" interp="linear"/></actuator></mujoco>)");
+  EXPECT_DOUBLE_EQ(Ask(model, "pt1", "actuator:valve").candidates.at(0).extra.at(0).lower, -0.05);
+  EXPECT_DOUBLE_EQ(Ask(model, "pt1", "actuator:motor").candidates.at(0).extra.at(0).lower, 0);
+  EXPECT_DOUBLE_EQ(Ask(model, "dead_time", "actuator:motor").candidates.at(0).extra.at(0).lower,
+                   -0.02);
+  EXPECT_DOUBLE_EQ(Ask(model, "dead_time", "actuator:valve").candidates.at(0).extra.at(0).lower, 0);
 }
 
 TEST(CandidateGenerator, ASiteIsTriedWhereTheExperimentNamesIt) {

@@ -160,6 +160,19 @@ std::vector<Judged> FamilyShare() {
   return judged;
 }
 
+std::vector<Judged> EarnedShare() {
+  std::vector<Judged> judged;
+  for (const double share : {0.93, 0.85}) {
+    judged.push_back([=](const Criteria& c) {
+      LikelihoodRecord plain{"plain", 1, 960}, rich{"rich", 2, 1000, {0}};
+      plain.held_out = 1, rich.held_out = share;
+      const auto v = JudgeLikelihoods({plain, rich}, {1e-6}, 1e-3, {1100, 100}, c);
+      return fmt::format("{}", v.named.front());
+    });
+  }
+  return judged;
+}
+
 std::vector<Judged> LackLevel() {
   std::vector<Judged> judged;
   for (const double factor : {kBelow, kAbove}) {
@@ -232,6 +245,7 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["structure_share"] = Structure();
   e["main_share"] = MainShare();
   e["family_share"] = FamilyShare();
+  e["earned_share"] = EarnedShare();
   e["step_share"] = {Lead(50 * kBelow, 1, {}, 10'000), Lead(50 * kAbove, 1, {}, 10'000)};
   e["plain_noise"] = AroundBoundary(0.05, [](double p, const Criteria& c) {
     return ResidualInWords({p}, c) == "nothing but noise";

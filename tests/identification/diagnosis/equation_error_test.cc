@@ -56,7 +56,7 @@ class ByEquationTest : public Bench {
   }
   static EquationErrors View(const Experiment& e, const ModelSpec& system) {
     const Problem base(e, system);
-    return {base, base.Start()};
+    return {base, base.Start(), base.TrainLogs()};
   }
 };
 

@@ -463,6 +463,22 @@ TEST(Likelihoods, OfALargeEffectTwoThatExplainItAllAreNotDistinguished) {
             "named");
 }
 
+// Friction that grows with the load makes up for a length that is wrong, on the logs of the fit.
+TEST(Likelihoods, ALawThatContainsAnotherMustEarnItsNameOnLogsLeftOut) {
+  LikelihoodRecord plain{"plain", 1, 4700}, rich{"rich", 2, 4900, {0}};
+  plain.held_out = 1;
+  for (const auto& [held_out, named] : {std::pair{0.95, 0u}, std::pair{0.8, 1u}}) {
+    rich.held_out = held_out;
+    const auto v = JudgeLikelihoods({plain, rich}, {1e-6}, 1e-3, kLoud);
+    EXPECT_EQ(v.word(), "named");
+    EXPECT_THAT(v.named, ElementsAre(named));
+    EXPECT_EQ(v.siblings.size(), 1 - named);
+  }
+  // Where nothing but noise is left the likelihoods judge.
+  rich.held_out = 0.99;
+  EXPECT_THAT(JudgeLikelihoods({plain, rich}, {0.5}, 1e-3, kLoud).named, ElementsAre(1));
+}
+
 TEST(Likelihoods, SiblingsMakeNoSet) {
   LikelihoodRecord plain{"plain", 1, 4700}, rich{"rich", 2, 4790}, other{"other", 1, 4000};
   plain.kin = {"friction", 0}, rich.kin = {"friction", 1};

@@ -208,11 +208,14 @@ TEST_F(Changed, AShortLagIsNearlyNone) {
   }
 }
 
-TEST_F(Changed, DelaysAddAndASecondLagIsRefused) {
+TEST_F(Changed, DelaysAddAndSoDoLags) {
   const ModelSpec arm = Arm();
   EXPECT_DOUBLE_EQ(
       arm.Build({{{"actuator:late", "effect:dead_time", 0.03}}}).model->actuator_delay[1], 0.08);
-  EXPECT_THROW(arm.Build({{{"actuator:lagged", "effect:pt1", 0.03}}}), Error);
+  for (const double more : {0.03, -0.03}) {
+    const ModelAndData machine = arm.Build({{{"actuator:lagged", "effect:pt1", more}}});
+    EXPECT_DOUBLE_EQ(machine.model->actuator_dynprm[mjNDYN * 2], 0.1 + more);
+  }
 }
 
 TEST_F(Changed, AHistoryCoversItsDelayAtTheStepThatIsUsed) {
