@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identification/diagnosis/equation_error.h"
+#include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/fit/intervals.h"

@@ -1,4 +1,5 @@
 #include "identification/diagnosis/cause_pairs.h"
+#include "identification/diagnosis/look_logs.h"
 
 #include <algorithm>
 #include <deque>

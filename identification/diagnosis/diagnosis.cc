@@ -18,6 +18,7 @@
 #include "identification/diagnosis/fold_comparison.h"
 #include "identification/diagnosis/gain_interval.h"
 #include "identification/diagnosis/log_requirements.h"
+#include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/next_experiment.h"
 #include "identification/diagnosis/quantisation.h"
 #include "identification/diagnosis/remaining.h"

@@ -59,10 +59,6 @@ class EquationErrors {
   Problem::Matrix basis_;         // orthonormal, of what the parameters do
 };
 
-/// Train logs that are enough for a first look at every candidate: evenly over all of them, and
-/// thousands of rows, not tens of thousands.
-std::vector<bool> LogsForALook(const Experiment& experiment);
-
 /// Whether the missing force speaks for another candidate than b: a explains it clearly better.
 bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b,
                              const Criteria& criteria = {});

@@ -123,7 +123,7 @@ struct LikelihoodRecord {
   bool listed = true;  ///< whether it was asked for: only then it can be named
   Kin kin = {};
   double error_share =
-      1;  ///< of the squared error above noise and step that it takes, in plain rows
+      1;                ///< of the squared error above noise and step that it takes, in plain rows
   double held_out = 0;  ///< error of the logs left out with it; 0: there are none
 };
 
