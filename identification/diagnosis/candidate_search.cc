@@ -170,16 +170,18 @@ void CandidateSearch::Screen(const std::vector<EquationErrors>& views) {
 }
 
 // First order is blind where an effect is large or the base far off; the missing force is not. It
-// decides who comes first: everybody is looked at, however little time there is.
+// decides who comes first.
 void CandidateSearch::LookAtForces(const EquationErrors& view) {
   options_.Say(DiagnosisStage::kScreen, "missing force");
   if (!view.any()) return;
   std::vector<std::optional<EquationStart>> found(candidates.size());
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
-    const Hypothesis& h = candidates[i].hypothesis;
-    if (StopRequested()) return;
+    const CandidateResult& c = candidates[i];
+    if (StopRequested() || fitter_.TimeIsOver()) return;
     try {
-      found[i] = view.StartOf(h, Problem(*fitter_.experiment, h.system, h.Free()));
+      const Problem problem = ProblemOf(c, *fitter_.experiment);
+      found[i] = c.force_promise > 0 ? view.From(c.hypothesis, problem, c.force_start)
+                                     : view.StartOf(c.hypothesis, problem);
     } catch (const Error&) {
       return;  // no machine has such parameters, or it diverges: the other views are left
     }
@@ -281,6 +283,10 @@ void CandidateSearch::Dismiss() {
 
 void CandidateSearch::Rank() {
   smallest_p_ = 1;
+  for (CandidateResult& c : candidates) {
+    if (c.probes.empty() && c.was_fitted && noise_.known())
+      c.p = ChanceOfGain(c.likelihood, c.hypothesis.extra.size(), candidates.size());
+  }
   for (const auto* all : {&candidates, &dismissed}) {
     for (const CandidateResult& c : *all) smallest_p_ = std::min(smallest_p_, c.p);
   }

@@ -49,8 +49,9 @@ Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::siz
 
 std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
                                                      const Problem& problem) const {
-  if (!any() || h.OnlyMeasured()) return {};
+  constexpr double kAnything = 0.01;  // of the missing force
   std::optional<EquationStart> best = From(h, problem, 0);
+  if (!best || best->share < kAnything) return best;
   for (const std::size_t other : h.StartsOfShape(false)) {
     auto next = From(h, problem, other);
     if (next && (!best || next->share > best->share)) best = std::move(next);
@@ -61,6 +62,7 @@ std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
 // Each amplitude by itself, the others absent; sizes by least squares, of allowed signs.
 std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Problem& problem,
                                                   std::size_t which) const {
+  if (!any() || h.OnlyMeasured()) return {};
   const std::vector<double>& start = h.starts[which];
   const auto amplitudes = h.Amplitudes();
   const auto count = static_cast<Eigen::Index>(amplitudes.size());

@@ -34,9 +34,12 @@ class EquationErrors {
   /// Whether every joint is measured, so that there is anything to see.
   bool any() const { return force_.size() > 0; }
   /// What a candidate explains with sizes of its own, and where its fit may begin: in the best of
-  /// its shapes. Effects are linear in their sizes here, however large they are. Nothing where it
-  /// does nothing to f. problem: of the candidate.
+  /// its shapes, if its first one explains anything at all. Effects are linear in their sizes here,
+  /// however large they are. Nothing where it does nothing to f. problem: of the candidate.
   std::optional<EquationStart> StartOf(const Hypothesis& hypothesis, const Problem& problem) const;
+  /// The same in one shape, that of a start of the hypothesis.
+  std::optional<EquationStart> From(const Hypothesis& hypothesis, const Problem& problem,
+                                    std::size_t start) const;
   /// Of a fitted candidate with the sizes that its fit gave it; nothing where it does nothing to f,
   /// as effects on the sensors.
   std::optional<ByEquation> Of(const CandidateResult& candidate) const;
@@ -45,8 +48,6 @@ class EquationErrors {
   std::vector<double> PerLog(const Problem::Vector& r) const;
   Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x,
                           std::size_t thread = 0) const;
-  std::optional<EquationStart> From(const Hypothesis& hypothesis, const Problem& problem,
-                                    std::size_t start) const;
 
   const Experiment& experiment_;
   Problem::Vector x_;

@@ -56,6 +56,15 @@ bool ExplainsForce(double share, double most, const Criteria& criteria) {
   return share >= std::max<double>(criteria.force_least, criteria.force_share * most);
 }
 
+// The upper tail of chi squared at an even number of degrees of freedom 2 k, which is a sum.
+double ChanceOfGain(double gain, std::size_t parameters, std::size_t fits) {
+  if (!(gain > 0)) return 1;
+  const std::size_t k = (parameters + 1) / 2;
+  double term = 1, sum = 1;
+  for (std::size_t j = 1; j < k; ++j) sum += term *= 0.5 * gain / static_cast<double>(j);
+  return std::min(1.0, static_cast<double>(fits) * std::exp(-0.5 * gain) * sum);
+}
+
 bool WorthFinishing(std::size_t finished, double explained, double most, const Criteria& criteria) {
   return static_cast<double>(finished) < criteria.second_chances &&
          explained >= FitThresholdAtNoise(most, criteria);

@@ -52,6 +52,10 @@ double UnlistedThreshold(double most, const Criteria& criteria = {});
 /// order says. most: what the best one explains; all are shares of its squares.
 bool ExplainsForce(double share, double most, const Criteria& criteria = {});
 
+/// How likely it is at most that one of so many fits gains as much from noise alone: for those that
+/// the screen had no time for. gain: twice the logarithm of its likelihood.
+double ChanceOfGain(double gain, std::size_t parameters, std::size_t fits);
+
 /// Whether an abandoned fit goes on to its end where none reaches the noise. finished: so many did.
 bool WorthFinishing(std::size_t finished, double explained, double most,
                     const Criteria& criteria = {});
