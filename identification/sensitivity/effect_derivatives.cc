@@ -1,11 +1,27 @@
 #include "identification/sensitivity/effect_derivatives.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "binding/effect_catalog.h"
 #include "engine.h"
 #include "sim/model/mujoco_handles.h"
 
 namespace continuum {
 namespace {
+
+using Kind = Number::Kind;
+using Group = EffectDerivatives::Group;
+
+Group GroupOf(const EffectInfo& info) {
+  if (info.kind != EffectInfo::Kind::kSignal) return Group::kOthers;
+  return info.servo || info.places[0] == Place::kTendon ? Group::kDrives : Group::kInputs;
+}
+
+bool UsesActuators(const EffectInfo& info) {
+  using Of = EffectInfo::Kind;
+  return info.kind == Of::kSignal || info.kind == Of::kSegment || info.kind == Of::kPath;
+}
 
 const std::vector<double>& ParametersOf(const ModelAndData& machine, int instance) {
   return BoundOf(*machine.model, *machine.data, instance).parameters();
@@ -14,11 +30,16 @@ const std::vector<double>& ParametersOf(const ModelAndData& machine, int instanc
 }  // namespace
 
 std::string EffectDerivatives::Obstacle(const mjModel& m, const mjData& d) {
+  const int off = mjDSBL_SPRING | mjDSBL_DAMPER;
+  if (m.nplugin > 0 && (m.opt.disableflags & off) == off) return "there are no passive forces";
+  int cables = 0;
   for (int i = 0; i < m.nplugin; ++i) {
     const std::string name = "effect " + Called(m, mjOBJ_PLUGIN, i);
     if (!EffectOf(m, i)) return name + " is a plugin of others";
     const std::string why = BoundOf(m, d, i).WhyNoSlopes(m);
     if (!why.empty()) return name + ": " + why;
+    cables += BoundOf(m, d, i).NeedsAllForces();
+    if (cables > 1) return name + ": several cause friction of cables";
   }
   return "";
 }
@@ -30,15 +51,18 @@ EffectDerivatives::EffectDerivatives(const ModelAndData& machine,
   std::vector<double> here;
   std::vector<std::vector<double>> there(perturbed.size());
   for (int i = 0; i < m.nplugin; ++i) {
-    instances_.push_back({i,
-                          EffectOf(m, i)->kind == EffectInfo::Kind::kFriction,
-                          static_cast<int>(here.size()),
-                          {}});
+    const EffectInfo& info = *EffectOf(m, i);
+    const bool row = info.kind == EffectInfo::Kind::kFriction;
+    instances_.push_back({i, GroupOf(info), row, static_cast<int>(here.size()), {}});
+    uses_actuators_ |= UsesActuators(info);
     for (const double p : ParametersOf(machine, i)) here.push_back(p);
     for (std::size_t c = 0; c < perturbed.size(); ++c) {
       for (const double p : ParametersOf(*perturbed[c], i)) there[c].push_back(p);
     }
   }
+  // As the engine orders them: as their plugins are registered.
+  std::stable_sort(instances_.begin(), instances_.end(),
+                   [&](const auto& a, const auto& b) { return m.plugin[a.id] < m.plugin[b.id]; });
   parameters_.resize(std::ssize(here), std::ssize(perturbed));
   for (Eigen::Index c = 0; c < parameters_.cols(); ++c) {
     for (Eigen::Index k = 0; k < parameters_.rows(); ++k) {
@@ -51,14 +75,38 @@ EffectDerivatives::EffectDerivatives(const ModelAndData& machine,
   tendon_rest_ = ArrayTangents(m, perturbed, move, &mjModel::tendon_lengthspring, 2 * m.ntendon);
 }
 
-void EffectDerivatives::Update(const mjModel& m, const mjData& d, const double* state,
-                               const double* qpos_after, const double* qvel_after) {
+void EffectDerivatives::Update(Group group, const mjModel& m, const mjData& d,
+                               const StepTaken& step) {
   for (Instance& instance : instances_) {
+    if (instance.group != group) continue;
     instance.slopes.Clear();
-    BoundOf(m, d, instance.id)
-        .Differentiate(m, d, {state + state_[instance.id], qpos_after, qvel_after},
-                       instance.slopes);
+    StepTaken own = step;
+    own.z += state_[instance.id];
+    BoundOf(m, d, instance.id).Differentiate(m, d, own, instance.slopes);
   }
+}
+
+void EffectDerivatives::KeepGiven(std::span<double> force) const {
+  std::vector<bool> changed(force.size());
+  for (const Instance& instance : instances_) {
+    for (const Slope& slope : instance.slopes.signals) {
+      if (slope.of.kind == Kind::kInput || slope.of.kind == Kind::kActuatorNext)
+        changed[slope.of.index] = true;
+    }
+  }
+  for (std::size_t a = 0; a < force.size(); ++a) {
+    if (!changed[a]) force[a] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+CableDerivatives::Law EffectDerivatives::Cable(const mjModel& m, const mjData& d,
+                                               const double* state) const {
+  for (const Instance& instance : instances_) {
+    const int first = state_[instance.id];
+    if (const auto* law = dynamic_cast<const CableFriction*>(&BoundOf(m, d, instance.id)))
+      return {law, state + first, first, instance.parameter};
+  }
+  return {};
 }
 
 void EffectDerivatives::AddPulls(std::span<double> pull) const {
@@ -82,9 +130,22 @@ bool EffectDerivatives::Reads(Number::Kind kind) const {
   return false;
 }
 
+// Each drive sees the forces that the one before it has left.
+void EffectDerivatives::AddSignals(Group group, NumberTangents& numbers) const {
+  for (const Instance& instance : instances_) {
+    if (instance.group != group) continue;
+    numbers[Kind::kActuatorNext] = numbers[Kind::kActuator];
+    numbers.SetScratch(instance.slopes.scratch);
+    Apply(instance, instance.slopes.signals, numbers);
+    numbers[Kind::kActuator].swap(numbers[Kind::kActuatorNext]);
+  }
+}
+
 void EffectDerivatives::AddForces(NumberTangents& numbers, bool rows) const {
   for (const Instance& instance : instances_) {
-    if (instance.row == rows) Apply(instance, instance.slopes.forces, numbers);
+    if (instance.row != rows) continue;
+    numbers.SetScratch(instance.slopes.scratch);
+    Apply(instance, instance.slopes.forces, numbers);
   }
 }
 
@@ -98,7 +159,6 @@ void EffectDerivatives::AddNext(NumberTangents& numbers) const {
 
 void EffectDerivatives::Apply(const Instance& instance, const std::vector<Slope>& slopes,
                               NumberTangents& numbers) const {
-  using Kind = Number::Kind;
   const auto row = [&](const Number& number) {
     const bool state = number.kind == Kind::kState || number.kind == Kind::kNext;
     const int first = state                             ? state_[instance.id]

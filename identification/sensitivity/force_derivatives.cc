@@ -1,6 +1,7 @@
 #include "identification/sensitivity/force_derivatives.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace continuum {
 namespace {
@@ -56,6 +57,16 @@ ForceAlong ForceDerivatives::Actuator(const mjModel& by, const mjData& d, int ac
                                   : v[DofOf(by, actuator)];
   };
   const double now = rate(d.qvel);
+  if (!given_.empty() && !std::isnan(given_[actuator])) {
+    const double gear = by.actuator_gear[6 * by.actuator_outadr[actuator]], f = given_[actuator];
+    const double* const range = by.actuator_forcerange + 2 * actuator;
+    const bool limited = by.actuator_forcelimited[actuator] && (f <= range[0] || f >= range[1]);
+    const double by_rate =
+        limited ? 0 : gear * UnlimitedOutput(by, d, actuator, now, step_).by_rate;
+    return ForceAlong{gear * f, 0, by_rate, 0}
+        .Felt(rate(FeltByAll().data()) - now)
+        .Times(parts_.actuators);
+  }
   return ActuatorForce(by, d, actuator, now, step_)
       .Felt(rate(FeltByAll().data()) - now)
       .Times(parts_.actuators);

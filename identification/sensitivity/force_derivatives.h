@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "identification/sensitivity/model_difference.h"
@@ -35,11 +36,15 @@ class ForceDerivatives {
   explicit ForceDerivatives(const mjModel& m) : ForceDerivatives(m, Parts{}) {}
   ForceDerivatives(const mjModel& m, const Parts& parts);
 
+  const Parts& parts() const { return parts_; }
   /// Takes up where tendons are at d, after a forward pass; before Update.
   void Place(const mjModel& m, const mjData& d) { tendons_.Update(m, d); }
   const TendonDerivatives& tendons() const { return tendons_; }
   /// What else pulls along tendons [ntendon], as given forces.
   void Pull(std::span<const double> pull) { pull_.assign(pull.begin(), pull.end()); }
+  /// From now on the forces of these actuators, before their gears [nactuator], are given: only
+  /// what a method knows of them at the speeds that are felt follows. NaN: they are native.
+  void Give(std::vector<double> force) { given_ = std::move(force); }
   /// At d, after a forward pass; a: accelerations [nv]; felt: speeds that dampers and actuators
   /// feel [nv], those of d, or of the step's end where a method is implicit in them; step: of lags
   /// that act early [s].
@@ -69,7 +74,7 @@ class ForceDerivatives {
   TendonDerivatives tendons_;
   std::vector<double> v_, a_, felt_;
   std::vector<ForceAlong> of_tendon_;
-  std::vector<double> pull_;
+  std::vector<double> pull_, given_;
   double step_ = 0;
   Matrix by_position_, by_velocity_, by_activation_, damping_;
 };

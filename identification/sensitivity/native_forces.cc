@@ -10,12 +10,6 @@ namespace {
 
 double Lag(const mjModel& m, int a) { return std::max(mjMINVAL, m.actuator_dynprm[a * mjNDYN]); }
 
-double Control(const mjModel& m, const mjData& d, int a) {
-  const bool clamped = m.actuator_ctrllimited[a] && !(m.opt.disableflags & mjDSBL_CLAMPCTRL);
-  const double* const range = m.actuator_ctrlrange + 2 * a;
-  return clamped ? std::clamp(d.ctrl[a], range[0], range[1]) : d.ctrl[a];
-}
-
 bool All0(const double* x, int n) {
   return std::all_of(x, x + n, [](double v) { return v == 0; });
 }
@@ -127,10 +121,21 @@ ForceAlong TendonForce(const mjModel& m, const mjData& d, int tendon, double rat
   return pull;
 }
 
+double ControlWithin(const mjModel& m, const mjData& d, int a) {
+  const bool clamped = m.actuator_ctrllimited[a] && !(m.opt.disableflags & mjDSBL_CLAMPCTRL);
+  const double* const range = m.actuator_ctrlrange + 2 * a;
+  return clamped ? std::clamp(d.ctrl[a], range[0], range[1]) : d.ctrl[a];
+}
+
+double ActuatedLength(const mjModel& m, const mjData& d, int a) {
+  const int id = m.actuator_trnid[2 * a];
+  return m.actuator_trntype[a] == mjTRN_TENDON ? d.ten_length[id] : d.qpos[m.jnt_qposadr[id]];
+}
+
 Activation RateOfActivation(const mjModel& m, const mjData& d, int a) {
-  const double u = Control(m, d, a);
-  if (m.actuator_dyntype[a] == mjDYN_INTEGRATOR) return {u, 0};
-  return {(u - d.act[m.actuator_actadr[a]]) / Lag(m, a), -1 / Lag(m, a)};
+  const double u = ControlWithin(m, d, a);
+  if (m.actuator_dyntype[a] == mjDYN_INTEGRATOR) return {u, 0, 1};
+  return {(u - d.act[m.actuator_actadr[a]]) / Lag(m, a), -1 / Lag(m, a), 1 / Lag(m, a)};
 }
 
 Activation NextActivation(const mjModel& m, const mjData& d, int a, double step) {
@@ -139,38 +144,42 @@ Activation NextActivation(const mjModel& m, const mjData& d, int a, double step)
   const double span = m.actuator_dyntype[a] == mjDYN_FILTEREXACT
                           ? Lag(m, a) * -std::expm1(-step / Lag(m, a))
                           : step;
-  return {act + span * rate.value, 1 + span * rate.by_itself};
+  return {act + span * rate.value, 1 + span * rate.by_itself, span * rate.by_input};
+}
+
+ActuatorOutput UnlimitedOutput(const mjModel& m, const mjData& d, int a, double rate, double step) {
+  const double gear = m.actuator_gear[6 * m.actuator_outadr[a]];
+  const double length = gear * ActuatedLength(m, d, a);
+  const double* const g = m.actuator_gainprm + mjNGAIN * a;
+  const double* const b = m.actuator_biasprm + mjNBIAS * a;
+  const bool affine = m.actuator_gaintype[a] == mjGAIN_AFFINE;
+  const bool biased = m.actuator_biastype[a] == mjBIAS_AFFINE;
+  const int act = m.actuator_actadr[a];
+  Activation input{ControlWithin(m, d, a), 0, 1};
+  if (act >= 0) {
+    input = m.actuator_actearly[a] ? NextActivation(m, d, a, step) : Activation{d.act[act], 1, 0};
+  }
+  const double gain = g[0] + (affine ? g[1] * length + g[2] * gear * rate : 0);
+  ActuatorOutput out;
+  out.f = gain * input.value;
+  if (biased) out.f += b[0] + b[1] * length + b[2] * gear * rate;
+  out.by_length = gear * ((affine ? g[1] * input.value : 0) + (biased ? b[1] : 0));
+  out.by_rate = gear * ((affine ? g[2] * input.value : 0) + (biased ? b[2] : 0));
+  out.by_activation = gain * input.by_itself, out.by_input = gain * input.by_input;
+  return out;
 }
 
 ForceAlong ActuatorForce(const mjModel& m, const mjData& d, int a, double rate, double step) {
   ForceAlong pull;
   if (m.opt.disableflags & mjDSBL_ACTUATION) return pull;
   const double gear = m.actuator_gear[6 * m.actuator_outadr[a]];
-  const int id = m.actuator_trnid[2 * a];
-  const double length =
-      gear * (m.actuator_trntype[a] == mjTRN_TENDON ? d.ten_length[id] : d.qpos[m.jnt_qposadr[id]]);
-  const double* const g = m.actuator_gainprm + mjNGAIN * a;
-  const double* const b = m.actuator_biasprm + mjNBIAS * a;
-  const bool affine = m.actuator_gaintype[a] == mjGAIN_AFFINE;
-  const bool biased = m.actuator_biastype[a] == mjBIAS_AFFINE;
-  const int act = m.actuator_actadr[a];
-  Activation input{Control(m, d, a), 0};
-  if (act >= 0) {
-    input = m.actuator_actearly[a] ? NextActivation(m, d, a, step) : Activation{d.act[act], 1};
-  }
-  const double gain = g[0] + (affine ? g[1] * length + g[2] * gear * rate : 0);
-  double f = gain * input.value;
-  if (biased) f += b[0] + b[1] * length + b[2] * gear * rate;
+  const ActuatorOutput out = UnlimitedOutput(m, d, a, rate, step);
   const double* const range = m.actuator_forcerange + 2 * a;
-  if (m.actuator_forcelimited[a] && (f < range[0] || f > range[1])) {
-    pull.f = gear * std::clamp(f, range[0], range[1]);
+  if (m.actuator_forcelimited[a] && (out.f < range[0] || out.f > range[1])) {
+    pull.f = gear * std::clamp(out.f, range[0], range[1]);
     return pull;
   }
-  pull.f = gear * f;
-  pull.by_length = gear * gear * ((affine ? g[1] * input.value : 0) + (biased ? b[1] : 0));
-  pull.by_rate = gear * gear * ((affine ? g[2] * input.value : 0) + (biased ? b[2] : 0));
-  pull.by_activation = gear * gain * input.by_itself;
-  return pull;
+  return {gear * out.f, gear * out.by_length, gear * out.by_rate, gear * out.by_activation};
 }
 
 }  // namespace continuum

@@ -23,10 +23,20 @@ ForceAlong TendonForce(const mjModel& m, const mjData& d, int tendon, double rat
 /// An actuator with fixed or affine gain and bias, along the joint or tendon that it pulls, of
 /// that rate; step: of the lag that acts early [s].
 ForceAlong ActuatorForce(const mjModel& m, const mjData& d, int actuator, double rate, double step);
+/// The same before its gear and its range, and how it follows its input.
+struct ActuatorOutput {
+  double f = 0, by_length = 0, by_rate = 0, by_activation = 0, by_input = 0;
+};
+ActuatorOutput UnlimitedOutput(const mjModel& m, const mjData& d, int actuator, double rate,
+                               double step);
+/// Length of the joint or tendon that an actuator pulls.
+double ActuatedLength(const mjModel& m, const mjData& d, int actuator);
+/// The control as an actuator meets it, within its range.
+double ControlWithin(const mjModel& m, const mjData& d, int actuator);
 /// What an actuator's activation becomes, and how this follows it: its rate (step: 0), or its value
 /// after a step [s].
 struct Activation {
-  double value = 0, by_itself = 0;
+  double value = 0, by_itself = 0, by_input = 0;
 };
 Activation RateOfActivation(const mjModel& m, const mjData& d, int actuator);
 Activation NextActivation(const mjModel& m, const mjData& d, int actuator, double step);

@@ -42,6 +42,10 @@ class NumberTangents {
     (*this)[Kind::kTendonRest].setZero(2 * m.ntendon, perturbed);
     for (const Kind kind : {Kind::kState, Kind::kNext})
       (*this)[kind].setZero(m.npluginstate, perturbed);
+    for (const Kind kind : {Kind::kControl, Kind::kInput, Kind::kActuator, Kind::kActuatorNext,
+                            Kind::kActuatorRate, Kind::kGain, Kind::kGear})
+      (*this)[kind].setZero(m.nactuator, perturbed);
+    (*this)[Kind::kBias].setZero(3 * m.nactuator, perturbed);
     (*this)[Kind::kParameter].setZero(parameters, perturbed);
   }
 
@@ -53,6 +57,10 @@ class NumberTangents {
     const Eigen::Index perturbed = (*this)[Kind::kPosition].cols();
     for (const Kind kind : {Kind::kYield, Kind::kLevel, Kind::kOffset})
       (*this)[kind].setZero(rows, perturbed);
+  }
+  /// Makes room for the sums of an instance's own, all zero.
+  void SetScratch(int count) {
+    (*this)[Kind::kScratch].setZero(count, (*this)[Kind::kPosition].cols());
   }
 
  private:

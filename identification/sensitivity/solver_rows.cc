@@ -69,9 +69,10 @@ SolverRows::Row SolverRows::RowOf(const mjModel& m, const mjData& d, int r) cons
     const double x = row.tendon < 0 ? d.qpos[m.jnt_qposadr[id]] : d.ten_length[id];
     if (x > 0.5 * (range[0] + range[1])) row.arm[0] = -1;
   }
+  FillJacobian(m, d, row);
   if (row.slides) {
     double held = -d.efc_aref[r];
-    for (const auto& [dof, arm] : Jacobian(m, d, row)) held += arm * d.qacc[dof];
+    for (const auto& [dof, arm] : row.jacobian) held += arm * d.qacc[dof];
     row.sign = d.efc_force[r] != 0 ? std::copysign(1, d.efc_force[r]) : held > 0 ? -1 : 1;
   }
   return row;
@@ -88,17 +89,15 @@ void SolverRows::Equality(const mjModel& m, const mjData& d, Row& row) {
   row.arm[1] = -slope, row.curve = -curve;
 }
 
-std::vector<std::pair<int, double>> SolverRows::Jacobian(const mjModel& m, const mjData& d,
-                                                         const Row& row) {
-  std::vector<std::pair<int, double>> entries;
+void SolverRows::FillJacobian(const mjModel& m, const mjData& d, Row& row) {
   if (row.tendon < 0) {
-    for (int i = 0; i < 2 && row.dof[i] >= 0; ++i) entries.emplace_back(row.dof[i], row.arm[i]);
-    return entries;
+    for (int i = 0; i < 2 && row.dof[i] >= 0; ++i)
+      row.jacobian.emplace_back(row.dof[i], row.arm[i]);
+    return;
   }
   const int adr = m.ten_J_rowadr[row.tendon];
   for (int k = adr; k < adr + m.ten_J_rownnz[row.tendon]; ++k)
-    entries.emplace_back(m.ten_J_colind[k], row.arm[0] * d.ten_J[k]);
-  return entries;
+    row.jacobian.emplace_back(m.ten_J_colind[k], row.arm[0] * d.ten_J[k]);
 }
 
 void SolverRows::AddPulls(const mjData& d, std::span<double> pull) const {
@@ -107,10 +106,9 @@ void SolverRows::AddPulls(const mjData& d, std::span<double> pull) const {
   }
 }
 
-RowVector SolverRows::Along(const mjModel& m, const mjData& d, const Row& row,
-                            const Tangents& x) const {
+RowVector SolverRows::Along(const Row& row, const Tangents& x) {
   RowVector along = RowVector::Zero(x.cols());
-  for (const auto& [dof, arm] : Jacobian(m, d, row)) along += arm * x.row(dof);
+  for (const auto& [dof, arm] : row.jacobian) along += arm * x.row(dof);
   return along;
 }
 
@@ -149,9 +147,8 @@ RowVector SolverRows::Holding(const mjModel& m, const mjData& d, const Row& row,
   const double off = d.efc_pos[r] - d.efc_margin[r], steep = row.friction ? 0 : k[3];
   const Tangents& position = numbers[Kind::kPosition];
   const RowVector x =
-      row.friction ? RowVector(numbers[Kind::kOffset].row(r)) : Along(m, d, row, position);
-  const RowVector v =
-      Along(m, d, row, numbers[Kind::kSpeed]) + Turned(row, tendons, d.qvel, position);
+      row.friction ? RowVector(numbers[Kind::kOffset].row(r)) : Along(row, position);
+  const RowVector v = Along(row, numbers[Kind::kSpeed]) + Turned(row, tendons, d.qvel, position);
   const RowVector a = Turned(row, tendons, d.qacc, position);
   return -D * (a + k[1] * v + k[0] * (impedance + steep * off) * x) +
          d.efc_force[r] * (steep / (impedance * (1 - impedance)) * x - Weight(m, row));
@@ -166,32 +163,43 @@ void SolverRows::Differentiate(const mjModel& m, const mjData& d, const TendonDe
   }
 }
 
-void SolverRows::AddForces(const mjModel& m, const mjData& d, const Tangents& position,
-                           Tangents& force) const {
+void SolverRows::AddForces(const mjData& d, const Tangents& position, Tangents& force) const {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
-    for (const auto& [dof, arm] : Jacobian(m, d, row))
+    for (const auto& [dof, arm] : row.jacobian)
       force.row(dof) += arm * change_.row(static_cast<Eigen::Index>(i));
     if (row.curve != 0)
       force.row(row.dof[1]) += row.curve * d.efc_force[row.row] * position.row(row.dof[1]);
   }
 }
 
-void SolverRows::AddInertia(const mjModel& m, const mjData& d, Eigen::MatrixXd& inertia) const {
+void SolverRows::AddConstraint(const mjModel& m, const mjData& d, const TendonDerivatives& tendons,
+                               const Tangents& position, Tangents& force) const {
+  AddForces(d, position, force);
+  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(m.nv, m.nv);
+  for (const Row& row : rows_) {
+    if (row.tendon < 0) continue;
+    const std::vector<double> pull(m.tendon_num[row.tendon], row.arm[0] * d.efc_force[row.row]);
+    tendons.AddCurvature(row.tendon, pull, curvature);
+  }
+  force += curvature * position;
+}
+
+void SolverRows::AddInertia(const mjData& d, Eigen::MatrixXd& inertia) const {
   for (const Row& row : rows_) {
     if (row.slides) continue;
-    const auto entries = Jacobian(m, d, row);
+    const auto& entries = row.jacobian;
     for (const auto& [i, a] : entries) {
       for (const auto& [j, b] : entries) inertia(i, j) += d.efc_D[row.row] * a * b;
     }
   }
 }
 
-void SolverRows::Follow(const mjModel& m, const mjData& d, const Tangents& acceleration) {
+void SolverRows::Follow(const mjData& d, const Tangents& acceleration) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (rows_[i].slides) continue;
     change_.row(static_cast<Eigen::Index>(i)) -=
-        d.efc_D[rows_[i].row] * Along(m, d, rows_[i], acceleration);
+        d.efc_D[rows_[i].row] * Along(rows_[i], acceleration);
   }
 }
 

@@ -38,12 +38,14 @@ class SolverRows {
   void Differentiate(const mjModel& m, const mjData& d, const TendonDerivatives& tendons,
                      const NumberTangents& numbers);
   /// force += Σ Jᵀ df, and what J itself changes.
-  void AddForces(const mjModel& m, const mjData& d, const Tangents& position,
-                 Tangents& force) const;
+  void AddForces(const mjData& d, const Tangents& position, Tangents& force) const;
+  /// The same with what the moment arms of tendons change: d qfrc_constraint.
+  void AddConstraint(const mjModel& m, const mjData& d, const TendonDerivatives& tendons,
+                     const Tangents& position, Tangents& force) const;
   /// inertia += Σ_hold D Jᵀ J.
-  void AddInertia(const mjModel& m, const mjData& d, Eigen::MatrixXd& inertia) const;
+  void AddInertia(const mjData& d, Eigen::MatrixXd& inertia) const;
   /// df follows what the accelerations change by: df −= D J da of rows that hold.
-  void Follow(const mjModel& m, const mjData& d, const Tangents& acceleration);
+  void Follow(const mjData& d, const Tangents& acceleration);
   /// What friction that slides would be off its anchor at rest, −R f/(K I), to first order.
   void WriteYields(const mjModel& m, const mjData& d, Tangents& yield) const;
 
@@ -55,14 +57,15 @@ class SolverRows {
     double sign;  ///< of the force of a row that slides
     int tendon = -1;
     int dof[2] = {-1, -1};
-    double arm[2] = {1, 0};  ///< the Jacobian at the dofs; [0]: times that of the tendon
-    double curve = 0;        ///< d arm[1]/d q of dof[1]
+    double arm[2] = {1,
+                     0};  ///< the Jacobian at the dofs; [0] of a tendon: times that of the tendon
+    double curve = 0;     ///< d arm[1]/d q of dof[1]
+    std::vector<std::pair<int, double>> jacobian{};  ///< entries of J
   };
   Row RowOf(const mjModel& m, const mjData& d, int r) const;
   static void Equality(const mjModel& m, const mjData& d, Row& row);
   /// J x.
-  Eigen::RowVectorXd Along(const mjModel& m, const mjData& d, const Row& row,
-                           const Tangents& x) const;
+  static Eigen::RowVectorXd Along(const Row& row, const Tangents& x);
   /// dJ x [nv].
   Eigen::RowVectorXd Turned(const Row& row, const TendonDerivatives& tendons, const double* x,
                             const Tangents& position);
@@ -71,8 +74,7 @@ class SolverRows {
   Eigen::RowVectorXd Sliding(const Row& row, const NumberTangents& numbers) const;
   Eigen::RowVectorXd Holding(const mjModel& m, const mjData& d, const Row& row,
                              const TendonDerivatives& tendons, const NumberTangents& numbers);
-  static std::vector<std::pair<int, double>> Jacobian(const mjModel& m, const mjData& d,
-                                                      const Row& row);
+  static void FillJacobian(const mjModel& m, const mjData& d, Row& row);
 
   std::vector<Row> rows_;
   Tangents change_;                  ///< df [rows_]

@@ -18,6 +18,11 @@ ForceDerivatives::Parts PartsOf(const mjModel& m) {
   return parts;
 }
 
+// What loads gears: actuators less springs and weight (gear_load.h); actuators alone.
+constexpr ForceDerivatives::Parts kTransmitted{
+    .springs = -1, .dampers = 0, .motion = -1, .moves = false};
+constexpr ForceDerivatives::Parts kMotors{.springs = 0, .dampers = 0, .motion = 0};
+
 }  // namespace
 
 std::string StepSensitivity::Obstacle(const mjModel& m, const mjData& d, const Wiring& wiring) {
@@ -36,6 +41,8 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
     : move_(move),
       covered_(perturbed.size()),
       derivatives_(*machine.model, PartsOf(*machine.model)),
+      transmitted_(*machine.model, kTransmitted),
+      motors_(*machine.model, kMotors),
       sensors_(*machine.model, wiring),
       pull_(machine.model->ntendon),
       inertia_(machine.model->nv, machine.model->nv) {
@@ -54,6 +61,11 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
   rows_.emplace(m, perturbed_, move);
   numbers_.emplace(m, effects_->parameters(), count);
   effects_->WriteConstants(*numbers_);
+  if (effects_->uses_actuators()) {
+    actuators_.emplace(machine, perturbed_, move);
+    actuators_->WriteConstants(*numbers_);
+  }
+  if (effects_->Cable(m, *machine.data, nullptr).law) cable_.emplace(m, PartsOf(m));
   activation_.setZero(m.na, count);
   force_.setZero(m.nv, count), answer_ = force_, differ_ = force_;
 }
@@ -90,35 +102,70 @@ void StepSensitivity::FollowTendons(const mjModel& m, const mjData& d) {
   }
 }
 
+StepTaken StepSensitivity::Taken() {
+  StepTaken taken{z_.data(), q_after_.data(), after_.data()};
+  if (!actuators_) return taken;
+  taken.control = actuators_->control().data();
+  taken.input = actuators_->input().data(), taken.force = actuators_->force().data();
+  return taken;
+}
+
+// From controls to what actuators give, with signals between them.
+bool StepSensitivity::FollowActuators(const mjModel& m, mjData& d) {
+  using Group = EffectDerivatives::Group;
+  actuators_->Begin(m, d, *numbers_);
+  effects_->Update(Group::kInputs, m, d, Taken());
+  effects_->AddSignals(Group::kInputs, *numbers_);
+  if (!actuators_->SetInputs(m, d, activation_, *numbers_)) return false;
+  effects_->Update(Group::kDrives, m, d, Taken());
+  effects_->AddSignals(Group::kDrives, *numbers_);
+  actuators_->Limit(m, *numbers_);
+  given_ = actuators_->force();
+  effects_->KeepGiven(given_);
+  derivatives_.Give(given_);
+  return true;
+}
+
 // dE, and the levels of friction.
-void StepSensitivity::FollowEffects(const mjModel& m, const mjData& d) {
-  using Parts = ForceDerivatives::Parts;
-  effects_->Update(m, d, z_.data(), q_after_.data(), after_.data());
+bool StepSensitivity::FollowEffects(const mjModel& m, mjData& d) {
+  if (actuators_ && !FollowActuators(m, d)) return false;
+  effects_->Update(EffectDerivatives::Group::kOthers, m, d, Taken());
   std::fill(pull_.begin(), pull_.end(), 0.0);
   effects_->AddPulls(pull_);
   Of(Kind::kForce).setZero(), Of(Kind::kPull).setZero();
   numbers_->SetRows(d.nefc);
   effects_->AddForces(*numbers_, false);
   if (effects_->Reads(Kind::kTorqueTransmitted)) {
-    FollowLoad(m, d,
-               Parts{.springs = -1, .dampers = 0, .actuators = 1, .motion = -1, .moves = false},
-               Kind::kTorqueTransmitted);
+    FollowLoad(m, d, Kind::kTorqueTransmitted);
     AddEffects(m, d, -1, Of(Kind::kTorqueTransmitted));
   }
-  if (effects_->Reads(Kind::kTorqueActuator))
-    FollowLoad(m, d, Parts{.springs = 0, .dampers = 0, .motion = 0}, Kind::kTorqueActuator);
+  if (effects_->Reads(Kind::kTorqueActuator)) FollowLoad(m, d, Kind::kTorqueActuator);
   effects_->AddForces(*numbers_, true);
+  if (cable_) FollowCable(m, d);
   effects_->AddLevels(*numbers_);
+  return true;
+}
+
+// Friction of cables sees all other forces but those of the solver.
+void StepSensitivity::FollowCable(const mjModel& m, const mjData& d) {
+  cable_->Begin(m, d, effects_->Cable(m, d, z_.data()), pull_, given_);
+  answer_.setZero();
+  if (cable_->rests()) {
+    Differ(m, d, cable_->derivatives(), answer_);
+    AddEffects(m, d, 1, answer_);
+  }
+  const Tangents& more = cable_->Follow(m, d, *numbers_, answer_);
+  Of(Kind::kForce) += more, Of(Kind::kTorqueTransmitted) -= more;
 }
 
 // What loads gears: some of the forces at the speeds of the state. That of effects is given.
-void StepSensitivity::FollowLoad(const mjModel& m, const mjData& d,
-                                 const ForceDerivatives::Parts& parts, Kind torque) {
-  ForceDerivatives load(m, parts);
+void StepSensitivity::FollowLoad(const mjModel& m, const mjData& d, Kind torque) {
+  ForceDerivatives& load = torque == Kind::kTorqueActuator ? motors_ : transmitted_;
   load.Place(m, d);
   std::vector<double> pull = pull_;
-  for (double& f : pull) f *= parts.springs;
+  for (double& f : pull) f *= load.parts().springs;
   load.Pull(pull);
+  if (actuators_) load.Give(given_);
   load.Update(m, d, a_.data(), d.qvel, m.opt.timestep);
   Differ(m, d, load, Of(torque));
 }
@@ -146,6 +193,8 @@ void StepSensitivity::Differ(const mjModel& m, const mjData& d, const ForceDeriv
   force.noalias() += derivatives.by_position() * Of(Kind::kPosition);
   force.noalias() += derivatives.by_velocity() * Of(Kind::kSpeed);
   if (m.na > 0) force.noalias() += derivatives.by_activation() * activation_;
+  if (actuators_)
+    actuators_->AddForces(m, d, given_, derivatives.parts().actuators, *numbers_, force);
 }
 
 // dF + dE at the accelerations a and the speeds felt.
@@ -167,11 +216,11 @@ bool StepSensitivity::Solve(Tangents& force) {
 bool StepSensitivity::FollowRows(const mjModel& m, const mjData& d) {
   Derive(m, d, d.qacc, d.qvel, answer_);
   rows_->Differentiate(m, d, derivatives_.tendons(), *numbers_);
-  rows_->AddForces(m, d, Of(Kind::kPosition), answer_);
+  rows_->AddForces(d, Of(Kind::kPosition), answer_);
   mj_fullM(&m, &d, inertia_.data());
-  rows_->AddInertia(m, d, inertia_);
+  rows_->AddInertia(d, inertia_);
   if (!Solve(answer_)) return false;  // da
-  rows_->Follow(m, d, answer_);
+  rows_->Follow(d, answer_);
   rows_->WriteYields(m, d, Of(Kind::kYield));
   return true;
 }
@@ -180,7 +229,10 @@ void StepSensitivity::FollowLags(const mjModel& m, const mjData& d) {
   const double h = m.opt.timestep;
   for (int k = 0; k < m.nactuator; ++k) {
     const int w = m.actuator_actadr[k];
-    if (w >= 0) activation_.row(w) *= NextActivation(m, d, k, h).by_itself;
+    if (w < 0) continue;
+    const Activation next = NextActivation(m, d, k, h);
+    activation_.row(w) *= next.by_itself;
+    if (actuators_) activation_.row(w) += next.by_input * Of(Kind::kInput).row(k);
   }
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     for (const int k : differences_[c].activations) {
@@ -193,30 +245,41 @@ void StepSensitivity::FollowLags(const mjModel& m, const mjData& d) {
 }
 
 // At the state of Before.
-bool StepSensitivity::Follow(const mjModel& m, const mjData& d) {
+bool StepSensitivity::Follow(const mjModel& m, mjData& d) {
   derivatives_.Place(m, d);
   FollowTendons(m, d);
-  FollowEffects(m, d);
+  const bool followed = FollowForces(m, d);
+  if (followed) FollowLags(m, d);
+  if (actuators_) actuators_->PutControlsBack(d);
+  if (followed) FollowStates(m, d);
+  return followed;
+}
+
+// da*, from which all else follows.
+bool StepSensitivity::FollowForces(const mjModel& m, mjData& d) {
+  if (!FollowEffects(m, d)) return false;
   rows_->AddPulls(d, pull_);
   derivatives_.Pull(pull_);
   if (!rows_->empty() && !FollowRows(m, d)) return false;
   Derive(m, d, a_.data(), after_.data(), force_);
-  if (!rows_->empty()) rows_->AddForces(m, d, Of(Kind::kPosition), force_);
+  if (!rows_->empty()) rows_->AddForces(d, Of(Kind::kPosition), force_);
   mj_fullM(&m, &d, inertia_.data());
   inertia_ -= m.opt.timestep * derivatives_.damping();
-  if (!Solve(force_)) return false;  // da*
-  FollowLags(m, d);
-  FollowStates(m);
-  return true;
+  return Solve(force_);
 }
 
-void StepSensitivity::FollowStates(const mjModel& m) {
+void StepSensitivity::FollowStates(const mjModel& m, const mjData& d) {
   const double h = m.opt.timestep;
   Tangents &speed = Of(Kind::kSpeedAfter), &position = Of(Kind::kPositionAfter);
   speed = Of(Kind::kSpeed) + h * force_;
   position = Of(Kind::kPosition) + h * speed;
   Of(Kind::kNext).setZero();
   effects_->AddNext(*numbers_);
+  if (cable_) {
+    answer_.setZero();
+    rows_->AddConstraint(m, d, derivatives_.tendons(), Of(Kind::kPosition), answer_);
+    cable_->AddNext(m, answer_, *numbers_);
+  }
   Of(Kind::kSpeed).swap(speed), Of(Kind::kPosition).swap(position);
   Of(Kind::kState).swap(Of(Kind::kNext));
 }

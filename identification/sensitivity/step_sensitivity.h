@@ -7,6 +7,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "identification/sensitivity/actuator_derivatives.h"
+#include "identification/sensitivity/cable_derivatives.h"
 #include "identification/sensitivity/effect_derivatives.h"
 #include "identification/sensitivity/force_derivatives.h"
 #include "identification/sensitivity/sensor_derivatives.h"
@@ -60,9 +62,10 @@ class StepSensitivity {
 
  private:
   void FollowTendons(const mjModel& m, const mjData& d);
-  void FollowEffects(const mjModel& m, const mjData& d);
-  void FollowLoad(const mjModel& m, const mjData& d, const ForceDerivatives::Parts& parts,
-                  Number::Kind torque);
+  bool FollowActuators(const mjModel& m, mjData& d);
+  bool FollowEffects(const mjModel& m, mjData& d);
+  void FollowCable(const mjModel& m, const mjData& d);
+  void FollowLoad(const mjModel& m, const mjData& d, Number::Kind torque);
   void AddEffects(const mjModel& m, const mjData& d, double factor, Tangents& force) const;
   void Differ(const mjModel& m, const mjData& d, const ForceDerivatives& derivatives,
               Tangents& force);
@@ -70,9 +73,11 @@ class StepSensitivity {
               Tangents& force);
   bool FollowRows(const mjModel& m, const mjData& d);
   bool Solve(Tangents& force);
-  bool Follow(const mjModel& m, const mjData& d);
+  bool Follow(const mjModel& m, mjData& d);
+  bool FollowForces(const mjModel& m, mjData& d);
+  StepTaken Taken();
   void FollowLags(const mjModel& m, const mjData& d);
-  void FollowStates(const mjModel& m);
+  void FollowStates(const mjModel& m, const mjData& d);
   void SwapState(mjData& d);
   Tangents& Of(Number::Kind kind) { return (*numbers_)[kind]; }
   const Tangents& Of(Number::Kind kind) const { return (*numbers_)[kind]; }
@@ -83,10 +88,14 @@ class StepSensitivity {
   std::vector<std::size_t> columns_;
   std::vector<ModelDifference> differences_;
   ForceDerivatives derivatives_;
+  ForceDerivatives transmitted_, motors_;  ///< what loads gears
   SensorDerivatives sensors_;
   std::optional<EffectDerivatives> effects_;
   std::optional<SolverRows> rows_;
   std::optional<NumberTangents> numbers_;
+  std::optional<ActuatorDerivatives> actuators_;   ///< where effects read or change them
+  std::optional<CableDerivatives> cable_;          ///< where a law has friction of cables
+  std::vector<double> given_;                      ///< forces that signals change, else NaN
   Tangents activation_;                            ///< dw
   std::vector<double> q_, v_, w_, z_, after_, a_;  ///< of Before; a*
   std::vector<double> q_after_, pull_;

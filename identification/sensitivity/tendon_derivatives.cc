@@ -40,7 +40,7 @@ TendonDerivatives::TendonDerivatives(const mjModel& m) : route_(m.ntendon), bent
     const int first = m.tendon_adr[t];
     for (int w = first + 1; w < first + m.tendon_num[t]; ++w) {
       if (m.wrap_type[w] != mjWRAP_SITE) break;
-      Segment segment{m.wrap_objid[w - 1], m.wrap_objid[w]};
+      Segment segment{m.wrap_objid[w - 1], m.wrap_objid[w], w - first - 1};
       const auto before = Chain(m, segment.near), after = Chain(m, segment.far);
       const auto common = std::mismatch(before.begin(), before.end(), after.begin(), after.end());
       for (auto i = common.first; i != before.end(); ++i) segment.joints.push_back({*i, -1});
@@ -93,7 +93,7 @@ void TendonDerivatives::ForEachCurvature(int tendon, Fn&& fn) const {
         const JointTerm& j = s.joints[b];
         double h = (i.jacobian.dot(j.jacobian) - i.moment_arm * j.moment_arm) / s.length;
         if (i.sign == j.sign) h += s.along.dot(j.axis.cross(i.jacobian));  // j is before i, or i
-        fn(i.dof, j.dof, h);
+        fn(i.dof, j.dof, h, s.place);
       }
     }
   }
@@ -101,9 +101,25 @@ void TendonDerivatives::ForEachCurvature(int tendon, Fn&& fn) const {
 
 void TendonDerivatives::AddBend(int tendon, double factor, const double* x,
                                 std::span<double> bend) const {
-  ForEachCurvature(tendon, [&](int i, int j, double h) {
+  ForEachCurvature(tendon, [&](int i, int j, double h, int) {
     bend[i] += factor * h * x[j];
     if (i != j) bend[j] += factor * h * x[i];
+  });
+}
+
+void TendonDerivatives::AddBends(int tendon, std::span<const double> weight, const double* x,
+                                 std::span<double> bend) const {
+  ForEachCurvature(tendon, [&](int i, int j, double h, int place) {
+    bend[i] += weight[place] * h * x[j];
+    if (i != j) bend[j] += weight[place] * h * x[i];
+  });
+}
+
+void TendonDerivatives::AddCurvature(int tendon, std::span<const double> weight,
+                                     Matrix& curvature) const {
+  ForEachCurvature(tendon, [&](int i, int j, double h, int place) {
+    curvature(i, j) += weight[place] * h;
+    if (i != j) curvature(j, i) += weight[place] * h;
   });
 }
 
@@ -111,7 +127,7 @@ void TendonDerivatives::Add(const mjModel& m, const mjData& d, int tendon, doubl
                             double by_length, double by_rate, const double* v, Matrix& by_position,
                             Matrix& by_velocity) {
   std::fill(bent_.begin(), bent_.end(), 0.0);
-  ForEachCurvature(tendon, [&](int i, int j, double h) {
+  ForEachCurvature(tendon, [&](int i, int j, double h, int) {
     by_position(i, j) += f * h;
     bent_[i] += h * v[j];
     if (i == j) return;

@@ -34,6 +34,11 @@ class TendonDerivatives {
   void ForceAlong(const mjModel& m, const mjData& d, int tendon, double f, double* force) const;
   /// bend[nv] += factor ∂²L x.
   void AddBend(int tendon, double factor, const double* x, std::span<double> bend) const;
+  /// The same of single segments, numbered from the first site on: weight[segments].
+  void AddBends(int tendon, std::span<const double> weight, const double* x,
+                std::span<double> bend) const;
+  /// curvature [nv × nv] += Σ weight ∂²L of the segments.
+  void AddCurvature(int tendon, std::span<const double> weight, Matrix& curvature) const;
   /// Adds of a pull f(L, L̇) along a tendon what follows positions and speeds [nv × nv]:
   ///   f_L ∂L/∂q ∂L/∂qᵀ + f_L̇ ∂L/∂q (v ∂²L)ᵀ + f ∂²L   and   f_L̇ ∂L/∂q ∂L/∂qᵀ    (3)
   void Add(const mjModel& m, const mjData& d, int tendon, double f, double by_length,
@@ -49,11 +54,12 @@ class TendonDerivatives {
   };
   struct Segment {
     int near, far;                       ///< sites
+    int place;                           ///< along the tendon
     std::vector<JointTerm> joints = {};  ///< of each side from the root on
     double length = 0;
     Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< u
   };
-  /// Calls fn(i, j, ∂²L/∂q_i∂q_j) for all j up to i of every segment; neither twice.
+  /// Calls fn(i, j, ∂²L/∂q_i∂q_j, place) for all j up to i of every segment; neither twice.
   template <class Fn>
   void ForEachCurvature(int tendon, Fn&& fn) const;
 

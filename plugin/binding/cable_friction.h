@@ -50,15 +50,30 @@ class CableFriction : public BoundLaw {
   void Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const override;
   void CopyFrom(const BoundLaw& other) override;
 
+  /// Contacts [begin, end) of a cable that slide together, as segment end − 1 does.
+  struct Group {
+    int cable, begin, end;
+  };
+  // What the last evaluation found.
+  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
+  const std::vector<Cable>& cables() const { return cables_; }
+  const CableGeometry& geometry() const { return geometry_; }
+  const CableSliding& sliding() const { return sliding_; }
+  /// Of tight cables, in their order, and their contacts.
+  std::span<const Bend> bends() const { return {bends_.data(), count_}; }
+  const Group& group(std::size_t bend) const { return groups_[active_[bend]]; }
+  /// Largest |ρ| at the contact in front of each segment.
+  const std::vector<double>& band() const { return band_; }
+  /// Tension of each cable at its base [N].
+  const std::vector<double>& base() const { return base_; }
+  /// How a band follows the wrap angle and the parameters.
+  virtual void BandSlopes(double theta, double& by_theta, std::span<double> by_parameter) const = 0;
+
  protected:
   /// Largest |ρ| at each wrap angle.
   virtual void Bands(std::span<const double> theta, std::span<double> band) const = 0;
 
  private:
-  // Contacts [begin, end) of a cable that slide together, as segment end − 1 does.
-  struct Group {
-    int cable, begin, end;
-  };
   void Remember(const double* z);
   void Solve(const mjModel& m, mjData& d, const double* z);
   bool Collect(const double* z);

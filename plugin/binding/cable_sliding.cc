@@ -71,7 +71,10 @@ bool CableSliding::Settle(const World& w, std::span<Bend> bends) {
     Assemble(w, bends);
     solver_.Solve(velocity_);
     const int wrong = Judge(w, bends);
-    if (wrong == 0) return true;
+    if (wrong == 0) {
+      answer_.give_way = give_way_, answer_.velocity = velocity_;
+      return true;
+    }
     patience = wrong < fewest ? kPatience : patience - 1;
     fewest = std::min(fewest, wrong);
     Change(bends, patience < 0);

@@ -65,6 +65,9 @@ class CableSliding {
   CableSliding(const mjModel& m, const CableGeometry& geometry);
 
   const StepInertia& inertia() const { return inertia_; }
+  /// v_c and q̇⁺ − q̇ [inertia().dofs()] of the last solution that has bends at rest.
+  double give_way() const { return answer_.give_way; }
+  const std::vector<double>& change() const { return answer_.velocity; }
   /// Finds side and tension of the bends, cable after cable, each from its base on.
   void Solve(const World& w, std::span<Bend> bends);
 
@@ -91,6 +94,10 @@ class CableSliding {
   std::vector<int> place_;  ///< [entries] of its dof in inertia_
   std::vector<int> least_;  ///< [segments] the first place that moves it or what is distal of it
   double give_way_ = 0;     ///< v_c
+  struct {
+    double give_way = 0;
+    std::vector<double> velocity;
+  } answer_;
   std::vector<Part> parts_;
   std::vector<Bend> found_;
   std::vector<double> follow_;          ///< [dofs]

@@ -37,6 +37,8 @@ struct Dual {
     const double q = x.a / y.a;
     return Of(x, y, q, 1 / y.a, -q / y.a);
   }
+  friend Dual& operator+=(Dual& x, const Dual& y) { return x = x + y; }
+  friend Dual& operator-=(Dual& x, const Dual& y) { return x = x - y; }
   friend bool operator<(const Dual& x, const Dual& y) { return x.a < y.a; }
   friend bool operator>(const Dual& x, const Dual& y) { return x.a > y.a; }
   friend bool operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }
@@ -53,6 +55,7 @@ struct Dual {
     const double t = std::tan(x.a);
     return Of(x, t, 1 + t * t);
   }
+  friend Dual atan(const Dual& x) { return Of(x, std::atan(x.a), 1 / (1 + x.a * x.a)); }
   friend Dual tanh(const Dual& x) {
     const double t = std::tanh(x.a);
     return Of(x, t, 1 - t * t);

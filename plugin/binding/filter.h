@@ -55,6 +55,26 @@ class BoundFilter : public BoundLaw {
     for (const double u : u_) z = Store(E::template Step<double>(Load(z), u, m.opt.timestep, p), z);
   }
 
+  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
+
+  void Differentiate(const mjModel& m, const mjData&, const StepTaken& step,
+                     LawSlopes& slopes) const override {
+    const auto p = DualParams<kN>(AsParams<E>(p_), 1 + kZ);
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      const int a = inputs_[i].actuator, first = static_cast<int>(i * kZ);
+      const T u(step.control[a], 0);
+      Vec<T, kZ> z;
+      for (std::size_t k = 0; k < kZ; ++k) z[k] = T(step.z[first + static_cast<int>(k)], 1 + k);
+      const auto by = NumbersOf(a, first);
+      const T more = E::template Eval<T>(u, z, p) - u;
+      step.input[a] += more.a;
+      Put(slopes.signals, {Number::Kind::kInput, a}, more, by);
+      const auto next = E::template Step<T>(z, u, m.opt.timestep, p);
+      for (std::size_t k = 0; k < kZ; ++k)
+        Put(slopes.next, {Number::Kind::kNext, first + static_cast<int>(k)}, next[k], by);
+    }
+  }
+
   void Settle(const mjModel& m, const mjData& d, double* z) const override {
     const auto p = AsParams<E>(p_);
     const double for_ever = 1e9;  // s
@@ -66,6 +86,19 @@ class BoundFilter : public BoundLaw {
   void CopyFrom(const BoundLaw& other) override { u_ = static_cast<const BoundFilter&>(other).u_; }
 
  private:
+  // Control; states; parameters.
+  static constexpr std::size_t kN = 1 + kZ + kParamCount<E>;
+  using T = Dual<kN>;
+  static Vec<Number, kN> NumbersOf(int actuator, int state) {
+    Vec<Number, kN> numbers;
+    numbers[0] = {Number::Kind::kControl, actuator};
+    for (std::size_t k = 0; k < kZ; ++k)
+      numbers[1 + k] = {Number::Kind::kState, state + static_cast<int>(k)};
+    for (std::size_t k = 0; k < kParamCount<E>; ++k)
+      numbers[1 + kZ + k] = {Number::Kind::kParameter, static_cast<int>(k)};
+    return numbers;
+  }
+
   static Vec<double, kZ> Load(const double* z) {
     Vec<double, kZ> state;
     std::copy_n(z, kZ, state.begin());

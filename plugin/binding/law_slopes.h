@@ -24,6 +24,15 @@ struct Number {
     kTorqueTransmitted,  ///< actuators less other forces at a degree of freedom (gear_load.h)
     kTorqueActuator,     ///< actuators alone
     kYield,              ///< what a row of the solver gives way under its force [row]
+    kControl,            ///< of an actuator, as it meets it: late, within its range
+    kInput,              ///< the same with what signals add
+    kActuator,           ///< force of an actuator before its gear; signals see it without its range
+    kActuatorNext,       ///< the same after a signal
+    kActuatorRate,       ///< speed of an actuator, with its gear
+    kGain,               ///< of an actuator, gainprm[0]
+    kBias,               ///< biasprm [3 actuator + i]
+    kGear,               ///< gear[0]
+    kScratch,            ///< sums of the instance's own
     kForce,              ///< generalized, at a degree of freedom [N*m or N]
     kPull,               ///< along a tendon, as MuJoCo counts it: a spring pulls with < 0 [N]
     kLevel,              ///< largest force of a row of the solver [row]
@@ -42,22 +51,30 @@ struct Slope {
 /// How what a law gives follows what it reads, in one step of a simulation: the partial derivatives
 /// that are not zero.
 struct LawSlopes {
-  std::vector<Slope> forces;  ///< of kForce and kPull
-  std::vector<Slope> levels;  ///< of kLevel and kOffset
-  std::vector<Slope> next;    ///< of kNext
+  std::vector<Slope> signals;  ///< of kInput and kActuatorNext
+  std::vector<Slope> forces;   ///< of kForce and kPull
+  std::vector<Slope> levels;   ///< of kLevel and kOffset
+  std::vector<Slope> next;     ///< of kNext
   struct Pull {
     int tendon;
     double value;  ///< kPull itself [N]: tendons' moment arms move too
   };
   std::vector<Pull> pulls;
+  int scratch = 0;  ///< how many sums the slopes of forces and of signals each make on their way
 
-  void Clear() { forces.clear(), levels.clear(), next.clear(), pulls.clear(); }
+  void Clear() {
+    signals.clear(), forces.clear(), levels.clear(), next.clear(), pulls.clear();
+    scratch = 0;
+  }
 };
 
 /// What a step of a simulation was that mjData does not say any more once it is taken: the law's
-/// states before it, and positions [nq] and speeds [nv] after it.
+/// states before it, positions [nq] and speeds [nv] after it; what actuators meet and give
+/// [nactuator] as far as the signals before this one go, which a signal brings up to date.
 struct StepTaken {
   const double *z, *qpos, *qvel;
+  const double* control = nullptr;            ///< kControl
+  double *input = nullptr, *force = nullptr;  ///< kInput, kActuator
 };
 
 /// Adds factor · value, whose derivatives are with respect to the numbers `by`.

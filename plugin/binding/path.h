@@ -11,6 +11,14 @@ class BoundPath : public CableFriction {
   BoundPath(const mjModel& m, const Config& config)
       : CableFriction(m, config, ReadParams<E>(config)), law_(config.Read(E::kChoices[0])) {}
 
+  void BandSlopes(double theta, double& by_theta, std::span<double> by_parameter) const override {
+    constexpr std::size_t kN = 1 + kParamCount<E>;
+    using T = Dual<kN>;
+    const T band = E::template Band<T>(T(theta, 0), law_, DualParams<kN>(AsParams<E>(p_), 1));
+    by_theta = band.d[0];
+    std::copy(band.d.begin() + 1, band.d.end(), by_parameter.begin());
+  }
+
  private:
   void Bands(std::span<const double> theta, std::span<double> band) const override {
     const auto p = AsParams<E>(p_);

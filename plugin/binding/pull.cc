@@ -34,6 +34,49 @@ void Drive::Add(const mjModel& m, mjData& d, double change) const {
   }
 }
 
+double Drive::Tension(const mjModel& m, const double* force) const {
+  double tension = 0;
+  for (const int a : actuators) tension -= m.actuator_gear[6 * a] * force[a];
+  return tension;
+}
+
+void Drive::Add(const mjModel& m, double change, double* force) const {
+  const double k = Stiffness(m);
+  for (const int a : actuators) {
+    const double share = StiffnessOf(m, a) / k;
+    if (share > 0) force[a] -= change * share / m.actuator_gear[6 * a];
+  }
+}
+
+void Drive::PutPull(const mjModel& m, const double* force, int first, LawSlopes& slopes) const {
+  using Kind = Number::Kind;
+  const Number tension{Kind::kScratch, first}, stiffness{Kind::kScratch, first + 1};
+  for (const int a : actuators) {
+    const double gear = m.actuator_gear[6 * a], bias = m.actuator_biasprm[mjNBIAS * a + 1];
+    slopes.signals.push_back({tension, {Kind::kActuator, a}, -gear});
+    slopes.signals.push_back({tension, {Kind::kGear, a}, -force[a]});
+    if (StiffnessOf(m, a) == 0) continue;
+    slopes.signals.push_back({stiffness, {Kind::kBias, 3 * a + 1}, -gear * gear});
+    slopes.signals.push_back({stiffness, {Kind::kGear, a}, -2 * bias * gear});
+  }
+}
+
+// A servo's force changes by −change s, s = −bias gear/k.
+void Drive::PutChange(const mjModel& m, double change, int first, LawSlopes& slopes) const {
+  using Kind = Number::Kind;
+  const double k = Stiffness(m);
+  for (const int a : actuators) {
+    if (StiffnessOf(m, a) == 0) continue;
+    const double gear = m.actuator_gear[6 * a], bias = m.actuator_biasprm[mjNBIAS * a + 1];
+    const double s = -bias * gear / k;
+    const Number next{Kind::kActuatorNext, a};
+    slopes.signals.push_back({next, {Kind::kScratch, first + 2}, -s});
+    slopes.signals.push_back({next, {Kind::kScratch, first + 1}, change * s / k});
+    slopes.signals.push_back({next, {Kind::kBias, 3 * a + 1}, change * gear / k});
+    slopes.signals.push_back({next, {Kind::kGear, a}, change * bias / k});
+  }
+}
+
 std::vector<Drive> MatchDrives(const mjModel& m, const Config& config) {
   std::vector<Drive> drives;
   for (const int t : config.Match(Place::kTendon)) {

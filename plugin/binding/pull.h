@@ -15,6 +15,15 @@ struct Drive {
   double Tension(const mjModel& m, const mjData& d) const;
   /// Changes the tension; every servo takes its share by stiffness.
   void Add(const mjModel& m, mjData& d, double change) const;
+  /// The same tension of given forces [nactuator], and the change of these.
+  double Tension(const mjModel& m, const double* force) const;
+  void Add(const mjModel& m, double change, double* force) const;
+  /// Adds how tension and stiffness follow actuators and their attributes: scratch numbers first
+  /// and first + 1.
+  void PutPull(const mjModel& m, const double* force, int first, LawSlopes& slopes) const;
+  /// Adds how the forces follow a change of the tension, which is scratch number first + 2, and the
+  /// shares it is taken by.
+  void PutChange(const mjModel& m, double change, int first, LawSlopes& slopes) const;
 };
 
 std::vector<Drive> MatchDrives(const mjModel& m, const Config& config);
@@ -46,6 +55,31 @@ class BoundPull : public BoundLaw {
       if (change != 0) drive.Add(m, d, change);
     }
     return false;
+  }
+
+  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
+
+  void Differentiate(const mjModel& m, const mjData&, const StepTaken& step,
+                     LawSlopes& slopes) const override {
+    using Kind = Number::Kind;
+    constexpr std::size_t kN = 2 + kParamCount<E>;
+    using T = Dual<kN>;
+    const auto p = DualParams<kN>(AsParams<E>(p_), 2);
+    int first = 0;
+    for (const Drive& drive : drives_) {
+      const Pull<T> pull{{drive.Tension(m, step.force), 0}, {drive.Stiffness(m), 1}};
+      const T change = E::template Eval<T>(pull, p) - pull.tension;
+      drive.PutPull(m, step.force, first, slopes);
+      Vec<Number, kN> by{{{Kind::kScratch, first}, {Kind::kScratch, first + 1}}};
+      for (std::size_t i = 0; i < kParamCount<E>; ++i)
+        by[2 + i] = {Kind::kParameter, static_cast<int>(i)};
+      Put(slopes.signals, {Kind::kScratch, first + 2}, change, by);
+      if (drive.Stiffness(m) > 0) {
+        drive.PutChange(m, change.a, first, slopes);
+        drive.Add(m, change.a, step.force);
+      }
+      slopes.scratch = first += 3;
+    }
   }
 
  private:

@@ -192,6 +192,29 @@ void Chain::Add(const Vec<double, 3>& on, double reference, std::span<double> fo
   }
 }
 
+void Chain::PutSums(LawSlopes& slopes) const {
+  using Kind = Number::Kind;
+  for (const Joint& joint : joints_) {
+    const double part[3] = {joint.u, joint.v, joint.l};
+    for (int i = 0; i < 3; ++i) {
+      if (part[i] == 0) continue;
+      slopes.forces.push_back({{Kind::kScratch, i}, {Kind::kPosition, joint.dof}, part[i]});
+      slopes.forces.push_back({{Kind::kScratch, 3 + i}, {Kind::kSpeed, joint.dof}, part[i]});
+    }
+  }
+}
+
+void Chain::PutForces(LawSlopes& slopes) const {
+  using Kind = Number::Kind;
+  for (const Joint& joint : joints_) {
+    const double part[3] = {joint.u, joint.v, joint.l};
+    for (int i = 0; i < 3; ++i) {
+      if (part[i] != 0)
+        slopes.forces.push_back({{Kind::kForce, joint.dof}, {Kind::kScratch, 6 + i}, part[i]});
+    }
+  }
+}
+
 void Chain::Link::Point(const mjData& d, const Vec<double, 2>& at, double* world) const {
   double local[3];
   for (int i = 0; i < 3; ++i) local[i] = at[0] * x[i] + at[1] * y[i];

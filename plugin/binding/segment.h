@@ -29,6 +29,11 @@ class Chain {
   /// (reference u, reference v, δL) [m] and its rate [m/s].
   Vec<double, 3> Positions(const mjModel& m, const mjData& d, double reference) const;
   Vec<double, 3> Velocities(const mjData& d, double reference) const;
+  /// Adds how the sums of the joints' positions and speeds, scratch numbers 0 to 5, follow them,
+  /// and how the joints' forces follow those on the sums, 6 to 8: the arc lengths without
+  /// reference.
+  void PutSums(LawSlopes& slopes) const;
+  void PutForces(LawSlopes& slopes) const;
   /// Adds what a force [N] on these coordinates does to the joints.
   void Add(const Vec<double, 3>& on, double reference, std::span<double> force) const;
 
@@ -106,6 +111,39 @@ class BoundSegment : public BoundLaw {
                                         chain_.Velocities(d, Reference()), pressure, choice_, p),
                Reference(), force);
     return true;
+  }
+
+  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
+
+  // The joints' forces are a reference's, too, by which bends are arc lengths.
+  void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
+                     LawSlopes& slopes) const override {
+    using Kind = Number::Kind;
+    constexpr std::size_t kN = 9 + kParamCount<E>;
+    using T = Dual<kN>;
+    const auto p = DualParams<kN>(AsParams<E>(p_), 9);
+    const T reference = E::template Segment<T>(p).d;
+    const auto bends = chain_.Positions(m, d, 1), rates = chain_.Velocities(d, 1);
+    Vec<T, 3> delta, rate, pressure;
+    Vec<Number, kN> by;
+    for (std::size_t i = 0; i < 3; ++i) {
+      delta[i] = (i < 2 ? reference : T(1)) * T(bends[i], i);
+      rate[i] = (i < 2 ? reference : T(1)) * T(rates[i], 3 + i);
+      pressure[i] = T(step.force[chambers_[i]], 6 + i);
+      by[i] = {Kind::kScratch, static_cast<int>(i)};
+      by[3 + i] = {Kind::kScratch, 3 + static_cast<int>(i)};
+      by[6 + i] = {Kind::kActuator, chambers_[i]};
+    }
+    for (std::size_t i = 0; i < kParamCount<E>; ++i)
+      by[9 + i] = {Kind::kParameter, static_cast<int>(i)};
+    const Vec<T, 3> force = E::template Eval<T>(delta, rate, pressure, choice_, p);
+    chain_.PutSums(slopes);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const T on = (i < 2 ? reference : T(1)) * force[i];
+      Put(slopes.forces, {Kind::kScratch, 6 + static_cast<int>(i)}, on, by);
+    }
+    chain_.PutForces(slopes);
+    slopes.scratch = 9;
   }
 
   std::string_view SensorPlace(const mjModel&, mjtObj kind, int) const override {

@@ -48,6 +48,33 @@ class BoundSignal : public BoundLaw {
     return false;
   }
 
+  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
+
+  void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
+                     LawSlopes& slopes) const override {
+    using Kind = Number::Kind;
+    constexpr std::size_t kN = 5 + kParamCount<E>;
+    using T = Dual<kN>;
+    const auto p = DualParams<kN>(AsParams<E>(p_), 5);
+    for (const int a : actuators_) {
+      const T kp(m.actuator_gainprm[mjNGAIN * a], 2);
+      if (kp == 0.0) continue;
+      const double* const bias = m.actuator_biasprm + mjNBIAS * a;
+      const T force(step.force[a], 0), speed(d.actuator_velocity[a], 1);
+      const T e = (force - T(bias[0], 3) - T(bias[2], 4) * speed) / kp;
+      const T more = kp * (E::template Eval<T>(e, p) - e);
+      Vec<Number, kN> by{{{Kind::kActuator, a},
+                          {Kind::kActuatorRate, a},
+                          {Kind::kGain, a},
+                          {Kind::kBias, 3 * a},
+                          {Kind::kBias, 3 * a + 2}}};
+      for (std::size_t i = 0; i < kParamCount<E>; ++i)
+        by[5 + i] = {Kind::kParameter, static_cast<int>(i)};
+      Put(slopes.signals, {Kind::kActuatorNext, a}, more, by);
+      step.force[a] += more.a;
+    }
+  }
+
  private:
   std::vector<int> actuators_;
 };

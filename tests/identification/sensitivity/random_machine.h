@@ -40,9 +40,6 @@ struct RandomLaw {
   std::string more = {};                ///< further keys
   std::string joints = {}, cable = {};  ///< further attributes of all joints, of the cable 'tb'
   std::string equality = {};            ///< further elements
-  /// Reach of differences over whole logs, as a share of a parameter, and their own error: laws
-  /// that walk through a step by shorter ones, as long as precision needs, are that smooth.
-  double reach = 1e-6, error = 1e-5;
 };
 inline void PrintTo(const RandomLaw& law, std::ostream* out) { *out << law.name; }
 
@@ -56,8 +53,8 @@ inline std::string Instance(const RandomLaw& law, RandomNumbers& number) {
                      law.effect, keys);
 }
 
-/// Three links on hinges and a slide, with a cable through sites, a tendon of joints, a lagged
-/// motor and a position servo.
+/// Three links on hinges with cables through sites, a tendon of joints, a lagged motor and position
+/// servos; beside them a segment of two hinges and a slide with three chambers.
 inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
                              const std::string& integrator) {
   const std::string plugins = Instance(law, number);
@@ -73,10 +70,18 @@ inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
         number(1e-4, 3e-4), number(-4, 4), number(0, 5e-3), number(0.05, 0.15), law.joints);
     close += "</body>";
   }
+  const std::string segment = fmt::format(
+      "<body name='base' pos='1 0 0'><body name='mid' pos='0 0 0.06'><joint name='u' axis='0 1 0' "
+      "stiffness='0.3' damping='0.01'/><joint name='v' axis='1 0 0' stiffness='0.3' "
+      "damping='0.01'/><inertial pos='0 0 0' mass='{}' diaginertia='1e-4 1e-4 1e-4'/><body "
+      "name='tip' pos='0 0 0.07'><joint name='s' type='slide' axis='0 0 1' stiffness='200' "
+      "damping='2'/><inertial pos='0 0 0' mass='0.1' diaginertia='1e-4 1e-4 1e-4'/></body></body>"
+      "</body>",
+      number(0.1, 0.2));
   return fmt::format(
       "<mujoco><option timestep='2e-3' integrator='{}' tolerance='0' iterations='50'/>"
       "<extension>{}</extension><worldbody><site name='a' pos='0.03 0.01 0'/>"
-      "<site name='b' pos='-0.01 0.03 0'/>{}{}</worldbody>"
+      "<site name='b' pos='-0.01 0.03 0'/>{}{}{}</worldbody>"
       "<tendon><spatial name='ta' damping='{}'><site site='a'/><site site='a0'/>"
       "<site site='a1'/><site site='a2'/></spatial><spatial name='tb' stiffness='{}' {}>"
       "<site site='b'/><site site='b0'/><site site='b1'/></spatial>"
@@ -84,12 +89,17 @@ inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
       "</tendon>{}<actuator><general name='pull' tendon='ta' gainprm='{}'/>"
       "<general name='lagged' joint='y0' dyntype='filterexact' dynprm='{}' gainprm='0.3' "
       "gear='1.5'/><position name='servo' joint='x1' kp='{}' kv='{}'/>"
-      "<position name='winch' tendon='tb' gear='-1' kp='{}'/></actuator>"
+      "<position name='winch' tendon='tb' gear='-1' kp='{}' forcerange='-1 9'/>"
+      "<general name='p1' joint='s' gear='0'/><general name='p2' joint='s' gear='0'/><general "
+      "name='p3' joint='s' gear='0' dyntype='filterexact' dynprm='7e-3'/></actuator>"
       "<sensor><jointpos name='x0' joint='x0'/><jointvel name='y2' joint='y2'/>"
-      "<jointpos name='x1' joint='x1'/><framepos name='end' objtype='site' objname='a2'/></sensor>"
+      "<jointpos name='x1' joint='x1'/><jointpos name='u' joint='u'/><jointpos name='v' "
+      "joint='v'/><jointpos name='s' "
+      "joint='s'/><framepos name='end' objtype='site' objname='a2'/></sensor>"
       "</mujoco>",
-      integrator, plugins, bodies, close, number(0.1, 0.5), number(5, 20), law.cable, law.equality,
-      number(-1.2, -0.8), number(0.02, 0.05), number(0.5, 1), number(0.002, 0.01), number(20, 60));
+      integrator, plugins, bodies, close, segment, number(0.1, 0.5), number(5, 20), law.cable,
+      law.equality, number(-1.2, -0.8), number(0.02, 0.05), number(0.5, 1), number(0.002, 0.01),
+      number(20, 60));
 }
 
 }  // namespace continuum::testing

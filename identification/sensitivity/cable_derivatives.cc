@@ -1,0 +1,328 @@
+#include "identification/sensitivity/cable_derivatives.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "sim/model/point_jacobian.h"
+
+namespace continuum {
+namespace {
+
+using Kind = Number::Kind;
+using Matrix3X = Eigen::Matrix3Xd;
+
+// Of a site in the world.
+Matrix3X PointTangents(const mjModel& m, const mjData& d, int site, const Tangents& position) {
+  Matrix3X point = Matrix3X::Zero(3, position.cols());
+  const Eigen::Vector3d at(d.site_xpos + 3 * site);
+  for (int i = LastDof(m, m.site_bodyid[site]); i >= 0; i = m.dof_parentid[i])
+    point.noalias() += PointJacobian(m, d, i, at) * position.row(i);
+  return point;
+}
+
+// Of the unit vector along a segment.
+struct Direction {
+  Eigen::Vector3d u;
+  Matrix3X change;
+};
+Direction DirectionOf(const mjData& d, int near, int far, const Matrix3X& near_change,
+                      const Matrix3X& far_change) {
+  const Eigen::Vector3d between =
+      Eigen::Vector3d(d.site_xpos + 3 * far) - Eigen::Vector3d(d.site_xpos + 3 * near);
+  const double length = std::max(between.norm(), mjMINVAL);
+  const Eigen::Vector3d u = between / length;
+  const Matrix3X change = (far_change - near_change) / length;
+  return {u, change - u * (u.transpose() * change)};
+}
+
+// Of the angle between two directions: sin(θ/2) = |b − a|/2.
+Eigen::RowVectorXd AngleTangents(const Direction& a, const Direction& b) {
+  const Eigen::Vector3d apart = b.u - a.u;
+  const double size = apart.norm();
+  if (size < 1e-12) return Eigen::RowVectorXd::Zero(a.change.cols());
+  const double cosine = 0.5 * (a.u + b.u).norm();
+  return apart.transpose() * (b.change - a.change) / (size * std::max(cosine, 1e-12));
+}
+
+// Where nothing has friction the law asks nobody who slides: that goes by the speed.
+int SideOf(const Bend& bend) { return bend.band > 0 ? bend.side : bend.speed > 0 ? -1 : 1; }
+
+// ... and all tensions are those of the base.
+double TensionOf(const CableFriction& law, std::size_t g) {
+  const auto rough = [](const Bend& bend) { return bend.band > 0; };
+  const Bend& bend = law.bends()[g];
+  return std::any_of(law.bends().begin(), law.bends().end(), rough) ? bend.tension
+                                                                    : law.base()[bend.cable];
+}
+
+}  // namespace
+
+CableDerivatives::CableDerivatives(const mjModel& m, const ForceDerivatives::Parts& parts)
+    : derivatives_(m, parts), curvature_(m.nv, m.nv) {}
+
+void CableDerivatives::Begin(const mjModel& m, const mjData& d, const Law& law,
+                             std::span<const double> pull, const std::vector<double>& given) {
+  law_ = law;
+  const auto bends = law.law->bends();
+  rests_ = std::any_of(bends.begin(), bends.end(), [](const Bend& b) { return SideOf(b) == 0; });
+  after_.assign(d.qvel, d.qvel + m.nv), rate_.assign(m.nv, 0);
+  derivatives_.Place(m, d);
+  if (!rests_) return;
+  const CableSliding& sliding = law.law->sliding();
+  if (sliding.change().empty()) return;  // it found nothing: yields are not finite
+  for (int i = 0; i < sliding.inertia().size(); ++i) {
+    const int dof = sliding.inertia().dofs()[i];
+    after_[dof] += sliding.change()[i];
+    rate_[dof] = sliding.change()[i] / m.opt.timestep;
+  }
+  derivatives_.Pull(pull);
+  derivatives_.Give(given);
+  derivatives_.Update(m, d, rate_.data(), after_.data(), m.opt.timestep);
+}
+
+const Tangents& CableDerivatives::Follow(const mjModel& m, const mjData& d,
+                                         const NumberTangents& numbers, const Tangents& other) {
+  const CableFriction& law = *law_.law;
+  FollowBands(m, d, numbers);
+  FollowBases(m, d, numbers);
+  FollowRatios(numbers);
+  AddCurvatures(m);
+  pulled_.setZero(m.nv, std::ssize(law.bends()));
+  speed_.setZero(std::ssize(law.bends()), other.cols());
+  speed_after_.assign(law.bends().size(), 0);
+  for (std::size_t g = law.bends().size(); g-- > 0;) FollowSpeed(g, numbers);
+  const Tangents bent = curvature_ * numbers[Kind::kPosition];
+  Tangents all = other + bent;
+  for (const int dof : law.sliding().inertia().dofs())
+    all.row(dof) += numbers[Kind::kState].row(law_.first_state + static_cast<int>(m.nwrap) + dof);
+  FollowTensions(m, d, std::move(all));
+  force_ = bent;
+  for (std::size_t g = 0; g < law.bends().size(); ++g) {
+    const auto row = static_cast<Eigen::Index>(g);
+    ForEachArm(g, [&](int dof, double arm) {
+      force_.row(dof) -= arm * (tension_.row(row) - base_.row(law.bends()[g].cable));
+    });
+  }
+  FollowShares();
+  return force_;
+}
+
+template <class Fn>
+void CableDerivatives::ForEachArm(std::size_t g, Fn&& fn) const {
+  const CableGeometry& route = law_.law->geometry();
+  const int s = law_.law->bends()[g].segment;
+  for (int l = route.begin[s]; l < route.begin[s + 1]; ++l) fn(route.dof[l], route.arm[l]);
+}
+
+bool CableDerivatives::First(std::size_t g) const {
+  const auto bends = law_.law->bends();
+  return g == 0 || bends[g - 1].cable != bends[g].cable;
+}
+
+void CableDerivatives::FollowBands(const mjModel& m, const mjData& d,
+                                   const NumberTangents& numbers) {
+  const CableFriction& law = *law_.law;
+  const Tangents& position = numbers[Kind::kPosition];
+  band_.setZero(law.geometry().segments(), position.cols());
+  memory_ = band_;
+  for (int c = 0; c < law.geometry().cables(); ++c) {
+    const std::vector<int>& sites = law.cables()[c].sites;
+    const int first = law.geometry().first[c];
+    Direction before;
+    Matrix3X near = PointTangents(m, d, sites[0], position);
+    for (std::size_t k = 0; k + 1 < sites.size(); ++k) {
+      Matrix3X far = PointTangents(m, d, sites[k + 1], position);
+      Direction along = DirectionOf(d, sites[k], sites[k + 1], near, far);
+      if (k > 0) FollowBand(first + static_cast<int>(k), AngleTangents(before, along), numbers);
+      before = std::move(along), near = std::move(far);
+    }
+  }
+}
+
+// The band of the contact in front of a segment, and what it remembers within it.
+void CableDerivatives::FollowBand(int s, const RowVector& theta, const NumberTangents& numbers) {
+  const CableFriction& law = *law_.law;
+  double by_theta = 0;
+  std::vector<double> by_parameter(law.parameters().size());
+  law.BandSlopes(law.geometry().theta[s], by_theta, by_parameter);
+  band_.row(s) = by_theta * theta;
+  for (std::size_t i = 0; i < by_parameter.size(); ++i)
+    band_.row(s) +=
+        by_parameter[i] * numbers[Kind::kParameter].row(law_.first_parameter + static_cast<int>(i));
+  const double z = law_.state[s], band = law.band()[s];
+  if (std::abs(z) < band) {
+    memory_.row(s) = numbers[Kind::kState].row(law_.first_state + s);
+  } else {
+    memory_.row(s) = (z < 0 ? -1 : 1) * band_.row(s);
+  }
+}
+
+// t_0 = −Σ gear · force where that pulls.
+void CableDerivatives::FollowBases(const mjModel& m, const mjData& d,
+                                   const NumberTangents& numbers) {
+  const CableFriction& law = *law_.law;
+  base_.setZero(law.geometry().cables(), band_.cols());
+  for (int c = 0; c < law.geometry().cables(); ++c) {
+    if (law.base()[c] == 0) continue;
+    for (const int a : law.cables()[c].actuators) {
+      const int output = m.actuator_outadr[a];
+      base_.row(c) -= m.actuator_gear[6 * output] * numbers[Kind::kActuator].row(a) +
+                      d.actuator_force[output] * numbers[Kind::kGear].row(a);
+    }
+  }
+}
+
+// (2): what the tension behind a bend is to that before it, and how it yields.
+void CableDerivatives::FollowRatios(const NumberTangents& numbers) {
+  const CableFriction& law = *law_.law;
+  const auto bends = law.bends();
+  const Tangents& state = numbers[Kind::kState];
+  ratio_.assign(bends.size(), 1), yield_.assign(bends.size(), 0);
+  ratio_change_.setZero(std::ssize(bends), band_.cols()), yield_change_ = ratio_change_;
+  double expected = 0;
+  RowVector expected_change, level;
+  for (std::size_t g = 0; g < bends.size(); ++g) {
+    const Bend& bend = bends[g];
+    const auto row = static_cast<Eigen::Index>(g);
+    const CableFriction::Group& group = law.group(g);
+    const int first = law.geometry().first[bend.cable];
+    if (First(g)) {
+      expected = law.base()[bend.cable], expected_change = base_.row(bend.cable);
+      level = RowVector::Zero(band_.cols());
+    }
+    RowVector band = RowVector::Zero(band_.cols()), memory = band;
+    for (int k = group.begin; k < group.end; ++k) {
+      band += band_.row(k), memory += memory_.row(k);
+      level += state.row(law_.first_state + k);
+    }
+    const int side = SideOf(bend);
+    ratio_[g] = side == 0 ? std::exp(bend.memory) : bend.band > 0 ? bend.ratio : 1;
+    ratio_change_.row(row) = ratio_[g] * (side == 0 ? memory : RowVector(side * band));
+    expected_change = ratio_[g] * expected_change + expected * ratio_change_.row(row);
+    expected *= ratio_[g];
+    if (side != 0) continue;
+    const double last = law_.state[first] * std::exp(bend.level);
+    const bool lasts = last > expected;
+    const double stiff = lasts ? last : expected, give_way = law.sliding().give_way();
+    const RowVector stiff_change =
+        lasts ? RowVector(last * level + std::exp(bend.level) * state.row(law_.first_state + first))
+              : expected_change;
+    yield_[g] = bend.band * stiff / give_way;
+    yield_change_.row(row) = (band * stiff + bend.band * stiff_change) / give_way;
+  }
+}
+
+// v_g⁺ = −Σ_{k ≥ g} dL_k/dq (q̇ + x), from the end of each cable on.
+void CableDerivatives::FollowSpeed(std::size_t g, const NumberTangents& numbers) {
+  const CableFriction& law = *law_.law;
+  const auto bends = law.bends();
+  const Bend& bend = bends[g];
+  const auto column = static_cast<Eigen::Index>(g);
+  if (g + 1 < bends.size() && bends[g + 1].cable == bend.cable)
+    pulled_.col(column) = pulled_.col(column + 1);
+  ForEachArm(g, [&](int dof, double arm) { pulled_(dof, column) -= arm; });
+  if (SideOf(bend) != 0) return;
+  const Cable& cable = law.cables()[bend.cable];
+  std::vector<double> weight(cable.segments(), 0), bent(after_.size(), 0);
+  std::fill(weight.begin() + Place(bend.segment, bend.cable), weight.end(), -1.0);
+  derivatives_.tendons().AddBends(cable.tendon, weight, after_.data(), bent);
+  const auto moved = Eigen::VectorXd::Map(bent.data(), std::ssize(bent));
+  speed_.row(column) = moved.transpose() * numbers[Kind::kPosition] +
+                       pulled_.col(column).transpose() * numbers[Kind::kSpeed];
+  speed_after_[g] =
+      pulled_.col(column).dot(Eigen::VectorXd::Map(after_.data(), std::ssize(after_)));
+}
+
+void CableDerivatives::AddCurvatures(const mjModel& m) {
+  const CableFriction& law = *law_.law;
+  curvature_.setZero(m.nv, m.nv);
+  for (int c = 0; c < law.geometry().cables(); ++c) {
+    const Cable& cable = law.cables()[c];
+    std::vector<double> weight(cable.segments(), 0);
+    for (std::size_t g = 0; g < law.bends().size(); ++g) {
+      const Bend& bend = law.bends()[g];
+      if (bend.cable == c) weight[Place(bend.segment, c)] = law.base()[c] - TensionOf(law, g);
+    }
+    derivatives_.tendons().AddCurvature(cable.tendon, weight, curvature_);
+  }
+}
+
+// (1) and (2) with dt_g = constant_g + follow_g dx.
+void CableDerivatives::FollowTensions(const mjModel& m, const mjData& d, Tangents other) {
+  const auto bends = law_.law->bends();
+  tension_.setZero(std::ssize(bends), other.cols());
+  Eigen::MatrixXd follow = Eigen::MatrixXd::Zero(std::ssize(bends), m.nv);
+  for (std::size_t g = 0; g < bends.size(); ++g) {
+    const auto row = static_cast<Eigen::Index>(g);
+    const bool first = First(g);
+    const double before = first ? law_.law->base()[bends[g].cable] : TensionOf(*law_.law, g - 1);
+    tension_.row(row) = before * ratio_change_.row(row) +
+                        ratio_[g] * (first ? base_.row(bends[g].cable) : tension_.row(row - 1)) -
+                        speed_after_[g] * yield_change_.row(row) - yield_[g] * speed_.row(row);
+    if (!first) follow.row(row) = ratio_[g] * follow.row(row - 1);
+    follow.row(row) -= yield_[g] * pulled_.col(row).transpose();
+  }
+  if (!rests_) return;
+  Eigen::MatrixXd inertia(m.nv, m.nv);
+  mj_fullM(&m, &d, inertia.data());
+  inertia = inertia / m.opt.timestep - derivatives_.damping();
+  for (std::size_t g = 0; g < bends.size(); ++g) {
+    const auto row = static_cast<Eigen::Index>(g);
+    ForEachArm(g, [&](int dof, double arm) {
+      inertia.row(dof) += arm * follow.row(row);
+      other.row(dof) -= arm * (tension_.row(row) - base_.row(bends[g].cable));
+    });
+  }
+  const Tangents x = inertia.partialPivLu().solve(other);
+  tension_ += follow * x;
+}
+
+// ρ of every contact: bends that are several contacts share theirs (CableFriction::Spread).
+void CableDerivatives::FollowShares() {
+  const CableFriction& law = *law_.law;
+  rho_.setZero(band_.rows(), band_.cols());
+  for (std::size_t g = 0; g < law.bends().size(); ++g) {
+    const Bend& bend = law.bends()[g];
+    const auto row = static_cast<Eigen::Index>(g);
+    const CableFriction::Group& group = law.group(g);
+    if (const int side = SideOf(bend); side != 0) {
+      for (int k = group.begin; k < group.end; ++k) rho_.row(k) = side * band_.row(k);
+      continue;
+    }
+    const double before = First(g) ? law.base()[bend.cable] : TensionOf(law, g - 1);
+    const RowVector ahead = First(g) ? base_.row(bend.cable) : tension_.row(row - 1);
+    const RowVector all = tension_.row(row) / bend.tension - ahead / before;
+    if (group.end == group.begin + 1) {
+      rho_.row(group.begin) = all;
+      continue;
+    }
+    const double rho = std::log(bend.ratio), sign = rho < bend.memory ? -1 : 1;
+    const double room = bend.band - sign * bend.memory;
+    const double part = room > 0 ? std::min(1.0, std::abs(rho - bend.memory) / room) : 0;
+    RowVector memory = RowVector::Zero(band_.cols()), band = memory;
+    for (int k = group.begin; k < group.end; ++k) memory += memory_.row(k), band += band_.row(k);
+    RowVector share = RowVector::Zero(band_.cols());
+    if (room > 0 && part < 1)
+      share = (sign * (all - memory) - part * (band - sign * memory)) / room;
+    for (int k = group.begin; k < group.end; ++k) {
+      const double limit = law.band()[k], old = std::clamp(law_.state[k], -limit, limit);
+      rho_.row(k) =
+          (1 - part) * memory_.row(k) + part * sign * band_.row(k) + (sign * limit - old) * share;
+    }
+  }
+}
+
+void CableDerivatives::AddNext(const mjModel& m, const Tangents& constraint,
+                               NumberTangents& numbers) const {
+  const CableFriction& law = *law_.law;
+  Tangents& next = numbers[Kind::kNext];
+  for (Eigen::Index k = 0; k < rho_.rows(); ++k) next.row(law_.first_state + k) = rho_.row(k);
+  for (int c = 0; c < law.geometry().cables(); ++c)
+    next.row(law_.first_state + law.geometry().first[c]) = base_.row(c);
+  for (const int dof : law.sliding().inertia().dofs())
+    next.row(law_.first_state + static_cast<int>(m.nwrap) + dof) = constraint.row(dof);
+}
+
+}  // namespace continuum
