@@ -92,13 +92,7 @@ class BoundForce : public BoundLaw {
     }
   }
 
-  std::string WhyNoSlopes(const mjModel&) const override {
-    if constexpr (requires { E::kSubSteps; }) {
-      return "its law takes more steps inside where its state bends, and slopes jump there";
-    } else {
-      return "";
-    }
-  }
+  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
 
   void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
                      LawSlopes& slopes) const override {

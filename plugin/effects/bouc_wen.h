@@ -40,8 +40,6 @@ struct BoucWen {
   static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
   static constexpr Units kPort{"rad", "N*m"};
-  /// How many steps (2) takes inside depends on its state: its slopes jump there.
-  static constexpr bool kSubSteps = true;
   static constexpr std::array kStates{State{"w", "1"}};
   static constexpr std::array kParams{Magnitude("kappa_w", "N*m", 0.01),
                                       Positive("rho", "1/rad", 100),
