@@ -2,6 +2,7 @@
 // step on machines drawn at random.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ using testing::RandomNumbers;
 using Vector = Eigen::VectorXd;
 
 constexpr double kMove = 5e-7, kReach = 2e-6;
+// Of one parameter of a law, whose share of a step is small: differences round to 1e-16/kFarReach.
+constexpr double kFarReach = 1e-4;
 constexpr int kParts = mjSTATE_FULLPHYSICS | mjSTATE_WARMSTART;
 
 // What decides which branch a step takes: which rows and which bends of cables slide, which way.
@@ -46,13 +49,15 @@ std::vector<int> Branch(const mjModel& m, const mjData& d) {
 // A machine, and the same moved along a direction of all its numbers.
 struct Machines {
   ModelAndData here, perturbed, above, below;
+  double reach;
 
   template <class Xml>
-  explicit Machines(const Xml& xml)
+  Machines(const Xml& xml, double reach)
       : here(Built(xml, 0)),
         perturbed(Built(xml, kMove)),
-        above(Built(xml, kReach)),
-        below(Built(xml, -kReach)) {}
+        above(Built(xml, reach)),
+        below(Built(xml, -reach)),
+        reach(reach) {}
   template <class Xml>
   static ModelAndData Built(const Xml& xml, double along) {
     return ModelSpec::Parse(xml(along)).Build();
@@ -107,11 +112,14 @@ std::vector<double> Listed(const Vector& x) { return {x.begin(), x.end()}; }
 
 // What a derivative may be wrong by.
 enum class Mutation { kNone, kFlippedParameters, kNoPositions, kNoStates };
+// What moves: parameters of the machines, and with them the state.
+enum class Moves { kAll, kParameters };
 
 class Comparison {
  public:
-  explicit Comparison(Machines& machines, unsigned seed, Mutation mutation = Mutation::kNone)
-      : machines_(machines), mutation_(mutation), rng_(seed), phase_(seed) {}
+  explicit Comparison(Machines& machines, unsigned seed, Mutation mutation = Mutation::kNone,
+                      Moves moves = Moves::kAll)
+      : machines_(machines), mutation_(mutation), moves_(moves), rng_(seed), phase_(seed) {}
 
   // The worst error of some steps along a motion; < 0: all were near to a switch.
   double Worst(int steps, int every) {
@@ -128,9 +136,10 @@ class Comparison {
   State Direction() {
     const mjModel& m = *machines_.here.model;
     const mjData& d = *machines_.here.data;
+    const double size = moves_ == Moves::kAll;
     const auto some = [&](Eigen::Index n) {
       return Vector(Vector::NullaryExpr(
-          n, [&] { return std::uniform_real_distribution<double>(-1, 1)(rng_); }));
+          n, [&] { return size * std::uniform_real_distribution<double>(-1, 1)(rng_); }));
     };
     State along{some(m.nv), some(m.nv), some(m.na), some(m.npluginstate)};
     for (int i = 0; i < m.na; ++i) along.w[i] *= std::max(1.0, std::abs(d.act[i]));
@@ -147,8 +156,9 @@ class Comparison {
     std::vector<double> from(mj_stateSize(&m, kParts));
     mj_getState(&m, &d, from.data(), kParts);
     const State along = Direction();
-    const Moved up = Step(machines_.above, from, along, kReach, step, phase_),
-                down = Step(machines_.below, from, along, -kReach, step, phase_);
+    const double reach = machines_.reach;
+    const Moved up = Step(machines_.above, from, along, reach, step, phase_),
+                down = Step(machines_.below, from, along, -reach, step, phase_);
     const bool flipped = mutation_ == Mutation::kFlippedParameters;
     StepSensitivity sensitivity(machines_.here, Wiring({}, m), {&machines_.perturbed},
                                 flipped ? -kMove : kMove);
@@ -167,10 +177,10 @@ class Comparison {
     return Compare(sensitivity, up.after, down.after);
   }
 
-  static double Compare(const StepSensitivity& s, const State& up, const State& down) {
+  double Compare(const StepSensitivity& s, const State& up, const State& down) const {
     using Kind = Number::Kind;
-    const auto slope = [](const Vector& a, const Vector& b) -> Vector {
-      return (a - b) / (2 * kReach);
+    const auto slope = [&](const Vector& a, const Vector& b) -> Vector {
+      return (a - b) / (2 * machines_.reach);
     };
     const auto& n = s.numbers();
     return std::max({Error(n[Kind::kPosition].col(0), slope(up.q, down.q)),
@@ -181,17 +191,20 @@ class Comparison {
 
   Machines& machines_;
   Mutation mutation_;
+  Moves moves_;
   std::mt19937 rng_;
   double phase_;
 };
 
 constexpr unsigned kMachines = 50;
 
-Machines MachinesOf(const RandomLaw& law, unsigned seed) {
-  return Machines([&](double along) {
-    RandomNumbers number(seed, along);
+// alone: the one number that moves, those of the law first.
+Machines MachinesOf(const RandomLaw& law, unsigned seed, std::optional<std::size_t> alone = {}) {
+  const auto xml = [&](double along) {
+    RandomNumbers number(seed, along, alone);
     return RandomArm(law, number, seed % 2 ? "implicitfast" : "Euler");
-  });
+  };
+  return {xml, alone ? kFarReach : kReach};
 }
 
 class EffectSensitivityTest : public ::testing::TestWithParam<RandomLaw> {};
@@ -207,6 +220,26 @@ TEST_P(EffectSensitivityTest, AreThoseOfSingleSteps) {
     EXPECT_LT(error, 1e-5) << "machine " << seed;
   }
   EXPECT_GT(compared, kMachines * 9 / 10);  // the others were near to a switch
+}
+
+TEST_P(EffectSensitivityTest, AreThoseOfEveryParameterAlone) {
+  constexpr unsigned kSome = 10;
+  for (std::size_t k = 0; k < GetParam().parameters.size(); ++k) {
+    const std::string& name = GetParam().parameters[k].first;
+    unsigned compared = 0, seen = 0;
+    for (unsigned seed = 0; seed < kSome; ++seed) {
+      const auto error = [&](Mutation mutation) {
+        Machines machines = MachinesOf(GetParam(), seed, k);
+        return Comparison(machines, seed, mutation, Moves::kParameters).Worst(60, 15);
+      };
+      const double right = error(Mutation::kNone);
+      compared += right >= 0;
+      EXPECT_LT(right, 1e-5) << name << " of machine " << seed;
+      seen += error(Mutation::kFlippedParameters) > 1e-2;
+    }
+    EXPECT_GT(compared, kSome / 2) << name;
+    EXPECT_GT(seen, kSome / 2) << name;
+  }
 }
 
 // What such a comparison must not let pass.

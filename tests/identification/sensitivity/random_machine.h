@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -11,15 +12,17 @@
 
 namespace continuum::testing {
 
-/// Numbers of a machine drawn at random, each with a random direction in which all move together.
+/// Numbers of a machine drawn at random, each with a random direction in which all move together,
+/// or of which one moves alone.
 class RandomNumbers {
  public:
-  RandomNumbers(unsigned seed, double along) : rng_(seed), along_(along) {}
+  RandomNumbers(unsigned seed, double along, std::optional<std::size_t> alone = {})
+      : rng_(seed), along_(along), alone_(alone) {}
 
   /// Between two numbers, moved by `along` times itself or its opposite.
   std::string operator()(double lower, double upper) {
     const double value = std::uniform_real_distribution<double>(lower, upper)(rng_);
-    const double slope = Direction();
+    const double drawn = Direction(), slope = alone_ ? drawn_++ == *alone_ : drawn;
     return fmt::format("{:.17g}", value + along_ * slope * std::max(std::abs(value), 1e-3));
   }
   /// The same without a direction.
@@ -31,6 +34,8 @@ class RandomNumbers {
  private:
   std::mt19937 rng_;
   double along_;
+  std::optional<std::size_t> alone_;
+  std::size_t drawn_ = 0;
 };
 
 /// A law with the ranges of its parameters, and where it acts.
