@@ -107,6 +107,17 @@ inline std::vector<RandomLaw> RandomLaws() {
       RandomLaw{
           "Backlash", "backlash", "<config key='actuator' value='servo'/>", {{"gap", {0.05, 0.3}}}},
       RandomLaw{"Slack", "slack", "<config key='tendon' value='tb'/>", {{"length", {1e-3, 5e-3}}}},
+      RandomLaw{"SlackOfAStretchedTendon",
+                "slack",
+                "<config key='tendon' value='tb'/>",
+                {{"length", {1e-3, 5e-3}}},
+                "",
+                "",
+                "",
+                "",
+                "<plugin plugin='continuum.tendon_stretch'><instance name='soft'>"
+                "<config key='tendon' value='tb'/><config key='compliance' value='0.01'/>"
+                "</instance></plugin>"},
       RandomLaw{"TendonStretch",
                 "tendon_stretch",
                 "<config key='tendon' value='tb'/>",
@@ -115,6 +126,17 @@ inline std::vector<RandomLaw> RandomLaws() {
                 "capstan",
                 "<config key='tendon' value='ta'/>",
                 {{"mu", {0.05, 0.4}}, {"mu1", {0.01, 0.1}}, {"mu2", {0.01, 0.1}}}},
+      RandomLaw{"CapstanBesideLoadFriction",
+                "capstan",
+                "<config key='tendon' value='ta'/>",
+                {{"mu", {0.05, 0.4}}},
+                "",
+                "",
+                "",
+                "",
+                "<plugin plugin='continuum.load_friction'><instance name='dry'>" + kActuated +
+                    "<config key='tau_c' value='0.01'/><config key='mu_l' value='0.1'/>"
+                    "</instance></plugin>"},
       RandomLaw{"CapstanByCoulomb",
                 "capstan",
                 "<config key='tendon' value='ta tb'/>",

@@ -45,6 +45,7 @@ struct RandomLaw {
   std::string more = {};                ///< further keys
   std::string joints = {}, cable = {};  ///< further attributes of all joints, of the cable 'tb'
   std::string equality = {};            ///< further elements
+  std::string beside = {};              ///< further effects
 };
 inline void PrintTo(const RandomLaw& law, std::ostream* out) { *out << law.name; }
 
@@ -54,8 +55,8 @@ inline std::string Instance(const RandomLaw& law, RandomNumbers& number) {
     keys += fmt::format("<config key='{}' value='{}'/>", key, number(range.first, range.second));
   }
   if (law.effect.empty()) return "";
-  return fmt::format("<plugin plugin='continuum.{}'><instance name='law'>{}</instance></plugin>",
-                     law.effect, keys);
+  return fmt::format("<plugin plugin='continuum.{}'><instance name='law'>{}</instance></plugin>{}",
+                     law.effect, keys, law.beside);
 }
 
 /// Three links on hinges with cables through sites, a tendon of joints, a lagged motor and position
@@ -70,7 +71,7 @@ inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
         "damping='{4}' armature='{5}' springref='{6}' {9}/><joint name='y{0}' axis='0 1 "
         "{2}' stiffness='{3}' damping='{4}' {9}/><inertial pos='{7} 0 -0.05' mass='{8}' "
         "diaginertia='1e-4 1.2e-4 4e-5'/><site name='a{0}' pos='0.03 0.01 -0.1'/>"
-        "<site name='b{0}' pos='-0.01 0.03 -0.1'/>",
+        "<site name='b{0}' pos='-0.01 0.03 -0.1'/><site name='c{0}' pos='0.025 0.02 -0.03'/>",
         i, i ? -0.1 : 0, number.Fixed(-0.3, 0.3), number(0.3, 0.9), number(0.01, 0.03),
         number(1e-4, 3e-4), number(-4, 4), number(0, 5e-3), number(0.05, 0.15), law.joints);
     close += "</body>";
@@ -87,14 +88,15 @@ inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
       "<mujoco><option timestep='2e-3' integrator='{}' tolerance='0' iterations='50'/>"
       "<extension>{}</extension><worldbody><site name='a' pos='0.03 0.01 0'/>"
       "<site name='b' pos='-0.01 0.03 0'/>{}{}{}</worldbody>"
-      "<tendon><spatial name='ta' damping='{}'><site site='a'/><site site='a0'/>"
-      "<site site='a1'/><site site='a2'/></spatial><spatial name='tb' stiffness='{}' {}>"
+      "<tendon><spatial name='ta' damping='{}'><site site='a'/><site site='c0'/><site site='a0'/>"
+      "<site site='a1'/><site site='c2'/><site site='a2'/></spatial><spatial name='tb' "
+      "stiffness='{}' {}>"
       "<site site='b'/><site site='b0'/><site site='b1'/></spatial>"
       "<fixed name='tf'><joint joint='x0' coef='1'/><joint joint='y2' coef='-0.5'/></fixed>"
-      "</tendon>{}<actuator><general name='pull' tendon='ta' gainprm='{}'/>"
+      "</tendon>{}<actuator><general name='pull' tendon='ta' gainprm='{}' gear='{}'/>"
       "<general name='lagged' joint='y0' dyntype='filterexact' dynprm='{}' gainprm='0.3' "
-      "gear='1.5'/><position name='servo' joint='x1' kp='{}' kv='{}'/>"
-      "<position name='winch' tendon='tb' gear='-1' kp='{}' forcerange='-1 9'/>"
+      "gear='{}'/><position name='servo' joint='x1' kp='{}' kv='{}' gear='{}'/>"
+      "<position name='winch' tendon='tb' gear='{}' kp='{}' forcerange='{} {}'/>"
       "<general name='p1' joint='s' gear='0'/><general name='p2' joint='s' gear='0'/><general "
       "name='p3' joint='s' gear='0' dyntype='filterexact' dynprm='7e-3'/></actuator>"
       "<sensor><jointpos name='x0' joint='x0'/><jointvel name='y2' joint='y2'/>"
@@ -103,8 +105,9 @@ inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
       "joint='s'/><framepos name='end' objtype='site' objname='a2'/></sensor>"
       "</mujoco>",
       integrator, plugins, bodies, close, segment, number(0.1, 0.5), number(5, 20), law.cable,
-      law.equality, number(-1.2, -0.8), number(0.02, 0.05), number(0.5, 1), number(0.002, 0.01),
-      number(20, 60));
+      law.equality, number(-1.2, -0.8), number(0.9, 1.1), number(0.02, 0.05), number(1.4, 1.6),
+      number(0.5, 1), number(0.002, 0.01), number(0.8, 1.2), number(-1.1, -0.9), number(20, 60),
+      number(-1.2, -0.8), number(2, 4));
 }
 
 }  // namespace continuum::testing
