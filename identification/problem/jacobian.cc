@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "identification/problem/problem.h"
+#include "identification/sensitivity/model_difference.h"
 #include "identification/sensitivity/smooth_path.h"
 #include "identification/sensitivity/step_sensitivity.h"
 #include "identification/sensitivity/stepped_path.h"
@@ -115,7 +116,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
 }
 
 PerturbedRun Problem::RunOf(ModelAndData machine, const Vector& x, std::size_t log) const {
-  PerturbedRun trial{std::move(machine), {}, {}, {}, {}};
+  PerturbedRun trial{std::move(machine), {}, {}, {}, {}, {}};
   const Log& logged = experiment_->logs[log];
   InitialState start = StartAt(trial.machine, x, log);
   if (start.qpos.empty()) start = StartOf(trial.machine, setup_, logged);
@@ -162,8 +163,13 @@ std::vector<std::size_t> Problem::ClosedFormColumns(const Vector& x,
     std::vector<PerturbedRun> perturbed;
     for (const std::size_t k : moving) {
       Vector moved = x;
-      moved[k] += StepOf(x, k, kPerturbation);
+      const double step = StepOf(x, k, kPerturbation);
+      moved[k] = x[k] + step;
       perturbed.push_back(RunOf(ModelAt(thread, moved, log, 0), moved, log));
+      moved[k] = x[k] - step;
+      PerturbedRun& run = perturbed.back();
+      if (WithinBounds(k, moved[k]) && !ModelDifference(m, *run.machine.model).field.empty())
+        run.mirrored = ModelAt(thread, moved, log, 0);
     }
     traces = SimulateStepped(trial, perturbed, setup, experiment_->logs[log]);
   } catch (const Error&) {  // of values that no machine has: differences look to the other side

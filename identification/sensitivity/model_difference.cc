@@ -59,11 +59,15 @@ bool Same(const T* a, const T* b, std::size_t n) {
 }
 
 // By MuJoCo's own lists of the sizes and the arrays of a model.
-std::string OtherField(const mjModel* m, const mjModel* other) {
+std::string OtherSize(const mjModel* m, const mjModel* other) {
 #define X(name) \
   if (!IsSeen(#name) && m->name != other->name) return #name;
   MJMODEL_SIZES
 #undef X
+  return "";
+}
+
+std::string OtherField(const mjModel* m, const mjModel* other) {
 #undef MJ_M
 #define MJ_M(n) m->n
 #define X(type, name, count, each)                                                                \
@@ -98,7 +102,8 @@ std::array<double, 10> InertiaOf(const mjModel& m, int b) {
 }  // namespace
 
 ModelDifference::ModelDifference(const mjModel& m, const mjModel& other)
-    : field(OtherField(&m, &other)) {
+    : field(OtherSize(&m, &other)), alike(field.empty()) {
+  if (alike) field = OtherField(&m, &other);
   const auto differs = [](const double* a, const double* b, int i, int size = 1) {
     return !Same(a + i * size, b + i * size, static_cast<std::size_t>(size));
   };

@@ -11,7 +11,7 @@
 
 namespace continuum {
 
-/// Where a model differs from another one of the same structure, of all that its motion depends on.
+/// Where a model differs from another one, of all that its motion depends on.
 struct ModelDifference {
   ModelDifference(const mjModel& m, const mjModel& other);
   /// Adds the forces of actuators that a log may switch off: they show no difference now, but may
@@ -33,6 +33,7 @@ struct ModelDifference {
   std::vector<Body> bodies;
   bool gravity = false;
   std::string field;  ///< of mjModel, one that differs and is none of these; empty: none
+  bool alike;         ///< whether all sizes are the same
 };
 
 }  // namespace continuum

@@ -90,6 +90,15 @@ void SensorDerivatives::Move(mjData& d, const double* dq, const double* dv) {
   }
 }
 
+void SensorDerivatives::MoveFrames(const mjModel& m, mjData& d, const mjData& there) const {
+  for (const Read& read : reads_) {
+    if (read.dof >= 0) continue;
+    const int type = m.sensor_objtype[read.sensor], id = m.sensor_objid[read.sensor];
+    Eigen::Map<Vector3>(d.sensordata + read.address) +=
+        Vector3(FrameOf(there, type, id).position) - Vector3(FrameOf(d, type, id).position);
+  }
+}
+
 void SensorDerivatives::Back(mjData& d) const {
   for (const Read& read : reads_)
     std::copy_n(&was_[read.address], read.size, d.sensordata + read.address);

@@ -23,6 +23,8 @@ class SensorDerivatives {
   void Update(const mjModel& m, const mjData& d);
   /// Adds to d's sensors what they change as positions and speeds do; takes it back.
   void Move(mjData& d, const double* dq, const double* dv);
+  /// The same as frames are elsewhere in another model at the same positions; after Move.
+  void MoveFrames(const mjModel& m, mjData& d, const mjData& there) const;
   void Back(mjData& d) const;
 
  private:

@@ -37,9 +37,11 @@ std::string StepSensitivity::Obstacle(const mjModel& m, const mjData& d, const W
 }
 
 StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiring,
-                                 const std::vector<const ModelAndData*>& perturbed, double move)
+                                 const std::vector<const ModelAndData*>& perturbed, double move,
+                                 const std::vector<const ModelAndData*>& mirrored)
     : move_(move),
       covered_(perturbed.size()),
+      steps_(move),
       derivatives_(*machine.model, PartsOf(*machine.model)),
       transmitted_(*machine.model, kTransmitted),
       motors_(*machine.model, kMotors),
@@ -49,12 +51,15 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
   const mjModel& m = *machine.model;
   for (std::size_t k = 0; k < perturbed.size(); ++k) {
     ModelDifference difference(m, *perturbed[k]->model);
-    covered_[k] = difference.field.empty();
+    covered_[k] = difference.alike;
     if (!covered_[k]) continue;
+    const bool known = difference.field.empty();
+    if (!known)
+      steps_.Add(*perturbed[k], mirrored.empty() ? nullptr : mirrored[k], std::ssize(columns_));
     difference.AddGated(wiring);
     columns_.push_back(k);
-    perturbed_.push_back(perturbed[k]);
-    differences_.push_back(std::move(difference));
+    perturbed_.push_back(known ? perturbed[k] : &machine);
+    differences_.push_back(known ? std::move(difference) : ModelDifference(m, m));
   }
   const auto count = static_cast<Eigen::Index>(columns_.size());
   effects_.emplace(machine, perturbed_, move);
@@ -82,6 +87,7 @@ void StepSensitivity::Start(std::size_t k, const State& difference) {
 void StepSensitivity::Before(const mjModel& m, const mjData& d) {
   q_.assign(d.qpos, d.qpos + m.nq), v_.assign(d.qvel, d.qvel + m.nv);
   w_.assign(d.act, d.act + m.na), z_.assign(d.plugin_state, d.plugin_state + m.npluginstate);
+  steps_.Keep(m, d);
 }
 
 void StepSensitivity::FollowTendons(const mjModel& m, const mjData& d) {
@@ -294,9 +300,11 @@ bool StepSensitivity::After(const mjModel& m, mjData& d) {
   q_after_.assign(d.qpos, d.qpos + m.nq), after_.assign(d.qvel, d.qvel + m.nv);
   a_.resize(m.nv);
   for (int i = 0; i < m.nv; ++i) a_[i] = (after_[i] - v_[i]) / m.opt.timestep;
+  steps_.Take(m, d);
   SwapState(d);  // it holds the step's forces already
   const bool followed = rows_->Find(m, d) && Follow(m, d);
   SwapState(d);
+  steps_.AddTo(*numbers_, activation_);
   return followed;
 }
 
@@ -308,6 +316,7 @@ void StepSensitivity::Observe(const mjModel& m, mjData& d, std::size_t row,
     const Eigen::VectorXd dq = move_ * Of(Kind::kPosition).col(column),
                           dv = move_ * Of(Kind::kSpeed).col(column);
     sensors_.Move(d, dq.data(), dv.data());
+    if (const mjData* there = steps_.Pose(m, d, column)) sensors_.MoveFrames(m, d, *there);
     recorders[columns_[c]].Take(d, row);
     sensors_.Back(d);
   }

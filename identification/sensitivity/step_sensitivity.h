@@ -12,6 +12,7 @@
 #include "identification/sensitivity/effect_derivatives.h"
 #include "identification/sensitivity/force_derivatives.h"
 #include "identification/sensitivity/sensor_derivatives.h"
+#include "identification/sensitivity/single_steps.h"
 #include "identification/sensitivity/solver_rows.h"
 #include "sim/simulation/output_recorder.h"
 #include "sim/simulation/wiring.h"
@@ -29,7 +30,8 @@ namespace continuum {
 ///
 ///   (M + Σ_hold D_r JᵀJ) da = dF(a) + dE + Jᵀ df,   (M − h D) da* = dF(a*) + dE + Jᵀ df (2)
 ///
-/// States of effects are states like others: their next values follow what their laws read.
+/// States of effects are states like others: their next values follow what their laws read. What
+/// parameters change that are none of F's own, as geometry, is known from SingleSteps.
 class StepSensitivity {
  public:
   using Matrix = Eigen::MatrixXd;
@@ -37,10 +39,12 @@ class StepSensitivity {
   /// What keeps a model from it ("the integrator is RK4"); empty: nothing.
   static std::string Obstacle(const mjModel& m, const mjData& d, const Wiring& wiring);
 
-  /// perturbed: the same machine with one parameter moved; move: as ContinuousSensitivity has it.
+  /// perturbed: the same machine with one parameter moved; move: as ContinuousSensitivity has it;
+  /// mirrored: the parameters of perturbed models moved the other way, empty or null: at a bound.
   StepSensitivity(const ModelAndData& machine, const Wiring& wiring,
-                  const std::vector<const ModelAndData*>& perturbed, double move);
-  /// Whether a perturbed model differs by what the closed form knows.
+                  const std::vector<const ModelAndData*>& perturbed, double move,
+                  const std::vector<const ModelAndData*>& mirrored = {});
+  /// Whether a perturbed model has the machine's structure.
   bool Covers(std::size_t k) const { return covered_[k]; }
   /// The state from which a covered perturbed model starts less the machine's, by the move.
   struct State {
@@ -82,11 +86,12 @@ class StepSensitivity {
   Tangents& Of(Number::Kind kind) { return (*numbers_)[kind]; }
   const Tangents& Of(Number::Kind kind) const { return (*numbers_)[kind]; }
 
-  std::vector<const ModelAndData*> perturbed_;  ///< those that are covered
+  std::vector<const ModelAndData*> perturbed_;  ///< those that are covered; the machine for steps_
   double move_;
   std::vector<bool> covered_;
   std::vector<std::size_t> columns_;
   std::vector<ModelDifference> differences_;
+  SingleSteps steps_;
   ForceDerivatives derivatives_;
   ForceDerivatives transmitted_, motors_;  ///< what loads gears
   SensorDerivatives sensors_;

@@ -21,11 +21,12 @@ class PerturbedRuns {
  public:
   PerturbedRuns(const PerturbedRun& trial, std::vector<PerturbedRun>& perturbed,
                 const Experiment& e, const Log& log, const Wiring& wiring)
-      : perturbed_(perturbed),
-        sensitivity_(trial.machine, wiring, Machines(perturbed), kPerturbation) {
+      : sensitivity_(trial.machine, wiring, Machines(perturbed), kPerturbation,
+                     Mirrored(perturbed)) {
     for (std::size_t k = 0; k < perturbed.size(); ++k) {
       const PerturbedRun& other = perturbed[k];
-      inputs_.emplace_back(*other.machine.model, e, log, wiring);
+      AddInputs(other.machine, e, log, wiring);
+      if (other.mirrored.model) AddInputs(other.mirrored, e, log, wiring);
       recorders_.emplace_back(*trial.machine.model, wiring, log.rows());
       if (sensitivity_.Covers(k))
         sensitivity_.Start(k, {Difference(other.q, trial.q), Difference(other.v, trial.v),
@@ -37,8 +38,7 @@ class PerturbedRuns {
     Hooks hooks;
     hooks.step = [this](const mjModel& m, mjData& d) { sensitivity_.Before(m, d); };
     hooks.row = [this](const mjModel& m, mjData& d, std::size_t row) {
-      for (std::size_t k = 0; k < perturbed_.size(); ++k)
-        inputs_[k].AtRow(*perturbed_[k].machine.data, row);  // its actuators are switched too
+      for (auto& [inputs, data] : inputs_) inputs.AtRow(*data, row);  // actuators are switched too
       if (closed_form_) sensitivity_.Observe(m, d, row, recorders_);
     };
     hooks.stepped = [this](const mjModel& m, mjData& d) {
@@ -60,10 +60,19 @@ class PerturbedRuns {
     for (const PerturbedRun& trial : trials) machines.push_back(&trial.machine);
     return machines;
   }
+  static std::vector<const ModelAndData*> Mirrored(const std::vector<PerturbedRun>& trials) {
+    std::vector<const ModelAndData*> machines;
+    for (const PerturbedRun& trial : trials)
+      machines.push_back(trial.mirrored.model ? &trial.mirrored : nullptr);
+    return machines;
+  }
+  void AddInputs(const ModelAndData& machine, const Experiment& e, const Log& log,
+                 const Wiring& wiring) {
+    inputs_.emplace_back(Inputs(*machine.model, e, log, wiring), machine.data.get());
+  }
 
-  std::vector<PerturbedRun>& perturbed_;
   StepSensitivity sensitivity_;
-  std::vector<Inputs> inputs_;
+  std::vector<std::pair<Inputs, mjData*>> inputs_;
   std::vector<Recorder> recorders_;
   bool closed_form_ = true;  ///< whether it has held so far
 };

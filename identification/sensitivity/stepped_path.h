@@ -11,6 +11,8 @@ namespace continuum {
 struct PerturbedRun {
   ModelAndData machine;
   std::vector<double> q, v, w, z;
+  /// Of a perturbed model whose difference has no closed form: its parameter moved the other way.
+  ModelAndData mirrored = {};
 };
 
 /// One log simulated as MuJoCo steps it, with the traces of the perturbed models.

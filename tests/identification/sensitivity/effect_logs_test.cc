@@ -38,7 +38,11 @@ class EffectLogsTest : public testing::Bench, public ::testing::WithParamInterfa
         "  - {name: j, target: 'joint:y1', attribute: armature, initial: 1e-4, lower: 0, upper: "
         "1}\n"
         "  - {name: kp, target: 'actuator:servo', attribute: kp, initial: 0.8, lower: 0, upper: "
-        "9}\n";
+        "9}\n"
+        "  - {name: link, target: 'body:link1', attribute: 'pos[2]', initial: -0.1, lower: -0.2, "
+        "upper: 0}\n"
+        "  - {name: hole, target: 'site:a0', attribute: 'pos[0]', initial: 0.03, lower: 0, upper: "
+        "0.1}\n";
     for (const auto& [key, range] : law.parameters) {
       const double middle = 0.4 * range.first + 0.6 * range.second;
       parameters += fmt::format(
