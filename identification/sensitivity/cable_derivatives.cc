@@ -11,39 +11,48 @@ namespace continuum {
 namespace {
 
 using Kind = Number::Kind;
-using Matrix3X = Eigen::Matrix3Xd;
+using Vector3 = Eigen::Vector3d;
 
-// Of a site in the world.
-Matrix3X PointTangents(const mjModel& m, const mjData& d, int site, const Tangents& position) {
-  Matrix3X point = Matrix3X::Zero(3, position.cols());
-  const Eigen::Vector3d at(d.site_xpos + 3 * site);
-  for (int i = LastDof(m, m.site_bodyid[site]); i >= 0; i = m.dof_parentid[i])
-    point.noalias() += PointJacobian(m, d, i, at) * position.row(i);
-  return point;
+// The last joint that moves what both joints move; −1: none.
+int Common(const mjModel& m, int a, int b) {
+  while (a != b) {
+    int& deeper = a > b ? a : b;
+    deeper = m.dof_parentid[deeper];
+  }
+  return a;
 }
 
-// Of the unit vector along a segment.
+// Along a segment; how a change of its direction along x follows that of where it ends.
 struct Direction {
-  Eigen::Vector3d u;
-  Matrix3X change;
+  Vector3 u;
+  double length;
+  Direction(const mjData& d, int near, int far)
+      : u(Vector3(d.site_xpos + 3 * far) - Vector3(d.site_xpos + 3 * near)),
+        length(std::max(u.norm(), mjMINVAL)) {
+    u /= length;
+  }
+  Vector3 Turned(const Vector3& x) const { return (x - u.dot(x) * u) / length; }
 };
-Direction DirectionOf(const mjData& d, int near, int far, const Matrix3X& near_change,
-                      const Matrix3X& far_change) {
-  const Eigen::Vector3d between =
-      Eigen::Vector3d(d.site_xpos + 3 * far) - Eigen::Vector3d(d.site_xpos + 3 * near);
-  const double length = std::max(between.norm(), mjMINVAL);
-  const Eigen::Vector3d u = between / length;
-  const Matrix3X change = (far_change - near_change) / length;
-  return {u, change - u * (u.transpose() * change)};
-}
 
-// Of the angle between two directions: sin(θ/2) = |b − a|/2.
-Eigen::RowVectorXd AngleTangents(const Direction& a, const Direction& b) {
-  const Eigen::Vector3d apart = b.u - a.u;
-  const double size = apart.norm();
-  if (size < 1e-12) return Eigen::RowVectorXd::Zero(a.change.cols());
-  const double cosine = 0.5 * (a.u + b.u).norm();
-  return apart.transpose() * (b.change - a.change) / (size * std::max(cosine, 1e-12));
+// Of the wrap angle at the second of three sites, sin(θ/2) = |b − a|/2: only joints between the
+// sites bend the cable there.
+Eigen::RowVectorXd AngleTangents(const mjModel& m, const mjData& d, const int* sites,
+                                 const Tangents& position) {
+  Eigen::RowVectorXd change = Eigen::RowVectorXd::Zero(position.cols());
+  const Direction a(d, sites[0], sites[1]), b(d, sites[1], sites[2]);
+  const double size = (b.u - a.u).norm(), cosine = 0.5 * (a.u + b.u).norm();
+  if (size < 1e-12) return change;
+  const Vector3 apart = (b.u - a.u) / (size * std::max(cosine, 1e-12));
+  const Vector3 before = a.Turned(apart), behind = b.Turned(apart);
+  const Vector3 along[] = {before, -before - behind, behind};
+  const auto last = [&](int k) { return LastDof(m, m.site_bodyid[sites[k]]); };
+  const int common = Common(m, Common(m, last(0), last(1)), last(2));
+  for (int k = 0; k < 3; ++k) {
+    const Vector3 at(d.site_xpos + 3 * sites[k]);
+    for (int i = last(k); i != common; i = m.dof_parentid[i])
+      change += along[k].dot(PointJacobian(m, d, i, at)) * position.row(i);
+  }
+  return change;
 }
 
 // Where nothing has friction the law asks nobody who slides: that goes by the speed.
@@ -130,14 +139,9 @@ void CableDerivatives::FollowBands(const mjModel& m, const mjData& d,
   for (int c = 0; c < law.geometry().cables(); ++c) {
     const std::vector<int>& sites = law.cables()[c].sites;
     const int first = law.geometry().first[c];
-    Direction before;
-    Matrix3X near = PointTangents(m, d, sites[0], position);
-    for (std::size_t k = 0; k + 1 < sites.size(); ++k) {
-      Matrix3X far = PointTangents(m, d, sites[k + 1], position);
-      Direction along = DirectionOf(d, sites[k], sites[k + 1], near, far);
-      if (k > 0) FollowBand(first + static_cast<int>(k), AngleTangents(before, along), numbers);
-      before = std::move(along), near = std::move(far);
-    }
+    for (std::size_t k = 1; k + 1 < sites.size(); ++k)
+      FollowBand(first + static_cast<int>(k), AngleTangents(m, d, &sites[k - 1], position),
+                 numbers);
   }
 }
 
