@@ -113,7 +113,7 @@ TEST_F(ByEquationTest, TheTruthExplainsTheMissingForceAndAnotherDoesNot) {
 
 TEST_F(ByEquationTest, OfSeveralShapesItFindsTheBest) {
   Pendulum truth;
-  truth.payload = 0.05;
+  truth.tau_c = 0.05;
   const Experiment e = Logs(truth, "dahl");
   const ModelSpec system = Model();
   const Problem null(e, system);

@@ -1,0 +1,28 @@
+#include "identification/diagnosis/search_rules.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace continuum {
+namespace {
+
+// Chi squared at two and at four degrees of freedom: exp(−x/2) and (1 + x/2) exp(−x/2).
+TEST(ChanceOfGain, IsTheTailOfChiSquaredOfAllFitsTogether) {
+  EXPECT_DOUBLE_EQ(ChanceOfGain(20, 2, 1), std::exp(-10));
+  EXPECT_DOUBLE_EQ(ChanceOfGain(20, 4, 1), 11 * std::exp(-10));
+  EXPECT_DOUBLE_EQ(ChanceOfGain(20, 2, 30), 30 * std::exp(-10));
+}
+
+TEST(ChanceOfGain, IsNeverTooSmallForAnOddNumber) {
+  EXPECT_GT(ChanceOfGain(9, 1, 1), std::erfc(std::sqrt(4.5)));  // of one degree of freedom
+}
+
+TEST(ChanceOfGain, IsOneWithoutAGain) {
+  EXPECT_EQ(ChanceOfGain(0, 1, 1), 1);
+  EXPECT_EQ(ChanceOfGain(-3, 2, 10), 1);
+  EXPECT_EQ(ChanceOfGain(1, 1, 100), 1);
+}
+
+}  // namespace
+}  // namespace continuum
