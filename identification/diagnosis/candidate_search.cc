@@ -11,6 +11,7 @@
 #include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/diagnosis/equation_error.h"
+#include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/lack_of_fit.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/quantisation.h"
@@ -21,13 +22,6 @@
 namespace continuum {
 namespace {
 constexpr int kDraws = 399;  // of rounding errors
-
-// A friction whose level may be constant, and one whose level is, at the same place.
-bool ContainsByCard(const Hypothesis& b, const Hypothesis& a) {
-  const EffectInfo &rich = EffectNamed(b.Card()), &plain = EffectNamed(a.Card());
-  return a.where == b.where && rich.coulomb_level && !rich.IsConstantFriction() &&
-         plain.IsConstantFriction();
-}
 
 bool FollowsTheSameMotion(const CandidateFitter& fitter, const CandidateResult& b,
                           const CandidateResult& a) {

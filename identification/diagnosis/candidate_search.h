@@ -110,6 +110,7 @@ class CandidateSearch {
   bool FallsAt(const Problem& fine, const CandidateResult& c, const Fitted& finer) const;
   void Continue(const Problem& problem, CandidateResult& c, double rival) const;
   void WidenRanges(CandidateResult& c, double rival) const;
+  void FitPlainer();
   void FinishAbandoned();
   std::vector<Problem::Vector> OtherStarts(const CandidateResult& c, std::size_t best,
                                            const ProjectedResidual& residual) const;

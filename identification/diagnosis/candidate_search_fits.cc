@@ -91,6 +91,7 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
       }
     });
     StopIfRequested();
+    FitPlainer();
     for (const CandidateResult* const c : wave) {
       if (!noise_.known() || !c->was_fitted) continue;
       rival = std::min(rival, c->fitted.fit.cost);
@@ -119,6 +120,28 @@ std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size
     if (fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out)) wave.push_back(&c);
   }
   return wave;
+}
+
+// A law that leads is no better than a plain one that it contains and that the screen has missed,
+// until that one was fitted as well: next to its end, whatever time is left.
+void CandidateSearch::FitPlainer() {
+  const auto by_cost = [](const CandidateResult& a, const CandidateResult& b) {
+    return b.was_fitted && (!a.was_fitted || b.fitted.fit.cost < a.fitted.fit.cost);
+  };
+  const auto lead = std::max_element(candidates.begin(), candidates.end(), by_cost);
+  if (lead == candidates.end() || !lead->was_fitted) return;
+  for (CandidateResult& c : candidates) {
+    if (c.was_fitted || !c.error.empty() || !IsPlainerThan(c.hypothesis, lead->hypothesis))
+      continue;
+    const auto start = StartFromRich(*lead, c.hypothesis);
+    if (!start) continue;
+    c.other_starts.push_back(*start);
+    try {
+      FitOne(c, kInfinity);
+    } catch (const Error& error) {
+      c.error = error.what();
+    }
+  }
 }
 
 bool CandidateSearch::TakesMainShare(const Fitted& fitted) const {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "binding/effect_catalog.h"
 #include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/search_rules.h"
@@ -59,10 +60,21 @@ std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
   return best;
 }
 
-// Each amplitude by itself, the others absent; sizes by least squares, of allowed signs.
+// A friction at its start may hold what moves, which is no measure of it: it is tried small as
+// well.
 std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Problem& problem,
                                                   std::size_t which) const {
+  constexpr double kSmall = 0.1;
   if (!any() || h.OnlyMeasured()) return {};
+  auto whole = AtShare(h, problem, which, 1);
+  if (EffectNamed(h.Card()).kind != EffectInfo::Kind::kFriction) return whole;
+  auto small = AtShare(h, problem, which, kSmall);
+  return small && (!whole || small->share > whole->share) ? small : whole;
+}
+
+// Each amplitude by itself, the others absent; sizes by least squares, of allowed signs.
+std::optional<EquationStart> EquationErrors::AtShare(const Hypothesis& h, const Problem& problem,
+                                                     std::size_t which, double share) const {
   const std::vector<double>& start = h.starts[which];
   const auto amplitudes = h.Amplitudes();
   const auto count = static_cast<Eigen::Index>(amplitudes.size());
@@ -71,8 +83,8 @@ std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Pro
   for (Eigen::Index a = 0; a < count; ++a) {
     const std::size_t only = amplitudes[static_cast<std::size_t>(a)];
     std::vector<double> own = start;
-    for (const std::size_t i : amplitudes) own[i] = h.AtShare(i, start[i], i == only ? 1 : 0);
-    const Vector d = Stacked(problem, Append(x_, own)) - missing_;
+    for (const std::size_t i : amplitudes) own[i] = h.AtShare(i, start[i], i == only ? share : 0);
+    const Vector d = (Stacked(problem, Append(x_, own)) - missing_) / share;
     if (d.allFinite() && d.norm() > kNothing * missing_.norm()) D.col(a) = d;
     probe.sign.push_back(h.OneSign(only) ? 1 : 0);
   }
@@ -82,7 +94,7 @@ std::optional<EquationStart> EquationErrors::From(const Hypothesis& h, const Pro
   std::vector<double> own = start;
   for (Eigen::Index a = 0; a < count; ++a) {
     const std::size_t i = amplitudes[static_cast<std::size_t>(a)];
-    own[i] = h.AtShare(i, start[i], StartShare(e.coefficients[a], 1));
+    own[i] = h.AtShare(i, start[i], StartShare(e.coefficients[a], share));
     own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);
   }
   Vector beside = x_;

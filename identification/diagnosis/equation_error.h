@@ -48,6 +48,8 @@ class EquationErrors {
   std::vector<double> PerLog(const Problem::Vector& r) const;
   Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x,
                           std::size_t thread = 0) const;
+  std::optional<EquationStart> AtShare(const Hypothesis& hypothesis, const Problem& problem,
+                                       std::size_t start, double share) const;
 
   const Experiment& experiment_;
   Problem::Vector x_;

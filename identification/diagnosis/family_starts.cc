@@ -33,8 +33,15 @@ std::vector<std::size_t> Heirs(const Hypothesis& rich, const std::string& name,
 
 }  // namespace
 
+bool ContainsByCard(const Hypothesis& b, const Hypothesis& a) {
+  const EffectInfo &rich = EffectNamed(b.Card()), &plain = EffectNamed(a.Card());
+  return a.where == b.where && rich.coulomb_level && !rich.IsConstantFriction() &&
+         plain.IsConstantFriction();
+}
+
 bool IsPlainerThan(const Hypothesis& plain, const Hypothesis& rich) {
-  return plain.where == rich.where && KinOf(plain.Card()).PlainerThan(KinOf(rich.Card()));
+  return plain.where == rich.where &&
+         (KinOf(plain.Card()).PlainerThan(KinOf(rich.Card())) || ContainsByCard(rich, plain));
 }
 
 std::vector<Problem::Vector> StartsFromPlain(const CandidateResult& plain, const Hypothesis& rich) {
@@ -57,6 +64,27 @@ std::vector<Problem::Vector> StartsFromPlain(const CandidateResult& plain, const
   add(rich.starts.front());
   for (const std::size_t s : rich.StartsOfShape(false)) add(rich.starts[s]);
   return starts;
+}
+
+std::optional<Problem::Vector> StartFromRich(const CandidateResult& rich, const Hypothesis& plain) {
+  const Hypothesis& law = rich.hypothesis;
+  const Problem::Vector found = rich.fitted.fit.x.tail(std::ssize(law.extra));
+  std::vector<double> own = plain.starts.front();
+  bool shared = false;
+  const auto take = [&](std::size_t i, std::size_t from) {
+    own[i] = std::clamp(found[static_cast<Eigen::Index>(from)], plain.extra[i].lower,
+                        plain.extra[i].upper);
+    shared = true;
+  };
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (std::size_t k = 0; k < law.extra.size(); ++k)
+      if (law.extra[k].name == plain.extra[i].name) take(i, k);
+  }
+  const std::size_t size = SizeOf(plain);
+  const std::string_view unit = UnitOf(plain, plain.extra[size].name);
+  if (const auto alike = Heirs(law, "", unit); !shared && !alike.empty()) take(size, alike.front());
+  if (!shared) return {};
+  return Append(rich.fitted.fit.x.head(rich.first_extra()), own);
 }
 
 }  // namespace continuum

@@ -89,7 +89,33 @@ TEST_F(FamilyStartsTest, LawsWithoutACommonSizeShareNoStart) {
   EXPECT_TRUE(StartsFromPlain(Fitted("pt1", 0.02), Named("pt2")).empty());
 }
 
+TEST_F(FamilyStartsTest, APlainLawBeginsWithTheLevelOfARichOne) {
+  const Hypothesis &rich = Named("position_friction"), &plain = Named("coulomb");
+  CandidateResult found{rich};
+  found.was_fitted = true;
+  std::vector<double> own(rich.extra.size(), 0.001);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    own[i] = rich.extra[i].name == "tau_c" ? kLevel : own[i];
+  found.fitted.fit.x = Append(1.5 * base_, own);
+  const auto start = StartFromRich(found, plain);
+  ASSERT_TRUE(start.has_value());
+  EXPECT_EQ(start->head(base_.size()), 1.5 * base_);
+  EXPECT_DOUBLE_EQ(Of(plain, *start, "tau_c"), kLevel);
+}
+
+// The level of Dahl's law is f.
+TEST_F(FamilyStartsTest, WithoutACommonNameTheUnitTellsTheLevel) {
+  CandidateResult found{Named("dahl")};
+  found.was_fitted = true;
+  std::vector<double> own;
+  for (const Parameter& p : found.hypothesis.extra) own.push_back(p.name == "f" ? kLevel : 100);
+  found.fitted.fit.x = Append(base_, own);
+  EXPECT_DOUBLE_EQ(Of(Named("coulomb"), *StartFromRich(found, Named("coulomb")), "tau_c"), kLevel);
+  EXPECT_FALSE(StartFromRich(found, Named("pt1")).has_value());
+}
+
 TEST_F(FamilyStartsTest, OnlyAFamilyHasPlainerLaws) {
+  EXPECT_TRUE(IsPlainerThan(Named("coulomb"), Named("load_friction")));  // contained, no kin
   EXPECT_TRUE(IsPlainerThan(Named("coulomb"), Named("dahl")));
   EXPECT_FALSE(IsPlainerThan(Named("dahl"), Named("coulomb")));
   EXPECT_FALSE(IsPlainerThan(Named("dahl"), Named("lugre")));  // as deep
