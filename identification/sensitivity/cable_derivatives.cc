@@ -55,10 +55,10 @@ Eigen::RowVectorXd AngleTangents(const mjModel& m, const mjData& d, const int* s
   return change;
 }
 
-// Where nothing has friction the law asks nobody who slides: that goes by the speed.
-int SideOf(const Bend& bend) { return bend.band > 0 ? bend.side : bend.speed > 0 ? -1 : 1; }
+// Where nothing has friction, as in a straight cable, the law leaves bends as they were: all slide
+// with the tension of the base.
+int SideOf(const Bend& bend) { return bend.band > 0 ? bend.side : 1; }
 
-// ... and all tensions are those of the base.
 double TensionOf(const CableFriction& law, std::size_t g) {
   const auto rough = [](const Bend& bend) { return bend.band > 0; };
   const Bend& bend = law.bends()[g];

@@ -77,6 +77,12 @@ CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector
   ratio_.assign(geometry_.segments(), 1);
 }
 
+// As parameters leave 0, contacts remember how far they gave way, which nobody knows at 0.
+std::string CableFriction::WhyNoSlopes(const mjModel&) const {
+  const bool none = std::all_of(p_.begin(), p_.end(), [](double p) { return p == 0; });
+  return none ? "without friction nobody knows which contacts would rest" : "";
+}
+
 bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                              std::span<double> force) {
   if (stage == Stage::kPassive) {

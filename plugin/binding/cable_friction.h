@@ -55,7 +55,7 @@ class CableFriction : public BoundLaw {
     int cable, begin, end;
   };
   // What the last evaluation found.
-  std::string WhyNoSlopes(const mjModel&) const override { return ""; }
+  std::string WhyNoSlopes(const mjModel&) const override;
   const std::vector<Cable>& cables() const { return cables_; }
   const CableGeometry& geometry() const { return geometry_; }
   const CableSliding& sliding() const { return sliding_; }

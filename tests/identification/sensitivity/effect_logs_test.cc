@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "identification/problem/problem.h"
@@ -13,6 +14,7 @@
 namespace continuum {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::RandomLaw;
 using testing::RandomNumbers;
 
@@ -44,11 +46,11 @@ class EffectLogsTest : public testing::Bench, public ::testing::WithParamInterfa
         "  - {name: hole, target: 'site:a0', attribute: 'pos[0]', initial: 0.03, lower: 0, upper: "
         "0.1}\n";
     for (const auto& [key, range] : law.parameters) {
-      const double middle = 0.4 * range.first + 0.6 * range.second;
+      const double middle = 0.4 * range.first + 0.6 * range.second, nothing = middle == 0;
       parameters += fmt::format(
           "  - {{name: {0}, target: 'plugin:law', attribute: {0}, initial: {1}, lower: {2}, upper: "
           "{3}}}\n",
-          key, middle, middle - 0.1 * std::abs(middle), middle + 0.2 * std::abs(middle));
+          key, middle, middle - 0.1 * std::abs(middle), middle + 0.2 * std::abs(middle) + nothing);
     }
     return Experiment::Read(
         Write("e.yaml",
@@ -74,23 +76,41 @@ class EffectLogsTest : public testing::Bench, public ::testing::WithParamInterfa
   }
 };
 
+// Differences over a share of the parameters' scales; at a bound one-sided to second order.
+Problem::Matrix Narrow(const Experiment& e, const ModelSpec& system, double share) {
+  Problem differences(e, system);
+  differences.Center();
+  const auto use = differences.AllLogs();
+  const auto x = differences.Start();
+  const auto r = differences.Residuals(x, use);
+  const auto over = [&](double reach) {
+    differences.DifferBy(reach);
+    return differences.Jacobian(x, r, use)[0];
+  };
+  Problem::Matrix slopes = over(share);
+  const Problem::Matrix wide = over(2 * share);
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    if (x[k] == differences.parameters()[k].lower) slopes.col(k) += slopes.col(k) - wide.col(k);
+  }
+  return slopes;
+}
+
 TEST_P(EffectLogsTest, HaveTheSensitivitiesOfNarrowDifferences) {
+  constexpr double kShare = 1e-6;
   const Experiment e = Read(GetParam());
   const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);
   ASSERT_EQ(problem.NoClosedForm(), "");
-  Problem differences(e, system);
-  differences.DifferBy(1e-6);
-  differences.Center();
   const auto use = problem.AllLogs();
   const auto x = problem.Start();
   const auto r = problem.Residuals(x, use);
   const std::size_t before = problem.evaluations();
-  const auto found = problem.Jacobian(x, r, use)[0], expected = differences.Jacobian(x, r, use)[0];
+  const auto found = problem.Jacobian(x, r, use)[0];
   EXPECT_EQ(problem.evaluations() - before, 1u);
+  const auto expected = Narrow(e, system, kShare);
   for (Eigen::Index k = 0; k < expected.cols(); ++k) {
     const double size = expected.col(k).cwiseAbs().maxCoeff();
-    const double step = std::abs(problem.StepOf(x, static_cast<std::size_t>(k), 1e-6));
+    const double step = std::abs(problem.StepOf(x, static_cast<std::size_t>(k), kShare));
     const double rounding = 1e-13 / step;  // of the differences
     EXPECT_GT(size, rounding) << problem.parameters()[k].name;
     EXPECT_LT((found.col(k) - expected.col(k)).cwiseAbs().maxCoeff(), 1e-5 * size + rounding)
@@ -98,7 +118,21 @@ TEST_P(EffectLogsTest, HaveTheSensitivitiesOfNarrowDifferences) {
   }
 }
 
+class NoFrictionTest : public EffectLogsTest {};
+
+TEST_P(NoFrictionTest, LeavesCablesToDifferences) {
+  const Experiment e = Read(GetParam());
+  const ModelSpec system = ModelSpec::Load(e.model);
+  EXPECT_THAT(Problem(e, system).NoClosedForm(), HasSubstr("without friction"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Capstan, NoFrictionTest,
+    ::testing::Values(RandomLaw{
+        "Capstan", "capstan", "<config key='tendon' value='ta'/>", {{"mu", {0, 0}}}}));
 INSTANTIATE_TEST_SUITE_P(Law, EffectLogsTest, ::testing::ValuesIn(testing::RandomLaws()),
+                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Nothing, EffectLogsTest, ::testing::ValuesIn(testing::LawsThatDoNothing()),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

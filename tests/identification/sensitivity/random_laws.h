@@ -181,4 +181,22 @@ inline std::vector<RandomLaw> RandomLaws() {
                 {{"A", {2e-5, 4e-5}}, {"x_m", {-1e-3, 1e-3}}, {"y_m", {-1e-3, 1e-3}}}}};
 }
 
+/// Laws at values at which they change nothing, as a search of causes meets them.
+inline std::vector<RandomLaw> LawsThatDoNothing() {
+  const std::string kJoints = "<config key='joint' value='x* y1'/>",
+                    kActuated = "<config key='joint' value='y0 x1 x2'/>",
+                    kCable = "<config key='tendon' value='tb'/>";
+  return {
+      RandomLaw{"Coulomb", "coulomb", kJoints, {{"tau_c", {0, 0}}}},
+      RandomLaw{"LoadFriction", "load_friction", kActuated, {{"tau_c", {0, 0}}, {"mu_l", {0, 0}}}},
+      RandomLaw{"CubicStiffness", "cubic_stiffness", kJoints, {{"k3", {0, 0}}}},
+      RandomLaw{"Dahl", "dahl", kJoints, {{"f", {0, 0}}}, "<config key='sigma' value='1'/>"},
+      RandomLaw{
+          "Maxwell", "maxwell", kJoints, {{"k_m", {0, 0}}}, "<config key='tau_m' value='0.1'/>"},
+      RandomLaw{
+          "Backlash", "backlash", "<config key='actuator' value='servo'/>", {{"gap", {0, 0}}}},
+      RandomLaw{"Slack", "slack", kCable, {{"length", {0, 0}}}},
+      RandomLaw{"TendonStretch", "tendon_stretch", kCable, {{"compliance", {0, 0}}}}};
+}
+
 }  // namespace continuum::testing
