@@ -52,8 +52,11 @@ std::vector<std::string> Doubts(const Diagnosis& d) {
   if (!d.noise.known()) {
     doubts.emplace_back("These logs do not show how large their noise is.");
   } else if (!d.verdict.complete || !d.noise_limited) {
-    doubts.push_back(fmt::format("The error with it is still {:.1f} times the noise.",
-                                 TimesFloor(d, d.after())));
+    constexpr double kAbove = 1.05;  // what one digit shows as more than noise
+    const double times = TimesFloor(d, d.after());
+    doubts.push_back(times > kAbove
+                         ? fmt::format("The error with it is still {:.1f} times the noise.", times)
+                         : "Its error is no larger than the noise, but does not look like it.");
   }
   if (const auto places = OpenPlaces(d); !places.empty())
     doubts.push_back(fmt::format("It fits as well at {}.", fmt::join(places, " and at ")));
