@@ -60,7 +60,8 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
 // As `identify` does, of many logs with those for a look, then with all and in units of the noise.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr int kIterations = 100;
-  const FitOptions options{.iterations = kIterations, .until = until};
+  constexpr double kNear = 1e-4;  // of the cost that a step gains: what follows goes on from there
+  const FitOptions options{.iterations = kIterations, .tolerance = kNear, .until = until};
   const SearchedFit found =
       FitBySearch(problem, problem.Start(), LogsForALook(*experiment), {}, options);
   return Fit(problem, found.fit.x, std::numeric_limits<double>::infinity(), false);

@@ -105,14 +105,19 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
 }
 
 // Those that are fitted beside each other, from the next one on: as many whatever the machine, as
-// what one reaches decides about those behind it. A richer law waits for the plain one of its
-// family, to begin where that has ended.
+// what one reaches decides about those behind it. Those that promise far less than the first wait
+// for what that reaches, and a richer law for the plain one of its family, to begin where that has
+// ended.
 std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size_t most,
                                                         std::size_t& next) {
+  constexpr double kAlike = 0.5;
+  const double most_explained = MostExplained();
   std::vector<CandidateResult*> wave;
   for (; next < candidates.size() && wave.size() < most; ++next) {
     CandidateResult& c = candidates[next];
     if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
+    if (!wave.empty() && Promise(c, most_explained) < kAlike * Promise(*wave[0], most_explained))
+      break;
     const bool waits = std::any_of(wave.begin(), wave.end(), [&](const CandidateResult* plain) {
       return IsPlainerThan(plain->hypothesis, c.hypothesis);
     });
