@@ -363,11 +363,17 @@ BaseSquares CandidateSearch::Base() const {
           base_.fitted->sensitivities.value().freedom / inflation_};
 }
 
+// Of the train logs or of those left out, whichever shows more: what else is wrong may hide in one
+// of them what the fit does in the other, and logs left out confirm a name later on.
 double CandidateSearch::ErrorShare(const Fitted& fitted) const {
   const double floor = std::hypot(noise_.rms, noise_.step);
   const auto above = [&](double error) { return std::pow(WithoutPart(error, floor), 2); };
-  const double before = above(base_.fitted->error.train);
-  return before > 0 ? 1 - above(fitted.error.train) / before : 1;
+  const auto share = [&](double before, double after) {
+    return above(before) > 0 ? 1 - above(after) / above(before) : 1;
+  };
+  const TwoErrors &before = base_.fitted->error, &after = fitted.error;
+  const double train = share(before.train, after.train);
+  return before.validate > 0 ? std::max(train, share(before.validate, after.validate)) : train;
 }
 
 std::vector<LikelihoodRecord> CandidateSearch::Records() const {
