@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
+
+#include "hidden_effects/outside/cases.h"
 
 namespace continuum::hidden {
 namespace {
@@ -148,6 +151,30 @@ void AddForOthers(std::vector<Gate>& gates) {
       {"ALateInputIsNotOnlyALateSensor", true, {White("servo", "dead_time", 2, 16)}, All<IsFound>});
 }
 
+// The case of the quick outside suite whose name begins like this.
+Case Outside(std::string_view name) {
+  const std::vector<Case> all = OutsideCases(true);
+  return *std::find_if(all.begin(), all.end(),
+                       [&](const Case& c) { return c.Name().starts_with(name); });
+}
+
+// Machines by other equations, with masses and lengths 1 % off, friction by other laws; every
+// effect of the catalog is a candidate.
+void AddForOutside(std::vector<Gate>& gates) {
+  gates.push_back(
+      {"AValveThatIsSlowerIsOfFirstOrder", true, {Outside("valve pt1")}, All<IsNamed>, true});
+  gates.push_back({"FrictionOfASmoothLawIsNotOneOfTheLoad",
+                   true,
+                   {Outside("pendulum coulomb tanh")},
+                   All<IsNamed>,
+                   true});
+  gates.push_back({"FrictionAndASlowValveAreBothNamed",
+                   true,
+                   {Outside("valve coulomb+pt1 tanh")},
+                   All<IsFound>,
+                   true});
+}
+
 }  // namespace
 
 const std::vector<Gate>& Gates() {
@@ -158,6 +185,7 @@ const std::vector<Gate>& Gates() {
       AddForNoise(noise, gates);
     AddForArm(gates);
     AddForOthers(gates);
+    AddForOutside(gates);
     return gates;
   }();
   return all;
