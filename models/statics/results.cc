@@ -62,6 +62,14 @@ void Results::Set(const numerics::Outcome& outcome, const std::string& status) {
   set("micros", outcome.micros);
 }
 
+void Results::Set(const numerics::Outcome& outcome, const Stability& stability) {
+  Set("why", outcome.ok() ? "" : outcome.why);
+  if (!outcome.ok()) return;
+  Set("stable", stability.stable() ? 1 : 0);
+  Set("unstable_directions", stability.unstable_directions);
+  Set("branch", Name(stability.branch));
+}
+
 std::string Results::Csv() const {
   std::string text;
   const auto line = [&](const auto& cells, const auto& write) {
@@ -87,6 +95,10 @@ std::string Results::Json() const {
 void Results::Write(const std::filesystem::path& path) const {
   RequireExtension(path, {".csv", ".json"}, "--out");
   WriteFile(path, path.extension() == ".csv" ? Csv() : Json());
+}
+
+std::vector<std::string> StabilityColumns() {
+  return {"stable", "unstable_directions", "branch", "why"};
 }
 
 std::vector<std::string> Numbered(const std::string& prefix, int count) {

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "models/statics/rising_load.h"
 #include "sim/numerics/solver.h"
 
 namespace continuum::statics {
@@ -31,6 +32,8 @@ class Results {
   void Set(const std::string& column, Cell cell);
   /// Sets `status`, `iterations`, `residual` and `micros`, those of them that are columns.
   void Set(const numerics::Outcome& outcome, const std::string& status);
+  /// Sets StabilityColumns(): of a case that failed `why` alone.
+  void Set(const numerics::Outcome& outcome, const Stability& stability);
 
   std::string Csv() const;
   std::string Json() const;
@@ -41,6 +44,9 @@ class Results {
   std::vector<std::string> columns_;
   std::vector<std::vector<Cell>> cells_;
 };
+
+/// `stable` (1 or 0), `unstable_directions`, `branch` and `why` (empty when ok) of a solved case.
+std::vector<std::string> StabilityColumns();
 
 /// The names `prefix1`, `prefix2`, .. `prefix<count>` that the contracts use for numbered columns.
 std::vector<std::string> Numbered(const std::string& prefix, int count);

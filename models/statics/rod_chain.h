@@ -1,0 +1,193 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
+
+#include "models/statics/block_tridiagonal.h"
+
+namespace continuum::statics {
+
+/// What a section answers to its strains zeta (curvature and twist) and its force n, both seen from
+/// the section, with derivatives.
+struct RodSection {
+  Eigen::Vector3d moment;   ///< M [N m]
+  Eigen::Vector3d stretch;  ///< Gamma = dp/ds, seen from the section
+  Eigen::Matrix3d moment_by_zeta, moment_by_n, stretch_by_zeta, stretch_by_n;
+};
+
+/// A rod clamped at s = 0 and free at its end, cut into equal pieces: the frames R_0 = 1, R_1, ..,
+/// R_N of its nodes are the unknowns. It says how stable an equilibrium of the whole rod is, and it
+/// can fall from one that is not.
+///
+/// Dead forces make the internal force F(s) known beforehand, so that the energy is a sum over
+/// pieces of h w(zeta, R^T F), with M = dw/dzeta and -Gamma = dw/dn. A turn phi(s) of the sections,
+/// in the base frame, R -> exp(phi) R, has
+///
+///   dzeta = R^T phi',  dn = R^T F x phi,  t = R Gamma,  m = R M
+///   g_i = m_i - m_i+1 + h/2 [(F x t)_i + (F x t)_i+1],  m_N+1 = t_N x P                     (1)
+///
+/// g_i is what turns node i back; (1) is m' = F x t. P: dead force times its lever beyond the tip,
+/// along the last tangent. Middles of pieces stand for pieces: the error falls with the square of
+/// their number.
+///
+/// Law: `static constexpr bool kShear` (false: Gamma is the axis), `length()`, `axis()`,
+/// `Force(s)` [N] of all loads beyond s in 0..1, `TipLever()` [N m], `elastic()`: dM/dzeta of the
+/// unloaded section, `Prepare(zeta)` with the strains of all pieces, `At(piece, zeta, n, section)`,
+/// false out of the domain.
+template <class Law>
+class RodChain {
+ public:
+  using Shape = std::vector<Eigen::Quaterniond>;  ///< N + 1 frames
+  using Step = Eigen::Matrix3Xd;                  ///< phi_1..phi_N [rad]
+
+  RodChain(Law& law, int pieces)
+      : law_(law),
+        pieces_(pieces),
+        h_(law.length() / pieces),
+        zeta_(3, pieces),
+        residual_(3, pieces),
+        stiffness_(pieces),
+        metric_(pieces) {}
+
+  int pieces() const { return pieces_; }
+
+  /// Whether the shape is in the domain; then residual() and tangents are its own.
+  bool Linearize(const Shape& shape) { return Assemble<true>(shape); }
+  bool ResidualAt(const Shape& shape) { return Assemble<false>(shape); }
+  const Step& residual() const { return residual_; }
+  /// Whether the shape is in the domain and its tangent with `shift` times the stiffness of the
+  /// unloaded rod is definite: Linearize and Definite at once, for little work.
+  bool DefiniteAt(const Shape& shape, double shift) {
+    shift_ = shift;
+    const bool inside = Assemble<true>(shape);
+    shift_ = 0;
+    return inside && stiffness_.NegativeDirections() == 0;
+  }
+
+  /// Negative eigenvalues of the tangent, and of the tangent with `shift` times the stiffness of
+  /// the unloaded rod added.
+  int UnstableDirections() const { return stiffness_.Plus(kNeutral, metric_).NegativeDirections(); }
+  bool Definite(double shift) const {
+    return stiffness_.Plus(shift + kNeutral, metric_).NegativeDirections() == 0;
+  }
+  Eigen::MatrixXd Dense() const { return stiffness_.Dense(); }
+  /// (tangent + shift unloaded) x = b.
+  Step Solve(double shift, const Step& b) const { return stiffness_.Plus(shift, metric_).Solve(b); }
+  Step Unloaded(const Step& x) const { return metric_.Times(x); }
+
+  Shape Moved(const Shape& shape, const Step& phi) const {
+    Shape moved = shape;
+    for (int i = 1; i <= pieces_; ++i) {
+      const Eigen::Vector3d half = 0.5 * phi.col(i - 1);
+      const Eigen::Quaterniond turn(1, half.x(), half.y(), half.z());
+      moved[At(i)] = (turn.normalized() * shape[At(i)]).normalized();
+    }
+    return moved;
+  }
+
+  /// Strains of the pieces [1/length], of the shape that was looked at last.
+  const Eigen::Matrix3Xd& zeta() const { return zeta_; }
+
+ private:
+  static constexpr double kNeutral = 1e-9;  // a turn about an axis of symmetry costs nothing
+
+  static std::size_t At(int i) { return static_cast<std::size_t>(i); }
+
+  static Eigen::Matrix3d Skew(const Eigen::Vector3d& a) {
+    Eigen::Matrix3d s;
+    s << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+    return s;
+  }
+
+  void FindStrains(const Shape& shape) {
+    for (int i = 0; i < pieces_; ++i) {
+      Eigen::Quaterniond turn = shape[At(i)].conjugate() * shape[At(i + 1)];
+      if (turn.w() < 0) turn.coeffs() *= -1;
+      const double sine = turn.vec().norm();
+      const double angle = 2 * std::atan2(sine, turn.w());
+      zeta_.col(i) = turn.vec() * ((sine > 1e-8 ? angle / sine : 2.0) / h_);
+    }
+  }
+
+  template <bool kTangent>
+  bool Assemble(const Shape& shape) {
+    FindStrains(shape);
+    if (!law_.Prepare(zeta_)) return false;
+    residual_.setZero();
+    if (kTangent) {
+      stiffness_.SetZero();
+      metric_.SetZero();
+    }
+    for (int i = 0; i < pieces_; ++i) {
+      if (!AddPiece<kTangent>(i, shape[At(i)], shape[At(i + 1)])) return false;
+    }
+    AddTip<kTangent>(shape.back());
+    return residual_.allFinite();
+  }
+
+  template <bool kTangent>
+  bool AddPiece(int i, const Eigen::Quaterniond& from, Eigen::Quaterniond to) {
+    if (from.dot(to) < 0) to.coeffs() *= -1;
+    const Eigen::Matrix3d R =
+        Eigen::Quaterniond(from.coeffs() + to.coeffs()).normalized().toRotationMatrix();
+    const Eigen::Vector3d F = law_.Force((i + 0.5) / pieces_);
+    RodSection section;
+    if (!law_.At(i, zeta_.col(i), R.transpose() * F, section)) return false;
+    const Eigen::Vector3d m = R * section.moment, t = R * section.stretch;
+    const Eigen::Vector3d push = 0.5 * h_ * F.cross(t);
+    residual_.col(i) += m + push;
+    if (i > 0) residual_.col(i - 1) += push - m;
+    if (kTangent) AddTangent(i, R, F, m, t, section);
+    return true;
+  }
+
+  // dm = A d + N a and h/2 F x dt = G d + H a for d = (phi_1 - phi_0)/h, a = (phi_0 + phi_1)/2.
+  void AddTangent(int i, const Eigen::Matrix3d& R, const Eigen::Vector3d& F,
+                  const Eigen::Vector3d& m, const Eigen::Vector3d& t, const RodSection& section) {
+    const auto turned = [&](const Eigen::Matrix3d& x) -> Eigen::Matrix3d {
+      return R * x * R.transpose();
+    };
+    const Eigen::Matrix3d by_F = Skew(F);
+    const Eigen::Matrix3d elastic = law_.elastic() / h_;
+    Eigen::Matrix3d A = turned(section.moment_by_zeta / h_ + shift_ * elastic), N = -0.5 * Skew(m);
+    Eigen::Matrix3d G = Eigen::Matrix3d::Zero(), H = -0.25 * h_ * by_F * Skew(t);
+    if constexpr (Law::kShear) {
+      N += 0.5 * turned(section.moment_by_n) * by_F;
+      G = 0.5 * by_F * turned(section.stretch_by_zeta);
+      H += 0.25 * h_ * by_F * turned(section.stretch_by_n) * by_F;
+    }
+    Couple(i, A + N + G + H, N - A + H - G, G + H - A - N, A - G + H - N, stiffness_);
+    if (shift_ != 0) return;
+    const Eigen::Matrix3d E = turned(elastic);
+    Couple(i, E, -E, -E, E, metric_);
+  }
+
+  // Blocks (row, column) of the piece's two ends.
+  void Couple(int i, const Eigen::Matrix3d& end_end, const Eigen::Matrix3d& end_start,
+              const Eigen::Matrix3d& start_end, const Eigen::Matrix3d& start_start,
+              BlockTridiagonal& matrix) const {
+    matrix.diagonal(i) += end_end;
+    if (i == 0) return;
+    matrix.lower(i) += end_start;
+    matrix.upper(i) += start_end;
+    matrix.diagonal(i - 1) += start_start;
+  }
+
+  template <bool kTangent>
+  void AddTip(const Eigen::Quaterniond& end) {
+    const Eigen::Vector3d P = law_.TipLever();
+    const Eigen::Vector3d t = end * law_.axis();
+    residual_.col(pieces_ - 1) += P.cross(t);
+    if (kTangent) stiffness_.diagonal(pieces_ - 1) -= Skew(P) * Skew(t);
+  }
+
+  Law& law_;
+  int pieces_;
+  double h_, shift_ = 0;
+  Eigen::Matrix3Xd zeta_, residual_;
+  BlockTridiagonal stiffness_, metric_;
+};
+
+}  // namespace continuum::statics
