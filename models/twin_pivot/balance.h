@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "models/twin_pivot/contact.h"
 #include "models/twin_pivot/joint.h"
 #include "models/twin_pivot/load.h"
 #include "models/twin_pivot/robot.h"
@@ -14,6 +15,12 @@ namespace continuum::twin_pivot {
 /// A load case made ready for evaluation: the condition is resolved into numbers.
 struct Task {
   Task(const Robot& robot, const Load& load, Method method);
+
+  /// The loads on the way from another task of this robot (share 0) to this one (1), with this
+  /// one's friction and reference.
+  Task Between(const Task& from, double share) const;
+  /// The same without any load.
+  Task Unloaded() const;
 
   const Robot& robot;
   Method method;
@@ -28,6 +35,7 @@ struct Task {
   /// even ones.
   std::vector<double> hole_y, hole_z;
   Eigen::MatrixXd reference;  ///< l_ref, joints x cables [m]
+  Eigen::MatrixXd slide;      ///< s of the contacts there
 
   bool HasFriction() const { return friction.a != 0 || friction.b != 0 || friction.c != 0; }
   /// Distance of cable j from the bending axis of joint m (0 = first), toward its +y.
@@ -40,13 +48,14 @@ struct Task {
 /// anchor.
 ///
 ///   F_1 = F_SC / (1 - s_0 w_1),  F_m+1 = F_m (1 + s_m w_m) / (1 - s_m w_m+1),
-///   s_m = tanh(sum over joints m+1..anchor of (l - l_ref) / eps)
+///   s_m = SlideFrom(s_ref, sum over joints m+1..anchor of (l - l_ref) / eps)
 ///
-/// @returns false when a contact would lock, s w >= 1.
+/// or s_m as in `frozen`, when given; `slide`, when given, gets s_m. @returns false when a contact
+/// would lock, s w >= 1.
 template <class T>
 bool CableForces(const Task& task, const std::vector<Joint<T>>& joint, double friction, double eps,
-                 std::vector<T>& force) {
-  using std::tanh;
+                 std::vector<T>& force, const Eigen::MatrixXd* frozen = nullptr,
+                 Eigen::MatrixXd* slide = nullptr) {
   force.assign(task.joints * task.cables, T(0));
   std::vector<T> w;
   for (const Joint<T>& at : joint) w.push_back(friction * FrictionShare(task.friction, at.beta));
@@ -63,7 +72,8 @@ bool CableForces(const Task& task, const std::vector<Joint<T>>& joint, double fr
     T carried = T(task.tension[j]);
     for (int m = 0; m < last; ++m) {
       if (slides) {
-        const T s = tanh(change[m] / eps);
+        const T s = frozen ? T((*frozen)(m, j)) : SlideFrom(task.slide(m, j), T(change[m] / eps));
+        if (slide) (*slide)(m, j) = Value(s);
         const T yield = 1.0 - s * w[m];
         if (!(Value(yield) > 0)) return false;
         if (m > 0) carried *= 1.0 + s * w[m - 1];
@@ -139,6 +149,7 @@ struct Balance {
   double load = 1;
   double friction = 1;
   double eps = 1e-6;
+  const Eigen::MatrixXd* frozen = nullptr;  ///< s of the contacts, whatever slides
 
   template <class T>
   bool operator()(const T* beta, T* f) const {
@@ -149,7 +160,7 @@ struct Balance {
       joint.emplace_back(task.robot, beta[m]);
     }
     std::vector<T> cable;
-    if (!CableForces(task, joint, friction, eps, cable)) return false;
+    if (!CableForces(task, joint, friction, eps, cable, frozen)) return false;
     Moments(joint, cable, f);
     return true;
   }

@@ -25,6 +25,8 @@ struct Load {
   Eigen::Vector3d gravity = {0, -9.81, 0};           ///< in the base frame [m/s^2]
   /// l_ref [m], joints x cables: the state from which the cables started to slide; empty: straight.
   Eigen::MatrixXd reference;
+  /// s of every contact in that state, -1..1, row m at disc m; empty: nothing has slid, 0.
+  Eigen::MatrixXd slide;
 };
 
 }  // namespace continuum::twin_pivot

@@ -8,6 +8,7 @@
 #include "error.h"
 #include "models/twin_pivot/balance.h"
 #include "models/twin_pivot/geometry.h"
+#include "models/twin_pivot/rising.h"
 #include "sim/io/decimal.h"
 #include "sim/io/file.h"
 #include "sim/numerics/continuation.h"
@@ -22,14 +23,6 @@ using Eigen::VectorXd;
 
 // A contact this wide [m] is no obstacle to Newton: cables move by about as much.
 constexpr double kWidest = 1e-3;
-
-numerics::Options Tolerances() {
-  numerics::Options options;
-  options.tolerance = 1e-13;
-  options.accept = 1e-10;
-  options.max_step = 1;
-  return options;
-}
 
 // Runs one stage from x; keeps the count of iterations, and x only when it succeeded.
 template <class Stage>
@@ -82,26 +75,103 @@ void RequirePositiveFriction(const Task& task, const VectorXd& beta) {
   }
 }
 
+// Whether the dead loads, all at the tip and along it, leave one equilibrium: below pi^2/4 EI/l^2
+// of a column with the joints' stiffness less that which bent cables take away, F L/12 each.
+bool FarFromBuckling(const Task& task) {
+  constexpr double kMost = 2;  // < pi^2/4
+  const Robot& robot = task.robot;
+  double weight = task.payload + task.joints * (task.m_D + task.m_NiTi) + task.cables * task.m_CL;
+  weight += task.cables * task.joints * task.rho * robot.L;
+  double tension = 0;
+  for (const double t : task.tension) tension += t;
+  const double pitch = robot.L + robot.h, length = task.joints * pitch;
+  const double stiffness = 2 * pitch * (robot.Stiffness() - tension * robot.L / 12);
+  const double force =
+      weight * task.gravity.norm() + task.force.norm() + task.moment.norm() / length;
+  return force * length * length < kMost * stiffness;
+}
+
+// At full load from x, whatever it is.
+bool FindAny(RisingSystem& system, VectorXd& x, VectorXd other) {
+  for (VectorXd* const trial : {&x, &other}) {
+    if (!system.Fall(1, 1, *trial).ok) continue;
+    x = *trial;
+    return true;
+  }
+  return false;
+}
+
+// Along the loads from where x is in balance; else whatever stands.
+void Follow(RisingSystem& system, const VectorXd& other, Solution& solution) {
+  const int spent = solution.outcome.iterations;
+  solution.stability = {};
+  solution.outcome = statics::FollowRisingLoad(system, solution.beta, solution.stability.branch);
+  solution.outcome.iterations += spent;
+  if (solution.outcome.ok() || !FindAny(system, solution.beta, other)) return;
+  solution.outcome.status = numerics::Status::kOk;
+  solution.outcome.why.clear();
+  solution.stability.branch = statics::Branch::kOther;
+}
+
+void Describe(const Task& task, Solution& solution) {
+  const Robot& robot = task.robot;
+  RequirePositiveFriction(task, solution.beta);
+  if (!solution.outcome.ok()) {
+    VectorXd f(task.joints);
+    const bool inside = Balance{task, 1, 1, robot.eps}(solution.beta.data(), f.data());
+    solution.outcome.residual = inside ? f.norm() : std::numeric_limits<double>::infinity();
+    return;
+  }
+  solution.tip = CentreLine(robot, solution.beta).back();
+  solution.length = CableLengths(robot, solution.beta);
+  solution.slide.setZero(task.joints, task.cables);
+  std::vector<double> force;
+  CableForces(task, JointsAt(robot, solution.beta), 1, robot.eps, force, nullptr, &solution.slide);
+  solution.tension = Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
+      force.data(), task.joints, task.cables);
+}
+
 }  // namespace
 
 Solution Solve(const Robot& robot, const Load& load, Method method,
                const std::optional<VectorXd>& start) {
   const Task task(robot, load, method);
   Solution solution;
-  solution.beta = start ? *start : VectorXd::Zero(task.joints);
-  solution.outcome = numerics::Timed([&] { return FindRoot(task, solution.beta); });
-  RequirePositiveFriction(task, solution.beta);
-  if (!solution.outcome.ok()) {
-    const auto f = Residual(robot, load, method, solution.beta);
-    solution.outcome.residual = f ? f->norm() : std::numeric_limits<double>::infinity();
-    return solution;
-  }
-  solution.tip = CentreLine(robot, solution.beta).back();
-  solution.length = CableLengths(robot, solution.beta);
-  std::vector<double> force;
-  CableForces(task, JointsAt(robot, solution.beta), 1, robot.eps, force);
-  solution.tension = Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
-      force.data(), task.joints, task.cables);
+  solution.outcome = numerics::Timed([&] {
+    const VectorXd straight = VectorXd::Zero(task.joints);
+    solution.beta = start ? *start : straight;
+    if (FarFromBuckling(task)) {
+      solution.outcome = FindRoot(task, solution.beta);
+      if (solution.outcome.ok()) {
+        const Balance balance{task, 1, 1, robot.eps};
+        solution.stability.unstable_directions = UnstableDirections(balance, solution.beta);
+        if (solution.stability.stable()) return solution.outcome;
+      }
+    }
+    const VectorXd other = solution.beta;
+    const Task unloaded = task.Unloaded();
+    RisingSystem system(unloaded, task);
+    solution.beta = straight;
+    Follow(system, other, solution);
+    return solution.outcome;
+  });
+  Describe(task, solution);
+  return solution;
+}
+
+Solution SolveFrom(const Robot& robot, const Load& earlier, const Solution& before, Load load,
+                   Method method) {
+  load.reference = before.length;
+  load.slide = before.slide;
+  const Task task(robot, load, method), from(robot, earlier, method);
+  Solution solution;
+  solution.outcome = numerics::Timed([&] {
+    RisingSystem system(from, task);
+    solution.beta = before.beta;
+    Follow(system, before.beta, solution);
+    return solution.outcome;
+  });
+  Describe(task, solution);
   return solution;
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "models/statics/rising_load.h"
 #include "models/twin_pivot/load.h"
 #include "models/twin_pivot/robot.h"
 #include "sim/numerics/solver.h"
@@ -26,17 +27,26 @@ struct Solution {
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< O_n [m]
   Eigen::MatrixXd tension;  ///< F_mj in every joint, joints x cables [N], 0 beyond the anchor
   Eigen::MatrixXd length;   ///< l_mj, joints x cables [m], 0 beyond the anchor
+  Eigen::MatrixXd slide;    ///< s of every contact, row m at disc m; 0 without friction
+  statics::Stability stability;
 };
 
-/// The angles at which every joint is in balance, |f|_2 <= 1e-10 N m.
+/// The angles at which every joint is in balance, |f|_2 <= 1e-10 N m, on the shape that the rising
+/// load reaches from straight (statics::FollowRisingLoad); never a saddle.
 ///
-/// Newton from `start` (straight when not given) without friction, then with contacts that turn
-/// within 1 mm, then within robot.eps; a stage that fails follows the path of roots from the one
-/// before (loads from 0, friction from 0, width from 1 mm).
+/// Loads far below buckling leave one equilibrium: Newton from `start` (straight when not given)
+/// without friction, then with contacts that turn within 1 mm, then within robot.eps; a stage that
+/// fails follows the path of roots from the one before (loads from 0, friction from 0, width from
+/// 1 mm). Other loads, and where this ends at a saddle, are followed from 0.
 /// @throws Error when the coefficient of friction is negative at an angle of the solution, or of
 /// the last root found when the friction then could not be followed.
 Solution Solve(const Robot& robot, const Load& load, Method method = Method::kVirtualWork,
                const std::optional<Eigen::VectorXd>& start = std::nullopt);
+
+/// The same from the state `before` that `earlier` has led to: loads go from those to these, and
+/// contacts begin as they were left. load.reference and load.slide are not used.
+Solution SolveFrom(const Robot& robot, const Load& earlier, const Solution& before, Load load,
+                   Method method = Method::kVirtualWork);
 
 /// f [N m] at given angles, for tests and comparisons. Empty when the angles are out of the domain
 /// (a joint bent by pi or more, or a contact that would lock: s w >= 1).

@@ -114,10 +114,29 @@ TEST_F(TwinPivotSolve, ResultsKeepFullPrecisionInCsvAndJson) {
   Cases("case,condition,F1,F2,F3,F4\n\"pull, up\",II,9,8,1,2\n");
   EXPECT_EQ(SolveTwinPivot(request_), 0);
   const CsvTable table = CsvTable::Read(request_.out);
-  const std::vector<std::string> columns = {
-      "case",   "condition", "status",  "iterations", "residual", "micros", "x",
-      "y",      "z",         "beta_1",  "beta_2",     "beta_3",   "beta_4", "beta_5",
-      "beta_6", "F_end_1",   "F_end_2", "F_end_3",    "F_end_4"};
+  const std::vector<std::string> columns = {"case",
+                                            "condition",
+                                            "status",
+                                            "iterations",
+                                            "residual",
+                                            "micros",
+                                            "x",
+                                            "y",
+                                            "z",
+                                            "stable",
+                                            "unstable_directions",
+                                            "branch",
+                                            "why",
+                                            "beta_1",
+                                            "beta_2",
+                                            "beta_3",
+                                            "beta_4",
+                                            "beta_5",
+                                            "beta_6",
+                                            "F_end_1",
+                                            "F_end_2",
+                                            "F_end_3",
+                                            "F_end_4"};
   EXPECT_EQ(table.columns(), columns);
   request_.out = folder_ / "out.json";
   EXPECT_EQ(SolveTwinPivot(request_), 0);
@@ -155,6 +174,28 @@ TEST_F(TwinPivotSolve, ReferenceIsTheSolutionOfAnEarlierRow) {
   EXPECT_EQ(SolveTwinPivot(request_), 0);
   const CsvTable table = CsvTable::Read(request_.out);
   EXPECT_GT(table.Number(1, "y"), table.Number(2, "y"));
+}
+
+TEST_F(TwinPivotSolve, AnAngleInDegreesAndAnImplausibleTensionAreNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  Cases("case,F1,F2,F3,F4\none,5,5,1,1\n");
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  EXPECT_TRUE(heard.empty());
+  Cases("case,F1,F2,F3,F4\none,3000,5,1,1\n");
+  SolveTwinPivot(request_);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_NE(heard[0].find("case 'one', cable 1: 3000 N is implausible"), std::string::npos);
+  heard.clear();
+  std::string text = ReadFile(request_.robot);
+  const std::size_t phi = text.find("-0.78539816");
+  text.replace(phi, 11, "-45");
+  request_.robot = folder_ / "degrees.yaml";
+  WriteFile(request_.robot, text);
+  Cases("case,F1,F2,F3,F4\none,5,5,1,1\n");
+  SolveTwinPivot(request_);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_NE(heard[0].find("-45 is taken as radians"), std::string::npos);
 }
 
 TEST_F(TwinPivotSolve, BadCasesAreRefusedWithLineAndColumn) {
