@@ -266,10 +266,23 @@ template bool RodBalance::operator()(const double* x, double* f) const;
 template bool RodBalance::operator()(const ceres::Jet<double, 4>* x,
                                      ceres::Jet<double, 4>* f) const;
 
-RodBalance::Shape RodBalance::Integrate(const Vector& x) const {
-  Shape shape{Eigen::Matrix3Xd(3, disks_), Eigen::Matrix3Xd::Zero(3, disks_), Vector::Zero()};
+const RodBalance::Shape& RodBalance::Integrate(const Vector& x) const {
+  for (const Integrated& known : integrated_) {
+    if (known.x == x && known.load == load_ && known.steps == steps_) return known.shape;
+  }
+  std::swap(integrated_[0], integrated_[1]);
+  Integrated& now = integrated_[0];
+  now.x = x;
+  now.load = load_;
+  now.steps = steps_;
+  Shape& shape = now.shape;
+  shape.disks.setZero(3, disks_);
+  shape.middles.setZero(3, disks_);
+  shape.frames.assign(1, Eigen::Quaterniond::Identity());
+  shape.frames.reserve(static_cast<std::size_t>(disks_ * steps_) + 1);
   const auto keep = [&](int step, const auto& y) {
     const int piece = (step - 1) / steps_, within = step - piece * steps_;
+    shape.frames.push_back(Eigen::Quaterniond(y.q[0], y.q[1], y.q[2], y.q[3]).normalized());
     if (2 * within == steps_)
       shape.middles.col(piece) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
     if (within == steps_) shape.disks.col(piece) = y.p * length_;

@@ -3,6 +3,9 @@
 #include <ceres/jet.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <limits>
 #include <vector>
 
 #include "models/tdcr/robot.h"
@@ -34,27 +37,23 @@ class RodBalance {
 
   /// All loads are multiplied by this from here on.
   void SetLoad(double load) { load_ = load; }
+  double load() const { return load_; }
   void SetSteps(int steps) { steps_ = steps; }
   int steps() const { return steps_; }
 
   template <class T>
   bool operator()(const T* x, T* f) const;
 
-  /// J_0^-1 J, J_0 that of the rod without loads: diag(1, 1, GJ/EI).
-  Eigen::Matrix3d RelativeToUnloaded(const Eigen::Matrix3d& jacobian) const {
-    Eigen::Matrix3d relative = jacobian;
-    relative.row(2) /= twist_;
-    return relative;
-  }
-
   struct Shape {
     Eigen::Matrix3Xd disks;  ///< O_1..O_n [m]
     /// kappa_x = u_y, kappa_y = -u_x, tau in the middles [1/m]; for an even number of steps.
     Eigen::Matrix3Xd middles;
-    Eigen::Vector3d residual;  ///< R nu(1)
+    std::vector<Eigen::Quaterniond> frames;  ///< R at the ends of all steps, from R(0) = 1
+    Eigen::Vector3d residual = Eigen::Vector3d::Zero();  ///< R nu(1)
     bool valid = false;
   };
-  Shape Integrate(const Vector& x) const;
+  /// What was integrated last is not integrated again.
+  const Shape& Integrate(const Vector& x) const;
 
  private:
   // kRubbing: tendons whose tension falls along the rod, at most; 0 without friction.
@@ -85,6 +84,14 @@ class RodBalance {
   std::vector<int> direction_;
   Eigen::Vector3d natural_;  ///< u of the rod when nothing acts
   Eigen::Vector3d tip_force_, disk_weight_, rod_weight_;
+
+  struct Integrated {
+    Vector x = Vector::Constant(std::numeric_limits<double>::quiet_NaN());
+    double load = 0;
+    int steps = 0;
+    Shape shape;
+  };
+  mutable std::array<Integrated, 2> integrated_;  ///< the last two
 };
 
 }  // namespace continuum::tdcr

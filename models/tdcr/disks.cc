@@ -373,14 +373,23 @@ bool DiskBalance<C>::Jacobian(const Vector& x, Vector& f, Matrix& jacobian) cons
 }
 
 template <int C>
-typename DiskBalance<C>::Matrix DiskBalance<C>::RelativeToUnloaded(const Matrix& jacobian) const {
-  Matrix relative = jacobian;
-  for (int i = 0; i < unknowns(); i += 3) {  // J_0 = (e_y, -e_x, -e_z/(1 + nu)) in every block
-    relative.row(i) = -jacobian.row(i + 1);
-    relative.row(i + 1) = jacobian.row(i);
-    relative.row(i + 2) = -(1 + robot_.nu) * jacobian.row(i + 2);
+typename DiskBalance<C>::Matrix DiskBalance<C>::Stiffness(const Matrix& relative) const {
+  Matrix stiffness = relative;
+  if constexpr (C != Eigen::Dynamic) {
+    double first = 0, both = 0, last = 0;  // sums of the products of the ends' shares
+    for (int i = 1; i <= robot_.disks; ++i) {
+      const double w = Fraction(i, robot_.disks);
+      first += (1 - w) * (1 - w) / robot_.disks;
+      both += w * (1 - w) / robot_.disks;
+      last += w * w / robot_.disks;
+    }
+    stiffness.template topRows<3>() =
+        first * relative.template topRows<3>() + both * relative.template bottomRows<3>();
+    stiffness.template bottomRows<3>() =
+        both * relative.template topRows<3>() + last * relative.template bottomRows<3>();
   }
-  return relative;
+  for (int i = 2; i < unknowns(); i += 3) stiffness.row(i) /= 1 + robot_.nu;
+  return stiffness;
 }
 
 template class DiskBalance<6>;

@@ -79,8 +79,22 @@ class DiskBalance {
   int unknowns() const { return C == Eigen::Dynamic ? 3 * robot_.disks : C; }
   bool operator()(const double* x, double* f) const;
   bool Jacobian(const Vector& x, Vector& f, Matrix& jacobian) const;
-  /// J_0^-1 J, J_0 that of the rod without loads.
-  Matrix RelativeToUnloaded(const Matrix& jacobian) const;
+  /// J_0^-1 J or J_0^-1 f, J_0 that of the rod without loads: (e_y, -e_x, -e_z/(1 + nu)) in every
+  /// block.
+  template <class M>
+  M RelativeToUnloaded(const M& rows) const {
+    M relative = rows;
+    for (int i = 0; i < unknowns(); i += 3) {
+      relative.row(i) = -rows.row(i + 1);
+      relative.row(i + 1) = rows.row(i);
+      relative.row(i + 2) = -(1 + robot_.nu) * rows.row(i + 2);
+    }
+    return relative;
+  }
+  /// The stiffness of the whole segment over EI/L for a tangent over that without loads:
+  /// generalized forces are sums over arcs, which for C = 6 share the two ends' curvatures
+  /// linearly.
+  Matrix Stiffness(const Matrix& relative) const;
   /// Curvatures of the arcs [1/m], 3 x n.
   Eigen::Matrix3Xd Curvatures(const Vector& x) const;
 

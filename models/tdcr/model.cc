@@ -5,11 +5,7 @@
 #include "error.h"
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
-#include "sim/numerics/continuation.h"
-#include "sim/numerics/decompositions.h"
-#include "sim/numerics/levenberg_marquardt.h"
-#include "sim/numerics/linearize.h"
-#include "sim/numerics/newton.h"
+#include "models/tdcr/equilibrium.h"
 #include "sim/numerics/solver.h"
 
 namespace continuum::tdcr {
@@ -17,122 +13,19 @@ namespace {
 
 using numerics::Outcome;
 
-numerics::Options Limits() {
-  numerics::Options options;
-  options.tolerance = 1e-12;
-  options.accept = 5e-10;
-  options.max_step = 6;  // radians over the whole rod
-  return options;
-}
-
-// A root at full load from wherever x is: damped Newton, then least squares polished by Newton.
-template <class Balance, int N>
-Outcome Search(const Balance& balance, Eigen::Matrix<double, N, 1>& x) {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  const Vector begin = x;
-  Outcome outcome = numerics::Newton(balance, x, Limits());
-  if (outcome.ok()) return outcome;
-  x = begin;
-  numerics::Options options = Limits();
-  options.max_iterations = 300;
-  const int before = outcome.iterations;
-  outcome = numerics::LevenbergMarquardt<Vector>(balance, x, x.size(), options);
-  outcome.iterations += before;
-  if (outcome.residual <= options.tolerance) return outcome;
-  const int spent = outcome.iterations;
-  outcome = numerics::Newton(balance, x, Limits());
-  outcome.iterations += spent;
-  return outcome;
-}
-
-// Whether the stiffness is positive: J relative to the unloaded rod has no eigenvalue to the left
-// of zero. It starts as the identity and stays so on a path of equilibria without a singular point.
-template <class Balance, int N>
-bool Stable(const Balance& balance, const Eigen::Matrix<double, N, 1>& x) {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  using Matrix = Eigen::Matrix<double, N, N>;
-  Vector f(x.size());
-  Matrix jacobian(x.size(), x.size());
-  if (!numerics::Linearize(balance, x, f, jacobian)) return false;
-  return LeastRealEigenvalue(balance.RelativeToUnloaded(jacobian)) > -0.01;
-}
-
-constexpr double kOnTheWay = 1e-6;  // of EI/L: enough to tell branches apart
-
-// The path of equilibria from zero load. Corrector steps can cross to an unstable branch where a
-// pitchfork is close: then again with a look at every step.
-template <class Balance, int N>
-Outcome FollowLoads(Balance& balance, Eigen::Matrix<double, N, 1>& x) {
-  const auto at = [&](double load) -> const Balance& {
-    balance.SetLoad(load);
-    return balance;
-  };
-  const auto stable = [&](const auto& trial) { return Stable(balance, trial); };
-  numerics::PathOptions path;
-  path.tolerance = kOnTheWay;
-  Outcome outcome = numerics::Continue(at, x, Limits(), path);
-  if (!outcome.ok() || !stable(x)) {
-    const int spent = outcome.iterations;
-    x.setZero();
-    path.first_step = path.largest_step = 0.05;
-    outcome = numerics::Continue(at, x, Limits(), path, stable);
-    outcome.iterations += spent;
-  }
-  balance.SetLoad(1);
-  return outcome;
-}
-
-template <class Balance, int N>
-Outcome Equilibrium(Balance& balance, Eigen::Matrix<double, N, 1>& x, bool direct,
-                    const Eigen::VectorXd* start) {
-  int iterations = 0;
-  Outcome outcome;
-  const auto done = [&] {
-    iterations += outcome.iterations;
-    outcome.iterations = iterations;
-    return outcome.ok();
-  };
-  if (start != nullptr && start->size() == x.size()) {
-    x = *start;
-    outcome = numerics::Newton(balance, x, Limits());
-    if (done()) return outcome;
-    x.setZero();
-  }
-  if (direct) {
-    outcome = numerics::Newton(balance, x, Limits());
-    if (done()) return outcome;
-    x.setZero();
-  }
-  outcome = FollowLoads(balance, x);
-  if (done()) return outcome;
-  outcome = Search(balance, x);
-  if (done()) return outcome;
-  x.setZero();
-  outcome = Search(balance, x);
-  done();
-  if (!outcome.ok() && !std::isfinite(outcome.residual)) {
-    const Eigen::Matrix<double, N, 1> straight = Eigen::Matrix<double, N, 1>::Zero(x.size());
-    Eigen::Matrix<double, N, 1> f = straight;
-    outcome.residual = numerics::NormAt(balance, straight, f);
-  }
-  return outcome;
-}
-
-bool Direct(const Robot& robot, const Loads& loads) {
-  return loads.DeadForce(robot) * robot.length / robot.moment() < kOneEquilibrium;
-}
-
 template <int C>
 Solution SolveDisks(const Robot& robot, const Loads& loads, const Eigen::VectorXd* start) {
   Solution solution;
   solution.outcome = numerics::Timed([&] {
     DiskBalance<C> balance(robot, loads);
     typename DiskBalance<C>::Vector x = DiskBalance<C>::Vector::Zero(balance.unknowns());
-    const Outcome outcome = Equilibrium(balance, x, Direct(robot, loads), start);
+    const Found found = FindEquilibrium<C>(robot, loads, balance, x, start);
+    solution.stability = found.stability;
+    balance.SetLoad(1);
     solution.x = x;
     solution.u = balance.Curvatures(x);
     solution.disks = Positions(robot.arc(), solution.u);
-    return outcome;
+    return found.outcome;
   });
   return solution;
 }
@@ -148,7 +41,10 @@ Solution SolveRod(const Robot& robot, const Loads& loads, bool friction,
   solution.outcome = numerics::Timed([&] {
     RodBalance balance(robot, loads, friction, Steps(robot.disks));
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    Outcome outcome = Equilibrium(balance, x, Direct(robot, loads), start);
+    const Found found = FindEquilibrium(robot, loads, balance, friction, x, start);
+    solution.stability = found.stability;
+    Outcome outcome = found.outcome;
+    balance.SetLoad(1);
     for (int refinement = 0; outcome.ok(); ++refinement) {
       const int steps = balance.steps();
       const auto coarse = balance.Integrate(x);
@@ -165,7 +61,7 @@ Solution SolveRod(const Robot& robot, const Loads& loads, bool friction,
         break;
       }
       const int spent = outcome.iterations;
-      outcome = Search(balance, x);
+      outcome = Polish(balance, x);
       outcome.iterations += spent;
     }
     solution.x = x;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "models/statics/rising_load.h"
 #include "models/tdcr/robot.h"
 #include "sim/numerics/solver.h"
 
@@ -18,6 +19,7 @@ Method ParseMethod(const std::string& name);
 
 struct Solution {
   numerics::Outcome outcome;
+  statics::Stability stability;
   Eigen::VectorXd x;       ///< the unknowns of the method, for a warm start
   Eigen::Matrix3Xd u;      ///< kappa_x, kappa_y, tau of arcs 1..n [1/m]
   Eigen::Matrix3Xd disks;  ///< O_1..O_n [m], base frame
@@ -25,14 +27,12 @@ struct Solution {
 
 /// The equilibrium that is reached by raising all loads together from zero.
 ///
-/// Without `start`: from the straight rod. Dead forces below kOneEquilibrium EI/L^2 leave one
+/// Without `start`: from the straight rod. Dead forces below 2.4 EI/L^2 leave one
 /// equilibrium and damped Newton finds it; above, the path of equilibria is followed from zero
-/// load. With `start` (x of a neighbouring case): Newton from there, and as above when that fails.
-/// When the path has an end (the rod snaps through), an equilibrium at full load is sought from
-/// there. u and disks are only valid when outcome.ok().
+/// load, and where it ends the shape falls to the next stable one (statics::FollowRisingLoad). With
+/// `start` (x of a neighbouring case): Newton from there, and as above when that fails or ends at a
+/// saddle. u and disks are only valid when outcome.ok(); then the shape is stable.
 Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
                    const Eigen::VectorXd* start = nullptr);
-
-inline constexpr double kOneEquilibrium = 2.4;  // Euler's clamped column: pi^2/4
 
 }  // namespace continuum::tdcr

@@ -130,7 +130,7 @@ Robot ReadRobot(const Yaml& file) {
 }
 
 std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
-  RejectMisspelt(table, robot.tendons);
+  RequireKnownCaseColumns(table, robot.tendons);
   std::vector<std::string> needed{"case", "fx", "fy", "fz"};
   for (int k = 1; k <= robot.tendons; ++k) needed.push_back("T" + std::to_string(k));
   HasVector(table, needed);

@@ -19,6 +19,7 @@
 #include "models/tdcr/fit.h"
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/model.h"
+#include "models/tdcr/plausible.h"
 
 namespace continuum {
 namespace {
@@ -44,6 +45,7 @@ void Refuse(bool given, const std::string& option, const std::string& job) {
 std::vector<std::string> Columns(int disks) {
   std::vector<std::string> columns{"case",   "status", "iterations", "residual",
                                    "micros", "x",      "y",          "z"};
+  for (const auto& column : statics::StabilityColumns()) columns.push_back(column);
   for (int i = 1; i <= disks; ++i) {
     for (const char* axis : {"x", "y", "z"}) columns.push_back(fmt::format("{}_{}", axis, i));
   }
@@ -100,17 +102,17 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
   AddErrorColumns(solved, robot.disks, columns);
   const auto failed = [](const Solved& s) { return !s.solution.outcome.ok(); };
   const bool all = std::none_of(solved.begin(), solved.end(), failed);
-  if (!all) columns.emplace_back("why");
   statics::Results results(columns);
   for (const Solved& s : solved) {
     const bool ok = s.solution.outcome.ok();
     results.Row();
     results.Set("case", s.name);
     results.Set(s.solution.outcome, ok ? "ok" : "no_convergence");
-    if (ok) {
-      AddShape(robot, s, results);
-    } else {
+    if (ok) AddShape(robot, s, results);
+    if (request.method == "fit") {
       results.Set("why", s.solution.outcome.why);
+    } else {
+      results.Set(s.solution.outcome, s.solution.stability);
     }
   }
   results.Write(request.out);
@@ -118,14 +120,10 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
   return all ? 0 : 1;
 }
 
-void Warn(const SolveRequest& request, const std::vector<std::string>& sentences) {
-  for (const auto& sentence : sentences) request.warn(sentence);
-}
-
 std::vector<Case> ReadInput(const SolveRequest& request, const Robot& robot) {
   const CsvTable table = CsvTable::Read(request.input);
   auto cases = ReadCases(table, robot);
-  Warn(request, UnusedCaseColumns(table, robot.tendons));
+  WarnOfImplausibleCases(request, table, robot, cases);
   return cases;
 }
 
@@ -146,8 +144,8 @@ void WarnOfFarPoints(const SolveRequest& request, const Robot& robot,
 std::vector<Measured> ReadMeasurements(const SolveRequest& request, const Robot& robot) {
   if (request.measured.empty()) return {};
   const CsvTable table = CsvTable::Read(request.measured);
+  RequireKnownMeasuredColumns(table, robot.disks);
   auto measured = ReadMeasured(table, robot.disks);
-  Warn(request, UnusedMeasuredColumns(table, robot.disks));
   WarnOfFarPoints(request, robot, measured);
   return measured;
 }
@@ -299,7 +297,8 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
 int SolveTdcr(const SolveRequest& request) {
   const Yaml file = Yaml::Read(request.robot);
   const Robot robot = ReadRobot(file);
-  Warn(request, UnusedKeys(file));
+  RequireKnownKeys(file);
+  WarnOfImplausibleRobot(request, file, robot);
   const std::string method = request.method.empty() ? "eas" : request.method;
   Refuse(request.sensitivity, "--sensitivity", "the robot tdcr");
   Need(request.out, "--out", "the results");
@@ -313,8 +312,9 @@ int SolveTdcr(const SolveRequest& request) {
     }
   }
   if (request.calibrate) {
-    if (method != "eas" && method != "pcca" && method != "crt") {
-      throw Error::Input("--method", "eas, pcca or crt with --calibrate", "'" + method + "'");
+    if (method == "fit") {
+      throw Error::Input("--method", "eas, pcca, crt or crt_friction with --calibrate",
+                         "'" + method + "'");
     }
     return CalibrateRobot(request, file, robot, ParseMethod(method));
   }

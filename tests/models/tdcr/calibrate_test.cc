@@ -72,5 +72,34 @@ TEST(TdcrCalibrate, StandardErrorsCoverTheTruthOfNoisyTips) {
   for (const double count : covered) EXPECT_GE(count, 50);
 }
 
+// Shapes of the rod with friction, 0.04 mm of noise: that model finds E and mu again, where models
+// without it take friction for stiffness.
+TEST(TdcrCalibrate, TheRodWithFrictionFindsItsFriction) {
+  Robot nominal = ReadRobot(Yaml::Read(CONTINUUM_SOURCE "/models/tdcr/tdcr.yaml"));
+  Robot truth = nominal;
+  truth.E = 51e9;
+  truth.mu = 0.15;
+  const std::vector<Case> cases = RandomCases(nominal);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 4e-5);
+  std::vector<Measured> measured;
+  for (const Case& c : cases) {
+    Loads loads = c.loads;
+    loads.mu = truth.mu;
+    const Solution s = SolveCase(truth, loads, Method::kCrtFriction);
+    ASSERT_TRUE(s.outcome.ok());
+    measured.push_back({c.name, false, s.disks});
+    for (double& x : measured.back().disks.reshaped()) x += noise(random);
+  }
+  nominal.E = 60e9;
+  nominal.mu = 0.1;
+  const Calibration c =
+      Calibrate(nominal, Method::kCrtFriction, Match(cases, measured, "synthetic"), "synthetic");
+  EXPECT_NEAR(c.robot.E, truth.E, 1e-3 * truth.E);
+  EXPECT_NEAR(c.robot.mu, truth.mu, 2e-3);
+  EXPECT_LT(std::abs(c.robot.E - truth.E), 3 * c.standard[0]);
+  EXPECT_LT(std::abs(c.robot.mu - truth.mu), 3 * c.standard[4]);
+}
+
 }  // namespace
 }  // namespace continuum::tdcr

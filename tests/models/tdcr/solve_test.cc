@@ -77,10 +77,13 @@ TEST_F(TdcrSolve, WritesTheContractsColumnsAndEchoesTheCases) {
     EXPECT_EQ(SolveTdcr(request_), 0);
     const CsvTable table = CsvTable::Read(request_.out);
     const auto& columns = table.columns();
-    ASSERT_EQ(columns.size(), 8u + 27 + 27);
-    EXPECT_THAT(std::vector(columns.begin(), columns.begin() + 11),
+    ASSERT_EQ(columns.size(), 12u + 27 + 27);
+    EXPECT_THAT(std::vector(columns.begin(), columns.begin() + 15),
                 testing::ElementsAre("case", "status", "iterations", "residual", "micros", "x", "y",
-                                     "z", "x_1", "y_1", "z_1"));
+                                     "z", "stable", "unstable_directions", "branch", "why", "x_1",
+                                     "y_1", "z_1"));
+    EXPECT_EQ(table.Number(0, "stable"), 1);
+    EXPECT_EQ(table.Text(0, "branch"), "rising");
     EXPECT_EQ(columns.back(), "tau_9");
     EXPECT_EQ(table.Text(1, "case"), "b, c");
     EXPECT_EQ(table.Text(0, "status"), "ok");
@@ -154,20 +157,41 @@ TEST_F(TdcrSolve, RepeatedAndMisplacedKeysAreNamedWithTheirLine) {
               testing::AllOf(HasSubstr("robot.yaml:8"), HasSubstr("'unti'")));
 }
 
-// The format allows more of them, for other readers; nobody should believe that they act.
-TEST_F(TdcrSolve, KeysAndColumnsThatAreNotUsedAreNamed) {
+TEST_F(TdcrSolve, KeysAndColumnsThatNothingReadsAreRefused) {
   std::vector<std::string> heard;
   request_.warn = [&](const std::string& text) { heard.push_back(text); };
   request_.input = Write("cases.csv", "case,T1,T2,T3,fx,fy,fz\na,1,0,0,0,0,0\n");
   EXPECT_EQ(SolveTdcr(request_), 0);
   EXPECT_THAT(heard, testing::IsEmpty());
-  request_.robot = Write("robot.yaml", std::string(kRobot) + "colour: red\n");
-  request_.input = Write("cases.csv", "case,T1,T2,T3,fx,fy,fz,note,day\na,1,0,0,0,0,0,x,1\n");
+  std::filesystem::remove(request_.out);
+  EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,note\na,1,0,0,0,0,0,x\n"),
+              testing::AllOf(HasSubstr("cases.csv:1"), HasSubstr("'note'")));
+  request_.input = Write("cases.csv", "case,T1,T2,T3,fx,fy,fz\na,1,0,0,0,0,0\n");
   request_.measured = Write("measured.csv", "case,x_9,y_9,z_9,who\na,0,0,0.13,me\n");
-  EXPECT_EQ(SolveTdcr(request_), 0);
-  EXPECT_THAT(heard, testing::ElementsAre(HasSubstr("robot.yaml:15: colour: not used"),
-                                          HasSubstr("cases.csv:1: not used: 'note', 'day'"),
-                                          HasSubstr("measured.csv:1: not used: 'who'")));
+  EXPECT_THAT(Message(), testing::AllOf(HasSubstr("measured.csv:1"), HasSubstr("'who'")));
+  request_.measured.clear();
+  request_.robot = Write("robot.yaml", std::string(kRobot) + "colour: red\n");
+  EXPECT_THAT(Message(), testing::AllOf(HasSubstr("robot.yaml:15"), HasSubstr("colour")));
+}
+
+TEST_F(TdcrSolve, ImplausibleValuesAreNamedWithTheirRange) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  std::string text = kRobot;
+  const std::string diameter = text.substr(text.find("diameter: "), 10);
+  text.replace(text.find(diameter), diameter.size(), "diameter: 0.99  # ");
+  request_.robot = Write("robot.yaml", text);
+  request_.input = Write("cases.csv", std::string(kHeader) + "a,1,0,0,0,0,0\n");
+  SolveTdcr(request_);
+  ASSERT_EQ(heard.size(), 1u);
+  EXPECT_THAT(heard[0], testing::AllOf(HasSubstr("robot.yaml:"), HasSubstr("diameter: 0.99 m is"),
+                                       HasSubstr("expected 1e-05 to 0.014 m")));
+  heard.clear();
+  request_.robot = Write("robot.yaml", kRobot);
+  request_.input = Write("cases.csv", std::string(kHeader) + "a,3000,0,0,0,0,0\n");
+  SolveTdcr(request_);
+  ASSERT_EQ(heard.size(), 1u);
+  EXPECT_THAT(heard[0], testing::AllOf(HasSubstr("cases.csv:2, column 'T1'"), HasSubstr("3000 N")));
 }
 
 TEST_F(TdcrSolve, WrongUseIsRefused) {

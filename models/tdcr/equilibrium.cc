@@ -1,0 +1,298 @@
+#include "models/tdcr/equilibrium.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "models/statics/dense_system.h"
+#include "models/tdcr/rod_law.h"
+#include "sim/numerics/linearize.h"
+#include "sim/numerics/newton.h"
+
+namespace continuum::tdcr {
+namespace {
+
+using numerics::Outcome;
+
+numerics::Options Limits() {
+  numerics::Options options;
+  options.tolerance = 1e-12;
+  options.accept = 5e-10;
+  options.max_step = 6;  // radians over the whole rod
+  return options;
+}
+
+// A Newton method that gives up where it would leave the neighbourhood.
+numerics::Options Corrector(double load) {
+  constexpr double kOnTheWay = 1e-8;  // of EI/L
+  numerics::Options options = Limits();
+  if (load < 1) options.tolerance = kOnTheWay;
+  options.damped = false;
+  options.max_iterations = 12;
+  return options;
+}
+
+/// The segment of arcs between disks. It is a problem for numerics::Newton that keeps the last
+/// tangent: one a step away from the root is enough where nothing is near buckling.
+template <int C>
+class DiskSystem {
+ public:
+  using Vector = typename DiskBalance<C>::Vector;
+  using Matrix = typename DiskBalance<C>::Matrix;
+
+  explicit DiskSystem(DiskBalance<C>& balance) : balance_(balance) {
+    last_x_.setConstant(balance.unknowns(), std::numeric_limits<double>::infinity());
+    last_.setZero(balance.unknowns(), balance.unknowns());
+  }
+
+  bool operator()(const double* x, double* f) const { return balance_(x, f); }
+  bool Jacobian(const Vector& x, Vector& f, Matrix& jacobian) const {
+    if (!balance_.Jacobian(x, f, jacobian)) return false;
+    last_x_ = x;
+    last_ = jacobian;
+    return true;
+  }
+
+  Outcome Correct(double load, Vector& x) {
+    balance_.SetLoad(load);
+    return numerics::Newton(*this, x, Corrector(load));
+  }
+
+  int Unstable(double load, const Vector& x) {
+    balance_.SetLoad(load);
+    if (ClearlyStable(x)) return 0;
+    Vector f(x.size());
+    if (!Jacobian(x, f, last_)) return static_cast<int>(x.size());
+    // Its moments act at the starts of arcs, so that the tangent is not quite symmetric.
+    if (Eigen::LLT<Matrix>(Symmetric()).info() == Eigen::Success) return 0;
+    return statics::NegativeRealParts(balance_.RelativeToUnloaded(last_));
+  }
+
+  statics::Fall Fall(double /*from*/, double load, Vector& x) {
+    balance_.SetLoad(load);
+    statics::DenseSystem<DiskSystem> system(*this);
+    Eigen::VectorXd shape = x;
+    statics::Fall fall = statics::FallToRest(system, shape);
+    x = shape;
+    fall.ok = fall.ok && Correct(load, x).ok() && Unstable(load, x) == 0;
+    return fall;
+  }
+
+  /// For statics::DenseSystem.
+  bool Relative(const Eigen::VectorXd& at, Eigen::VectorXd& r, Eigen::MatrixXd* k) const {
+    const Vector x = at;
+    Vector f(x.size());
+    if (k == nullptr) {
+      if (!balance_(x.data(), f.data())) return false;
+    } else {
+      Matrix jacobian(x.size(), x.size());
+      if (!balance_.Jacobian(x, f, jacobian)) return false;
+      *k = balance_.RelativeToUnloaded(jacobian);
+    }
+    r = balance_.RelativeToUnloaded(f);
+    return r.allFinite();
+  }
+
+ private:
+  Matrix Symmetric() const {
+    const Matrix k = balance_.Stiffness(balance_.RelativeToUnloaded(last_));
+    return 0.5 * (k + k.transpose());
+  }
+
+  // By the tangent of Newton's last step but one, with a twentieth of the unloaded stiffness to
+  // spare; tangents are no further apart when x is within 0.02.
+  bool ClearlyStable(const Vector& x) const {
+    constexpr double kClose = 0.02, kSpare = 0.05;
+    if (last_x_.size() != x.size() || !((last_x_ - x).norm() <= kClose)) return false;
+    Matrix spare = Matrix::Identity(x.size(), x.size());
+    spare = Symmetric() - kSpare * balance_.Stiffness(spare);
+    return Eigen::LLT<Matrix>(spare).info() == Eigen::Success;
+  }
+
+  DiskBalance<C>& balance_;
+  mutable Vector last_x_;
+  mutable Matrix last_;
+};
+
+/// The Cosserat rod: roots by shooting, stability and falls by a chain of rigid pieces.
+class RodSystem {
+ public:
+  using Chain = statics::RodChain<RodLaw>;
+
+  RodSystem(const Robot& robot, const Loads& loads, RodBalance& balance, bool friction)
+      : robot_(robot), loads_(loads), balance_(balance), friction_(friction) {}
+
+  Outcome Correct(double load, Eigen::Vector3d& x) {
+    balance_.SetLoad(load);
+    return numerics::Newton(balance_, x, Corrector(load));
+  }
+
+  // The count of a coarse chain is that of the rod unless an eigenvalue is near zero: then of finer
+  // ones. Friction adds at most mu sum T r/2 of the unloaded stiffness.
+  int Unstable(double load, const Eigen::Vector3d& x) {
+    constexpr double kSpare = 0.05, kNear = 0.01;  // chains of 9 and 36 pieces: 0.01, 0.001
+    double spare = kSpare;
+    if (friction_) {
+      for (const double t : loads_.tension) spare += FrictionShare(load * t);
+    }
+    int unstable = Count(load, x, kPieces, spare);
+    if (unstable == 0) return 0;
+    unstable = Count(load, x, kFallingPieces, friction_ ? 0 : kNear);
+    return unstable == kNearZero ? Count(load, x, kManyPieces, 0) : unstable;
+  }
+
+  statics::Fall Fall(double from, double load, Eigen::Vector3d& x) {
+    Chain::Shape shape = Frames(from, x, kFallingPieces);
+    if (shape.empty()) return {};
+    RodLaw law = LawAt(load, shape);
+    Chain chain(law, Pieces(shape));
+    statics::Fall fall = statics::FallToRest(chain, shape);
+    if (!fall.ok) return fall;
+    const Eigen::Matrix3Xd zeta = chain.zeta();
+    x = 1.5 * zeta.col(0) - 0.5 * zeta.col(1);
+    balance_.SetLoad(load);
+    fall.ok = numerics::Newton(balance_, x, Limits()).ok() && Near(x, shape.back()) &&
+              Unstable(load, x) == 0;
+    return fall;
+  }
+
+ private:
+  static constexpr int kPieces = 9, kFallingPieces = 36, kManyPieces = 144;
+  static constexpr int kNearZero = 98, kUnknown = 99;
+
+  // Unstable directions, or kNearZero when they are not the same within `spare` of the stiffness.
+  int Count(double load, const Eigen::Vector3d& x, int pieces, double spare) {
+    const Chain::Shape shape = Frames(load, x, pieces);
+    if (shape.empty()) return kUnknown;
+    RodLaw law = LawAt(load, shape);
+    Chain chain(law, Pieces(shape));
+    if (spare > 0 && chain.DefiniteAt(shape, -spare)) return 0;
+    if (!chain.Linearize(shape)) return kUnknown;
+    if (spare == 0) return UnstableDirections(chain, law, shape);
+    return chain.Definite(spare) ? kNearZero : chain.UnstableDirections();
+  }
+
+  double FrictionShare(double tension) const {
+    return 0.75 * loads_.mu * tension * robot_.tendon_radius / robot_.moment();
+  }
+
+  static int Pieces(const Chain::Shape& shape) { return static_cast<int>(shape.size()) - 1; }
+
+  RodLaw LawAt(double load, const Chain::Shape& shape) const {
+    RodLaw law(robot_, loads_, friction_, Pieces(shape));
+    law.SetLoad(load);
+    return law;
+  }
+
+  // Frames of the root x at a load, at least so many pieces.
+  Chain::Shape Frames(double load, const Eigen::Vector3d& x, int pieces) {
+    const int steps = balance_.steps();
+    balance_.SetLoad(load);
+    balance_.SetSteps(std::max(1, (pieces + robot_.disks - 1) / robot_.disks));
+    const RodBalance::Shape& shape = balance_.Integrate(x);
+    balance_.SetSteps(steps);
+    return shape.valid ? shape.frames : Chain::Shape();
+  }
+
+  bool Near(const Eigen::Vector3d& x, const Eigen::Quaterniond& end) const {
+    const auto& shape = balance_.Integrate(x);
+    return shape.valid && shape.frames.back().angularDistance(end) < 0.2;
+  }
+
+  const Robot& robot_;
+  const Loads& loads_;
+  RodBalance& balance_;
+  bool friction_;
+};
+
+bool Direct(const Robot& robot, const Loads& loads) {
+  return loads.DeadForce(robot) * robot.length / robot.moment() < kOneEquilibrium;
+}
+
+statics::RisingOptions Steps(const Robot& robot, const Loads& loads) {
+  statics::RisingOptions options;
+  const double size = loads.DeadForce(robot) * robot.length / robot.moment();
+  options.largest_step = std::clamp(2 / size, 0.02, 1.0);
+  options.first_step = std::min(0.25, options.largest_step);
+  return options;
+}
+
+// At full load from x, whatever it is: falls to rest, else damped Newton.
+template <class System, class Vector>
+bool FindAny(System& system, Vector& x) {
+  Vector trial = x;
+  for (const bool straight : {false, true}) {
+    if (straight) trial.setZero();
+    if (system.Fall(1, 1, trial).ok) {
+      x = trial;
+      return true;
+    }
+  }
+  return false;
+}
+
+template <class System, class Balance, class Vector>
+Found Find(System& system, const Balance& balance, Vector& x, bool direct,
+           const statics::RisingOptions& steps, const Eigen::VectorXd* start) {
+  Found found;
+  const auto newton = [&] {
+    const int spent = found.outcome.iterations;
+    found.outcome = numerics::Newton(balance, x, Limits());
+    found.outcome.iterations += spent;
+    if (!found.outcome.ok()) return false;
+    found.stability.unstable_directions = system.Unstable(1, x);
+    return found.stability.stable();
+  };
+  if (start != nullptr && start->size() == x.size()) {
+    x = *start;
+    if (newton()) return found;
+    x.setZero();
+  }
+  if (direct) {
+    if (newton()) return found;
+    x.setZero();
+  }
+  const int spent = found.outcome.iterations;
+  found.outcome = statics::FollowRisingLoad(system, x, found.stability.branch, steps);
+  found.outcome.iterations += spent;
+  found.stability.unstable_directions = 0;
+  if (found.outcome.ok()) return found;
+  const Vector last = x;
+  if (FindAny(system, x)) {
+    found.stability.branch = statics::Branch::kOther;
+    found.outcome.status = numerics::Status::kOk;
+    found.outcome.why.clear();
+  } else {
+    x = last;
+  }
+  Vector f = x;
+  found.outcome.residual = numerics::NormAt(balance, x, f);
+  return found;
+}
+
+}  // namespace
+
+template <int C>
+Found FindEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& balance,
+                      typename DiskBalance<C>::Vector& x, const Eigen::VectorXd* start) {
+  DiskSystem<C> system(balance);
+  return Find(system, system, x, Direct(robot, loads), Steps(robot, loads), start);
+}
+
+template Found FindEquilibrium(const Robot&, const Loads&, DiskBalance<6>&, DiskBalance<6>::Vector&,
+                               const Eigen::VectorXd*);
+template Found FindEquilibrium(const Robot&, const Loads&, DiskBalance<Eigen::Dynamic>&,
+                               DiskBalance<Eigen::Dynamic>::Vector&, const Eigen::VectorXd*);
+
+Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance, bool friction,
+                      Eigen::Vector3d& x, const Eigen::VectorXd* start) {
+  RodSystem system(robot, loads, balance, friction);
+  return Find(system, balance, x, Direct(robot, loads), Steps(robot, loads), start);
+}
+
+numerics::Outcome Polish(const RodBalance& balance, Eigen::Vector3d& x) {
+  return numerics::Newton(balance, x, Limits());
+}
+
+}  // namespace continuum::tdcr

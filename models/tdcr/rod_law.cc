@@ -1,0 +1,147 @@
+#include "models/tdcr/rod_law.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "sim/numerics/decompositions.h"
+
+namespace continuum::tdcr {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kZero = -1e-9;  // of the largest eigenvalue
+
+int NegativeEigenvalues(const Eigen::MatrixXd& symmetric) {
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  const double largest = values.cwiseAbs().maxCoeff();
+  return static_cast<int>((values.array() < kZero * largest).count());
+}
+
+}  // namespace
+
+RodLaw::RodLaw(const Robot& robot, const Loads& loads, bool friction, int pieces)
+    : twist_(1 / (1 + robot.nu)),
+      mu_(friction ? loads.mu : 0),
+      friction_(friction && loads.mu > 0),
+      disks_(robot.disks),
+      pieces_(pieces) {
+  const double unit = robot.length / robot.moment();  // L^2/EI
+  for (int k = 0; k < robot.tendons; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (loads.tension[i] == 0) continue;
+    holes_.push_back(robot.Hole(k) / robot.length);
+    pull_.push_back(unit * loads.tension[i]);
+    direction_.push_back(loads.direction[i]);
+  }
+  natural_ = robot.length * Vector3d(-robot.natural.y(), robot.natural.x(), robot.natural.z());
+  tip_force_ = unit * loads.tip_force;
+  disk_weight_ = unit * robot.disk_mass * loads.gravity;
+  rod_weight_ = unit * robot.density * robot.area() * robot.length * loads.gravity;
+  tension_.resize(pulling(), pieces);
+}
+
+Vector3d RodLaw::Force(double s) const {
+  const int passed = static_cast<int>(s * disks_);
+  return load_ * (tip_force_ + (disks_ - passed) * disk_weight_ + (1 - s) * rod_weight_);
+}
+
+bool RodLaw::Prepare(const Eigen::Matrix3Xd& zeta) {
+  const double h = 1.0 / pieces_;
+  for (int k = 0; k < pulling(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    tension_.row(k).setConstant(load_ * pull_[at]);
+    if (!friction_ || direction_[at] == 0) continue;
+    Vector3d before = Along(holes_[at], zeta.col(0)).normalized();
+    double angle = 0.5 * h * zeta.col(0).cross(before).norm();
+    for (int i = 0; i < pieces_; ++i) {
+      const Vector3d t = Along(holes_[at], zeta.col(i)).normalized();
+      if (i > 0) {
+        const Vector3d u = 0.5 * (zeta.col(i) + zeta.col(i - 1));
+        angle += (h * u.cross(Vector3d(0.5 * (t + before))) + t - before).norm();
+      }
+      before = t;
+      tension_(k, i) *= std::exp(-direction_[at] * mu_ * angle);
+    }
+  }
+  return true;
+}
+
+Vector3d RodLaw::Lever(int tendon, const Vector3d& u) const {
+  const Eigen::Vector2d& hole = holes_[static_cast<std::size_t>(tendon)];
+  const Vector3d w = Along(hole, u);
+  return Vector3d(w.z() * hole.y(), -w.z() * hole.x(), u.z() * hole.squaredNorm()) / w.norm();
+}
+
+double RodLaw::Energy(const Vector3d& u) const {
+  const Vector3d change = u - natural_;
+  double energy = 0.5 * change.dot(elastic() * change);
+  for (std::size_t k = 0; k < holes_.size(); ++k) {
+    energy += load_ * pull_[k] * Along(holes_[k], u).norm();
+  }
+  return energy;
+}
+
+bool RodLaw::At(int piece, const Vector3d& u, const Vector3d& /*n*/,
+                statics::RodSection& section) const {
+  section.moment = elastic() * (u - natural_);
+  section.stretch = axis();
+  section.moment_by_zeta = elastic();
+  for (int k = 0; k < pulling(); ++k) {
+    const Eigen::Vector2d& hole = holes_[static_cast<std::size_t>(k)];
+    const Vector3d w = Along(hole, u);
+    if (!(w.z() > 0)) return false;
+    const double r2 = hole.squaredNorm(), square = w.squaredNorm();
+    const double share = tension_(k, piece) / std::sqrt(square);
+    const Vector3d by_z(hole.y(), -hole.x(), 0);  // dw_z/du
+    section.moment += share * (w.z() * by_z + Vector3d(0, 0, u.z() * r2));
+    // Hessian of |w| by (w_z, u_z): (u_z^2 r2, -w_z u_z r2; ., w_z^2 r2)/|w|^3.
+    const double cube = share / square * r2;
+    const Vector3d across = u.z() * by_z - Vector3d(0, 0, w.z());
+    section.moment_by_zeta += cube * across * across.transpose();
+  }
+  return true;
+}
+
+int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law,
+                       const statics::RodChain<RodLaw>::Shape& shape) {
+  if (!law.friction()) return chain.UnstableDirections();
+  const int pieces = chain.pieces();
+  const double h = 1.0 / pieces;
+  // What tensions do to the nodes, and how they follow the strains, which follow the turns.
+  Eigen::MatrixXd force = Eigen::MatrixXd::Zero(3 * pieces, law.pulling() * pieces);
+  Eigen::MatrixXd follow(law.pulling() * pieces, 3 * pieces);
+  Eigen::Matrix3Xd zeta = chain.zeta();
+  RodLaw changed = law;
+  const double small = 1e-6;
+  Eigen::MatrixXd by_strain(law.pulling() * pieces, 3 * pieces);
+  for (int i = 0; i < pieces; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      const double middle = zeta(a, i);
+      zeta(a, i) = middle + small;
+      changed.Prepare(zeta);
+      by_strain.col(3 * i + a) = (changed.tension() - law.tension()).reshaped() / small;
+      zeta(a, i) = middle;
+    }
+  }
+  for (int i = 0; i < pieces; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Eigen::Matrix3d R = shape[at].slerp(0.5, shape[at + 1]).normalized().toRotationMatrix();
+    for (int k = 0; k < law.pulling(); ++k) {
+      const Vector3d lever = R * law.Lever(k, zeta.col(i));
+      force.block<3, 1>(3 * i, law.pulling() * i + k) = lever;
+      if (i > 0) force.block<3, 1>(3 * (i - 1), law.pulling() * i + k) = -lever;
+    }
+    const Eigen::MatrixXd turned = by_strain.middleCols<3>(3 * i) * R.transpose() / h;
+    follow.middleCols<3>(3 * i) = turned;
+    if (i > 0) follow.middleCols<3>(3 * (i - 1)) -= turned;
+  }
+  const Eigen::MatrixXd k = chain.Dense() + force * follow;
+  const Eigen::MatrixXd symmetric = 0.5 * (k + k.transpose());
+  if (Eigen::LLT<Eigen::MatrixXd>(symmetric).info() == Eigen::Success) return 0;
+  return NegativeEigenvalues(symmetric);
+}
+
+}  // namespace continuum::tdcr

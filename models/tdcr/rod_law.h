@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/statics/rod_chain.h"
+#include "models/tdcr/robot.h"
+
+namespace continuum::tdcr {
+
+/// A section of the rod in channels of cosserat.h as a law for statics::RodChain, in units of L and
+/// EI/L: moment K (u - u_0) + sum T_k d|w_k|/du, w_k = e_3 + u x a_k.
+///
+/// With friction T_k falls from piece to piece by exp(-dir mu angle), the angle between the
+/// tendon's directions in the middles of two pieces.
+class RodLaw {
+ public:
+  static constexpr bool kShear = false;
+
+  RodLaw(const Robot& robot, const Loads& loads, bool friction, int pieces);
+
+  void SetLoad(double load) { load_ = load; }
+  bool friction() const { return friction_; }
+  int pulling() const { return static_cast<int>(holes_.size()); }
+
+  double length() const { return 1; }
+  Eigen::Vector3d axis() const { return Eigen::Vector3d::UnitZ(); }
+  Eigen::Vector3d TipLever() const { return Eigen::Vector3d::Zero(); }
+  Eigen::Matrix3d elastic() const { return Eigen::Vector3d(1, 1, twist_).asDiagonal(); }
+  Eigen::Vector3d Force(double s) const;
+  bool Prepare(const Eigen::Matrix3Xd& zeta);
+  bool At(int piece, const Eigen::Vector3d& u, const Eigen::Vector3d& n,
+          statics::RodSection& section) const;
+
+  /// T_k in the middles of the pieces, tendons x pieces, and the moment of a unit of it, d|w_k|/du.
+  const Eigen::MatrixXd& tension() const { return tension_; }
+  Eigen::Vector3d Lever(int tendon, const Eigen::Vector3d& u) const;
+  /// Energy of one piece per length, without friction: u.Ku/2 + sum T |w| of curvature u.
+  double Energy(const Eigen::Vector3d& u) const;
+
+ private:
+  Eigen::Vector3d Along(const Eigen::Vector2d& hole, const Eigen::Vector3d& u) const {
+    return {-u.z() * hole.y(), u.z() * hole.x(), 1 + u.x() * hole.y() - u.y() * hole.x()};
+  }
+
+  double twist_, mu_;  ///< GJ/EI
+  bool friction_;
+  int disks_, pieces_;
+  double load_ = 1;
+  std::vector<Eigen::Vector2d> holes_;
+  std::vector<double> pull_;  ///< at the base
+  std::vector<int> direction_;
+  Eigen::Vector3d natural_, tip_force_, disk_weight_, rod_weight_;
+  Eigen::MatrixXd tension_;
+};
+
+/// Negative eigenvalues of the symmetric part of the whole rod's tangent at the shape that `chain`
+/// was linearized at; with friction the tensions follow the turn of the sections as the contacts
+/// slide.
+int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law,
+                       const statics::RodChain<RodLaw>::Shape& shape);
+
+}  // namespace continuum::tdcr
