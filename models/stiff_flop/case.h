@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "models/statics/rising_load.h"
 #include "models/stiff_flop/module.h"
 #include "sim/numerics/solver.h"
 
@@ -47,6 +48,7 @@ struct BaseSection {
 struct Solution {
   Status status = Status::kNotConverged;
   numerics::Outcome outcome = {};
+  statics::Stability stability = {};                 ///< of the forward model
   Eigen::Vector3d answer = Eigen::Vector3d::Zero();  ///< inverse: p; forward: kappa, phi, lambda_l
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();     ///< rho(l) [m]
   Eigen::Vector3d tangent = Eigen::Vector3d::UnitY();  ///< d_2(l)

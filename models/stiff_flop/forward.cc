@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <string>
 
+#include "models/statics/relax.h"
 #include "models/stiff_flop/rod.h"
-#include "sim/numerics/continuation.h"
+#include "models/stiff_flop/rod_law.h"
 #include "sim/numerics/newton.h"
 #include "sim/numerics/solver.h"
 
@@ -74,23 +75,145 @@ struct Tip {
   }
 };
 
+numerics::Options Corrector() {
+  numerics::Options options;
+  options.damped = false;
+  options.max_iterations = 12;
+  return options;
+}
+
+/// The module as a system for statics::FollowRisingLoad, in M(0) per unit: roots by shooting,
+/// stability and falls by a chain of rigid pieces.
+class RisingSystem {
+ public:
+  using Chain = statics::RodChain<RodLaw>;
+
+  RisingSystem(const Module& module, const Method& method, const Case& row)
+      : module_(module), method_(method), row_(row) {}
+
+  numerics::Outcome Correct(double load, Vector3d& moment) {
+    Rod rod = RodAt(load, kSteps);
+    return numerics::Newton(Shooting{&rod}, moment, Corrector());
+  }
+
+  // Also where sections carry no more, or jump.
+  int Unstable(double load, const Vector3d& moment) {
+    Rod rod = RodAt(load, kSteps);
+    Tip tip;
+    if (!tip.Find(rod, moment) || rod.reserve().stiffness <= 0) return kUnknown;
+    if (IsJump(module_, base_, rod.base())) return kUnknown;
+    const int unstable = Count(load, moment, rod.base());
+    if (unstable != 0) return unstable;
+    base_ = rod.base();
+    last_ = rod.reserve();
+    last_determinant_ = tip.determinant;
+    return 0;
+  }
+
+  statics::Fall Fall(double from, double load, Vector3d& moment) {
+    Chain::Shape shape = Frames(from, moment, kFallingPieces);
+    if (shape.empty()) return {};
+    RodLaw law(module_, method_, row_, load, kFallingPieces);
+    Chain chain(law, kFallingPieces);
+    statics::FallOptions options;
+    options.tolerance = 1e-9;
+    statics::Fall fall = statics::FallToRest(chain, shape, options);
+    if (!fall.ok) return fall;
+    const Axis<double> before = base_;
+    base_ = law.axis(0);
+    moment = BaseMoment(law, chain, shape);
+    Rod rod = RodAt(load, kSteps);
+    fall.ok = numerics::Newton(Shooting{&rod}, moment).ok() && Near(load, moment, shape.back()) &&
+              Unstable(load, moment) == 0;
+    if (!fall.ok) base_ = before;
+    return fall;
+  }
+
+  const Axis<double>& base() const { return base_; }
+  const Reserve& last() const { return last_; }
+  double last_determinant() const { return last_determinant_; }
+
+  /// Unstable directions of a root whose base section is known.
+  int Count(double load, const Vector3d& moment, const Axis<double>& base) {
+    const Axis<double> before = base_;
+    base_ = base;
+    const int coarse = Count(load, moment, kPieces);
+    const int fine = coarse == kNearZero ? Count(load, moment, kManyPieces) : coarse;
+    base_ = before;
+    return fine;
+  }
+
+ private:
+  static constexpr int kSteps = 2 * kFirstSteps;
+  static constexpr int kPieces = 8, kFallingPieces = 16, kManyPieces = 64;
+  static constexpr int kNearZero = 98, kUnknown = 99;
+
+  Rod RodAt(double load, int steps) const {
+    Rod rod(module_, method_, row_, load, steps);
+    rod.StartFrom(base_);
+    return rod;
+  }
+
+  Chain::Shape Frames(double load, const Vector3d& moment, int pieces) const {
+    Chain::Shape shape;
+    for (const Rod::State<double>& y : RodAt(load, pieces).States(moment)) {
+      shape.push_back(Eigen::Quaterniond(y[3], y[4], y[5], y[6]).normalized());
+    }
+    return shape;
+  }
+
+  // kNearZero: not the same within a twentieth of the stiffness; never for the finest chain.
+  int Count(double load, const Vector3d& moment, int pieces) const {
+    constexpr double kSpare = 0.05;  // a chain of 8 pieces is off by 0.01
+    const Chain::Shape shape = Frames(load, moment, pieces);
+    if (shape.empty()) return kUnknown;
+    RodLaw law(module_, method_, row_, load, pieces);
+    Chain chain(law, pieces);
+    if (!chain.Linearize(shape)) return kUnknown;
+    if (pieces == kManyPieces) return chain.UnstableDirections();
+    if (chain.Definite(-kSpare)) return 0;
+    return chain.Definite(kSpare) ? kNearZero : chain.UnstableDirections();
+  }
+
+  // m(0) = m_1 - h/2 (F x t)_1, per unit.
+  Vector3d BaseMoment(RodLaw& law, const Chain& chain, const Chain::Shape& shape) const {
+    const Eigen::Matrix3d R = shape[0].slerp(0.5, shape[1]).toRotationMatrix();
+    const Vector3d F = law.Force(0.5 / kFallingPieces);
+    statics::RodSection section;
+    law.At(0, chain.zeta().col(0), R.transpose() * F, section);
+    return R * section.moment - F.cross(Vector3d(R * section.stretch)) / (2 * kFallingPieces);
+  }
+
+  bool Near(double load, const Vector3d& moment, const Eigen::Quaterniond& end) const {
+    const Chain::Shape shape = Frames(load, moment, kSteps);
+    return !shape.empty() && shape.back().angularDistance(end) < 0.2;
+  }
+
+  const Module& module_;
+  const Method& method_;
+  const Case& row_;
+  Axis<double> base_ = {1, 0, 0};
+  Reserve last_ = {};
+  double last_determinant_ = 1;
+};
+
 /// Solves one case: keeps M(0) and what is known about the branch.
 class Balance {
  public:
   Balance(const Module& module, const Method& method, const Case& row)
-      : module_(module), method_(method), row_(row) {}
+      : module_(module), method_(method), row_(row), rising_(module, method, row) {}
 
   const Vector3d& moment() const { return moment_; }
-
   const Tip& tip() const { return tip_; }
   const Axis<double>& base() const { return base_; }
+  const statics::Stability& stability() const { return stability_; }
 
   /// Newton from the moments of the straight module, else along the rising load; then finer steps
   /// until they change nothing.
   numerics::Outcome Solve() {
     moment_ = Straight();
     numerics::Outcome outcome = Shoot(kFirstSteps);
-    if (!trusted_) outcome = Recover(outcome);
+    if (!trusted_ || !FarFromBuckling()) outcome = Rise(outcome);
     while (outcome.ok()) {
       const double change = ChangeOfHalvedSteps();
       if (change <= kDiscretisation) break;
@@ -102,13 +225,17 @@ class Balance {
       outcome = After(outcome, Shoot(2 * steps_));
       if (change <= kHalvingsGain * kDiscretisation) break;
     }
+    if (outcome.ok() && !counted_) Judge(outcome);
     return outcome;
   }
 
   /// Why there is no answer, from the last point of the path that had one.
   Status Reason() const {
-    if (last_.domain < kSpent && last_.domain < last_.stiffness) return Status::kOutOfDomain;
-    if (last_.stiffness < kSpent || last_determinant_ < kSpent) return Status::kNoEquilibrium;
+    const Reserve& last = rising_.last();
+    if (last.domain < kSpent && last.domain < last.stiffness) return Status::kOutOfDomain;
+    if (saddle_ || last.stiffness < kSpent || rising_.last_determinant() < kSpent) {
+      return Status::kNoEquilibrium;
+    }
     return Status::kNotConverged;
   }
 
@@ -131,48 +258,62 @@ class Balance {
     return outcome;
   }
 
+  // Dead loads, all at the end of the mount and along it, below 2 EI/L^2 of the softest section:
+  // the clamped column buckles at pi^2/4.
+  bool FarFromBuckling() const {
+    constexpr double kMost = 2;
+    const double force =
+        row_.load.force.norm() + (module_.m + module_.m_fs) * row_.load.gravity.norm();
+    const double length = base_.lambda * module_.l + module_.l_fs;
+    const double stiffness = module_.E * module_.SecondMoment() * std::min(1.0, reserve_.stiffness);
+    return force * length * length < kMost * stiffness;
+  }
+
   numerics::Outcome Shoot(int steps) {
     steps_ = steps;
     Rod rod(module_, method_, row_, 1, steps);
+    if (counted_) rod.StartFrom(base_);
     const numerics::Outcome outcome = numerics::Newton(Shooting{&rod}, moment_);
     stable_ = outcome.ok() && tip_.Find(rod, moment_) && rod.reserve().stiffness > 0 &&
               rod.reserve().plain;
     trusted_ = stable_ && tip_.determinant > 0;
     base_ = rod.base();
+    reserve_ = rod.reserve();
     return outcome;
   }
 
-  // Along the rising load. Past a bifurcation there may be no path to follow: a direct answer with
-  // stable sections stays one.
-  numerics::Outcome Recover(const numerics::Outcome& direct) {
+  // Along the rising load, through folds. Where that ends, a direct answer that stands stays one.
+  numerics::Outcome Rise(const numerics::Outcome& direct) {
     const Vector3d moment = moment_;
-    const numerics::Outcome along = After(direct, Climb());
-    if (along.ok()) return After(along, Shoot(kFirstSteps));
-    if (!stable_) return along;
+    const bool carried = stable_;
+    Vector3d x = Vector3d::Zero();
+    statics::RisingOptions options;
+    options.first_step = 0.25;
+    const numerics::Outcome along =
+        After(direct, statics::FollowRisingLoad(rising_, x, stability_.branch, options));
+    if (along.ok()) {
+      counted_ = true;
+      moment_ = x;
+      base_ = rising_.base();
+      return After(along, Shoot(kFirstSteps));
+    }
+    if (!carried) return along;
+    along_ = along.why;
     moment_ = moment;
-    return direct;
+    stability_.branch = statics::Branch::kOther;
+    return After(along, Shoot(kFirstSteps));
   }
 
-  numerics::Outcome Climb() {
-    steps_ = 2 * kFirstSteps;
-    moment_.setZero();
-    std::optional<Rod> rod;
-    Axis<double> base{1, 0, 0};
-    const auto at = [&](double fraction) {
-      rod.emplace(module_, method_, row_, fraction, steps_);
-      rod->StartFrom(base);
-      return Shooting{&*rod};
-    };
-    const auto on_branch = [&](const Vector3d& moment) {
-      Tip tip;
-      if (!tip.Find(*rod, moment) || rod->reserve().stiffness <= 0) return false;
-      if (IsJump(module_, base, rod->base())) return false;
-      base = rod->base();
-      last_ = rod->reserve();
-      last_determinant_ = tip.determinant;
-      return true;
-    };
-    return numerics::Continue(at, moment_, {}, {}, on_branch);
+  // A root that was not reached along the rising load is looked at here.
+  void Judge(numerics::Outcome& outcome) {
+    counted_ = true;
+    if (trusted_ && FarFromBuckling()) return;
+    stability_.unstable_directions = rising_.Count(1, moment_, base_);
+    saddle_ = !stability_.stable();
+    if (!saddle_) return;
+    outcome.status = numerics::Status::kNoConvergence;
+    outcome.why = "only an unstable equilibrium was found: " + along_;
+    if (Reason() == Status::kOutOfDomain) outcome.why += "; there the section folds";
   }
 
   // How far tip (per l) and moment (per unit) move when every step is halved.
@@ -189,14 +330,18 @@ class Balance {
   const Module& module_;
   const Method& method_;
   const Case& row_;
+  RisingSystem rising_;
   Vector3d moment_ = Vector3d::Zero();
   int steps_ = kFirstSteps;
   Tip tip_;
   Axis<double> base_ = {1, 0, 0};
+  Reserve reserve_ = {};
   bool stable_ = false;   // every section
-  bool trusted_ = false;  // and the rod as a whole
-  Reserve last_ = {};
-  double last_determinant_ = 1;
+  bool trusted_ = false;  // and no single direction of the whole
+  bool counted_ = false;  // unstable directions are known
+  bool saddle_ = false;
+  std::string along_;  // where the rising load ended
+  statics::Stability stability_;
 };
 
 void Read(const Balance& balance, Solution& solution) {
@@ -217,6 +362,7 @@ Solution SolveForward(const Module& module, const Method& method, const Case& ro
   Balance balance(module, method, row);
   solution.outcome = numerics::Timed([&] {
     const numerics::Outcome outcome = balance.Solve();
+    solution.stability = balance.stability();
     if (!outcome.ok()) {
       solution.status = balance.Reason();
       return outcome;

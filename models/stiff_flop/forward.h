@@ -14,8 +14,9 @@ namespace continuum::stiff_flop {
 ///
 /// lambda, zeta_x, zeta_z from the law of the section (elastic.h). Shooting: Newton on the three
 /// components of M(0), derivatives by dual numbers through an integrator of eighth order whose
-/// steps are halved until tip and moment move by less than 1e-10. A solution must be on the branch
-/// that starts unloaded; if Newton misses it, all loads are raised together.
+/// steps are halved until tip and moment move by less than 1e-10. Loads far below buckling leave
+/// one equilibrium; others are raised together (statics::FollowRisingLoad). A saddle is never an
+/// answer.
 ///
 /// line: filled with points of the axis from base to tip, for pictures; empty without an answer.
 Solution SolveForward(const Module& module, const Method& method, const Case& row, bool sensitivity,

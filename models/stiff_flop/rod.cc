@@ -267,7 +267,7 @@ bool Rod::Slope(const State<T>& state, double s, State<T>& slope) {
 }
 
 template <class T>
-bool Rod::Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<Eigen::Vector3d>* line) {
+bool Rod::Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<State<double>>* states) {
   reserve_ = {};
   section_ = base_;
   next_ = 0;
@@ -293,8 +293,7 @@ bool Rod::Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<Eigen:
   const double h = module_.l / steps_;
   for (int i = 0; carried && i < steps_; ++i) {
     stepper.do_step(system, state, i * h, h);
-    if (line)
-      line->push_back(state.template head<3>().unaryExpr([](const T& x) { return Value(x); }));
+    if (states) states->push_back(state.unaryExpr([](const T& x) { return Value(x); }));
   }
   return carried;
 }
@@ -307,10 +306,18 @@ bool Rod::Integrate(const Eigen::Vector3d& moment, State<Dual>& tip) {
   return Run(moment, tip, nullptr);
 }
 
+std::vector<Rod::State<double>> Rod::States(const Eigen::Vector3d& moment) {
+  State<double> tip = State<double>::Zero();
+  tip[3] = 1;
+  tip.tail<3>() = moment * unit_;
+  std::vector<State<double>> states = {tip};
+  if (!Run(moment, tip, &states)) states.clear();
+  return states;
+}
+
 std::vector<Eigen::Vector3d> Rod::Line(const Eigen::Vector3d& moment) {
-  std::vector<Eigen::Vector3d> line = {Eigen::Vector3d::Zero()};
-  State<double> tip;
-  if (!Run(moment, tip, &line)) line.clear();
+  std::vector<Eigen::Vector3d> line;
+  for (const State<double>& state : States(moment)) line.emplace_back(state.head<3>());
   return line;
 }
 

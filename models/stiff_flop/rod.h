@@ -66,7 +66,9 @@ class Rod {
   template <class T>
   Eigen::Matrix<T, 3, 1> Mismatch(const State<T>& tip) const;
 
-  /// The axis at `pieces` + 1 even stations; empty when a section cannot carry its load.
+  /// The states at steps() + 1 even stations; empty when a section cannot carry its load.
+  std::vector<State<double>> States(const Eigen::Vector3d& moment);
+  /// Their places: the axis.
   std::vector<Eigen::Vector3d> Line(const Eigen::Vector3d& moment);
 
   /// Strains at the base and reserve of the last integration (the latter with derivatives only).
@@ -84,7 +86,7 @@ class Rod {
   };
 
   template <class T>
-  bool Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<Eigen::Vector3d>* line);
+  bool Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<State<double>>* states);
   template <class T>
   bool Slope(const State<T>& state, double s, State<T>& slope);
   bool Strains(const Eigen::Vector3d& n, const Eigen::Vector3d& M, Strain<double>& strain);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "error.h"
+#include "models/statics/plausible.h"
 #include "models/statics/results.h"
 #include "models/statics/write_figure.h"
 #include "models/stiff_flop/figure.h"
@@ -47,6 +48,40 @@ void WarnOfTubesOutsideTheWall(const SolveRequest& request, const Robot& robot) 
                   r_o.Where(), m.r_o - m.r_c2, m.r_o + m.r_c2, m.r_1, m.r_2));
 }
 
+void WarnOfImplausibleRobot(const SolveRequest& request, const Robot& robot) {
+  const Yaml file = Yaml::Read(request.robot);
+  const Yaml module = file.At("modules").At(robot.name);
+  const auto check = [&](const char* key, double value, double low, double high, const char* unit) {
+    statics::WarnIfImplausible(request, module.At(key).Where(), value, low, high, unit);
+  };
+  const Module& m = robot.module;
+  check("r_2", m.r_2, 1e-3, 0.5, "m");
+  check("l", m.l, m.r_2 / 2, 5, "m");
+  check("l_fs", m.l_fs, 0, 5 * m.l, "m");
+  check("E", m.E, 1e3, 1e9, "Pa");
+  check("m", m.m, 1e-5, 20, "kg");
+  check("m_fs", m.m_fs, 1e-6, 20, "kg");
+  statics::WarnIfImplausible(request, file.At("gravity").Where(), robot.gravity.norm(), 0.1, 100,
+                             "m/s^2");
+}
+
+// Pressures are judged by E, forces by what lengthens the body to twice its length.
+void WarnOfImplausibleCases(const SolveRequest& request, const Robot& robot, const Cases& cases) {
+  const double force = robot.module.E * robot.module.Area();
+  for (const Case& row : cases.rows) {
+    const std::string where = request.input.string() + ": case '" + row.label + "', ";
+    for (int i = 0; i < 3; ++i) {
+      statics::WarnIfImplausible(request, where + "force", row.load.force[i], 0, force, "N");
+      if (cases.direction == Direction::kInverse) continue;
+      statics::WarnIfImplausible(request, where + "p" + std::to_string(i + 1), row.given[i], 0,
+                                 5 * robot.module.E, "Pa");
+    }
+    if (cases.direction == Direction::kInverse) {
+      statics::WarnIfDegrees(request, where + "phi", row.given[1]);
+    }
+  }
+}
+
 Names SensitivityColumns(Direction direction) {
   if (direction == Direction::kInverse) {
     return {"dp1_dgamma", "dp2_dgamma", "dp3_dgamma", "dp1_dE", "dp2_dE", "dp3_dE"};
@@ -61,6 +96,9 @@ Names Columns(Direction direction, bool sensitivity) {
   if (direction == Direction::kForward) Append(names, {"kappa", "phi", "lambda_l"});
   Append(names, {"r_o", "r_G1", "r_G2", "r_G3", "gamma_e1", "gamma_e2", "gamma_e3", "x_in", "x_out",
                  "residual", "iterations", "micros", "status"});
+  for (const std::string& name : statics::StabilityColumns()) {
+    if (direction == Direction::kForward || name == "why") names.push_back(name);
+  }
   if (sensitivity) {
     const Names more = SensitivityColumns(direction);
     names.insert(names.end(), more.begin(), more.end());
@@ -77,7 +115,9 @@ void WriteRow(const Case& row, Direction direction, bool sensitivity, const Solu
   results.Row();
   results.Set("case", row.label);
   results.Set("status", Name(solution.status));
+  results.Set("why", solution.outcome.why);
   if (solution.status != Status::kOk) return;
+  if (direction == Direction::kForward) results.Set(solution.outcome, solution.stability);
   results.Set(solution.outcome, Name(solution.status));
   Set(results,
       direction == Direction::kInverse ? Names{"p1", "p2", "p3"}
@@ -119,6 +159,8 @@ int SolveStiffFlop(const SolveRequest& request) {
   const Robot robot = Robot::Read(request.robot);
   const Cases cases = Cases::Read(request.input, robot.gravity);
   WarnOfTubesOutsideTheWall(request, robot);
+  WarnOfImplausibleRobot(request, robot);
+  WarnOfImplausibleCases(request, robot, cases);
   const Method method = Method::Parse(request.method, cases.direction);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);

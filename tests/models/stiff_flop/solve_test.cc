@@ -71,7 +71,7 @@ TEST_F(StiffFlopSolve, ShapesGivePressuresAndPressuresGiveShapes) {
   EXPECT_THAT(inverse.columns(),
               ElementsAre("case", "p1", "p2", "p3", "x", "y", "z", "tx", "ty", "tz", "r_o", "r_G1",
                           "r_G2", "r_G3", "gamma_e1", "gamma_e2", "gamma_e3", "x_in", "x_out",
-                          "residual", "iterations", "micros", "status"));
+                          "residual", "iterations", "micros", "status", "why"));
   EXPECT_EQ(inverse.Text(0, "case"), "bent");
   EXPECT_EQ(inverse.Text(1, "status"), "ok");
   EXPECT_NEAR(inverse.Number(1, "r_o"), 9e-3 / std::sqrt(1.1), 1e-15);
@@ -80,7 +80,9 @@ TEST_F(StiffFlopSolve, ShapesGivePressuresAndPressuresGiveShapes) {
   EXPECT_THAT(forward.columns(),
               ElementsAre("case", "x", "y", "z", "tx", "ty", "tz", "kappa", "phi", "lambda_l",
                           "r_o", "r_G1", "r_G2", "r_G3", "gamma_e1", "gamma_e2", "gamma_e3", "x_in",
-                          "x_out", "residual", "iterations", "micros", "status"));
+                          "x_out", "residual", "iterations", "micros", "status", "stable",
+                          "unstable_directions", "branch", "why"));
+  EXPECT_EQ(forward.Number(0, "stable"), 1);
   EXPECT_EQ(forward.Text(0, "case"), "1");
   EXPECT_LT(forward.Number(0, "x"), 0);
   EXPECT_LT(forward.Number(0, "residual"), 1e-9);
@@ -89,10 +91,10 @@ TEST_F(StiffFlopSolve, ShapesGivePressuresAndPressuresGiveShapes) {
 TEST_F(StiffFlopSolve, SensitivitiesAreAppended) {
   request_.sensitivity = true;
   Cases("kappa,phi,lambda_l\n20,0.5,1.2\n");
-  EXPECT_EQ(Solved(0).columns()[23], "dp1_dgamma");
+  EXPECT_EQ(Solved(0).columns()[24], "dp1_dgamma");
   EXPECT_EQ(Solved(0).columns().back(), "dp3_dE");
   Cases("p1,p2,p3\n2e4,0,0\n");
-  EXPECT_EQ(Solved(0).columns()[23], "dx_dgamma");
+  EXPECT_EQ(Solved(0).columns()[27], "dx_dgamma");
 }
 
 TEST_F(StiffFlopSolve, AFailedCaseLeavesTheOthers) {
