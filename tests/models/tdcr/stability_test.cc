@@ -1,3 +1,4 @@
+// ctest labels: slow
 #include <gmock/gmock.h>
 
 #include <Eigen/Eigenvalues>
@@ -58,7 +59,7 @@ double Energy(const Robot& robot, const Loads& loads, const Eigen::Matrix3Xd& u)
 // The lowest eigenvalue of the second differences of that energy along cosines in each curvature,
 // over that of the straight rod without loads (1).
 double LowestStiffness(const Robot& robot, const Loads& loads, const Eigen::Matrix3Xd& u) {
-  constexpr int kModes = 5, kCount = 3 * kModes;
+  constexpr int kModes = 4, kCount = 3 * kModes;
   const double step = 2e-3;
   std::vector<Eigen::Matrix3Xd> mode;
   for (int i = 0; i < kCount; ++i) {
@@ -92,7 +93,7 @@ TEST(TdcrStability, PlanarLoadsEndAtMinimaOfAnIndependentEnergy) {
   const Robot robot = Bare(kPieces);
   const double unit = Unit(robot);
   for (const double tension : {0., 3., 8., 20.}) {
-    for (const double size : {3., 5., 12.}) {
+    for (const double size : {3., 12.}) {
       for (int angle = 30; angle < 360; angle += 75) {
         const double a = angle * std::numbers::pi / 180;
         const Vector3d force(size * unit * std::sin(a), 1e-6, size * unit * std::cos(a));

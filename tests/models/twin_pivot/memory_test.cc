@@ -36,7 +36,7 @@ TEST(TwinPivotMemory, ContactsGoOnWhereTheyWereLeft) {
       EXPECT_NEAR(parts, whole, 1e-15);
     }
   }
-  EXPECT_EQ(SlideFrom(1, 0.), 1);
+  EXPECT_NEAR(SlideFrom(1, 0.), 1, 1e-15);
   EXPECT_NEAR(SlideFrom(1, -1.), 0, 1e-15);  // a reversal gives way within eps
   EXPECT_NEAR(SlideFrom(1, -2.), -std::tanh(1.), 1e-15);
 }

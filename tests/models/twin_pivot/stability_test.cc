@@ -26,16 +26,18 @@ Load Upright(std::vector<double> tension, Condition condition, double tilt = 0,
 // stiffness.
 double LowestStiffness(const Robot& robot, const Load& load, const VectorXd& beta) {
   const auto weights = again::Bodies(robot, beta);
-  const double step = 2e-3;
+  const double step = 1e-4;  // one-sided: 1e-5 of the third derivatives, 1e-8 of rounding
   const auto n = beta.size();
   const auto energy = [&](const VectorXd& at) { return again::Energy(robot, load, at, weights); };
+  const double middle = energy(beta);
+  VectorXd one(n);
+  for (Eigen::Index i = 0; i < n; ++i) one[i] = energy(beta + step * VectorXd::Unit(n, i));
   MatrixXd hessian(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j <= i; ++j) {
-      const VectorXd a = step * VectorXd::Unit(n, i), b = step * VectorXd::Unit(n, j);
-      const double mixed =
-          energy(beta + a + b) - energy(beta + a - b) - energy(beta - a + b) + energy(beta - a - b);
-      hessian(i, j) = hessian(j, i) = mixed / (4 * step * step * robot.Stiffness());
+      const VectorXd both = step * (VectorXd::Unit(n, i) + VectorXd::Unit(n, j));
+      const double mixed = energy(beta + both) - one[i] - one[j] + middle;
+      hessian(i, j) = hessian(j, i) = mixed / (step * step * robot.Stiffness());
     }
   }
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(hessian).eigenvalues()[0];
@@ -43,7 +45,7 @@ double LowestStiffness(const Robot& robot, const Load& load, const VectorXd& bet
 
 TEST(TwinPivotStability, LoadsNearUprightEndAtMinimaOfAnIndependentEnergy) {
   const Robot robot = Prototype("b");
-  for (unsigned seed = 1; seed <= 40; ++seed) {
+  for (unsigned seed = 1; seed <= 15; ++seed) {
     const VectorXd r = (Random(8, 0.5, seed).array() + 0.5).matrix();
     const double base = 2 + 8 * r[0];
     std::vector<double> tension;
