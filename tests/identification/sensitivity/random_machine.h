@@ -85,7 +85,7 @@ inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
       "</body>",
       number(0.1, 0.2));
   return fmt::format(
-      "<mujoco><option timestep='2e-3' integrator='{}' tolerance='0' iterations='50'/>"
+      "<mujoco><option timestep='2e-3' integrator='{}'/>"
       "<extension>{}</extension><worldbody><site name='a' pos='0.03 0.01 0'/>"
       "<site name='b' pos='-0.01 0.03 0'/>{}{}{}</worldbody>"
       "<tendon><spatial name='ta' damping='{}'><site site='a'/><site site='c0'/><site site='a0'/>"
