@@ -28,10 +28,11 @@ void SingleSteps::Step(const ModelAndData& machine, double h) const {
 
 void SingleSteps::Take(const mjModel& m, const mjData& d) {
   for (Model& model : models_) {
+    const bool both = model.mirrored && d.nefc > 0;
     Step(*model.machine, m.opt.timestep);
-    if (model.mirrored) Step(*model.mirrored, m.opt.timestep);
-    const mjData &there = *model.machine->data, &here = model.mirrored ? *model.mirrored->data : d;
-    const double move = model.mirrored ? 2 * move_ : move_;
+    if (both) Step(*model.mirrored, m.opt.timestep);
+    const mjData &there = *model.machine->data, &here = both ? *model.mirrored->data : d;
+    const double move = both ? 2 * move_ : move_;
     model.q = Difference(there.qpos, here.qpos, m.nq) / move;
     model.v = Difference(there.qvel, here.qvel, m.nv) / move;
     model.w = Difference(there.act, here.act, m.na) / move;

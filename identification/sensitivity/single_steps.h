@@ -12,7 +12,8 @@ namespace continuum {
 ///   ∂Φ/∂p = (Φ(x, p + δ) − Φ(x, p − δ)) / 2ε                                         (1)
 ///
 /// for any parameter that leaves a model its structure: geometry above all. No state drifts away
-/// from the machine's, so that δ can be small. Beside a bound of p the difference is one-sided.
+/// from the machine's, so that δ can be small. The difference is one-sided beside a bound of p, and
+/// where no row of the constraint solver acts: what bends within less than 1 mm is stiff rows.
 class SingleSteps {
  public:
   explicit SingleSteps(double move) : move_(move) {}

@@ -53,8 +53,9 @@ inline std::string Parameter(const std::string& name, const std::string& target,
       name, target, attribute, value, value / 4, value * 4);
 }
 
-/// The three-link arm of the diagnosis benchmark with dry friction of its own in each joint.
-inline SensitivityCase Arm() {
+/// The three-link arm of the diagnosis benchmark with dry friction of its own in each joint;
+/// lengths: with those of its links among the parameters.
+inline SensitivityCase Arm(bool lengths) {
   std::string plugins = "<plugin plugin='continuum.coulomb'>", parameters;
   for (int j = 1; j <= 3; ++j) {
     plugins += fmt::format(
@@ -67,7 +68,14 @@ inline SensitivityCase Arm() {
         Parameter(fmt::format("k{}", j), joint, "stiffness", 2) +
         Parameter(fmt::format("b{}", j), joint, "damping", 0.05);
   }
-  return {"three-link arm, coulomb in each joint",
+  for (const auto& [body, place] : {std::pair{"lower", -0.3}, {"hand", -0.25}, {"tip", -0.2}}) {
+    if (!lengths) break;
+    parameters += fmt::format(
+        "  - {{name: {0}, target: 'body:{0}', attribute: 'pos[2]', initial: {1}, lower: -1, upper: "
+        "0}}\n",
+        body, place);
+  }
+  return {lengths ? "the same with lengths of links" : "three-link arm, coulomb in each joint",
           WithEffects(fmt::format(kArm, 1e-6), plugins + "</plugin>"),
           "  - {column: u1, unit: N*m, actuator: u1}\n  - {column: u2, unit: N*m, actuator: u2}\n"
           "  - {column: u3, unit: N*m, actuator: u3}\n",

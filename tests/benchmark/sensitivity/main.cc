@@ -62,7 +62,8 @@ int Main(int argc, char** argv) {
   fmt::print(
       "| model | parameters | closed form, wall s | differences | closed form, CPU s | "
       "differences | ratio of CPU |\n|---|---|---|---|---|---|---|\n");
-  for (const SensitivityCase& c : {Arm(), Annelida(), Servo()}) Measure(c, folder, times);
+  for (const SensitivityCase& c : {Arm(false), Arm(true), Annelida(), Servo()})
+    Measure(c, folder, times);
   std::filesystem::remove_all(folder);
   return 0;
 }
