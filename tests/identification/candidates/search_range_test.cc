@@ -12,12 +12,22 @@ namespace {
 
 TEST(SearchRange, ALoadMayBeFiveTimesTheWholeRobotHoweverLightItsLinks) {
   Sizes sizes;
-  sizes.mass = 0.008, sizes.robot = 0.08;
+  sizes.mass = 0.008, sizes.robot = 0.08, sizes.torque = 0.01;
   const Param& mass = EffectNamed("payload").params.front();
   const Parameter p =
       CandidateParameter(mass, Place::kBody, sizes, "body:tip", "mass", Change::Operation::kSet);
   EXPECT_DOUBLE_EQ(p.upper, 0.4);
   EXPECT_DOUBLE_EQ(p.initial, 0.05 * sizes.mass);
+}
+
+// A model that declares no mass says nothing of what its machine carries; its motor does.
+TEST(SearchRange, ALoadMayBeFiveTimesWhatTheForcesLift) {
+  Sizes sizes;
+  sizes.mass = sizes.robot = 1e-3, sizes.torque = 0.5, sizes.lever = 0.1;
+  const Param& mass = EffectNamed("payload").params.front();
+  const Parameter p =
+      CandidateParameter(mass, Place::kBody, sizes, "body:tip", "mass", Change::Operation::kSet);
+  EXPECT_DOUBLE_EQ(p.upper, 5 * 0.5 / (9.81 * 0.1));
 }
 
 TEST(SearchRange, WidensWhatAFitHasReachedAsFarAsTheLawAllows) {
