@@ -116,6 +116,7 @@ statics::Fall RisingSystem::Fall(double /*from*/, double load, VectorXd& x) {
   statics::DenseSystem<RisingSystem> system(*this);
   statics::FallOptions options;
   options.most_steps = 1000;
+  options.balanced = 10 * Tolerances().accept;  // below it rounding would choose the side
   statics::Fall fall = statics::FallToRest(system, x, options);
   VectorXd root = x;
   fall.ok =
