@@ -49,15 +49,19 @@ std::optional<double> FixedValue(const EffectInfo& effect, std::size_t i,
   return std::nullopt;
 }
 
-// What an effect that adds to an attribute may take away: the least that any element has.
-double LeastValue(std::string_view attribute, Place place, const std::vector<std::string>& names,
-                  const ModelSpec& system, const std::vector<Change>& fitted) {
-  double least = kInfinity;
-  for (const std::string& name : names) {
-    const std::string element = std::string(PlaceName(place)) + ":" + Escaped(name);
-    least = std::min(least, system.ValueAfter(fitted, element, std::string(attribute)));
-  }
-  return least;
+// What the elements have of an attribute.
+std::vector<double> ValuesOf(const std::string& attribute, Place place,
+                             const std::vector<std::string>& names, const ModelSpec& system,
+                             const std::vector<Change>& fitted) {
+  const std::string kind = std::string(PlaceName(place)) + ":";
+  std::vector<double> values;
+  for (const std::string& name : names)
+    values.push_back(system.ValueAfter(fitted, kind + Escaped(name), attribute));
+  return values;
+}
+
+double Least(const std::vector<double>& values) {
+  return *std::min_element(values.begin(), values.end());
 }
 
 // Where the effect is another value of an attribute of the model.
@@ -65,14 +69,11 @@ void AddAttribute(const EffectInfo& effect, Param param, Place place,
                   const std::vector<std::string>& names, const ModelSpec& system,
                   const std::vector<Change>& fitted, const Sizes& sizes, Hypothesis& h) {
   const std::string kind = std::string(PlaceName(place)) + ":", attribute(effect.native);
-  std::vector<double> values;
-  for (const std::string& name : names)
-    values.push_back(system.ValueAfter(fitted, kind + Escaped(name), attribute));
+  const std::vector<double> values = ValuesOf(attribute, place, names, system, fitted);
   const SharedValue shared = SharedValueOf(values);
   param.null = shared.null;
   if (shared.operation == Change::Operation::kScale) param.unit = "1";
-  if (shared.operation == Change::Operation::kAdd)
-    param.lower -= *std::min_element(values.begin(), values.end());
+  if (shared.operation == Change::Operation::kAdd) param.lower -= Least(values);
   h.extra.push_back(
       CandidateParameter(param, place, sizes, kind + GlobsOf(names), attribute, shared.operation));
   if (!shared.suffix.empty()) {
@@ -102,8 +103,9 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place,
                                          fmt::format("effect:{}.{}", effect.name, param.name),
                                          Change::Operation::kSet));
     h.null.push_back(param.null);
-    if (!effect.adds_to.empty())
-      h.extra.back().lower = -LeastValue(effect.adds_to, place, names, system, fitted);
+    if (effect.adds_to.empty()) continue;  // else it may take away what all of them have
+    h.extra.back().lower =
+        -Least(ValuesOf(std::string(effect.adds_to), place, names, system, fitted));
   }
   return h;
 }

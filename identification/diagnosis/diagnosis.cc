@@ -223,7 +223,9 @@ class Session {
 
   void CompareByEquation() {
     options_.Say(DiagnosisStage::kJudgement, "missing force");
-    const EquationErrors forces(null_, d_.before.fit.x, TrainLogs(e_));
+    const bool known = LogsForALook(e_) == TrainLogs(e_);
+    const EquationErrors forces =
+        known ? views_.front() : EquationErrors(null_, d_.before.fit.x, TrainLogs(e_));
     ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {
       d_.candidates[i].by_equation = forces.Of(d_.candidates[i]);
     });

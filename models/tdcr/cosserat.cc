@@ -47,40 +47,21 @@ struct RodBalance::State {
 };
 
 RodBalance::RodBalance(const Robot& robot, const Loads& loads, bool friction, int steps)
-    : length_(robot.length),
-      twist_(1 / (1 + robot.nu)),
-      mu_(friction ? loads.mu : 0),
-      friction_(friction && loads.mu > 0),
-      disks_(robot.disks),
-      steps_(steps) {
-  const double unit = robot.length / robot.moment();  // L^2/EI
-  for (int k = 0; k < robot.tendons; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (loads.tension[i] == 0) continue;  // a slack tendon does nothing
-    holes_.push_back(robot.Hole(k) / robot.length);
-    tension_.push_back(unit * loads.tension[i]);
-    direction_.push_back(loads.direction[i]);
-  }
-  natural_ =
-      robot.length * Eigen::Vector3d(-robot.natural.y(), robot.natural.x(), robot.natural.z());
-  tip_force_ = unit * loads.tip_force;
-  disk_weight_ = unit * robot.disk_mass * loads.gravity;
-  rod_weight_ = unit * robot.density * robot.area() * robot.length * loads.gravity;
-}
+    : length_(robot.length), rod_(robot, loads, friction), steps_(steps) {}
 
 Eigen::Vector3d RodBalance::DeadForce(int piece, double s) const {
-  return load_ * (tip_force_ + (disks_ - piece) * disk_weight_ + (1 - s) * rod_weight_);
+  return load_ * rod_.Force(piece, s);
 }
 
 template <class T, int kRubbing>
 Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kRubbing>& y) const {
   using std::sqrt;
-  Eigen::Matrix<T, 3, 1> moment(y.u.x() - natural_.x(), y.u.y() - natural_.y(),
-                                twist_ * (y.u.z() - natural_.z()));
-  for (std::size_t k = 0; k < holes_.size(); ++k) {
-    const double ax = holes_[k].x(), ay = holes_[k].y(), r2 = holes_[k].squaredNorm();
+  Eigen::Matrix<T, 3, 1> moment(y.u.x() - rod_.natural.x(), y.u.y() - rod_.natural.y(),
+                                rod_.twist * (y.u.z() - rod_.natural.z()));
+  for (std::size_t k = 0; k < rod_.holes.size(); ++k) {
+    const double ax = rod_.holes[k].x(), ay = rod_.holes[k].y(), r2 = rod_.holes[k].squaredNorm();
     const T wz = 1.0 + y.u.x() * ay - y.u.y() * ax;
-    T pull = T(load_ * tension_[k]);
+    T pull = T(load_ * rod_.pull[k]);
     if constexpr (kRubbing > 0) pull = y.tension[static_cast<Eigen::Index>(k)];
     pull /= sqrt(wz * wz + r2 * y.u.z() * y.u.z());
     moment.x() += pull * wz * ay;
@@ -97,11 +78,12 @@ template <class T, int kRubbing>
   using std::sqrt;
   using Vector3 = Eigen::Matrix<T, 3, 1>;
   const Vector3& u = y.u;
-  Vector3 moment(u.x() - natural_.x(), u.y() - natural_.y(), twist_ * (u.z() - natural_.z()));
-  T hxx(1), hxy(0), hyy(1), hxz(0), hyz(0), hzz(twist_);
-  for (std::size_t k = 0; k < holes_.size(); ++k) {
-    const double ax = holes_[k].x(), ay = holes_[k].y(), r2 = holes_[k].squaredNorm();
-    T pull = T(load_ * tension_[k]);
+  Vector3 moment(u.x() - rod_.natural.x(), u.y() - rod_.natural.y(),
+                 rod_.twist * (u.z() - rod_.natural.z()));
+  T hxx(1), hxy(0), hyy(1), hxz(0), hyz(0), hzz(rod_.twist);
+  for (std::size_t k = 0; k < rod_.holes.size(); ++k) {
+    const double ax = rod_.holes[k].x(), ay = rod_.holes[k].y(), r2 = rod_.holes[k].squaredNorm();
+    T pull = T(load_ * rod_.pull[k]);
     if constexpr (kRubbing > 0) pull = y.tension[static_cast<Eigen::Index>(k)];
     const T wz = 1.0 + u.x() * ay - u.y() * ax;
     if (!(wz > T(0))) return false;
@@ -172,7 +154,7 @@ template <class T, int kRubbing>
   Eigen::Matrix3d tangent = elastic;
   for (std::size_t k = 0; k < count; ++k) {
     const double tension = ValueOf(y.tension[static_cast<Eigen::Index>(k)]);
-    plain[k] = Rubbing<double>(holes_[k], Values(y.u), direction_[k] * mu_ * tension);
+    plain[k] = Rubbing<double>(rod_.holes[k], Values(y.u), rod_.direction[k] * rod_.mu * tension);
     tangent += plain[k].Lever() * plain[k].Gradient(du).transpose();
   }
   const Eigen::Matrix3d inverse = tangent.inverse();
@@ -188,7 +170,7 @@ template <class T, int kRubbing>
   dy.tension.resize(y.tension.size());
   for (std::size_t k = 0; k < count; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    const Rubbing<T> rubbing(holes_[k], y.u, T(direction_[k] * mu_) * y.tension[i]);
+    const Rubbing<T> rubbing(rod_.holes[k], y.u, T(rod_.direction[k] * rod_.mu) * y.tension[i]);
     dy.tension[i] = rubbing.Slope(at);
     rest -= dy.tension[i] * rubbing.Lever();
   }
@@ -218,14 +200,14 @@ bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node)
   y.u << x[0], x[1], x[2];
   y.p.setZero();
   if constexpr (kRubbing > 0) {
-    y.tension.resize(static_cast<Eigen::Index>(tension_.size()));
-    for (std::size_t k = 0; k < tension_.size(); ++k) {
-      y.tension[static_cast<Eigen::Index>(k)] = T(load_ * tension_[k]);
+    y.tension.resize(static_cast<Eigen::Index>(rod_.pull.size()));
+    for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
+      y.tension[static_cast<Eigen::Index>(k)] = T(load_ * rod_.pull[k]);
     }
   }
   std::array<S, 6> slope;
-  const double h = 1.0 / (disks_ * steps_);
-  for (int step = 0; step < disks_ * steps_; ++step) {
+  const double h = 1.0 / (rod_.disks * steps_);
+  for (int step = 0; step < rod_.disks * steps_; ++step) {
     for (int stage = 0; stage <= 6; ++stage) {
       S at = y;
       for (int j = 0; j < stage; ++j) {
@@ -249,8 +231,8 @@ bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node)
 
 template <class T, class AtNode>
 bool RodBalance::WalkAny(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const {
-  if (!friction_) return Walk<T, 0>(x, end, at_node);
-  if (tension_.size() <= kFewTendons) return Walk<T, kFewTendons>(x, end, at_node);
+  if (!rod_.friction) return Walk<T, 0>(x, end, at_node);
+  if (rod_.pull.size() <= kFewTendons) return Walk<T, kFewTendons>(x, end, at_node);
   return Walk<T, kMaxTendons>(x, end, at_node);
 }
 
@@ -276,10 +258,10 @@ const RodBalance::Shape& RodBalance::Integrate(const Vector& x) const {
   now.load = load_;
   now.steps = steps_;
   Shape& shape = now.shape;
-  shape.disks.setZero(3, disks_);
-  shape.middles.setZero(3, disks_);
+  shape.disks.setZero(3, rod_.disks);
+  shape.middles.setZero(3, rod_.disks);
   shape.frames.assign(1, Eigen::Quaterniond::Identity());
-  shape.frames.reserve(static_cast<std::size_t>(disks_ * steps_) + 1);
+  shape.frames.reserve(static_cast<std::size_t>(rod_.disks * steps_) + 1);
   const auto keep = [&](int step, const auto& y) {
     const int piece = (step - 1) / steps_, within = step - piece * steps_;
     shape.frames.push_back(Eigen::Quaterniond(y.q[0], y.q[1], y.q[2], y.q[3]).normalized());

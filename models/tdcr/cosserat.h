@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "models/tdcr/robot.h"
+#include "models/tdcr/unit_rod.h"
 
 namespace continuum::tdcr {
 
@@ -74,16 +74,10 @@ class RodBalance {
   bool WalkAny(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const;
   Eigen::Vector3d DeadForce(int piece, double s) const;
 
-  double length_, twist_;  ///< twist_: GJ/EI
-  double mu_;
-  bool friction_;
-  int disks_, steps_;
+  double length_;
+  UnitRod rod_;
+  int steps_;
   double load_ = 1;
-  std::vector<Eigen::Vector2d> holes_;  ///< over L, of the tendons that pull
-  std::vector<double> tension_;         ///< times L^2/EI, as the forces below
-  std::vector<int> direction_;
-  Eigen::Vector3d natural_;  ///< u of the rod when nothing acts
-  Eigen::Vector3d tip_force_, disk_weight_, rod_weight_;
 
   struct Integrated {
     Vector x = Vector::Constant(std::numeric_limits<double>::quiet_NaN());

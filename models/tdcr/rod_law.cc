@@ -23,74 +23,55 @@ int NegativeEigenvalues(const Eigen::MatrixXd& symmetric) {
 }  // namespace
 
 RodLaw::RodLaw(const Robot& robot, const Loads& loads, bool friction, int pieces)
-    : twist_(1 / (1 + robot.nu)),
-      mu_(friction ? loads.mu : 0),
-      friction_(friction && loads.mu > 0),
-      disks_(robot.disks),
-      pieces_(pieces) {
-  const double unit = robot.length / robot.moment();  // L^2/EI
-  for (int k = 0; k < robot.tendons; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (loads.tension[i] == 0) continue;
-    holes_.push_back(robot.Hole(k) / robot.length);
-    pull_.push_back(unit * loads.tension[i]);
-    direction_.push_back(loads.direction[i]);
-  }
-  natural_ = robot.length * Vector3d(-robot.natural.y(), robot.natural.x(), robot.natural.z());
-  tip_force_ = unit * loads.tip_force;
-  disk_weight_ = unit * robot.disk_mass * loads.gravity;
-  rod_weight_ = unit * robot.density * robot.area() * robot.length * loads.gravity;
-  tension_.resize(pulling(), pieces);
-}
+    : rod_(robot, loads, friction), pieces_(pieces), tension_(pulling(), pieces) {}
 
 Vector3d RodLaw::Force(double s) const {
-  const int passed = static_cast<int>(s * disks_);
-  return load_ * (tip_force_ + (disks_ - passed) * disk_weight_ + (1 - s) * rod_weight_);
+  return load_ * rod_.Force(static_cast<int>(s * rod_.disks), s);
 }
 
 bool RodLaw::Prepare(const Eigen::Matrix3Xd& zeta) {
   const double h = 1.0 / pieces_;
   for (int k = 0; k < pulling(); ++k) {
     const auto at = static_cast<std::size_t>(k);
-    tension_.row(k).setConstant(load_ * pull_[at]);
-    if (!friction_ || direction_[at] == 0) continue;
-    Vector3d before = Along(holes_[at], zeta.col(0)).normalized();
+    tension_.row(k).setConstant(load_ * rod_.pull[at]);
+    if (!rod_.friction || rod_.direction[at] == 0) continue;
+    Vector3d before = Along(rod_.holes[at], zeta.col(0)).normalized();
     double angle = 0.5 * h * zeta.col(0).cross(before).norm();
     for (int i = 0; i < pieces_; ++i) {
-      const Vector3d t = Along(holes_[at], zeta.col(i)).normalized();
+      const Vector3d t = Along(rod_.holes[at], zeta.col(i)).normalized();
       if (i > 0) {
         const Vector3d u = 0.5 * (zeta.col(i) + zeta.col(i - 1));
         angle += (h * u.cross(Vector3d(0.5 * (t + before))) + t - before).norm();
       }
       before = t;
-      tension_(k, i) *= std::exp(-direction_[at] * mu_ * angle);
+      tension_(k, i) *= std::exp(-rod_.direction[at] * rod_.mu * angle);
     }
   }
   return true;
 }
 
 Vector3d RodLaw::Lever(int tendon, const Vector3d& u) const {
-  const Eigen::Vector2d& hole = holes_[static_cast<std::size_t>(tendon)];
+  const Eigen::Vector2d& hole = rod_.holes[static_cast<std::size_t>(tendon)];
   const Vector3d w = Along(hole, u);
   return Vector3d(w.z() * hole.y(), -w.z() * hole.x(), u.z() * hole.squaredNorm()) / w.norm();
 }
 
 double RodLaw::Energy(const Vector3d& u) const {
-  const Vector3d change = u - natural_;
+  const Vector3d change = u - rod_.natural;
   double energy = 0.5 * change.dot(elastic() * change);
-  for (std::size_t k = 0; k < holes_.size(); ++k) {
-    energy += load_ * pull_[k] * Along(holes_[k], u).norm();
+  for (std::size_t k = 0; k < rod_.holes.size(); ++k) {
+    energy += load_ * rod_.pull[k] * Along(rod_.holes[k], u).norm();
   }
   return energy;
 }
 
 bool RodLaw::At(int piece, const Vector3d& u, const Vector3d& /*n*/,
                 statics::RodSection& section) const {
-  section.moment = elastic() * (u - natural_);
+  section.moment = elastic() * (u - rod_.natural);
   section.stretch = axis();
   section.moment_by_zeta = elastic();
   for (int k = 0; k < pulling(); ++k) {
-    const Eigen::Vector2d& hole = holes_[static_cast<std::size_t>(k)];
+    const Eigen::Vector2d& hole = rod_.holes[static_cast<std::size_t>(k)];
     const Vector3d w = Along(hole, u);
     if (!(w.z() > 0)) return false;
     const double r2 = hole.squaredNorm(), square = w.squaredNorm();

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "models/statics/rod_chain.h"
-#include "models/tdcr/robot.h"
+#include "models/tdcr/unit_rod.h"
 
 namespace continuum::tdcr {
 
@@ -20,13 +20,13 @@ class RodLaw {
   RodLaw(const Robot& robot, const Loads& loads, bool friction, int pieces);
 
   void SetLoad(double load) { load_ = load; }
-  bool friction() const { return friction_; }
-  int pulling() const { return static_cast<int>(holes_.size()); }
+  bool friction() const { return rod_.friction; }
+  int pulling() const { return static_cast<int>(rod_.holes.size()); }
 
   double length() const { return 1; }
   Eigen::Vector3d axis() const { return Eigen::Vector3d::UnitZ(); }
   Eigen::Vector3d TipLever() const { return Eigen::Vector3d::Zero(); }
-  Eigen::Matrix3d elastic() const { return Eigen::Vector3d(1, 1, twist_).asDiagonal(); }
+  Eigen::Matrix3d elastic() const { return Eigen::Vector3d(1, 1, rod_.twist).asDiagonal(); }
   Eigen::Vector3d Force(double s) const;
   bool Prepare(const Eigen::Matrix3Xd& zeta);
   bool At(int piece, const Eigen::Vector3d& u, const Eigen::Vector3d& n,
@@ -43,14 +43,9 @@ class RodLaw {
     return {-u.z() * hole.y(), u.z() * hole.x(), 1 + u.x() * hole.y() - u.y() * hole.x()};
   }
 
-  double twist_, mu_;  ///< GJ/EI
-  bool friction_;
-  int disks_, pieces_;
+  UnitRod rod_;
+  int pieces_;
   double load_ = 1;
-  std::vector<Eigen::Vector2d> holes_;
-  std::vector<double> pull_;  ///< at the base
-  std::vector<int> direction_;
-  Eigen::Vector3d natural_, tip_force_, disk_weight_, rod_weight_;
   Eigen::MatrixXd tension_;
 };
 

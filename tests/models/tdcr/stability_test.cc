@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "models/tdcr/model.h"
+#include "models/tdcr/pieces_energy.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -31,31 +32,6 @@ Loads Of(const Robot& robot, std::vector<double> tension, const Vector3d& force)
   return loads;
 }
 
-// The rod again, made of pieces of uniform curvature in coordinates relative to each other: energy
-// over EI/L of curvatures u (3 x pieces).
-double Energy(const Robot& robot, const Loads& loads, const Eigen::Matrix3Xd& u) {
-  const double h = robot.length / kPieces;
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Vector3d tip = Vector3d::Zero();
-  double energy = 0;
-  for (int i = 0; i < kPieces; ++i) {
-    const double kx = u(0, i), ky = u(1, i), t = u(2, i);
-    energy += h * (robot.EI() * (kx * kx + ky * ky) + robot.GJ() * t * t) / 2;
-    for (int k = 0; k < robot.tendons; ++k) {
-      const Eigen::Vector2d a = robot.Hole(k);
-      energy += h * loads.tension[static_cast<std::size_t>(k)] *
-                std::hypot(1 - kx * a.x() - ky * a.y(), t * a.norm());
-    }
-    const Vector3d half = h / 2 * Vector3d(-ky, kx, t);
-    const double angle = half.norm();
-    const Vector3d axis = angle > 0 ? Vector3d(half / angle) : Vector3d(Vector3d::UnitZ());
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-    tip += h * R * turn.col(2);
-    R = R * turn * turn;
-  }
-  return (energy - loads.tip_force.dot(tip)) / robot.moment();
-}
-
 // The lowest eigenvalue of the second differences of that energy along cosines in each curvature,
 // over that of the straight rod without loads (1).
 double LowestStiffness(const Robot& robot, const Loads& loads, const Eigen::Matrix3Xd& u) {
@@ -71,7 +47,7 @@ double LowestStiffness(const Robot& robot, const Loads& loads, const Eigen::Matr
     }
   }
   const auto energy = [&](const Eigen::Matrix3Xd& change) {
-    return Energy(robot, loads, u + step * change);
+    return EnergyOfPieces(robot, loads, u + step * change) / robot.moment();
   };
   const double middle = energy(Eigen::Matrix3Xd::Zero(3, kPieces));
   Eigen::MatrixXd hessian(kCount, kCount);

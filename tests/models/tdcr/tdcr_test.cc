@@ -8,6 +8,7 @@
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/model.h"
+#include "models/tdcr/pieces_energy.h"
 #include "sim/numerics/linearize.h"
 #include "sim/numerics/newton.h"
 
@@ -339,35 +340,7 @@ TEST(Tdcr, CosseratRodIsWithinItsAccuracyOfFourfoldSteps) {
 
 // The equilibrium makes the energy of bending, twisting, tendons and dead forces stationary among
 // smooth shapes: curvatures changed by cosines change it by the square only.
-Eigen::Vector3d Tip(double h, const Eigen::Matrix3Xd& u) {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();
-  for (const auto& k : u.colwise()) {
-    const Eigen::Vector3d half = h / 2 * Eigen::Vector3d(-k.y(), k.x(), k.z());
-    const auto turn = Eigen::AngleAxisd(half.norm(), half.normalized()).toRotationMatrix();
-    p += h * R * turn.col(2);
-    R = R * turn * turn;
-  }
-  return p;
-}
-
-double Energy(const Robot& robot, const Loads& loads, const Eigen::Matrix3Xd& u) {
-  const auto n = static_cast<int>(u.cols());
-  const double h = robot.length / n;
-  double energy = 0;
-  for (int i = 0; i < n; ++i) {
-    const double kx = u(0, i), ky = u(1, i), t = u(2, i);
-    energy += h * (robot.EI() * (kx * kx + ky * ky) + robot.GJ() * t * t) / 2;
-    for (int k = 0; k < robot.tendons; ++k) {
-      const Eigen::Vector2d a = robot.Hole(k);
-      energy += h * loads.tension[static_cast<std::size_t>(k)] *
-                std::hypot(1 - kx * a.x() - ky * a.y(), t * a.norm());
-    }
-  }
-  return energy - loads.tip_force.dot(Tip(h, u));
-}
-
-// The largest slope of the energy along cosines in each curvature, over EI/L.
+// The largest slope along cosines in each curvature, over EI/L.
 double LargestSlope(int pieces) {
   Robot robot = Bare();
   robot.disks = pieces;  // the middles of pieces are the quadrature's points
@@ -382,8 +355,8 @@ double LargestSlope(int pieces) {
       change(mode / 4, i) = std::cos(mode % 4 * std::numbers::pi * (i + 0.5) / pieces);
     }
     const double h = 1e-4 / robot.length;
-    const double difference =
-        Energy(robot, loads, s.u + h * change) - Energy(robot, loads, s.u - h * change);
+    const double difference = EnergyOfPieces(robot, loads, s.u + h * change) -
+                              EnergyOfPieces(robot, loads, s.u - h * change);
     largest = std::max(largest, std::abs(difference) / (2e-4 * robot.moment()));
   }
   return largest;
