@@ -56,8 +56,8 @@ TEST_F(Stop, EndsAFilm) { ExpectStops({"render", "experiment.yaml", "--out", "x.
 
 TEST_F(Stop, OfAFitLeavesTheBestSoFar) {
   WriteLongLog();
-  const Finished f =
-      Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"}, "\nfit\n");
+  const Finished f = Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"},
+                               "fit of segments");
   EXPECT_EQ(f.signal, 0);
   EXPECT_EQ(f.exit_code, 1) << f.err;
   EXPECT_THAT(f.err, HasSubstr("interrupted"));
@@ -68,8 +68,8 @@ TEST_F(Stop, OfAFitSaysThatIntervalsAndCorrelationsAreNotKnown) {
   WriteLongLog();
   Spoil("experiment.yaml", "upper: 1}",
         "upper: 1}, {name: m, target: \"body:link\", attribute: mass, lower: 0.5, upper: 2}");
-  const Finished f =
-      Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"}, "\nfit\n");
+  const Finished f = Interrupt({"identify", "experiment.yaml", "--path", "stepped", "--out", "out"},
+                               "fit of segments");
   EXPECT_THAT(f.out, HasSubstr("interval not computed"));
   const auto fit = nlohmann::json::parse(Scratch::Text(files_ / "out/fit.json"));
   EXPECT_EQ(fit["intervals"], "not computed: interrupted");
