@@ -25,7 +25,7 @@ double WithoutPart(double error, double part) {
 }
 
 FitOptions CandidateFitter::Options() const {
-  FitOptions options{iterations, 1e-4};  // first order does the rest
+  FitOptions options{iterations, 1e-3};  // first order does the rest
   options.whitening = &whitening;
   options.idle = true, options.rough = true;
   options.until = until;
@@ -35,12 +35,18 @@ FitOptions CandidateFitter::Options() const {
 // For fits that begin next to their end.
 FitOptions CandidateFitter::FewSteps() const {
   FitOptions options = Options();
-  options.iterations = 5, options.rough = false;
+  options.iterations = 5;
   return options;
 }
 
-Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double rival,
-                            bool idle) const {
+// Of a complete fit, as FitOptions::slopes has them.
+Matrix CandidateFitter::SlopesOf(const Problem& problem, const Fitted& fitted) const {
+  Matrix slopes = whitening.Stack(fitted.sensitivities->jacobian, TrainLogs(*experiment));
+  for (Eigen::Index i = 0; i < slopes.cols(); ++i) slopes.col(i) *= problem.parameters()[i].scale;
+  return slopes;
+}
+
+Fitted CandidateFitter::Fit(const Problem& problem, FitStart start, double rival, bool idle) const {
   const auto train = TrainLogs(*experiment);
   auto validate = train;
   validate.flip();
@@ -48,7 +54,8 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
   FitOptions options = Options();
   options.hopeless = HopelessCost(rival, criteria);
   options.idle = idle;
-  f.fit = FitParameters(problem, start, train, options);
+  options.slopes = &start.slopes;
+  f.fit = FitParameters(problem, start.x, train, options);
   f.fit.x = FitStarts(problem, f.fit.x, validate);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
   RequireFinite(problem, f.fit.x, f.residuals, problem.AllLogs(), "with the fitted parameters");
@@ -60,11 +67,12 @@ Fitted CandidateFitter::Fit(const Problem& problem, const Vector& start, double 
 // As `identify` does, of many logs with those for a look, then with all and in units of the noise.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr int kIterations = 100;
-  constexpr double kNear = 1e-4;  // of the cost that a step gains: what follows goes on from there
-  const FitOptions options{.iterations = kIterations, .tolerance = kNear, .until = until};
+  constexpr double kNear = 1e-3;  // of the cost that a step gains: what follows goes on from there
+  const FitOptions options{
+      .iterations = kIterations, .tolerance = kNear, .rough = true, .until = until};
   const SearchedFit found =
       FitBySearch(problem, problem.Start(), LogsForALook(*experiment), {}, options);
-  return Fit(problem, found.fit.x, std::numeric_limits<double>::infinity(), false);
+  return Fit(problem, {found.fit.x}, std::numeric_limits<double>::infinity(), false);
 }
 
 void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {
@@ -81,24 +89,30 @@ void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {
   f.sensitivities->freedom = residual.freedom();
 }
 
-void CandidateFitter::FitFinely(const Problem& problem, Fitted& f) const {
+void CandidateFitter::FitFinely(const Problem& problem, const std::optional<Vector>& fine,
+                                Fitted& f) const {
   Sensitivities& s = f.sensitivities.value();
-  ReachByFineFit(problem, f.fit.x, f.residuals, s.jacobian, s.step, FewSteps(), s.uncertainty);
+  Matrix slopes = SlopesOf(problem, f);
+  FitOptions options = FewSteps();
+  options.slopes = &slopes;
+  ReachByFineFit(problem, f.fit.x, f.residuals, s.jacobian, s.step, options, fine, s.uncertainty);
 }
 
 Fitted CandidateFitter::Continue(const Problem& problem, const Fitted& before) const {
   const auto train = TrainLogs(*experiment);
   Fitted f = before;
-  f.fit = FitParameters(problem, before.fit.x, train, FewSteps());
+  FitOptions options = FewSteps();
+  Matrix slopes = SlopesOf(problem, before);
+  options.slopes = &slopes;
+  f.fit = FitParameters(problem, before.fit.x, train, options);
   f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
   f.error.train = problem.PooledRms(f.residuals, train);
   f.cost = 2 * f.fit.cost;
-  Complete(problem, f);
   return f;
 }
 
 Fitted CandidateFitter::FitAll(const Problem& problem, const Vector& start) const {
-  Fitted f = Fit(problem, start);
+  Fitted f = Fit(problem, {start});
   Complete(problem, f);
   return f;
 }

@@ -1,12 +1,21 @@
 #pragma once
 
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "identification/diagnosis/result.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
 
 namespace continuum {
+
+/// Where a fit begins, and its slopes there if they are known (FitOptions::slopes).
+struct FitStart {
+  Problem::Vector x;
+  Problem::Matrix slopes = {};
+};
 
 /// How the models of one diagnosis are fitted and compared.
 struct CandidateFitter {
@@ -27,7 +36,7 @@ struct CandidateFitter {
 
   /// Fits on the train logs and scores train and validate; rival: cost of a fit that this one must
   /// come near to be worth its iterations; idle: FitOptions::idle. Throws Error when it diverges.
-  Fitted Fit(const Problem& problem, const Problem::Vector& start,
+  Fitted Fit(const Problem& problem, FitStart start,
              double rival = std::numeric_limits<double>::infinity(), bool idle = true) const;
   /// Fit of the experiment's own parameters, from its start or, where that leads to a wrong place,
   /// by the equations of motion: its error would be blamed on effects.
@@ -36,9 +45,10 @@ struct CandidateFitter {
   /// first order.
   void Complete(const Problem& problem, Fitted& fitted) const;
   /// ReachByFineFit, for complete fits.
-  void FitFinely(const Problem& problem, Fitted& fitted) const;
-  /// A few iterations from a fit of nearly the same problem, complete. Throws Error when it
-  /// diverges.
+  void FitFinely(const Problem& problem, const std::optional<Problem::Vector>& fine,
+                 Fitted& fitted) const;
+  /// A few iterations from a complete fit of nearly the same problem, whose sensitivities it keeps.
+  /// Throws Error when it diverges.
   Fitted Continue(const Problem& problem, const Fitted& fitted) const;
   /// Fit and Complete.
   Fitted FitAll(const Problem& problem, const Problem::Vector& start) const;
@@ -56,6 +66,7 @@ struct CandidateFitter {
  private:
   FitOptions Options() const;
   FitOptions FewSteps() const;
+  Problem::Matrix SlopesOf(const Problem& problem, const Fitted& fitted) const;
   std::vector<Problem::Vector> StepColumn(const Fitted& fitted) const;
 };
 

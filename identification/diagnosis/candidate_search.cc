@@ -306,6 +306,10 @@ const CandidateResult* CandidateSearch::leading() const {
   return candidates.empty() || !candidates.front().was_fitted ? nullptr : &candidates.front();
 }
 
+CandidateResult* CandidateSearch::leading() {
+  return std::as_const(*this).leading() ? &candidates.front() : nullptr;
+}
+
 double CandidateSearch::BestOverNoise() const {
   const Fitted& best = leading() ? leading()->fitted : *base_.fitted;
   return std::sqrt(best.cost / (best.complete() ? best.sensitivities->freedom : 0));
@@ -322,7 +326,7 @@ LackOfFit CandidateSearch::LackAt(const Problem& problem, const CandidateResult&
                        options_.seed);
 }
 
-LackOfFit CandidateSearch::LackOf(const CandidateResult* c) const {
+LackOfFit CandidateSearch::LackOf(CandidateResult* c) const {
   LackOfFit lack = c ? TestsOf(*c)
                      : TestLackOfFit(fitter_, base_problem_, base_.given, *base_.fitted, sizes_,
                                      inflation_, options_.seed);
@@ -334,28 +338,33 @@ LackOfFit CandidateSearch::LackOf(const CandidateResult* c) const {
 
 // What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly,
 // and a fit may end in another local minimum.
-bool CandidateSearch::FallsWithStep(const CandidateResult& c) const {
+bool CandidateSearch::FallsWithStep(CandidateResult& c) const {
   options_.Say(DiagnosisStage::kFits, "at a fine step, " + c.hypothesis.Name());
   const Problem fine = AtQuarter(ProblemOf(c, *fitter_.experiment));
+  // By the directions that are known, then by those at the fine step: they take a far finer one.
+  const auto falls = [&](Fitted finer) {
+    if (FallsTo(c, finer)) return true;
+    fitter_.Complete(fine, finer);
+    return FallsTo(c, finer) || !LackAt(fine, c, finer).significant(criteria_);
+  };
   try {
-    const Fitted& known = c.at_quarter_step ? *c.at_quarter_step : fitter_.Continue(fine, c.fitted);
-    if (FallsAt(fine, c, known)) return true;
+    Fitted known = c.at_quarter_step ? *c.at_quarter_step : fitter_.Continue(fine, c.fitted);
+    c.at_quarter_x = known.fit.x;
+    if (falls(std::move(known))) return true;
     Fitted anew = c.fitted;
-    anew.fit.x = BestOf(fine, ExperimentStarts(fine, c));
-    return FallsAt(fine, c, fitter_.Continue(fine, anew));
+    anew.fit.x = BestOf(fine, ExperimentStarts(fine, c)).x;
+    return falls(fitter_.Continue(fine, anew));
   } catch (const Error&) {
     return true;  // it diverges there
   }
 }
 
-bool CandidateSearch::FallsAt(const Problem& fine, const CandidateResult& c,
-                              const Fitted& finer) const {
+bool CandidateSearch::FallsTo(const CandidateResult& c, const Fitted& finer) const {
   const auto excess = [&](const Fitted& f) {
     const ProjectedResidual residual = fitter_.ProjectedResidualOf(f);
     return residual.cost() - residual.freedom();
   };
-  return continuum::FallsWithStep(excess(c.fitted), excess(finer), criteria_) ||
-         !LackAt(fine, c, finer).significant(criteria_);
+  return continuum::FallsWithStep(excess(c.fitted), excess(finer), criteria_);
 }
 
 BaseSquares CandidateSearch::Base() const {

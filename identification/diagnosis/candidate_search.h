@@ -61,14 +61,15 @@ class CandidateSearch {
   double BestOverNoise() const;
   /// The best model of this search: the leading candidate, or null for the base.
   const CandidateResult* leading() const;
+  CandidateResult* leading();
   /// Tests of a complete fit's residual.
   LackOfFit TestsOf(const CandidateResult& candidate) const;
   /// The same of the leading candidate's or the base's, with whether the time-discretisation error
   /// explains them.
-  LackOfFit LackOf(const CandidateResult* candidate) const;
+  LackOfFit LackOf(CandidateResult* candidate) const;
   /// Whether a fit's squares above the noise fall with the time step, at a quarter of it, as the
   /// time-discretisation error does.
-  bool FallsWithStep(const CandidateResult& candidate) const;
+  bool FallsWithStep(CandidateResult& candidate) const;
   /// For JudgeLikelihoods, of the fitted candidates.
   std::vector<LikelihoodRecord> Records() const;
   /// The same of the base.
@@ -107,14 +108,15 @@ class CandidateSearch {
   static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,
                                                        const CandidateResult& c);
   bool RefitFromStart(CandidateResult& c) const;
-  bool FallsAt(const Problem& fine, const CandidateResult& c, const Fitted& finer) const;
+  /// Whether they do, by the directions that both fits know.
+  bool FallsTo(const CandidateResult& c, const Fitted& finer) const;
   void Continue(const Problem& problem, CandidateResult& c, double rival) const;
   void WidenRanges(CandidateResult& c, double rival) const;
   void FitPlainer();
   void FinishAbandoned();
   std::vector<Problem::Vector> OtherStarts(const CandidateResult& c, std::size_t best,
                                            const ProjectedResidual& residual) const;
-  Problem::Vector BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;
+  FitStart BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;
   static double StepReduction(const Fitted& fitted);
   void CompleteCompetitive(double best);
   bool CompleteOne(CandidateResult& c, double best) const;

@@ -122,7 +122,8 @@ std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size
       return IsPlainerThan(plain->hypothesis, c.hypothesis);
     });
     if (waits) break;
-    if (fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out)) wave.push_back(&c);
+    c.no_time = !fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out);
+    if (!c.no_time) wave.push_back(&c);
   }
   return wave;
 }
@@ -222,11 +223,11 @@ std::vector<Problem::Vector> CandidateSearch::ExperimentStarts(const Problem& pr
 bool CandidateSearch::RefitFromStart(CandidateResult& c) const {
   const Problem problem = ProblemOf(c, *fitter_.experiment);
   try {
-    const Problem::Vector start = BestOf(problem, ExperimentStarts(problem, c));
-    Fitted fitted = fitter_.Fit(problem, start, c.fitted.fit.cost);
+    FitStart start = BestOf(problem, ExperimentStarts(problem, c));
+    Fitted fitted = fitter_.Fit(problem, std::move(start), c.fitted.fit.cost);
     if (!(fitted.fit.cost < c.fitted.fit.cost - criteria_.still_gains)) return false;
     c.fitted = std::move(fitted);
-    c.at_quarter_step.reset();
+    c.at_quarter_step.reset(), c.at_quarter_x.reset();
     return true;
   } catch (const Error&) {
     return false;  // the fit that is there stands
@@ -262,7 +263,7 @@ void CandidateSearch::WidenRanges(CandidateResult& c, double rival) const {
     if (!Widen(h.extra, h.null, law, {c.fitted.fit.x.data() + c.first_extra(), h.extra.size()}))
       return;
     const Problem problem = ProblemOf(c, *fitter_.experiment);
-    c.fitted = fitter_.Fit(problem, c.fitted.fit.x, rival);
+    c.fitted = fitter_.Fit(problem, {c.fitted.fit.x}, rival);
     Continue(problem, c, rival);
   }
 }
@@ -276,7 +277,7 @@ void CandidateSearch::Continue(const Problem& problem, CandidateResult& c, doubl
     if (f.iterations < fitter_.iterations ||
         !StillGains(f.LastGain(), f.cost, noise_.known(), criteria_))
       return;
-    Fitted next = fitter_.Fit(problem, f.x, rival);
+    Fitted next = fitter_.Fit(problem, {f.x}, rival);
     if (!(next.fit.cost < f.cost)) return;
     c.fitted = std::move(next);
   }
@@ -293,11 +294,11 @@ CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
 
 // The start that is best after a few iterations, of those that are best as they are, in the logs
 // for a look.
-Problem::Vector CandidateSearch::BestOf(const Problem& problem,
-                                        const std::vector<Problem::Vector>& starts) const {
+FitStart CandidateSearch::BestOf(const Problem& problem,
+                                 const std::vector<Problem::Vector>& starts) const {
   constexpr std::size_t kTried = 2;
   constexpr double kNear = 2;  // times the best cost
-  if (starts.size() == 1) return starts.front();
+  if (starts.size() == 1) return {starts.front()};
   FitOptions options{4, 1e-3};
   options.idle = true, options.rough = true, options.until = fitter_.until;
   if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;
@@ -309,17 +310,20 @@ Problem::Vector CandidateSearch::BestOf(const Problem& problem,
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   if (order.size() > kTried) order.resize(kTried);
   double best_cost = kInfinity;
-  Problem::Vector best;
+  FitStart best;
   for (const auto& [cost, start] : order) {
     if (!(cost < kInfinity) || cost > kNear * order.front().first) continue;
     try {
-      const continuum::Fit fit = FitParameters(problem, *start, logs, options);
-      if (fit.cost < best_cost) best_cost = fit.cost, best = fit.x;
+      Problem::Matrix slopes;
+      options.slopes = &slopes;
+      continuum::Fit fit = FitParameters(problem, *start, logs, options);
+      if (fit.cost < best_cost) best_cost = fit.cost, best = {std::move(fit.x), std::move(slopes)};
     } catch (const Error&) {
       continue;
     }
   }
-  if (best.size() == 0) throw Error::Job("the simulation diverges from every start");
+  if (best.x.size() == 0) throw Error::Job("the simulation diverges from every start");
+  if (logs != TrainLogs(*fitter_.experiment)) best.slopes.resize(0, 0);
   return best;
 }
 
@@ -388,7 +392,10 @@ void CandidateSearch::RefitAtQuarterStep(CandidateResult& c) const {
   const bool raised = RaiseDelays(c, problem.step(), from.fit.x);
   if (!raised && !IsRough(fitter_.ProjectedResidualOf(c.fitted).roughness(), criteria_)) return;
   try {
-    Fitted finer = fitter_.Continue(AtQuarter(problem), from);
+    const Problem fine = AtQuarter(problem);
+    Fitted finer = fitter_.Continue(fine, from);
+    c.at_quarter_x = finer.fit.x;
+    fitter_.Complete(fine, finer);
     if (!(finer.cost < c.fitted.cost)) return;
     c.fitted.cost = finer.cost;
     c.at_quarter_step = std::move(finer);

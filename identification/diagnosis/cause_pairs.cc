@@ -37,7 +37,8 @@ struct Beside {
 struct Fitting {
   std::size_t base;    // index of its Beside
   std::size_t second;  // index in its search
-  const CandidateResult *a, *b;
+  const CandidateResult* a;
+  CandidateResult* b;
 
   double likelihood() const { return a->likelihood + b->likelihood; }
   bool BothAreThere() const {
@@ -143,10 +144,10 @@ class PairSearch {
   }
 
   // Every pair of causes that both are there, once, best first.
-  std::vector<Fitting> All() const {
+  std::vector<Fitting> All() {
     std::map<std::set<std::string>, Fitting> all;
     for (std::size_t t = 0; t < tried_.size(); ++t) {
-      const auto& candidates = tried_[t].search.candidates;
+      auto& candidates = tried_[t].search.candidates;
       for (std::size_t i = 0; i < candidates.size(); ++i) {
         const Fitting one{t, i, tried_[t].first, &candidates[i]};
         if (!one.BothAreThere()) continue;
@@ -243,7 +244,8 @@ class PairSearch {
     }
     std::vector<std::string> others;
     for (const std::size_t n : verdict.named) {
-      for (const CandidateResult* const c : {pairs[n].a, pairs[n].b}) {
+      for (const CandidateResult* const c :
+           std::initializer_list<const CandidateResult*>{pairs[n].a, pairs[n].b}) {
         if (taken.insert(c->hypothesis.effect).second) others.push_back(c->hypothesis.effect);
       }
     }

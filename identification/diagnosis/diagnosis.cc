@@ -148,7 +148,7 @@ class Session {
       if (quantisation.any()) {
         d_.noise = quantisation.Corrected();
         fitter_.whitening = Whitening(null_, d_.noise);
-        d_.before = fitter_.Fit(null_, d_.before.fit.x);
+        d_.before = fitter_.Fit(null_, {d_.before.fit.x});
       }
     }
     fitter_.Complete(null_, d_.before);
@@ -211,11 +211,16 @@ class Session {
            search.BestOverNoise() > d_.criteria.near_noise;
   }
 
+  static Dismissed::Why WhyDismissed(const CandidateResult& c) {
+    if (c.probes.empty()) return Dismissed::Why::kNoTimeForALook;
+    return c.no_time ? Dismissed::Why::kNoTimeForAFit : Dismissed::Why::kExplainsTooLittle;
+  }
+
   void Take(CandidateSearch& search) {
     d_.candidates = std::move(search.candidates);
     for (const CandidateResult& c : search.dismissed) {
-      d_.dismissed.push_back(
-          {c.hypothesis.effect, c.hypothesis.variant, c.hypothesis.where, c.explained, c.p});
+      const Hypothesis& h = c.hypothesis;
+      d_.dismissed.push_back({h.effect, h.variant, h.where, c.explained, c.p, WhyDismissed(c)});
     }
     for (std::string& s : search.skipped) d_.skipped.push_back(std::move(s));
     for (std::string& s : search.left_out) d_.left_out.push_back(std::move(s));
@@ -391,7 +396,7 @@ class Session {
       CandidateResult& c = d_.candidates[i];
       if (!c.fitted.complete()) continue;
       options_.Say(DiagnosisStage::kJudgement, "at a fine step, " + c.hypothesis.Name());
-      fitter_.FitFinely(ProblemOf(c, e_), c.fitted);
+      fitter_.FitFinely(ProblemOf(c, e_), c.at_quarter_x, c.fitted);
     }
   }
 

@@ -55,7 +55,7 @@ std::optional<CandidateResult> FindFallback(const CandidateFitter& fitter, const
       options.Say(DiagnosisStage::kFallback, "at " + c.hypothesis.where);
       try {
         const Problem problem = ProblemOf(c, *fitter.experiment);
-        c.fitted = fitter.Fit(problem, Append(d.before.fit.x, c.hypothesis.null));
+        c.fitted = fitter.Fit(problem, {Append(d.before.fit.x, c.hypothesis.null)});
         RecordFolds(fitter, d, c);
       } catch (const Error&) {
         continue;  // it diverges

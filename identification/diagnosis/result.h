@@ -105,8 +105,10 @@ struct CandidateResult {
   double force_promise = 0;
   std::size_t force_start = 0;  ///< start of the shape in which it does
   bool was_fitted = false;
+  bool no_time = false;                        ///< for the fit that it was worth
   Fitted fitted = {};                          ///< empty where it was not fitted
   std::optional<Fitted> at_quarter_step = {};  ///< where first order in the step does not hold
+  std::optional<Problem::Vector> at_quarter_x = {};  ///< where such a fit ended, better or not
   FoldRecord record = {};
   std::optional<ByEquation> by_equation = {};  ///< none where it does nothing to the missing force
   std::vector<std::string> failures = {};      ///< rules that it fails, one sentence each
@@ -140,10 +142,12 @@ struct PairTried {
   double likelihood;
 };
 
-/// A candidate that was not fitted, as to first order it explains too little.
+/// A candidate that was not fitted.
 struct Dismissed {
+  enum class Why { kExplainsTooLittle, kNoTimeForALook, kNoTimeForAFit };
   std::string effect, variant, where;
-  double explained = 0, p = 1;
+  double explained = 0, p = 1;  ///< to first order
+  Why why = Why::kExplainsTooLittle;
 };
 
 /// What the model that a verdict leaves still gets wrong.

@@ -33,18 +33,27 @@ std::pair<double, double> SoftL1(double r, double soft) {
   return {w, std::abs(w) > 1e-12 * soft ? r / (w * root) : 1};
 }
 
-ceres::Solver::Summary Minimize(const Problem& problem, ceres::CostFunction& cost,
-                                const Search& search, Problem::Vector& y) {
+Box BoxOf(const Problem& problem) {
+  const auto n = static_cast<Eigen::Index>(problem.parameters().size());
+  Box box{Problem::Vector(n), Problem::Vector(n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FreeParameter& p = problem.parameters()[i];
+    box.lower[i] = p.lower / p.scale, box.upper[i] = p.upper / p.scale;
+  }
+  return box;
+}
+
+ceres::Solver::Summary Minimize(ceres::CostFunction& cost, const Box& box, const Search& search,
+                                Problem::Vector& y) {
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem ceres(ownership);
   ceres.AddResidualBlock(&cost, nullptr, y.data());
   for (Eigen::Index i = 0; i < y.size(); ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    if (std::isfinite(p.lower))
-      ceres.SetParameterLowerBound(y.data(), static_cast<int>(i), p.lower / p.scale);
-    if (std::isfinite(p.upper))
-      ceres.SetParameterUpperBound(y.data(), static_cast<int>(i), p.upper / p.scale);
+    if (std::isfinite(box.lower[i]))
+      ceres.SetParameterLowerBound(y.data(), static_cast<int>(i), box.lower[i]);
+    if (std::isfinite(box.upper[i]))
+      ceres.SetParameterUpperBound(y.data(), static_cast<int>(i), box.upper[i]);
   }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;

@@ -15,6 +15,12 @@ Problem::Vector Unscaled(const Problem& problem, const double* y);
 /// w with ½ w² = ρ(r), the soft L1 loss of FitOptions (soft 0: w = r), and dw/dr.
 std::pair<double, double> SoftL1(double r, double soft);
 
+/// Within which scaled parameters stay.
+struct Box {
+  Problem::Vector lower, upper;
+};
+Box BoxOf(const Problem& problem);
+
 /// When bounded Levenberg-Marquardt ends, and who watches it.
 struct Search {
   int iterations;
@@ -22,8 +28,8 @@ struct Search {
   ceres::IterationCallback* watch = nullptr;
 };
 
-/// Minimises ½ |cost(y)|² within the parameters' bounds, from the scaled y and into it.
-ceres::Solver::Summary Minimize(const Problem& problem, ceres::CostFunction& cost,
-                                const Search& search, Problem::Vector& y);
+/// Minimises ½ |cost(y)|² within the box, from y and into it.
+ceres::Solver::Summary Minimize(ceres::CostFunction& cost, const Box& box, const Search& search,
+                                Problem::Vector& y);
 
 }  // namespace continuum

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "identification/fit/bounded_least_squares.h"
+#include "identification/fit/secant_search.h"
 #include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/decompositions.h"
@@ -32,10 +33,10 @@ class Cost : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
   }
 
-  // What is known at one x already.
+  // What is known at one x already; J: empty where it is not.
   void Know(const Vector& x, std::vector<Vector> r, std::vector<Matrix> J) {
     x_ = x, r_ = std::move(r), J_ = std::move(J);
-    derived_ = {x_, r_};
+    if (!J_.empty()) derived_ = {x_, r_};
   }
 
   bool Evaluate(const double* const* y, double* residuals, double** jacobians) const override {
@@ -87,11 +88,11 @@ class Cost : public ceres::CostFunction {
   }
 
   // J_ at x_: updated (Broyden) along the step from where it was known, if the residuals changed
-  // almost as it said; as it was, if they hardly changed; else anew. By differences it is made anew
-  // unless rough slopes will do: they see stick and slip.
+  // almost as it said; as it was, if they hardly changed; else anew. By differences it is made
+  // anew: they see stick and slip.
   void Derive() const {
     if (!J_.empty() && derived_.x == x_) return;
-    const bool anew = problem_.path() == Path::kStepped && !options_.rough;
+    const bool anew = problem_.path() == Path::kStepped || options_.rough;
     if (J_.empty() || anew || !Updated()) J_ = problem_.Jacobian(x_, r_, use_, {}, true);
     derived_ = {x_, r_};
   }
@@ -241,17 +242,25 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
     fit.converged = true;
     return fit;
   }
-  auto J = problem.Jacobian(fit.x, r, use, {}, true);
-  for (const Matrix& part : J) {
-    if (!part.allFinite()) throw Error::Job("the simulation diverges next to the start of the fit");
+  Matrix none_yet, &slopes = options.slopes ? *options.slopes : none_yet;
+  std::vector<Matrix> J;
+  if (slopes.cols() == 0) {
+    J = problem.Jacobian(fit.x, r, use, {}, true);
+    for (const Matrix& part : J) {
+      if (!part.allFinite())
+        throw Error::Job("the simulation diverges next to the start of the fit");
+    }
+    if (!options.idle && !StopRequested()) RequireEffect(problem, fit.x, J);
   }
-  if (!options.idle && !StopRequested()) RequireEffect(problem, fit.x, J);
 
   Cost cost(problem, use, options, whitening, all.size());
   cost.Know(fit.x, std::move(r), std::move(J));
   Monitor watch(problem, options, fit);
   Vector y = Scaled(problem, fit.x);
-  const auto summary = Minimize(problem, cost, {options.iterations, options.tolerance, &watch}, y);
+  const Search search{options.iterations, options.tolerance, &watch};
+  const Box box = BoxOf(problem);
+  const auto summary = options.rough ? MinimizeBySecants(cost, box, search, y, slopes)
+                                     : Minimize(cost, box, search, y);
   fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
   fit.x = Unscaled(problem, y.data());
   fit.cost = summary.final_cost;

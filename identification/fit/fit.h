@@ -32,9 +32,10 @@ struct FitOptions {
   /// Give up when even four more steps as good as the last would leave the cost above this.
   double hopeless = std::numeric_limits<double>::infinity();
   int patience = 1;  ///< steps in a row that must look so
-  /// Slopes by differences are carried on from step to step (Broyden) for as long as they foretell
-  /// what a step does: enough to compare models, at a fraction of the simulations.
+  /// By MinimizeBySecants: enough to compare models, at a fraction of the simulations.
   bool rough = false;
+  /// Of a rough fit: slopes near its start, if they have columns; those at its end.
+  Problem::Matrix* slopes = nullptr;
   /// ProcessorSeconds at which to end with what has been reached.
   double until = std::numeric_limits<double>::infinity();
   /// Called after each iteration, with cost and evaluations so far.

@@ -74,13 +74,13 @@ Uncertainty UnknownUncertainty(const Problem& problem, const Vector& x, const st
 
 void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                     const std::vector<Matrix>& J, const std::vector<Matrix>& step,
-                    const FitOptions& options, Uncertainty& u) {
+                    const FitOptions& options, const std::optional<Vector>& fine, Uncertainty& u) {
   if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
   std::vector<bool> use;
   for (const Matrix& columns : J) use.push_back(columns.size() > 0);
   Vector moved;
   try {
-    moved = FitParameters(AtQuarter(problem), x, use, options).x - x;
+    moved = (fine ? *fine : FitParameters(AtQuarter(problem), x, use, options).x) - x;
   } catch (const Error&) {
     return;  // it diverges at the finer step: first order has to do
   }
@@ -116,7 +116,7 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   AllowForStep(problem, WeightedByCurvature(J, soft, r), WeightedByCurvature(step, soft, r), {}, u);
   FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
   few.progress = Within({"fit at a fine step"}, progress);
-  ReachByFineFit(centered, x, r, J, step, few, u);
+  ReachByFineFit(centered, x, r, J, step, few, {}, u);
   for (std::size_t l = 0; l < own.size(); ++l)
     if (own[l]) TakeStart(problem, l, *own[l], u);
   return u;

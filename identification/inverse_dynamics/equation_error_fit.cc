@@ -106,9 +106,10 @@ std::optional<EquationFit> FitEquations(const Problem& problem, const Vector& x,
   ForceCost cost(problem, use);
   if (x.size() == 0 || !cost.Look(&MissingForce::force, x)) return {};
   Vector y = Scaled(problem, x);
-  Minimize(problem, cost, kFewSteps, y);
+  const Box box = BoxOf(problem);
+  Minimize(cost, box, kFewSteps, y);
   cost.Look(&MissingForce::acceleration, Unscaled(problem, y.data()));
-  Minimize(problem, cost, kFewSteps, y);
+  Minimize(cost, box, kFewSteps, y);
   return EquationFit{Unscaled(problem, y.data()), cost.evaluations()};
 }
 

@@ -61,8 +61,7 @@ class DiagnosisDetails {
     page_.Paragraph("Verdict: **" + d_.verdict.word() + "**. " + d_.verdict.reason + ".");
     if (d_.candidates.empty()) {
       std::string text = "No candidate was fitted.";
-      for (const Dismissed& c : d_.dismissed)
-        text += " To first order " + c.effect + " removes next to nothing.";
+      for (const Dismissed& c : d_.dismissed) text += " " + c.effect + ": " + WhyNotFitted(c) + ".";
       page_.Paragraph(text);
     } else {
       Shares();
@@ -119,8 +118,8 @@ class DiagnosisDetails {
       if (d_.noise_limited) break;  // in the table of likelihoods
       items.push_back(
           fmt::format("**{} at {}**: explains {:.1f} % of the squared error to first order, and "
-                      "was not fitted.",
-                      c.effect, c.where, 100 * c.explained / d_.before.cost));
+                      "was not fitted: {}.",
+                      c.effect, c.where, 100 * c.explained / d_.before.cost, WhyNotFitted(c)));
     }
     if (items.empty()) return;
     page_.Paragraph("Why the others are not named:");

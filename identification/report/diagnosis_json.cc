@@ -248,7 +248,7 @@ nlohmann::json CandidatesJson(const Diagnosis& d) {
                     {"where", c.where},
                     {"score", 0},
                     {"p", c.p},
-                    {"group", "not fitted: to first order it explains too little"}});
+                    {"group", "not fitted: " + WhyNotFitted(c)}});
   }
   return json;
 }

@@ -125,6 +125,18 @@ std::string GainOfFolds(const Diagnosis& d) {
 
 }  // namespace
 
+std::string WhyNotFitted(const Dismissed& candidate) {
+  switch (candidate.why) {
+    case Dismissed::Why::kExplainsTooLittle:
+      return "to first order it explains too little";
+    case Dismissed::Why::kNoTimeForALook:
+      return "there was no time for a look at it";
+    case Dismissed::Why::kNoTimeForAFit:
+      return "there was no time";
+  }
+  return "";
+}
+
 std::string HeadlineOf(const Diagnosis& d) {
   switch (d.verdict.kind) {
     case Kind::kAdequate:

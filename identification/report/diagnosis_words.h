@@ -10,6 +10,8 @@ namespace continuum {
 
 /// The verdict as the first line of a page: "Cause: payload at body tip".
 std::string HeadlineOf(const Diagnosis& diagnosis);
+/// "to first order it explains too little", or for what there was no time.
+std::string WhyNotFitted(const Dismissed& candidate);
 
 /// "**log**, channel at 1.9-2.1 s: the simulation is 0.02 m too high."
 std::string DeviationInWords(const Deviation& deviation);

@@ -3,7 +3,8 @@
 namespace continuum {
 
 double Fit::LastGain() const {
-  for (std::size_t k = trace.size(); k-- > 1;)
+  constexpr std::size_t kRecent = 3;
+  for (std::size_t k = trace.size(), n = 0; k-- > 1 && n < kRecent; ++n)
     if (trace[k - 1] > trace[k]) return trace[k - 1] - trace[k];
   return 0;
 }

@@ -20,7 +20,7 @@ struct Fit {
   std::string message;
   std::vector<double> trace;  ///< cost at the start and after each iteration
 
-  /// By how much the last step that was taken lowered the cost.
+  /// By how much the last step that was taken lowered the cost; 0: none of the last three was.
   double LastGain() const;
 };
 

@@ -235,7 +235,7 @@ TEST_F(DiagnosisTest, AFitAtAFineStepTellsHowFarTheStepMovesAValue) {
   fitter.experiment = &e;
   Fitted fitted = fitter.FitAll(problem, problem.Start());
   fitted.sensitivities->uncertainty.step *= 2;  // a first order that is no good
-  fitter.FitFinely(problem, fitted);
+  fitter.FitFinely(problem, {}, fitted);
   const double x = fitted.fit.x[0], off = truth.damping - x;
   EXPECT_GT(std::abs(off), 5 * fitted.sensitivities->uncertainty.standard_error[0]);
   EXPECT_NEAR(fitted.sensitivities->uncertainty.step[0], off, 0.1 * std::abs(off));

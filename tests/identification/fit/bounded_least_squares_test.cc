@@ -55,7 +55,7 @@ TEST_F(BoundedLeastSquares, PrintsNothingWhereCeresGivesUp) {
     Problem::Vector y = Scaled(problem, problem.Start());
     ::testing::internal::CaptureStdout();
     ::testing::internal::CaptureStderr();
-    Minimize(problem, cost, {20, 1e-5}, y);
+    Minimize(cost, BoxOf(problem), {20, 1e-5}, y);
     const std::string err = ::testing::internal::GetCapturedStderr();
     EXPECT_EQ(err + ::testing::internal::GetCapturedStdout(), "");
     EXPECT_LT(y[0], 2.9);  // it was not found

@@ -303,6 +303,18 @@ TEST_F(DiagnosisOutput, SaysWhatThereWasNoTimeForAndThatItWasInterrupted) {
   EXPECT_NE(CertaintyOf(*d_), Certainty::kSure);
 }
 
+TEST_F(DiagnosisOutput, SaysWhyACandidateWasNotFitted) {
+  using Why = Dismissed::Why;
+  d_->dismissed = {{"armature", "", "joint q", 1, 0.5, Why::kExplainsTooLittle},
+                   {"dahl", "", "joint q", 0, 1, Why::kNoTimeForALook},
+                   {"stribeck", "", "joint q", 9, 0.1, Why::kNoTimeForAFit}};
+  const auto all = WriteFiles(e_, *d_, Out()).json.at("candidates");
+  const std::size_t last = all.size();
+  EXPECT_EQ(all[last - 3]["group"], "not fitted: to first order it explains too little");
+  EXPECT_EQ(all[last - 2]["group"], "not fitted: there was no time for a look at it");
+  EXPECT_EQ(all[last - 1]["group"], "not fitted: there was no time");
+}
+
 TEST_F(DiagnosisOutput, IsOnlyLikelyWhereMoreThanNoiseIsLeft) {
   d_->unlisted.clear();
   ASSERT_EQ(CertaintyOf(*d_), Certainty::kSure);
