@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "identification/fit/intervals.h"
+#include "identification/fit/local_search.h"
 #include "identification/fit/prediction_error.h"
 #include "identification/fit/start_hint.h"
 #include "identification/fit/swarm_fit.h"
@@ -114,6 +115,7 @@ void FitLeastSquares(const Options& o, const Problem& problem, const Vector& sta
   SearchedFit found = FitBySearch(problem, start, use, search, options);
   all.fit = std::move(found.fit);
   all.segments = std::move(found.segments), all.starts = std::move(found.starts);
+  if (!all.starts) all.minima = SearchAround(problem, use, o.seed, options, all.fit);
 }
 
 // Parameters for the model's own step: a few iterations from those of the differential equation.

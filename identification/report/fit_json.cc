@@ -78,6 +78,16 @@ nlohmann::json EffortJson(const IdentifyResult& result) {
           {"trace", fit.trace}};
 }
 
+nlohmann::json MinimaJson(const IdentifyResult& result) {
+  auto json = nlohmann::json::array();
+  for (const LocalMinimum& other : result.minima.found) {
+    json.push_back({{"cost", other.cost}});
+    for (std::size_t i = 0; i < result.parameters.size(); ++i)
+      json.back()[result.parameters[i].name] = other.x[static_cast<Eigen::Index>(i)];
+  }
+  return json;
+}
+
 }  // namespace
 
 nlohmann::json FitJson(const Experiment& e, const IdentifyResult& result,
@@ -96,6 +106,8 @@ nlohmann::json FitJson(const Experiment& e, const IdentifyResult& result,
   if (!result.fitted.xml.empty())
     json["fitted_model"] = "fitted.xml", json["fitted_experiment"] = "fitted.yaml";
   if (!u.lacks.empty()) json["intervals"] = u.lacks;
+  json["several_minima"] = result.SeveralMinima();
+  json["minima"] = MinimaJson(result);
   json["trade_offs"] = nlohmann::json::array();
   for (const Confounding& t : result.trade_offs) json["trade_offs"].push_back(t.text);
   if (result.regression)

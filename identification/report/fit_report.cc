@@ -97,6 +97,8 @@ class FitPage {
       page_.Badge(Tone::kWarn, all + u.lacks,
                   "Run it again, with `--from` this fit.json to go on from here.");
     }
+    if (const std::string several = result_.SeveralMinima(); !several.empty())
+      page_.Badge(Tone::kWarn, "Intervals are not to be trusted", several);
     if (u.known() && u.correlation.rows() > 1) page_.HeatMap(CorrelationMap(result_.parameters, u));
   }
 

@@ -8,6 +8,7 @@
 #include "identification/result/extended_model.h"
 #include "identification/result/fit.h"
 #include "identification/result/free_parameter.h"
+#include "identification/result/local_minima.h"
 #include "identification/result/missing_parts.h"
 #include "identification/result/multi_start.h"
 #include "identification/result/prediction_error.h"
@@ -47,6 +48,7 @@ struct IdentifyResult {
   std::optional<Regression> regression;      ///< of the inverse model
   std::optional<ShootingSegments> segments;  ///< of long logs, fitted before the whole
   std::optional<MultiStart> starts;          ///< where there were several
+  LocalMinima minima;                        ///< around the fit, where joints or cables rub
 
   Uncertainty uncertainty;
   std::vector<Confounding> trade_offs;   ///< what the logs do not determine alone
@@ -58,6 +60,11 @@ struct IdentifyResult {
   std::string start_hint;                ///< where trials begin elsewhere than measured; else empty
   ExtendedModel fitted;                  ///< fitted.xml and fitted.yaml
   std::vector<MissingPart> missing;
+
+  /// In words, where other minima make the intervals doubtful; else empty.
+  std::string SeveralMinima() const {
+    return uncertainty.known() ? minima.Doubts(fit.x, fit.cost, uncertainty, parameters) : "";
+  }
 };
 
 }  // namespace continuum
