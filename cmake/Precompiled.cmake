@@ -1,7 +1,7 @@
 # continuum_use_precompiled(<library>...) lets static libraries share one precompiled header: what most of
 # their sources read anyway. Every source includes what it uses itself; scripts/check reads sources
 # without it, as -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON does.
-file(WRITE ${PROJECT_BINARY_DIR}/precompiled.cc "")
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cc CONTENT "")  # not touched again
 add_library(continuum_precompiled OBJECT ${PROJECT_BINARY_DIR}/precompiled.cc)
 target_link_libraries(continuum_precompiled PRIVATE continuum_warnings fmt::fmt Eigen3::Eigen)
 target_precompile_headers(continuum_precompiled PRIVATE

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -70,17 +71,18 @@ void CheckQuaternion(const CheckedLog& log, std::size_t first, Findings& out) {
   }
 }
 
-bool IsAngle(const std::string& unit) { return unit == "rad" || unit == "deg" || unit == "mrad"; }
-bool IsLength(const std::string& unit) {
-  return unit == "m" || unit == "mm" || unit == "cm" || unit == "um";
+bool HasDimension(const std::string& unit, const std::array<int, 4>& dimension) {
+  const Unit u = ParseUnit(unit, "");
+  return !u.any && u.dimension == dimension;
 }
+bool IsAngle(const std::string& unit) { return HasDimension(unit, {}); }
+bool IsLength(const std::string& unit) { return HasDimension(unit, {1, 0, 0, 0}); }
+bool IsTurnRate(const std::string& unit) { return HasDimension(unit, {0, 0, -1, 0}); }
+bool IsSpeed(const std::string& unit) { return HasDimension(unit, {1, 0, -1, 0}); }
 
-bool IsRate(const std::string& unit) { return unit == "rpm" || unit.ends_with("/s"); }
+bool IsRate(const std::string& unit) { return ParseUnit(unit, "").dimension[2] == -1; }
 bool IsRateOf(const std::string& rate, const std::string& position) {
-  if (rate == "rpm") return IsAngle(position);
-  if (!rate.ends_with("/s")) return false;
-  const std::string base = rate.substr(0, rate.size() - 2);
-  return (IsAngle(base) && IsAngle(position)) || (IsLength(base) && IsLength(position));
+  return (IsTurnRate(rate) && IsAngle(position)) || (IsSpeed(rate) && IsLength(position));
 }
 
 constexpr std::size_t kReach = 4;  // rows on either side of a secant

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <map>
-#include <set>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "sim/check/rules.h"
 #include "sim/experiment/replicates.h"
+#include "sim/io/units.h"
 
 namespace continuum {
 namespace {
@@ -89,11 +89,11 @@ void CheckOverlap(const Experiment& e, Findings& out) {
   }
 }
 
-// Of position, speed or acceleration: free of mass.
-bool IsKinematic(const std::string& unit) {
-  static const std::set<std::string> kUnits{"m",   "mm",   "cm",   "um", "rad",
-                                            "deg", "mrad", "step", "rpm"};
-  return kUnits.count(unit.substr(0, unit.find("/s"))) > 0;
+// Of position, speed or acceleration: free of mass. Steps are those of a motor.
+bool IsKinematic(const std::string& text) {
+  const Unit unit = ParseUnit(text, "");
+  const bool steps = text.starts_with("step");
+  return unit.dimension[1] == 0 && unit.dimension[3] == 0 && (!unit.any || steps);
 }
 
 void CheckInvariance(const Experiment& e, Findings& out) {

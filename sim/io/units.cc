@@ -1,83 +1,173 @@
 #include "sim/io/units.h"
 
+#include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
-#include <map>
-#include <numbers>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "error.h"
+#include "sim/io/unit_names.h"
 
 namespace continuum {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr int kMostPower = 9;
+constexpr int kMostParentheses = 8;  // within each other
 
-const std::map<std::string, Unit>& Units() {
-  static const std::map<std::string, Unit> units = [] {
-    using Dimension = std::array<int, 4>;
-    const Dimension length{1, 0, 0, 0}, mass{0, 1, 0, 0}, time{0, 0, 1, 0}, rate{0, 0, -1, 0},
-        force{1, 1, -2, 0}, energy{2, 1, -2, 0}, power{2, 1, -3, 0}, pressure{-1, 1, -2, 0},
-        voltage{2, 1, -3, -1}, current{0, 0, 0, 1};
-    std::map<std::string, Unit> all{{"1", {1}}, {"%", {0.01}}, {"step", {1}}};
-    const auto add = [&](const Dimension& d, const std::map<std::string, double>& factors) {
-      for (const auto& [name, factor] : factors) all[name] = {factor, d, false};
-    };
-    add({}, {{"rad", 1}, {"mrad", 1e-3}, {"deg", kPi / 180}});
-    add(length, {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}});
-    add(mass, {{"kg", 1}, {"g", 1e-3}});
-    add(time, {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}});
-    add(rate, {{"Hz", 1}, {"rpm", kPi / 30}});
-    add(force, {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}});
-    add(energy, {{"Nm", 1}, {"mNm", 1e-3}, {"Nmm", 1e-3}, {"J", 1}});
-    add(power, {{"W", 1}});
-    add(pressure,
-        {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}, {"mbar", 100}, {"bar", 1e5}});
-    add(voltage, {{"V", 1}, {"mV", 1e-3}});
-    add(current, {{"A", 1}, {"mA", 1e-3}});
-    return all;
-  }();
-  return units;
+// Other spellings of signs.
+std::string Plain(std::string text) {
+  static constexpr std::pair<std::string_view, std::string_view> kSpellings[]{
+      {"\u00B7", "*"},         {"\u22C5", "*"},         {"\u00D7", "*"},         {"**", "^"},
+      {"\u207B\u00B9", "^-1"}, {"\u207B\u00B2", "^-2"}, {"\u207B\u00B3", "^-3"}, {"\u00B2", "^2"},
+      {"\u00B3", "^3"},        {" per ", "/"},          {" PER ", "/"}};
+  for (const auto& [from, to] : kSpellings) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+      text.replace(at, from.size(), to);
+  }
+  return text;
 }
 
-const Unit& Simple(const std::string& name, const std::string& unit, const std::string& where) {
-  const auto found = Units().find(name);
-  if (found != Units().end()) return found->second;
-  std::string all;
-  for (const auto& [known, value] : Units()) all += (all.empty() ? "" : " ") + known;
-  throw Error::Input(where, "a unit made of " + all, "'" + unit + "'");
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+bool IsLetter(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return std::isalpha(byte) || c == '_' || c == '%' || byte >= 0x80;
+}
+
+// product = power { [ "*" | "." | "-" | "/" | blank ] power }, from left to right
+// power   = ( name | number | "(" product ")" ) [ "^" integer | integer ]
+class UnitParser {
+ public:
+  explicit UnitParser(std::string_view text) : text_(text) {}
+
+  // Nothing for a text that is no product.
+  std::optional<std::vector<UnitFactorPower>> Run() {
+    std::vector<UnitFactorPower> all;
+    if (!Product(1, all)) return {};
+    SkipBlanks();
+    if (at_ < text_.size() || all.empty()) return {};
+    return all;
+  }
+
+ private:
+  char Next() const { return at_ < text_.size() ? text_[at_] : '\0'; }
+  void SkipBlanks() {
+    while (Next() == ' ') ++at_;
+  }
+  bool Take(char c) {
+    if (Next() != c) return false;
+    ++at_;
+    return true;
+  }
+
+  bool Product(int sign, std::vector<UnitFactorPower>& all) {
+    SkipBlanks();
+    if (!Power(sign, all)) return false;
+    while (true) {
+      SkipBlanks();
+      if (at_ >= text_.size() || Next() == ')') return true;
+      const bool divide = Take('/');
+      if (!divide && Take('.') && IsDigit(Next())) return false;  // "m^1.5"
+      if (!divide && !Take('*')) Take('-');
+      SkipBlanks();
+      if (!Power(divide ? -sign : sign, all)) return false;
+    }
+  }
+
+  bool Power(int sign, std::vector<UnitFactorPower>& all) {
+    std::vector<UnitFactorPower> factors;
+    if (Take('(')) {
+      if (++depth_ > kMostParentheses || !Product(1, factors) || !Take(')')) return false;
+      --depth_;
+    } else if (IsDigit(Next())) {
+      factors.push_back({Number(), 1});
+    } else if (IsLetter(Next())) {
+      factors.push_back({Name(), 1});
+    } else {
+      return false;
+    }
+    const auto exponent = Exponent();
+    if (!exponent) return false;
+    for (auto& [name, power] : factors) {
+      power *= sign * *exponent;
+      if (std::abs(power) > kMostPower) return false;
+      all.push_back({std::move(name), power});
+    }
+    return true;
+  }
+
+  std::string Number() {
+    double value = 0;
+    const char* const begin = text_.data() + at_;
+    const char* const end = std::from_chars(begin, text_.data() + text_.size(), value).ptr;
+    at_ += static_cast<std::size_t>(end - begin);
+    return {begin, end};
+  }
+
+  // With the digits that belong to it ("cmH2O"); those of an exponent ("m2") stay.
+  std::string Name() {
+    std::size_t end = at_;
+    while (end < text_.size() && (IsLetter(text_[end]) || IsDigit(text_[end]))) ++end;
+    std::string name(text_.substr(at_, end - at_));
+    while (!UnitNamed(name) && IsDigit(name.back())) name.pop_back();
+    at_ += name.size();
+    return name;
+  }
+
+  // 1 where there is none; nothing for one that is no integer from -9 to 9 but 0.
+  std::optional<int> Exponent() {
+    const bool caret = Take('^');
+    const std::size_t digit = at_ + (Next() == '-' || Next() == '+');
+    if (digit >= text_.size() || !IsDigit(text_[digit]))
+      return caret ? std::nullopt : std::optional(1);
+    const int sign = Next() == '-' ? -1 : 1;
+    const int size = text_[digit] - '0';
+    at_ = digit + 1;
+    if (size == 0 || IsDigit(Next())) return {};
+    return sign * size;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+};
+
+Unit OfFactor(const std::string& name, const std::string& unit, const std::string& where) {
+  if (IsDigit(name.empty() ? ' ' : name[0])) {
+    Unit number;
+    std::from_chars(name.data(), name.data() + name.size(), number.factor);
+    return number;
+  }
+  if (const auto found = UnitNamed(name)) return *found;
+  throw Error::Input(
+      where,
+      "a unit made of names like m mm rad deg s min rpm kg g N lbf Nm J W Pa bar psi V "
+      "A % 1 step, as in N*m or deg/s",
+      "'" + unit + "'");
 }
 
 }  // namespace
 
 std::vector<UnitFactorPower> FactorsOf(const std::string& unit) {
-  std::vector<UnitFactorPower> all;
-  int sign = 1;
-  for (std::size_t i = 0; i <= unit.size();) {
-    const std::size_t end = std::min(unit.find_first_of("*/", i), unit.size());
-    std::string name = unit.substr(i, end - i);
-    int power = sign;
-    const std::size_t caret = name.find('^');
-    if (caret != name.npos && caret + 2 == name.size() && name[caret + 1] >= '1' &&
-        name[caret + 1] <= '9') {
-      power *= name[caret + 1] - '0';
-      name.resize(caret);
-    }
-    all.push_back({std::move(name), power});
-    if (end < unit.size()) sign = unit[end] == '/' ? -1 : 1;
-    i = end + 1;
-  }
-  return all;
+  const std::string plain = Plain(unit);
+  auto factors = UnitParser(plain).Run();
+  return factors ? std::move(*factors) : std::vector<UnitFactorPower>{{unit, 1}};
 }
 
 Unit ParseUnit(const std::string& unit, const std::string& where) {
   Unit product;
   for (const auto& [name, power] : FactorsOf(unit)) {
-    const Unit& part = Simple(name, unit, where);
+    const Unit part = OfFactor(name, unit, where);
     product.factor *= std::pow(part.factor, power);
     for (std::size_t d = 0; d < product.dimension.size(); ++d)
       product.dimension[d] += power * part.dimension[d];
     product.any &= part.any;
   }
-  return product;
+  if (product.factor > 1e-100 && product.factor < 1e100) return product;
+  throw Error::Input(where, "a unit of a size between 1e-100 and 1e100", "'" + unit + "'");
 }
 
 double UnitFactor(const std::string& unit, const std::string& where) {
@@ -88,7 +178,9 @@ void RequireUnitLike(const std::string& expected, const std::string& unit,
                      const std::string& where) {
   const Unit found = ParseUnit(unit, where);
   if (found.any || found.dimension == ParseUnit(expected, "").dimension) return;
-  throw Error::Input(where, "a unit like '" + expected + "'", "'" + unit + "'");
+  const bool gram = unit == "g" && expected == "m/s^2";
+  throw Error::Input(where, "a unit like '" + expected + "'",
+                     "'" + unit + "'" + (gram ? ", the gram; standard gravity is g0" : ""));
 }
 
 }  // namespace continuum

@@ -1,28 +1,25 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
-namespace continuum {
+#include "sim/io/unit.h"
 
-/// What a unit's text says: "mm/s" is 1e-3 of the SI's unit and has the dimension m s^-1.
-struct Unit {
-  double factor = 1;               ///< SI value of one
-  std::array<int, 4> dimension{};  ///< powers of m, kg, s, A; an angle has none
-  bool any = true;  ///< made of 1, % and step alone: counts that may stand for anything
-};
+namespace continuum {
 
 /// One factor of a unit's text: of "N*m/s^2" these are N, m and s with the powers 1, 1 and -2.
 struct UnitFactorPower {
   std::string name;
   int power;
 };
-/// The factors of a unit's text, in its order. A name that is no unit stays as it is.
+/// The factors of a unit's text, in its order; a number is a factor too ("60" in "60 s"). A name
+/// that is no unit stays as it is, and so does the whole of a text that is no product.
 std::vector<UnitFactorPower> FactorsOf(const std::string& unit);
 
-/// Products and quotients are understood ("N*mm", "deg/s", "mm/s^2"). where: for the Error of an
-/// unknown unit.
+/// Products and quotients are understood as UDUNITS-2 writes them: "N*mm", "N.m", "N m", "N·m",
+/// "deg/s", "mm/s^2", "m s-2", "N/(m s)", "rad per second". Names: UnitNamed (sim/io/unit_names.h).
+/// UDUNITS-2 itself would need its file of names at run time, and does not know "Nm", "deg",
+/// "step". where: for the Error of an unknown unit.
 Unit ParseUnit(const std::string& unit, const std::string& where);
 
 /// SI value of one unit: "mm" → 1e-3, "deg" → π/180, "N*m" → 1.
