@@ -104,6 +104,7 @@ std::string OutputYaml(const Output& out) {
   }
   if (out.sigma > 0) text += ", sigma: " + Decimal(out.sigma);
   if (out.weight != 1) text += ", weight: " + Decimal(out.weight);
+  if (out.unwrap) text += ", unwrap: true";
   return text + MeasurementYaml(out.measurement) + "}\n";
 }
 
@@ -146,6 +147,7 @@ std::string InputsYaml(const Experiment& e) {
     y += "  - {actuator: " + Quoted(in.actuator) + ", unit: " + Quoted(in.unit);
     if (!in.column.empty()) y += ", column: " + Quoted(in.column);
     if (!in.enable.empty()) y += ", enable: " + Quoted(in.enable);
+    if (in.unwrap) y += ", unwrap: true";
     y += in.linear ? ", interpolate: linear}\n" : "}\n";
   }
   return y;

@@ -20,6 +20,7 @@ struct Input {
   std::string unit, actuator, enable;
   bool linear = false;  ///< else held between rows
   std::string where;    ///< file:line: key, for messages
+  bool unwrap = false;  ///< full turns that an angle lost are put back
 };
 
 /// How a channel is measured: y_meas(t) = scale · R(axis, angle) y(t − delay) + bias + rate (t −
@@ -40,6 +41,7 @@ struct Output {
   std::string source;  ///< sensor ("tip_pos[1]" for a component) or actuator
   double sigma = 0;    ///< standard deviation of the noise in unit; 0: not given
   double weight = 1;
+  bool unwrap = false;  ///< full turns that an angle lost are put back
   Measurement measurement;
   std::string where;  ///< file:line: key, for messages
 

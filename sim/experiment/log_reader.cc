@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "error.h"
 #include "sim/io/csv.h"
 #include "sim/io/decimal.h"
+#include "sim/io/file_format.h"
 #include "sim/io/mat_file.h"
 #include "sim/io/units.h"
 #include "sim/io/yaml.h"
@@ -28,13 +30,12 @@ class Recording {
     std::string extension = file.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension == ".mat") {
+    if (extension == ".mat" || IsMat(file)) {
       mat_ = ReadMat(file, variable);
-      name_ = file.string();
     } else {
       table_ = CsvTable::Read(file);
-      name_ = file.string();
     }
+    name_ = file.string();
   }
 
   std::size_t rows() const { return table_ ? table_->rows() : mat_->values.front().size(); }
@@ -56,6 +57,10 @@ class Recording {
     if (std::abs(value) <= CsvTable::kLargest || (may_miss && std::isnan(value))) return value;
     throw Error::Input(Where(row) + ", column '" + column + "'", "a number within +-1e100",
                        std::isnan(value) ? "none" : Decimal(value));
+  }
+  CsvTable::Time Time(std::size_t row, const std::string& column) const {
+    if (table_) return table_->TimeAt(row, column);
+    return {Number(row, column, false), false};
   }
 
  private:
@@ -92,41 +97,115 @@ std::map<std::string, std::array<double, 2>> ReadStart(const Yaml& y) {
   return start;
 }
 
+// The clock of a log. One that counts from long ago (dates, seconds since 1970) is read from its
+// first row on, to the nanosecond: the numbers that stay are short.
+class LogClock {
+ public:
+  LogClock(const Experiment& e, const Recording& rec, double unit) : e_(e), rec_(rec), unit_(unit) {
+    if (rec.rows() == 0) return;
+    const CsvTable::Time first = rec.Time(0, e.time_column);
+    stamps_ = first.stamp;
+    const auto seconds = stamps_ ? first.value : first.value * unit;
+    if (std::abs(seconds) > kLongestTime) RefuseUnit(first.value);
+    if (stamps_ || std::abs(seconds) >= kLongAgo) origin_ = first.value;
+  }
+
+  /// [s] of the log.
+  double At(std::size_t row) const {
+    const CsvTable::Time time = rec_.Time(row, e_.time_column);
+    if (time.stamp != stamps_) {
+      throw Error::Input(Where(row), stamps_ ? "a date or time of day" : "a number",
+                         "the other, unlike the first row");
+    }
+    if (!origin_) return rec_.Number(row, e_.time_column, false) * unit_;
+    const long double passed = (time.value - *origin_) * (stamps_ ? 1 : unit_);
+    return static_cast<double>(std::round(passed * 1e9L) / 1e9L);
+  }
+
+  /// The time as messages give it: as the column has it, or in seconds from the first row on.
+  std::string Shown(std::size_t row) const {
+    return origin_ ? Decimal(At(row)) + " s" : Decimal(rec_.Number(row, e_.time_column, false));
+  }
+
+  /// A window's end, which may be a number of such a clock itself.
+  double Window(double end) const {
+    const bool own = origin_ && !stamps_ && std::abs(end) >= kLongAgo;
+    return own ? static_cast<double>(end - *origin_ * unit_) : end;
+  }
+
+  std::string Where(std::size_t row) const {
+    return rec_.Where(row) + ", column '" + e_.time_column + "'";
+  }
+
+ private:
+  static constexpr double kLongAgo = 1e8;       // [s], three years
+  static constexpr double kLongestTime = 1e11;  // [s], three thousand years
+
+  [[noreturn]] void RefuseUnit(long double first) const {
+    const double size = static_cast<double>(std::abs(first));
+    const std::string unit = size < 1e14 ? "ms" : size < 1e17 ? "us" : "ns";
+    throw Error::Input(Where(0), "a time in " + e_.time_unit,
+                       Decimal(static_cast<double>(first)) + "; are these " + unit +
+                           " since 1970? Then write time: {unit: " + unit + "}");
+  }
+
+  const Experiment& e_;
+  const Recording& rec_;
+  double unit_;
+  bool stamps_ = false;
+  std::optional<long double> origin_;  // as the column has it
+};
+
 // Rows that were written twice are the usual cause.
-Error TimeGoesBack(const Experiment& e, const Recording& rec, std::size_t row) {
-  const double now = rec.Number(row, e.time_column, false);
-  std::string found = Decimal(now) + " after " + Decimal(rec.Number(row - 1, e.time_column, false));
+Error TimeGoesBack(const LogClock& clock, const Recording& rec, std::size_t row) {
+  const double now = clock.At(row);
+  std::string found = clock.Shown(row) + " after " + clock.Shown(row - 1);
   for (std::size_t k = 0; k < row; ++k) {
-    if (rec.Number(k, e.time_column, false) != now) continue;
+    if (clock.At(k) != now) continue;
     found += ", as in " + rec.Where(k) + ": are rows there twice?";
     break;
   }
-  return Error::Input(rec.Where(row) + ", column '" + e.time_column + "'", "increasing time",
-                      found);
+  return Error::Input(clock.Where(row), "increasing time", found);
 }
 
 // Reads the times, of the rows within the log's window; returns these rows.
 std::vector<std::size_t> ReadTimes(Log& log, const Experiment& e, const Recording& rec,
                                    double time_unit) {
-  const std::vector<double>& window = log.window;
+  const LogClock clock(e, rec, time_unit);
+  std::vector<double> window = log.window;
+  for (double& end : window) end = clock.Window(end);
   double last = -kInfinity;
   std::vector<std::size_t> kept;
   for (std::size_t row = 0; row < rec.rows(); ++row) {
-    const double t = rec.Number(row, e.time_column, false) * time_unit;
-    if (!(t > last)) throw TimeGoesBack(e, rec, row);
+    const double t = clock.At(row);
+    if (!(t > last)) throw TimeGoesBack(clock, rec, row);
     last = t;
     if (!window.empty() && (t < window[0] || t > window[1])) continue;
     kept.push_back(row);
     log.time.push_back(t * (1 + e.skew));
   }
   if (kept.size() < 2) {
-    const std::string in = window.empty() ? "" : " within its window, " + Listed(window) + " s";
+    const std::string in = window.empty() ? "" : " within its window, " + Listed(log.window) + " s";
     const std::string rows = rec.rows() > 0 && kept.empty()
                                  ? "none: it ends at " + Decimal(last) + " s"
                                  : std::to_string(kept.size());
     throw Error::Input(log.file.string() + in, "at least two rows", rows);
   }
   return kept;
+}
+
+// Puts back the full turns by which an angle [rad] jumps.
+void Unwrap(std::vector<double>& angle) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  double last = 0, turns = 0;
+  bool started = false;
+  for (double& value : angle) {
+    if (std::isnan(value)) continue;
+    if (started) turns -= std::round((value - last) / kTurn);
+    started = true;
+    last = value;
+    value += kTurn * turns;
+  }
 }
 
 void ReadInputs(Log& log, const Experiment& e, const Recording& rec,
@@ -139,6 +218,7 @@ void ReadInputs(Log& log, const Experiment& e, const Recording& rec,
       values.push_back(in.column.empty() ? 0 : factor * rec.Number(row, in.column, false));
       if (!in.enable.empty()) on.push_back(rec.Flag(row, in.enable));
     }
+    if (in.unwrap) Unwrap(values);
     log.input.push_back(std::move(values));
     log.enable.push_back(std::move(on));
   }
@@ -155,6 +235,7 @@ void ReadChannels(Log& log, const Experiment& e, const Recording& rec,
       throw Error::Input(log.file.string() + ", column '" + channel.name + "'",
                          "at least one number", "none");
     }
+    if (e.outputs[channel.output].unwrap) Unwrap(values);
     log.measured.push_back(std::move(values));
   }
 }

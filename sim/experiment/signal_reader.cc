@@ -58,10 +58,19 @@ void ReadSource(const Yaml& y, Output& out) {
   }
 }
 
+// Only angles have turns.
+bool ReadUnwrap(const Yaml& y, const std::string& unit) {
+  const auto unwrap = y.Find("unwrap");
+  if (!unwrap || !unwrap->Bool()) return false;
+  const Unit of = ParseUnit(unit, unwrap->Where());
+  if (!of.any && of.dimension == ParseUnit("rad", "").dimension) return true;
+  throw Error::Input(unwrap->Where(), "the unit of an angle, as rad or deg", "'" + unit + "'");
+}
+
 }  // namespace
 
 Input ReadInput(const Yaml& y) {
-  y.Only({"column", "unit", "actuator", "interpolate", "enable"});
+  y.Only({"column", "unit", "actuator", "interpolate", "enable", "unwrap"});
   Input in;
   in.where = y.Where();
   in.actuator = y.At("actuator").Text();
@@ -75,12 +84,13 @@ Input ReadInput(const Yaml& y) {
     in.linear = i->OneOf<bool>({{"hold", false}, {"linear", true}});
   }
   if (const auto unit = y.Find("unit")) UnitFactor(in.unit, unit->Where());
+  in.unwrap = ReadUnwrap(y, in.unit);
   return in;
 }
 
 Output ReadOutput(const Yaml& y) {
   y.Only({"column", "columns", "unit", "sensor", "actuator", "quantity", "sigma", "weight", "bias",
-          "scale", "delay", "rate", "angle", "axis"});
+          "scale", "delay", "rate", "angle", "axis", "unwrap"});
   Output out;
   out.where = y.Where();
   const Yaml column = y.Has("columns") ? y.At("columns") : y.At("column");
@@ -98,6 +108,7 @@ Output ReadOutput(const Yaml& y) {
                        "one of an actuator's " + y.TextOr("quantity", "force"));
   }
   if (const auto unit = y.Find("unit")) UnitFactor(out.unit, unit->Where());
+  out.unwrap = ReadUnwrap(y, out.unit);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "sim/experiment/experiment.h"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -131,6 +132,63 @@ TEST_F(ExperimentFile, TakesWindowsOfOneFileThatTouch) {
                  "[{file: log.csv, window: [0, 0.2]}, {file: log.csv, window: [0.2, 0.4]}]")
                 .logs.size(),
             2u);
+}
+
+TEST_F(ExperimentFile, CountsAClockThatBeganLongAgoFromItsFirstRow) {
+  for (const auto& [unit, first, second, last] :
+       {std::array{"ns", "1714564800000000000", "1714564800010000000", "1714564800250000001"},
+        std::array{"us", "1714564800000000", "1714564800010000", "1714564800250000.001"},
+        std::array{"s", "1714564800.0", "1714564800.01", "1714564800.250000001"},
+        std::array{"s", "2024-05-01T12:00:00Z", "2024-05-01T12:00:00.010Z",
+                   "2024-05-01T14:00:00.250000001+02:00"},
+        std::array{"ms", "12:00:00", "12:00:00.010", "12:00:00.250000001"}}) {
+    scratch_.Write("log.csv", std::string("t,T1,on,q1\n") + first + ",1,1,10\n" + second +
+                                  ",2,0,\n" + last + ",3,1,30\n");
+    EXPECT_THAT(With("unit: ms", std::string("unit: ") + unit).logs[0].time,
+                ElementsAre(0, 0.01, 0.250000001))
+        << first;
+  }
+  scratch_.Write("log.csv",
+                 "t,T1,on,q1\n1714564800,1,1,10\n1714564801,1,1,20\n1714564802,1,1,30\n");
+  for (const char* window : {"[1, 2]", "[1714564801, 1714564802]"}) {
+    std::string text = kExperiment;
+    text.replace(text.find("unit: ms"), 8, "unit: s");
+    text.replace(text.find("{file: log.csv}"), 15,
+                 std::string("{file: log.csv, window: ") + window + "}");
+    EXPECT_THAT(Read(text).logs[0].time, ElementsAre(1, 2)) << window;
+  }
+}
+
+TEST_F(ExperimentFile, AsksForTheUnitOfTimesThatNoClockHas) {
+  scratch_.Write("log.csv", "t,T1,on,q1\n1714564800000000000,1,1,10\n1714564801000000000,1,1,20\n");
+  EXPECT_THAT(Wrong("unit: ms", "unit: s"),
+              AllOf(HasSubstr("log.csv:2, column 't'"), HasSubstr("write time: {unit: ns}")));
+  scratch_.Write("log.csv", "t,T1,on,q1\n12:00:00,1,1,10\n13,1,1,20\n");
+  EXPECT_THAT(Wrong("unit: ms", "unit: s"), AllOf(HasSubstr("log.csv:3"), HasSubstr("a date")));
+}
+
+TEST_F(ExperimentFile, PutsBackFullTurnsThatAnAngleLost) {
+  const auto log = [&](const char* rows) {
+    scratch_.Write("log.csv", std::string("t,T1,on,q1\n") + rows);
+    return With("unit: deg", "unit: deg, unwrap: true").logs[0].measured[0];
+  };
+  const double degree = std::numbers::pi / 180;
+  const auto values = log("0,1,1,170\n1,1,1,-175\n2,1,1,\n3,1,1,-5\n4,1,1,150\n5,1,1,-170\n");
+  const double expected[] = {170, 185, NAN, 355, 510, 550};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (k == 2) continue;  // not measured
+    EXPECT_NEAR(values[k], expected[k] * degree, 1e-12) << k;
+  }
+  EXPECT_NEAR(log("0,1,1,5\n1,1,1,355\n2,1,1,10\n")[1], -5 * degree, 1e-12);
+  EXPECT_THAT(Wrong("unit: deg", "unit: deg/s, unwrap: true"),
+              AllOf(HasSubstr("unwrap"), HasSubstr("the unit of an angle")));
+  EXPECT_THAT(Wrong("unit: mN", "unit: mN, unwrap: true"), HasSubstr("the unit of an angle"));
+}
+
+TEST_F(ExperimentFile, TakesMatlabFilesByTheirFirstBytesAndNamesOtherFormats) {
+  EXPECT_THAT(Wrong("MATLAB 5.0 MAT-file, Platform: GLNXA64"),
+              HasSubstr("a MATLAB file of version"));
+  EXPECT_THAT(Wrong(std::string("PAR1\x15\0", 6)), HasSubstr("a Parquet file"));
 }
 
 TEST_F(ExperimentFile, KeepsColumnNamesAsTheyAreWritten) {

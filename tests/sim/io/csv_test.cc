@@ -45,13 +45,90 @@ TEST(CsvTable, KeepsCommasAndQuotesInsideQuotedCells) {
   EXPECT_TRUE(std::isnan(t.NumberOrNan(0, "b")));
 }
 
+// The same table as programs write it.
+TEST(CsvTable, FindsWhatStandsBetweenCells) {
+  for (const std::string text : {
+           "t,u,q\n0,0.5,-1e-3\n0.1,1.5,2\n",
+           "t;u;q\n0;0.5;-1e-3\n0.1;1.5;2\n",
+           "t\tu\tq\n0\t0.5\t-1e-3\n0.1\t1.5\t2\n",
+           "t|u|q\n0|0.5|-1e-3\n0.1|1.5|2\n",
+           "t u  q\n0 0.5 -1e-3\n 0.1  1.5\t2 \n",
+           "t,\tu,\tq\n0,\t0.5,\t-1e-3\n0.1,\t1.5,\t2\n",
+           "t;u;q\n0;0,5;-1e-3\n0,1;1,5;2\n",
+           "t\tu\tq\n0\t0,5\t-1e-3\n0,1\t1,5\t2\n",
+           "t u q\n0 0,5 -1e-3\n0,1 1,5 2\n",
+           "\"t\",\"u\",\"q\"\n\"0\",\"0,5\",\"-1e-3\"\n\"0,1\",\"1,5\",\"2\"\n",
+           "t,u,q,\n0,0.5,-1e-3,\n0.1,1.5,2,\n",
+           "t;u;q\n0;0,5;-1e-3;\n0,1;1,5;2;\n",
+           "# made by hand, on a bench; at 20 degrees\nt,u,q\n0,0.5,-1e-3\n% again\n0.1,1.5,2\n",
+           "# t,u,q\n0,0.5,-1e-3\n0.1,1.5,2\n",
+           "# t u q\n0 0.5 -1e-3\n0.1 1.5 2\n",
+       }) {
+    const CsvTable t = CsvTable::Parse(text, "log.csv");
+    ASSERT_THAT(t.columns(), ElementsAre("t", "u", "q")) << text;
+    EXPECT_THAT(t.Numbers("t"), ElementsAre(0, 0.1)) << text;
+    EXPECT_THAT(t.Numbers("u"), ElementsAre(0.5, 1.5)) << text;
+    EXPECT_THAT(t.Numbers("q"), ElementsAre(-1e-3, 2)) << text;
+  }
+}
+
+TEST(CsvTable, NumbersColumnsOfAFileWithoutAHeader) {
+  for (const std::string text : {"0,0.5,-0.1\n0.1,1.5,\n", "0 0.5 -0.1\n0.1 1.5 nan\n",
+                                 "0;0,5;-0,1\n0,1;1,5;\n", "# bench 2\n0,0.5,-0.1\n0.1,1.5,NA\n"}) {
+    const CsvTable t = CsvTable::Parse(text, "log.csv");
+    ASSERT_THAT(t.columns(), ElementsAre("1", "2", "3")) << text;
+    EXPECT_THAT(t.Numbers("2"), ElementsAre(0.5, 1.5)) << text;
+    EXPECT_TRUE(std::isnan(t.NumberOrNan(1, "3"))) << text;
+    EXPECT_THAT(Message([&] { t.Numbers("q"); }),
+                HasSubstr("its columns are numbered, as in `column: 1`"))
+        << text;
+  }
+  EXPECT_THAT(ParseError("0,1\n0,1,2\n"), HasSubstr("as in the first row"));
+  // Names that are numbers.
+  EXPECT_THAT(CsvTable::Parse("0,1,2\n5,6,7\n", "log.csv").Numbers("2"), ElementsAre(7));
+}
+
+TEST(CsvTable, ReadsOneSignForDecimalsInAFile) {
+  const CsvTable t = CsvTable::Parse("t;x\n0.5;1\n1.5;1,5\n", "log.csv");
+  EXPECT_THAT(Message([&] { t.Number(1, "x"); }),
+              AllOf(HasSubstr("log.csv:3"), HasSubstr("decimal point, as elsewhere")));
+  EXPECT_THAT(ParseError("t,x\n0,5,1,5\n"), HasSubstr("put ';' between cells"));
+}
+
+TEST(CsvTable, KnowsTheWordsForWhatWasNotMeasured) {
+  for (const std::string word :
+       {"", "NA", "N/A", "#N/A", "null", "None", "NaN", "-nan(ind)", "-"}) {
+    const CsvTable t = CsvTable::Parse("t,x\n0,1\n1," + word + "\n", "log.csv");
+    EXPECT_TRUE(std::isnan(t.NumberOrNan(1, "x"))) << word;
+    EXPECT_THAT(Message([&] { t.Number(1, "x"); }), HasSubstr("finite number")) << word;
+  }
+}
+
+TEST(CsvTable, ReadsDatesAndTimesOfDayToTheNanosecond) {
+  const CsvTable t = CsvTable::Parse(
+      "t\n2024-05-01T12:00:00.010000001Z\n\"2024-05-01 14:00:00,01+02:00\"\n12:00:01.5\n"
+      "1714564800.010000001\n05/01/2024 12:00\n2024-02-30T12:00:00\n",
+      "log.csv");
+  const long double noon = 1714564800;
+  EXPECT_TRUE(t.TimeAt(0, "t").stamp);
+  EXPECT_EQ(std::round((t.TimeAt(0, "t").value - noon) * 1e9L), 10'000'001);
+  EXPECT_EQ(std::round((t.TimeAt(1, "t").value - noon) * 1e9L), 10'000'000);
+  EXPECT_EQ(t.TimeAt(2, "t").value, 12 * 3600 + 1.5L);
+  EXPECT_FALSE(t.TimeAt(3, "t").stamp);
+  EXPECT_EQ(std::round((t.TimeAt(3, "t").value - noon) * 1e9L), 10'000'001);
+  for (const std::size_t row : {4, 5}) {  // a day or a month? and a day that is none
+    EXPECT_THAT(Message([&] { t.TimeAt(row, "t"); }), HasSubstr("a time like 2024-05-01T12"))
+        << row;
+  }
+}
+
 TEST(CsvTable, SaysWhereALineIsWrong) {
   EXPECT_THAT(ParseError(""), AllOf(HasSubstr("log.csv"), HasSubstr("header")));
   EXPECT_THAT(ParseError("\n \r\n"), HasSubstr("header"));
   EXPECT_THAT(ParseError("t,x,t\n"), AllOf(HasSubstr("log.csv:1"), HasSubstr("'t' twice")));
   EXPECT_THAT(ParseError("t,,x\n"), HasSubstr("log.csv:1"));
   EXPECT_THAT(ParseError("t,x\n0,1\n\n2\n"), AllOf(HasSubstr("log.csv:4"), HasSubstr("found 1")));
-  EXPECT_THAT(ParseError("t,x\n0,1,\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("found 3")));
+  EXPECT_THAT(ParseError("t,x\n0,1,2\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("found 3")));
   EXPECT_THAT(ParseError("t\n\"0\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("closing quote")));
   EXPECT_THAT(ParseError("t\n\"0\"1\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("'1'")));
   EXPECT_THAT(ParseError(std::string("t\n\0\n", 4)), HasSubstr("zero byte"));
@@ -103,8 +180,8 @@ RC_GTEST_PROP(CsvTable, NeverFailsOnArbitraryBytesExceptWithAnError, (const std:
 
 // Denser in what matters to a reader of CSV than arbitrary bytes are.
 RC_GTEST_PROP(CsvTable, NeverFailsOnArbitraryCsvExceptWithAnError, ()) {
-  const auto text = *rc::gen::container<std::string>(
-      rc::gen::element(',', '"', '\n', '\r', ' ', '\t', 't', '1', '-', '.', 'e', '\xEF', '\0'));
+  const auto text = *rc::gen::container<std::string>(rc::gen::element(
+      ',', ';', '"', '\n', '\r', ' ', '\t', 't', '1', '-', '.', 'e', '#', ':', '\xEF', '\0'));
   try {
     const CsvTable t = CsvTable::Parse(text, "log.csv");
     for (std::size_t row = 0; row < t.rows(); ++row) {
@@ -115,8 +192,9 @@ RC_GTEST_PROP(CsvTable, NeverFailsOnArbitraryCsvExceptWithAnError, ()) {
 }
 
 RC_GTEST_PROP(CsvTable, RoundTripsNamesAndNumbersExactly, ()) {
-  const auto names = *rc::gen::unique<std::vector<std::string>>(rc::gen::nonEmpty(
-      rc::gen::container<std::string>(rc::gen::element('a', 'B', '[', ']', ',', '"', ' ', '_'))));
+  const auto names =
+      *rc::gen::unique<std::vector<std::string>>(rc::gen::nonEmpty(rc::gen::container<std::string>(
+          rc::gen::element('a', 'B', '[', ']', ',', '"', ' ', '_', '#'))));
   RC_PRE(!names.empty());
   const auto rows = *rc::gen::container<std::vector<std::vector<double>>>(
       rc::gen::container<std::vector<double>>(names.size(), rc::gen::arbitrary<double>()));
