@@ -8,13 +8,12 @@
 #include <fmt/ranges.h>
 
 #include "app/console.h"
+#include "app/log_check.h"
 #include "error.h"
 #include "identification/identify.h"
 #include "identification/report/fit_output.h"
 #include "identification/report/fit_summary.h"
 #include "identification/report/parts.h"
-#include "sim/check/check.h"
-#include "sim/check/finding_groups.h"
 #include "sim/experiment/registration.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/output_folder.h"
@@ -29,33 +28,6 @@ struct Options {
   std::string experiment, out, from, method = "lm", path = "auto";
   IdentifyOptions fit;
 };
-
-// What the check of the logs warns of, its first lines and channels without variance in full.
-void PrintCheck(const Options& o, const Experiment& e) {
-  constexpr std::size_t kLines = 4;
-  std::size_t more = 0, printed = 0;
-  const auto findings = CheckLogs(e);
-  for (const FindingGroup& g : Grouped(findings)) {
-    const auto severity = g.members.front()->severity;
-    if (severity == Finding::Severity::kInfo) continue;
-    const bool constant = g.members.front()->what == "no_variance";
-    if (severity == Finding::Severity::kWarning && printed >= kLines && !constant) {
-      ++more;
-      continue;
-    }
-    ++printed;
-    std::string where = g.logs.size() > 1 && g.logs.size() == e.logs.size()
-                            ? "all logs"
-                            : fmt::format("{}", fmt::join(g.logs, ", "));
-    for (const std::string& channel : g.channels)
-      where += channel.empty() ? "" : ", column '" + channel + "'";
-    if (!where.empty()) where += ": ";
-    std::fprintf(stderr, "log check: %s%s\n", where.c_str(), g.text.c_str());
-  }
-  if (more > 0)
-    std::fprintf(stderr, "log check: %zu more warnings: continuum check %s\n", more,
-                 o.experiment.c_str());
-}
 
 IdentifyOptions ReadOptions(const Options& o) {
   IdentifyOptions options = o.fit;
@@ -80,7 +52,7 @@ void RunIdentify(const Options& o) {
   IdentifyOptions options = ReadOptions(o);
   options.accepted = [&](const std::string& how) {
     std::fprintf(stderr, "%s\n", how.c_str());
-    PrintCheck(o, e);
+    PrintLogCheck(o.experiment, e);
   };
   const IdentifyResult result = Identify(e, system, options);
   const auto missing = WriteFit(e, result, o.out);

@@ -10,6 +10,7 @@
 
 #include "app/console.h"
 #include "app/filming.h"
+#include "app/log_check.h"
 #include "identification/candidates/candidate_generator.h"
 #include "identification/identify.h"
 #include "sim/check/check.h"
@@ -52,6 +53,7 @@ void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
   const ModelSpec system = ModelSpec::Load(e.model);
   CheckAll(e, system);
+  PrintLogCheck(o.experiment, e);
   FilmOptions film;
   o.filming.Set(film, system.model());
   const std::vector<std::size_t> filmed = o.filming.LogsOf(e);

@@ -271,6 +271,9 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const ModelSpec& 
     trials.Run(e.logs[l], traces[l], found);
     for (Finding& f : found.Take()) all.push_back(std::move(f));
   }
+  Findings parameters(nullptr);
+  CheckParameterEffects(e, system, parameters);
+  for (Finding& f : parameters.Take()) all.push_back(std::move(f));
   return all;
 }
 

@@ -36,6 +36,10 @@ void CheckRanges(const Experiment& e, const Log& log, const mjModel& m, Findings
 std::set<std::string> CheckPose(const Experiment& e, const Log& log, const ModelSpec& system,
                                 Findings& out);
 
+/// Parameters that change no output of any log. What many or long logs would make too slow is not
+/// judged, nor are logs of poses at rest.
+void CheckParameterEffects(const Experiment& e, const ModelSpec& system, Findings& out);
+
 /// Looks for mistakes in the inputs of logs that the model does not explain: a wrong sign or unit
 /// (of one input, or of all of one dimension), or two inputs swapped. Each is simulated in a window
 /// of bounded length where its input moves most, so that long logs cost no more than short ones.

@@ -25,15 +25,62 @@ std::string Counted(std::ptrdiff_t count, const std::string& noun) {
 }
 
 struct Entry {
-  std::string section, line;
+  std::string section, what, subject, text;
   Severity severity;
+
+  std::string Line() const {
+    const std::string of = subject.empty() ? "" : subject + ": ";
+    return fmt::format("  {:<8}{:<16} {}{}\n", Name(severity), what, of, text);
+  }
 };
 
 Entry EntryOf(const std::string& section, const Finding& f, const std::string& where,
               const std::string& text) {
-  const std::string subject = where.empty() ? "" : where + ": ";
-  return {section, fmt::format("  {:<8}{:<16} {}{}\n", Name(f.severity), f.what, subject, text),
-          f.severity};
+  return {section, f.what, where, text, f.severity};
+}
+
+// More lines of one kind in a section than this become one.
+constexpr std::size_t kLinesOfAKind = 3;
+
+bool OfOneKind(const Entry& a, const Entry& b) {
+  return a.section == b.section && a.what == b.what && a.severity == b.severity;
+}
+
+// What stands for many entries of one kind: the first, and what the others are of.
+Entry Together(const std::vector<Entry>& of_kind) {
+  constexpr std::size_t kNames = 8;
+  std::set<std::string> names;
+  for (std::size_t i = 1; i < of_kind.size(); ++i) {
+    if (!of_kind[i].subject.empty()) names.insert(of_kind[i].subject);
+  }
+  std::string list;
+  std::size_t named = 0;
+  for (const std::string& name : names) {
+    if (named++ < kNames) list += (list.empty() ? ": " : "; ") + name;
+  }
+  if (named > kNames) list += fmt::format("; and {} more", named - kNames);
+  Entry entry = of_kind.front();
+  entry.text += fmt::format(" ({} more of this kind{})", of_kind.size() - 1, list);
+  return entry;
+}
+
+std::vector<Entry> Collapsed(const std::vector<Entry>& entries) {
+  std::vector<Entry> collapsed;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    std::vector<Entry> of_kind;
+    std::size_t first = entries.size();
+    for (std::size_t j = 0; j < entries.size(); ++j) {
+      if (!OfOneKind(entries[i], entries[j])) continue;
+      first = std::min(first, j);
+      of_kind.push_back(entries[j]);
+    }
+    if (of_kind.size() <= kLinesOfAKind) {
+      collapsed.push_back(entries[i]);
+    } else if (i == first) {
+      collapsed.push_back(Together(of_kind));
+    }
+  }
+  return collapsed;
 }
 
 std::string SectionOf(const std::string& log) { return log.empty() ? "experiment" : "log " + log; }
@@ -77,7 +124,7 @@ std::string Listed(const std::vector<Entry>& entries) {
     text += section + "\n";
     for (const Severity severity : {Severity::kError, Severity::kWarning, Severity::kInfo}) {
       for (const Entry& e : entries) {
-        if (e.section == section && e.severity == severity) text += e.line;
+        if (e.section == section && e.severity == severity) text += e.Line();
       }
     }
   }
@@ -94,6 +141,7 @@ std::string Report(const std::vector<Finding>& findings) {
   std::vector<Entry> entries;
   for (const FindingGroup& group : Grouped(findings))
     entries.push_back(EntryOf(group, logs.size()));
+  entries = Collapsed(entries);
   std::string text = Listed(entries);
   if (entries.size() < findings.size())
     text += fmt::format("{} findings in all: --all lists them one by one\n", findings.size());

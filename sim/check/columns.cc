@@ -232,7 +232,7 @@ void CheckColumns(const CheckedLog& log, Findings& out) {
     const bool often = r.repeats >= 5 && r.share() >= (c.input ? 0.3 : 0.005);
     if ((often || r.frozen > 0) && 2 * known <= r.repeats + r.frozen)
       ReportRefresh(c, r, often, out);
-    CheckJumps(r.share() > 0.1 ? Fresh(c) : c, log.disturbed, out);
+    if (!CheckWrapped(c, out)) CheckJumps(r.share() > 0.1 ? Fresh(c) : c, log.disturbed, out);
   }
 }
 

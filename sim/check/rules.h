@@ -10,6 +10,8 @@ void CheckClock(const CheckedLog& log, Findings& out);
 void CheckColumns(const CheckedLog& log, Findings& out);
 /// A column that is flat at its largest or smallest value.
 void CheckSaturation(const CheckedColumn& column, Findings& out);
+/// An angle that was kept within one turn. Returns whether it was reported.
+bool CheckWrapped(const CheckedColumn& column, Findings& out);
 void CheckExcitation(const CheckedLog& log, Findings& out);
 /// Copied columns, quaternions, velocities against positions, inputs against outputs.
 void CheckPairs(const CheckedLog& log, Findings& out);

@@ -174,5 +174,39 @@ TEST_F(CheckModel, ASimulationThatDivergesIsTold) {
   EXPECT_NE(Find(Bad(), "diverged"), nullptr) << Report(Bad());
 }
 
+// A joint's place is known up to where the body stands that it moves.
+TEST_F(CheckModel, AParameterThatChangesNoOutputIsNamed) {
+  system_.emplace(ModelSpec::Parse(R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>
+      <worldbody><body name="cart" pos="0.1 0 0"><joint name="a" type="slide" axis="1 0 0" damping="3"/>
+        <geom size=".01" mass=".3"/></body>
+        <body name="b" pos="0 1 0"><joint name="b" type="slide" axis="1 0 0" damping="3"/>
+        <geom size=".01" mass=".4"/></body></worldbody>
+      <actuator><position name="m1" joint="a" kp="20"/><position name="m2" joint="b" kp="20"/></actuator>
+      <sensor><jointpos name="q1" joint="a"/><jointvel name="v1" joint="a"/><jointpos name="q2" joint="b"/></sensor>
+    </mujoco>)"));
+  for (std::size_t c = 0; c < experiment_.outputs.size(); ++c) {
+    experiment_.outputs[c].unit = experiment_.channels[c].unit = c == 1 ? "m/s" : "m";
+  }
+  RecordFrom({});
+  const auto parameter = [](const char* name, const char* target, const char* attribute) {
+    Parameter p;
+    p.name = name, p.target = target, p.attribute = attribute;
+    p.initial = 0.1, p.upper = 1, p.has_initial = true;
+    return p;
+  };
+  experiment_.parameters = {parameter("x", "body:cart", "pos[0]"),
+                            parameter("b", "joint:a", "damping")};
+  experiment_.parameters[1].upper = 10;
+  const auto all = CheckAgainstModel(experiment_, *system_);
+  const Finding* const found = Find(all, "no_effect");
+  ASSERT_NE(found, nullptr) << Report(all);
+  EXPECT_THAT(found->text, HasSubstr("parameter 'x' (body:cart pos[0]) changes no output"));
+  EXPECT_THAT(found->text, HasSubstr("a slide joint of body 'cart' moves along it"));
+  EXPECT_EQ(std::count_if(all.begin(), all.end(), [](auto& f) { return f.what == "no_effect"; }),
+            1);
+  experiment_.parameters[0].frozen = true;
+  EXPECT_EQ(Find(CheckAgainstModel(experiment_, *system_), "no_effect"), nullptr);
+}
+
 }  // namespace
 }  // namespace continuum

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -185,6 +186,18 @@ TEST(Check, AJumpThatLastsSomeRowsIsLocated) {
   const Finding f = Only(log, "jump", "q2");
   EXPECT_THAT(f.text, HasSubstr("in 2 of 1000 rows"));
   EXPECT_NEAR(f.begin, 6.0, 0.07);
+}
+
+TEST(Check, AnAngleThatIsKeptWithinATurnIsNamedWithItsRemedy) {
+  const double turn = 2 * std::numbers::pi;
+  for (const double low : {0.0, -std::numbers::pi}) {
+    Recipe recipe;
+    recipe.u2 = [](double t) { return 2 * t; };  // three turns
+    Log log = Record(recipe);
+    for (double& q : Column(log, "q2")) q -= turn * std::floor((q - low) / turn);
+    const Finding f = Only(log, "wrapped", "q2");
+    EXPECT_THAT(f.text, HasSubstr("write `unwrap: true`"));
+  }
 }
 
 TEST(Check, AConstantChannelIsNamed) {

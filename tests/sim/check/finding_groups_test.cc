@@ -62,5 +62,24 @@ TEST(CheckReport, SaysWhatLogsHaveInCommonOnceAndAllOnRequest) {
   EXPECT_THAT(full, HasSubstr("log c\n  warning jump             q1: jumps in 1 row\n"));
 }
 
+// As the lags of the twelve joints of a quadruped.
+TEST(CheckReport, MakesOneLineOfManyFindingsOfOneKind) {
+  std::vector<Finding> all;
+  for (int k = 1; k <= 12; ++k) {
+    const std::string number = std::to_string(k);
+    Finding f = Warning("a", "q" + number, "follows input 'u" + number + "'");
+    f.what = "lag";
+    all.push_back(f);
+  }
+  for (int k = 1; k <= 3; ++k) all.push_back(Warning("a", "q1", std::string(k, 'x')));
+  const std::string text = Report(all);
+  EXPECT_THAT(text, ::testing::StartsWith("0 errors, 4 warnings, 0 notes\n"));
+  EXPECT_THAT(text,
+              HasSubstr("q1: follows input 'u1' (11 more of this kind: q10; q11; q12; q2; q3; "
+                        "q4; q5; q6; and 3 more)\n"));
+  EXPECT_THAT(text, HasSubstr("15 findings in all: --all lists them"));
+  EXPECT_THAT(FullReport(all), HasSubstr("q7: follows input 'u7'\n"));
+}
+
 }  // namespace
 }  // namespace continuum
