@@ -47,6 +47,8 @@ struct Instance {
 // Never destroyed: an mjData may outlive what the process destroys at its end.
 PluginDataSlots<Instance>& instances = *new PluginDataSlots<Instance>;
 
+// Null in data that never were init-ed: MuJoCo steps such data while it compiles, where it computes
+// the length ranges of actuators. Every callback then does nothing, as if there were no effect.
 Instance* Get(const mjData& d, int i) { return instances.Find(d.plugin_data[i]); }
 
 std::string_view ConfigBytes(const mjModel& m, int i) {
@@ -269,10 +271,45 @@ void EvaluateAfterAll(const mjModel& m, mjData& d, Instance& last) {
   }
 }
 
+// Forces of actuators that are plugins of somebody else and come after instance i: MuJoCo computes
+// them after ours. The order of instances is no physics, so they are computed ahead, and taken back
+// in the end: their own turn comes.
+class PluginActuators {
+ public:
+  PluginActuators(const mjModel& m, mjData& d, int i, Stage stage) : m_(m), d_(d) {
+    if (stage != Stage::kActuator || i + 1 >= m.nplugin) return;
+    for (int j = i + 1; j < m.nplugin; ++j) {
+      const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[j]);
+      if (IsOurs(m, j) || !plugin || !(plugin->capabilityflags & mjPLUGIN_ACTUATOR)) continue;
+      for (int a = 0; a < m.nactuator; ++a) {
+        if (m.actuator_plugin[a] == j) Keep(a);
+      }
+      plugin->compute(&m, &d, j, mjPLUGIN_ACTUATOR);
+    }
+  }
+  PluginActuators(const PluginActuators&) = delete;
+  ~PluginActuators() {
+    for (const auto& [address, force] : before_) d_.actuator_force[address] = force;
+  }
+
+ private:
+  void Keep(int a) {
+    for (int o = m_.actuator_outadr[a]; o < m_.actuator_outadr[a] + m_.actuator_outnum[a]; ++o)
+      before_.emplace_back(o, d_.actuator_force[o]);
+  }
+
+  const mjModel& m_;
+  mjData& d_;
+  std::vector<std::pair<int, double>> before_;
+};
+
 void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (capability == mjPLUGIN_SENSOR) return;  // written below, as soon as it is known
+  Instance* const found = Get(d, i);
+  if (!found) return;
   const Stage stage = capability == mjPLUGIN_PASSIVE ? Stage::kPassive : Stage::kActuator;
-  Instance& self = *Get(d, i);
+  Instance& self = *found;
+  const PluginActuators ahead(m, d, i, stage);
   if (stage == Stage::kActuator) {
     for (const int j : self.signals) Evaluate(m, d, j, stage);
   }
@@ -287,6 +324,7 @@ void Compute(const mjModel& m, mjData& d, int i, int capability) {
 }
 
 void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
+  if (!Get(from, i) || !Get(to, i)) return;
   const Instance& a = *Get(from, i);
   Instance& b = *Get(to, i);
   b.config = a.config;
@@ -389,7 +427,8 @@ void Register() {
     Compute(*m, *d, i, capability);
   };
   plugin.advance = +[](const mjModel* m, mjData* d, int i) noexcept {
-    Get(*d, i)->bound->Advance(*m, *d, d->plugin_state + m->plugin_stateadr[i]);
+    const Instance* const self = Get(*d, i);
+    if (self) self->bound->Advance(*m, *d, d->plugin_state + m->plugin_stateadr[i]);
   };
   constexpr int kSize = kSensorSize<E>;
   if constexpr (kSize > 0) {
@@ -398,8 +437,11 @@ void Register() {
     // compute the forces between all bodies in every step.
     plugin.needstage = mjSTAGE_POS;
     plugin.nsensordata = +[](const mjModel*, int, int) noexcept { return kSize; };
-    plugin.visualize = +[](const mjModel* m, mjData* d, const mjvOption*, mjvScene* scene,
-                           int i) noexcept { Get(*d, i)->bound->Visualize(*m, *d, *scene); };
+    plugin.visualize =
+        +[](const mjModel* m, mjData* d, const mjvOption*, mjvScene* scene, int i) noexcept {
+          const Instance* const self = Get(*d, i);
+          if (self) self->bound->Visualize(*m, *d, *scene);
+        };
   }
   mjp_registerPlugin(&plugin);
 }
@@ -419,12 +461,15 @@ BoundLaw& BoundOf(const mjModel& m, const mjData& d, int instance) {
   if (instance < 0 || instance >= m.nplugin || !IsOurs(m, instance)) {
     throw Error::Input("plugin instance " + std::to_string(instance), "an effect of ours", "none");
   }
-  return *Get(d, instance)->bound;
+  const Instance* const found = Get(d, instance);
+  if (found) return *found->bound;
+  throw Error::Input("plugin instance " + std::to_string(instance), "data of mj_makeData", "none");
 }
 
 void SettleEffects(const mjModel& m, mjData& d) {
   for (int i = 0; i < m.nplugin; ++i) {
-    if (IsOurs(m, i)) Get(d, i)->bound->Settle(m, d, d.plugin_state + m.plugin_stateadr[i]);
+    if (IsOurs(m, i) && Get(d, i))
+      Get(d, i)->bound->Settle(m, d, d.plugin_state + m.plugin_stateadr[i]);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <set>
 #include <sstream>
@@ -148,24 +149,83 @@ int Config::Read(const Choice& choice) const {
   throw Error::Input(Who() + ": " + std::string(choice.name), all, "'" + std::string(text) + "'");
 }
 
-std::vector<int> Config::Match(Place place) const {
-  const std::string key(PlaceName(place)), text(Get(key));
+// Ids of what all words match behind a prefix; none, and the word, where one of them matches
+// nothing.
+std::vector<int> Config::MatchBehind(const std::string& prefix, Place place,
+                                     std::string* missing) const {
+  const std::string text = prefix + std::string(Get(PlaceName(place)));
   const int whole = mj_name2id(m_, ObjectType(place), text.c_str());
-  if (whole >= 0 && !text.empty()) return {whole};  // also with spaces in it
+  if (whole >= 0 && text.size() > prefix.size()) return {whole};  // also with spaces in it
   std::set<int> ids;
-  for (const std::string& word : Words(text)) {
+  for (const std::string& word : Words(Get(PlaceName(place)))) {
+    const std::string glob = Escaped(prefix) + word;
     bool known = false;
     for (int i = 0; i < ObjectCount(*m_, place); ++i) {
       const std::string name = NameOf(*m_, place, i);
-      if (!name.empty() && GlobMatches(word, name)) known = true, ids.insert(i);
+      const bool matches = prefix.empty() ? GlobMatches(word, name)
+                                          : name == prefix + word || GlobMatches(glob, name);
+      if (!name.empty() && matches) known = true, ids.insert(i);
     }
-    if (!known) {
-      throw Error::Input(Who() + ": " + key,
-                         "no " + key + " '" + word + "' in the model" + Hint(*m_, place));
-    }
+    if (known) continue;
+    if (missing) *missing = word;
+    return {};
   }
-  if (ids.empty()) throw Error::Input(Who(), "the key '" + key + "'", "none");
   return {ids.begin(), ids.end()};
+}
+
+// What the name of the instance and the name of an object both begin with, the longest first.
+std::vector<std::string> Config::Prefixes(Place place) const {
+  const char* const given = mj_id2name(m_, mjOBJ_PLUGIN, instance_);
+  const std::string instance = given ? given : "";
+  std::size_t longest = 0;
+  for (int i = 0; i < ObjectCount(*m_, place); ++i) {
+    const std::string name = NameOf(*m_, place, i);
+    const std::size_t most = std::min(name.size(), instance.size());
+    std::size_t n = 0;
+    while (n < most && name[n] == instance[n]) ++n;
+    longest = std::max(longest, n);
+  }
+  std::vector<std::string> prefixes;
+  for (std::size_t n = std::min(longest, instance.size() - 1) + 1; n-- > 1;)
+    prefixes.push_back(instance.substr(0, n));
+  return prefixes;
+}
+
+// Where names as written are there too, a prefix must look like one: "left_", and a body has it.
+bool Config::IsAttached(const std::string& prefix) const {
+  if (std::isalnum(static_cast<unsigned char>(prefix.back()))) return false;
+  for (int b = 1; b < m_->nbody; ++b) {
+    if (NameOf(*m_, Place::kBody, b).starts_with(prefix)) return true;
+  }
+  return false;
+}
+
+std::vector<int> Config::Match(Place place) const {
+  const std::string key(PlaceName(place));
+  std::string missing;
+  const std::vector<int> written = MatchBehind("", place, &missing);
+  if (missing.empty() && written.empty())
+    throw Error::Input(Who(), "the key '" + key + "'", "none");
+  for (const std::string& prefix : Prefixes(place)) {
+    if (!written.empty() && !IsAttached(prefix)) continue;
+    const auto ids = MatchBehind(prefix, place, nullptr);
+    if (!ids.empty()) return ids;
+  }
+  if (!written.empty()) return written;
+  throw Error::Input(Who() + ": " + key,
+                     "no " + key + " '" + missing + "' in the model" + Hint(*m_, place));
+}
+
+int Config::Find(Place place, const std::string& name) const {
+  const auto id = [&](const std::string& whole) {
+    return mj_name2id(m_, ObjectType(place), whole.c_str());
+  };
+  const int written = id(name);
+  for (const std::string& prefix : Prefixes(place)) {
+    if (written >= 0 && !IsAttached(prefix)) continue;
+    if (const int found = id(prefix + name); found >= 0) return found;
+  }
+  return written;
 }
 
 Lines Config::MatchLines(Joints types) const {

@@ -47,13 +47,23 @@ class Config {
 
   /// Ids of the objects that the names and globs (* ? [..]) under the key of a place match,
   /// ascending. Throws Error when a name or glob matches nothing.
+  ///
+  /// MuJoCo's attach puts a prefix before the names of a model, that of the instance too, but not
+  /// into configurations. Names are therefore looked for with the prefix of the instance first (of
+  /// "a_friction", "bend*" finds "a_bend1"), then as written.
   std::vector<int> Match(Place place) const;
+  /// The id of the object of this exact name, found in the same way; -1: there is none.
+  int Find(Place place, const std::string& name) const;
 
   /// What one of the keys 'joint' and 'tendon' matches. Throws Error when both or none are given,
   /// and for joints of other types.
   Lines MatchLines(Joints types) const;
 
  private:
+  std::vector<int> MatchBehind(const std::string& prefix, Place place, std::string* missing) const;
+  std::vector<std::string> Prefixes(Place place) const;
+  bool IsAttached(const std::string& prefix) const;
+
   const mjModel* m_;
   int instance_;
 };

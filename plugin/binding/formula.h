@@ -108,7 +108,7 @@ class BoundFormulaFriction : public BoundLaw {
 
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double>) override {
-    rows_.Write(m, d, z, stage, [&](const FrictionRow& row, double v) {
+    rows_.Write(m, d, z, stage, false, [&](const FrictionRow& row, double v) {
       return std::max(0.0, level_(At(m, d, row, v)));
     });
     return false;

@@ -9,15 +9,17 @@ namespace continuum {
 namespace {
 
 // Creates a row without saying how large the friction is: the level is written in every evaluation.
-constexpr double kRowMarker = 1e-12;
+// MuJoCo's writer of XML takes for 0 what is below 2e-16, so a saved model is as the user wrote it.
+constexpr double kRowMarker = 1e-300;
 
 // By so much the share of a ball joint's rows follows in a step: what it takes for a moment to stop
 // the joint is no load.
 constexpr double kShareStep = 0.02;
 
-std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
+// Rows of the instances [begin, end).
+std::set<std::pair<bool, int>> RowsOf(const mjModel& m, int begin, int end) {
   std::set<std::pair<bool, int>> taken;
-  for (int j = 0; j < instance; ++j) {
+  for (int j = begin; j < end; ++j) {
     const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[j]);
     const auto add = [&]<class E>() {
       if constexpr (FrictionLaw<E> || std::same_as<E, FormulaFriction>) {
@@ -37,19 +39,23 @@ std::set<std::pair<bool, int>> RowsBelow(const mjModel& m, int instance) {
 // the anchor does not act, whatever it says: as hard as the solver carries keeps the creep low.
 constexpr double kImpedance = 0.99, kDiscreteImpedance = 0.9999;
 
-void Harden(mjModel& m, const FrictionRow& row) {
+// Under the discrete integrator, which reads the model.
+void HardenModel(mjModel& m, const FrictionRow& row) {
   double* const solref = (row.joint ? m.dof_solref : m.tendon_solref_fri) + mjNREF * row.index;
   double* const solimp = (row.joint ? m.dof_solimp : m.tendon_solimp_fri) + mjNIMP * row.index;
   const auto assign = [](double& to, double value) {
     if (to != value) to = value;  // another thread may be reading it
   };
-  double usual[mjNREF], soft[mjNIMP];
-  mj_defaultSolRefImp(usual, soft);
-  const bool discrete = m.opt.integrator == mjINT_DISCRETE;
-  if (discrete) assign(solref[0], 2 * m.opt.timestep), assign(solref[1], 1);
-  if (!discrete && !std::equal(soft, soft + mjNIMP, solimp)) return;
-  const double impedance = discrete ? kDiscreteImpedance : kImpedance;
-  assign(solimp[0], impedance), assign(solimp[1], impedance);
+  assign(solref[0], 2 * m.opt.timestep), assign(solref[1], 1);
+  assign(solimp[0], kDiscreteImpedance), assign(solimp[1], kDiscreteImpedance);
+}
+
+// Solvers in the dual space have R on the diagonal of a matrix of their own.
+void AddToDual(mjData& d, int r, double change) {
+  if (!d.efc_AR || d.nA == 0) return;
+  for (int k = d.efc_AR_rowadr[r]; k < d.efc_AR_rowadr[r] + d.efc_AR_rownnz[r]; ++k) {
+    if (d.efc_AR_colind[k] == r) d.efc_AR[k] += change;
+  }
 }
 
 bool Saturated(const mjData& d, int r) {
@@ -66,20 +72,54 @@ double Yield(const mjData& d, int r) {
 
 FrictionRows::FrictionRows(const mjModel& m, const Config& config, Joints types, int instance)
     : rows_(FrictionRowsOf(m, config, types)) {
-  const auto taken = RowsBelow(m, instance);
-  for (FrictionRow& row : rows_) row.owner = !taken.contains({row.joint, row.index});
+  const auto below = RowsOf(m, 0, instance),
+             above = RowsOf(m, instance + 1, static_cast<int>(m.nplugin));
+  for (FrictionRow& row : rows_) {
+    row.owner = !below.contains({row.joint, row.index});
+    row.alone = row.owner && !above.contains({row.joint, row.index});
+  }
 }
 
 int FrictionRows::StateSize(const mjModel& m, const Config& config, Joints types) {
-  return 2 * static_cast<int>(FrictionRowsOf(m, config, types).size());
+  return static_cast<int>(kStates * FrictionRowsOf(m, config, types).size());
 }
 
 void FrictionRows::Impose(mjModel& m) const {
   for (const FrictionRow& row : rows_) {
     double& loss = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
     if (loss == 0) loss = kRowMarker;
-    Harden(m, row);
+    if (m.opt.integrator == mjINT_DISCRETE) HardenModel(m, row);
   }
+}
+
+bool FrictionRows::IsNative(const mjModel& m, const FrictionRow& row) {
+  const double native = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
+  return row.alone && native > kRowMarker;
+}
+
+// MuJoCo: R = (1 − d)/d diag(A), D = 1/R.
+void FrictionRows::Harden(const mjModel& m, mjData& d, const FrictionRow& row, int r) {
+  const double* const solimp =
+      (row.joint ? m.dof_solimp : m.tendon_solimp_fri) + mjNIMP * row.index;
+  double usual[mjNREF], soft[mjNIMP];
+  mj_defaultSolRefImp(usual, soft);
+  double& impedance = d.efc_KBIP[4 * r + 2];
+  if (impedance == kImpedance || m.opt.integrator == mjINT_DISCRETE) return;
+  if (!std::equal(soft, soft + mjNIMP, solimp)) return;
+  const double soft_R = d.efc_R[r];
+  const double R = soft_R * (impedance / (1 - impedance)) * ((1 - kImpedance) / kImpedance);
+  d.efc_R[r] = std::max(mjMINVAL, R), d.efc_D[r] = 1 / d.efc_R[r];
+  impedance = kImpedance, d.efc_KBIP[4 * r + 3] = 0;
+  AddToDual(d, r, d.efc_R[r] - soft_R);
+  if (d.nisland == 0) return;
+  const int i = d.map_efc2iefc[r];
+  d.iefc_R[i] = d.efc_R[r], d.iefc_D[i] = d.efc_D[r];
+}
+
+bool FrictionRows::IsAnotherPose(const mjModel& m, const mjData& d, const FrictionRow& row,
+                                 double change) {
+  constexpr double kLeast = 1e-5;  // a difference of mjd_transitionFD is none
+  return std::abs(change) > kLeast + 2 * m.opt.timestep * std::abs(Speed(d, row));
 }
 
 bool FrictionRows::Find(const mjData& d, const FrictionRow& row, int& r) {
@@ -96,17 +136,25 @@ bool FrictionRows::Find(const mjData& d, const FrictionRow& row, int& r) {
 double FrictionRows::OffAnchor(const mjModel& m, const mjData& d, const double* z,
                                const FrictionRow& row) {
   if (row.axis < 0) {
-    const double q = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.id];
-    return z[0] != 0 ? q - z[1] : 0;
+    if (z[0] == kUnknown) return 0;
+    const double off = PositionOf(m, d, row) - z[1];
+    return IsAnotherPose(m, d, row, off - z[2]) ? z[2] : off;
   }
-  const double* const ball = z - 2 * row.axis;  // the joint's first row
-  double turn[3] = {0, 0, 0};
-  if (ball[0] != 0) mju_subQuat(turn, d.qpos + m.jnt_qposadr[row.id], ball + 1);
+  const double* const ball = z - kStates * row.axis;  // the joint's first row
+  if (ball[0] == kUnknown) return 0;
+  double turn[3];
+  mju_subQuat(turn, d.qpos + m.jnt_qposadr[row.id], ball + 1);
+  for (int k = 0; k < 3; ++k) {
+    FrictionRow each = row;
+    each.index += k - row.axis;
+    if (IsAnotherPose(m, d, each, turn[k] - ball[6 + k])) return ball[6 + row.axis];
+  }
   return turn[row.axis];
 }
 
 void FrictionRows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage,
                             const FrictionRow& row, int r, double level) {
+  if (row.owner) Harden(m, d, row, r);
   if (row.owner) {
     const double native = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
     d.efc_frictionloss[r] = level + (native == kRowMarker ? 0 : native);
@@ -125,7 +173,7 @@ void FrictionRows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage
 FrictionRows::Sliding FrictionRows::SlidingOf(const mjData& d, const double* z,
                                               const FrictionRow& row) {
   if (row.axis < 0) return {z[0] == kHeld ? 0 : Speed(d, row), 1};
-  const double* const ball = z - 2 * row.axis;  // the joint's first row
+  const double* const ball = z - kStates * row.axis;  // the joint's first row
   if (ball[0] == kHeld) return {0, ball[5]};
   const double* const turn = d.qvel + row.index - row.axis;
   const double v = mju_norm3(turn);
@@ -136,27 +184,35 @@ void FrictionRows::AdvanceLine(const mjModel& m, const mjData& d, const Friction
                                int& r) {
   if (!Find(d, row, r)) return;
   const bool slides = Saturated(d, r);
-  const double q = row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.id];
-  if (z[0] == kUnknown || slides) z[1] = q - (slides ? Yield(d, r) : 0);  // (2)
+  const double q = PositionOf(m, d, row);
+  if (z[0] == kUnknown || slides) {
+    z[1] = q - (slides ? Yield(d, r) : 0);  // (2)
+  } else if (IsAnotherPose(m, d, row, q - z[1] - z[2])) {
+    z[1] = q - z[2];
+  }
   z[0] = slides ? kSlid : kHeld;
+  z[2] = q - z[1];
 }
 
 void FrictionRows::AdvanceBall(const mjModel& m, const mjData& d, const FrictionRow* rows,
                                double* z, int& r) {
-  double yield[3], force[3], limit[3];
-  bool slides = false;
+  double yield[3], force[3], limit[3], turn[3];
+  bool slides = false, moved = false;
+  mju_subQuat(turn, d.qpos + m.jnt_qposadr[rows->id], z + 1);
   for (int k = 0; k < 3; ++k) {
     if (!Find(d, rows[k], r)) return;
     const bool full = Saturated(d, r) && d.efc_frictionloss[r] > 0;
     yield[k] = full ? -Yield(d, r) : -d.efc_pos[r];  // (2)
     slides |= full;
+    moved |= IsAnotherPose(m, d, rows[k], turn[k] - z[6 + k]);
     force[k] = std::abs(d.efc_force[r]);
     limit[k] = d.efc_frictionloss[r];
   }
-  if (z[0] == kUnknown || slides) {
+  if (z[0] == kUnknown || slides || moved) {
     std::copy_n(d.qpos + m.jnt_qposadr[rows->id], 4, z + 1);
     mju_quatIntegrate(z + 1, yield, 1);
   }
+  mju_subQuat(z + 6, d.qpos + m.jnt_qposadr[rows->id], z + 1);
   const double level = z[0] == kHeld ? limit[0] / z[5] : mju_norm3(limit), load = mju_norm3(force);
   const double share = load > level ? *std::max_element(force, force + 3) / load : 1;
   z[5] = z[0] == kUnknown ? 1 : z[5] + std::clamp(share - z[5], -kShareStep, kShareStep);  // (3)
@@ -167,9 +223,9 @@ void FrictionRows::Advance(const mjModel& m, const mjData& d, double* z) const {
   int r = d.ne;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     if (rows_[k].axis < 0) {
-      AdvanceLine(m, d, rows_[k], z + 2 * k, r);
+      AdvanceLine(m, d, rows_[k], z + kStates * k, r);
     } else if (rows_[k].axis == 0) {
-      AdvanceBall(m, d, &rows_[k], z + 2 * k, r);
+      AdvanceBall(m, d, &rows_[k], z + kStates * k, r);
     }
   }
 }
@@ -191,12 +247,18 @@ void FrictionRows::DifferentiateAnchor(const mjData& d, const FrictionRow& row, 
     slopes.levels.push_back({{Kind::kOffset, r}, anchor, -1});
   }
   const bool slides = Saturated(d, r);
+  const Number end{row.joint ? Kind::kPositionAfter : Kind::kLength, at},
+      off{Kind::kNext, state + 1};
   if (grasp != kUnknown && !slides) {
     slopes.next.push_back({next, anchor, 1});
+    slopes.next.push_back({off, end, 1});
+    slopes.next.push_back({off, anchor, -1});
     return;
   }
-  slopes.next.push_back({next, {row.joint ? Kind::kPositionAfter : Kind::kLength, at}, 1});
-  if (slides) slopes.next.push_back({next, {Kind::kYield, r}, -1});  // (2)
+  slopes.next.push_back({next, end, 1});
+  if (!slides) return;
+  slopes.next.push_back({next, {Kind::kYield, r}, -1});  // (2)
+  slopes.next.push_back({off, {Kind::kYield, r}, 1});
 }
 
 }  // namespace continuum

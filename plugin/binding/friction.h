@@ -12,14 +12,16 @@ namespace continuum {
 
 /// Friction rows that hold.
 ///
-/// MuJoCo makes a row where frictionloss > 0. A row of ours gets kRowMarker there (once, in Impose)
-/// and in each evaluation its level; on top the position anchor that stops the solver's creep:
+/// MuJoCo makes a row where frictionloss > 0. A row of ours gets kRowMarker there (once, in Impose;
+/// a saved model prints it as 0) and in each evaluation its level; on top the position anchor that
+/// stops the solver's creep:
 ///
 ///   efc_aref = −B v − K (q − anchor),   K = 1/(2h)², B = 1/h                (1)
 ///
 /// It gives way by h² (1 − d) (1 + 4/d²) τ/I under a load τ on an inertia I. Rows with
-/// MuJoCo's default impedance get d = 0.99 (dof_solimp of the model, once), its own 0.9 to 0.95
-/// would be ten times softer and let a sudden load overshoot by 7 %.
+/// MuJoCo's default impedance get d = 0.99 in each evaluation (efc_R, efc_D and efc_KBIP; under the
+/// discrete integrator in the model), its own 0.9 to 0.95 would be ten times softer and let a
+/// sudden load overshoot by 7 %.
 ///
 /// While |efc_force| has reached the level the anchor moves with q, at the distance at which the
 /// row would hold that force at rest:
@@ -28,6 +30,12 @@ namespace continuum {
 ///
 /// (K, d, R: stiffness, impedance, regularization of the row), so that a joint that comes to rest
 /// under load stays there. Source: MuJoCo's constraint model.
+///
+/// Who writes another pose (a slider of a viewer, a reset) takes the anchor along: friction starts
+/// no motion. A pose is another one where q − anchor has changed since the end of the last step by
+/// more than 2 h |v| + 1e-5 rad or m.
+///
+/// A law at its null on a joint with a native frictionloss leaves that row to MuJoCo.
 ///
 /// A row that held in the last step has the level of v = 0, whatever the speed of its elastic
 /// deflection: a sudden load breaks it away as a slow one does.
@@ -38,8 +46,9 @@ namespace continuum {
 ///
 ///   max |f_i|/|f|  where |f| > level,  else 1                                 (3)
 ///
-/// so that a load breaks it away at the same torque in all directions. The two states of a row are
-/// {Grasp, anchor}; a ball joint has six numbers, {Grasp, quaternion, share}.
+/// so that a load breaks it away at the same torque in all directions. The three states of a row
+/// are {Grasp, anchor, q − anchor as the step ended}; a ball joint has nine numbers, {Grasp,
+/// quaternion, share, rotation from the anchor as the step ended}.
 class FrictionRows {
  public:
   /// Joints or tendons named in config.
@@ -49,15 +58,16 @@ class FrictionRows {
   const std::vector<FrictionRow>& rows() const { return rows_; }
   void Impose(mjModel& m) const;
   /// Calls level(row, v) → torque for each row that exists at d, and writes it. v: speed of
-  /// sliding.
+  /// sliding. null: the law is at its null.
   template <class Level>
-  void Write(const mjModel& m, mjData& d, const double* z, Stage stage, Level&& level) const {
+  void Write(const mjModel& m, mjData& d, const double* z, Stage stage, bool null,
+             Level&& level) const {
     int r = d.ne;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const FrictionRow& row = rows_[k];
-      if (!Find(d, row, r)) continue;
-      const double off = OffAnchor(m, d, z + 2 * k, row);
-      const Sliding sliding = SlidingOf(d, z + 2 * k, row);
+      if ((null && IsNative(m, row)) || !Find(d, row, r)) continue;
+      const double off = OffAnchor(m, d, z + kStates * k, row);
+      const Sliding sliding = SlidingOf(d, z + kStates * k, row);
       WriteRow(m, d, off, stage, row, r, sliding.share * level(row, sliding.v));
     }
   }
@@ -73,13 +83,14 @@ class FrictionRows {
     int r = d.ne;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!Find(d, rows_[k], r)) continue;
-      const double* const z = step.z + 2 * k;
-      DifferentiateAnchor(d, rows_[k], r, z[0], static_cast<int>(2 * k + 1), slopes);
+      const double* const z = step.z + kStates * k;
+      DifferentiateAnchor(d, rows_[k], r, z[0], static_cast<int>(kStates * k + 1), slopes);
       level(rows_[k], r, SlidingOf(d, z, rows_[k]).v, z[0] != kHeld);
     }
   }
 
  private:
+  static constexpr std::size_t kStates = 3;  ///< of a row
   /// Grasp: what a row did in the last step.
   static constexpr double kUnknown = 0, kHeld = 1, kSlid = 2;
   /// Speed of sliding, and the share of the level that falls to this row.
@@ -95,6 +106,13 @@ class FrictionRows {
   static bool Find(const mjData& d, const FrictionRow& row, int& r);
   static void WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const FrictionRow& row,
                        int r, double level);
+  /// Whether MuJoCo alone has friction there, if this law has none.
+  static bool IsNative(const mjModel& m, const FrictionRow& row);
+  /// As an impedance of kImpedance makes it, where the model has MuJoCo's default.
+  static void Harden(const mjModel& m, mjData& d, const FrictionRow& row, int r);
+  /// Whether a change of q − anchor since the end of the last step is none of the motion's.
+  static bool IsAnotherPose(const mjModel& m, const mjData& d, const FrictionRow& row,
+                            double change);
   /// q − anchor; 0 before the first step.
   static double OffAnchor(const mjModel& m, const mjData& d, const double* z,
                           const FrictionRow& row);
@@ -159,7 +177,7 @@ class BoundFriction : public BoundLaw {
                 std::span<double> force) override {
     const auto p = AsParams<E>(p_);
     if constexpr (kBiased) std::fill(force.begin(), force.end(), 0.0);
-    rows_.Write(m, d, z, stage, [&](const FrictionRow& row, double v) {
+    rows_.Write(m, d, z, stage, IsNull(), [&](const FrictionRow& row, double v) {
       FrictionState<double> r{0, v, 0};
       if (!row.joint) r.q = d.ten_length[row.index];
       if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
@@ -200,6 +218,22 @@ class BoundFriction : public BoundLaw {
   static constexpr bool kDamped = requires { E::kDamping; };
   static constexpr bool kBiased = BiasedFrictionLaw<E>;
   static_assert(!kBiased || (E::kPlaces.size() == 1 && E::kPlaces[0] == Place::kJoint));
+
+  // Whether the law does nothing: no level in any direction, at any load, all around a turn.
+  bool IsNull() const {
+    const auto p = AsParams<E>(p_);
+    if constexpr (kBiased) {
+      if (E::template Bias<double>(p) != 0) return false;
+    }
+    for (const double q : {0.0, 2.0, -2.0}) {
+      for (const double v : {0.0, 1.0, -1.0}) {
+        for (const double load : {0.0, 1.0}) {
+          if (E::template Level<double>({q, v, load}, p) != 0) return false;
+        }
+      }
+    }
+    return true;
+  }
 
   FrictionRows rows_;
   int load_ = 0;

@@ -10,12 +10,13 @@
 namespace continuum {
 namespace {
 
-constexpr double kAligned = 1e-9;  // of axes, whose quaternions are rounded
-constexpr double kLength = 0.01;   // of a length, which may have been measured
+constexpr double kAligned = 1e-9;    // of axes, whose quaternions are rounded
+constexpr double kLength = 0.01;     // of a length, which may have been measured
+constexpr double kVacuum = -101325;  // gauge pressure of a vacuum at sea level [Pa]
 
 // Ids of the objects named under key, in the order given.
-std::vector<int> Named(const mjModel& m, const Config& config, const std::string& key, mjtObj type,
-                       std::size_t count) {
+std::vector<int> Named(const Config& config, Place place, std::size_t count) {
+  const std::string key(PlaceName(place));
   const auto names = Words(config.Get(key));
   if (names.size() != count) {
     throw Error::Input(config.Who() + ": " + key, std::to_string(count) + " names",
@@ -24,7 +25,7 @@ std::vector<int> Named(const mjModel& m, const Config& config, const std::string
   std::vector<int> ids;
   for (const std::string& word : names) {
     const std::string name = Unescaped(word);
-    ids.push_back(mj_name2id(&m, type, name.c_str()));
+    ids.push_back(config.Find(place, name));
     if (ids.back() < 0) {
       throw Error::Input(config.Who() + ": " + key, "no " + key + " '" + name + "' in the model");
     }
@@ -64,8 +65,8 @@ bool HasGear(const mjModel& m, int actuator) {
 }
 
 void CheckSupply(const std::string& where, const char* range, bool limited, const double* limits) {
-  if (!limited || (limits[0] >= 0 && std::isfinite(limits[0]) && std::isfinite(limits[1]))) return;
-  throw Error::Input(where, std::string(range) + " of finite gauge pressures from 0 Pa on",
+  if (!limited || (limits[0] >= kVacuum && std::isfinite(limits[1]))) return;
+  throw Error::Input(where, std::string(range) + " of finite gauge pressures from -101325 Pa on",
                      std::to_string(limits[0]) + " " + std::to_string(limits[1]));
 }
 
@@ -95,7 +96,7 @@ void CheckDirection(const mjModel& m, const Config& config, int body, const doub
 }  // namespace
 
 Chain::Chain(const mjModel& m, const Config& config) {
-  const auto ends = Named(m, config, "body", mjOBJ_BODY, 2);
+  const auto ends = Named(config, Place::kBody, 2);
   links_.push_back({ends[0], {1, 0, 0}, {0, 1, 0}});
   double to_base[4] = {1, 0, 0, 0}, tip[3] = {0, 0, 0};
   for (const int body : Path(m, config, ends[0], ends[1])) {
@@ -223,7 +224,7 @@ void Chain::Link::Point(const mjData& d, const Vec<double, 2>& at, double* world
 }
 
 Vec<int, 3> MatchChambers(const mjModel& m, const Config& config) {
-  const auto ids = Named(m, config, "actuator", mjOBJ_ACTUATOR, 3);
+  const auto ids = Named(config, Place::kActuator, 3);
   for (const int a : ids) {
     const std::string where =
         config.Who() + ": actuator '" + mj_id2name(&m, mjOBJ_ACTUATOR, a) + "'";

@@ -61,8 +61,8 @@ class Chain {
 
 /// The actuators of the three chambers, in the order of the key "actuator". Throws Error unless
 /// they are three, act on nothing else (gear 0), what ranges they have are of finite pressures from
-/// zero on, gain and lag are no less than zero, and the control is a pressure (dyntype none or a
-/// filter). Without a range suction is a pressure like others.
+/// a vacuum on (suction is below 0), gain and lag are no less than zero, and the control is a
+/// pressure (dyntype none or a filter).
 Vec<int, 3> MatchChambers(const mjModel& m, const Config& config);
 
 /// What is in a chamber [Pa]: the actuator's force within its range.

@@ -289,16 +289,16 @@ TEST_F(Segment, AGainOrLagBelowZeroOrOfNoNumberIsRefused) {
   }
 }
 
-TEST_F(Segment, ASupplyBelowZeroOrWithoutEndIsRefused) {
-  for (const std::string range : {"ctrllimited=\"true\" ctrlrange=\"-100 75000\"",
-                                  "forcelimited=\"true\" forcerange=\"-1 75000\"",
+TEST_F(Segment, ASupplyBelowAVacuumOrWithoutEndIsRefused) {
+  for (const std::string range : {"ctrllimited=\"true\" ctrlrange=\"-200000 75000\"",
+                                  "forcelimited=\"true\" forcerange=\"-101400 75000\"",
                                   "ctrllimited=\"true\" ctrlrange=\"0 inf\""}) {
     Options options;
     options.p1 = "<general name=\"p1\" joint=\"l1\" gear=\"0\" " + range + "/>";
     const auto [model, error] = Compile(Arm(options));
     EXPECT_FALSE(model) << range;
     EXPECT_THAT(error, HasSubstr("actuator 'p1'"));
-    EXPECT_THAT(error, HasSubstr("of finite gauge pressures from 0 Pa on"));
+    EXPECT_THAT(error, HasSubstr("of finite gauge pressures from -101325 Pa on"));
   }
 }
 

@@ -1,0 +1,203 @@
+// Models as people build them: muscles, plugins of others, native friction, poses written by hand,
+// saved models, attached robots.
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "support/engine.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class UserModels : public testing::Engine {};
+
+constexpr const char* kLink = R"(<mujoco>{}<option timestep=".002" integrator="implicitfast" {}/>
+  <worldbody><body><joint name="h" axis="0 1 0" {}/>
+    <geom type="capsule" size=".02" fromto="0 0 0 0 0 -.3" mass=".5"/></body></worldbody></mujoco>)";
+
+std::string Link(const std::string& extension, const std::string& joint,
+                 const std::string& option = "") {
+  return fmt::format(fmt::runtime(kLink), extension, option, joint);
+}
+
+// MuJoCo finds the length range of a muscle in data that were never init-ed.
+TEST_F(UserModels, AMuscleLoadsWithItsNativeLengthRangeBesideAnyEffect) {
+  constexpr const char* kMuscle = R"(<mujoco>{}<worldbody><site name="w" pos="0 0 .3"/>
+    <body><joint name="h" axis="0 1 0" range="-60 60" damping=".05"/>
+      <geom type="capsule" size=".02" fromto="0 0 0 .3 0 0" mass=".3"/>
+      <site name="a" pos=".1 0 .03"/><site name="b" pos=".25 0 .03"/></body></worldbody>
+    <tendon><spatial name="t"><site site="w"/><site site="a"/><site site="b"/></spatial></tendon>
+    <actuator><muscle name="m" tendon="t" force="30"/></actuator></mujoco>)";
+  const auto native = Model(fmt::format(fmt::runtime(kMuscle), ""));
+  for (const auto& [effect, config] : {std::pair{"coulomb", Key("joint", "h") + Key("tau_c", ".1")},
+                                       {"capstan", Key("tendon", "t") + Key("mu", ".1")},
+                                       {"maxwell", Key("joint", "h") + Key("k_m", "1")}}) {
+    const auto m = Model(fmt::format(fmt::runtime(kMuscle), Instance(effect, config)));
+    ASSERT_TRUE(m) << effect;
+    EXPECT_EQ(m->actuator_lengthrange[0], native->actuator_lengthrange[0]) << effect;
+    EXPECT_EQ(m->actuator_lengthrange[1], native->actuator_lengthrange[1]) << effect;
+    const auto d = Data(m);
+    RunUntil(m, d, .1);
+    EXPECT_TRUE(std::isfinite(d->qpos[0])) << effect;
+  }
+}
+
+// An actuator plugin of somebody else that pulls with 10 N.
+void RegisterPull() {
+  static const bool once = [] {
+    mjpPlugin plugin;
+    mjp_defaultPlugin(&plugin);
+    plugin.name = "test.pull";
+    plugin.capabilityflags = mjPLUGIN_ACTUATOR;
+    plugin.nstate = +[](const mjModel*, int) { return 0; };
+    plugin.init = +[](const mjModel*, mjData*, int) { return 0; };
+    plugin.reset = +[](const mjModel*, mjtNum*, void*, int) {};
+    plugin.compute = +[](const mjModel* m, mjData* d, int i, int) {
+      for (int a = 0; a < m->nactuator; ++a) {
+        if (m->actuator_plugin[a] == i) d->actuator_force[a] += 10;  // as one that adds up
+      }
+    };
+    mjp_registerPlugin(&plugin);
+    return true;
+  }();
+  (void)once;
+}
+
+TEST_F(UserModels, TheForceOfAPluginActuatorCountsWhateverTheOrderOfTheInstances) {
+  RegisterPull();
+  const std::string ours = "<plugin plugin=\"continuum.capstan\"><instance name=\"i\">" +
+                           Key("tendon", "t") + Key("mu", ".3") + "</instance></plugin>";
+  const std::string theirs = "<plugin plugin=\"test.pull\"><instance name=\"p\"/></plugin>";
+  std::vector<double> tension;
+  for (const std::string& order : {ours + theirs, theirs + ours}) {
+    const auto m = Model(fmt::format(R"(<mujoco><extension>{}</extension><worldbody>
+      <site name="a" pos="-.2 0 .02"/><site name="b" pos="0 0 .02"/>
+      <body><joint axis="0 1 0" damping=".1"/><geom size=".02" pos=".1 0 0" mass="1"/>
+        <site name="c" pos=".1 0 -.1"/></body></worldbody>
+      <tendon><spatial name="t"><site site="a"/><site site="b"/><site site="c"/></spatial></tendon>
+      <actuator><plugin tendon="t" plugin="test.pull" instance="p" gear="-1"/></actuator>
+      <sensor><plugin name="s" plugin="continuum.capstan" instance="i" objtype="site" objname="a"/>
+      </sensor></mujoco>)",
+                                     order));
+    const auto d = Data(m);
+    mj_forward(m.get(), d.get());
+    EXPECT_EQ(d->actuator_force[0], 10);  // once
+    tension.push_back(d->sensordata[0]);
+  }
+  EXPECT_THAT(tension, ElementsAre(10, 10));
+}
+
+TEST_F(UserModels, ASavedJointHasNoFrictionThatTheUserDidNotWrite) {
+  char error[1000] = "";
+  const std::string xml = Link(Instance("coulomb", Key("joint", "h") + Key("tau_c", ".05")), "");
+  const testing::Owned<mjSpec> spec(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
+  const testing::Owned<mjModel> m(mj_compile(spec.get(), nullptr));
+  ASSERT_TRUE(m) << mjs_getError(spec.get());
+  RunUntil(m, Data(m), .1);
+  ASSERT_TRUE(mj_copyBack(spec.get(), m.get()));
+  std::vector<char> text(100000);
+  ASSERT_EQ(
+      mj_saveXMLString(spec.get(), text.data(), static_cast<int>(text.size()), error, sizeof error),
+      0)
+      << error;
+  EXPECT_THAT(text.data(), ::testing::Not(HasSubstr("frictionloss")));
+  EXPECT_THAT(text.data(), ::testing::Not(HasSubstr("solimpfriction")));
+}
+
+// Dry friction starts no motion: nothing acts on the joint.
+TEST_F(UserModels, APoseWrittenByHandStaysWhereItWasPut) {
+  for (const bool ball : {false, true}) {
+    const std::string joint = ball ? "type=\"ball\" armature=\"1e-6\"" : "armature=\"1e-6\"";
+    const auto m = Model(Link(Instance("coulomb", Key("joint", "h") + Key("tau_c", ".02")), joint,
+                              "gravity=\"0 0 0\""));
+    const auto d = Data(m);
+    for (int i = 0; i < 10; ++i) mj_step(m.get(), d.get());
+    std::vector<double> put(m->nq, 1);
+    if (ball) put = {std::cos(.5), 0, std::sin(.5), 0};
+    std::copy(put.begin(), put.end(), d->qpos);
+    mju_zero(d->qvel, static_cast<int>(m->nv));
+    mj_forward(m.get(), d.get());
+    for (int i = 0; i < 100; ++i) {
+      mj_step(m.get(), d.get());
+      EXPECT_LT(mju_norm(d->qvel, static_cast<int>(m->nv)), 1e-6);
+    }
+    for (int k = 0; k < m->nq; ++k) EXPECT_NEAR(d->qpos[k], put[k], 1e-6);
+  }
+}
+
+// What held before goes on to hold: 0.4 N m of gravity in a band of 1 N m.
+TEST_F(UserModels, ALoadIsHeldWhereAPoseWasWrittenByHand) {
+  const auto m = Model(Link(Instance("coulomb", Key("joint", "h") + Key("tau_c", "1")), ""));
+  const auto d = Data(m);
+  d->qpos[0] = .5;
+  RunUntil(m, d, 1);
+  d->qpos[0] = .6, d->qvel[0] = 0;
+  RunUntil(m, d, 3);
+  EXPECT_NEAR(d->qpos[0], .6, 1e-5);
+}
+
+TEST_F(UserModels, AnEffectAtItsNullLeavesEveryBitOfTheStep) {
+  for (const std::string friction :
+       {"", "frictionloss=\".1\" solimpfriction=\".8 .9\"", "frictionloss=\".1\""}) {
+    const auto swing = [&](const std::string& extension) {
+      const auto m = Model(Link(extension, friction));
+      const auto d = Data(m);
+      d->qpos[0] = 1;
+      RunUntil(m, d, 1);
+      return d->qpos[0];
+    };
+    const double native = swing("");
+    EXPECT_EQ(swing(Instance("coulomb", Key("joint", "h") + Key("tau_c", "0"))), native);
+    EXPECT_EQ(swing(Instance("stribeck", Key("joint", "h") + Key("S", ".5"))), native);
+    EXPECT_EQ(swing(Instance("load_friction", Key("joint", "h"))), native);
+    EXPECT_EQ(swing(Instance("directional_friction", Key("joint", "h"))), native);
+    EXPECT_NE(swing(Instance("coulomb", Key("joint", "h") + Key("tau_c", ".01"))), native);
+  }
+}
+
+// MuJoCo's attach puts a prefix before all names, but not into configurations.
+TEST_F(UserModels, AnInstanceFindsTheNamesThatWereAttachedWithIt) {
+  const std::string config = Key("joint", "bend*") + Key("tau_c", ".05");
+  const std::string arm = R"(<mujoco model="arm"><extension><plugin plugin="continuum.coulomb">
+    <instance name="friction">)" +
+                          config + R"(</instance></plugin></extension><worldbody>
+    <body name="l1"><plugin plugin="continuum.coulomb" instance="friction"/>
+      <joint name="bend1" axis="0 1 0"/><geom size=".02" pos="0 0 -.3"/>
+      <body name="l2"><joint name="bend2" axis="0 1 0"/><geom size=".02" pos="0 0 -.3"/></body>
+    </body></worldbody></mujoco>)";
+  char error[1000] = "";
+  const testing::Owned<mjSpec> parent(mj_makeSpec());
+  std::vector<testing::Owned<mjSpec>> arms;
+  for (const char* const prefix : {"a_", "b_", "c-b_"}) {
+    arms.emplace_back(mj_parseXMLString(arm.c_str(), nullptr, error, sizeof error));
+    ASSERT_TRUE(arms.back()) << error;
+    mjsFrame* const frame = mjs_addFrame(mjs_findBody(parent.get(), "world"), nullptr);
+    mjsBody* const body = mjs_findBody(arms.back().get(), "l1");
+    ASSERT_TRUE(mjs_attach(frame->element, body->element, prefix, ""))
+        << mjs_getError(parent.get());
+  }
+  const testing::Owned<mjModel> m(mj_compile(parent.get(), nullptr));
+  ASSERT_TRUE(m) << mjs_getError(parent.get());
+  ASSERT_EQ(m->nplugin, 3);
+  const auto d = Data(m);
+  mj_step(m.get(), d.get());
+  ASSERT_EQ(d->nf, 6);
+  for (int r = 0; r < 6; ++r) EXPECT_DOUBLE_EQ(d->efc_frictionloss[d->ne + r], .05);
+}
+
+TEST_F(UserModels, ANameThatIsThereAsWrittenIsNoPartOfAPrefix) {
+  const auto m =
+      Model(R"(<mujoco>)" + Instance("coulomb", Key("joint", "*") + Key("tau_c", ".05")) +
+            R"(<worldbody><body name="i_1"><joint name="i1"/><geom size=".1"/>
+      <body><joint name="x"/><geom size=".1" pos=".1 0 0"/></body></body></worldbody></mujoco>)");
+  const auto d = Data(m);
+  mj_forward(m.get(), d.get());
+  EXPECT_EQ(d->nf, 2);
+}
+
+}  // namespace
+}  // namespace continuum
