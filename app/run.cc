@@ -56,7 +56,9 @@ void RunModel(const Options& o) {
     for (int i = 0; i < m.nsensordata; ++i) csv += "," + Decimal(d.sensordata[i]);
     csv += "\n";
   };
-  const Trace trace = Simulate(machine, run.experiment, run.experiment.logs.front(), {}, hooks);
+  const InitialState start =
+      o.keyframe.empty() ? InitialState{} : KeyframeState(machine, o.keyframe);
+  const Trace trace = Simulate(machine, run.experiment, run.experiment.logs.front(), start, hooks);
   if (trace.diverged) {
     throw Error::Job(
         fmt::format("{}: the simulation diverges at {:g} s", o.model, trace.diverged_at));
@@ -69,6 +71,7 @@ void RunModel(const Options& o) {
   if (o.video.empty()) return;
   FilmOptions film;
   film.progress = ShowProgress;
+  film.start = start;
   FilmExperiment(filmed.experiment, system.With(changes, {}), {0}, o.video, film);
 }
 
@@ -78,7 +81,9 @@ void AddRun(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* const sub = app.add_subcommand("run", "Simulate a model without a window");
   sub->add_option("model", o->model, "MJCF file")->required();
-  sub->add_option("--input", o->input, "CSV with time and one column per actuator");
+  sub->add_option("--input", o->input, "CSV with time and one column per control");
+  sub->add_option("--keyframe", o->keyframe,
+                  "begin at this keyframe of the model, and hold its controls without --input");
   sub->add_option("--out", o->out, "CSV of all sensors (default: standard output)");
   sub->add_option("--every", o->every, "write every S seconds instead of at the input's rows")
       ->check(NumberWithin(1e-9, 1e9));

@@ -140,7 +140,7 @@ void SetInputs(const Experiment& e, const Log& log, const Wiring& wiring, std::s
   inputs.AtRow(d, row);
   for (std::size_t i = 0; row > 0 && i < e.inputs.size(); ++i) {
     if (!e.inputs[i].linear)
-      d.ctrl[wiring.actuator[i]] = (log.input[i][row - 1] + log.input[i][row]) / 2;
+      d.ctrl[wiring.control[i]] = (log.input[i][row - 1] + log.input[i][row]) / 2;
   }
 }
 

@@ -78,8 +78,8 @@ std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
   }
   if (HasPathLaw(m)) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
   if (!HasSegmentLaw(m)) return std::nullopt;
-  double full = 0;  // all chambers are alike
-  for (int a = 0; a < m.nu; ++a) {
+  double full = 0;                  // all chambers are alike
+  for (int a = 0; a < m.nu; ++a) {  // of controls
     if (!m.actuator_ctrllimited[a]) return std::nullopt;
     full = std::max(full, m.actuator_ctrlrange[2 * a + 1]);
   }
@@ -89,11 +89,12 @@ std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
 // What actuators pull each tendon with [N]; nullopt of those that none pulls or nobody sees.
 std::vector<std::optional<double>> TensionsOf(const mjModel& m, const mjData& d) {
   std::vector<std::optional<double>> tensions(m.ntendon);
-  for (int a = 0; a < m.nu; ++a) {
+  for (int a = 0; a < m.nactuator; ++a) {
     if (m.actuator_trntype[a] != mjTRN_TENDON) continue;
     const int t = m.actuator_trnid[2 * a];
     if (m.wrap_type[m.tendon_adr[t]] == mjWRAP_JOINT) continue;
-    tensions[t] = tensions[t].value_or(0) - m.actuator_gear[6 * a] * d.actuator_force[a];
+    tensions[t] = tensions[t].value_or(0) - m.actuator_gear[6 * m.actuator_outadr[a]] *
+                                                d.actuator_force[m.actuator_outadr[a]];
   }
   return tensions;
 }
@@ -260,7 +261,7 @@ Outlook LookAhead(const Experiment& e, const ModelSpec& system, const Log& log,
     else
       ahead.marked = ahead.marked || !MeasuredPoints(e, wiring, log, row, m, d).empty();
   };
-  const Trace trace = Simulate(machine, e, log, {}, look);
+  const Trace trace = Simulate(machine, e, log, options.start, look);
   if (options.whole && trace.diverged) throw Error::Job(log.file.string() + ": " + trace.Failure());
   return ahead;
 }
@@ -295,7 +296,7 @@ void DrawFrames(const Experiment& e, const ModelSpec& system, const Log& log, Fi
     };
     take(renderer.Draw(m, d, overlay));
   };
-  Simulate(machine, e, log, {}, draw);
+  Simulate(machine, e, log, options.start, draw);
 }
 
 void DrawFrames(const Experiment& e, const ModelSpec& system, const Log& log,

@@ -43,6 +43,7 @@ struct FilmOptions {
   /// positions are measured.
   bool ghost = true;
   ProgressCallback progress = {};
+  InitialState start = {};  ///< of all logs; empty: as the experiment says
 };
 
 /// What options add to the scene of a pose: arrows, colours of tendons.

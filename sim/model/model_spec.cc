@@ -11,6 +11,7 @@
 #include "sim/io/file.h"
 #include "sim/model/asset_folders.h"
 #include "sim/model/mjcf_document.h"
+#include "sim/model/mujoco_plugins.h"
 #include "sim/model/native_effect.h"
 #include "sim/model/spec_element.h"
 
@@ -24,6 +25,7 @@ void RegisterOnce() {
     mju_user_warning = [](const char*) {
     };  // compile errors carry the text; see Simulate for the rest
     RegisterEffects();
+    LoadMujocoPlugins();
     return true;
   }();
   (void)once;

@@ -85,7 +85,7 @@ class Balance {
   // M·qacc: what is not balanced.
   Eigen::VectorXd Residual(double load) {
     for (std::size_t i = 0; i < wiring_.actuator.size(); ++i)
-      d_.ctrl[wiring_.actuator[i]] = load * log_.input[i][0];
+      d_.ctrl[wiring_.control[i]] = load * log_.input[i][0];
     Settle(m_, d_);
     mj_forward(&m_, &d_);
     Eigen::VectorXd r(m_.nv);

@@ -31,7 +31,7 @@ Inputs::Inputs(mjModel& m, const Experiment& e, const Log& log, const Wiring& wi
 }
 
 void Inputs::AtRow(mjData& d, std::size_t row) {
-  for (std::size_t i = 0; i < gates_.size(); ++i) d.ctrl[wiring_.actuator[i]] = log_.input[i][row];
+  for (std::size_t i = 0; i < gates_.size(); ++i) d.ctrl[wiring_.control[i]] = log_.input[i][row];
   Switch(row);
 }
 
@@ -46,13 +46,13 @@ void Inputs::Interpolate(mjData& d, std::size_t row, double t) const {
   for (std::size_t i = 0; i < gates_.size(); ++i) {
     if (!experiment_.inputs[i].linear) continue;
     const auto& u = log_.input[i];
-    d.ctrl[wiring_.actuator[i]] = u[row] + share * (u[row + 1] - u[row]);
+    d.ctrl[wiring_.control[i]] = u[row] + share * (u[row + 1] - u[row]);
   }
 }
 
 void Inputs::Blend(mjData& d, const std::vector<double>& from, std::size_t to, double share) const {
   for (std::size_t i = 0; i < gates_.size(); ++i)
-    d.ctrl[wiring_.actuator[i]] = from[i] + share * (log_.input[i][to] - from[i]);
+    d.ctrl[wiring_.control[i]] = from[i] + share * (log_.input[i][to] - from[i]);
 }
 
 void Inputs::EnableAll() {
@@ -61,18 +61,20 @@ void Inputs::EnableAll() {
 
 void Settle(const mjModel& m, mjData& d) {
   const bool clamped = !(m.opt.disableflags & mjDSBL_CLAMPCTRL);
-  for (int a = 0; a < m.nu; ++a) {
-    const int adr = m.actuator_actadr[a];
+  for (int a = 0; a < m.nactuator; ++a) {
+    const int adr = m.actuator_actadr[a], u = m.actuator_ctrladr[a];
     const bool lagged =
         m.actuator_dyntype[a] == mjDYN_FILTER || m.actuator_dyntype[a] == mjDYN_FILTEREXACT;
     if (adr >= 0 && lagged) {
-      const double u =
-          Within(d.ctrl[a], clamped && m.actuator_ctrllimited[a], m.actuator_ctrlrange + 2 * a);
-      d.act[adr] = Within(u, m.actuator_actlimited[a], m.actuator_actrange + 2 * a);
+      const double control =
+          Within(d.ctrl[u], clamped && m.actuator_ctrllimited[u], m.actuator_ctrlrange + 2 * u);
+      d.act[adr] = Within(control, m.actuator_actlimited[a], m.actuator_actrange + 2 * a);
     }
     const int samples = m.actuator_history[2 * a];
     if (samples > 0) {
-      const std::vector<double> past(samples, d.ctrl[a]);
+      std::vector<double> past;
+      for (int k = 0; k < samples; ++k)
+        past.insert(past.end(), d.ctrl + u, d.ctrl + u + m.actuator_ctrlnum[a]);
       mj_initCtrlHistory(&m, &d, a, nullptr, past.data());
     }
   }

@@ -11,6 +11,7 @@
 #include "error.h"
 #include "sim/io/csv.h"
 #include "sim/io/decimal.h"
+#include "sim/simulation/initial_state.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Whether an actuator gives the same force whatever its control, so that a log needs no column.
-bool TakesNoControl(const mjModel& m, std::size_t actuator) {
+bool TakesNoControl(const mjModel& m, int actuator) {
   return m.actuator_gaintype[actuator] == mjGAIN_FIXED &&
          m.actuator_gainprm[mjNGAIN * actuator] == 0;
 }
@@ -28,46 +29,71 @@ constexpr double kDefaultEnd = 10;  // [s]
 constexpr double kSameTime = 1e-9;  // [s]
 constexpr double kMostRows = 1e7;   // some gigabytes
 
-std::vector<std::string> Names(const mjModel& m, mjtObj type, int count) {
-  std::vector<std::string> names;
-  for (int i = 0; i < count; ++i) {
-    const char* name = mj_id2name(&m, type, i);
-    names.push_back(name ? name : "");
+// A control of an actuator, and the column that has its values: "motor", or "servo[1]" where the
+// actuator has several.
+struct ControlColumn {
+  std::string name;
+  int actuator;
+};
+
+std::vector<ControlColumn> ColumnsOf(const OpenLoopOptions& o, const mjModel& m) {
+  std::vector<ControlColumn> columns;
+  for (int a = 0; a < m.nactuator; ++a) {
+    const char* const name = mj_id2name(&m, mjOBJ_ACTUATOR, a);
+    const int count = m.actuator_ctrlnum[a];
+    if (count > 0 && (!name || !*name)) {
+      throw Error::Input(o.model, "a name for every actuator, for the columns of " + o.input,
+                         fmt::format("none for actuator {}", a));
+    }
+    for (int k = 0; k < count; ++k)
+      columns.push_back({count == 1 ? name : fmt::format("{}[{}]", name, k), a});
   }
-  return names;
+  return columns;
 }
 
-void CheckColumns(const CsvTable& table, const std::vector<std::string>& actuators,
-                  const std::string& model) {
+void CheckColumns(const CsvTable& table, const std::vector<ControlColumn>& controls,
+                  const mjModel& m, const std::string& model) {
+  std::string all = "time";
+  for (const auto& control : controls) all += ", " + control.name;
   for (const auto& column : table.columns()) {
-    if (column == "time" ||
-        std::find(actuators.begin(), actuators.end(), column) != actuators.end())
-      continue;
-    std::string all = "time";
-    for (const auto& name : actuators) all += ", " + name;
-    throw Error::Input(table.name() + ":1", "the columns " + all + " (actuators of " + model + ")",
+    const bool known = std::any_of(controls.begin(), controls.end(),
+                                   [&](const ControlColumn& c) { return c.name == column; });
+    if (known || column == "time") continue;
+    throw Error::Input(table.name() + ":1", "the columns " + all + " (controls of " + model + ")",
                        "'" + column + "'");
+  }
+  for (const auto& [name, a] : controls) {
+    if (m.actuator_ctrlnum[a] == 1 || table.Has(name)) continue;
+    throw Error::Input(table.name() + ":1", "the columns " + all + " (controls of " + model + ")",
+                       "none '" + name + "', though actuator '" +
+                           mj_id2name(&m, mjOBJ_ACTUATOR, a) + "' has " +
+                           std::to_string(m.actuator_ctrlnum[a]) + " controls");
   }
 }
 
 // What --input says, or all controls zero from 0 s on.
 struct Controls {
   std::vector<double> time;
-  std::vector<std::string> actuator;
-  std::vector<std::vector<double>> value;  ///< [actuator][row]
+  std::vector<std::string> actuator;       ///< [control] as an input of an experiment names it
+  std::vector<std::vector<double>> value;  ///< [control][row]
 };
 
-Controls ReadControls(const OpenLoopOptions& o, const mjModel& m) {
+// Of the keyframe, where there is one.
+Controls HeldControls(const OpenLoopOptions& o, const mjModel& m) {
   Controls c{{0}, {}, {}};
-  if (o.input.empty()) return c;
-  c.actuator = Names(m, mjOBJ_ACTUATOR, static_cast<int>(m.nu));
-  const auto unnamed = std::find(c.actuator.begin(), c.actuator.end(), "");
-  if (unnamed != c.actuator.end()) {
-    throw Error::Input(o.model, "a name for every actuator, for the columns of " + o.input,
-                       fmt::format("none for actuator {}", unnamed - c.actuator.begin()));
-  }
+  const int key = o.keyframe.empty() ? -1 : mj_name2id(&m, mjOBJ_KEY, o.keyframe.c_str());
+  if (key < 0) return c;
+  for (const auto& [name, a] : ColumnsOf(o, m)) c.actuator.push_back(name);
+  for (int u = 0; u < m.nu; ++u) c.value.push_back({m.key_ctrl[key * m.nu + u]});
+  return c;
+}
+
+Controls ReadControls(const OpenLoopOptions& o, const mjModel& m) {
+  if (o.input.empty()) return HeldControls(o, m);
+  Controls c{{0}, {}, {}};
+  const std::vector<ControlColumn> columns = ColumnsOf(o, m);
   const CsvTable table = CsvTable::Read(o.input);
-  CheckColumns(table, c.actuator, o.model);
+  CheckColumns(table, columns, m, o.model);
   c.time = table.Numbers("time");
   if (c.time.empty()) throw Error::Input(o.input, "at least one row", "none");
   for (std::size_t k = 1; k < c.time.size(); ++k) {
@@ -76,9 +102,10 @@ Controls ReadControls(const OpenLoopOptions& o, const mjModel& m) {
                          Decimal(c.time[k]) + " after " + Decimal(c.time[k - 1]));
     }
   }
-  for (std::size_t a = 0; a < c.actuator.size(); ++a) {
-    const bool needed = !TakesNoControl(m, a) || table.Has(c.actuator[a]);
-    c.value.push_back(needed ? table.Numbers(c.actuator[a]) : std::vector(c.time.size(), 0.0));
+  for (const auto& [name, a] : columns) {
+    const bool needed = !TakesNoControl(m, a) || table.Has(name);
+    c.actuator.push_back(name);
+    c.value.push_back(needed ? table.Numbers(name) : std::vector(c.time.size(), 0.0));
   }
   return c;
 }
@@ -145,6 +172,24 @@ void AddInputs(const Controls& controls, Experiment& e, Log& log) {
 }
 
 }  // namespace
+
+InitialState KeyframeState(ModelAndData& machine, const std::string& name) {
+  const mjModel& m = *machine.model;
+  mjData& d = *machine.data;
+  const int key = mj_name2id(&m, mjOBJ_KEY, name.c_str());
+  if (key < 0) {
+    std::string all;
+    for (int k = 0; k < m.nkey; ++k) {
+      const char* const known = mj_id2name(&m, mjOBJ_KEY, k);
+      if (known) all += (all.empty() ? "" : ", ") + std::string(known);
+    }
+    throw Error::Input("--keyframe", "a keyframe of the model: " + (all.empty() ? "none" : all),
+                       "'" + name + "'");
+  }
+  mj_resetDataKeyframe(&m, &d, key);
+  d.time = 0;
+  return {{d.qpos, d.qpos + m.nq}, {d.qvel, d.qvel + m.nv}, MemoryOf(m, d)};
+}
 
 OpenLoopRun PlanRun(const OpenLoopOptions& o, const mjModel& m, double period) {
   OpenLoopRun run;

@@ -28,7 +28,7 @@ std::size_t RowsWithin(const std::vector<double>& time, double length) {
 
 // A delay reaches back over its steps, which rows shorten, only as far as the actuator's history.
 void RequireHistory(const mjModel& m, const Log& log) {
-  for (int a = 0; a < m.nu; ++a) {
+  for (int a = 0; a < m.nactuator; ++a) {
     const double delay = m.actuator_delay[a];
     if (delay <= 0) continue;
     const double steps = std::ceil(delay / m.opt.timestep);

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "error.h"
 
@@ -27,7 +28,7 @@ int ActuatorId(const mjModel& m, const std::string& name, const std::string& whe
   const int id = mj_name2id(&m, mjOBJ_ACTUATOR, name.c_str());
   if (id >= 0) return id;
   throw Error::Input(Located(where, "actuator '" + name + "'"), "an actuator of the model",
-                     NamesOf(m, mjOBJ_ACTUATOR, static_cast<int>(m.nu)));
+                     NamesOf(m, mjOBJ_ACTUATOR, static_cast<int>(m.nactuator)));
 }
 
 // "[12]" → 12; -1 when it is none.
@@ -37,6 +38,27 @@ int Index(std::string_view text) {
   text = text.substr(1, text.size() - 2);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
   return error == std::errc{} && end == text.data() + text.size() ? index : -1;
+}
+
+// "servo", or "servo[1]" where it has several controls: the actuator and the address of its
+// control.
+std::pair<int, int> ControlOf(const mjModel& m, const std::string& written,
+                              const std::string& where) {
+  std::string name = written;
+  int control = -1;
+  const std::size_t open = name.rfind('[');
+  if (mj_name2id(&m, mjOBJ_ACTUATOR, name.c_str()) < 0 && open != name.npos) {
+    control = Index(name.substr(open));
+    if (control >= 0) name.resize(open);
+  }
+  const int id = ActuatorId(m, name, where), count = m.actuator_ctrlnum[id];
+  if (control < 0 && count == 1) control = 0;
+  if (control >= 0 && control < count) return {id, m.actuator_ctrladr[id] + control};
+  throw Error::Input(Located(where, "actuator '" + written + "'"),
+                     count > 0 ? "one of its controls, '" + name + "[0]' to '" + name + "[" +
+                                     std::to_string(count - 1) + "]'"
+                               : "an actuator with a control",
+                     std::to_string(count) + (count == 1 ? " control" : " controls"));
 }
 
 // A turn needs something that has a direction: a vector of three or a quaternion.
@@ -120,14 +142,18 @@ void CheckMarkers(const Experiment& e, const mjModel& m, const Wiring& wiring) {
 
 Wiring::Wiring(const Experiment& e, const mjModel& m) {
   for (const Input& in : e.inputs) {
-    actuator.push_back(ActuatorId(m, in.actuator, in.where));
+    const auto [id, address] = ControlOf(m, in.actuator, in.where);
+    actuator.push_back(id), control.push_back(address);
     gated.push_back(!in.enable.empty());
   }
   for (const Output& out : e.outputs) {
     if (out.kind == Output::Kind::kSensor) {
       output.push_back(SensorSource(m, out));
+    } else if (out.kind == Output::Kind::kControl) {
+      output.push_back({out.kind, ControlOf(m, out.source, out.where).second, 1, 0});
     } else {
-      output.push_back({out.kind, ActuatorId(m, out.source, out.where), 1, 0});
+      const int id = ActuatorId(m, out.source, out.where);
+      output.push_back({out.kind, m.actuator_outadr[id], 1, 0});
     }
   }
   CheckMarkers(e, m, *this);
