@@ -62,7 +62,8 @@ std::string_view ConfigBytes(const mjModel& m, int i) {
 
 bool IsOurs(const mjModel& m, int i) {
   const mjpPlugin* plugin = mjp_getPluginAtSlot(m.plugin[i]);
-  return plugin && std::string_view(plugin->name).starts_with(kPluginPrefix);
+  const std::string_view name = plugin ? plugin->name : "";
+  return name.starts_with(kPluginPrefix) && name != kWrenchPlugin;
 }
 
 void Warn(const std::string& text) { mju_warning("%s", text.c_str()); }
@@ -252,7 +253,7 @@ void Evaluate(const mjModel& m, mjData& d, int i, Stage stage) {
 void Sense(const mjModel& m, mjData& d, int i) {
   const Instance& self = *Get(d, i);
   for (const int s : self.sensors) {
-    self.bound->Sense(m, d, m.sensor_objid[s],
+    self.bound->Sense(m, d, s,
                       {d.sensordata + m.sensor_adr[s], static_cast<std::size_t>(m.sensor_dim[s])});
   }
 }
@@ -303,6 +304,11 @@ class PluginActuators {
   std::vector<std::pair<int, double>> before_;
 };
 
+// MuJoCo then computes no actuators: kPassive is all that comes.
+bool IsUnactuated(const mjModel& m) {
+  return m.nu == 0 || m.nactuator == 0 || (m.opt.disableflags & mjDSBL_ACTUATION);
+}
+
 void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (capability == mjPLUGIN_SENSOR) return;  // written below, as soon as it is known
   Instance* const found = Get(d, i);
@@ -319,6 +325,11 @@ void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (stage == Stage::kActuator) EvaluateAfterAll(m, d, self);
   // The load of a row is what all others do, but for what friction itself does.
   if (!self.givers.empty()) Total(m, d, self, stage, self.forces);
+  if (stage == Stage::kPassive && !self.after_all.empty() && IsUnactuated(m)) {
+    mj_rne(&m, &d, 0, d.qfrc_bias);
+    EvaluateAfterAll(m, d, self);
+    Total(m, d, self, Stage::kActuator, self.forces);
+  }
   for (const int j : self.rows) Evaluate(m, d, j, stage);
   if (self.forces != self.givers) Total(m, d, self, Stage::kActuator, self.givers);
 }
@@ -399,6 +410,7 @@ void Register() {
     for (const Param& param : E::kParams) all.emplace_back(param.name);
     for (const Choice& choice : ChoicesOf<E>()) all.emplace_back(choice.name);
     if constexpr (FormulaLaw<E>) all.emplace_back(E::kText);
+    if constexpr (PathLaw<E>) all.emplace_back("driven");
     return all;
   }();
   static const auto attributes = [] {
@@ -446,6 +458,61 @@ void Register() {
   mjp_registerPlugin(&plugin);
 }
 
+// Force and torque [6] between the body of a site and its parent, in the axes of the site, with
+// MuJoCo's sign: what its sensors say, less what our laws do to points of the body and of those
+// beyond it.
+void SenseWrench(const mjModel& m, mjData& d, int site, double* out) {
+  const int base = m.site_bodyid[site];
+  const double *const at = d.site_xpos + 3 * site, *const axes = d.site_xmat + 9 * site;
+  double native[6], force[3] = {0, 0, 0}, torque[3] = {0, 0, 0};
+  mju_transformSpatial(native, d.cfrc_int + 6 * base, 1, at,
+                       d.subtree_com + 3 * m.body_rootid[base], axes);
+  const auto take = [&](int body, const double* point, const double* f) {
+    while (body > base) body = m.body_parentid[body];
+    if (body != base) return;
+    double arm[3], moment[3];
+    mju_sub3(arm, point, at);
+    mju_cross(moment, arm, f);
+    mju_addTo3(force, f), mju_addTo3(torque, moment);
+  };
+  for (int i = 0; i < m.nplugin; ++i) {
+    if (IsOurs(m, i) && Get(d, i)) Get(d, i)->bound->PointForces(m, d, take);
+  }
+  double local[6];
+  mju_mulMatTVec3(local, axes, force), mju_mulMatTVec3(local + 3, axes, torque);
+  mju_sub3(out, native + 3, local), mju_sub3(out + 3, native, local + 3);
+}
+
+int InitWrench(const mjModel& m, int i) {
+  for (int s = 0; s < m.nsensor; ++s) {
+    if (m.sensor_type[s] != mjSENS_PLUGIN || m.sensor_plugin[s] != i) continue;
+    if (m.sensor_objtype[s] == mjOBJ_SITE) continue;
+    Warn(std::string(kWrenchPlugin) + ": its sensor " + std::to_string(s) +
+         ": expected objtype=\"site\"");
+    return -1;
+  }
+  return 0;
+}
+
+void RegisterWrench() {
+  mjpPlugin plugin;
+  mjp_defaultPlugin(&plugin);
+  plugin.name = kWrenchPlugin.data();
+  plugin.capabilityflags = mjPLUGIN_SENSOR;
+  plugin.needstage = mjSTAGE_ACC;
+  plugin.nstate = +[](const mjModel*, int) noexcept { return 0; };
+  plugin.nsensordata = +[](const mjModel*, int, int) noexcept { return 6; };
+  plugin.init = +[](const mjModel* m, mjData*, int i) noexcept { return InitWrench(*m, i); };
+  plugin.reset = +[](const mjModel*, mjtNum*, void*, int) noexcept {};
+  plugin.compute = +[](const mjModel* m, mjData* d, int i, int) noexcept {
+    for (int s = 0; s < m->nsensor; ++s) {
+      if (m->sensor_type[s] == mjSENS_PLUGIN && m->sensor_plugin[s] == i)
+        SenseWrench(*m, *d, m->sensor_objid[s], d->sensordata + m->sensor_adr[s]);
+    }
+  };
+  mjp_registerPlugin(&plugin);
+}
+
 }  // namespace
 
 void RegisterEffects() {
@@ -455,6 +522,7 @@ void RegisterEffects() {
   };
   All::ForEach(add);
   FormulaLaws::ForEach(add);
+  RegisterWrench();
 }
 
 BoundLaw& BoundOf(const mjModel& m, const mjData& d, int instance) {

@@ -323,8 +323,12 @@ void CableDerivatives::AddNext(const mjModel& m, const Tangents& constraint,
   const CableFriction& law = *law_.law;
   Tangents& next = numbers[Kind::kNext];
   for (Eigen::Index k = 0; k < rho_.rows(); ++k) next.row(law_.first_state + k) = rho_.row(k);
-  for (int c = 0; c < law.geometry().cables(); ++c)
-    next.row(law_.first_state + law.geometry().first[c]) = base_.row(c);
+  for (int c = 0; c < law.geometry().cables(); ++c) {
+    const int first = law.geometry().first[c], end = law.geometry().first[c + 1];
+    next.row(law_.first_state + first) = base_.row(c);
+    for (int s = first; law.base()[c] == 0 && s < end; ++s)  // a slack cable keeps its states
+      next.row(law_.first_state + s) = numbers[Kind::kState].row(law_.first_state + s);
+  }
   for (const int dof : law.sliding().inertia().dofs())
     next.row(law_.first_state + static_cast<int>(m.nwrap) + dof) = constraint.row(dof);
 }

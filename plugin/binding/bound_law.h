@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -68,8 +69,12 @@ class BoundLaw {
   virtual std::string_view SensorPlace(const mjModel&, mjtObj /*kind*/, int /*id*/) const {
     return "an effect that has sensors";
   }
-  /// Writes the value of a sensor of this effect on an object.
-  virtual void Sense(const mjModel&, const mjData&, int /*id*/, std::span<double>) const {}
+  /// Writes the value of a sensor (its id) of this effect.
+  virtual void Sense(const mjModel&, const mjData&, int /*sensor*/, std::span<double>) const {}
+  /// Calls take(body, point, force) for what the law does to points of bodies, beyond what MuJoCo
+  /// counts there: world coordinates, [N].
+  using TakeForce = std::function<void(int body, const double* point, const double* force)>;
+  virtual void PointForces(const mjModel&, const mjData&, const TakeForce&) const {}
   virtual void Visualize(const mjModel&, const mjData&, mjvScene&) const {}
   /// Takes over what was computed (not configured) from another Bound of the same kind.
   virtual void CopyFrom(const BoundLaw&) {}

@@ -1,5 +1,8 @@
 #include "binding/cable.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "binding/actuator_force.h"
 #include "error.h"
 
@@ -18,36 +21,113 @@ void AddEntries(const mjModel& m, int near, int far, std::vector<JacobianEntry>&
   }
 }
 
-}  // namespace
+// What the path of a tendon is made of between two pulleys: [begin, end).
+struct Branch {
+  int begin, end;
+  double divisor;
+};
 
-Cable MakeCable(const mjModel& m, int tendon, const std::string& who) {
-  const std::string where = who + ": tendon '" + mj_id2name(&m, mjOBJ_TENDON, tendon) + "'";
-  Cable cable{tendon, {}, {}, {}, {0}};
-  for (int w = m.tendon_adr[tendon]; w < m.tendon_adr[tendon] + m.tendon_num[tendon]; ++w) {
-    if (m.wrap_type[w] != mjWRAP_SITE) {
-      throw Error::Input(where, "a spatial tendon through sites only",
-                         m.wrap_type[w] == mjWRAP_JOINT ? "a fixed tendon" : "a pulley or a geom");
+std::vector<Branch> BranchesOf(const mjModel& m, int tendon) {
+  const int first = m.tendon_adr[tendon], end = first + m.tendon_num[tendon];
+  std::vector<Branch> branches{{first, first, 1}};
+  for (int w = first; w < end; ++w) {
+    if (m.wrap_type[w] == mjWRAP_PULLEY) {
+      branches.push_back({w + 1, w + 1, m.wrap_prm[w]});
+    } else {
+      branches.back().end = w + 1;
     }
-    cable.sites.push_back(m.wrap_objid[w]);
   }
-  if (cable.sites.size() < 3) {
-    throw Error::Input(where, "a contact, which is a site between two others",
-                       std::to_string(cable.sites.size()) + " sites");
+  return branches;
+}
+
+// Interior sites and geoms.
+int Contacts(const Branch& branch) { return branch.end - branch.begin - 2; }
+
+// Sites, and each geom as its two tangent points.
+std::vector<CablePoint> PointsOf(const mjModel& m, const Branch& branch) {
+  std::vector<CablePoint> points;
+  for (int w = branch.begin; w < branch.end; ++w) {
+    const int id = m.wrap_objid[w];
+    if (m.wrap_type[w] == mjWRAP_SITE) {
+      points.push_back({id, -1, m.site_bodyid[id], w});
+    } else {
+      points.insert(points.end(), 2, {-1, id, m.geom_bodyid[id], w});
+    }
+  }
+  return points;
+}
+
+Cable MakeCable(const mjModel& m, int tendon, const Branch& branch, Driven driven) {
+  Cable cable{tendon, {}, {}, {}, {0}, branch.divisor, driven == Driven::kLast, {}};
+  std::vector<CablePoint> points = PointsOf(m, branch);
+  if (cable.from_last) std::reverse(points.begin(), points.end());
+  for (const CablePoint& point : points) {
+    if (point.site >= 0) cable.sites.push_back(point.site);
+  }
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    const CablePoint &near = points[k], &far = points[k + 1];
+    if (near.geom >= 0 && near.geom == far.geom) continue;  // on the geom
+    cable.path.push_back({near, far});
+    AddEntries(m, near.body, far.body, cable.entries);
+    cable.begin.push_back(static_cast<int>(cable.entries.size()));
   }
   for (int a = 0; a < m.nactuator; ++a) {
-    if (m.actuator_trntype[a] == mjTRN_TENDON && m.actuator_trnid[2 * a] == tendon) {
+    if (m.actuator_trntype[a] == mjTRN_TENDON && m.actuator_trnid[2 * a] == tendon)
       cable.actuators.push_back(a);
-    }
-  }
-  for (int k = 0; k < cable.segments(); ++k) {
-    AddEntries(m, m.site_bodyid[cable.sites[k]], m.site_bodyid[cable.sites[k + 1]], cable.entries);
-    cable.begin.push_back(static_cast<int>(cable.entries.size()));
   }
   return cable;
 }
 
-double BaseTension(const mjModel& m, const mjData& d, const Cable& cable) {
-  double pull = 0;
+// Of the spring, which has play between its two rest lengths, and the damper.
+double PassiveTension(const mjModel& m, const mjData& d, int t) {
+  double tension = 0;
+  const double* const rest = m.tendon_lengthspring + 2 * t;
+  const double *const k = m.tendon_stiffnesspoly + mjNPOLY * t, *const b = m.tendon_dampingpoly +
+                                                                           mjNPOLY * t;
+  double x = d.ten_length[t];
+  if (m.tendon_plasticadr[t] >= 0) x -= d.plastic[m.tendon_plasticadr[t]];
+  x -= std::clamp(x, rest[0], rest[1]);
+  if (!(m.opt.disableflags & mjDSBL_SPRING))
+    tension += x * (m.tendon_stiffness[t] + x * (k[0] + x * k[1]));
+  const double v = d.ten_velocity[t], speed = std::abs(v);
+  if (!(m.opt.disableflags & mjDSBL_DAMPER))
+    tension += v * (m.tendon_damping[t] + speed * (b[0] + speed * b[1]));
+  return tension;
+}
+
+}  // namespace
+
+bool Cable::Wraps() const {
+  return std::any_of(path.begin(), path.end(), [](const Segment& s) { return s.far.geom >= 0; });
+}
+
+std::string WhyNoCable(const mjModel& m, int tendon) {
+  if (m.wrap_type[m.tendon_adr[tendon]] == mjWRAP_JOINT) return "a fixed tendon";
+  int contacts = 0;
+  for (const Branch& branch : BranchesOf(m, tendon)) {
+    if (!(branch.divisor > 0)) return "a pulley with divisor " + std::to_string(branch.divisor);
+    contacts += std::max(0, Contacts(branch));
+  }
+  return contacts > 0 ? "" : std::to_string(m.tendon_num[tendon]) + " sites";
+}
+
+std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven, const std::string& who) {
+  if (const std::string why = WhyNoCable(m, tendon); !why.empty()) {
+    throw Error::Input(who + ": tendon '" + mj_id2name(&m, mjOBJ_TENDON, tendon) + "'",
+                       why.ends_with("sites")
+                           ? "a contact, which is a site or a wrapped geom between two sites"
+                           : "a spatial tendon",
+                       why);
+  }
+  std::vector<Cable> cables;
+  for (const Branch& branch : BranchesOf(m, tendon)) {
+    if (Contacts(branch) > 0) cables.push_back(MakeCable(m, tendon, branch, driven));
+  }
+  return cables;
+}
+
+double NativeTension(const mjModel& m, const mjData& d, const Cable& cable) {
+  double pull = PassiveTension(m, d, cable.tendon);
   for (const int a : cable.actuators) {
     pull -= m.actuator_gear[6 * m.actuator_outadr[a]] * LimitedForce(m, d, a);
   }

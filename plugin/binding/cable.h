@@ -15,23 +15,47 @@ struct JacobianEntry {
   double sign;
 };
 
-/// A spatial tendon through sites s_0 (actuator side) .. s_n (fixed end). Segment k runs from s_k
-/// to s_{k+1}; contact i is the interior site s_i, 1 ≤ i < n.
-struct Cable {
-  int tendon;
-  std::vector<int> sites;
-  std::vector<int> actuators;
-  std::vector<JacobianEntry> entries;  ///< of all segments
-  std::vector<int> begin;              ///< [segments + 1] of a segment's entries
-
-  int segments() const { return static_cast<int>(sites.size()) - 1; }
-  bool Rigid(int k) const { return begin[k] == begin[k + 1]; }
+/// Where a cable touches the robot: a site, or one of the two tangent points of a wrapped geom.
+struct CablePoint {
+  int site;  ///< −1: a tangent point
+  int geom;  ///< −1: a site
+  int body;
+  int item;  ///< of the tendon's path, as mjModel counts them (wrap_type)
 };
 
-/// Throws Error when the tendon is not a spatial tendon through sites only, at least three.
-Cable MakeCable(const mjModel& m, int tendon, const std::string& who);
+/// A branch of a spatial tendon, from its driven end to where it is fixed. Without pulleys a tendon
+/// is one branch. Segment k runs straight from point k to point k + 1; between the two tangent
+/// points of a geom the cable lies on that geom, and there is no segment. Contact k is what segment
+/// k − 1 and k meet at, 1 ≤ k < segments(): an interior site or a wrapped geom.
+struct Cable {
+  int tendon;
+  std::vector<int> sites;              ///< of the branch, in this order
+  std::vector<int> actuators;          ///< that pull the tendon
+  std::vector<JacobianEntry> entries;  ///< of all segments
+  std::vector<int> begin;              ///< [segments + 1] of a segment's entries
+  double divisor = 1;                  ///< it carries the tendon's tension by this
+  bool from_last = false;              ///< driven at the end that the MJCF writes last
+  struct Segment {
+    CablePoint near, far;
+  };
+  std::vector<Segment> path;  ///< [segments]
 
-/// Tension at the actuator's end [N]: −sum(gear · force), forces within their ranges.
-double BaseTension(const mjModel& m, const mjData& d, const Cable& cable);
+  int segments() const { return static_cast<int>(path.size()); }
+  bool Rigid(int k) const { return begin[k] == begin[k + 1]; }
+  bool Wraps() const;
+};
+
+/// Which end of a tendon is pulled.
+enum class Driven { kFirst, kLast };
+
+/// Why friction cannot act on a tendon ("a fixed tendon"); empty: it can.
+std::string WhyNoCable(const mjModel& m, int tendon);
+
+/// The branches of a tendon that have contacts. Throws Error where friction cannot act.
+std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven, const std::string& who);
+
+/// What pulls a tendon [N] but for rows of the constraint solver: −sum(gear · force) of its
+/// actuators, forces within their ranges, and its spring and damper.
+double NativeTension(const mjModel& m, const mjData& d, const Cable& cable);
 
 }  // namespace continuum

@@ -9,14 +9,104 @@
 namespace continuum {
 namespace {
 
-constexpr double kFull = 20;  // tension drawn in red [N]
+constexpr double kFull = 20;          // tension drawn in red [N]
+constexpr double kLeastPull = 1e-12;  // of a cable that was never tight, or is not yet [N]
+
+std::string NameOf(const mjModel& m, int tendon) { return mj_id2name(&m, mjOBJ_TENDON, tendon); }
+
+Driven DrivenEnd(const Config& config) {
+  const std::string_view text = config.Get("driven");
+  if (text.empty() || text == "first") return Driven::kFirst;
+  if (text == "last") return Driven::kLast;
+  throw Error::Input(config.Who() + ": driven", "first | last", "'" + std::string(text) + "'");
+}
+
+// A glob takes what it can; what is written by its name must be a cable.
+bool IsWritten(const Config& config, const std::string& name) {
+  if (config.Get("tendon") == name) return true;
+  for (const std::string& word : Words(config.Get("tendon"))) {
+    const std::string plain = Unescaped(word);
+    if (name == plain || (plain.find_first_of("*?[") == plain.npos && name.ends_with(plain)))
+      return true;
+  }
+  return false;
+}
 
 std::vector<Cable> MatchCables(const mjModel& m, const Config& config) {
   std::vector<Cable> cables;
-  for (const int t : config.Match(Place::kTendon)) {
-    cables.push_back(MakeCable(m, t, config.Who()));
+  const auto tendons = config.Match(Place::kTendon);
+  for (const int t : tendons) {
+    const bool glob = !IsWritten(config, NameOf(m, t));
+    if (glob && !WhyNoCable(m, t).empty() && t != tendons.back()) continue;
+    if (glob && !WhyNoCable(m, t).empty() && !cables.empty()) continue;
+    const auto branches = MakeCables(m, t, DrivenEnd(config), config.Who());
+    cables.insert(cables.end(), branches.begin(), branches.end());
   }
   return cables;
+}
+
+int DepthOf(const mjModel& m, int site) {
+  int depth = 0;
+  for (int b = m.site_bodyid[site]; b > 0; b = m.body_parentid[b]) ++depth;
+  return depth;
+}
+
+bool IsBeyond(const mjModel& m, int body, int base) {
+  while (body > base) body = m.body_parentid[body];
+  return body == base;
+}
+
+// A native sensor of force or torque that a cable passes.
+std::string BlindSensor(const mjModel& m, const Config& config) {
+  for (int s = 0; s < m.nsensor; ++s) {
+    if (m.sensor_type[s] != mjSENS_FORCE && m.sensor_type[s] != mjSENS_TORQUE) continue;
+    const int base = m.site_bodyid[m.sensor_objid[s]];
+    for (const int t : config.Match(Place::kTendon)) {
+      for (int w = m.tendon_adr[t]; w < m.tendon_adr[t] + m.tendon_num[t]; ++w) {
+        const int id = m.wrap_objid[w], type = m.wrap_type[w];
+        if (type == mjWRAP_JOINT || type == mjWRAP_PULLEY) continue;
+        if (!IsBeyond(m, type == mjWRAP_SITE ? m.site_bodyid[id] : m.geom_bodyid[id], base))
+          continue;
+        const char* const name = mj_id2name(&m, mjOBJ_SENSOR, s);
+        return name && *name ? "'" + std::string(name) + "'" : std::to_string(s);
+      }
+    }
+  }
+  return "";
+}
+
+// What of the routes may not be meant.
+std::string DoubtsOf(const mjModel& m, const Config& config) {
+  std::string left, outward;
+  const auto add = [&](std::string& list, int t) {
+    list += (list.empty() ? "'" : ", '") + NameOf(m, t) + "'";
+  };
+  for (const int t : config.Match(Place::kTendon)) {
+    if (const std::string why = WhyNoCable(m, t); !why.empty()) {
+      add(left, t), left += " (" + why + ")";
+      continue;
+    }
+    const int first = m.wrap_objid[m.tendon_adr[t]],
+              last = m.wrap_objid[m.tendon_adr[t] + m.tendon_num[t] - 1];
+    if (DepthOf(m, first) > DepthOf(m, last)) add(outward, t);
+  }
+  const std::string blind = BlindSensor(m, config);
+  std::string doubts;
+  if (!blind.empty()) {
+    doubts = "MuJoCo's sensor " + blind +
+             " does not feel the friction of the cable beyond it; a sensor of plugin "
+             "continuum.wrench does";
+  }
+  if (!left.empty())
+    doubts += (doubts.empty() ? "" : "; ") + std::string("it leaves out tendons ") + left;
+  if (!outward.empty() && config.Get("driven").empty()) {
+    doubts += (doubts.empty() ? "" : "; ") +
+              std::string(
+                  "it takes the first site as the end that is pulled, which is farther from "
+                  "the world than the last on ") +
+              outward + ": say driven=\"last\" or driven=\"first\"";
+  }
+  return doubts;
 }
 
 // Tensions change in proportion: what two instances add to one cable is no friction law.
@@ -56,9 +146,12 @@ void Exponential(std::span<const double> x, std::span<double> y) {
 
 CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters)
     : BoundLaw(std::move(parameters)),
+      doubts_(DoubtsOf(m, config)),
       cables_(MatchCables(m, config)),
+      tension_rows_(m, cables_),
       geometry_(m, cables_),
-      sliding_(m, geometry_),
+      sliding_(m, geometry_, tension_rows_.dofs()),
+      native_(cables_.size()),
       base_(cables_.size()),
       last_(cables_.size()),
       force_(m.nv) {
@@ -77,23 +170,41 @@ CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector
   ratio_.assign(geometry_.segments(), 1);
 }
 
+std::string CableFriction::WhyIdle(const mjModel&) const { return doubts_; }
+
 // As parameters leave 0, contacts remember how far they gave way, which nobody knows at 0.
-std::string CableFriction::WhyNoSlopes(const mjModel&) const {
+std::string CableFriction::WhyNoSlopes(const mjModel& m) const {
   const bool none = std::all_of(p_.begin(), p_.end(), [](double p) { return p == 0; });
-  return none ? "without friction nobody knows which contacts would rest" : "";
+  if (none) return "without friction nobody knows which contacts would rest";
+  if (tension_rows_.any()) return "a limit or an equality pulls a cable";
+  for (const Cable& cable : cables_) {
+    const int t = cable.tendon;
+    if (cable.Wraps()) return "a cable wraps a geom";
+    if (cable.segments() + 1 != m.tendon_num[t]) return "a cable runs over a pulley";
+    if (m.tendon_stiffness[t] != 0 || m.tendon_damping[t] != 0)
+      return "a tendon has a spring or a damper";
+    for (int k = 0; k < mjNPOLY; ++k) {
+      if (m.tendon_stiffnesspoly[mjNPOLY * t + k] != 0 ||
+          m.tendon_dampingpoly[mjNPOLY * t + k] != 0)
+        return "a tendon has a spring or a damper";
+    }
+  }
+  return "";
 }
 
 bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                              std::span<double> force) {
   if (stage == Stage::kPassive) {
-    geometry_.Update(d);
+    geometry_.Update(m, d);
     Bands(geometry_.theta, band_);
   } else if (Silent(m)) {
     return false;
   }
   for (std::size_t c = 0; c < cables_.size(); ++c) {
-    base_[c] = std::max(0.0, BaseTension(m, d, cables_[c]));
+    native_[c] = NativeTension(m, d, cables_[c]) / cables_[c].divisor;
+    base_[c] = std::max(0.0, native_[c]);
   }
+  if (tension_rows_.any()) FindRows(m, d, z);
   if (stage == Stage::kActuator) Remember(z);
   if (stage == Stage::kAfterAll) Solve(m, d, z);
   Add(force);
@@ -107,13 +218,40 @@ void CableFriction::Remember(const double* z) {
   }
 }
 
+// Constraint rows that pull cables: the tension that they give is that of the last step until it is
+// solved for.
+void CableFriction::FindRows(const mjModel& m, const mjData& d, const double* z) {
+  const auto rows = tension_rows_.At(m, d);
+  solved_.clear();
+  for (const TensionRow& row : rows) {
+    SolvedRow& solved = solved_.emplace_back();
+    solved.limit = row.limit;
+    solved.stiffness = d.efc_D[row.row], solved.J.assign(m.nv, 0);
+    row.Add(m, d, 1, solved.J.data());
+    const double* const kbip =
+        d.efc_KBIP + 4 * row.row;  // d.efc_aref comes later without actuators
+    const double speed = mju_dot(solved.J.data(), d.qvel, static_cast<int>(m.nv));
+    const double off = d.efc_pos[row.row] - d.efc_margin[row.row];
+    solved.reference = -kbip[1] * speed - kbip[0] * kbip[2] * off;
+    solved.on.assign(cables_.size(), 0);
+    for (std::size_t c = 0; c < cables_.size(); ++c)
+      solved.on[c] = row.On(cables_[c].tendon) / cables_[c].divisor;
+  }
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    const bool pulled = std::any_of(solved_.begin(), solved_.end(),
+                                    [&](const SolvedRow& row) { return row.on[c] != 0; });
+    if (pulled) base_[c] = std::max(z[geometry_.first[c]], kLeastPull);
+  }
+}
+
 void CableFriction::Solve(const mjModel& m, mjData& d, const double* z) {
   std::fill(rho_.begin(), rho_.end(), 0.0);
   std::fill(ratio_.begin(), ratio_.end(), 1.0);
   if (!Collect(z)) return;
   AppliedForces(m, d, force_.data());
   for (const int dof : sliding_.inertia().dofs()) force_[dof] += z[m.nwrap + dof];
-  sliding_.Solve({m, d, geometry_, base_, last_, force_}, {bends_.data(), count_});
+  sliding_.Solve({m, d, geometry_, native_, base_, last_, force_, solved_},
+                 {bends_.data(), count_});
   Share(z);
 }
 
@@ -185,14 +323,42 @@ void CableFriction::Add(std::span<double> force) {
 }
 
 void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
-  std::copy(rho_.begin(), rho_.end(), z);
-  for (std::size_t c = 0; c < base_.size(); ++c) z[geometry_.first[c]] = base_[c];
-  for (const int dof : sliding_.inertia().dofs()) z[m.nwrap + dof] = d.qfrc_constraint[dof];
+  for (std::size_t c = 0; c < base_.size(); ++c) {
+    const int first = geometry_.first[c], end = geometry_.first[c + 1];
+    if (base_[c] > 0) {
+      std::copy(rho_.begin() + first, rho_.begin() + end, z + first);
+      z[first] = base_[c];
+    } else {
+      z[first] = std::max(z[first], kLeastPull);  // no longer fresh
+    }
+  }
+  force_.assign(d.qfrc_constraint, d.qfrc_constraint + m.nv);
+  if (tension_rows_.any()) {
+    for (const TensionRow& row : tension_rows_.At(m, d))
+      row.Add(m, d, -d.efc_force[row.row], force_.data());
+  }
+  for (const int dof : sliding_.inertia().dofs()) z[m.nwrap + dof] = force_[dof];
 }
 
 std::string_view CableFriction::SensorPlace(const mjModel&, mjtObj kind, int id) const {
-  const bool known = kind == mjOBJ_SITE && Index(id) >= 0;
-  return known ? "" : "objtype=\"site\" and a site of the tendons";
+  const bool known = (kind == mjOBJ_SITE || kind == mjOBJ_GEOM) && Index(kind, id) >= 0;
+  return known ? "" : "objtype=\"site\" or \"geom\" and a site or wrapped geom of the tendons";
+}
+
+// Each segment pulls its two ends together; the native tendon does so with t_0.
+void CableFriction::PointForces(const mjModel&, const mjData& d, const TakeForce& take) const {
+  int s = 0;
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    for (const Cable::Segment& segment : cables_[c].path) {
+      const double more = tension_[s] - base_[c];
+      double pull[3], back[3];
+      geometry_.Along(s, pull);
+      mju_scl3(back, pull, -more), mju_scl3(pull, pull, more);
+      take(segment.near.body, geometry_.Near(d, s), pull);
+      take(segment.far.body, geometry_.Far(d, s), back);
+      ++s;
+    }
+  }
 }
 
 void CableFriction::Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const {
@@ -205,8 +371,8 @@ void CableFriction::Visualize(const mjModel& m, const mjData& d, mjvScene& scene
       const float rgba[4] = {0.13f + 0.80f * x, 0.40f - 0.25f * x, 0.85f - 0.75f * x, 1};
       mjvGeom* const geom = scene.geoms + scene.ngeom++;
       mjv_initGeom(geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, rgba);
-      mjv_connector(geom, mjGEOM_CAPSULE, width, d.site_xpos + 3 * cable.sites[k],
-                    d.site_xpos + 3 * cable.sites[k + 1]);
+      mjv_connector(geom, mjGEOM_CAPSULE, width, geometry_.Near(d, static_cast<int>(s)),
+                    geometry_.Far(d, static_cast<int>(s)));
       geom->objtype = mjOBJ_TENDON;
       geom->objid = cable.tendon;
       geom->category = mjCAT_DECOR;
@@ -220,16 +386,19 @@ void CableFriction::CopyFrom(const BoundLaw& other) {
   band_ = from.band_, rho_ = from.rho_, ratio_ = from.ratio_, tension_ = from.tension_;
 }
 
-// The segment just distal of a site; the last one for the end of a cable.
-int CableFriction::Index(int site) const {
-  int s = 0;
+// The segment just distal of a site or geom; the last one for the end of a cable.
+int CableFriction::Index(mjtObj kind, int id) const {
+  const auto is = [&](const CablePoint& point) {
+    return (kind == mjOBJ_SITE ? point.site : point.geom) == id;
+  };
+  int s = 0, end = -1;
   for (const Cable& cable : cables_) {
-    for (int k = 0; k <= cable.segments(); ++k) {
-      if (cable.sites[k] == site) return s + std::min(k, cable.segments() - 1);
+    for (int k = 0; k < cable.segments(); ++k, ++s) {
+      if (is(cable.path[k].near)) return s;
+      if (is(cable.path[k].far) && end < 0) end = s;
     }
-    s += cable.segments();
   }
-  return -1;
+  return end;
 }
 
 }  // namespace continuum

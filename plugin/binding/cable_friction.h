@@ -3,11 +3,18 @@
 #include "binding/bound_law.h"
 #include "binding/cable_geometry.h"
 #include "binding/cable_sliding.h"
+#include "binding/tension_row.h"
 
 namespace continuum {
 
 /// Spatial tendons whose tension changes from contact to contact. The native tendon carries the
-/// base tension t_0 all along; this adds −Σ_k (t_k − t_0) dL_k/dq.
+/// base tension t_0 all along; this adds −Σ_k (t_k − t_0) dL_k/dq. Contacts are interior sites and
+/// wrapped geoms; behind a pulley t_0 is the tendon's tension by the divisor, and each branch is a
+/// cable of its own.
+///
+/// t_0 is all that pulls the tendon: actuators, spring and damper, and length limits and equalities
+/// (TensionRows), which are solved together with the friction. It is the tension at the first site,
+/// or the last (key driven="last").
 ///
 /// The friction is found once all other forces are known (kAfterAll), for the end of the step. In
 /// kPassive, all that mj_inverse calls, every contact keeps the ratio of the last answer.
@@ -26,8 +33,9 @@ namespace continuum {
 /// first stage's answer in the others does not mend it (2.6).
 ///
 /// States, as the last step left them: ρ = log(t_k/t_{k−1}) of the contact in front of each
-/// segment, for the first segment of a cable t_0 instead; and the constraint forces. Several
-/// instances see each other's states.
+/// segment, for the first segment of a cable t_0 instead; and the constraint forces but for those
+/// of TensionRows. A slack cable keeps its states, so that a step without tension forgets nothing.
+/// Several instances see each other's states.
 class CableFriction : public BoundLaw {
  public:
   CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters);
@@ -44,9 +52,11 @@ class CableFriction : public BoundLaw {
   void Advance(const mjModel& m, const mjData& d, double* z) override;
 
   std::string_view SensorPlace(const mjModel&, mjtObj kind, int id) const override;
-  void Sense(const mjModel&, const mjData&, int site, std::span<double> out) const override {
-    out[0] = tension_[Index(site)];
+  void Sense(const mjModel& m, const mjData&, int sensor, std::span<double> out) const override {
+    out[0] = tension_[Index(static_cast<mjtObj>(m.sensor_objtype[sensor]), m.sensor_objid[sensor])];
   }
+  std::string WhyIdle(const mjModel& m) const override;
+  void PointForces(const mjModel&, const mjData& d, const TakeForce& take) const override;
   void Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const override;
   void CopyFrom(const BoundLaw& other) override;
 
@@ -80,15 +90,20 @@ class CableFriction : public BoundLaw {
   void Share(const double* z);
   void Spread(const Group& group, double rho, const double* z);
   void Add(std::span<double> force);
-  int Index(int site) const;
+  int Index(mjtObj kind, int id) const;
+  void FindRows(const mjModel& m, const mjData& d, const double* z);
 
+  std::string doubts_;  ///< what the user should know of the routes
   std::vector<Cable> cables_;
+  TensionRows tension_rows_;
   CableGeometry geometry_;
   std::vector<Group> groups_;
   CableSliding sliding_;
   std::vector<double> band_, grown_;           ///< per segment: of its front contact, and exp of it
   std::vector<double> rho_, ratio_, tension_;  ///< ρ, exp of it; behind the contact [N]
+  std::vector<double> native_;                 ///< t_0 of each cable but for constraints [N]
   std::vector<double> base_, last_;            ///< t_0 of each cable, now and before [N]
+  std::vector<SolvedRow> solved_;
   std::vector<double> force_;
   std::vector<Bend> bends_;  ///< [groups], of which the first count_ are those of tight cables
   std::vector<int> active_;  ///< [groups] group of each bend

@@ -22,7 +22,12 @@ inline double ArcsineSeries(double s) {
 CableGeometry::CableGeometry(const mjModel& m, std::span<const Cable> cables) : first{0}, begin{0} {
   for (const Cable& cable : cables) {
     for (int k = 0; k < cable.segments(); ++k) {
-      near_.push_back(cable.sites[k]), far_.push_back(cable.sites[k + 1]);
+      const auto& [near, far] = cable.path[k];
+      if (near.geom >= 0)
+        wraps_.push_back({cable.tendon, near.item, first.back() + k, cable.from_last, false});
+      const int wraps = static_cast<int>(wraps_.size());
+      near_.push_back(near.site >= 0 ? near.site : ~(2 * wraps - 1));
+      far_.push_back(far.site >= 0 ? far.site : ~(2 * wraps));
       for (int l = cable.begin[k]; l < cable.begin[k + 1]; ++l) {
         const JacobianEntry& entry = cable.entries[l];
         dof.push_back(entry.dof), sign_.push_back(entry.sign);
@@ -34,12 +39,84 @@ CableGeometry::CableGeometry(const mjModel& m, std::span<const Cable> cables) : 
   }
   for (auto* const each : {&theta, &slip, &x_, &y_, &z_, &half_}) each->assign(segments(), 0);
   arm.assign(entries(), 0);
+  tangent_.assign(6 * wraps_.size(), 0);
 }
 
-void CableGeometry::Update(const mjData& d) {
+void CableGeometry::Update(const mjModel& m, const mjData& d) {
+  if (!wraps_.empty()) FindTangents(m, d);
   Directions(d);
   Angles();
+  for (const Wrap& wrap : wraps_) theta[wrap.segment] = WrapAngle(m, d, wrap);
   Arms(d);
+}
+
+// MuJoCo lists the points of a path: one of a site or a pulley, two of a geom that is touched.
+void CableGeometry::FindTangents(const mjModel& m, const mjData& d) {
+  for (std::size_t w = 0; w < wraps_.size(); ++w) {
+    Wrap& wrap = wraps_[w];
+    double* const to = tangent_.data() + 6 * w;
+    int point = d.ten_wrapadr[wrap.tendon];
+    const int end = point + d.ten_wrapnum[wrap.tendon];
+    for (int item = m.tendon_adr[wrap.tendon]; item < wrap.item; ++item) {
+      const bool geom = m.wrap_type[item] == mjWRAP_SPHERE || m.wrap_type[item] == mjWRAP_CYLINDER;
+      point += !geom ? 1 : point < end && d.wrap_obj[point] == m.wrap_objid[item] ? 2 : 0;
+    }
+    wrap.touches = point + 1 < end && d.wrap_obj[point] == m.wrap_objid[wrap.item];
+    if (!wrap.touches) {
+      Miss(m, d, wrap, to);
+      continue;
+    }
+    const double* const from = d.wrap_xpos + 3 * point;
+    mju_copy3(to, from + (wrap.reversed ? 3 : 0));
+    mju_copy3(to + 3, from + (wrap.reversed ? 0 : 3));
+  }
+}
+
+// Both points are the one of the straight line that is nearest to the sphere's centre or the
+// cylinder's axis, but between the sites.
+void CableGeometry::Miss(const mjModel& m, const mjData& d, const Wrap& wrap,
+                         double* tangents) const {
+  const int geom = m.wrap_objid[wrap.item];
+  const double *const a = At(d, near_[wrap.segment - 1]), *const b = At(d, far_[wrap.segment]);
+  double line[3], to[3], across[3];
+  mju_sub3(line, b, a);
+  mju_sub3(to, d.geom_xpos + 3 * geom, a);
+  mju_copy3(across, line);
+  if (m.wrap_type[wrap.item] == mjWRAP_CYLINDER) {
+    const double* const R = d.geom_xmat + 9 * geom;
+    const double axis[3] = {R[2], R[5], R[8]};
+    mju_addToScl3(across, axis, -mju_dot3(across, axis));
+  }
+  const double length = mju_dot3(across, across);
+  const double share = length > 0 ? std::clamp(mju_dot3(to, across) / length, 0.01, 0.99) : 0.5;
+  for (int i = 0; i < 3; ++i) tangents[i] = tangents[3 + i] = a[i] + share * line[i];
+}
+
+// (1)
+double CableGeometry::WrapAngle(const mjModel& m, const mjData& d, const Wrap& wrap) const {
+  const int geom = m.wrap_objid[wrap.item], s = wrap.segment;
+  if (!wrap.touches) return 0;
+  const double *const p = At(d, far_[s - 1]), *const q = At(d, near_[s]);
+  double along[3], from[3], to[3], gap[3], turn[3];
+  Along(s - 1, along);
+  mju_sub3(gap, q, p);
+  if (mju_norm3(gap) <= 1e-9 * m.geom_size[3 * geom]) return theta[s];  // a bend, no arc
+  mju_sub3(from, p, d.geom_xpos + 3 * geom);
+  mju_sub3(to, q, d.geom_xpos + 3 * geom);
+  double pitch = 0;  // sin α
+  if (m.wrap_type[wrap.item] == mjWRAP_CYLINDER) {
+    const double* const R = d.geom_xmat + 9 * geom;
+    const double axis[3] = {R[2], R[5], R[8]};
+    pitch = mju_dot3(along, axis);
+    for (double* const v : {from, to, along}) mju_addToScl3(v, axis, -mju_dot3(v, axis));
+  }
+  mju_cross(turn, from, along);  // about this axis the path turns
+  mju_normalize3(turn);
+  double beside[3];
+  mju_cross(beside, turn, from);
+  const double arc = std::atan2(mju_dot3(to, beside), mju_dot3(to, from));
+  return (arc < -1e-6 ? arc + 2 * mjPI : std::max(0.0, arc)) *
+         std::sqrt(std::max(0.0, 1 - pitch * pitch));
 }
 
 // Loops without branches, here and below: the compiler then works on several numbers at once.
@@ -47,7 +124,7 @@ void CableGeometry::Directions(const mjData& d) {
   const int n = segments();
   double *const x = x_.data(), *const y = y_.data(), *const z = z_.data(), *const l = half_.data();
   for (int s = 0; s < n; ++s) {
-    const double *const p = d.site_xpos + 3 * near_[s], *const q = d.site_xpos + 3 * far_[s];
+    const double *const p = At(d, near_[s]), *const q = At(d, far_[s]);
     x[s] = q[0] - p[0], y[s] = q[1] - p[1], z[s] = q[2] - p[2];
     l[s] = x[s] * x[s] + y[s] * y[s] + z[s] * z[s];
     if (l[s] <= mjMINVAL * mjMINVAL) x[s] = l[s] = 1, y[s] = z[s] = 0;
@@ -84,7 +161,7 @@ double CableGeometry::HalfCosine(int s) const {
 void CableGeometry::Arms(const mjData& d) {
   double line[6] = {};  // moment of the direction about o, and the direction
   for (int s = 0; s < segments(); ++s) {
-    const double* const p = d.site_xpos + 3 * far_[s];
+    const double* const p = At(d, far_[s]);
     line[3] = x_[s], line[4] = y_[s], line[5] = z_[s];
     double rate = 0;
     for (int l = begin[s], root = -1; l < begin[s + 1]; ++l) {

@@ -28,8 +28,15 @@ int FirstGuess(const Bend& bend) {
 
 }  // namespace
 
-CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry)
-    : inertia_(m, geometry.dof) {
+std::vector<int> Joined(std::span<const int> a, std::span<const int> b) {
+  std::vector<int> all(a.begin(), a.end());
+  all.insert(all.end(), b.begin(), b.end());
+  return all;
+}
+
+CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry,
+                           std::span<const int> rows)
+    : inertia_(m, Joined(geometry.dof, rows)), row_base_(geometry.cables()) {
   const int n = inertia_.size();
   for (const int dof : geometry.dof) place_.push_back(inertia_.index(dof));
   least_.assign(geometry.segments(), n);
@@ -48,9 +55,76 @@ CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry)
 void CableSliding::Solve(const World& w, std::span<Bend> bends) {
   Guess(w, bends);
   GiveFresh(w, bends);
-  if (AllSlide(w, bends)) return;
+  if (w.rows.empty() && AllSlide(w, bends)) return;
   inertia_.Update(w.m, w.d);
-  solver_.Begin(inertia_.matrix(), inertia_.size());
+  if (w.rows.empty()) {
+    matrix_ = inertia_.matrix(), push_.assign(w.force.begin(), w.force.end());
+    SolveSides(w, bends);
+    return;
+  }
+  do {
+    TakeRows(w);
+    SolveSides(w, bends);
+  } while (ReleaseRows(w));
+  for (std::size_t c = 0; c < row_base_.size(); ++c) {
+    if (row_base_[c].rows) w.base[c] = std::max(0.0, BaseOf(w, static_cast<int>(c)));
+  }
+}
+
+// (1a) of the rows that act.
+void CableSliding::TakeRows(const World& w) {
+  const int n = inertia_.size();
+  const double h = w.m.opt.timestep;
+  matrix_ = inertia_.matrix(), push_.assign(w.force.begin(), w.force.end());
+  for (std::size_t c = 0; c < row_base_.size(); ++c) {
+    RowBase& base = row_base_[c];
+    base.rows = std::any_of(w.rows.begin(), w.rows.end(),
+                            [&](const SolvedRow& row) { return row.on[c] != 0; });
+    if (!base.rows) continue;
+    base.constant = w.native[c];
+    base.slope.assign(n, 0);
+  }
+  for (const SolvedRow& row : w.rows) {
+    if (!row.acts) continue;
+    for (int i = 0; i < n; ++i) {
+      const double Ji = row.J[inertia_.dofs()[i]];
+      if (Ji == 0) continue;
+      push_[inertia_.dofs()[i]] += Ji * row.stiffness * row.reference;
+      for (int j = i; j < n; ++j)
+        matrix_[i * n + j] += row.stiffness * Ji * row.J[inertia_.dofs()[j]];
+    }
+    for (std::size_t c = 0; c < row_base_.size(); ++c) {
+      if (row.on[c] == 0) continue;
+      row_base_[c].constant += row.on[c] * row.stiffness * row.reference;
+      for (int i = 0; i < n; ++i)
+        row_base_[c].slope[i] += row.on[c] * row.stiffness / h * row.J[inertia_.dofs()[i]];
+    }
+  }
+}
+
+// Limits that would have to pull the other way act no more; whether there was one.
+bool CableSliding::ReleaseRows(const World& w) {
+  bool some = false;
+  for (SolvedRow& row : w.rows) {
+    if (!row.acts || !row.limit) continue;
+    double change = 0;
+    for (int i = 0; i < inertia_.size(); ++i) change += row.J[inertia_.dofs()[i]] * velocity_[i];
+    row.acts = row.reference - change / w.m.opt.timestep >= 0;
+    some |= !row.acts;
+  }
+  return some;
+}
+
+double CableSliding::BaseOf(const World& w, int cable) const {
+  const RowBase& base = row_base_[cable];
+  if (w.rows.empty() || !base.rows) return w.base[cable];
+  double tension = base.constant;
+  for (int i = 0; i < inertia_.size(); ++i) tension -= base.slope[i] * velocity_[i];
+  return tension;
+}
+
+void CableSliding::SolveSides(const World& w, std::span<Bend> bends) {
+  solver_.Begin(matrix_, inertia_.size());
   give_way_ = kGiveWay;
   while (!Settle(w, bends) && give_way_ < kGiveWayMost) give_way_ *= kEasier;
   while (give_way_ > kGiveWay) {
@@ -176,17 +250,23 @@ void CableSliding::Follow(const World& w, const Bend& bend, double f,
 // at rest from the base on.
 void CableSliding::Assemble(const World& w, std::span<const Bend> bends) {
   const double h = w.m.opt.timestep;
-  const int n = inertia_.size(), first = FirstAtRest(bends), rest = n - first;
+  const int n = inertia_.size(), first = w.rows.empty() ? FirstAtRest(bends) : 0, rest = n - first;
   const std::span<double> block = solver_.Block(first);
-  for (int i = 0; i < n; ++i) velocity_[i] = h * w.force[inertia_.dofs()[i]];
+  for (int i = 0; i < n; ++i) velocity_[i] = h * push_[inertia_.dofs()[i]];
   int cable = -1;
-  double constant = 0, scale = 0;
+  double base = 0, constant = 0, scale = 0;
   bool follows = false;
+  const std::vector<double>* slope = nullptr;
   for (std::size_t g = 0; g < bends.size(); ++g) {
     const Bend& bend = bends[g];
     const Part& part = parts_[g];
-    if (bend.cable != cable)
-      cable = bend.cable, constant = w.base[cable], scale = 1, follows = false;
+    if (bend.cable != cable) {
+      cable = bend.cable;
+      slope = !w.rows.empty() && row_base_[cable].rows ? &row_base_[cable].slope : nullptr;
+      base = constant = slope ? row_base_[cable].constant : w.base[cable];
+      scale = 1, follows = slope;
+      if (slope) follow_ = *slope;
+    }
     constant = part.ratio * constant - part.yield * bend.speed;
     scale *= part.ratio;
     if (part.yield > 0) {
@@ -196,10 +276,11 @@ void CableSliding::Assemble(const World& w, std::span<const Bend> bends) {
     }
     for (int l = w.geometry.begin[bend.segment]; l < w.geometry.begin[bend.segment + 1]; ++l) {
       const double arm = h * w.geometry.arm[l];
-      velocity_[place_[l]] -= arm * (constant - w.base[cable]);
+      velocity_[place_[l]] -= arm * (constant - base);
       if (!follows) continue;
       double* const row = block.data() + (place_[l] - first) * rest;
       for (int j = 0; j < rest; ++j) row[j] -= arm * scale * follow_[first + j];
+      for (int j = 0; slope && j < rest; ++j) row[j] += arm * (*slope)[j];
     }
   }
 }
@@ -221,7 +302,8 @@ int CableSliding::Judge(const World& w, std::span<Bend> bends) {
   for (std::size_t g = 0; g < bends.size(); ++g) {
     Bend& bend = bends[g];
     Part& part = parts_[g];
-    if (bend.cable != cable) cable = bend.cable, before = wanted = w.base[cable];
+    if (bend.cable != cable)
+      cable = bend.cable, before = wanted = std::max(BaseOf(w, cable), 1e-12);
     wanted = part.ratio * wanted - part.yield * speed_[g];
     part.better = bend.side;
     if (bend.side != 0) {

@@ -24,13 +24,26 @@ struct Bend {
   bool given = false;             ///< slides as its speed says, whatever it is at the step's end
 };
 
+/// A row of the constraint solver that pulls cables (TensionRow), for the solver of their friction.
+struct SolvedRow {
+  bool limit;                   ///< its force is not negative
+  double stiffness, reference;  ///< D, a_ref
+  std::vector<double> J;        ///< [nv]
+  std::vector<double> on;       ///< [cables] tension for each unit of its force
+  bool acts = true;
+};
+
 /// Dry friction of cables, solved for the end of the step.
 ///
 /// The tensions t_g behind the bends g of a cable with base tension t_0 move the robot by
 ///
 ///   M (q̇⁺ − q̇) = h (F − Σ_g (t_g − t_0) dL_g/dq)                        (1)
 ///
-/// with all other forces F and M as in StepInertia, and each bend obeys one of
+/// with all other forces F and M as in StepInertia. Rows of the solver that pull cables add
+///
+///   J^T λ to F and c λ to t_0,   λ = D (a_ref − J (q̇⁺ − q̇)/h)           (1a)
+///
+/// where λ ≥ 0 or the row is an equality. Each bend obeys one of
 ///
 ///   v_g⁺ ≥ 0, ρ_g = −band;   v_g⁺ ≤ 0, ρ_g = +band;   |ρ_g| ≤ band, v_g⁺ = 0       (2)
 ///   v_g = −Σ_{k ≥ g} dL_k/dt,   ρ_g = log(t_g/t_{g−1})                   (3)
@@ -58,11 +71,14 @@ class CableSliding {
     const mjModel& m;
     mjData& d;
     const CableGeometry& geometry;
-    std::span<const double> base;   ///< tension of each cable [N], > 0 where it has bends
+    std::span<const double> native;  ///< tension of each cable but for rows [N]
+    std::span<double> base;  ///< all of it, > 0 where it has bends; found for cables with rows
     std::span<const double> last;   ///< the same in the last step [N]
     std::span<const double> force;  ///< F [nv]
+    std::span<SolvedRow> rows;
   };
-  CableSliding(const mjModel& m, const CableGeometry& geometry);
+  /// rows: further degrees of freedom that rows act on.
+  CableSliding(const mjModel& m, const CableGeometry& geometry, std::span<const int> rows);
 
   const StepInertia& inertia() const { return inertia_; }
   /// v_c and q̇⁺ − q̇ [inertia().dofs()] of the last solution that has bends at rest.
@@ -81,6 +97,9 @@ class CableSliding {
   void GiveFresh(const World& w, std::span<Bend> bends);
   void Changes(const World& w, std::span<const Bend> bends, std::span<const double> force);
   bool AllSlide(const World& w, std::span<const Bend> bends);
+  void SolveSides(const World& w, std::span<Bend> bends);
+  void TakeRows(const World& w);
+  bool ReleaseRows(const World& w);
   bool Settle(const World& w, std::span<Bend> bends);
   void Assign(const World& w, std::span<const Bend> bends);
   int FirstAtRest(std::span<const Bend> bends) const;
@@ -89,7 +108,18 @@ class CableSliding {
   int Judge(const World& w, std::span<Bend> bends);
   void Change(std::span<Bend> bends, bool one);
 
+  /// Base tension of a cable with rows: constant − Σ_j slope_j (q̇⁺ − q̇)_j.
+  struct RowBase {
+    bool rows = false;
+    double constant = 0;
+    std::vector<double> slope;  ///< [dofs]
+  };
+  double BaseOf(const World& w, int cable) const;
+
   StepInertia inertia_;
+  std::vector<RowBase> row_base_;  ///< [cables]
+  std::vector<double> matrix_;     ///< of inertia_ with the rows that act
+  std::vector<double> push_;       ///< [nv] F with those rows
   BlockSolver solver_;
   std::vector<int> place_;  ///< [entries] of its dof in inertia_
   std::vector<int> least_;  ///< [segments] the first place that moves it or what is distal of it

@@ -18,6 +18,9 @@ inline std::string PluginName(std::string_view effect) {
   return std::string(kPluginPrefix) + std::string(effect);
 }
 
+/// Our sensor plugin, which is no effect.
+inline constexpr std::string_view kWrenchPlugin = "continuum.wrench";
+
 /// MuJoCo's type of the objects at a place; mjOBJ_UNKNOWN for the world.
 mjtObj ObjectType(Place place);
 /// The number of a model's objects at a place.

@@ -76,8 +76,9 @@ const EffectInfo& EffectNamed(std::string_view name) {
 const EffectInfo* EffectOf(const mjModel& m, int instance) {
   const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[instance]);
   const std::string_view name = plugin ? plugin->name : "";
-  return name.starts_with(kPluginPrefix) ? &EffectNamed(name.substr(kPluginPrefix.size()))
-                                         : nullptr;
+  return name.starts_with(kPluginPrefix) && name != kWrenchPlugin
+             ? &EffectNamed(name.substr(kPluginPrefix.size()))
+             : nullptr;
 }
 
 std::string_view KindName(Kind kind) {

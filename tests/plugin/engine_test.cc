@@ -25,6 +25,7 @@ TEST(Laws, OfThePluginAreAllTested) {
   for (const auto& [law, config] : Laws()) tested.insert("continuum." + EffectOf(law));
   for (int i = 0; i < mjp_pluginCount(); ++i) {
     const std::string name = mjp_getPluginAtSlot(i)->name;
+    if (name == "continuum.wrench") continue;  // a sensor, no law
     EXPECT_TRUE(!name.starts_with("continuum.") || tested.contains(name)) << name;
   }
 }

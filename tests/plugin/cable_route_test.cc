@@ -1,0 +1,287 @@
+// Cables over sites, wrapped geoms and pulleys, pulled by whatever pulls: bands of breakaway after
+// Euler and Eytelwein, forces against an evaluation of their own, wrenches against the balance of
+// forces.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "support/engine.h"
+
+namespace continuum {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kWeight = 10;  // of the load [N]
+
+class CableRoute : public testing::Engine {
+ protected:
+  // A load of 1 kg on a slide under a corner, which the cable turns by a right angle; the other end
+  // of the cable is at (-0.5, 0, 1).
+  struct Rig {
+    std::string corner = "site", config = Key("mu", "0.3");
+    std::string end = R"(<site name="end" pos="-.5 0 1"/>)", tendon = {}, actuator = {}, more = {},
+                sensor = {};
+    double step = 1e-3;
+    bool reversed = false;
+  };
+  static std::string Xml(const Rig& rig) {
+    const std::string drum = R"(<site name="side" pos=".2 0 1.15"/><geom name="drum" contype="0"
+        conaffinity="0" size=".05" )";
+    std::string world = R"(<site name="corner" pos="0 0 1"/>)", path = R"(<site site="corner"/>)";
+    std::string x = "0";
+    if (rig.corner != "site") {
+      world =
+          drum + (rig.corner == "sphere" ? R"(type="sphere" pos="0 0 .95"/>)"
+                                         : R"(type="cylinder" fromto="0 -.05 .95 0 .05 .95"/>)");
+      path = R"(<geom geom="drum" sidesite="side"/>)", x = ".05";
+    }
+    path = rig.reversed ? R"(<site site="load"/>)" + path + R"(<site site="end"/>)"
+                        : R"(<site site="end"/>)" + path + R"(<site site="load"/>)";
+    return "<mujoco>" + Instance("capstan", Key("tendon", "t") + rig.config) +
+           fmt::format(R"(<option timestep="{}" integrator="implicitfast" gravity="0 0 -10"/>
+      <worldbody>{}{}<body pos="{} 0 .5"><joint name="z" type="slide" axis="0 0 1" damping="1"/>
+        <geom size=".02" mass="1" contype="0" conaffinity="0"/><site name="load"/></body>
+      </worldbody><tendon><spatial name="t" {}>{}</spatial></tendon><actuator>{}</actuator>{}
+      <sensor>{}</sensor></mujoco>)",
+                       rig.step, world, rig.end, x, rig.tendon, path, rig.actuator, rig.more,
+                       rig.sensor);
+  }
+  // How far the load has moved up after 0.8 s of a pull [m].
+  static double Moved(const Rig& rig, double pull) {
+    const auto m = Model(Xml(rig));
+    if (!m) return std::nan("");
+    const auto d = Data(m);
+    while (d->time < .8) {
+      if (m->nu > 0) d->ctrl[0] = kWeight + (pull - kWeight) * std::min(1.0, d->time / .1);
+      mj_step(m.get(), d.get());
+    }
+    return d->qpos[m->jnt_qposadr[mj_name2id(m.get(), mjOBJ_JOINT, "z")]];
+  }
+  // A load W over the angle θ rests for pulls in W exp(±μθ), within 1 %. A limit gives way by up to
+  // 0.2 mm as its tension grows; the slowest of these loads has moved by 1 mm.
+  template <class RigOf>
+  static void ExpectBand(RigOf&& rig_of, double band, const std::string& what) {
+    for (const double side : {-1., 1.}) {
+      const double edge = kWeight * std::exp(side * band);
+      const double held = edge * std::exp(-side * .01), moved = edge * std::exp(side * .01);
+      EXPECT_LT(std::abs(Moved(rig_of(held), held)), 3e-4) << what << ", side " << side;
+      EXPECT_GT(side * Moved(rig_of(moved), moved), 5e-4) << what << ", side " << side;
+    }
+  }
+};
+
+constexpr const char* kMotor = R"(<motor tendon="t" gear="-1"/>)";
+
+TEST_F(CableRoute, ALoadBreaksAwayAsEytelweinSaysOverSitesCylindersAndSpheres) {
+  for (const std::string corner : {"site", "cylinder", "sphere"}) {
+    for (const double h : {5e-4, 2e-3}) {
+      for (const double mu : {.1, .6}) {
+        Rig rig{corner, Key("mu", std::to_string(mu))};
+        rig.actuator = kMotor, rig.step = h;
+        ExpectBand([&](double) { return rig; }, mu * mjPI / 2, corner + fmt::format(" {} s", h));
+      }
+    }
+  }
+}
+
+// Two branches, each with half of the tension: the load hangs on the second, behind a corner.
+TEST_F(CableRoute, ABranchBehindAPulleyCarriesTheTensionByItsDivisor) {
+  const auto moved = [](double pull) {
+    const auto m = Model("<mujoco>" + Instance("capstan", Key("tendon", "t") + Key("mu", "0.3")) +
+                         R"(<option timestep=".001" integrator="implicitfast" gravity="0 0 -10"/>
+      <worldbody><site name="a" pos="0 1 1"/><site name="b" pos="0 2 1"/>
+        <site name="end" pos="-.5 0 1"/><site name="corner" pos="0 0 1"/>
+        <body pos="0 0 .5"><joint type="slide" axis="0 0 1" damping="1"/>
+        <geom size=".02" mass="1" contype="0" conaffinity="0"/><site name="load"/></body></worldbody>
+      <tendon><spatial name="t"><site site="a"/><site site="b"/><pulley divisor="2"/>
+        <site site="end"/><site site="corner"/><site site="load"/></spatial></tendon>
+      <actuator><motor tendon="t" gear="-1"/></actuator></mujoco>)");
+    const auto d = Data(m);
+    while (d->time < .4) {
+      d->ctrl[0] = 2 * (kWeight + (pull - kWeight) * std::min(1.0, d->time / .1));
+      mj_step(m.get(), d.get());
+    }
+    return d->qpos[0];
+  };
+  for (const double side : {-1., 1.}) {
+    const double edge = kWeight * std::exp(side * .3 * mjPI / 2);
+    EXPECT_LT(std::abs(moved(edge * std::exp(-side * .01))), 1e-4);
+    EXPECT_GT(side * moved(edge * std::exp(side * .01)), 1e-3);
+  }
+}
+
+TEST_F(CableRoute, TheSpringOfATendonPullsAgainstFriction) {
+  ExpectBand(
+      [](double pull) {
+        Rig rig;
+        rig.tendon = fmt::format(R"(stiffness="100" springlength="0 {}")", 1 - pull / 100);
+        return rig;
+      },
+      .3 * mjPI / 2, "spring");
+}
+
+std::string Winch(const std::string& body) {
+  return R"(<body pos="-.5 0 1"><joint name="w" type="slide" axis="-1 0 0" damping="1"/>
+      <geom size=".02" mass=")" +
+         body + R"(" contype="0" conaffinity="0"/><site name="end"/></body>)";
+}
+
+// μθ = 1.6 hands on up to five times the tension: no step may multiply an error by as much.
+TEST_F(CableRoute, AWinchAtEitherEndPullsThroughTheLengthLimit) {
+  for (const bool reversed : {false, true}) {
+    for (const auto& [mass, mu] : {std::pair{".1", .3}, {"5", .3}, {".1", 1.}, {"5", 1.}}) {
+      Rig rig{"site", Key("mu", std::to_string(mu))};
+      rig.end = Winch(mass), rig.reversed = reversed;
+      rig.tendon = R"(limited="true" range="0 1" solreflimit=".005 1")";
+      rig.actuator = R"(<motor joint="w"/>)";
+      ExpectBand([&](double) { return rig; }, mu * mjPI / 2,
+                 fmt::format("winch of {} kg, mu {}, reversed {}", mass, mu, reversed));
+    }
+  }
+}
+
+TEST_F(CableRoute, AnEqualityPullsLikeALimit) {
+  Rig rig;
+  rig.end = Winch(".1"), rig.actuator = R"(<motor joint="w"/>)";
+  rig.more = R"(<equality><tendon tendon1="t" solref=".005 1"/></equality>)";
+  ExpectBand([&](double) { return rig; }, .3 * mjPI / 2, "equality");
+}
+
+// Forces of the law from points, tensions and Jacobians of their own.
+TEST_F(CableRoute, ForcesAreThoseOfTheTensionsAtTheTangentPoints) {
+  for (const std::string geom :
+       {R"(type="sphere" size=".04")", R"(type="cylinder" size=".04 .1" euler="60 20 0")"}) {
+    const auto m = Model("<mujoco>" + Instance("capstan", Key("tendon", "t") + Key("mu", "0.4")) +
+                         R"(<worldbody><site name="a" pos="0 .06 .3"/><body><freejoint/>
+        <geom name="g" )" +
+                         std::string(geom) + R"(/>
+        <body pos="0 0 -.2"><joint axis="1 0 0"/><geom size=".02" pos="0 0 -.05"/>
+          <site name="b" pos=".01 .05 0"/></body></body><site name="s" pos="0 .2 0"/></worldbody>
+      <tendon><spatial name="t"><site site="a"/><geom geom="g" sidesite="s"/><site site="b"/>
+      </spatial></tendon><actuator><motor tendon="t" gear="-1"/></actuator></mujoco>)");
+    for (const double v : {-1., 1.}) {
+      const auto d = Data(m);
+      d->qpos[0] = .01, d->qpos[1] = .08, d->qpos[2] = .02;  // the path passes the geom
+      d->qvel[6] = v, d->ctrl[0] = .02;
+      mj_forward(m.get(), d.get());
+      ASSERT_GE(d->wrap_obj[1], 0) << geom;
+      const double *a = d->wrap_xpos, *p = a + 3, *q = a + 6, *b = a + 9;
+      double u[3], w[3], axis[3], from[3], to[3];
+      mju_sub3(u, p, a), mju_normalize3(u), mju_sub3(w, b, q), mju_normalize3(w);
+      const int id = mj_name2id(m.get(), mjOBJ_GEOM, "g");
+      // the angle by the length of the path: what is not straight lies on the geom
+      const double arc = d->ten_length[0] - mju_dist3(a, p) - mju_dist3(q, b);
+      for (int i = 0; i < 3; ++i) axis[i] = d->geom_xmat[9 * id + 3 * i + 2];
+      mju_sub3(from, p, d->geom_xpos + 3 * id), mju_sub3(to, q, d->geom_xpos + 3 * id);
+      const double pitch = m->geom_type[id] == mjGEOM_CYLINDER ? mju_dot3(u, axis) : 0;
+      const double theta = arc * (1 - pitch * pitch) / .04;
+      ASSERT_GT(theta, .1);
+      // pays out or in, seen from the geom: dL of the straight part behind it
+      std::vector<double> due(m->nv), jac(3 * m->nv), far(m->nv), near(m->nv);
+      mj_jac(m.get(), d.get(), jac.data(), nullptr, b,
+             m->site_bodyid[mj_name2id(m.get(), mjOBJ_SITE, "b")]);
+      mju_mulMatTVec(far.data(), jac.data(), w, 3, static_cast<int>(m->nv));
+      mj_jac(m.get(), d.get(), jac.data(), nullptr, q, m->geom_bodyid[id]);
+      mju_mulMatTVec(near.data(), jac.data(), w, 3, static_cast<int>(m->nv));
+      double rate = 0;
+      for (int i = 0; i < m->nv; ++i) rate += (far[i] - near[i]) * d->qvel[i];
+      ASSERT_GT(std::abs(rate), .02);
+      const double tension = .02 * std::exp((rate > 0 ? 1 : -1) * .4 * theta);
+      for (int i = 0; i < m->nv; ++i) {
+        due[i] = -(tension - .02) * (far[i] - near[i]);
+        EXPECT_NEAR(d->qfrc_passive[i], due[i], 1e-9) << geom << " dof " << i;
+      }
+    }
+  }
+}
+
+TEST_F(CableRoute, AWrenchIsTheBalanceOfWeightAndTrueCableForces) {
+  for (const double pull : {8., 12.}) {
+    const auto m = Model(fmt::format(R"(<mujoco><extension><plugin plugin="continuum.capstan">
+        <instance name="i">{}</instance></plugin><plugin plugin="continuum.wrench">
+        <instance name="w"/></plugin></extension>
+      <option timestep=".001" integrator="implicitfast" gravity="0 0 -10"/><worldbody>
+        <site name="end" pos="-.5 0 1"/><body name="post" pos="0 0 .8"><site name="foot"/>
+          <geom size=".01" mass=".1" contype="0" conaffinity="0"/><site name="corner" pos="0 0 .2"/>
+        </body><body pos="0 0 .5"><joint type="slide" axis="0 0 1" damping="1"/>
+          <geom size=".02" mass="1" contype="0" conaffinity="0"/><site name="load"/></body>
+      </worldbody><tendon><spatial name="t"><site site="end"/><site site="corner"/>
+        <site site="load"/></spatial></tendon><actuator><motor tendon="t" gear="-1"/></actuator>
+      <sensor><plugin plugin="continuum.wrench" instance="w" objtype="site" objname="foot"/>
+        <force site="foot"/></sensor></mujoco>)",
+                                     Key("tendon", "t") + Key("mu", "0.3")));
+    const auto d = Data(m);
+    d->ctrl[0] = pull;
+    RunUntil(m, d, .5);
+    mj_forward(m.get(), d.get());
+    ASSERT_LT(std::abs(d->qpos[0]), 1e-4);
+    // The cable pulls the corner toward the end by `pull` and down by the weight that it holds.
+    const double tension = kWeight + d->qacc[0] + d->qvel[0];
+    const double due[6] = {pull, 0, 1 + tension, 0, .2 * pull, 0};
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(d->sensordata[i], due[i], 1e-6) << i;
+    EXPECT_NEAR(d->sensordata[8], 1 + pull, 1e-6);  // MuJoCo's does not know the friction
+  }
+}
+
+TEST_F(CableRoute, OfAGlobFixedTendonsAreLeftOutButByTheirNameRefused) {
+  const auto xml = [](const std::string& tendon) {
+    return "<mujoco>" + Instance("capstan", Key("tendon", tendon) + Key("mu", "0.3")) +
+           R"(<worldbody><site name="a"/><site name="b" pos=".1 0 0"/><body><joint name="j"/>
+      <geom size=".1"/><site name="c" pos=".1 .1 0"/></body></worldbody><tendon>
+      <fixed name="f"><joint joint="j" coef="1"/></fixed>
+      <spatial name="t"><site site="a"/><site site="b"/><site site="c"/></spatial></tendon></mujoco>)";
+  };
+  EXPECT_TRUE(Model(xml("*")));
+  const auto [m, error] = Compile(xml("f t"));
+  EXPECT_FALSE(m);
+  EXPECT_THAT(error, HasSubstr("tendon 'f': expected a spatial tendon, found a fixed tendon"));
+  const auto [none, why] = Compile(xml("f*"));
+  EXPECT_FALSE(none);
+  EXPECT_THAT(why, HasSubstr("found a fixed tendon"));
+}
+
+// From the tip to the base, pulled at the base: as from the base.
+TEST_F(CableRoute, TheDrivenEndIsSaid) {
+  for (const double v : {-.1, .1}) {
+    std::vector<double> acceleration;
+    for (const bool reversed : {false, true}) {
+      Rig rig{"cylinder"};
+      rig.actuator = kMotor, rig.reversed = reversed;
+      rig.config += Key("driven", reversed ? "last" : "first");
+      const auto m = Model(Xml(rig));
+      const auto d = Data(m);
+      d->qvel[0] = v, d->ctrl[0] = 12;
+      mj_forward(m.get(), d.get());
+      acceleration.push_back(d->qacc[0]);
+    }
+    EXPECT_NEAR(acceleration[0], acceleration[1], 1e-9);
+    EXPECT_NEAR(acceleration[0], 12 * std::exp((v > 0 ? -1 : 1) * .3 * mjPI / 2) - 10 - v, 1e-6);
+  }
+  Rig rig;
+  rig.config += Key("driven", "motor");
+  const auto [m, error] = Compile(Xml(rig));
+  EXPECT_FALSE(m);
+  EXPECT_THAT(error, HasSubstr("driven: expected first | last, found 'motor'"));
+}
+
+TEST_F(CableRoute, ASlackCableKeepsItsMemory) {
+  Rig rig;
+  rig.actuator = kMotor;
+  rig.sensor = R"(<plugin plugin="continuum.capstan" instance="i" objtype="site" objname="load"/>)";
+  const auto m = Model(Xml(rig));
+  m->opt.gravity[2] = 0;
+  m->dof_damping[0] = 1e9;  // what happens to the cable is all that happens
+  const auto d = Data(m);
+  const int states = static_cast<int>(m->npluginstate);
+  d->ctrl[0] = 12, d->qvel[0] = .1;
+  mj_step(m.get(), d.get());
+  const std::vector<double> before(d->plugin_state, d->plugin_state + states);
+  d->ctrl[0] = 0;
+  mj_step(m.get(), d.get());
+  EXPECT_NE(before[1], 0);
+  EXPECT_EQ(d->plugin_state[1], before[1]);
+}
+
+}  // namespace
+}  // namespace continuum
