@@ -7,7 +7,7 @@
 
 namespace continuum {
 
-/// Looks around a fit for other minima of the cost, where joints or cables of the model rub: there
+/// Looks around a fit for other minima of the cost, where dry friction acts in the model: there
 /// it has many, and which of them a fit ends in depends on where it began.
 ///
 /// A few fits by secants begin beside the best one, where first order says that the cost is higher

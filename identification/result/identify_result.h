@@ -48,7 +48,7 @@ struct IdentifyResult {
   std::optional<Regression> regression;      ///< of the inverse model
   std::optional<ShootingSegments> segments;  ///< of long logs, fitted before the whole
   std::optional<MultiStart> starts;          ///< where there were several
-  LocalMinima minima;                        ///< around the fit, where joints or cables rub
+  LocalMinima minima;                        ///< around the fit, where dry friction acts
 
   Uncertainty uncertainty;
   std::vector<Confounding> trade_offs;   ///< what the logs do not determine alone
