@@ -17,6 +17,7 @@
 #include "binding/segment.h"
 #include "binding/signal.h"
 #include "effects/all.h"
+#include "mujoco_compat.h"
 #include "one_mujoco.h"
 #include "plugin_data_slots.h"
 
@@ -97,7 +98,8 @@ void WarnOfIdleLaws(const mjModel& m, const Instance& self, const Config& config
              ": with springs and dampers disabled dry friction keeps its level, but neither its "
              "anchor nor its change with speed");
   }
-  if (self.bound->IsRow() && m.opt.integrator == mjINT_DISCRETE) {
+  if (const char* const fault = FaultOfRelease(m)) WarnOnce(config.Who() + ": " + fault);
+  if (self.bound->IsRow() && IsDiscrete(m)) {
     WarnOnce(config.Who() +
              ": under integrator=\"discrete\" a joint at rest creeps at 2e-4 of the speed that its "
              "load would give it in one step; integrator=\"implicitfast\" holds it");

@@ -5,6 +5,7 @@
 
 #include "binding/actuator_force.h"
 #include "error.h"
+#include "mujoco_compat.h"
 
 namespace continuum {
 namespace {
@@ -84,8 +85,7 @@ double PassiveTension(const mjModel& m, const mjData& d, int t) {
   const double* const rest = m.tendon_lengthspring + 2 * t;
   const double *const k = m.tendon_stiffnesspoly + mjNPOLY * t, *const b = m.tendon_dampingpoly +
                                                                            mjNPOLY * t;
-  double x = d.ten_length[t];
-  if (m.tendon_plasticadr[t] >= 0) x -= d.plastic[m.tendon_plasticadr[t]];
+  double x = d.ten_length[t] - PlasticSet(m, d, t);
   x -= std::clamp(x, rest[0], rest[1]);
   if (!(m.opt.disableflags & mjDSBL_SPRING))
     tension += x * (m.tendon_stiffness[t] + x * (k[0] + x * k[1]));

@@ -1,6 +1,7 @@
 #include "binding/filter.h"
 
 #include "binding/actuator_type.h"
+#include "mujoco_compat.h"
 
 namespace continuum {
 namespace {
@@ -24,9 +25,7 @@ std::string Found(const mjModel& m, int a) {
 }  // namespace
 
 double ActuatorInput::Control(const mjModel& m, const mjData& d) const {
-  double value = 0;
-  const double* const read = mj_readCtrl(&m, &d, actuator, d.time, &value, -1);
-  if (read) value = *read;
+  const double value = ReadControl(m, d, actuator);
   const int u = m.actuator_ctrladr[actuator];
   if (!m.actuator_ctrllimited[u] || (m.opt.disableflags & mjDSBL_CLAMPCTRL)) return value;
   return std::clamp(value, m.actuator_ctrlrange[2 * u], m.actuator_ctrlrange[2 * u + 1]);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "effects/all.h"
+#include "mujoco_compat.h"
 
 namespace continuum {
 namespace {
@@ -88,7 +89,7 @@ void FrictionRows::Impose(mjModel& m) const {
   for (const FrictionRow& row : rows_) {
     double& loss = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
     if (loss == 0) loss = kRowMarker;
-    if (m.opt.integrator == mjINT_DISCRETE) HardenModel(m, row);
+    if (IsDiscrete(m)) HardenModel(m, row);
   }
 }
 
@@ -104,7 +105,7 @@ void FrictionRows::Harden(const mjModel& m, mjData& d, const FrictionRow& row, i
   double usual[mjNREF], soft[mjNIMP];
   mj_defaultSolRefImp(usual, soft);
   double& impedance = d.efc_KBIP[4 * r + 2];
-  if (impedance == kImpedance || m.opt.integrator == mjINT_DISCRETE) return;
+  if (impedance == kImpedance || IsDiscrete(m)) return;
   if (!std::equal(soft, soft + mjNIMP, solimp)) return;
   const double soft_R = d.efc_R[r];
   const double R = soft_R * (impedance / (1 - impedance)) * ((1 - kImpedance) / kImpedance);
@@ -231,7 +232,7 @@ void FrictionRows::Advance(const mjModel& m, const mjData& d, double* z) const {
 }
 
 std::string FrictionRows::WhyNoSlopes(const mjModel& m) const {
-  if (m.opt.integrator == mjINT_DISCRETE) return "its rows are folded into the inertia";
+  if (IsDiscrete(m)) return "its rows are folded into the inertia";
   const auto ball = [](const FrictionRow& row) { return row.axis >= 0; };
   return std::any_of(rows_.begin(), rows_.end(), ball) ? "it acts on a ball joint" : "";
 }

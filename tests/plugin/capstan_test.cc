@@ -146,7 +146,8 @@ TEST_F(Capstan, TheBaseTensionIsThatOfTheNativeTendonWithinItsRanges) {
     std::string xml = Crane(0.2);
     const std::string motor = R"(<motor name="pull" tendon="cable" gear="-1"/>)";
     xml.replace(xml.find(motor), motor.size(), actuators);
-    xml.insert(xml.find("name=\"cable\""), "actuatorfrcrange=\"" + range + "\" ");
+    xml.insert(xml.find("name=\"cable\""),
+               "actuatorfrclimited=\"true\" actuatorfrcrange=\"" + range + "\" ");
     const auto m = Model(xml);
     const auto d = Data(m);
     std::copy(control.begin(), control.end(), d->ctrl);
