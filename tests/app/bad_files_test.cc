@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"HeaderOnly", "log.csv", "", "t,u,q\n", {"two rows"}},
         Bad{"OneRow", "log.csv", "", "t,u,q\n0,0,0\n", {"two rows"}},
         Bad{"Junk", "log.csv", "", kJunk, {"text file"}},
-        Bad{"Utf16", "log.csv", "", std::string("\xff\xfet\0,\0u\0", 8), {"text file"}},
+        Bad{"Utf16", "log.csv", "", std::string("\xff\xfet\0,\0u\0", 8), {"UTF-16", "iconv"}},
         Bad{"NanTime", "log.csv", "0.1,0.1,0.01", "nan,0.1,0.01", {"log.csv:3", "'t'", "'nan'"}},
         Bad{"NanInput", "log.csv", "0.1,0.1,0.01", "0.1,NaN,0.01", {"log.csv:3", "'u'", "'NaN'"}},
         Bad{"EmptyInput", "log.csv", "0.1,0.1,0.01", "0.1,,0.01", {"log.csv:3", "'u'", "empty"}},
