@@ -18,6 +18,12 @@ install(FILES
   ${PROJECT_SOURCE_DIR}/cmake/FindMuJoCo.cmake
   DESTINATION ${_package})
 install(FILES LICENSE DESTINATION share/mujoco_continuum)
+if(CONTINUUM_OWN_MUJOCO)
+  install(FILES ${MuJoCo_LIBRARY} DESTINATION lib)
+  get_filename_component(_mujoco ${MuJoCo_LIBRARY} DIRECTORY)
+  file(GLOB _licenses ${_mujoco}/../mujoco_core-*.dist-info/licenses/*)
+  install(FILES ${_licenses} DESTINATION share/mujoco_continuum/licenses/mujoco)
+endif()
 install(DIRECTORY models DESTINATION share/mujoco_continuum FILES_MATCHING
   PATTERN *.xml PATTERN *.yaml PATTERN *.csv PATTERN README.md PATTERN import.py
   PATTERN importer.py

@@ -1,104 +1,47 @@
 #include "sim/film/image.h"
 
-#include <fmt/core.h>
+#include <cstddef>
+#include <memory>
+#include <string>
 
-#include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
+#include <cairo.h>
 
 #include "error.h"
 #include "sim/io/file.h"
 
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavutil/error.h>
-#include <libavutil/frame.h>
-#include <libavutil/log.h>
-}
-
 namespace continuum {
-namespace av {
+namespace {
 
-void Deleter::operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
-void Deleter::operator()(AVFrame* frame) const { av_frame_free(&frame); }
-void Deleter::operator()(AVPacket* packet) const { av_packet_free(&packet); }
+struct Destroy {
+  void operator()(cairo_surface_t* s) const { cairo_surface_destroy(s); }
+};
 
-std::string Reason(int code) {
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
-  av_strerror(code, text.data(), text.size());
-  return text.data();
+cairo_status_t Append(void* text, const unsigned char* data, unsigned int length) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
 }
 
-int Check(int code, const std::string& what) {
-  if (code < 0) throw Error::Job(what + ": " + Reason(code));
-  return code;
-}
-
-int CheckWritten(int code, const std::string& what) {
-  for (const int file : {EACCES, EDQUOT, EFBIG, EIO, ENOENT, ENOSPC, EROFS}) {
-    if (code == AVERROR(file)) throw Error::Input("", std::strerror(file));
-  }
-  return Check(code, what);
-}
-
-template <class T>
-T* NotNull(T* object, const char* what) {
-  if (!object) throw Error::Job(std::string("libav cannot allocate ") + what);
-  return object;
-}
-
-Owned<AVCodecContext> NewEncoder(const char* name) {
-  av_log_set_level(AV_LOG_QUIET);
-  const AVCodec* const codec = avcodec_find_encoder_by_name(name);
-  if (!codec) {
-    throw Error::Job(fmt::format("libavcodec was built without the encoder {}", name));
-  }
-  return Owned<AVCodecContext>(NotNull(avcodec_alloc_context3(codec), "an encoder"));
-}
-
-Owned<AVFrame> NewFrame(const AVCodecContext& encoder) {
-  Owned<AVFrame> frame(NotNull(av_frame_alloc(), "a frame"));
-  frame->format = encoder.pix_fmt;
-  frame->width = encoder.width;
-  frame->height = encoder.height;
-  Check(av_frame_get_buffer(frame.get(), 0), "memory for a frame");
-  return frame;
-}
-
-void Encode(AVCodecContext& encoder, const AVFrame* frame,
-            const std::function<void(AVPacket&)>& take) {
-  Check(avcodec_send_frame(&encoder, frame), "encoding a frame");
-  const Owned<AVPacket> packet(NotNull(av_packet_alloc(), "a packet"));
-  for (;;) {
-    const int code = avcodec_receive_packet(&encoder, packet.get());
-    if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return;
-    Check(code, "encoding a frame");
-    take(*packet);
-    av_packet_unref(packet.get());
-  }
-}
-
-}  // namespace av
+}  // namespace
 
 void WritePng(const std::filesystem::path& path, const Image& image) {
-  const auto encoder = av::NewEncoder("png");
-  encoder->width = image.width;
-  encoder->height = image.height;
-  encoder->pix_fmt = AV_PIX_FMT_RGB24;
-  encoder->time_base = {1, 1};
-  av::Check(avcodec_open2(encoder.get(), nullptr, nullptr), path.string());
-  const auto frame = av::NewFrame(*encoder);
-  const int row = 3 * image.width;
-  for (int y = 0; y < image.height; ++y) {
-    std::copy_n(image.rgb.data() + y * row, row, frame->data[0] + y * frame->linesize[0]);
-  }
-  std::string bytes;
-  const auto keep = [&](AVPacket& p) {
-    bytes.append(reinterpret_cast<const char*>(p.data), static_cast<std::size_t>(p.size));
+  const std::unique_ptr<cairo_surface_t, Destroy> surface(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height));
+  const auto check = [&](cairo_status_t status) {
+    if (status != CAIRO_STATUS_SUCCESS)
+      throw Error::Job(path.string() + ": " + cairo_status_to_string(status));
   };
-  av::Encode(*encoder, frame.get(), keep);
-  av::Encode(*encoder, nullptr, keep);
+  check(cairo_surface_status(surface.get()));
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
+  unsigned char* const pixels = cairo_image_surface_get_data(surface.get());
+  const unsigned char* rgb = image.rgb.data();
+  for (int y = 0; y < image.height; ++y) {
+    auto* const row = reinterpret_cast<unsigned*>(pixels + stride * static_cast<std::size_t>(y));
+    for (int x = 0; x < image.width; ++x, rgb += 3)
+      row[x] = static_cast<unsigned>(rgb[0] << 16 | rgb[1] << 8 | rgb[2]);
+  }
+  cairo_surface_mark_dirty(surface.get());
+  std::string bytes;
+  check(cairo_surface_write_to_png_stream(surface.get(), Append, &bytes));
   WriteFile(path, bytes);
 }
 

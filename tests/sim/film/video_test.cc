@@ -290,5 +290,41 @@ TEST(Video, NamesTheFormatAndTheFrameRatesThatAreAllowed) {
               ThrowsMessage<Error>(HasSubstr("1 to 1000 frames per second")));
 }
 
+// A program that the environment names takes the place of libav, for as long as this lives.
+class Program {
+ public:
+  explicit Program(const fs::path& program) { setenv("CONTINUUM_FFMPEG", program.c_str(), 1); }
+  ~Program() { unsetenv("CONTINUUM_FFMPEG"); }
+};
+
+TEST(Video, IsEncodedByTheProgramThatTheEnvironmentNames) {
+  const fs::path folder = Folder();
+  WriteFile(folder / "encoder", "#!/bin/sh\nfor file; do :; done\nwc -c > \"$file\"\n");
+  fs::permissions(folder / "encoder", fs::perms::owner_all);
+  const Program program(folder / "encoder");
+  VideoWriter video(folder / "film.mp4", 16, 32, 30);
+  for (int k = 0; k < 3; ++k) video.Add(Flat(16, 32, k));
+  video.Finish();
+  EXPECT_EQ(ReadFile(folder / "film.mp4"), std::to_string(3 * 3 * 16 * 32) + "\n");
+}
+
+TEST(Video, NamesTheProgramThatIsMissingOrFails) {
+  const fs::path folder = Folder();
+  const auto write = [&] {
+    VideoWriter video(folder / "film.mp4", 16, 32, 30);
+    video.Add(Flat(16, 32, 1));
+    video.Finish();
+  };
+  {
+    const Program program(folder / "none");
+    EXPECT_THAT(write,
+                ThrowsMessage<Error>(AllOf(HasSubstr("film.mp4: films need the program ffmpeg"),
+                                           HasSubstr("pip install imageio-ffmpeg"))));
+  }
+  const Program program("/bin/false");
+  EXPECT_THAT(write, ThrowsMessage<Error>(HasSubstr("/bin/false could not write the film")));
+  EXPECT_THAT(Files(folder), IsEmpty());
+}
+
 }  // namespace
 }  // namespace continuum
