@@ -27,6 +27,7 @@ void AddReplay(CLI::App& app);
 void AddRender(CLI::App& app);
 void AddIdentify(CLI::App& app);
 void AddDiagnose(CLI::App& app);
+void AddDemo(CLI::App& app);
 void AddApply(CLI::App& app);
 void AddEffects(CLI::App& app);
 void AddModels(CLI::App& app);

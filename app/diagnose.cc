@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
+#include "app/models_folder.h"
 #include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
@@ -129,6 +130,33 @@ void RunDiagnose(const Options& o) {
   if (d.interrupted) throw Error::Job("interrupted: the files hold what was found so far");
 }
 
+// The bundled example, copied to where its user may change it.
+void CopyExample(const std::filesystem::path& to) {
+  namespace fs = std::filesystem;
+  const fs::path from = ModelsFolder() / "annelida";
+  if (!fs::exists(from / "demo" / "annelida.yaml"))
+    throw Error::Input(from.string(), "the bundled example", "none");
+  MakeFolder(to / "demo");
+  WriteFile(to / "annelida.xml", ReadFile(from / "annelida.xml"));
+  for (const auto& entry : fs::directory_iterator(from / "demo")) {
+    const fs::path name = entry.path().filename();
+    if (name.extension() == ".csv" || name.extension() == ".yaml")
+      WriteFile(to / "demo" / name, ReadFile(entry.path()));
+  }
+}
+
+void RunDemo(const std::filesystem::path& out) {
+  CopyExample(out / "annelida");
+  Options o;
+  o.experiment = (out / "annelida" / "demo" / "annelida.yaml").string();
+  o.out = (out / "diagnosis").string();
+  std::printf("$ continuum diagnose %s --out %s\n", o.experiment.c_str(), o.out.c_str());
+  std::fflush(stdout);  // before a minute of work
+  RunDiagnose(o);
+  std::printf("Open the report in a browser. Change %s and diagnose again.\n",
+              o.experiment.c_str());
+}
+
 struct ApplyOptions {
   std::string diagnosis, model, out;
 };
@@ -169,6 +197,16 @@ void AddDiagnose(CLI::App& app) {
   sub->footer(
       "Example:\n  continuum diagnose models/annelida/demo/annelida.yaml --out out --video");
   sub->callback([o] { RunDiagnose(*o); });
+}
+
+void AddDemo(CLI::App& app) {
+  const auto out = std::make_shared<std::string>("continuum_demo");
+  CLI::App* const sub =
+      app.add_subcommand("demo", "Copy the bundled logs of a snake arm and diagnose them");
+  sub->add_option("--out", *out, "folder for the copy, and for the diagnosis")
+      ->capture_default_str();
+  sub->footer("Example:\n  continuum demo");
+  sub->callback([out] { RunDemo(*out); });
 }
 
 void AddApply(CLI::App& app) {

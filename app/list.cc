@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
+#include "app/models_folder.h"
 #include "binding/effect_catalog.h"
 
 namespace continuum {
@@ -55,15 +56,6 @@ void ListEffects(bool json) {
     }
   }
   if (json) Print(all.dump(2) + "\n");
-}
-
-// The folder models/ of the installation that this executable belongs to, or of the sources.
-std::filesystem::path ModelsFolder() {
-  namespace fs = std::filesystem;
-  std::error_code unknown;
-  const fs::path prefix = fs::read_symlink("/proc/self/exe", unknown).parent_path().parent_path();
-  const fs::path installed = prefix / "share/mujoco_continuum/models";
-  return fs::is_directory(installed, unknown) ? installed : fs::path(CONTINUUM_MODELS);
 }
 
 // Name and file of every robot: <robot>/<robot>.xml, or all models of a robot with several.

@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", CONTINUUM_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Example:\n  continuum diagnose models/annelida/demo/annelida.yaml --out out\n"
+      "Example:\n  continuum demo\n"
       "continuum SUBCOMMAND --help shows the options of one.");
   int exit_code = 0;
   continuum::AddRun(app);
@@ -90,6 +90,7 @@ int main(int argc, char** argv) {
   continuum::AddRender(app);
   continuum::AddIdentify(app);
   continuum::AddDiagnose(app);
+  continuum::AddDemo(app);
   continuum::AddApply(app);
   continuum::AddSolve(app, exit_code);
   continuum::AddEffects(app);
