@@ -5,6 +5,9 @@ where MuJoCo is installed already. Version and MuJoCo's release are read from CM
 
     pip install .                                             # builds in build/wheel
     pip install . --config-settings build-dir=build/release   # takes what is built there
+
+A folder of plugins for other releases of MuJoCo (scripts/releases) goes in as
+--config-settings plugins=build/releases/plugins.
 """
 import base64
 import hashlib
@@ -52,8 +55,10 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         shutil.copytree(ROOT / "python" / PACKAGE, stage / PACKAGE,
                         ignore=shutil.ignore_patterns("__pycache__"))
         (stage / PACKAGE / "_build.py").write_text(
-            f'"""What this package was built as."""\nVERSION = "{VERSION}"\nMUJOCO = "{MUJOCO}"\n')
+            f'"""What this package was built as."""\nVERSION = "{VERSION}"\nMUJOCO = "{MUJOCO}"\n'
+            f'FILMS = "{_films(folder)}"\n')
         _run("cmake", "--install", folder, "--prefix", stage / PACKAGE, "--strip")
+        _add_plugins((config_settings or {}).get("plugins"), stage / PACKAGE / "lib" / "releases")
         _write_metadata(stage / INFO)
         _pack(stage, pathlib.Path(wheel_directory) / name)
     return name
@@ -103,6 +108,23 @@ def _compile():
     return folder
 
 
+def _films(build):
+    """What encodes films: libav, or a program."""
+    libav = "CONTINUUM_LIBAV:BOOL=OFF" not in (build / "CMakeCache.txt").read_text()
+    return "libav" if libav else "program"
+
+
+def _add_plugins(folder, releases):
+    """Plugins of other releases, each in the folder of its release, as scripts/releases built them."""
+    for plugin in sorted((ROOT / folder).glob("*/*.so")) if folder else []:
+        release = plugin.parent.name
+        if release == MUJOCO:
+            continue
+        (releases / release).mkdir(parents=True)
+        shutil.copy(plugin, releases / release)
+        _run("strip", "--strip-unneeded", releases / release / plugin.name)
+
+
 def _run(*command):
     try:
         subprocess.run([str(word) for word in command], check=True)
@@ -115,6 +137,7 @@ def _metadata():
              f"Summary: {PROJECT['description']}", f"License: {PROJECT['license']['text']}",
              f"Requires-Python: {PROJECT['requires-python']}", "Provides-Extra: mujoco",
              f"Requires-Dist: mujoco-core=={MUJOCO}; extra == 'mujoco'",
+             "Provides-Extra: films", "Requires-Dist: imageio-ffmpeg; extra == 'films'",
              "Description-Content-Type: text/markdown", "", (ROOT / PROJECT["readme"]).read_text()]
     return "\n".join(lines)
 

@@ -1,7 +1,7 @@
 """mujoco-continuum: the missing physics of continuum robots in MuJoCo, and the tools around it.
 
-Importing this package loads its plugin into the MuJoCo of this Python, so that models with
-`continuum.<effect>` plugins compile. The functions run the packaged executable `continuum`:
+Importing this package loads the plugin of the MuJoCo of this Python, so that models with
+`continuum.<effect>` plugins compile. PLUGINS has a plugin for each release of MuJoCo. The functions run the packaged executable `continuum`:
 
     check      what is odd in the logs
     replay     how far the model is off
@@ -20,13 +20,13 @@ except ModuleNotFoundError as error:
     raise ImportError("this is mujoco_continuum's source tree, where nothing is built; install it "
                       "with `pip install .` and start Python elsewhere") from error
 from ._engine import load as _load
-from ._paths import EXECUTABLE, MODELS, PLUGIN
+from ._paths import EXECUTABLE, MODELS, PLUGINS
 from ._tool import Error, InputError, JobError
 from .commands import apply, check, diagnose, effects, identify, models, replay
 from .laws import force_law, friction_law
 
-__all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "Error", "InputError", "JobError", "apply",
-           "check", "diagnose", "effects", "force_law", "friction_law", "identify", "models",
-           "replay"]
+__all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Error", "InputError", "JobError",
+           "apply", "check", "diagnose", "effects", "force_law", "friction_law", "identify",
+           "models", "replay"]
 
-_load()
+PLUGIN = _load()

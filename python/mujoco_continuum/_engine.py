@@ -2,15 +2,17 @@
 import pathlib
 
 from ._build import MUJOCO, VERSION
-from ._paths import PLUGIN
+from ._paths import PLUGINS
 
 
-def load() -> None:
-    """Registers the effects.
+def load() -> pathlib.Path:
+    """Registers the effects; returns the plugin that does it.
 
-    Raises ImportError when MuJoCo is not here or is another release (a plugin belongs to exactly
-    one), or when another copy of the plugin is in this process."""
-    need = f"mujoco_continuum {VERSION} needs MuJoCo {MUJOCO}"
+    Raises ImportError when MuJoCo is not here or is a release without a plugin (each belongs to
+    exactly one), or when another copy of the plugin is in this process."""
+    releases = list(PLUGINS)
+    listed = ", ".join(releases[:-1]) + (" or " if releases[1:] else "") + releases[-1]
+    need = f"mujoco_continuum {VERSION} needs MuJoCo {listed}"
     try:
         import mujoco
     except ModuleNotFoundError as error:
@@ -18,14 +20,16 @@ def load() -> None:
             raise
         raise ImportError(f"{need} and finds none: pip install mujoco-core=={MUJOCO}") from None
     found = mujoco.mj_versionString()
-    if found != MUJOCO:
+    if found not in PLUGINS:
         raise ImportError(f"{need} and finds {found}: pip install mujoco-core=={MUJOCO}, or build "
                           f"mujoco_continuum for {found}")
+    plugin = PLUGINS[found]
     for other in _loaded_copies():
-        if other != PLUGIN:
+        if other != plugin:
             raise ImportError(f"the plugin is loaded already, from {other}; without that "
                               "mj_loadPluginLibrary, importing mujoco_continuum loads its own")
-    mujoco.mj_loadPluginLibrary(str(PLUGIN))
+    mujoco.mj_loadPluginLibrary(str(plugin))
+    return plugin
 
 
 def _loaded_copies() -> set[pathlib.Path]:
@@ -33,4 +37,4 @@ def _loaded_copies() -> set[pathlib.Path]:
     with open("/proc/self/maps") as maps:
         words = [line.split(maxsplit=5) for line in maps]
     files = {pathlib.Path(word[5].strip()) for word in words if len(word) == 6}
-    return {file for file in files if file.name == PLUGIN.name}
+    return {file for file in files if file.name == PLUGINS[MUJOCO].name}

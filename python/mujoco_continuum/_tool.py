@@ -1,12 +1,15 @@
 """Runs the packaged executable."""
+import contextlib
 import importlib.util
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import tempfile
 from collections.abc import Callable, Mapping
 
+from ._build import FILMS
 from ._paths import EXECUTABLE
 
 Progress = Callable[[str], object]
@@ -25,11 +28,16 @@ class JobError(Error):
 
 
 def environment() -> dict[str, str]:
-    """This process's environment, in which the executable finds the MuJoCo of this Python."""
+    """This process's environment, in which the executable finds the MuJoCo of this Python, and the
+    ffmpeg of imageio-ffmpeg where there is no other."""
     spec = importlib.util.find_spec("mujoco")
     folders = list(spec.submodule_search_locations or []) if spec else []
     folders += filter(None, [os.environ.get("LD_LIBRARY_PATH")])
-    return os.environ | {"LD_LIBRARY_PATH": os.pathsep.join(folders)}
+    more = {"LD_LIBRARY_PATH": os.pathsep.join(folders)}
+    if "CONTINUUM_FFMPEG" not in os.environ and FILMS == "program" and not shutil.which("ffmpeg"):
+        with contextlib.suppress(ImportError, RuntimeError):  # without it the tool says what to do
+            more["CONTINUUM_FFMPEG"] = importlib.import_module("imageio_ffmpeg").get_ffmpeg_exe()
+    return os.environ | more
 
 
 def run(arguments: list[str], progress: Progress | None = None,

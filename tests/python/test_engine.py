@@ -12,6 +12,20 @@ import mujoco_continuum
 SOURCES = pathlib.Path(__file__).parents[2] / "python"
 
 
+# The plugin of a release that is not there, in a MuJoCo that says it is this release.
+LOADS_ANOTHER = """
+import pathlib, sys, types
+fake = types.ModuleType("mujoco")
+fake.mj_versionString = lambda: "3.12.0"
+fake.mj_loadPluginLibrary = lambda file: print("loads", file)
+sys.modules["mujoco"] = fake
+glob = pathlib.Path.glob
+pathlib.Path.glob = lambda self, pattern: (
+    [pathlib.Path("/there/3.12.0")] if self.name == "releases" else glob(self, pattern))
+import mujoco_continuum
+"""
+
+
 def python(code, **options):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, **options)
 
@@ -46,7 +60,12 @@ class Import(unittest.TestCase):
     def test_with_another_release_says_which_is_needed(self):
         run = python("import mujoco; mujoco.mj_versionString = lambda: '3.9.9'\n"
                      "import mujoco_continuum")
-        self.assertIn(f"needs MuJoCo {mujoco_continuum.MUJOCO} and finds 3.9.9", run.stderr)
+        self.assertIn(f"{mujoco_continuum.MUJOCO} and finds 3.9.9: pip install mujoco-core==",
+                      run.stderr)
+
+    def test_takes_the_plugin_of_the_release_that_is_there(self):
+        run = python(LOADS_ANOTHER)
+        self.assertEqual(run.stdout, "loads /there/3.12.0/libmujoco_continuum.so\n", run.stderr)
 
     def test_beside_another_copy_of_the_plugin_says_so(self):
         run = python("import mujoco, pathlib, shutil, sys, tempfile, importlib.util\n"
