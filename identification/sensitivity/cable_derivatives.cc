@@ -163,7 +163,23 @@ void CableDerivatives::FollowBand(int s, const RowVector& theta, const NumberTan
   }
 }
 
-// t_0 = −Σ gear · force where that pulls.
+// Of k x + b L̇ of a tendon, x beyond the range in which its spring rests.
+void CableDerivatives::FollowPassive(const mjModel& m, const mjData& d, int t,
+                                     const NumberTangents& numbers, Eigen::Ref<RowVector> tension) {
+  const double* const rest = m.tendon_lengthspring + 2 * t;
+  const double x = d.ten_length[t] - std::clamp(d.ten_length[t], rest[0], rest[1]);
+  if (!(m.opt.disableflags & mjDSBL_SPRING) && (x != 0 || rest[0] == rest[1])) {
+    tension += x * numbers.tendon_stiffness.row(t) +
+               m.tendon_stiffness[t] * (numbers[Kind::kLength].row(t) -
+                                        numbers[Kind::kTendonRest].row(2 * t + (x > 0)));
+  }
+  if (!(m.opt.disableflags & mjDSBL_DAMPER)) {
+    tension += d.ten_velocity[t] * numbers.tendon_damping.row(t) +
+               m.tendon_damping[t] * numbers[Kind::kRate].row(t);
+  }
+}
+
+// t_0 = −Σ gear · force, and spring and damper, where that pulls.
 void CableDerivatives::FollowBases(const mjModel& m, const mjData& d,
                                    const NumberTangents& numbers) {
   const CableFriction& law = *law_.law;
@@ -175,6 +191,7 @@ void CableDerivatives::FollowBases(const mjModel& m, const mjData& d,
       base_.row(c) -= m.actuator_gear[6 * output] * numbers[Kind::kActuator].row(a) +
                       d.actuator_force[output] * numbers[Kind::kGear].row(a);
     }
+    FollowPassive(m, d, law.cables()[c].tendon, numbers, base_.row(c));
   }
 }
 

@@ -50,6 +50,8 @@ class CableDerivatives {
   void FollowBands(const mjModel& m, const mjData& d, const NumberTangents& numbers);
   void FollowBand(int segment, const RowVector& theta, const NumberTangents& numbers);
   void FollowBases(const mjModel& m, const mjData& d, const NumberTangents& numbers);
+  static void FollowPassive(const mjModel& m, const mjData& d, int tendon,
+                            const NumberTangents& numbers, Eigen::Ref<RowVector> tension);
   void FollowRatios(const NumberTangents& numbers);
   void FollowSpeed(std::size_t g, const NumberTangents& numbers);
   void AddCurvatures(const mjModel& m);

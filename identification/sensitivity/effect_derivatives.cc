@@ -73,6 +73,8 @@ EffectDerivatives::EffectDerivatives(const ModelAndData& machine,
   // Of hinges and slides, whose positions are numbered as their speeds are.
   spring_rest_ = ArrayTangents(m, perturbed, move, &mjModel::qpos_spring, m.nv);
   tendon_rest_ = ArrayTangents(m, perturbed, move, &mjModel::tendon_lengthspring, 2 * m.ntendon);
+  tendon_stiffness_ = ArrayTangents(m, perturbed, move, &mjModel::tendon_stiffness, m.ntendon);
+  tendon_damping_ = ArrayTangents(m, perturbed, move, &mjModel::tendon_damping, m.ntendon);
 }
 
 void EffectDerivatives::Update(Group group, const mjModel& m, const mjData& d,
@@ -119,6 +121,8 @@ void EffectDerivatives::WriteConstants(NumberTangents& numbers) const {
   numbers[Number::Kind::kParameter] = parameters_;
   numbers[Number::Kind::kSpringRest] = spring_rest_;
   numbers[Number::Kind::kTendonRest] = tendon_rest_;
+  numbers.tendon_stiffness = tendon_stiffness_;
+  numbers.tendon_damping = tendon_damping_;
 }
 
 bool EffectDerivatives::Reads(Number::Kind kind) const {

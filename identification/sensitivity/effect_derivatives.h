@@ -61,7 +61,7 @@ class EffectDerivatives {
   std::vector<int> state_;           ///< [instance of the model] the first of its own
   std::vector<Instance> instances_;  ///< signals in the order they act
   bool uses_actuators_ = false;
-  Tangents parameters_, spring_rest_, tendon_rest_;
+  Tangents parameters_, spring_rest_, tendon_rest_, tendon_stiffness_, tendon_damping_;
 };
 
 }  // namespace continuum

@@ -52,6 +52,8 @@ class NumberTangents {
   Tangents& operator[](Kind kind) { return of_[static_cast<std::size_t>(kind)]; }
   const Tangents& operator[](Kind kind) const { return of_[static_cast<std::size_t>(kind)]; }
 
+  Tangents tendon_stiffness, tendon_damping;  ///< [ntendon]
+
   /// Makes room for the rows of the constraint solver, all zero.
   void SetRows(int rows) {
     const Eigen::Index perturbed = (*this)[Kind::kPosition].cols();

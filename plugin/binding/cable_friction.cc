@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "binding/applied_force.h"
+#include "binding/tree_groups.h"
 #include "error.h"
 
 namespace continuum {
@@ -19,6 +20,23 @@ Driven DrivenEnd(const Config& config) {
   if (text.empty() || text == "first") return Driven::kFirst;
   if (text == "last") return Driven::kLast;
   throw Error::Input(config.Who() + ": driven", "first | last", "'" + std::string(text) + "'");
+}
+
+// Cables of one robot one after the other, as CableSliding needs them.
+std::vector<Cable> Grouped(const mjModel& m, std::vector<Cable> cables) {
+  std::vector<std::vector<int>> dofs;
+  for (const Cable& cable : cables) {
+    dofs.emplace_back();
+    for (const JacobianEntry& entry : cable.entries) dofs.back().push_back(entry.dof);
+  }
+  const std::vector<int> group = TreeGroups(m, dofs);
+  std::vector<Cable> sorted;
+  for (int g = 0; sorted.size() < cables.size(); ++g) {
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+      if (group[c] == g) sorted.push_back(std::move(cables[c]));
+    }
+  }
+  return sorted;
 }
 
 // A glob takes what it can; what is written by its name must be a cable.
@@ -42,7 +60,7 @@ std::vector<Cable> MatchCables(const mjModel& m, const Config& config) {
     const auto branches = MakeCables(m, t, DrivenEnd(config), config.Who());
     cables.insert(cables.end(), branches.begin(), branches.end());
   }
-  return cables;
+  return Grouped(m, std::move(cables));
 }
 
 int DepthOf(const mjModel& m, int site) {
@@ -177,16 +195,16 @@ std::string CableFriction::WhyNoSlopes(const mjModel& m) const {
   const bool none = std::all_of(p_.begin(), p_.end(), [](double p) { return p == 0; });
   if (none) return "without friction nobody knows which contacts would rest";
   if (tension_rows_.any()) return "a limit or an equality pulls a cable";
+  if (sliding_.islands() > 1) return "its cables belong to several robots";
   for (const Cable& cable : cables_) {
     const int t = cable.tendon;
     if (cable.Wraps()) return "a cable wraps a geom";
     if (cable.segments() + 1 != m.tendon_num[t]) return "a cable runs over a pulley";
-    if (m.tendon_stiffness[t] != 0 || m.tendon_damping[t] != 0)
-      return "a tendon has a spring or a damper";
+    if (m.tendon_plasticadr[t] >= 0) return "the spring of a tendon yields";
     for (int k = 0; k < mjNPOLY; ++k) {
       if (m.tendon_stiffnesspoly[mjNPOLY * t + k] != 0 ||
           m.tendon_dampingpoly[mjNPOLY * t + k] != 0)
-        return "a tendon has a spring or a damper";
+        return "the spring or damper of a tendon is not linear";
     }
   }
   return "";
@@ -249,7 +267,7 @@ void CableFriction::Solve(const mjModel& m, mjData& d, const double* z) {
   std::fill(ratio_.begin(), ratio_.end(), 1.0);
   if (!Collect(z)) return;
   AppliedForces(m, d, force_.data());
-  for (const int dof : sliding_.inertia().dofs()) force_[dof] += z[m.nwrap + dof];
+  for (const int dof : sliding_.dofs()) force_[dof] += z[m.nwrap + dof];
   sliding_.Solve({m, d, geometry_, native_, base_, last_, force_, solved_},
                  {bends_.data(), count_});
   Share(z);
@@ -328,8 +346,8 @@ void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
     if (base_[c] > 0) {
       std::copy(rho_.begin() + first, rho_.begin() + end, z + first);
       z[first] = base_[c];
-    } else {
-      z[first] = std::max(z[first], kLeastPull);  // no longer fresh
+    } else if (z[first] == 0) {
+      z[first] = kLeastPull;  // no longer fresh
     }
   }
   force_.assign(d.qfrc_constraint, d.qfrc_constraint + m.nv);
@@ -337,7 +355,7 @@ void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
     for (const TensionRow& row : tension_rows_.At(m, d))
       row.Add(m, d, -d.efc_force[row.row], force_.data());
   }
-  for (const int dof : sliding_.inertia().dofs()) z[m.nwrap + dof] = force_[dof];
+  for (const int dof : sliding_.dofs()) z[m.nwrap + dof] = force_[dof];
 }
 
 std::string_view CableFriction::SensorPlace(const mjModel&, mjtObj kind, int id) const {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "binding/tree_groups.h"
 
 namespace continuum {
 namespace {
@@ -26,42 +29,56 @@ int FirstGuess(const Bend& bend) {
   return bend.memory > 0 ? 1 : -1;
 }
 
-}  // namespace
-
-std::vector<int> Joined(std::span<const int> a, std::span<const int> b) {
-  std::vector<int> all(a.begin(), a.end());
-  all.insert(all.end(), b.begin(), b.end());
-  return all;
+bool Slides(const Bend& bend, double v) {
+  return bend.band == 0 || bend.given || -bend.side * v > kStart;
 }
+
+}  // namespace
 
 CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry,
                            std::span<const int> rows)
-    : inertia_(m, Joined(geometry.dof, rows)), row_base_(geometry.cables()) {
-  const int n = inertia_.size();
-  for (const int dof : geometry.dof) place_.push_back(inertia_.index(dof));
-  least_.assign(geometry.segments(), n);
+    : row_base_(geometry.cables()) {
+  std::vector<std::vector<int>> of_cable, dofs(1, {rows.begin(), rows.end()});
   for (int c = 0; c < geometry.cables(); ++c) {
-    int least = n;
-    for (int s = geometry.first[c + 1]; s-- > geometry.first[c];) {
-      for (int l = geometry.begin[s]; l < geometry.begin[s + 1]; ++l) {
-        least = std::min(least, place_[l]);
-      }
-      least_[s] = least;
-    }
+    const int* const all = geometry.dof.data();
+    of_cable.emplace_back(all + geometry.begin[geometry.first[c]],
+                          all + geometry.begin[geometry.first[c + 1]]);
   }
-  follow_.resize(n), velocity_.resize(n), work_.resize(m.nv), none_.resize(m.nv);
+  island_of_ = rows.empty() ? TreeGroups(m, of_cable) : std::vector<int>(of_cable.size(), 0);
+  for (std::size_t c = 0; c < of_cable.size(); ++c) {
+    dofs.resize(std::max<std::size_t>(dofs.size(), island_of_[c] + 1));
+    auto& island = dofs[island_of_[c]];
+    island.insert(island.end(), of_cable[c].begin(), of_cable[c].end());
+  }
+  for (const auto& each : dofs) {
+    inertias_.emplace_back(m, each);
+    dofs_.insert(dofs_.end(), inertias_.back().dofs().begin(), inertias_.back().dofs().end());
+  }
+  least_.assign(geometry.segments(), 0);
+  for (int c = 0; c < geometry.cables(); ++c) AddPlaces(geometry, c);
+  work_.resize(m.nv), none_.resize(m.nv);
+}
+
+void CableSliding::AddPlaces(const CableGeometry& geometry, int c) {
+  const StepInertia& inertia = inertias_[island_of_[c]];
+  for (int l = geometry.begin[geometry.first[c]]; l < geometry.begin[geometry.first[c + 1]]; ++l)
+    place_.push_back(inertia.index(geometry.dof[l]));
+  int least = inertia.size();
+  for (int s = geometry.first[c + 1]; s-- > geometry.first[c];) {
+    for (int l = geometry.begin[s]; l < geometry.begin[s + 1]; ++l)
+      least = std::min(least, place_[l]);
+    least_[s] = least;
+  }
 }
 
 void CableSliding::Solve(const World& w, std::span<Bend> bends) {
   Guess(w, bends);
   GiveFresh(w, bends);
-  if (w.rows.empty() && AllSlide(w, bends)) return;
-  inertia_.Update(w.m, w.d);
   if (w.rows.empty()) {
-    matrix_ = inertia_.matrix(), push_.assign(w.force.begin(), w.force.end());
-    SolveSides(w, bends);
+    SolveIslands(w, bends);
     return;
   }
+  Begin(w, 0);
   do {
     TakeRows(w);
     SolveSides(w, bends);
@@ -71,11 +88,36 @@ void CableSliding::Solve(const World& w, std::span<Bend> bends) {
   }
 }
 
+// Those in which something is or comes near to rest in this step.
+void CableSliding::SolveIslands(const World& w, std::span<Bend> bends) {
+  bool changes = false;
+  for (std::size_t begin = 0, end = 0; begin < bends.size(); begin = end) {
+    const int island = island_of_[bends[begin].cable];
+    while (end < bends.size() && island_of_[bends[end].cable] == island) ++end;
+    const std::span<Bend> some = bends.subspan(begin, end - begin);
+    bool slide = std::all_of(some.begin(), some.end(),
+                             [](const Bend& bend) { return Slides(bend, bend.speed); });
+    if (slide && !std::exchange(changes, true)) Changes(w, bends, w.force);
+    for (std::size_t g = begin; slide && g < end; ++g)
+      slide = Slides(bends[g], bends[g].speed + change_[g]);
+    if (slide) continue;
+    Begin(w, island);
+    system_ = inertia().matrix(), push_ = w.force;
+    SolveSides(w, some);
+  }
+}
+
+void CableSliding::Begin(const World& w, int island) {
+  island_ = island;
+  inertias_[island].Update(w.m, w.d);
+  follow_.resize(inertia().size()), velocity_.resize(inertia().size());
+}
+
 // (1a) of the rows that act.
 void CableSliding::TakeRows(const World& w) {
-  const int n = inertia_.size();
+  const int n = inertia().size();
   const double h = w.m.opt.timestep;
-  matrix_ = inertia_.matrix(), push_.assign(w.force.begin(), w.force.end());
+  matrix_ = inertia().matrix(), pushed_.assign(w.force.begin(), w.force.end());
   for (std::size_t c = 0; c < row_base_.size(); ++c) {
     RowBase& base = row_base_[c];
     base.rows = std::any_of(w.rows.begin(), w.rows.end(),
@@ -87,19 +129,20 @@ void CableSliding::TakeRows(const World& w) {
   for (const SolvedRow& row : w.rows) {
     if (!row.acts) continue;
     for (int i = 0; i < n; ++i) {
-      const double Ji = row.J[inertia_.dofs()[i]];
+      const double Ji = row.J[inertia().dofs()[i]];
       if (Ji == 0) continue;
-      push_[inertia_.dofs()[i]] += Ji * row.stiffness * row.reference;
+      pushed_[inertia().dofs()[i]] += Ji * row.stiffness * row.reference;
       for (int j = i; j < n; ++j)
-        matrix_[i * n + j] += row.stiffness * Ji * row.J[inertia_.dofs()[j]];
+        matrix_[i * n + j] += row.stiffness * Ji * row.J[inertia().dofs()[j]];
     }
     for (std::size_t c = 0; c < row_base_.size(); ++c) {
       if (row.on[c] == 0) continue;
       row_base_[c].constant += row.on[c] * row.stiffness * row.reference;
       for (int i = 0; i < n; ++i)
-        row_base_[c].slope[i] += row.on[c] * row.stiffness / h * row.J[inertia_.dofs()[i]];
+        row_base_[c].slope[i] += row.on[c] * row.stiffness / h * row.J[inertia().dofs()[i]];
     }
   }
+  system_ = matrix_, push_ = pushed_;
 }
 
 // Limits that would have to pull the other way act no more; whether there was one.
@@ -108,7 +151,7 @@ bool CableSliding::ReleaseRows(const World& w) {
   for (SolvedRow& row : w.rows) {
     if (!row.acts || !row.limit) continue;
     double change = 0;
-    for (int i = 0; i < inertia_.size(); ++i) change += row.J[inertia_.dofs()[i]] * velocity_[i];
+    for (int i = 0; i < inertia().size(); ++i) change += row.J[inertia().dofs()[i]] * velocity_[i];
     row.acts = row.reference - change / w.m.opt.timestep >= 0;
     some |= !row.acts;
   }
@@ -119,12 +162,12 @@ double CableSliding::BaseOf(const World& w, int cable) const {
   const RowBase& base = row_base_[cable];
   if (w.rows.empty() || !base.rows) return w.base[cable];
   double tension = base.constant;
-  for (int i = 0; i < inertia_.size(); ++i) tension -= base.slope[i] * velocity_[i];
+  for (int i = 0; i < inertia().size(); ++i) tension -= base.slope[i] * velocity_[i];
   return tension;
 }
 
 void CableSliding::SolveSides(const World& w, std::span<Bend> bends) {
-  solver_.Begin(matrix_, inertia_.size());
+  solver_.Begin(system_, inertia().size());
   give_way_ = kGiveWay;
   while (!Settle(w, bends) && give_way_ < kGiveWayMost) give_way_ *= kEasier;
   while (give_way_ > kGiveWay) {
@@ -196,21 +239,6 @@ void CableSliding::GiveFresh(const World& w, std::span<Bend> bends) {
   }
 }
 
-// Whether nothing comes near to rest in this step.
-bool CableSliding::AllSlide(const World& w, std::span<const Bend> bends) {
-  const auto slides = [&](const Bend& bend, double v) {
-    return bend.band == 0 || bend.given || -bend.side * v > kStart;
-  };
-  for (const Bend& bend : bends) {
-    if (!slides(bend, bend.speed)) return false;
-  }
-  Changes(w, bends, w.force);
-  for (std::size_t g = 0; g < bends.size(); ++g) {
-    if (!slides(bends[g], bends[g].speed + change_[g])) return false;
-  }
-  return true;
-}
-
 void CableSliding::Assign(const World& w, std::span<const Bend> bends) {
   int cable = -1;
   double expected = 0;  // tension by all ratios
@@ -231,7 +259,7 @@ void CableSliding::Assign(const World& w, std::span<const Bend> bends) {
 
 // The place of the first dof that the friction of bends at rest depends on, or acts on.
 int CableSliding::FirstAtRest(std::span<const Bend> bends) const {
-  int first = inertia_.size();
+  int first = inertia().size();
   for (const Bend& bend : bends) {
     if (bend.side == 0) first = std::min(first, least_[bend.segment]);
   }
@@ -250,9 +278,9 @@ void CableSliding::Follow(const World& w, const Bend& bend, double f,
 // at rest from the base on.
 void CableSliding::Assemble(const World& w, std::span<const Bend> bends) {
   const double h = w.m.opt.timestep;
-  const int n = inertia_.size(), first = w.rows.empty() ? FirstAtRest(bends) : 0, rest = n - first;
+  const int n = inertia().size(), first = w.rows.empty() ? FirstAtRest(bends) : 0, rest = n - first;
   const std::span<double> block = solver_.Block(first);
-  for (int i = 0; i < n; ++i) velocity_[i] = h * push_[inertia_.dofs()[i]];
+  for (int i = 0; i < n; ++i) velocity_[i] = h * push_[inertia().dofs()[i]];
   int cable = -1;
   double base = 0, constant = 0, scale = 0;
   bool follows = false;

@@ -80,7 +80,13 @@ class CableSliding {
   /// rows: further degrees of freedom that rows act on.
   CableSliding(const mjModel& m, const CableGeometry& geometry, std::span<const int> rows);
 
-  const StepInertia& inertia() const { return inertia_; }
+  /// Cables in separate kinematic trees do not couple: each island of them is solved by itself. A
+  /// law with cables in one order of islands has them in contiguous runs.
+  int islands() const { return static_cast<int>(inertias_.size()); }
+  /// Degrees of freedom of all islands.
+  const std::vector<int>& dofs() const { return dofs_; }
+  /// Of the island solved last.
+  const StepInertia& inertia() const { return inertias_[island_]; }
   /// v_c and q̇⁺ − q̇ [inertia().dofs()] of the last solution that has bends at rest.
   double give_way() const { return answer_.give_way; }
   const std::vector<double>& change() const { return answer_.velocity; }
@@ -96,7 +102,9 @@ class CableSliding {
   void Guess(const World& w, std::span<Bend> bends);
   void GiveFresh(const World& w, std::span<Bend> bends);
   void Changes(const World& w, std::span<const Bend> bends, std::span<const double> force);
-  bool AllSlide(const World& w, std::span<const Bend> bends);
+  void AddPlaces(const CableGeometry& geometry, int cable);
+  void SolveIslands(const World& w, std::span<Bend> bends);
+  void Begin(const World& w, int island);
   void SolveSides(const World& w, std::span<Bend> bends);
   void TakeRows(const World& w);
   bool ReleaseRows(const World& w);
@@ -116,12 +124,15 @@ class CableSliding {
   };
   double BaseOf(const World& w, int cable) const;
 
-  StepInertia inertia_;
-  std::vector<RowBase> row_base_;  ///< [cables]
-  std::vector<double> matrix_;     ///< of inertia_ with the rows that act
-  std::vector<double> push_;       ///< [nv] F with those rows
+  std::vector<int> island_of_;         ///< [cables]
+  std::vector<StepInertia> inertias_;  ///< [islands]
+  std::vector<int> dofs_;
+  int island_ = 0;
+  std::vector<RowBase> row_base_;          ///< [cables]
+  std::vector<double> matrix_, pushed_;    ///< inertia and F with the rows that act
+  std::span<const double> system_, push_;  ///< what is solved: inertia and F [nv]
   BlockSolver solver_;
-  std::vector<int> place_;  ///< [entries] of its dof in inertia_
+  std::vector<int> place_;  ///< [entries] of its dof in the inertia of its island
   std::vector<int> least_;  ///< [segments] the first place that moves it or what is distal of it
   double give_way_ = 0;     ///< v_c
   struct {

@@ -283,5 +283,46 @@ TEST_F(CableRoute, ASlackCableKeepsItsMemory) {
   EXPECT_EQ(d->plugin_state[1], before[1]);
 }
 
+// Robots that share no kinematic tree do not couple: one instance for both is one for each. A third
+// cable joins the second robot to a third.
+TEST_F(CableRoute, OneInstanceOnSeveralRobotsIsOneOnEach) {
+  const auto arm = [](const std::string& name, double y, double z) {
+    return fmt::format(R"(<site name="{0}0" pos="-.1 {1} {2}"/><site name="{0}1" pos="0 {1} {2}"/>
+      <body pos="0 {1} 0"><joint axis="0 1 0" stiffness=".5" damping=".01"/>
+        <geom type="capsule" fromto="0 0 0 .1 0 0" size=".01" mass=".05" contype="0"/>
+        <site name="{0}2" pos=".05 0 {2}"/><body pos=".1 0 0">
+          <joint axis="0 1 0" stiffness=".5" damping=".01"/>
+          <geom type="capsule" fromto="0 0 0 .1 0 0" size=".01" mass=".05" contype="0"/>
+          <site name="{0}3" pos=".05 0 {2}"/></body></body>)",
+                       name, y, z);
+  };
+  const auto run = [&](const std::string& instances) {
+    const auto m = Model("<mujoco><extension><plugin plugin=\"continuum.capstan\">" + instances +
+                         R"(</plugin></extension>
+      <option timestep=".001" integrator="implicitfast"/><worldbody>)" +
+                         arm("a", 0, .02) + arm("b", 1, .02) + arm("c", 1.2, .03) + R"(</worldbody>
+      <tendon><spatial name="b"><site site="b0"/><site site="b1"/><site site="b2"/>
+          <site site="b3"/></spatial>
+        <spatial name="a"><site site="a0"/><site site="a1"/><site site="a2"/><site site="a3"/></spatial>
+        <spatial name="c"><site site="b0"/><site site="b1"/><site site="b3"/><site site="c2"/>
+          <site site="c3"/></spatial></tendon>
+      <actuator><motor tendon="a" gear="-1"/><motor tendon="b" gear="-1"/><motor tendon="c" gear="-1"/>
+      </actuator></mujoco>)");
+    const auto d = Data(m);
+    while (d->time < 1) {
+      for (int u = 0; u < 3; ++u) d->ctrl[u] = 2 + 2 * std::sin(7 * d->time + u);
+      mj_step(m.get(), d.get());
+    }
+    return std::vector<double>(d->qpos, d->qpos + m->nq);
+  };
+  const auto instance = [](const std::string& name, const std::string& tendons) {
+    return "<instance name=\"" + name + "\">" + Key("tendon", tendons) + Key("mu", ".3") +
+           "</instance>";
+  };
+  const auto all = run(instance("all", "*")), each = run(instance("x", "a") + instance("y", "b c"));
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(all[i], each[i], 1e-12) << i;
+  EXPECT_GT(std::abs(all[0]), .01);
+}
+
 }  // namespace
 }  // namespace continuum
