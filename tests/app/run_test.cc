@@ -112,5 +112,42 @@ TEST_F(RunCommand, TakesPathsWithSpacesAndUmlauts) {
   EXPECT_THAT(Scratch::Text(files_ / "mein Ordner – ü/Ergebnis 1.csv"), StartsWith("time,angle"));
 }
 
+constexpr char kControls[] = R"(<mujoco><option gravity="0 0 0"/><worldbody>
+  <body><joint name="a" damping=".1"/><geom size=".1" pos=".1 0 0" contype="0" conaffinity="0"/></body>
+  <body><joint name="b" damping=".1"/><geom size=".1" pos=".1 0 0" contype="0" conaffinity="0"/></body></worldbody>
+  <actuator><pid name="servo" joint="a" kp="5" kv=".3"/><motor name="last" joint="b"/></actuator>
+  <sensor><jointpos name="a" joint="a"/><jointpos name="b" joint="b"/></sensor>
+  <keyframe><key name="bent" qpos=".5 -.25" ctrl=".5 0 0"/></keyframe></mujoco>)";
+
+// MuJoCo's pid has two controls: a position and a speed.
+TEST_F(RunCommand, DrivesTheControlThatAColumnNames) {
+  files_.Write("two.xml", kControls);
+  files_.Write("u.csv", "time,servo[0],servo[1],last\n0,0,0,.1\n1,0,0,.1\n");
+  const auto f = Run({"run", "two.xml", "--input", "u.csv"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("\n1,0,0."));  // joint b alone moves
+  files_.Write("u.csv", "time,last\n0,.1\n1,.1\n");
+  ExpectRefused({"run", "two.xml", "--input", "u.csv"},
+                {"time, servo[0], servo[1], last", "actuator 'servo' has 2 controls"});
+}
+
+TEST_F(RunCommand, BeginsAtAKeyframeAndHoldsItsControls) {
+  files_.Write("two.xml", kControls);
+  const auto f = Run({"run", "two.xml", "--keyframe", "bent", "--until", "1", "--every", ".5"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+  EXPECT_THAT(f.out, AllOf(HasSubstr("\n0,0.5,-0.25\n"), HasSubstr("\n1,0.5,-0.25\n")));
+  ExpectRefused({"run", "two.xml", "--keyframe", "straight"}, {"--keyframe", "bent", "'straight'"});
+}
+
+// As `import mujoco` does.
+TEST_F(RunCommand, LoadsThePluginsThatComeWithMujoco) {
+  files_.Write("pid.xml", R"(<mujoco><extension><plugin plugin="mujoco.pid">
+    <instance name="pid"><config key="kp" value="5"/></instance></plugin></extension>
+    <worldbody><body><joint name="h"/><geom size=".1" pos=".1 0 0"/></body></worldbody>
+    <actuator><plugin name="m" joint="h" plugin="mujoco.pid" instance="pid"/></actuator></mujoco>)");
+  const auto f = Run({"run", "pid.xml", "--until", ".01"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+}
+
 }  // namespace
 }  // namespace continuum
