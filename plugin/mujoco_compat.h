@@ -38,6 +38,15 @@ inline double PlasticSet([[maybe_unused]] const mjModel& m, [[maybe_unused]] con
 #endif
 }
 
+/// Whether the spring of a tendon can yield.
+inline bool Yields([[maybe_unused]] const mjModel& m, [[maybe_unused]] int tendon) {
+#if mjVERSION_HEADER >= 4000000
+  return m.tendon_plasticadr[tendon] >= 0;
+#else
+  return false;
+#endif
+}
+
 /// A fault of this release that a model meets, in words; null: none. 4.0.0 factors the inertia of
 /// large models wrongly.
 inline const char* FaultOfRelease(const mjModel& m) {

@@ -6,6 +6,7 @@
 #include "binding/applied_force.h"
 #include "binding/tree_groups.h"
 #include "error.h"
+#include "mujoco_compat.h"
 
 namespace continuum {
 namespace {
@@ -200,7 +201,7 @@ std::string CableFriction::WhyNoSlopes(const mjModel& m) const {
     const int t = cable.tendon;
     if (cable.Wraps()) return "a cable wraps a geom";
     if (cable.segments() + 1 != m.tendon_num[t]) return "a cable runs over a pulley";
-    if (m.tendon_plasticadr[t] >= 0) return "the spring of a tendon yields";
+    if (Yields(m, t)) return "the spring of a tendon yields";
     for (int k = 0; k < mjNPOLY; ++k) {
       if (m.tendon_stiffnesspoly[mjNPOLY * t + k] != 0 ||
           m.tendon_dampingpoly[mjNPOLY * t + k] != 0)
