@@ -115,7 +115,7 @@ void FitLeastSquares(const Options& o, const Problem& problem, const Vector& sta
   SearchedFit found = FitBySearch(problem, start, use, search, options);
   all.fit = std::move(found.fit);
   all.segments = std::move(found.segments), all.starts = std::move(found.starts);
-  if (!all.starts) all.minima = SearchAround(problem, use, o.seed, options, all.fit);
+  if (!all.starts) all.minima = SearchAround(problem, start, use, o.seed, options, all.fit);
 }
 
 // Parameters for the model's own step: a few iterations from those of the differential equation.

@@ -60,31 +60,34 @@ void Take(const Fit& next, Fit& fit) {
 
 }  // namespace
 
-LocalMinima SearchAround(const Problem& problem, const std::vector<bool>& use, std::uint64_t seed,
-                         const FitOptions& options, Fit& fit) {
+LocalMinima SearchAround(const Problem& problem, const Vector& start, const std::vector<bool>& use,
+                         std::uint64_t seed, const FitOptions& options, Fit& fit) {
   LocalMinima minima;
   if (fit.x.size() < 2 || problem.path() != Path::kStepped || !Rubs(problem.system().model()))
     return minima;
   Random random(seed);
-  Matrix slopes;
+  Matrix slopes;  // where the fit has ended
   FitOptions plain = options, secants = options;
   plain.idle = secants.idle = true, secants.rough = true;
-  for (std::size_t k = 0; k <= kFits && !StopRequested(); ++k) {
-    Matrix own = slopes;
+  enum { kFromStart, kFromFit, kBeside };
+  for (std::size_t k = 0; k < kBeside + kFits && !StopRequested(); ++k) {
+    Matrix own = k < kBeside ? Matrix() : slopes;
     secants.slopes = &own;
-    secants.progress = Within({"fits from beside it", k, kFits + 1}, options.progress);
+    secants.progress = Within({"fits from beside it", k, kBeside + kFits}, options.progress);
     try {
-      const Vector from = k == 0 ? fit.x : Beside(problem, fit, slopes, random);
+      const Vector from = k == kFromStart ? start
+                          : k == kFromFit ? fit.x
+                                          : Beside(problem, fit, slopes, random);
       const Fit other = FitParameters(problem, from, use, secants);
       const bool lower = other.cost < fit.cost * (1 - kLower);
-      if (k > 0)
+      if (k != kFromFit)
         minima.found.push_back(lower ? LocalMinimum{fit.x, fit.cost}
                                      : LocalMinimum{other.x, other.cost});
       Take(other, fit);
       if (lower) Take(FitParameters(problem, fit.x, use, plain), fit);
-      if (lower || k == 0) slopes = std::move(own);
+      if (lower || k == kFromFit) slopes = std::move(own);
     } catch (const Error& error) {
-      if (error.kind() != Error::Kind::kJob || k == 0) throw;
+      if (error.kind() != Error::Kind::kJob || k == kFromFit) throw;
     }
   }
   return minima;

@@ -10,9 +10,11 @@ namespace continuum {
 /// Looks around a fit for other minima of the cost, where dry friction acts in the model: there
 /// it has many, and which of them a fit ends in depends on where it began.
 ///
-/// A few fits by secants begin beside the best one, where first order says that the cost is higher
-/// by a tenth. One that ends lower takes its place, fitted to the end. Repeats with the same seed.
-LocalMinima SearchAround(const Problem& problem, const std::vector<bool>& use, std::uint64_t seed,
+/// Fits by secants begin where the fit did, where it ended, and a few beside that, where first
+/// order says that the cost is higher by a tenth. One that ends lower takes its place, fitted to
+/// the end. Repeats with the same seed.
+LocalMinima SearchAround(const Problem& problem, const Problem::Vector& start,
+                         const std::vector<bool>& use, std::uint64_t seed,
                          const FitOptions& options, Fit& fit);
 
 }  // namespace continuum

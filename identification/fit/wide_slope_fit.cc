@@ -42,29 +42,13 @@ Fit FitWide(const Problem& problem, const Problem::Vector& x, const std::vector<
   return fit;
 }
 
-// By secants, which go on where joints stick and slip, then with slopes made at every step.
-Fit FitBySecants(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,
-                 const FitOptions& options) {
-  const bool plain = problem.path() != Path::kStepped || x.size() == 0 || options.rough;
-  if (plain) return FitParameters(problem, x, use, options);
-  FitOptions secants = options;
-  secants.rough = true;
-  Fit first = FitParameters(problem, x, use, secants);
-  FitOptions left = options;
-  left.iterations -= first.iterations, left.idle = true;
-  if (left.iterations <= 0 || StopRequested()) return first;
-  Fit fit = FitParameters(problem, first.x, use, left);
-  AddEffort(first, fit);
-  return fit;
-}
-
 }  // namespace
 
 Fit FitWithWideSlopes(const Problem& problem, const Problem::Vector& x,
                       const std::vector<bool>& use, const FitOptions& options) {
   constexpr double kLower = 1e-3;  // of the cost, that is worth another fit
   constexpr int kFits = 4;
-  Fit best = FitBySecants(problem, x, use, options);
+  Fit best = FitParameters(problem, x, use, options);
   const bool may_go_on = problem.path() == Path::kStepped && x.size() > 0;
   for (int k = 1; k < kFits && may_go_on && !StopRequested(); ++k) {
     FitOptions left = options;

@@ -52,12 +52,13 @@ TEST_F(LocalSearch, FindsALowerMinimumOfAMachineThatSticksAndRepeats) {
                         ModelSpec::Load(Write("model.xml", Model("frictionloss=\"1.2\""))));
   const Fit before = Here(problem);
   Fit one = before, other = before;
-  const LocalMinima minima = SearchAround(problem, problem.TrainLogs(), 5, {}, one);
-  SearchAround(problem, problem.TrainLogs(), 5, {}, other);
+  const LocalMinima minima =
+      SearchAround(problem, problem.Start(), problem.TrainLogs(), 5, {}, one);
+  SearchAround(problem, problem.Start(), problem.TrainLogs(), 5, {}, other);
   EXPECT_LT(one.cost, 0.9 * before.cost);
   EXPECT_NEAR(one.x[0], 60, 2);
   EXPECT_EQ(one.x, other.x);
-  EXPECT_EQ(minima.found.size(), 4u);
+  EXPECT_EQ(minima.found.size(), 5u);
   for (const LocalMinimum& m : minima.found) EXPECT_GE(m.cost, one.cost);
   EXPECT_GT(one.evaluations, before.evaluations);
   EXPECT_EQ(one.trace.size(), static_cast<std::size_t>(one.iterations) + 1);
@@ -68,7 +69,8 @@ TEST_F(LocalSearch, HasNothingToLookForWhereNothingRubs) {
   const Problem problem(experiment_, ModelSpec::Load(Write("model.xml", Model(""))));
   Fit fit = Here(problem);
   const std::size_t before = fit.evaluations;
-  EXPECT_TRUE(SearchAround(problem, problem.TrainLogs(), 5, {}, fit).found.empty());
+  EXPECT_TRUE(
+      SearchAround(problem, problem.Start(), problem.TrainLogs(), 5, {}, fit).found.empty());
   EXPECT_EQ(fit.evaluations, before);
 }
 
