@@ -8,6 +8,7 @@
 #include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/fit/bounded_least_squares.h"
+#include "identification/fit/wide_slope_fit.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/portable_random.h"
 
@@ -84,7 +85,7 @@ LocalMinima SearchAround(const Problem& problem, const Vector& start, const std:
         minima.found.push_back(lower ? LocalMinimum{fit.x, fit.cost}
                                      : LocalMinimum{other.x, other.cost});
       Take(other, fit);
-      if (lower) Take(FitParameters(problem, fit.x, use, plain), fit);
+      if (lower) Take(FitWithWideSlopes(problem, fit.x, use, plain), fit);
       if (lower || k == kFromFit) slopes = std::move(own);
     } catch (const Error& error) {
       if (error.kind() != Error::Kind::kJob || k == kFromFit) throw;
