@@ -63,7 +63,8 @@ struct IdentifyResult {
 
   /// In words, where other minima make the intervals doubtful; else empty.
   std::string SeveralMinima() const {
-    return uncertainty.known() ? minima.Doubts(fit.x, fit.cost, uncertainty, parameters) : "";
+    const bool known = uncertainty.known() && uncertainty.lower.size() == fit.x.size();
+    return known ? minima.Doubts(fit.x, fit.cost, uncertainty, parameters) : "";
   }
 };
 
