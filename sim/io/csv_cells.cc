@@ -112,7 +112,8 @@ Fit FitOf(const std::vector<std::string_view>& lines, char delimiter) {
   double alike = 0, numbers = 0, filled = 0;
   for (std::size_t i = lines.size() > 1; i < lines.size(); ++i) {
     const auto cells = CellsForSniffing(lines[i], delimiter);
-    const auto trailing = cells.size() + 1 == fit.cells;  // an empty last value
+    // An empty last value; none is empty between runs of blanks.
+    const bool trailing = delimiter != ' ' && cells.size() + 1 == fit.cells;
     alike += cells.size() == fit.cells || trailing;
     for (const std::string& cell : cells) {
       filled += !IsMissing(cell);

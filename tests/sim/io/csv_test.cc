@@ -191,6 +191,12 @@ RC_GTEST_PROP(CsvTable, NeverFailsOnArbitraryCsvExceptWithAnError, ()) {
   }
 }
 
+TEST(CsvTable, LeavesANameWithABlankWhole) {
+  const CsvTable t = CsvTable::Parse("bend angle\n0.5\n", "log.csv");
+  EXPECT_EQ(t.columns(), std::vector<std::string>{"bend angle"});
+  EXPECT_EQ(t.Number(0, "bend angle"), 0.5);
+}
+
 RC_GTEST_PROP(CsvTable, RoundTripsNamesAndNumbersExactly, ()) {
   const auto names =
       *rc::gen::unique<std::vector<std::string>>(rc::gen::nonEmpty(rc::gen::container<std::string>(
