@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "binding/effect_catalog.h"
 #include "binding/filter.h"
 #include "binding/force.h"
 #include "binding/formula.h"
@@ -20,6 +21,7 @@
 #include "mujoco_compat.h"
 #include "one_mujoco.h"
 #include "plugin_data_slots.h"
+#include "wrench_sensor.h"
 
 namespace continuum {
 namespace {
@@ -61,11 +63,7 @@ std::string_view ConfigBytes(const mjModel& m, int i) {
   return {m.plugin_attr + begin, static_cast<std::size_t>(end - begin)};
 }
 
-bool IsOurs(const mjModel& m, int i) {
-  const mjpPlugin* plugin = mjp_getPluginAtSlot(m.plugin[i]);
-  const std::string_view name = plugin ? plugin->name : "";
-  return name.starts_with(kPluginPrefix) && name != kWrenchPlugin;
-}
+bool IsOurs(const mjModel& m, int i) { return !EffectNameOf(m, i).empty(); }
 
 void Warn(const std::string& text) { mju_warning("%s", text.c_str()); }
 
@@ -460,61 +458,6 @@ void Register() {
   mjp_registerPlugin(&plugin);
 }
 
-// Force and torque [6] between the body of a site and its parent, in the axes of the site, with
-// MuJoCo's sign: what its sensors say, less what our laws do to points of the body and of those
-// beyond it.
-void SenseWrench(const mjModel& m, mjData& d, int site, double* out) {
-  const int base = m.site_bodyid[site];
-  const double *const at = d.site_xpos + 3 * site, *const axes = d.site_xmat + 9 * site;
-  double native[6], force[3] = {0, 0, 0}, torque[3] = {0, 0, 0};
-  mju_transformSpatial(native, d.cfrc_int + 6 * base, 1, at,
-                       d.subtree_com + 3 * m.body_rootid[base], axes);
-  const auto take = [&](int body, const double* point, const double* f) {
-    while (body > base) body = m.body_parentid[body];
-    if (body != base) return;
-    double arm[3], moment[3];
-    mju_sub3(arm, point, at);
-    mju_cross(moment, arm, f);
-    mju_addTo3(force, f), mju_addTo3(torque, moment);
-  };
-  for (int i = 0; i < m.nplugin; ++i) {
-    if (IsOurs(m, i) && Get(d, i)) Get(d, i)->bound->PointForces(m, d, take);
-  }
-  double local[6];
-  mju_mulMatTVec3(local, axes, force), mju_mulMatTVec3(local + 3, axes, torque);
-  mju_sub3(out, native + 3, local), mju_sub3(out + 3, native, local + 3);
-}
-
-int InitWrench(const mjModel& m, int i) {
-  for (int s = 0; s < m.nsensor; ++s) {
-    if (m.sensor_type[s] != mjSENS_PLUGIN || m.sensor_plugin[s] != i) continue;
-    if (m.sensor_objtype[s] == mjOBJ_SITE) continue;
-    Warn(std::string(kWrenchPlugin) + ": its sensor " + std::to_string(s) +
-         ": expected objtype=\"site\"");
-    return -1;
-  }
-  return 0;
-}
-
-void RegisterWrench() {
-  mjpPlugin plugin;
-  mjp_defaultPlugin(&plugin);
-  plugin.name = kWrenchPlugin.data();
-  plugin.capabilityflags = mjPLUGIN_SENSOR;
-  plugin.needstage = mjSTAGE_ACC;
-  plugin.nstate = +[](const mjModel*, int) noexcept { return 0; };
-  plugin.nsensordata = +[](const mjModel*, int, int) noexcept { return 6; };
-  plugin.init = +[](const mjModel* m, mjData*, int i) noexcept { return InitWrench(*m, i); };
-  plugin.reset = +[](const mjModel*, mjtNum*, void*, int) noexcept {};
-  plugin.compute = +[](const mjModel* m, mjData* d, int i, int) noexcept {
-    for (int s = 0; s < m->nsensor; ++s) {
-      if (m->sensor_type[s] == mjSENS_PLUGIN && m->sensor_plugin[s] == i)
-        SenseWrench(*m, *d, m->sensor_objid[s], d->sensordata + m->sensor_adr[s]);
-    }
-  };
-  mjp_registerPlugin(&plugin);
-}
-
 }  // namespace
 
 void RegisterEffects() {
@@ -527,19 +470,23 @@ void RegisterEffects() {
   RegisterWrench();
 }
 
+BoundLaw* FindBound(const mjModel& m, const mjData& d, int instance) {
+  const Instance* const found = IsOurs(m, instance) ? Get(d, instance) : nullptr;
+  return found ? found->bound.get() : nullptr;
+}
+
 BoundLaw& BoundOf(const mjModel& m, const mjData& d, int instance) {
   if (instance < 0 || instance >= m.nplugin || !IsOurs(m, instance)) {
     throw Error::Input("plugin instance " + std::to_string(instance), "an effect of ours", "none");
   }
-  const Instance* const found = Get(d, instance);
-  if (found) return *found->bound;
+  if (BoundLaw* const found = FindBound(m, d, instance)) return *found;
   throw Error::Input("plugin instance " + std::to_string(instance), "data of mj_makeData", "none");
 }
 
 void SettleEffects(const mjModel& m, mjData& d) {
   for (int i = 0; i < m.nplugin; ++i) {
-    if (IsOurs(m, i) && Get(d, i))
-      Get(d, i)->bound->Settle(m, d, d.plugin_state + m.plugin_stateadr[i]);
+    if (BoundLaw* const law = FindBound(m, d, i))
+      law->Settle(m, d, d.plugin_state + m.plugin_stateadr[i]);
   }
 }
 

@@ -14,6 +14,9 @@ namespace continuum {
 /// Error when the process cannot use it (another release, a second libmujoco).
 void RegisterEffects();
 
+/// The law of a plugin instance in d; null where it is none of ours or d was never init-ed.
+BoundLaw* FindBound(const mjModel& m, const mjData& d, int instance);
+
 /// The law of a plugin instance in d, to read or set its parameters (order of its card). Throws
 /// Error when the model has no instance of this name or it is not one of ours.
 BoundLaw& BoundOf(const mjModel& m, const mjData& d, int instance);

@@ -33,14 +33,41 @@ std::pair<double, double> SoftL1(double r, double soft) {
   return {w, std::abs(w) > 1e-12 * soft ? r / (w * root) : 1};
 }
 
-Box BoxOf(const Problem& problem) {
+Box BoundsOf(const Problem& problem) {
   const auto n = static_cast<Eigen::Index>(problem.parameters().size());
   Box box{Problem::Vector(n), Problem::Vector(n)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const FreeParameter& p = problem.parameters()[i];
-    box.lower[i] = p.lower / p.scale, box.upper[i] = p.upper / p.scale;
+  for (Eigen::Index i = 0; i < n; ++i)
+    box.lower[i] = problem.parameters()[i].lower, box.upper[i] = problem.parameters()[i].upper;
+  return box;
+}
+
+Box BoxOf(const Problem& problem) {
+  Box box = BoundsOf(problem);
+  for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
+    const double scale = problem.parameters()[i].scale;
+    box.lower[i] /= scale, box.upper[i] /= scale;
   }
   return box;
+}
+
+Problem::Vector BoundedStep(const Box& box, const Problem::Vector& y, const Problem::Matrix& A,
+                            const Problem::Vector& g) {
+  Problem::Matrix left = A;
+  Problem::Vector right = -g;
+  std::vector<bool> held(static_cast<std::size_t>(y.size()), false);
+  for (;;) {
+    const Problem::Vector step = left.ldlt().solve(right);
+    bool again = false;
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+      const bool stopped =
+          (y[i] <= box.lower[i] && step[i] < 0) || (y[i] >= box.upper[i] && step[i] > 0);
+      if (held[i] || !stopped) continue;
+      held[i] = again = true;
+      left.row(i).setZero(), left.col(i).setZero();
+      left(i, i) = 1, right[i] = 0;
+    }
+    if (!again) return step;
+  }
 }
 
 ceres::Solver::Summary Minimize(ceres::CostFunction& cost, const Box& box, const Search& search,

@@ -15,11 +15,18 @@ Problem::Vector Unscaled(const Problem& problem, const double* y);
 /// w with ½ w² = ρ(r), the soft L1 loss of FitOptions (soft 0: w = r), and dw/dr.
 std::pair<double, double> SoftL1(double r, double soft);
 
-/// Within which scaled parameters stay.
+/// Within which parameters stay.
 struct Box {
   Problem::Vector lower, upper;
 };
+Box BoundsOf(const Problem& problem);
+/// In units of their scales.
 Box BoxOf(const Problem& problem);
+
+/// The step s within the box that minimises ½ sᵀ A s + gᵀ s, but for bounds that it crosses:
+/// unknowns that a bound stops at y do not move, and the others solve without them.
+Problem::Vector BoundedStep(const Box& box, const Problem::Vector& y, const Problem::Matrix& A,
+                            const Problem::Vector& g);
 
 /// When bounded Levenberg-Marquardt ends, and who watches it.
 struct Search {

@@ -271,34 +271,6 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   return fit;
 }
 
-namespace {
-
-// −H⁻¹ g, in which parameters that a bound stops do not move; the others solve without them.
-Vector BoundedStep(const Problem& problem, const Vector& x, const Matrix& H, const Vector& g) {
-  const Eigen::Index n = x.size();
-  std::vector<bool> fixed(n, false);
-  for (;;) {
-    Matrix A = H;
-    Vector b = -g;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      A(i, i) += 1e-9 * (H(i, i) + 1e-300);
-      if (!fixed[i]) continue;
-      A.row(i).setZero(), A.col(i).setZero();
-      A(i, i) = 1, b[i] = 0;
-    }
-    const Vector step = A.ldlt().solve(b);
-    bool again = false;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const FreeParameter& p = problem.parameters()[i];
-      const bool stopped = (x[i] <= p.lower && step[i] < 0) || (x[i] >= p.upper && step[i] > 0);
-      if (!fixed[i] && stopped) fixed[i] = again = true;
-    }
-    if (!again) return step;
-  }
-}
-
-}  // namespace
-
 Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector> r,
                      const std::vector<Matrix>& J, const std::vector<bool>& use, int iterations) {
   const Eigen::Index n = x.size();
@@ -306,6 +278,8 @@ Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector
   for (std::size_t l = 0; l < use.size(); ++l) {
     if (use[l]) H += J[l].transpose() * J[l];
   }
+  for (double& entry : H.diagonal()) entry += 1e-9 * (entry + 1e-300);
+  const Box box = BoundsOf(problem);
   Vector best = x;
   for (std::size_t l = 0; l < use.size(); ++l) {
     if (!use[l]) r[l].resize(0);
@@ -316,7 +290,7 @@ Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector
     for (std::size_t l = 0; l < use.size(); ++l) {
       if (use[l]) g += J[l].transpose() * r[l];
     }
-    const Vector step = BoundedStep(problem, best, H, g);
+    const Vector step = BoundedStep(box, best, H, g);
     bool lower = false;
     for (double share = 1; share > 0.2 && !lower; share /= 2) {
       const Vector next = problem.Clamp(best + share * step);

@@ -58,31 +58,12 @@ class SecantSearch {
     return summary_;
   }
 
-  // Where the slopes lead; parameters that a bound stops do not move, the others solve without
-  // them.
+  // Where the slopes lead.
   Vector Proposed() const {
-    const Eigen::Index n = y_.size();
-    const Matrix normal = J_.transpose() * J_;
-    const Vector gradient = J_.transpose() * r_;
-    std::vector<bool> held(static_cast<std::size_t>(n), false);
-    for (;;) {
-      Matrix A = normal;
-      Vector b = -gradient;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        A(i, i) += std::max(lambda_ * normal(i, i), kTiny);
-        if (!held[i]) continue;
-        A.row(i).setZero(), A.col(i).setZero();
-        A(i, i) = 1, b[i] = 0;
-      }
-      const Vector step = A.ldlt().solve(b);
-      const Vector trial = (y_ + step).cwiseMax(box_.lower).cwiseMin(box_.upper);
-      bool again = false;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        if (held[i] || trial[i] != y_[i] || step[i] == 0) continue;
-        held[i] = again = true;
-      }
-      if (!again) return trial;
-    }
+    Matrix damped = J_.transpose() * J_;
+    for (double& entry : damped.diagonal()) entry += std::max(lambda_ * entry, kTiny);
+    const Vector step = BoundedStep(box_, y_, damped, J_.transpose() * r_);
+    return (y_ + step).cwiseMax(box_.lower).cwiseMin(box_.upper);
   }
 
   void Step() {

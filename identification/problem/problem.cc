@@ -144,12 +144,8 @@ void Problem::Expand(const Parameter& p) {
   const std::string unit = IsMeasurement(p.target, p.attribute)
                                ? MeasurementUnit(*experiment_, p.target, p.attribute)
                                : UnitOf(system(), p);
-  FreeParameter free{p.name, unit, p.initial, p.lower, p.upper, 1, {}, {}, p.where};
-  if (!p.has_initial) {
-    free.initial = p.operation == Change::Operation::kScale ? 1
-                   : p.operation == Change::Operation::kAdd ? 0
-                                                            : present;
-  }
+  const double start = p.Start([&] { return present; });
+  FreeParameter free{p.name, unit, start, p.lower, p.upper, 1, {}, {}, p.where};
   free.change = {p.target, p.attribute, 0, p.operation};
   if (p.frozen) {
     free.change.value = free.initial;

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "binding/force.h"
 #include "sim/model/point_jacobian.h"
 
 namespace continuum {
@@ -167,7 +168,7 @@ void CableDerivatives::FollowBand(int s, const RowVector& theta, const NumberTan
 void CableDerivatives::FollowPassive(const mjModel& m, const mjData& d, int t,
                                      const NumberTangents& numbers, Eigen::Ref<RowVector> tension) {
   const double* const rest = m.tendon_lengthspring + 2 * t;
-  const double x = d.ten_length[t] - std::clamp(d.ten_length[t], rest[0], rest[1]);
+  const double x = BeyondRest(m, t, d.ten_length[t]);
   if (!(m.opt.disableflags & mjDSBL_SPRING) && (x != 0 || rest[0] == rest[1])) {
     tension += x * numbers.tendon_stiffness.row(t) +
                m.tendon_stiffness[t] * (numbers[Kind::kLength].row(t) -

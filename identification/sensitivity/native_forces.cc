@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "binding/force.h"
 #include "sim/model/mujoco_handles.h"
 
 namespace continuum {
@@ -109,8 +110,7 @@ ForceAlong TendonForce(const mjModel& m, const mjData& d, int tendon, double rat
   ForceAlong pull;
   if (!(m.opt.disableflags & mjDSBL_SPRING) && m.tendon_stiffness[tendon] != 0) {
     const double* const rest = m.tendon_lengthspring + 2 * tendon;
-    const double length = d.ten_length[tendon];
-    const double beyond = length - std::clamp(length, rest[0], rest[1]);
+    const double beyond = BeyondRest(m, tendon, d.ten_length[tendon]);
     if (beyond != 0 || rest[0] == rest[1]) pull.by_length = -m.tendon_stiffness[tendon];
     pull.f += pull.by_length * beyond;
   }

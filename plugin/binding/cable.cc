@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "binding/actuator_force.h"
+#include "binding/force.h"
 #include "error.h"
 #include "mujoco_compat.h"
 
@@ -82,11 +83,9 @@ Cable MakeCable(const mjModel& m, int tendon, const Branch& branch, Driven drive
 // Of the spring, which has play between its two rest lengths, and the damper.
 double PassiveTension(const mjModel& m, const mjData& d, int t) {
   double tension = 0;
-  const double* const rest = m.tendon_lengthspring + 2 * t;
   const double *const k = m.tendon_stiffnesspoly + mjNPOLY * t, *const b = m.tendon_dampingpoly +
                                                                            mjNPOLY * t;
-  double x = d.ten_length[t] - PlasticSet(m, d, t);
-  x -= std::clamp(x, rest[0], rest[1]);
+  const double x = BeyondRest(m, t, d.ten_length[t] - PlasticSet(m, d, t));
   if (!(m.opt.disableflags & mjDSBL_SPRING))
     tension += x * (m.tendon_stiffness[t] + x * (k[0] + x * k[1]));
   const double v = d.ten_velocity[t], speed = std::abs(v);

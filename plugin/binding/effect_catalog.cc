@@ -73,12 +73,16 @@ const EffectInfo& EffectNamed(std::string_view name) {
   throw Error::Input("effect", all, "'" + std::string(name) + "'");
 }
 
-const EffectInfo* EffectOf(const mjModel& m, int instance) {
+std::string_view EffectNameOf(const mjModel& m, int instance) {
   const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[instance]);
   const std::string_view name = plugin ? plugin->name : "";
-  return name.starts_with(kPluginPrefix) && name != kWrenchPlugin
-             ? &EffectNamed(name.substr(kPluginPrefix.size()))
-             : nullptr;
+  const bool ours = name.starts_with(kPluginPrefix) && name != kWrenchPlugin;
+  return ours ? name.substr(kPluginPrefix.size()) : "";
+}
+
+const EffectInfo* EffectOf(const mjModel& m, int instance) {
+  const std::string_view name = EffectNameOf(m, instance);
+  return name.empty() ? nullptr : &EffectNamed(name);
 }
 
 std::string_view KindName(Kind kind) {

@@ -37,6 +37,8 @@ const std::vector<EffectInfo>& Catalog();
 /// former, when there is none of this name.
 const EffectInfo& EffectNamed(std::string_view name);
 
+/// The name of that of a plugin instance of a model; empty where the instance is not one of ours.
+std::string_view EffectNameOf(const mjModel& m, int instance);
 /// The effect of a plugin instance of a model; none where the instance is not one of ours.
 const EffectInfo* EffectOf(const mjModel& m, int instance);
 

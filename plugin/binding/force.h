@@ -6,6 +6,12 @@
 
 namespace continuum {
 
+/// By how much a length lies beyond the range in which a tendon's spring rests.
+inline double BeyondRest(const mjModel& m, int tendon, double length) {
+  const double* const rest = m.tendon_lengthspring + 2 * tendon;
+  return length - std::clamp(length, rest[0], rest[1]);
+}
+
 /// A joint of one degree of freedom or a tendon, as a port of a Force law.
 struct Line {
   bool joint;
@@ -14,11 +20,7 @@ struct Line {
   /// x is counted from the rest position of the native spring: a joint's springref, the nearest end
   /// of a tendon's springlength.
   Port<double> At(const mjModel& m, const mjData& d) const {
-    if (!joint) {
-      const double* const rest = m.tendon_lengthspring + 2 * id;
-      const double length = d.ten_length[id];
-      return {length - std::clamp(length, rest[0], rest[1]), d.ten_velocity[id]};
-    }
+    if (!joint) return {BeyondRest(m, id, d.ten_length[id]), d.ten_velocity[id]};
     const int adr = m.jnt_qposadr[id];
     return {d.qpos[adr] - m.qpos_spring[adr], d.qvel[dof]};
   }

@@ -1,7 +1,8 @@
 """mujoco-continuum: the missing physics of continuum robots in MuJoCo, and the tools around it.
 
 Importing this package loads the plugin of the MuJoCo of this Python, so that models with
-`continuum.<effect>` plugins compile. PLUGINS has a plugin for each release of MuJoCo. The functions run the packaged executable `continuum`:
+`continuum.<effect>` plugins compile. PLUGINS has a plugin for each release of MuJoCo. The functions
+run the packaged executable `continuum`:
 
     check      what is odd in the logs
     replay     how far the model is off

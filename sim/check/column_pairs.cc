@@ -71,14 +71,10 @@ void CheckQuaternion(const CheckedLog& log, std::size_t first, Findings& out) {
   }
 }
 
-bool HasDimension(const std::string& unit, const std::array<int, 4>& dimension) {
-  const Unit u = ParseUnit(unit, "");
-  return !u.any && u.dimension == dimension;
-}
-bool IsAngle(const std::string& unit) { return HasDimension(unit, {}); }
-bool IsLength(const std::string& unit) { return HasDimension(unit, {1, 0, 0, 0}); }
-bool IsTurnRate(const std::string& unit) { return HasDimension(unit, {0, 0, -1, 0}); }
-bool IsSpeed(const std::string& unit) { return HasDimension(unit, {1, 0, -1, 0}); }
+bool IsAngle(const std::string& unit) { return ParseUnit(unit, "").IsAngle(); }
+bool IsLength(const std::string& unit) { return ParseUnit(unit, "").Is({1, 0, 0, 0}); }
+bool IsTurnRate(const std::string& unit) { return ParseUnit(unit, "").Is({0, 0, -1, 0}); }
+bool IsSpeed(const std::string& unit) { return ParseUnit(unit, "").Is({1, 0, -1, 0}); }
 
 bool IsRate(const std::string& unit) { return ParseUnit(unit, "").dimension[2] == -1; }
 bool IsRateOf(const std::string& rate, const std::string& position) {

@@ -45,10 +45,8 @@ class EffectSearch {
   static double Step(const Parameter& p) { return kShare * (p.upper - p.lower); }
 
   double StartOf(const Parameter& p) const {
-    if (p.has_initial) return p.initial;
-    if (p.operation == Change::Operation::kScale) return 1;
-    if (p.operation == Change::Operation::kAdd || IsMeasurement(p.target, p.attribute)) return 0;
-    return system_.Value(p.target, p.attribute);
+    if (IsMeasurement(p.target, p.attribute)) return 0;  // it is not changed here
+    return p.Start([&] { return system_.Value(p.target, p.attribute); });
   }
 
   // Whether every log was simulated and none felt the change.

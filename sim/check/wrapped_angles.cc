@@ -13,7 +13,7 @@ namespace continuum {
 
 bool CheckWrapped(const CheckedColumn& c, Findings& out) {
   const Unit unit = ParseUnit(c.unit, "");
-  if (!c.smooth || unit.any || unit.dimension != Unit{}.dimension) return false;
+  if (!c.smooth || !unit.IsAngle()) return false;
   const double turn = 2 * std::numbers::pi / unit.factor;
   if (RangeOf(c.value) > 1.02 * turn) return false;
   std::vector<std::size_t> places;

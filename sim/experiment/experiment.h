@@ -83,6 +83,14 @@ struct Parameter {
   std::string condition = {};  ///< acts on the logs of this one only; empty: on all
   std::string where;           ///< file:line: key, for messages
   std::string unit;            ///< empty: that of its target
+
+  /// Where it begins: as given, else at what changes nothing; present() gives what is there.
+  template <class Present>
+  double Start(Present&& present) const {
+    if (has_initial) return initial;
+    if (operation == Change::Operation::kScale) return 1;
+    return operation == Change::Operation::kAdd ? 0 : present();
+  }
 };
 
 /// A law that the experiment itself writes, as a formula.

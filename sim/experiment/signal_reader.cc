@@ -62,8 +62,7 @@ void ReadSource(const Yaml& y, Output& out) {
 bool ReadUnwrap(const Yaml& y, const std::string& unit) {
   const auto unwrap = y.Find("unwrap");
   if (!unwrap || !unwrap->Bool()) return false;
-  const Unit of = ParseUnit(unit, unwrap->Where());
-  if (!of.any && of.dimension == ParseUnit("rad", "").dimension) return true;
+  if (ParseUnit(unit, unwrap->Where()).IsAngle()) return true;
   throw Error::Input(unwrap->Where(), "the unit of an angle, as rad or deg", "'" + unit + "'");
 }
 

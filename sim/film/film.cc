@@ -78,8 +78,8 @@ std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
   }
   if (HasPathLaw(m)) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
   if (!HasSegmentLaw(m)) return std::nullopt;
-  double full = 0;                  // all chambers are alike
-  for (int a = 0; a < m.nu; ++a) {  // of controls
+  double full = 0;  // all chambers are alike
+  for (int a = 0; a < m.nu; ++a) {
     if (!m.actuator_ctrllimited[a]) return std::nullopt;
     full = std::max(full, m.actuator_ctrlrange[2 * a + 1]);
   }

@@ -9,6 +9,10 @@ struct Unit {
   double factor = 1;               ///< SI value of one
   std::array<int, 4> dimension{};  ///< powers of m, kg, s, A; an angle has none
   bool any = true;  ///< made of 1, % and step alone: counts that may stand for anything
+
+  /// Whether it is one of this dimension and no count.
+  bool Is(const std::array<int, 4>& other) const { return !any && dimension == other; }
+  bool IsAngle() const { return Is({}); }
 };
 
 }  // namespace continuum
