@@ -25,6 +25,7 @@ using Vector = Eigen::VectorXd;
 constexpr double kMove = 5e-7, kReach = 2e-6;
 // Of one parameter of a law, whose share of a step is small: differences round to 1e-16/kFarReach.
 constexpr double kFarReach = 1e-4;
+constexpr double kAgree = 5e-6;
 constexpr int kParts = mjSTATE_FULLPHYSICS | mjSTATE_WARMSTART;
 
 // What decides which branch a step takes: which rows and which bends of cables slide, which way.
@@ -46,22 +47,31 @@ std::vector<int> Branch(const mjModel& m, const mjData& d) {
   return branch;
 }
 
-// A machine, and the same moved along a direction of all its numbers.
-struct Machines {
-  ModelAndData here, perturbed, above, below;
+template <class Xml>
+ModelAndData Built(const Xml& xml, double along) {
+  return ModelSpec::Parse(xml(along)).Build();
+}
+
+// A machine moved both ways along a direction of all its numbers.
+struct Around {
+  ModelAndData above, below;
   double reach;
+
+  template <class Xml>
+  Around(const Xml& xml, double reach)
+      : above(Built(xml, reach)), below(Built(xml, -reach)), reach(reach) {}
+};
+
+struct Machines {
+  ModelAndData here, perturbed;
+  Around wide, narrow;
 
   template <class Xml>
   Machines(const Xml& xml, double reach)
       : here(Built(xml, 0)),
         perturbed(Built(xml, kMove)),
-        above(Built(xml, reach)),
-        below(Built(xml, -reach)),
-        reach(reach) {}
-  template <class Xml>
-  static ModelAndData Built(const Xml& xml, double along) {
-    return ModelSpec::Parse(xml(along)).Build();
-  }
+        wide(xml, reach),
+        narrow(xml, reach / 2) {}
 };
 
 struct State {
@@ -102,10 +112,27 @@ Moved Step(ModelAndData& machine, const std::vector<double>& from, const State& 
   return {State::Of(machine), Branch(m, d)};
 }
 
+// How fast the state after a step moves with a direction, by central differences; nothing where
+// the step takes another branch on the way.
+std::optional<State> Slope(Around& around, const std::vector<double>& from, const State& along,
+                           int step, double phase, const std::vector<int>& branch) {
+  const Moved up = Step(around.above, from, along, around.reach, step, phase),
+              down = Step(around.below, from, along, -around.reach, step, phase);
+  if (branch != up.branch || branch != down.branch) return std::nullopt;
+  const auto slope = [&](Vector State::*part) -> Vector {
+    return (up.after.*part - down.after.*part) / (2 * around.reach);
+  };
+  return State{slope(&State::q), slope(&State::v), slope(&State::w), slope(&State::z)};
+}
+
 // Largest error of a block over its largest number.
 double Error(const Vector& found, const Vector& expected) {
   if (found.size() == 0) return 0;
   return (found - expected).cwiseAbs().maxCoeff() / std::max(expected.cwiseAbs().maxCoeff(), 1e-6);
+}
+double Error(const State& found, const State& expected) {
+  return std::max({Error(found.q, expected.q), Error(found.v, expected.v),
+                   Error(found.w, expected.w), Error(found.z, expected.z)});
 }
 
 std::vector<double> Listed(const Vector& x) { return {x.begin(), x.end()}; }
@@ -156,9 +183,6 @@ class Comparison {
     std::vector<double> from(mj_stateSize(&m, kParts));
     mj_getState(&m, &d, from.data(), kParts);
     const State along = Direction();
-    const double reach = machines_.reach;
-    const Moved up = Step(machines_.above, from, along, reach, step, phase_),
-                down = Step(machines_.below, from, along, -reach, step, phase_);
     const bool flipped = mutation_ == Mutation::kFlippedParameters;
     StepSensitivity sensitivity(machines_.here, Wiring({}, m), {&machines_.perturbed},
                                 flipped ? -kMove : kMove);
@@ -173,20 +197,15 @@ class Comparison {
     const auto branch = Branch(m, d);
     EXPECT_TRUE(sensitivity.After(m, d));
     mj_setState(&m, &d, from.data(), kParts);
-    if (branch != up.branch || branch != down.branch) return -1;
-    return Compare(sensitivity, up.after, down.after);
-  }
-
-  double Compare(const StepSensitivity& s, const State& up, const State& down) const {
+    const auto wide = Slope(machines_.wide, from, along, step, phase_, branch),
+               narrow = Slope(machines_.narrow, from, along, step, phase_, branch);
+    // Differences that do not agree with each other stepped over a bend, or only round.
+    if (!wide || !narrow || Error(*narrow, *wide) > kAgree) return -1;
     using Kind = Number::Kind;
-    const auto slope = [&](const Vector& a, const Vector& b) -> Vector {
-      return (a - b) / (2 * machines_.reach);
-    };
-    const auto& n = s.numbers();
-    return std::max({Error(n[Kind::kPosition].col(0), slope(up.q, down.q)),
-                     Error(n[Kind::kSpeed].col(0), slope(up.v, down.v)),
-                     Error(s.activation().col(0), slope(up.w, down.w)),
-                     Error(n[Kind::kState].col(0), slope(up.z, down.z))});
+    const auto& n = sensitivity.numbers();
+    return Error({n[Kind::kPosition].col(0), n[Kind::kSpeed].col(0),
+                  sensitivity.activation().col(0), n[Kind::kState].col(0)},
+                 *wide);
   }
 
   Machines& machines_;
