@@ -10,6 +10,7 @@
 
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -164,6 +165,7 @@ class Carts : public testing::Bench {
 };
 
 TEST_F(Carts, OneSpringThatIsStiffIsNamedThoughAllAreFittedTogether) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   AddTrials(1.1, 1);
   const Diagnosis d = Ask("[stiffness, payload, coulomb, input_gain]");
   ASSERT_EQ(d.verdict.word(), "named") << d.verdict.reason;
@@ -172,6 +174,7 @@ TEST_F(Carts, OneSpringThatIsStiffIsNamedThoughAllAreFittedTogether) {
 }
 
 TEST_F(Carts, OneSensorThatReadsTooMuchIsNamed) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   AddTrials(1, 1.1);
   const Diagnosis d = Ask("[sensor_scale, sensor_bias, payload, input_offset]");
   ASSERT_THAT(d.verdict.word(), AnyOf("named", "ambiguous")) << d.verdict.reason;

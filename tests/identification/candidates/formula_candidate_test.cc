@@ -8,6 +8,7 @@
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "support/diagnosis_files.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -67,6 +68,7 @@ class WrittenLawTest : public testing::Bench {
 };
 
 TEST_F(WrittenLawTest, IsJudgedAsTheSameLawOfTheList) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   const Diagnosis ours = Ask(ReadWith("coulomb, input_gain"));
   const Diagnosis theirs = Ask(ReadWith(std::string(kLevel) + ", input_gain"));
   ASSERT_TRUE(ours.chosen() && theirs.chosen());
@@ -81,6 +83,7 @@ TEST_F(WrittenLawTest, IsJudgedAsTheSameLawOfTheList) {
 }
 
 TEST_F(WrittenLawTest, IsWrittenIntoTheModelWithItsFormula) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   const Experiment e = ReadWith(kLevel);
   const Diagnosis d = Ask(e);
   const auto json = testing::WriteFiles(e, d, folder_ / "out").json;

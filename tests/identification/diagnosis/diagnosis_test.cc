@@ -14,6 +14,7 @@
 #include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/next_experiment.h"
 #include "support/diagnosis_files.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -102,6 +103,7 @@ TEST_F(DiagnosisTest, NamesAHiddenPayload) {
 
 // Of one pendulum nobody can tell its bob from a payload where the bob hangs.
 TEST_F(DiagnosisTest, TellsWhatIsNotListedAndWouldDoAsWell) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   Pendulum truth;
   truth.payload = 0.05;
   AddTrials(truth);
@@ -118,6 +120,7 @@ TEST_F(DiagnosisTest, TellsWhatIsNotListedAndWouldDoAsWell) {
 }
 
 TEST_F(DiagnosisTest, NoNameStandsThatOneOutsideTheListClearlyOutdoes) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   Pendulum truth;
   truth.tau_c = 0.01;
   AddTrials(truth);
@@ -138,6 +141,7 @@ TEST_F(DiagnosisTest, FindsNothingWhereNothingIsHidden) {
 
 // Else its spread over the folds is that of 1, which says nothing.
 TEST_F(DiagnosisTest, TheSizeOfAFactorIsCountedFromOne) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   AddTrials({}, 0, 1.05);
   const Experiment e = ReadWith("input_gain");
   const Diagnosis d = Ask(e, 0);
@@ -146,6 +150,7 @@ TEST_F(DiagnosisTest, TheSizeOfAFactorIsCountedFromOne) {
 }
 
 TEST_F(DiagnosisTest, NamesBacklashWhenItIsAmongTheCandidates) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   Pendulum truth;
   truth.gap = 0.05;
   AddTrials(truth);
@@ -162,6 +167,7 @@ class Unlisted : public DiagnosisTest, public ::testing::WithParamInterface<int>
 INSTANTIATE_TEST_SUITE_P(Gaps, Unlisted, ::testing::Values(10, 25, 60));
 
 TEST_P(Unlisted, BacklashIsNotGivenAnotherName) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   Pendulum truth;
   truth.gap = 1e-3 * GetParam();
   AddTrials(truth);
@@ -172,6 +178,7 @@ TEST_P(Unlisted, BacklashIsNotGivenAnotherName) {
 }
 
 TEST_F(DiagnosisTest, NothingIsNamedWhenInputsBelongToOtherLogs) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   Pendulum truth;
   truth.payload = 0.05;
   AddTrials(truth);
@@ -186,6 +193,7 @@ TEST_F(DiagnosisTest, NothingIsNamedWhenInputsBelongToOtherLogs) {
 }
 
 TEST_F(DiagnosisTest, NothingIsNamedWhenTheInputsHaveTheOtherSign) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   Pendulum truth;
   truth.payload = 0.05;
   AddTrials(truth);
@@ -198,6 +206,7 @@ TEST_F(DiagnosisTest, NothingIsNamedWhenTheInputsHaveTheOtherSign) {
 }
 
 TEST_F(DiagnosisTest, ProposesAnInputThatPartsTwoModels) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   Pendulum truth;
   truth.payload = 0.05;
   AddTrials(truth);
@@ -296,6 +305,7 @@ class PerCondition : public DiagnosisTest {
 };
 
 TEST_F(PerCondition, EachGetsItsOwnValue) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   AddConditions();
   const Experiment e = ReadWith("payload, {effect: payload, per: condition}, input_gain");
   const Diagnosis d = Ask(e);
@@ -332,6 +342,7 @@ TEST_F(PerCondition, AreNeededAndAreOfTheModel) {
 }
 
 TEST_F(DiagnosisTest, WritesFilesThatReproduceTheNamedModel) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   Pendulum truth;
   truth.payload = 0.05;
   AddTrials(truth);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/diagnosis/diagnosis.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -96,6 +97,7 @@ class Drag : public testing::Bench {
 };
 
 TEST_F(Drag, IsUnexplainedWhateverIsAsked) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   AddTrials();
   for (const std::string candidates : {"all", "[clock_skew]"})
     EXPECT_EQ(Ask(candidates).verdict.word(), "unexplained") << candidates;

@@ -10,6 +10,7 @@
 #include "identification/diagnosis/diagnosis.h"
 #include "sim/replay/replay.h"
 #include "support/diagnosis_files.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -46,6 +47,7 @@ class FallbackTest : public Bench {
 };
 
 TEST_F(FallbackTest, WhatNobodyExplainsGetsAForceWithoutACause) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   const Diagnosis d = Ask("sensor_bias", 0.2, 0);
   ASSERT_EQ(d.verdict.word(), "unexplained");
   ASSERT_TRUE(d.fallback);
@@ -85,6 +87,7 @@ TEST_F(FallbackTest, IsNotLookedForWhereForcesReachNothing) {
 }
 
 TEST_F(FallbackTest, WhatHasACauseGetsNone) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   const Diagnosis d = Ask("payload", 0.1, 0.1);
   ASSERT_EQ(d.verdict.word(), "named");
   EXPECT_FALSE(d.fallback);

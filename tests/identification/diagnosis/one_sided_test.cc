@@ -9,6 +9,7 @@
 
 #include "identification/diagnosis/diagnosis.h"
 #include "support/diagnosis_files.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -78,6 +79,7 @@ class OneSided : public testing::Bench {
 };
 
 TEST_F(OneSided, ADeadPressureIsAnOffsetOfTheInputs) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   for (int t = 0; t < 4; ++t) AddTrial(t, t < 3 ? "train" : "validate");
   const Experiment e = Experiment::Read(Write(
       "experiment.yaml",

@@ -7,6 +7,7 @@
 
 #include "identification/fit/intervals.h"
 #include "identification/inverse_dynamics/regressor.h"
+#include "support/long_test.h"
 #include "support/real_log.h"
 
 namespace continuum {
@@ -37,6 +38,7 @@ TEST_F(EmpsFit, FindsThePublishedMassAndFrictionFromAWrongStart) {
 // A reference that waited for the loop's next sample would be 0.5 ms late in the mean of fine
 // steps, which is 690 N s/m of viscous friction. What is left is the hold of the force.
 TEST_F(EmpsFit, ValuesHardlyDependOnTheStep) {
+  CONTINUUM_LONG_IF_SANITIZED("several fits");
   const ModelSpec system = ModelSpec::Load(experiment_.model);
   const Problem problem(experiment_, system);
   Problem::Vector x(4);

@@ -12,6 +12,7 @@
 #include "error.h"
 #include "identification/fit/swarm_fit.h"
 #include "identification/inverse_dynamics/zero_phase_lowpass.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -170,6 +171,7 @@ TEST_F(RegressorTest, RefusesWhatItCannotSee) {
 }
 
 TEST_F(RegressorTest, ASwarmFindsThePlaceButNotThePoint) {
+  CONTINUUM_LONG_IF_SANITIZED("a swarm");
   AddTrials({}, 1e-3);
   const ModelSpec system = ModelSpec::Load(Write("model.xml", Pendulum{}.Xml()));
   const Experiment e = ReadExperiment(
