@@ -106,6 +106,9 @@ void RunDiagnose(const Options& o) {
   if (o.video) outputs.push_back("extended.mp4");
   const OutputFolder made(o.out, outputs, {read.file, read.model});
   const Experiment e = Registered(read, system);
+  if (e.soft > 0)
+    fmt::print(stderr, "warning: {}: `loss: soft_l1` is for identify; diagnose uses squares\n",
+               e.file.string());
   const GracefulEnd graceful;
   const Diagnosis d = Diagnose(e, system, options);
   ShowProgress(ProgressOf(DiagnosisStage::kFiles));

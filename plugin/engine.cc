@@ -467,7 +467,7 @@ void RegisterEffects() {
   };
   All::ForEach(add);
   FormulaLaws::ForEach(add);
-  RegisterWrench();
+  RegisterWrench(FindBound);
 }
 
 BoundLaw* FindBound(const mjModel& m, const mjData& d, int instance) {

@@ -1,9 +1,11 @@
 #include "wrench_sensor.h"
 
-#include "engine.h"
+#include "binding/config.h"
 
 namespace continuum {
 namespace {
+
+LawFinder find_law = nullptr;
 
 // Force and torque [6] between the body of a site and its parent, in the axes of the site, with
 // MuJoCo's sign: what its sensors say, less what our laws do to points of the body and of those
@@ -23,7 +25,7 @@ void SenseWrench(const mjModel& m, mjData& d, int site, double* out) {
     mju_addTo3(force, f), mju_addTo3(torque, moment);
   };
   for (int i = 0; i < m.nplugin; ++i) {
-    if (const BoundLaw* const law = FindBound(m, d, i)) law->PointForces(m, d, take);
+    if (const BoundLaw* const law = find_law(m, d, i)) law->PointForces(m, d, take);
   }
   double local[6];
   mju_mulMatTVec3(local, axes, force), mju_mulMatTVec3(local + 3, axes, torque);
@@ -42,7 +44,8 @@ int InitWrench(const mjModel& m, int i) {
 
 }  // namespace
 
-void RegisterWrench() {
+void RegisterWrench(LawFinder law_of) {
+  find_law = law_of;
   mjpPlugin plugin;
   mjp_defaultPlugin(&plugin);
   plugin.name = kWrenchPlugin.data();
