@@ -6,7 +6,6 @@
 
 #include "error.h"
 #include "models/tdcr/disks.h"
-#include "models/tdcr/hybrid_fit.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -86,19 +85,25 @@ Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::stri
   for (const auto j : varying) hybrid.features.push_back(names[static_cast<std::size_t>(j)]);
   for (Sample& s : samples) s.features = Eigen::VectorXd(s.features(varying));
   hybrid.penalty = penalty ? *penalty : ChoosePenalty(robot, train);
-  const auto fitted = FitWeights(robot, train, hybrid.penalty);
-  if (!fitted) throw Error::Job("hybrid training did not converge");
-  hybrid.weights = *fitted;
+  const Weights fitted = FitWeights(robot, train, hybrid.penalty);
+  if (!fitted.converged) throw Error::Job("hybrid training did not converge");
+  hybrid.weights = fitted.values;
   for (const Sample& s : samples) {
     const Eigen::Matrix3Xd disks = Disks(robot, Corrected(hybrid.weights, s));
     const Measured& measured = *s.pair->measured;
     hybrid.tips.Add(robot, measured, disks);
     if (!measured.test) hybrid.explained.Add(robot, measured, disks);
   }
-  if (const auto left_out = CrossValidate(robot, train, hybrid.penalty)) {
-    hybrid.left_out = left_out->tips;
-  }
+  hybrid.left_out = CrossValidate(robot, train, hybrid.penalty);
   return hybrid;
+}
+
+bool Hybrid::poor() const { return explained.poor() || !left_out || left_out->explained.poor(); }
+
+std::string Hybrid::Sentence() const {
+  if (explained.poor()) return explained.Sentence();
+  if (!left_out) return "too few cases to leave some out of the training and predict them";
+  return "of the cases left out of a training, " + left_out->explained.Sentence();
 }
 
 Hybrid ReadHybrid(const Yaml& file, const Robot& robot) {

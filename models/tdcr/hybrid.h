@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/tdcr/explained.h"
+#include "models/tdcr/hybrid_fit.h"
 #include "models/tdcr/measured.h"
 #include "models/tdcr/model.h"
 
@@ -19,7 +20,13 @@ struct Hybrid {
   double penalty = 0;                 ///< on the weights, see FitWeights
   TipErrors tips;                     ///< of the corrected model
   Explained explained;                ///< of the cases for training, by the corrected model
-  std::vector<double> left_out;       ///< tip errors [%] of training cases by five-fold validation
+  std::optional<LeftOut> left_out;    ///< of the same cases by trainings without them (five folds)
+
+  /// Whether it explains nothing of the cases that it was trained on, or of those left out, or
+  /// there are too few to leave some out.
+  bool poor() const;
+  /// One sentence for the user about both.
+  std::string Sentence() const;
 };
 
 /// tau_1, tau_1^2, tau_n, tau_n^2, fx, fy, fz, T1..Tm.

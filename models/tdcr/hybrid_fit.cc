@@ -1,6 +1,7 @@
 #include "models/tdcr/hybrid_fit.h"
 
 #include <cmath>
+#include <limits>
 
 #include "models/tdcr/disks.h"
 #include "sim/numerics/levenberg_marquardt.h"
@@ -87,8 +88,7 @@ Eigen::Matrix3Xd Disks(const Robot& robot, const Ends& ends) {
   return Positions(robot.arc(), Linear(ends, robot.disks));
 }
 
-std::optional<Eigen::MatrixXd> FitWeights(const Robot& robot, const Samples& samples,
-                                          double penalty) {
+Weights FitWeights(const Robot& robot, const Samples& samples, double penalty) {
   const HybridProblem problem{robot, samples, penalty, Sizes(samples)};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.unknowns());
   numerics::Options options;
@@ -99,8 +99,7 @@ std::optional<Eigen::MatrixXd> FitWeights(const Robot& robot, const Samples& sam
   options.max_iterations = 5000;
   const auto outcome =
       numerics::LevenbergMarquardt<Eigen::VectorXd>(problem, x, problem.equations(), options);
-  if (!outcome.ok()) return std::nullopt;
-  return problem.Weights(x);
+  return {problem.Weights(x), outcome.ok()};
 }
 
 std::optional<LeftOut> CrossValidate(const Robot& robot, const Samples& samples, double penalty) {
@@ -114,15 +113,13 @@ std::optional<LeftOut> CrossValidate(const Robot& robot, const Samples& samples,
     }
     const bool determined = Residuals(kept) >= 6 * samples.front()->features.size();
     if (!determined && !(penalty > 0)) return std::nullopt;
-    const auto weights = FitWeights(robot, kept, penalty);
-    if (!weights) return std::nullopt;
+    const Weights weights = FitWeights(robot, kept, penalty);
+    left_out.converged = left_out.converged && weights.converged;
     for (std::size_t i = fold; i < samples.size(); i += kFolds) {
       const Measured& measured = *samples[i]->pair->measured;
-      const Eigen::Matrix3Xd disks = Disks(robot, Corrected(*weights, *samples[i]));
+      const Eigen::Matrix3Xd disks = Disks(robot, Corrected(weights.values, *samples[i]));
       errors.Add(robot, measured, disks);
-      for (const double e : Errors(robot, measured, disks)) {
-        if (!std::isnan(e)) left_out.objective += e * e;
-      }
+      left_out.explained.Add(robot, measured, disks);
     }
   }
   left_out.tips = errors.train;
@@ -130,13 +127,12 @@ std::optional<LeftOut> CrossValidate(const Robot& robot, const Samples& samples,
 }
 
 double ChoosePenalty(const Robot& robot, const Samples& samples) {
-  double chosen = 0;
-  auto best = CrossValidate(robot, samples, chosen);
-  for (int i = 0; i <= 14; ++i) {
-    const double penalty = std::pow(10, -6 + 0.5 * i);
+  double chosen = 0, least = std::numeric_limits<double>::infinity();
+  for (int i = -1; i <= 14; ++i) {
+    const double penalty = i < 0 ? 0 : std::pow(10, -6 + 0.5 * i);
     const auto candidate = CrossValidate(robot, samples, penalty);
-    if (!candidate || (best && best->objective <= candidate->objective)) continue;
-    best = candidate;
+    if (!candidate || !candidate->converged || least <= candidate->explained.rmse()) continue;
+    least = candidate->explained.rmse();
     chosen = penalty;
   }
   return chosen;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "models/tdcr/explained.h"
 #include "models/tdcr/measured.h"
 
 namespace continuum::tdcr {
@@ -31,19 +32,23 @@ Eigen::Matrix3Xd Disks(const Robot& robot, const Ends& ends);
 /// penalty |V|^2, where V_jc = L W_jc max|feature j| is what feature j bends or twists the rod by
 /// where it is largest [rad]: without it, forces and twists that the samples hardly tell apart get
 /// large weights of opposite signs, which another load does not cancel. Penalty 0 is (30) alone.
-/// Levenberg-Marquardt from zero weights; nothing when it does not converge.
-std::optional<Eigen::MatrixXd> FitWeights(const Robot& robot, const Samples& samples,
-                                          double penalty);
+/// Levenberg-Marquardt from zero weights; where it does not converge, those that it reached.
+struct Weights {
+  Eigen::MatrixXd values;
+  bool converged = false;
+};
+Weights FitWeights(const Robot& robot, const Samples& samples, double penalty);
 
 /// What weights do to samples that they have not seen, each sample once, by five folds.
 struct LeftOut {
-  double objective = 0;      ///< sum of |x_i - O_i|^2 [m^2]
+  Explained explained;
   std::vector<double> tips;  ///< tip errors [% of L]
+  bool converged = true;     ///< all five trainings
 };
 /// Nothing with a single sample, and when a fold has fewer residuals than weights and no penalty.
 std::optional<LeftOut> CrossValidate(const Robot& robot, const Samples& samples, double penalty);
 
-/// The penalty among 0 and 1e-6 .. 10 whose left out objective is the smallest; 0 when none can be
+/// The penalty among 0 and 1e-6 .. 10 that explains most of the cases left out; 0 when none can be
 /// validated.
 double ChoosePenalty(const Robot& robot, const Samples& samples);
 

@@ -200,17 +200,18 @@ std::vector<Pair> ReadPairs(const SolveRequest& request, const std::vector<Case>
   return Match(cases, measured, request.measured.string());
 }
 
-void AddExplained(const Explained& explained, YAML::Node& node) {
-  node["status"] = explained.poor() ? "poor" : "ok";
+void AddExplained(const Explained& explained, bool poor, YAML::Node& node) {
+  node["status"] = poor ? "poor" : "ok";
   node["rmse"] = Number(explained.rmse());
   node["deflection"] = Number(explained.deflection());
   node["scatter"] = Number(explained.scatter());
 }
 
 // The exit code of a calibration or training.
-int Judge(const SolveRequest& request, const Explained& explained, const std::string& job) {
-  if (!explained.poor()) return 0;
-  request.warn(request.measured.string() + ": the " + job + " is poor: " + explained.Sentence());
+int Judge(const SolveRequest& request, bool poor, const std::string& job,
+          const std::string& sentence) {
+  if (!poor) return 0;
+  request.warn(request.measured.string() + ": the " + job + " is poor: " + sentence);
   return 1;
 }
 
@@ -243,7 +244,7 @@ YAML::Node CalibrationDocument(const SolveRequest& request, const Yaml& file,
   node["base_rotation"] = YAML::Clone(base);
   node["standard_error"] = standard;
   node["at_bound"] = List(c.at_bound);
-  AddExplained(c.explained, node);
+  AddExplained(c.explained, c.explained.poor(), node);
   node["tip_error_percent"] = Document(c.tips);
   document["calibration"] = node;
   return document;
@@ -260,7 +261,7 @@ int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& r
   const Calibration c =
       Calibrate(robot, method, ReadPairs(request, cases, measured), request.measured.string());
   WriteDocument(request.out, CalibrationDocument(request, file, c));
-  return Judge(request, c.explained, "calibration");
+  return Judge(request, c.explained.poor(), "calibration", c.explained.Sentence());
 }
 
 int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot) {
@@ -281,15 +282,16 @@ int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robo
   }
   node["weights"] = weights;
   node["penalty"] = Number(h.penalty);
-  AddExplained(h.explained, node);
+  AddExplained(h.explained, h.poor(), node);
+  if (h.left_out) node["rmse_left_out"] = Number(h.left_out->explained.rmse());
   node["tip_error_percent"] = Document(h.tips);
-  if (const auto spread = Statistics(h.left_out)) {
+  if (const auto spread = h.left_out ? Statistics(h.left_out->tips) : std::nullopt) {
     node["tip_error_percent"]["five_fold"] = Document(*spread);
   }
   YAML::Node document = YAML::Clone(file.node());
   document["hybrid"] = node;
   WriteDocument(request.out, document);
-  return Judge(request, h.explained, "training");
+  return Judge(request, h.poor(), "training", h.Sentence());
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ void PrintSpread(const char* name, const Spread& s, const char* published) {
 
 void PrintHybrid(const char* name, const Hybrid& hybrid, const char* published) {
   PrintSpread(name, *Statistics(hybrid.tips.test), published);
-  const auto left_out = Statistics(hybrid.left_out);
+  const auto left_out = hybrid.left_out ? Statistics(hybrid.left_out->tips) : std::nullopt;
   if (left_out) PrintSpread("  left out", *left_out, "-");
   fmt::print("    penalty {:.1e}\n", hybrid.penalty);
 }

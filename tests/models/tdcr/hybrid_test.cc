@@ -38,7 +38,10 @@ TEST(TdcrHybrid, CrossValidationKeepsTheHangingSetFromBeingLearntByHeart) {
     const Spread after = *Statistics(hybrid.tips.test);
     EXPECT_GT(hybrid.penalty, 0) << seed;
     EXPECT_LT(Statistics(printed.tips.train)->mean, Statistics(hybrid.tips.train)->mean) << seed;
-    EXPECT_LT(Statistics(hybrid.left_out)->mean, Statistics(printed.left_out)->mean) << seed;
+    ASSERT_TRUE(hybrid.left_out && printed.left_out);
+    EXPECT_LT(Statistics(hybrid.left_out->tips)->mean, Statistics(printed.left_out->tips)->mean)
+        << seed;
+    EXPECT_FALSE(hybrid.poor()) << seed;
     EXPECT_LT(after.mean, 0.9 * before.mean) << seed;
     EXPECT_LT(after.max, before.max) << seed;
   }
