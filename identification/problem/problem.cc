@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "identification/problem/duplicate_parameters.h"
+#include "identification/problem/inertia_range.h"
 #include "identification/problem/parameter_units.h"
 #include "identification/problem/start_parameters.h"
 #include "identification/sensitivity/smooth_path.h"
@@ -69,6 +70,7 @@ Problem::Problem(const Experiment& experiment, const ModelSpec& system,
     if (!geoms) systems_.back().DropVisuals();
   }
   for (const Parameter& p : experiment.parameters) Expand(p);
+  KeepToInertias(system, parameters_);
   RefuseDuplicates(experiment.parameters, system);
   const Wiring wiring(experiment, system.model());
   for (const Parameter& p : RegistrationParameters(experiment, wiring, system.model())) Expand(p);

@@ -138,6 +138,8 @@ nlohmann::json ParametersJson(const std::vector<FreeParameter>& parameters,
                    {"start", p.initial},
                    {"at_bound", static_cast<bool>(u.at_bound[i])},
                    {"start_at_bound", p.initial <= p.lower + edge || p.initial >= p.upper - edge}});
+    for (const std::string& why : {p.why_lower, p.why_upper})
+      if (!why.empty()) all.back()["bound_moved"].push_back(why);
     if (u.step.size()) all.back()["fine_step"] = x[i] + u.step[i];
   }
   return all;

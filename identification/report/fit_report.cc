@@ -194,11 +194,13 @@ void AddParameterTable(Page& page, const std::vector<FreeParameter>& parameters,
     if (p.IsStart()) continue;
     const std::string range =
         u.known() ? fmt::format("{:.5g} … {:.5g}", u.lower[i], u.upper[i]) : "not computed";
-    rows.push_back({p.name, fmt::format("{:.5g}", x[i]), p.unit,
-                    u.known() ? fmt::format("{:.2g}", u.standard_error[i]) : "–",
-                    range + (u.at_bound[i] ? ", at its bound" : ""),
-                    u.step.size() ? fmt::format("{:.5g}", x[i] + u.step[i]) : "",
-                    fmt::format("{:.5g}", p.initial)});
+    const std::string& why = p.WhyNearerBound(x[i]);
+    rows.push_back(
+        {p.name, fmt::format("{:.5g}", x[i]), p.unit,
+         u.known() ? fmt::format("{:.2g}", u.standard_error[i]) : "–",
+         range + (u.at_bound[i] ? ", at its bound" + (why.empty() ? "" : ": " + why) : ""),
+         u.step.size() ? fmt::format("{:.5g}", x[i] + u.step[i]) : "",
+         fmt::format("{:.5g}", p.initial)});
   }
   std::string note = "Intervals allow for residuals that are correlated in time";
   if (u.step.size()) note += ", and reach over what a fine time step would give";

@@ -23,6 +23,8 @@ std::string ParameterLine(const FreeParameter& p, double value, const Uncertaint
   if (u.at_bound[i]) range = "at " + NearerBound(p, value) + "; " + range;
   if (p.initial <= p.lower || p.initial >= p.upper)
     range += "; it starts at " + NearerBound(p, p.initial);
+  const std::string& why = p.WhyNearerBound(value);
+  if (u.at_bound[i] && !why.empty()) range += "; " + why;
   const std::string unit = p.unit == "1" ? "" : " " + p.unit;
   return fmt::format("{:<24} {:.6g}{} ({})\n", p.name, value, unit, range);
 }

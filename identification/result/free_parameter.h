@@ -17,7 +17,12 @@ struct FreeParameter {
   Change change;                 ///< what it does to the model; the value is filled in
   std::vector<bool> log;         ///< [log] whether it acts there
   std::string where = {};        ///< file:line: key, for messages
+  /// Why a bound is another than was asked for; empty: it is not.
+  std::string why_lower = {}, why_upper = {};
 
+  const std::string& WhyNearerBound(double value) const {
+    return value - lower < upper - value ? why_lower : why_upper;
+  }
   /// Whether it is an initial position or speed of a trial, called "start:JOINT".
   bool IsStart() const { return change.target.starts_with("start:"); }
 };
