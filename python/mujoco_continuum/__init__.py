@@ -12,8 +12,9 @@ run the packaged executable `continuum`:
 
 force_law and friction_law make candidates of Python functions.
 
-An experiment is the path of an EXPERIMENT.yaml or a dict with the same keys. docs/python.md shows a
-whole example.
+replay, identify and diagnose return objects that are the document as a dict, too: Replay, Fit and
+Diagnosis. An experiment is the path of an EXPERIMENT.yaml or a dict with the same keys.
+docs/python.md shows a whole example.
 """
 try:
     from ._build import MUJOCO, VERSION as __version__
@@ -25,8 +26,10 @@ from ._paths import EXECUTABLE, MODELS, PLUGINS
 from ._tool import Error, InputError, JobError
 from .commands import apply, check, diagnose, effects, identify, models, replay
 from .laws import force_law, friction_law
+from .results import Cause, Channel, Diagnosis, Errors, Fit, Interval, Parameter, Replay
 
-__all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Error", "InputError", "JobError",
+__all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Cause", "Channel", "Diagnosis",
+           "Error", "Errors", "Fit", "InputError", "Interval", "JobError", "Parameter", "Replay",
            "apply", "check", "diagnose", "effects", "force_law", "friction_law", "identify",
            "models", "replay"]
 

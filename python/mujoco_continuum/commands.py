@@ -2,9 +2,10 @@
 
 Where several take the same:
   experiment  path of an EXPERIMENT.yaml, or a dict with its keys
-  out         folder for all outputs (report.html and more); without it only the dict is kept
+  out         folder for all outputs (report.html and more); without it only the result is kept
   folder      where the relative paths of a dict start
-  progress    called with each line of progress, e.g. print
+  progress    called with each line of progress, e.g. print; True: a bar by tqdm where it is
+              installed, else lines on stderr
 
 Each raises InputError for wrong use or bad input, JobError for a job that failed. Ctrl-C stops the
 tool, which leaves no half-written output, and raises KeyboardInterrupt.
@@ -14,67 +15,76 @@ import json
 import pathlib
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from ._experiment import Document, StrPath, as_argument, as_file, with_absolute_paths
+from ._progress import shown
 from ._tool import Progress, run
+from .results import Diagnosis, Fit, Replay, Result
 
 Json = dict[str, Any]
+Kind = TypeVar("Kind", bound=Result)
 
 
 def check(experiment: Document, *, folder: StrPath = ".",
-          progress: Progress | None = None) -> list[Json]:
+          progress: Progress | bool | None = None) -> list[Json]:
     """Looks at the logs before anything else: clock, stale samples, jumps, saturation, excitation.
 
     Returns findings {severity, what, log, channel, begin, end, text}, severity info | warning |
     error."""
-    with as_file(with_absolute_paths(experiment, folder), "experiment") as (file, rename):
-        return json.loads(run(["check", file, "--json"], progress, rename))
+    with as_file(with_absolute_paths(experiment, folder), "experiment") as (file, rename), \
+            shown(progress) as show:
+        return json.loads(run(["check", file, "--json"], show, rename))
 
 
 def replay(experiment: Document, out: StrPath | None = None, *, video: bool = False,
            log: str | None = None, size: str | None = None, fps: int | None = None,
            camera: str | None = None, gl: str | None = None, folder: StrPath = ".",
-           progress: Progress | None = None) -> Json:
+           progress: Progress | bool | None = None) -> Replay:
     """Simulates every log as it stands. Returns errors.json: errors per log and channel, pooled.
 
     video: also replay.mp4; of it log (only this one), size ("960x720"), fps, camera, gl (osmesa |
     egl)."""
     options = {"video": video, "log": log, "size": size, "fps": fps, "camera": camera, "gl": gl}
-    return _job("replay", "errors.json", experiment, out, options, folder, progress)
+    return _job("replay", "errors.json", Replay, experiment, out, options, folder, progress)
 
 
 def identify(experiment: Document, out: StrPath | None = None, *, method: str = "lm",
              path: str = "auto", iterations: int | None = None, starts: int = 1, seed: int = 1,
-             cutoff: float | None = None, all: bool = False, for_step: bool = False,
-             whole: bool = False, from_: Document | None = None, folder: StrPath = ".",
-             progress: Progress | None = None) -> Json:
+             cutoff: float | None = None, differences: float | None = None, all: bool = False,
+             for_step: bool = False, whole: bool = False, from_: Document | None = None,
+             folder: StrPath = ".", progress: Progress | bool | None = None) -> Fit:
     """Fits the parameters. Returns fit.json: parameters with intervals, correlation, errors.
 
     method: lm | pso | regressor. path: auto | smooth | stepped. starts: fit from so many, keep the
     best. seed belongs to starts and pso, cutoff [Hz] to regressor; None: what the method likes.
+    differences: the share of a parameter's size over which the stepped path takes slopes.
     all: the validate logs too. whole: no segments first. from_: an earlier fit to start from."""
     options = {"method": method, "path": path, "iterations": iterations, "starts": starts,
-               "seed": seed, "cutoff": cutoff, "all": all, "for_step": for_step, "whole": whole}
+               "seed": seed, "cutoff": cutoff, "differences": differences, "all": all,
+               "for_step": for_step, "whole": whole}
     with as_file(from_ or "", "from") as (fit, rename):
         options["from"] = fit or None
-        return _job("identify", "fit.json", experiment, out, options, folder, progress, rename)
+        return _job("identify", "fit.json", Fit, experiment, out, options, folder, progress, rename)
 
 
 def diagnose(experiment: Document, out: StrPath | None = None, *,
-             candidates: str | Sequence[str] = (), compare: Document | None = None,
-             placebos: int = 20, seed: int = 1, video: bool = False, folder: StrPath = ".",
-             progress: Progress | None = None) -> Json:
+             candidates: str | Sequence[str] = (), effort: str = "normal",
+             compare: Document | None = None, placebos: int = 20, seed: int = 1,
+             video: bool = False, folder: StrPath = ".",
+             progress: Progress | bool | None = None) -> Diagnosis:
     """Finds what the simulation gets wrong. Returns diagnosis.json: verdict, causes, errors, gain.
 
-    candidates: effects to try instead of the experiment's. compare: an earlier diagnosis, which the
-    last lines of progress stand beside. With `out`, extended.xml and extended.yaml lie there."""
+    candidates: effects to try instead of the experiment's. effort: quick | normal | thorough.
+    compare: an earlier diagnosis, which the last lines of progress stand beside. With `out`,
+    extended.xml and extended.yaml lie there."""
     names = candidates if isinstance(candidates, str) else ",".join(candidates)
-    options = {"candidates": names or None, "placebos": placebos, "seed": seed, "video": video}
+    options = {"candidates": names or None, "effort": effort, "placebos": placebos, "seed": seed,
+               "video": video}
     with as_file(compare or "", "compare") as (old, rename):
         options["compare"] = old or None
-        return _job("diagnose", "diagnosis.json", experiment, out, options, folder, progress,
-                    rename)
+        return _job("diagnose", "diagnosis.json", Diagnosis, experiment, out, options, folder,
+                    progress, rename)
 
 
 def apply(diagnosis: Document, model: StrPath, out: StrPath) -> pathlib.Path:
@@ -97,16 +107,18 @@ def models() -> dict[str, pathlib.Path]:
     return {item["name"]: pathlib.Path(item["file"]) for item in listed}
 
 
-def _job(command: str, result: str, experiment: Document, out: StrPath | None, options: Json,
-         folder: StrPath, progress: Progress | None, rename: Mapping[str, str] = {}) -> Json:
-    """Runs a subcommand that writes a folder; returns its JSON."""
-    document = with_absolute_paths(experiment, folder)
-    with as_file(document, "experiment") as (file, more), _folder(out) as written:
+def _job(command: str, document: str, kind: type[Kind], experiment: Document, out: StrPath | None,
+         options: Json, folder: StrPath, progress: Progress | bool | None,
+         rename: Mapping[str, str] = {}) -> Kind:
+    """Runs a subcommand that writes a folder; returns its document as an object."""
+    absolute = with_absolute_paths(experiment, folder)
+    with as_file(absolute, "experiment") as (file, more), _folder(out) as written:
         arguments = [command, file, "--out", written, *_options(options)]
-        printed = run(arguments, progress, {**rename, **more})
-        for line in printed.splitlines() if progress else ():
+        with shown(progress) as show:
+            printed = run(arguments, show, {**rename, **more})
+        for line in printed.splitlines() if callable(progress) else ():
             progress(line)
-        return json.loads(pathlib.Path(written, result).read_text())
+        return kind(json.loads(pathlib.Path(written, document).read_text()), written)
 
 
 def _options(options: Json) -> list[str]:
