@@ -9,6 +9,7 @@ run the packaged executable `continuum`:
     identify   fit the parameters
     diagnose   why it is off, and the extended model
     apply      the extension in another model
+    solve      the static shape of a robot; calibrate: its parameters
 
 force_law and friction_law make candidates of Python functions.
 
@@ -27,10 +28,11 @@ from ._tool import Error, InputError, JobError
 from .commands import apply, check, diagnose, effects, identify, models, replay
 from .laws import force_law, friction_law
 from .results import Cause, Channel, Diagnosis, Errors, Fit, Interval, Parameter, Replay
+from .statics import calibrate, solve
 
 __all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Cause", "Channel", "Diagnosis",
            "Error", "Errors", "Fit", "InputError", "Interval", "JobError", "Parameter", "Replay",
-           "apply", "check", "diagnose", "effects", "force_law", "friction_law", "identify",
-           "models", "replay"]
+           "apply", "calibrate", "check", "diagnose", "effects", "force_law", "friction_law",
+           "identify", "models", "replay", "solve"]
 
 PLUGIN = _load()

@@ -1,7 +1,8 @@
 """The subcommands of `continuum` as functions.
 
 Where several take the same:
-  experiment  path of an EXPERIMENT.yaml, or a dict with its keys
+  experiment  path of an EXPERIMENT.yaml, or a dict with its keys; a log of a dict may be a table
+              ({"data": frame, "trial": "slow"}): a frame, a dict of columns, a structured array
   out         folder for all outputs (report.html and more); without it only the result is kept
   folder      where the relative paths of a dict start
   progress    called with each line of progress, e.g. print; True: a bar by tqdm where it is
@@ -17,7 +18,8 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeVar
 
-from ._experiment import Document, StrPath, as_argument, as_file, with_absolute_paths
+from ._experiment import Document, StrPath, as_argument, as_file
+from ._logs import experiment_file
 from ._progress import shown
 from ._tool import Progress, run
 from .results import Diagnosis, Fit, Replay, Result
@@ -32,8 +34,7 @@ def check(experiment: Document, *, folder: StrPath = ".",
 
     Returns findings {severity, what, log, channel, begin, end, text}, severity info | warning |
     error."""
-    with as_file(with_absolute_paths(experiment, folder), "experiment") as (file, rename), \
-            shown(progress) as show:
+    with experiment_file(experiment, folder) as (file, rename), shown(progress) as show:
         return json.loads(run(["check", file, "--json"], show, rename))
 
 
@@ -111,8 +112,7 @@ def _job(command: str, document: str, kind: type[Kind], experiment: Document, ou
          options: Json, folder: StrPath, progress: Progress | bool | None,
          rename: Mapping[str, str] = {}) -> Kind:
     """Runs a subcommand that writes a folder; returns its document as an object."""
-    absolute = with_absolute_paths(experiment, folder)
-    with as_file(absolute, "experiment") as (file, more), _folder(out) as written:
+    with experiment_file(experiment, folder, out) as (file, more), _folder(out) as written:
         arguments = [command, file, "--out", written, *_options(options)]
         with shown(progress) as show:
             printed = run(arguments, show, {**rename, **more})

@@ -1,0 +1,87 @@
+"""The static models of `continuum solve` as functions.
+
+Where both take the same:
+  robot     path of models/<robot>/<name>.yaml, or a dict with its keys
+  cases     path of a CSV, a table (a frame, or a dict of columns), or a list of dicts: one a row
+  measured  measured disks of the cases (tdcr), as cases
+
+Each raises InputError for wrong use or bad input. Columns and methods: the robot's README.
+"""
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ._experiment import Document, StrPath, as_argument, as_file
+from ._tables import columns_of, write_columns
+from ._tool import JobError, Progress, run
+
+Row = dict[str, Any]
+Table = Any
+"""A path, a frame, a dict of columns, or a list of rows."""
+
+
+def solve(robot: Document, cases: Table | None = None, *, method: str | None = None,
+          measured: Table | None = None, hybrid: bool = False, sensitivity: bool = False,
+          lambda_: float | None = None, plot: StrPath | None = None,
+          progress: Progress | None = None) -> list[Row]:
+    """The static shape of a robot in every case. Returns a dict for each row, in SI units.
+
+    A row has status "ok" or what failed, stable, x, y, z of the tip [m], and more for each robot.
+    hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop). lambda_: weight
+    of the method fit. plot: a picture of the shapes (.png, .svg, .pdf). progress: called with each
+    warning. Raises JobError only where there are no results at all."""
+    options = {"--method": method, "--hybrid": "apply" if hybrid else None,
+               "--sensitivity": sensitivity, "--lambda": lambda_,
+               "--plot": None if plot is None else as_argument(plot)}
+    with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
+        out = pathlib.Path(folder, "results.json")
+        try:
+            _solve(robot, cases, measured, out, options, folder, progress)
+        except JobError:
+            if not out.exists():
+                raise
+        return json.loads(out.read_text())
+
+
+def calibrate(robot: Document, out: StrPath, cases: Table | None = None, *,
+              method: str | None = None, measured: Table | None = None, train: bool = False,
+              cross_validate: bool = False, lambda_: float | None = None,
+              progress: Progress | None = None) -> pathlib.Path:
+    """Fits a robot's parameters to measured shapes; writes the robot to `out`, which is returned.
+
+    train: instead a linear correction of the model (tdcr), with the penalty lambda_, or the one that
+    does best on cases left out (cross_validate). progress: called with each warning."""
+    options = {"--method": method, "--calibrate": not train, "--hybrid": "train" if train else None,
+               "--cross-validate": cross_validate, "--lambda": lambda_}
+    with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
+        _solve(robot, cases, measured, out, options, folder, progress)
+    return pathlib.Path(out)
+
+
+def _solve(robot: Document, cases: Table | None, measured: Table | None, out: StrPath,
+           options: Mapping[str, Any], folder: str, progress: Progress | None) -> None:
+    with as_file(robot, "robot") as (file, rename):
+        words = [file, "--out", as_argument(out)]
+        for name, table in (("cases", cases), ("measured", measured)):
+            if table is not None:
+                option = "--input" if name == "cases" else "--measured"
+                words += [option, _file(table, name, pathlib.Path(folder))]
+        for option, value in options.items():
+            if value is not None and value is not False:
+                words += [option] if value is True else [option, str(value)]
+        run(["solve", *words], progress, {f"{folder}/": "", **rename})
+
+
+def _file(table: Table, name: str, folder: pathlib.Path) -> str:
+    if isinstance(table, (str, os.PathLike)):
+        return as_argument(table)
+    if isinstance(table, Sequence):
+        names = list(dict.fromkeys(key for row in table for key in row))
+        table = {key: [row.get(key) for row in table] for key in names}
+    file = folder / f"{name}.csv"
+    columns = columns_of(table, name)
+    write_columns(columns, columns, name, file, text=True)
+    return str(file)

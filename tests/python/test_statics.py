@@ -1,0 +1,64 @@
+"""Static models as functions."""
+import csv
+import unittest
+
+import bench
+import mujoco_continuum as mc
+
+TDCR = mc.MODELS / "tdcr"
+CASES = {"case": ["rest", "pulled"], "T1": [0, 3.0], "T2": [0, 0], "T3": [0, 0],
+         "fx": [0, 0], "fy": [0, 0], "fz": [0, 0], "gx": [0, 0], "gy": [0, 0], "gz": [9.81, 9.81]}
+ROD = {"format": 1, "robot": "tdcr", "length": 0.134, "diameter": 0.99e-3, "disks": 9, "tendons": 3,
+       "tendon_radius": 7e-3, "E": 60e9, "nu": 0.3, "density": 6450, "disk_mass": 0.6e-3, "mu": 0.2,
+       "gravity": [0, 0, 9.81], "base_rotation": [0, 0, 0]}
+
+
+class Solve(bench.Bench):
+    def test_gives_a_row_for_each_case(self):
+        rest, pulled = mc.solve(TDCR / "tdcr.yaml", CASES)
+        self.assertEqual((rest["case"], rest["status"], rest["x"]), ("rest", "ok", 0))
+        self.assertAlmostEqual(rest["z"], 0.134)
+        self.assertGreater(pulled["x"], 0.05)
+
+    def test_takes_rows_and_files_and_robots_as_dicts(self):
+        rows = [dict(zip(CASES, row)) for row in zip(*CASES.values())]
+        with open("cases.csv", "w", newline="") as file:
+            csv.writer(file).writerows([CASES, *zip(*CASES.values())])
+        expected = [row["x"] for row in mc.solve(TDCR / "tdcr.yaml", CASES)]
+        for robot, cases in ((TDCR / "tdcr.yaml", rows), (TDCR / "tdcr.yaml", "cases.csv"),
+                             (ROD, CASES)):
+            self.assertEqual([row["x"] for row in mc.solve(robot, cases)], expected)
+
+    def test_draws_the_shapes(self):
+        mc.solve(TDCR / "tdcr.yaml", CASES, plot="shapes.svg", method="pcca")
+        self.assertTrue((self.folder / "shapes.svg").exists())
+
+    def test_gives_the_rows_that_failed_too(self):
+        rest, pulled = mc.solve(TDCR / "tdcr.yaml", CASES | {"T1": [0, 1e5]})
+        self.assertEqual(rest["status"], "ok")
+        self.assertNotEqual(pulled["status"], "ok")
+
+    def test_refuses_what_the_tool_refuses(self):
+        with self.assertRaisesRegex(mc.InputError, "^cases.csv:1: expected a column 'fx'"):
+            mc.solve(TDCR / "tdcr.yaml", {name: CASES[name] for name in ("case", "T1", "T2", "T3")})
+        with self.assertRaisesRegex(mc.InputError, "^cases: expected a table .*found int"):
+            mc.solve(TDCR / "tdcr.yaml", 3)
+        with self.assertRaisesRegex(mc.InputError, "'magic'"):
+            mc.solve(TDCR / "tdcr.yaml", CASES, method="magic")
+        with self.assertRaisesRegex(mc.InputError, r"^robot:6: disks: expected"):
+            mc.solve(ROD | {"disks": -1}, CASES)
+
+
+class Calibrate(bench.Bench):
+    def test_finds_the_stiffness_that_made_the_shapes(self):
+        pulls = {name: [value[-1]] * 4 for name, value in CASES.items()} | {
+            "case": ["a", "b", "c", "d"], "T1": [1.0, 2.0, 3.0, 0.0], "T2": [0, 0, 0, 2.0]}
+        shapes = mc.solve(ROD | {"E": 50e9}, pulls)
+        measured = [{name: value for name, value in row.items()
+                     if name == "case" or name[:2] in ("x_", "y_", "z_")} for row in shapes]
+        self.assertEqual(str(mc.calibrate(ROD, "mended.yaml", pulls, measured=measured)),
+                         "mended.yaml")
+        again = mc.solve("mended.yaml", pulls)
+        for row, expected in zip(again, shapes):
+            self.assertAlmostEqual(row["x"], expected["x"], delta=1e-9)  # 60 GPa: 4 mm
+        self.assertRegex((self.folder / "mended.yaml").read_text(), r"[{ ]E: (5000000|49999999)")
