@@ -30,7 +30,9 @@ VERSION = re.search(r"^project\(mujoco_continuum VERSION ([\d.]+)", _CMAKE, re.M
 MUJOCO = re.search(r"^find_package\(MuJoCo ([\d.]+) EXACT", _CMAKE, re.M)[1]
 INFO = f"{PACKAGE}-{VERSION}.dist-info"
 TAG = "py3-none-" + re.sub(r"[-.]", "_", sysconfig.get_platform())  # any Python 3, this machine
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+_PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+PROJECT = _PYPROJECT["project"]
+EXTRAS = {"mujoco": [f"mujoco-core=={MUJOCO}"], **_PYPROJECT["tool"]["backend"]["extras"]}
 
 
 def get_requires_for_build_wheel(config_settings=None):
@@ -133,11 +135,13 @@ def _run(*command):
 
 
 def _metadata():
+    extras = []
+    for extra, needs in EXTRAS.items():
+        extras += [f"Provides-Extra: {extra}"]
+        extras += [f"Requires-Dist: {need}; extra == '{extra}'" for need in needs]
     lines = ["Metadata-Version: 2.1", f"Name: {PROJECT['name']}", f"Version: {VERSION}",
              f"Summary: {PROJECT['description']}", f"License: {PROJECT['license']['text']}",
-             f"Requires-Python: {PROJECT['requires-python']}", "Provides-Extra: mujoco",
-             f"Requires-Dist: mujoco-core=={MUJOCO}; extra == 'mujoco'",
-             "Provides-Extra: films", "Requires-Dist: imageio-ffmpeg; extra == 'films'",
+             f"Requires-Python: {PROJECT['requires-python']}", *extras,
              "Description-Content-Type: text/markdown", "", (ROOT / PROJECT["readme"]).read_text()]
     return "\n".join(lines)
 

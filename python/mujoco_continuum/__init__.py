@@ -9,6 +9,7 @@ run the packaged executable `continuum`:
     identify   fit the parameters
     diagnose   why it is off, and the extended model
     apply      the extension in another model
+    read       a log of another format (MCAP, LeRobot, HDF5, npz)
     solve      the static shape of a robot; calibrate: its parameters
 
 force_law and friction_law make candidates of Python functions.
@@ -27,12 +28,13 @@ from ._paths import EXECUTABLE, MODELS, PLUGINS
 from ._tool import Error, InputError, JobError
 from .commands import apply, check, diagnose, effects, identify, models, replay
 from .laws import force_law, friction_law
+from .reading import read
 from .results import Cause, Channel, Diagnosis, Errors, Fit, Interval, Parameter, Replay
 from .statics import calibrate, solve
 
 __all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Cause", "Channel", "Diagnosis",
            "Error", "Errors", "Fit", "InputError", "Interval", "JobError", "Parameter", "Replay",
            "apply", "calibrate", "check", "diagnose", "effects", "force_law", "friction_law",
-           "identify", "models", "replay", "solve"]
+           "identify", "models", "read", "replay", "solve"]
 
 PLUGIN = _load()

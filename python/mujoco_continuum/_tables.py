@@ -28,7 +28,7 @@ def columns_of(table: Any, place: str) -> dict[str, Any]:
     names = list(table) if isinstance(table, Mapping) else list(_names(table))
     twice = {str(name) for name in names if names.count(name) > 1}
     if twice:
-        raise InputError(f"{place}: expected different names of columns, found {_listed(twice)} twice")
+        raise InputError(f"{place}: expected different names of columns, found {listed(twice)} twice")
     columns = {str(name): table[name] for name in names}
     index = getattr(getattr(table, "index", None), "name", None)
     return columns if index is None else {str(index): table.index, **columns}
@@ -40,7 +40,7 @@ def write_columns(columns: Mapping[str, Any], wanted: Iterable[str], place: str,
     wanted = list(dict.fromkeys(wanted))
     for name in wanted:
         if name not in columns:
-            raise InputError(f"{place}: expected a column {name!r}, found {_listed(columns)}; "
+            raise InputError(f"{place}: expected a column {name!r}, found {listed(columns)}; "
                              "rename one in the table or in the experiment")
     cells = {name: _cells(columns[name], f"{place}, column {name!r}", text) for name in wanted}
     rows = {name: len(column) for name, column in cells.items()}
@@ -103,7 +103,7 @@ def _cell(value: Any, row: int, place: str, text: bool) -> Any:
                      "first (pandas.to_numeric, or dt.total_seconds() of a duration)")
 
 
-def _listed(names: Iterable[str]) -> str:
+def listed(names: Iterable[str]) -> str:
     names = list(names)
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
     return ", ".join(repr(name) for name in names[:SHOWN]) + more if names else "none"

@@ -47,6 +47,11 @@ class Tables(bench.Bench):
         self.same({"data": frame().set_index("t")})
         self.same(frame().astype({"u": "float32"}).assign(u=frame().u, note="text is not read"))
 
+    @unittest.skipUnless(importlib.util.find_spec("polars"), "polars is not installed")
+    def test_may_be_frames_of_polars(self):
+        import polars
+        self.same(polars.DataFrame(TABLE, strict=False).with_columns(note=polars.lit("text is not read")))
+
     @needs_pyarrow
     def test_may_be_tables_of_pyarrow(self):
         import pyarrow
