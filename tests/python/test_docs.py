@@ -2,6 +2,7 @@
 import contextlib
 import csv
 import glob
+import importlib.util
 import io
 import json
 import pathlib
@@ -55,6 +56,39 @@ class Page(Bench):
                               "next_experiment", "offered", "wrong"}, set(diagnosis))
         tried = {candidate["effect"] for candidate in names["second"]["candidates"]}
         self.assertLessEqual({"coulomb", "fading_friction"}, tried)
+
+
+class MujocoSysid(Bench):
+    """docs/from-mujoco-sysid.md."""
+
+    def run_page(self, languages):
+        code = "\n".join(blocks(DOCS / "from-mujoco-sysid.md", languages))
+        names = {}
+        with contextlib.redirect_stdout(io.StringIO()):
+            exec(compile(code, "from-mujoco-sysid.md", "exec"), names)
+        return names
+
+    def test_finds_the_damping(self):
+        damping = self.run_page("python")["fit"].parameters["damping"]
+        self.assertTrue(damping.interval.contains(0.08))
+        self.assertLess(damping.interval.high - damping.interval.low, 1e-3)
+
+    @unittest.skipUnless(importlib.util.find_spec("mujoco.sysid") and
+                         importlib.util.find_spec("tabulate"), "mujoco.sysid is not installed")
+    def test_agrees_with_the_other(self):
+        names = self.run_page("python(?:-sysid)?")
+        self.assertAlmostEqual(names["theirs"], names["fit"].parameters["damping"].value, delta=1e-5)
+
+
+class Bam(Bench):
+    def test_has_a_law_that_the_tool_takes(self):
+        names = {}
+        exec("\n".join(blocks(DOCS / "from-bam.md", "python")), names)
+        self.experiment["candidates"] = [names["law"]]
+        self.assertIsInstance(mujoco_continuum.check(self.experiment), list)
+        for v, expected in ((0.0, 0.01 + 0.02 + (0.1 + 0.3) * 0.5), (9.0, 0.01 + 0.1 * 0.5)):
+            level = names["m4"](0, v, 0.25, 0.01, 0.02, 0.1, 0.3, 0.2, 1.35)
+            self.assertAlmostEqual(float(level), expected)
 
 
 class Mjcf(Bench):
