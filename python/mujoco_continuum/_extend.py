@@ -19,7 +19,8 @@ def extended(diagnosis: Document, model: "MjSpec | StrPath") -> "MjSpec":
         file, out = folder / "model.xml", folder / "extended.xml"
         file.write_text(_text(spec, folder), encoding="utf-8")
         with as_file(diagnosis, "diagnosis") as (document, rename):
-            run(["apply", document, str(file), "--out", str(out)], rename={f"{name}/": "", **rename})
+            run(["apply", document, str(file), "--out", str(out)],
+                rename={f"{name}/": "", **rename})
         answer = mujoco.MjSpec.from_file(str(out))
     # Its files are where those of the model are.
     answer.modelfiledir = spec.modelfiledir

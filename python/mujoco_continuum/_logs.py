@@ -72,7 +72,7 @@ def _split(log: Any, place: str) -> tuple[Any, Any]:
         if "file" in log:
             raise InputError(f"{place}: expected one of the keys 'file' and 'data', found both")
         return {key: value for key, value in log.items() if key != "data"}, log["data"]
-    if not isinstance(log, str) and is_table(log) and not (isinstance(log, Mapping) and "file" in log):
+    if is_table(log) and not (isinstance(log, Mapping) and "file" in log):
         return {}, log
     return log, None
 

@@ -49,8 +49,8 @@ def _decoder(schema: Any, channel: Any, path: pathlib.Path, factories: dict[str,
         return json.loads
     if encoding not in SUPPORTS:
         if required:
-            raise InputError(f"{path}, {channel.topic}: expected messages in JSON, protobuf or ROS 2 "
-                             f"CDR, found {encoding!r}")
+            raise InputError(f"{path}, {channel.topic}: expected messages in JSON, protobuf or "
+                             f"ROS 2 CDR, found {encoding!r}")
         return None
     if encoding not in factories:
         module = needed(SUPPORTS[encoding], f"reading {path}, {channel.topic},", "mcap")

@@ -10,7 +10,7 @@ from ._tool import Progress
 def shown(progress: Progress | bool | None) -> Iterator[Progress | None]:
     """What is called with each line of progress.
 
-    True becomes a bar by tqdm that counts the stages, where tqdm is installed, else lines on stderr."""
+    True becomes a bar that counts the stages where tqdm is installed, else lines on stderr."""
     if progress is not True:
         yield progress or None
         return

@@ -1,4 +1,4 @@
-"""Tables in memory as CSV files: frames of pandas, polars or pyarrow, dicts and structured arrays."""
+"""Tables in memory as CSV: frames of pandas, polars or pyarrow, dicts, structured arrays."""
 import csv
 import decimal
 import pathlib
@@ -28,7 +28,8 @@ def columns_of(table: Any, place: str) -> dict[str, Any]:
     names = list(table) if isinstance(table, Mapping) else list(_names(table))
     twice = {str(name) for name in names if names.count(name) > 1}
     if twice:
-        raise InputError(f"{place}: expected different names of columns, found {listed(twice)} twice")
+        raise InputError(f"{place}: expected different names of columns, found {listed(twice)} "
+                         "twice")
     columns = {str(name): table[name] for name in names}
     index = getattr(getattr(table, "index", None), "name", None)
     return columns if index is None else {str(index): table.index, **columns}
@@ -75,8 +76,8 @@ def _cells(column: Any, place: str, text: bool) -> list[Any]:
     values = numpy.asarray(values)
     if values.ndim != 1:
         shape = "x".join(str(size) for size in values.shape)
-        raise InputError(f"{place}: expected one number a row, found an array of {shape}; give each "
-                         "component a column of its own")
+        raise InputError(f"{place}: expected one number a row, found an array of {shape}; give "
+                         "each component a column of its own")
     if values.dtype.kind == "M":
         texts = numpy.datetime_as_string(values, unit="ns")
         return ["" if missing else cell for cell, missing in zip(texts, numpy.isnat(values))]

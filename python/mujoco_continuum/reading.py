@@ -26,16 +26,16 @@ def read(file: StrPath, *, group: str = "", episode: int | None = None,
 
     .npz             arrays of one length. .npy: a structured array, or 0, 1, ...
     .h5 .hdf5        data sets of one length in `group` and below, "obs/q" (needs h5py)
-    .parquet         a file, or the folder of a LeRobot dataset v3, of which `episode` is read. Names
-                     of its meta/info.json stand for numbers: "action.elbow" (needs pyarrow)
+    .parquet         a file, or the folder of a LeRobot dataset v3, of which `episode` is read.
+                     Names of its meta/info.json stand for numbers: "action.elbow" (needs pyarrow)
     .mcap            messages in JSON, protobuf or ROS 2 CDR of `topics` (default: all that can be
                      read), "/topic.field.part"; where a message lists names beside numbers, as
                      JointState does, "/joint_states.position.elbow" (needs mcap and its supports)
 
     An MCAP file has a row at each time of a message, "time" [s] from the first on. clock: when it
     was logged ("log") or published ("publish"), or its header's stamp ("header"). A column has
-    numbers in the rows of its own topic; those that match `hold` ("/command.*") keep their last one,
-    as inputs must, and rows before the first are left out."""
+    numbers in the rows of its own topic; those that match `hold` ("/command.*") keep their last
+    one, as inputs must, and rows before the first are left out."""
     path = pathlib.Path(file)
     if not path.exists():
         raise InputError(f"{path}: expected a recording, found no such file")
@@ -50,8 +50,8 @@ def read(file: StrPath, *, group: str = "", episode: int | None = None,
     elif kind in (".parquet", "lerobot"):
         columns = _parquet(path, episode)
     else:
-        raise InputError(f"{path}: expected .npz, .npy, .h5, .hdf5, .parquet, .mcap or the folder of "
-                         "a LeRobot dataset; CSV and MAT files are logs as they are")
+        raise InputError(f"{path}: expected .npz, .npy, .h5, .hdf5, .parquet, .mcap or the folder "
+                         "of a LeRobot dataset; CSV and MAT files are logs as they are")
     return held(columns, _names(hold) or (), str(path))
 
 
@@ -103,7 +103,8 @@ def _hdf5(path: pathlib.Path, group: str) -> Columns:
     arrays = {}
     with h5py.File(path) as file:
         if group and not isinstance(file.get(group), h5py.Group):
-            raise InputError(f"{path}: expected a group {group!r}, found {listed(_groups(file, h5py))}")
+            raise InputError(f"{path}: expected a group {group!r}, found "
+                             f"{listed(_groups(file, h5py))}")
 
         def add(name: str, item: Any) -> None:
             if isinstance(item, h5py.Dataset) and item.shape and item.dtype.kind in "biuf":
@@ -125,7 +126,8 @@ def _parquet(path: pathlib.Path, episode: int | None) -> Columns:
     if path.is_dir():
         files, names = sorted(path.glob("data/*/*.parquet")), _names_of_parts(path)
         if not files:
-            raise InputError(f"{path}: expected a LeRobot dataset with data/*/*.parquet, found none")
+            raise InputError(f"{path}: expected a LeRobot dataset with data/*/*.parquet, found "
+                             "none")
     filters = None if episode is None else [("episode_index", "=", episode)]
     tables = [parquet.read_table(file, columns=_numeric(parquet.read_schema(file)),
                                  filters=_checked(filters, parquet.read_schema(file), file))
@@ -209,6 +211,6 @@ def _split(arrays: Mapping[str, Any], place: str,
     lengths = {len(column) for column in columns.values()}
     if len(lengths) != 1:
         found = ", ".join(f"{name!r} {len(column)}" for name, column in columns.items()) or "none"
-        raise InputError(f"{place}: expected columns of numbers of one length, found these numbers of "
-                         f"rows: {found}; for HDF5 name a group")
+        raise InputError(f"{place}: expected columns of numbers of one length, found these numbers "
+                         f"of rows: {found}; for HDF5 name a group")
     return columns

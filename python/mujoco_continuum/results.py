@@ -1,8 +1,8 @@
 """What the tools found, as objects.
 
-A result is the JSON document that the tool writes, as a dict (`fit["parameters"]`), and has the same
-as attributes with types and units (`fit.parameters["damping"].interval`). The attributes are those of
-the document as it came. A number that the document lacks is nan.
+A result is the JSON document that the tool writes, as a dict (`fit["parameters"]`), and has the
+same as attributes with types and units (`fit.parameters["damping"].interval`). The attributes are
+those of the document as it came. A number that the document lacks is nan.
 """
 import dataclasses
 import math
@@ -210,8 +210,9 @@ class Diagnosis(Result):
                 f"error {self.before.validate:.4g} -> {self.after.validate:.4g} {self.after.unit}")
 
     def apply(self, model: "MjSpec | StrPath") -> "MjSpec":
-        """The model with the extension; `model` itself, a specification or the path of an MJCF file,
-        stays as it is.
+        """The model with the extension.
+
+        model: a specification, or the path of an MJCF file; it stays as it is.
 
         Raises InputError where the model lacks what the extension acts on."""
         return extended(self, model)
@@ -240,7 +241,7 @@ def _parameters(documents: Sequence[Json]) -> dict[str, Parameter]:
 
 
 def _cause(document: Json) -> Cause:
-    parameters = {name: Parameter(name, p["value"], p["unit"], _interval(p["ci95"]))
+    parameters = {name: Parameter(name, _number(p["value"]), p["unit"], _interval(p["ci95"]))
                   for name, p in document["parameters"].items()}
     return Cause(document["effect"], document["where"], parameters,
                  _number(document["probability"]), document["equivalent"], document["evidence"])

@@ -30,8 +30,8 @@ def solve(robot: Document, cases: Table | None = None, *, method: str | None = N
     """The static shape of a robot in every case. Returns a dict for each row, in SI units.
 
     A row has status "ok" or what failed, stable, x, y, z of the tip [m], and more for each robot.
-    hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop). lambda_: weight
-    of the method fit. plot: a picture of the shapes (.png, .svg, .pdf). progress: called with each
+    hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop). lambda_: the
+    weight of the method fit. plot: a picture of the shapes (.png, .svg, .pdf). progress: called with each
     warning. Raises JobError only where there are no results at all."""
     options = {"--method": method, "--hybrid": "apply" if hybrid else None,
                "--sensitivity": sensitivity, "--lambda": lambda_,
@@ -52,8 +52,8 @@ def calibrate(robot: Document, out: StrPath, cases: Table | None = None, *,
               progress: Progress | None = None) -> pathlib.Path:
     """Fits a robot's parameters to measured shapes; writes the robot to `out`, which is returned.
 
-    train: instead a linear correction of the model (tdcr), with the penalty lambda_, or the one that
-    does best on cases left out (cross_validate). progress: called with each warning."""
+    train: instead a linear correction of the model (tdcr), with the penalty lambda_, or the one
+    that does best on cases left out (cross_validate). progress: called with each warning."""
     options = {"--method": method, "--calibrate": not train, "--hybrid": "train" if train else None,
                "--cross-validate": cross_validate, "--lambda": lambda_}
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:

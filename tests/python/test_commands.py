@@ -110,6 +110,10 @@ class Errors(bench.Bench):
     def test_a_wrong_option_is_bad_input(self):
         with self.assertRaisesRegex(mc.InputError, "--method"):
             mc.identify(self.experiment, method="magic")
+        with self.assertRaisesRegex(mc.InputError, "--differences.* found '2'"):
+            mc.identify(self.experiment, differences=2)
+        with self.assertRaisesRegex(mc.InputError, "--effort"):
+            mc.diagnose(self.experiment, effort="heroic")
         with self.assertRaisesRegex(mc.InputError, "nonsense"):
             mc.diagnose(self.experiment, candidates=["coulomb", "nonsense"])
 
