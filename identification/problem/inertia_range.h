@@ -12,7 +12,8 @@ namespace continuum {
 ///   |I_j − I_k| ≤ I_i ≤ I_j + I_k,
 ///
 /// where the model holds to it (<compiler balanceinertia> does not). Beyond that no machine
-/// compiles, and a fit would end without a word. A bound that moves says why (FreeParameter::why_upper).
+/// compiles, and a fit would end without a word. A bound that moves says why
+/// (FreeParameter::why_upper).
 void KeepToInertias(const ModelSpec& system, std::vector<FreeParameter>& parameters);
 
 }  // namespace continuum
