@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kShown = 200;  // characters of a list of names
 
 std::vector<std::string> KnownColumns(int tendons) {
-  std::vector<std::string> known{"case", "fx", "fy", "fz", "gx", "gy", "gz", "mu"};
+  std::vector<std::string> known{"case", "fx", "fy", "fz", "gx", "gy", "gz", "mu", "reference"};
   for (const char* prefix : {"T", "dir"}) {
     for (int k = 1; k <= tendons; ++k) known.push_back(prefix + std::to_string(k));
   }

@@ -1,7 +1,12 @@
 #include "models/tdcr/disks.h"
 
+#include "models/statics/slide.h"
+
 namespace continuum::tdcr {
 namespace {
+
+/// Change of a tendon's length over which a contact turns from rest to sliding [m].
+constexpr double kGivesWay = 1e-6;
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -39,7 +44,8 @@ bool TendonChord(const Arc& arc, const Eigen::Vector2d& a, bool derivatives, Cho
   const double h = arc.l - alpha, g = arc.l - beta;
   const double square = 2 * B * g * h + 2 * r2 * (1 - arc.cos_psi);
   if (!(square > 1e-12 * arc.l * arc.l)) return false;
-  const double inverse = 1 / std::sqrt(square);
+  chord.length = std::sqrt(square);
+  const double inverse = 1 / chord.length;
   const Eigen::Vector2d delta = t - a;
   const Eigen::Vector2d b = arc.l * a - alpha * t;
   const Eigen::Vector3d lever(A * b.y(), -A * b.x(), B * Cross(v, b) + r2 * arc.sin_psi);
@@ -70,6 +76,8 @@ bool TendonChord(const Arc& arc, const Eigen::Vector2d& a, bool derivatives, Cho
     chord.d_start.col(j) = inverse * from_j + relative * chord.start;
     chord.d_end.col(j) = inverse * untwist(to_j) + relative * chord.end;
   }
+  chord.d_length << square_v.transpose(), square_psi;
+  chord.d_length *= 0.5 * inverse;
   const double relative = scale * square_psi;
   const Eigen::Vector3d lever_psi(-alpha * A * t_psi.y(), alpha * A * t_psi.x(),
                                   -B * alpha * beta + r2 * arc.cos_psi);
@@ -98,6 +106,10 @@ FrictionRatio::FrictionRatio(const Eigen::Vector2d& end, const Eigen::Vector2d& 
       2 * square * square * cross * Eigen::Vector2d(start.y(), -start.x());
   const Eigen::Vector2d by_start =
       2 * square * difference - 2 * square * square * cross * Eigen::Vector2d(-end.y(), end.x());
+  const double across = std::sqrt(std::max(difference.squaredNorm() - square * cross * cross, 0.0));
+  const double falling = across > 1e-14 ? square * cross * cross / across : 0;
+  d_mu = (-2 * mu * end.dot(start) - s * (across - falling) + 2 * mu * start.squaredNorm() * x) /
+         leading;
   d_end = (-square * start - slope * by_end) / leading;
   d_start = (-square * end - slope * by_start + 2 * square * x * start) / leading;
 }
@@ -157,10 +169,11 @@ std::vector<Eigen::Matrix<double, 3, 6>> LinearGradient(double length,
 }
 
 template <int C>
-DiskBalance<C>::DiskBalance(const Robot& robot, const Loads& loads)
+DiskBalance<C>::DiskBalance(const Robot& robot, const Loads& loads, const Loads* from)
     : robot_(robot),
       loads_(loads),
-      weight_((robot.disk_mass + robot.density * robot.area() * robot.arc()) * loads.gravity) {
+      from_(from ? *from : loads.Scaled(0)),
+      mass_(robot.disk_mass + robot.density * robot.area() * robot.arc()) {
   const auto n = static_cast<std::size_t>(robot.disks);
   const int columns = C == Eigen::Dynamic ? 3 * robot.disks : C;
   for (int k = 0; k < robot.tendons; ++k) holes_.push_back(robot.Hole(k));
@@ -173,6 +186,9 @@ DiskBalance<C>::DiskBalance(const Robot& robot, const Loads& loads)
   dO_.assign(n + 1, Columns::Zero(3, columns));
   dphi_.assign(n + 1, Columns::Zero(3, columns));
   dphi_end_.assign(n, Columns::Zero(3, columns));
+  chords_.resize(n);
+  share_.assign(n, 0);
+  dshare_.assign(n, Row::Zero(1, columns));
 }
 
 template <int C>
@@ -207,26 +223,79 @@ void DiskBalance<C>::Scatter(int i, const Local& local, Target& target) const {
   }
 }
 
+// The share of disk i follows from what has slid through it: the change of all chords beyond.
+template <int C>
+template <bool kDerivatives>
+void DiskBalance<C>::FindShares(std::size_t tendon) const {
+  const auto k = static_cast<Eigen::Index>(tendon);
+  const Contacts& from = loads_.from;
+  double longer = 0;
+  Row d_longer = Row::Zero(1, unknowns());
+  for (int i = robot_.disks - 1; i >= 1; --i) {
+    const auto at = static_cast<std::size_t>(i);
+    longer += chords_[at].length - (from.length.size() ? from.length(i, k) : robot_.arc());
+    const double before = from.share.size() ? from.share(i - 1, k) : 0;
+    const ceres::Jet<double, 1> pulled(-longer / kGivesWay, 0);
+    const auto share = statics::SlideFrom(before, pulled);
+    share_[at - 1] = share.a;
+    if (!kDerivatives) continue;
+    Scatter(i + 1, chords_[at].d_length, d_longer);
+    dshare_[at - 1] = (-share.v[0] / kGivesWay) * d_longer;
+  }
+}
+
+template <int C>
+Contacts DiskBalance<C>::ContactsAt(const Vector& x) const {
+  const auto tendons = static_cast<Eigen::Index>(holes_.size());
+  Contacts contacts{Eigen::MatrixXd(robot_.disks, tendons),
+                    Eigen::MatrixXd::Zero(robot_.disks, tendons)};
+  arcs_.clear();
+  for (int i = 1; i <= robot_.disks; ++i) arcs_.emplace_back(robot_.arc(), Curvature(x.data(), i));
+  for (std::size_t k = 0; k < holes_.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    for (int i = 0; i < robot_.disks; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      TendonChord(arcs_[at], holes_[k], false, chords_[at]);
+      contacts.length(i, column) = chords_[at].length;
+    }
+    const int direction = loads_.direction[k];
+    if (direction == kAsItSlides) FindShares<false>(k);
+    for (int i = 0; i < robot_.disks - 1; ++i) {
+      contacts.share(i, column) =
+          direction == kAsItSlides ? share_[static_cast<std::size_t>(i)] : direction;
+    }
+  }
+  return contacts;
+}
+
 template <int C>
 template <bool kDerivatives>
 bool DiskBalance<C>::AddTendons() const {
-  Chord chord, before;
   Row dF = Row::Zero(1, unknowns());
   for (std::size_t k = 0; k < holes_.size(); ++k) {
-    double F = load_ * loads_.tension[k];
+    double F = Now(loads_.tension[k], from_.tension[k]);
     if (F == 0) continue;
-    const int s = loads_.direction[k];
-    const bool friction = loads_.mu > 0 && s != 0;
+    for (std::size_t at = 0; at < arcs_.size(); ++at) {
+      if (!TendonChord(arcs_[at], holes_[k], kDerivatives, chords_[at])) return false;
+    }
+    const int direction = loads_.direction[k];
+    const bool friction = loads_.mu > 0 && direction != 0;
+    const bool slides = friction && direction == kAsItSlides;
+    if (slides) FindShares<kDerivatives>(k);
     if (kDerivatives) dF.setZero();
     for (int i = 1; i <= robot_.disks; ++i) {
       const auto at = static_cast<std::size_t>(i - 1);
-      if (!TendonChord(arcs_[at], holes_[k], kDerivatives, chord)) return false;
+      const Chord& chord = chords_[at];
       if (friction && i > 1) {
-        const FrictionRatio ratio(before.end, chord.start, loads_.mu, s);
+        const Chord& before = chords_[at - 1];
+        const double share = slides ? share_[at - 1] : direction;
+        const int s = share < 0 ? -1 : 1;
+        const FrictionRatio ratio(before.end, chord.start, loads_.mu * std::abs(share), s);
         if (kDerivatives) {
           dF *= ratio.x;
           Scatter(i - 1, F * ratio.d_end.transpose() * before.d_end, dF);
           Scatter(i, F * ratio.d_start.transpose() * chord.d_start, dF);
+          if (slides) dF += (F * ratio.d_mu * s * loads_.mu) * dshare_[at - 1];
         }
         F *= ratio.x;
       }
@@ -235,7 +304,6 @@ bool DiskBalance<C>::AddTendons() const {
         Scatter(i, F * chord.d_moment, dm_[at]);
         if (friction && i > 1) dm_[at].noalias() += chord.moment * dF;
       }
-      std::swap(chord, before);
     }
   }
   return true;
@@ -271,7 +339,8 @@ void DiskBalance<C>::AddDeadForces() const {
   }
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Columns d_sum = Columns::Zero(3, unknowns());
-  const Eigen::Vector3d weight = load_ * weight_, force = load_ * loads_.tip_force;
+  const Eigen::Vector3d weight = mass_ * Now(loads_.gravity, from_.gravity);
+  const Eigen::Vector3d force = Now(loads_.tip_force, from_.tip_force);
   const Eigen::Matrix3d weight_cross = Skew(weight), force_cross = Skew(force);
   for (int i = n; i >= 1; --i) {
     const auto at = static_cast<std::size_t>(i);
@@ -304,7 +373,10 @@ bool DiskBalance<C>::Assemble(const double* x) const {
     for (auto& dm : dm_) dm.setZero();
   }
   if (!AddTendons<kDerivatives>()) return false;
-  if (!weight_.isZero(0) || !loads_.tip_force.isZero(0)) AddDeadForces<kDerivatives>();
+  const bool dead = mass_ > 0 && !(loads_.gravity.isZero(0) && from_.gravity.isZero(0));
+  if (dead || !loads_.tip_force.isZero(0) || !from_.tip_force.isZero(0)) {
+    AddDeadForces<kDerivatives>();
+  }
   return true;
 }
 

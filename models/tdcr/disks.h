@@ -18,7 +18,9 @@ struct Chord {
   Eigen::Vector2d
       start;            ///< unit vector along the chord without z, in the frame of the arc's start
   Eigen::Vector2d end;  ///< the same in the frame of the arc's end
+  double length;
   Gradient d_moment;
+  Eigen::RowVector3d d_length;
   Eigen::Matrix<double, 2, 3> d_start, d_end;
 };
 
@@ -35,6 +37,7 @@ bool TendonChord(const Arc& arc, const Eigen::Vector2d& a, bool derivatives, Cho
 /// a = -end of the arc before and b = start of the arc after, both without z.
 struct FrictionRatio {
   double x = 1;
+  double d_mu = 0;
   Eigen::Vector2d d_end = Eigen::Vector2d::Zero(), d_start = Eigen::Vector2d::Zero();
 
   FrictionRatio() = default;
@@ -72,9 +75,10 @@ class DiskBalance {
   using Vector = Eigen::Matrix<double, C, 1>;
   using Matrix = Eigen::Matrix<double, C, C>;
 
-  DiskBalance(const Robot& robot, const Loads& loads);
+  /// Loads grow from `from` (nothing when not given) to `loads`; both must outlive it.
+  DiskBalance(const Robot& robot, const Loads& loads, const Loads* from = nullptr);
 
-  /// All loads are multiplied by this from here on.
+  /// How far the loads have grown from here on: 0 to 1.
   void SetLoad(double load) { load_ = load; }
   int unknowns() const { return C == Eigen::Dynamic ? 3 * robot_.disks : C; }
   bool operator()(const double* x, double* f) const;
@@ -97,6 +101,8 @@ class DiskBalance {
   Matrix Stiffness(const Matrix& relative) const;
   /// Curvatures of the arcs [1/m], 3 x n.
   Eigen::Matrix3Xd Curvatures(const Vector& x) const;
+  /// Where the contacts stand at x.
+  Contacts ContactsAt(const Vector& x) const;
 
  private:
   using Columns = Eigen::Matrix<double, 3, C>;
@@ -110,13 +116,22 @@ class DiskBalance {
   template <bool kDerivatives>
   bool AddTendons() const;
   template <bool kDerivatives>
+  void FindShares(std::size_t tendon) const;
+  template <bool kDerivatives>
   void AddDeadForces() const;
   void Project(const double* x, double* f) const;
 
   const Robot& robot_;
+  // Of what is `to` at full load and `from` before.
+  template <class Load>
+  Load Now(const Load& to, const Load& from) const {
+    return load_ * to + (1 - load_) * from;
+  }
+
   const Loads& loads_;
+  Loads from_;
   double load_ = 1;
-  Eigen::Vector3d weight_;  ///< of one disk and its arc [N]
+  double mass_;  ///< of one disk and its arc [kg]
   std::vector<Eigen::Vector2d> holes_;
   mutable std::vector<Arc> arcs_;
   mutable std::vector<Eigen::Vector3d> m_;  ///< moments in the untwisted end frames [N m]
@@ -124,6 +139,9 @@ class DiskBalance {
   mutable std::vector<Eigen::Matrix3d> R_, G_;
   mutable std::vector<Eigen::Vector3d> O_;
   mutable std::vector<Columns> dO_, dphi_, dphi_end_;
+  mutable std::vector<Chord> chords_;  ///< of one tendon
+  mutable std::vector<double> share_;  ///< of its contacts, by how it slides
+  mutable std::vector<Row> dshare_;
 };
 
 extern template class DiskBalance<6>;

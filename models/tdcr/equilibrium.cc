@@ -277,8 +277,31 @@ template <int C>
 Found FindEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& balance,
                       typename DiskBalance<C>::Vector& x, const Eigen::VectorXd* start) {
   DiskSystem<C> system(balance);
+  Eigen::VectorXd frictionless;
+  if (start == nullptr && loads.AsItSlides() && Direct(robot, loads)) {
+    // Contacts are so sharp that Newton has to begin where all of them have slid.
+    Loads without = loads;
+    without.mu = 0;
+    typename DiskBalance<C>::Vector y = x;
+    if (numerics::Newton(DiskBalance<C>(robot, without), y, Limits()).ok()) {
+      frictionless = y;
+      start = &frictionless;
+    }
+  }
   return Find(system, system, x, Direct(robot, loads), Steps(robot, loads), start);
 }
+
+template <int C>
+Found ContinueEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& balance,
+                          typename DiskBalance<C>::Vector& x) {
+  DiskSystem<C> system(balance);
+  return Find(system, system, x, false, Steps(robot, loads), nullptr);
+}
+
+template Found ContinueEquilibrium(const Robot&, const Loads&, DiskBalance<6>&,
+                                   DiskBalance<6>::Vector&);
+template Found ContinueEquilibrium(const Robot&, const Loads&, DiskBalance<Eigen::Dynamic>&,
+                                   DiskBalance<Eigen::Dynamic>::Vector&);
 
 template Found FindEquilibrium(const Robot&, const Loads&, DiskBalance<6>&, DiskBalance<6>::Vector&,
                                const Eigen::VectorXd*);

@@ -22,9 +22,14 @@ struct Found {
 /// The equilibrium of the rising load (statics.md), from x to x: of the balances of disks, and of
 /// the rod with `direct` for loads so small that there is one equilibrium. With `start`, Newton
 /// from there first. A saddle is never `ok`.
+///
+/// ContinueEquilibrium follows the loads of a balance that grow from others, from their x.
 template <int C>
 Found FindEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& balance,
                       typename DiskBalance<C>::Vector& x, const Eigen::VectorXd* start);
+template <int C>
+Found ContinueEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& balance,
+                          typename DiskBalance<C>::Vector& x);
 Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance, bool friction,
                       Eigen::Vector3d& x, const Eigen::VectorXd* start);
 

@@ -13,18 +13,28 @@ namespace {
 
 using numerics::Outcome;
 
+// Where loads go on from: those before and their x.
+struct Before {
+  const Loads* loads = nullptr;
+  const Eigen::VectorXd* x = nullptr;
+};
+
 template <int C>
-Solution SolveDisks(const Robot& robot, const Loads& loads, const Eigen::VectorXd* start) {
+Solution SolveDisks(const Robot& robot, const Loads& loads, const Eigen::VectorXd* start,
+                    const Before& before = {}) {
   Solution solution;
   solution.outcome = numerics::Timed([&] {
-    DiskBalance<C> balance(robot, loads);
+    DiskBalance<C> balance(robot, loads, before.loads);
     typename DiskBalance<C>::Vector x = DiskBalance<C>::Vector::Zero(balance.unknowns());
-    const Found found = FindEquilibrium<C>(robot, loads, balance, x, start);
+    if (before.x != nullptr) x = *before.x;
+    const Found found = before.x == nullptr ? FindEquilibrium<C>(robot, loads, balance, x, start)
+                                            : ContinueEquilibrium<C>(robot, loads, balance, x);
     solution.stability = found.stability;
     balance.SetLoad(1);
     solution.x = x;
     solution.u = balance.Curvatures(x);
     solution.disks = Positions(robot.arc(), solution.u);
+    if (found.outcome.ok()) solution.contacts = balance.ContactsAt(x);
     return found.outcome;
   });
   return solution;
@@ -80,8 +90,26 @@ Method ParseMethod(const std::string& name) {
   throw Error::Input("--method", "eas, pcca, crt, crt_friction or fit", "'" + name + "'");
 }
 
+Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& before, Loads loads,
+                   Method method) {
+  const Before from{&earlier, &before.x};
+  loads.from = before.contacts;
+  switch (method) {
+    case Method::kEas:
+      return SolveDisks<6>(robot, loads, nullptr, from);
+    case Method::kPcca:
+      return SolveDisks<Eigen::Dynamic>(robot, loads, nullptr, from);
+    default:
+      return SolveCase(robot, loads, method);
+  }
+}
+
 Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
                    const Eigen::VectorXd* start) {
+  if (method == Method::kCrtFriction && loads.AsItSlides()) {
+    throw Error::Input("--method", "eas or pcca, whose contacts find their directions (auto)",
+                       "crt_friction");
+  }
   switch (method) {
     case Method::kEas:
       return SolveDisks<6>(robot, loads, start);

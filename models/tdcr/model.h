@@ -23,6 +23,7 @@ struct Solution {
   Eigen::VectorXd x;       ///< the unknowns of the method, for a warm start
   Eigen::Matrix3Xd u;      ///< kappa_x, kappa_y, tau of arcs 1..n [1/m]
   Eigen::Matrix3Xd disks;  ///< O_1..O_n [m], base frame
+  Contacts contacts;       ///< eas and pcca
 };
 
 /// The equilibrium that is reached by raising all loads together from zero.
@@ -34,5 +35,17 @@ struct Solution {
 /// saddle. u and disks are only valid when outcome.ok(); then the shape is stable.
 Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
                    const Eigen::VectorXd* start = nullptr);
+
+/// The same by loads that grow from those of `earlier` to `loads`; contacts with kAsItSlides begin
+/// as they stand in `before`, the solution of `earlier` by the same method (loads.from is not
+/// read):
+///
+///   s = SlideFrom(s_before, (l_before - l)/eps),  eps = 1 um                                  (1)
+///
+/// l: length of the tendon beyond the contact. Friction takes s times its largest share, (13). A
+/// contact that turns back gives way within eps; held loads move nothing, and a pull in parts is
+/// the pull in one. @throws Error for crt_friction, whose contacts have no state.
+Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& before, Loads loads,
+                   Method method);
 
 }  // namespace continuum::tdcr

@@ -51,10 +51,22 @@ double Friction(double mu, const std::string& where) {
 }
 
 int Direction(const CsvTable& table, std::size_t row, const std::string& column) {
+  if (table.Text(row, column) == "auto") return kAsItSlides;
   const double value = table.Number(row, column);
   if (value == 1 || value == 0 || value == -1) return static_cast<int>(value);
   throw Error::Input(table.Where(row) + ", column '" + column + "'",
-                     "1 (pulled), -1 (released) or 0 (without friction)", Decimal(value));
+                     "1 (pulled), -1 (released), 0 (without friction) or auto", Decimal(value));
+}
+
+// The last of the rows before this one that has the name in column `reference`.
+int Reference(const CsvTable& table, std::size_t row, const std::vector<Case>& cases) {
+  if (!table.Has("reference") || table.Text(row, "reference").empty()) return -1;
+  const std::string& name = table.Text(row, "reference");
+  for (std::size_t earlier = row; earlier-- > 0;) {
+    if (cases[earlier].name == name) return static_cast<int>(earlier);
+  }
+  throw Error::Input(table.Where(row) + ", column 'reference'", "the case of an earlier row",
+                     "'" + name + "'");
 }
 
 }  // namespace
@@ -90,6 +102,10 @@ Loads Loads::Scaled(double load) const {
   scaled.tip_force *= load;
   scaled.gravity *= load;
   return scaled;
+}
+
+bool Loads::AsItSlides() const {
+  return std::find(direction.begin(), direction.end(), kAsItSlides) != direction.end();
 }
 
 double Loads::DeadForce(const Robot& robot) const {
@@ -142,6 +158,10 @@ std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
     Case& c = cases[row];
     c.name = table.Text(row, "case");
     c.loads = NoLoads(robot);
+    c.reference = Reference(table, row, cases);
+    if (c.reference >= 0) {
+      std::fill(c.loads.direction.begin(), c.loads.direction.end(), kAsItSlides);
+    }
     for (int k = 0; k < robot.tendons; ++k) {
       const auto i = static_cast<std::size_t>(k);
       const std::string column = "T" + std::to_string(k + 1);

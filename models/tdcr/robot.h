@@ -44,14 +44,30 @@ struct Robot {
   Eigen::Matrix3d MeasuringToBase() const;
 };
 
+/// The contacts of disks and tendons find their directions themselves (`auto` in the file).
+inline constexpr int kAsItSlides = 2;
+
+/// Where contacts of disk i and tendon k stand, n x m each.
+struct Contacts {
+  Eigen::MatrixXd length;  ///< of the tendon from disk i - 1 to disk i [m]
+  /// Share of its largest friction with which disk i resists, -1..1: 1 when the tendon was pulled
+  /// through towards the base, -1 when it was released. Of the last disk 0: tendons end there.
+  Eigen::MatrixXd share;
+};
+
 /// What acts on the robot in one case.
 struct Loads {
   std::vector<double> tension;  ///< T_k at the base [N], at least 0
-  std::vector<int> direction;   ///< 1 pulled, -1 released, 0 without friction
+  std::vector<int> direction;   ///< 1 pulled, -1 released, 0 without friction, or kAsItSlides
   Eigen::Vector3d tip_force = Eigen::Vector3d::Zero();  ///< dead force at the tip, base frame [N]
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();    ///< [m/s^2]
   double mu = 0;
   bool own_mu = false;  ///< mu belongs to this case, whatever the robot's
+  /// Of tendons with kAsItSlides, the state that they slide from; empty: straight, nothing has
+  /// slid.
+  Contacts from = {};
+
+  bool AsItSlides() const;
 
   /// The tensions, the tip force and the weights multiplied by `load`.
   Loads Scaled(double load) const;
@@ -62,6 +78,7 @@ struct Loads {
 struct Case {
   std::string name;
   Loads loads;
+  int reference = -1;  ///< the row whose contacts this one goes on from; -1: the straight robot
 };
 
 /// Reads a robot's file. @throws Error with file, line and key for a value that is missing or out

@@ -168,14 +168,29 @@ std::optional<double> Penalty(const SolveRequest& request) {
   return request.lambda.value_or(0);
 }
 
+// A case that has a reference goes on from its solution, which is among those solved before.
+Solution SolveInOrder(const Robot& robot, const std::vector<Case>& cases, const Case& c,
+                      Method method, const std::vector<Solution>& solved) {
+  if (c.reference < 0) return SolveCase(robot, c.loads, method);
+  const auto at = static_cast<std::size_t>(c.reference);
+  if (solved[at].outcome.ok()) {
+    return SolveFrom(robot, cases[at].loads, solved[at], c.loads, method);
+  }
+  Solution none;
+  none.outcome.why = "its reference '" + cases[at].name + "' failed";
+  return none;
+}
+
 int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
                const Hybrid* hybrid) {
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
   if (!request.measured.empty()) RequireShared(cases, measured, request.measured.string());
   std::vector<Solved> solved;
+  std::vector<Solution> plain;  // without the hybrid's correction
   for (const Case& c : cases) {
-    Solved s{c.name, c.loads, SolveCase(robot, c.loads, method), Find(measured, c.name)};
+    plain.push_back(SolveInOrder(robot, cases, c, method, plain));
+    Solved s{c.name, c.loads, plain.back(), Find(measured, c.name)};
     if (hybrid != nullptr && s.solution.outcome.ok()) Apply(*hybrid, robot, c.loads, s.solution);
     solved.push_back(std::move(s));
   }

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "models/twin_pivot/contact.h"
+#include "models/statics/slide.h"
 #include "models/twin_pivot/joint.h"
 #include "models/twin_pivot/load.h"
 #include "models/twin_pivot/robot.h"
@@ -72,7 +72,8 @@ bool CableForces(const Task& task, const std::vector<Joint<T>>& joint, double fr
     T carried = T(task.tension[j]);
     for (int m = 0; m < last; ++m) {
       if (slides) {
-        const T s = frozen ? T((*frozen)(m, j)) : SlideFrom(task.slide(m, j), T(change[m] / eps));
+        const T s =
+            frozen ? T((*frozen)(m, j)) : statics::SlideFrom(task.slide(m, j), T(change[m] / eps));
         if (slide) (*slide)(m, j) = Value(s);
         const T yield = 1.0 - s * w[m];
         if (!(Value(yield) > 0)) return false;

@@ -103,6 +103,27 @@ TEST_F(TdcrSolve, ACaseOverridesGravityFrictionAndDirection) {
   EXPECT_LT(table.Number(2, "x"), 0.95 * table.Number(0, "x"));
 }
 
+TEST_F(TdcrSolve, ARowGoesOnFromItsReference) {
+  request_.input = Write("cases.csv",
+                         "case,T1,T2,T3,fx,fy,fz,dir1,dir2,dir3,reference\n"
+                         "low,1,0.5,0.5,0,0,0,auto,auto,auto,\nhigh,5,0.5,0.5,0,0,0,auto,auto,auto,"
+                         "low\nheld,5,0.5,0.5,0,0,0,auto,auto,auto,high\n"
+                         "back,1,0.5,0.5,0,0,0,auto,auto,auto,held\n");
+  for (const char* method : {"eas", "pcca"}) {
+    request_.method = method;
+    EXPECT_EQ(SolveTdcr(request_), 0);
+    const CsvTable table = CsvTable::Read(request_.out);
+    EXPECT_NEAR(table.Number(2, "x"), table.Number(1, "x"), 1e-12);
+    EXPECT_GT(table.Number(3, "x"), table.Number(0, "x") + 5e-4);
+  }
+  std::filesystem::remove(request_.out);
+  request_.method = "crt_friction";
+  EXPECT_THAT(Message(), HasSubstr("eas or pcca"));
+  request_.method = "eas";
+  EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,reference\na,1,0,0,0,0,0,b\n"),
+              testing::AllOf(HasSubstr("column 'reference'"), HasSubstr("'b'")));
+}
+
 TEST_F(TdcrSolve, AFailedCaseLeavesItsNumbersEmptyAndTheOthersSolved) {
   request_.method = "crt";
   request_.input = Write("cases.csv", std::string(kHeader) + "a,1e6,0,0,0,0,0\nb,1,0,0,0,0,0\n");

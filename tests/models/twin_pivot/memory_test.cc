@@ -2,11 +2,13 @@
 
 #include <cmath>
 
+#include "models/statics/slide.h"
 #include "models/twin_pivot/bench.h"
-#include "models/twin_pivot/contact.h"
 
 namespace continuum::twin_pivot {
 namespace {
+
+using statics::SlideFrom;
 
 const std::vector<double> kPulled{19.62, 19.62, 9.81, 9.81};
 
