@@ -37,12 +37,13 @@ bool TendonChord(const Arc& arc, const Eigen::Vector2d& a, bool derivatives, Cho
 /// a = -end of the arc before and b = start of the arc after, both without z.
 struct FrictionRatio {
   double x = 1;
-  double d_mu = 0;
   Eigen::Vector2d d_end = Eigen::Vector2d::Zero(), d_start = Eigen::Vector2d::Zero();
 
   FrictionRatio() = default;
   /// s: 1 pulled, -1 released, 0 without friction.
   FrictionRatio(const Eigen::Vector2d& end, const Eigen::Vector2d& start, double mu, int s);
+  /// dx/dmu of the ratio of these.
+  double ByMu(const Eigen::Vector2d& end, const Eigen::Vector2d& start, double mu, int s) const;
 };
 
 /// Frames and origins of all disks for curvatures u_1..u_n (columns of u, [1/m]), and how they move

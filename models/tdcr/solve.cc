@@ -212,6 +212,11 @@ int FitShapes(const SolveRequest& request, const Robot& robot) {
 
 std::vector<Pair> ReadPairs(const SolveRequest& request, const std::vector<Case>& cases,
                             const std::vector<Measured>& measured) {
+  for (const Case& c : cases) {
+    if (c.reference < 0) continue;
+    throw Error::Input(request.input.string() + ", column 'reference'",
+                       "empty cells in calibration and training", "case '" + c.name + "'");
+  }
   return Match(cases, measured, request.measured.string());
 }
 

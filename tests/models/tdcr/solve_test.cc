@@ -122,6 +122,12 @@ TEST_F(TdcrSolve, ARowGoesOnFromItsReference) {
   request_.method = "eas";
   EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,reference\na,1,0,0,0,0,0,b\n"),
               testing::AllOf(HasSubstr("column 'reference'"), HasSubstr("'b'")));
+  request_.input =
+      Write("cases.csv", "case,T1,T2,T3,fx,fy,fz,reference\na,1,0,0,0,0,0,\nb,1,0,0,0,0,0,a\n");
+  request_.measured = Write("measured.csv", "case,x_9,y_9,z_9\na,0,0,0.13\nb,0,0,0.13\n");
+  request_.calibrate = true;
+  request_.out = folder_ / "calibrated.yaml";
+  EXPECT_THAT(Message(), testing::AllOf(HasSubstr("column 'reference'"), HasSubstr("case 'b'")));
 }
 
 TEST_F(TdcrSolve, AFailedCaseLeavesItsNumbersEmptyAndTheOthersSolved) {
