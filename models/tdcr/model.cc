@@ -92,6 +92,9 @@ Method ParseMethod(const std::string& name) {
 
 Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& before, Loads loads,
                    Method method) {
+  if (method == Method::kCrtFriction)
+    throw Error::Input("--method", "eas or pcca, whose contacts go on from a reference",
+                       "crt_friction");
   const Before from{&earlier, &before.x};
   loads.from = before.contacts;
   switch (method) {

@@ -119,6 +119,9 @@ TEST_F(TdcrSolve, ARowGoesOnFromItsReference) {
   std::filesystem::remove(request_.out);
   request_.method = "crt_friction";
   EXPECT_THAT(Message(), HasSubstr("eas or pcca"));
+  EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,dir1,dir2,dir3,reference\n"
+                             "a,1,0,0,0,0,0,1,1,1,\nb,2,0,0,0,0,0,1,1,1,a\n"),
+              HasSubstr("go on from a reference"));
   request_.method = "eas";
   EXPECT_THAT(MessageOfCases("case,T1,T2,T3,fx,fy,fz,reference\na,1,0,0,0,0,0,b\n"),
               testing::AllOf(HasSubstr("column 'reference'"), HasSubstr("'b'")));
