@@ -248,52 +248,21 @@ class Session {
     d_.ceiling_by = "noise alone";
   }
 
-  // A name by likelihoods that leaves more than noise stands only where it helps on logs left out:
-  // else the next one is looked at as if the first were not there.
+  // A name by likelihoods that leaves more than noise stands only where it helps on logs left out.
   void ConfirmOnFolds() {
-    constexpr int kTimes = 3;
-    const Verdict first = d_.verdict;
-    std::string doubtful;
-    for (int k = 0; k < kTimes && IsDoubtful(); ++k) {
-      const std::size_t best = d_.verdict.named.front();
-      const Verdict next = k + 1 < kTimes ? JudgedWithout(best) : Verdict{};
-      if (next.named.empty()) return Withdraw(first);
-      d_.verdict = next;
-      doubtful += "; " + d_.candidates[best].hypothesis.NameAtPlace() +
-                  " explains more, but not of the logs left out";
-      MergePlaces();
-      CompleteNamed();
-      FitFinely();
-      ScoreFolds();
-    }
-    d_.verdict.reason += doubtful;
-  }
-
-  bool IsDoubtful() const {
-    if (!d_.chosen() || d_.verdict.complete || d_.chosen()->record.after.empty()) return false;
+    if (!d_.chosen() || d_.verdict.complete || d_.chosen()->record.after.empty()) return;
     const double floor = std::hypot(d_.noise.rms, d_.noise.step);
     const double possible = std::max(0.0, 1 - floor / d_.before.error.train);
     const bool held_out = d_.chosen()->fitted.error.validate <= d_.before.error.validate;
-    return !held_out || !HoldsOnFolds(d_.chosen()->record, possible, d_.criteria);
-  }
-
-  // Two causes are judged together: there is no next one.
-  Verdict JudgedWithout(std::size_t candidate) {
-    if (d_.partner || judged_.records.size() < d_.candidates.size()) return {};
-    judged_.records[candidate].listed = false;
-    judged_.records[candidate].likelihood = 0;
-    return JudgeLikelihoods(judged_.records, d_.lack_of_fit, judged_.p, judged_.base, d_.criteria);
-  }
-
-  void Withdraw(const Verdict& name) {
-    d_.verdict = name;
+    if (held_out && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
+    const std::string name = d_.chosen()->hypothesis.NameAtPlace();
     d_.verdict.kind = Verdict::Kind::kUnexplained;
-    d_.verdict.leading = name.named.front();
+    d_.verdict.leading = d_.verdict.named.front();
     d_.verdict.named.clear(), d_.verdict.siblings.clear();
     d_.verdict.reason = fmt::format(
         "the best candidate, {}, does not lower the error of logs left out as it does that of its "
         "own",
-        d_.candidates[name.named.front()].hypothesis.NameAtPlace());
+        name);
   }
 
   // By likelihoods, which are calibrated where noise is the whole residual of the best model.
@@ -304,10 +273,10 @@ class Session {
   }
 
   void Decide(CandidateSearch& search) {
-    judged_ = {search.Records(), search.Base(), search.smallest_p()};
-    SetProbabilities(search.candidates, judged_.records);
+    const auto records = search.Records();
+    SetProbabilities(search.candidates, records);
     d_.verdict =
-        JudgeLikelihoods(judged_.records, d_.lack_of_fit, judged_.p, judged_.base, d_.criteria);
+        JudgeLikelihoods(records, d_.lack_of_fit, search.smallest_p(), search.Base(), d_.criteria);
     const auto& named = d_.verdict.named;
     const bool coarse = d_.lack_of_fit.of_step || d_.noise.step > d_.noise.rms;
     if (coarse && !named.empty() && !MoreThanStep(search.candidates[named.front()].fitted))
@@ -458,11 +427,6 @@ class Session {
   Diagnosis d_;
   CandidateFitter fitter_;
   std::vector<EquationErrors> views_;  // of the missing force, for a look
-  struct {
-    std::vector<LikelihoodRecord> records;  // in the order of the candidates, unlisted ones last
-    BaseSquares base;
-    double p = 1;
-  } judged_;
 };
 
 }  // namespace
