@@ -1,17 +1,11 @@
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cmath>
 
-namespace continuum::statics {
+#include "models/statics/dual_value.h"
 
-inline double PlainValue(double x) { return x; }
-template <int N>
-double PlainValue(const ceres::Jet<double, N>& x) {
-  return x.a;
-}
+namespace continuum::statics {
 
 /// The share s of its largest friction with which a contact resists, -1..1, after it has slid by x
 /// (in units of eps) from a state s_0: ds/dx = 1 - s^2 while it slides on, ds/dx = 1 while friction
@@ -22,10 +16,10 @@ T SlideFrom(double s_0, const T& x) {
   using std::tanh;
   constexpr double kSaturated = 19;  // tanh is 1 from here on
   if (s_0 == 0) return tanh(x);
-  if (PlainValue(x) < 0) return -SlideFrom(-s_0, T(-x));
+  if (Value(x) < 0) return -SlideFrom(-s_0, T(-x));
   const double begin = s_0 < 0 ? s_0 : std::min(std::atanh(std::min(s_0, 1.0)), kSaturated);
   const T phase = begin + x;
-  return PlainValue(phase) < 0 ? phase : tanh(phase);
+  return Value(phase) < 0 ? phase : tanh(phase);
 }
 
 }  // namespace continuum::statics

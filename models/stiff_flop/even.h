@@ -5,13 +5,11 @@
 #include <array>
 #include <cmath>
 
+#include "models/statics/dual_value.h"
+
 namespace continuum::stiff_flop {
 
-inline double Value(double x) { return x; }
-template <int N>
-double Value(const ceres::Jet<double, N>& x) {
-  return x.a;
-}
+using statics::Value;
 
 /// sqrt(a^2 + b^2) as argument of a function that is *even* in it. At 0, where the root has no
 /// derivative, an even function has derivative 0 in every direction: any of them will do.

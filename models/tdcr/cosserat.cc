@@ -4,6 +4,7 @@
 #include <array>
 #include <type_traits>
 
+#include "models/statics/dual_value.h"
 #include "models/tdcr/rubbing.h"
 
 namespace continuum::tdcr {
@@ -13,14 +14,9 @@ struct NoTensions {};
 
 constexpr int kFewTendons = 4;  // more of them need larger states, which cost time to copy
 
-double ValueOf(double x) { return x; }
-template <int N>
-double ValueOf(const ceres::Jet<double, N>& x) {
-  return x.a;
-}
 template <class Matrix>
 auto Values(const Matrix& m) {
-  return m.unaryExpr([](const auto& x) { return ValueOf(x); }).eval();
+  return m.unaryExpr([](const auto& x) { return statics::Value(x); }).eval();
 }
 
 }  // namespace
@@ -153,7 +149,7 @@ template <class T, int kRubbing>
   Vector du = Values(dy.u);
   Eigen::Matrix3d tangent = elastic;
   for (std::size_t k = 0; k < count; ++k) {
-    const double tension = ValueOf(y.tension[static_cast<Eigen::Index>(k)]);
+    const double tension = statics::Value(y.tension[static_cast<Eigen::Index>(k)]);
     plain[k] = Rubbing<double>(rod_.holes[k], Values(y.u), rod_.direction[k] * rod_.mu * tension);
     tangent += plain[k].Lever() * plain[k].Gradient(du).transpose();
   }

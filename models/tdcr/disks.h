@@ -76,7 +76,7 @@ class DiskBalance {
   using Vector = Eigen::Matrix<double, C, 1>;
   using Matrix = Eigen::Matrix<double, C, C>;
 
-  /// Loads grow from `from` (nothing when not given) to `loads`; both must outlive it.
+  /// Loads grow from `from` (nothing when not given) to `loads`, which must outlive it.
   DiskBalance(const Robot& robot, const Loads& loads, const Loads* from = nullptr);
 
   /// How far the loads have grown from here on: 0 to 1.
@@ -109,6 +109,11 @@ class DiskBalance {
   using Columns = Eigen::Matrix<double, 3, C>;
   using Row = Eigen::Matrix<double, 1, C>;
 
+  // Of what is `to` at full load and `from` before.
+  template <class Load>
+  Load Now(const Load& to, const Load& from) const {
+    return load_ * to + (1 - load_) * from;
+  }
   Eigen::Vector3d Curvature(const double* x, int i) const;
   template <class Target, class Local>
   void Scatter(int i, const Local& local, Target& target) const;
@@ -123,12 +128,6 @@ class DiskBalance {
   void Project(const double* x, double* f) const;
 
   const Robot& robot_;
-  // Of what is `to` at full load and `from` before.
-  template <class Load>
-  Load Now(const Load& to, const Load& from) const {
-    return load_ * to + (1 - load_) * from;
-  }
-
   const Loads& loads_;
   Loads from_;
   double load_ = 1;

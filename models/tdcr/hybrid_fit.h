@@ -28,15 +28,17 @@ Eigen::Index Residuals(const Samples& samples);
 Ends Corrected(const Eigen::MatrixXd& weights, const Sample& sample);
 Eigen::Matrix3Xd Disks(const Robot& robot, const Ends& ends);
 
+/// What a training found, and whether it came to its end.
+struct Weights {
+  Eigen::MatrixXd values;
+  bool converged = false;
+};
+
 /// Weights W (p x 6) that minimise the mean over the samples of sum_i |x_i - O_i|^2/L^2, plus
 /// penalty |V|^2, where V_jc = L W_jc max|feature j| is what feature j bends or twists the rod by
 /// where it is largest [rad]: without it, forces and twists that the samples hardly tell apart get
 /// large weights of opposite signs, which another load does not cancel. Penalty 0 is (30) alone.
 /// Levenberg-Marquardt from zero weights; where it does not converge, those that it reached.
-struct Weights {
-  Eigen::MatrixXd values;
-  bool converged = false;
-};
 Weights FitWeights(const Robot& robot, const Samples& samples, double penalty);
 
 /// What weights do to samples that they have not seen, each sample once, by five folds.

@@ -5,15 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "models/statics/dual_value.h"
 #include "models/twin_pivot/robot.h"
 
 namespace continuum::twin_pivot {
 
-inline double Value(double x) { return x; }
-template <int N>
-double Value(const ceres::Jet<double, N>& x) {
-  return x.a;
-}
+using statics::Value;
 
 /// g(x) from its value and slope at x, so that a dual number pays for one product only.
 inline double Lift(double value, double /*slope*/, double /*x*/) { return value; }
