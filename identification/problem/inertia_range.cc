@@ -1,7 +1,6 @@
 #include "identification/problem/inertia_range.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -11,9 +10,7 @@
 namespace continuum {
 namespace {
 
-constexpr const char* kInertia = "inertia[";
-
-std::string Principal(std::size_t i) { return fmt::format("{}{}]", kInertia, i); }
+std::string Principal(std::size_t i) { return fmt::format("inertia[{}]", i); }
 
 // Which of the three a parameter sets alone, or 3.
 std::size_t Axis(const FreeParameter& p) {

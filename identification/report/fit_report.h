@@ -21,9 +21,8 @@ void AddParameterTable(Page& page, const std::vector<FreeParameter>& parameters,
 
 /// Says that a fit was started again elsewhere (Fit::anew).
 inline constexpr char kAnewInWords[] =
-    "started again from where a model follows the measured motion best piece by piece, as the "
-    "first "
-    "fit ended far above the noise";
+    "started again where the equations of motion fit the measured motion best, as the first fit "
+    "ended far above the noise";
 
 /// Says that the residuals of a fit are far more than noise, and what to do; empty: they are not.
 std::string OverNoiseInWords(const IdentifyResult& result);
