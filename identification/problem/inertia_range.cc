@@ -55,7 +55,6 @@ void KeepToInertias(const ModelSpec& system, std::vector<FreeParameter>& paramet
       p.why_lower = fmt::format("{} is at least |{} − {}| = {:.6g}: free these too", Principal(i),
                                 Principal(j), Principal(k), std::abs(a - b));
     }
-    p.initial = std::clamp(p.initial, p.lower, p.upper);
   }
 }
 

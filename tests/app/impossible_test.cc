@@ -47,6 +47,13 @@ TEST_F(Impossible, MassAtTheStartIsNamedWithItsLineAndLog) {
                    "model.xml", "'hand'"});
 }
 
+TEST_F(Impossible, AnInertiaAtTheStartThatExcludesTheOthersIsNamed) {
+  Free(
+      "{name: x, target: \"body:hand\", attribute: \"inertia[0]\", initial: 0.0025, lower: 1e-5, "
+      "upper: 1}");
+  ExpectRefusedAs({"with x = 0.0025 (experiment.yaml:6: parameters[0]): ", "A + B >= C"});
+}
+
 TEST_F(Impossible, ValuesThatExcludeEachOtherAreNamedTogether) {
   Free(
       "{name: x, target: \"body:hand\", attribute: \"inertia[0]\", initial: 0.0019, lower: 0, "
