@@ -13,7 +13,7 @@ namespace continuum {
 ///
 /// where the model holds to it (<compiler balanceinertia> does not). Beyond that no machine
 /// compiles, and a fit would end without a word. A bound that moves says why
-/// (FreeParameter::why_upper).
+/// (FreeParameter::why_upper). A start beyond stays there, for RequireStartModels to name.
 void KeepToInertias(const ModelSpec& system, std::vector<FreeParameter>& parameters);
 
 }  // namespace continuum
