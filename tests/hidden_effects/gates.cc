@@ -62,10 +62,10 @@ Case Background(const std::vector<std::string>& effects, std::uint64_t seed) {
 void AddForNoise(NoiseKind noise, std::vector<Gate>& gates) {
   std::string kind(kNoiseNames[static_cast<int>(noise)]);
   std::erase_if(kind, [](unsigned char c) { return !std::isalnum(c); });
-  const bool is_long = noise != NoiseKind::kWhite;  // sanitized, one kind stands for all
+  const Runs runs = noise == NoiseKind::kWhite ? Runs::kWithoutSanitizers : Runs::kInLongRuns;
   std::vector<Case> none;
   for (std::uint64_t seed = 1001; seed <= 1004; ++seed) none.push_back({{}, 1, noise, seed});
-  gates.push_back({"NothingIsNamedWhereNothingIsHidden_" + kind, false, none, IsQuiet, is_long});
+  gates.push_back({"NothingIsNamedWhereNothingIsHidden_" + kind, false, none, IsQuiet, runs});
   // These logs tell them from all others; at twice a moderate size they are well above slow noise.
   gates.push_back({"ClearOnesAreNamed_" + kind,
                    true,
@@ -73,12 +73,12 @@ void AddForNoise(NoiseKind noise, std::vector<Gate>& gates) {
                     {{"cubic_stiffness"}, 2, noise, 2002},
                     {{"sensor_scale"}, 2, noise, 2003}},
                    AreClear,
-                   is_long});
+                   runs});
   gates.push_back({"WithoutACandidateItGetsNoOtherName_" + kind,
                    true,
                    {{{"payload"}, 4, noise, 3001, false}},
                    All<HasNoOtherName>,
-                   is_long});
+                   runs});
 }
 
 void AddForArm(std::vector<Gate>& gates) {
@@ -105,7 +105,8 @@ void AddForArm(std::vector<Gate>& gates) {
   gates.push_back({"ALargeOneStaysAlone",
                    true,
                    {{{"sensor_delay"}, 4, NoiseKind::kWhite, 146}},
-                   All<IsNamedWithItsSize>});
+                   All<IsNamedWithItsSize>,
+                   Runs::kAlways});
   // Next to the fit of another law (Bouc-Wen) the simulation diverges. A case of the large suite.
   gates.push_back({"ALawThatDivergesIsNoRival",
                    true,
@@ -136,7 +137,7 @@ void AddForOthers(std::vector<Gate>& gates) {
                    true,
                    {White("spa", "payload", 2, 4, {"payload", "armature"})},
                    All<IsNamed>,
-                   true});
+                   Runs::kInLongRuns});
   // A Stribeck excess does nothing without its Coulomb level, and its speed nothing without it:
   // from one start the fit ends far off, and a second cause is called in.
   gates.push_back(
@@ -144,7 +145,8 @@ void AddForOthers(std::vector<Gate>& gates) {
   gates.push_back({"AServoShowsItsBacklash",
                    true,
                    {White("servo", "backlash", 1, 13)},
-                   All<IsNamedWithItsSize>});
+                   All<IsNamedWithItsSize>,
+                   Runs::kAlways});
   // From rest a late input and a late sensor show the same; what tells them apart here is the time
   // step alone.
   gates.push_back(
@@ -161,18 +163,15 @@ Case Outside(std::string_view name) {
 // Machines by other equations, with masses and lengths 1 % off, friction by other laws; every
 // effect of the catalog is a candidate.
 void AddForOutside(std::vector<Gate>& gates) {
-  gates.push_back(
-      {"AValveThatIsSlowerIsOfFirstOrder", true, {Outside("valve pt1")}, All<IsNamed>, true});
+  gates.push_back({"AValveThatIsSlowerIsOfFirstOrder", true, {Outside("valve pt1")}, All<IsNamed>});
   gates.push_back({"FrictionOfASmoothLawIsNotOneOfTheLoad",
                    true,
                    {Outside("pendulum coulomb tanh")},
-                   All<IsNamed>,
-                   true});
+                   All<IsNamed>});
   gates.push_back({"FrictionAndASlowValveAreBothNamed",
                    true,
                    {Outside("valve coulomb+pt1 tanh")},
-                   All<IsFound>,
-                   true});
+                   All<IsFound>});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "support/cable_arm.h"
 #include "support/engine.h"
+#include "support/long_test.h"
 
 namespace continuum {
 namespace {
@@ -175,6 +176,7 @@ class LightArm : public testing::Engine {
 };
 
 TEST_F(LightArm, HoldsTheSameOffsetAt2MillisecondsAsAt100Microseconds) {
+  CONTINUUM_LONG_IF_SANITIZED("small steps");
   for (const auto& [links, mass] : {std::pair{5, 1e-3}, {5, 5e-3}, {10, 1e-3}, {20, 5e-3}}) {
     Arm arm{.links = links, .mass = mass, .mu = 0.3, .stiffness = 0.02 * links};
     Arm free = arm;

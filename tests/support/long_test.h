@@ -6,23 +6,28 @@
 
 namespace continuum::testing {
 
-/// Whether a test that the sanitizers slow down to minutes is left to `scripts/test long`, which
-/// sets CONTINUUM_LONG. Without sanitizers every test runs.
-inline bool IsLeftToLongRun() {
+/// Whether long tests run too: `scripts/test long` sets CONTINUUM_LONG.
+inline bool IsLongRun() { return std::getenv("CONTINUUM_LONG") != nullptr; }
+
+inline constexpr bool kIsSanitized =
 #if defined(__SANITIZE_ADDRESS__)
-  constexpr bool kSanitized = true;
+    true;
 #elif defined(__has_feature)
-  constexpr bool kSanitized = __has_feature(address_sanitizer);
+    __has_feature(address_sanitizer);
 #else
-  constexpr bool kSanitized = false;
+    false;
 #endif
-  return kSanitized && std::getenv("CONTINUUM_LONG") == nullptr;
-}
 
 }  // namespace continuum::testing
 
-/// First line of a test that the sanitizers slow down to minutes: `reason` says by what.
-#define CONTINUUM_LONG_IF_SANITIZED(reason)    \
-  if (::continuum::testing::IsLeftToLongRun()) \
-  GTEST_SKIP() << "left to scripts/test "      \
+/// First line of a test that is left to `scripts/test long`: `reason` says what stands for it.
+#define CONTINUUM_LONG(reason) CONTINUUM_LONG_IF(true, reason)
+
+/// The same of one that sanitizers slow down to minutes; without them it always runs.
+#define CONTINUUM_LONG_IF_SANITIZED(reason) \
+  CONTINUUM_LONG_IF(::continuum::testing::kIsSanitized, reason)
+
+#define CONTINUUM_LONG_IF(condition, reason)             \
+  if ((condition) && !::continuum::testing::IsLongRun()) \
+  GTEST_SKIP() << "left to scripts/test "                \
                   "long: " reason

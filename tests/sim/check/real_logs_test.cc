@@ -9,6 +9,7 @@
 #include "bench.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"
+#include "support/long_test.h"
 #include "support/recordings.h"
 #include "support/scratch.h"
 
@@ -79,6 +80,7 @@ TEST_F(CheckReal, Emps) {
 }
 
 TEST_F(CheckReal, Trunk) {
+  CONTINUUM_LONG_IF_SANITIZED("long logs");
   std::string logs, inputs, outputs;
   for (const char* name : {"observations_controlled_1", "observations_controlled_1_100g"}) {
     const CsvTable table = CsvTable::Read(data_ / "trunk" / (std::string(name) + ".csv"));

@@ -15,6 +15,7 @@
 #include "error.h"
 #include "sim/film/overlay_painter.h"
 #include "sim/model/mujoco_handles.h"
+#include "support/long_test.h"
 
 namespace continuum {
 namespace {
@@ -306,6 +307,7 @@ double Share(const Image& image) {
 }
 
 TEST(FreeCamera, SeesTheWholeRobotInEveryPose) {
+  CONTINUUM_LONG_IF_SANITIZED("hundreds of frames");
   const auto model = Compile(kScene);
   for (const auto& [width, height] : {std::pair{640, 480}, {320, 640}, {800, 200}}) {
     for (const auto& [slide, lift] :

@@ -22,6 +22,7 @@
 #include "sim/page/axis_scale.h"
 #include "sim/page/text.h"
 #include "sim/page/time_series.h"
+#include "support/long_test.h"
 
 namespace continuum {
 namespace {
@@ -201,6 +202,7 @@ TEST(Page, RefersToNothingOutsideItself) { ExpectNoExternalReference(Demo().Html
 TEST(Page, TheSameCallsGiveTheSameBytes) { EXPECT_EQ(Demo().Html(), Demo().Html()); }
 
 TEST(Page, OpensInChromiumWithoutErrorAndWithoutBlankPlot) {
+  CONTINUUM_LONG_IF_SANITIZED("a browser");
   CONTINUUM_REQUIRE_CHROMIUM();
   const fs::path folder = Folder();
   Demo().Write(folder / "demo.html");
@@ -333,6 +335,7 @@ TEST(Page, EmptyConstantAndSinglePointDataAreShownOrNamed) {
 }
 
 TEST(Page, TwelveLogsWithTwoChannelsStayBelowThreeMegabytes) {
+  CONTINUUM_LONG_IF_SANITIZED("a browser");
   Noise noise;
   const auto time = Clock(1201, 0.01);
   const auto wave = [&](double t) { return std::sin(t) + 0.01 * noise(); };

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
+#include "support/long_test.h"
 #include "support/scratch.h"
 
 namespace continuum {
@@ -195,6 +196,7 @@ TEST_F(QuasiStatic, ACableHoldsWhatItsCornerHolds) {
 }
 
 TEST_F(QuasiStatic, FrictionOfLinksThatWeighNothingLetsThemRest) {
+  CONTINUUM_LONG_IF_SANITIZED("many states at rest");
   auto trial = Read(LightLinks(24), {0.5, 0.1}, {"x0"});
   const Trace trace = Run(trial);
   ASSERT_FALSE(trace.diverged) << trace.why;
