@@ -38,6 +38,7 @@ TEST_F(ServoPendulum, UnfittedItIsAsFarOffAsTheReadmeSays) {
 // Published after a refit of the same laws: 58 mrad; friction 0.0206 N m, and 0.0183 rad that the
 // sensor reads too much, which MJCF's ref counts the other way.
 TEST_F(ServoPendulum, CoulombAndViscousFrictionRefittedLeave60Mrad) {
+  CONTINUUM_LONG_IF_SANITIZED("a fit to long logs");
   const Problem problem(experiment_, ModelSpec::Load(experiment_.model));
   FitOptions options;
   options.soft = experiment_.soft;

@@ -14,6 +14,7 @@
 #include "error.h"
 #include "identification/fit/intervals.h"
 #include "identification/statistics/uncertainty.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -171,6 +172,7 @@ TEST_F(FitTest, StopsAtABoundAndSaysHowFarFromItTheValueMayBe) {
 // values is known, to first order, by central differences (by one-sided ones the mass is 0.2 %
 // off).
 TEST_F(FitTest, WhereASliderSticksTheIntervalReachesOverTheTruth) {
+  CONTINUUM_LONG_IF_SANITIZED("several fits");
   const Experiment e = stick_slip::Clean(folder_, 2e-3, 2e-4);
   const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -37,6 +38,7 @@ class PiecesTest : public Bench {
 };
 
 TEST_F(PiecesTest, WhereALongLogFallsOutOfStepItsPiecesLeadToTheTruth) {
+  CONTINUUM_LONG_IF_SANITIZED("several fits");
   const Experiment e = Ringing(30);
   const ModelSpec system = Model();
   const Problem problem(e, system);

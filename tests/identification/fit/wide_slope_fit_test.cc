@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/long_test.h"
 #include "support/wheel.h"
 
 namespace continuum {
@@ -38,6 +39,7 @@ constexpr char kModel[] = R"(<mujoco>
 class Far : public testing::Bench {};
 
 TEST_F(Far, LeavesTheValleyWhereFittingAlongSlopesEnds) {
+  CONTINUUM_LONG_IF_SANITIZED("several fits");
   const Shaken truth;
   const auto u = Shaken::Steps();
   AddLog("shaken", "use: train", u, testing::Noisy(truth.Run(u), 1e-4, 0, 1));

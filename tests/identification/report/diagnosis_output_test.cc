@@ -13,6 +13,7 @@
 #include "identification/report/parts.h"
 #include "sim/io/csv.h"
 #include "support/diagnosis_files.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -86,6 +87,7 @@ void ExpectFinite(const nlohmann::json& json, const std::string& where) {
 }
 
 TEST_F(DiagnosisOutput, SaysOfNothingThatItIsMissingWhereNothingIs) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
   EXPECT_THAT(files.missing, IsEmpty());
   EXPECT_FALSE(files.json.contains("missing"));
@@ -96,6 +98,7 @@ TEST_F(DiagnosisOutput, SaysOfNothingThatItIsMissingWhereNothingIs) {
 
 // As one that falls so far behind that it got no sensitivities, and that another view speaks for.
 TEST_F(DiagnosisOutput, OfARivalWithoutAnIntervalLacksTheIntervalOnly) {
+  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   d_->verdict.kind = Verdict::Kind::kAmbiguous;
   d_->verdict.named = {0, 1};
   d_->candidates[1].fitted.sensitivities.reset();

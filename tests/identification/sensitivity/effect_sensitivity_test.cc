@@ -13,6 +13,7 @@
 #include "identification/sensitivity/step_sensitivity.h"
 #include "random_laws.h"
 #include "sim/model/model_spec.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -215,7 +216,7 @@ class Comparison {
   double phase_;
 };
 
-constexpr unsigned kMachines = 50;
+constexpr unsigned kMachines = testing::kIsSanitized ? 5 : 50;
 
 // alone: the one number that moves, those of the law first.
 Machines MachinesOf(const RandomLaw& law, unsigned seed, std::optional<std::size_t> alone = {}) {
@@ -242,6 +243,7 @@ TEST_P(EffectSensitivityTest, AreThoseOfSingleSteps) {
 }
 
 TEST_P(EffectSensitivityTest, AreThoseOfEveryParameterAlone) {
+  CONTINUUM_LONG_IF_SANITIZED("ten machines for each parameter");
   constexpr unsigned kSome = 10;
   for (std::size_t k = 0; k < GetParam().parameters.size(); ++k) {
     const std::string& name = GetParam().parameters[k].first;
@@ -263,6 +265,7 @@ TEST_P(EffectSensitivityTest, AreThoseOfEveryParameterAlone) {
 
 // What such a comparison must not let pass.
 TEST_P(EffectSensitivityTest, SeesWhatIsLeftOut) {
+  CONTINUUM_LONG_IF_SANITIZED("eight machines for each mutation");
   constexpr unsigned kSome = 8;
   for (const Mutation mutation :
        {Mutation::kFlippedParameters, Mutation::kNoPositions, Mutation::kNoStates}) {

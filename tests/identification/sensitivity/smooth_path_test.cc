@@ -14,6 +14,7 @@
 #include "identification/problem/path_choice.h"
 #include "sim/simulation/simulate.h"
 #include "smooth_arm.h"
+#include "support/long_test.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -66,6 +67,7 @@ const std::string kCreep = Law("maxwell",
                                "<config key='tau_m' value='0.2'/>");
 
 TEST_P(GradientTest, AgreesWithTightCentralDifferences) {
+  CONTINUUM_LONG_IF_SANITIZED("a solver with tight tolerances");
   const Gradient& g = GetParam();
   const Experiment e = Read(SmoothArm(g.target.starts_with("plugin:") ? kCreep : ""));
   EXPECT_LT(SlopeError(Slopes(e, g), CentralDifferences(e, g)), 1e-5);
