@@ -8,6 +8,7 @@
 #include "identification/fit/cross_validation.h"
 #include "identification/fit/intervals.h"
 #include "identification/inverse_dynamics/search_fit.h"
+#include "identification/inverse_dynamics/short_horizon.h"
 #include "identification/statistics/uncertainty.h"
 #include "sim/simulation/simulate.h"
 
@@ -65,14 +66,31 @@ Fitted CandidateFitter::Fit(const Problem& problem, FitStart start, double rival
 }
 
 // As `identify` does, of many logs with those for a look, then with all and in units of the noise.
+// By secants first; where these leave much, along slopes as well, in a few times their time.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr int kIterations = 100;
   constexpr double kNear = 1e-3;  // of the cost that a step gains: what follows goes on from there
-  const FitOptions options{
-      .iterations = kIterations, .tolerance = kNear, .rough = true, .until = until};
-  const SearchedFit found =
-      FitBySearch(problem, problem.Start(), LogsForALook(*experiment), {}, options);
-  return Fit(problem, {found.fit.x}, std::numeric_limits<double>::infinity(), false);
+  constexpr double kTimes = 3;
+  const double begin = ProcessorSeconds();
+  const auto logs = LogsForALook(*experiment);
+  FitOptions options{.iterations = kIterations, .tolerance = kNear, .rough = true, .until = until};
+  continuum::Fit best = FitBySearch(problem, problem.Start(), logs, {}, options).fit;
+  const double now = ProcessorSeconds();
+  if (std::isfinite(until)) options.until = std::min(until, now + kTimes * (now - begin));
+  options.rough = false;
+  if (IsFarOverNoise(problem, best.x, logs) && !TimeIsOver()) {
+    continuum::Fit other = FitBySearch(problem, problem.Start(), logs, {}, options).fit;
+    if (other.cost < best.cost) best = std::move(other);
+  }
+  return Fit(problem, {best.x}, std::numeric_limits<double>::infinity(), false);
+}
+
+std::optional<Vector> CandidateFitter::OverShortHorizons(const Problem& problem,
+                                                         const Vector& x) const {
+  const auto logs = LogsForALook(*experiment);
+  const auto pieces = OnShortHorizons(problem, logs);
+  if (!pieces) return {};
+  return FitParameters(*pieces, x, logs, Options()).x;
 }
 
 void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {

@@ -41,6 +41,9 @@ struct CandidateFitter {
   /// Fit of the experiment's own parameters, from its start or, where that leads to a wrong place,
   /// by the equations of motion: its error would be blamed on effects.
   Fitted FitNull(const Problem& problem) const;
+  /// Where a fit over short horizons from x ends (OnShortHorizons); nothing where there are none.
+  std::optional<Problem::Vector> OverShortHorizons(const Problem& problem,
+                                                   const Problem::Vector& x) const;
   /// Adds sensitivities and intervals, what the time step leaves open, and with these the cost to
   /// first order.
   void Complete(const Problem& problem, Fitted& fitted) const;

@@ -105,6 +105,7 @@ class CandidateSearch {
   bool TakesMainShare(const Fitted& fitted) const;
   void SayFit(const CandidateResult& c, double needed) const;
   void FitOne(CandidateResult& c, double rival) const;
+  std::vector<CandidateResult*> MostPromising();
   static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,
                                                        const CandidateResult& c);
   bool RefitFromStart(CandidateResult& c) const;
@@ -121,6 +122,8 @@ class CandidateSearch {
   void CompleteCompetitive(double best);
   bool CompleteOne(CandidateResult& c, double best) const;
   void RefitAtQuarterStep(CandidateResult& c) const;
+  void Mend(const Problem& problem, CandidateResult& c) const;
+  bool IsSoundAtQuarterStep(const Problem& problem, CandidateResult& c) const;
   LackOfFit LackAt(const Problem& problem, const CandidateResult& c, const Fitted& fitted) const;
   static bool RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x);
   std::string FlawOf(const Problem& problem, const Fitted& fitted) const;

@@ -77,6 +77,8 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
   const CandidateResult* const known = beside ? beside->leading() : nullptr;
   if (beside) needed = std::max(needed, UnlistedThreshold(beside->MostExplained(), criteria_));
   double rival = known ? known->fitted.fit.cost : kInfinity;
+  const double alike =
+      0.5 * (StepReduction(*base_.fitted) + criteria_.structure_least * base_.fitted->cost);
   std::size_t next = 0;
   while (limit > 0) {
     const auto wave = NextWave(needed, std::min(limit, kWave), next);
@@ -85,7 +87,7 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
     SayFit(*wave.front(), needed);
     ParallelFor(wave.size(), [&](std::size_t, std::size_t i) {
       try {
-        FitOne(*wave[i], rival + 0.5 * StepReduction(*base_.fitted));
+        FitOne(*wave[i], rival + alike);
       } catch (const Error& error) {
         wave[i]->error = error.what();
       }
@@ -179,19 +181,31 @@ void CandidateSearch::FinishAbandoned() {
   }
 }
 
+// Those that fit best, and those that explain most of the missing force: a fit that ended out of
+// step says nothing.
+std::vector<CandidateResult*> CandidateSearch::MostPromising() {
+  const auto most = static_cast<std::size_t>(criteria_.fresh_starts);
+  std::vector<CandidateResult*> all, best;
+  for (CandidateResult& c : candidates) {
+    if (c.was_fitted && c.listed) all.push_back(&c);
+  }
+  const auto add = [&](const auto& before) {
+    std::stable_sort(all.begin(), all.end(), before);
+    for (std::size_t i = 0; i < std::min(all.size(), most); ++i) {
+      if (std::find(best.begin(), best.end(), all[i]) == best.end()) best.push_back(all[i]);
+    }
+  };
+  add([](const auto* a, const auto* b) { return a->fitted.fit.cost < b->fitted.fit.cost; });
+  std::erase_if(all, [](const auto* c) { return !(c->force_promise > 0); });
+  add([](const auto* a, const auto* b) { return a->force_promise > b->force_promise; });
+  return best;
+}
+
 // Where joints stick and slip a fit from what the base has become ends in a neighbouring local
 // minimum.
 bool CandidateSearch::RefitFromExperimentStart() {
-  std::vector<CandidateResult*> best;
-  for (CandidateResult& c : candidates) {
-    if (c.was_fitted && c.listed) best.push_back(&c);
-  }
-  std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) {
-    return a->fitted.fit.cost < b->fitted.fit.cost;
-  });
-  best.resize(std::min(best.size(), static_cast<std::size_t>(criteria_.fresh_starts)));
   bool better = false;
-  for (CandidateResult* const c : best) {
+  for (CandidateResult* const c : MostPromising()) {
     if (fitter_.TimeIsOver()) break;
     options_.Say(DiagnosisStage::kFits, "anew, " + c->hypothesis.Name());
     better = RefitFromStart(*c) || better;
@@ -223,7 +237,9 @@ std::vector<Problem::Vector> CandidateSearch::ExperimentStarts(const Problem& pr
 bool CandidateSearch::RefitFromStart(CandidateResult& c) const {
   const Problem problem = ProblemOf(c, *fitter_.experiment);
   try {
-    FitStart start = BestOf(problem, ExperimentStarts(problem, c));
+    std::vector<Problem::Vector> starts = ExperimentStarts(problem, c);
+    if (const auto x = fitter_.OverShortHorizons(problem, c.fitted.fit.x)) starts.push_back(*x);
+    FitStart start = BestOf(problem, starts);
     Fitted fitted = fitter_.Fit(problem, std::move(start), c.fitted.fit.cost);
     if (!(fitted.fit.cost < c.fitted.fit.cost - criteria_.still_gains)) return false;
     c.fitted = std::move(fitted);
@@ -364,6 +380,7 @@ bool CandidateSearch::CompleteOne(CandidateResult& c, double best) const {
   if (RaiseDelays(c, problem.step(), x)) RefitAtQuarterStep(c);
   c.error = c.at_quarter_step ? FlawOf(AtQuarter(problem), *c.at_quarter_step)
                               : FlawOf(problem, c.fitted);
+  if (!c.error.empty() && !c.at_quarter_step) Mend(problem, c);
   c.was_fitted = c.error.empty();
   if (!c.was_fitted) return false;
   const double behind = c.fitted.cost - best, promise = base_.fitted->cost - best;
@@ -401,6 +418,33 @@ void CandidateSearch::RefitAtQuarterStep(CandidateResult& c) const {
     c.at_quarter_step = std::move(finer);
   } catch (const Error&) {
     return;  // it diverges there
+  }
+}
+
+// A fit that is mostly what the time step makes ended in a wrong place, or its swing is one that
+// parts with the step.
+void CandidateSearch::Mend(const Problem& problem, CandidateResult& c) const {
+  if (RefitFromStart(c)) {
+    fitter_.Complete(problem, c.fitted);
+    c.error = FlawOf(problem, c.fitted);
+  }
+  if (!c.error.empty() && IsSoundAtQuarterStep(problem, c)) c.error.clear();
+}
+
+// Where a swing nearly comes to rest upside down its two sides part with the step: a fit at a
+// quarter of it says as much, if that one is sound.
+bool CandidateSearch::IsSoundAtQuarterStep(const Problem& problem, CandidateResult& c) const {
+  try {
+    const Problem fine = AtQuarter(problem);
+    Fitted finer = fitter_.Continue(fine, c.fitted);
+    fitter_.Complete(fine, finer);
+    if (!FlawOf(fine, finer).empty()) return false;
+    c.at_quarter_x = finer.fit.x;
+    c.fitted.cost = finer.cost;
+    c.at_quarter_step = std::move(finer);
+    return true;
+  } catch (const Error&) {
+    return false;  // it diverges there
   }
 }
 

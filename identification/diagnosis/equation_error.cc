@@ -10,6 +10,7 @@
 #include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/search_rules.h"
+#include "identification/fit/bounded_least_squares.h"
 #include "sim/numerics/parallel.h"
 
 namespace continuum {
@@ -40,8 +41,20 @@ EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector
     const Vector column = (Stacked(base, moved, thread) - missing_) / step;
     if (column.allFinite() && column.norm() * std::abs(step) > 1e-12) columns_.col(k) = column;
   });
+  StayWithinBounds(base);
   basis_ = Basis(columns_);
-  force_ = missing_ - basis_ * (basis_.transpose() * missing_);
+  force_ -= basis_ * (basis_.transpose() * force_);
+}
+
+// Parameters that the missing force draws to a bound stay there: the candidate has to explain what
+// they would beyond it.
+void EquationErrors::StayWithinBounds(const Problem& base) {
+  const Box box = BoundsOf(base);
+  held_ = SolveWithinBox(box, x_, columns_, missing_);
+  force_ = missing_ + columns_ * (held_ - x_);
+  for (Eigen::Index k = 0; k < x_.size(); ++k) {
+    if (held_[k] <= box.lower[k] || held_[k] >= box.upper[k]) columns_.col(k).setZero();
+  }
 }
 
 Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::size_t thread) const {
@@ -97,9 +110,9 @@ std::optional<EquationStart> EquationErrors::AtShare(const Hypothesis& h, const 
     own[i] = h.AtShare(i, start[i], StartShare(e.coefficients[a], share));
     own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);
   }
-  Vector beside = x_;
+  Vector beside = held_;
   if (x_.size() > 0)
-    beside -= columns_.completeOrthogonalDecomposition().solve(missing_ + D * e.coefficients);
+    beside -= columns_.completeOrthogonalDecomposition().solve(force_ + D * e.coefficients);
   return EquationStart{which, e.amount / force_.squaredNorm(), problem.Clamp(Append(x_, own)),
                        problem.Clamp(Append(beside, own))};
 }

@@ -23,7 +23,8 @@ struct EquationStart {
 ///
 ///   f ≈ Σ a_i ∂f/∂p_i + b (f(p) − f(p, candidate)),   b ≥ 0,
 ///
-/// by least squares over train logs, every joint in units of its own missing force. What
+/// by least squares over train logs, p within their bounds, every joint in units of its own missing
+/// force. What
 /// drifts, swings out of phase or hides behind the time step in free simulation does not here;
 /// noise of the accelerations does.
 class EquationErrors {
@@ -45,6 +46,7 @@ class EquationErrors {
   std::optional<ByEquation> Of(const CandidateResult& candidate) const;
 
  private:
+  void StayWithinBounds(const Problem& base);
   std::vector<double> PerLog(const Problem::Vector& r) const;
   Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x,
                           std::size_t thread = 0) const;
@@ -57,8 +59,9 @@ class EquationErrors {
   StackedForces units_;
   std::vector<std::size_t> log_;  // of every number
   Problem::Vector missing_;       // f
+  Problem::Vector held_;          // parameters as f wants them, within their bounds
   Problem::Vector force_;         // f, less what the parameters explain of it
-  Problem::Matrix columns_;       // [parameter] ∂f/∂p
+  Problem::Matrix columns_;       // [parameter] ∂f/∂p; zero where a bound holds it
   Problem::Matrix basis_;         // orthonormal, of what the parameters do
 };
 

@@ -118,7 +118,8 @@ class Ranking {
            after > (1 - criteria_.earned_share) * before;
   }
   bool IsBehind(std::size_t best, std::size_t rival) const {
-    return Behind(best, rival, AtLeast(criteria_.rival_margin));
+    const double structure = criteria_.structure_least * most_ / scale_;
+    return Behind(best, rival, std::max(AtLeast(criteria_.rival_margin), structure));
   }
   // A margin, or what else is wrong with a model may make of one.
   double AtLeast(double margin) const {
@@ -188,7 +189,7 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
   const std::string near = fmt::format("within {:g}{}", +criteria.rival_margin,
                                        close  ? ""
                                        : more ? " or what else is left"
-                                              : " or what the time step leaves open");
+                                              : " or what time step and lengths leave open");
   const std::string shows = Shows(all, best, lack, more, criteria);
   if (verdict.named.size() > 1) {
     verdict.kind = Verdict::Kind::kAmbiguous;

@@ -153,8 +153,9 @@ std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candida
 ///
 ///   max(rival_margin · max(1, c/ν), left_share · (c − ν), structure_share · e),
 ///
-/// e what it explains; which is the calibrated test where only noise is left (c = ν). Where more is
-/// left the best one is named if it takes the main share of what noise does not explain.
+/// e what it explains. Where only noise is left (c = ν) that is the calibrated test, but for large
+/// effects, of which structure_least · e tells nobody apart. Where more is left the best one is
+/// named if it takes the main share of what noise does not explain.
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const LackOfFit& lack,
                          double p, const BaseSquares& base, const Criteria& criteria = {});
 

@@ -1,6 +1,8 @@
 #include "identification/fit/bounded_least_squares.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <glog/logging.h>
 
@@ -68,6 +70,33 @@ Problem::Vector BoundedStep(const Box& box, const Problem::Vector& y, const Prob
     }
     if (!again) return step;
   }
+}
+
+// From bound to bound, each step as far as the first that it meets, which holds it from then on
+// where it pulls outward.
+Problem::Vector SolveWithinBox(const Box& box, const Problem::Vector& y, const Problem::Matrix& J,
+                               const Problem::Vector& r) {
+  constexpr double kFirm = 1e-10;  // of the curvature: directions that nothing determines stay
+  Problem::Matrix A = J.transpose() * J;
+  for (double& entry : A.diagonal()) entry += kFirm * entry + std::numeric_limits<double>::min();
+  Problem::Vector at = y;
+  for (Eigen::Index k = 0; k <= 4 * y.size(); ++k) {
+    const Problem::Vector step = BoundedStep(box, at, A, J.transpose() * (r + J * (at - y)));
+    double reach = 1;
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+      const double room = step[i] > 0 ? box.upper[i] - at[i] : at[i] - box.lower[i];
+      if (std::abs(step[i]) > room)
+        reach = std::min(reach, std::max(0.0, room / std::abs(step[i])));
+    }
+    at = (at + reach * step).cwiseMax(box.lower).cwiseMin(box.upper);
+    for (Eigen::Index i = 0; i < y.size(); ++i) {  // rounding must not keep it off its bound
+      const double near = 1e-12 * std::abs(step[i]);
+      if (at[i] - box.lower[i] <= near) at[i] = box.lower[i];
+      if (box.upper[i] - at[i] <= near) at[i] = box.upper[i];
+    }
+    if (reach == 1) break;
+  }
+  return at;
 }
 
 ceres::Solver::Summary Minimize(ceres::CostFunction& cost, const Box& box, const Search& search,

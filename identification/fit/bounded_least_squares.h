@@ -28,6 +28,10 @@ Box BoxOf(const Problem& problem);
 Problem::Vector BoundedStep(const Box& box, const Problem::Vector& y, const Problem::Matrix& A,
                             const Problem::Vector& g);
 
+/// The z in the box that minimises |r + J (z − y)|²; y is in it.
+Problem::Vector SolveWithinBox(const Box& box, const Problem::Vector& y, const Problem::Matrix& J,
+                               const Problem::Vector& r);
+
 /// When bounded Levenberg-Marquardt ends, and who watches it.
 struct Search {
   int iterations;

@@ -12,6 +12,7 @@
 #include "identification/fit/bounded_least_squares.h"
 #include "identification/fit/secant_search.h"
 #include "identification/problem/start_checks.h"
+#include "identification/statistics/noise_model.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/decompositions.h"
 #include "sim/numerics/parallel.h"
@@ -215,6 +216,12 @@ double TypicalRms(const Problem& problem, std::vector<Vector> r, const std::vect
   const double most = kFar * kSigma * *middle;
   for (Vector& part : r) part = part.cwiseMax(-most).cwiseMin(most);
   return problem.PooledRms(r, use);
+}
+
+bool IsFarOverNoise(const Problem& problem, const Vector& x, const std::vector<bool>& use) {
+  const Noise noise = NoiseOf(problem.experiment());
+  return noise.rms > 0 &&
+         TypicalRms(problem, problem.Residuals(x, use), use) > kFarOverNoise * noise.rms;
 }
 
 double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& use,

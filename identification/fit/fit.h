@@ -53,6 +53,9 @@ void RequireFinite(const Problem& problem, const Problem::Vector& x,
 double TypicalRms(const Problem& problem, std::vector<Problem::Vector> residuals,
                   const std::vector<bool>& use);
 
+/// Whether the residuals at x are far more than the measurement noise, where that is known.
+bool IsFarOverNoise(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use);
+
 /// ½ Σ ρ(r) of whitened residuals, what a fit lowers but for continuity; infinite where it
 /// diverges.
 double CostAt(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,

@@ -8,78 +8,13 @@
 
 #include <Eigen/Dense>
 
-#include "sim/experiment/measurement_model.h"
+#include "identification/inverse_dynamics/measured_motion.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {
 
 constexpr double kStill = 1e-2;  // of the largest motion: less is none
-constexpr std::size_t kHalf = 5, kRows = 2 * kHalf + 1, kTerms = 5;
-
-double Square(double x) { return x * x; }
-
-// The quartic through the rows around one row: weights of their values.
-struct Quartic {
-  std::size_t begin;
-  Eigen::VectorXd value, slope, curvature;
-  Eigen::VectorXd mean;  // (2): of mean accelerations from each of these rows to the next
-
-  Quartic(const std::vector<double>& t, std::size_t k) : begin(k - kHalf), mean(kRows - 1) {
-    Eigen::MatrixXd A(kRows, kTerms);
-    for (std::size_t i = 0; i < kRows; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      A(row, 0) = 1;
-      for (Eigen::Index n = 1; n < A.cols(); ++n)
-        A(row, n) = A(row, n - 1) * (t[begin + i] - t[k]) / static_cast<double>(n);
-    }
-    const Eigen::MatrixXd weights =
-        A.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(kRows, kRows));
-    value = weights.row(0), slope = weights.row(1), curvature = weights.row(2);
-    const auto after = [&](std::size_t i, std::size_t j) {
-      return Square(std::max(0.0, t[begin + i] - t[begin + j])) / 2;
-    };
-    for (std::size_t j = 0; j + 1 < kRows; ++j) {
-      double& integral = mean[static_cast<Eigen::Index>(j)];
-      integral = 0;
-      for (std::size_t i = 0; i < kRows; ++i)
-        integral += curvature[static_cast<Eigen::Index>(i)] * (after(i, j) - after(i, j + 1));
-    }
-  }
-
-  // The same around another row of evenly spaced ones.
-  Quartic At(std::size_t k) const {
-    Quartic other = *this;
-    other.begin = k - kHalf;
-    return other;
-  }
-
-  double Of(const std::vector<double>& y, const Eigen::VectorXd& weights) const {
-    return Eigen::Map<const Eigen::VectorXd>(y.data() + begin, weights.size()).dot(weights);
-  }
-};
-
-// Whether the rows around one are as far apart as those around the row before it.
-bool IsSpacedAsBefore(const std::vector<double>& t, std::size_t k) {
-  constexpr double kEqual = 1e-9;  // of a spacing
-  const double first = t[k - kHalf] - t[k - kHalf - 1], last = t[k + kHalf] - t[k + kHalf - 1];
-  for (std::size_t i = k - kHalf; i < k + kHalf; ++i) {
-    if (std::abs(t[i + 1] - t[i] - first) > kEqual * last) return false;
-  }
-  return true;
-}
-
-// The channel that measures each joint, of those that are measured.
-std::map<int, std::size_t> JointChannels(const Experiment& e, const mjModel& m) {
-  std::map<int, std::size_t> channels;
-  for (std::size_t c = 0; c < e.channels.size(); ++c) {
-    const Output& out = e.outputs[e.channels[c].output];
-    if (out.kind != Output::Kind::kSensor) continue;
-    const int id = mj_name2id(&m, mjOBJ_SENSOR, out.source.c_str());
-    if (id >= 0 && m.sensor_type[id] == mjSENS_JOINTPOS) channels[m.sensor_objid[id]] = c;
-  }
-  return channels;
-}
 
 // Joints without a channel; none that could only be at rest in several directions.
 std::optional<std::vector<int>> OtherJoints(const mjModel& m,
@@ -93,10 +28,6 @@ std::optional<std::vector<int>> OtherJoints(const mjModel& m,
   return others;
 }
 
-struct Motion {
-  std::vector<double> angle, velocity, acceleration;
-};
-
 // One log, as the model sees it, but for the rows at its ends.
 class LogForces {
  public:
@@ -104,26 +35,13 @@ class LogForces {
       : e_(problem.MeasuredBy(x, log)),
         log_(problem.experiment().logs[log]),
         index_(log),
-        machine_(problem.system(thread).Build(problem.ChangesFor(x, log))) {
-    for (std::size_t k = kHalf; k + kHalf < log_.rows(); ++k) {
-      if (!fits_.empty() && IsSpacedAsBefore(log_.time, k)) {
-        fits_.push_back(fits_.back().At(k));
-      } else {
-        fits_.emplace_back(log_.time, k);
-      }
-    }
-    const auto channels = JointChannels(e_, *machine_.model);
-    others_ = OtherJoints(*machine_.model, channels).value();
-    for (const auto& [joint, channel] : channels) {
-      std::vector<double> y = log_.measured[channel];
-      for (double& value : y) value = SignalOf(e_, channel, value);
-      Motion& motion = measured_[joint];
-      for (const Quartic& fit : fits_) {
-        motion.angle.push_back(fit.Of(y, fit.value));
-        motion.velocity.push_back(fit.Of(y, fit.slope));
-        motion.acceleration.push_back(fit.Of(y, fit.curvature));
-        reach_ = std::max(reach_, std::abs(motion.angle.back() - motion.angle.front()));
-      }
+        machine_(problem.system(thread).Build(problem.ChangesFor(x, log))),
+        fits_(QuarticsOf(log_.time)) {
+    others_ = OtherJoints(*machine_.model, JointChannels(e_, *machine_.model)).value();
+    measured_ = MotionsOf(e_, *machine_.model, log_, fits_);
+    for (const auto& [joint, motion] : measured_) {
+      for (const double angle : motion.angle)
+        reach_ = std::max(reach_, std::abs(angle - motion.angle.front()));
       model_[joint].resize(log_.rows(), 0);
       load_[joint].resize(log_.rows(), 0);
     }
@@ -149,10 +67,10 @@ class LogForces {
         out.joint = mj_id2name(&m, mjOBJ_JOINT, joint);
         out.slides = m.jnt_type[joint] == mjJNT_SLIDE;
         out.log.push_back(index_);
-        out.time.push_back(log_.time[k + kHalf]);
+        out.time.push_back(log_.time[k + kHalfRows]);
         out.angle.push_back(motion.angle[k]);
         out.velocity.push_back(motion.velocity[k]);
-        out.load.push_back(load_.at(joint)[k + kHalf]);
+        out.load.push_back(load_.at(joint)[k + kHalfRows]);
         out.force.push_back(force[m.jnt_dofadr[joint]]);
         out.acceleration.push_back(lack[m.jnt_dofadr[joint]]);
       }
@@ -213,8 +131,8 @@ class LogForces {
       if (next >= log_.rows() || d.time < log_.time[next] - log_.time[0] - 1e-9) return;
       arrive(m, d, next);
       Watch(m, d);
-      const bool seen = next >= kHalf && next + kHalf < log_.rows();
-      if (seen) Place(m, d, next - kHalf);
+      const bool seen = next >= kHalfRows && next + kHalfRows < log_.rows();
+      if (seen) Place(m, d, next - kHalfRows);
       for (const auto& [joint, motion] : measured_) speed[joint] = d.qvel[m.jnt_dofadr[joint]];
     };
     hooks.row = [&](const mjModel& m, mjData& d, std::size_t row) {
@@ -234,7 +152,7 @@ class LogForces {
   std::vector<double> start_;  // of them
   double reach_ = 0;           // of the measured ones, from where they begin
   bool moved_ = false;
-  std::map<int, Motion> measured_;
+  std::map<int, JointMotion> measured_;
   std::map<int, std::vector<double>> model_, load_;
 };
 
@@ -277,8 +195,8 @@ bool MeasuresEveryJoint(const Problem& problem, std::size_t log) {
   const Experiment& e = problem.experiment();
   const Log& rows = e.logs[log];
   const mjModel& m = problem.system().model();
-  return !e.quasi_static && rows.rows() >= kRows && std::ssize(JointChannels(e, m)) == m.njnt &&
-         EveryRowIsThere(e, m, rows);
+  return !e.quasi_static && rows.rows() >= kQuarticRows &&
+         std::ssize(JointChannels(e, m)) == m.njnt && EveryRowIsThere(e, m, rows);
 }
 
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
@@ -287,7 +205,7 @@ std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::V
   std::vector<MissingForce> all;
   for (std::size_t l = 0; l < use.size(); ++l) {
     const Log& log = e.logs[l];
-    if (!use[l] || log.rows() < kRows) continue;
+    if (!use[l] || log.rows() < kQuarticRows) continue;
     if (e.quasi_static || !EveryRowIsThere(e, problem.system().model(), log)) return {};
     if (!LogForces(problem, x, l, thread).AddTo(all)) return {};
   }

@@ -6,6 +6,7 @@
 #include "identification/fit/multiple_shooting.h"
 #include "identification/fit/wide_slope_fit.h"
 #include "identification/inverse_dynamics/equation_error_fit.h"
+#include "identification/inverse_dynamics/short_horizon.h"
 
 namespace continuum {
 
@@ -22,6 +23,7 @@ SearchedFit FitBySearch(const Problem& problem, const Problem::Vector& x,
     found.fit = FitWithWideSlopes(problem, begin, use, options);
   }
   found.fit = FitByEquations(problem, std::move(found.fit), use, options);
+  found.fit = FitByShortHorizons(problem, std::move(found.fit), use, options);
   if (found.starts) found.starts->best = found.fit;
   if (found.segments) {
     found.fit.seconds += found.segments->seconds;

@@ -25,9 +25,9 @@ struct SearchedFit {
 
 /// Fits whole logs from x by everything that leads out of a wrong local minimum, one after the
 /// other: segments of long logs (fit/multiple_shooting.h), slopes over a fifth of the parameters
-/// (fit/wide_slope_fit.h) or random starts, and where the motion is still out of step the equations
-/// of motion (equation_error_fit.h). `identify` and `diagnose` both begin with it. Throws Error as
-/// FitParameters does.
+/// (fit/wide_slope_fit.h) or random starts, where the motion is still out of step the equations of
+/// motion (equation_error_fit.h), and short horizons (short_horizon.h). `identify` and `diagnose`
+/// both begin with it. Throws Error as FitParameters does.
 SearchedFit FitBySearch(const Problem& problem, const Problem::Vector& x,
                         const std::vector<bool>& use, const FitSearch& search,
                         const FitOptions& options);

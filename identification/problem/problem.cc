@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "error.h"
@@ -128,6 +129,12 @@ double Problem::step() const { return step_ > 0 ? step_ : system().model().opt.t
 
 void Problem::StepBy(double h) {
   step_ = h;
+  memory_.assign(memory_.size(), {});
+}
+
+void Problem::Guide(std::function<Hooks(std::size_t log)> hooks) {
+  guide_ = std::move(hooks), exact_ = false;
+  std::iota(motion_.begin(), motion_.end(), std::size_t{0});  // on a way of its own each
   memory_.assign(memory_.size(), {});
 }
 
@@ -321,7 +328,7 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
     return Rejected(logged, error);
   }
   const InitialState start = StartAt(machine, x, log);
-  Hooks hooks;
+  Hooks hooks = guide_ ? guide_(log) : Hooks{};
   if (terms_.count > 0) {
     const std::span<const double> weights(theta.data(), terms_.count);
     hooks.step = [&terms = terms_, weights](const mjModel& m, mjData& d) {

@@ -56,6 +56,9 @@ class Problem {
   void Recall(const Problem& other) { memory_ = other.memory_; }
   /// From now on with central differences, at twice the cost; one-sided where a bound is near.
   void Center() { central_ = true; }
+  /// From now on every simulation of a log with hooks of its own, as to set its state on the way;
+  /// without sensitivities in closed form.
+  void Guide(std::function<Hooks(std::size_t log)> hooks);
   /// From now on with differences over this share of a parameter's scale, nothing in closed form.
   /// The default share averages over the kinks of joints that stick and slip step by step; 1e-6
   /// gives the derivative itself.
@@ -174,6 +177,7 @@ class Problem {
   std::vector<double> scale_;   ///< SI per residual unit, of each counted channel
   std::vector<double> pooled_;  ///< pooled units per residual unit
   ForceTerms terms_;
+  std::function<Hooks(std::size_t log)> guide_;
   Path path_ = Path::kStepped;
   double step_ = 0;  ///< 0: the model's
   bool central_ = false;

@@ -137,6 +137,15 @@ std::vector<Judged> Structure() {
   const double most = 1e6;
   return {TwoThatLeave(most, 1, 1 + 2000 * kBelow), TwoThatLeave(most, 1, 1 + 2000 * kAbove)};
 }
+std::vector<Judged> LeastStructure() {
+  std::vector<Judged> judged;
+  for (const double lead : {100 * kBelow, 100 * kAbove}) {
+    judged.push_back([=](const Criteria& c) {
+      return JudgeLikelihoods({{"best", 1, 1e6}, {"rival", 1, 1e6 - lead}}, {}, 1e-3, {}, c).word();
+    });
+  }
+  return judged;
+}
 std::vector<Judged> MainShare() {
   std::vector<Judged> judged;
   for (const double share : {0.5, 0.8}) {
@@ -243,6 +252,7 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["nested_margin"] = {Lead(3.84 + 2.8 * kBelow, 2, {0}), Lead(3.84 + 2.8 * kAbove, 2, {0})};
   e["left_share"] = Left();
   e["structure_share"] = Structure();
+  e["structure_least"] = LeastStructure();
   e["main_share"] = MainShare();
   e["family_share"] = FamilyShare();
   e["earned_share"] = EarnedShare();

@@ -92,6 +92,18 @@ TEST(Likelihoods, OfALawAndOneThatItContainsThePlainOneIsKeptBesideAnother) {
               ElementsAre(2, 0));
 }
 
+// A pendulum's load and a weak motor both explain all of a large effect but for a per cent, which
+// its length is uncertain by: that one of them happens to leave nothing does not tell them apart.
+TEST(Likelihoods, OnesThatLeaveAPerCentOfALargeEffectAreKept) {
+  const auto named = [](double left) {
+    return JudgeLikelihoods({{"load", 1, 1e8 * (1 - left * left)}, {"gain", 1, 1e8}}, {0.5}, 1e-3,
+                            kCalibrated)
+        .named;
+  };
+  EXPECT_THAT(named(0.009), ElementsAre(1, 0));
+  EXPECT_THAT(named(0.011), ElementsAre(1));
+}
+
 // One that nobody asked for, in a list of others.
 LikelihoodRecord Unlisted(double likelihood, std::vector<std::size_t> contains = {}) {
   return {"unlisted", 1, likelihood, std::move(contains), 0, false};
