@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "error.h"
 #include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/cross_validation.h"
@@ -85,12 +86,16 @@ Fitted CandidateFitter::FitNull(const Problem& problem) const {
   return Fit(problem, {best.x}, std::numeric_limits<double>::infinity(), false);
 }
 
-std::optional<Vector> CandidateFitter::OverShortHorizons(const Problem& problem,
-                                                         const Vector& x) const {
+std::vector<Vector> CandidateFitter::OverShortHorizons(const Problem& problem,
+                                                       const Vector& x) const {
   const auto logs = LogsForALook(*experiment);
   const auto pieces = OnShortHorizons(problem, logs);
   if (!pieces) return {};
-  return FitParameters(*pieces, x, logs, Options()).x;
+  try {
+    return {FitParameters(*pieces, x, logs, Options()).x};
+  } catch (const Error&) {
+    return {};  // it diverges there
+  }
 }
 
 void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {

@@ -42,8 +42,8 @@ struct CandidateFitter {
   /// by the equations of motion: its error would be blamed on effects.
   Fitted FitNull(const Problem& problem) const;
   /// Where a fit over short horizons from x ends (OnShortHorizons); nothing where there are none.
-  std::optional<Problem::Vector> OverShortHorizons(const Problem& problem,
-                                                   const Problem::Vector& x) const;
+  std::vector<Problem::Vector> OverShortHorizons(const Problem& problem,
+                                                 const Problem::Vector& x) const;
   /// Adds sensitivities and intervals, what the time step leaves open, and with these the cost to
   /// first order.
   void Complete(const Problem& problem, Fitted& fitted) const;

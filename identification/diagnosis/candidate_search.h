@@ -109,6 +109,8 @@ class CandidateSearch {
   static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,
                                                        const CandidateResult& c);
   bool RefitFromStart(CandidateResult& c) const;
+  bool RefitFrom(const Problem& problem, CandidateResult& c,
+                 const std::vector<Problem::Vector>& starts) const;
   /// Whether they do, by the directions that both fits know.
   bool FallsTo(const CandidateResult& c, const Fitted& finer) const;
   void Continue(const Problem& problem, CandidateResult& c, double rival) const;

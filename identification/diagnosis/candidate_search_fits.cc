@@ -234,13 +234,19 @@ std::vector<Problem::Vector> CandidateSearch::ExperimentStarts(const Problem& pr
   return starts;
 }
 
+// From what the experiment begins with, then from where short horizons lead: what is nearest at
+// first may end farther off.
 bool CandidateSearch::RefitFromStart(CandidateResult& c) const {
   const Problem problem = ProblemOf(c, *fitter_.experiment);
+  const bool better = RefitFrom(problem, c, ExperimentStarts(problem, c));
+  return RefitFrom(problem, c, fitter_.OverShortHorizons(problem, c.fitted.fit.x)) || better;
+}
+
+bool CandidateSearch::RefitFrom(const Problem& problem, CandidateResult& c,
+                                const std::vector<Problem::Vector>& starts) const {
+  if (starts.empty()) return false;
   try {
-    std::vector<Problem::Vector> starts = ExperimentStarts(problem, c);
-    if (const auto x = fitter_.OverShortHorizons(problem, c.fitted.fit.x)) starts.push_back(*x);
-    FitStart start = BestOf(problem, starts);
-    Fitted fitted = fitter_.Fit(problem, std::move(start), c.fitted.fit.cost);
+    Fitted fitted = fitter_.Fit(problem, BestOf(problem, starts), c.fitted.fit.cost);
     if (!(fitted.fit.cost < c.fitted.fit.cost - criteria_.still_gains)) return false;
     c.fitted = std::move(fitted);
     c.at_quarter_step.reset(), c.at_quarter_x.reset();
