@@ -8,6 +8,7 @@
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/fit/intervals.h"
+#include "identification/fit/wide_slope_fit.h"
 #include "identification/inverse_dynamics/search_fit.h"
 #include "identification/inverse_dynamics/short_horizon.h"
 #include "identification/statistics/uncertainty.h"
@@ -67,11 +68,11 @@ Fitted CandidateFitter::Fit(const Problem& problem, FitStart start, double rival
 }
 
 // As `identify` does, of many logs with those for a look, then with all and in units of the noise.
-// By secants first; where these leave much, along slopes as well, in a few times their time.
+// By secants first; where these leave much, on along slopes, in twice their time.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr int kIterations = 100;
   constexpr double kNear = 1e-3;  // of the cost that a step gains: what follows goes on from there
-  constexpr double kTimes = 3;
+  constexpr double kTimes = 2;
   const double begin = ProcessorSeconds();
   const auto logs = LogsForALook(*experiment);
   FitOptions options{.iterations = kIterations, .tolerance = kNear, .rough = true, .until = until};
@@ -80,7 +81,7 @@ Fitted CandidateFitter::FitNull(const Problem& problem) const {
   if (std::isfinite(until)) options.until = std::min(until, now + kTimes * (now - begin));
   options.rough = false;
   if (IsFarOverNoise(problem, best.x, logs) && !TimeIsOver()) {
-    continuum::Fit other = FitBySearch(problem, problem.Start(), logs, {}, options).fit;
+    continuum::Fit other = FitWithWideSlopes(problem, best.x, logs, options);
     if (other.cost < best.cost) best = std::move(other);
   }
   return Fit(problem, {best.x}, std::numeric_limits<double>::infinity(), false);
@@ -154,9 +155,14 @@ void CandidateFitter::AddFolds(const Problem& problem, const std::vector<Fold>& 
 }
 
 ProjectedResidual CandidateFitter::ProjectedResidualOf(const Fitted& fitted) const {
+  return ProjectedResidualOf(fitted, TrainLogs(*experiment));
+}
+
+ProjectedResidual CandidateFitter::ProjectedResidualOf(const Fitted& fitted,
+                                                       const std::vector<bool>& use) const {
   const Sensitivities& s = fitted.sensitivities.value();
-  return ProjectedResidual(whitening, TrainLogs(*experiment), fitted.residuals, s.jacobian,
-                           s.uncertainty.at_bound, s.step, criteria);
+  return ProjectedResidual(whitening, use, fitted.residuals, s.jacobian, s.uncertainty.at_bound,
+                           s.step, criteria);
 }
 
 std::vector<Vector> CandidateFitter::StepColumn(const Fitted& fitted) const {

@@ -59,6 +59,8 @@ struct CandidateFitter {
   void AddFolds(const Problem& problem, const std::vector<Fold>& folds, Fitted& fitted) const;
   /// The residual of a complete fit to first order.
   ProjectedResidual ProjectedResidualOf(const Fitted& fitted) const;
+  /// The same of some logs alone.
+  ProjectedResidual ProjectedResidualOf(const Fitted& fitted, const std::vector<bool>& use) const;
   /// How far the trajectories of a complete fit at the time step h and at h/4 are apart [pooled
   /// unit].
   double StepError(const Problem& problem, const Fitted& fitted) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -22,6 +23,21 @@
 namespace continuum {
 namespace {
 constexpr int kDraws = 399;  // of rounding errors
+
+std::vector<bool> LogWithMost(const Whitening& whitening,
+                              const std::vector<Problem::Vector>& residuals,
+                              const std::vector<bool>& use) {
+  std::vector<bool> found;
+  double most = -1;
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) continue;
+    std::vector<bool> one(use.size(), false);
+    one[l] = true;
+    const double squares = whitening.Stack(residuals, one).squaredNorm();
+    if (squares > most) most = squares, found = std::move(one);
+  }
+  return found;
+}
 
 bool FollowsTheSameMotion(const CandidateFitter& fitter, const CandidateResult& b,
                           const CandidateResult& a) {
@@ -106,6 +122,41 @@ std::vector<CandidateResult*> CandidateSearch::InOrderOfForce() {
   return order;
 }
 
+// What a candidate in its first shape explains of a residual; infinite where that cannot be said.
+double CandidateSearch::LookAt(const CandidateResult& c, const ProjectedResidual& residual) const {
+  if (fitter_.TimeIsOver() || StopRequested()) return kInfinity;
+  try {
+    const Problem problem = ProblemOf(c, *fitter_.experiment);
+    double most = 0;
+    for (const Probe& probe :
+         ProbesOf(c.hypothesis, problem, *base_.fitted, residual, fitter_.whitening.active(),
+                  c.hypothesis.StartsOfShape(true), criteria_))
+      most = std::max(most, ExplainedBy(probe, residual.vector()).amount);
+    return most;
+  } catch (const Error&) {
+    return kInfinity;
+  }
+}
+
+// Those that nobody asked for and that explain little of the log where most is left do not outdo
+// what was asked for, unless the missing force promises it.
+void CandidateSearch::KeepThoseThatMayOutdo(const CandidateResult& best) {
+  const std::vector<bool> train = TrainLogs(*fitter_.experiment);
+  if (std::count(train.begin(), train.end(), true) < 2) return;
+  const ProjectedResidual residual = fitter_.ProjectedResidualOf(
+      *base_.fitted, LogWithMost(fitter_.whitening, base_.fitted->residuals, train));
+  const double needed = FitThresholdAtNoise(LookAt(best, residual), criteria_);
+  std::vector<std::uint8_t> hopeless(candidates.size(), 0);
+  ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
+    const CandidateResult& c = candidates[i];
+    options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name());
+    if (!c.hypothesis.OnlyMeasured() && !(c.force_promise > 0))
+      hopeless[i] = LookAt(c, residual) < needed;
+  });
+  std::size_t i = 0;
+  std::erase_if(candidates, [&](const CandidateResult&) { return hopeless[i++] != 0; });
+}
+
 // Every candidate in its first shape and in that which the missing force wants; in all its shapes
 // where it is not hopeless in those, or where there is no missing force to see.
 void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forces) {
@@ -135,11 +186,13 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
   });
 }
 
-void CandidateSearch::Screen(const std::vector<EquationErrors>& views) {
+void CandidateSearch::Screen(const std::vector<EquationErrors>& views,
+                             const CandidateResult* rival) {
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
   base_squares_ = residual.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
   for (const EquationErrors& view : views) LookAtForces(view);
+  if (rival) KeepThoseThatMayOutdo(*rival);
   ProbeAll(residual, !views.empty() && views.front().any());
   std::vector<std::vector<Probe>> probes;
   for (CandidateResult& c : candidates) probes.push_back(std::move(c.probes));

@@ -38,8 +38,10 @@ class CandidateSearch {
 
   /// What every candidate could explain of the base's residual, to first order and of the missing
   /// force at the measured states, and how often noise alone would let the best of so many do as
-  /// well. forces: that are missing at the base.
-  void Screen(const std::vector<EquationErrors>& views);
+  /// well. views: of the forces that are missing at the base; rival: of candidates that nobody
+  /// asked for, what they have to outdo: those that plainly do not are dropped after a look at one
+  /// log.
+  void Screen(const std::vector<EquationErrors>& views, const CandidateResult* rival = nullptr);
   /// Fits those that come near the best to first order, if a candidate is significant or the
   /// residual is plainly not noise; then best first, the others dismissed. beside: a search from
   /// the same base that has been fitted, whose best they have to come near; limit: of fits.
@@ -48,6 +50,9 @@ class CandidateSearch {
   /// Fits the best candidates once more, from where the experiment begins instead of where the base
   /// ended; whether any of them is better there.
   bool RefitFromExperimentStart();
+  /// Whether the fit of a candidate ended out of step: worse than without it, or than the leading
+  /// one's though it explains more of the missing force.
+  bool HasLostFits() const;
   /// Takes the candidates of a search from the same base as well.
   void Join(CandidateSearch other);
   /// Takes those of them that were fitted, behind its own, as not listed.
@@ -91,6 +96,8 @@ class CandidateSearch {
   void ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
                 const std::vector<std::size_t>& starts);
   std::vector<CandidateResult*> InOrderOfForce();
+  double LookAt(const CandidateResult& c, const ProjectedResidual& residual) const;
+  void KeepThoseThatMayOutdo(const CandidateResult& best);
   void ProbeAll(const ProjectedResidual& residual, bool sees_forces);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);

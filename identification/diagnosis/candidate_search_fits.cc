@@ -201,6 +201,17 @@ std::vector<CandidateResult*> CandidateSearch::MostPromising() {
   return best;
 }
 
+bool CandidateSearch::HasLostFits() const {
+  const CandidateResult* const best = leading();
+  return best && std::any_of(candidates.begin(), candidates.end(), [&](const CandidateResult& c) {
+           if (!c.was_fitted || !c.listed || !(c.force_promise > 0)) return false;
+           const double cost = c.fitted.fit.cost;
+           return cost > base_.fitted->fit.cost ||
+                  (c.force_promise > best->force_promise &&
+                   cost > HopelessCost(best->fitted.fit.cost, criteria_));
+         });
+}
+
 // Where joints stick and slip a fit from what the base has become ends in a neighbouring local
 // minimum.
 bool CandidateSearch::RefitFromExperimentStart() {

@@ -184,7 +184,8 @@ class Session {
     Judge(search);
     Begin(DiagnosisStage::kOtherCandidates);
     TryOtherPlaces(search);
-    if (SomethingIsLeft(search) && search.RefitFromExperimentStart()) Judge(search);
+    const bool again = SomethingIsLeft(search) || search.HasLostFits();
+    if (again && search.RefitFromExperimentStart()) Judge(search);
     CompareUnlisted(search);
     Begin(DiagnosisStage::kSecondCause);
     const bool two = search.leading() && MayBeTwo(d_.verdict, d_.lack_of_fit, search.smallest_p(),
@@ -302,7 +303,7 @@ class Session {
     if (options.candidates.empty() || d_.Is(Verdict::Kind::kAdequate)) return;
     if (!HasTimeFor("effects that are not listed")) return;
     CandidateSearch unlisted(Context(options), Base());
-    unlisted.Screen(views_);
+    unlisted.Screen(views_, search.leading());
     unlisted.Fit(&search);
     const CandidateResult* const best = unlisted.leading();
     const bool judged = best && best->fitted.complete();  // else plainly behind

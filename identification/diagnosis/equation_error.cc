@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "binding/effect_catalog.h"
 #include "identification/diagnosis/candidate_fitter.h"
@@ -41,20 +42,41 @@ EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector
     const Vector column = (Stacked(base, moved, thread) - missing_) / step;
     if (column.allFinite() && column.norm() * std::abs(step) > 1e-12) columns_.col(k) = column;
   });
-  StayWithinBounds(base);
-  basis_ = Basis(columns_);
-  force_ -= basis_ * (basis_.transpose() * force_);
+  bounds_ = BoundsOf(base);
+  force_ = Beside(Matrix(missing_.size(), 0), {}).left;
 }
 
-// Parameters that the missing force draws to a bound stay there: the candidate has to explain what
-// they would beyond it.
-void EquationErrors::StayWithinBounds(const Problem& base) {
-  const Box box = BoundsOf(base);
-  held_ = SolveWithinBox(box, x_, columns_, missing_);
-  force_ = missing_ + columns_ * (held_ - x_);
-  for (Eigen::Index k = 0; k < x_.size(); ++k) {
-    if (held_[k] <= box.lower[k] || held_[k] >= box.upper[k]) columns_.col(k).setZero();
+// Least squares within the bounds of the parameters, which may leave them beside a candidate, and
+// with sizes of allowed signs.
+EquationErrors::Solved EquationErrors::Beside(const Matrix& D, const std::vector<int>& sign) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Matrix J(missing_.size(), x_.size() + D.cols());
+  J.leftCols(x_.size()) = columns_, J.rightCols(D.cols()) = D;
+  Box box{Append(bounds_.lower, std::vector<double>(sign.size(), -kInfinity)),
+          Append(bounds_.upper, std::vector<double>(sign.size(), kInfinity))};
+  for (std::size_t i = 0; i < sign.size(); ++i) {
+    if (sign[i] > 0) box.lower[x_.size() + static_cast<Eigen::Index>(i)] = 0;
   }
+  const Vector begin = Append(x_, std::vector<double>(sign.size(), 0));
+  const Vector y = SolveWithinBox(box, begin, J, missing_);
+  return {y.head(x_.size()), y.tail(D.cols()), missing_ + J * (y - begin)};
+}
+
+// One amplitude alone where it explains nearly as much as all of them.
+EquationErrors::Solved EquationErrors::PlainlyBeside(const Matrix& D,
+                                                     const std::vector<int>& sign) const {
+  constexpr double kNearly = 0.9;
+  Solved best = Beside(D, sign);
+  double most = kNearly * Amount(best);
+  for (Eigen::Index i = 0; i < D.cols() && D.cols() > 1; ++i) {
+    if (!(D.col(i).squaredNorm() > 0)) continue;
+    Matrix one = Matrix::Zero(D.rows(), D.cols());
+    one.col(i) = D.col(i);
+    Solved alone = Beside(one, sign);
+    if (Amount(alone) < most) continue;
+    most = Amount(alone), best = std::move(alone);
+  }
+  return best;
 }
 
 Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::size_t thread) const {
@@ -92,43 +114,37 @@ std::optional<EquationStart> EquationErrors::AtShare(const Hypothesis& h, const 
   const auto amplitudes = h.Amplitudes();
   const auto count = static_cast<Eigen::Index>(amplitudes.size());
   Matrix D = Matrix::Zero(missing_.size(), count);
-  Probe probe;
+  std::vector<int> sign;
   for (Eigen::Index a = 0; a < count; ++a) {
     const std::size_t only = amplitudes[static_cast<std::size_t>(a)];
     std::vector<double> own = start;
     for (const std::size_t i : amplitudes) own[i] = h.AtShare(i, start[i], i == only ? share : 0);
     const Vector d = (Stacked(problem, Append(x_, own)) - missing_) / share;
     if (d.allFinite() && d.norm() > kNothing * missing_.norm()) D.col(a) = d;
-    probe.sign.push_back(h.OneSign(only) ? 1 : 0);
+    sign.push_back(h.OneSign(only) ? 1 : 0);
   }
   if (!(D.norm() > 0)) return {};
-  probe.columns = D - basis_ * (basis_.transpose() * D);
-  const Explained e = PlainlyExplainedBy(probe, force_);
+  const Solved solved = PlainlyBeside(D, sign);
   std::vector<double> own = start;
   for (Eigen::Index a = 0; a < count; ++a) {
     const std::size_t i = amplitudes[static_cast<std::size_t>(a)];
-    own[i] = h.AtShare(i, start[i], StartShare(e.coefficients[a], share));
+    own[i] = h.AtShare(i, start[i], StartShare(solved.sizes[a], share));
     own[i] = std::clamp(own[i], h.extra[i].lower, h.extra[i].upper);
   }
-  Vector beside = held_;
-  if (x_.size() > 0)
-    beside -= columns_.completeOrthogonalDecomposition().solve(force_ + D * e.coefficients);
-  return EquationStart{which, e.amount / force_.squaredNorm(), problem.Clamp(Append(x_, own)),
-                       problem.Clamp(Append(beside, own))};
+  return EquationStart{which, Amount(solved) / force_.squaredNorm(), problem.Clamp(Append(x_, own)),
+                       problem.Clamp(Append(solved.x, own))};
 }
 
 std::optional<ByEquation> EquationErrors::Of(const CandidateResult& c) const {
   if (!any() || !c.was_fitted || !c.hypothesis.given.empty()) return {};
   Vector x = c.fitted.fit.x;
   x.head(x_.size()) = x_;
-  Vector d = missing_ - Stacked(ProblemOf(c, experiment_), x);
+  const Vector d = Stacked(ProblemOf(c, experiment_), x) - missing_;
   if (!d.allFinite() || d.norm() < kNothing * missing_.norm()) return {};
-  d -= basis_ * (basis_.transpose() * d);
-  const double amplitude = std::max(0.0, d.dot(force_) / std::max(d.squaredNorm(), 1e-300));
-  const Vector residual = force_ - amplitude * d;
+  const Solved solved = Beside(d, {1});
   ByEquation result;
-  result.share = 1 - residual.squaredNorm() / force_.squaredNorm();
-  result.before = PerLog(force_), result.after = PerLog(residual);
+  result.share = Amount(solved) / force_.squaredNorm();
+  result.before = PerLog(force_), result.after = PerLog(solved.left);
   return result;
 }
 

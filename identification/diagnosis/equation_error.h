@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
 #include "identification/diagnosis/result.h"
+#include "identification/fit/bounded_least_squares.h"
 #include "identification/inverse_dynamics/missing_force.h"
 
 namespace continuum {
@@ -24,9 +26,8 @@ struct EquationStart {
 ///   f ≈ Σ a_i ∂f/∂p_i + b (f(p) − f(p, candidate)),   b ≥ 0,
 ///
 /// by least squares over train logs, p within their bounds, every joint in units of its own missing
-/// force. What
-/// drifts, swings out of phase or hides behind the time step in free simulation does not here;
-/// noise of the accelerations does.
+/// force. What drifts, swings out of phase or hides behind the time step in free simulation does
+/// not here; noise of the accelerations does.
 class EquationErrors {
  public:
   /// base: the problem without a candidate, fitted at x; use: logs.
@@ -46,7 +47,16 @@ class EquationErrors {
   std::optional<ByEquation> Of(const CandidateResult& candidate) const;
 
  private:
-  void StayWithinBounds(const Problem& base);
+  struct Solved {
+    Problem::Vector x, sizes;  // p, and b of each column of a candidate
+    Problem::Vector left;      // of the missing force
+  };
+  Solved Beside(const Problem::Matrix& D, const std::vector<int>& sign) const;
+  Solved PlainlyBeside(const Problem::Matrix& D, const std::vector<int>& sign) const;
+  /// Squares that the columns explain.
+  double Amount(const Solved& s) const {
+    return std::max(0.0, force_.squaredNorm() - s.left.squaredNorm());
+  }
   std::vector<double> PerLog(const Problem::Vector& r) const;
   Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x,
                           std::size_t thread = 0) const;
@@ -59,10 +69,9 @@ class EquationErrors {
   StackedForces units_;
   std::vector<std::size_t> log_;  // of every number
   Problem::Vector missing_;       // f
-  Problem::Vector held_;          // parameters as f wants them, within their bounds
   Problem::Vector force_;         // f, less what the parameters explain of it
-  Problem::Matrix columns_;       // [parameter] ∂f/∂p; zero where a bound holds it
-  Problem::Matrix basis_;         // orthonormal, of what the parameters do
+  Problem::Matrix columns_;       // [parameter] ∂f/∂p
+  Box bounds_;                    // of the parameters
 };
 
 /// Whether the missing force speaks for another candidate than b: a explains it clearly better.

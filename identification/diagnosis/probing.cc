@@ -117,19 +117,19 @@ class Prober {
     return known != simulated_.end() ? known->second : simulated_[own] = Simulate(own);
   }
   std::vector<Vector> Simulate(const std::vector<double>& own) const {
-    const auto train = problem_.TrainLogs();
-    auto r = problem_.Residuals(Append(null_.fit.x, own), train);
-    for (std::size_t l = 0; l < train.size(); ++l) {
-      if (train[l] && !r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
+    const auto& use = residual_.use();
+    auto r = problem_.Residuals(Append(null_.fit.x, own), use);
+    for (std::size_t l = 0; l < use.size(); ++l) {
+      if (use[l] && !r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
     }
     return r;
   }
   Vector Difference(const std::vector<Vector>& from, const std::vector<Vector>& to,
                     double share) const {
-    const auto train = problem_.TrainLogs();
-    std::vector<Matrix> column(train.size());
-    for (std::size_t l = 0; l < train.size(); ++l) {
-      if (train[l]) column[l] = (to[l] - from[l]) / share;
+    const auto& use = residual_.use();
+    std::vector<Matrix> column(use.size());
+    for (std::size_t l = 0; l < use.size(); ++l) {
+      if (use[l]) column[l] = (to[l] - from[l]) / share;
     }
     return residual_.Project(column);
   }

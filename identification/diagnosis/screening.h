@@ -34,6 +34,8 @@ class ProjectedResidual {
   const Vector& vector() const { return residual_; }
   /// |z|², the whitened sum of squares at the optimum to first order.
   double cost() const { return residual_.squaredNorm(); }
+  /// The logs that it is made of.
+  const std::vector<bool>& use() const { return use_; }
   /// M applied to columns given per log.
   Matrix Project(const std::vector<Matrix>& columns) const;
   /// How much of |z|² may be expected from noise of size 1: measured numbers less free parameters.
