@@ -133,6 +133,28 @@ TEST_F(ByEquationTest, OfSeveralShapesItFindsTheBest) {
   EXPECT_EQ(View(e, system).StartOf(only, problem)->share, best->share);
 }
 
+// Without the payload the missing force wants more inertia than is allowed.
+TEST_F(ByEquationTest, AParameterLeavesTheBoundThatHoldsItWithoutTheTruth) {
+  Pendulum truth;
+  truth.payload = 0.05;
+  Logs(truth, "payload");
+  const Experiment e = ReadExperiment(
+      "candidates: [payload]\nparameters:\n"
+      "  - {name: a, target: 'joint:hinge', attribute: armature, initial: 1e-4, lower: 0, "
+      "upper: 5e-4}\n");
+  const ModelSpec system = Model();
+  const Problem null(e, system);
+  std::vector<std::string> skipped;
+  const auto all = MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped);
+  ASSERT_EQ(all.size(), 1u);
+  const Problem problem(e, all[0].system, all[0].Free());
+  const auto start = View(e, system).From(all[0], problem, 0);
+  ASSERT_TRUE(start.has_value());
+  EXPECT_GT(start->share, 0.95);
+  EXPECT_LT(start->together[0], 1e-4);
+  EXPECT_NEAR(start->together[1], truth.payload, 0.1 * truth.payload);
+}
+
 TEST_F(ByEquationTest, AnEffectOnTheSensorsAloneIsNotSeen) {
   const Experiment e = Logs({}, "sensor_delay, payload");
   const ModelSpec system = Model();
