@@ -146,10 +146,11 @@ void CandidateSearch::KeepThoseThatMayOutdo(const CandidateResult& best) {
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(
       *base_.fitted, LogWithMost(fitter_.whitening, base_.fitted->residuals, train));
   const double needed = FitThresholdAtNoise(LookAt(best, residual), criteria_);
+  if (!std::isfinite(needed)) return;
+  options_.Say(DiagnosisStage::kScreen, "one log");
   std::vector<std::uint8_t> hopeless(candidates.size(), 0);
   ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
     const CandidateResult& c = candidates[i];
-    options_.Say(DiagnosisStage::kScreen, c.hypothesis.Name());
     if (!c.hypothesis.OnlyMeasured() && !(c.force_promise > 0))
       hopeless[i] = LookAt(c, residual) < needed;
   });
