@@ -115,7 +115,11 @@ void AddForArm(std::vector<Gate>& gates) {
   // Much is a little wrong, and one thing more so. Of eighteen effects the large run says how many.
   gates.push_back(
       {"OneCauseStandsOutOfMuchThatIsWrong", true, {Background({"armature"}, 6001)}, All<IsFound>});
-  gates.push_back({"MuchThatIsWrongIsNoCause", false, {Background({}, 6002)}, All<HasNoName>});
+  gates.push_back({"MuchThatIsWrongIsNoCause",
+                   false,
+                   {Background({}, 6002)},
+                   All<HasNoName>,
+                   Runs::kInLongRuns});
 }
 
 void AddForOthers(std::vector<Gate>& gates) {
