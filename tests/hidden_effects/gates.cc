@@ -105,8 +105,7 @@ void AddForArm(std::vector<Gate>& gates) {
   gates.push_back({"ALargeOneStaysAlone",
                    true,
                    {{{"sensor_delay"}, 4, NoiseKind::kWhite, 146}},
-                   All<IsNamedWithItsSize>,
-                   Runs::kAlways});
+                   All<IsNamedWithItsSize>});
   // Next to the fit of another law (Bouc-Wen) the simulation diverges. A case of the large suite.
   gates.push_back({"ALawThatDivergesIsNoRival",
                    true,
