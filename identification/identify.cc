@@ -196,8 +196,7 @@ class Statement {
   void AddNoise() {
     const Noise noise = NoiseOf(problem_.experiment());
     const double error = TypicalRms(problem_, residuals_, problem_.TrainLogs());
-    if (noise.rms > 0 && error > kFarOverNoise * noise.rms)
-      all_.over_noise = OverNoise{error / noise.rms, noise.source};
+    if (IsFarOver(noise, error)) all_.over_noise = OverNoise{error / noise.rms, noise.source};
   }
 
   void AddDivergence() {

@@ -24,6 +24,14 @@ namespace continuum {
 namespace {
 constexpr int kDraws = 399;  // of rounding errors
 
+// What the best of a candidate's probes explains.
+double MostOf(const std::vector<Probe>& probes, const ProjectedResidual& residual) {
+  double most = 0;
+  for (const Probe& probe : probes)
+    most = std::max(most, ExplainedBy(probe, residual.vector()).amount);
+  return most;
+}
+
 std::vector<bool> LogWithMost(const Whitening& whitening,
                               const std::vector<Problem::Vector>& residuals,
                               const std::vector<bool>& use) {
@@ -94,16 +102,21 @@ CandidateSearch::CandidateSearch(const SearchContext& context, const BaseFit& ba
   }
 }
 
+std::vector<Probe> CandidateSearch::Probes(const CandidateResult& c,
+                                           const ProjectedResidual& residual,
+                                           const std::vector<std::size_t>& starts) const {
+  Problem problem = ProblemOf(c, *fitter_.experiment);
+  if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
+  return ProbesOf(c.hypothesis, problem, *base_.fitted, residual, fitter_.whitening.active(),
+                  starts, criteria_);
+}
+
 void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
                                const std::vector<std::size_t>& starts) {
   try {
-    Problem problem = ProblemOf(c, *fitter_.experiment);
-    if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
-    const auto more = ProbesOf(c.hypothesis, problem, *base_.fitted, residual,
-                               fitter_.whitening.active(), starts, criteria_);
+    const auto more = Probes(c, residual, starts);
     c.probes.insert(c.probes.end(), more.begin(), more.end());
-    for (const Probe& probe : more)
-      c.explained = std::max(c.explained, ExplainedBy(probe, residual.vector()).amount);
+    c.explained = std::max(c.explained, MostOf(more, residual));
   } catch (const Error& error) {
     if (c.probes.empty()) c.error = error.what();
   }
@@ -126,13 +139,7 @@ std::vector<CandidateResult*> CandidateSearch::InOrderOfForce() {
 double CandidateSearch::LookAt(const CandidateResult& c, const ProjectedResidual& residual) const {
   if (fitter_.TimeIsOver() || StopRequested()) return kInfinity;
   try {
-    const Problem problem = ProblemOf(c, *fitter_.experiment);
-    double most = 0;
-    for (const Probe& probe :
-         ProbesOf(c.hypothesis, problem, *base_.fitted, residual, fitter_.whitening.active(),
-                  c.hypothesis.StartsOfShape(true), criteria_))
-      most = std::max(most, ExplainedBy(probe, residual.vector()).amount);
-    return most;
+    return MostOf(Probes(c, residual, c.hypothesis.StartsOfShape(true)), residual);
   } catch (const Error&) {
     return kInfinity;
   }

@@ -93,6 +93,8 @@ class CandidateSearch {
   std::vector<std::string> left_out;  ///< for lack of time
 
  private:
+  std::vector<Probe> Probes(const CandidateResult& c, const ProjectedResidual& residual,
+                            const std::vector<std::size_t>& starts) const;
   void ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
                 const std::vector<std::size_t>& starts);
   std::vector<CandidateResult*> InOrderOfForce();

@@ -9,6 +9,7 @@
 
 #include "binding/effect_catalog.h"
 #include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/plainest.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/bounded_least_squares.h"
@@ -62,23 +63,6 @@ EquationErrors::Solved EquationErrors::Beside(const Matrix& D, const std::vector
   return {y.head(x_.size()), y.tail(D.cols()), missing_ + J * (y - begin)};
 }
 
-// One amplitude alone where it explains nearly as much as all of them.
-EquationErrors::Solved EquationErrors::PlainlyBeside(const Matrix& D,
-                                                     const std::vector<int>& sign) const {
-  constexpr double kNearly = 0.9;
-  Solved best = Beside(D, sign);
-  double most = kNearly * Amount(best);
-  for (Eigen::Index i = 0; i < D.cols() && D.cols() > 1; ++i) {
-    if (!(D.col(i).squaredNorm() > 0)) continue;
-    Matrix one = Matrix::Zero(D.rows(), D.cols());
-    one.col(i) = D.col(i);
-    Solved alone = Beside(one, sign);
-    if (Amount(alone) < most) continue;
-    most = Amount(alone), best = std::move(alone);
-  }
-  return best;
-}
-
 Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::size_t thread) const {
   return units_.Of(MissingForces(problem, x, use_, thread));
 }
@@ -124,7 +108,9 @@ std::optional<EquationStart> EquationErrors::AtShare(const Hypothesis& h, const 
     sign.push_back(h.OneSign(only) ? 1 : 0);
   }
   if (!(D.norm() > 0)) return {};
-  const Solved solved = PlainlyBeside(D, sign);
+  const Solved solved = PlainestOf(
+      D, [&](const Matrix& some) { return Beside(some, sign); },
+      [&](const Solved& some) { return Amount(some); });
   std::vector<double> own = start;
   for (Eigen::Index a = 0; a < count; ++a) {
     const std::size_t i = amplitudes[static_cast<std::size_t>(a)];

@@ -52,7 +52,6 @@ class EquationErrors {
     Problem::Vector left;      // of the missing force
   };
   Solved Beside(const Problem::Matrix& D, const std::vector<int>& sign) const;
-  Solved PlainlyBeside(const Problem::Matrix& D, const std::vector<int>& sign) const;
   /// Squares that the columns explain.
   double Amount(const Solved& s) const {
     return std::max(0.0, force_.squaredNorm() - s.left.squaredNorm());

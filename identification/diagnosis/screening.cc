@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "identification/diagnosis/plainest.h"
 #include "identification/statistics/uncertainty.h"
 #include "sim/numerics/parallel.h"
 #include "sim/numerics/portable_random.h"
@@ -291,20 +292,12 @@ ProjectedResidual::Matrix ProjectedResidual::Project(const std::vector<Matrix>& 
 Explained ExplainedBy(const Probe& probe, const Vector& z) { return Explainer(probe)(z); }
 
 Explained PlainlyExplainedBy(const Probe& probe, const Vector& z) {
-  constexpr double kNearly = 0.9;
-  const Explained all = ExplainedBy(probe, z);
-  Explained best = all;
-  double most = kNearly * all.amount;
-  for (Eigen::Index i = 0; i < probe.columns.cols() && probe.columns.cols() > 1; ++i) {
-    if (!(probe.columns.col(i).squaredNorm() > 0)) continue;
-    const Probe one{probe.columns.col(i), {probe.sign[static_cast<std::size_t>(i)]}};
-    const Explained alone = ExplainedBy(one, z);
-    if (alone.amount < most) continue;
-    most = best.amount = alone.amount;
-    best.coefficients = Vector::Zero(probe.columns.cols());
-    best.coefficients[i] = alone.coefficients[0];
-  }
-  return best;
+  return PlainestOf(
+      probe.columns,
+      [&](const Matrix& some) {
+        return ExplainedBy({some, probe.sign}, z);
+      },
+      [](const Explained& e) { return e.amount; });
 }
 
 Significance BestOfProbes(const std::vector<std::vector<Probe>>& candidates, const Vector& z) {

@@ -76,8 +76,7 @@ struct Explained {
   Eigen::VectorXd coefficients;
 };
 Explained ExplainedBy(const Probe& probe, const Eigen::VectorXd& z);
-/// The same with only one coefficient, where that explains nearly as much; else with all. Laws of
-/// several amplitudes that do nearly the same would begin with large ones that cancel.
+/// The same with only one coefficient, where that explains nearly as much (PlainestOf).
 Explained PlainlyExplainedBy(const Probe& probe, const Eigen::VectorXd& z);
 
 /// What several candidates explain, each with one or more probes (the best counts), and their

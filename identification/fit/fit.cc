@@ -219,9 +219,8 @@ double TypicalRms(const Problem& problem, std::vector<Vector> r, const std::vect
 }
 
 bool IsFarOverNoise(const Problem& problem, const Vector& x, const std::vector<bool>& use) {
-  const Noise noise = NoiseOf(problem.experiment());
-  return noise.rms > 0 &&
-         TypicalRms(problem, problem.Residuals(x, use), use) > kFarOverNoise * noise.rms;
+  return IsFarOver(NoiseOf(problem.experiment()),
+                   TypicalRms(problem, problem.Residuals(x, use), use));
 }
 
 double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& use,

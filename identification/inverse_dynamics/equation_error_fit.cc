@@ -121,12 +121,11 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   const Progress stage{"fit from the equations of motion"};
-  const Noise noise = NoiseOf(problem.experiment());
   const double left = TypicalRms(problem, problem.Residuals(best.x, use), use);
   FitOptions own = options;
   own.iterations -= best.iterations, own.idle = true,
                                      own.progress = Within(stage, options.progress);
-  const bool lost = noise.rms > 0 && left > kFarOverNoise * noise.rms &&
+  const bool lost = IsFarOver(NoiseOf(problem.experiment()), left) &&
                     left > kOutOfStep * problem.PooledRms(Deviations(problem), use);
   if (!lost || own.iterations <= 0 || StopRequested()) return best;
   if (options.progress) options.progress(stage);

@@ -9,8 +9,12 @@
 
 namespace continuum {
 
-/// A fit that leaves more than so many times the noise lacks something, or ended in a wrong place.
-inline constexpr double kFarOverNoise = 5;
+/// Whether a fit leaves so many times the noise, where that is known, that it lacks something or
+/// ended in a wrong place.
+inline bool IsFarOver(const Noise& noise, double rms) {
+  constexpr double kTimes = 5;
+  return noise.rms > 0 && rms > kTimes * noise.rms;
+}
 
 /// From replicates (logs of one trial and condition with the same inputs and rows): what each
 /// differs from their mean, in which model error cancels. Else from sigma where every output gives

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "support/long_test.h"
 #include "support/process.h"
 #include "support/scratch.h"
 
@@ -16,7 +15,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(Demo, CopiesTheExampleAndDiagnosesTheCopy) {
-  CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   const testing::Scratch files;
   // The diagnosis takes a minute, and other tests look at it: here it is asked to stop.
   const auto f = testing::RunProcess(

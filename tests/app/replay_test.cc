@@ -1,6 +1,5 @@
 // What replay writes beside its numbers, and into which folder.
 #include "bench.h"
-#include "support/long_test.h"
 
 namespace continuum {
 namespace {
@@ -48,7 +47,6 @@ TEST_F(ReplayOutputs, FilmsOneLogInTheSizeAndRateThatWereAskedFor) {
 
 // Of each command that writes simulated logs.
 TEST_F(ReplayOutputs, OfLogsThatLeftTheExperimentGo) {
-  CONTINUUM_LONG_IF_SANITIZED("films");
   files_.Write("third.csv", testing::kLog);
   Spoil("experiment.yaml", "{file: second.csv}", "{file: third.csv}, {file: second.csv}");
   Spoil("experiment.yaml", "format: 1", "format: 1\ncandidates: [coulomb]");

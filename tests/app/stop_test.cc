@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench.h"
-#include "support/long_test.h"
 
 namespace continuum {
 namespace {
@@ -83,7 +82,6 @@ TEST_F(Stop, OfAFitSaysThatIntervalsAndCorrelationsAreNotKnown) {
 
 // The second generation of 20 is not waited for, nor are intervals.
 TEST_F(Stop, OfASwarmIsHeardBetweenItsParticles) {
-  CONTINUUM_LONG_IF_SANITIZED("a swarm");
   WriteLongLog();
   Spoil("model.xml", "timestep=\"0.01\"", "timestep=\"0.002\"");
   const Finished f = Interrupt(

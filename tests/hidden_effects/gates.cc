@@ -62,10 +62,10 @@ Case Background(const std::vector<std::string>& effects, std::uint64_t seed) {
 void AddForNoise(NoiseKind noise, std::vector<Gate>& gates) {
   std::string kind(kNoiseNames[static_cast<int>(noise)]);
   std::erase_if(kind, [](unsigned char c) { return !std::isalnum(c); });
-  const Runs runs = noise == NoiseKind::kWhite ? Runs::kWithoutSanitizers : Runs::kInLongRuns;
+  const bool is_long = noise != NoiseKind::kWhite;  // one kind stands for all
   std::vector<Case> none;
   for (std::uint64_t seed = 1001; seed <= 1004; ++seed) none.push_back({{}, 1, noise, seed});
-  gates.push_back({"NothingIsNamedWhereNothingIsHidden_" + kind, false, none, IsQuiet, runs});
+  gates.push_back({"NothingIsNamedWhereNothingIsHidden_" + kind, false, none, IsQuiet, is_long});
   // These logs tell them from all others; at twice a moderate size they are well above slow noise.
   gates.push_back({"ClearOnesAreNamed_" + kind,
                    true,
@@ -73,12 +73,12 @@ void AddForNoise(NoiseKind noise, std::vector<Gate>& gates) {
                     {{"cubic_stiffness"}, 2, noise, 2002},
                     {{"sensor_scale"}, 2, noise, 2003}},
                    AreClear,
-                   runs});
+                   is_long});
   gates.push_back({"WithoutACandidateItGetsNoOtherName_" + kind,
                    true,
                    {{{"payload"}, 4, noise, 3001, false}},
                    All<HasNoOtherName>,
-                   runs});
+                   is_long});
 }
 
 void AddForArm(std::vector<Gate>& gates) {
@@ -114,11 +114,8 @@ void AddForArm(std::vector<Gate>& gates) {
   // Much is a little wrong, and one thing more so. Of eighteen effects the large run says how many.
   gates.push_back(
       {"OneCauseStandsOutOfMuchThatIsWrong", true, {Background({"armature"}, 6001)}, All<IsFound>});
-  gates.push_back({"MuchThatIsWrongIsNoCause",
-                   false,
-                   {Background({}, 6002)},
-                   All<HasNoName>,
-                   Runs::kInLongRuns});
+  gates.push_back(
+      {"MuchThatIsWrongIsNoCause", false, {Background({}, 6002)}, All<HasNoName>, true});
 }
 
 void AddForOthers(std::vector<Gate>& gates) {
@@ -140,7 +137,7 @@ void AddForOthers(std::vector<Gate>& gates) {
                    true,
                    {White("spa", "payload", 2, 4, {"payload", "armature"})},
                    All<IsNamed>,
-                   Runs::kInLongRuns});
+                   true});
   // A Stribeck excess does nothing without its Coulomb level, and its speed nothing without it:
   // from one start the fit ends far off, and a second cause is called in.
   gates.push_back(
@@ -148,8 +145,7 @@ void AddForOthers(std::vector<Gate>& gates) {
   gates.push_back({"AServoShowsItsBacklash",
                    true,
                    {White("servo", "backlash", 1, 13)},
-                   All<IsNamedWithItsSize>,
-                   Runs::kAlways});
+                   All<IsNamedWithItsSize>});
   // From rest a late input and a late sensor show the same; what tells them apart here is the time
   // step alone.
   gates.push_back(

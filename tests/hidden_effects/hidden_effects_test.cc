@@ -39,8 +39,7 @@ INSTANTIATE_TEST_SUITE_P(Small, HiddenEffects, ::testing::ValuesIn(Gates()),
 
 // One test for each gate, so that they run side by side.
 TEST_P(HiddenEffects, PassTheGate) {
-  if (GetParam().runs == Runs::kInLongRuns) CONTINUUM_LONG("several whole diagnoses");
-  if (GetParam().runs != Runs::kAlways) CONTINUUM_LONG_IF_SANITIZED("several whole diagnoses");
+  if (GetParam().is_long) CONTINUUM_LONG("several whole diagnoses");
   std::vector<Asked> asked;
   for (const Case& c : GetParam().cases) asked.push_back({c, Ask(c)});
   EXPECT_TRUE(GetParam().holds(asked)) << told_;

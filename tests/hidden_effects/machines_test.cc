@@ -4,7 +4,6 @@
 
 #include "hidden_effects/outside/cases.h"
 #include "hidden_effects/outside/native.h"
-#include "support/long_test.h"
 
 namespace continuum::hidden {
 namespace {
@@ -50,7 +49,6 @@ TEST_P(Machines, MoveAsTheirModelsDo) {
 
 // Every effect that a case of the suite hides moves its machine by more than the noise.
 TEST_P(Machines, ShowWhatIsHidden) {
-  CONTINUUM_LONG_IF_SANITIZED("whole logs of slow machines");
   const Robot& robot = RobotNamed(GetParam());
   std::mt19937_64 rng(7);
   const Columns u = robot.drive(0, rng);

@@ -40,16 +40,19 @@ class ByEquationTest : public Bench {
     return std::sqrt(sum / static_cast<double>(y.size()));
   }
 
+  static std::vector<Hypothesis> CandidatesOf(const Experiment& e, const ModelSpec& system) {
+    std::vector<std::string> skipped;
+    const Problem null(e, system);
+    return MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped);
+  }
   // A candidate, fitted by hand to a value of its only parameter.
   static CandidateResult With(const Experiment& e, const ModelSpec& system,
                               const std::string& effect, double value) {
-    std::vector<std::string> skipped;
-    const Problem null(e, system);
-    for (Hypothesis& h : MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped)) {
+    for (Hypothesis& h : CandidatesOf(e, system)) {
       if (h.effect != effect) continue;
       CandidateResult c{std::move(h)};
       c.was_fitted = true;
-      c.fitted.fit.x = Append(null.Start(), {value});
+      c.fitted.fit.x = Append(Problem(e, system).Start(), {value});
       return c;
     }
     throw std::out_of_range(effect);
@@ -116,9 +119,7 @@ TEST_F(ByEquationTest, OfSeveralShapesItFindsTheBest) {
   truth.tau_c = 0.05;
   const Experiment e = Logs(truth, "dahl");
   const ModelSpec system = Model();
-  const Problem null(e, system);
-  std::vector<std::string> skipped;
-  const auto all = MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped);
+  const auto all = CandidatesOf(e, system);
   ASSERT_EQ(all.size(), 1u);
   const Problem problem(e, all[0].system, all[0].Free());
   const auto best = View(e, system).StartOf(all[0], problem);
@@ -143,9 +144,7 @@ TEST_F(ByEquationTest, AParameterLeavesTheBoundThatHoldsItWithoutTheTruth) {
       "  - {name: a, target: 'joint:hinge', attribute: armature, initial: 1e-4, lower: 0, "
       "upper: 5e-4}\n");
   const ModelSpec system = Model();
-  const Problem null(e, system);
-  std::vector<std::string> skipped;
-  const auto all = MakeCandidates(e, {&system}, SizesOf(null, null.Start()), skipped);
+  const auto all = CandidatesOf(e, system);
   ASSERT_EQ(all.size(), 1u);
   const Problem problem(e, all[0].system, all[0].Free());
   const auto start = View(e, system).From(all[0], problem, 0);
