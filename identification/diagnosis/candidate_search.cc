@@ -11,6 +11,7 @@
 
 #include "binding/effect_catalog.h"
 #include "error.h"
+#include "identification/diagnosis/correction.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/lack_of_fit.h"
@@ -458,6 +459,8 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
                             KinOf(c.hypothesis.Card()),
                             ErrorShare(c.fitted),
                             c.fitted.error.validate};
+    record.corrects =
+        c.was_fitted && OnlyCorrects(c.hypothesis, c.fitted, c.first_extra(), sizes_, criteria_);
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(fitter_, c, candidates[a])) record.contains.push_back(a);
     }

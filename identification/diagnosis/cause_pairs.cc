@@ -1,8 +1,11 @@
 #include "identification/diagnosis/cause_pairs.h"
+#include "identification/diagnosis/correction.h"
 #include "identification/diagnosis/look_logs.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -41,12 +44,22 @@ struct Fitting {
   CandidateResult* b;
 
   double likelihood() const { return a->likelihood + b->likelihood; }
+  bool complete() const { return b->fitted.complete(); }
   bool BothAreThere() const {
-    if (!b->fitted.complete()) return true;  // plainly behind
+    if (!complete()) return true;  // plainly behind, or out of time
     const Uncertainty& u = b->fitted.sensitivities->uncertainty;
     const auto first = static_cast<Eigen::Index>(a->hypothesis.extra.size());
     return IsThere(a->hypothesis, u, b->first_extra() - first) &&
            IsThere(b->hypothesis, u, b->first_extra());
+  }
+  bool FirstCorrects(const SearchContext& context) const {
+    const auto extra = static_cast<Eigen::Index>(a->hypothesis.extra.size());
+    return OnlyCorrects(a->hypothesis, b->fitted, b->first_extra() - extra, context.sizes,
+                        context.fitter.criteria);
+  }
+  bool SecondCorrects(const SearchContext& context) const {
+    return OnlyCorrects(b->hypothesis, b->fitted, b->first_extra(), context.sizes,
+                        context.fitter.criteria);
   }
 };
 
@@ -107,8 +120,9 @@ class PairSearch {
     }
   }
 
-  void Await(const CandidateResult& c) {
-    if (known_.insert(Key(c.hypothesis)).second) waiting_.push_back(&c);
+  void Await(const CandidateResult& c, bool next = false) {
+    if (known_.insert(Key(c.hypothesis)).second)
+      waiting_.insert(next ? waiting_.begin() : waiting_.end(), &c);
   }
 
   // The best second cause beside a first; it is the next first.
@@ -124,7 +138,7 @@ class PairSearch {
     if (!search.leading()) return;
     const std::string partner = Key(search.leading()->hypothesis);
     tried_.push_back({&first, std::move(search)});
-    if (const CandidateResult* const next = Alone(partner)) Await(*next);
+    if (const CandidateResult* const next = Alone(partner)) Await(*next, true);
   }
 
   // The fit of a cause without another; null when it has none.
@@ -153,7 +167,7 @@ class PairSearch {
         if (!one.BothAreThere()) continue;
         const auto [at, fresh] =
             all.try_emplace({Key(one.a->hypothesis), Key(one.b->hypothesis)}, one);
-        if (!fresh && at->second.likelihood() < one.likelihood()) at->second = one;
+        if (!fresh && IsBetter(one, at->second)) at->second = one;
       }
     }
     std::vector<Fitting> list;
@@ -161,14 +175,35 @@ class PairSearch {
     std::stable_sort(list.begin(), list.end(), [](const Fitting& a, const Fitting& b) {
       return a.likelihood() > b.likelihood();
     });
+    const auto begin = std::find_if(list.begin(), list.end(), std::mem_fn(&Fitting::complete));
+    list.erase(list.begin(), begin);  // these were out of time
     return list;
   }
 
-  // A pair contains another when they share a cause and its other one contains the other's.
+  // Of two fits of one pair; where both say the same, the one that corrects the model first.
+  bool IsBetter(const Fitting& one, const Fitting& other) const {
+    if (one.complete() != other.complete()) return one.complete();
+    const double difference = std::abs(one.likelihood() - other.likelihood());
+    const bool same = difference < std::max<double>(criteria_.rival_margin,
+                                                    criteria_.same_share * one.likelihood());
+    if (same && one.FirstCorrects(context_) != other.FirstCorrects(context_))
+      return one.FirstCorrects(context_);
+    return one.likelihood() > other.likelihood();
+  }
+
+  // A pair contains another when they share a cause and its other one contains the other's,
+  // whichever was the first.
   bool Inside(const Fitting& outer, const Fitting& inner) const {
-    return (outer.base == inner.base && Contains(context_.fitter, *outer.b, *inner.b)) ||
-           (Key(outer.b->hypothesis) == Key(inner.b->hypothesis) &&
-            Contains(context_.fitter, *outer.a, *inner.a));
+    const std::array<const CandidateResult*, 2> of_outer{outer.a, outer.b},
+        of_inner{inner.a, inner.b};
+    for (const int i : {0, 1}) {
+      for (const int j : {0, 1}) {
+        if (Key(of_outer[i]->hypothesis) == Key(of_inner[j]->hypothesis) &&
+            Contains(context_.fitter, *of_outer[1 - i], *of_inner[1 - j]))
+          return true;
+      }
+    }
+    return false;
   }
 
   std::vector<LikelihoodRecord> RecordsOf(const std::vector<Fitting>& pairs) const {
@@ -189,22 +224,22 @@ class PairSearch {
 
   void TakeBest(const std::vector<Fitting>& pairs, PairsFound& found) {
     const auto records = RecordsOf(pairs);
-    const Verdict likeliest = JudgeLikelihoods(records, {}, 0, single_.Base(), criteria_);
-    if (likeliest.named.empty()) return;
-    const Fitting& best = pairs[likeliest.named.front()];
-    if (!best.b->fitted.complete()) return;  // those before it were no two causes
-    if (SecondShare(best) < criteria_.second_share) {
+    Verdict verdict = JudgeLikelihoods(records, {}, 0, single_.Base(), criteria_);
+    if (verdict.named.empty()) return;
+    const std::size_t likeliest = verdict.named.front();
+    LackOfFit lack = LackOf(pairs[likeliest]);
+    verdict = JudgeLikelihoods(records, lack, 0, single_.Base(), criteria_);
+    // Where more than noise is left a plainer pair may be enough.
+    const Fitting& best = pairs[verdict.named.empty() ? likeliest : verdict.named.front()];
+    if (!best.complete()) return;
+    if (&best != &pairs[likeliest]) lack = LackOf(best);
+    const bool matters = SecondShare(best) >= criteria_.second_share || TakesTheRest(best);
+    if (!matters || best.SecondCorrects(context_) || verdict.named.empty()) {
       found.would_take = InWords(best);
       return;
     }
-    const CandidateSearch& search = tried_[best.base].search;
-    const LackOfFit lack = of_step_ ? search.TestsOf(*best.b) : search.LackOf(best.b);
-    Verdict verdict = JudgeLikelihoods(records, lack, 0, single_.Base(), criteria_);
-    if (verdict.named.empty()) {
-      found.would_take = InWords(best);
-      return;
-    }
-    const auto equivalent = OthersForFirst(pairs, verdict);
+    const auto equivalent = OthersForFirst(pairs, verdict, verdict.named);
+    const auto relatives = OthersForFirst(pairs, verdict, verdict.siblings);
     for (auto* const some : {&verdict.named, &verdict.siblings}) {
       std::vector<std::size_t> seconds;
       for (const std::size_t n : *some) {
@@ -215,8 +250,14 @@ class PairSearch {
     if (verdict.named.empty()) return;
     verdict.leading = verdict.named.front();
     found.best.emplace(Pair{std::move(tried_[best.base].search), best.a->hypothesis,
-                            best.a->likelihood, equivalent, std::move(verdict), lack,
-                            best.a->likelihood >= best.b->likelihood});
+                            best.a->likelihood, equivalent, relatives, std::move(verdict), lack,
+                            best.a->likelihood >= best.b->likelihood,
+                            best.FirstCorrects(context_)});
+  }
+
+  LackOfFit LackOf(const Fitting& pair) const {
+    const CandidateSearch& search = tried_[pair.base].search;
+    return of_step_ ? search.TestsOf(*pair.b) : search.LackOf(pair.b);
   }
 
   // What the second cause takes of what can be explained at all, by the view that gives it more.
@@ -226,24 +267,39 @@ class PairSearch {
                     single_.ErrorShare(pair.b->fitted) - single_.ErrorShare(pair.a->fitted));
   }
 
-  std::string InWords(const Fitting& pair) const {
+  // What the second cause takes of the squares above the noise that the first leaves.
+  double ShareOfRest(const Fitting& pair) const {
     const BaseSquares base = single_.Base();
     const double left = base.squares - base.freedom - pair.a->likelihood;
-    return fmt::format("{} beside {} takes {:.0f} % of that", pair.b->hypothesis.NameAtPlace(),
-                       pair.a->hypothesis.NameAtPlace(),
-                       100 * std::clamp(pair.b->likelihood / std::max(left, 1e-300), 0.0, 1.0));
+    return std::clamp(pair.b->likelihood / std::max(left, 1e-300), 0.0, 1.0);
   }
 
-  // Effects of pairs in the set that are neither of the best pair's, nor stand for its second.
+  // A cause that is small beside the first; on logs that were not fitted too.
+  bool TakesTheRest(const Fitting& pair) const {
+    const TwoErrors &before = pair.a->fitted.error, &after = pair.b->fitted.error;
+    const auto falls = [&](double from, double to) {
+      return to <= (1 - criteria_.median_gain) * from;
+    };
+    return ShareOfRest(pair) >= criteria_.main_share && falls(before.train, after.train) &&
+           (before.validate == 0 || falls(before.validate, after.validate));
+  }
+
+  std::string InWords(const Fitting& pair) const {
+    return fmt::format("{} beside {} takes {:.0f} % of that", pair.b->hypothesis.NameAtPlace(),
+                       pair.a->hypothesis.NameAtPlace(), 100 * ShareOfRest(pair));
+  }
+
+  // Effects of some pairs that are neither of the best pair's, nor stand for its second.
   static std::vector<std::string> OthersForFirst(const std::vector<Fitting>& pairs,
-                                                 const Verdict& verdict) {
+                                                 const Verdict& verdict,
+                                                 const std::vector<std::size_t>& some) {
     const Fitting& best = pairs[verdict.named.front()];
     std::set<std::string> taken{best.a->hypothesis.effect, best.b->hypothesis.effect};
     for (const std::size_t n : verdict.named) {
       if (pairs[n].base == best.base) taken.insert(pairs[n].b->hypothesis.effect);
     }
     std::vector<std::string> others;
-    for (const std::size_t n : verdict.named) {
+    for (const std::size_t n : some) {
       for (const CandidateResult* const c :
            std::initializer_list<const CandidateResult*>{pairs[n].a, pairs[n].b}) {
         if (taken.insert(c->hypothesis.effect).second) others.push_back(c->hypothesis.effect);

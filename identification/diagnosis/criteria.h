@@ -176,6 +176,13 @@ struct Criteria {
   Rule second_share{"second_share", 0.05, "share of the squares above the noise",
                     "what is left by the way in which a cause is simulated is less: a second "
                     "cause of that size is told, not named"};
+  Rule rest_noise{"rest_noise", 2, "times the noise",
+                  "a main cause that leaves more may hide one that is small beside it"};
+  Rule correction{"correction", 0.05, "share of a number of the model",
+                  "masses, gains and stiffnesses are known to a few per cent: such a change beside "
+                  "a cause is none of its own"};
+  Rule whole_correction{"whole_correction", 0.02, "share of the robot's mass, or of time",
+                        "the whole is known better than its parts: scales, screws, a cheap clock"};
   Rule pair_share{"pair_share", 0.5, "share of the squares above the noise",
                   "a second cause must explain where the time step may explain them too"};
 
@@ -254,6 +261,9 @@ inline constexpr std::array kAllRules{
     &Criteria::pair_singles,
     &Criteria::pair_bases,
     &Criteria::second_share,
+    &Criteria::rest_noise,
+    &Criteria::correction,
+    &Criteria::whole_correction,
     &Criteria::pair_share,
     &Criteria::fallback_ceiling,
     &Criteria::fallback_size,

@@ -249,13 +249,22 @@ class Session {
     d_.ceiling_by = "noise alone";
   }
 
-  // A name by likelihoods that leaves more than noise stands only where it helps on logs left out.
+  // A name by likelihoods stands only where it helps on logs left out; one that leaves nothing but
+  // noise may have found that in the noise.
   void ConfirmOnFolds() {
-    if (!d_.chosen() || d_.verdict.complete || d_.chosen()->record.after.empty()) return;
+    if (!d_.chosen()) return;
+    if (d_.verdict.complete) {
+      if (!(d_.before.error.validate > 0) || HelpsOnValidateLogs()) return;
+      const std::string name = d_.chosen()->hypothesis.NameAtPlace();
+      d_.verdict = Verdict::Adequate(fmt::format(
+          "{} does a little better on its own logs and no better on those left out", name));
+      d_.partner.reset();
+      return;
+    }
+    if (d_.chosen()->record.after.empty()) return;
     const double floor = std::hypot(d_.noise.rms, d_.noise.step);
     const double possible = std::max(0.0, 1 - floor / d_.before.error.train);
-    const bool held_out = d_.chosen()->fitted.error.validate <= d_.before.error.validate;
-    if (held_out && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
+    if (HelpsOnValidateLogs() && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
     const std::string name = d_.chosen()->hypothesis.NameAtPlace();
     d_.verdict.kind = Verdict::Kind::kUnexplained;
     d_.verdict.leading = d_.verdict.named.front();
@@ -264,6 +273,10 @@ class Session {
         "the best candidate, {}, does not lower the error of logs left out as it does that of its "
         "own",
         name);
+  }
+
+  bool HelpsOnValidateLogs() const {
+    return d_.chosen()->fitted.error.validate < d_.before.error.validate;
   }
 
   // By likelihoods, which are calibrated where noise is the whole residual of the best model.
@@ -348,10 +361,16 @@ class Session {
     SetProbabilities(pair.search.candidates, pair.search.Records());
     for (CandidateResult& c : pair.search.candidates) c.likelihood += pair.first_likelihood;
     Take(pair.search);
-    d_.partner = {std::move(pair.first), std::move(pair.equivalent), pair.first_is_main};
-    d_.verdict.reason = fmt::format("no single candidate is enough, two are: {} beside this; {}",
-                                    d_.partner->hypothesis.NameAtPlace(), d_.verdict.reason);
-    const bool one = d_.verdict.named.size() == 1 && d_.partner->equivalent.empty();
+    const bool corrects = pair.first_corrects;
+    d_.partner = {std::move(pair.first), std::move(pair.equivalent),
+                  pair.first_is_main && !corrects, std::move(pair.relatives), corrects};
+    const std::string beside = d_.partner->hypothesis.NameAtPlace();
+    d_.verdict.reason =
+        corrects ? fmt::format("beside a small correction of the model, {}, {}", beside,
+                               d_.verdict.reason)
+                 : fmt::format("no single candidate is enough, two are: {} beside this; {}", beside,
+                               d_.verdict.reason);
+    const bool one = d_.verdict.named.size() == 1 && (corrects || d_.partner->equivalent.empty());
     d_.verdict.kind = one ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
   }
 

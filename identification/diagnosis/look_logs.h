@@ -6,8 +6,8 @@
 
 namespace continuum {
 
-/// Train logs that are enough for a first look at every candidate: evenly over all of them, and
-/// thousands of rows, not tens of thousands.
+/// Train logs that are enough for a first look at every candidate: one of each trial, evenly over
+/// all of them, and hardly more than a thousand rows; never fewer than two of several.
 std::vector<bool> LogsForALook(const Experiment& experiment);
 
 }  // namespace continuum

@@ -122,8 +122,9 @@ bool WorthFolds(double before, double after, const Criteria& criteria) {
 bool MayBeTwo(const Verdict& verdict, const LackOfFit& lack, double smallest_p, double over_noise,
               const Criteria& criteria) {
   const bool adequate = verdict.kind == Verdict::Kind::kAdequate;
-  const bool more = !adequate && (!verdict.complete || lack.of_step) &&
-                    1 - verdict.leading_share >= criteria.second_share;
+  const bool left = 1 - verdict.leading_share >= criteria.second_share ||
+                    (!lack.of_step && over_noise >= criteria.rest_noise);
+  const bool more = !adequate && (!verdict.complete || lack.of_step) && left;
   return more && !verdict.unlisted_explains && smallest_p < criteria.significance &&
          over_noise < criteria.pair_hopeless;
 }

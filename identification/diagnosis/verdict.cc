@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -88,6 +89,7 @@ class Ranking {
     return near;
   }
 
+  const std::vector<std::size_t>& order() const { return order_; }
   double Score(std::size_t i) const { return ScoreOf(candidates_[i], criteria_, scale_); }
   /// By how much the next one of another family is behind.
   double Lead(std::size_t best) const {
@@ -121,11 +123,12 @@ class Ranking {
     const double structure = criteria_.structure_least * most_ / scale_;
     return Behind(best, rival, std::max(AtLeast(criteria_.rival_margin), structure));
   }
-  // A margin, or what else is wrong with a model may make of one.
+  // A margin, or what else is wrong with a model may make of one. What is left beside a number that
+  // is a little off is other such numbers: the best of them explains no more than all of that.
   double AtLeast(double margin) const {
     if (!more_) return margin;
-    const double left =
-        std::max<double>(criteria_.left_share * left_, criteria_.structure_share * most_);
+    const double share = candidates_[first()].corrects ? 1 : +criteria_.left_share;
+    const double left = std::max<double>(share * left_, criteria_.structure_share * most_);
     return std::max(margin, left / scale_);
   }
   // By the smaller of both time-discretisation errors: one that leans on it far more than the other
@@ -204,6 +207,32 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
   }
   if (!unlisted.empty())
     verdict.reason += fmt::format("; not listed, but as likely ({}): {}", near, unlisted);
+  return verdict;
+}
+
+// Those that take the main share of the error, though not of the squares: where the noise drifts
+// or is the same over a log, squares weigh fast motion more than the error does.
+std::optional<Verdict> NameByError(const Ranking& all,
+                                   const std::vector<LikelihoodRecord>& candidates,
+                                   const Criteria& criteria) {
+  const auto worth = [&](const LikelihoodRecord& one) {
+    return one.listed && one.error_share >= criteria.main_share &&
+           ScoreOf(one, criteria) > criteria.separation;
+  };
+  Verdict verdict{Verdict::Kind::kNamed};
+  for (const std::size_t i : all.order()) {
+    if (!worth(candidates[i])) continue;
+    const bool kin =
+        !verdict.named.empty() && candidates[i].kin.Of(candidates[verdict.named.front()].kin);
+    (kin ? verdict.siblings : verdict.named).push_back(i);
+  }
+  if (verdict.named.empty()) return {};
+  if (verdict.named.size() > 1) verdict.kind = Verdict::Kind::kAmbiguous;
+  const LikelihoodRecord& best = candidates[verdict.named.front()];
+  verdict.reason = fmt::format(
+      "{} takes {:.0f} % of the error that noise does not make, and its residual shows more than "
+      "noise",
+      best.name, 100 * best.error_share);
   return verdict;
 }
 
@@ -292,6 +321,11 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
   const std::size_t best = all.Best();
   Verdict verdict;
   if (more && all.share(all.first()) < criteria.main_share) {
+    if (auto by_error = NameByError(all, candidates, criteria)) {
+      by_error->leading = by_error->named.front();
+      by_error->leading_share = candidates[by_error->named.front()].error_share;
+      return *by_error;
+    }
     verdict = Unexplained(fmt::format(
         "the best candidate, {}, explains {:.0f} % of what noise does not, and {:.0f} % are asked "
         "for: another cause is at work, or one more",

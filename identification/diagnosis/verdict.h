@@ -125,6 +125,8 @@ struct LikelihoodRecord {
   double error_share =
       1;                ///< of the squared error above noise and step that it takes, in plain rows
   double held_out = 0;  ///< error of the logs left out with it; 0: there are none
+  bool corrects =
+      false;  ///< it only changes numbers of the model, by a few per cent (OnlyCorrects)
 };
 
 /// The model without a candidate, by the same measure: whitened squares, and how many of them noise

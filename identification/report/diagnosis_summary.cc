@@ -55,7 +55,8 @@ std::string CauseLines(const Diagnosis& d) {
     text += "\n";
   }
   if (!d.partner || !d.chosen()) return text;
-  add("and      ", d.partner->hypothesis, d.chosen()->fitted, d.before.fit.x.size(), "");
+  add(d.partner->correction ? "corrects " : "and      ", d.partner->hypothesis, d.chosen()->fitted,
+      d.before.fit.x.size(), "");
   for (const std::string& other : d.partner->equivalent) text += ", or " + other;
   return text + "\n";
 }

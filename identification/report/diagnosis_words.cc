@@ -142,7 +142,7 @@ std::string HeadlineOf(const Diagnosis& d) {
     case Kind::kAdequate:
       return "The model follows these logs";
     case Kind::kNamed:
-      return (d.partner ? "Causes: " : "Cause: ") + CausesInWords(d);
+      return (d.partner && !d.partner->correction ? "Causes: " : "Cause: ") + CausesInWords(d);
     case Kind::kAmbiguous:
       return "Cause: " + CausesInWords(d);
     case Kind::kUnexplained:
@@ -204,7 +204,7 @@ std::string CausesInWords(const Diagnosis& d) {
   std::string text;
   for (const std::size_t i : d.verdict.named)
     text += (text.empty() ? "" : " or ") + d.candidates[i].hypothesis.NameAtPlace();
-  if (!d.partner || text.empty()) return text;
+  if (!d.partner || d.partner->correction || text.empty()) return text;
   const std::string partner = d.partner->hypothesis.NameAtPlace();
   return d.partner->main ? partner + " and " + text : text + " and " + partner;
 }

@@ -223,9 +223,10 @@ void ReadNames(const Case& c, const Diagnosis& d, Answer& a) {
     ReadSize(c, *one, a);
     AddOnce(one->hypothesis.effect, a.named);
   }
-  if (d.partner && d.chosen()) {
+  if (d.partner && !d.partner->correction && d.chosen()) {
     a.partner = {d.partner->hypothesis.effect};
     for (const auto& other : d.partner->equivalent) a.partner.push_back(other);
+    for (const auto& other : d.partner->relatives) AddOnce(other, a.relatives);
   }
   if (d.verdict.leading) a.leading = d.candidates[*d.verdict.leading].hypothesis.effect;
 }
@@ -305,13 +306,14 @@ namespace {
 // as well belong to the answer.
 bool Holds(const std::vector<std::vector<std::string>>& truths, const Answer& a) {
   if (truths.empty()) return false;
-  std::vector<std::string> set = a.named;
+  std::vector<std::string> set = a.named, beside = a.partner;
   set.insert(set.end(), a.relatives.begin(), a.relatives.end());
+  beside.insert(beside.end(), a.relatives.begin(), a.relatives.end());
   const auto& first = truths.front();
   const auto& last = truths.back();
   if (truths.size() == 1) return a.partner.empty() && Share(set, first);
-  return (Share(set, first) && Share(a.partner, last)) ||
-         (Share(set, last) && Share(a.partner, first));
+  if (a.partner.empty()) return false;
+  return (Share(set, first) && Share(beside, last)) || (Share(set, last) && Share(beside, first));
 }
 
 }  // namespace

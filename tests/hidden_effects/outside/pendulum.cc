@@ -49,15 +49,15 @@ struct Pendulum : Outside {
   bool sees_load = false;
 
   Columns Run(const Columns& u, int trial) const {
-    Columns torque{u[0]};
-    for (std::size_t k = 0; k < u[0].size(); ++k) torque[0][k] *= u[1][k] > 0.5;
     if (law == Law::kNative) {
+      Columns torque{u[0]};
+      for (std::size_t k = 0; k < u[0].size(); ++k) torque[0][k] *= u[1][k] > 0.5;
       return RunNative(
           {kModel, heavier, longer, {friction.tau_c}, {kStart[trial][0]}, {kStart[trial][1]}},
           torque);
     }
     Machine machine(*this, trial);
-    return Record(signals, machine, torque);
+    return Record(signals, machine, {u[0]}, u[1]);
   }
 
  private:

@@ -24,9 +24,11 @@ struct Signals {
 };
 
 /// Logs of a machine at rest before its first row. Machine has Step(input, h) [one value for each
-/// column of u, as it arrives] and Outputs().
+/// column of u, as it arrives] and Outputs(). on: [rows] whether its motors are on; off, nothing
+/// arrives at once, however late and wrong the inputs are. Empty: always.
 template <class Machine>
-Columns Record(const Signals& s, Machine& machine, const Columns& u) {
+Columns Record(const Signals& s, Machine& machine, const Columns& u,
+               const std::vector<double>& on = {}) {
   constexpr double h = kRowPeriod / kStepsPerRow;
   const auto rows = static_cast<long>(u[0].size());
   const long behind = std::lround(s.dead_time / h), late = std::lround(s.late / h);
@@ -48,7 +50,8 @@ Columns Record(const Signals& s, Machine& machine, const Columns& u) {
       const double target = wanted(i, step);
       input[i] = s.lag > 0 ? input[i] + (1 - std::exp(-h / s.lag)) * (target - input[i]) : target;
     }
-    machine.Step(input, h);
+    const bool off = !on.empty() && on[step / kStepsPerRow] < 0.5;
+    machine.Step(off ? std::vector<double>(u.size()) : input, h);
   }
   return out;
 }

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "identification/diagnosis/correction.h"
 #include "identification/diagnosis/fallback_force.h"
 #include "identification/diagnosis/screening.h"
 #include "identification/diagnosis/search_rules.h"
@@ -150,13 +151,14 @@ std::vector<Judged> MainShare() {
   std::vector<Judged> judged;
   for (const double share : {0.5, 0.8}) {
     judged.push_back([=](const Criteria& c) {
-      return JudgeLikelihoods({{"cause", 1, share * 1000}}, {1e-9}, 1e-3, {1000 + kNoise, kNoise},
-                              c)
-          .word();
+      LikelihoodRecord cause{"cause", 1, share * 1000};
+      cause.error_share = share;
+      return JudgeLikelihoods({cause}, {1e-9}, 1e-3, {1000 + kNoise, kNoise}, c).word();
     });
   }
   return judged;
 }
+
 std::vector<Judged> FamilyShare() {
   std::vector<Judged> judged;
   for (const double share : {0.6, 0.97}) {
@@ -319,8 +321,17 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["second_share"] = AroundBoundary(0.05, [](double left, const Criteria& c) {
     Verdict named{Verdict::Kind::kNamed};
     named.leading_share = 1 - left;
-    return MayBeTwo(named, {}, 1e-3, 2, c);
+    return MayBeTwo(named, {}, 1e-3, 1, c);
   });
+  e["rest_noise"] = AroundBoundary(2, [](double over, const Criteria& c) {
+    Verdict named{Verdict::Kind::kNamed};
+    named.leading_share = 1;
+    return MayBeTwo(named, {}, 1e-3, over, c);
+  });
+  e["correction"] =
+      Number([](const Criteria& c) { return MayBeOff("armature", "armature", 0.1, {}, c); });
+  e["whole_correction"] =
+      Number([](const Criteria& c) { return MayBeOff("payload", "mass", 0, {}, c); });
   e["pair_hopeless"] = AroundBoundary(100, [](double over, const Criteria& c) {
     return MayBeTwo(kUnexplained, {}, 1e-3, over, c);
   });

@@ -34,5 +34,13 @@ TEST(LogsForALook, AreNeverFewerThanTwoOfSeveral) {
   EXPECT_THAT(LogsForALook(WithLogs(1, 100'000)), ElementsAre(true));
 }
 
+TEST(LogsForALook, LeaveOutReplicates) {
+  Experiment e = WithLogs(5, 100);
+  for (std::size_t l = 0; l < 5; ++l) e.logs[l].trial = l < 2 ? "one" : "two";
+  EXPECT_THAT(LogsForALook(e), ElementsAre(true, false, false, true, false));
+  for (Log& log : e.logs) log.trial = "one";
+  EXPECT_THAT(LogsForALook(e), ElementsAre(true, true, false, true, true));
+}
+
 }  // namespace
 }  // namespace continuum

@@ -159,7 +159,9 @@ TEST(Likelihoods, TheMainCauseIsNamedWhereMoreThanNoiseIsLeft) {
 }
 
 TEST(Likelihoods, WhatTakesLessThanTheMainShareLeadsButIsNotNamed) {
-  const auto v = JudgeLikelihoods({{"a", 1, 3000}}, {1e-6}, 1e-3, kLoud);
+  LikelihoodRecord a{"a", 1, 3000};
+  a.error_share = 0.6;
+  const auto v = JudgeLikelihoods({a}, {1e-6}, 1e-3, kLoud);
   EXPECT_EQ(v.word(), "unexplained");
   EXPECT_THAT(v.named, IsEmpty());
   EXPECT_EQ(v.leading, 0u);
@@ -170,6 +172,25 @@ TEST(Likelihoods, TheShareOfThePlainErrorCountsToo) {
   LikelihoodRecord a{"a", 1, 4800};
   a.error_share = 0.6;
   EXPECT_EQ(JudgeLikelihoods({a}, {1e-6}, 1e-3, kLoud).word(), "unexplained");
+}
+
+// A constant under noise that is the same over a log: many squares are of fast motion.
+TEST(Likelihoods, OneThatTakesTheMainShareOfTheErrorIsNamedThoughAnotherTakesMoreSquares) {
+  LikelihoodRecord fast{"fast", 1, 3000}, constant{"constant", 1, 400};
+  fast.error_share = 0.1, constant.error_share = 0.95;
+  const auto v = JudgeLikelihoods({fast, constant}, {1e-6}, 1e-3, kLoud);
+  EXPECT_EQ(v.word(), "named");
+  EXPECT_THAT(v.named, ElementsAre(1));
+  EXPECT_FALSE(v.complete);
+  EXPECT_NEAR(v.leading_share, 0.95, 1e-12);
+}
+
+// A mass that is two per cent off, a clock that is one per cent off: what is left is as much.
+TEST(Likelihoods, ASmallCorrectionIsOneOfAllThatDoMoreThanItLeaves) {
+  LikelihoodRecord a{"a", 1, 4400}, b{"b", 1, 3900}, c{"c", 1, 3700};
+  EXPECT_THAT(JudgeLikelihoods({a, b, c}, {1e-6}, 1e-3, kLoud).named, ElementsAre(0));
+  a.corrects = true;
+  EXPECT_THAT(JudgeLikelihoods({a, b, c}, {1e-6}, 1e-3, kLoud).named, ElementsAre(0, 1));
 }
 
 // The best leaves 200 squares above the noise: a rival that leaves 20 more is not behind on that
