@@ -233,8 +233,9 @@ class PairSearch {
     const Fitting& best = pairs[verdict.named.empty() ? likeliest : verdict.named.front()];
     if (!best.complete()) return;
     if (&best != &pairs[likeliest]) lack = LackOf(best);
-    const bool matters = SecondShare(best) >= criteria_.second_share || TakesTheRest(best);
-    if (!matters || best.SecondCorrects(context_) || verdict.named.empty()) {
+    const bool matters = SecondShare(best) >= criteria_.second_share ||
+                         (TakesTheRest(best) && !best.SecondCorrects(context_));
+    if (!matters || verdict.named.empty()) {
       found.would_take = InWords(best);
       return;
     }
@@ -251,13 +252,17 @@ class PairSearch {
     verdict.leading = verdict.named.front();
     found.best.emplace(Pair{std::move(tried_[best.base].search), best.a->hypothesis,
                             best.a->likelihood, equivalent, relatives, std::move(verdict), lack,
-                            best.a->likelihood >= best.b->likelihood,
-                            best.FirstCorrects(context_)});
+                            IsMain(best), best.FirstCorrects(context_)});
   }
 
   LackOfFit LackOf(const Fitting& pair) const {
     const CandidateSearch& search = tried_[pair.base].search;
     return of_step_ ? search.TestsOf(*pair.b) : search.LackOf(pair.b);
+  }
+
+  // Whether the first cause is the main one: a number of the model that is a little off is not.
+  bool IsMain(const Fitting& pair) const {
+    return pair.a->likelihood >= pair.b->likelihood && !pair.FirstCorrects(context_);
   }
 
   // What the second cause takes of what can be explained at all, by the view that gives it more.

@@ -14,7 +14,7 @@ struct Pair {
   Verdict verdict;                      ///< on the second; indices into search.candidates
   LackOfFit lack_of_fit;
   bool first_is_main;   ///< it takes more than the second does
-  bool first_corrects;  ///< it only corrects a number of the model: the second is the cause
+  bool first_corrects;  ///< it only corrects a number of the model
 };
 
 struct PairsFound {
@@ -30,7 +30,7 @@ struct PairsFound {
 /// A second cause is named when it takes second_share of what can be explained at all, or the main
 /// share of what the first leaves and this helps on logs left out too; when both are there beyond
 /// their intervals, and both together leave noise or take the main share. What takes less is only
-/// told, and what corrects a number of the model by a few per cent is no cause beside another one.
+/// told; so is what corrects a number of the model by a few per cent and is small beside the first.
 /// single: a search that has been fitted; of_step: the time-discretisation error
 /// may explain the residual of its best, so that a second cause must explain most of it.
 PairsFound FindPair(const SearchContext& context, const CandidateSearch& single, bool of_step);

@@ -5,21 +5,27 @@
 
 namespace continuum {
 
-double MayBeOff(std::string_view effect, std::string_view parameter, double null,
+double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
                 const Sizes& sizes, const Criteria& criteria) {
   if (!std::isfinite(null)) return 0;
   if (null != 0) return criteria.correction * std::abs(null);
-  if (effect == "clock_skew") return criteria.whole_correction;
-  const bool adds_mass = effect == "payload" && parameter.starts_with("mass");
-  return adds_mass ? criteria.whole_correction * sizes.robot : 0;
+  const std::string_view name = parameter.substr(0, parameter.find('['));  // of a condition
+  for (const Param& param : effect.params) {
+    if (param.name != name) continue;
+    if (param.unit == "kg") return criteria.whole_correction * sizes.robot;
+    const bool of_all = effect.kind == EffectInfo::Kind::kMeasure && param.unit == "1";
+    return of_all ? +criteria.whole_correction : 0;
+  }
+  return 0;
 }
 
 bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin, const Sizes& sizes,
                   const Criteria& criteria) {
+  const EffectInfo& effect = EffectNamed(h.Card());
   const auto amplitudes = h.Amplitudes();
   return std::all_of(amplitudes.begin(), amplitudes.end(), [&](std::size_t i) {
     const double change = fitted.fit.x[begin + static_cast<Eigen::Index>(i)] - h.null[i];
-    return std::abs(change) <= MayBeOff(h.Card(), h.extra[i].name, h.null[i], sizes, criteria);
+    return std::abs(change) <= MayBeOff(effect, h.extra[i].name, h.null[i], sizes, criteria);
   });
 }
 

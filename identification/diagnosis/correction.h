@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "binding/effect_catalog.h"
 #include "identification/diagnosis/criteria.h"
 #include "identification/diagnosis/result.h"
 
@@ -10,7 +11,7 @@ namespace continuum {
 /// How far the number of the model may be off that a parameter of an effect changes, null where the
 /// effect is absent: masses, gains and stiffnesses by a few per cent, the mass of the whole robot
 /// or the clock by less. 0 where there is no such number.
-double MayBeOff(std::string_view effect, std::string_view parameter, double null,
+double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
                 const Sizes& sizes, const Criteria& criteria);
 
 /// Whether a fitted candidate only changes numbers that the model has, by so little as they may

@@ -195,6 +195,9 @@ class Session {
                            : PairsFound{};
     d_.pairs = std::move(pairs.tried);
     d_.remaining.would_take = std::move(pairs.would_take);
+    if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) && !d_.verdict.unlisted_explains) {
+      if (auto by_error = NameByError(search.Records(), d_.criteria)) d_.verdict = *by_error;
+    }
     d_.noise_limited = pairs.best || !d_.Is(Verdict::Kind::kUnexplained) ||
                        d_.verdict.unlisted_explains ||
                        search.BestOverNoise() < d_.criteria.model_limited;
@@ -361,16 +364,11 @@ class Session {
     SetProbabilities(pair.search.candidates, pair.search.Records());
     for (CandidateResult& c : pair.search.candidates) c.likelihood += pair.first_likelihood;
     Take(pair.search);
-    const bool corrects = pair.first_corrects;
-    d_.partner = {std::move(pair.first), std::move(pair.equivalent),
-                  pair.first_is_main && !corrects, std::move(pair.relatives), corrects};
-    const std::string beside = d_.partner->hypothesis.NameAtPlace();
-    d_.verdict.reason =
-        corrects ? fmt::format("beside a small correction of the model, {}, {}", beside,
-                               d_.verdict.reason)
-                 : fmt::format("no single candidate is enough, two are: {} beside this; {}", beside,
-                               d_.verdict.reason);
-    const bool one = d_.verdict.named.size() == 1 && (corrects || d_.partner->equivalent.empty());
+    d_.partner = {std::move(pair.first), std::move(pair.equivalent), pair.first_is_main,
+                  std::move(pair.relatives), pair.first_corrects};
+    d_.verdict.reason = fmt::format("no single candidate is enough, two are: {} beside this; {}",
+                                    d_.partner->hypothesis.NameAtPlace(), d_.verdict.reason);
+    const bool one = d_.verdict.named.size() == 1 && d_.partner->equivalent.empty();
     d_.verdict.kind = one ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
   }
 

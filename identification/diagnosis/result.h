@@ -135,8 +135,7 @@ struct Partner {
   std::vector<std::string> equivalent;      ///< effects that the data do not distinguish from it
   bool main = true;                         ///< it takes more of the error than the other one
   std::vector<std::string> relatives = {};  ///< of its family, that fit as well
-  /// A number of the model that is a little off: told beside the cause, not named.
-  bool correction = false;
+  bool correction = false;                  ///< a number of the model that is a little off
 };
 
 /// Two causes that were fitted together, and what both gain in twice the log-likelihood.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -89,7 +88,6 @@ class Ranking {
     return near;
   }
 
-  const std::vector<std::size_t>& order() const { return order_; }
   double Score(std::size_t i) const { return ScoreOf(candidates_[i], criteria_, scale_); }
   /// By how much the next one of another family is behind.
   double Lead(std::size_t best) const {
@@ -210,32 +208,6 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
   return verdict;
 }
 
-// Those that take the main share of the error, though not of the squares: where the noise drifts
-// or is the same over a log, squares weigh fast motion more than the error does.
-std::optional<Verdict> NameByError(const Ranking& all,
-                                   const std::vector<LikelihoodRecord>& candidates,
-                                   const Criteria& criteria) {
-  const auto worth = [&](const LikelihoodRecord& one) {
-    return one.listed && one.error_share >= criteria.main_share &&
-           ScoreOf(one, criteria) > criteria.separation;
-  };
-  Verdict verdict{Verdict::Kind::kNamed};
-  for (const std::size_t i : all.order()) {
-    if (!worth(candidates[i])) continue;
-    const bool kin =
-        !verdict.named.empty() && candidates[i].kin.Of(candidates[verdict.named.front()].kin);
-    (kin ? verdict.siblings : verdict.named).push_back(i);
-  }
-  if (verdict.named.empty()) return {};
-  if (verdict.named.size() > 1) verdict.kind = Verdict::Kind::kAmbiguous;
-  const LikelihoodRecord& best = candidates[verdict.named.front()];
-  verdict.reason = fmt::format(
-      "{} takes {:.0f} % of the error that noise does not make, and its residual shows more than "
-      "noise",
-      best.name, 100 * best.error_share);
-  return verdict;
-}
-
 Verdict Unexplained(std::string reason) {
   return {Verdict::Kind::kUnexplained, {}, std::move(reason)};
 }
@@ -321,11 +293,6 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
   const std::size_t best = all.Best();
   Verdict verdict;
   if (more && all.share(all.first()) < criteria.main_share) {
-    if (auto by_error = NameByError(all, candidates, criteria)) {
-      by_error->leading = by_error->named.front();
-      by_error->leading_share = candidates[by_error->named.front()].error_share;
-      return *by_error;
-    }
     verdict = Unexplained(fmt::format(
         "the best candidate, {}, explains {:.0f} % of what noise does not, and {:.0f} % are asked "
         "for: another cause is at work, or one more",
@@ -339,6 +306,28 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
     verdict = Name(all, best, lack, more, criteria);
   }
   verdict.leading = best, verdict.leading_share = all.share(best);
+  return verdict;
+}
+
+std::optional<Verdict> NameByError(const std::vector<LikelihoodRecord>& candidates,
+                                   const Criteria& criteria) {
+  Verdict verdict{Verdict::Kind::kNamed};
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const LikelihoodRecord& one = candidates[i];
+    if (!one.listed || one.error_share < 1 - criteria.second_share ||
+        ScoreOf(one, criteria) < criteria.separation)
+      continue;
+    const bool kin = !verdict.named.empty() && one.kin.Of(candidates[verdict.named.front()].kin);
+    (kin ? verdict.siblings : verdict.named).push_back(i);
+  }
+  if (verdict.named.empty()) return {};
+  if (verdict.named.size() > 1) verdict.kind = Verdict::Kind::kAmbiguous;
+  const LikelihoodRecord& best = candidates[verdict.named.front()];
+  verdict.leading = verdict.named.front(), verdict.leading_share = best.error_share;
+  verdict.reason = fmt::format(
+      "{} takes {:.0f} % of the error that noise does not make, and its residual shows more than "
+      "noise",
+      best.name, 100 * best.error_share);
   return verdict;
 }
 

@@ -161,6 +161,12 @@ std::vector<double> ProbabilitiesOf(const std::vector<LikelihoodRecord>& candida
 Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const LackOfFit& lack,
                          double p, const BaseSquares& base, const Criteria& criteria = {});
 
+/// Where those explain no main share: names of candidates, best first, that take all of the plain
+/// error but what a second cause of its own might. Where the noise drifts or is the same over a
+/// log, squares weigh fast motion more than the error does.
+std::optional<Verdict> NameByError(const std::vector<LikelihoodRecord>& candidates,
+                                   const Criteria& criteria = {});
+
 /// What a residual shows that is not significant: "nothing but noise".
 std::string ResidualInWords(const LackOfFit& lack, const Criteria& criteria = {});
 

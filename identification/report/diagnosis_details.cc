@@ -222,7 +222,8 @@ class DiagnosisDetails {
                     "h/4); nothing smaller is named.",
                     d_.noise.step, unit_),
         d_.noise.source == "replicates"
-            ? fmt::format("The noise comes from {} pairs of replicates.", d_.noise.pairs)
+            ? fmt::format("The noise comes from {} pairs of {}.", d_.noise.pairs,
+                          NoiseSourceInWords(d_.noise))
             : "There are no replicates: \"unexplained\" may be noise that is not white."};
     for (const auto& s : d_.skipped) items.push_back("Not tried: " + s + ".");
     for (const Finding& f : run_.findings) {

@@ -55,6 +55,7 @@ nlohmann::json PartnerJson(const Diagnosis& d) {
   return {{"effect", h.effect},
           {"variant", h.variant},
           {"equivalent", equivalent},
+          {"correction", d.partner->correction},
           {"probability", d.chosen()->probability},
           {"probability_is", "of both causes together"},
           {"parameters", ParametersOf(h, d.chosen()->fitted, d.before.fit.x.size())},
@@ -137,15 +138,7 @@ nlohmann::json CausesJson(const Diagnosis& d) {
   for (const std::size_t i : d.verdict.siblings) add(d.candidates[i]);
   for (const CandidateResult& c : d.unlisted) add(c);
   json.push_back(CauseJson(d, *d.chosen(), equivalent));
-  if (d.partner && !d.partner->correction)
-    json.insert(d.partner->main ? json.begin() : json.end(), PartnerJson(d));
-  return json;
-}
-
-// Numbers of the model that are a little off beside the cause.
-nlohmann::json CorrectionsJson(const Diagnosis& d) {
-  auto json = nlohmann::json::array();
-  if (d.partner && d.partner->correction && d.chosen()) json.push_back(PartnerJson(d));
+  if (d.partner) json.insert(d.partner->main ? json.begin() : json.end(), PartnerJson(d));
   return json;
 }
 
@@ -307,7 +300,6 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
     MakePart(key, missing, [&] { json[key] = make(); });
   };
   part("causes", [&] { return CausesJson(d); });
-  part("corrections", [&] { return CorrectionsJson(d); });
   part("alternatives", [&] { return AlternativesJson(d); });
   part("gain", [&] { return GainJson(d, run.after); });
   part("between_conditions", [&] {

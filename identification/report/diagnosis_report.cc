@@ -97,7 +97,7 @@ class DiagnosisPage {
                                   EffectNamed(h.Card()).summary, note,
                                   ValuesInWords(h, fitted, begin)));
     };
-    if (d_.partner && !d_.partner->correction && d_.chosen())
+    if (d_.partner && d_.chosen())
       add(d_.partner->hypothesis, d_.last(), d_.before.fit.x.size(), "");
     for (const std::size_t i : d_.verdict.named) {
       const CandidateResult& c = d_.candidates[i];

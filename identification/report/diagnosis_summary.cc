@@ -78,7 +78,7 @@ std::string ErrorLines(const Diagnosis& d, const ExtensionRun& run) {
   for (const std::string& fold : WorseFoldsInWords(d)) text += "worse     " + fold + "\n";
   text += d.noise.rms > 0
               ? fmt::format("noise     {:.3g} {} ({}), time step {:.3g} {}\n", d.noise.rms, unit,
-                            d.noise.source, d.noise.step, unit)
+                            NoiseSourceInWords(d.noise), d.noise.step, unit)
               : fmt::format("noise     not known, time step {:.3g} {}\n", d.noise.step, unit);
   if (!d.noise_limited)
     text += fmt::format("ceiling   {:.4g} {} on validate with {}\n", d.ceiling_error.validate, unit,

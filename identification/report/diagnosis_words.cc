@@ -142,7 +142,7 @@ std::string HeadlineOf(const Diagnosis& d) {
     case Kind::kAdequate:
       return "The model follows these logs";
     case Kind::kNamed:
-      return (d.partner && !d.partner->correction ? "Causes: " : "Cause: ") + CausesInWords(d);
+      return (d.partner ? "Causes: " : "Cause: ") + CausesInWords(d);
     case Kind::kAmbiguous:
       return "Cause: " + CausesInWords(d);
     case Kind::kUnexplained:
@@ -200,11 +200,17 @@ std::string WhyInWords(const Diagnosis& d) {
                      fmt::join(doubts, " "));
 }
 
+std::string NoiseSourceInWords(const Noise& noise) {
+  if (noise.resampled == 0) return noise.source;
+  return fmt::format("{}, {} of them brought onto the rows of another", noise.source,
+                     noise.resampled);
+}
+
 std::string CausesInWords(const Diagnosis& d) {
   std::string text;
   for (const std::size_t i : d.verdict.named)
     text += (text.empty() ? "" : " or ") + d.candidates[i].hypothesis.NameAtPlace();
-  if (!d.partner || d.partner->correction || text.empty()) return text;
+  if (!d.partner || text.empty()) return text;
   const std::string partner = d.partner->hypothesis.NameAtPlace();
   return d.partner->main ? partner + " and " + text : text + " and " + partner;
 }

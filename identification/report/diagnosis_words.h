@@ -32,6 +32,9 @@ Certainty CertaintyOf(const Diagnosis& diagnosis);
 /// Why it is not surer, or why it is sure; one or two sentences without statistics.
 std::string WhyInWords(const Diagnosis& diagnosis);
 
+/// How the noise is known, and what was done for it.
+std::string NoiseSourceInWords(const Noise& noise);
+
 /// "payload at body tip", "payload at body tip and dahl at joint q", "a at x or b at y"; empty
 /// where nothing is named.
 std::string CausesInWords(const Diagnosis& diagnosis);

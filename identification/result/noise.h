@@ -20,10 +20,11 @@ struct ChannelNoise {
 
 /// How large the measurement noise is, and how one knows.
 struct Noise {
-  double rms = 0;         ///< pooled unit; 0: not known
-  double step = 0;        ///< what the model's own time step adds (h against h/4), pooled unit
-  std::string source;     ///< "replicates", "sigma", "differences", "not known"
-  std::size_t pairs = 0;  ///< of replicates
+  double rms = 0;             ///< pooled unit; 0: not known
+  double step = 0;            ///< what the model's own time step adds (h against h/4), pooled unit
+  std::string source;         ///< "replicates", "sigma", "differences", "not known"
+  std::size_t pairs = 0;      ///< of replicates
+  std::size_t resampled = 0;  ///< logs that were brought onto the rows of their replicate
   std::vector<ChannelNoise> channel;  ///< [channel]; empty: not known
 
   bool known() const { return !channel.empty(); }

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "identification/statistics/one_grid.h"
 #include "sim/experiment/replicates.h"
 #include "sim/numerics/decompositions.h"
 
@@ -15,19 +16,38 @@ namespace {
 
 constexpr int kHighestOrder = 4;
 
+// A channel of logs of one motion on the grid of the first.
+std::vector<OnGrid> OnOneGrid(const Experiment& e, const std::vector<std::size_t>& group,
+                              std::size_t channel) {
+  const Log& first = e.logs[group[0]];
+  std::vector<OnGrid> all;
+  for (const std::size_t l : group) {
+    const Log& log = e.logs[l];
+    if (AreReplicates(first, log)) {
+      all.push_back({log.measured[channel], std::vector<double>(log.rows(), 1)});
+    } else {
+      all.push_back(Resampled(log, channel, first, ShiftOf(log, first)));
+    }
+  }
+  return all;
+}
+
 // What each replicate of one channel differs from their mean, at the size of one log's noise.
 std::vector<std::vector<double>> Deviations(const Experiment& e,
                                             const std::vector<std::size_t>& group,
                                             std::size_t channel) {
+  const std::vector<OnGrid> logs = OnOneGrid(e, group, channel);
   const std::size_t rows = e.logs[group[0]].rows(), n = group.size();
   std::vector<std::vector<double>> out(n, std::vector<double>(rows));
-  const double size = std::sqrt(static_cast<double>(n) / static_cast<double>(n - 1));
+  const double share = 1 / static_cast<double>(n);
   for (std::size_t k = 0; k < rows; ++k) {
-    double mean = 0;  // NaN as soon as one is missing
-    for (const std::size_t l : group)
-      mean += e.logs[l].measured[channel][k] / static_cast<double>(n);
-    for (std::size_t i = 0; i < n; ++i)
-      out[i][k] = size * (e.logs[group[i]].measured[channel][k] - mean);
+    double mean = 0, variance = 0;  // NaN as soon as one is missing; of the mean
+    for (const OnGrid& log : logs)
+      mean += share * log.value[k], variance += share * share * log.variance[k];
+    for (std::size_t i = 0; i < n; ++i) {
+      const double own = (1 - 2 * share) * logs[i].variance[k] + variance;
+      out[i][k] = (logs[i].value[k] - mean) / std::sqrt(own);
+    }
   }
   if (n == 2) out.pop_back();  // the other one mirrored
   return out;
@@ -99,7 +119,7 @@ std::vector<std::vector<std::size_t>> ReplicateGroups(const Experiment& e) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
-      return AreReplicates(e.logs[group[0]], e.logs[l]);
+      return AreNearReplicates(e.logs[group[0]], e.logs[l]);
     });
     if (same != groups.end()) {
       same->push_back(l);
@@ -254,7 +274,12 @@ Noise NoiseOf(const Experiment& e) {
   const Pool pool(e);
   Noise noise;
   const auto groups = ReplicateGroups(e);
-  for (const auto& group : groups) noise.pairs += group.size() * (group.size() - 1) / 2;
+  for (const auto& group : groups) {
+    noise.pairs += group.size() * (group.size() - 1) / 2;
+    noise.resampled += std::count_if(group.begin(), group.end(), [&](std::size_t l) {
+      return !AreReplicates(e.logs[group[0]], e.logs[l]);
+    });
+  }
   noise.source = noise.pairs > 0      ? "replicates"
                  : HasSigmas(e, pool) ? "sigma"
                  : e.quasi_static     ? "not known"

@@ -16,8 +16,9 @@ inline bool IsFarOver(const Noise& noise, double rms) {
   return noise.rms > 0 && rms > kTimes * noise.rms;
 }
 
-/// From replicates (logs of one trial and condition with the same inputs and rows): what each
-/// differs from their mean, in which model error cancels. Else from sigma where every output gives
+/// From replicates (logs of one trial and condition with the same inputs and rows, or nearly so:
+/// then on one grid, the shift in time between them taken out): what each differs from their mean,
+/// in which model error cancels. Else from sigma where every output gives
 /// it. Else from third differences of the measured rows (smooth motion cancels), a lower bound that
 /// sees only white noise; rows of quasi-static logs are poses of their own, whose differences say
 /// nothing of it.

@@ -17,6 +17,18 @@ struct Trial {
   std::size_t logs = 0, train = 0;
 };
 
+// Logs that differ a little from their first in clock or input.
+void SayNearReplicates(const std::vector<const Log*>& logs, Findings& out) {
+  const Log& first = *logs.front();
+  for (const Log* const log : logs) {
+    if (AreReplicates(first, *log) || !AreNearReplicates(first, *log)) continue;
+    out.Add(Severity::kInfo, "", "trial",
+            fmt::format("logs '{}' and '{}' of trial '{}' differ a little in clock or input: for "
+                        "the noise they are brought onto the rows of the first",
+                        first.label, log->label, first.trial));
+  }
+}
+
 // A trial whose name stands for two motions; returns how many were recorded more than once.
 std::size_t CheckReplicates(const Experiment& e, Findings& out) {
   std::map<std::pair<std::string, std::string>, std::vector<const Log*>> recorded;
@@ -24,9 +36,10 @@ std::size_t CheckReplicates(const Experiment& e, Findings& out) {
   std::size_t replicated = 0;
   for (const auto& [name, logs] : recorded) {
     const Log& first = *logs.front();
-    const auto other = std::find_if(logs.begin(), logs.end(),
-                                    [&](const Log* log) { return !AreReplicates(first, *log); });
+    const auto other = std::find_if(
+        logs.begin(), logs.end(), [&](const Log* log) { return !AreNearReplicates(first, *log); });
     replicated += logs.size() > 1 && other == logs.end();
+    SayNearReplicates(logs, out);
     if (other == logs.end()) continue;
     out.Add(Severity::kWarning, "", "trial",
             fmt::format("logs '{}' and '{}' have one trial name, '{}', but other times or inputs: "

@@ -223,7 +223,8 @@ void ReadNames(const Case& c, const Diagnosis& d, Answer& a) {
     ReadSize(c, *one, a);
     AddOnce(one->hypothesis.effect, a.named);
   }
-  if (d.partner && !d.partner->correction && d.chosen()) {
+  if (d.partner && d.chosen()) {
+    a.corrects = d.partner->correction;
     a.partner = {d.partner->hypothesis.effect};
     for (const auto& other : d.partner->equivalent) a.partner.push_back(other);
     for (const auto& other : d.partner->relatives) AddOnce(other, a.relatives);
@@ -302,16 +303,18 @@ Answer SolveAndFollow(const Case& c, const std::filesystem::path& folder) {
 
 namespace {
 
-// Whether an answer holds one name of each, of a single one as the only cause. Relatives that fit
-// as well belong to the answer.
-bool Holds(const std::vector<std::vector<std::string>>& truths, const Answer& a) {
+// Whether an answer holds one name of each, of a single one as the only cause; beside it a machine
+// that is not its model may need a correction of that. Relatives that fit as well belong to the
+// answer.
+bool Holds(const std::vector<std::vector<std::string>>& truths, const Answer& a, bool outside) {
   if (truths.empty()) return false;
   std::vector<std::string> set = a.named, beside = a.partner;
   set.insert(set.end(), a.relatives.begin(), a.relatives.end());
   beside.insert(beside.end(), a.relatives.begin(), a.relatives.end());
   const auto& first = truths.front();
   const auto& last = truths.back();
-  if (truths.size() == 1) return a.partner.empty() && Share(set, first);
+  if (truths.size() == 1)
+    return (a.partner.empty() || (outside && a.corrects)) && Share(set, first);
   if (a.partner.empty()) return false;
   return (Share(set, first) && Share(beside, last)) || (Share(set, last) && Share(beside, first));
 }
@@ -324,13 +327,13 @@ bool InSet(const Case& c, const Answer& a) {
     const bool made_otherwise = c.law != Law::kStick && IsDryFriction(effect);
     truths.push_back(made_otherwise ? FamilyOf(effect) : std::vector{effect});
   }
-  return Holds(truths, a);
+  return Holds(truths, a, RobotNamed(c.robot).outside);
 }
 
 bool InSetExactly(const Case& c, const Answer& a) {
   std::vector<std::vector<std::string>> truths;
   for (const auto& effect : c.effects) truths.push_back({effect});
-  return Holds(truths, a);
+  return Holds(truths, a, RobotNamed(c.robot).outside);
 }
 
 bool Sibling(const Case& c, const Answer& a) {

@@ -46,9 +46,10 @@ struct Followed {
 /// What the diagnosis made of it.
 struct Answer {
   std::string verdict;
-  std::vector<std::string> named;                  ///< effects, likeliest first
-  std::vector<std::string> relatives = {};         ///< of the named one, that fit as well
-  std::vector<std::string> partner = {};           ///< of a second cause beside those
+  std::vector<std::string> named;           ///< effects, likeliest first
+  std::vector<std::string> relatives = {};  ///< of the named one, that fit as well
+  bool corrects = false;                    ///< the partner only corrects a number of the model
+  std::vector<std::string> partner = {};    ///< of a second cause beside those
   double truth = 0, value = 0, low = 0, high = 0;  ///< of the first effect, when it is in named
   double explained = 0;  ///< explainable error removed on the validate logs
   double p = 1;          ///< family-wise, of the best candidate to first order

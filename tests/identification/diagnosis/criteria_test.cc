@@ -328,10 +328,10 @@ std::map<std::string, std::vector<Judged>> Examples() {
     named.leading_share = 1;
     return MayBeTwo(named, {}, 1e-3, over, c);
   });
-  e["correction"] =
-      Number([](const Criteria& c) { return MayBeOff("armature", "armature", 0.1, {}, c); });
+  e["correction"] = Number(
+      [](const Criteria& c) { return MayBeOff(EffectNamed("armature"), "armature", 0.1, {}, c); });
   e["whole_correction"] =
-      Number([](const Criteria& c) { return MayBeOff("payload", "mass", 0, {}, c); });
+      Number([](const Criteria& c) { return MayBeOff(EffectNamed("payload"), "mass", 0, {}, c); });
   e["pair_hopeless"] = AroundBoundary(100, [](double over, const Criteria& c) {
     return MayBeTwo(kUnexplained, {}, 1e-3, over, c);
   });

@@ -101,6 +101,29 @@ TEST_F(Whitened, OneLogOfAMotionTellsWhiteNoiseByItsRowsButOneOfPosesDoesNot) {
   EXPECT_EQ(NoiseOf(one).rms, 0);
 }
 
+// Loggers of 10 ms whose rows come up to 2 ms early or late, each 4 ms later than the one before.
+TEST_F(Whitened, ReplicatesOfOtherClocksAreBroughtOntoOneGrid) {
+  Experiment e = Logs(0, 0);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> jitter(-2e-3, 2e-3);
+  std::normal_distribution<double> noise(0, 2e-3);
+  for (std::size_t l = 0; l < e.logs.size(); ++l) {
+    Log& log = e.logs[l];
+    for (std::size_t k = 1; k < log.rows(); ++k) log.time[k] += jitter(random);
+    for (std::size_t k = 0; k < log.rows(); ++k) {
+      const double t = log.time[k] + 4e-3 * static_cast<double>(l);
+      log.measured[0][k] = std::sin(5 * t) + noise(random);
+      for (auto& u : log.input) u[k] = std::round(std::sin(t));
+    }
+  }
+  const Noise found = NoiseOf(e);
+  EXPECT_EQ(found.source, "replicates");
+  EXPECT_EQ(found.resampled, e.logs.size() - 1);
+  EXPECT_NEAR(found.channel[0].rms, 2e-3, 1e-4);
+  std::fill_n(e.logs[1].input[0].begin() + 100, 200, 5.0);  // another motion
+  EXPECT_EQ(NoiseOf(e).resampled, e.logs.size() - 2);
+}
+
 // A ramp through many steps: errors are uniform in ±q/2 and repeat with the steps; a value at rest
 // keeps its error.
 TEST(ChannelNoise, RoundingErrorsOfASlowMotionAreSlow) {
