@@ -22,6 +22,7 @@
 #include "identification/diagnosis/next_experiment.h"
 #include "identification/diagnosis/quantisation.h"
 #include "identification/diagnosis/remaining.h"
+#include "identification/diagnosis/second_by_folds.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
@@ -431,6 +432,8 @@ class Session {
     d_.verdict = {};
     d_.unlisted.clear();
     CompareByFolds(fitter_, options_, d_);
+    if (d_.Is(Verdict::Kind::kNamed) && !d_.verdict.complete && HasTimeFor("a second cause"))
+      Part("second cause", [&] { AddSecondByFolds(Context(options_), d_); });
   }
 
   void SetGainInterval() {

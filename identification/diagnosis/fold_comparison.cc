@@ -26,18 +26,21 @@ double GainOver(const FoldScores& before, const FoldScores& after) {
 
 class FoldComparison {
  public:
-  FoldComparison(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d)
-      : fitter_(fitter), e_(*fitter.experiment), options_(options), d_(d) {}
+  FoldComparison(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d,
+                 const std::vector<Parameter>& given)
+      : fitter_(fitter), e_(*fitter.experiment), options_(options), d_(d), given_(given) {}
 
   void Run() {
     options_.Say(DiagnosisStage::kJudgement, "folds");
-    fitter_.AddFolds(Problem(e_, d_.system), d_.folds, d_.before);
+    fitter_.AddFolds(Problem(e_, d_.system, given_), d_.folds, d_.before);
     std::stable_sort(d_.candidates.begin(), d_.candidates.end(), [](const auto& a, const auto& b) {
       return a.fitted.error.train < b.fitted.error.train;
     });
     for (std::size_t done = 0; done < d_.candidates.size(); ++done) {
       CandidateResult& c = d_.candidates[done];
       if (!WorthFolds(d_.before.error.train, c.fitted.error.train, d_.criteria)) continue;
+      c.record.behind = GainOfFit(c) < d_.criteria.rival_gain * GainOfFit(d_.candidates.front());
+      if (c.record.behind) continue;
       c.record.no_time = !HasTimeFor("folds of " + c.hypothesis.NameAtPlace());
       if (c.record.no_time) continue;
       options_.Say(DiagnosisStage::kJudgement, "folds of " + c.hypothesis.Name(), done,
@@ -50,9 +53,14 @@ class FoldComparison {
   }
 
  private:
+  // Where it was fitted: on logs left out it will hardly be a larger share of the best one's.
+  double GainOfFit(const CandidateResult& c) const {
+    return 1 - c.fitted.error.train / d_.before.error.train;
+  }
+
   // Fits a force without a name at the null optimum (Gauss-Newton), scored like a candidate.
   FoldScores TryForce(const ForceTerms& terms, TwoErrors* error) const {
-    const Problem problem(e_, d_.system, {}, terms);
+    const Problem problem(e_, d_.system, given_, terms);
     Vector x = Vector::Zero(d_.before.fit.x.size() + static_cast<Eigen::Index>(terms.count));
     x.head(d_.before.fit.x.size()) = d_.before.fit.x;
     const auto J = problem.Jacobian(x, d_.before.residuals, problem.AllLogs(),
@@ -193,6 +201,7 @@ class FoldComparison {
   const Experiment& e_;
   const DiagnosisOptions& options_;
   Diagnosis& d_;
+  const std::vector<Parameter>& given_;
 };
 
 }  // namespace
@@ -220,8 +229,8 @@ void RecordFolds(const CandidateFitter& fitter, const Diagnosis& d, CandidateRes
 }
 
 void CompareByFolds(const CandidateFitter& fitter, const DiagnosisOptions& options,
-                    Diagnosis& diagnosis) {
-  FoldComparison(fitter, options, diagnosis).Run();
+                    Diagnosis& diagnosis, const std::vector<Parameter>& given) {
+  FoldComparison(fitter, options, diagnosis, given).Run();
 }
 
 }  // namespace continuum

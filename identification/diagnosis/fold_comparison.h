@@ -6,10 +6,10 @@ namespace continuum {
 
 /// Compares fitted candidates by cross-validation, where the residual of the best model is more
 /// than noise or nobody knows the noise: only what holds on logs left out counts, beside random
-/// forces and the best of them. Orders
-/// the candidates and fills in records, ceiling and verdict.
+/// forces and the best of them. Orders the candidates and fills in records, ceiling and verdict.
+/// given: free parameters of a cause that the model before has already.
 void CompareByFolds(const CandidateFitter& fitter, const DiagnosisOptions& options,
-                    Diagnosis& diagnosis);
+                    Diagnosis& diagnosis, const std::vector<Parameter>& given = {});
 
 /// Takes what something reached on the folds for the ceiling where it is more than was known.
 void RaiseCeiling(Diagnosis& diagnosis, const std::string& by, const FoldScores& folds,

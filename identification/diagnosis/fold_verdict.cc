@@ -177,6 +177,10 @@ double Beaten(const FoldRecord& candidate, const std::vector<double>& placebo_ga
 
 std::vector<std::string> Failures(const FoldRecord& record, const Criteria& criteria) {
   if (record.no_time) return {"there was no time for its folds"};
+  if (record.behind) {
+    return {fmt::format("its fit lowers the error by less than {:.0f} % of what the best one does",
+                        100 * criteria.rival_gain)};
+  }
   if (record.after.empty()) {
     return {fmt::format("its fit lowers the error by less than {:.0f} % where it was fitted",
                         100 * criteria.fit_gain)};

@@ -1,0 +1,50 @@
+#include "identification/diagnosis/second_by_folds.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "identification/diagnosis/fold_comparison.h"
+#include "identification/diagnosis/look_logs.h"
+
+namespace continuum {
+namespace {
+
+constexpr std::size_t kSeconds = 4;  // that are fitted
+
+// The candidates beside a first cause, with a verdict on them. options: of the search.
+Diagnosis Beside(const SearchContext& context, const CandidateResult& first, const Diagnosis& d) {
+  const Experiment& e = *context.fitter.experiment;
+  const std::vector<Parameter> given = first.hypothesis.Free();
+  CandidateSearch search(context, {&first.hypothesis.system, given, &first.fitted});
+  search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))});
+  search.Fit(nullptr, kSeconds);
+  Diagnosis beside(e, first.hypothesis.system);
+  beside.criteria = d.criteria, beside.noise = d.noise, beside.sizes = d.sizes;
+  beside.folds = d.folds, beside.before = first.fitted;
+  beside.candidates = std::move(search.candidates);
+  CompareByFolds(context.fitter, context.options, beside, given);
+  return beside;
+}
+
+}  // namespace
+
+void AddSecondByFolds(const SearchContext& context, Diagnosis& d) {
+  const Hypothesis first = d.chosen()->hypothesis;
+  const auto inside =
+      context.options.Inside(DiagnosisStage::kSecondCause, "beside " + first.NameAtPlace());
+  Diagnosis beside = Beside({context.fitter, context.noise, context.sizes, inside}, *d.chosen(), d);
+  if (!beside.Is(Verdict::Kind::kNamed)) return;
+  d.candidates = std::move(beside.candidates), d.verdict = std::move(beside.verdict);
+  for (CandidateResult& c : d.candidates) {
+    if (!c.record.after.empty()) c.record.before = d.before.folds.error;
+  }
+  const CandidateResult& second = *d.chosen();
+  const std::string name = second.hypothesis.NameAtPlace();
+  RaiseCeiling(d, first.NameAtPlace() + " and " + name, second.fitted.folds, second.fitted.error);
+  d.verdict.reason = fmt::format("{} passes all rules, and beside it {}: {}", first.NameAtPlace(),
+                                 name, d.verdict.reason);
+  d.partner = {first, {}};
+}
+
+}  // namespace continuum
