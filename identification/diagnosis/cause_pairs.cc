@@ -239,8 +239,7 @@ class PairSearch {
       found.would_take = InWords(best);
       return;
     }
-    const auto equivalent = OthersForFirst(pairs, verdict, verdict.named);
-    const auto relatives = OthersForFirst(pairs, verdict, verdict.siblings);
+    Partner first = FirstOf(pairs, verdict);
     for (auto* const some : {&verdict.named, &verdict.siblings}) {
       std::vector<std::size_t> seconds;
       for (const std::size_t n : *some) {
@@ -250,9 +249,8 @@ class PairSearch {
     }
     if (verdict.named.empty()) return;
     verdict.leading = verdict.named.front();
-    found.best.emplace(Pair{std::move(tried_[best.base].search), best.a->hypothesis,
-                            best.a->likelihood, equivalent, relatives, std::move(verdict), lack,
-                            IsMain(best), best.FirstCorrects(context_)});
+    found.best.emplace(Pair{std::move(tried_[best.base].search), std::move(first),
+                            best.a->likelihood, std::move(verdict), lack});
   }
 
   LackOfFit LackOf(const Fitting& pair) const {
@@ -260,9 +258,32 @@ class PairSearch {
     return of_step_ ? search.TestsOf(*pair.b) : search.LackOf(pair.b);
   }
 
-  // Whether the first cause is the main one: a number of the model that is a little off is not.
-  bool IsMain(const Fitting& pair) const {
-    return pair.a->likelihood >= pair.b->likelihood && !pair.FirstCorrects(context_);
+  // The first cause of the best pair, and what of the other pairs in the set could stand for it.
+  Partner FirstOf(const std::vector<Fitting>& pairs, const Verdict& verdict) const {
+    using Correction = Partner::Correction;
+    const Fitting& best = pairs[verdict.named.front()];
+    Partner first{best.a->hypothesis};
+    const bool this_one = best.FirstCorrects(context_), other = best.SecondCorrects(context_);
+    if (this_one != other) first.correction = this_one ? Correction::kThis : Correction::kOther;
+    first.main =
+        first.correction == Correction::kNone ? best.a->likelihood >= best.b->likelihood : other;
+    std::set<std::string> taken{best.a->hypothesis.effect, best.b->hypothesis.effect};
+    for (const std::size_t n : verdict.named) {
+      if (pairs[n].base == best.base) taken.insert(pairs[n].b->hypothesis.effect);
+    }
+    const auto add = [&](const std::vector<std::size_t>& some, auto& for_first, auto& for_second) {
+      for (const std::size_t n : some) {
+        const std::string &a = pairs[n].a->hypothesis.effect, &b = pairs[n].b->hypothesis.effect;
+        const std::string& first_effect = best.a->hypothesis.effect;
+        auto& others = a == first_effect || b == first_effect ? for_second : for_first;
+        for (const std::string& effect : {a, b})
+          if (taken.insert(effect).second) others.push_back(effect);
+      }
+    };
+    add(verdict.named, first.equivalent, first.instead);
+    std::vector<std::string> of_second;  // they are siblings that the verdict has
+    add(verdict.siblings, first.relatives, of_second);
+    return first;
   }
 
   // What the second cause takes of what can be explained at all, by the view that gives it more.
@@ -292,25 +313,6 @@ class PairSearch {
   std::string InWords(const Fitting& pair) const {
     return fmt::format("{} beside {} takes {:.0f} % of that", pair.b->hypothesis.NameAtPlace(),
                        pair.a->hypothesis.NameAtPlace(), 100 * ShareOfRest(pair));
-  }
-
-  // Effects of some pairs that are neither of the best pair's, nor stand for its second.
-  static std::vector<std::string> OthersForFirst(const std::vector<Fitting>& pairs,
-                                                 const Verdict& verdict,
-                                                 const std::vector<std::size_t>& some) {
-    const Fitting& best = pairs[verdict.named.front()];
-    std::set<std::string> taken{best.a->hypothesis.effect, best.b->hypothesis.effect};
-    for (const std::size_t n : verdict.named) {
-      if (pairs[n].base == best.base) taken.insert(pairs[n].b->hypothesis.effect);
-    }
-    std::vector<std::string> others;
-    for (const std::size_t n : some) {
-      for (const CandidateResult* const c :
-           std::initializer_list<const CandidateResult*>{pairs[n].a, pairs[n].b}) {
-        if (taken.insert(c->hypothesis.effect).second) others.push_back(c->hypothesis.effect);
-      }
-    }
-    return others;
   }
 
   // All that was fitted, best first.

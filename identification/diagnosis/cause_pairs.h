@@ -7,14 +7,10 @@ namespace continuum {
 /// Two causes that act together.
 struct Pair {
   CandidateSearch search;  ///< for the second cause: its base has the first
-  Hypothesis first;
-  double first_likelihood;              ///< gained by the first alone
-  std::vector<std::string> equivalent;  ///< effects that could stand for the first
-  std::vector<std::string> relatives;   ///< the same, of its own family
-  Verdict verdict;                      ///< on the second; indices into search.candidates
+  Partner first;
+  double first_likelihood;  ///< gained by the first alone
+  Verdict verdict;          ///< on the second; indices into search.candidates
   LackOfFit lack_of_fit;
-  bool first_is_main;   ///< it takes more than the second does
-  bool first_corrects;  ///< it only corrects a number of the model
 };
 
 struct PairsFound {

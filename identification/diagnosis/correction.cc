@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace continuum {
+namespace {
+
+constexpr double kGravity = 9.81;  // m/s²
+
+}  // namespace
 
 double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
                 const Sizes& sizes, const Criteria& criteria) {
@@ -12,9 +17,13 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
   const std::string_view name = parameter.substr(0, parameter.find('['));  // of a condition
   for (const Param& param : effect.params) {
     if (param.name != name) continue;
-    if (param.unit == "kg") return criteria.whole_correction * sizes.robot;
-    const bool of_all = effect.kind == EffectInfo::Kind::kMeasure && param.unit == "1";
-    return of_all ? +criteria.whole_correction : 0;
+    if (effect.kind == EffectInfo::Kind::kEdit && param.unit == "kg")
+      return criteria.whole_correction * sizes.robot;
+    if (effect.kind == EffectInfo::Kind::kEdit && param.unit == "N")
+      return criteria.whole_correction * kGravity * sizes.robot;
+    const bool direction = effect.places.front() == Place::kWorld && param.unit == "rad";
+    const bool clock = effect.kind == EffectInfo::Kind::kMeasure && param.unit == "1";
+    return direction || clock ? +criteria.whole_correction : 0;
   }
   return 0;
 }

@@ -181,8 +181,9 @@ struct Criteria {
   Rule correction{"correction", 0.05, "share of a number of the model",
                   "masses, gains and stiffnesses are known to a few per cent: such a change beside "
                   "a cause is none of its own"};
-  Rule whole_correction{"whole_correction", 0.02, "share of the robot's mass, or of time",
-                        "the whole is known better than its parts: scales, screws, a cheap clock"};
+  Rule whole_correction{"whole_correction", 0.02, "share of mass, weight or time; rad",
+                        "the whole is known better than its parts: scales, screws, how it stands, "
+                        "a cheap clock"};
   Rule pair_share{"pair_share", 0.5, "share of the squares above the noise",
                   "a second cause must explain where the time step may explain them too"};
 

@@ -258,7 +258,8 @@ class Session {
   void ConfirmOnFolds() {
     if (!d_.chosen()) return;
     if (d_.verdict.complete) {
-      if (!(d_.before.error.validate > 0) || HelpsOnValidateLogs()) return;
+      const double before = d_.before.error.validate;
+      if (!(before > 0) || d_.chosen()->fitted.error.validate < before) return;
       const std::string name = d_.chosen()->hypothesis.NameAtPlace();
       d_.verdict = Verdict::Adequate(fmt::format(
           "{} does a little better on its own logs and no better on those left out", name));
@@ -268,19 +269,18 @@ class Session {
     if (d_.chosen()->record.after.empty()) return;
     const double floor = std::hypot(d_.noise.rms, d_.noise.step);
     const double possible = std::max(0.0, 1 - floor / d_.before.error.train);
-    if (HelpsOnValidateLogs() && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
+    const bool held_out = HoldsOnValidateLogs(
+        d_.before.error.validate, d_.chosen()->fitted.error.validate, floor, d_.criteria);
+    if (held_out && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
     const std::string name = d_.chosen()->hypothesis.NameAtPlace();
     d_.verdict.kind = Verdict::Kind::kUnexplained;
     d_.verdict.leading = d_.verdict.named.front();
     d_.verdict.named.clear(), d_.verdict.siblings.clear();
+    d_.partner.reset();
     d_.verdict.reason = fmt::format(
         "the best candidate, {}, does not lower the error of logs left out as it does that of its "
         "own",
         name);
-  }
-
-  bool HelpsOnValidateLogs() const {
-    return d_.chosen()->fitted.error.validate < d_.before.error.validate;
   }
 
   // By likelihoods, which are calibrated where noise is the whole residual of the best model.
@@ -365,12 +365,19 @@ class Session {
     SetProbabilities(pair.search.candidates, pair.search.Records());
     for (CandidateResult& c : pair.search.candidates) c.likelihood += pair.first_likelihood;
     Take(pair.search);
-    d_.partner = {std::move(pair.first), std::move(pair.equivalent), pair.first_is_main,
-                  std::move(pair.relatives), pair.first_corrects};
+    d_.partner = std::move(pair.first);
     d_.verdict.reason = fmt::format("no single candidate is enough, two are: {} beside this; {}",
                                     d_.partner->hypothesis.NameAtPlace(), d_.verdict.reason);
-    const bool one = d_.verdict.named.size() == 1 && d_.partner->equivalent.empty();
-    d_.verdict.kind = one ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
+    d_.verdict.kind = IsOnePair() ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
+  }
+
+  // Whether each cause of a pair is one; what corrects the model may be several things.
+  bool IsOnePair() const {
+    using Correction = Partner::Correction;
+    const Partner& first = *d_.partner;
+    const bool other_is_one = d_.verdict.named.size() == 1 && first.instead.empty();
+    return (first.equivalent.empty() || first.correction == Correction::kThis) &&
+           (other_is_one || first.correction == Correction::kOther);
   }
 
   // One effect at several places is one name: the data do not distinguish the places.
@@ -389,7 +396,7 @@ class Session {
       d_.verdict.reason = d_.noise_limited
                               ? "its residual shows " + ResidualInWords(d_.lack_of_fit, d_.criteria)
                               : "it passes all rules and is clearly better than every other effect";
-    } else if (d_.partner->equivalent.empty()) {
+    } else if (d_.partner->equivalent.empty() && d_.partner->instead.empty()) {
       d_.verdict.kind = Verdict::Kind::kNamed;
     }
     d_.verdict.reason += "; the data do not distinguish these places: " + places;

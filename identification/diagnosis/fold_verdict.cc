@@ -226,10 +226,23 @@ bool HelpsOnFolds(const FoldRecord& record, const Criteria& criteria) {
   return Helps(record, criteria.median_gain, criteria);
 }
 
+namespace {
+
 // What takes main_share of the squares takes half of the error.
-bool HoldsOnFolds(const FoldRecord& record, double possible, const Criteria& criteria) {
+double LeastGain(double possible, const Criteria& criteria) {
   const double half = 1 - std::sqrt(1 - criteria.main_share);
-  return Helps(record, std::min<double>(criteria.median_gain, half * possible), criteria);
+  return std::min<double>(criteria.median_gain, half * possible);
+}
+
+}  // namespace
+
+bool HoldsOnFolds(const FoldRecord& record, double possible, const Criteria& criteria) {
+  return Helps(record, LeastGain(possible, criteria), criteria);
+}
+
+bool HoldsOnValidateLogs(double before, double after, double floor, const Criteria& criteria) {
+  const double possible = std::max(0.0, 1 - floor / before);
+  return after <= (1 - LeastGain(possible, criteria) / 2) * before;
 }
 
 bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin,

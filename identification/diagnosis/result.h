@@ -131,11 +131,17 @@ struct CandidateResult {
 
 /// A cause that acts together with the one that the candidates are compared for.
 struct Partner {
+  /// Which of both only corrects a number of the model that is a little off: the other is the
+  /// cause.
+  enum class Correction { kNone, kThis, kOther };
+
   Hypothesis hypothesis;
-  std::vector<std::string> equivalent;      ///< effects that the data do not distinguish from it
-  bool main = true;                         ///< it takes more of the error than the other one
-  std::vector<std::string> relatives = {};  ///< of its family, that fit as well
-  bool correction = false;                  ///< a number of the model that is a little off
+  std::vector<std::string> equivalent = {};  ///< effects that the data do not distinguish from it
+  std::vector<std::string> relatives = {};   ///< the same, of its own family
+  /// Effects that could stand for the other one, beside those that the verdict names.
+  std::vector<std::string> instead = {};
+  bool main = true;  ///< it takes more of the error than the other one, or the other one corrects
+  Correction correction = Correction::kNone;
 };
 
 /// Two causes that were fitted together, and what both gain in twice the log-likelihood.

@@ -44,7 +44,7 @@ void AddSecondByFolds(const SearchContext& context, Diagnosis& d) {
   RaiseCeiling(d, first.NameAtPlace() + " and " + name, second.fitted.folds, second.fitted.error);
   d.verdict.reason = fmt::format("{} passes all rules, and beside it {}: {}", first.NameAtPlace(),
                                  name, d.verdict.reason);
-  d.partner = {first, {}};
+  d.partner = Partner{first};
 }
 
 }  // namespace continuum

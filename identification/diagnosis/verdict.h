@@ -85,6 +85,9 @@ bool HelpsOnFolds(const FoldRecord& record, const Criteria& criteria = {});
 /// The same of a cause that leaves more than noise. possible: the share of the error that noise
 /// leaves open; where that is small half of it is enough.
 bool HoldsOnFolds(const FoldRecord& record, double possible, const Criteria& criteria = {});
+/// Whether the pooled error of the validate logs falls by half of what the folds are asked for in
+/// the median. floor: what noise and step make.
+bool HoldsOnValidateLogs(double before, double after, double floor, const Criteria& criteria = {});
 
 /// Whether a is better than b in paired folds: by more than one standard error of the mean
 /// difference, in enough of them, and by more than a margin [share of b's error] in the median.

@@ -55,7 +55,7 @@ nlohmann::json PartnerJson(const Diagnosis& d) {
   return {{"effect", h.effect},
           {"variant", h.variant},
           {"equivalent", equivalent},
-          {"correction", d.partner->correction},
+          {"correction", d.partner->correction == Partner::Correction::kThis},
           {"probability", d.chosen()->probability},
           {"probability_is", "of both causes together"},
           {"parameters", ParametersOf(h, d.chosen()->fitted, d.before.fit.x.size())},
@@ -137,8 +137,12 @@ nlohmann::json CausesJson(const Diagnosis& d) {
   for (std::size_t i = 1; i < d.verdict.named.size(); ++i) add(d.candidates[d.verdict.named[i]]);
   for (const std::size_t i : d.verdict.siblings) add(d.candidates[i]);
   for (const CandidateResult& c : d.unlisted) add(c);
+  if (d.partner)
+    equivalent.insert(equivalent.end(), d.partner->instead.begin(), d.partner->instead.end());
   json.push_back(CauseJson(d, *d.chosen(), equivalent));
-  if (d.partner) json.insert(d.partner->main ? json.begin() : json.end(), PartnerJson(d));
+  if (!d.partner) return json;
+  json.front()["correction"] = d.partner->correction == Partner::Correction::kOther;
+  json.insert(d.partner->main ? json.begin() : json.end(), PartnerJson(d));
   return json;
 }
 

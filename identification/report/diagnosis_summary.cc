@@ -44,21 +44,29 @@ std::string CauseLines(const Diagnosis& d) {
     text += fmt::format("{} {}{}: {}", how, h.NameAtPlace(), note,
                         Plain(ValuesInWords(h, fitted, begin)));
   };
+  using Correction = Partner::Correction;
+  const auto add_partner = [&](const std::string& how) {
+    add(how, d.partner->hypothesis, d.chosen()->fitted, d.before.fit.x.size(), "");
+    for (const std::string& other : d.partner->equivalent) text += ", or " + other;
+    text += "\n";
+  };
+  const bool two = d.partner && d.chosen();
+  const bool corrects = two && d.partner->correction == Correction::kOther;
+  if (corrects) add_partner("cause    ");
   for (const std::size_t i : d.verdict.named) {
     const CandidateResult& c = d.candidates[i];
-    add(i == d.verdict.named.front() ? "cause    " : "   or    ", c.hypothesis, c.fitted,
-        c.first_extra(), "");
+    const std::string first = corrects ? "corrects " : "cause    ";
+    add(i == d.verdict.named.front() ? first : "   or    ", c.hypothesis, c.fitted, c.first_extra(),
+        "");
     text += "\n";
   }
   for (const CandidateResult& c : d.unlisted) {
     add("   or    ", c.hypothesis, c.fitted, c.first_extra(), " (not asked for)");
     text += "\n";
   }
-  if (!d.partner || !d.chosen()) return text;
-  add(d.partner->correction ? "corrects " : "and      ", d.partner->hypothesis, d.chosen()->fitted,
-      d.before.fit.x.size(), "");
-  for (const std::string& other : d.partner->equivalent) text += ", or " + other;
-  return text + "\n";
+  if (two && !corrects)
+    add_partner(d.partner->correction == Correction::kThis ? "corrects " : "and      ");
+  return text;
 }
 
 // Of the values that the model had already.

@@ -224,10 +224,12 @@ void ReadNames(const Case& c, const Diagnosis& d, Answer& a) {
     AddOnce(one->hypothesis.effect, a.named);
   }
   if (d.partner && d.chosen()) {
-    a.corrects = d.partner->correction;
     a.partner = {d.partner->hypothesis.effect};
     for (const auto& other : d.partner->equivalent) a.partner.push_back(other);
     for (const auto& other : d.partner->relatives) AddOnce(other, a.relatives);
+    for (const auto& other : d.partner->instead) AddOnce(other, a.named);
+    a.corrects = d.partner->correction != Partner::Correction::kNone;
+    if (d.partner->correction == Partner::Correction::kOther) std::swap(a.named, a.partner);
   }
   if (d.verdict.leading) a.leading = d.candidates[*d.verdict.leading].hypothesis.effect;
 }

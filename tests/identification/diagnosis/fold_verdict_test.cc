@@ -267,6 +267,13 @@ TEST(Judge, WhereNothingPassesItSaysWhatComesClosest) {
   EXPECT_GT(v.leading_share, 0.5);
 }
 
+TEST(HoldsOnValidateLogs, AsksForHalfOfWhatTheFoldsGiveInTheMedian) {
+  EXPECT_FALSE(HoldsOnValidateLogs(1, 0.96, 0.1));
+  EXPECT_TRUE(HoldsOnValidateLogs(1, 0.94, 0.1));
+  EXPECT_TRUE(HoldsOnValidateLogs(1, 0.96, 0.9));  // noise leaves no more than 10 % open
+  EXPECT_FALSE(HoldsOnValidateLogs(1, 0.99, 0.9));
+}
+
 TEST(HoldsOnFolds, AsksForHalfOfWhatNoiseLeavesOpen) {
   FoldRecord r = Good();
   r.after.assign(10, 0.97);
