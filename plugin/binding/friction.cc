@@ -52,8 +52,12 @@ void HardenModel(mjModel& m, const FrictionRow& row) {
 }
 
 // Solvers in the dual space have R on the diagonal of a matrix of their own.
-void AddToDual(mjData& d, int r, double change) {
+void AddToDual(const mjModel& m, mjData& d, int r, double change) {
   if (!d.efc_AR || d.nA == 0) return;
+  if (!mj_isSparse(&m)) {
+    d.efc_AR[r * (d.nefc + 1)] += change;
+    return;
+  }
   for (int k = d.efc_AR_rowadr[r]; k < d.efc_AR_rowadr[r] + d.efc_AR_rownnz[r]; ++k) {
     if (d.efc_AR_colind[k] == r) d.efc_AR[k] += change;
   }
@@ -111,7 +115,7 @@ void FrictionRows::Harden(const mjModel& m, mjData& d, const FrictionRow& row, i
   const double R = soft_R * (impedance / (1 - impedance)) * ((1 - kImpedance) / kImpedance);
   d.efc_R[r] = std::max(mjMINVAL, R), d.efc_D[r] = 1 / d.efc_R[r];
   impedance = kImpedance, d.efc_KBIP[4 * r + 3] = 0;
-  AddToDual(d, r, d.efc_R[r] - soft_R);
+  AddToDual(m, d, r, d.efc_R[r] - soft_R);
   if (d.nisland == 0) return;
   const int i = d.map_efc2iefc[r];
   d.iefc_R[i] = d.efc_R[r], d.iefc_D[i] = d.efc_D[r];
