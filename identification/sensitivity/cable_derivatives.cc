@@ -347,8 +347,8 @@ void CableDerivatives::AddNext(const mjModel& m, const Tangents& constraint,
     for (int s = first; law.base()[c] == 0 && s < end; ++s)  // a slack cable keeps its states
       next.row(law_.first_state + s) = numbers[Kind::kState].row(law_.first_state + s);
   }
-  for (const int dof : law.sliding().inertia().dofs())
-    next.row(law_.first_state + static_cast<int>(m.nwrap) + dof) = constraint.row(dof);
+  next.middleRows(law_.first_state + static_cast<Eigen::Index>(m.nwrap), m.nv) =
+      constraint.topRows(m.nv);
 }
 
 }  // namespace continuum

@@ -63,6 +63,23 @@ std::string Extension(std::span<const EffectInstance> effects) {
   return text + "  </extension>\n";
 }
 
+// Each instance is referred to by a body, one a body from the base on: MuJoCo's attach leaves
+// behind what nothing refers to.
+void AddReferences(std::span<const EffectInstance> effects, std::string& xml) {
+  std::size_t body = 0;
+  for (const EffectInstance& effect : effects) {
+    body = xml.find("<body ", body);
+    if (body == xml.npos) {
+      throw Error::Input("MJCF: instance '" + effect.name + "'", "as many bodies as instances",
+                         "no body left to refer to it");
+    }
+    body = xml.find('\n', body);
+    const std::string indent(xml.find_first_not_of(' ', body + 1) - body - 1, ' ');
+    xml.insert(body, "\n" + indent + "<plugin plugin=\"continuum." + effect.effect +
+                         "\" instance=\"" + effect.name + "\"/>");
+  }
+}
+
 std::string Sensors(std::span<const EffectSensor> sensors) {
   std::string text;
   for (const EffectSensor& sensor : sensors) {
@@ -336,6 +353,7 @@ std::string Mjcf::Text(std::span<const EffectInstance> effects,
   xml.resize(xml.find('\0'));
   const std::size_t root = xml.find('>', xml.find("<mujoco"));
   if (!sensors.empty()) xml.insert(xml.rfind("  </sensor>"), Sensors(sensors));
+  AddReferences(effects, xml);
   if (!effects.empty()) xml.insert(root + 1, Extension(effects));
   return xml;
 }

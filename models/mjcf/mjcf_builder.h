@@ -98,8 +98,8 @@ class Mjcf {
   mjsSensor* AddSensor(mjtSensor type, const std::string& name, mjtObj kind,
                        const std::string& object);
 
-  /// The file, with plugin instances under <extension> and sensors of them. Throws Error when it
-  /// does not compile.
+  /// The file, with plugin instances under <extension>, each referred to by a body, and sensors of
+  /// them. Throws Error when it does not compile.
   std::string Text(std::span<const EffectInstance> effects,
                    std::span<const EffectSensor> sensors = {}) const;
 

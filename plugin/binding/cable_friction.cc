@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "binding/applied_force.h"
+#include "binding/row_softness.h"
 #include "binding/tree_groups.h"
 #include "error.h"
 #include "mujoco_compat.h"
@@ -169,12 +170,14 @@ CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector
       cables_(MatchCables(m, config)),
       tension_rows_(m, cables_),
       geometry_(m, cables_),
-      sliding_(m, geometry_, tension_rows_.dofs()),
+      sliding_(m, geometry_),
+      trees_(m.ntree),
       native_(cables_.size()),
       base_(cables_.size()),
       last_(cables_.size()),
       force_(m.nv) {
   RequireAlone(m, config);
+  for (const int dof : geometry_.dof) trees_[m.dof_treeid[dof]] = true;
   for (int c = 0; c < geometry_.cables(); ++c) {
     int begin = geometry_.first[c] + 1;
     for (int s = begin; s < geometry_.first[c + 1]; ++s) {
@@ -216,6 +219,8 @@ bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage
   if (stage == Stage::kPassive) {
     geometry_.Update(m, d);
     Bands(geometry_.theta, band_);
+    if (std::any_of(p_.begin(), p_.end(), [](double p) { return p != 0; }))
+      SoftenContacts(m, d, trees_);
   } else if (Silent(m)) {
     return false;
   }
@@ -240,25 +245,15 @@ void CableFriction::Remember(const double* z) {
 // Constraint rows that pull cables: the tension that they give is that of the last step until it is
 // solved for.
 void CableFriction::FindRows(const mjModel& m, const mjData& d, const double* z) {
-  const auto rows = tension_rows_.At(m, d);
-  solved_.clear();
-  for (const TensionRow& row : rows) {
-    SolvedRow& solved = solved_.emplace_back();
-    solved.limit = row.limit;
-    solved.stiffness = d.efc_D[row.row], solved.J.assign(m.nv, 0);
-    row.Add(m, d, 1, solved.J.data());
-    const double* const kbip =
-        d.efc_KBIP + 4 * row.row;  // d.efc_aref comes later without actuators
-    const double speed = mju_dot(solved.J.data(), d.qvel, static_cast<int>(m.nv));
-    const double off = d.efc_pos[row.row] - d.efc_margin[row.row];
-    solved.reference = -kbip[1] * speed - kbip[0] * kbip[2] * off;
-    solved.on.assign(cables_.size(), 0);
-    for (std::size_t c = 0; c < cables_.size(); ++c)
-      solved.on[c] = row.On(cables_[c].tendon) / cables_[c].divisor;
+  rows_.Clear();
+  for (const TensionRow& row : tension_rows_.At(m, d)) {
+    SolvedRow& solved = rows_.Add(m, d, row.row, row.limit);
+    for (const Cable& cable : cables_) solved.on.push_back(row.On(cable.tendon) / cable.divisor);
   }
   for (std::size_t c = 0; c < cables_.size(); ++c) {
-    const bool pulled = std::any_of(solved_.begin(), solved_.end(),
-                                    [&](const SolvedRow& row) { return row.on[c] != 0; });
+    const auto all = rows_.all();
+    const bool pulled =
+        std::any_of(all.begin(), all.end(), [&](const SolvedRow& row) { return row.On(c) != 0; });
     if (pulled) base_[c] = std::max(z[geometry_.first[c]], kLeastPull);
   }
 }
@@ -268,8 +263,10 @@ void CableFriction::Solve(const mjModel& m, mjData& d, const double* z) {
   std::fill(ratio_.begin(), ratio_.end(), 1.0);
   if (!Collect(z)) return;
   AppliedForces(m, d, force_.data());
-  for (const int dof : sliding_.dofs()) force_[dof] += z[m.nwrap + dof];
-  sliding_.Solve({m, d, geometry_, native_, base_, last_, force_, solved_},
+  for (int dof = 0; dof < m.nv; ++dof) force_[dof] += z[m.nwrap + dof];
+  if (!tension_rows_.any()) rows_.Clear();
+  AddContactRows(m, d, rows_);
+  sliding_.Solve({m, d, geometry_, native_, base_, last_, force_, rows_.all()},
                  {bends_.data(), count_});
   Share(z);
 }
@@ -351,12 +348,10 @@ void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
       z[first] = kLeastPull;  // no longer fresh
     }
   }
-  force_.assign(d.qfrc_constraint, d.qfrc_constraint + m.nv);
-  if (tension_rows_.any()) {
-    for (const TensionRow& row : tension_rows_.At(m, d))
-      row.Add(m, d, -d.efc_force[row.row], force_.data());
-  }
-  for (const int dof : sliding_.dofs()) z[m.nwrap + dof] = force_[dof];
+  std::vector<int> rows;
+  for (const TensionRow& row : tension_rows_.At(m, d)) rows.push_back(row.row);
+  OtherConstraintForces(m, d, rows, force_);
+  std::copy(force_.begin(), force_.end(), z + m.nwrap);
 }
 
 std::string_view CableFriction::SensorPlace(const mjModel&, mjtObj kind, int id) const {

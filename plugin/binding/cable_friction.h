@@ -19,12 +19,15 @@ namespace continuum {
 /// The friction is found once all other forces are known (kAfterAll), for the end of the step. In
 /// kPassive, all that mj_inverse calls, every contact keeps the ratio of the last answer.
 ///
-/// MuJoCo finds the constraint forces afterwards, so those of the last step stand in for them. This
-/// costs where they change at once: contacts at rest may give way for that step. At 2 ms, 10 g to
-/// 1 kg pressed against a stop with 3 to 15 N more or less of load moved by less than 1e-6 m; at
-/// 0.5 and 1 ms some of these changes broke contacts away, by 1e-5 m and once by 1.2e-3 m (10 g).
-/// An arm of ten links of 5 g pulled against its joint limits is 3.5e-4 rad (rms) off at 2 ms
-/// against 50 us; 1.6e-4 without limits, 1.2e-4 without friction, and all shrink with the step.
+/// Contacts are solved together with the friction too: all rows of pyramidal and frictionless ones,
+/// the normal force of elliptic ones. MuJoCo finds the forces of all other rows (joint limits, dry
+/// friction, closed loops, the tangential forces of elliptic contacts) afterwards, so those of the
+/// last step stand in for them. This costs where they change at once: contacts of a cable at rest
+/// may give way for that step. At 2 ms, 10 g to 1 kg pressed against a joint's stop with 3 to 15 N
+/// more or less of load moved by less than 1e-6 m; at 0.5 and 1 ms some of these changes broke
+/// contacts away, by 1e-5 m and once by 1.2e-3 m (10 g). An arm of ten links of 5 g pulled against
+/// its joint limits is 3.5e-4 rad (rms) off at 2 ms against 50 us; 1.6e-4 without limits, 1.2e-4
+/// without friction, and all shrink with the step.
 ///
 /// The order of RK4 is lost with cable friction: the answer for the end of a step, also in its
 /// stages, is of first order in the step. Against small steps of the five-link snake arm its rms
@@ -33,9 +36,9 @@ namespace continuum {
 /// first stage's answer in the others does not mend it (2.6).
 ///
 /// States, as the last step left them: ρ = log(t_k/t_{k−1}) of the contact in front of each
-/// segment, for the first segment of a cable t_0 instead; and the constraint forces but for those
-/// of TensionRows. A slack cable keeps its states, so that a step without tension forgets nothing.
-/// Several instances see each other's states.
+/// segment, for the first segment of a cable t_0 instead; and the forces of the other rows. A slack
+/// cable keeps its states, so that a step without tension forgets nothing. Several instances see
+/// each other's states.
 class CableFriction : public BoundLaw {
  public:
   CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters);
@@ -99,11 +102,12 @@ class CableFriction : public BoundLaw {
   CableGeometry geometry_;
   std::vector<Group> groups_;
   CableSliding sliding_;
+  std::vector<bool> trees_;                    ///< [ntree] that a cable moves
   std::vector<double> band_, grown_;           ///< per segment: of its front contact, and exp of it
   std::vector<double> rho_, ratio_, tension_;  ///< ρ, exp of it; behind the contact [N]
   std::vector<double> native_;                 ///< t_0 of each cable but for constraints [N]
   std::vector<double> base_, last_;            ///< t_0 of each cable, now and before [N]
-  std::vector<SolvedRow> solved_;
+  SolvedRows rows_;
   std::vector<double> force_;
   std::vector<Bend> bends_;  ///< [groups], of which the first count_ are those of tight cables
   std::vector<int> active_;  ///< [groups] group of each bend

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
-
-#include "binding/tree_groups.h"
 
 namespace continuum {
 namespace {
@@ -35,65 +34,27 @@ bool Slides(const Bend& bend, double v) {
 
 }  // namespace
 
-CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry,
-                           std::span<const int> rows)
-    : row_base_(geometry.cables()) {
-  std::vector<std::vector<int>> of_cable, dofs(1, {rows.begin(), rows.end()});
-  for (int c = 0; c < geometry.cables(); ++c) {
-    const int* const all = geometry.dof.data();
-    of_cable.emplace_back(all + geometry.begin[geometry.first[c]],
-                          all + geometry.begin[geometry.first[c + 1]]);
-  }
-  island_of_ = rows.empty() ? TreeGroups(m, of_cable) : std::vector<int>(of_cable.size(), 0);
-  for (std::size_t c = 0; c < of_cable.size(); ++c) {
-    dofs.resize(std::max<std::size_t>(dofs.size(), island_of_[c] + 1));
-    auto& island = dofs[island_of_[c]];
-    island.insert(island.end(), of_cable[c].begin(), of_cable[c].end());
-  }
-  for (const auto& each : dofs) {
-    inertias_.emplace_back(m, each);
-    dofs_.insert(dofs_.end(), inertias_.back().dofs().begin(), inertias_.back().dofs().end());
-  }
-  least_.assign(geometry.segments(), 0);
-  for (int c = 0; c < geometry.cables(); ++c) AddPlaces(geometry, c);
-  work_.resize(m.nv), none_.resize(m.nv);
-}
-
-void CableSliding::AddPlaces(const CableGeometry& geometry, int c) {
-  const StepInertia& inertia = inertias_[island_of_[c]];
-  for (int l = geometry.begin[geometry.first[c]]; l < geometry.begin[geometry.first[c + 1]]; ++l)
-    place_.push_back(inertia.index(geometry.dof[l]));
-  int least = inertia.size();
-  for (int s = geometry.first[c + 1]; s-- > geometry.first[c];) {
-    for (int l = geometry.begin[s]; l < geometry.begin[s + 1]; ++l)
-      least = std::min(least, place_[l]);
-    least_[s] = least;
-  }
-}
+CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry)
+    : islands_(m, geometry), work_(m.nv), none_(m.nv) {}
 
 void CableSliding::Solve(const World& w, std::span<Bend> bends) {
   Guess(w, bends);
   GiveFresh(w, bends);
-  if (w.rows.empty()) {
-    SolveIslands(w, bends);
-    return;
-  }
-  Begin(w, 0);
-  do {
-    TakeRows(w);
-    SolveSides(w, bends);
-  } while (ReleaseRows(w));
-  for (std::size_t c = 0; c < row_base_.size(); ++c) {
-    if (row_base_[c].rows) w.base[c] = std::max(0.0, BaseOf(w, static_cast<int>(c)));
+  islands_.Link(w.m, w.geometry, w.rows);
+  SolveFree(w, bends);
+  for (int island = 0; island < islands_.size(); ++island) {
+    if (!islands_.rows(island).empty()) SolveWithRows(w, bends, island);
   }
 }
 
-// Those in which something is or comes near to rest in this step.
-void CableSliding::SolveIslands(const World& w, std::span<Bend> bends) {
+// Those without rows in which something is or comes near to rest in this step.
+void CableSliding::SolveFree(const World& w, std::span<Bend> bends) {
   bool changes = false;
+  rows_.End();
   for (std::size_t begin = 0, end = 0; begin < bends.size(); begin = end) {
-    const int island = island_of_[bends[begin].cable];
-    while (end < bends.size() && island_of_[bends[end].cable] == island) ++end;
+    const int island = islands_.of_cable(bends[begin].cable);
+    while (end < bends.size() && islands_.of_cable(bends[end].cable) == island) ++end;
+    if (!islands_.rows(island).empty()) continue;
     const std::span<Bend> some = bends.subspan(begin, end - begin);
     bool slide = std::all_of(some.begin(), some.end(),
                              [](const Bend& bend) { return Slides(bend, bend.speed); });
@@ -102,99 +63,73 @@ void CableSliding::SolveIslands(const World& w, std::span<Bend> bends) {
       slide = Slides(bends[g], bends[g].speed + change_[g]);
     if (slide) continue;
     Begin(w, island);
-    system_ = inertia().matrix(), push_ = w.force;
+    solver_.Begin(inertia().matrix(), inertia().size());
     SolveSides(w, some);
+  }
+}
+
+void CableSliding::SolveWithRows(const World& w, std::span<Bend> bends, int island) {
+  const auto here = [&](const Bend& bend) { return islands_.of_cable(bend.cable) == island; };
+  some_.clear();
+  std::copy_if(bends.begin(), bends.end(), std::back_inserter(some_), here);
+  const auto rough = [](const Bend& bend) { return bend.band > 0; };
+  if (std::none_of(some_.begin(), some_.end(), rough)) return;
+  Begin(w, island);
+  rows_.Begin(w.m, w.d, inertia(), w.rows, islands_.rows(island), w.native);
+  SolveSides(w, some_);
+  auto solved = some_.begin();
+  for (Bend& bend : bends) {
+    if (here(bend)) bend = *solved++;
+  }
+  for (std::size_t c = 0; c < w.base.size(); ++c) {
+    const int cable = static_cast<int>(c);
+    if (islands_.of_cable(cable) == island && rows_.base(cable).rows)
+      w.base[c] = std::max(0.0, BaseOf(w, cable));
   }
 }
 
 void CableSliding::Begin(const World& w, int island) {
   island_ = island;
-  inertias_[island].Update(w.m, w.d);
+  islands_.inertia(island).Update(w.m, w.d);
   follow_.resize(inertia().size()), velocity_.resize(inertia().size());
 }
 
-// (1a) of the rows that act.
-void CableSliding::TakeRows(const World& w) {
-  const int n = inertia().size();
-  const double h = w.m.opt.timestep;
-  matrix_ = inertia().matrix(), pushed_.assign(w.force.begin(), w.force.end());
-  for (std::size_t c = 0; c < row_base_.size(); ++c) {
-    RowBase& base = row_base_[c];
-    base.rows = std::any_of(w.rows.begin(), w.rows.end(),
-                            [&](const SolvedRow& row) { return row.on[c] != 0; });
-    if (!base.rows) continue;
-    base.constant = w.native[c];
-    base.slope.assign(n, 0);
-  }
-  for (const SolvedRow& row : w.rows) {
-    if (!row.acts) continue;
-    for (int i = 0; i < n; ++i) {
-      const double Ji = row.J[inertia().dofs()[i]];
-      if (Ji == 0) continue;
-      pushed_[inertia().dofs()[i]] += Ji * row.stiffness * row.reference;
-      for (int j = i; j < n; ++j)
-        matrix_[i * n + j] += row.stiffness * Ji * row.J[inertia().dofs()[j]];
-    }
-    for (std::size_t c = 0; c < row_base_.size(); ++c) {
-      if (row.on[c] == 0) continue;
-      row_base_[c].constant += row.on[c] * row.stiffness * row.reference;
-      for (int i = 0; i < n; ++i)
-        row_base_[c].slope[i] += row.on[c] * row.stiffness / h * row.J[inertia().dofs()[i]];
-    }
-  }
-  system_ = matrix_, push_ = pushed_;
-}
-
-// Limits that would have to pull the other way act no more; whether there was one.
-bool CableSliding::ReleaseRows(const World& w) {
-  bool some = false;
-  for (SolvedRow& row : w.rows) {
-    if (!row.acts || !row.limit) continue;
-    double change = 0;
-    for (int i = 0; i < inertia().size(); ++i) change += row.J[inertia().dofs()[i]] * velocity_[i];
-    row.acts = row.reference - change / w.m.opt.timestep >= 0;
-    some |= !row.acts;
-  }
-  return some;
-}
-
 double CableSliding::BaseOf(const World& w, int cable) const {
-  const RowBase& base = row_base_[cable];
-  if (w.rows.empty() || !base.rows) return w.base[cable];
-  double tension = base.constant;
-  for (int i = 0; i < inertia().size(); ++i) tension -= base.slope[i] * velocity_[i];
-  return tension;
+  const bool rows = !rows_.empty() && rows_.base(cable).rows;
+  return rows ? rows_.base(cable).At(velocity_) : w.base[cable];
 }
 
 void CableSliding::SolveSides(const World& w, std::span<Bend> bends) {
-  solver_.Begin(system_, inertia().size());
   give_way_ = kGiveWay;
   while (!Settle(w, bends) && give_way_ < kGiveWayMost) give_way_ *= kEasier;
   while (give_way_ > kGiveWay) {
     found_.assign(bends.begin(), bends.end());
+    const std::vector<bool> acting = rows_.Acting();
     give_way_ = std::max(kGiveWay, give_way_ / kEasier);
     if (Settle(w, bends)) continue;
     std::copy(found_.begin(), found_.end(), bends.begin());
+    rows_.Act(acting);
+    velocity_ = answer_.velocity;
     return;
   }
 }
 
 // Whether it found who slides which way.
 bool CableSliding::Settle(const World& w, std::span<Bend> bends) {
-  auto fewest = static_cast<int>(bends.size()) + 1;
+  auto fewest = static_cast<int>(bends.size() + rows_.size()) + 1;
   int patience = kPatience;
   for (int round = 0; round < kRounds; ++round) {
     Assign(w, bends);
-    Assemble(w, bends);
-    solver_.Solve(velocity_);
-    const int wrong = Judge(w, bends);
+    SolveVelocity(w, bends);
+    const int wrong = Judge(w, bends) + rows_.Judge(velocity_);
     if (wrong == 0) {
       answer_.give_way = give_way_, answer_.velocity = velocity_;
       return true;
     }
     patience = wrong < fewest ? kPatience : patience - 1;
     fewest = std::min(fewest, wrong);
-    Change(bends, patience < 0);
+    const bool one = patience < 0;
+    if (!rows_.Change(one) || !one) Change(bends, one);
   }
   return false;
 }
@@ -261,7 +196,7 @@ void CableSliding::Assign(const World& w, std::span<const Bend> bends) {
 int CableSliding::FirstAtRest(std::span<const Bend> bends) const {
   int first = inertia().size();
   for (const Bend& bend : bends) {
-    if (bend.side == 0) first = std::min(first, least_[bend.segment]);
+    if (bend.side == 0) first = std::min(first, islands_.least(bend.segment));
   }
   return first;
 }
@@ -271,16 +206,34 @@ void CableSliding::Follow(const World& w, const Bend& bend, double f,
                           std::span<double> follow) const {
   const CableGeometry& route = w.geometry;
   const int end = route.begin[route.first[bend.cable + 1]];
-  for (int l = route.begin[bend.segment]; l < end; ++l) follow[place_[l]] -= f * route.arm[l];
+  for (int l = route.begin[bend.segment]; l < end; ++l)
+    follow[islands_.place(l)] -= f * route.arm[l];
 }
 
-// (1) with t_g = constant − scale follow · (q̇⁺ − q̇), where follow collects the speeds of the bends
-// at rest from the base on.
-void CableSliding::Assemble(const World& w, std::span<const Bend> bends) {
+// Solves (1) with t_g = constant − scale follow · (q̇⁺ − q̇), where follow collects the speeds of the
+// bends at rest from the base on.
+void CableSliding::SolveVelocity(const World& w, std::span<const Bend> bends) {
+  const bool rows = !rows_.empty();
+  const int n = inertia().size(), first = rows ? 0 : FirstAtRest(bends);
+  if (rows) matrix_ = rows_.matrix();
+  const std::span<double> block = rows ? std::span<double>(matrix_) : solver_.Block(first);
+  for (int i = 0; i < n; ++i) {
+    const double push = rows ? rows_.push()[i] : 0;
+    velocity_[i] = w.m.opt.timestep * (w.force[inertia().dofs()[i]] + push);
+  }
+  Assemble(w, bends, first, block);
+  if (rows) {
+    SolveLinear(block, velocity_);
+  } else {
+    solver_.Solve(velocity_);
+  }
+}
+
+// What the bends add to the block of (1) from dof `first` on, and to its right-hand side.
+void CableSliding::Assemble(const World& w, std::span<const Bend> bends, int first,
+                            std::span<double> block) {
   const double h = w.m.opt.timestep;
-  const int n = inertia().size(), first = w.rows.empty() ? FirstAtRest(bends) : 0, rest = n - first;
-  const std::span<double> block = solver_.Block(first);
-  for (int i = 0; i < n; ++i) velocity_[i] = h * push_[inertia().dofs()[i]];
+  const int rest = inertia().size() - first;
   int cable = -1;
   double base = 0, constant = 0, scale = 0;
   bool follows = false;
@@ -290,8 +243,8 @@ void CableSliding::Assemble(const World& w, std::span<const Bend> bends) {
     const Part& part = parts_[g];
     if (bend.cable != cable) {
       cable = bend.cable;
-      slope = !w.rows.empty() && row_base_[cable].rows ? &row_base_[cable].slope : nullptr;
-      base = constant = slope ? row_base_[cable].constant : w.base[cable];
+      slope = !rows_.empty() && rows_.base(cable).rows ? &rows_.base(cable).slope : nullptr;
+      base = constant = slope ? rows_.base(cable).constant : w.base[cable];
       scale = 1, follows = slope;
       if (slope) follow_ = *slope;
     }
@@ -304,9 +257,10 @@ void CableSliding::Assemble(const World& w, std::span<const Bend> bends) {
     }
     for (int l = w.geometry.begin[bend.segment]; l < w.geometry.begin[bend.segment + 1]; ++l) {
       const double arm = h * w.geometry.arm[l];
-      velocity_[place_[l]] -= arm * (constant - base);
+      const int place = islands_.place(l);
+      velocity_[place] -= arm * (constant - base);
       if (!follows) continue;
-      double* const row = block.data() + (place_[l] - first) * rest;
+      double* const row = block.data() + (place - first) * rest;
       for (int j = 0; j < rest; ++j) row[j] -= arm * scale * follow_[first + j];
       for (int j = 0; slope && j < rest; ++j) row[j] += arm * (*slope)[j];
     }
@@ -321,7 +275,7 @@ int CableSliding::Judge(const World& w, std::span<Bend> bends) {
     const int s = bends[g].segment;
     if (g + 1 == bends.size() || bends[g + 1].cable != bends[g].cable) change = 0;
     for (int l = w.geometry.begin[s]; l < w.geometry.begin[s + 1]; ++l) {
-      change -= w.geometry.arm[l] * velocity_[place_[l]];
+      change -= w.geometry.arm[l] * velocity_[islands_.place(l)];
     }
     speed_[g] = bends[g].speed + change;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "binding/row_softness.h"
 #include "effects/all.h"
 #include "mujoco_compat.h"
 
@@ -49,14 +50,6 @@ void HardenModel(mjModel& m, const FrictionRow& row) {
   };
   assign(solref[0], 2 * m.opt.timestep), assign(solref[1], 1);
   assign(solimp[0], kDiscreteImpedance), assign(solimp[1], kDiscreteImpedance);
-}
-
-// Solvers in the dual space have R on the diagonal of a matrix of their own.
-void AddToDual(mjData& d, int r, double change) {
-  if (!d.efc_AR || d.nA == 0) return;
-  for (int k = d.efc_AR_rowadr[r]; k < d.efc_AR_rowadr[r] + d.efc_AR_rownnz[r]; ++k) {
-    if (d.efc_AR_colind[k] == r) d.efc_AR[k] += change;
-  }
 }
 
 bool Saturated(const mjData& d, int r) {
@@ -107,14 +100,9 @@ void FrictionRows::Harden(const mjModel& m, mjData& d, const FrictionRow& row, i
   double& impedance = d.efc_KBIP[4 * r + 2];
   if (impedance == kImpedance || IsDiscrete(m)) return;
   if (!std::equal(soft, soft + mjNIMP, solimp)) return;
-  const double soft_R = d.efc_R[r];
-  const double R = soft_R * (impedance / (1 - impedance)) * ((1 - kImpedance) / kImpedance);
-  d.efc_R[r] = std::max(mjMINVAL, R), d.efc_D[r] = 1 / d.efc_R[r];
+  const double R = d.efc_R[r] * (impedance / (1 - impedance)) * ((1 - kImpedance) / kImpedance);
+  SetSoftness(m, d, r, std::max(mjMINVAL, R));
   impedance = kImpedance, d.efc_KBIP[4 * r + 3] = 0;
-  AddToDual(d, r, d.efc_R[r] - soft_R);
-  if (d.nisland == 0) return;
-  const int i = d.map_efc2iefc[r];
-  d.iefc_R[i] = d.efc_R[r], d.iefc_D[i] = d.efc_D[r];
 }
 
 bool FrictionRows::IsAnotherPose(const mjModel& m, const mjData& d, const FrictionRow& row,

@@ -40,16 +40,20 @@ StepInertia::StepInertia(const mjModel& m, std::span<const int> dofs) : index_(m
 }
 
 void StepInertia::Update(const mjModel& m, const mjData& d) {
+  Mass(m, d, matrix_);
+  AddDamping(m, d);
+}
+
+void StepInertia::Mass(const mjModel& m, const mjData& d, std::vector<double>& mass) const {
   const int n = size();
-  matrix_.assign(n * n, 0);
+  mass.assign(n * n, 0);
   for (int i = 0; i < n; ++i) {
     const int begin = m.M_rowadr[dofs_[i]], end = begin + m.M_rownnz[dofs_[i]];
     for (int k = begin; k < end; ++k) {
       const int j = index_[m.M_colind[k]];
-      matrix_[j * n + i] = d.M[k];  // j ≤ i: MuJoCo's is the lower one
+      mass[j * n + i] = d.M[k];  // j ≤ i: MuJoCo's is the lower one
     }
   }
-  AddDamping(m, d);
 }
 
 void StepInertia::AddDamping(const mjModel& m, const mjData& d) {

@@ -24,6 +24,8 @@ class StepInertia {
   int index(int dof) const { return index_[dof]; }
   /// The upper triangle of M + h D [size · size].
   const std::vector<double>& matrix() const { return matrix_; }
+  /// The same of M alone.
+  void Mass(const mjModel& m, const mjData& d, std::vector<double>& mass) const;
 
  private:
   void AddDamping(const mjModel& m, const mjData& d);

@@ -1,24 +1,9 @@
 #include "binding/tension_row.h"
 
 #include <cmath>
-#include <set>
 
 namespace continuum {
 namespace {
-
-// Every degree of freedom that can move the tendon.
-void AddDofs(const mjModel& m, int tendon, std::set<int>& dofs) {
-  for (int w = m.tendon_adr[tendon]; w < m.tendon_adr[tendon] + m.tendon_num[tendon]; ++w) {
-    const int id = m.wrap_objid[w];
-    if (m.wrap_type[w] == mjWRAP_PULLEY) continue;
-    if (m.wrap_type[w] == mjWRAP_JOINT) dofs.insert(m.jnt_dofadr[id]);
-    if (m.wrap_type[w] == mjWRAP_JOINT) continue;
-    int body = m.wrap_type[w] == mjWRAP_SITE ? m.site_bodyid[id] : m.geom_bodyid[id];
-    for (; body > 0; body = m.body_parentid[body]) {
-      for (int k = 0; k < m.body_dofnum[body]; ++k) dofs.insert(m.body_dofadr[body] + k);
-    }
-  }
-}
 
 // d/dx of an equality's polynomial: L_1 − L_1(0) = Σ_k c_k x^k, x = L_2 − L_2(0).
 double Slope(const mjModel& m, const mjData& d, int equality) {
@@ -46,30 +31,16 @@ double TensionRow::On(int tendon) const {
   return 0;
 }
 
-void TensionRow::Add(const mjModel& m, const mjData& d, double f, double* force) const {
-  for (const auto& [tendon, tension] : shares) {
-    const int begin = m.ten_J_rowadr[tendon], end = begin + m.ten_J_rownnz[tendon];
-    for (int k = begin; k < end; ++k) force[m.ten_J_colind[k]] -= f * tension * d.ten_J[k];
-  }
-}
-
 TensionRows::TensionRows(const mjModel& m, std::span<const Cable> cables) : pulled_(m.ntendon) {
-  std::set<int> dofs;
   for (const Cable& cable : cables) {
     pulled_[cable.tendon] = true;
-    if (!m.tendon_limited[cable.tendon]) continue;
-    any_ = true;
-    AddDofs(m, cable.tendon, dofs);
+    any_ |= m.tendon_limited[cable.tendon] != 0;
   }
   for (int e = 0; e < m.neq; ++e) {
     if (m.eq_type[e] != mjEQ_TENDON) continue;
     const int first = m.eq_obj1id[e], second = m.eq_obj2id[e];
-    if (!Pulls(first) && !Pulls(second)) continue;
-    any_ = true;
-    AddDofs(m, first, dofs);
-    if (second >= 0) AddDofs(m, second, dofs);
+    any_ |= Pulls(first) || Pulls(second);
   }
-  dofs_.assign(dofs.begin(), dofs.end());
 }
 
 std::vector<TensionRow> TensionRows::At(const mjModel& m, const mjData& d) const {

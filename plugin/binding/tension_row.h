@@ -24,8 +24,6 @@ struct TensionRow {
 
   /// c_t of a tendon; 0: the row does not pull it.
   double On(int tendon) const;
-  /// force[nv] += f J.
-  void Add(const mjModel& m, const mjData& d, double f, double* force) const;
 };
 
 /// Finds such rows of the tendons of some cables.
@@ -35,8 +33,6 @@ class TensionRows {
 
   /// Whether the model has any such limit or equality.
   bool any() const { return any_; }
-  /// Degrees of freedom that they act on.
-  const std::vector<int>& dofs() const { return dofs_; }
   /// Those that exist at d.
   std::vector<TensionRow> At(const mjModel& m, const mjData& d) const;
 
@@ -45,7 +41,6 @@ class TensionRows {
 
   std::vector<bool> pulled_;  // [ntendon] has a cable of ours
   bool any_ = false;
-  std::vector<int> dofs_;
 };
 
 }  // namespace continuum

@@ -110,7 +110,31 @@ void MjcfDocument::SetConfig(const std::string& instance, const std::string& key
   SetAttribute(config, "value", value);
 }
 
+std::vector<pugi::xml_node> MjcfDocument::References(const std::string& instance) const {
+  std::vector<pugi::xml_node> references;
+  for (const pugi::xpath_node& plugin : Root().select_nodes("worldbody//body/plugin")) {
+    if (plugin.node().attribute("instance").value() == Escaped(instance))
+      references.push_back(plugin.node());
+  }
+  return references;
+}
+
+void MjcfDocument::ReplaceInstance(const std::string& instance, const EffectInstance& by) {
+  const auto references = References(instance);
+  for (pugi::xml_node body : references) {
+    SetAttribute(body, "plugin", "continuum." + by.effect);
+    SetAttribute(body, "instance", by.name);
+  }
+  EraseInstance(instance);
+  AddInstance(by);
+}
+
 void MjcfDocument::RemoveInstance(const std::string& instance) {
+  EraseInstance(instance);
+  for (pugi::xml_node body : References(instance)) body.parent().remove_child(body);
+}
+
+void MjcfDocument::EraseInstance(const std::string& instance) {
   const pugi::xml_node element = Instance(instance);
   pugi::xml_node plugin = element.parent();
   plugin.remove_child(element);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <pugixml.hpp>
 
@@ -19,15 +20,19 @@ class MjcfDocument {
   void AddInstance(const EffectInstance& effect);
   /// Sets `<config key= value=>` of an instance. Throws Error when there is no such instance.
   void SetConfig(const std::string& instance, const std::string& key, const std::string& value);
-  /// Removes an instance, and its `plugin` element when that has no other. Throws Error when there
-  /// is no such instance.
+  /// Removes an instance, and its `plugin` element when that has no other; bodies no longer refer
+  /// to it. Throws Error when there is no such instance.
   void RemoveInstance(const std::string& instance);
+  /// The same with an instance that bodies refer to in its place.
+  void ReplaceInstance(const std::string& instance, const EffectInstance& by);
 
   std::string Text() const;
 
  private:
   pugi::xml_node Root() const { return document_.child("mujoco"); }
   pugi::xml_node Instance(const std::string& name) const;
+  std::vector<pugi::xml_node> References(const std::string& instance) const;
+  void EraseInstance(const std::string& instance);
 
   pugi::xml_document document_;
 };

@@ -320,8 +320,7 @@ std::string ModelSpec::Xml(std::span<const Change> changes, std::span<const Effe
 
 ModelSpec ModelSpec::Replacing(const std::string& instance, const EffectInstance& by) const {
   MjcfDocument document(Xml());
-  document.RemoveInstance(instance);
-  document.AddInstance(by);
+  document.ReplaceInstance(instance, by);
   return Parse(document.Text(), folder_, name_);
 }
 

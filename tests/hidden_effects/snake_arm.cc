@@ -3,6 +3,7 @@
 
 #include "hidden_effects/robots.h"
 #include "models/annelida/planar_chain.h"
+#include "sim/model/mjcf_document.h"
 
 namespace continuum::hidden {
 namespace {
@@ -47,9 +48,10 @@ void Replace(std::string& text, const std::string& from, const std::string& to) 
 // The generated MJCF without its frictions, the viscous one of the joints as native damping.
 std::string Model() {
   const AnnelidaParameters p = Smooth();
-  std::string text = AnnelidaMjcf(p);
-  const std::size_t begin = text.find("<extension>"), end = text.find("</extension>");
-  text.erase(begin, end + std::string("</extension>").size() - begin);
+  MjcfDocument document(AnnelidaMjcf(p));
+  for (const char* const instance : {"joint_friction", "cable_friction"})
+    document.RemoveInstance(instance);
+  std::string text = document.Text();
   Replace(text, "<default>", "<default><joint damping=\"" + std::to_string(p.tau_mu) + "\"/>");
   return text;
 }

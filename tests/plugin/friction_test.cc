@@ -380,6 +380,29 @@ TEST_F(Friction, StribeckDampingIsNativeAndMustNotContradictTheJoint) {
               HasSubstr("joint 'q': expected native damping 0 or equal to tau_mu"));
 }
 
+// Solvers in the dual space keep a matrix of their own, in one form for each form of the Jacobian.
+TEST_F(Friction, EverySolverSwingsAndStopsAlike) {
+  const auto swing = [](const std::string& option) {
+    const auto m = Model("<mujoco><option timestep=\"2e-3\" integrator=\"implicitfast\" " + option +
+                         "/>" + Instance("coulomb", Key("joint", "*") + Key("tau_c", "1")) +
+                         R"(<worldbody><body><joint name="a" axis="0 1 0"/>
+        <geom type="capsule" size=".02" fromto="0 0 0 .3 0 0"/><body pos=".3 0 0">
+        <joint name="b" axis="0 1 0"/><geom type="capsule" size=".02" fromto="0 0 0 .3 0 0"/>
+        </body></body></worldbody></mujoco>)");
+    const auto d = Data(m);
+    RunUntil(m, d, 3);
+    EXPECT_LT(std::abs(d->qvel[0]), 1e-6) << option;
+    return d->qpos[0];
+  };
+  const double newton = swing("");
+  for (const std::string solver : {"PGS", "CG", "Newton\" noslip_iterations=\"3"}) {
+    for (const std::string jacobian : {"dense", "sparse"}) {
+      const std::string option = "solver=\"" + solver + "\" jacobian=\"" + jacobian + "\"";
+      EXPECT_NEAR(swing(option), newton, 1e-4) << option;
+    }
+  }
+}
+
 TEST_F(Friction, WarnsWhereItIsWeakOrAbsent) {
   static std::string warning;
   mju_user_warning = [](const char* text) { warning = text; };

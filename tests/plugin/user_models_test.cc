@@ -2,6 +2,8 @@
 // saved models, attached robots.
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -10,8 +12,10 @@
 namespace continuum {
 namespace {
 
+using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Pointwise;
 
 class UserModels : public testing::Engine {};
 
@@ -187,6 +191,49 @@ TEST_F(UserModels, AnInstanceFindsTheNamesThatWereAttachedWithIt) {
   mj_step(m.get(), d.get());
   ASSERT_EQ(d->nf, 6);
   for (int r = 0; r < 6; ++r) EXPECT_DOUBLE_EQ(d->efc_frictionloss[d->ne + r], .05);
+}
+
+// Robots of this project that have effects.
+std::vector<std::string> Robots() {
+  std::vector<std::string> robots;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(CONTINUUM_SOURCE "/models")) {
+    if (entry.path().extension() != ".xml") continue;
+    char error[1000] = "";
+    const testing::Owned<mjModel> m(mj_loadXML(entry.path().c_str(), nullptr, error, sizeof error));
+    EXPECT_TRUE(m) << entry.path() << error;
+    if (m && m->nplugin > 0) robots.push_back(entry.path());
+  }
+  return robots;
+}
+
+std::vector<double> Pulled(const mjModel& m) {
+  const testing::Owned<mjData> d(mj_makeData(&m));
+  for (int u = 0; u < m.nu; ++u)
+    d->ctrl[u] = .1 * (u + 1) * (m.actuator_ctrllimited[u] ? m.actuator_ctrlrange[2 * u + 1] : 1);
+  for (int k = 0; k < 20; ++k) mj_step(&m, d.get());
+  return {d->qpos, d->qpos + m.nq};
+}
+
+TEST_F(UserModels, EveryRobotKeepsItsEffectsWhenItIsAttached) {
+  const auto robots = Robots();
+  EXPECT_GE(robots.size(), 12U);
+  for (const std::string& file : robots) {
+    char error[1000] = "";
+    const testing::Owned<mjSpec> child(mj_parseXML(file.c_str(), nullptr, error, sizeof error));
+    ASSERT_TRUE(child) << file << error;
+    const testing::Owned<mjModel> alone(mj_compile(child.get(), nullptr));
+    ASSERT_TRUE(alone) << file << mjs_getError(child.get());
+    const testing::Owned<mjSpec> scene(mj_makeSpec());
+    scene->option = child->option;
+    mjsFrame* const frame = mjs_addFrame(mjs_findBody(scene.get(), "world"), nullptr);
+    ASSERT_TRUE(mjs_attach(frame->element, mjs_findBody(child.get(), "world")->element, "a_", ""))
+        << mjs_getError(scene.get());
+    const testing::Owned<mjModel> m(mj_compile(scene.get(), nullptr));
+    ASSERT_TRUE(m) << file << mjs_getError(scene.get());
+    EXPECT_EQ(m->nplugin, alone->nplugin) << file;
+    EXPECT_THAT(Pulled(*m), Pointwise(DoubleNear(1e-15), Pulled(*alone))) << file;  // rounding
+  }
 }
 
 TEST_F(UserModels, ANameThatIsThereAsWrittenIsNoPartOfAPrefix) {

@@ -117,6 +117,22 @@ TEST(MjcfDocument, APluginGoesWithItsLastInstance) {
   EXPECT_THROW(document.RemoveInstance("oil"), Error);
 }
 
+// MuJoCo's attach keeps what bodies refer to, and refuses a reference to nothing.
+TEST(MjcfDocument, BodiesReferToWhatTakesThePlaceOfAnInstance) {
+  const auto referring = [&](const std::string& to) {
+    return Replaced(kWithEffect, "<worldbody/>",
+                    "<worldbody><body><body name=\"b\">" + to + "</body></body></worldbody>");
+  };
+  MjcfDocument document(referring("<plugin plugin=\"continuum.coulomb\" instance=\"rub\"/>"));
+  document.ReplaceInstance("rub", {"viscous", "oil", {}});
+  EXPECT_THAT(
+      document.Text(),
+      HasSubstr("<body name=\"b\"><plugin plugin=\"continuum.viscous\" instance=\"oil\"/>"));
+  EXPECT_THAT(document.Text(), ::testing::Not(HasSubstr("rub")));
+  document.RemoveInstance("oil");
+  EXPECT_THAT(document.Text(), ::testing::Not(HasSubstr("<plugin")));
+}
+
 TEST(MjcfDocument, NamesAndValuesMayHoldCharactersOfXml) {
   const std::string joint = "q&<1>\"x\"'y'";
   const std::string arm =
