@@ -335,7 +335,10 @@ TEST(Check, TheExperimentsLimitsAreTold) {
   e.logs[1].train = false;
   EXPECT_NE(Find(Bad(CheckLogs(e)), "split"), nullptr);
   EXPECT_EQ(Find(Bad(CheckLogs(e)), "trial"), nullptr);
-  e.logs[1].input[0][500] += 0.1;  // another motion under the same name
+  e.logs[1].input[0][500] += 0.1;  // as of another logger
+  EXPECT_EQ(Find(Bad(CheckLogs(e)), "trial"), nullptr);
+  EXPECT_THAT(Report(CheckLogs(e)), HasSubstr("differ a little in clock or input"));
+  for (double& u : e.logs[1].input[0]) u = -u;  // another motion under the same name
   EXPECT_THAT(Find(Bad(CheckLogs(e)), "trial")->text,
               HasSubstr("'bench' and 'again' have one trial name"));
   EXPECT_THAT(Report(CheckLogs(e)), HasSubstr("no trial was recorded twice"));
