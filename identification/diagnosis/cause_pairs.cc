@@ -1,9 +1,8 @@
 #include "identification/diagnosis/cause_pairs.h"
-#include "identification/diagnosis/correction.h"
-#include "identification/diagnosis/look_logs.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <map>
@@ -12,6 +11,8 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "identification/diagnosis/correction.h"
+#include "identification/diagnosis/look_logs.h"
 
 namespace continuum {
 namespace {
@@ -129,10 +130,8 @@ class PairSearch {
   void Extend(const CandidateResult& first) {
     const auto inside = context_.options.Inside(DiagnosisStage::kSecondCause,
                                                 "beside " + Key(first.hypothesis), tried_.size());
-    const BaseFit base{&first.hypothesis.system, first.hypothesis.Free(), &first.fitted};
-    CandidateSearch search({context_.fitter, context_.noise, context_.sizes, inside}, base);
-    const Experiment& e = *context_.fitter.experiment;
-    search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))});
+    CandidateSearch search =
+        ScreenBeside({context_.fitter, context_.noise, context_.sizes, inside}, first);
     if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
     search.Fit(nullptr, kSeconds);
     if (!search.leading()) return;
@@ -334,6 +333,14 @@ class PairSearch {
 };
 
 }  // namespace
+
+CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult& first) {
+  const Experiment& e = *context.fitter.experiment;
+  CandidateSearch search(context,
+                         {&first.hypothesis.system, first.hypothesis.Free(), &first.fitted});
+  search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))});
+  return search;
+}
 
 PairsFound FindPair(const SearchContext& context, const CandidateSearch& single, bool of_step) {
   return PairSearch(context, single, of_step).Run();

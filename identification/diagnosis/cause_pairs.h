@@ -4,6 +4,9 @@
 
 namespace continuum {
 
+/// What every candidate could explain beside a first cause, which has to stay where it is.
+CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult& first);
+
 /// Two causes that act together.
 struct Pair {
   CandidateSearch search;  ///< for the second cause: its base has the first

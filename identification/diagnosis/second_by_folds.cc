@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "identification/diagnosis/cause_pairs.h"
 #include "identification/diagnosis/fold_comparison.h"
-#include "identification/diagnosis/look_logs.h"
 
 namespace continuum {
 namespace {
@@ -15,15 +15,13 @@ constexpr std::size_t kSeconds = 4;  // that are fitted
 // The candidates beside a first cause, with a verdict on them. options: of the search.
 Diagnosis Beside(const SearchContext& context, const CandidateResult& first, const Diagnosis& d) {
   const Experiment& e = *context.fitter.experiment;
-  const std::vector<Parameter> given = first.hypothesis.Free();
-  CandidateSearch search(context, {&first.hypothesis.system, given, &first.fitted});
-  search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))});
+  CandidateSearch search = ScreenBeside(context, first);
   search.Fit(nullptr, kSeconds);
   Diagnosis beside(e, first.hypothesis.system);
   beside.criteria = d.criteria, beside.noise = d.noise, beside.sizes = d.sizes;
   beside.folds = d.folds, beside.before = first.fitted;
   beside.candidates = std::move(search.candidates);
-  CompareByFolds(context.fitter, context.options, beside, given);
+  CompareByFolds(context.fitter, context.options, beside, first.hypothesis.Free());
   return beside;
 }
 

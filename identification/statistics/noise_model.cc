@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Dense>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -16,17 +17,30 @@ namespace {
 
 constexpr int kHighestOrder = 4;
 
+// [log] by how much each is later than the first of its group [s]; none where it has the same rows.
+using Shifts = std::vector<std::optional<double>>;
+
+Shifts ShiftsOf(const Experiment& e, const std::vector<std::vector<std::size_t>>& groups) {
+  Shifts shifts(e.logs.size());
+  for (const auto& group : groups) {
+    const Log& first = e.logs[group[0]];
+    for (const std::size_t l : group) {
+      if (!AreReplicates(first, e.logs[l])) shifts[l] = ShiftOf(e.logs[l], first);
+    }
+  }
+  return shifts;
+}
+
 // A channel of logs of one motion on the grid of the first.
 std::vector<OnGrid> OnOneGrid(const Experiment& e, const std::vector<std::size_t>& group,
-                              std::size_t channel) {
-  const Log& first = e.logs[group[0]];
+                              const Shifts& shifts, std::size_t channel) {
   std::vector<OnGrid> all;
   for (const std::size_t l : group) {
     const Log& log = e.logs[l];
-    if (AreReplicates(first, log)) {
-      all.push_back({log.measured[channel], std::vector<double>(log.rows(), 1)});
+    if (shifts[l]) {
+      all.push_back(Resampled(log, channel, e.logs[group[0]], *shifts[l]));
     } else {
-      all.push_back(Resampled(log, channel, first, ShiftOf(log, first)));
+      all.push_back({log.measured[channel], std::vector<double>(log.rows(), 1)});
     }
   }
   return all;
@@ -35,8 +49,8 @@ std::vector<OnGrid> OnOneGrid(const Experiment& e, const std::vector<std::size_t
 // What each replicate of one channel differs from their mean, at the size of one log's noise.
 std::vector<std::vector<double>> Deviations(const Experiment& e,
                                             const std::vector<std::size_t>& group,
-                                            std::size_t channel) {
-  const std::vector<OnGrid> logs = OnOneGrid(e, group, channel);
+                                            const Shifts& shifts, std::size_t channel) {
+  const std::vector<OnGrid> logs = OnOneGrid(e, group, shifts, channel);
   const std::size_t rows = e.logs[group[0]].rows(), n = group.size();
   std::vector<std::vector<double>> out(n, std::vector<double>(rows));
   const double share = 1 / static_cast<double>(n);
@@ -252,13 +266,14 @@ double NoiseByDifferences(const Experiment& e, const Pool& pool) {
 
 // groups: of replicates; empty: by sigma.
 ChannelNoise NoiseOfChannel(const Experiment& e, std::size_t c,
-                            const std::vector<std::vector<std::size_t>>& groups) {
+                            const std::vector<std::vector<std::size_t>>& groups,
+                            const Shifts& shifts) {
   ChannelNoise noise;
   noise.innovation = noise.rms = e.outputs[e.channels[c].output].sigma * e.channels[c].factor;
   if (!groups.empty()) {
     std::vector<std::vector<double>> samples;
     for (const auto& group : groups) {
-      for (auto& sample : Deviations(e, group, c)) samples.push_back(std::move(sample));
+      for (auto& sample : Deviations(e, group, shifts, c)) samples.push_back(std::move(sample));
     }
     noise = NoiseFrom(samples);
   }
@@ -274,12 +289,10 @@ Noise NoiseOf(const Experiment& e) {
   const Pool pool(e);
   Noise noise;
   const auto groups = ReplicateGroups(e);
-  for (const auto& group : groups) {
-    noise.pairs += group.size() * (group.size() - 1) / 2;
-    noise.resampled += std::count_if(group.begin(), group.end(), [&](std::size_t l) {
-      return !AreReplicates(e.logs[group[0]], e.logs[l]);
-    });
-  }
+  for (const auto& group : groups) noise.pairs += group.size() * (group.size() - 1) / 2;
+  const Shifts shifts = ShiftsOf(e, groups);
+  noise.resampled = std::count_if(shifts.begin(), shifts.end(),
+                                  [](const auto& shift) { return shift.has_value(); });
   noise.source = noise.pairs > 0      ? "replicates"
                  : HasSigmas(e, pool) ? "sigma"
                  : e.quasi_static     ? "not known"
@@ -288,7 +301,7 @@ Noise NoiseOf(const Experiment& e) {
   if (noise.source != "replicates" && noise.source != "sigma") return noise;
   double squares = 0, counted = 0;
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
-    noise.channel.push_back(NoiseOfChannel(e, c, groups));
+    noise.channel.push_back(NoiseOfChannel(e, c, groups, shifts));
     if (!pool.counts(c)) continue;
     const ChannelNoise& one = noise.channel.back();
     const double total = std::hypot(one.rms, one.offset) / pool.scale(c);
