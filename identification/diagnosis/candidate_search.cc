@@ -200,7 +200,7 @@ void CandidateSearch::Screen(const std::vector<EquationErrors>& views,
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
   base_squares_ = residual.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
-  for (const EquationErrors& view : views) LookAtForces(view);
+  for (const EquationErrors& view : views) LookAtForces(view, rival);
   if (rival) KeepThoseThatMayOutdo(*rival);
   ProbeAll(residual, !views.empty() && views.front().any());
   std::vector<std::vector<Probe>> probes;
@@ -226,23 +226,25 @@ void CandidateSearch::Screen(const std::vector<EquationErrors>& views,
 }
 
 // First order is blind where an effect is large or the base far off; the missing force is not. It
-// decides who comes first.
-void CandidateSearch::LookAtForces(const EquationErrors& view) {
+// decides who comes first, by what the best explains, the rival among them.
+void CandidateSearch::LookAtForces(const EquationErrors& view, const CandidateResult* rival) {
   options_.Say(DiagnosisStage::kScreen, "missing force");
   if (!view.any()) return;
-  std::vector<std::optional<EquationStart>> found(candidates.size());
-  ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
-    const CandidateResult& c = candidates[i];
-    if (StopRequested() || fitter_.TimeIsOver()) return;
+  const auto look = [&](const CandidateResult& c) -> std::optional<EquationStart> {
+    if (StopRequested() || fitter_.TimeIsOver()) return {};
     try {
       const Problem problem = ProblemOf(c, *fitter_.experiment);
-      found[i] = c.force_promise > 0 ? view.From(c.hypothesis, problem, c.force_start)
-                                     : view.StartOf(c.hypothesis, problem);
+      return c.force_promise > 0 ? view.From(c.hypothesis, problem, c.force_start)
+                                 : view.StartOf(c.hypothesis, problem);
     } catch (const Error&) {
-      return;  // no machine has such parameters, or it diverges: the other views are left
+      return {};  // no machine has such parameters, or it diverges: the other views are left
     }
-  });
-  double most = 0;
+  };
+  std::vector<std::optional<EquationStart>> found(candidates.size());
+  ParallelFor(candidates.size(),
+              [&](std::size_t, std::size_t i) { found[i] = look(candidates[i]); });
+  const auto best = rival ? look(*rival) : std::nullopt;
+  double most = best ? best->share : 0;
   for (const auto& one : found) most = std::max(most, one ? one->share : 0);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!found[i]) continue;

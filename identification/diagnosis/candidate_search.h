@@ -103,7 +103,7 @@ class CandidateSearch {
   void ProbeAll(const ProjectedResidual& residual, bool sees_forces);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);
-  void LookAtForces(const EquationErrors& view);
+  void LookAtForces(const EquationErrors& view, const CandidateResult* rival);
   double MostExplained() const;
   bool IsWorthAFit(const CandidateResult& c, double needed) const;
   double Threshold() const;

@@ -22,6 +22,15 @@ using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
 constexpr double kNothing = 1e-6;  // of the missing force
+// Steps of the model: what a law changes in a force is seen in a few steps from the measured state
+// as well as in many. To the engine a delay shorter than a step is a whole one.
+constexpr double kCoarse = 5;
+
+bool HasDelay(const Problem& problem) {
+  const auto& parameters = problem.parameters();
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [](const FreeParameter& p) { return p.change.attribute == "delay"; });
+}
 
 }  // namespace
 
@@ -33,6 +42,8 @@ EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector
   for (const MissingForce& joint : joints)
     log_.insert(log_.end(), joint.log.begin(), joint.log.end());
   missing_ = units_.Of(joints);
+  coarse_step_ = kCoarse * base.step();
+  coarse_ = Stacked(base, x_, 0, coarse_step_);
   columns_ = Matrix::Zero(missing_.size(), x_.size());
   ParallelFor(static_cast<std::size_t>(x_.size()), [&](std::size_t thread, std::size_t i) {
     if (base.parameters()[i].IsStart()) return;
@@ -40,7 +51,7 @@ EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector
     const double step = base.StepOf(x_, i, 1e-3);
     Vector moved = x_;
     moved[k] += step;
-    const Vector column = (Stacked(base, moved, thread) - missing_) / step;
+    const Vector column = Change(base, moved, thread) / step;
     if (column.allFinite() && column.norm() * std::abs(step) > 1e-12) columns_.col(k) = column;
   });
   bounds_ = BoundsOf(base);
@@ -63,8 +74,14 @@ EquationErrors::Solved EquationErrors::Beside(const Matrix& D, const std::vector
   return {y.head(x_.size()), y.tail(D.cols()), missing_ + J * (y - begin)};
 }
 
-Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::size_t thread) const {
-  return units_.Of(MissingForces(problem, x, use_, thread));
+Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::size_t thread,
+                               double step) const {
+  return units_.Of(MissingForces(problem, x, use_, thread, step));
+}
+
+Vector EquationErrors::Change(const Problem& problem, const Vector& to, std::size_t thread) const {
+  return HasDelay(problem) ? Vector(Stacked(problem, to, thread) - missing_)
+                           : Vector(Stacked(problem, to, thread, coarse_step_) - coarse_);
 }
 
 std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
@@ -103,7 +120,7 @@ std::optional<EquationStart> EquationErrors::AtShare(const Hypothesis& h, const 
     const std::size_t only = amplitudes[static_cast<std::size_t>(a)];
     std::vector<double> own = start;
     for (const std::size_t i : amplitudes) own[i] = h.AtShare(i, start[i], i == only ? share : 0);
-    const Vector d = (Stacked(problem, Append(x_, own)) - missing_) / share;
+    const Vector d = Change(problem, Append(x_, own)) / share;
     if (d.allFinite() && d.norm() > kNothing * missing_.norm()) D.col(a) = d;
     sign.push_back(h.OneSign(only) ? 1 : 0);
   }

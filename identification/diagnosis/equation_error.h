@@ -57,8 +57,11 @@ class EquationErrors {
     return std::max(0.0, force_.squaredNorm() - s.left.squaredNorm());
   }
   std::vector<double> PerLog(const Problem::Vector& r) const;
-  Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x,
-                          std::size_t thread = 0) const;
+  Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x, std::size_t thread = 0,
+                          double step = 0) const;
+  /// What moving the parameters from x_, beside a candidate's own, does to f.
+  Problem::Vector Change(const Problem& problem, const Problem::Vector& to,
+                         std::size_t thread = 0) const;
   std::optional<EquationStart> AtShare(const Hypothesis& hypothesis, const Problem& problem,
                                        std::size_t start, double share) const;
 
@@ -68,6 +71,8 @@ class EquationErrors {
   StackedForces units_;
   std::vector<std::size_t> log_;  // of every number
   Problem::Vector missing_;       // f
+  Problem::Vector coarse_;        // the same in steps of coarse_step_
+  double coarse_step_ = 0;        // [s]
   Problem::Vector force_;         // f, less what the parameters explain of it
   Problem::Matrix columns_;       // [parameter] ∂f/∂p
   Box bounds_;                    // of the parameters

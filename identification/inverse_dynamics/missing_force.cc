@@ -31,12 +31,14 @@ std::optional<std::vector<int>> OtherJoints(const mjModel& m,
 // One log, as the model sees it, but for the rows at its ends.
 class LogForces {
  public:
-  LogForces(const Problem& problem, const Problem::Vector& x, std::size_t log, std::size_t thread)
+  LogForces(const Problem& problem, const Problem::Vector& x, std::size_t log, std::size_t thread,
+            double step)
       : e_(problem.MeasuredBy(x, log)),
         log_(problem.experiment().logs[log]),
         index_(log),
         machine_(problem.system(thread).Build(problem.ChangesFor(x, log))),
         fits_(QuarticsOf(log_.time)) {
+    if (step > 0) machine_.model->opt.timestep = step;
     others_ = OtherJoints(*machine_.model, JointChannels(e_, *machine_.model)).value();
     measured_ = MotionsOf(e_, *machine_.model, log_, fits_);
     for (const auto& [joint, motion] : measured_) {
@@ -200,14 +202,15 @@ bool MeasuresEveryJoint(const Problem& problem, std::size_t log) {
 }
 
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
-                                        const std::vector<bool>& use, std::size_t thread) {
+                                        const std::vector<bool>& use, std::size_t thread,
+                                        double step) {
   const Experiment& e = problem.experiment();
   std::vector<MissingForce> all;
   for (std::size_t l = 0; l < use.size(); ++l) {
     const Log& log = e.logs[l];
     if (!use[l] || log.rows() < kQuarticRows) continue;
     if (e.quasi_static || !EveryRowIsThere(e, problem.system().model(), log)) return {};
-    if (!LogForces(problem, x, l, thread).AddTo(all)) return {};
+    if (!LogForces(problem, x, l, thread, step).AddTo(all)) return {};
   }
   return all;
 }

@@ -1,8 +1,10 @@
 #include "sim/model/model_spec.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "engine.h"
@@ -54,6 +56,28 @@ Owned<mjModel> Compile(mjSpec& spec, const std::string& name) {
                        Decimal(model->opt.timestep));
   }
   return model;
+}
+
+// For names and sizes: textures that MuJoCo paints itself take longest, and are not looked at.
+Owned<mjModel> CompileWithoutPaint(mjSpec& spec, const std::string& name) {
+  std::vector<std::pair<mjsTexture*, std::array<int, 2>>> sizes;
+  for (mjsElement* e = mjs_firstElement(&spec, mjOBJ_TEXTURE); e; e = mjs_nextElement(&spec, e)) {
+    mjsTexture* const t = mjs_asTexture(e);
+    if (t->builtin == mjBUILTIN_NONE) continue;
+    sizes.push_back({t, {t->width, t->height}});
+    t->width = std::min(t->width, 1), t->height = std::min(t->height, 1);
+  }
+  const auto restore = [&] {
+    for (auto& [t, size] : sizes) t->width = size[0], t->height = size[1];
+  };
+  try {
+    Owned<mjModel> model = Compile(spec, name);
+    restore();
+    return model;
+  } catch (...) {
+    restore();
+    throw;
+  }
 }
 
 bool IsPlugin(const Change& change) { return change.target.starts_with(kPluginTarget); }
@@ -112,7 +136,7 @@ ModelSpec ModelSpec::Load(const std::filesystem::path& model) {
   char error[1000] = "";
   system.spec_.reset(mj_parseXML(model.c_str(), nullptr, error, sizeof error));
   if (!system.spec_) throw Error::Input(system.name_, OneLine(error));
-  system.compiled_ = Compile(*system.spec_, system.name_);
+  system.compiled_ = CompileWithoutPaint(*system.spec_, system.name_);
   return system;
 }
 
@@ -126,7 +150,7 @@ ModelSpec ModelSpec::Parse(const std::string& xml, const std::filesystem::path& 
   system.spec_.reset(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
   if (!system.spec_) throw Error::Input(system.name_, OneLine(error));
   mjs_setString(system.spec_->modelfiledir, system.folder_.c_str());
-  system.compiled_ = Compile(*system.spec_, system.name_);
+  system.compiled_ = CompileWithoutPaint(*system.spec_, system.name_);
   return system;
 }
 

@@ -114,6 +114,27 @@ TEST_F(ByEquationTest, TheTruthExplainsTheMissingForceAndAnotherDoesNot) {
   EXPECT_FALSE(ClearlyBetterByEquation(coulomb, payload));
 }
 
+// What a payload or friction changes is the same to 5 % in a fifth of the steps.
+TEST_F(ByEquationTest, FewStepsFromRowToRowShowWhatALawChanges) {
+  const Experiment e = Logs({}, "payload, coulomb");
+  const ModelSpec system = Model();
+  const Problem base(e, system);
+  const double step = base.step();
+  const auto forces = [&](const Problem& problem, const Problem::Vector& x, double by) {
+    const auto joint = MissingForces(problem, x, problem.TrainLogs(), 0, by).front().force;
+    return Problem::Vector(Problem::Vector::Map(joint.data(), std::ssize(joint)));
+  };
+  for (const auto& [effect, size] : {std::pair("payload", 0.05), std::pair("coulomb", 0.02)}) {
+    const CandidateResult c = With(e, system, effect, size);
+    const Problem problem(e, c.hypothesis.system, c.hypothesis.Free());
+    const auto change = [&](double by) {
+      return Problem::Vector(forces(problem, c.fitted.fit.x, by) - forces(base, base.Start(), by));
+    };
+    const Problem::Vector fine = change(step), coarse = change(5 * step);
+    EXPECT_LT((coarse - fine).norm(), 0.05 * fine.norm()) << effect;
+  }
+}
+
 TEST_F(ByEquationTest, OfSeveralShapesItFindsTheBest) {
   Pendulum truth;
   truth.tau_c = 0.05;

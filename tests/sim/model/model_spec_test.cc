@@ -198,6 +198,24 @@ TEST_F(Changed, ABodyKeepsTheInertiaOfAGeomThatIsOnlySeen) {
   EXPECT_THAT(copy.Named("geom:seen"), ::testing::ElementsAre(HasSubstr("seen")));
 }
 
+// Textures are painted for whoever looks at them, not for names.
+TEST_F(Changed, PaintedTexturesKeepTheirSizes) {
+  std::string xml = kArm;
+  xml.insert(xml.find("<worldbody>"),
+             "<asset><texture name='sky' type='skybox' builtin='gradient' width='64' height='64'/>"
+             "<texture name='chess' type='2d' builtin='checker' width='32' height='16'/></asset>");
+  const ModelSpec arm = Arm(xml);
+  const ModelSpec copy = arm;
+  for (const ModelSpec* const spec : {&arm, &copy}) {
+    const ModelAndData machine = spec->Build();
+    EXPECT_EQ(machine.model->tex_width[0], 64);
+    EXPECT_EQ(machine.model->tex_height[0], 6 * 64);
+    EXPECT_EQ(machine.model->tex_width[1], 32);
+    EXPECT_EQ(machine.model->tex_height[1], 16);
+    EXPECT_THAT(spec->Xml(), HasSubstr("width=\"32\" height=\"16\""));
+  }
+}
+
 TEST_F(Changed, AShortLagIsNearlyNone) {
   const ModelSpec arm = Arm();
   for (const double lag : {0.0, 1e-9}) {
