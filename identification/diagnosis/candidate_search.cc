@@ -403,6 +403,11 @@ LackOfFit CandidateSearch::LackOf(CandidateResult* c) const {
 // What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly,
 // and a fit may end in another local minimum.
 bool CandidateSearch::FallsWithStep(CandidateResult& c) const {
+  if (!c.falls_with_step) c.falls_with_step = FitsBetterAtFineStep(c);
+  return *c.falls_with_step;
+}
+
+bool CandidateSearch::FitsBetterAtFineStep(CandidateResult& c) const {
   options_.Say(DiagnosisStage::kFits, "at a fine step, " + c.hypothesis.Name());
   const Problem fine = AtQuarter(ProblemOf(c, *fitter_.experiment));
   // By the directions that are known, then by those at the fine step: they take a far finer one.

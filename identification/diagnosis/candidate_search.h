@@ -112,15 +112,18 @@ class CandidateSearch {
   std::vector<CandidateResult*> NextWave(double needed, std::size_t most, std::size_t& next);
   bool ReachesNoise(const Fitted& fitted) const;
   bool TakesMainShare(const Fitted& fitted) const;
+  bool IsEnough(const Fitted& fitted) const;
   void SayFit(const CandidateResult& c, double needed) const;
-  void FitOne(CandidateResult& c, double rival) const;
+  static constexpr std::size_t kStartsTried = 2;
+  void FitOne(CandidateResult& c, double rival, std::size_t tried = kStartsTried) const;
   std::vector<CandidateResult*> MostPromising();
   static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,
                                                        const CandidateResult& c);
   bool RefitFromStart(CandidateResult& c) const;
   bool RefitFrom(const Problem& problem, CandidateResult& c,
                  const std::vector<Problem::Vector>& starts) const;
-  /// Whether they do, by the directions that both fits know.
+  bool FitsBetterAtFineStep(CandidateResult& c) const;
+  /// Whether its squares above the noise fall, by the directions that both fits know.
   bool FallsTo(const CandidateResult& c, const Fitted& finer) const;
   void Continue(const Problem& problem, CandidateResult& c, double rival) const;
   void WidenRanges(CandidateResult& c, double rival) const;
@@ -128,7 +131,8 @@ class CandidateSearch {
   void FinishAbandoned();
   std::vector<Problem::Vector> OtherStarts(const CandidateResult& c, std::size_t best,
                                            const ProjectedResidual& residual) const;
-  FitStart BestOf(const Problem& problem, const std::vector<Problem::Vector>& starts) const;
+  FitStart BestOf(const Problem& problem, const std::vector<Problem::Vector>& all,
+                  std::size_t tried = kStartsTried) const;
   static double StepReduction(const Fitted& fitted);
   void CompleteCompetitive(double best);
   bool CompleteOne(CandidateResult& c, double best) const;

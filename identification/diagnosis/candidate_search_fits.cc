@@ -18,7 +18,27 @@
 namespace continuum {
 namespace {
 constexpr std::size_t kWave = 4;  // candidates that are fitted beside each other
+
+// Without those that are next to one before them, in scales of the parameters: two views of the
+// missing force often say the same.
+std::vector<Problem::Vector> WithoutRepeats(const Problem& problem,
+                                            const std::vector<Problem::Vector>& starts) {
+  constexpr double kSame = 0.01;
+  Problem::Vector scale(std::ssize(problem.parameters()));
+  for (Eigen::Index i = 0; i < scale.size(); ++i)
+    scale[i] = problem.parameters()[static_cast<std::size_t>(i)].scale;
+  std::vector<Problem::Vector> kept;
+  for (const Problem::Vector& start : starts) {
+    const Problem::Vector x = problem.Clamp(start);
+    const bool repeats = std::any_of(kept.begin(), kept.end(), [&](const Problem::Vector& other) {
+      return (x - other).cwiseQuotient(scale).cwiseAbs().maxCoeff() < kSame;
+    });
+    if (!repeats) kept.push_back(x);
+  }
+  return kept;
 }
+
+}  // namespace
 
 double CandidateSearch::Threshold() const {
   return FitThreshold(MostExplained(), base_squares_, noise_.known(), criteria_);
@@ -77,6 +97,7 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
   const CandidateResult* const known = beside ? beside->leading() : nullptr;
   if (beside) needed = std::max(needed, UnlistedThreshold(beside->MostExplained(), criteria_));
   double rival = known ? known->fitted.fit.cost : kInfinity;
+  bool reached = known && IsEnough(known->fitted);
   const double alike =
       0.5 * (StepReduction(*base_.fitted) + criteria_.structure_least * base_.fitted->cost);
   std::size_t next = 0;
@@ -87,7 +108,7 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
     SayFit(*wave.front(), needed);
     ParallelFor(wave.size(), [&](std::size_t, std::size_t i) {
       try {
-        FitOne(*wave[i], rival + alike);
+        FitOne(*wave[i], rival + alike, reached ? 1 : kStartsTried);
       } catch (const Error& error) {
         wave[i]->error = error.what();
       }
@@ -97,8 +118,9 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
     for (const CandidateResult* const c : wave) {
       if (!noise_.known() || !c->was_fitted) continue;
       rival = std::min(rival, c->fitted.fit.cost);
-      if (ReachesNoise(c->fitted) || TakesMainShare(c->fitted))
-        needed = std::max(needed, FitThresholdAtNoise(MostExplained(), criteria_));
+      if (!IsEnough(c->fitted)) continue;
+      reached = true;
+      needed = std::max(needed, FitThresholdAtNoise(MostExplained(), criteria_));
     }
   }
   FinishAbandoned();
@@ -157,13 +179,17 @@ bool CandidateSearch::TakesMainShare(const Fitted& fitted) const {
   return ShareOf({"", 0, Likelihood(fitted)}, base) >= criteria_.main_share;
 }
 
+bool CandidateSearch::IsEnough(const Fitted& fitted) const {
+  return ReachesNoise(fitted) || TakesMainShare(fitted);
+}
+
 // Where no fit comes near the noise and what the time step adds, those that were given up as too
 // far behind go on to their end, the likeliest first: what a fit gains early says little where a
 // swing is out of phase with the measured one. Until one of this search comes near.
 void CandidateSearch::FinishAbandoned() {
   if (!noise_.known()) return;
   for (const CandidateResult& c : candidates) {
-    if (c.was_fitted && (ReachesNoise(c.fitted) || TakesMainShare(c.fitted))) return;
+    if (c.was_fitted && IsEnough(c.fitted)) return;
   }
   std::size_t tried = 0;
   for (CandidateResult& c : candidates) {
@@ -260,15 +286,16 @@ bool CandidateSearch::RefitFrom(const Problem& problem, CandidateResult& c,
     Fitted fitted = fitter_.Fit(problem, BestOf(problem, starts), c.fitted.fit.cost);
     if (!(fitted.fit.cost < c.fitted.fit.cost - criteria_.still_gains)) return false;
     c.fitted = std::move(fitted);
-    c.at_quarter_step.reset(), c.at_quarter_x.reset();
+    c.at_quarter_step.reset(), c.at_quarter_x.reset(), c.falls_with_step.reset();
     return true;
   } catch (const Error&) {
     return false;  // the fit that is there stands
   }
 }
 
-// From the start that is best after a few iterations, of the screen or of the hypothesis.
-void CandidateSearch::FitOne(CandidateResult& c, double rival) const {
+// From the start that is best after a few iterations, of the screen or of the hypothesis. tried: so
+// many of them; what is hardly a rival any more needs no second one.
+void CandidateSearch::FitOne(CandidateResult& c, double rival, std::size_t tried) const {
   const Problem problem = ProblemOf(c, *fitter_.experiment);
   std::vector<Problem::Vector> starts = c.other_starts;
   if (c.start.size() > 0) starts.insert(starts.begin(), c.start);
@@ -281,7 +308,7 @@ void CandidateSearch::FitOne(CandidateResult& c, double rival) const {
     const auto more = StartsFromPlain(plain, c.hypothesis);
     starts.insert(starts.end(), more.begin(), more.end());
   }
-  c.fitted = fitter_.Fit(problem, BestOf(problem, starts), rival);
+  c.fitted = fitter_.Fit(problem, BestOf(problem, starts, tried), rival);
   c.was_fitted = true;
   Continue(problem, c, rival);
   WidenRanges(c, rival);
@@ -328,9 +355,10 @@ CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
 // The start that is best after a few iterations, of those that are best as they are, in the logs
 // for a look.
 FitStart CandidateSearch::BestOf(const Problem& problem,
-                                 const std::vector<Problem::Vector>& starts) const {
-  constexpr std::size_t kTried = 2;
+                                 const std::vector<Problem::Vector>& all,
+                                 std::size_t tried) const {
   constexpr double kNear = 2;  // times the best cost
+  const std::vector<Problem::Vector> starts = WithoutRepeats(problem, all);
   if (starts.size() == 1) return {starts.front()};
   FitOptions options{4, 1e-3};
   options.idle = true, options.rough = true, options.until = fitter_.until;
@@ -338,10 +366,10 @@ FitStart CandidateSearch::BestOf(const Problem& problem,
   const auto logs = LogsForALook(*fitter_.experiment);
   std::vector<std::pair<double, const Problem::Vector*>> order;
   for (const auto& start : starts)
-    order.emplace_back(CostAt(problem, problem.Clamp(start), logs, options), &start);
+    order.emplace_back(CostAt(problem, start, logs, options), &start);
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  if (order.size() > kTried) order.resize(kTried);
+  if (order.size() > tried) order.resize(tried);
   double best_cost = kInfinity;
   FitStart best;
   for (const auto& [cost, start] : order) {

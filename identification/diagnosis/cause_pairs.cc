@@ -87,24 +87,41 @@ class PairSearch {
   }
 
  private:
-  // The best of each family, or the plainest of it that explains nearly as much.
+  // The best of each family, or the plainest of it that explains nearly as much. A plain one that
+  // explains less comes before it: beside another cause it may do as well.
   std::vector<const CandidateResult*> FirstCauses() const {
-    std::vector<const CandidateResult*> firsts;
-    std::map<std::string, std::size_t> known;  // by family
+    struct Family {
+      std::string name;
+      const CandidateResult *best, *plain = nullptr;
+    };
+    std::vector<Family> families;
     for (const CandidateResult& c : single_.candidates) {
       if (!c.was_fitted) continue;
-      const auto [at, fresh] = known.try_emplace(FamilyOf(c.hypothesis.Card()), firsts.size());
-      if (fresh) {
-        if (static_cast<double>(firsts.size()) < criteria_.pair_singles) firsts.push_back(&c);
+      const std::string name = FamilyOf(c.hypothesis.Card());
+      const auto known = std::find_if(families.begin(), families.end(),
+                                      [&](const Family& f) { return f.name == name; });
+      if (known == families.end()) {
+        if (static_cast<double>(families.size()) < criteria_.pair_singles)
+          families.push_back({name, &c});
         continue;
       }
-      if (at->second >= firsts.size()) continue;
-      const CandidateResult*& first = firsts[at->second];
-      if (KinOf(c.hypothesis.Card()).PlainerThan(KinOf(first->hypothesis.Card())) &&
-          c.likelihood >= criteria_.family_share * first->likelihood)
-        first = &c;
+      if (!IsPlainer(c, *known->best) || (known->plain && !IsPlainer(c, *known->plain))) continue;
+      if (c.likelihood >= criteria_.family_share * known->best->likelihood) {
+        known->best = &c;
+      } else if (MayDoBesideAnother(c.likelihood, known->best->likelihood, criteria_)) {
+        known->plain = &c;
+      }
+    }
+    std::vector<const CandidateResult*> firsts;
+    for (const Family& f : families) {
+      if (f.plain && IsPlainer(*f.plain, *f.best)) firsts.push_back(f.plain);
+      firsts.push_back(f.best);
     }
     return firsts;
+  }
+
+  static bool IsPlainer(const CandidateResult& a, const CandidateResult& b) {
+    return KinOf(a.hypothesis.Card()).PlainerThan(KinOf(b.hypothesis.Card()));
   }
 
   // With sensitivities; null where it diverges next to its fit.

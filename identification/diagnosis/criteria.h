@@ -172,6 +172,9 @@ struct Criteria {
   Rule pair_hopeless{"pair_hopeless", 100, "times the noise",
                      "where the best single cause has a larger residual, one more is not enough"};
   Rule pair_singles{"pair_singles", 3, "families", "from which the search for two causes starts"};
+  Rule pair_plain{"pair_plain", 0.5, "share of what the best of the family explains",
+                  "a richer law bends to what a second cause does; the plain one may be the truth "
+                  "beside it"};
   Rule pair_bases{"pair_bases", 4, "candidates", "tried as one of two causes: each is a search"};
   Rule second_share{"second_share", 0.05, "share of the squares above the noise",
                     "what is left by the way in which a cause is simulated is less: a second "
@@ -260,6 +263,7 @@ inline constexpr std::array kAllRules{
     &Criteria::fresh_starts,
     &Criteria::pair_hopeless,
     &Criteria::pair_singles,
+    &Criteria::pair_plain,
     &Criteria::pair_bases,
     &Criteria::second_share,
     &Criteria::rest_noise,

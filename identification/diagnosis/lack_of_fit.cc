@@ -47,11 +47,11 @@ LackOfFit TestLackOfFit(const CandidateFitter& fitter, const Problem& without,
   const Experiment& experiment = *fitter.experiment;
   const auto train = TrainLogs(experiment);
   const ForceTerms terms = RandomForce(kTerms, true, sizes, seed);
-  Problem problem(experiment, without.system(), extra, terms);
-  problem.StepBy(without.step());
+  const Problem problem(experiment, without.system(), extra, terms);  // at the model's own step
   const Vector x = Append(fitted.fit.x, std::vector<double>(terms.count, 0.0));
   const ProjectedResidual residual = fitter.ProjectedResidualOf(fitted);
-  auto J = problem.Jacobian(x, fitted.residuals, train, fitted.sensitivities.value().jacobian);
+  auto J = problem.Jacobian(x, problem.Residuals(x, train), train,
+                            fitted.sensitivities.value().jacobian);
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = Matrix(J[l].rightCols(static_cast<Eigen::Index>(terms.count)));
   }

@@ -109,6 +109,7 @@ struct CandidateResult {
   Fitted fitted = {};                          ///< empty where it was not fitted
   std::optional<Fitted> at_quarter_step = {};  ///< where first order in the step does not hold
   std::optional<Problem::Vector> at_quarter_x = {};  ///< where such a fit ended, better or not
+  std::optional<bool> falls_with_step = {};          ///< CandidateSearch::FallsWithStep, once asked
   FoldRecord record = {};
   std::optional<ByEquation> by_equation = {};  ///< none where it does nothing to the missing force
   std::vector<std::string> failures = {};      ///< rules that it fails, one sentence each

@@ -133,6 +133,10 @@ bool WorthPartner(double smallest_p, double share, bool of_step, const Criteria&
   return smallest_p < criteria.significance && (!of_step || share >= criteria.pair_share);
 }
 
+bool MayDoBesideAnother(double plain, double richer, const Criteria& criteria) {
+  return plain >= criteria.pair_plain * richer;
+}
+
 bool WorthFallback(double ceiling_gain, bool noise_limited, const Criteria& criteria) {
   return noise_limited || ceiling_gain >= criteria.fallback_ceiling * criteria.median_gain;
 }

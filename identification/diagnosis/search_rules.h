@@ -113,6 +113,10 @@ bool MayBeTwo(const Verdict& verdict, const LackOfFit& lack, double smallest_p, 
 /// candidate explains, which counts where the time step may explain them too.
 bool WorthPartner(double smallest_p, double share, bool of_step, const Criteria& criteria = {});
 
+/// Whether the plain law of a family may be one of two causes where a richer one explains more by
+/// itself. Both: what they explain.
+bool MayDoBesideAnother(double plain, double richer, const Criteria& criteria = {});
+
 /// Whether a force without a cause is looked for. ceiling_gain: of forces of many terms.
 bool WorthFallback(double ceiling_gain, bool noise_limited, const Criteria& criteria = {});
 

@@ -337,6 +337,8 @@ std::map<std::string, std::vector<Judged>> Examples() {
   });
   e["pair_share"] = AroundBoundary(
       0.5, [](double share, const Criteria& c) { return WorthPartner(1e-3, share, true, c); });
+  e["pair_plain"] = AroundBoundary(
+      0.5, [](double plain, const Criteria& c) { return MayDoBesideAnother(plain, 1, c); });
   e["fallback_ceiling"] = AroundBoundary(
       0.05, [](double gain, const Criteria& c) { return WorthFallback(gain, false, c); });
   e["fallback_size"] =
