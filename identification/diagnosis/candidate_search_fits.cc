@@ -19,19 +19,17 @@ namespace continuum {
 namespace {
 constexpr std::size_t kWave = 4;  // candidates that are fitted beside each other
 
-// Without those that are next to one before them, in scales of the parameters: two views of the
-// missing force often say the same.
+// Without those that are next to one before them: two views of the missing force often say the
+// same.
 std::vector<Problem::Vector> WithoutRepeats(const Problem& problem,
                                             const std::vector<Problem::Vector>& starts) {
   constexpr double kSame = 0.01;
-  Problem::Vector scale(std::ssize(problem.parameters()));
-  for (Eigen::Index i = 0; i < scale.size(); ++i)
-    scale[i] = problem.parameters()[static_cast<std::size_t>(i)].scale;
   std::vector<Problem::Vector> kept;
   for (const Problem::Vector& start : starts) {
     const Problem::Vector x = problem.Clamp(start);
     const bool repeats = std::any_of(kept.begin(), kept.end(), [&](const Problem::Vector& other) {
-      return (x - other).cwiseQuotient(scale).cwiseAbs().maxCoeff() < kSame;
+      const auto size = x.cwiseAbs().cwiseMax(other.cwiseAbs());
+      return ((x - other).cwiseAbs().array() <= kSame * size.array()).all();
     });
     if (!repeats) kept.push_back(x);
   }

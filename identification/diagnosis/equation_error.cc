@@ -23,12 +23,22 @@ using Matrix = Problem::Matrix;
 
 constexpr double kNothing = 1e-6;  // of the missing force
 // Steps of the model: what a law changes in a force is seen in a few steps from the measured state
-// as well as in many. To the engine a delay shorter than a step is a whole one.
+// as well as in many. Not what a law remembers, which it learns on the way; and to the engine a
+// delay shorter than a step is a whole one.
 constexpr double kCoarse = 5;
 
-bool HasDelay(const Problem& problem) {
+bool Remembers(const mjModel& m) {
+  for (int i = 0; i < m.nplugin; ++i) {
+    const EffectInfo* const effect = EffectOf(m, i);
+    if (effect && effect->remembers) return true;
+  }
+  return false;
+}
+
+bool NeedsOwnStep(const Problem& problem) {
   const auto& parameters = problem.parameters();
-  return std::any_of(parameters.begin(), parameters.end(),
+  return Remembers(problem.system().model()) ||
+         std::any_of(parameters.begin(), parameters.end(),
                      [](const FreeParameter& p) { return p.change.attribute == "delay"; });
 }
 
@@ -80,7 +90,7 @@ Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::siz
 }
 
 Vector EquationErrors::Change(const Problem& problem, const Vector& to, std::size_t thread) const {
-  return HasDelay(problem) ? Vector(Stacked(problem, to, thread) - missing_)
+  return NeedsOwnStep(problem) ? Vector(Stacked(problem, to, thread) - missing_)
                            : Vector(Stacked(problem, to, thread, coarse_step_) - coarse_);
 }
 

@@ -35,6 +35,7 @@ EffectInfo InfoOf() {
   const auto choices = ChoicesOf<E>();
   info.choices.assign(choices.begin(), choices.end());
   if constexpr (SignalLaw<E>) info.servo = E::kTap == Tap::kServoError;
+  if constexpr (requires { E::kStates.size(); }) info.remembers = E::kStates.size() > 0;
   if constexpr (FormulaLaw<E>) info.text = E::kText;
   if constexpr (requires { E::kNative; }) info.native = E::kNative;
   if constexpr (requires { E::kAddsTo; }) info.adds_to = E::kAddsTo;
