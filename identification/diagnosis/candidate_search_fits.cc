@@ -352,8 +352,7 @@ CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
 
 // The start that is best after a few iterations, of those that are best as they are, in the logs
 // for a look.
-FitStart CandidateSearch::BestOf(const Problem& problem,
-                                 const std::vector<Problem::Vector>& all,
+FitStart CandidateSearch::BestOf(const Problem& problem, const std::vector<Problem::Vector>& all,
                                  std::size_t tried) const {
   constexpr double kNear = 2;  // times the best cost
   const std::vector<Problem::Vector> starts = WithoutRepeats(problem, all);

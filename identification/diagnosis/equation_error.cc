@@ -91,7 +91,7 @@ Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::siz
 
 Vector EquationErrors::Change(const Problem& problem, const Vector& to, std::size_t thread) const {
   return NeedsOwnStep(problem) ? Vector(Stacked(problem, to, thread) - missing_)
-                           : Vector(Stacked(problem, to, thread, coarse_step_) - coarse_);
+                               : Vector(Stacked(problem, to, thread, coarse_step_) - coarse_);
 }
 
 std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
