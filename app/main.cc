@@ -11,6 +11,7 @@
 
 #include "app/console.h"
 #include "app/solve.h"
+#include "app/study.h"
 #include "error.h"
 #include "sim/io/interrupt.h"
 
@@ -90,6 +91,7 @@ int main(int argc, char** argv) {
   continuum::AddRender(app);
   continuum::AddIdentify(app);
   continuum::AddDiagnose(app);
+  continuum::AddStudy(app, exit_code);
   continuum::AddDemo(app);
   continuum::AddApply(app);
   continuum::AddSolve(app, exit_code);

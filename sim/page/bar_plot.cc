@@ -58,6 +58,14 @@ std::string BarText(const Bar& bar, const Scale& x, double left, double y) {
   return label + Text("value", x(bar.value + error) + 6, y + 17, value);
 }
 
+double LabelWidth(const BarsSpec& spec) {
+  std::size_t longest = 4;
+  for (const Bar& bar : spec.bars) longest = std::max(longest, Length(bar.label));
+  return std::clamp(7.0 * static_cast<double>(longest) + 20, 80.0, 330.0);
+}
+
+}  // namespace
+
 std::string MarksHtml(const std::vector<Mark>& marks, const Scale& x, const Box& box) {
   std::string out;
   for (const Mark& mark : marks) {
@@ -69,14 +77,6 @@ std::string MarksHtml(const std::vector<Mark>& marks, const Scale& x, const Box&
   }
   return out;
 }
-
-double LabelWidth(const BarsSpec& spec) {
-  std::size_t longest = 4;
-  for (const Bar& bar : spec.bars) longest = std::max(longest, Length(bar.label));
-  return std::clamp(7.0 * static_cast<double>(longest) + 20, 80.0, 330.0);
-}
-
-}  // namespace
 
 std::string BarsHtml(const BarsSpec& spec) {
   const Range range = BarRange(spec);

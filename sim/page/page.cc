@@ -10,13 +10,15 @@
 #include "error.h"
 #include "sim/io/file.h"
 #include "sim/page/plots.h"
+#include "sim/page/table.h"
 #include "sim/page/text.h"
 #include "sim/page/time_series.h"
 
 namespace continuum {
 
 namespace page_assets {
-extern const std::string_view kCss, kScript, kDygraphCss, kDygraphScript, kDygraphLicense;
+extern const std::string_view kCss, kScript, kTableScript, kDygraphCss, kDygraphScript,
+    kDygraphLicense;
 }
 
 namespace {
@@ -61,64 +63,6 @@ std::string_view ToneSign(Tone tone) {
       break;
   }
   return "i";
-}
-
-bool StartsLikeNumber(std::string_view text) {
-  for (const std::string_view sign : {"+", "-", "−", "±", "<", ">", "≤", "≥", "≈"}) {
-    if (text.starts_with(sign)) text.remove_prefix(sign.size());
-  }
-  while (text.starts_with(' ')) text.remove_prefix(1);
-  if (text == "nan" || text == "inf") return true;
-  return !text.empty() && text[0] >= '0' && text[0] <= '9';
-}
-
-bool IsFilled(const std::string& cell) { return !cell.empty() && cell != "-" && cell != "–"; }
-
-bool IsNumeric(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
-  bool any = false;
-  for (const auto& row : rows) {
-    if (!IsFilled(row[column])) continue;
-    if (!StartsLikeNumber(row[column])) return false;
-    any = true;
-  }
-  return any;
-}
-
-void CheckTable(const std::vector<std::string>& header,
-                const std::vector<std::vector<std::string>>& rows, const TableOptions& options) {
-  const std::string where = fmt::format("table '{}'", options.caption);
-  for (const auto& row : rows) {
-    if (row.size() == header.size()) continue;
-    throw Error::Input(where, fmt::format("{} cells per row", header.size()),
-                       std::to_string(row.size()));
-  }
-  for (const auto* extras : {&options.bars, &options.heat}) {
-    for (const auto& [column, values] : *extras) {
-      if (column < header.size() && values.size() == rows.size()) continue;
-      throw Error::Input(where, fmt::format("{} cell colours", rows.size()),
-                         fmt::format("{} in column {}", values.size(), column));
-    }
-  }
-}
-
-// Value of a cell's bar or heat in percent, 0 when it has none.
-double Percent(const std::map<std::size_t, std::vector<double>>& extras, std::size_t row,
-               std::size_t column) {
-  const auto found = extras.find(column);
-  if (found == extras.end() || !std::isfinite(found->second[row])) return 0;
-  return 100 * std::clamp(found->second[row], -1.0, 1.0);
-}
-
-std::string Cell(const std::string& text, bool number, double bar, double heat) {
-  std::string classes = number ? "number" : "", style;
-  if (bar > 0) {
-    classes += " share";
-    style = fmt::format(" style=\"--share:{:.3g}%\"", bar);
-  } else if (heat != 0) {
-    classes += heat > 0 ? " hot" : " cold";
-    style = fmt::format(" style=\"--share:{:.3g}%\"", 0.7 * std::abs(heat));
-  }
-  return fmt::format("<td class=\"{}\"{}>{}</td>", classes, style, Inline(text));
 }
 
 void CheckSeries(const TimeSeriesSpec& spec) {
@@ -197,28 +141,8 @@ void Page::Badge(Tone tone, const std::string& text, const std::string& detail) 
 
 void Page::Table(const std::vector<std::string>& header,
                  const std::vector<std::vector<std::string>>& rows, const TableOptions& options) {
-  CheckTable(header, rows, options);
-  body_ += "<div class=\"table\"><table>\n";
-  if (!options.caption.empty()) body_ += "<caption>" + Inline(options.caption) + "</caption>\n";
-  std::vector<bool> numeric;
-  body_ += "<thead><tr>";
-  for (std::size_t column = 0; column < header.size(); ++column) {
-    numeric.push_back(IsNumeric(rows, column));
-    body_ += fmt::format("<th class=\"{}\">{}</th>", numeric.back() ? "number" : "",
-                         Inline(header[column]));
-  }
-  body_ += "</tr></thead>\n<tbody>\n";
-  const auto& chosen = options.highlighted_rows;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const bool highlighted = std::find(chosen.begin(), chosen.end(), row) != chosen.end();
-    body_ += highlighted ? "<tr class=\"chosen\">" : "<tr>";
-    for (std::size_t column = 0; column < header.size(); ++column) {
-      body_ += Cell(rows[row][column], numeric[column], Percent(options.bars, row, column),
-                    Percent(options.heat, row, column));
-    }
-    body_ += "</tr>\n";
-  }
-  body_ += "</tbody>\n</table></div>\n";
+  has_sortable_ = has_sortable_ || options.sortable;
+  body_ += page::TableHtml(header, rows, options);
 }
 
 void Page::TimeSeries(const TimeSeriesSpec& spec) {
@@ -249,6 +173,8 @@ void Page::TimeSeries(const TimeSeriesSpec& spec) {
 void Page::Scatter(const ScatterSpec& spec) { body_ += page::ScatterHtml(spec); }
 
 void Page::Bars(const BarsSpec& spec) { body_ += page::BarsHtml(spec); }
+
+void Page::Intervals(const IntervalsSpec& spec) { body_ += page::IntervalsHtml(spec); }
 
 void Page::HeatMap(const HeatMapSpec& spec) { body_ += page::HeatMapHtml(spec); }
 
@@ -290,6 +216,7 @@ std::string Page::Html() const {
     out += Script(WithoutSourceMap(page_assets::kDygraphScript));
     out += Script(page_assets::kScript);
   }
+  if (has_sortable_) out += Script(page_assets::kTableScript);
   return out + "</body>\n</html>\n";
 }
 

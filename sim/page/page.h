@@ -13,8 +13,9 @@ namespace continuum {
 /// One self-contained HTML page: no request leaves it, and the same calls give the same bytes.
 ///
 /// All text is escaped. Paragraphs, list items, badges, captions and table cells understand
-/// **bold** and `code`. Time series are interactive (dygraphs); all other plots are inline SVG that
-/// needs no script. Sizes that do not fit together throw Error (kInput) with the plot's title.
+/// **bold** and `code`. Time series are interactive (dygraphs), tables where asked for; all other
+/// plots are inline SVG that needs no script. Sizes that do not fit together throw Error (kInput)
+/// with the plot's title.
 class Page {
  public:
   explicit Page(std::string title, std::string subtitle = "");
@@ -32,6 +33,7 @@ class Page {
   void TimeSeries(const TimeSeriesSpec& spec);
   void Scatter(const ScatterSpec& spec);
   void Bars(const BarsSpec& spec);
+  void Intervals(const IntervalsSpec& spec);
   void HeatMap(const HeatMapSpec& spec);
   /// Preformatted text. In language "diff", added and removed lines are coloured.
   void Code(const std::string& text, const std::string& language = "");
@@ -53,7 +55,7 @@ class Page {
   std::string title_, subtitle_, body_;
   std::vector<Entry> headings_;
   std::map<std::string, int> groups_;
-  bool has_series_ = false;
+  bool has_series_ = false, has_sortable_ = false;
 };
 
 }  // namespace continuum

@@ -77,6 +77,23 @@ struct BarsSpec {
   std::vector<Mark> marks = {};
 };
 
+/// A value with its interval, not needed to contain it.
+struct IntervalRow {
+  std::string label;
+  double value = 0, low = 0, high = 0;  ///< low or high not finite: no interval
+  bool highlighted = false;
+};
+
+/// Values with intervals, one below the other, and a band across all rows. Above 60 rows only the
+/// highlighted ones have labels.
+struct IntervalsSpec {
+  std::string title;
+  Axis value;
+  std::vector<IntervalRow> rows;
+  double low = 0, high = 0;  ///< of the band; not finite: none
+  std::vector<Mark> marks = {};
+};
+
 /// A matrix with its values printed in the cells. The colour scale is [-1, 1] when any value is
 /// negative, otherwise [0, largest value].
 struct HeatMapSpec {
@@ -94,6 +111,9 @@ struct TableOptions {
   /// Column to one value in [-1, 1] per row, drawn as the cell's colour (orange above 0, blue
   /// below).
   std::map<std::size_t, std::vector<double>> heat = {};
+  /// Column to one address per row, relative to the page; empty: no link.
+  std::map<std::size_t, std::vector<std::string>> links = {};
+  bool sortable = false;  ///< a click on a column's head sorts; a line above filters the rows
 };
 
 }  // namespace continuum

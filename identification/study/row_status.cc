@@ -1,0 +1,90 @@
+#include "identification/study/row_status.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "error.h"
+
+namespace continuum {
+namespace {
+
+namespace fs = std::filesystem;
+using State = RowStatus::State;
+
+// Something that lies in a row's place and is no result.
+bool IsOccupied(const fs::path& place) {
+  std::error_code failed;
+  return fs::exists(place, failed) &&
+         (!fs::is_directory(place, failed) || !fs::is_empty(place, failed));
+}
+
+std::string Other(const StudyRow& row, const fs::path& place, const std::string& what) {
+  return row.where + ": " + place.string() + " " + what + "; `--again` replaces it";
+}
+
+}  // namespace
+
+const char* StateName(State state) {
+  switch (state) {
+    case State::kDone:
+      return "done";
+    case State::kFailed:
+      return "failed";
+    case State::kChanged:
+      return "changed";
+    case State::kMissing:
+      break;
+  }
+  return "missing";
+}
+
+std::string CountsInWords(const std::vector<State>& rows) {
+  std::string text;
+  for (const State s : {State::kDone, State::kFailed, State::kChanged, State::kMissing}) {
+    const auto count = std::count(rows.begin(), rows.end(), s);
+    if (count > 0) text += fmt::format("{} {} {}", text.empty() ? "" : ",", count, StateName(s));
+  }
+  return fmt::format("{} row{}:{}", rows.size(), rows.size() == 1 ? "" : "s", text);
+}
+
+std::string FailedName(const StudyRow& row) { return row.name + ".failed"; }
+
+RowStatus StatusOf(const StudyTable& study, const StudyRow& row, const fs::path& out,
+                   const std::string& version, FileHashes& hashes) {
+  RowStatus s;
+  const auto say = [&](State state, std::string reason, std::optional<RowRecord> record) {
+    s.state = state;
+    s.reason = std::move(reason);
+    s.record = std::move(record);
+    return s;
+  };
+  if (!row.fault.empty()) return say(State::kFailed, row.fault, {});
+  try {
+    s.inputs = InputsOf(study, row, version, hashes);
+  } catch (const Error& e) {
+    return say(State::kFailed, e.what(), {});
+  }
+  const fs::path place = out / row.name;
+  auto old = ReadRecord(place);
+  if (old && old->inputs == *s.inputs) return say(State::kDone, "", std::move(old));
+  auto failed = ReadRecord(out / FailedName(row));
+  if (failed && !(failed->inputs == *s.inputs)) failed.reset();
+  if (old || IsOccupied(place)) {
+    std::string what = "is no result of a row";
+    if (old) {
+      const std::string changes = ChangesBetween(old->inputs, *s.inputs);
+      what = "holds the result of other inputs (" + changes + ")";
+    }
+    if (failed) what += ", and the present ones failed (" + failed->reason + ")";
+    return say(State::kChanged, Other(row, place, what), std::move(old));
+  }
+  if (failed) {
+    const std::string reason = row.where + ": " + failed->reason;
+    return say(State::kFailed, reason, std::move(failed));
+  }
+  return s;
+}
+
+}  // namespace continuum
