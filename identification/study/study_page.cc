@@ -18,14 +18,16 @@ using Rows = std::vector<std::vector<std::string>>;
 
 std::string Short(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : ""; }
 
-std::string Percent(double share) {
-  return std::isfinite(share) ? fmt::format("{:.0f} %", 100 * share) : "";
+std::string Interval(double low, double high) {
+  return std::isfinite(low) && std::isfinite(high) ? fmt::format("{:.3g} … {:.3g}", low, high) : "";
 }
 
-std::string Interval(double low, double high, double factor) {
-  return std::isfinite(low) && std::isfinite(high)
-             ? fmt::format("{:.3g} … {:.3g}", factor * low, factor * high)
-             : "";
+std::string GainInWords(const RowResult& r) {
+  if (!std::isfinite(r.gain)) return "";
+  const std::string gain = fmt::format("{:.0f} %", 100 * r.gain);
+  return std::isfinite(r.gain_low)
+             ? gain + fmt::format(" [{:.0f}, {:.0f}]", 100 * r.gain_low, 100 * r.gain_high)
+             : gain;
 }
 
 // "12 s", "3.2 min", "5.1 h".
@@ -93,17 +95,22 @@ class StudyPage {
 
   std::vector<std::string> CellsOf(const StudyLine& line) const {
     const RowResult& r = line.result;
-    std::vector<std::string> cells{std::to_string(line.row->number), line.row->name};
+    const std::string verdict =
+        r.certainty.empty() ? r.verdict : r.verdict + " (" + r.certainty + ")";
+    std::vector<std::string> cells{
+        std::to_string(line.row->number),
+        line.row->name,
+        StateName(line.status.state),
+        verdict,
+        r.cause.empty() ? line.status.reason : r.cause,
+        GainInWords(r),
+        ErrorInWords(r),
+        line.status.record ? fmt::format("{:.1f}", line.status.record->seconds) : "",
+        line.row->command};
     for (const std::string& label : summary_.study->labels) {
       const auto found = line.row->labels.find(label);
       cells.push_back(found == line.row->labels.end() ? "" : found->second);
     }
-    const std::string verdict =
-        r.certainty.empty() ? r.verdict : r.verdict + " (" + r.certainty + ")";
-    cells.insert(cells.end(),
-                 {line.row->command, StateName(line.status.state), verdict, r.cause,
-                  Percent(r.gain), Interval(r.gain_low, r.gain_high, 100), ErrorInWords(r),
-                  line.status.record ? fmt::format("{:.1f}", line.status.record->seconds) : ""});
     return cells;
   }
 
@@ -113,16 +120,19 @@ class StudyPage {
     std::stable_partition(order.begin(), order.end(), [](const StudyLine* line) {
       return line->status.state == State::kFailed;
     });
-    std::vector<std::string> header{"row", "name"};
+    std::vector<std::string> header{
+        "row",         "name",  "status",   "verdict", "cause, or reason",
+        "gain [95 %]", "error", "time [s]", "command"};
     for (const std::string& label : summary_.study->labels) header.push_back(label);
-    header.insert(header.end(), {"command", "status", "verdict", "cause", "gain", "95 % [%]",
-                                 "error", "time [s]"});
     Rows rows;
-    TableOptions options{
+    page_.Paragraph(
         "Gain: the share of the error on validate logs that the extension removes. Error: RMS of "
-        "the validate logs (else of the train logs), before → after the extension."};
+        "the validate logs (else of the train logs), before → after the extension. A click on a "
+        "column's head sorts. Point at a cell that is cut to read it.");
+    TableOptions options;
     options.sortable = true;
     for (const StudyLine* const line : order) {
+      if (line->status.state == State::kFailed) options.highlighted_rows.push_back(rows.size());
       rows.push_back(CellsOf(*line));
       options.links[1].push_back(
           line->result.page.empty() ? "" : line->row->name + "/" + line->result.page);
@@ -145,27 +155,31 @@ class StudyPage {
   }
 
   void AddCauses() {
-    std::map<std::string, std::size_t> counts;
+    std::map<std::string, std::vector<std::string>> rows_of;
     for (const StudyLine& line : summary_.lines) {
-      for (const std::string& effect : line.result.effects) ++counts[effect];
+      for (const std::string& effect : line.result.effects)
+        rows_of[effect].push_back(line.row->name);
     }
-    if (counts.empty()) return;
-    BarsSpec bars{"", {"rows that name it as a cause", ""}, {}};
-    for (const auto& [effect, count] : counts)
-      bars.bars.push_back({effect, static_cast<double>(count)});
-    std::stable_sort(bars.bars.begin(), bars.bars.end(),
-                     [](const Bar& a, const Bar& b) { return a.value > b.value; });
+    if (rows_of.empty()) return;
+    Rows rows;
+    for (const auto& [effect, names] : rows_of)
+      rows.push_back(
+          {effect, std::to_string(names.size()), fmt::format("{}", fmt::join(names, ", "))});
+    std::stable_sort(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
+      return rows_of[a[0]].size() > rows_of[b[0]].size();
+    });
     page_.Heading("Causes");
-    page_.Bars(bars);
+    page_.Table({"cause", "rows", "which"}, rows);
   }
 
   void AddPopulations() {
     if (summary_.populations.empty()) return;
     page_.Heading("Parameters across units");
     page_.Paragraph(
-        "Units of one model: their values scatter by more than their own intervals say. The "
-        "standard deviation between units is estimated by Paule and Mandel's method. A unit is odd "
-        "where it lies off all others by more than chance gives in one parameter of twenty.");
+        "Each dot is a unit with the 95 % interval of its fit. The band is the mean ± the standard "
+        "deviation between units, by Paule and Mandel's method. An odd unit lies off all others; "
+        "by "
+        "chance one parameter in twenty has such a unit.");
     AddPopulationTable();
     for (const Population& p : summary_.populations) AddUnits(p);
   }
@@ -177,8 +191,8 @@ class StudyPage {
       const auto odd = OddUnits(p, summary_.lines);
       rows.push_back(
           {p.model, p.name, p.unit, std::to_string(p.units.size()), Short(s.mean),
-           Interval(s.mean_low, s.mean_high, 1), Short(s.between),
-           Interval(s.between_low, s.between_high, 1),
+           Interval(s.mean_low, s.mean_high), Short(s.between),
+           Interval(s.between_low, s.between_high),
            s.mean == 0 ? "" : fmt::format("{:.1f} %", 100 * s.between / std::abs(s.mean)),
            fmt::format("{}", fmt::join(odd, ", "))});
       if (!p.left_out.empty()) rows.back()[3] += fmt::format(" (+{} left out)", p.left_out.size());

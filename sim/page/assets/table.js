@@ -59,6 +59,9 @@
         if (event.key === 'Enter') sort(table, column);
       });
     });
+    for (const row of table.tBodies[0].rows) {
+      for (const cell of row.cells) cell.title = cell.textContent;  // which may be cut
+    }
     addFilter(box, table);
   });
 })();
