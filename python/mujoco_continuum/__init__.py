@@ -11,6 +11,8 @@ run the packaged executable `continuum`:
     apply      the extension in another model
     read       a log of another format (MCAP, LeRobot, HDF5, npz)
     solve      the static shape of a robot; calibrate: its parameters
+    study      many experiments, each in a folder of its own, done once
+    identify_many, diagnose_many: many experiments on threads, processes or a cluster
 
 force_law and friction_law make candidates of Python functions.
 
@@ -28,13 +30,15 @@ from ._paths import EXECUTABLE, MODELS, PLUGINS
 from ._tool import Error, InputError, JobError
 from .commands import apply, check, diagnose, effects, identify, models, replay
 from .laws import force_law, friction_law
+from .many import diagnose_many, identify_many, study
 from .reading import read
 from .results import Cause, Channel, Diagnosis, Errors, Fit, Interval, Parameter, Replay
 from .statics import calibrate, solve
 
 __all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Cause", "Channel", "Diagnosis",
            "Error", "Errors", "Fit", "InputError", "Interval", "JobError", "Parameter", "Replay",
-           "apply", "calibrate", "check", "diagnose", "effects", "force_law", "friction_law",
-           "identify", "models", "read", "replay", "solve"]
+           "apply", "calibrate", "check", "diagnose", "diagnose_many", "effects", "force_law",
+           "friction_law", "identify", "identify_many", "models", "read", "replay", "solve",
+           "study"]
 
 PLUGIN = _load()

@@ -7,7 +7,8 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from collections.abc import Callable, Mapping
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from ._build import FILMS
 from ._paths import EXECUTABLE
@@ -40,19 +41,70 @@ def environment() -> dict[str, str]:
     return os.environ | more
 
 
+class _Group:
+    """Tools that are running for one call, in this process."""
+
+    def __init__(self) -> None:
+        self.tools: set[subprocess.Popen] = set()
+        self.stopped = False
+
+
+_groups: dict[str, _Group] = {}
+_lock = threading.Lock()
+_here = threading.local()
+
+
+@contextlib.contextmanager
+def group(token: str) -> Iterator[None]:
+    """Tools that this thread runs meanwhile belong to a group of this process."""
+    with _lock:
+        _here.group = _groups.setdefault(token, _Group())
+    try:
+        yield
+    finally:
+        _here.group = None
+
+
+def interrupt_group(token: str) -> None:
+    """Asks the tools of a group to stop, those that begin later too. They leave no half-written
+    output."""
+    with _lock:
+        stopped = _groups.setdefault(token, _Group())
+        stopped.stopped = True
+        for tool in stopped.tools:
+            tool.send_signal(signal.SIGINT)
+
+
+@contextlib.contextmanager
+def _listed(tool: subprocess.Popen) -> Iterator[None]:
+    here = getattr(_here, "group", None)
+    if here is None:
+        yield
+        return
+    with _lock:
+        here.tools.add(tool)
+        if here.stopped:
+            tool.send_signal(signal.SIGINT)
+    try:
+        yield
+    finally:
+        with _lock:
+            here.tools.discard(tool)
+
+
 def run(arguments: list[str], progress: Progress | None = None,
-        rename: Mapping[str, str] = {}) -> str:
+        rename: Mapping[str, str] = {}, accepted: Sequence[int] = (0,)) -> str:
     """Runs `continuum` to its end and returns what it prints.
 
     progress is called with each line of its progress. rename replaces texts of messages: names of
-    files that the user never saw. On KeyboardInterrupt the tool is asked to stop, which leaves no
+    files that the user never saw. accepted: exit codes that are no failure. On KeyboardInterrupt the tool is asked to stop, which leaves no
     half-written output; a second one ends it at once."""
     # stdout to a file: only one pipe has to be read. A process group of its own: Ctrl-C on a
     # terminal would reach the tool twice, from the terminal and from here, and twice means at once.
     with tempfile.TemporaryFile("w+") as out:
         with subprocess.Popen([str(EXECUTABLE), *arguments], stdin=subprocess.DEVNULL, stdout=out,
                               stderr=subprocess.PIPE, text=True, errors="replace",
-                              env=environment(), process_group=0) as tool:
+                              env=environment(), process_group=0) as tool, _listed(tool):
             try:
                 lines = _read(tool, progress)
                 tool.wait()
@@ -64,7 +116,7 @@ def run(arguments: list[str], progress: Progress | None = None,
                 raise
         out.seek(0)
         printed = out.read()
-    if tool.returncode != 0:
+    if tool.returncode not in accepted:
         raise _failure(tool.returncode, lines, rename)
     return printed
 
