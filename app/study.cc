@@ -19,6 +19,7 @@
 #include "identification/study/summary.h"
 #include "sim/io/file.h"
 #include "sim/io/interrupt.h"
+#include "sim/io/output_folder.h"
 
 namespace continuum {
 namespace {
@@ -38,7 +39,7 @@ struct Options {
 StudyRun RunOf(const Options& o) {
   std::error_code unknown;
   return {fs::read_symlink("/proc/self/exe", unknown), fs::absolute(o.out).lexically_normal(),
-          CONTINUUM_VERSION, o.again, ShowProgress};
+          CONTINUUM_VERSION, ShowProgress};
 }
 
 // "row 3/40  arm-diagnose   done      named (sure): dahl at joint hinge, gain 64 % [60, 68]".
@@ -62,14 +63,16 @@ void PrintList(const StudyTable& study, const std::vector<std::size_t>& rows) {
 
 // Runs the rows in turn; returns how all of these stand.
 std::vector<RowStatus> RunRows(const StudyTable& study, const std::vector<std::size_t>& rows,
-                               const StudyRun& run, FileHashes& hashes) {
+                               const StudyRun& run, bool again, FileHashes& hashes) {
   std::vector<RowStatus> all;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < rows.size() && !StopRequested(); ++i) {
     const StudyRow& row = study.rows[rows[i]];
-    const RowStatus before = StatusOf(study, row, run.out, run.version, hashes);
-    all.push_back(RunRow(study, row, run, {"study", i, rows.size(), row.name}, hashes));
-    if (StopRequested()) break;
-    if (before.state != State::kDone) Print(study, row, all.back(), run.out);
+    RowStatus status = StatusOf(study, row, run.out, run.version, hashes);
+    const bool was_done = status.state == State::kDone;
+    if (MayRun(status, again))
+      status = RunRow(study, row, run, status, {"study", i, rows.size(), row.name});
+    if (!was_done && !StopRequested()) Print(study, row, status, run.out);
+    all.push_back(std::move(status));
   }
   EndProgress();
   StopIfRequested();
@@ -105,11 +108,13 @@ int RunStudy(const Options& o) {
   if (o.out.empty()) throw Error::Input("--out", "a folder for the results", "nothing");
   const StudyRun run = RunOf(o);
   MakeFolder(run.out);
+  for (const char* const file : {"study.csv", "study.json", "study.html"})
+    RequireWritable(run.out / file, {o.sources.begin(), o.sources.end()});
   RemoveLeftBehind(run.out);
   FileHashes hashes;
   const bool whole = o.rows.empty() && o.shard.empty();
   std::vector<RowStatus> all =
-      o.summary ? LookAtAll(study, run, hashes) : RunRows(study, rows, run, hashes);
+      o.summary ? LookAtAll(study, run, hashes) : RunRows(study, rows, run, o.again, hashes);
   std::vector<State> states;
   for (const RowStatus& status : all) states.push_back(status.state);
   const bool done =

@@ -42,9 +42,16 @@ std::string RowInputs::Hash() const {
 }
 
 const std::string& FileHashes::Of(const fs::path& file) {
-  const auto found = known_.find(file);
-  return found != known_.end() ? found->second
-                               : known_.emplace(file, Sha256OfFile(file)).first->second;
+  std::error_code failed;
+  const auto changed = fs::last_write_time(file, failed);
+  const std::uintmax_t size = fs::file_size(file, failed);
+  const auto [at, is_new] = known_.try_emplace(file);
+  Known& known = at->second;
+  if (is_new || known.hash.empty() || known.changed != changed || known.size != size) {
+    known.hash.clear();  // where the file cannot be read
+    known = {changed, size, Sha256OfFile(file)};
+  }
+  return known.hash;
 }
 
 RowInputs InputsOf(const StudyTable& study, const StudyRow& row, const std::string& version,

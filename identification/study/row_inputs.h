@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -21,13 +22,20 @@ struct RowInputs {
   std::string Hash() const;
 };
 
-/// SHA-256 of files; each is read once, as rows share models and logs.
+/// SHA-256 of files; each is read once, as rows share models and logs, and anew when its size or
+/// the time of its last change are others.
 class FileHashes {
  public:
+  /// Throws Error for a file that cannot be read.
   const std::string& Of(const std::filesystem::path& file);
 
  private:
-  std::map<std::filesystem::path, std::string> known_;
+  struct Known {
+    std::filesystem::file_time_type changed;
+    std::uintmax_t size;
+    std::string hash;
+  };
+  std::map<std::filesystem::path, Known> known_;
 };
 
 /// Of a row: its experiment, the model with all that this reads, the logs, and files that options

@@ -139,13 +139,8 @@ class OneRow {
 }  // namespace
 
 RowStatus RunRow(const StudyTable& study, const StudyRow& row, const StudyRun& run,
-                 const Progress& outer, FileHashes& hashes) {
-  RowStatus status = StatusOf(study, row, run.out, run.version, hashes);
-  const bool runs =
-      status.inputs && (status.state == State::kMissing || status.state == State::kFailed ||
-                        (status.state == State::kChanged && run.again));
-  if (!runs) return status;
-  return OneRow(study, row, run, std::move(status)).Run(outer);
+                 const RowStatus& before, const Progress& outer) {
+  return OneRow(study, row, run, before).Run(outer);
 }
 
 }  // namespace continuum

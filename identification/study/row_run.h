@@ -13,15 +13,14 @@ struct StudyRun {
   std::filesystem::path program;  ///< the executable, whose subcommands are run
   std::filesystem::path out;      ///< absolute; of all results
   std::string version;            ///< of the program
-  bool again = false;             ///< rows whose inputs changed, too
   ProgressCallback progress;
 };
 
-/// Runs a row that is not done, in a process of its own, and says how it stands then. Its folder
-/// appears whole or not at all; that of a failed run is called FailedName, and leaves a result that
-/// was there. A row whose inputs changed is run only `again`. When the user asks to stop, nothing
-/// changes. outer: the progress of all rows, before this one.
+/// Runs a row in a process of its own, and says how it stands then. Its folder appears whole or not
+/// at all; that of a failed run is called FailedName, and leaves a result that was there. When the
+/// user asks to stop, nothing changes. before: its status, MayRun; outer: the progress of all rows,
+/// before this one.
 RowStatus RunRow(const StudyTable& study, const StudyRow& row, const StudyRun& run,
-                 const Progress& outer, FileHashes& hashes);
+                 const RowStatus& before, const Progress& outer);
 
 }  // namespace continuum

@@ -20,8 +20,14 @@ bool IsOccupied(const fs::path& place) {
          (!fs::is_directory(place, failed) || !fs::is_empty(place, failed));
 }
 
-std::string Other(const StudyRow& row, const fs::path& place, const std::string& what) {
-  return row.where + ": " + place.string() + " " + what + "; `--again` replaces it";
+// What stands in a row's place instead of its result.
+std::string Other(const std::optional<RowRecord>& old, const std::optional<RowRecord>& failed,
+                  const RowInputs& now) {
+  if (!old) return "is no result of a row; move it away";
+  const std::string changes = ChangesBetween(old->inputs, now);
+  return "holds the result of other inputs (" + changes + ")" +
+         (failed ? ", and the present ones failed (" + failed->reason + ")" : "") +
+         "; `--again` replaces it";
 }
 
 }  // namespace
@@ -51,6 +57,11 @@ std::string CountsInWords(const std::vector<State>& rows) {
 
 std::string FailedName(const StudyRow& row) { return row.name + ".failed"; }
 
+bool MayRun(const RowStatus& status, bool again) {
+  if (!status.inputs || status.state == State::kDone) return false;
+  return status.state != State::kChanged || (again && status.record);
+}
+
 RowStatus StatusOf(const StudyTable& study, const StudyRow& row, const fs::path& out,
                    const std::string& version, FileHashes& hashes) {
   RowStatus s;
@@ -72,13 +83,9 @@ RowStatus StatusOf(const StudyTable& study, const StudyRow& row, const fs::path&
   auto failed = ReadRecord(out / FailedName(row));
   if (failed && !(failed->inputs == *s.inputs)) failed.reset();
   if (old || IsOccupied(place)) {
-    std::string what = "is no result of a row";
-    if (old) {
-      const std::string changes = ChangesBetween(old->inputs, *s.inputs);
-      what = "holds the result of other inputs (" + changes + ")";
-    }
-    if (failed) what += ", and the present ones failed (" + failed->reason + ")";
-    return say(State::kChanged, Other(row, place, what), std::move(old));
+    const std::string reason =
+        row.where + ": " + place.string() + " " + Other(old, failed, *s.inputs);
+    return say(State::kChanged, reason, std::move(old));
   }
   if (failed) {
     const std::string reason = row.where + ": " + failed->reason;

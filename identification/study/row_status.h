@@ -23,6 +23,10 @@ struct RowStatus {
   std::optional<RowRecord> record;  ///< of the run that it stands by
 };
 
+/// Whether a run takes a row: one that did not run or failed, and where asked for `again` one with
+/// the result of other inputs. What is no result is never replaced.
+bool MayRun(const RowStatus& status, bool again);
+
 /// "12 rows: 10 done, 1 failed, 1 changed".
 std::string CountsInWords(const std::vector<RowStatus::State>& rows);
 

@@ -148,6 +148,7 @@ TEST_F(Studies, WhatIsNoResultIsNotOverwritten) {
   EXPECT_EQ(f.exit_code, 3);
   EXPECT_THAT(f.out, HasSubstr("study.csv:2: "));
   EXPECT_THAT(f.out, HasSubstr("is no result of a row"));
+  EXPECT_EQ(Study({"--again"}).exit_code, 3);
   EXPECT_EQ(Text("out/look/thesis.txt"), "three years");
 }
 
@@ -157,6 +158,7 @@ TEST_F(Studies, RefuseWrongUse) {
   ExpectRefused({"study", "study.csv", "--out", "out", "--rows", "4"}, {"--rows", "rows 1 to 3"});
   ExpectRefused({"study", "study.csv", "--out", "out", "--shard", "0/2"}, {"--shard", "K/N"});
   ExpectRefused({"study", "experiment.yaml", "--out", "out"}, {"--command"});
+  ExpectRefused({"study", "study.csv", "--out", "."}, {"study.csv", "the input itself"});
   files_.Write("study.csv", "experiment,command\nexperiment.yaml,check,more\n");
   ExpectRefused({"study", "study.csv", "--out", "out"}, {"study.csv:2"});
 }
