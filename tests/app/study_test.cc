@@ -185,11 +185,12 @@ class Shards : public Studies {
     return testing::RunProcess({"/bin/bash", "-c", "export PATH=\"$PWD/bin:$PATH\"; " + script},
                                files_.folder());
   }
-  // The first block of a page that has a text.
-  static std::string Example(const std::string& text) {
+  // The first block of the page that has a text.
+  static std::string Example(const std::string& text, const std::string& language = "bash") {
     const std::string page = Scratch::Text(CONTINUUM_SOURCE "/docs/many-logs.md");
-    for (std::size_t at = 0; (at = page.find("```bash\n", at)) != page.npos; at += 3) {
-      const std::size_t begin = at + 8;
+    const std::string fence = "```" + language + "\n";
+    for (std::size_t at = 0; (at = page.find(fence, at)) != page.npos; at += 3) {
+      const std::size_t begin = at + fence.size();
       const std::string block = page.substr(begin, page.find("```", begin) - begin);
       at = begin + block.size();
       if (block.find(text) != block.npos) return block;
@@ -240,6 +241,14 @@ TEST_F(Shards, ByASlurmArrayGiveWhatOneRunGives) {
                              " bash study.slurm");
     EXPECT_EQ(f.exit_code, 0) << f.err;
   }
+  ExpectAsInOneGo();
+}
+
+TEST_F(Shards, BySnakemakeGiveWhatOneRunGives) {
+  if (Shell("snakemake --version").exit_code != 0) GTEST_SKIP() << "Snakemake is not installed";
+  files_.Write("Snakefile", Example("rule row", "python"));
+  const Finished f = Shell("snakemake --cores 2 --keep-going");
+  EXPECT_EQ(f.exit_code, 0) << f.err << f.out;
   ExpectAsInOneGo();
 }
 
