@@ -177,8 +177,8 @@ class StudyPage {
     page_.Heading("Parameters across units");
     page_.Paragraph(
         "Each dot is a unit with the 95 % interval of its fit. The band is the mean ± the standard "
-        "deviation between units, by Paule and Mandel's method. An odd unit lies off all others; "
-        "by "
+        "deviation between units, by Paule and Mandel's method. An odd unit lies off all others. "
+        "By "
         "chance one parameter in twenty has such a unit.");
     AddPopulationTable();
     for (const Population& p : summary_.populations) AddUnits(p);
