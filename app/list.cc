@@ -24,11 +24,9 @@ void Print(const std::string& text) { std::fputs(text.c_str(), stdout); }
 void ListEffects(bool json) {
   auto all = nlohmann::json::array();
   for (const EffectInfo& e : Catalog()) {
-    nlohmann::json item{{"name", e.name},
-                        {"summary", e.summary},
-                        {"source", e.source},
-                        {"kind", KindName(e.kind)},
-                        {"becomes", Becomes(e.kind)}};
+    nlohmann::json item{
+        {"name", e.name},           {"summary", e.summary},       {"source", e.source},
+        {"kind", KindName(e.kind)}, {"becomes", Becomes(e.kind)}, {"only_listed", e.only_listed}};
     std::string places;
     for (const Place p : e.places) {
       item["binds"].push_back(PlaceName(p));
@@ -52,7 +50,8 @@ void ListEffects(bool json) {
     all.push_back(item);
     if (!json) {
       Print(fmt::format("{:<21} {:<10} {:<14} {}\n{:47}{}\n", e.name, KindName(e.kind), places,
-                        e.summary, "", parameters));
+                        std::string(e.summary) + (e.only_listed ? " (only by name)" : ""), "",
+                        parameters));
     }
   }
   if (json) Print(all.dump(2) + "\n");

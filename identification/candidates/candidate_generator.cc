@@ -221,7 +221,9 @@ class Entry {
 
 std::vector<Candidate> WholeCatalog() {
   std::vector<Candidate> all;
-  for (const EffectInfo& effect : Catalog()) all.push_back({std::string(effect.name), "", false});
+  for (const EffectInfo& effect : Catalog()) {
+    if (!effect.only_listed) all.push_back({std::string(effect.name), "", false});
+  }
   return all;
 }
 
@@ -245,7 +247,8 @@ std::vector<std::string> Unlisted(const Experiment& e, const std::vector<std::st
   std::vector<std::string> others;
   if (listed.empty() || (names.empty() && e.all_candidates)) return others;
   for (const EffectInfo& effect : Catalog()) {
-    if (!listed.contains(std::string(effect.name))) others.emplace_back(effect.name);
+    if (!effect.only_listed && !listed.contains(std::string(effect.name)))
+      others.emplace_back(effect.name);
   }
   return others;
 }

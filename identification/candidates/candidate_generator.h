@@ -16,15 +16,17 @@ enum class SearchScope {
 };
 
 /// The candidates of an experiment that make sense in its model, one Hypothesis per effect, choice
-/// and place. skipped: gets one sentence for each that does not, and for the objects of a place
-/// that an effect cannot act on: it acts on the others. Throws Error for a place or a condition
-/// that the experiment names and does not have.
+/// and place; where it lists all, of the effects whose card does not say kOnlyListed. skipped: gets
+/// one sentence for each that does not, and for the objects of a place that an effect cannot act
+/// on: it acts on the others. Throws Error for a place or a condition that the experiment names and
+/// does not have.
 std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const SearchBase& from,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
                                        SearchScope places = SearchScope::kFew);
 
 /// Effects of the catalog that the experiment's list of candidates leaves out; none where it lists
-/// all, or none. names: the list to take in place of the experiment's, if any.
+/// all, or none. Not those whose card says kOnlyListed. names: the list to take in place of the
+/// experiment's, if any.
 std::vector<std::string> Unlisted(const Experiment& experiment,
                                   const std::vector<std::string>& names);
 

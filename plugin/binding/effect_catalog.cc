@@ -40,6 +40,7 @@ EffectInfo InfoOf() {
   if constexpr (requires { E::kNative; }) info.native = E::kNative;
   if constexpr (requires { E::kAddsTo; }) info.adds_to = E::kAddsTo;
   if constexpr (requires { E::kKin; }) info.kin = E::kKin;
+  if constexpr (requires { E::kOnlyListed; }) info.only_listed = E::kOnlyListed;
   if constexpr (requires { E::kCoulombLevel; }) info.coulomb_level = E::kCoulombLevel;
   if constexpr (requires { E::kDamping; }) info.damping = E::kDamping;
   if constexpr (requires { E::kLiteral; }) info.literal = E::kLiteral;

@@ -21,6 +21,7 @@ struct EffectInfo {
   std::vector<Choice> choices;
   bool servo = false;             ///< a Signal at the error of a position servo
   bool remembers = false;         ///< a law with states of its own
+  bool only_listed = false;       ///< no candidate where the experiment does not name it
   std::string_view text = {};     ///< key of the formula that a law of the MJCF is written under
   std::string_view native = {};   ///< attribute of MuJoCo that an Edit is, in MJCF's words
   std::string_view adds_to = {};  ///< that of an element to which an Edit's value is added

@@ -5,6 +5,7 @@
 
 #include "binding/row_softness.h"
 #include "effects/all.h"
+#include "error.h"
 #include "mujoco_compat.h"
 
 namespace continuum {
@@ -52,10 +53,6 @@ void HardenModel(mjModel& m, const FrictionRow& row) {
   assign(solimp[0], kDiscreteImpedance), assign(solimp[1], kDiscreteImpedance);
 }
 
-bool Saturated(const mjData& d, int r) {
-  return std::abs(d.efc_force[r]) >= d.efc_frictionloss[r] * (1 - 1e-9);
-}
-
 // Deflection from the anchor at which the row at rest gives the force that it gives now.
 double Yield(const mjData& d, int r) {
   const double stiffness = d.efc_KBIP[4 * r] * d.efc_KBIP[4 * r + 2];
@@ -84,6 +81,10 @@ void FrictionRows::Impose(mjModel& m) const {
     if (loss == 0) loss = kRowMarker;
     if (IsDiscrete(m)) HardenModel(m, row);
   }
+}
+
+bool FrictionRows::Saturated(const mjData& d, int r) {
+  return std::abs(d.efc_force[r]) >= d.efc_frictionloss[r] * (1 - 1e-9);
 }
 
 bool FrictionRows::IsNative(const mjModel& m, const FrictionRow& row) {
@@ -139,6 +140,23 @@ double FrictionRows::OffAnchor(const mjModel& m, const mjData& d, const double* 
     if (IsAnotherPose(m, d, each, turn[k] - ball[6 + k])) return ball[6 + row.axis];
   }
   return turn[row.axis];
+}
+
+void FrictionRows::Soften(const mjModel& m, mjData& d, int r, double give) {
+  const double level = d.efc_frictionloss[r], impedance = d.efc_KBIP[4 * r + 2];
+  if (!(level > 0)) return;
+  const double hard = d.efc_diagA[r] * (1 - impedance) / impedance;
+  SetSoftness(m, d, r, std::max({mjMINVAL, hard, d.efc_KBIP[4 * r] * impedance * give / level}));
+}
+
+void FrictionRows::RequireAlone(const mjModel& m, const std::string& who) const {
+  for (const FrictionRow& row : rows_) {
+    const double native = (row.joint ? m.dof_frictionloss : m.tendon_frictionloss)[row.index];
+    if (row.alone && native <= kRowMarker) continue;
+    const char* const name = mj_id2name(&m, row.joint ? mjOBJ_JOINT : mjOBJ_TENDON, row.id);
+    throw Error::Input(who + ": give", "no other dry friction on its joints",
+                       std::string("some on '") + (name ? name : "") + "'");
+  }
 }
 
 void FrictionRows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage,

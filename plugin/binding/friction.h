@@ -7,6 +7,7 @@
 #include "binding/friction_row.h"
 #include "binding/gear_load.h"
 #include "binding/native_damping.h"
+#include "mujoco_compat.h"
 
 namespace continuum {
 
@@ -58,10 +59,11 @@ class FrictionRows {
   const std::vector<FrictionRow>& rows() const { return rows_; }
   void Impose(mjModel& m) const;
   /// Calls level(row, v) → torque for each row that exists at d, and writes it. v: speed of
-  /// sliding. null: the law is at its null.
+  /// sliding. null: the law is at its null. give: by so much a row yields before it slides, where
+  /// it is alone (0: by as little as it can).
   template <class Level>
-  void Write(const mjModel& m, mjData& d, const double* z, Stage stage, bool null,
-             Level&& level) const {
+  void Write(const mjModel& m, mjData& d, const double* z, Stage stage, bool null, Level&& level,
+             double give = 0) const {
     int r = d.ne;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const FrictionRow& row = rows_[k];
@@ -69,9 +71,23 @@ class FrictionRows {
       const double off = OffAnchor(m, d, z + kStates * k, row);
       const Sliding sliding = SlidingOf(d, z + kStates * k, row);
       WriteRow(m, d, off, stage, row, r, sliding.share * level(row, sliding.v));
+      if (give > 0 && row.alone && !IsDiscrete(m)) Soften(m, d, r, give);
     }
   }
   void Advance(const mjModel& m, const mjData& d, double* z) const;
+
+  /// Calls visit(row, r) for each row that exists and slides in the step that d has taken: it is
+  /// constraint r.
+  template <class Visit>
+  void ForEachSaturated(const mjData& d, Visit&& visit) const {
+    int r = d.ne;
+    for (const FrictionRow& row : rows_) {
+      if (Find(d, row, r) && Saturated(d, r)) visit(row, r);
+    }
+  }
+
+  /// Throws Error where other dry friction acts on a row.
+  void RequireAlone(const mjModel& m, const std::string& who) const;
 
   /// Why Differentiate does not know these rows ("a ball joint"); empty: it does.
   std::string WhyNoSlopes(const mjModel& m) const;
@@ -89,8 +105,9 @@ class FrictionRows {
     }
   }
 
- private:
   static constexpr std::size_t kStates = 3;  ///< of a row
+
+ private:
   /// Grasp: what a row did in the last step.
   static constexpr double kUnknown = 0, kHeld = 1, kSlid = 2;
   /// Speed of sliding, and the share of the level that falls to this row.
@@ -102,10 +119,14 @@ class FrictionRows {
   }
   static Sliding SlidingOf(const mjData& d, const double* z, const FrictionRow& row);
 
+  /// Whether a constraint gives all that it can.
+  static bool Saturated(const mjData& d, int r);
   /// Moves r (ascending over calls) to the row's constraint; false when it has none.
   static bool Find(const mjData& d, const FrictionRow& row, int& r);
   static void WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const FrictionRow& row,
                        int r, double level);
+  /// Makes a row yield by give under its level: R = K d give/level, of (2).
+  static void Soften(const mjModel& m, mjData& d, int r, double give);
   /// Whether MuJoCo alone has friction there, if this law has none.
   static bool IsNative(const mjModel& m, const FrictionRow& row);
   /// As an impedance of kImpedance makes it, where the model has MuJoCo's default.
@@ -133,11 +154,12 @@ inline double PositionOf(const mjModel& m, const mjData& d, const FrictionRow& r
   return row.joint ? d.qpos[m.jnt_qposadr[row.id]] : d.ten_length[row.index];
 }
 
-/// What the level of a row follows: position, speed, torque of the load, P parameters.
-template <std::size_t P>
-std::array<Number, 3 + P> NumbersOf(const FrictionRow& row, int load) {
+/// What the level of a row follows: position, speed, torque of the load, P parameters, and more
+/// numbers of the caller's.
+template <std::size_t P, std::size_t More = 0>
+std::array<Number, 3 + P + More> NumbersOf(const FrictionRow& row, int load) {
   using Kind = Number::Kind;
-  std::array<Number, 3 + P> numbers;
+  std::array<Number, 3 + P + More> numbers{};
   numbers[0] = {row.joint ? Kind::kPosition : Kind::kLength, row.index};
   numbers[1] = {row.joint ? Kind::kSpeed : Kind::kRate, row.index};
   numbers[2] = {load == 0 ? Kind::kTorqueTransmitted : Kind::kTorqueActuator, row.index};
@@ -161,67 +183,137 @@ class BoundFriction : public BoundLaw {
     }
   }
   static int StateSize(const mjModel& m, const Config& config) {
-    return FrictionRows::StateSize(m, config, JointsOf<E>());
+    const int rows = static_cast<int>(FrictionRowsOf(m, config, JointsOf<E>()).size());
+    return FrictionRows::StateSize(m, config, JointsOf<E>()) + (kWorks ? rows : 0);
   }
 
   bool IsRow() const override { return true; }
   bool GivesForce() const override { return kBiased; }
-  std::string WhyIdle(const mjModel&) const override { return idle_; }
+  std::string WhyIdle(const mjModel& m) const override {
+    return Give() > 0 && IsDiscrete(m) ? "give does nothing under this integrator" : idle_;
+  }
 
   void Impose(mjModel& m) const override {
     rows_.Impose(m);
     if constexpr (kDamped) damping_->Impose(m, rows_.rows(), p_[E::kDamping]);
+    if (Give() > 0) rows_.RequireAlone(m, PluginName(E::kName));
   }
 
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double> force) override {
     const auto p = AsParams<E>(p_);
     if constexpr (kBiased) std::fill(force.begin(), force.end(), 0.0);
-    rows_.Write(m, d, z, stage, IsNull(), [&](const FrictionRow& row, double v) {
-      FrictionState<double> r{0, v, 0};
-      if (!row.joint) r.q = d.ten_length[row.index];
-      if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
-      if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);
-      if constexpr (kBiased) force[row.index] = E::template Bias<double>(p);
-      return E::template Level<double>(r, p);
-    });
+    rows_.Write(
+        m, d, z, stage, IsNull(),
+        [&](const FrictionRow& row, double v) {
+          FrictionState<double> r{0, v, 0};
+          if (!row.joint) r.q = d.ten_length[row.index];
+          if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
+          if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);
+          if constexpr (kTorques) {
+            r.motor = GearTorque(m, d, row.index, 1);
+            r.others = r.motor - GearTorque(m, d, row.index, 0);
+          }
+          if constexpr (kWorks) r.time = d.time, r.work = z[WorkOf(row)];
+          if constexpr (kBiased) force[row.index] = E::template Bias<double>(p);
+          return E::template Level<double>(r, p);
+        },
+        Give());
     return kBiased;
   }
 
-  void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }
+  void Advance(const mjModel& m, const mjData& d, double* z) override {
+    rows_.Advance(m, d, z);
+    if constexpr (kWorks) {
+      rows_.ForEachSaturated(d, [&](const FrictionRow& row, int r) {
+        z[WorkOf(row)] += m.opt.timestep * d.efc_frictionloss[r] * std::abs(d.qvel[row.index]);
+      });
+    }
+  }
 
-  std::string WhyNoSlopes(const mjModel& m) const override { return rows_.WhyNoSlopes(m); }
+  std::string WhyNoSlopes(const mjModel& m) const override {
+    return Give() > 0 ? "it gives before it slides" : rows_.WhyNoSlopes(m);
+  }
 
   void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
                      LawSlopes& slopes) const override {
-    constexpr std::size_t kN = 3 + kParamCount<E>;
+    constexpr std::size_t kLast = 3 + kParamCount<E>, kN = kLast + kMore;
     using T = Dual<kN>;
     const auto p = DualParams<kN>(AsParams<E>(p_), 3);
     rows_.Differentiate(d, step, slopes, [&](const FrictionRow& row, int r, double v, bool moves) {
       FrictionState<T> at{T(PositionOf(m, d, row), 0), moves ? T(v, 1) : T(v), T(0)};
+      auto by = NumbersOf<kParamCount<E>, kMore>(row, load_);
       double sign = 1;
       if constexpr (kLoaded) {
         const double torque = GearTorque(m, d, row.index, load_);
-        at.load = T(LoadOf(torque, load_), 2), sign = torque < 0 ? -1 : 1;
+        at.load = T(LoadOf(torque, load_), 2), sign = (torque < 0 ? -1 : 1) * LoadOf(1, load_);
       }
-      auto by = NumbersOf<kParamCount<E>>(row, load_);
+      if constexpr (kTorques) {
+        at.motor = T(GearTorque(m, d, row.index, 1), kLast);
+        at.others = at.motor - T(GearTorque(m, d, row.index, 0), 2);
+        by[kLast] = {Number::Kind::kTorqueActuator, row.index};
+      }
+      if constexpr (kWorks) {
+        at.time = T(d.time - m.opt.timestep), at.work = T(step.z[WorkOf(row)], kLast);
+        by[kLast] = {Number::Kind::kState, static_cast<int>(WorkOf(row))};
+      }
       Dual<kN> level = E::template Level<T>(at, p);
-      level.d[2] *= sign * LoadOf(1, load_);
+      level.d[2] *= sign;
       Put(slopes.levels, {Number::Kind::kLevel, r}, level, by);
       if constexpr (kBiased)
         Put(slopes.forces, {Number::Kind::kForce, row.index}, E::template Bias<T>(p), by);
     });
+    if constexpr (kWorks) DifferentiateWork(m, d, step, slopes);
   }
 
  private:
   static constexpr bool kLoaded = ChoicesOf<E>().size() > 0;
+  static constexpr bool kTorques = requires { E::kReadsTorques; };
+  static constexpr bool kWorks = requires { E::kReadsWork; };
+  static constexpr std::size_t kMore = kTorques || kWorks ? 1 : 0;  // numbers beside those of all
   static constexpr bool kDamped = requires { E::kDamping; };
   static constexpr bool kBiased = BiasedFrictionLaw<E>;
   static_assert(!kBiased || (E::kPlaces.size() == 1 && E::kPlaces[0] == Place::kJoint));
 
+  static_assert(!(kTorques || kWorks) || E::kPlaces.size() == 1);  // joints of one direction
+
+  double Give() const {
+    if constexpr (requires { E::kGive; }) return p_[E::kGive];
+    return 0;
+  }
+
+  // Index of the state that is the work dissipated on a row.
+  std::size_t WorkOf(const FrictionRow& row) const {
+    const std::size_t rows = rows_.rows().size();
+    return FrictionRows::kStates * rows + static_cast<std::size_t>(&row - rows_.rows().data());
+  }
+
+  // W + h level |v| where the row slid, with the speed at the end of the step.
+  void DifferentiateWork(const mjModel& m, const mjData& d, const StepTaken& step,
+                         LawSlopes& slopes) const {
+    using Kind = Number::Kind;
+    for (const FrictionRow& row : rows_.rows()) {
+      const Number work{Kind::kState, static_cast<int>(WorkOf(row))};
+      slopes.next.push_back({{Kind::kNext, work.index}, work, 1});
+    }
+    rows_.ForEachSaturated(d, [&](const FrictionRow& row, int r) {
+      const Number next{Kind::kNext, static_cast<int>(WorkOf(row))};
+      const double h = m.opt.timestep, v = step.qvel[row.index];
+      slopes.next.push_back({next, {Kind::kLevel, r}, h * std::abs(v)});
+      const double side = v < 0 ? -1 : 1;
+      slopes.next.push_back(
+          {next, {Kind::kSpeedAfter, row.index}, h * d.efc_frictionloss[r] * side});
+    });
+  }
+
   // Whether the law does nothing: no level in any direction, at any load, all around a turn.
   bool IsNull() const {
     const auto p = AsParams<E>(p_);
+    if constexpr (kTorques) {
+      for (const auto& [motor, others] :
+           {std::pair{1.0, 0.0}, {0.0, 1.0}, {1.0, -0.5}, {0.5, -1.0}})
+        if (E::template Level<double>({0, 0, 0, motor, others}, p) != 0) return false;
+    }
     if constexpr (kBiased) {
       if (E::template Bias<double>(p) != 0) return false;
     }

@@ -14,6 +14,8 @@
 #include "effects/directional_friction.h"
 #include "effects/external_force.h"
 #include "effects/formula.h"
+#include "effects/friction_drift.h"
+#include "effects/gear_friction.h"
 #include "effects/gravity_tilt.h"
 #include "effects/input_gain.h"
 #include "effects/input_offset.h"
@@ -51,11 +53,12 @@ struct List {
 
 /// Every effect the library knows. Adding one is one line here. Signals act in this order: input,
 /// servo, cable.
-using All = List<Coulomb, Stribeck, LoadFriction, PositionFriction, DirectionalFriction, Dahl,
-                 Lugre, BoucWen, CubicStiffness, Maxwell, Pt2, Backlash, Slack, TendonStretch,
-                 Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness, Payload,
-                 LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime,
-                 Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
+using All =
+    List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction, DirectionalFriction,
+         FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, Maxwell, Pt2, Backlash, Slack,
+         TendonStretch, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness,
+         Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime,
+         Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
 
 /// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.
 using FormulaLaws = List<Formula, FormulaFriction>;

@@ -82,7 +82,8 @@ constexpr Param Signed(std::string_view name, std::string_view unit, double init
   return {name, unit, -kInfinity, kInfinity, initial, 0};
 }
 
-/// What every effect says of itself. kKin, where the card has it, is its Kinship.
+/// What every effect says of itself. kKin, where the card has it, is its Kinship. kOnlyListed,
+/// where it is true: the diagnosis tries it only where the experiment lists it by name.
 template <class E>
 concept Card = requires {
   std::string_view{E::kName};
@@ -132,10 +133,13 @@ concept ForceLaw = Card<E> &&
   { E::template Step<double>(z, q, 0.001, p) } -> std::same_as<Vec<double, E::kStates.size()>>;
 };
 
-/// What the level of a dry friction may depend on: position, velocity, the load ≥ 0 [N*m].
+/// What the level of a dry friction may depend on: position, velocity, the load ≥ 0 [N*m]; and of
+/// cards that ask for it (FrictionLaw) what the load is made of, time and work.
 template <class T>
 struct FrictionState {
   T q, v, load;
+  T motor = T(0), others = T(0);  ///< torques of the actuators, and of all others [N*m]
+  T time = T(0), work = T(0);     ///< from the beginning [s], and dissipated till now [J]
 };
 
 /// Friction: Level(state, p) ≥ 0, the largest torque that dry friction can take. It becomes a row
@@ -144,6 +148,8 @@ struct FrictionState {
 ///   kCoulombLevel  alone, the others null, it is Coulomb's constant level
 ///   kDamping       it is the native damping of the joints
 ///   kLiteral       only Literal(v, p), the equation as printed, reads it
+///   kGive          deflection at which the level is reached, before sliding; 0: the row's own
+/// and of itself that kReadsTorques (motor, others) or kReadsWork (time, work).
 template <class E>
 concept FrictionLaw = Card<E> && requires(FrictionState<double> r, ParamsOf<E, double> p) {
   { E::template Level<double>(r, p) } -> std::same_as<double>;

@@ -7,7 +7,9 @@ namespace {
 using namespace testing;  // NOLINT: the lists of a typed suite
 
 FrictionState<double> Draw(Quantities& in) {
-  return {in.Normal(1, "rad"), in.Normal(1, "rad/s"), std::abs(in.Normal(1, "N*m"))};
+  return {in.Normal(1, "rad"),  in.Normal(1, "rad/s"), std::abs(in.Normal(1, "N*m")),
+          in.Normal(1, "N*m"),  in.Normal(1, "N*m"),   in.Uniform(0, 1, "s"),
+          in.Uniform(0, 1, "J")};
 }
 
 template <class E>
@@ -22,6 +24,7 @@ TYPED_TEST(EveryFriction, IsConsistentInItsUnits) {
     const FrictionState<double> r = Draw(in);
     std::vector<Answer> all{{E::template Level<double>(r, p), "N*m"}};
     if constexpr (BiasedFrictionLaw<E>) all.push_back({E::template Bias<double>(p), "N*m"});
+    if constexpr (requires { E::kGive; }) all.push_back({p[E::kGive], "rad"});
     if constexpr (requires { E::kLiteral; })
       all.push_back({E::template Literal<double>(r.v, p), "N*m"});
     return all;
@@ -38,7 +41,7 @@ TYPED_TEST(EveryFriction, IsNeverNegative) {
 
 TYPED_TEST(EveryFriction, DoesNothingAtItsNull) {
   using E = TypeParam;
-  EXPECT_EQ(E::template Level<double>({0.3, 0.2, 1}, NullParams<E>()), 0);
+  EXPECT_EQ(E::template Level<double>({0.3, 0.2, 1, 0.7, -0.4, 2, 3}, NullParams<E>()), 0);
 }
 
 template <class E>

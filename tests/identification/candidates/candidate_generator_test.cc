@@ -58,6 +58,29 @@ std::vector<std::string> FreeNames(const Hypothesis& h) {
   return names;
 }
 
+// Laws that fit too much are tried where they are asked for by name, and nowhere else.
+TEST(CandidateGenerator, LeavesOutWhatOnlyAListMayName) {
+  const ModelSpec model = ModelWith("", "");
+  Experiment all;
+  std::vector<std::string> skipped;
+  const auto named = [](const std::vector<Hypothesis>& found, const std::string& effect) {
+    return std::any_of(found.begin(), found.end(),
+                       [&](const auto& h) { return h.effect == effect; });
+  };
+  const auto found = MakeCandidates(all, {&model}, {}, skipped);
+  EXPECT_TRUE(named(found, "load_friction"));
+  for (const EffectInfo& effect : Catalog()) {
+    if (!effect.only_listed) continue;
+    const std::string name(effect.name);
+    EXPECT_FALSE(named(found, name)) << name;
+    EXPECT_THAT(skipped, ::testing::Not(::testing::Contains(::testing::StartsWith(name)))) << name;
+    Experiment some;
+    some.all_candidates = false, some.candidates = {{"coulomb", "", false}};
+    EXPECT_THAT(Unlisted(some, {}), ::testing::Not(::testing::Contains(name)));
+  }
+  EXPECT_THAT(Ask(model, "gear_friction", "joint:q").candidates, SizeIs(1));
+}
+
 // Viscous friction is the joint's native damping, and k_v only replays the equation as printed.
 TEST(CandidateGenerator, FreesWhatOnlyTheLawItselfCanSay) {
   const auto found = Ask(ModelWith("", ""), "stribeck", "joint:q");

@@ -1,0 +1,60 @@
+// Friction that changes with the work that it has dissipated, in MuJoCo.
+#include <cmath>
+#include <string>
+
+#include "support/engine.h"
+
+namespace continuum {
+namespace {
+
+constexpr double kEnd = 0.05, kMore = 0.04, kRate = 3;
+
+class DriftingWheel : public testing::Engine {
+ protected:
+  static std::string Wheel(const std::string& rates) {
+    return "<mujoco><option timestep=\"1e-3\" integrator=\"implicitfast\"/>" +
+           Instance("friction_drift",
+                    Key("joint", "q") + Key("tau_c", "0.05") + Key("delta", "0.04") + rates) +
+           R"(<worldbody><body><joint name="q" axis="1 0 0"/>
+              <inertial pos="0 0 0" mass="1" diaginertia="0.02 0.02 0.02"/></body></worldbody>
+              <actuator><motor joint="q"/></actuator></mujoco>)";
+  }
+};
+
+// Of dW = (τ_c + Δ exp(−r W)) dx: τ_c exp(r W) + Δ grows as exp(r τ_c x).
+double WorkOf(double path) {
+  const double u = (kEnd + kMore) * std::exp(kRate * kEnd * path);
+  return std::log((u - kMore) / kEnd) / kRate;
+}
+
+TEST_F(DriftingWheel, RunsInAlongItsPath) {
+  const auto m = Model(Wheel(Key("r_W", "3")));
+  const auto d = Data(m);
+  d->ctrl[0] = 0.2;
+  RunUntil(m, d, 2);
+  const double expected = kEnd + kMore * std::exp(-kRate * WorkOf(d->qpos[0]));
+  EXPECT_LT(expected, 0.9 * (kEnd + kMore));
+  // The work of a step is that of its end: an error of the order of a step's share of the path.
+  EXPECT_NEAR(d->efc_frictionloss[0], expected, 1e-3 * kMore);
+}
+
+TEST_F(DriftingWheel, DoesNotRunInAtRest) {
+  const auto m = Model(Wheel(Key("r_W", "3")));
+  const auto d = Data(m);
+  d->ctrl[0] = 0.9 * (kEnd + kMore);
+  RunUntil(m, d, 20);
+  EXPECT_DOUBLE_EQ(d->efc_frictionloss[0], kEnd + kMore);
+  EXPECT_LT(std::abs(d->qpos[0]), 1e-4);
+}
+
+TEST_F(DriftingWheel, BreaksAwayWhenItHasFadedBelowTheLoad) {
+  const auto m = Model(Wheel(Key("r_t", "0.2")));
+  const auto d = Data(m);
+  d->ctrl[0] = kEnd + 0.5 * kMore;
+  while (std::abs(d->qvel[0]) < 1e-3 && d->time < 20) mj_step(m.get(), d.get());
+  // ln 2/0.2 = 3.47 s; then sqrt(2 I v/rate) = 0.1 s to 1 mrad/s at 4e-3 N m/s.
+  EXPECT_NEAR(d->time, std::log(2) / 0.2, 0.15);
+}
+
+}  // namespace
+}  // namespace continuum
