@@ -37,6 +37,7 @@
 #include "effects/stiffness.h"
 #include "effects/stribeck.h"
 #include "effects/tendon_stretch.h"
+#include "effects/torque_ripple.h"
 #include "effects/viscous.h"
 
 namespace continuum {
@@ -55,8 +56,8 @@ struct List {
 /// servo, cable.
 using All =
     List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction, DirectionalFriction,
-         FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, Maxwell, Pt2, Backlash, Slack,
-         TendonStretch, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness,
+         FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple, Maxwell, Pt2, Backlash,
+         Slack, TendonStretch, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness,
          Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime,
          Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
 
