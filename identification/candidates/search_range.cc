@@ -50,7 +50,11 @@ Parameter CandidateParameter(const Param& p, Place place, const Sizes& sizes,
                              Change::Operation operation) {
   const ParameterSize s = SizeOf(p, place, sizes);
   Parameter out = Named(p, target, attribute, operation);
-  if (std::isinf(p.null)) {  // a frequency, absent when it is large; at least two steps long
+  if (std::isinf(p.null) && p.unit != "rad/s") {  // a limit, absent when it is large
+    out.upper = s.reach * s.size;
+    out.lower = std::max(p.lower, 1e-3 * s.size);
+    out.initial = 0.5 * s.size;
+  } else if (std::isinf(p.null)) {  // a frequency; at least two steps long
     out.upper = 0.5 / sizes.step;
     out.lower = std::max(p.lower, 0.02 * s.size);
     out.initial = std::min(s.size, 0.5 * out.upper);

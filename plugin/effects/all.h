@@ -37,6 +37,7 @@
 #include "effects/stiffness.h"
 #include "effects/stribeck.h"
 #include "effects/tendon_stretch.h"
+#include "effects/torque_limit.h"
 #include "effects/torque_ripple.h"
 #include "effects/viscous.h"
 
@@ -54,12 +55,12 @@ struct List {
 
 /// Every effect the library knows. Adding one is one line here. Signals act in this order: input,
 /// servo, cable.
-using All =
-    List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction, DirectionalFriction,
-         FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple, Maxwell, Pt2, Backlash,
-         Slack, TendonStretch, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness,
-         Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset, DeadTime,
-         Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
+using All = List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction,
+                 DirectionalFriction, FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness,
+                 TorqueRipple, Maxwell, Pt2, Backlash, Slack, TendonStretch, Capstan, PccSegmentLaw,
+                 Braid, ChamberAsymmetry, Viscous, Stiffness, Payload, LinkMass, Armature,
+                 GravityTilt, ExternalForce, InputGain, InputOffset, TorqueLimit, DeadTime, Pt1,
+                 SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
 
 /// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.
 using FormulaLaws = List<Formula, FormulaFriction>;

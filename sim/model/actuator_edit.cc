@@ -50,6 +50,19 @@ void SetDelay(mjsActuator& a, double delay) {
   if (delay > 0 && a.nsample == 0) a.interp = 1;
 }
 
+void LimitForce(mjsActuator& a, double limit) {
+  double* const range = a.forcerange;
+  const bool limited = a.forcelimited == mjLIMITED_TRUE ||
+                       (a.forcelimited == mjLIMITED_AUTO && (range[0] != 0 || range[1] != 0));
+  const double lower = limited ? std::max(range[0], -limit) : -limit,
+               upper = limited ? std::min(range[1], limit) : limit;
+  if (!(lower < upper))
+    throw Error::Input(Who(a) + ": force limit", "one within its forcerange",
+                       std::to_string(limit));
+  range[0] = lower, range[1] = upper;
+  a.forcelimited = mjLIMITED_TRUE;
+}
+
 void CoverDelay(mjsActuator& a, double timestep) {
   if (a.delay <= 0) return;
   const double samples = 8 * (a.delay / timestep + 4);

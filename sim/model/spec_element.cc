@@ -137,6 +137,7 @@ void SpecElement::Set(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_ACTUATOR) {
     if (attribute == "lag") return SetLag(*mjs_asActuator(element_), value);
     if (attribute == "delay") return SetDelay(*mjs_asActuator(element_), value);
+    if (attribute == "force_limit") return LimitForce(*mjs_asActuator(element_), value);
     if (attribute == "force_scale") return Scale("force_scale", value);
     if (attribute == "kp") {
       mjsActuator& a = Affine();

@@ -64,6 +64,21 @@ TEST_F(NativeEffect, GravityTiltTurnsGravityWhateverTheOrderOfItsParameters) {
   EXPECT_EQ(system.Value("world", "effect:gravity_tilt"), 0);
 }
 
+TEST_F(NativeEffect, TorqueLimitNarrowsTheRangeOfTheForce) {
+  const ModelSpec system = ModelSpec::Load(scratch_.Write("limit.xml", R"(<mujoco><worldbody><body>
+      <joint name="j"/><geom size=".1"/></body></worldbody>
+      <actuator><motor name="free" joint="j"/><motor name="held" joint="j" forcerange="-1 2"/>
+      </actuator></mujoco>)"));
+  const ModelAndData machine = system.Build({{{"actuator:*", "effect:torque_limit.limit", 1.5}}});
+  const double* const range = machine.model->actuator_forcerange;
+  EXPECT_THAT(std::vector<double>(range, range + 4), ::testing::ElementsAre(-1.5, 1.5, -1, 1.5));
+  EXPECT_TRUE(machine.model->actuator_forcelimited[0]);
+  machine.data->ctrl[0] = 4;
+  mj_forward(machine.model.get(), machine.data.get());
+  EXPECT_EQ(machine.data->actuator_force[0], 1.5);
+  EXPECT_FALSE(system.Build().model->actuator_forcelimited[0]);
+}
+
 TEST_F(NativeEffect, LinkMassScalesMassAndInertiaAboutTheSameCentre) {
   const ModelSpec system = Load();
   const ModelAndData plain = system.Build(),
