@@ -64,6 +64,12 @@ std::vector<double> PresentValues(const Param& card, const std::vector<std::stri
   return values;
 }
 
+// Whether it is one of angles: it has a parameter per angle.
+bool IsOfAngles(const EffectInfo& effect) {
+  return std::any_of(effect.params.begin(), effect.params.end(),
+                     [](const Param& p) { return p.unit == "1/output"; });
+}
+
 // Whether it turns sensors of three components.
 bool Turns(const EffectInfo& effect) { return effect.params.front().name == "angle"; }
 
@@ -81,6 +87,8 @@ std::vector<UsableOutput> Usable(const EffectInfo& effect, const std::string& gl
     if (!AnyGlobMatches(globs, sensor) && !AnyGlobMatches(globs, out.name())) continue;
     const int id = mj_name2id(&m, mjOBJ_SENSOR, sensor.c_str());
     if (Turns(effect) && (id < 0 || m.sensor_dim[id] != 3)) continue;
+    if (IsOfAngles(effect) && (out.unit != "rad" || id < 0 || m.sensor_type[id] != mjSENS_JOINTPOS))
+      continue;
     const std::string& name = Turns(effect) ? sensor : out.name();
     const auto same = [&](const UsableOutput& other) { return other.name == name; };
     if (std::none_of(all.begin(), all.end(), same)) all.push_back({name, sensor, out.unit});
@@ -101,15 +109,9 @@ void RequireOneUnit(const Param& card, const std::vector<std::string>& names, co
   }
 }
 
-}  // namespace
-
-bool IsOfClock(const EffectInfo& effect) { return effect.params.front().name == "skew"; }
-
-Hypothesis MeasurementCandidate(const EffectInfo& effect, const std::vector<std::string>& names,
-                                const Experiment& e, const ModelSpec& system, const Sizes& sizes) {
-  const std::string where = names.empty() ? "clock" : PlaceText(Place::kSensor, names);
-  Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
-  const Param& card = effect.params.front();
+// The parameter of a card, as a free one of a hypothesis.
+void AddParameter(const Param& card, const std::vector<std::string>& names, const Experiment& e,
+                  const Sizes& sizes, Hypothesis& h) {
   RequireOneUnit(card, names, e);
   const SharedValue shared = SharedValueOf(PresentValues(card, names, e));
   const bool factor = card.null == 1 || shared.operation == Change::Operation::kScale;
@@ -127,6 +129,19 @@ Hypothesis MeasurementCandidate(const EffectInfo& effect, const std::vector<std:
   p.upper = factor ? std::max(0.1 * null, 10 * null) : null + reach * size;
   h.extra.push_back(p);
   h.null.push_back(null);
+}
+
+}  // namespace
+
+bool IsOfClock(const EffectInfo& effect) { return effect.params.front().name == "skew"; }
+
+Hypothesis MeasurementCandidate(const EffectInfo& effect, const std::vector<std::string>& names,
+                                const Experiment& e, const ModelSpec& system, const Sizes& sizes) {
+  const std::string where = names.empty() ? "clock" : PlaceText(Place::kSensor, names);
+  Hypothesis h{std::string(effect.name), "", where, system, {}, {}, "", {}};
+  for (const Param& card : effect.params) {
+    if (!std::isnan(card.null)) AddParameter(card, names, e, sizes, h);
+  }
   return h;
 }
 

@@ -83,6 +83,10 @@ std::string MeasurementYaml(const Measurement& m) {
     text += fmt::format(", angle: {}, axis: [{}, {}, {}]", Decimal(m.angle), Decimal(m.axis[0]),
                         Decimal(m.axis[1]), Decimal(m.axis[2]));
   }
+  if (m.cosine != none.cosine || m.sine != none.sine) {
+    text += fmt::format(", cosine: {}, sine: {}, harmonic: {}", Decimal(m.cosine), Decimal(m.sine),
+                        Decimal(m.harmonic));
+  }
   return text;
 }
 

@@ -32,6 +32,7 @@
 #include "effects/sensor_bias.h"
 #include "effects/sensor_delay.h"
 #include "effects/sensor_drift.h"
+#include "effects/sensor_eccentricity.h"
 #include "effects/sensor_scale.h"
 #include "effects/slack.h"
 #include "effects/stiffness.h"
@@ -55,12 +56,13 @@ struct List {
 
 /// Every effect the library knows. Adding one is one line here. Signals act in this order: input,
 /// servo, cable.
-using All = List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction,
-                 DirectionalFriction, FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness,
-                 TorqueRipple, Maxwell, Pt2, Backlash, Slack, TendonStretch, Capstan, PccSegmentLaw,
-                 Braid, ChamberAsymmetry, Viscous, Stiffness, Payload, LinkMass, Armature,
-                 GravityTilt, ExternalForce, InputGain, InputOffset, TorqueLimit, DeadTime, Pt1,
-                 SensorBias, SensorScale, SensorDelay, SensorDrift, Misalignment, ClockSkew>;
+using All =
+    List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction, DirectionalFriction,
+         FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple, Maxwell, Pt2, Backlash,
+         Slack, TendonStretch, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness,
+         Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset,
+         TorqueLimit, DeadTime, Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift,
+         SensorEccentricity, Misalignment, ClockSkew>;
 
 /// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.
 using FormulaLaws = List<Formula, FormulaFriction>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -23,12 +24,17 @@ struct Input {
   bool unwrap = false;  ///< full turns that an angle lost are put back
 };
 
-/// How a channel is measured: y_meas(t) = scale · R(axis, angle) y(t − delay) + bias + rate (t −
-/// t_0).
+/// How a channel is measured: y_meas(t) = scale · (e + Eccentricity(e)) + bias + rate (t − t_0), e
+/// = R(axis, angle) y(t − delay).
 struct Measurement {
   double bias = 0, scale = 1, delay = 0, rate = 0, angle = 0;
+  double cosine = 0, sine = 0, harmonic = 1;  ///< of an encoder off its axis
   std::vector<double> axis{0, 0, 1};
   bool operator==(const Measurement&) const = default;
+  /// What an encoder off its axis adds to y [unit of the output, both].
+  double Eccentricity(double y) const {
+    return cosine * std::cos(harmonic * y) + sine * std::sin(harmonic * y);
+  }
 };
 
 /// What is compared: one column against one number of the simulation, or four columns against a

@@ -6,7 +6,7 @@
 namespace continuum {
 
 /// Whether a change is one of how channels are measured instead of the model: target "sensor:GLOB
-/// …" (of sensors, actuators or columns of outputs) with bias, scale, delay, rate or angle, target
+/// …" (of sensors, actuators or columns of outputs) with an attribute of Measurement, target
 /// "time" with skew, or target "registration" (sim/experiment/registration.h).
 bool IsMeasurement(const std::string& target, const std::string& attribute);
 

@@ -18,6 +18,9 @@ Measurement ReadMeasurement(const Yaml& y) {
   m.delay = y.NumberOr("delay", 0);
   m.rate = y.NumberOr("rate", 0);
   m.angle = y.NumberOr("angle", 0);
+  m.cosine = y.NumberOr("cosine", 0);
+  m.sine = y.NumberOr("sine", 0);
+  m.harmonic = y.NumberOr("harmonic", 1);
   if (const auto axis = y.Find("axis")) {
     m.axis = axis->Numbers();
     if (m.axis.size() != 3)
@@ -89,7 +92,7 @@ Input ReadInput(const Yaml& y) {
 
 Output ReadOutput(const Yaml& y) {
   y.Only({"column", "columns", "unit", "sensor", "actuator", "quantity", "sigma", "weight", "bias",
-          "scale", "delay", "rate", "angle", "axis", "unwrap"});
+          "scale", "delay", "rate", "angle", "axis", "cosine", "sine", "harmonic", "unwrap"});
   Output out;
   out.where = y.Where();
   const Yaml column = y.Has("columns") ? y.At("columns") : y.At("column");

@@ -67,7 +67,7 @@ Record Later(const Record& record, const std::vector<double>& time, double delay
   return late;
 }
 
-// y_meas(t) = scale R(axis, angle) y(t − delay) + bias + rate (t − t_0), in the output's unit.
+// Writes what is measured of a record (Measurement), in SI units. factor: of the output's unit.
 void Measure(Record& record, const Measurement& how, double shift, const std::vector<double>& time,
              double factor) {
   if (how == Measurement{} && shift == 0) return;
@@ -89,8 +89,9 @@ void Measure(Record& record, const Measurement& how, double shift, const std::ve
       for (int c = 0; c < 4; ++c) late[c][k] = turned[c];
     }
     for (std::size_t c = 0; c < record.size(); ++c) {
-      record[c][k] =
-          how.scale * late[c][k] + factor * (how.bias + how.rate * (time[k] - time.front()));
+      const double turn = record.size() == 1 ? how.Eccentricity(late[c][k] / factor) : 0;
+      record[c][k] = how.scale * (late[c][k] + factor * turn) +
+                     factor * (how.bias + how.rate * (time[k] - time.front()));
     }
   }
 }

@@ -21,7 +21,8 @@ using testing::Pendulum;
 // Logs whose sensor differs from the model's by one number, which a fit must find.
 class Measured : public Bench {
  protected:
-  Experiment Logs(double bias, double scale, double delay, const std::string& parameter) {
+  Experiment Logs(double bias, double scale, double delay, const std::string& parameter,
+                  double sine = 0) {
     constexpr double kFine = 1e-3;
     for (int t = 0; t < 2; ++t) {
       const auto u = Command(t, 200);
@@ -31,7 +32,8 @@ class Measured : public Bench {
       std::vector<double> q;
       for (std::size_t k = 0; k < u.size(); ++k) {
         const double at = std::max(0.0, testing::kPeriod * static_cast<double>(k) - delay) / kFine;
-        q.push_back(scale * fine[static_cast<std::size_t>(std::lround(at))] + bias);
+        const double angle = fine[static_cast<std::size_t>(std::lround(at))];
+        q.push_back(scale * (angle + sine * std::sin(angle)) + bias);
       }
       AddLog("t" + std::to_string(t), "use: train", u, q);
     }
@@ -62,6 +64,21 @@ TEST_F(Measured, ABiasIsFoundAndWritten) {
 TEST_F(Measured, AScaleIsFoundByTheColumnsName) {
   EXPECT_NEAR(Found(Logs(0, 1.05, 0, "target: 'sensor:q', attribute: scale, lower: 0.5, upper: 2")),
               1.05, 1e-3);
+}
+
+TEST_F(Measured, AnEccentricityIsFound) {
+  const Experiment e =
+      Logs(0, 1, 0, "target: 'sensor:q', attribute: sine, lower: -1, upper: 1", 0.03);
+  EXPECT_NEAR(Found(e), 0.03, 1e-3);
+}
+
+// What is read at a position gives the position back.
+TEST_F(Measured, AReadingIsCorrectedForItsEccentricity) {
+  Experiment e = Logs(0, 1, 0, "target: 'sensor:q', attribute: bias, lower: -1, upper: 1");
+  Measurement& how = e.outputs[0].measurement;
+  how = {0.1, 1.2, 0, 0, 0, 0.03, -0.02, 2};
+  for (const double y : {-2.0, 0.0, 0.7})
+    EXPECT_NEAR(SignalOf(e, 0, 1.2 * (y + how.Eccentricity(y)) + 0.1), y, 1e-12);
 }
 
 TEST_F(Measured, ADelayIsFound) {
