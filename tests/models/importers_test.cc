@@ -15,8 +15,8 @@ namespace {
 using ::testing::HasSubstr;
 
 const std::string kServo = "servo_pendulum", kArm = "tdcr_three_segment", kTrunk = "trunk";
-const char* const kRobots[] = {"emps", "servo_pendulum", "stiff_flop", "tdcr_three_segment",
-                               "trunk"};
+const char* const kRobots[] = {"emps",       "servo_pendulum",     "so101",
+                               "stiff_flop", "tdcr_three_segment", "trunk"};
 
 class Importers : public ::testing::Test {
  protected:
@@ -151,6 +151,23 @@ TEST_F(Importers, NameTheRowOfATableThatTheyCannotRead) {
   EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv:3, column 'pattern_label': expected rep"));
   Source("one_train.csv", Arm("11,rep1_\xff,0,0,0,0,0,0,0,0,0,1,2,3\n"));
   EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv: expected a table as CSV"));
+}
+
+TEST_F(Importers, ReadAnArmsMotionsWithTheJawAsAnAngle) {
+  std::string header = "t", row = "0.5";
+  for (const std::string kind : {"goal_", "q_"}) {
+    for (const std::string joint : {"pan", "lift", "elbow", "wrist_flex", "wrist_roll", "gripper"})
+      header += "," + kind + joint, row += ",0.25";
+  }
+  std::filesystem::create_directories(scratch_ / "in/logs");
+  for (const std::string name : {"a", "b", "c"}) Source("logs/" + name + ".csv", header + "\n");
+  EXPECT_THAT(Refusal("so101"), HasSubstr("in: expected at least 4 motions"));
+  Source("logs/d.csv", header + "\n" + row + "\n");
+  EXPECT_THAT(Refusal("so101"), HasSubstr("a.csv: expected at least 2 rows, found 0"));
+  for (const std::string name : {"a", "b", "c", "d"})
+    Source("logs/" + name + ".csv", header + "\n" + row + "\n" + row + "\n");
+  EXPECT_EQ(Import("so101", {"in", "out"}).out, "4 motions and 5 experiments in out\n");
+  EXPECT_THAT(testing::Scratch::Text(scratch_ / "out/a.csv"), HasSubstr(",0.25,0.31000\n"));
 }
 
 TEST_F(Importers, ReadAllSourcesBeforeTheyWrite) {

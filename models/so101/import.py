@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Turns logs of an SO-101 arm into an experiment folder.
+
+usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER
+
+SOURCE_FOLDER holds logs/*.csv, one for each motion: t [s], goal_<joint> and q_<joint> [rad] of pan, lift,
+elbow, wrist_flex, wrist_roll, and of the gripper as a share of its range, 0 to 1. Written: one CSV per
+motion, in which the gripper is the jaw's angle [rad], and
+  first.yaml, second.yaml   every other motion trains (its first 25 s), the others are held out, whole
+  menagerie.yaml            all motions, whole, with the actuators of the menagerie's model
+  first_diagnosis.yaml, second_diagnosis.yaml   15 s of the motions that train in first.yaml and
+                            second.yaml, three of four to train, with candidates
+"""
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import importer  # noqa: E402
+
+JOINTS = ("pan", "lift", "elbow", "wrist_flex", "wrist_roll", "gripper")
+JAW_CLOSED, JAW_RANGE = -0.17, 1.92  # rad
+TRAIN_SECONDS, DIAGNOSIS_SECONDS = 25, 15
+
+# Of the menagerie's robotstudio_so101, on every joint.
+MENAGERIE = ('set: {"actuator:*": {kp: 998, kv: 2.7}, "joint:*": {damping: 0.6, armature: 0.028}, '
+             + "".join(f'"plugin:friction_{joint}": {{tau_c: 0.052}}, ' for joint in JOINTS)
+             + '"plugin:dead_zone": {gap: 0}}')
+CANDIDATES = ("[load_friction, {effect: gear_friction, where: \"joint:lift elbow wrist_flex\"}, "
+              "stribeck, position_friction, backlash, dead_time, pt1, payload]")
+
+
+def parameters():
+    lines = ["parameters:"]
+    for joint in JOINTS:
+        lines += [
+            f"  - {{name: kp_{joint}, target: \"actuator:{joint}\", attribute: kp, lower: 1, upper: 100}}",
+            f"  - {{name: b_{joint}, target: \"joint:{joint}\", attribute: damping, lower: 0, upper: 5}}",
+            f"  - {{name: tau_c_{joint}, target: \"plugin:friction_{joint}\", attribute: tau_c, lower: 0,"
+            " upper: 0.6}",
+        ]
+    lines += [f"  - {{name: zero_{joint}, target: \"joint:{joint}\", attribute: ref, lower: -0.3,"
+              " upper: 0.3}" for joint in ("lift", "elbow", "wrist_flex")]
+    lines += [
+        "  - {name: armature, target: \"joint:*\", attribute: armature, lower: 1e-4, upper: 0.2}",
+        "  - {name: delay, target: \"sensor:*\", attribute: delay, initial: 0.02, lower: 0, upper: 0.1}",
+    ]
+    return lines
+
+
+def experiment(logs, model, end):
+    """logs: (name of the motion, use, more keys of its line)."""
+    lines = ["format: 1", f"model: {model}", "logs:"]
+    lines += [f"  - {{file: {name}.csv, trial: {name}, use: {use}{', ' if more else ''}{more}}}"
+              for name, use, more in logs]
+    lines += ["time: {column: t, unit: s}", "start: measured", "inputs:"]
+    lines += [f"  - {{column: goal_{joint}, unit: rad, actuator: {joint}}}" for joint in JOINTS]
+    lines += ["outputs:"]
+    lines += [f"  - {{column: q_{joint}, unit: rad, sensor: {joint}}}" for joint in JOINTS]
+    return "\n".join(lines + end) + "\n"
+
+
+def jaw(share):
+    return JAW_CLOSED + JAW_RANGE * share
+
+
+def table(path):
+    """The motion as CSV: time, goals and angles."""
+    columns = ["t"] + [f"{kind}_{joint}" for kind in ("goal", "q") for joint in JOINTS]
+    rows = [",".join(columns)]
+    for where, row in importer.read_table(path, columns)[1]:
+        values = {name: importer.number(row[name], f"{where}, column '{name}'") for name in columns}
+        rows.append(",".join(f"{jaw(values[name]):.5f}" if name.endswith("gripper") else row[name]
+                             for name in columns))
+    return "\n".join(rows) + "\n"
+
+
+def halves(names, first, model):
+    """Every other motion trains, from the first or the second on; the others are held out."""
+    window = f"window: [0, {TRAIN_SECONDS}]"
+    logs = [(name, "train", window) if k % 2 == first else (name, "validate", "")
+            for k, name in enumerate(names)]
+    return experiment(logs, model, parameters() + ["candidates: []", "folds: trial"])
+
+
+def diagnosed(names, model):
+    """The beginnings of some motions, a quarter of them held out, with candidates."""
+    window = f"window: [0, {DIAGNOSIS_SECONDS}]"
+    logs = [(name, "validate" if k % 4 == 1 else "train", window) for k, name in enumerate(names)]
+    return experiment(logs, model, parameters() + [f"candidates: {CANDIDATES}", "folds: trial"])
+
+
+def convert(source, model):
+    files = sorted((source / "logs").glob("*.csv"))
+    if len(files) < 4:
+        importer.refuse(source, "at least 4 motions (logs/*.csv)", len(files))
+    names = [file.stem for file in files]
+    for name in names:
+        if not name.replace("_", "").isalnum():
+            importer.refuse(source / "logs" / f"{name}.csv", "letters, digits and _ as a name", name)
+    written = {f"{file.stem}.csv": table(file) for file in files}
+    written |= {
+        "first.yaml": halves(names, 0, model),
+        "second.yaml": halves(names, 1, model),
+        "menagerie.yaml": experiment([(name, "validate", MENAGERIE) for name in names], model, []),
+        "first_diagnosis.yaml": diagnosed(names[::2], model),
+        "second_diagnosis.yaml": diagnosed(names[1::2], model),
+    }
+    return written, f"{len(names)} motions and 5 experiments"
+
+
+if __name__ == "__main__":
+    importer.run(__file__, __doc__, convert)
