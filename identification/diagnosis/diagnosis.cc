@@ -202,7 +202,8 @@ class Session {
     if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) &&
         d_.before.error.train <= std::hypot(d_.noise.rms, d_.noise.step)) {
       d_.verdict = Verdict::Adequate(
-          "what shows is smaller than noise and time step, and no candidate of the list explains it");
+          "what shows is smaller than noise and time step, and no candidate of the list explains "
+          "it");
     }
     d_.noise_limited = pairs.best || !d_.Is(Verdict::Kind::kUnexplained) ||
                        d_.verdict.unlisted_explains ||
