@@ -192,6 +192,9 @@ std::vector<Law> Laws() {
     if constexpr (FrictionLaw<E>) {
       Law law{std::string(E::kName), ""};
       for (const Param& p : E::kParams) {
+        if constexpr (requires { E::kGive; }) {
+          if (p.name == E::kParams[E::kGive].name) continue;  // only where it is alone
+        }
         const double value = p.initial != 0 ? p.initial : 0.003;
         law.config +=
             "<config key=\"" + std::string(p.name) + "\" value=\"" + std::to_string(value) + "\"/>";
