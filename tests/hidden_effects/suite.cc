@@ -103,7 +103,7 @@ std::string CandidatesOf(const Case& c) {
   };
   for (const EffectInfo& info : Catalog()) {
     if (has(c.effects, info.name) ? !c.listed : c.told) continue;
-    if (!c.among.empty() && !has(c.among, info.name)) continue;
+    if (c.among.empty() ? info.only_listed : !has(c.among, info.name)) continue;
     text += (text.empty() ? "" : ", ") + std::string(info.name);
   }
   return text;
