@@ -200,7 +200,7 @@ class Session {
       if (auto by_error = NameByError(search.Records(), d_.criteria)) d_.verdict = *by_error;
     }
     if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) &&
-        d_.before.error.train <= std::hypot(d_.noise.rms, d_.noise.step)) {
+        IsWithinNoise(d_.before.error.train, {d_.noise.rms, d_.noise.step})) {
       d_.verdict = Verdict::Adequate(
           "what shows is smaller than noise and time step, and no candidate of the list explains "
           "it");

@@ -31,6 +31,10 @@ bool ReachesNoise(double error, const ErrorParts& parts, const Criteria& criteri
   return error < std::hypot(criteria.at_noise * parts.noise, criteria.step_tolerance * parts.step);
 }
 
+bool IsWithinNoise(double error, const ErrorParts& parts) {
+  return error <= std::hypot(parts.noise, parts.step);
+}
+
 bool HasSignal(double smallest_p, double squares, double freedom, const Criteria& criteria) {
   return smallest_p < criteria.significance ||
          squares > criteria.model_limited * criteria.model_limited * freedom;

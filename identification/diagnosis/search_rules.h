@@ -34,6 +34,10 @@ struct ErrorParts {
 /// Whether a fit's error is hardly more than the noise and the time-discretisation error.
 bool ReachesNoise(double error, const ErrorParts& parts, const Criteria& criteria = {});
 
+/// Whether an error is no more than noise and time step make together: what shows in it all the
+/// same is smaller than they are.
+bool IsWithinNoise(double error, const ErrorParts& parts);
+
 /// Whether something of a model's squares wants an explanation: a candidate is significant, or the
 /// squares are plainly not noise. freedom: what noise alone would make them.
 bool HasSignal(double smallest_p, double squares, double freedom, const Criteria& criteria = {});

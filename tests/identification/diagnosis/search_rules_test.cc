@@ -24,5 +24,11 @@ TEST(ChanceOfGain, IsOneWithoutAGain) {
   EXPECT_EQ(ChanceOfGain(1, 1, 100), 1);
 }
 
+// Noise of 3 and a step of 4 make 5.
+TEST(SearchRules, NothingShowsBelowNoiseAndTimeStepTogether) {
+  EXPECT_TRUE(IsWithinNoise(4.99, {3, 4}));
+  EXPECT_FALSE(IsWithinNoise(5.01, {3, 4}));
+}
+
 }  // namespace
 }  // namespace continuum
