@@ -246,9 +246,8 @@ std::vector<std::string> Unlisted(const Experiment& e, const std::vector<std::st
   }
   std::vector<std::string> others;
   if (listed.empty() || (names.empty() && e.all_candidates)) return others;
-  for (const EffectInfo& effect : Catalog()) {
-    if (!effect.only_listed && !listed.contains(std::string(effect.name)))
-      others.emplace_back(effect.name);
+  for (const Candidate& c : WholeCatalog()) {
+    if (!listed.contains(c.effect)) others.push_back(c.effect);
   }
   return others;
 }

@@ -22,14 +22,6 @@ std::string Interval(double low, double high) {
   return std::isfinite(low) && std::isfinite(high) ? fmt::format("{:.3g} … {:.3g}", low, high) : "";
 }
 
-std::string GainInWords(const RowResult& r) {
-  if (!std::isfinite(r.gain)) return "";
-  const std::string gain = fmt::format("{:.0f} %", 100 * r.gain);
-  return std::isfinite(r.gain_low)
-             ? gain + fmt::format(" [{:.0f}, {:.0f}]", 100 * r.gain_low, 100 * r.gain_high)
-             : gain;
-}
-
 // "12 s", "3.2 min", "5.1 h".
 std::string Duration(double seconds) {
   if (seconds < 120) return fmt::format("{:.3g} s", seconds);
@@ -95,13 +87,11 @@ class StudyPage {
 
   std::vector<std::string> CellsOf(const StudyLine& line) const {
     const RowResult& r = line.result;
-    const std::string verdict =
-        r.certainty.empty() ? r.verdict : r.verdict + " (" + r.certainty + ")";
     std::vector<std::string> cells{
         std::to_string(line.row->number),
         line.row->name,
         StateName(line.status.state),
-        verdict,
+        VerdictInWords(r),
         r.cause.empty() ? line.status.reason : r.cause,
         GainInWords(r),
         ErrorInWords(r),

@@ -168,13 +168,22 @@ StudySummary Summarise(const StudyTable& study, std::vector<RowStatus> status,
   return summary;
 }
 
+std::string VerdictInWords(const RowResult& r) {
+  return r.certainty.empty() ? r.verdict : r.verdict + " (" + r.certainty + ")";
+}
+
+std::string GainInWords(const RowResult& r) {
+  if (!std::isfinite(r.gain)) return "";
+  const std::string gain = fmt::format("{:.0f} %", 100 * r.gain);
+  return std::isfinite(r.gain_low)
+             ? gain + fmt::format(" [{:.0f}, {:.0f}]", 100 * r.gain_low, 100 * r.gain_high)
+             : gain;
+}
+
 std::string InWords(const RowResult& r) {
-  std::string text = r.verdict;
-  if (!r.certainty.empty()) text += " (" + r.certainty + ")";
+  std::string text = VerdictInWords(r);
   if (!r.cause.empty()) text += (text.empty() ? "" : ": ") + r.cause;
-  if (std::isfinite(r.gain)) text += fmt::format(", gain {:.0f} %", 100 * r.gain);
-  if (std::isfinite(r.gain_low))
-    text += fmt::format(" [{:.0f}, {:.0f}]", 100 * r.gain_low, 100 * r.gain_high);
+  if (std::isfinite(r.gain)) text += ", gain " + GainInWords(r);
   if (!std::isfinite(r.gain) && std::isfinite(r.train))
     text += fmt::format("{}error {:.4g} {}", text.empty() ? "" : ", ", r.train, r.unit);
   return text;

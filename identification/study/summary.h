@@ -23,6 +23,9 @@ struct StudySummary {
 StudySummary Summarise(const StudyTable& study, std::vector<RowStatus> status,
                        const std::filesystem::path& out);
 
+/// "named (sure)"; "64 % [60, 68]", empty where nothing was gained.
+std::string VerdictInWords(const RowResult& result);
+std::string GainInWords(const RowResult& result);
 /// What a row found, on one line: "named (sure): dahl at joint hinge, 64 % [60, 68]".
 std::string InWords(const RowResult& result);
 

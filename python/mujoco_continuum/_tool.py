@@ -97,8 +97,8 @@ def run(arguments: list[str], progress: Progress | None = None,
     """Runs `continuum` to its end and returns what it prints.
 
     progress is called with each line of its progress. rename replaces texts of messages: names of
-    files that the user never saw. accepted: exit codes that are no failure. On KeyboardInterrupt the tool is asked to stop, which leaves no
-    half-written output; a second one ends it at once."""
+    files that the user never saw. accepted: exit codes that are no failure. On KeyboardInterrupt
+    the tool is asked to stop, which leaves no half-written output; a second one ends it at once."""
     # stdout to a file: only one pipe has to be read. A process group of its own: Ctrl-C on a
     # terminal would reach the tool twice, from the terminal and from here, and twice means at once.
     with tempfile.TemporaryFile("w+") as out:

@@ -1,10 +1,8 @@
 #include "sim/model/model_spec.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <sstream>
-#include <utility>
 #include <vector>
 
 #include "engine.h"
@@ -58,26 +56,34 @@ Owned<mjModel> Compile(mjSpec& spec, const std::string& name) {
   return model;
 }
 
-// For names and sizes: textures that MuJoCo paints itself take longest, and are not looked at.
-Owned<mjModel> CompileWithoutPaint(mjSpec& spec, const std::string& name) {
-  std::vector<std::pair<mjsTexture*, std::array<int, 2>>> sizes;
-  for (mjsElement* e = mjs_firstElement(&spec, mjOBJ_TEXTURE); e; e = mjs_nextElement(&spec, e)) {
-    mjsTexture* const t = mjs_asTexture(e);
-    if (t->builtin == mjBUILTIN_NONE) continue;
-    sizes.push_back({t, {t->width, t->height}});
-    t->width = std::min(t->width, 1), t->height = std::min(t->height, 1);
+// While it lives, textures that MuJoCo paints itself have one pixel.
+class WithoutPaint {
+ public:
+  explicit WithoutPaint(mjSpec& spec) {
+    for (mjsElement* e = mjs_firstElement(&spec, mjOBJ_TEXTURE); e; e = mjs_nextElement(&spec, e)) {
+      mjsTexture* const t = mjs_asTexture(e);
+      if (t->builtin == mjBUILTIN_NONE) continue;
+      sizes_.push_back({t, t->width, t->height});
+      t->width = std::min(t->width, 1), t->height = std::min(t->height, 1);
+    }
   }
-  const auto restore = [&] {
-    for (auto& [t, size] : sizes) t->width = size[0], t->height = size[1];
+  WithoutPaint(const WithoutPaint&) = delete;
+  ~WithoutPaint() {
+    for (const Size& s : sizes_) s.texture->width = s.width, s.texture->height = s.height;
+  }
+
+ private:
+  struct Size {
+    mjsTexture* texture;
+    int width, height;
   };
-  try {
-    Owned<mjModel> model = Compile(spec, name);
-    restore();
-    return model;
-  } catch (...) {
-    restore();
-    throw;
-  }
+  std::vector<Size> sizes_;
+};
+
+// For names and sizes: painting takes longest, and nobody looks.
+Owned<mjModel> CompileForNames(mjSpec& spec, const std::string& name) {
+  const WithoutPaint unpainted(spec);
+  return Compile(spec, name);
 }
 
 bool IsPlugin(const Change& change) { return change.target.starts_with(kPluginTarget); }
@@ -136,7 +142,7 @@ ModelSpec ModelSpec::Load(const std::filesystem::path& model) {
   char error[1000] = "";
   system.spec_.reset(mj_parseXML(model.c_str(), nullptr, error, sizeof error));
   if (!system.spec_) throw Error::Input(system.name_, OneLine(error));
-  system.compiled_ = CompileWithoutPaint(*system.spec_, system.name_);
+  system.compiled_ = CompileForNames(*system.spec_, system.name_);
   return system;
 }
 
@@ -150,7 +156,7 @@ ModelSpec ModelSpec::Parse(const std::string& xml, const std::filesystem::path& 
   system.spec_.reset(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
   if (!system.spec_) throw Error::Input(system.name_, OneLine(error));
   mjs_setString(system.spec_->modelfiledir, system.folder_.c_str());
-  system.compiled_ = CompileWithoutPaint(*system.spec_, system.name_);
+  system.compiled_ = CompileForNames(*system.spec_, system.name_);
   return system;
 }
 

@@ -58,12 +58,6 @@ std::string BarText(const Bar& bar, const Scale& x, double left, double y) {
   return label + Text("value", x(bar.value + error) + 6, y + 17, value);
 }
 
-double LabelWidth(const BarsSpec& spec) {
-  std::size_t longest = 4;
-  for (const Bar& bar : spec.bars) longest = std::max(longest, Length(bar.label));
-  return std::clamp(7.0 * static_cast<double>(longest) + 20, 80.0, 330.0);
-}
-
 }  // namespace
 
 std::string MarksHtml(const std::vector<Mark>& marks, const Scale& x, const Box& box) {
@@ -84,7 +78,7 @@ std::string BarsHtml(const BarsSpec& spec) {
   if (range.empty()) return Figure("plot", spec.title, "", "", NothingToPlot(), x_title);
 
   const double rows = kBarRow * static_cast<double>(spec.bars.size());
-  const Box box{LabelWidth(spec), kBarTop, kFullWidth - 8, kBarTop + rows};
+  const Box box{LabelWidth(spec.bars), kBarTop, kFullWidth - 8, kBarTop + rows};
   // Room for the printed values beyond the bars' ends.
   const double left = range.low() < 0 ? 90 : 0;
   const Scale x(range, box.left + left, box.right - 90, 0);

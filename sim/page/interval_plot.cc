@@ -55,12 +55,6 @@ std::string BandHtml(const IntervalsSpec& spec, const Scale& x, const Box& box) 
       x(spec.low), box.top, std::max(x(spec.high) - x(spec.low), 1.0), box.bottom - box.top);
 }
 
-double LabelWidth(const IntervalsSpec& spec) {
-  std::size_t longest = 4;
-  for (const IntervalRow& row : spec.rows) longest = std::max(longest, Length(row.label));
-  return std::clamp(7.0 * static_cast<double>(longest) + 20, 80.0, 330.0);
-}
-
 }  // namespace
 
 std::string IntervalsHtml(const IntervalsSpec& spec) {
@@ -70,7 +64,7 @@ std::string IntervalsHtml(const IntervalsSpec& spec) {
 
   const bool labelled = spec.rows.size() <= kMostLabels;
   const double height = labelled ? kLabelled : kPlain;
-  const Box box{LabelWidth(spec), kTop, kFullWidth - 8,
+  const Box box{LabelWidth(spec.rows), kTop, kFullWidth - 8,
                 kTop + height * static_cast<double>(spec.rows.size())};
   const Scale x(range, box.left, box.right);
   std::string content = BandHtml(spec, x, box) + VerticalGrid(x, box, 8);

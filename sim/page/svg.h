@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
 #include "sim/page/axis_scale.h"
+#include "sim/page/text.h"
 
 namespace continuum::page {
 
@@ -31,5 +33,13 @@ std::string HorizontalGrid(const Scale& y, const Box& box, int count);
 /// Throws Error (kInput) with the plot's title when two sizes that must agree do not.
 void RequireSize(const std::string& title, const std::string& what, std::size_t expected,
                  std::size_t found);
+
+/// Room [px] for the labels of rows on the left of a plot; a row has a `label`.
+template <class Rows>
+double LabelWidth(const Rows& rows) {
+  std::size_t longest = 4;
+  for (const auto& row : rows) longest = std::max(longest, Length(row.label));
+  return std::clamp(7.0 * static_cast<double>(longest) + 20, 80.0, 330.0);
+}
 
 }  // namespace continuum::page
