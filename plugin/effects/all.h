@@ -19,6 +19,7 @@
 #include "effects/gravity_tilt.h"
 #include "effects/input_gain.h"
 #include "effects/input_offset.h"
+#include "effects/link_length.h"
 #include "effects/link_mass.h"
 #include "effects/load_friction.h"
 #include "effects/lugre.h"
@@ -60,8 +61,8 @@ using All =
     List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction, DirectionalFriction,
          FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple, Maxwell, Pt2, Backlash,
          Slack, TendonStretch, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness,
-         Payload, LinkMass, Armature, GravityTilt, ExternalForce, InputGain, InputOffset,
-         TorqueLimit, DeadTime, Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift,
+         Payload, LinkMass, LinkLength, Armature, GravityTilt, ExternalForce, InputGain,
+         InputOffset, TorqueLimit, DeadTime, Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift,
          SensorEccentricity, Misalignment, ClockSkew>;
 
 /// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.

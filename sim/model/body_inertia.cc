@@ -61,6 +61,15 @@ Matrix3d InertiaOf(const mjsBody& body) {
   return R * Eigen::Map<const Vector3d>(body.inertia).asDiagonal() * R.transpose();
 }
 
+void SetInertia(mjsBody& body, const Matrix3d& inertia) {
+  const double full[6] = {inertia(0, 0), inertia(1, 1), inertia(2, 2),
+                          inertia(0, 1), inertia(0, 2), inertia(1, 2)};
+  std::copy(full, full + 6, body.fullinertia);
+  const double unit[4] = {1, 0, 0, 0};
+  std::copy(unit, unit + 4, body.iquat);
+  for (double& i : body.inertia) i = 0;
+}
+
 }  // namespace
 
 double BodyMass(const mjSpec& spec, const mjsBody& body, const mjModel& compiled) {
@@ -96,12 +105,21 @@ void AddPointMass(const mjSpec& spec, mjsBody& body, const mjModel& compiled, do
   // light.
   if (inertia.eigenvalues().real().minCoeff() <= 1e-12)
     inertia.diagonal().array() += std::max(4e-9 * total, 1e-13);
-  const double full[6] = {inertia(0, 0), inertia(1, 1), inertia(2, 2),
-                          inertia(0, 1), inertia(0, 2), inertia(1, 2)};
-  std::copy(full, full + 6, body.fullinertia);
-  const double unit[4] = {1, 0, 0, 0};
-  std::copy(unit, unit + 4, body.iquat);
-  for (double& i : body.inertia) i = 0;
+  SetInertia(body, inertia);
+}
+
+// With the second moments S = ∫ r rᵀ dm about the centre, I = tr(S) 1 − S; the map makes A S Aᵀ of
+// them.
+void MapBodyMass(const mjSpec& spec, mjsBody& body, const mjModel& compiled, const Matrix3d& A,
+                 const Vector3d& b) {
+  FreezeInertia(spec, body, compiled);
+  if (body.mass == 0) return;
+  const Matrix3d inertia = InertiaOf(body);
+  const Matrix3d S = inertia.trace() / 2 * Matrix3d::Identity() - inertia,
+                 mapped = A * S * A.transpose();
+  const Vector3d centre = b + A * Eigen::Map<const Vector3d>(body.ipos);
+  std::copy(centre.data(), centre.data() + 3, body.ipos);
+  SetInertia(body, mapped.trace() * Matrix3d::Identity() - mapped);
 }
 
 }  // namespace continuum

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mujoco/mujoco.h>
+#include <Eigen/Core>
 
 namespace continuum {
 
@@ -15,5 +16,10 @@ void SetBodyMass(const mjSpec& spec, mjsBody& body, const mjModel& compiled, dou
 /// Adds a point mass [kg] at the body's origin: centre and inertia by the parallel-axis theorem.
 /// Throws Error as SetBodyMass does.
 void AddPointMass(const mjSpec& spec, mjsBody& body, const mjModel& compiled, double added);
+
+/// Moves every point of a body's mass, x → b + A x in the axes of the body. Throws Error as
+/// SetBodyMass does.
+void MapBodyMass(const mjSpec& spec, mjsBody& body, const mjModel& compiled,
+                 const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
 
 }  // namespace continuum

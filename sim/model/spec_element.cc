@@ -11,6 +11,7 @@
 #include "sim/io/decimal.h"
 #include "sim/model/actuator_edit.h"
 #include "sim/model/body_inertia.h"
+#include "sim/model/body_length.h"
 #include "sim/model/spec_fields.h"
 
 namespace continuum {
@@ -174,6 +175,11 @@ void SpecElement::Add(std::string_view attribute, double value) {
 }
 
 void SpecElement::Scale(std::string_view attribute, double factor) {
+  if (element_->elemtype == mjOBJ_BODY && attribute == "length") {
+    return ScaleBodyLength(*spec_, *mjs_asBody(element_), *compiled_, factor, [&](mjsElement* e) {
+      others_.push_back(SpecElement(spec_, e, compiled_).Save());
+    });
+  }
   if (element_->elemtype == mjOBJ_ACTUATOR && attribute == "force_scale") {
     mjsActuator& a = Affine();
     a.gainprm[0] *= factor;

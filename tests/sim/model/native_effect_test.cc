@@ -148,7 +148,8 @@ TEST_F(NativeEffect, AtTheirNullTheModelMovesBitByBitAsBefore) {
   const ModelSpec system = Load();
   const auto plain = Run(system.Build());
   for (const Change& change :
-       {Change{"body:link", "effect:link_mass", 1}, Change{"world", "effect:gravity_tilt.pitch", 0},
+       {Change{"body:link", "effect:link_mass", 1}, Change{"body:link", "effect:link_length", 1},
+        Change{"world", "effect:gravity_tilt.pitch", 0},
         Change{"body:link", "effect:external_force", 0},
         Change{"site:tip", "effect:external_force.fz", 0}}) {
     EXPECT_EQ(Run(system.Build({{change}})), plain) << change.attribute;
