@@ -123,11 +123,23 @@ void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& resi
   }
 }
 
+// Those with few sizes and shapes first, so that as many as can be have been looked at when the
+// time is over.
+std::vector<CandidateResult*> CandidateSearch::CheapestFirst() {
+  std::vector<CandidateResult*> order;
+  for (CandidateResult& c : candidates) order.push_back(&c);
+  const auto looks = [](const CandidateResult* c) {
+    return c->hypothesis.starts.size() * c->hypothesis.Amplitudes().size();
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const auto* a, const auto* b) { return looks(a) < looks(b); });
+  return order;
+}
+
 // Those that only the sensors show at once, as nothing is simulated for them; the others by what
 // they explain of the missing force.
 std::vector<CandidateResult*> CandidateSearch::InOrderOfForce() {
-  std::vector<CandidateResult*> order;
-  for (CandidateResult& c : candidates) order.push_back(&c);
+  std::vector<CandidateResult*> order = CheapestFirst();
   const auto promise = [](const CandidateResult* c) {
     return c->hypothesis.OnlyMeasured() ? kInfinity : c->force_promise;
   };
@@ -225,30 +237,47 @@ void CandidateSearch::Screen(const std::vector<EquationErrors>& views,
   }
 }
 
+// In the shape that another view has found, else in the first one. Nothing where no machine has
+// such parameters, or it diverges: the other views are left.
+std::optional<EquationStart> CandidateSearch::LookAtForce(const EquationErrors& view,
+                                                          const CandidateResult& c) const {
+  if (StopRequested() || fitter_.TimeIsOver()) return {};
+  try {
+    return view.From(c.hypothesis, ProblemOf(c, *fitter_.experiment), c.force_start);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+void CandidateSearch::LookAtOtherShapes(const EquationErrors& view, const CandidateResult& c,
+                                        std::optional<EquationStart>& found) const {
+  if (!found || c.force_promise > 0 || StopRequested() || fitter_.TimeIsOver()) return;
+  try {
+    found = view.BestShape(c.hypothesis, ProblemOf(c, *fitter_.experiment), *found);
+  } catch (const Error&) {
+    return;  // one of them diverges
+  }
+}
+
 // First order is blind where an effect is large or the base far off; the missing force is not. It
-// decides who comes first, by what the best explains, the rival among them.
+// decides who comes first, by what the best explains, the rival among them. All candidates in one
+// shape, then in their others those of which no view has said yet which one it wants.
 void CandidateSearch::LookAtForces(const EquationErrors& view, const CandidateResult* rival) {
   options_.Say(DiagnosisStage::kScreen, "missing force");
   if (!view.any()) return;
-  const auto look = [&](const CandidateResult& c) -> std::optional<EquationStart> {
-    if (StopRequested() || fitter_.TimeIsOver()) return {};
-    try {
-      const Problem problem = ProblemOf(c, *fitter_.experiment);
-      return c.force_promise > 0 ? view.From(c.hypothesis, problem, c.force_start)
-                                 : view.StartOf(c.hypothesis, problem);
-    } catch (const Error&) {
-      return {};  // no machine has such parameters, or it diverges: the other views are left
-    }
-  };
-  std::vector<std::optional<EquationStart>> found(candidates.size());
-  ParallelFor(candidates.size(),
-              [&](std::size_t, std::size_t i) { found[i] = look(candidates[i]); });
-  const auto best = rival ? look(*rival) : std::nullopt;
+  const std::vector<CandidateResult*> order = CheapestFirst();
+  std::vector<std::optional<EquationStart>> found(order.size());
+  ParallelFor(order.size(),
+              [&](std::size_t, std::size_t i) { found[i] = LookAtForce(view, *order[i]); });
+  ParallelFor(order.size(),
+              [&](std::size_t, std::size_t i) { LookAtOtherShapes(view, *order[i], found[i]); });
+  auto best = rival ? LookAtForce(view, *rival) : std::nullopt;
+  if (rival) LookAtOtherShapes(view, *rival, best);
   double most = best ? best->share : 0;
   for (const auto& one : found) most = std::max(most, one ? one->share : 0);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
+  for (std::size_t i = 0; i < order.size(); ++i) {
     if (!found[i]) continue;
-    CandidateResult& c = candidates[i];
+    CandidateResult& c = *order[i];
     c.other_starts.push_back(found[i]->x);
     c.other_starts.push_back(found[i]->together);
     const double promise = found[i]->share / most;

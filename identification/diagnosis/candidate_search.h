@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
@@ -97,12 +98,17 @@ class CandidateSearch {
                             const std::vector<std::size_t>& starts) const;
   void ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
                 const std::vector<std::size_t>& starts);
+  std::vector<CandidateResult*> CheapestFirst();
   std::vector<CandidateResult*> InOrderOfForce();
   double LookAt(const CandidateResult& c, const ProjectedResidual& residual) const;
   void KeepThoseThatMayOutdo(const CandidateResult& best);
   void ProbeAll(const ProjectedResidual& residual, bool sees_forces);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);
+  std::optional<EquationStart> LookAtForce(const EquationErrors& view,
+                                           const CandidateResult& c) const;
+  void LookAtOtherShapes(const EquationErrors& view, const CandidateResult& c,
+                         std::optional<EquationStart>& found) const;
   void LookAtForces(const EquationErrors& view, const CandidateResult* rival);
   double MostExplained() const;
   bool IsWorthAFit(const CandidateResult& c, double needed) const;

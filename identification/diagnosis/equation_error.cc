@@ -94,14 +94,13 @@ Vector EquationErrors::Change(const Problem& problem, const Vector& to, std::siz
                                : Vector(Stacked(problem, to, thread, coarse_step_) - coarse_);
 }
 
-std::optional<EquationStart> EquationErrors::StartOf(const Hypothesis& h,
-                                                     const Problem& problem) const {
+EquationStart EquationErrors::BestShape(const Hypothesis& h, const Problem& problem,
+                                        EquationStart best) const {
   constexpr double kAnything = 0.01;  // of the missing force
-  std::optional<EquationStart> best = From(h, problem, 0);
-  if (!best || best->share < kAnything) return best;
+  if (best.share < kAnything) return best;
   for (const std::size_t other : h.StartsOfShape(false)) {
     auto next = From(h, problem, other);
-    if (next && (!best || next->share > best->share)) best = std::move(next);
+    if (next && next->share > best.share) best = *std::move(next);
   }
   return best;
 }

@@ -35,13 +35,15 @@ class EquationErrors {
 
   /// Whether every joint is measured, so that there is anything to see.
   bool any() const { return force_.size() > 0; }
-  /// What a candidate explains with sizes of its own, and where its fit may begin: in the best of
-  /// its shapes, if its first one explains anything at all. Effects are linear in their sizes here,
-  /// however large they are. Nothing where it does nothing to f. problem: of the candidate.
-  std::optional<EquationStart> StartOf(const Hypothesis& hypothesis, const Problem& problem) const;
-  /// The same in one shape, that of a start of the hypothesis.
+  /// What a candidate explains with sizes of its own, and where its fit may begin, in one shape:
+  /// that of a start of the hypothesis. Effects are linear in their sizes here, however large they
+  /// are. Nothing where it does nothing to f. problem: of the candidate.
   std::optional<EquationStart> From(const Hypothesis& hypothesis, const Problem& problem,
                                     std::size_t start) const;
+  /// The same in the best of its shapes. first: what From finds in the first one, which explains
+  /// something, or the others are not tried.
+  EquationStart BestShape(const Hypothesis& hypothesis, const Problem& problem,
+                          EquationStart first) const;
   /// Of a fitted candidate with the sizes that its fit gave it; nothing where it does nothing to f,
   /// as effects on the sensors.
   std::optional<ByEquation> Of(const CandidateResult& candidate) const;

@@ -143,16 +143,15 @@ TEST_F(ByEquationTest, OfSeveralShapesItFindsTheBest) {
   const auto all = CandidatesOf(e, system);
   ASSERT_EQ(all.size(), 1u);
   const Problem problem(e, all[0].system, all[0].Free());
-  const auto best = View(e, system).StartOf(all[0], problem);
-  ASSERT_TRUE(best.has_value());
-  Hypothesis only = all[0];
-  for (const auto& start : all[0].starts) {
-    only.starts = {start};
-    const auto one = View(e, system).StartOf(only, problem);
-    EXPECT_LE(one ? one->share : 0, best->share);
+  const EquationErrors view = View(e, system);
+  const auto first = view.From(all[0], problem, 0);
+  ASSERT_TRUE(first.has_value());
+  const EquationStart best = view.BestShape(all[0], problem, *first);
+  for (std::size_t i = 0; i < all[0].starts.size(); ++i) {
+    const auto one = view.From(all[0], problem, i);
+    EXPECT_LE(one ? one->share : 0, best.share);
   }
-  only.starts = {all[0].starts[best->start]};
-  EXPECT_EQ(View(e, system).StartOf(only, problem)->share, best->share);
+  EXPECT_EQ(view.From(all[0], problem, best.start)->share, best.share);
 }
 
 // Without the payload the missing force wants more inertia than is allowed.
