@@ -243,11 +243,12 @@ class PairSearch {
     Verdict verdict = JudgeLikelihoods(records, {}, 0, single_.Base(), criteria_);
     if (verdict.named.empty()) return;
     const std::size_t likeliest = verdict.named.front();
+    if (!Complete(pairs[likeliest])) return;
     LackOfFit lack = LackOf(pairs[likeliest]);
     verdict = JudgeLikelihoods(records, lack, 0, single_.Base(), criteria_);
     // Where more than noise is left a plainer pair may be enough.
     const Fitting& best = pairs[verdict.named.empty() ? likeliest : verdict.named.front()];
-    if (!best.complete()) return;
+    if (!Complete(best)) return;
     if (&best != &pairs[likeliest]) lack = LackOf(best);
     const bool matters = SecondShare(best) >= criteria_.second_share ||
                          (TakesTheRest(best) && !best.SecondCorrects(context_));
@@ -267,6 +268,18 @@ class PairSearch {
     verdict.leading = verdict.named.front();
     found.best.emplace(Pair{std::move(tried_[best.base].search), std::move(first),
                             best.a->likelihood, std::move(verdict), lack});
+  }
+
+  // A plain pair that was behind others of its search, and is to speak for them, has no
+  // sensitivities so far. False: it diverges next to its fit.
+  bool Complete(const Fitting& pair) const {
+    if (pair.complete()) return true;
+    try {
+      context_.fitter.Complete(ProblemOf(*pair.b, *context_.fitter.experiment), pair.b->fitted);
+      return pair.BothAreThere();
+    } catch (const Error&) {
+      return false;
+    }
   }
 
   LackOfFit LackOf(const Fitting& pair) const {

@@ -117,6 +117,8 @@ struct Criteria {
             "taken and an input came"};
 
   // The screen: what is looked at, and from which sizes.
+  Rule unseen{"unseen", 0.25, "share of the effects",
+              "where there was no time to look at more of them, a name may be any of them"};
   Rule probe_far{"probe_far", 5, "times what is to be explained",
                  "a probe that does so much more, or less, is repeated at a share of its size: "
                  "first order holds within a few"};
@@ -238,6 +240,7 @@ inline constexpr std::array kAllRules{
     &Criteria::step_most_spread,
     &Criteria::step_farthest,
     &Criteria::late,
+    &Criteria::unseen,
     &Criteria::probe_far,
     &Criteria::probe_least,
     &Criteria::start_share,

@@ -23,6 +23,7 @@
 #include "identification/diagnosis/quantisation.h"
 #include "identification/diagnosis/remaining.h"
 #include "identification/diagnosis/second_by_folds.h"
+#include "identification/diagnosis/unseen_effects.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
@@ -62,7 +63,9 @@ class Session {
       CompareFolds();
       MergePlaces();
       CompleteNamed();
+      ConfirmOnValidateLogs();
     }
+    WeighUnseen();
     Part("interval of the gain", [&] { SetGainInterval(); });
     FindWhatHelps();
     Describe();
@@ -72,10 +75,11 @@ class Session {
   }
 
  private:
-  // One that the verdict does not depend on.
-  void Part(const std::string& name, const std::function<void()>& make) {
-    MakePart(name, d_.missing, make);
+  // One that the verdict does not depend on; whether it was made.
+  bool Part(const std::string& name, const std::function<void()>& make) {
+    const bool made = MakePart(name, d_.missing, make);
     StopIfRequested();
+    return made;
   }
 
   // From now on fits end when the time of this stage is over.
@@ -93,6 +97,14 @@ class Session {
       options_.Say(DiagnosisStage::kNextExperiment);
       d_.next = ProposeNext(fitter_, d_);
     });
+  }
+
+  // The time was over before most of the list had its turn.
+  void WeighUnseen() {
+    if (!d_.Is(Verdict::Kind::kNamed) || !TooManyUnseen(d_)) return;
+    d_.verdict.kind = Verdict::Kind::kAmbiguous;
+    d_.verdict.reason = fmt::format("there was no time for a look at {} effects; of the others: {}",
+                                    UnseenEffects(d_).size(), d_.verdict.reason);
   }
 
   void MarkAsInterrupted() {
@@ -191,9 +203,7 @@ class Session {
     Begin(DiagnosisStage::kSecondCause);
     const bool two = search.leading() && MayBeTwo(d_.verdict, d_.lack_of_fit, search.smallest_p(),
                                                   search.BestOverNoise(), d_.criteria);
-    PairsFound pairs = two && HasTimeFor("a second cause")
-                           ? FindPair(Context(options_), search, d_.lack_of_fit.of_step)
-                           : PairsFound{};
+    PairsFound pairs = two && HasTimeFor("a second cause") ? SecondCauses(search) : PairsFound{};
     d_.pairs = std::move(pairs.tried);
     d_.remaining.would_take = std::move(pairs.would_take);
     if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) && !d_.verdict.unlisted_explains) {
@@ -213,6 +223,13 @@ class Session {
     } else {
       Take(search);
     }
+  }
+
+  PairsFound SecondCauses(const CandidateSearch& search) {
+    std::optional<PairsFound> found;
+    Part("second cause",
+         [&] { found.emplace(FindPair(Context(options_), search, d_.lack_of_fit.of_step)); });
+    return found ? std::move(*found) : PairsFound{};
   }
 
   // Whether the verdict may be another one with a better fit.
@@ -278,15 +295,23 @@ class Session {
     const bool held_out = HoldsOnValidateLogs(
         d_.before.error.validate, d_.chosen()->fitted.error.validate, floor, d_.criteria);
     if (held_out && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
+    TakeNameBack("does not lower the error of logs left out as it does that of its own");
+  }
+
+  // The folds are made of train logs; the validate logs have a say of their own.
+  void ConfirmOnValidateLogs() {
+    if (d_.chosen() && d_.before.error.validate > 0 &&
+        d_.after().validate > d_.before.error.validate)
+      TakeNameBack("raises the error of the logs that are kept for validation");
+  }
+
+  void TakeNameBack(const std::string& why) {
     const std::string name = d_.chosen()->hypothesis.NameAtPlace();
     d_.verdict.kind = Verdict::Kind::kUnexplained;
     d_.verdict.leading = d_.verdict.named.front();
     d_.verdict.named.clear(), d_.verdict.siblings.clear();
     d_.partner.reset();
-    d_.verdict.reason = fmt::format(
-        "the best candidate, {}, does not lower the error of logs left out as it does that of its "
-        "own",
-        name);
+    d_.verdict.reason = fmt::format("the best candidate, {}, {}", name, why);
   }
 
   // By likelihoods, which are calibrated where noise is the whole residual of the best model.
@@ -312,9 +337,11 @@ class Session {
     if (!SomethingIsLeft(search) || !HasTimeFor("candidates at other places")) return;
     const auto inside = options_.Inside(DiagnosisStage::kOtherCandidates, "at other places");
     CandidateSearch others(Context(inside), Base(), SearchScope::kOthers);
-    others.Screen(views_);
-    others.Fit(&search);
-    if (others.candidates.empty()) return;
+    const bool fitted = Part("candidates at other places", [&] {
+      others.Screen(views_);
+      others.Fit(&search);
+    });
+    if (!fitted || others.candidates.empty()) return;
     search.Join(std::move(others));
     Judge(search);
   }
@@ -326,8 +353,11 @@ class Session {
     if (options.candidates.empty() || d_.Is(Verdict::Kind::kAdequate)) return;
     if (!HasTimeFor("effects that are not listed")) return;
     CandidateSearch unlisted(Context(options), Base());
-    unlisted.Screen(views_, search.leading());
-    unlisted.Fit(&search);
+    const bool fitted = Part("effects that are not listed", [&] {
+      unlisted.Screen(views_, search.leading());
+      unlisted.Fit(&search);
+    });
+    if (!fitted) return;
     const CandidateResult* const best = unlisted.leading();
     const bool judged = best && best->fitted.complete();  // else plainly behind
     const bool enough = d_.Is(Verdict::Kind::kUnexplained) && judged &&

@@ -25,7 +25,7 @@ class TimeBudget {
  private:
   std::chrono::steady_clock::time_point begin_;
   double begin_processor_;  // ProcessorSeconds
-  double limit_;            // of processor time in all [s]; infinite: none
+  Effort effort_;
 };
 
 }  // namespace continuum

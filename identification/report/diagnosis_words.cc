@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "identification/diagnosis/gain.h"
+#include "identification/diagnosis/unseen_effects.h"
 #include "identification/report/model_changes.h"
 
 namespace continuum {
@@ -46,6 +47,16 @@ std::string Siblings(const Diagnosis& d) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+// "a, b, c and 12 more".
+std::string FirstOf(const std::vector<std::string>& all) {
+  constexpr std::size_t kShown = 4;
+  const std::size_t shown = std::min(kShown, all.size());
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(shown);
+  std::string text = fmt::format("{}", fmt::join(all.begin(), end, ", "));
+  if (all.size() > shown) text += fmt::format(" and {} more", all.size() - shown);
+  return text;
+}
+
 // What keeps a named cause from being sure, one sentence each.
 std::vector<std::string> Doubts(const Diagnosis& d) {
   std::vector<std::string> doubts;
@@ -62,6 +73,8 @@ std::vector<std::string> Doubts(const Diagnosis& d) {
     doubts.push_back(fmt::format("It fits as well at {}.", fmt::join(places, " and at ")));
   if (!d.verdict.siblings.empty())
     doubts.push_back(fmt::format("Relatives of it fit as well: {}.", Siblings(d)));
+  if (const auto unseen = UnseenEffects(d); !unseen.empty())
+    doubts.push_back(fmt::format("There was no time to look at {}.", FirstOf(unseen)));
   for (const CandidateResult& c : d.unlisted) {
     doubts.push_back(
         fmt::format("{}, which was not asked for, fits as well.", c.hypothesis.NameAtPlace()));
@@ -77,16 +90,6 @@ std::string Closest(const Diagnosis& d) {
   return fmt::format(" {} comes closest: it takes {:.0f} % of what can be explained.",
                      d.candidates[*leading].hypothesis.NameAtPlace(),
                      100 * d.verdict.leading_share);
-}
-
-// "a, b, c and 12 more".
-std::string FirstOf(const std::vector<std::string>& all) {
-  constexpr std::size_t kShown = 4;
-  const std::size_t shown = std::min(kShown, all.size());
-  const auto end = all.begin() + static_cast<std::ptrdiff_t>(shown);
-  std::string text = fmt::format("{}", fmt::join(all.begin(), end, ", "));
-  if (all.size() > shown) text += fmt::format(" and {} more", all.size() - shown);
-  return text;
 }
 
 std::string Sentence(std::string text) {
@@ -106,6 +109,13 @@ std::string WhyUnexplained(const Diagnosis& d) {
   return (d.left_out.empty() ? "No candidate explains enough of it."
                              : "No candidate that there was time for explains enough of it.") +
          Closest(d);
+}
+
+std::string WhyAmbiguous(const Diagnosis& d) {
+  std::string text = d.verdict.named.size() > 1 ? "These logs do not distinguish the causes." : "";
+  if (!TooManyUnseen(d)) return text.empty() ? "These logs do not distinguish the causes." : text;
+  if (text.empty()) text = "It does better than every other candidate that there was time for.";
+  return text + fmt::format(" There was no time to look at {}.", FirstOf(UnseenEffects(d)));
 }
 
 std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
@@ -186,7 +196,7 @@ std::string WhyInWords(const Diagnosis& d) {
                  : "No candidate lowers the error, but these logs do not show how large their "
                    "noise is.";
     case Kind::kAmbiguous:
-      return "These logs do not distinguish the causes.";
+      return WhyAmbiguous(d);
     case Kind::kUnexplained:
       return WhyUnexplained(d);
     case Kind::kNamed:

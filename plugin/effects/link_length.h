@@ -14,6 +14,7 @@ namespace continuum {
 struct LinkLength {
   static constexpr std::string_view kName = "link_length", kSource = "mujoco",
                                     kSummary = "another length of a body, its mass as it is";
+  static constexpr bool kOnlyListed = true;
   static constexpr std::array kPlaces{Place::kBody};
   static constexpr std::array kParams{Param{"scale", "1", 0, kInfinity, 1, 1}};
 

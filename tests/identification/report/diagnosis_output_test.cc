@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/unseen_effects.h"
 #include "identification/report/diagnosis_words.h"
 #include "identification/report/parts.h"
 #include "sim/io/csv.h"
@@ -316,6 +317,32 @@ TEST_F(DiagnosisOutput, SaysWhyACandidateWasNotFitted) {
   EXPECT_EQ(all[last - 3]["group"], "not fitted: to first order it explains too little");
   EXPECT_EQ(all[last - 2]["group"], "not fitted: there was no time for a look at it");
   EXPECT_EQ(all[last - 1]["group"], "not fitted: there was no time");
+}
+
+TEST_F(DiagnosisOutput, SaysWhichEffectsThereWasNoTimeToLookAt) {
+  using Why = Dismissed::Why;
+  d_->unlisted.clear();
+  const std::string named = d_->chosen()->hypothesis.effect;
+  d_->dismissed = {{"armature", "", "joint q", 1, 0.5, Why::kExplainsTooLittle},
+                   {"armature", "", "joint r", 0, 1, Why::kNoTimeForALook},
+                   {named, "", "joint r", 0, 1, Why::kNoTimeForALook}};
+  EXPECT_THAT(UnseenEffects(*d_), IsEmpty());
+  ASSERT_EQ(CertaintyOf(*d_), Certainty::kSure);
+  d_->dismissed.push_back({"dahl", "", "joint q", 0, 1, Why::kNoTimeForALook});
+  EXPECT_THAT(UnseenEffects(*d_), ElementsAre("dahl"));
+  EXPECT_EQ(CertaintyOf(*d_), Certainty::kLikely);
+  EXPECT_THAT(WhyInWords(*d_), HasSubstr("no time to look at dahl"));
+}
+
+TEST_F(DiagnosisOutput, IsNoNameWhereMuchOfTheListWasNotLookedAt) {
+  EXPECT_FALSE(TooManyUnseen(*d_));
+  for (const char* const effect : {"dahl", "stribeck", "maxwell", "pt1", "backlash"})
+    d_->dismissed.push_back({effect, "", "joint q", 0, 1, Dismissed::Why::kNoTimeForALook});
+  ASSERT_TRUE(TooManyUnseen(*d_));
+  d_->verdict.kind = Verdict::Kind::kAmbiguous;  // as the diagnosis does then
+  EXPECT_EQ(CertaintyOf(*d_), Certainty::kCannotSay);
+  EXPECT_THAT(WhyInWords(*d_), HasSubstr("that there was time for"));
+  EXPECT_THAT(WhyInWords(*d_), HasSubstr("dahl, stribeck, maxwell, pt1 and 1 more"));
 }
 
 TEST_F(DiagnosisOutput, IsOnlyLikelyWhereMoreThanNoiseIsLeft) {

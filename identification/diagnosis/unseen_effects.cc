@@ -1,0 +1,36 @@
+#include "identification/diagnosis/unseen_effects.h"
+
+#include <algorithm>
+#include <set>
+
+namespace continuum {
+namespace {
+
+bool HadALook(const Dismissed& one) { return one.why != Dismissed::Why::kNoTimeForALook; }
+
+std::set<std::string> SeenEffects(const Diagnosis& d) {
+  std::set<std::string> seen;
+  for (const CandidateResult& c : d.candidates) seen.insert(c.hypothesis.effect);
+  for (const Dismissed& one : d.dismissed) {
+    if (HadALook(one)) seen.insert(one.effect);
+  }
+  return seen;
+}
+
+}  // namespace
+
+std::vector<std::string> UnseenEffects(const Diagnosis& d) {
+  std::set<std::string> known = SeenEffects(d);
+  std::vector<std::string> unseen;
+  for (const Dismissed& one : d.dismissed) {
+    if (known.insert(one.effect).second) unseen.push_back(one.effect);
+  }
+  return unseen;
+}
+
+bool TooManyUnseen(const Diagnosis& d) {
+  const auto unseen = static_cast<double>(UnseenEffects(d).size());
+  return unseen > d.criteria.unseen * (unseen + static_cast<double>(SeenEffects(d).size()));
+}
+
+}  // namespace continuum
