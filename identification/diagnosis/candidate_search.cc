@@ -473,7 +473,7 @@ BaseSquares CandidateSearch::Base() const {
 // Of the train logs or of those left out, whichever shows more: what else is wrong may hide in one
 // of them what the fit does in the other, and logs left out confirm a name later on.
 double CandidateSearch::ErrorShare(const Fitted& fitted) const {
-  const double floor = std::hypot(noise_.rms, noise_.step);
+  const double floor = noise_.floor();
   const auto above = [&](double error) { return std::pow(WithoutPart(error, floor), 2); };
   const auto share = [&](double before, double after) {
     return above(before) > 0 ? 1 - above(after) / above(before) : 1;

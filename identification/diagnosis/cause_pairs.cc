@@ -287,6 +287,16 @@ class PairSearch {
     return of_step_ ? search.TestsOf(*pair.b) : search.LackOf(pair.b);
   }
 
+  // Whether the first cause explains more than the second one, each by itself: then it does so on
+  // average of both orders as well.
+  bool IsMain(const Fitting& pair) const {
+    const auto& singles = single_.candidates;
+    const auto alone = std::find_if(singles.begin(), singles.end(), [&](const CandidateResult& c) {
+      return Key(c.hypothesis) == Key(pair.b->hypothesis);
+    });
+    return alone == singles.end() || pair.a->likelihood >= alone->likelihood;
+  }
+
   // The first cause of the best pair, and what of the other pairs in the set could stand for it.
   Partner FirstOf(const std::vector<Fitting>& pairs, const Verdict& verdict) const {
     using Correction = Partner::Correction;
@@ -294,8 +304,7 @@ class PairSearch {
     Partner first{best.a->hypothesis};
     const bool this_one = best.FirstCorrects(context_), other = best.SecondCorrects(context_);
     if (this_one != other) first.correction = this_one ? Correction::kThis : Correction::kOther;
-    first.main =
-        first.correction == Correction::kNone ? best.a->likelihood >= best.b->likelihood : other;
+    first.main = first.correction == Correction::kNone ? IsMain(best) : other;
     std::set<std::string> taken{best.a->hypothesis.effect, best.b->hypothesis.effect};
     for (const std::size_t n : verdict.named) {
       if (pairs[n].base == best.base) taken.insert(pairs[n].b->hypothesis.effect);

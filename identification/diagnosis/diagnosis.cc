@@ -1,7 +1,6 @@
 #include "identification/diagnosis/diagnosis.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -177,8 +176,7 @@ class Session {
   void LookAtForces() {
     const std::vector<bool> use = LogsForALook(e_);
     views_.emplace_back(null_, d_.before.fit.x, use);
-    const double floor = std::hypot(d_.noise.rms, d_.noise.step);
-    if (d_.before.error.train > d_.criteria.model_limited * floor || !d_.noise.known())
+    if (d_.before.error.train > d_.criteria.model_limited * d_.noise.floor() || !d_.noise.known())
       views_.emplace_back(null_, null_.Start(), use);
   }
 
@@ -290,7 +288,7 @@ class Session {
       return;
     }
     if (d_.chosen()->record.after.empty()) return;
-    const double floor = std::hypot(d_.noise.rms, d_.noise.step);
+    const double floor = d_.noise.floor();
     const double possible = std::max(0.0, 1 - floor / d_.before.error.train);
     const bool held_out = HoldsOnValidateLogs(
         d_.before.error.validate, d_.chosen()->fitted.error.validate, floor, d_.criteria);

@@ -137,7 +137,6 @@ class FoldComparison {
   }
 
   bool Known() const { return d_.noise.known() && d_.noise.rms > 0; }
-  double Floor() const { return std::hypot(d_.noise.rms, d_.noise.step); }
 
   void Rank() {
     std::stable_sort(d_.candidates.begin(), d_.candidates.end(), [](const auto& a, const auto& b) {
@@ -146,7 +145,7 @@ class FoldComparison {
     std::vector<FoldRecord> records;
     for (CandidateResult& c : d_.candidates) {
       c.failures = Failures(c.record, d_.criteria);
-      if (Known()) c.record.over_noise = c.fitted.error.train / Floor();
+      if (Known()) c.record.over_noise = c.fitted.error.train / d_.noise.floor();
       c.record.kin = KinOf(c.hypothesis.Card());
       c.record.contains.clear();
       for (std::size_t i = 0; i < d_.candidates.size(); ++i) {
@@ -155,7 +154,7 @@ class FoldComparison {
       }
       records.push_back(c.record);
     }
-    ErrorLevel error{.over_noise = Known() ? d_.before.error.train / Floor() : 0,
+    ErrorLevel error{.over_noise = Known() ? d_.before.error.train / d_.noise.floor() : 0,
                      .ceiling_gain = CeilingGain(d_),
                      .over_scatter = 0};
     if (d_.noise.source == "differences" && d_.noise.rms > 0)

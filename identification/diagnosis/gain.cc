@@ -35,7 +35,7 @@ double Share(const Diagnosis& d, const CandidateResult& c) {
 }
 
 bool ModelLimited(const Diagnosis& d, const TwoErrors& after) {
-  return after.train > d.criteria.model_limited * std::hypot(d.noise.rms, d.noise.step);
+  return after.train > d.criteria.model_limited * d.noise.floor();
 }
 
 double Separation(const Diagnosis& d) {

@@ -19,7 +19,7 @@ double RmsOf(const Eigen::Ref<const Problem::Vector>& rows) {
 
 Remaining RemainingOf(const Problem& problem, const Fitted& fitted, const Noise& noise) {
   Remaining remaining;
-  const double floor = std::hypot(noise.rms, noise.step);
+  const double floor = noise.floor();
   if (noise.rms > 0) remaining.over_noise = fitted.error.train / floor;
   const Experiment& e = problem.experiment();
   const auto& channels = problem.channels();

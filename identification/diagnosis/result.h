@@ -141,7 +141,8 @@ struct Partner {
   std::vector<std::string> relatives = {};   ///< the same, of its own family
   /// Effects that could stand for the other one, beside those that the verdict names.
   std::vector<std::string> instead = {};
-  bool main = true;  ///< it takes more of the error than the other one, or the other one corrects
+  bool main =
+      true;  ///< by itself it takes more of the error than the other one, or that one corrects
   Correction correction = Correction::kNone;
 };
 

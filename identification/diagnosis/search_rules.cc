@@ -60,6 +60,10 @@ bool ExplainsForce(double share, double most, const Criteria& criteria) {
   return share >= std::max<double>(criteria.force_least, criteria.force_share * most);
 }
 
+bool TooManyUnseen(std::size_t unseen, std::size_t all, const Criteria& criteria) {
+  return static_cast<double>(unseen) > criteria.unseen * static_cast<double>(all);
+}
+
 // The upper tail of chi squared at an even number of degrees of freedom 2 k, which is a sum.
 double ChanceOfGain(double gain, std::size_t parameters, std::size_t fits) {
   if (!(gain > 0)) return 1;

@@ -56,6 +56,9 @@ double UnlistedThreshold(double most, const Criteria& criteria = {});
 /// order says. most: what the best one explains; all are shares of its squares.
 bool ExplainsForce(double share, double most, const Criteria& criteria = {});
 
+/// Whether so many of all effects had no look that a name may be any of them.
+bool TooManyUnseen(std::size_t unseen, std::size_t all, const Criteria& criteria = {});
+
 /// How likely it is at most that one of so many fits gains as much from noise alone: for those that
 /// the screen had no time for. gain: twice the logarithm of its likelihood.
 double ChanceOfGain(double gain, std::size_t parameters, std::size_t fits);

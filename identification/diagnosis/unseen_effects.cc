@@ -1,7 +1,8 @@
 #include "identification/diagnosis/unseen_effects.h"
 
-#include <algorithm>
 #include <set>
+
+#include "identification/diagnosis/search_rules.h"
 
 namespace continuum {
 namespace {
@@ -29,8 +30,8 @@ std::vector<std::string> UnseenEffects(const Diagnosis& d) {
 }
 
 bool TooManyUnseen(const Diagnosis& d) {
-  const auto unseen = static_cast<double>(UnseenEffects(d).size());
-  return unseen > d.criteria.unseen * (unseen + static_cast<double>(SeenEffects(d).size()));
+  const std::size_t unseen = UnseenEffects(d).size();
+  return TooManyUnseen(unseen, unseen + SeenEffects(d).size(), d.criteria);
 }
 
 }  // namespace continuum

@@ -52,10 +52,11 @@ std::string CauseLines(const Diagnosis& d) {
   };
   const bool two = d.partner && d.chosen();
   const bool corrects = two && d.partner->correction == Correction::kOther;
-  if (corrects) add_partner("cause    ");
+  const bool partner_first = two && d.partner->main;
+  if (partner_first) add_partner("cause    ");
   for (const std::size_t i : d.verdict.named) {
     const CandidateResult& c = d.candidates[i];
-    const std::string first = corrects ? "corrects " : "cause    ";
+    const std::string first = corrects ? "corrects " : partner_first ? "and      " : "cause    ";
     add(i == d.verdict.named.front() ? first : "   or    ", c.hypothesis, c.fitted, c.first_extra(),
         "");
     text += "\n";
@@ -64,7 +65,7 @@ std::string CauseLines(const Diagnosis& d) {
     add("   or    ", c.hypothesis, c.fitted, c.first_extra(), " (not asked for)");
     text += "\n";
   }
-  if (two && !corrects)
+  if (two && !partner_first)
     add_partner(d.partner->correction == Correction::kThis ? "corrects " : "and      ");
   return text;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,11 +15,9 @@ namespace {
 
 using Kind = Verdict::Kind;
 
-double Floor(const Diagnosis& d) { return std::hypot(d.noise.rms, d.noise.step); }
-
 // How many times what noise and time step make an error is; 0 where the noise is not known.
 double TimesFloor(const Diagnosis& d, const TwoErrors& error) {
-  return d.noise.known() && Floor(d) > 0 ? error.train / Floor(d) : 0;
+  return d.noise.known() && d.noise.floor() > 0 ? error.train / d.noise.floor() : 0;
 }
 
 bool OnlyNoiseRemains(const Diagnosis& d, const TwoErrors& error) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct Noise {
   std::vector<ChannelNoise> channel;  ///< [channel]; empty: not known
 
   bool known() const { return !channel.empty(); }
+  /// The error that a model without a fault has.
+  double floor() const { return std::hypot(rms, step); }
 };
 
 }  // namespace continuum
