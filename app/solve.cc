@@ -27,6 +27,10 @@ void AddSolve(CLI::App& app, int& exit_code) {
                    "Results (.csv or .json), or the calibrated robot (.yaml)")
       ->required();
   solve->add_option("--plot", request->plot, "Picture of the shapes (.png, .svg or .pdf)");
+  solve->add_option("--shape", request->shape,
+                    "Places along the centre lines, with frames and tensions (.csv or .json)");
+  solve->add_flag("--equilibria", request->equilibria,
+                  "All equilibria that a search finds, a row each, with energy and stability");
   solve->add_flag("--calibrate", request->calibrate,
                   "Fit the robot's parameters to the data instead of solving cases");
   solve->add_option("--hybrid", request->hybrid,
@@ -49,6 +53,7 @@ void AddSolve(CLI::App& app, int& exit_code) {
                                                     request->measured};
     RequireWritable(request->out, inputs);
     if (!request->plot.empty()) RequireWritable(request->plot, inputs);
+    if (!request->shape.empty()) RequireWritable(request->shape, inputs);
     request->warn = [](const std::string& text) { std::cerr << "warning: " << text << '\n'; };
     exit_code = Solve(*request);
   });

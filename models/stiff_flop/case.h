@@ -53,6 +53,9 @@ struct Solution {
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();     ///< rho(l) [m]
   Eigen::Vector3d tangent = Eigen::Vector3d::UnitY();  ///< d_2(l)
   BaseSection section = {};
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of the forward model: M(0) [E J_0/l]
+  /// Of the forward model: lambda, k_1, k_2 of the base section.
+  Eigen::Vector3d base = Eigen::Vector3d::UnitX();
   Eigen::Vector3d by_gamma = Eigen::Vector3d::Zero();  ///< inverse: dp, forward: d tip by gamma
   Eigen::Vector3d by_E = Eigen::Vector3d::Zero();      ///< the same by E
 };

@@ -214,18 +214,17 @@ class Balance {
     moment_ = Straight();
     numerics::Outcome outcome = Shoot(kFirstSteps);
     if (!trusted_ || !FarFromBuckling()) outcome = Rise(outcome);
-    while (outcome.ok()) {
-      const double change = ChangeOfHalvedSteps();
-      if (change <= kDiscretisation) break;
-      if (steps_ == kMostSteps) {
-        outcome.status = numerics::Status::kNoConvergence;
-        outcome.why = "the discretisation does not converge";
-        break;
-      }
-      outcome = After(outcome, Shoot(2 * steps_));
-      if (change <= kHalvingsGain * kDiscretisation) break;
-    }
+    outcome = Refined(outcome);
     if (outcome.ok() && !counted_) Judge(outcome);
+    return outcome;
+  }
+
+  /// The root next to a moment, whatever its stability.
+  numerics::Outcome Near(const Vector3d& moment) {
+    moment_ = moment;
+    const numerics::Outcome outcome = Refined(Shoot(kFirstSteps));
+    if (!outcome.ok()) return outcome;
+    stability_.unstable_directions = rising_.Count(1, moment_, base_);
     return outcome;
   }
 
@@ -240,6 +239,22 @@ class Balance {
   }
 
  private:
+  // Finer steps until they change nothing.
+  numerics::Outcome Refined(numerics::Outcome outcome) {
+    while (outcome.ok()) {
+      const double change = ChangeOfHalvedSteps();
+      if (change <= kDiscretisation) break;
+      if (steps_ == kMostSteps) {
+        outcome.status = numerics::Status::kNoConvergence;
+        outcome.why = "the discretisation does not converge";
+        break;
+      }
+      outcome = After(outcome, Shoot(2 * steps_));
+      if (change <= kHalvingsGain * kDiscretisation) break;
+    }
+    return outcome;
+  }
+
   // Near the end of a path of smallest step 1e-5 the stiffness has fallen to about sqrt(1e-5).
   static constexpr double kSpent = 0.05;
 
@@ -346,6 +361,8 @@ class Balance {
 
 void Read(const Balance& balance, Solution& solution) {
   const Axis<double>& base = balance.base();
+  solution.moment = balance.moment();
+  solution.base << base.lambda, base.k_1, base.k_2;
   solution.answer << std::hypot(base.k_1, base.k_2), std::atan2(base.k_2, base.k_1), base.lambda;
   const Eigen::Matrix<Dual, 3, 1> tangent = Rod::Tangent<Dual>(balance.tip().state);
   for (int i = 0; i < 3; ++i) {
@@ -383,6 +400,19 @@ Solution SolveForward(const Module& module, const Method& method, const Case& ro
   Rod rod(module, method, row, 1, kPiecesOfLine);
   rod.StartFrom(balance.base());
   *line = rod.Line(balance.moment());
+  return solution;
+}
+
+Solution SolveNear(const Module& module, const Method& method, const Case& row,
+                   const Vector3d& moment) {
+  Solution solution;
+  Balance balance(module, method, row);
+  solution.outcome = numerics::Timed([&] { return balance.Near(moment); });
+  if (!solution.outcome.ok()) return solution;
+  solution.stability = balance.stability();
+  solution.status = Status::kOk;
+  Read(balance, solution);
+  solution.section = Describe(module, method, balance.base());
   return solution;
 }
 

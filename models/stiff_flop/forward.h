@@ -22,6 +22,10 @@ namespace continuum::stiff_flop {
 Solution SolveForward(const Module& module, const Method& method, const Case& row, bool sensitivity,
                       std::vector<Eigen::Vector3d>* line = nullptr);
 
+/// The equilibrium next to the one with base moment M(0) [E J_0/l], stable or not.
+Solution SolveNear(const Module& module, const Method& method, const Case& row,
+                   const Eigen::Vector3d& moment);
+
 /// The line of SolveForward alone.
 std::vector<Eigen::Vector3d> ForwardLine(const Module& module, const Method& method,
                                          const Case& row);

@@ -6,11 +6,14 @@
 #include <utility>
 
 #include "error.h"
+#include "models/statics/held.h"
 #include "models/statics/plausible.h"
 #include "models/statics/results.h"
 #include "models/statics/write_figure.h"
+#include "models/stiff_flop/equilibria.h"
 #include "models/stiff_flop/figure.h"
 #include "models/stiff_flop/forward.h"
+#include "models/stiff_flop/held.h"
 #include "models/stiff_flop/inverse.h"
 #include "sim/io/yaml.h"
 
@@ -32,6 +35,13 @@ void RefuseOptions(const SolveRequest& request) {
     if (given) throw Error::Input(option, "no such option for a stiff_flop robot");
   }
   if (request.input.empty()) throw Error::Input("--input", "a CSV file", "nothing");
+}
+
+// --equilibria and --shape are of the forward model, whose shape is not given.
+void RefuseOfInverse(const SolveRequest& request, Direction direction) {
+  if (direction == Direction::kForward) return;
+  if (request.equilibria) throw Error::Input("--equilibria", "cases with p1, p2, p3", "kappa");
+  if (!request.shape.empty()) throw Error::Input("--shape", "cases with p1, p2, p3", "kappa");
 }
 
 void Append(Names& names, std::initializer_list<const char*> more) {
@@ -89,7 +99,11 @@ Names SensitivityColumns(Direction direction) {
   return {"dx_dgamma", "dy_dgamma", "dz_dgamma", "dx_dE", "dy_dE", "dz_dE"};
 }
 
-Names Columns(Direction direction, bool sensitivity) {
+void Append(Names& names, const Names& more) {
+  names.insert(names.end(), more.begin(), more.end());
+}
+
+Names Columns(const SolveRequest& request, Direction direction) {
   Names names = {"case"};
   if (direction == Direction::kInverse) Append(names, {"p1", "p2", "p3"});
   Append(names, {"x", "y", "z", "tx", "ty", "tz"});
@@ -99,10 +113,9 @@ Names Columns(Direction direction, bool sensitivity) {
   for (const std::string& name : statics::StabilityColumns()) {
     if (direction == Direction::kForward || name == "why") names.push_back(name);
   }
-  if (sensitivity) {
-    const Names more = SensitivityColumns(direction);
-    names.insert(names.end(), more.begin(), more.end());
-  }
+  if (request.sensitivity) Append(names, SensitivityColumns(direction));
+  Append(names, statics::HoldColumns());
+  if (request.equilibria) Append(names, statics::EquilibriumColumns());
   return names;
 }
 
@@ -110,22 +123,15 @@ void Set(statics::Results& results, const Names& columns, const Eigen::Vector3d&
   for (int i = 0; i < 3; ++i) results.Set(columns[i], values[i]);
 }
 
-void WriteRow(const Case& row, Direction direction, bool sensitivity, const Solution& solution,
-              statics::Results& results) {
-  results.Row();
-  results.Set("case", row.label);
-  results.Set("status", Name(solution.status));
-  results.Set("why", solution.outcome.why);
-  if (solution.status != Status::kOk) return;
-  if (direction == Direction::kForward) results.Set(solution.outcome, solution.stability);
-  results.Set(solution.outcome, Name(solution.status));
-  Set(results,
-      direction == Direction::kInverse ? Names{"p1", "p2", "p3"}
-                                       : Names{"kappa", "phi", "lambda_l"},
-      solution.answer);
-  Set(results, {"x", "y", "z"}, solution.tip);
-  Set(results, {"tx", "ty", "tz"}, solution.tangent);
-  const BaseSection& section = solution.section;
+// A row of the results.
+struct Solved {
+  Case row;
+  Solution solution;
+  std::vector<Eigen::Vector3d> line;  ///< for the picture
+  int equilibrium = 0;                ///< of the case, counted from 1; 0: no list of them
+};
+
+void WriteSection(const BaseSection& section, statics::Results& results) {
   results.Set("r_o", section.r_o);
   for (int i = 0; i < 3; ++i) {
     results.Set("r_G" + std::to_string(i + 1), section.r_G[i]);
@@ -133,23 +139,87 @@ void WriteRow(const Case& row, Direction direction, bool sensitivity, const Solu
   }
   results.Set("x_in", section.x_in);
   results.Set("x_out", section.x_out);
-  if (!sensitivity) return;
+}
+
+void WriteRow(const SolveRequest& request, const Module& module, const Method& method,
+              Direction direction, const Solved& solved, statics::Results& results) {
+  const Solution& solution = solved.solution;
+  const bool saddle = !solution.stability.stable();
+  const std::string status = saddle ? "saddle" : Name(solution.status);
+  results.Row();
+  results.Set("case", solved.row.label);
+  results.Set("status", status);
+  results.Set("why", solution.outcome.why);
+  if (solution.status != Status::kOk) return;
+  if (direction == Direction::kForward) results.Set(solution.outcome, solution.stability);
+  results.Set(solution.outcome, status);
+  Set(results,
+      direction == Direction::kInverse ? Names{"p1", "p2", "p3"}
+                                       : Names{"kappa", "phi", "lambda_l"},
+      solution.answer);
+  Set(results, {"x", "y", "z"}, solution.tip);
+  Set(results, {"tx", "ty", "tz"}, solution.tangent);
+  WriteSection(solution.section, results);
+  const Held held = Describe(module, method, direction, solved.row, solution);
+  statics::Set(held.hold, results);
+  if (request.equilibria) {
+    results.Set("equilibrium", solved.equilibrium);
+    results.Set("energy", held.energy);
+  }
+  if (!request.sensitivity) return;
   const Names names = SensitivityColumns(direction);
   Set(results, {names.begin(), names.begin() + 3}, solution.by_gamma);
   Set(results, {names.begin() + 3, names.end()}, solution.by_E);
 }
 
-void Draw(const SolveRequest& request, const Robot& robot, const Cases& cases,
-          const std::vector<Solution>& solved,
-          const std::vector<std::vector<Eigen::Vector3d>>& lines) {
+void Draw(const SolveRequest& request, const Robot& robot, Direction direction,
+          const std::vector<Solved>& rows) {
   statics::Figure figure = EmptyFigure(robot.module);
   figure.title = "stiff_flop, module " + robot.name;
-  for (std::size_t i = 0; i < cases.rows.size(); ++i) {
-    if (solved[i].status != Status::kOk) continue;
+  for (const Solved& solved : rows) {
+    if (solved.solution.status != Status::kOk || solved.line.empty()) continue;
     figure.shapes.push_back(
-        ShapeOf(robot.module, cases.direction, cases.rows[i], solved[i], lines[i]));
+        ShapeOf(robot.module, direction, solved.row, solved.solution, solved.line));
   }
   statics::WriteFigure(request.plot, figure);
+}
+
+void WriteShapes(const SolveRequest& request, const Module& module, const Method& method,
+                 const std::vector<Solved>& rows) {
+  statics::ShapeTable table(0);
+  for (const Solved& solved : rows) {
+    if (solved.solution.status != Status::kOk) continue;
+    for (const auto& place : Places(module, method, solved.row, solved.solution)) {
+      table.Add(solved.row.label, place);
+    }
+  }
+  table.Write(request.shape);
+}
+
+Solved SolveRow(const SolveRequest& request, const Module& module, const Method& method,
+                Direction direction, const Case& row) {
+  const bool draw = !request.plot.empty();
+  Solved solved{row, {}, {}};
+  if (direction == Direction::kInverse) {
+    solved.solution = SolveInverse(module, method, row, request.sensitivity);
+    if (draw && solved.solution.status == Status::kOk) solved.line = InverseLine(module, row);
+  } else {
+    solved.solution =
+        SolveForward(module, method, row, request.sensitivity, draw ? &solved.line : nullptr);
+  }
+  return solved;
+}
+
+// With --equilibria all of a case instead of its own answer, which is one of them.
+void AddRows(const SolveRequest& request, const Module& module, const Method& method,
+             const Solved& own, std::vector<Solved>& rows) {
+  if (request.equilibria) {
+    int count = 0;
+    for (Solution& s : Equilibria(module, method, own.row, own.solution)) {
+      rows.push_back({own.row, std::move(s), own.line, ++count});
+    }
+  }
+  if (!request.equilibria || own.solution.status != Status::kOk) rows.push_back(own);
 }
 
 }  // namespace
@@ -164,25 +234,23 @@ int SolveStiffFlop(const SolveRequest& request) {
   const Method method = Method::Parse(request.method, cases.direction);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
-  std::vector<Solution> solved;
-  statics::Results results(Columns(cases.direction, request.sensitivity));
+  RefuseOfInverse(request, cases.direction);
+  if (!request.shape.empty())
+    statics::RequireExtension(request.shape, {".csv", ".json"}, "--shape");
+  std::vector<Solved> rows;
   int failed = 0;
-  const bool draw = !request.plot.empty();
-  std::vector<std::vector<Eigen::Vector3d>> lines(draw ? cases.rows.size() : 0);
-  for (std::size_t i = 0; i < cases.rows.size(); ++i) {
-    const Case& row = cases.rows[i];
-    if (cases.direction == Direction::kInverse) {
-      solved.push_back(SolveInverse(robot.module, method, row, request.sensitivity));
-      if (draw && solved.back().status == Status::kOk) lines[i] = InverseLine(robot.module, row);
-    } else {
-      solved.push_back(
-          SolveForward(robot.module, method, row, request.sensitivity, draw ? &lines[i] : nullptr));
-    }
-    WriteRow(row, cases.direction, request.sensitivity, solved.back(), results);
-    failed += solved.back().status != Status::kOk;
+  for (const Case& row : cases.rows) {
+    const Solved own = SolveRow(request, robot.module, method, cases.direction, row);
+    failed += own.solution.status != Status::kOk;
+    AddRows(request, robot.module, method, own, rows);
+  }
+  statics::Results results(Columns(request, cases.direction));
+  for (const Solved& solved : rows) {
+    WriteRow(request, robot.module, method, cases.direction, solved, results);
   }
   results.Write(request.out);
-  if (draw) Draw(request, robot, cases, solved, lines);
+  if (!request.shape.empty()) WriteShapes(request, robot.module, method, rows);
+  if (!request.plot.empty()) Draw(request, robot, cases.direction, rows);
   return failed == 0 ? 0 : 1;
 }
 

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::size_t kShown = 200;  // characters of a list of names
 
-std::vector<std::string> KnownColumns(int tendons) {
+std::vector<std::string> KnownColumns(const std::string& drive, int tendons) {
   std::vector<std::string> known{"case", "fx", "fy", "fz", "gx", "gy", "gz", "mu", "reference"};
-  for (const char* prefix : {"T", "dir"}) {
+  for (const std::string& prefix : {drive, std::string("dir")}) {
     for (int k = 1; k <= tendons; ++k) known.push_back(prefix + std::to_string(k));
   }
   return known;
@@ -36,12 +36,12 @@ void RequireKnown(const CsvTable& table, const std::vector<std::string>& known) 
 
 void RequireKnownKeys(const Yaml& robot) {
   robot.Only({"format", "robot", "length", "diameter", "disks", "tendons", "tendon_radius", "E",
-              "nu", "density", "disk_mass", "mu", "gravity", "base_rotation", "calibration",
-              "hybrid"});
+              "nu", "density", "disk_mass", "mu", "tendon_EA", "gravity", "base_rotation",
+              "calibration", "hybrid"});
 }
 
 void RequireKnownCaseColumns(const CsvTable& cases, int tendons) {
-  RequireKnown(cases, KnownColumns(tendons));
+  RequireKnown(cases, KnownColumns(cases.Has("L1") ? "L" : "T", tendons));
 }
 
 void RequireKnownMeasuredColumns(const CsvTable& measured, int disks) {

@@ -1,16 +1,19 @@
 #include "models/tdcr/cosserat.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <type_traits>
 
 #include "models/statics/dual_value.h"
+#include "models/statics/slide.h"
 #include "models/tdcr/rubbing.h"
 
 namespace continuum::tdcr {
 namespace {
 
 struct NoTensions {};
+struct NoLengths {};
 
 constexpr int kFewTendons = 4;  // more of them need larger states, which cost time to copy
 
@@ -21,8 +24,9 @@ auto Values(const Matrix& m) {
 
 }  // namespace
 
-// Rotation as a quaternion (w first), curvature, position and, with friction, tensions.
-template <class T, int kRubbing>
+// Rotation as a quaternion (w first), curvature, position and, with friction, tensions; of contacts
+// that remember, the tendons' lengths so far.
+template <class T, int kRubbing, bool kSlides>
 struct RodBalance::State {
   using Vector3 = Eigen::Matrix<T, 3, 1>;
   using Tensions =
@@ -33,31 +37,73 @@ struct RodBalance::State {
   Eigen::Matrix<T, 4, 1> q;
   Vector3 u, p;
   [[no_unique_address]] Tensions tension;
+  [[no_unique_address]] std::conditional_t<kSlides, Tensions, NoLengths> way;
 
   void Add(double h, const State& slope) {
     q += T(h) * slope.q;
     u += T(h) * slope.u;
     if constexpr (kPosition) p += T(h) * slope.p;
     if constexpr (kRubbing > 0) tension += T(h) * slope.tension;
+    if constexpr (kSlides) way += T(h) * slope.way;
   }
 };
 
 RodBalance::RodBalance(const Robot& robot, const Loads& loads, bool friction, int steps)
-    : length_(robot.length), rod_(robot, loads, friction), steps_(steps) {}
+    : length_(robot.length),
+      unit_(robot.moment() / robot.length),
+      tendons_(robot.tendons),
+      to_(robot, loads, friction),
+      from_(to_.Unloaded()),
+      rod_(to_),
+      steps_(steps) {}
 
-Eigen::Vector3d RodBalance::DeadForce(int piece, double s) const {
-  return load_ * rod_.Force(piece, s);
+RodBalance RodBalance::Remembering(const Robot& robot, const Loads& loads, int steps,
+                                   const Loads* earlier) {
+  RodBalance balance(robot, loads, true, steps);
+  balance.remembers_ = &loads;
+  balance.to_ = UnitRod(robot, loads, true, true);
+  balance.from_ = earlier ? UnitRod(robot, *earlier, true, true) : balance.to_.Unloaded();
+  balance.rod_ = balance.to_;
+  const int count = robot.disks * steps;
+  Eigen::MatrixXd& beyond = balance.beyond_before_;
+  beyond.setConstant(count, robot.tendons, 1.0 / count);
+  if (loads.from.length.size() > 0) beyond = loads.from.length / robot.length;
+  for (int i = count - 2; i >= 0; --i) beyond.row(i) += beyond.row(i + 1);
+  return balance;
 }
 
-template <class T, int kRubbing>
-Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kRubbing>& y) const {
+void RodBalance::SetLoad(double load) {
+  load_ = load;
+  rod_.Mix(from_, to_, load);
+}
+
+void RodBalance::SetTension(const Eigen::VectorXd& tension) {
+  for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
+    rod_.pull[k] = to_.pull[k] = from_.pull[k] = tension[static_cast<Eigen::Index>(k)] / unit_;
+  }
+  for (Integrated& known : integrated_) known.load = -1;
+}
+
+// (5), of a tendon whose direction is not given.
+template <class T>
+T RodBalance::Share(int step, std::size_t tendon, const T& beyond) const {
+  const int direction = rod_.direction[tendon];
+  if (direction != kAsItSlides) return T(direction);
+  const auto k = static_cast<Eigen::Index>(tendon);
+  const Contacts& from = remembers_->from;
+  const double before = from.share.size() > 0 ? from.share(step, k) : 0;
+  return statics::SlideFrom(before, T((length_ / kGivesWay) * (beyond_before_(step, k) - beyond)));
+}
+
+template <class T, int kRubbing, bool kSlides>
+Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kRubbing, kSlides>& y) const {
   using std::sqrt;
   Eigen::Matrix<T, 3, 1> moment(y.u.x() - rod_.natural.x(), y.u.y() - rod_.natural.y(),
                                 rod_.twist * (y.u.z() - rod_.natural.z()));
   for (std::size_t k = 0; k < rod_.holes.size(); ++k) {
     const double ax = rod_.holes[k].x(), ay = rod_.holes[k].y(), r2 = rod_.holes[k].squaredNorm();
     const T wz = 1.0 + y.u.x() * ay - y.u.y() * ax;
-    T pull = T(load_ * rod_.pull[k]);
+    T pull = T(rod_.pull[k]);
     if constexpr (kRubbing > 0) pull = y.tension[static_cast<Eigen::Index>(k)];
     pull /= sqrt(wz * wz + r2 * y.u.z() * y.u.z());
     moment.x() += pull * wz * ay;
@@ -68,24 +114,28 @@ Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kRubbing>& y) const {
 }
 
 // Flattened, as Rub is: dual numbers are so short that calls would cost as much as the work.
-template <class T, int kRubbing>
-[[gnu::flatten]] bool RodBalance::Slope(const State<T, kRubbing>& y, const Eigen::Vector3d& force,
-                                        State<T, kRubbing>& dy) const {
+template <class T, int kRubbing, bool kSlides>
+[[gnu::flatten]] bool RodBalance::Slope(const State<T, kRubbing, kSlides>& y,
+                                        const Eigen::Vector3d& force, const T* share,
+                                        State<T, kRubbing, kSlides>& dy) const {
   using std::sqrt;
   using Vector3 = Eigen::Matrix<T, 3, 1>;
   const Vector3& u = y.u;
   Vector3 moment(u.x() - rod_.natural.x(), u.y() - rod_.natural.y(),
                  rod_.twist * (u.z() - rod_.natural.z()));
   T hxx(1), hxy(0), hyy(1), hxz(0), hyz(0), hzz(rod_.twist);
+  if constexpr (kSlides) dy.way.resize(y.way.size());
   for (std::size_t k = 0; k < rod_.holes.size(); ++k) {
     const double ax = rod_.holes[k].x(), ay = rod_.holes[k].y(), r2 = rod_.holes[k].squaredNorm();
-    T pull = T(load_ * rod_.pull[k]);
+    T pull = T(rod_.pull[k]);
     if constexpr (kRubbing > 0) pull = y.tension[static_cast<Eigen::Index>(k)];
     const T wz = 1.0 + u.x() * ay - u.y() * ax;
     if (!(wz > T(0))) return false;
     const T side = r2 * u.z() * u.z();
     const T square = wz * wz + side;
-    const T inverse = pull / sqrt(square);
+    const T along = sqrt(square);
+    if constexpr (kSlides) dy.way[static_cast<Eigen::Index>(k)] = along;
+    const T inverse = pull / along;
     moment.x() += inverse * wz * ay;
     moment.y() -= inverse * wz * ax;
     moment.z() += inverse * u.z() * r2;
@@ -123,9 +173,9 @@ template <class T, int kRubbing>
   if constexpr (kRubbing > 0) {
     Eigen::Matrix<T, 3, 3> hessian;
     hessian << hxx, hxy, hxz, hxy, hyy, hyz, hxz, hyz, hzz;
-    Rub(y, hessian, right, dy);
+    Rub(y, hessian, right, share, dy);
   }
-  if constexpr (State<T, kRubbing>::kPosition) dy.p = tangent;
+  if constexpr (State<T, kRubbing, kSlides>::kPosition) dy.p = tangent;
   dy.q = 0.5 * Eigen::Matrix<T, 4, 1>(
                    -q1 * u.x() - q2 * u.y() - q3 * u.z(), q0 * u.x() + q2 * u.z() - q3 * u.y(),
                    q0 * u.y() + q3 * u.x() - q1 * u.z(), q0 * u.z() + q1 * u.y() - q2 * u.x());
@@ -134,14 +184,15 @@ template <class T, int kRubbing>
 
 // u' with friction: H u' + sum_k T_k'(u') a_k x t_k = right, from the u' without it. Steps along
 // the first tangent, off by a thousandth, in plain numbers; one more in T has the derivatives too.
-template <class T, int kRubbing>
-[[gnu::flatten]] void RodBalance::Rub(const State<T, kRubbing>& y,
+template <class T, int kRubbing, bool kSlides>
+[[gnu::flatten]] void RodBalance::Rub(const State<T, kRubbing, kSlides>& y,
                                       const Eigen::Matrix<T, 3, 3>& hessian,
-                                      const Eigen::Matrix<T, 3, 1>& right,
-                                      State<T, kRubbing>& dy) const {
+                                      const Eigen::Matrix<T, 3, 1>& right, const T* share,
+                                      State<T, kRubbing, kSlides>& dy) const {
   using Vector3 = Eigen::Matrix<T, 3, 1>;
   constexpr int kMostRounds = 12;
   constexpr double kLastStep = 1e-7;
+  using Vector = Eigen::Vector3d;
   const auto count = static_cast<std::size_t>(y.tension.size());
   std::array<Rubbing<double>, kRubbing> plain;
   const Eigen::Matrix3d elastic = Values(hessian);
@@ -150,7 +201,8 @@ template <class T, int kRubbing>
   Eigen::Matrix3d tangent = elastic;
   for (std::size_t k = 0; k < count; ++k) {
     const double tension = statics::Value(y.tension[static_cast<Eigen::Index>(k)]);
-    plain[k] = Rubbing<double>(rod_.holes[k], Values(y.u), rod_.direction[k] * rod_.mu * tension);
+    const double direction = kSlides ? statics::Value(share[k]) : rod_.direction[k];
+    plain[k] = Rubbing<double>(rod_.holes[k], Values(y.u), direction * rod_.mu * tension);
     tangent += plain[k].Lever() * plain[k].Gradient(du).transpose();
   }
   const Eigen::Matrix3d inverse = tangent.inverse();
@@ -166,7 +218,8 @@ template <class T, int kRubbing>
   dy.tension.resize(y.tension.size());
   for (std::size_t k = 0; k < count; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    const Rubbing<T> rubbing(rod_.holes[k], y.u, T(rod_.direction[k] * rod_.mu) * y.tension[i]);
+    const T loss = kSlides ? T(rod_.mu * share[k]) : T(rod_.direction[k] * rod_.mu);
+    const Rubbing<T> rubbing(rod_.holes[k], y.u, loss * y.tension[i]);
     dy.tension[i] = rubbing.Slope(at);
     rest -= dy.tension[i] * rubbing.Lever();
   }
@@ -178,9 +231,9 @@ template <class T, int kRubbing>
   }
 }
 
-// Dormand-Prince's fifth-order formula, `steps_` equal steps per piece.
-template <class T, int kRubbing, class AtNode>
-bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const {
+// Dormand-Prince's fifth-order formula, `steps_` equal steps per piece. end: R nu(1), then lengths.
+template <class T, int kRubbing, bool kSlides, class AtNode>
+bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
   static constexpr double kNodes[6] = {0, 0.2, 0.3, 0.8, 8. / 9, 1};
   static constexpr double kA[7][6] = {
       {},
@@ -190,20 +243,28 @@ bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node)
       {19372. / 6561, -25360. / 2187, 64448. / 6561, -212. / 729},
       {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656},
       {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84}};
-  using S = State<T, kRubbing>;
+  using S = State<T, kRubbing, kSlides>;
+  const std::size_t tendons = rod_.pull.size();
   S y;
   y.q << T(1), T(0), T(0), T(0);
   y.u << x[0], x[1], x[2];
   y.p.setZero();
   if constexpr (kRubbing > 0) {
-    y.tension.resize(static_cast<Eigen::Index>(rod_.pull.size()));
-    for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
-      y.tension[static_cast<Eigen::Index>(k)] = T(load_ * rod_.pull[k]);
+    y.tension.resize(static_cast<Eigen::Index>(tendons));
+    for (std::size_t k = 0; k < tendons; ++k) {
+      y.tension[static_cast<Eigen::Index>(k)] = T(rod_.pull[k]);
     }
   }
+  if constexpr (kSlides) y.way.setZero(static_cast<Eigen::Index>(tendons));
   std::array<S, 6> slope;
+  std::array<T, kSlides ? kRubbing : 1> share{};
   const double h = 1.0 / (rod_.disks * steps_);
   for (int step = 0; step < rod_.disks * steps_; ++step) {
+    if constexpr (kSlides) {
+      for (std::size_t k = 0; k < tendons; ++k) {
+        share[k] = Share(step, k, T(x[3 + k] - y.way[static_cast<Eigen::Index>(k)]));
+      }
+    }
     for (int stage = 0; stage <= 6; ++stage) {
       S at = y;
       for (int j = 0; j < stage; ++j) {
@@ -211,7 +272,7 @@ bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node)
       }
       if (stage == 6) {
         y = at;
-      } else if (!Slope(at, DeadForce(step / steps_, h * (step + kNodes[stage])),
+      } else if (!Slope(at, rod_.Force(step / steps_, h * (step + kNodes[stage])), share.data(),
                         slope[static_cast<std::size_t>(stage)])) {
         return false;
       }
@@ -221,32 +282,63 @@ bool RodBalance::Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node)
   // R nu by the quaternion: nu + 2 q_0 (q x nu) + 2 q x (q x nu).
   const Eigen::Matrix<T, 3, 1> axis = y.q.template tail<3>(), moment = Moment(y);
   const Eigen::Matrix<T, 3, 1> turned = 2.0 * axis.cross(moment);
-  end = moment + y.q[0] * turned + axis.cross(turned);
+  Eigen::Map<Eigen::Matrix<T, 3, 1>>(end, 3) = moment + y.q[0] * turned + axis.cross(turned);
+  if constexpr (kSlides) {
+    for (std::size_t k = 0; k < tendons; ++k) {
+      end[3 + k] = y.way[static_cast<Eigen::Index>(k)] - x[3 + k];
+    }
+  }
   return true;
 }
 
-template <class T, class AtNode>
-bool RodBalance::WalkAny(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const {
-  if (!rod_.friction) return Walk<T, 0>(x, end, at_node);
-  if (rod_.pull.size() <= kFewTendons) return Walk<T, kFewTendons>(x, end, at_node);
-  return Walk<T, kMaxTendons>(x, end, at_node);
+template <class T, bool kSlides, class AtNode>
+bool RodBalance::WalkAny(const T* x, T* end, AtNode&& at_node) const {
+  if constexpr (kSlides) {
+    return Walk<T, kMaxTendons, true>(x, end, at_node);
+  } else {
+    if (!rod_.friction) return Walk<T, 0, false>(x, end, at_node);
+    return rod_.pull.size() <= kFewTendons ? Walk<T, kFewTendons, false>(x, end, at_node)
+                                           : Walk<T, kMaxTendons, false>(x, end, at_node);
+  }
 }
 
 template <class T>
 bool RodBalance::operator()(const T* x, T* f) const {
-  Eigen::Matrix<T, 3, 1> end;
-  if (!WalkAny(x, end, [](int, const auto&) {})) return false;
-  for (int i = 0; i < 3; ++i) f[i] = end[i];
-  return true;
+  const auto nothing = [](int, const auto&) {};
+  return remembers() ? WalkAny<T, true>(x, f, nothing) : WalkAny<T, false>(x, f, nothing);
 }
 
 template bool RodBalance::operator()(const double* x, double* f) const;
 template bool RodBalance::operator()(const ceres::Jet<double, 4>* x,
                                      ceres::Jet<double, 4>* f) const;
 
-const RodBalance::Shape& RodBalance::Integrate(const Vector& x) const {
+bool RodBalance::Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& f,
+                          Eigen::MatrixXd& jacobian) const {
+  constexpr int kBlock = 4;
+  using Dual = ceres::Jet<double, kBlock>;
+  std::vector<Dual> dual_x(static_cast<std::size_t>(x.size())), dual_f(dual_x.size());
+  for (Eigen::Index first = 0; first < x.size(); first += kBlock) {
+    const Eigen::Index count = std::min<Eigen::Index>(kBlock, x.size() - first);
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      Dual& value = dual_x[static_cast<std::size_t>(i)] = Dual(x[i]);
+      if (i >= first && i < first + count) value.v[i - first] = 1;
+    }
+    if (!(*this)(dual_x.data(), dual_f.data())) return false;
+    for (Eigen::Index row = 0; row < f.size(); ++row) {
+      const Dual& value = dual_f[static_cast<std::size_t>(row)];
+      f[row] = value.a;
+      jacobian.row(row).segment(first, count) = value.v.head(count).transpose();
+    }
+  }
+  return f.allFinite() && jacobian.allFinite();
+}
+
+const RodBalance::Shape& RodBalance::Integrate(const Eigen::VectorXd& x) const {
   for (const Integrated& known : integrated_) {
-    if (known.x == x && known.load == load_ && known.steps == steps_) return known.shape;
+    if (known.x.size() == x.size() && known.x == x && known.load == load_ &&
+        known.steps == steps_) {
+      return known.shape;
+    }
   }
   std::swap(integrated_[0], integrated_[1]);
   Integrated& now = integrated_[0];
@@ -254,19 +346,65 @@ const RodBalance::Shape& RodBalance::Integrate(const Vector& x) const {
   now.load = load_;
   now.steps = steps_;
   Shape& shape = now.shape;
+  const int count = rod_.disks * steps_;
   shape.disks.setZero(3, rod_.disks);
   shape.middles.setZero(3, rod_.disks);
   shape.frames.assign(1, Eigen::Quaterniond::Identity());
-  shape.frames.reserve(static_cast<std::size_t>(rod_.disks * steps_) + 1);
+  shape.frames.reserve(static_cast<std::size_t>(count) + 1);
+  shape.points.setZero(3, count + 1);
+  shape.u.resize(3, count + 1);
+  shape.u.col(0) = x.head<3>();
+  const auto tendons = static_cast<Eigen::Index>(rod_.pull.size());
+  shape.tension.resize(count + 1, tendons);
+  for (Eigen::Index k = 0; k < tendons; ++k) {
+    shape.tension.col(k).setConstant(rod_.pull[static_cast<std::size_t>(k)]);
+  }
+  if (remembers()) shape.way.setZero(count + 1, tendons);
   const auto keep = [&](int step, const auto& y) {
     const int piece = (step - 1) / steps_, within = step - piece * steps_;
     shape.frames.push_back(Eigen::Quaterniond(y.q[0], y.q[1], y.q[2], y.q[3]).normalized());
+    shape.points.col(step) = y.p;
+    shape.u.col(step) = y.u;
+    if constexpr (requires { y.tension.size(); }) shape.tension.row(step) = y.tension.transpose();
+    if constexpr (requires { y.way.size(); }) shape.way.row(step) = y.way.transpose();
     if (2 * within == steps_)
       shape.middles.col(piece) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
     if (within == steps_) shape.disks.col(piece) = y.p * length_;
   };
-  shape.valid = WalkAny(x.data(), shape.residual, keep);
+  Eigen::VectorXd end(unknowns());
+  shape.valid = remembers() ? WalkAny<double, true>(x.data(), end.data(), keep)
+                            : WalkAny<double, false>(x.data(), end.data(), keep);
+  shape.residual = end.head<3>();
   return shape;
+}
+
+Line RodBalance::LineOf(const Shape& shape) const {
+  const Eigen::Index count = shape.points.cols();
+  Line line{Eigen::VectorXd::LinSpaced(count, 0, length_),
+            length_ * shape.points,
+            shape.frames,
+            std::vector<int>(static_cast<std::size_t>(count), -1),
+            shape.u / length_,
+            Eigen::MatrixXd::Zero(count, tendons_)};
+  const Eigen::Index per_disk = (count - 1) / rod_.disks;
+  for (int i = 0; i <= rod_.disks; ++i) line.disk[static_cast<std::size_t>(i * per_disk)] = i;
+  for (std::size_t k = 0; k < rod_.tendon.size(); ++k) {
+    line.tension.col(rod_.tendon[k]) = unit_ * shape.tension.col(static_cast<Eigen::Index>(k));
+  }
+  return line;
+}
+
+Contacts RodBalance::ContactsAt(const Eigen::VectorXd& x) const {
+  const Eigen::MatrixXd& way = Integrate(x).way;
+  const Eigen::Index count = way.rows() - 1;
+  Contacts contacts{length_ * (way.bottomRows(count) - way.topRows(count)),
+                    Eigen::MatrixXd(count, way.cols())};
+  for (Eigen::Index k = 0; k < way.cols(); ++k) {
+    for (int i = 0; i < count; ++i) {
+      contacts.share(i, k) = Share(i, static_cast<std::size_t>(k), x[3 + k] - way(i, k));
+    }
+  }
+  return contacts;
 }
 
 }  // namespace continuum::tdcr

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "models/tdcr/line.h"
 #include "models/tdcr/unit_rod.h"
 
 namespace continuum::tdcr {
@@ -26,61 +27,92 @@ namespace continuum::tdcr {
 /// frame (in the tip's, bending alone would turn the Jacobian over). Disk masses are forces at s =
 /// i/n, where N jumps and u does not.
 ///
-/// With friction (beyond the paper) the tension falls along the channel, T_k' = -dir_k mu T_k
-/// |t_k'| with t_k the unit vector of w_k, and T_k' a_k x t_k joins H u' on the left (rubbing.h).
+/// With friction (beyond the paper) the tension falls along the channel, T_k' = -s_k mu T_k |t_k'|
+/// with t_k the unit vector of w_k, and T_k' a_k x t_k joins H u' on the left (rubbing.h). s_k is
+/// dir_k; or, of contacts that remember,
+///
+///   s_k = SlideFrom(s_before, (b_before - b_k)/eps),  b_k = lambda_k - int_0^s |w_k|         (5)
+///
+/// where b_k is the tendon's length beyond the start of the integrator's step. Then its whole
+/// length lambda_k is an unknown after u(0), and int_0^1 |w_k| - lambda_k a residual after R nu(1).
 class RodBalance {
  public:
-  using Vector = Eigen::Vector3d;
-
   /// steps: of the integrator per piece between disks.
   RodBalance(const Robot& robot, const Loads& loads, bool friction, int steps);
+  /// With contacts that remember, from loads.from; the loads grow from those of `earlier` (nothing
+  /// when not given). `loads` must outlive it.
+  static RodBalance Remembering(const Robot& robot, const Loads& loads, int steps,
+                                const Loads* earlier);
 
-  /// All loads are multiplied by this from here on.
-  void SetLoad(double load) { load_ = load; }
+  /// How far the loads have grown from here on: 0 to 1.
+  void SetLoad(double load);
+  /// Tensions [N] of all tendons that do not grow with the loads; of contacts that remember.
+  void SetTension(const Eigen::VectorXd& tension);
   double load() const { return load_; }
+  /// The rod with the loads of now.
+  const UnitRod& rod() const { return rod_; }
+  bool remembers() const { return remembers_ != nullptr; }
+  int unknowns() const { return remembers() ? 3 + static_cast<int>(rod_.holes.size()) : 3; }
   void SetSteps(int steps) { steps_ = steps; }
   int steps() const { return steps_; }
 
   template <class T>
   bool operator()(const T* x, T* f) const;
+  /// Of contacts that remember.
+  bool Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& f, Eigen::MatrixXd& jacobian) const;
 
   struct Shape {
     Eigen::Matrix3Xd disks;  ///< O_1..O_n [m]
     /// kappa_x = u_y, kappa_y = -u_x, tau in the middles [1/m]; for an even number of steps.
     Eigen::Matrix3Xd middles;
     std::vector<Eigen::Quaterniond> frames;  ///< R at the ends of all steps, from R(0) = 1
+    Eigen::Matrix3Xd points;                 ///< p there [L]
+    Eigen::Matrix3Xd u;                      ///< u there [1/L]
+    Eigen::MatrixXd tension;                 ///< T_k there [EI/L^2]
+    Eigen::MatrixXd way;                     ///< int |w_k| to there, of contacts that remember [L]
     Eigen::Vector3d residual = Eigen::Vector3d::Zero();  ///< R nu(1)
     bool valid = false;
   };
   /// What was integrated last is not integrated again.
-  const Shape& Integrate(const Vector& x) const;
+  const Shape& Integrate(const Eigen::VectorXd& x) const;
+  /// A shape in metres and newtons.
+  Line LineOf(const Shape& shape) const;
+  /// Where contacts that remember stand at x.
+  Contacts ContactsAt(const Eigen::VectorXd& x) const;
 
  private:
-  // kRubbing: tendons whose tension falls along the rod, at most; 0 without friction.
-  template <class T, int kRubbing>
+  // kRubbing: tendons whose tension falls along the rod, at most; 0 without friction. kSlides:
+  // contacts remember.
+  template <class T, int kRubbing, bool kSlides>
   struct State;
-  template <class T, int kRubbing>
-  bool Slope(const State<T, kRubbing>& y, const Eigen::Vector3d& force,
-             State<T, kRubbing>& dy) const;
-  template <class T, int kRubbing>
-  void Rub(const State<T, kRubbing>& y, const Eigen::Matrix<T, 3, 3>& hessian,
-           const Eigen::Matrix<T, 3, 1>& right, State<T, kRubbing>& dy) const;
-  template <class T, int kRubbing>
-  Eigen::Matrix<T, 3, 1> Moment(const State<T, kRubbing>& y) const;
-  template <class T, int kRubbing, class AtNode>
-  bool Walk(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const;
+  template <class T, int kRubbing, bool kSlides>
+  bool Slope(const State<T, kRubbing, kSlides>& y, const Eigen::Vector3d& force, const T* share,
+             State<T, kRubbing, kSlides>& dy) const;
+  template <class T, int kRubbing, bool kSlides>
+  void Rub(const State<T, kRubbing, kSlides>& y, const Eigen::Matrix<T, 3, 3>& hessian,
+           const Eigen::Matrix<T, 3, 1>& right, const T* share,
+           State<T, kRubbing, kSlides>& dy) const;
+  template <class T, int kRubbing, bool kSlides>
+  Eigen::Matrix<T, 3, 1> Moment(const State<T, kRubbing, kSlides>& y) const;
+  template <class T, int kRubbing, bool kSlides, class AtNode>
+  bool Walk(const T* x, T* end, AtNode&& at_node) const;
   // Walk with room for as many tensions as there are.
-  template <class T, class AtNode>
-  bool WalkAny(const T* x, Eigen::Matrix<T, 3, 1>& end, AtNode&& at_node) const;
-  Eigen::Vector3d DeadForce(int piece, double s) const;
+  template <class T, bool kSlides, class AtNode>
+  bool WalkAny(const T* x, T* end, AtNode&& at_node) const;
+  template <class T>
+  T Share(int step, std::size_t tendon, const T& beyond) const;
 
   double length_;
-  UnitRod rod_;
+  double unit_;  ///< EI/L^2 [N]
+  int tendons_;
+  UnitRod to_, from_, rod_;
   int steps_;
+  const Loads* remembers_ = nullptr;
+  Eigen::MatrixXd beyond_before_;  ///< b_before of every step and tendon [L]
   double load_ = 1;
 
   struct Integrated {
-    Vector x = Vector::Constant(std::numeric_limits<double>::quiet_NaN());
+    Eigen::VectorXd x;
     double load = 0;
     int steps = 0;
     Shape shape;

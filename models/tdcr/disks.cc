@@ -1,12 +1,11 @@
 #include "models/tdcr/disks.h"
 
+#include <utility>
+
 #include "models/statics/slide.h"
 
 namespace continuum::tdcr {
 namespace {
-
-/// Change of a tendon's length over which a contact turns from rest to sliding [m].
-constexpr double kGivesWay = 1e-6;
 
 Eigen::Matrix3d Skew(const Eigen::Vector3d& a) {
   Eigen::Matrix3d s;
@@ -93,6 +92,7 @@ DiskBalance<C>::DiskBalance(const Robot& robot, const Loads& loads, const Loads*
   const auto n = static_cast<std::size_t>(robot.disks);
   const int columns = C == Eigen::Dynamic ? 3 * robot.disks : C;
   for (int k = 0; k < robot.tendons; ++k) holes_.push_back(robot.Hole(k));
+  SetLoad(1);
   arcs_.reserve(n);
   m_.resize(n);
   G_.resize(n);
@@ -105,6 +105,22 @@ DiskBalance<C>::DiskBalance(const Robot& robot, const Loads& loads, const Loads*
   chords_.resize(n);
   share_.assign(n, 0);
   dshare_.assign(n, Row::Zero(1, columns));
+}
+
+template <int C>
+void DiskBalance<C>::SetLoad(double load) {
+  load_ = load;
+  if (!pulls_grow_) return;
+  pull_.resize(holes_.size());
+  for (std::size_t k = 0; k < pull_.size(); ++k) {
+    pull_[k] = Now(loads_.tension[k], from_.tension[k]);
+  }
+}
+
+template <int C>
+void DiskBalance<C>::SetTension(const Eigen::VectorXd& tension) {
+  pulls_grow_ = false;
+  pull_.assign(tension.begin(), tension.end());
 }
 
 template <int C>
@@ -185,11 +201,33 @@ Contacts DiskBalance<C>::ContactsAt(const Vector& x) const {
 }
 
 template <int C>
+Eigen::MatrixXd DiskBalance<C>::LengthsAt(const Vector& x) const {
+  Eigen::MatrixXd lengths(robot_.disks, static_cast<Eigen::Index>(holes_.size()));
+  arcs_.clear();
+  for (int i = 1; i <= robot_.disks; ++i) arcs_.emplace_back(robot_.arc(), Curvature(x.data(), i));
+  Chord chord;
+  for (std::size_t k = 0; k < holes_.size(); ++k) {
+    for (std::size_t at = 0; at < arcs_.size(); ++at) {
+      TendonChord(arcs_[at], holes_[k], false, chord);
+      lengths(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(k)) = chord.length;
+    }
+  }
+  return lengths;
+}
+
+template <int C>
+Eigen::MatrixXd DiskBalance<C>::TensionsAt(const Vector& x) const {
+  tension_.setZero(robot_.disks, static_cast<Eigen::Index>(holes_.size()));
+  Assemble<false>(x.data());
+  return std::exchange(tension_, {});
+}
+
+template <int C>
 template <bool kDerivatives>
 bool DiskBalance<C>::AddTendons() const {
   Row dF = Row::Zero(1, unknowns());
   for (std::size_t k = 0; k < holes_.size(); ++k) {
-    double F = Now(loads_.tension[k], from_.tension[k]);
+    double F = pull_[k];
     if (F == 0) continue;
     for (std::size_t at = 0; at < arcs_.size(); ++at) {
       if (!TendonChord(arcs_[at], holes_[k], kDerivatives, chords_[at])) return false;
@@ -219,6 +257,7 @@ bool DiskBalance<C>::AddTendons() const {
         F *= ratio.x;
       }
       m_[at] += F * chord.moment;
+      if (tension_.size() > 0) tension_(i - 1, static_cast<Eigen::Index>(k)) = F;
       if (kDerivatives) {
         Scatter(i, F * chord.d_moment, dm_[at]);
         if (friction && i > 1) dm_[at].noalias() += chord.moment * dF;

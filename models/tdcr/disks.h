@@ -80,7 +80,9 @@ class DiskBalance {
   DiskBalance(const Robot& robot, const Loads& loads, const Loads* from = nullptr);
 
   /// How far the loads have grown from here on: 0 to 1.
-  void SetLoad(double load) { load_ = load; }
+  void SetLoad(double load);
+  /// Tensions [N] that do not grow with the loads.
+  void SetTension(const Eigen::VectorXd& tension);
   int unknowns() const { return C == Eigen::Dynamic ? 3 * robot_.disks : C; }
   bool operator()(const double* x, double* f) const;
   bool Jacobian(const Vector& x, Vector& f, Matrix& jacobian) const;
@@ -104,6 +106,10 @@ class DiskBalance {
   Eigen::Matrix3Xd Curvatures(const Vector& x) const;
   /// Where the contacts stand at x.
   Contacts ContactsAt(const Vector& x) const;
+  /// Lengths of the tendons in every arc, n x m [m].
+  Eigen::MatrixXd LengthsAt(const Vector& x) const;
+  /// Tensions at x, of every arc and tendon [N].
+  Eigen::MatrixXd TensionsAt(const Vector& x) const;
 
  private:
   using Columns = Eigen::Matrix<double, 3, C>;
@@ -131,6 +137,8 @@ class DiskBalance {
   const Loads& loads_;
   Loads from_;
   double load_ = 1;
+  std::vector<double> pull_;  ///< tensions now [N]
+  bool pulls_grow_ = true;
   double mass_;  ///< of one disk and its arc [kg]
   std::vector<Eigen::Vector2d> holes_;
   mutable std::vector<Arc> arcs_;
@@ -142,6 +150,7 @@ class DiskBalance {
   mutable std::vector<Chord> chords_;  ///< of one tendon
   mutable std::vector<double> share_;  ///< of its contacts, by how it slides
   mutable std::vector<Row> dshare_;
+  mutable Eigen::MatrixXd tension_;  ///< when asked for
 };
 
 extern template class DiskBalance<6>;

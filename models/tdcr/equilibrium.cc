@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "models/statics/dense_system.h"
 #include "models/tdcr/rod_law.h"
@@ -115,43 +116,48 @@ class DiskSystem {
   mutable Matrix last_;
 };
 
-/// The Cosserat rod: roots by shooting, stability and falls by a chain of rigid pieces.
+/// The Cosserat rod: roots by shooting, stability and falls by a chain of rigid pieces. Contacts
+/// that remember stay as they are while the rod falls.
+template <class Vector>
 class RodSystem {
  public:
   using Chain = statics::RodChain<RodLaw>;
 
-  RodSystem(const Robot& robot, const Loads& loads, RodBalance& balance, bool friction)
-      : robot_(robot), loads_(loads), balance_(balance), friction_(friction) {}
+  /// winches: as RodLaw::SetWinches.
+  RodSystem(const Robot& robot, RodBalance& balance, Eigen::VectorXd winches = {})
+      : robot_(robot), balance_(balance), winches_(std::move(winches)) {}
 
-  Outcome Correct(double load, Eigen::Vector3d& x) {
+  Outcome Correct(double load, Vector& x) {
     balance_.SetLoad(load);
     return numerics::Newton(balance_, x, Corrector(load));
   }
 
   // The count of a coarse chain is that of the rod unless an eigenvalue is near zero: then of finer
   // ones. Friction adds at most mu sum T r/2 of the unloaded stiffness.
-  int Unstable(double load, const Eigen::Vector3d& x) {
+  int Unstable(double load, const Vector& x) {
     constexpr double kSpare = 0.05, kNear = 0.01;  // chains of 9 and 36 pieces: 0.01, 0.001
-    double spare = kSpare;
-    if (friction_) {
-      for (const double t : loads_.tension) spare += FrictionShare(load * t);
-    }
-    int unstable = Count(load, x, kPieces, spare);
+    balance_.SetLoad(load);
+    const bool friction = balance_.rod().friction;
+    int unstable = Count(x, kPieces, kSpare + (friction ? FrictionShare() : 0));
     if (unstable == 0) return 0;
-    unstable = Count(load, x, kFallingPieces, friction_ ? 0 : kNear);
-    return unstable == kNearZero ? Count(load, x, kManyPieces, 0) : unstable;
+    const bool held = friction || winches_.size() > 0;
+    unstable = Count(x, kFallingPieces, held ? 0 : kNear);
+    return unstable == kNearZero ? Count(x, kManyPieces, 0) : unstable;
   }
 
-  statics::Fall Fall(double from, double load, Eigen::Vector3d& x) {
-    Chain::Shape shape = Frames(from, x, kFallingPieces);
+  statics::Fall Fall(double from, double load, Vector& x) {
+    balance_.SetLoad(from);
+    Chain::Shape shape = Frames(x, kFallingPieces);
     if (shape.empty()) return {};
-    RodLaw law = LawAt(load, shape);
+    const Eigen::MatrixXd share = Shares(x);
+    balance_.SetLoad(load);
+    RodLaw law(balance_.rod(), Pieces(shape), share);
     Chain chain(law, Pieces(shape));
     statics::Fall fall = statics::FallToRest(chain, shape);
     if (!fall.ok) return fall;
     const Eigen::Matrix3Xd zeta = chain.zeta();
-    x = 1.5 * zeta.col(0) - 0.5 * zeta.col(1);
-    balance_.SetLoad(load);
+    x.template head<3>() = 1.5 * zeta.col(0) - 0.5 * zeta.col(1);
+    if (balance_.remembers()) x.tail(x.size() - 3) = law.Lengths(zeta);
     fall.ok = numerics::Newton(balance_, x, Limits()).ok() && Near(x, shape.back()) &&
               Unstable(load, x) == 0;
     return fall;
@@ -162,10 +168,11 @@ class RodSystem {
   static constexpr int kNearZero = 98, kUnknown = 99;
 
   // Unstable directions, or kNearZero when they are not the same within `spare` of the stiffness.
-  int Count(double load, const Eigen::Vector3d& x, int pieces, double spare) {
-    const Chain::Shape shape = Frames(load, x, pieces);
+  int Count(const Vector& x, int pieces, double spare) {
+    const Chain::Shape shape = Frames(x, pieces);
     if (shape.empty()) return kUnknown;
-    RodLaw law = LawAt(load, shape);
+    RodLaw law(balance_.rod(), Pieces(shape), Shares(x));
+    law.SetWinches(winches_);
     Chain chain(law, Pieces(shape));
     if (spare > 0 && chain.DefiniteAt(shape, -spare)) return 0;
     if (!chain.Linearize(shape)) return kUnknown;
@@ -173,37 +180,47 @@ class RodSystem {
     return chain.Definite(spare) ? kNearZero : chain.UnstableDirections();
   }
 
-  double FrictionShare(double tension) const {
-    return 0.75 * loads_.mu * tension * robot_.tendon_radius / robot_.moment();
+  double FrictionShare() const {
+    const UnitRod& rod = balance_.rod();
+    double share = 0;
+    for (const double pull : rod.pull) share += 0.75 * rod.mu * pull;
+    return share * robot_.tendon_radius / robot_.length;
   }
 
   static int Pieces(const Chain::Shape& shape) { return static_cast<int>(shape.size()) - 1; }
 
-  RodLaw LawAt(double load, const Chain::Shape& shape) const {
-    RodLaw law(robot_, loads_, friction_, Pieces(shape));
-    law.SetLoad(load);
-    return law;
+  // Of contacts that remember.
+  Eigen::MatrixXd Shares(const Vector& x) const {
+    return balance_.remembers() ? balance_.ContactsAt(x).share : Eigen::MatrixXd();
   }
 
-  // Frames of the root x at a load, at least so many pieces.
-  Chain::Shape Frames(double load, const Eigen::Vector3d& x, int pieces) {
+  // Frames of the root x, at least so many pieces. Contacts that remember are tied to the steps, so
+  // that frames are left out instead.
+  Chain::Shape Frames(const Vector& x, int pieces) {
     const int steps = balance_.steps();
-    balance_.SetLoad(load);
-    balance_.SetSteps(std::max(1, (pieces + robot_.disks - 1) / robot_.disks));
+    const int wanted = std::max(1, (pieces + robot_.disks - 1) / robot_.disks);
+    if (!balance_.remembers()) balance_.SetSteps(wanted);
     const RodBalance::Shape& shape = balance_.Integrate(x);
     balance_.SetSteps(steps);
-    return shape.valid ? shape.frames : Chain::Shape();
+    if (!shape.valid) return {};
+    if (!balance_.remembers()) return shape.frames;
+    int stride = std::max(1, steps / wanted);
+    while (steps % stride != 0) --stride;
+    Chain::Shape some;
+    for (std::size_t i = 0; i < shape.frames.size(); i += static_cast<std::size_t>(stride)) {
+      some.push_back(shape.frames[i]);
+    }
+    return some;
   }
 
-  bool Near(const Eigen::Vector3d& x, const Eigen::Quaterniond& end) const {
+  bool Near(const Vector& x, const Eigen::Quaterniond& end) const {
     const auto& shape = balance_.Integrate(x);
     return shape.valid && shape.frames.back().angularDistance(end) < 0.2;
   }
 
   const Robot& robot_;
-  const Loads& loads_;
   RodBalance& balance_;
-  bool friction_;
+  Eigen::VectorXd winches_;
 };
 
 bool Direct(const Robot& robot, const Loads& loads) {
@@ -218,12 +235,26 @@ statics::RisingOptions Steps(const Robot& robot, const Loads& loads) {
   return options;
 }
 
-// At full load from x, whatever it is: falls to rest, else damped Newton.
+// Where contacts that remember have slid: the root without friction, with the tendons' lengths.
+Eigen::VectorXd WithoutFriction(const Robot& robot, const Loads& loads, const RodBalance& balance) {
+  Loads smooth = loads;
+  smooth.mu = 0;
+  const RodBalance rod(robot, smooth, false, balance.steps());
+  Eigen::Vector3d u = Eigen::Vector3d::Zero();
+  if (!numerics::Newton(rod, u, Limits()).ok()) return {};
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(balance.unknowns());
+  x.head<3>() = u;
+  const RodBalance::Shape& shape = balance.Integrate(x);
+  if (shape.valid) x.tail(x.size() - 3) = shape.way.bottomRows<1>().transpose();
+  return x;
+}
+
+// At full load from x, or from where the path began: falls to rest.
 template <class System, class Vector>
-bool FindAny(System& system, Vector& x) {
+bool FindAny(System& system, const Vector& begin, Vector& x) {
   Vector trial = x;
-  for (const bool straight : {false, true}) {
-    if (straight) trial.setZero();
+  for (const bool again : {false, true}) {
+    if (again) trial = begin;
     if (system.Fall(1, 1, trial).ok) {
       x = trial;
       return true;
@@ -236,6 +267,7 @@ template <class System, class Balance, class Vector>
 Found Find(System& system, const Balance& balance, Vector& x, bool direct,
            const statics::RisingOptions& steps, const Eigen::VectorXd* start) {
   Found found;
+  const Vector begin = x;
   const auto newton = [&] {
     const int spent = found.outcome.iterations;
     found.outcome = numerics::Newton(balance, x, Limits());
@@ -247,11 +279,11 @@ Found Find(System& system, const Balance& balance, Vector& x, bool direct,
   if (start != nullptr && start->size() == x.size()) {
     x = *start;
     if (newton()) return found;
-    x.setZero();
+    x = begin;
   }
   if (direct) {
     if (newton()) return found;
-    x.setZero();
+    x = begin;
   }
   const int spent = found.outcome.iterations;
   found.outcome = statics::FollowRisingLoad(system, x, found.stability.branch, steps);
@@ -259,7 +291,7 @@ Found Find(System& system, const Balance& balance, Vector& x, bool direct,
   found.stability.unstable_directions = 0;
   if (found.outcome.ok()) return found;
   const Vector last = x;
-  if (FindAny(system, x)) {
+  if (FindAny(system, begin, x)) {
     found.stability.branch = statics::Branch::kOther;
     found.outcome.status = numerics::Status::kOk;
     found.outcome.why.clear();
@@ -308,14 +340,57 @@ template Found FindEquilibrium(const Robot&, const Loads&, DiskBalance<6>&, Disk
 template Found FindEquilibrium(const Robot&, const Loads&, DiskBalance<Eigen::Dynamic>&,
                                DiskBalance<Eigen::Dynamic>::Vector&, const Eigen::VectorXd*);
 
-Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance, bool friction,
+Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
                       Eigen::Vector3d& x, const Eigen::VectorXd* start) {
-  RodSystem system(robot, loads, balance, friction);
+  RodSystem<Eigen::Vector3d> system(robot, balance);
   return Find(system, balance, x, Direct(robot, loads), Steps(robot, loads), start);
 }
 
-numerics::Outcome Polish(const RodBalance& balance, Eigen::Vector3d& x) {
+Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
+                      Eigen::VectorXd& x, const Eigen::VectorXd* start) {
+  RodSystem<Eigen::VectorXd> system(robot, balance);
+  Eigen::VectorXd slid;
+  if (start == nullptr && Direct(robot, loads)) {
+    slid = WithoutFriction(robot, loads, balance);
+    start = slid.size() > 0 ? &slid : nullptr;
+  }
+  return Find(system, balance, x, Direct(robot, loads), Steps(robot, loads), start);
+}
+
+Found ContinueEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
+                          Eigen::VectorXd& x) {
+  RodSystem<Eigen::VectorXd> system(robot, balance);
+  return Find(system, balance, x, false, Steps(robot, loads), nullptr);
+}
+
+template <int C>
+int UnstableDirections(DiskBalance<C>& balance, const typename DiskBalance<C>::Vector& x) {
+  return DiskSystem<C>(balance).Unstable(1, x);
+}
+
+template int UnstableDirections(DiskBalance<6>&, const DiskBalance<6>::Vector&);
+template int UnstableDirections(DiskBalance<Eigen::Dynamic>&,
+                                const DiskBalance<Eigen::Dynamic>::Vector&);
+
+template <class Vector>
+int UnstableDirections(const Robot& robot, RodBalance& balance, const Vector& x,
+                       const Eigen::VectorXd& winches) {
+  return RodSystem<Vector>(robot, balance, winches).Unstable(balance.load(), x);
+}
+
+template int UnstableDirections(const Robot&, RodBalance&, const Eigen::Vector3d&,
+                                const Eigen::VectorXd&);
+template int UnstableDirections(const Robot&, RodBalance&, const Eigen::VectorXd&,
+                                const Eigen::VectorXd&);
+
+template <class Balance, class Vector>
+numerics::Outcome Polish(const Balance& balance, Vector& x) {
   return numerics::Newton(balance, x, Limits());
 }
+
+template Outcome Polish(const RodBalance&, Eigen::Vector3d&);
+template Outcome Polish(const RodBalance&, Eigen::VectorXd&);
+template Outcome Polish(const DiskBalance<6>&, DiskBalance<6>::Vector&);
+template Outcome Polish(const DiskBalance<Eigen::Dynamic>&, DiskBalance<Eigen::Dynamic>::Vector&);
 
 }  // namespace continuum::tdcr

@@ -20,8 +20,8 @@ struct Found {
 };
 
 /// The equilibrium of the rising load (statics.md), from x to x: of the balances of disks, and of
-/// the rod with `direct` for loads so small that there is one equilibrium. With `start`, Newton
-/// from there first. A saddle is never `ok`.
+/// the rod (dynamic x: with contacts that remember). With `start`, Newton from there first. A
+/// saddle is never `ok`.
 ///
 /// ContinueEquilibrium follows the loads of a balance that grow from others, from their x.
 template <int C>
@@ -30,10 +30,23 @@ Found FindEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& ba
 template <int C>
 Found ContinueEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& balance,
                           typename DiskBalance<C>::Vector& x);
-Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance, bool friction,
+Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
                       Eigen::Vector3d& x, const Eigen::VectorXd* start);
+Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
+                      Eigen::VectorXd& x, const Eigen::VectorXd* start);
+Found ContinueEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
+                          Eigen::VectorXd& x);
 
 /// Newton at full load from x, for a root that is only to be made more exact.
-numerics::Outcome Polish(const RodBalance& balance, Eigen::Vector3d& x);
+template <class Balance, class Vector>
+numerics::Outcome Polish(const Balance& balance, Vector& x);
+
+/// Directions in which the root x gives way: of disks at full load, of the rod at its load and with
+/// winches (RodLaw::SetWinches) where they are given.
+template <int C>
+int UnstableDirections(DiskBalance<C>& balance, const typename DiskBalance<C>::Vector& x);
+template <class Vector>
+int UnstableDirections(const Robot& robot, RodBalance& balance, const Vector& x,
+                       const Eigen::VectorXd& winches = {});
 
 }  // namespace continuum::tdcr

@@ -6,6 +6,7 @@
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/equilibrium.h"
+#include "models/tdcr/winches.h"
 #include "sim/numerics/solver.h"
 
 namespace continuum::tdcr {
@@ -19,16 +20,14 @@ struct Before {
   const Eigen::VectorXd* x = nullptr;
 };
 
-template <int C>
-Solution SolveDisks(const Robot& robot, const Loads& loads, const Eigen::VectorXd* start,
-                    const Before& before = {}) {
+// find(balance, x): an equilibrium from x = 0.
+template <int C, class Find>
+Solution SolveDisks(const Robot& robot, const Loads& loads, const Loads* earlier, Find&& find) {
   Solution solution;
   solution.outcome = numerics::Timed([&] {
-    DiskBalance<C> balance(robot, loads, before.loads);
+    DiskBalance<C> balance(robot, loads, earlier);
     typename DiskBalance<C>::Vector x = DiskBalance<C>::Vector::Zero(balance.unknowns());
-    if (before.x != nullptr) x = *before.x;
-    const Found found = before.x == nullptr ? FindEquilibrium<C>(robot, loads, balance, x, start)
-                                            : ContinueEquilibrium<C>(robot, loads, balance, x);
+    const Found found = find(balance, x);
     solution.stability = found.stability;
     balance.SetLoad(1);
     solution.x = x;
@@ -44,40 +43,137 @@ Solution SolveDisks(const Robot& robot, const Loads& loads, const Eigen::VectorX
 // taken from twice as many, so that every piece has a middle.
 int Steps(int disks) { return std::max(1, (9 + disks - 1) / disks); }
 
-Solution SolveRod(const Robot& robot, const Loads& loads, bool friction,
-                  const Eigen::VectorXd* start) {
+// Steps per piece of contacts that remember: about 72 along the rod, an even number.
+int ContactSteps(int disks) { return 2 * std::max(1, (36 + disks - 1) / disks); }
+
+Outcome Refine(const Robot& robot, RodBalance& balance, Outcome outcome, Eigen::Vector3d& x,
+               Solution& solution) {
   constexpr double kAccuracy = 2e-8;  // of L; the contract asks for 1e-7
+  for (int refinement = 0; outcome.ok(); ++refinement) {
+    const int steps = balance.steps();
+    const auto coarse = balance.Integrate(x);
+    balance.SetSteps(2 * steps);
+    const auto fine = balance.Integrate(x);
+    const double error = (fine.disks - coarse.disks).colwise().norm().maxCoeff() / robot.length +
+                         (fine.residual - coarse.residual).norm();
+    solution.u = fine.middles;
+    solution.disks = fine.disks;
+    if (error <= kAccuracy) {
+      solution.line = balance.LineOf(fine);
+      break;
+    }
+    if (refinement == 7) {
+      outcome.status = numerics::Status::kNoConvergence;
+      outcome.why = "the rod is too strongly bent for the integrator";
+      break;
+    }
+    const int spent = outcome.iterations;
+    outcome = Polish(balance, x);
+    outcome.iterations += spent;
+  }
+  return outcome;
+}
+
+template <class Find>
+Solution SolveRod(const Robot& robot, const Loads& loads, bool friction, Find&& find) {
   Solution solution;
   solution.outcome = numerics::Timed([&] {
     RodBalance balance(robot, loads, friction, Steps(robot.disks));
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    const Found found = FindEquilibrium(robot, loads, balance, friction, x, start);
+    const Found found = find(balance, x);
     solution.stability = found.stability;
-    Outcome outcome = found.outcome;
     balance.SetLoad(1);
-    for (int refinement = 0; outcome.ok(); ++refinement) {
-      const int steps = balance.steps();
-      const auto coarse = balance.Integrate(x);
-      balance.SetSteps(2 * steps);
-      const auto fine = balance.Integrate(x);
-      const double error = (fine.disks - coarse.disks).colwise().norm().maxCoeff() / robot.length +
-                           (fine.residual - coarse.residual).norm();
-      solution.u = fine.middles;
-      solution.disks = fine.disks;
-      if (error <= kAccuracy) break;
-      if (refinement == 7) {
-        outcome.status = numerics::Status::kNoConvergence;
-        outcome.why = "the rod is too strongly bent for the integrator";
-        break;
-      }
-      const int spent = outcome.iterations;
-      outcome = Polish(balance, x);
-      outcome.iterations += spent;
-    }
+    const Outcome outcome = Refine(robot, balance, found.outcome, x, solution);
     solution.x = x;
     return outcome;
   });
   return solution;
+}
+
+// The rod whose contacts remember: its integrator's steps are the contacts, so they are not
+// refined.
+template <class Find>
+Solution SolveRemembering(const Robot& robot, const Loads& loads, const Loads* earlier,
+                          Find&& find) {
+  Solution solution;
+  solution.outcome = numerics::Timed([&] {
+    RodBalance balance = RodBalance::Remembering(robot, loads, ContactSteps(robot.disks), earlier);
+    Eigen::VectorXd x = Eigen::VectorXd::Ones(balance.unknowns());
+    x.head<3>().setZero();
+    const Found found = find(balance, x);
+    solution.stability = found.stability;
+    balance.SetLoad(1);
+    solution.x = x;
+    const RodBalance::Shape& shape = balance.Integrate(x);
+    solution.u = shape.middles;
+    solution.disks = shape.disks;
+    if (found.outcome.ok()) {
+      solution.contacts = balance.ContactsAt(x);
+      solution.line = balance.LineOf(shape);
+    }
+    return found.outcome;
+  });
+  return solution;
+}
+
+// Where winches begin: those of the straight robot, or of a row before with its x and tensions.
+struct Wound {
+  Eigen::VectorXd length, tension;
+  const Loads* loads = nullptr;
+  const Eigen::VectorXd* x = nullptr;
+};
+
+Wound Unwound(const Robot& robot) {
+  return {Eigen::VectorXd::Constant(robot.tendons, robot.length),
+          Eigen::VectorXd::Zero(robot.tendons)};
+}
+
+Solution SolveWinches(const Robot& robot, const Loads& loads, Method method, const Wound& before) {
+  Eigen::VectorXd tension = before.tension;
+  const auto find = [&](auto& balance, auto& x) {
+    if (before.x != nullptr) x = *before.x;
+    return FindByWinches(robot, loads, before.length, balance, x, tension);
+  };
+  Loads smooth = loads;
+  if (method == Method::kCrt) smooth.mu = 0;
+  Solution solution = method == Method::kEas ? SolveDisks<6>(robot, loads, before.loads, find)
+                      : method == Method::kPcca
+                          ? SolveDisks<Eigen::Dynamic>(robot, loads, before.loads, find)
+                          : SolveRemembering(robot, smooth, before.loads, find);
+  solution.pull = tension;
+  return solution;
+}
+
+// Contacts after a row whose directions were given: all as far as they go.
+Solution WithContacts(const Robot& robot, const Loads& loads, Solution solution) {
+  const int steps = ContactSteps(robot.disks);
+  const RodBalance balance = RodBalance::Remembering(robot, loads, steps, nullptr);
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(balance.unknowns());
+  x.head<3>() = solution.x.head<3>();
+  x.tail(robot.tendons) = balance.Integrate(x).way.bottomRows<1>().transpose();
+  solution.contacts = balance.ContactsAt(x);
+  solution.x = x;
+  return solution;
+}
+
+template <int C>
+Solution ContinueDisks(const Robot& robot, const Loads& loads, const Before& before) {
+  return SolveDisks<C>(robot, loads, before.loads, [&](auto& balance, auto& x) {
+    x = *before.x;
+    return ContinueEquilibrium<C>(robot, loads, balance, x);
+  });
+}
+
+template <int C>
+Solution DisksNear(const Robot& robot, const Loads& loads, const Eigen::VectorXd& start) {
+  return SolveDisks<C>(robot, loads, nullptr, [&](auto& balance, auto& x) {
+    x = start;
+    Found found{Polish(balance, x), {}};
+    if (found.outcome.ok()) {
+      found.stability.unstable_directions = UnstableDirections<C>(balance, x);
+    }
+    return found;
+  });
 }
 
 }  // namespace
@@ -92,35 +188,60 @@ Method ParseMethod(const std::string& name) {
 
 Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& before, Loads loads,
                    Method method) {
-  if (method == Method::kCrtFriction)
-    throw Error::Input("--method", "eas or pcca, whose contacts go on from a reference",
-                       "crt_friction");
-  const Before from{&earlier, &before.x};
-  loads.from = before.contacts;
+  const bool rod = method == Method::kCrtFriction;
+  const Solution state =
+      rod && before.contacts.share.size() == 0 ? WithContacts(robot, earlier, before) : before;
+  const Before from{&earlier, &state.x};
+  loads.from = state.contacts;
+  if (loads.length.size() > 0) {
+    return SolveWinches(robot, loads, method, {earlier.length, before.pull, &earlier, &state.x});
+  }
   switch (method) {
     case Method::kEas:
-      return SolveDisks<6>(robot, loads, nullptr, from);
+      return ContinueDisks<6>(robot, loads, from);
     case Method::kPcca:
-      return SolveDisks<Eigen::Dynamic>(robot, loads, nullptr, from);
-    default:
+      return ContinueDisks<Eigen::Dynamic>(robot, loads, from);
+    case Method::kCrt:
       return SolveCase(robot, loads, method);
+    case Method::kCrtFriction:
+      break;
   }
+  return SolveRemembering(robot, loads, from.loads, [&](RodBalance& balance, Eigen::VectorXd& x) {
+    x = *from.x;
+    return ContinueEquilibrium(robot, loads, balance, x);
+  });
 }
 
 Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
                    const Eigen::VectorXd* start) {
-  if (method == Method::kCrtFriction && loads.AsItSlides()) {
-    throw Error::Input("--method", "eas or pcca, whose contacts find their directions (auto)",
-                       "crt_friction");
-  }
-  switch (method) {
-    case Method::kEas:
-      return SolveDisks<6>(robot, loads, start);
-    case Method::kPcca:
-      return SolveDisks<Eigen::Dynamic>(robot, loads, start);
-    default:
-      return SolveRod(robot, loads, method == Method::kCrtFriction, start);
-  }
+  if (loads.length.size() > 0) return SolveWinches(robot, loads, method, Unwound(robot));
+  const auto find = [&](auto& balance, auto& x) {
+    return FindEquilibrium(robot, loads, balance, x, start);
+  };
+  if (method == Method::kEas) return SolveDisks<6>(robot, loads, nullptr, find);
+  if (method == Method::kPcca) return SolveDisks<Eigen::Dynamic>(robot, loads, nullptr, find);
+  const bool friction = method == Method::kCrtFriction;
+  if (friction && loads.AsItSlides()) return SolveRemembering(robot, loads, nullptr, find);
+  return SolveRod(robot, loads, friction, find);
+}
+
+Solution SolveNear(const Robot& robot, const Loads& loads, Method method,
+                   const Eigen::VectorXd& start) {
+  if (method == Method::kEas) return DisksNear<6>(robot, loads, start);
+  if (method == Method::kPcca) return DisksNear<Eigen::Dynamic>(robot, loads, start);
+  const auto find = [&](RodBalance& balance, auto& x) {
+    if (!balance.remembers()) balance.SetSteps(4 * balance.steps());  // as fine as the search
+    x.template head<3>() = start.head<3>();
+    if (x.size() > 3) x.tail(x.size() - 3) = balance.Integrate(x).way.bottomRows(1).transpose();
+    Found found{Polish(balance, x), {}};
+    if (found.outcome.ok()) {
+      found.stability.unstable_directions = UnstableDirections(robot, balance, x);
+    }
+    return found;
+  };
+  const bool friction = method == Method::kCrtFriction;
+  if (friction && loads.AsItSlides()) return SolveRemembering(robot, loads, nullptr, find);
+  return SolveRod(robot, loads, friction, find);
 }
 
 }  // namespace continuum::tdcr

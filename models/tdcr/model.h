@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/statics/rising_load.h"
+#include "models/tdcr/line.h"
 #include "models/tdcr/robot.h"
 #include "sim/numerics/solver.h"
 
@@ -23,7 +24,9 @@ struct Solution {
   Eigen::VectorXd x;       ///< the unknowns of the method, for a warm start
   Eigen::Matrix3Xd u;      ///< kappa_x, kappa_y, tau of arcs 1..n [1/m]
   Eigen::Matrix3Xd disks;  ///< O_1..O_n [m], base frame
-  Contacts contacts;       ///< eas and pcca
+  Contacts contacts;       ///< eas, pcca and, of contacts that remember, crt_friction
+  Line line;               ///< crt and crt_friction
+  Eigen::VectorXd pull;    ///< T_k at the base of tendons driven by length [N]
 };
 
 /// The equilibrium that is reached by raising all loads together from zero.
@@ -32,7 +35,9 @@ struct Solution {
 /// equilibrium and damped Newton finds it; above, the path of equilibria is followed from zero
 /// load, and where it ends the shape falls to the next stable one (statics::FollowRisingLoad). With
 /// `start` (x of a neighbouring case): Newton from there, and as above when that fails or ends at a
-/// saddle. u and disks are only valid when outcome.ok(); then the shape is stable.
+/// saddle. Where loads.length is given, it and the dead loads grow from the straight robot, and the
+/// tensions are unknown (statics::LengthDriven). u and disks are only valid when outcome.ok(); then
+/// the shape is stable.
 Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
                    const Eigen::VectorXd* start = nullptr);
 
@@ -44,8 +49,12 @@ Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
 ///
 /// l: length of the tendon beyond the contact. Friction takes s times its largest share, (13). A
 /// contact that turns back gives way within eps; held loads move nothing, and a pull in parts is
-/// the pull in one. @throws Error for crt_friction, whose contacts have no state.
+/// the pull in one. crt knows no friction: it solves the case alone.
 Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& before, Loads loads,
                    Method method);
+
+/// The equilibrium next to x, stable or not: `outcome` is that of Newton's method. Contacts with
+/// kAsItSlides have slid from loads.from.
+Solution SolveNear(const Robot& robot, const Loads& loads, Method method, const Eigen::VectorXd& x);
 
 }  // namespace continuum::tdcr

@@ -69,6 +69,15 @@ int Reference(const CsvTable& table, std::size_t row, const std::vector<Case>& c
                      "'" + name + "'");
 }
 
+// A tension or a length.
+double ReadDrive(const CsvTable& table, std::size_t row, const std::string& column) {
+  const double value = table.Number(row, column);
+  if (value >= 0) return value;
+  throw Error::Input(table.Where(row) + ", column '" + column + "'",
+                     column[0] == 'L' ? "a length of at least 0" : "a tension of at least 0",
+                     Decimal(value));
+}
+
 }  // namespace
 
 bool HasVector(const CsvTable& table, const std::vector<std::string>& columns) {
@@ -140,6 +149,7 @@ Robot ReadRobot(const Yaml& file) {
   robot.density = NotNegative(file, "density");
   robot.disk_mass = NotNegative(file, "disk_mass");
   robot.mu = Friction(file.At("mu").Parameter(), file.At("mu").Where());
+  if (file.Has("tendon_EA")) robot.tendon_EA = Positive(file, "tendon_EA");
   robot.gravity = Gravity(file.At("gravity"));
   if (const auto node = file.Find("base_rotation")) robot.base_rotation = Vector(*node);
   return robot;
@@ -147,8 +157,9 @@ Robot ReadRobot(const Yaml& file) {
 
 std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
   RequireKnownCaseColumns(table, robot.tendons);
+  const std::string drive = table.Has("L1") ? "L" : "T";
   std::vector<std::string> needed{"case", "fx", "fy", "fz"};
-  for (int k = 1; k <= robot.tendons; ++k) needed.push_back("T" + std::to_string(k));
+  for (int k = 1; k <= robot.tendons; ++k) needed.push_back(drive + std::to_string(k));
   HasVector(table, needed);
   table.RequireRows();
   const bool gravity = HasVector(table, {"gx", "gy", "gz"});
@@ -162,15 +173,12 @@ std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
     if (c.reference >= 0) {
       std::fill(c.loads.direction.begin(), c.loads.direction.end(), kAsItSlides);
     }
+    if (drive == "L") c.loads.length.resize(robot.tendons);
     for (int k = 0; k < robot.tendons; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      const std::string column = "T" + std::to_string(k + 1);
+      const double value = ReadDrive(table, row, drive + std::to_string(k + 1));
+      (drive == "L" ? c.loads.length[k] : c.loads.tension[i]) = value;
       const std::string direction = "dir" + std::to_string(k + 1);
-      c.loads.tension[i] = table.Number(row, column);
-      if (c.loads.tension[i] < 0) {
-        throw Error::Input(table.Where(row) + ", column '" + column + "'",
-                           "a tension of at least 0", Decimal(c.loads.tension[i]));
-      }
       if (table.Has(direction)) c.loads.direction[i] = Direction(table, row, direction);
     }
     c.loads.tip_force = {table.Number(row, "fx"), table.Number(row, "fy"), table.Number(row, "fz")};

@@ -27,6 +27,7 @@ struct Robot {
   double density = 0;
   double disk_mass = 0;
   double mu = 0;                                      ///< Coulomb friction between tendon and disk
+  double tendon_EA = 0;                               ///< of a tendon [N]; 0: it does not stretch
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2], base frame
   /// Curvature of the rod when nothing acts (kappa_x, kappa_y, tau) [1/m]: an imperfection that
   /// only the Cosserat rod knows, for synthetic measurements. Not in the file.
@@ -47,11 +48,16 @@ struct Robot {
 /// The contacts of disks and tendons find their directions themselves (`auto` in the file).
 inline constexpr int kAsItSlides = 2;
 
-/// Where contacts of disk i and tendon k stand, n x m each.
+/// Change of a tendon's length over which a contact turns from rest to sliding [m].
+inline constexpr double kGivesWay = 1e-6;
+
+/// Where the contacts of each tendon k stand: a row for every disk (eas, pcca), or for every step
+/// of the integrator along the rod (crt_friction).
 struct Contacts {
-  Eigen::MatrixXd length;  ///< of the tendon from disk i - 1 to disk i [m]
-  /// Share of its largest friction with which disk i resists, -1..1: 1 when the tendon was pulled
-  /// through towards the base, -1 when it was released. Of the last disk 0: tendons end there.
+  Eigen::MatrixXd length;  ///< of the tendon from disk i - 1 to disk i, or in step i [m]
+  /// Share of its largest friction with which a contact resists, -1..1: 1 when the tendon was
+  /// pulled through towards the base, -1 when it was released. That of disk i, 0 of the last disk,
+  /// where tendons end; or that of step i, which follows what slides through the start of the step.
   Eigen::MatrixXd share;
 };
 
@@ -63,6 +69,9 @@ struct Loads {
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();    ///< [m/s^2]
   double mu = 0;
   bool own_mu = false;  ///< mu belongs to this case, whatever the robot's
+  /// Of tendons that are driven by length: what is between base and tip without tension [m]; then
+  /// `tension` is not read. Empty: driven by tension.
+  Eigen::VectorXd length = {};
   /// Of tendons with kAsItSlides, the state that they slide from; empty: straight, nothing has
   /// slid.
   Contacts from = {};

@@ -1,7 +1,9 @@
 #include "models/tdcr/rod_law.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/numerics/decompositions.h"
 
@@ -22,29 +24,54 @@ int NegativeEigenvalues(const Eigen::MatrixXd& symmetric) {
 
 }  // namespace
 
-RodLaw::RodLaw(const Robot& robot, const Loads& loads, bool friction, int pieces)
-    : rod_(robot, loads, friction), pieces_(pieces), tension_(pulling(), pieces) {}
+RodLaw::RodLaw(UnitRod rod, int pieces, Eigen::MatrixXd share)
+    : rod_(std::move(rod)),
+      pieces_(pieces),
+      share_(std::move(share)),
+      tension_(pulling(), pieces) {}
 
-Vector3d RodLaw::Force(double s) const {
-  return load_ * rod_.Force(static_cast<int>(s * rod_.disks), s);
+Vector3d RodLaw::Force(double s) const { return rod_.Force(static_cast<int>(s * rod_.disks), s); }
+
+double RodLaw::Share(int i, int tendon) const {
+  if (share_.size() == 0) return rod_.direction[static_cast<std::size_t>(tendon)];
+  const Eigen::Index row = i * share_.rows() / pieces_;
+  return share_(row, tendon);
+}
+
+double RodLaw::Holds(int i, int tendon) const {
+  constexpr double kResting = 0.98, kHeld = 1e6;
+  const bool rests = share_.size() > 0 && std::abs(Share(i, tendon)) < kResting &&
+                     rod_.direction[static_cast<std::size_t>(tendon)] == kAsItSlides;
+  if (rests) return kHeld;
+  return i == 0 && winches_.size() > 0 ? winches_[tendon] : 0;
+}
+
+Eigen::VectorXd RodLaw::Lengths(const Eigen::Matrix3Xd& zeta) const {
+  Eigen::VectorXd lengths = Eigen::VectorXd::Zero(pulling());
+  for (int k = 0; k < pulling(); ++k) {
+    for (const auto& u : zeta.colwise()) {
+      lengths[k] += Along(rod_.holes[static_cast<std::size_t>(k)], u).norm() / pieces_;
+    }
+  }
+  return lengths;
 }
 
 bool RodLaw::Prepare(const Eigen::Matrix3Xd& zeta) {
   const double h = 1.0 / pieces_;
   for (int k = 0; k < pulling(); ++k) {
     const auto at = static_cast<std::size_t>(k);
-    tension_.row(k).setConstant(load_ * rod_.pull[at]);
+    tension_.row(k).setConstant(rod_.pull[at]);
     if (!rod_.friction || rod_.direction[at] == 0) continue;
     Vector3d before = Along(rod_.holes[at], zeta.col(0)).normalized();
-    double angle = 0.5 * h * zeta.col(0).cross(before).norm();
+    double angle = 0.5 * h * Share(0, k) * zeta.col(0).cross(before).norm();
     for (int i = 0; i < pieces_; ++i) {
       const Vector3d t = Along(rod_.holes[at], zeta.col(i)).normalized();
       if (i > 0) {
         const Vector3d u = 0.5 * (zeta.col(i) + zeta.col(i - 1));
-        angle += (h * u.cross(Vector3d(0.5 * (t + before))) + t - before).norm();
+        angle += Share(i, k) * (h * u.cross(Vector3d(0.5 * (t + before))) + t - before).norm();
       }
       before = t;
-      tension_(k, i) *= std::exp(-rod_.direction[at] * rod_.mu * angle);
+      tension_(k, i) *= std::exp(-rod_.mu * angle);
     }
   }
   return true;
@@ -54,15 +81,6 @@ Vector3d RodLaw::Lever(int tendon, const Vector3d& u) const {
   const Eigen::Vector2d& hole = rod_.holes[static_cast<std::size_t>(tendon)];
   const Vector3d w = Along(hole, u);
   return Vector3d(w.z() * hole.y(), -w.z() * hole.x(), u.z() * hole.squaredNorm()) / w.norm();
-}
-
-double RodLaw::Energy(const Vector3d& u) const {
-  const Vector3d change = u - rod_.natural;
-  double energy = 0.5 * change.dot(elastic() * change);
-  for (std::size_t k = 0; k < rod_.holes.size(); ++k) {
-    energy += load_ * rod_.pull[k] * Along(rod_.holes[k], u).norm();
-  }
-  return energy;
 }
 
 bool RodLaw::At(int piece, const Vector3d& u, const Vector3d& /*n*/,
@@ -86,9 +104,29 @@ bool RodLaw::At(int piece, const Vector3d& u, const Vector3d& /*n*/,
   return true;
 }
 
+namespace {
+
+// What contacts that rest add to the stiffness: `force` has the slopes of the tendons' lengths, so
+// that its sums over the pieces beyond a contact are what the contact holds.
+Eigen::MatrixXd HeldTendons(const RodLaw& law, const Eigen::MatrixXd& force) {
+  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(force.rows(), force.rows());
+  const auto pieces = static_cast<int>(force.cols()) / std::max(1, law.pulling());
+  for (int k = 0; k < law.pulling(); ++k) {
+    Eigen::VectorXd beyond = Eigen::VectorXd::Zero(force.rows());
+    for (int i = pieces - 1; i >= 0; --i) {
+      beyond += force.col(law.pulling() * i + k);
+      const double stiffness = law.Holds(i, k);
+      if (stiffness > 0) held += stiffness * beyond * beyond.transpose();
+    }
+  }
+  return held;
+}
+
+}  // namespace
+
 int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law,
                        const statics::RodChain<RodLaw>::Shape& shape) {
-  if (!law.friction()) return chain.UnstableDirections();
+  if (!law.friction() && !law.holds()) return chain.UnstableDirections();
   const int pieces = chain.pieces();
   const double h = 1.0 / pieces;
   // What tensions do to the nodes, and how they follow the strains, which follow the turns.
@@ -119,7 +157,7 @@ int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law
     follow.middleCols<3>(3 * i) = turned;
     if (i > 0) follow.middleCols<3>(3 * (i - 1)) -= turned;
   }
-  const Eigen::MatrixXd k = chain.Dense() + force * follow;
+  const Eigen::MatrixXd k = chain.Dense() + force * follow + HeldTendons(law, force);
   const Eigen::MatrixXd symmetric = 0.5 * (k + k.transpose());
   if (Eigen::LLT<Eigen::MatrixXd>(symmetric).info() == Eigen::Success) return 0;
   return NegativeEigenvalues(symmetric);

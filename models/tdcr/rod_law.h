@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "models/statics/rod_chain.h"
@@ -11,15 +12,16 @@ namespace continuum::tdcr {
 /// A section of the rod in channels of cosserat.h as a law for statics::RodChain, in units of L and
 /// EI/L: moment K (u - u_0) + sum T_k d|w_k|/du, w_k = e_3 + u x a_k.
 ///
-/// With friction T_k falls from piece to piece by exp(-dir mu angle), the angle between the
-/// tendon's directions in the middles of two pieces.
+/// With friction T_k falls from piece to piece by exp(-s mu angle), the angle between the tendon's
+/// directions in the middles of two pieces, s the share of friction of the contact between them.
 class RodLaw {
  public:
   static constexpr bool kShear = false;
 
-  RodLaw(const Robot& robot, const Loads& loads, bool friction, int pieces);
+  /// share: of the contacts along the rod, rows x tendons, held as they are; empty: the directions
+  /// of the rod's tendons.
+  RodLaw(UnitRod rod, int pieces, Eigen::MatrixXd share = {});
 
-  void SetLoad(double load) { load_ = load; }
   bool friction() const { return rod_.friction; }
   int pulling() const { return static_cast<int>(rod_.holes.size()); }
 
@@ -35,8 +37,17 @@ class RodLaw {
   /// T_k in the middles of the pieces, tendons x pieces, and the moment of a unit of it, d|w_k|/du.
   const Eigen::MatrixXd& tension() const { return tension_; }
   Eigen::Vector3d Lever(int tendon, const Eigen::Vector3d& u) const;
-  /// Energy of one piece per length, without friction: u.Ku/2 + sum T |w| of curvature u.
-  double Energy(const Eigen::Vector3d& u) const;
+  /// Lengths of the tendons on pieces of these curvatures [L].
+  Eigen::VectorXd Lengths(const Eigen::Matrix3Xd& zeta) const;
+  /// s of the contact between piece i - 1 and piece i (0: at the base); 1 without contacts that
+  /// remember.
+  double Share(int i, int tendon) const;
+  /// With which stiffness that contact holds the tendon beyond it [EI/L^3]: those that rest, and
+  /// at the base winches.
+  double Holds(int i, int tendon) const;
+  /// Winches: stiffness of every tendon [EI/L^3], 0 when it is slack.
+  void SetWinches(Eigen::VectorXd stiffness) { winches_ = std::move(stiffness); }
+  bool holds() const { return share_.size() > 0 || winches_.size() > 0; }
 
  private:
   Eigen::Vector3d Along(const Eigen::Vector2d& hole, const Eigen::Vector3d& u) const {
@@ -45,13 +56,13 @@ class RodLaw {
 
   UnitRod rod_;
   int pieces_;
-  double load_ = 1;
-  Eigen::MatrixXd tension_;
+  Eigen::MatrixXd share_, tension_;
+  Eigen::VectorXd winches_;
 };
 
 /// Negative eigenvalues of the symmetric part of the whole rod's tangent at the shape that `chain`
 /// was linearized at; with friction the tensions follow the turn of the sections as the contacts
-/// slide.
+/// slide, and contacts that rest hold the tendon beyond them.
 int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law,
                        const statics::RodChain<RodLaw>::Shape& shape);
 

@@ -8,15 +8,18 @@
 #include <utility>
 
 #include "error.h"
+#include "models/statics/held.h"
 #include "models/statics/results.h"
 #include "models/statics/write_figure.h"
 #include "models/tdcr/calibrate.h"
 #include "models/tdcr/columns.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/document.h"
+#include "models/tdcr/equilibria.h"
 #include "models/tdcr/explained.h"
 #include "models/tdcr/figure.h"
 #include "models/tdcr/fit.h"
+#include "models/tdcr/held.h"
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/model.h"
 #include "models/tdcr/plausible.h"
@@ -32,6 +35,7 @@ struct Solved {
   Loads loads;
   Solution solution;
   const Measured* measured = nullptr;
+  int equilibrium = 0;  ///< of the case, counted from 1; 0: no list of them
 };
 
 void Need(const std::filesystem::path& path, const std::string& option, const std::string& job) {
@@ -42,10 +46,15 @@ void Refuse(bool given, const std::string& option, const std::string& job) {
   if (given) throw Error::Input(option, "not with " + job);
 }
 
-std::vector<std::string> Columns(int disks) {
+void Append(const std::vector<std::string>& more, std::vector<std::string>& columns) {
+  columns.insert(columns.end(), more.begin(), more.end());
+}
+
+std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot, bool by_length) {
+  const int disks = robot.disks;
   std::vector<std::string> columns{"case",   "status", "iterations", "residual",
                                    "micros", "x",      "y",          "z"};
-  for (const auto& column : statics::StabilityColumns()) columns.push_back(column);
+  Append(statics::StabilityColumns(), columns);
   for (int i = 1; i <= disks; ++i) {
     for (const char* axis : {"x", "y", "z"}) columns.push_back(fmt::format("{}_{}", axis, i));
   }
@@ -53,6 +62,10 @@ std::vector<std::string> Columns(int disks) {
     for (const char* u : {"kappa_x", "kappa_y", "tau"})
       columns.push_back(fmt::format("{}_{}", u, i));
   }
+  if (request.method == "fit") return columns;
+  Append(statics::HoldColumns(), columns);
+  Append(statics::Numbered(by_length ? "T_" : "l_", robot.tendons), columns);
+  if (request.equilibria) Append(statics::EquilibriumColumns(), columns);
   return columns;
 }
 
@@ -97,8 +110,45 @@ void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Sol
   statics::WriteFigure(request.plot, figure);
 }
 
+Method MethodOf(const SolveRequest& request) {
+  return ParseMethod(request.method.empty() ? "eas" : request.method);
+}
+
+void AddHeld(const SolveRequest& request, const Robot& robot, const Solved& s,
+             statics::Results& results) {
+  const Method method = MethodOf(request);
+  const Held held = Describe(robot, s.loads, method, s.solution);
+  statics::Set({LineOf(robot, s.loads, method, s.solution).frames.back(), held.force, held.moment,
+                held.strain},
+               results);
+  for (int k = 0; k < robot.tendons; ++k) {
+    const bool by_length = s.loads.length.size() > 0;
+    results.Set((by_length ? "T_" : "l_") + std::to_string(k + 1),
+                by_length ? s.solution.pull[k] : held.length[k]);
+  }
+  if (!request.equilibria) return;
+  results.Set("equilibrium", s.equilibrium);
+  results.Set("energy", held.energy);
+}
+
+void WriteShapes(const SolveRequest& request, const Robot& robot,
+                 const std::vector<Solved>& solved) {
+  statics::ShapeTable table(robot.tendons);
+  for (const Solved& s : solved) {
+    if (!s.solution.outcome.ok()) continue;
+    const Line line = LineOf(robot, s.loads, MethodOf(request), s.solution);
+    for (Eigen::Index i = 0; i < line.s.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      table.Add(s.name, {line.s[i], line.disk[at], line.points.col(i), line.frames[at],
+                         line.tension.row(i)});
+    }
+  }
+  table.Write(request.shape);
+}
+
 int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
-  auto columns = Columns(robot.disks);
+  const bool by_length = !solved.empty() && solved.front().loads.length.size() > 0;
+  auto columns = Columns(request, robot, by_length);
   AddErrorColumns(solved, robot.disks, columns);
   const auto failed = [](const Solved& s) { return !s.solution.outcome.ok(); };
   const bool all = std::none_of(solved.begin(), solved.end(), failed);
@@ -107,15 +157,17 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     const bool ok = s.solution.outcome.ok();
     results.Row();
     results.Set("case", s.name);
-    results.Set(s.solution.outcome, ok ? "ok" : "no_convergence");
+    results.Set(s.solution.outcome, statics::StatusOf(s.solution.outcome, s.solution.stability));
     if (ok) AddShape(robot, s, results);
     if (request.method == "fit") {
       results.Set("why", s.solution.outcome.why);
-    } else {
-      results.Set(s.solution.outcome, s.solution.stability);
+      continue;
     }
+    results.Set(s.solution.outcome, s.solution.stability);
+    if (ok) AddHeld(request, robot, s, results);
   }
   results.Write(request.out);
+  if (!request.shape.empty()) WriteShapes(request, robot, solved);
   if (!request.plot.empty()) Draw(request, robot, solved);
   return all ? 0 : 1;
 }
@@ -162,6 +214,17 @@ void CheckLambda(const SolveRequest& request, const std::string& method) {
   }
 }
 
+// --equilibria and --shape: of solved cases.
+void CheckLists(const SolveRequest& request, const std::string& method) {
+  const bool other = request.calibrate || request.hybrid == "train" || method == "fit";
+  Refuse(request.equilibria && (other || !request.hybrid.empty()), "--equilibria",
+         "calibration, --hybrid and --method fit");
+  Refuse(!request.shape.empty() && (other || !request.hybrid.empty()), "--shape",
+         "calibration, --hybrid and --method fit");
+  if (!request.shape.empty())
+    statics::RequireExtension(request.shape, {".csv", ".json"}, "--shape");
+}
+
 // Nothing: to be chosen by cross-validation.
 std::optional<double> Penalty(const SolveRequest& request) {
   if (request.cross_validate) return std::nullopt;
@@ -181,9 +244,29 @@ Solution SolveInOrder(const Robot& robot, const std::vector<Case>& cases, const 
   return none;
 }
 
+// All of a case instead of its own answer `s`, which is one of them; alone when none is found.
+void AddEquilibria(const Robot& robot, Method method, const Solved& s,
+                   std::vector<Solved>& solved) {
+  int count = 0;
+  for (Solution& solution : Equilibria(robot, s.loads, method, s.solution)) {
+    solved.push_back({s.name, s.loads, std::move(solution), s.measured, ++count});
+  }
+  if (!s.solution.outcome.ok()) solved.push_back(s);
+}
+
+// Of jobs that take tensions.
+void RefuseLengths(const SolveRequest& request, const std::vector<Case>& cases,
+                   const std::string& job) {
+  if (cases.empty() || cases.front().loads.length.size() == 0) return;
+  throw Error::Input(request.input.string() + ":1", "columns T1, T2, .. with " + job, "'L1'");
+}
+
 int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
                const Hybrid* hybrid) {
   const auto cases = ReadInput(request, robot);
+  if (hybrid != nullptr || request.equilibria) {
+    RefuseLengths(request, cases, hybrid ? "--hybrid" : "--equilibria");
+  }
   const auto measured = ReadMeasurements(request, robot);
   if (!request.measured.empty()) RequireShared(cases, measured, request.measured.string());
   std::vector<Solved> solved;
@@ -191,8 +274,15 @@ int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
   for (const Case& c : cases) {
     plain.push_back(SolveInOrder(robot, cases, c, method, plain));
     Solved s{c.name, c.loads, plain.back(), Find(measured, c.name)};
+    const Eigen::VectorXd& pull = plain.back().pull;
+    if (pull.size() > 0) s.loads.tension.assign(pull.begin(), pull.end());
     if (hybrid != nullptr && s.solution.outcome.ok()) Apply(*hybrid, robot, c.loads, s.solution);
-    solved.push_back(std::move(s));
+    if (request.equilibria) {
+      if (c.reference >= 0) s.loads.from = plain[static_cast<std::size_t>(c.reference)].contacts;
+      AddEquilibria(robot, method, s, solved);
+    } else {
+      solved.push_back(std::move(s));
+    }
   }
   return Report(request, robot, solved);
 }
@@ -212,6 +302,7 @@ int FitShapes(const SolveRequest& request, const Robot& robot) {
 
 std::vector<Pair> ReadPairs(const SolveRequest& request, const std::vector<Case>& cases,
                             const std::vector<Measured>& measured) {
+  RefuseLengths(request, cases, "calibration and training");
   for (const Case& c : cases) {
     if (c.reference < 0) continue;
     throw Error::Input(request.input.string() + ", column 'reference'",
@@ -324,6 +415,7 @@ int SolveTdcr(const SolveRequest& request) {
   const std::string method = request.method.empty() ? "eas" : request.method;
   Refuse(request.sensitivity, "--sensitivity", "the robot tdcr");
   Need(request.out, "--out", "the results");
+  CheckLists(request, method);
   CheckLambda(request, method);
   if (!request.hybrid.empty()) {
     Refuse(request.calibrate, "--calibrate", "--hybrid");

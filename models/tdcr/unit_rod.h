@@ -7,11 +7,18 @@
 
 namespace continuum::tdcr {
 
-/// A rod and what acts on it, in units of its length L and of EI/L. Slack tendons do nothing and
-/// are left out. s from the base (0) to the tip (1).
+/// A rod and what acts on it, in units of its length L and of EI/L. s from the base (0) to the tip
+/// (1).
 struct UnitRod {
-  /// friction: of tendons in their holes, where the loads have any.
-  UnitRod(const Robot& robot, const Loads& loads, bool friction);
+  /// friction: of tendons in their holes, where the loads have any. Slack tendons do nothing and
+  /// are left out unless `all` are asked for.
+  UnitRod(const Robot& robot, const Loads& loads, bool friction, bool all = false);
+
+  /// The loads of `to` times `share` and those of `from` times the rest; both have the tendons of
+  /// this one.
+  void Mix(const UnitRod& from, const UnitRod& to, double share);
+  /// No load at all.
+  UnitRod Unloaded() const;
 
   /// Dead force on a section with so many disks in front of it, towards the base.
   Eigen::Vector3d Force(int passed, double s) const {
@@ -22,6 +29,7 @@ struct UnitRod {
   double mu;
   bool friction;
   int disks;
+  std::vector<int> tendon;  ///< which of the robot's, of the vectors below
   std::vector<Eigen::Vector2d> holes;
   std::vector<double> pull;  ///< at the base, times L^2/EI, as the forces below
   std::vector<int> direction;

@@ -27,9 +27,9 @@ double NotNegative(const CsvTable& table, std::size_t row, const std::string& co
   throw Error::Input(Cell(table, row, column), "a number >= 0", Decimal(value));
 }
 
-// The columns of the cables' loads: all masses or all tensions, whichever the first cable has.
+// The columns of the cables: all masses, tensions or lengths, whichever the first cable has.
 std::vector<std::string> LoadColumns(const CsvTable& table, int cables) {
-  return statics::Numbered(table.Has("F1") ? "F" : "m", cables);
+  return statics::Numbered(table.Has("L1") ? "L" : table.Has("F1") ? "F" : "m", cables);
 }
 
 void RequireColumns(const CsvTable& table, const std::vector<std::string>& loads) {
@@ -48,7 +48,8 @@ void RequireColumns(const CsvTable& table, const std::vector<std::string>& loads
   needed.insert(needed.end(), loads.begin(), loads.end());
   for (const std::string& column : needed) {
     if (table.Has(column)) continue;
-    throw Error::Input(header, "a column '" + column + "' (F1.. or m1.. for every cable)", "none");
+    throw Error::Input(header, "a column '" + column + "' (F1.., m1.. or L1.. for every cable)",
+                       "none");
   }
 }
 
@@ -85,7 +86,11 @@ Load ReadLoad(const CsvTable& table, std::size_t row, const std::vector<std::str
   load.condition = ReadCondition(table, row);
   const double scale = table.Has("F1") ? 1 : kNewtonPerKilogram;
   for (const std::string& column : columns) {
-    load.tension.push_back(scale * NotNegative(table, row, column));
+    const double value = NotNegative(table, row, column);
+    load.tension.push_back(table.Has("L1") ? 0 : scale * value);
+    if (!table.Has("L1")) continue;
+    load.length.conservativeResize(static_cast<Eigen::Index>(load.tension.size()));
+    load.length.tail<1>()[0] = value;
   }
   if (table.Has("payload")) load.payload = NotNegative(table, row, "payload");
   load.gravity = robot.gravity;

@@ -15,7 +15,8 @@ struct Case {
   int reference = -1;  ///< the row whose solution is l_ref; -1: straight
 };
 
-/// CASES.csv: `case`, then masses m1.. [kg] (tension 9.81 m) or tensions F1.. [N] of every cable;
+/// CASES.csv: `case`, then masses m1.. [kg] (tension 9.81 m), tensions F1.. [N] or lengths L1.. [m]
+/// of every cable;
 /// optional `condition` (I..V), `payload` [kg], `fx,fy,fz` [N], `Mx,My,Mz` [N m], `gx,gy,gz`
 /// [m/s^2] (base frame), `reference` (label of an earlier row).
 /// @throws Error (file:line, column) for anything missing, unknown or out of range.

@@ -18,7 +18,10 @@ enum class Method { kVirtualWork, kPrinted };
 
 struct Load {
   Condition condition = Condition::kV;
-  std::vector<double> tension;                       ///< F_SC of every cable at the base [N]
+  std::vector<double> tension;  ///< F_SC of every cable at the base [N]
+  /// Of cables that are driven by length: what is between the discs' faces without tension, from
+  /// base to anchor [m]; then `tension` is not read. Empty: driven by tension.
+  Eigen::VectorXd length;
   double payload = 0;                                ///< [kg] at O_n; counts in V only
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< at O_n, in the base frame [N]
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< in the base frame [N m]

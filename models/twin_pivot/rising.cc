@@ -54,7 +54,18 @@ numerics::Options Tolerances() {
   return options;
 }
 
-int UnstableDirections(Balance balance, const VectorXd& beta) {
+MatrixXd CableSlopes(const Task& task, const VectorXd& beta) {
+  const auto joint = JointsAt(task.robot, beta);
+  MatrixXd slopes = MatrixXd::Zero(task.cables, task.joints);
+  for (int j = 0; j < task.cables; ++j) {
+    for (int m = 0; m < task.anchor[static_cast<std::size_t>(j)]; ++m) {
+      slopes(j, m) = -joint[static_cast<std::size_t>(m)].Arm(task.Y(m, j));
+    }
+  }
+  return slopes;
+}
+
+int UnstableDirections(Balance balance, const VectorXd& beta, const VectorXd& held) {
   constexpr double kHeld = 1e6;  // of a joint's stiffness, at the cables' own distance
   const Task& task = balance.task;
   MatrixXd slide;
@@ -69,6 +80,10 @@ int UnstableDirections(Balance balance, const VectorXd& beta) {
   MatrixXd slope(beta.size(), beta.size());
   if (!numerics::Linearize(balance, beta, f, slope)) return kUnknown;
   MatrixXd k = -0.5 * (slope + slope.transpose()) / task.robot.Stiffness();
+  if (held.size() > 0) {
+    const MatrixXd slopes = CableSlopes(task, beta);
+    k += slopes.transpose() * (held / task.robot.Stiffness()).asDiagonal() * slopes;
+  }
   if (Eigen::LLT<MatrixXd>(k).info() == Eigen::Success) return 0;
   if (task.HasFriction()) {
     const MatrixXd rows = Constraints(task, beta, slide);

@@ -12,8 +12,13 @@ namespace continuum::twin_pivot {
 numerics::Options Tolerances();
 
 /// Negative eigenvalues of the symmetric part of -df/dbeta at full load, where contacts that rest
-/// (|s| below 0.98) hold the cable beyond them, and the others slide on.
-int UnstableDirections(Balance balance, const Eigen::VectorXd& beta);
+/// (|s| below 0.98) hold the cable beyond them, and the others slide on. held [N/m]: with which
+/// winches hold the cables, where there are any.
+int UnstableDirections(Balance balance, const Eigen::VectorXd& beta,
+                       const Eigen::VectorXd& held = {});
+
+/// Slopes of the cables' lengths by beta, cables x joints [m].
+Eigen::MatrixXd CableSlopes(const Task& task, const Eigen::VectorXd& beta);
 
 /// The robot as a system for statics::FollowRisingLoad: loads grow from those of one task to those
 /// of another, contacts as sharp as robot.eps.

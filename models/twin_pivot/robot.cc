@@ -81,7 +81,7 @@ int Robot::Anchor(int cable) const {
 Robot Robot::Read(const std::filesystem::path& file) {
   const Yaml yaml = Yaml::Read(file);
   yaml.Only({"format", "robot", "discs", "L", "h", "E", "I_z", "rods", "r", "phi", "m_D", "m_NiTi",
-             "rho_cable", "m_CL", "friction", "gravity"});
+             "rho_cable", "m_CL", "cable_EA", "friction", "gravity"});
   RequireVersion(yaml);
   Robot robot;
   robot.file = file.string();
@@ -102,6 +102,7 @@ Robot Robot::Read(const std::filesystem::path& file) {
   robot.m_NiTi = AtLeast(yaml.At("m_NiTi"), 0);
   robot.rho_cable = AtLeast(yaml.At("rho_cable"), 0);
   robot.m_CL = AtLeast(yaml.At("m_CL"), 0);
+  if (yaml.Has("cable_EA")) robot.cable_EA = Positive(yaml.At("cable_EA"));
   ReadFriction(yaml.At("friction"), robot);
   const std::vector<Yaml> gravity = List(yaml.At("gravity"), 3, "x, y, z");
   for (int i = 0; i < 3; ++i) robot.gravity[i] = gravity[i].Number();

@@ -32,6 +32,7 @@ struct Robot {
   double m_NiTi = 0;        ///< the rods of one joint [kg]
   double rho_cable = 0;     ///< [kg/m]
   double m_CL = 0;          ///< one locking device [kg]
+  double cable_EA = 0;      ///< of a cable [N]; 0: it does not stretch
   Friction friction;        ///< variable coefficient
   double mu_const = 0;      ///< constant coefficient of condition III
   double eps = 0;  ///< change of cable length over which a contact turns from stick to slip [m]

@@ -6,12 +6,15 @@
 #include <utility>
 
 #include "error.h"
+#include "models/statics/held.h"
 #include "models/statics/plausible.h"
 #include "models/statics/results.h"
 #include "models/statics/write_figure.h"
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
+#include "models/twin_pivot/equilibria.h"
 #include "models/twin_pivot/figure.h"
+#include "models/twin_pivot/held.h"
 #include "models/twin_pivot/twin_pivot.h"
 #include "sim/io/file.h"
 #include "sim/io/yaml.h"
@@ -31,6 +34,8 @@ void RefuseOptions(const SolveRequest& request) {
       {"--cross-validate", request.cross_validate},
       {"--sensitivity", request.sensitivity},
       {"--measured", !request.measured.empty()},
+      {"--equilibria with --calibrate", request.calibrate && request.equilibria},
+      {"--shape with --calibrate", request.calibrate && !request.shape.empty()},
       {"--plot with --calibrate", request.calibrate && !request.plot.empty()},
       {"--method with --calibrate", request.calibrate && !request.method.empty()}};
   for (const auto& [option, given] : foreign) {
@@ -106,46 +111,103 @@ std::vector<Solution> SolveCases(const Robot& robot, const std::vector<Case>& ca
   return solved;
 }
 
-void WriteRow(const Robot& robot, const Case& row, const Solution& solution,
+// A row of the results.
+struct Solved {
+  Case row;
+  Solution solution;
+  int equilibrium = 0;  ///< of the case, counted from 1; 0: no list of them
+};
+
+// With --equilibria all of a case instead of its own answer, which is one of them.
+std::vector<Solved> RowsOf(const SolveRequest& request, const Robot& robot,
+                           const std::vector<Case>& cases, const std::vector<Solution>& solved,
+                           Method method) {
+  std::vector<Solved> rows;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    Case row = cases[i];
+    const Eigen::VectorXd& pull = solved[i].pull;
+    if (pull.size() > 0) row.load.tension.assign(pull.begin(), pull.end());
+    if (request.equilibria) {
+      if (row.reference >= 0) {
+        row.load.reference = solved[row.reference].length;
+        row.load.slide = solved[row.reference].slide;
+      }
+      int count = 0;
+      for (Solution& s : twin_pivot::Equilibria(robot, row.load, method, solved[i])) {
+        rows.push_back({row, std::move(s), ++count});
+      }
+    }
+    if (!request.equilibria || !solved[i].outcome.ok()) rows.push_back({row, solved[i]});
+  }
+  return rows;
+}
+
+void WriteRow(const SolveRequest& request, const Robot& robot, const Solved& solved,
               statics::Results& results) {
+  const Solution& solution = solved.solution;
+  const twin_pivot::Load& load = solved.row.load;
   results.Row();
-  results.Set("case", row.label);
-  results.Set("condition",
-              std::string(twin_pivot::kConditions[static_cast<int>(row.load.condition)]));
-  results.Set(solution.outcome, solution.outcome.ok() ? "ok" : "no_convergence");
+  results.Set("case", solved.row.label);
+  results.Set("condition", std::string(twin_pivot::kConditions[static_cast<int>(load.condition)]));
+  results.Set(solution.outcome, statics::StatusOf(solution.outcome, solution.stability));
   results.Set(solution.outcome, solution.stability);
   if (!solution.outcome.ok()) return;
   for (int i = 0; i < 3; ++i) results.Set(std::string(1, "xyz"[i]), solution.tip[i]);
   for (int m = 0; m < robot.Joints(); ++m) {
     results.Set("beta_" + std::to_string(m + 1), solution.beta[m]);
   }
+  const twin_pivot::Held held = Describe(robot, load, solution);
   for (int j = 0; j < robot.Cables(); ++j) {
     results.Set("F_end_" + std::to_string(j + 1), solution.tension(robot.Anchor(j) - 1, j));
+    const bool by_length = load.length.size() > 0;
+    results.Set((by_length ? "T_" : "l_") + std::to_string(j + 1),
+                by_length ? solution.pull[j] : held.length[j]);
   }
+  Set(held.hold, results);
+  if (!request.equilibria) return;
+  results.Set("equilibrium", solved.equilibrium);
+  results.Set("energy", held.energy);
 }
 
-void WriteResults(const SolveRequest& request, const Robot& robot, const std::vector<Case>& cases,
-                  const std::vector<Solution>& solved) {
+std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot, bool by_length) {
   std::vector<std::string> columns = {"case",   "condition", "status", "iterations", "residual",
                                       "micros", "x",         "y",      "z"};
-  for (const std::string& name : statics::StabilityColumns()) columns.push_back(name);
-  for (const auto& [prefix, count] :
-       {std::pair{"beta_", robot.Joints()}, std::pair{"F_end_", robot.Cables()}}) {
-    for (const std::string& name : statics::Numbered(prefix, count)) columns.push_back(name);
-  }
-  statics::Results results(columns);
-  for (std::size_t i = 0; i < cases.size(); ++i) WriteRow(robot, cases[i], solved[i], results);
-  results.Write(request.out);
+  const auto append = [&](const std::vector<std::string>& names) {
+    columns.insert(columns.end(), names.begin(), names.end());
+  };
+  append(statics::StabilityColumns());
+  append(statics::Numbered("beta_", robot.Joints()));
+  append(statics::Numbered("F_end_", robot.Cables()));
+  append(statics::HoldColumns());
+  append(statics::Numbered(by_length ? "T_" : "l_", robot.Cables()));
+  if (request.equilibria) append(statics::EquilibriumColumns());
+  return columns;
 }
 
-void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Case>& cases,
-          const std::vector<Solution>& solved) {
+void WriteResults(const SolveRequest& request, const Robot& robot,
+                  const std::vector<Solved>& rows) {
+  const bool by_length = !rows.empty() && rows.front().row.load.length.size() > 0;
+  statics::Results results(Columns(request, robot, by_length));
+  for (const Solved& solved : rows) WriteRow(request, robot, solved, results);
+  results.Write(request.out);
+  if (request.shape.empty()) return;
+  statics::ShapeTable table(robot.Cables());
+  for (const Solved& solved : rows) {
+    if (!solved.solution.outcome.ok()) continue;
+    for (const auto& place : twin_pivot::Places(robot, solved.solution)) {
+      table.Add(solved.row.label, place);
+    }
+  }
+  table.Write(request.shape);
+}
+
+void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& rows) {
   statics::Figure figure = twin_pivot::EmptyFigure(robot);
   figure.title = "twin_pivot: " + request.robot.filename().string();
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (!solved[i].outcome.ok()) continue;
-    figure.shapes.push_back(twin_pivot::ShapeOf(robot, cases[i].load, solved[i]));
-    figure.shapes.back().label = cases[i].label;
+  for (const Solved& solved : rows) {
+    if (!solved.solution.outcome.ok()) continue;
+    figure.shapes.push_back(twin_pivot::ShapeOf(robot, solved.row.load, solved.solution));
+    figure.shapes.back().label = solved.row.label;
   }
   statics::WriteFigure(request.plot, figure);
 }
@@ -160,11 +222,17 @@ int SolveTwinPivot(const SolveRequest& request) {
   const Method method = ReadMethod(request.method);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
+  if (!request.shape.empty())
+    statics::RequireExtension(request.shape, {".csv", ".json"}, "--shape");
   const std::vector<Case> cases = twin_pivot::ReadCases(request.input, robot);
+  if (request.equilibria && cases.front().load.length.size() > 0) {
+    throw Error::Input(request.input.string() + ":1", "tensions with --equilibria", "'L1'");
+  }
   WarnOfImplausibleTensions(request, robot, cases);
   const std::vector<Solution> solved = SolveCases(robot, cases, method);
-  WriteResults(request, robot, cases, solved);
-  if (!request.plot.empty()) Draw(request, robot, cases, solved);
+  const std::vector<Solved> rows = RowsOf(request, robot, cases, solved, method);
+  WriteResults(request, robot, rows);
+  if (!request.plot.empty()) Draw(request, robot, rows);
   for (const Solution& solution : solved) {
     if (!solution.outcome.ok()) return 1;
   }

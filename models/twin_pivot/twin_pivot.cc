@@ -9,6 +9,7 @@
 #include "models/twin_pivot/balance.h"
 #include "models/twin_pivot/geometry.h"
 #include "models/twin_pivot/rising.h"
+#include "models/twin_pivot/winches.h"
 #include "sim/io/decimal.h"
 #include "sim/io/file.h"
 #include "sim/numerics/continuation.h"
@@ -48,6 +49,14 @@ bool Reach(numerics::Outcome& total, VectorXd& x, const ProblemAt& problem_at, V
               [&](VectorXd& y) { return numerics::Continue(problem_at, y, Tolerances()); });
 }
 
+// From contacts that turn within `width` to those that turn within robot.eps.
+void Sharpen(const Task& task, double width, numerics::Outcome& total, VectorXd& x) {
+  const auto sharpened = [&](double t) {
+    return Balance{task, 1, 1, std::pow(width, 1 - t) * std::pow(task.robot.eps, t)};
+  };
+  Reach(total, x, sharpened, x);
+}
+
 // Three stages: everything but friction; friction with contacts that turn widely; sharp contacts.
 numerics::Outcome FindRoot(const Task& task, VectorXd& x) {
   numerics::Outcome total;
@@ -57,10 +66,7 @@ numerics::Outcome FindRoot(const Task& task, VectorXd& x) {
   if (!Reach(total, x, loaded, VectorXd::Zero(task.joints)) || !task.HasFriction()) return total;
   const auto with_friction = [&](double t) { return Balance{task, 1, t, widest}; };
   if (!Reach(total, x, with_friction, x) || widest == eps) return total;
-  const auto sharpened = [&](double t) {
-    return Balance{task, 1, 1, std::pow(widest, 1 - t) * std::pow(eps, t)};
-  };
-  Reach(total, x, sharpened, x);
+  Sharpen(task, widest, total, x);
   return total;
 }
 
@@ -131,12 +137,30 @@ void Describe(const Task& task, Solution& solution) {
       force.data(), task.joints, task.cables);
 }
 
+// From the state of `solution` and winches at `before`.
+void Wind(const Load& load, const Task& from, const VectorXd& before, VectorXd tension, Task& task,
+          Solution& solution) {
+  solution.outcome = numerics::Timed([&] {
+    return FollowWinches(from, task, before, load.length, solution.beta, tension,
+                         solution.stability);
+  });
+  solution.pull = tension;
+  task.tension.assign(tension.begin(), tension.end());
+  Describe(task, solution);
+}
+
 }  // namespace
 
 Solution Solve(const Robot& robot, const Load& load, Method method,
                const std::optional<VectorXd>& start) {
-  const Task task(robot, load, method);
+  Task task(robot, load, method);
   Solution solution;
+  if (load.length.size() > 0) {
+    solution.beta = VectorXd::Zero(task.joints);
+    const VectorXd unwound = CableLengths(robot, solution.beta).colwise().sum();
+    Wind(load, task.Unloaded(), unwound, VectorXd::Zero(task.cables), task, solution);
+    return solution;
+  }
   solution.outcome = numerics::Timed([&] {
     const VectorXd straight = VectorXd::Zero(task.joints);
     solution.beta = start ? *start : straight;
@@ -163,12 +187,35 @@ Solution SolveFrom(const Robot& robot, const Load& earlier, const Solution& befo
                    Method method) {
   load.reference = before.length;
   load.slide = before.slide;
-  const Task task(robot, load, method), from(robot, earlier, method);
+  Task task(robot, load, method);
+  const Task from(robot, earlier, method);
   Solution solution;
+  if (load.length.size() > 0) {
+    solution.beta = before.beta;
+    Wind(load, from, earlier.length, before.pull, task, solution);
+    return solution;
+  }
   solution.outcome = numerics::Timed([&] {
     RisingSystem system(from, task);
     solution.beta = before.beta;
     Follow(system, before.beta, solution);
+    return solution.outcome;
+  });
+  Describe(task, solution);
+  return solution;
+}
+
+Solution SolveNear(const Robot& robot, const Load& load, Method method, const VectorXd& beta,
+                   double width) {
+  const Task task(robot, load, method);
+  Solution solution;
+  solution.outcome = numerics::Timed([&] {
+    solution.beta = beta;
+    Sharpen(task, std::max(width, robot.eps), solution.outcome, solution.beta);
+    if (solution.outcome.ok()) {
+      const Balance balance{task, 1, 1, robot.eps};
+      solution.stability.unstable_directions = UnstableDirections(balance, solution.beta);
+    }
     return solution.outcome;
   });
   Describe(task, solution);

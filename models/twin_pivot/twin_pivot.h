@@ -27,6 +27,7 @@ struct Solution {
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< O_n [m]
   Eigen::MatrixXd tension;  ///< F_mj in every joint, joints x cables [N], 0 beyond the anchor
   Eigen::MatrixXd length;   ///< l_mj, joints x cables [m], 0 beyond the anchor
+  Eigen::VectorXd pull;     ///< F_SC of cables driven by length [N]
   Eigen::MatrixXd slide;    ///< s of every contact, row m at disc m; 0 without friction
   statics::Stability stability;
 };
@@ -37,7 +38,8 @@ struct Solution {
 /// Loads far below buckling leave one equilibrium: Newton from `start` (straight when not given)
 /// without friction, then with contacts that turn within 1 mm, then within robot.eps; a stage that
 /// fails follows the path of roots from the one before (loads from 0, friction from 0, width from
-/// 1 mm). Other loads, and where this ends at a saddle, are followed from 0.
+/// 1 mm). Other loads, and where this ends at a saddle, are followed from 0. Where load.length is
+/// given, it and the dead loads are, and the tensions are unknown (statics::LengthDriven).
 /// @throws Error when the coefficient of friction is negative at an angle of the solution, or of
 /// the last root found when the friction then could not be followed.
 Solution Solve(const Robot& robot, const Load& load, Method method = Method::kVirtualWork,
@@ -47,6 +49,11 @@ Solution Solve(const Robot& robot, const Load& load, Method method = Method::kVi
 /// contacts begin as they were left. load.reference and load.slide are not used.
 Solution SolveFrom(const Robot& robot, const Load& earlier, const Solution& before, Load load,
                    Method method = Method::kVirtualWork);
+
+/// The equilibrium next to beta, stable or not: `outcome` is that of the solver. beta is a root
+/// with contacts that turn within `width` [m].
+Solution SolveNear(const Robot& robot, const Load& load, Method method, const Eigen::VectorXd& beta,
+                   double width);
 
 /// f [N m] at given angles, for tests and comparisons. Empty when the angles are out of the domain
 /// (a joint bent by pi or more, or a contact that would lock: s w >= 1).

@@ -25,17 +25,19 @@ Table = Any
 
 def solve(robot: Document, cases: Table | None = None, *, method: str | None = None,
           measured: Table | None = None, hybrid: bool = False, sensitivity: bool = False,
-          lambda_: float | None = None, plot: StrPath | None = None,
-          progress: Progress | None = None) -> list[Row]:
+          equilibria: bool = False, lambda_: float | None = None, plot: StrPath | None = None,
+          shape: StrPath | None = None, progress: Progress | None = None) -> list[Row]:
     """The static shape of a robot in every case. Returns a dict for each row, in SI units.
 
     A row has status "ok" or what failed, stable, x, y, z of the tip [m], and more for each robot.
-    hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop). lambda_: the
-    weight of the method fit. plot: a picture of the shapes (.png, .svg, .pdf). progress: called with each
-    warning. Raises JobError only where there are no results at all."""
+    hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop).
+    equilibria: all of every case that a search finds, a row each. lambda_: the weight of the method
+    fit. plot: a picture of the shapes (.png, .svg, .pdf). shape: a table of places along the centre
+    lines (.csv, .json). progress: called with each warning. Raises JobError only where there are no results at all."""
     options = {"--method": method, "--hybrid": "apply" if hybrid else None,
-               "--sensitivity": sensitivity, "--lambda": lambda_,
-               "--plot": None if plot is None else as_argument(plot)}
+               "--sensitivity": sensitivity, "--equilibria": equilibria, "--lambda": lambda_,
+               "--plot": None if plot is None else as_argument(plot),
+               "--shape": None if shape is None else as_argument(shape)}
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
         out = pathlib.Path(folder, "results.json")
         try:

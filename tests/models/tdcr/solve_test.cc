@@ -77,14 +77,18 @@ TEST_F(TdcrSolve, WritesTheContractsColumnsAndEchoesTheCases) {
     EXPECT_EQ(SolveTdcr(request_), 0);
     const CsvTable table = CsvTable::Read(request_.out);
     const auto& columns = table.columns();
-    ASSERT_EQ(columns.size(), 12u + 27 + 27);
+    ASSERT_EQ(columns.size(), 12u + 27 + 27 + 11 + 3);
     EXPECT_THAT(std::vector(columns.begin(), columns.begin() + 15),
                 testing::ElementsAre("case", "status", "iterations", "residual", "micros", "x", "y",
                                      "z", "stable", "unstable_directions", "branch", "why", "x_1",
                                      "y_1", "z_1"));
     EXPECT_EQ(table.Number(0, "stable"), 1);
     EXPECT_EQ(table.Text(0, "branch"), "rising");
-    EXPECT_EQ(columns.back(), "tau_9");
+    EXPECT_THAT(std::vector(columns.end() - 15, columns.end()),
+                testing::ElementsAre("tau_9", "qw", "qx", "qy", "qz", "Fx", "Fy", "Fz", "Mx", "My",
+                                     "Mz", "strain_max", "l_1", "l_2", "l_3"));
+    EXPECT_LT(table.Number(0, "l_1"), 0.134);
+    EXPECT_EQ(table.Number(1, "qw"), 1);
     EXPECT_EQ(table.Text(1, "case"), "b, c");
     EXPECT_EQ(table.Text(0, "status"), "ok");
     EXPECT_EQ(table.Number(1, "z"), table.Number(1, "z_9"));

@@ -136,7 +136,22 @@ TEST_F(TwinPivotSolve, ResultsKeepFullPrecisionInCsvAndJson) {
                                             "F_end_1",
                                             "F_end_2",
                                             "F_end_3",
-                                            "F_end_4"};
+                                            "F_end_4",
+                                            "qw",
+                                            "qx",
+                                            "qy",
+                                            "qz",
+                                            "Fx",
+                                            "Fy",
+                                            "Fz",
+                                            "Mx",
+                                            "My",
+                                            "Mz",
+                                            "strain_max",
+                                            "l_1",
+                                            "l_2",
+                                            "l_3",
+                                            "l_4"};
   EXPECT_EQ(table.columns(), columns);
   request_.out = folder_ / "out.json";
   EXPECT_EQ(SolveTwinPivot(request_), 0);

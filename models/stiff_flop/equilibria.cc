@@ -1,0 +1,91 @@
+#include "models/stiff_flop/equilibria.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "models/statics/equilibria.h"
+#include "models/stiff_flop/forward.h"
+#include "models/stiff_flop/held.h"
+#include "models/stiff_flop/rod.h"
+
+namespace continuum::stiff_flop {
+namespace {
+
+using Eigen::Vector3d;
+
+/// M(l) by M(0), every time from sections that are raised from rest: no shape depends on the one
+/// before.
+struct ColdShooting {
+  const Module& module;
+  const Method& method;
+  const Case& row;
+
+  bool Jacobian(const Vector3d& x, Vector3d& f, Eigen::Matrix3d& jacobian) const {
+    constexpr int kSteps = 4;
+    Rod rod(module, method, row, 1, kSteps);
+    Rod::State<Rod::Dual> tip;
+    if (!rod.Integrate(x, tip)) return false;
+    const Eigen::Matrix<Rod::Dual, 3, 1> mismatch = rod.Mismatch(tip);
+    for (int i = 0; i < 3; ++i) {
+      f[i] = mismatch[i].a;
+      jacobian.row(i) = mismatch[i].v.head<3>().transpose();
+    }
+    return true;
+  }
+};
+
+// The base cannot carry a larger moment [E J_0/l] than all loads at the end of a long module give.
+double Largest(const Module& module, const Method& method, const Case& row) {
+  constexpr double kStretched = 1.5;
+  const double force = row.load.force.norm() + (module.m + module.m_fs) * row.load.gravity.norm();
+  return force * (kStretched * module.l + module.l_fs) / Rod(module, method, row, 1, 1).unit();
+}
+
+}  // namespace
+
+std::vector<Solution> Equilibria(const Module& module, const Method& method, const Case& row,
+                                 const Solution& known) {
+  const auto energy_of = [&](const Solution& s) {
+    return Describe(module, method, Direction::kForward, row, s).energy;
+  };
+  std::vector<std::pair<double, Solution>> found;
+  const auto add = [&](Solution s) {
+    const auto same = [&](const auto& other) {
+      return (other.second.tip - s.tip).norm() < 1e-6 * module.l &&
+             (other.second.tangent - s.tangent).norm() < 1e-5;
+    };
+    if (s.status != Status::kOk || std::any_of(found.begin(), found.end(), same)) return;
+    found.emplace_back(energy_of(s), std::move(s));
+  };
+  add(known);
+  const ColdShooting problem{module, method, row};
+  const double largest = Largest(module, method, row);
+  const auto draw = [&](Random& random) {
+    Vector3d moment;
+    for (double& value : moment) value = largest * (2 * random.Uniform() - 1);
+    return moment;
+  };
+  const auto energy = [&](const Vector3d& moment) {
+    const Solution s = SolveNear(module, method, row, moment);
+    return s.status == Status::kOk ? energy_of(s) * module.l / (module.E * module.SecondMoment())
+                                   : std::numeric_limits<double>::quiet_NaN();
+  };
+  std::vector<Vector3d> starts;
+  if (known.status == Status::kOk) starts.push_back(known.moment);
+  statics::SearchOptions options;
+  options.tolerance = 1e-9;
+  for (const auto& root :
+       statics::FindRoots<Vector3d>(problem, std::move(starts), draw, energy, options)) {
+    Solution s = SolveNear(module, method, row, root.x);
+    s.stability.branch = statics::Branch::kOther;
+    add(std::move(s));
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Solution> equilibria;
+  for (auto& [value, solution] : found) equilibria.push_back(std::move(solution));
+  return equilibria;
+}
+
+}  // namespace continuum::stiff_flop

@@ -1,0 +1,144 @@
+#include "models/stiff_flop/held.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "models/stiff_flop/inverse.h"
+#include "models/stiff_flop/rod.h"
+#include "models/stiff_flop/rod_law.h"
+
+namespace continuum::stiff_flop {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr int kPieces = 32;
+
+Quaterniond Frame(const Rod::State<double>& y) {
+  return Quaterniond(y[3], y[4], y[5], y[6]).normalized();
+}
+
+std::vector<Rod::State<double>> States(const Module& module, const Method& method, const Case& row,
+                                       const Solution& solution) {
+  Rod rod(module, method, row, 1, kPieces);
+  rod.StartFrom({solution.base[0], solution.base[1], solution.base[2]});
+  return rod.States(solution.moment);
+}
+
+// Of the outermost fibres in the plane of bending.
+double Strain(const Module& module, const Method& method, const Axis<double>& axis) {
+  const BaseSection section = Describe(module, method, axis);
+  const double kappa = std::hypot(axis.k_1, axis.k_2);
+  return std::max(std::abs(axis.lambda * (1 + kappa * section.x_out) - 1),
+                  std::abs(axis.lambda * (1 - kappa * section.x_in) - 1));
+}
+
+// Per length of the unstrained axis, by Gauss's rule of five points over the way of the strains.
+double Work(const Module& module, const Method& method, const Vector3d& p,
+            const Axis<double>& axis) {
+  constexpr std::array<double, 5> kAt = {-0.906179845938664, -0.538469310105683, 0,
+                                         0.538469310105683, 0.906179845938664};
+  constexpr std::array<double, 5> kWeight = {0.236926885056189, 0.478628670499366,
+                                             0.568888888888889, 0.478628670499366,
+                                             0.236926885056189};
+  const double zeta_x = -axis.lambda * axis.k_2, zeta_z = -axis.lambda * axis.k_1;
+  double work = 0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double share = 0.5 * (1 + kAt[i]), lambda = 1 + share * (axis.lambda - 1);
+    const Axis<double> at = {lambda, -share * zeta_z / lambda, -share * zeta_x / lambda};
+    const auto reaction = ReactionOf(module, method, p, module.E, module.gamma, at);
+    work += 0.5 * kWeight[i] *
+            (reaction.n_y * (axis.lambda - 1) + reaction.M_x * zeta_x + reaction.M_z * zeta_z);
+  }
+  return work;
+}
+
+// Of one piece, and its strain.
+void AddPiece(const Module& module, const Method& method, const Case& row, const Axis<double>& axis,
+              double twist, const Vector3d& n, Held& held) {
+  const double G = module.E / 3, h = module.l / kPieces;
+  const auto reaction = ReactionOf(module, method, row.given, module.E, module.gamma, axis);
+  held.energy += h * Work(module, method, row.given, axis);
+  held.energy += h * 0.5 * G * reaction.polar * twist * twist;
+  held.energy += h * 0.5 * (n.x() * n.x() + n.z() * n.z()) / (G * reaction.area);
+  held.hold.strain = std::max(held.hold.strain, Strain(module, method, axis));
+}
+
+// Adds a dead force at p, straight at (0, y, 0).
+void AddDead(const Vector3d& force, const Vector3d& p, double y, Held& held) {
+  held.hold.force += force;
+  held.hold.moment += p.cross(force);
+  held.energy -= force.dot(p - Vector3d(0, y, 0));
+}
+
+// Of mount and tip force.
+void AddMount(const Module& module, const Case& row, const Vector3d& tip, const Vector3d& tangent,
+              Held& held) {
+  const double l = module.l, l_fs = module.l_fs;
+  AddDead(module.m_fs * row.load.gravity, tip + 0.5 * l_fs * tangent, l + 0.5 * l_fs, held);
+  AddDead(row.load.force, tip + l_fs * tangent, l + l_fs, held);
+}
+
+Held OfRod(const Module& module, const Method& method, const Case& row, const Solution& solution) {
+  Held held{{}, 0};
+  const auto states = States(module, method, row, solution);
+  RodLaw law(module, method, row, 1, kPieces);
+  statics::RodChain<RodLaw> chain(law, kPieces);
+  statics::RodChain<RodLaw>::Shape shape;
+  for (const auto& y : states) shape.push_back(Frame(y));
+  chain.Linearize(shape);
+  for (int i = 0; i < kPieces; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Vector3d F =
+        row.load.force + (module.m_fs + module.m * (1 - (i + 0.5) / kPieces)) * row.load.gravity;
+    const Vector3d n = shape[at].slerp(0.5, shape[at + 1]).conjugate() * F;
+    AddPiece(module, method, row, law.axis(i), chain.zeta()(1, i) / module.l, n, held);
+    const Vector3d middle = 0.5 * (states[at].head<3>() + states[at + 1].head<3>());
+    AddDead(module.m / kPieces * row.load.gravity, middle, module.l * (i + 0.5) / kPieces, held);
+  }
+  AddMount(module, row, solution.tip, solution.tangent, held);
+  held.hold.tip = Frame(states.back());
+  held.hold.moment = solution.moment * Rod(module, method, row, 1, 1).unit();
+  return held;
+}
+
+Held OfArc(const Module& module, const Method& method, const Case& row, const Solution& solution) {
+  Held held{{}, 0};
+  const double kappa = row.given[0], phi = row.given[1];
+  const Axis<double> axis = {row.given[2], kappa * std::cos(phi), kappa * std::sin(phi)};
+  const Arc<double> arc(module.l, axis);
+  AddDead(module.m * row.load.gravity, Vector3d::Map(arc.centre.data()), 0.5 * module.l, held);
+  AddMount(module, row, solution.tip, solution.tangent, held);
+  held.hold.tip = Quaterniond::FromTwoVectors(Vector3d::UnitY(), solution.tangent);
+  held.hold.strain = Strain(module, method, axis);
+  held.energy = std::numeric_limits<double>::quiet_NaN();
+  return held;
+}
+
+}  // namespace
+
+Held Describe(const Module& module, const Method& method, Direction direction, const Case& row,
+              const Solution& solution) {
+  return direction == Direction::kInverse ? OfArc(module, method, row, solution)
+                                          : OfRod(module, method, row, solution);
+}
+
+std::vector<statics::ShapeTable::Place> Places(const Module& module, const Method& method,
+                                               const Case& row, const Solution& solution) {
+  const auto states = States(module, method, row, solution);
+  std::vector<statics::ShapeTable::Place> places;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const int disk = i == 0 ? 0 : i + 1 == states.size() ? 1 : -1;
+    places.push_back({module.l * static_cast<double>(i) / kPieces,
+                      disk,
+                      states[i].head<3>(),
+                      Frame(states[i]),
+                      {}});
+  }
+  return places;
+}
+
+}  // namespace continuum::stiff_flop

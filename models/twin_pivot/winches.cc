@@ -1,0 +1,82 @@
+#include "models/twin_pivot/winches.h"
+
+#include <optional>
+
+#include "models/statics/length_driven.h"
+#include "models/twin_pivot/geometry.h"
+#include "models/twin_pivot/rising.h"
+#include "sim/numerics/linearize.h"
+
+namespace continuum::twin_pivot {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The robot for statics::LengthDriven; f over a joint's stiffness.
+class Plant {
+ public:
+  Plant(const Task& from, const Task& to, const VectorXd& given)
+      : from_(from), to_(to), now_(to), given_(given) {}
+
+  double unit() const { return to_.robot.Stiffness() / reach(); }
+  double reach() const { return to_.robot.r.front(); }
+
+  void SetLoad(double load) {
+    const std::vector<double> tension = now_->tension;
+    now_.emplace(to_.Between(from_, load));
+    now_->tension = tension;
+  }
+  void SetTension(const VectorXd& tension) { now_->tension.assign(tension.begin(), tension.end()); }
+
+  bool Residual(const VectorXd& x, VectorXd& f) {
+    if (!Now()(x.data(), f.data())) return false;
+    f /= to_.robot.Stiffness();
+    return true;
+  }
+  bool Linearize(const VectorXd& x, VectorXd& f, MatrixXd& k) {
+    if (!numerics::Linearize(Now(), x, f, k)) return false;
+    f /= to_.robot.Stiffness();
+    k /= to_.robot.Stiffness();
+    return true;
+  }
+  VectorXd Lengths(const VectorXd& x) {
+    return CableLengths(to_.robot, x).colwise().sum().transpose();
+  }
+  MatrixXd LengthSlopes(const VectorXd& x) { return CableSlopes(to_, x); }
+  VectorXd Compliance() const {
+    if (to_.robot.cable_EA == 0) return VectorXd::Zero(given_.size());
+    return given_ / to_.robot.cable_EA;
+  }
+  VectorXd Stretch(const VectorXd& x) {
+    if (to_.robot.cable_EA == 0) return VectorXd::Zero(given_.size());
+    std::vector<double> force;
+    if (!CableForces(*now_, JointsAt(to_.robot, x), 1, to_.robot.eps, force)) return Compliance();
+    const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> tension(
+        force.data(), to_.joints, to_.cables);
+    const MatrixXd stretched = tension.cwiseProduct(CableLengths(to_.robot, x));
+    return stretched.colwise().sum().transpose() / to_.robot.cable_EA;
+  }
+  int Unstable(const VectorXd& x, const VectorXd& held) {
+    return UnstableDirections(Now(), x, held);
+  }
+
+ private:
+  Balance Now() const { return Balance{*now_, 1, 1, to_.robot.eps}; }
+
+  const Task& from_;
+  const Task& to_;
+  std::optional<Task> now_;
+  const VectorXd& given_;
+};
+
+}  // namespace
+
+numerics::Outcome FollowWinches(const Task& from, const Task& to, const VectorXd& before,
+                                const VectorXd& given, VectorXd& beta, VectorXd& tension,
+                                statics::Stability& stability) {
+  Plant plant(from, to, given);
+  return statics::FollowLengths(plant, before, given, beta, tension, stability);
+}
+
+}  // namespace continuum::twin_pivot

@@ -1,0 +1,140 @@
+// ctest labels: slow
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "models/statics/slide.h"
+#include "models/tdcr/model.h"
+#include "models/tdcr/polygon.h"
+
+namespace continuum::tdcr {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr auto kRod = Method::kCrtFriction;
+
+Robot Nominal() { return ReadRobot(Yaml::Read(CONTINUUM_SOURCE "/models/tdcr/tdcr.yaml")); }
+
+Loads Pull(const Robot& robot, std::vector<double> tension) {
+  Loads loads = NoLoads(robot);
+  loads.tension = std::move(tension);
+  loads.tip_force = {0.02, 0.01, 0};
+  loads.direction.assign(3, kAsItSlides);
+  return loads;
+}
+
+Solution InRows(const Robot& robot, const std::vector<double>& from, const std::vector<double>& to,
+                int rows, Solution state) {
+  Loads earlier = Pull(robot, from);
+  for (int row = 1; row <= rows; ++row) {
+    Loads load = Pull(robot, to);
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      load.tension[k] = from[k] + (to[k] - from[k]) * row / rows;
+    }
+    state = SolveFrom(robot, earlier, state, load, kRod);
+    EXPECT_TRUE(state.outcome.ok()) << row << ": " << state.outcome.why;
+    earlier = load;
+  }
+  return state;
+}
+
+Vector3d Tip(const Solution& s) { return s.disks.rightCols<1>(); }
+
+TEST(TdcrRodMemory, DirectionsAreThoseThatSlide) {
+  const Robot robot = Nominal();
+  const Loads loads = Pull(robot, {4, 1, 1});
+  Loads given = loads;
+  given.direction = {1, -1, -1};
+  const Solution s = SolveCase(robot, loads, kRod);
+  ASSERT_TRUE(s.outcome.ok()) << s.outcome.why;
+  EXPECT_LT((s.disks - SolveCase(robot, given, kRod).disks).norm(), 2e-8 * robot.length);
+  EXPECT_GT(s.contacts.share.col(0).minCoeff(), 0.999);
+  EXPECT_LT(s.contacts.share.rightCols<2>().maxCoeff(), -0.999);
+}
+
+TEST(TdcrRodMemory, HoldingStillMovesNothing) {
+  const Robot robot = Nominal();
+  const Loads loads = Pull(robot, {4, 1, 2});
+  const Solution first = SolveCase(robot, loads, kRod);
+  Solution state = first;
+  for (int row = 0; row < 1000; ++row) {
+    state = SolveFrom(robot, loads, state, loads, kRod);
+    ASSERT_TRUE(state.outcome.ok()) << state.outcome.why;
+  }
+  EXPECT_LT((state.disks - first.disks).colwise().norm().maxCoeff(), 1e-9);
+}
+
+TEST(TdcrRodMemory, OnePullDoesNotDependOnTheNumberOfRows) {
+  const Robot robot = Nominal();
+  const std::vector<double> low{1, 0.5, 0.5}, high{5, 1, 0.5};
+  const Solution start = SolveCase(robot, Pull(robot, low), kRod);
+  const Solution once = InRows(robot, low, high, 1, start);
+  for (const int rows : {2, 10, 100}) {
+    EXPECT_LT((Tip(InRows(robot, low, high, rows, start)) - Tip(once)).norm(), 1e-6) << rows;
+  }
+  EXPECT_LT((Tip(SolveCase(robot, Pull(robot, high), kRod)) - Tip(once)).norm(), 1e-6);
+}
+
+TEST(TdcrRodMemory, ACycleClosesAHysteresisLoop) {
+  const Robot robot = Nominal();
+  const std::vector<double> low{1, 0.5, 0.5}, high{5, 0.5, 0.5};
+  const Solution start = SolveCase(robot, Pull(robot, low), kRod);
+  const Solution up = InRows(robot, low, high, 10, start);
+  const Solution down = InRows(robot, high, low, 10, up);
+  const Solution again = InRows(robot, low, high, 10, down);
+  const Solution back = InRows(robot, high, low, 10, again);
+  const Solution third = InRows(robot, low, high, 10, back);
+  EXPECT_LT((Tip(third) - Tip(again)).norm(), 1e-9);
+  EXPECT_LT((Tip(back) - Tip(down)).norm(), 1e-9);
+  EXPECT_GT((Tip(down) - Tip(start)).norm(), 5e-4);
+  Loads released = Pull(robot, low);
+  released.direction = {-1, 1, 1};
+  EXPECT_LT((Tip(down) - Tip(SolveCase(robot, released, kRod))).norm(), 1e-6);
+}
+
+// On the way back some contacts have turned and others hold. The balance of that state by the
+// polygon, and its shares from the lengths of the two states.
+TEST(TdcrRodMemory, APartOfTheWayBackIsThatOfAnIndependentPolygon) {
+  const Robot robot = Nominal();
+  const std::vector<double> low{1, 0.5, 0.5}, high{5, 0.5, 0.5}, part{4.4, 0.5, 0.5};
+  const Solution start = SolveCase(robot, Pull(robot, low), kRod);
+  const Solution up = InRows(robot, low, high, 4, start);
+  const Solution down = InRows(robot, high, part, 1, up);
+  const Contacts& c = down.contacts;
+  EXPECT_LT(c.share.col(0).minCoeff(), -0.9);  // the base has turned
+  EXPECT_GT(c.share.col(0).maxCoeff(), 0.9);   // the tip has not
+  const Loads loads = Pull(robot, part);
+  const Eigen::Index contacts = c.share.rows();
+  Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = contacts - 1; i >= 0; --i) {
+    beyond += (up.contacts.length.row(i) - c.length.row(i)).transpose();
+    for (int k = 0; k < 3; ++k) {
+      const double share = statics::SlideFrom(up.contacts.share(i, k), beyond[k] / kGivesWay);
+      EXPECT_NEAR(c.share(i, k), share, 1e-9);
+    }
+  }
+  const Eigen::Matrix3Xd coarse = Polygon(robot, loads, 24, c.share).Disks();
+  const Eigen::Matrix3Xd fine = Polygon(robot, loads, 48, c.share).Disks();
+  const double last = (coarse - down.disks).norm(), now = (fine - down.disks).norm();
+  EXPECT_LT(now, 0.6 * last);
+  EXPECT_LT(now, 1e-4 * robot.length);
+}
+
+TEST(TdcrRodMemory, ARowWithGivenDirectionsMayBeAReference) {
+  const Robot robot = Nominal();
+  Loads given = Pull(robot, {4, 1, 1});
+  const Solution automatic = SolveCase(robot, given, kRod);
+  given.direction = {1, -1, -1};
+  const Solution first = SolveCase(robot, given, kRod);
+  const Loads next = Pull(robot, {4.5, 1, 1});
+  const Solution a = SolveFrom(robot, given, first, next, kRod);
+  const Solution b = SolveFrom(robot, Pull(robot, {4, 1, 1}), automatic, next, kRod);
+  ASSERT_TRUE(a.outcome.ok()) << a.outcome.why;
+  ASSERT_TRUE(b.outcome.ok()) << b.outcome.why;
+  EXPECT_LT((Tip(a) - Tip(b)).norm(), 1e-8);
+}
+
+}  // namespace
+}  // namespace continuum::tdcr
