@@ -371,7 +371,7 @@ const RodBalance::Shape& RodBalance::Integrate(const Eigen::VectorXd& x) const {
       shape.middles.col(piece) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
     if (within == steps_) shape.disks.col(piece) = y.p * length_;
   };
-  Eigen::VectorXd end(unknowns());
+  Eigen::VectorXd end = Eigen::VectorXd::Zero(unknowns());
   shape.valid = remembers() ? WalkAny<double, true>(x.data(), end.data(), keep)
                             : WalkAny<double, false>(x.data(), end.data(), keep);
   shape.residual = end.head<3>();
