@@ -81,12 +81,10 @@ TEST(TdcrRodMemory, ACycleClosesAHysteresisLoop) {
   const Robot robot = Nominal();
   const std::vector<double> low{1, 0.5, 0.5}, high{5, 0.5, 0.5};
   const Solution start = SolveCase(robot, Pull(robot, low), kRod);
-  const Solution up = InRows(robot, low, high, 10, start);
-  const Solution down = InRows(robot, high, low, 10, up);
-  const Solution again = InRows(robot, low, high, 10, down);
-  const Solution back = InRows(robot, high, low, 10, again);
-  const Solution third = InRows(robot, low, high, 10, back);
-  EXPECT_LT((Tip(third) - Tip(again)).norm(), 1e-9);
+  const Solution up = InRows(robot, low, high, 2, start);
+  const Solution down = InRows(robot, high, low, 2, up);
+  const Solution again = InRows(robot, low, high, 2, down);
+  const Solution back = InRows(robot, high, low, 2, again);
   EXPECT_LT((Tip(back) - Tip(down)).norm(), 1e-9);
   EXPECT_GT((Tip(down) - Tip(start)).norm(), 5e-4);
   Loads released = Pull(robot, low);
