@@ -69,7 +69,34 @@ RodBalance RodBalance::Remembering(const Robot& robot, const Loads& loads, int s
   beyond.setConstant(count, robot.tendons, 1.0 / count);
   if (loads.from.length.size() > 0) beyond = loads.from.length / robot.length;
   for (int i = count - 2; i >= 0; --i) beyond.row(i) += beyond.row(i + 1);
+  balance.contacts_ = loads.AsItSlides() ? count : 1;
   return balance;
+}
+
+Eigen::VectorXd RodBalance::Unslid(const Eigen::Vector3d& u) const {
+  return Unknowns(u, beyond_before_);
+}
+
+Eigen::VectorXd RodBalance::Unknowns(const Eigen::Vector3d& u,
+                                     const Eigen::MatrixXd& beyond) const {
+  Eigen::VectorXd x(unknowns());
+  x.head<3>() = u;
+  const auto parts = static_cast<double>(beyond.rows());
+  const Eigen::Index tendons = beyond.cols(), last = beyond.rows() - 1;
+  for (Eigen::Index i = 0; i < contacts_; ++i) {
+    const double at = parts * static_cast<double>(i) / contacts_;
+    const auto part = static_cast<Eigen::Index>(at);
+    const double within = at - static_cast<double>(part);
+    x.segment(3 + i * tendons, tendons) = (1 - within) * beyond.row(part);
+    if (part < last) x.segment(3 + i * tendons, tendons) += within * beyond.row(part + 1);
+  }
+  return x;
+}
+
+Eigen::VectorXd RodBalance::Slid(const Eigen::Vector3d& u) const {
+  const Eigen::MatrixXd& way = Integrate(Unslid(u)).way;
+  const Eigen::Index count = way.rows() - 1;
+  return Unknowns(u, way.row(count).replicate(count, 1) - way.topRows(count));
 }
 
 void RodBalance::SetLoad(double load) {
@@ -231,7 +258,7 @@ template <class T, int kRubbing, bool kSlides>
   }
 }
 
-// Dormand-Prince's fifth-order formula, `steps_` equal steps per piece. end: R nu(1), then lengths.
+// Dormand-Prince's fifth-order formula, `steps_` equal steps per piece. end: R nu(1), then (5).
 template <class T, int kRubbing, bool kSlides, class AtNode>
 bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
   static constexpr double kNodes[6] = {0, 0.2, 0.3, 0.8, 8. / 9, 1};
@@ -262,7 +289,11 @@ bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
   for (int step = 0; step < rod_.disks * steps_; ++step) {
     if constexpr (kSlides) {
       for (std::size_t k = 0; k < tendons; ++k) {
-        share[k] = Share(step, k, T(x[3 + k] - y.way[static_cast<Eigen::Index>(k)]));
+        share[k] = step < contacts_ ? Share(step, k, Beyond(x, step, k)) : T(rod_.direction[k]);
+        if (step == 0 || step >= contacts_) continue;
+        const T& way = y.way[static_cast<Eigen::Index>(k)];
+        end[3 + static_cast<std::size_t>(step) * tendons + k] =
+            Beyond(x, 0, k) - way - Beyond(x, step, k);
       }
     }
     for (int stage = 0; stage <= 6; ++stage) {
@@ -317,20 +348,38 @@ bool RodBalance::Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& f,
   constexpr int kBlock = 4;
   using Dual = ceres::Jet<double, kBlock>;
   std::vector<Dual> dual_x(static_cast<std::size_t>(x.size())), dual_f(dual_x.size());
-  for (Eigen::Index first = 0; first < x.size(); first += kBlock) {
-    const Eigen::Index count = std::min<Eigen::Index>(kBlock, x.size() - first);
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      Dual& value = dual_x[static_cast<std::size_t>(i)] = Dual(x[i]);
-      if (i >= first && i < first + count) value.v[i - first] = 1;
+  const std::vector<Eigen::Index> coupled = Coupled(x);
+  jacobian.setZero();
+  jacobian.diagonal().setConstant(-1);
+  for (std::size_t first = 0; first < coupled.size(); first += kBlock) {
+    const auto count = static_cast<int>(std::min<std::size_t>(kBlock, coupled.size() - first));
+    for (Eigen::Index i = 0; i < x.size(); ++i) dual_x[static_cast<std::size_t>(i)] = Dual(x[i]);
+    for (int i = 0; i < count; ++i) {
+      dual_x[static_cast<std::size_t>(coupled[first + static_cast<std::size_t>(i)])].v[i] = 1;
     }
     if (!(*this)(dual_x.data(), dual_f.data())) return false;
     for (Eigen::Index row = 0; row < f.size(); ++row) {
       const Dual& value = dual_f[static_cast<std::size_t>(row)];
       f[row] = value.a;
-      jacobian.row(row).segment(first, count) = value.v.head(count).transpose();
+      for (int i = 0; i < count; ++i) {
+        jacobian(row, coupled[first + static_cast<std::size_t>(i)]) = value.v[i];
+      }
     }
   }
   return f.allFinite() && jacobian.allFinite();
+}
+
+std::vector<Eigen::Index> RodBalance::Coupled(const Eigen::VectorXd& x) const {
+  using Dual = ceres::Jet<double, 4>;
+  const auto tendons = static_cast<Eigen::Index>(rod_.pull.size());
+  std::vector<Eigen::Index> coupled;
+  for (Eigen::Index i = 0; i < 3 + tendons; ++i) coupled.push_back(i);
+  for (Eigen::Index i = 3 + tendons; i < x.size(); ++i) {
+    const auto contact = static_cast<int>((i - 3) / tendons);
+    const auto tendon = static_cast<std::size_t>((i - 3) % tendons);
+    if (Share(contact, tendon, Dual(x[i], 0)).v[0] != 0) coupled.push_back(i);
+  }
+  return coupled;
 }
 
 const RodBalance::Shape& RodBalance::Integrate(const Eigen::VectorXd& x) const {
@@ -396,14 +445,20 @@ Line RodBalance::LineOf(const Shape& shape) const {
 
 Contacts RodBalance::ContactsAt(const Eigen::VectorXd& x) const {
   const Eigen::MatrixXd& way = Integrate(x).way;
-  const Eigen::Index count = way.rows() - 1;
-  Contacts contacts{length_ * (way.bottomRows(count) - way.topRows(count)),
-                    Eigen::MatrixXd(count, way.cols())};
-  for (Eigen::Index k = 0; k < way.cols(); ++k) {
+  const Eigen::Index count = way.rows() - 1, tendons = way.cols();
+  Contacts contacts{way.bottomRows(count) - way.topRows(count), Eigen::MatrixXd(count, tendons)};
+  for (Eigen::Index k = 0; k < tendons; ++k) {
     for (int i = 0; i < count; ++i) {
-      contacts.share(i, k) = Share(i, static_cast<std::size_t>(k), x[3 + k] - way(i, k));
+      const auto at = static_cast<std::size_t>(k);
+      const bool given = i >= contacts_;
+      contacts.share(i, k) = given ? rod_.direction[at] : Share(i, at, Beyond(x.data(), i, at));
+      if (given) continue;
+      contacts.length(i, k) = Beyond(x.data(), i, at);
+      if (i + 1 < count && contacts_ == count) contacts.length(i, k) -= Beyond(x.data(), i + 1, at);
     }
   }
+  if (contacts_ < count) contacts.length.row(0) = way.row(1);
+  contacts.length *= length_;
   return contacts;
 }
 

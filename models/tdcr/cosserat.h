@@ -31,10 +31,12 @@ namespace continuum::tdcr {
 /// with t_k the unit vector of w_k, and T_k' a_k x t_k joins H u' on the left (rubbing.h). s_k is
 /// dir_k; or, of contacts that remember,
 ///
-///   s_k = SlideFrom(s_before, (b_before - b_k)/eps),  b_k = lambda_k - int_0^s |w_k|         (5)
+///   s_k = SlideFrom(s_before, (b_before - b_k)/eps),  b_k = int_s^1 |w_k|                    (5)
 ///
-/// where b_k is the tendon's length beyond the start of the integrator's step. Then its whole
-/// length lambda_k is an unknown after u(0), and int_0^1 |w_k| - lambda_k a residual after R nu(1).
+/// where b_k is the tendon's length beyond the start of the integrator's step: a contact. All b_k
+/// are unknowns after u(0), and (5) residuals after R nu(1). Shares taken from lengths on the way
+/// would grow errors by exp(sqrt(mu T |t'| a^2/(EI eps)) s), some 1e15 along a rod.
+/// Where all directions are given, only the whole lengths are unknowns, those of the first step.
 class RodBalance {
  public:
   /// steps: of the integrator per piece between disks.
@@ -52,7 +54,13 @@ class RodBalance {
   /// The rod with the loads of now.
   const UnitRod& rod() const { return rod_; }
   bool remembers() const { return remembers_ != nullptr; }
-  int unknowns() const { return remembers() ? 3 + static_cast<int>(rod_.holes.size()) : 3; }
+  int unknowns() const { return remembers() ? 3 + contacts_ * static_cast<int>(rod_.holes.size()) : 3; }
+  /// Unknowns of this u(0) [1/L]: with the contacts where they begin; with those given by lengths
+  /// of the tendons beyond the starts of as many parts of the rod, parts x tendons [L]; and with
+  /// those of the shape that it has where the contacts begin.
+  Eigen::VectorXd Unslid(const Eigen::Vector3d& u) const;
+  Eigen::VectorXd Unknowns(const Eigen::Vector3d& u, const Eigen::MatrixXd& beyond) const;
+  Eigen::VectorXd Slid(const Eigen::Vector3d& u) const;
   void SetSteps(int steps) { steps_ = steps; }
   int steps() const { return steps_; }
 
@@ -101,6 +109,12 @@ class RodBalance {
   bool WalkAny(const T* x, T* end, AtNode&& at_node) const;
   template <class T>
   T Share(int step, std::size_t tendon, const T& beyond) const;
+  template <class T>
+  const T& Beyond(const T* x, int contact, std::size_t tendon) const {
+    return x[3 + static_cast<std::size_t>(contact) * rod_.pull.size() + tendon];
+  }
+  // Unknowns that move more than their own residual.
+  std::vector<Eigen::Index> Coupled(const Eigen::VectorXd& x) const;
 
   double length_;
   double unit_;  ///< EI/L^2 [N]
@@ -108,6 +122,7 @@ class RodBalance {
   UnitRod to_, from_, rod_;
   int steps_;
   const Loads* remembers_ = nullptr;
+  int contacts_ = 0;               ///< per tendon, whose b is an unknown: all, or the first
   Eigen::MatrixXd beyond_before_;  ///< b_before of every step and tendon [L]
   double load_ = 1;
 

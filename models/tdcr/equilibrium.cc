@@ -14,6 +14,7 @@
 namespace continuum::tdcr {
 namespace {
 
+using Eigen::Vector3d;
 using numerics::Outcome;
 
 numerics::Options Limits() {
@@ -156,8 +157,8 @@ class RodSystem {
     statics::Fall fall = statics::FallToRest(chain, shape);
     if (!fall.ok) return fall;
     const Eigen::Matrix3Xd zeta = chain.zeta();
-    x.template head<3>() = 1.5 * zeta.col(0) - 0.5 * zeta.col(1);
-    if (balance_.remembers()) x.tail(x.size() - 3) = law.Lengths(zeta);
+    const Vector3d u = 1.5 * zeta.col(0) - 0.5 * zeta.col(1);
+    x = balance_.remembers() ? balance_.Unknowns(u, law.Beyond(zeta)) : Eigen::VectorXd(u);
     fall.ok = numerics::Newton(balance_, x, Limits()).ok() && Near(x, shape.back()) &&
               Unstable(load, x) == 0;
     return fall;
@@ -242,11 +243,7 @@ Eigen::VectorXd WithoutFriction(const Robot& robot, const Loads& loads, const Ro
   const RodBalance rod(robot, smooth, false, balance.steps());
   Eigen::Vector3d u = Eigen::Vector3d::Zero();
   if (!numerics::Newton(rod, u, Limits()).ok()) return {};
-  Eigen::VectorXd x = Eigen::VectorXd::Ones(balance.unknowns());
-  x.head<3>() = u;
-  const RodBalance::Shape& shape = balance.Integrate(x);
-  if (shape.valid) x.tail(x.size() - 3) = shape.way.bottomRows<1>().transpose();
-  return x;
+  return balance.Slid(u);
 }
 
 // At full load from x, or from where the path began: falls to rest.

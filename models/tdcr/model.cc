@@ -98,8 +98,7 @@ Solution SolveRemembering(const Robot& robot, const Loads& loads, const Loads* e
   Solution solution;
   solution.outcome = numerics::Timed([&] {
     RodBalance balance = RodBalance::Remembering(robot, loads, ContactSteps(robot.disks), earlier);
-    Eigen::VectorXd x = Eigen::VectorXd::Ones(balance.unknowns());
-    x.head<3>().setZero();
+    Eigen::VectorXd x = balance.Unslid(Eigen::Vector3d::Zero());
     const Found found = find(balance, x);
     solution.stability = found.stability;
     balance.SetLoad(1);
@@ -128,10 +127,19 @@ Wound Unwound(const Robot& robot) {
           Eigen::VectorXd::Zero(robot.tendons)};
 }
 
+// To the unknowns of the row before.
+template <int C>
+void GoOn(const Eigen::VectorXd& before, const DiskBalance<C>&, typename DiskBalance<C>::Vector& x) {
+  x = before;
+}
+void GoOn(const Eigen::VectorXd& before, const RodBalance& balance, Eigen::VectorXd& x) {
+  x = balance.Unslid(before.head<3>());
+}
+
 Solution SolveWinches(const Robot& robot, const Loads& loads, Method method, const Wound& before) {
   Eigen::VectorXd tension = before.tension;
   const auto find = [&](auto& balance, auto& x) {
-    if (before.x != nullptr) x = *before.x;
+    if (before.x != nullptr) GoOn(*before.x, balance, x);
     return FindByWinches(robot, loads, before.length, balance, x, tension);
   };
   Loads smooth = loads;
@@ -148,11 +156,8 @@ Solution SolveWinches(const Robot& robot, const Loads& loads, Method method, con
 Solution WithContacts(const Robot& robot, const Loads& loads, Solution solution) {
   const int steps = ContactSteps(robot.disks);
   const RodBalance balance = RodBalance::Remembering(robot, loads, steps, nullptr);
-  Eigen::VectorXd x = Eigen::VectorXd::Ones(balance.unknowns());
-  x.head<3>() = solution.x.head<3>();
-  x.tail(robot.tendons) = balance.Integrate(x).way.bottomRows<1>().transpose();
-  solution.contacts = balance.ContactsAt(x);
-  solution.x = x;
+  solution.x = balance.Slid(solution.x.head<3>());
+  solution.contacts = balance.ContactsAt(solution.x);
   return solution;
 }
 
@@ -207,7 +212,7 @@ Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& bef
       break;
   }
   return SolveRemembering(robot, loads, from.loads, [&](RodBalance& balance, Eigen::VectorXd& x) {
-    x = *from.x;
+    x = balance.Unslid(from.x->head<3>());
     return ContinueEquilibrium(robot, loads, balance, x);
   });
 }
@@ -232,7 +237,9 @@ Solution SolveNear(const Robot& robot, const Loads& loads, Method method,
   const auto find = [&](RodBalance& balance, auto& x) {
     if (!balance.remembers()) balance.SetSteps(4 * balance.steps());  // as fine as the search
     x.template head<3>() = start.head<3>();
-    if (x.size() > 3) x.tail(x.size() - 3) = balance.Integrate(x).way.bottomRows(1).transpose();
+    if constexpr (std::is_same_v<std::decay_t<decltype(x)>, Eigen::VectorXd>) {
+      x = balance.Slid(start.head<3>());
+    }
     Found found{Polish(balance, x), {}};
     if (found.outcome.ok()) {
       found.stability.unstable_directions = UnstableDirections(robot, balance, x);

@@ -46,14 +46,16 @@ double RodLaw::Holds(int i, int tendon) const {
   return i == 0 && winches_.size() > 0 ? winches_[tendon] : 0;
 }
 
-Eigen::VectorXd RodLaw::Lengths(const Eigen::Matrix3Xd& zeta) const {
-  Eigen::VectorXd lengths = Eigen::VectorXd::Zero(pulling());
+Eigen::MatrixXd RodLaw::Beyond(const Eigen::Matrix3Xd& zeta) const {
+  Eigen::MatrixXd beyond(pieces_, pulling());
   for (int k = 0; k < pulling(); ++k) {
-    for (const auto& u : zeta.colwise()) {
-      lengths[k] += Along(rod_.holes[static_cast<std::size_t>(k)], u).norm() / pieces_;
+    double length = 0;
+    for (int i = pieces_ - 1; i >= 0; --i) {
+      length += Along(rod_.holes[static_cast<std::size_t>(k)], zeta.col(i)).norm() / pieces_;
+      beyond(i, k) = length;
     }
   }
-  return lengths;
+  return beyond;
 }
 
 bool RodLaw::Prepare(const Eigen::Matrix3Xd& zeta) {

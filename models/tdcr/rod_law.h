@@ -37,8 +37,8 @@ class RodLaw {
   /// T_k in the middles of the pieces, tendons x pieces, and the moment of a unit of it, d|w_k|/du.
   const Eigen::MatrixXd& tension() const { return tension_; }
   Eigen::Vector3d Lever(int tendon, const Eigen::Vector3d& u) const;
-  /// Lengths of the tendons on pieces of these curvatures [L].
-  Eigen::VectorXd Lengths(const Eigen::Matrix3Xd& zeta) const;
+  /// Lengths of the tendons beyond the starts of pieces of these curvatures, pieces x tendons [L].
+  Eigen::MatrixXd Beyond(const Eigen::Matrix3Xd& zeta) const;
   /// s of the contact between piece i - 1 and piece i (0: at the base); 1 without contacts that
   /// remember.
   double Share(int i, int tendon) const;

@@ -105,10 +105,10 @@ class RodPlant : public Tendons {
   bool Linearize(const VectorXd& x, VectorXd& f, MatrixXd& k) {
     return numerics::Linearize(balance_, x, f, k);
   }
-  VectorXd Lengths(const VectorXd& x) { return robot_.length * x.tail(given_.size()); }
+  VectorXd Lengths(const VectorXd& x) { return robot_.length * x.segment(3, given_.size()); }
   MatrixXd LengthSlopes(const VectorXd& x) {
     MatrixXd slopes = MatrixXd::Zero(given_.size(), x.size());
-    slopes.rightCols(given_.size()).diagonal().setConstant(robot_.length);
+    slopes.middleCols(3, given_.size()).diagonal().setConstant(robot_.length);
     return slopes;
   }
   VectorXd Stretch(const VectorXd& x) {
