@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "models/statics/rising_load.h"
 #include "sim/numerics/decompositions.h"
 #include "sim/numerics/linearize.h"
 #include "sim/numerics/portable_random.h"
@@ -28,93 +30,140 @@ struct Root {
   bool neutral;  ///< a direction costs nothing: the root is one of a family
 };
 
-namespace internal {
+/// Newton's method from many starts that avoids the roots known before (deflation): on
+/// f(x) prod_r (1 + 1/|x - r|^2), which has the roots of f but those known, r.
+template <class Vector, class Problem, class Energy>
+class RootSearch {
+ public:
+  RootSearch(const Problem& problem, const Energy& energy, const SearchOptions& options)
+      : problem_(problem), energy_(energy), options_(options) {}
 
-// Newton's method on f(x) prod_r (1 + 1/|x - r|^2), which has the roots of f but those known, r:
-// the step of f alone, scaled. The step is the shortest where the tangent is singular.
-template <class Vector, class Problem>
-bool FindNewRoot(const Problem& problem, const std::vector<Vector>& known, Vector& x,
-                 const SearchOptions& options, bool& neutral) {
-  constexpr double kSingular = 1e-7;  // of the largest singular value
-  const auto n = x.size();
-  Vector f = x;
-  Eigen::Matrix<double, Vector::RowsAtCompileTime, Vector::RowsAtCompileTime> k(n, n);
-  for (int i = 0; i < options.most_steps; ++i) {
-    if (!numerics::Linearize(problem, x, f, k)) return false;
-    Eigen::MatrixXd square = k.transpose() * k;
-    if (f.norm() <= options.tolerance) {
-      const Eigen::VectorXd values =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(square, Eigen::EigenvaluesOnly)
-              .eigenvalues();
-      neutral = values[0] < kSingular * kSingular * values[n - 1];
-      return true;
+  void From(const Vector& start) {
+    Root<Vector> found{start, 0, false};
+    if (!Descend(found.x, found.neutral)) return;
+    found.energy = energy_(found.x);
+    avoided_.push_back(found.x);
+    for (const auto& root : roots_) {
+      if (Same(root, found)) return;
     }
-    const Eigen::VectorXd b = -(k.transpose() * f);
+    roots_.push_back(std::move(found));
+  }
+
+  /// From next to the roots that were found since the last call.
+  void FromRoots(Random& random) {
+    for (; looked_at_ < roots_.size(); ++looked_at_) {
+      const Vector root = roots_[looked_at_].x;
+      for (int i = 0; i < options_.next_to_roots; ++i) {
+        Vector start = root;
+        for (auto& value : start) value += 0.1 * random.Normal();
+        From(start);
+      }
+    }
+  }
+
+  std::vector<Root<Vector>> Take() { return std::move(roots_); }
+
+ private:
+  using Matrix = Eigen::Matrix<double, Vector::RowsAtCompileTime, Vector::RowsAtCompileTime>;
+
+  bool Same(const Root<Vector>& a, const Root<Vector>& b) const {
+    if ((a.x - b.x).norm() <= options_.same * (1 + a.x.norm())) return true;
+    return a.neutral && b.neutral &&
+           std::abs(a.energy - b.energy) <= 1e-8 * (1 + std::abs(a.energy));
+  }
+
+  // To a root that is not avoided.
+  bool Descend(Vector& x, bool& neutral) const {
+    Vector f = x;
+    Matrix k(x.size(), x.size());
+    for (int i = 0; i < options_.most_steps; ++i) {
+      if (!numerics::Linearize(problem_, x, f, k)) return false;
+      const Eigen::MatrixXd square = k.transpose() * k;
+      if (f.norm() <= options_.tolerance) {
+        neutral = Singular(square);
+        return true;
+      }
+      const Vector step = Step(x, square, -(k.transpose() * f));
+      if (!step.allFinite()) return false;
+      x += std::min(1.0, options_.longest / step.norm()) * step;
+    }
+    return false;
+  }
+
+  static bool Singular(const Eigen::MatrixXd& square) {
+    constexpr double kSingular = 1e-7;  // of the largest singular value
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(square, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    return values[0] < kSingular * kSingular * values[values.size() - 1];
+  }
+
+  // That of f alone, scaled; the shortest where the tangent is singular.
+  Vector Step(const Vector& x, Eigen::MatrixXd square, const Eigen::VectorXd& right) const {
     square.diagonal().array() += 1e-14 * square.trace();
-    const Eigen::VectorXd solved = Eigen::LDLT<Eigen::MatrixXd>(square).solve(b);
-    Vector step = solved;
+    const Vector step = Eigen::LDLT<Eigen::MatrixXd>(square).solve(right);
     double slope = 0;
-    for (const Vector& r : known) {
+    for (const Vector& r : avoided_) {
       const Vector away = x - r;
       const double q = away.squaredNorm() + 1e-300;
       slope -= 2 * away.dot(step) / (q * (1 + q));
     }
-    step /= 1 - slope;
-    if (!step.allFinite()) return false;
-    const double length = step.norm();
-    if (length > options.longest) step *= options.longest / length;
-    x += step;
+    return step / (1 - slope);
   }
-  return false;
-}
 
-}  // namespace internal
+  const Problem& problem_;
+  const Energy& energy_;
+  SearchOptions options_;
+  std::vector<Vector> avoided_;
+  std::vector<Root<Vector>> roots_;
+  std::size_t looked_at_ = 0;
+};
 
-/// Roots that a search finds: Newton's method that avoids the roots known before (deflation), from
-/// `draw(random)`, and from next to every root. It finds saddles as well as minima; that it finds
-/// all of them is likely, not certain.
+/// Roots that a search finds from `known`, from `draw(random)`, and from next to every root. It
+/// finds saddles as well as minima; that it finds all of them is likely, not certain.
 ///
 /// Of a family of roots (any plane in which a round column buckles) the first one stands for all:
 /// those that are neutral and of one energy, `energy(x)`.
 /// Source: Farrell, Birkisson, Funke, "Deflation techniques for finding distinct solutions of
 /// nonlinear partial differential equations", SIAM J. Sci. Comput. 37(4), 2015.
 template <class Vector, class Problem, class Draw, class Energy>
-std::vector<Root<Vector>> FindRoots(const Problem& problem, std::vector<Vector> known,
+std::vector<Root<Vector>> FindRoots(const Problem& problem, const std::vector<Vector>& known,
                                     const Draw& draw, const Energy& energy,
                                     const SearchOptions& options = {}) {
-  std::vector<Root<Vector>> roots;
+  RootSearch<Vector, Problem, Energy> search(problem, energy, options);
   Random random(1);
-  const auto same = [&](const Root<Vector>& a, const Root<Vector>& b) {
-    if ((a.x - b.x).norm() <= options.same * (1 + a.x.norm())) return true;
-    return a.neutral && b.neutral &&
-           std::abs(a.energy - b.energy) <= 1e-8 * (1 + std::abs(a.energy));
-  };
-  std::vector<Vector> avoided;
-  const auto search = [&](Vector x) {
-    Root<Vector> found{x, 0, false};
-    if (!internal::FindNewRoot(problem, avoided, found.x, options, found.neutral)) return false;
-    found.energy = energy(found.x);
-    avoided.push_back(found.x);
-    for (const auto& root : roots) {
-      if (same(root, found)) return false;
-    }
-    roots.push_back(std::move(found));
-    return true;
-  };
-  const auto near = [&](const Vector& x) {
-    for (int i = 0; i < options.next_to_roots; ++i) {
-      Vector start = x;
-      for (auto& value : start) value += 0.1 * random.Normal();
-      search(start);
-    }
-  };
-  for (const Vector& x : known) search(x);
-  std::size_t looked_at = 0;
+  for (const Vector& x : known) search.From(x);
   for (int i = 0; i < options.starts; ++i) {
-    for (; looked_at < roots.size(); ++looked_at) near(Vector(roots[looked_at].x));
-    search(draw(random));
+    search.FromRoots(random);
+    search.From(draw(random));
   }
-  return roots;
+  return search.Take();
+}
+
+/// The equilibria of a case by rising energy, those that are the same listed once: its own solution
+/// `known` when it has one, and those next to `roots`, `near(root)`, on the branch `other`.
+/// `same(a, b)` and `energy(a)` are of solutions.
+template <class Solution, class Roots, class Near, class Same, class Energy>
+std::vector<Solution> ByEnergy(const Solution& known, const Roots& roots, const Near& near,
+                               const Same& same, const Energy& energy) {
+  std::vector<std::pair<double, Solution>> found;
+  const auto add = [&](Solution s) {
+    const auto is = [&](const auto& other) { return same(other.second, s); };
+    if (!s.outcome.ok() || std::any_of(found.begin(), found.end(), is)) return;
+    const double its = energy(s);
+    found.emplace_back(its, std::move(s));
+  };
+  add(known);
+  for (const auto& root : roots) {
+    Solution s = near(root);
+    s.stability.branch = Branch::kOther;
+    add(std::move(s));
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Solution> list;
+  for (auto& [value, solution] : found) list.push_back(std::move(solution));
+  return list;
 }
 
 }  // namespace continuum::statics

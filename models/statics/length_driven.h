@@ -10,6 +10,35 @@
 
 namespace continuum::statics {
 
+/// Stretch of cables of stiffness EA [N], whose lengths without tension are given; none when EA is
+/// 0.
+class CableStretch {
+ public:
+  CableStretch(double EA, const Eigen::VectorXd& given) : EA_(EA), given_(given) {}
+
+  /// L/EA [m/N].
+  Eigen::VectorXd Compliance() const {
+    return OrNone([&] { return given_ / EA_; });
+  }
+  /// sum T l/EA [m] over the parts of the cables, parts x cables.
+  template <class Tension, class Length>
+  Eigen::VectorXd Of(const Tension& tension, const Length& length) const {
+    return OrNone([&] {
+      return Eigen::VectorXd(tension.cwiseProduct(length).colwise().sum().transpose() / EA_);
+    });
+  }
+
+ private:
+  template <class Value>
+  Eigen::VectorXd OrNone(const Value& value) const {
+    if (EA_ == 0) return Eigen::VectorXd::Zero(given_.size());
+    return value();
+  }
+
+  double EA_;
+  const Eigen::VectorXd& given_;
+};
+
 /// Cables that winches have wound to given lengths: their tensions are unknown, and at least 0.
 ///
 ///   f(x, T) = 0,   0 <= T_k,  0 <= L_k + stretch_k - l_k(x),  one of the two is 0            (1)
@@ -37,14 +66,14 @@ class LengthDriven {
 
   /// For numerics::Newton; z = (x, T/unit).
   bool operator()(const double* z, double* f) const {
-    const Eigen::Index n = shapes(z_size_), m = to_.size();
+    const Eigen::Index n = z_size_ - to_.size(), m = to_.size();
     const Vector x = Vector::Map(z, n), tension = Vector::Map(z + n, m);
     plant_.SetTension(plant_.unit() * tension);
     Vector balance(n);
     if (!plant_.Residual(x, balance)) return false;
     Vector::Map(f, n) = balance;
     const Vector gap = Gap(x);
-    for (Eigen::Index k = 0; k < m; ++k) f[n + k] = Meet(tension[k], gap[k]);
+    for (Eigen::Index k = 0; k < m; ++k) f[n + k] = std::min(tension[k], gap[k]);
     return true;
   }
 
@@ -61,7 +90,7 @@ class LengthDriven {
     jacobian.topLeftCorner(n, n) = k;
     const Matrix slopes = plant_.LengthSlopes(x) / -plant_.reach();
     for (Eigen::Index i = 0; i < m; ++i) {
-      f[n + i] = Meet(tension[i], gap[i]);
+      f[n + i] = std::min(tension[i], gap[i]);
       if (tension[i] < gap[i]) {
         jacobian(n + i, n + i) = 1;
         continue;
@@ -119,8 +148,6 @@ class LengthDriven {
  private:
   static constexpr double kTaut = 1e-7, kHeld = 1e6;
 
-  static double Meet(double a, double b) { return std::min(a, b); }
-  Eigen::Index shapes(Eigen::Index size) const { return size - to_.size(); }
   void SetLoad(double load) {
     plant_.SetLoad(load);
     now_ = (1 - load) * from_ + load * to_;
@@ -145,7 +172,7 @@ numerics::Outcome FollowLengths(Plant& plant, const Eigen::VectorXd& from,
   Eigen::VectorXd z(x.size() + tension.size());
   z << x, tension / plant.unit();
   RisingOptions options;
-  options.trust = 1;
+  options.trust = 3 / std::sqrt(static_cast<double>(z.size()));
   numerics::Outcome outcome = FollowRisingLoad(system, z, stability.branch, options);
   if (!outcome.ok() && plant.Compliance().isZero(0)) {
     outcome.why += "; cables that do not stretch may be too short together";

@@ -97,6 +97,11 @@ void Results::Write(const std::filesystem::path& path) const {
   WriteFile(path, path.extension() == ".csv" ? Csv() : Json());
 }
 
+std::string StatusOf(const numerics::Outcome& outcome, const Stability& stability) {
+  if (!outcome.ok()) return "no_convergence";
+  return stability.stable() ? "ok" : "saddle";
+}
+
 std::vector<std::string> StabilityColumns() {
   return {"stable", "unstable_directions", "branch", "why"};
 }

@@ -45,6 +45,9 @@ class Results {
   std::vector<std::vector<Cell>> cells_;
 };
 
+/// ok, no_convergence, or saddle of an unstable equilibrium in a list of them.
+std::string StatusOf(const numerics::Outcome& outcome, const Stability& stability);
+
 /// `stable` (1 or 0), `unstable_directions`, `branch` and `why` (empty when ok) of a solved case.
 std::vector<std::string> StabilityColumns();
 

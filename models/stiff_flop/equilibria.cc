@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "models/statics/equilibria.h"
+#include "models/stiff_flop/details.h"
 #include "models/stiff_flop/forward.h"
-#include "models/stiff_flop/held.h"
 #include "models/stiff_flop/rod.h"
 
 namespace continuum::stiff_flop {
@@ -49,16 +49,6 @@ std::vector<Solution> Equilibria(const Module& module, const Method& method, con
   const auto energy_of = [&](const Solution& s) {
     return Describe(module, method, Direction::kForward, row, s).energy;
   };
-  std::vector<std::pair<double, Solution>> found;
-  const auto add = [&](Solution s) {
-    const auto same = [&](const auto& other) {
-      return (other.second.tip - s.tip).norm() < 1e-6 * module.l &&
-             (other.second.tangent - s.tangent).norm() < 1e-5;
-    };
-    if (s.status != Status::kOk || std::any_of(found.begin(), found.end(), same)) return;
-    found.emplace_back(energy_of(s), std::move(s));
-  };
-  add(known);
   const ColdShooting problem{module, method, row};
   const double largest = Largest(module, method, row);
   const auto draw = [&](Random& random) {
@@ -75,17 +65,15 @@ std::vector<Solution> Equilibria(const Module& module, const Method& method, con
   if (known.status == Status::kOk) starts.push_back(known.moment);
   statics::SearchOptions options;
   options.tolerance = 1e-9;
-  for (const auto& root :
-       statics::FindRoots<Vector3d>(problem, std::move(starts), draw, energy, options)) {
-    Solution s = SolveNear(module, method, row, root.x);
-    s.stability.branch = statics::Branch::kOther;
-    add(std::move(s));
+  std::vector<Vector3d> roots;
+  for (const auto& root : statics::FindRoots<Vector3d>(problem, starts, draw, energy, options)) {
+    roots.push_back(root.x);
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Solution> equilibria;
-  for (auto& [value, solution] : found) equilibria.push_back(std::move(solution));
-  return equilibria;
+  const auto near = [&](const Vector3d& root) { return SolveNear(module, method, row, root); };
+  const auto same = [&](const Solution& a, const Solution& b) {
+    return (a.tip - b.tip).norm() < 1e-6 * module.l && (a.tangent - b.tangent).norm() < 1e-5;
+  };
+  return statics::ByEnergy(known, roots, near, same, energy_of);
 }
 
 }  // namespace continuum::stiff_flop

@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "error.h"
-#include "models/statics/held.h"
+#include "models/statics/details.h"
 #include "models/statics/plausible.h"
 #include "models/statics/results.h"
 #include "models/statics/write_figure.h"
+#include "models/stiff_flop/details.h"
 #include "models/stiff_flop/equilibria.h"
 #include "models/stiff_flop/figure.h"
 #include "models/stiff_flop/forward.h"
-#include "models/stiff_flop/held.h"
 #include "models/stiff_flop/inverse.h"
 #include "sim/io/yaml.h"
 
@@ -114,8 +114,7 @@ Names Columns(const SolveRequest& request, Direction direction) {
     if (direction == Direction::kForward || name == "why") names.push_back(name);
   }
   if (request.sensitivity) Append(names, SensitivityColumns(direction));
-  Append(names, statics::HoldColumns());
-  if (request.equilibria) Append(names, statics::EquilibriumColumns());
+  Append(names, statics::DetailColumns{0, false, request.equilibria}.Names());
   return names;
 }
 
@@ -160,12 +159,8 @@ void WriteRow(const SolveRequest& request, const Module& module, const Method& m
   Set(results, {"x", "y", "z"}, solution.tip);
   Set(results, {"tx", "ty", "tz"}, solution.tangent);
   WriteSection(solution.section, results);
-  const Held held = Describe(module, method, direction, solved.row, solution);
-  statics::Set(held.hold, results);
-  if (request.equilibria) {
-    results.Set("equilibrium", solved.equilibrium);
-    results.Set("energy", held.energy);
-  }
+  const auto details = Describe(module, method, direction, solved.row, solution);
+  Set(details, solved.equilibrium, results);
   if (!request.sensitivity) return;
   const Names names = SensitivityColumns(direction);
   Set(results, {names.begin(), names.begin() + 3}, solution.by_gamma);

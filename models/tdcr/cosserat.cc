@@ -446,19 +446,18 @@ Line RodBalance::LineOf(const Shape& shape) const {
 Contacts RodBalance::ContactsAt(const Eigen::VectorXd& x) const {
   const Eigen::MatrixXd& way = Integrate(x).way;
   const Eigen::Index count = way.rows() - 1, tendons = way.cols();
-  Contacts contacts{way.bottomRows(count) - way.topRows(count), Eigen::MatrixXd(count, tendons)};
+  Eigen::MatrixXd beyond = way.row(count).replicate(count, 1) - way.topRows(count);
+  if (contacts_ == count) {
+    beyond = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(x.data() + 3, count,
+                                                                              tendons);
+  }
+  Contacts contacts{length_ * beyond, Eigen::MatrixXd(count, tendons)};
+  contacts.length.topRows(count - 1) -= length_ * beyond.bottomRows(count - 1);
   for (Eigen::Index k = 0; k < tendons; ++k) {
     for (int i = 0; i < count; ++i) {
-      const auto at = static_cast<std::size_t>(k);
-      const bool given = i >= contacts_;
-      contacts.share(i, k) = given ? rod_.direction[at] : Share(i, at, Beyond(x.data(), i, at));
-      if (given) continue;
-      contacts.length(i, k) = Beyond(x.data(), i, at);
-      if (i + 1 < count && contacts_ == count) contacts.length(i, k) -= Beyond(x.data(), i + 1, at);
+      contacts.share(i, k) = Share(i, static_cast<std::size_t>(k), beyond(i, k));
     }
   }
-  if (contacts_ < count) contacts.length.row(0) = way.row(1);
-  contacts.length *= length_;
   return contacts;
 }
 

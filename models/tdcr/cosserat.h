@@ -54,7 +54,9 @@ class RodBalance {
   /// The rod with the loads of now.
   const UnitRod& rod() const { return rod_; }
   bool remembers() const { return remembers_ != nullptr; }
-  int unknowns() const { return remembers() ? 3 + contacts_ * static_cast<int>(rod_.holes.size()) : 3; }
+  int unknowns() const {
+    return remembers() ? 3 + contacts_ * static_cast<int>(rod_.holes.size()) : 3;
+  }
   /// Unknowns of this u(0) [1/L]: with the contacts where they begin; with those given by lengths
   /// of the tendons beyond the starts of as many parts of the rod, parts x tendons [L]; and with
   /// those of the shape that it has where the contacts begin.

@@ -6,8 +6,8 @@
 
 #include "models/statics/equilibria.h"
 #include "models/tdcr/cosserat.h"
+#include "models/tdcr/details.h"
 #include "models/tdcr/disks.h"
-#include "models/tdcr/held.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -40,10 +40,11 @@ double EnergyNear(const Robot& robot, const Loads& loads, Method method, const V
 
 template <class Vector, class Balance, class Draw>
 std::vector<VectorXd> Roots(const Robot& robot, const Loads& loads, Method method,
-                            const Balance& balance, std::vector<Vector> known, const Draw& draw) {
+                            const Balance& balance, const std::vector<Vector>& known,
+                            const Draw& draw) {
   std::vector<VectorXd> roots;
   const auto energy = [&](const Vector& x) { return EnergyNear(robot, loads, method, x); };
-  for (const auto& root : statics::FindRoots<Vector>(balance, std::move(known), draw, energy)) {
+  for (const auto& root : statics::FindRoots<Vector>(balance, known, draw, energy)) {
     roots.emplace_back(root.x);
   }
   return roots;
@@ -68,7 +69,7 @@ std::vector<VectorXd> RootsOfDisks(const Robot& robot, const Loads& loads, Metho
   };
   std::vector<Vector> starts;
   if (known.size() > 0) starts.emplace_back(known);
-  return Roots<Vector>(robot, loads, method, balance, std::move(starts), draw);
+  return Roots<Vector>(robot, loads, method, balance, starts, draw);
 }
 
 std::vector<VectorXd> RootsOfRod(const Robot& robot, const Loads& loads, Method method,
@@ -80,7 +81,7 @@ std::vector<VectorXd> RootsOfRod(const Robot& robot, const Loads& loads, Method 
   const auto draw = [&](Random& random) { return Curvature(random, largest); };
   std::vector<Vector3d> starts;
   if (known.size() > 0) starts.emplace_back(known.head<3>());
-  return Roots<Vector3d>(robot, loads, method, balance, std::move(starts), draw);
+  return Roots<Vector3d>(robot, loads, method, balance, starts, draw);
 }
 
 Loads WithoutFriction(Loads loads) {
@@ -104,25 +105,12 @@ std::vector<Solution> Equilibria(const Robot& robot, const Loads& loads, Method 
   } else {
     roots = RootsOfRod(robot, searched, method, x);
   }
-  std::vector<std::pair<double, Solution>> found;
-  const auto add = [&](const Solution& s) {
-    const auto same = [&](const auto& other) {
-      return (other.second.disks - s.disks).colwise().norm().maxCoeff() < 1e-6 * robot.length;
-    };
-    if (!s.outcome.ok() || std::any_of(found.begin(), found.end(), same)) return;
-    found.emplace_back(Describe(robot, loads, method, s).energy, s);
+  const auto near = [&](const VectorXd& root) { return SolveNear(robot, loads, method, root); };
+  const auto same = [&](const Solution& a, const Solution& b) {
+    return (a.disks - b.disks).colwise().norm().maxCoeff() < 1e-6 * robot.length;
   };
-  add(known);
-  for (const VectorXd& root : roots) {
-    Solution s = SolveNear(robot, loads, method, root);
-    s.stability.branch = statics::Branch::kOther;
-    add(s);
-  }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Solution> equilibria;
-  for (auto& [energy, solution] : found) equilibria.push_back(std::move(solution));
-  return equilibria;
+  const auto energy = [&](const Solution& s) { return Describe(robot, loads, method, s).energy; };
+  return statics::ByEnergy(known, roots, near, same, energy);
 }
 
 }  // namespace continuum::tdcr

@@ -236,6 +236,14 @@ statics::RisingOptions Steps(const Robot& robot, const Loads& loads) {
   return options;
 }
 
+// Contacts hardly move, whatever the rod does: what may move is the curvature alone.
+statics::RisingOptions StepsOfContacts(const Robot& robot, const Loads& loads,
+                                       const Eigen::VectorXd& x) {
+  statics::RisingOptions options = Steps(robot, loads);
+  options.trust *= std::sqrt(3 / static_cast<double>(x.size()));
+  return options;
+}
+
 // Where contacts that remember have slid: the root without friction, with the tendons' lengths.
 Eigen::VectorXd WithoutFriction(const Robot& robot, const Loads& loads, const RodBalance& balance) {
   Loads smooth = loads;
@@ -351,13 +359,13 @@ Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balanc
     slid = WithoutFriction(robot, loads, balance);
     start = slid.size() > 0 ? &slid : nullptr;
   }
-  return Find(system, balance, x, Direct(robot, loads), Steps(robot, loads), start);
+  return Find(system, balance, x, Direct(robot, loads), StepsOfContacts(robot, loads, x), start);
 }
 
 Found ContinueEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
                           Eigen::VectorXd& x) {
   RodSystem<Eigen::VectorXd> system(robot, balance);
-  return Find(system, balance, x, false, Steps(robot, loads), nullptr);
+  return Find(system, balance, x, false, StepsOfContacts(robot, loads, x), nullptr);
 }
 
 template <int C>

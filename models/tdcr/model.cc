@@ -1,6 +1,7 @@
 #include "models/tdcr/model.h"
 
 #include <cmath>
+#include <type_traits>
 
 #include "error.h"
 #include "models/tdcr/cosserat.h"
@@ -13,12 +14,6 @@ namespace continuum::tdcr {
 namespace {
 
 using numerics::Outcome;
-
-// Where loads go on from: those before and their x.
-struct Before {
-  const Loads* loads = nullptr;
-  const Eigen::VectorXd* x = nullptr;
-};
 
 // find(balance, x): an equilibrium from x = 0.
 template <int C, class Find>
@@ -127,9 +122,10 @@ Wound Unwound(const Robot& robot) {
           Eigen::VectorXd::Zero(robot.tendons)};
 }
 
-// To the unknowns of the row before.
+// To where the row before ended.
 template <int C>
-void GoOn(const Eigen::VectorXd& before, const DiskBalance<C>&, typename DiskBalance<C>::Vector& x) {
+void GoOn(const Eigen::VectorXd& before, const DiskBalance<C>& /*balance*/,
+          typename DiskBalance<C>::Vector& x) {
   x = before;
 }
 void GoOn(const Eigen::VectorXd& before, const RodBalance& balance, Eigen::VectorXd& x) {
@@ -162,14 +158,6 @@ Solution WithContacts(const Robot& robot, const Loads& loads, Solution solution)
 }
 
 template <int C>
-Solution ContinueDisks(const Robot& robot, const Loads& loads, const Before& before) {
-  return SolveDisks<C>(robot, loads, before.loads, [&](auto& balance, auto& x) {
-    x = *before.x;
-    return ContinueEquilibrium<C>(robot, loads, balance, x);
-  });
-}
-
-template <int C>
 Solution DisksNear(const Robot& robot, const Loads& loads, const Eigen::VectorXd& start) {
   return SolveDisks<C>(robot, loads, nullptr, [&](auto& balance, auto& x) {
     x = start;
@@ -196,25 +184,25 @@ Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& bef
   const bool rod = method == Method::kCrtFriction;
   const Solution state =
       rod && before.contacts.share.size() == 0 ? WithContacts(robot, earlier, before) : before;
-  const Before from{&earlier, &state.x};
   loads.from = state.contacts;
   if (loads.length.size() > 0) {
     return SolveWinches(robot, loads, method, {earlier.length, before.pull, &earlier, &state.x});
   }
+  const auto find = [&](auto& balance, auto& x) {
+    GoOn(state.x, balance, x);
+    return ContinueEquilibrium(robot, loads, balance, x);
+  };
   switch (method) {
     case Method::kEas:
-      return ContinueDisks<6>(robot, loads, from);
+      return SolveDisks<6>(robot, loads, &earlier, find);
     case Method::kPcca:
-      return ContinueDisks<Eigen::Dynamic>(robot, loads, from);
+      return SolveDisks<Eigen::Dynamic>(robot, loads, &earlier, find);
     case Method::kCrt:
       return SolveCase(robot, loads, method);
     case Method::kCrtFriction:
       break;
   }
-  return SolveRemembering(robot, loads, from.loads, [&](RodBalance& balance, Eigen::VectorXd& x) {
-    x = balance.Unslid(from.x->head<3>());
-    return ContinueEquilibrium(robot, loads, balance, x);
-  });
+  return SolveRemembering(robot, loads, &earlier, find);
 }
 
 Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
@@ -236,9 +224,10 @@ Solution SolveNear(const Robot& robot, const Loads& loads, Method method,
   if (method == Method::kPcca) return DisksNear<Eigen::Dynamic>(robot, loads, start);
   const auto find = [&](RodBalance& balance, auto& x) {
     if (!balance.remembers()) balance.SetSteps(4 * balance.steps());  // as fine as the search
-    x.template head<3>() = start.head<3>();
     if constexpr (std::is_same_v<std::decay_t<decltype(x)>, Eigen::VectorXd>) {
       x = balance.Slid(start.head<3>());
+    } else {
+      x = start.head<3>();
     }
     Found found{Polish(balance, x), {}};
     if (found.outcome.ok()) {

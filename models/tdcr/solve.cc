@@ -8,18 +8,19 @@
 #include <utility>
 
 #include "error.h"
-#include "models/statics/held.h"
+#include "models/statics/details.h"
 #include "models/statics/results.h"
+#include "models/statics/shape_table.h"
 #include "models/statics/write_figure.h"
 #include "models/tdcr/calibrate.h"
 #include "models/tdcr/columns.h"
+#include "models/tdcr/details.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/document.h"
 #include "models/tdcr/equilibria.h"
 #include "models/tdcr/explained.h"
 #include "models/tdcr/figure.h"
 #include "models/tdcr/fit.h"
-#include "models/tdcr/held.h"
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/model.h"
 #include "models/tdcr/plausible.h"
@@ -63,9 +64,7 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
       columns.push_back(fmt::format("{}_{}", u, i));
   }
   if (request.method == "fit") return columns;
-  Append(statics::HoldColumns(), columns);
-  Append(statics::Numbered(by_length ? "T_" : "l_", robot.tendons), columns);
-  if (request.equilibria) Append(statics::EquilibriumColumns(), columns);
+  Append(statics::DetailColumns{robot.tendons, by_length, request.equilibria}.Names(), columns);
   return columns;
 }
 
@@ -114,23 +113,6 @@ Method MethodOf(const SolveRequest& request) {
   return ParseMethod(request.method.empty() ? "eas" : request.method);
 }
 
-void AddHeld(const SolveRequest& request, const Robot& robot, const Solved& s,
-             statics::Results& results) {
-  const Method method = MethodOf(request);
-  const Held held = Describe(robot, s.loads, method, s.solution);
-  statics::Set({LineOf(robot, s.loads, method, s.solution).frames.back(), held.force, held.moment,
-                held.strain},
-               results);
-  for (int k = 0; k < robot.tendons; ++k) {
-    const bool by_length = s.loads.length.size() > 0;
-    results.Set((by_length ? "T_" : "l_") + std::to_string(k + 1),
-                by_length ? s.solution.pull[k] : held.length[k]);
-  }
-  if (!request.equilibria) return;
-  results.Set("equilibrium", s.equilibrium);
-  results.Set("energy", held.energy);
-}
-
 void WriteShapes(const SolveRequest& request, const Robot& robot,
                  const std::vector<Solved>& solved) {
   statics::ShapeTable table(robot.tendons);
@@ -164,7 +146,9 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
       continue;
     }
     results.Set(s.solution.outcome, s.solution.stability);
-    if (ok) AddHeld(request, robot, s, results);
+    if (!ok) continue;
+    const auto details = Describe(robot, s.loads, MethodOf(request), s.solution);
+    Set(details, s.equilibrium, results);
   }
   results.Write(request.out);
   if (!request.shape.empty()) WriteShapes(request, robot, solved);

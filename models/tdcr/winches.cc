@@ -16,24 +16,17 @@ using Eigen::VectorXd;
 /// What both plants know of the tendons.
 class Tendons {
  public:
-  Tendons(const Robot& robot, const VectorXd& given) : robot_(robot), given_(given) {}
+  Tendons(const Robot& robot, const VectorXd& given)
+      : robot_(robot), given_(given), stretch_(robot.tendon_EA, given) {}
 
   double unit() const { return robot_.moment() / robot_.tendon_radius; }
   double reach() const { return robot_.tendon_radius; }
-  VectorXd Compliance() const {
-    if (robot_.tendon_EA == 0) return VectorXd::Zero(given_.size());
-    return given_ / robot_.tendon_EA;
-  }
+  VectorXd Compliance() const { return stretch_.Compliance(); }
 
  protected:
-  // Of tensions and lengths in parts of the tendons.
-  VectorXd StretchOf(const MatrixXd& tension, const MatrixXd& length) const {
-    if (robot_.tendon_EA == 0) return VectorXd::Zero(given_.size());
-    return tension.cwiseProduct(length).colwise().sum() / robot_.tendon_EA;
-  }
-
   const Robot& robot_;
   const VectorXd& given_;
+  statics::CableStretch stretch_;
 };
 
 /// Arcs between disks for statics::LengthDriven.
@@ -70,8 +63,7 @@ class DiskPlant : public Tendons {
     return slopes;
   }
   VectorXd Stretch(const VectorXd& x) {
-    if (robot_.tendon_EA == 0) return VectorXd::Zero(given_.size());
-    return StretchOf(balance_.TensionsAt(Vector(x)), balance_.LengthsAt(Vector(x)));
+    return stretch_.Of(balance_.TensionsAt(Vector(x)), balance_.LengthsAt(Vector(x)));
   }
 
   // By generalized forces; moments act at the starts of arcs, so that they are not quite symmetric.
@@ -112,12 +104,11 @@ class RodPlant : public Tendons {
     return slopes;
   }
   VectorXd Stretch(const VectorXd& x) {
-    if (robot_.tendon_EA == 0) return VectorXd::Zero(given_.size());
     const RodBalance::Shape& shape = balance_.Integrate(x);
     const Eigen::Index steps = shape.way.rows() - 1;
     const MatrixXd length = shape.way.bottomRows(steps) - shape.way.topRows(steps);
     const MatrixXd tension = shape.tension.topRows(steps) + shape.tension.bottomRows(steps);
-    return StretchOf(0.5 * robot_.moment() / robot_.length * tension, robot_.length * length);
+    return stretch_.Of(tension, 0.5 * robot_.moment() * length);  // means in units of EI/L^2 and L
   }
   int Unstable(const VectorXd& x, const VectorXd& held) {
     const double unit = robot_.moment() / (robot_.length * robot_.length);  // EI/L^3

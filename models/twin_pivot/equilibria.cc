@@ -5,7 +5,7 @@
 
 #include "models/statics/equilibria.h"
 #include "models/twin_pivot/balance.h"
-#include "models/twin_pivot/held.h"
+#include "models/twin_pivot/details.h"
 
 namespace continuum::twin_pivot {
 namespace {
@@ -50,7 +50,7 @@ std::vector<VectorXd> Roots(const Robot& robot, const Load& load, Method method,
   const auto energy = [&](const VectorXd& beta) {
     return Energy(robot, load, beta) / robot.Stiffness();
   };
-  for (auto& root : statics::FindRoots<VectorXd>(problem, std::move(starts), draw, energy)) {
+  for (auto& root : statics::FindRoots<VectorXd>(problem, starts, draw, energy)) {
     roots.push_back(std::move(root.x));
   }
   return roots;
@@ -61,24 +61,14 @@ std::vector<VectorXd> Roots(const Robot& robot, const Load& load, Method method,
 std::vector<Solution> Equilibria(const Robot& robot, const Load& load, Method method,
                                  const Solution& known) {
   constexpr double kSame = 1e-5;  // rad
-  std::vector<Solution> found;
-  const auto add = [&](Solution s) {
-    const auto same = [&](const Solution& other) {
-      return (other.beta - s.beta).cwiseAbs().maxCoeff() < kSame;
-    };
-    if (!s.outcome.ok() || std::any_of(found.begin(), found.end(), same)) return;
-    found.push_back(std::move(s));
+  const auto near = [&](const VectorXd& root) {
+    return SolveNear(robot, load, method, root, kWide);
   };
-  add(known);
-  for (const VectorXd& root : Roots(robot, load, method, known)) {
-    Solution s = SolveNear(robot, load, method, root, kWide);
-    s.stability.branch = statics::Branch::kOther;
-    add(std::move(s));
-  }
-  std::stable_sort(found.begin(), found.end(), [&](const Solution& a, const Solution& b) {
-    return Energy(robot, load, a.beta) < Energy(robot, load, b.beta);
-  });
-  return found;
+  const auto same = [&](const Solution& a, const Solution& b) {
+    return (a.beta - b.beta).cwiseAbs().maxCoeff() < kSame;
+  };
+  const auto energy = [&](const Solution& s) { return Energy(robot, load, s.beta); };
+  return statics::ByEnergy(known, Roots(robot, load, method, known), near, same, energy);
 }
 
 }  // namespace continuum::twin_pivot

@@ -6,15 +6,15 @@
 #include <utility>
 
 #include "error.h"
-#include "models/statics/held.h"
+#include "models/statics/details.h"
 #include "models/statics/plausible.h"
 #include "models/statics/results.h"
 #include "models/statics/write_figure.h"
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
+#include "models/twin_pivot/details.h"
 #include "models/twin_pivot/equilibria.h"
 #include "models/twin_pivot/figure.h"
-#include "models/twin_pivot/held.h"
 #include "models/twin_pivot/twin_pivot.h"
 #include "sim/io/file.h"
 #include "sim/io/yaml.h"
@@ -142,8 +142,7 @@ std::vector<Solved> RowsOf(const SolveRequest& request, const Robot& robot,
   return rows;
 }
 
-void WriteRow(const SolveRequest& request, const Robot& robot, const Solved& solved,
-              statics::Results& results) {
+void WriteRow(const Robot& robot, const Solved& solved, statics::Results& results) {
   const Solution& solution = solved.solution;
   const twin_pivot::Load& load = solved.row.load;
   results.Row();
@@ -156,17 +155,10 @@ void WriteRow(const SolveRequest& request, const Robot& robot, const Solved& sol
   for (int m = 0; m < robot.Joints(); ++m) {
     results.Set("beta_" + std::to_string(m + 1), solution.beta[m]);
   }
-  const twin_pivot::Held held = Describe(robot, load, solution);
   for (int j = 0; j < robot.Cables(); ++j) {
     results.Set("F_end_" + std::to_string(j + 1), solution.tension(robot.Anchor(j) - 1, j));
-    const bool by_length = load.length.size() > 0;
-    results.Set((by_length ? "T_" : "l_") + std::to_string(j + 1),
-                by_length ? solution.pull[j] : held.length[j]);
   }
-  Set(held.hold, results);
-  if (!request.equilibria) return;
-  results.Set("equilibrium", solved.equilibrium);
-  results.Set("energy", held.energy);
+  Set(Describe(robot, load, solution), solved.equilibrium, results);
 }
 
 std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot, bool by_length) {
@@ -178,9 +170,7 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
   append(statics::StabilityColumns());
   append(statics::Numbered("beta_", robot.Joints()));
   append(statics::Numbered("F_end_", robot.Cables()));
-  append(statics::HoldColumns());
-  append(statics::Numbered(by_length ? "T_" : "l_", robot.Cables()));
-  if (request.equilibria) append(statics::EquilibriumColumns());
+  append(statics::DetailColumns{robot.Cables(), by_length, request.equilibria}.Names());
   return columns;
 }
 
@@ -188,9 +178,11 @@ void WriteResults(const SolveRequest& request, const Robot& robot,
                   const std::vector<Solved>& rows) {
   const bool by_length = !rows.empty() && rows.front().row.load.length.size() > 0;
   statics::Results results(Columns(request, robot, by_length));
-  for (const Solved& solved : rows) WriteRow(request, robot, solved, results);
+  for (const Solved& solved : rows) WriteRow(robot, solved, results);
   results.Write(request.out);
-  if (request.shape.empty()) return;
+}
+
+void WriteShapes(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& rows) {
   statics::ShapeTable table(robot.Cables());
   for (const Solved& solved : rows) {
     if (!solved.solution.outcome.ok()) continue;
@@ -232,6 +224,7 @@ int SolveTwinPivot(const SolveRequest& request) {
   const std::vector<Solution> solved = SolveCases(robot, cases, method);
   const std::vector<Solved> rows = RowsOf(request, robot, cases, solved, method);
   WriteResults(request, robot, rows);
+  if (!request.shape.empty()) WriteShapes(request, robot, rows);
   if (!request.plot.empty()) Draw(request, robot, rows);
   for (const Solution& solution : solved) {
     if (!solution.outcome.ok()) return 1;

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 class Plant {
  public:
   Plant(const Task& from, const Task& to, const VectorXd& given)
-      : from_(from), to_(to), now_(to), given_(given) {}
+      : from_(from), to_(to), now_(to), stretch_(to.robot.cable_EA, given) {}
 
   double unit() const { return to_.robot.Stiffness() / reach(); }
   double reach() const { return to_.robot.r.front(); }
@@ -44,18 +44,13 @@ class Plant {
     return CableLengths(to_.robot, x).colwise().sum().transpose();
   }
   MatrixXd LengthSlopes(const VectorXd& x) { return CableSlopes(to_, x); }
-  VectorXd Compliance() const {
-    if (to_.robot.cable_EA == 0) return VectorXd::Zero(given_.size());
-    return given_ / to_.robot.cable_EA;
-  }
+  VectorXd Compliance() const { return stretch_.Compliance(); }
   VectorXd Stretch(const VectorXd& x) {
-    if (to_.robot.cable_EA == 0) return VectorXd::Zero(given_.size());
     std::vector<double> force;
     if (!CableForces(*now_, JointsAt(to_.robot, x), 1, to_.robot.eps, force)) return Compliance();
     const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> tension(
         force.data(), to_.joints, to_.cables);
-    const MatrixXd stretched = tension.cwiseProduct(CableLengths(to_.robot, x));
-    return stretched.colwise().sum().transpose() / to_.robot.cable_EA;
+    return stretch_.Of(tension, CableLengths(to_.robot, x));
   }
   int Unstable(const VectorXd& x, const VectorXd& held) {
     return UnstableDirections(Now(), x, held);
@@ -67,7 +62,7 @@ class Plant {
   const Task& from_;
   const Task& to_;
   std::optional<Task> now_;
-  const VectorXd& given_;
+  statics::CableStretch stretch_;
 };
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "models/stiff_flop/details.h"
 #include "models/stiff_flop/forward.h"
-#include "models/stiff_flop/held.h"
 
 namespace continuum::stiff_flop {
 namespace {
@@ -31,7 +31,7 @@ double EnergyOf(const Case& row) {
 
 // The section of fixed+fixed has a potential: then the energy's slope by the force is minus the way
 // of where it acts.
-TEST(StiffFlopHeld, TheEnergysSlopeIsTheWayOfTheForce) {
+TEST(StiffFlopDetails, TheEnergysSlopeIsTheWayOfTheForce) {
   const Module module = Published();
   const Case row = Pushed({0.1, -0.2, 0.05}, {2e4, 5e3, 0});
   const Solution s = SolveForward(module, kPlain, row, false);
@@ -46,15 +46,15 @@ TEST(StiffFlopHeld, TheEnergysSlopeIsTheWayOfTheForce) {
   }
 }
 
-TEST(StiffFlopHeld, TheBaseCarriesTheDeadLoads) {
+TEST(StiffFlopDetails, TheBaseCarriesTheDeadLoads) {
   const Module module = Published();
   const Case row = Pushed({0.1, -0.2, 0.05}, {2e4, 5e3, 0});
   const Solution s = SolveForward(module, kPlain, row, false);
-  const Held held = Describe(module, kPlain, Direction::kForward, row, s);
+  const statics::Details details = Describe(module, kPlain, Direction::kForward, row, s);
   const Vector3d weight(0, (module.m + module.m_fs) * 9.81, 0);
-  EXPECT_LT((held.hold.force - row.load.force - weight).norm(), 1e-12);
-  EXPECT_LT((held.hold.moment - BaseMoment(module, kPlain, row)).norm(), 1e-12);
-  EXPECT_LT((held.hold.tip * Vector3d::UnitY() - s.tangent).norm(), 1e-9);
+  EXPECT_LT((details.force - row.load.force - weight).norm(), 1e-12);
+  EXPECT_LT((details.moment - BaseMoment(module, kPlain, row)).norm(), 1e-12);
+  EXPECT_LT((details.tip * Vector3d::UnitY() - s.tangent).norm(), 1e-9);
   // The moment once more, from places along the axis.
   Vector3d moment = (s.tip + module.l_fs * s.tangent).cross(row.load.force);
   moment += (s.tip + 0.5 * module.l_fs * s.tangent).cross(module.m_fs * row.load.gravity);
@@ -64,7 +64,7 @@ TEST(StiffFlopHeld, TheBaseCarriesTheDeadLoads) {
     const Vector3d middle = 0.5 * (places[i].point + places[i + 1].point);
     moment += middle.cross(module.m / pieces * row.load.gravity);
   }
-  EXPECT_LT((held.hold.moment - moment).norm(), 1e-3 * moment.norm());
+  EXPECT_LT((details.moment - moment).norm(), 1e-3 * moment.norm());
 }
 
 // An axial push beyond buckling, with a hint: the bent shape of either side, and the saddle

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "models/tdcr/held.h"
+#include "models/tdcr/details.h"
 
 namespace continuum::tdcr {
 namespace {

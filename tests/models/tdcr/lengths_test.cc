@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "models/tdcr/held.h"
+#include "models/tdcr/details.h"
 #include "models/tdcr/model.h"
 
 namespace continuum::tdcr {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -120,10 +121,11 @@ class Polygon {
     return largest;
   }
 
-  // Of the node between pieces i - 1 and i.
+  // Of the node between pieces i - 1 and i, where the tendon turns as much in one as in the other.
   double Share(int i, int k) const {
     if (share_.size() == 0) return loads_.direction[static_cast<std::size_t>(k)];
-    return share_(i * share_.rows() / count_, k);
+    const Eigen::Index before = std::max(i - 1, 0) * share_.rows() / count_;
+    return 0.5 * (share_(before, k) + share_(i * share_.rows() / count_, k));
   }
 
   const Robot& robot_;

@@ -59,7 +59,7 @@ TEST(TdcrRodMemory, HoldingStillMovesNothing) {
   const Loads loads = Pull(robot, {4, 1, 2});
   const Solution first = SolveCase(robot, loads, kRod);
   Solution state = first;
-  for (int row = 0; row < 20; ++row) {
+  for (int row = 0; row < 100; ++row) {
     state = SolveFrom(robot, loads, state, loads, kRod);
     ASSERT_TRUE(state.outcome.ok()) << state.outcome.why;
   }
@@ -116,8 +116,8 @@ TEST(TdcrRodMemory, APartOfTheWayBackIsThatOfAnIndependentPolygon) {
   const Eigen::Matrix3Xd coarse = Polygon(robot, loads, 24, c.share).Disks();
   const Eigen::Matrix3Xd fine = Polygon(robot, loads, 48, c.share).Disks();
   const double last = (coarse - down.disks).norm(), now = (fine - down.disks).norm();
-  EXPECT_LT(now, 0.6 * last);
-  EXPECT_LT(now, 1e-4 * robot.length);
+  EXPECT_LT(now, 0.3 * last);  // the polygon is of second order
+  EXPECT_LT(now, 1e-6 * robot.length);
 }
 
 TEST(TdcrRodMemory, ARowWithGivenDirectionsMayBeAReference) {

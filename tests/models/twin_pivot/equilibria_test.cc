@@ -9,7 +9,7 @@
 
 #include "models/twin_pivot/again.h"
 #include "models/twin_pivot/bench.h"
-#include "models/twin_pivot/held.h"
+#include "models/twin_pivot/details.h"
 
 namespace continuum::twin_pivot {
 namespace {
@@ -140,14 +140,14 @@ TEST(TwinPivotEquilibria, WithFrictionTheOwnAnswerIsAmongThem) {
 }
 
 // Lengths, base wrench and strain from the transforms as the paper writes them.
-TEST(TwinPivotHeld, IsThatOfAnIndependentDescription) {
+TEST(TwinPivotDetails, IsThatOfAnIndependentDescription) {
   const Robot robot = Prototype("b");
   Load load = Pull({9, 8, 3, 2}, Condition::kV);
   load.payload = 0.02;
   load.force = {0.1, -0.2, 0.05};
   const Solution s = Solve(robot, load);
   ASSERT_TRUE(s.outcome.ok());
-  const Held held = Describe(robot, load, s);
+  const statics::Details details = Describe(robot, load, s);
   const auto disc = again::Discs(robot, s.beta);
   const Vector3d tip = disc.back().topRightCorner<3, 1>();
   Vector3d force = load.force + load.payload * load.gravity, moment = tip.cross(force);
@@ -155,15 +155,15 @@ TEST(TwinPivotHeld, IsThatOfAnIndependentDescription) {
     force += body.mass * load.gravity;
     moment += body.place.cross(body.mass * load.gravity);
   }
-  EXPECT_LT((held.hold.force - force).norm(), 1e-12);
-  EXPECT_LT((held.hold.moment - moment).norm(), 1e-10);  // (1 - cos b)/b^2 there is rounded
-  EXPECT_LT((held.hold.tip.toRotationMatrix() - disc.back().topLeftCorner<3, 3>()).norm(), 1e-12);
+  EXPECT_LT((details.force - force).norm(), 1e-12);
+  EXPECT_LT((details.moment - moment).norm(), 1e-10);  // (1 - cos b)/b^2 there is rounded
+  EXPECT_LT((details.tip.toRotationMatrix() - disc.back().topLeftCorner<3, 3>()).norm(), 1e-12);
   for (int j = 0; j < 4; ++j) {
     double length = 0;
     for (int m = 1; m <= robot.Anchor(j); ++m) length += again::CableLength(robot, disc, m, j);
-    EXPECT_NEAR(held.length[j], length, 1e-14);
+    EXPECT_NEAR(details.length[j], length, 1e-14);
   }
-  EXPECT_NEAR(held.hold.strain, 0.4e-3 * s.beta.cwiseAbs().maxCoeff() / robot.L, 1e-9);
+  EXPECT_NEAR(details.strain, 0.4e-3 * s.beta.cwiseAbs().maxCoeff() / robot.L, 1e-9);
 }
 
 }  // namespace

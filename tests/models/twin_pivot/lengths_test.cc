@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "models/twin_pivot/bench.h"
-#include "models/twin_pivot/held.h"
+#include "models/twin_pivot/details.h"
 
 namespace continuum::twin_pivot {
 namespace {
@@ -52,9 +52,9 @@ TEST(TwinPivotLengths, SlackCablesHaveNoTension) {
   EXPECT_NEAR(s.pull[0], s.pull[1], 1e-6);
   EXPECT_EQ(s.pull[2], 0);
   EXPECT_EQ(s.pull[3], 0);
-  const Held held = Describe(robot, load, s);
-  EXPECT_NEAR(held.length[0], load.length[0], 1e-9);
-  EXPECT_LT(held.length[2], load.length[2]);
+  const statics::Details details = Describe(robot, load, s);
+  EXPECT_NEAR(details.length[0], load.length[0], 1e-9);
+  EXPECT_LT(details.length[2], load.length[2]);
   EXPECT_GT(s.tip.y(), 1e-3);
 }
 

@@ -1,4 +1,4 @@
-#include "models/tdcr/held.h"
+#include "models/tdcr/details.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@ namespace continuum::tdcr {
 namespace {
 
 using Eigen::Vector3d;
+using statics::Details;
 
 bool OfDisks(Method method) { return method == Method::kEas || method == Method::kPcca; }
 
@@ -24,34 +25,28 @@ Eigen::VectorXd Simpson(const Eigen::VectorXd& s) {
   return weights;
 }
 
-// Adds dead forces F at p, and takes their work from the straight robot, where they act at s.
-void AddDead(const Vector3d& force, const Vector3d& p, double s, Held& held) {
-  held.force += force;
-  held.moment += p.cross(force);
-  held.energy -= force.dot(p - Vector3d(0, 0, s));
-}
+// Of a point of the straight rod.
+Vector3d Straight(double s) { return {0, 0, s}; }
 
 double ElasticPerLength(const Robot& robot, const Vector3d& u) {
   return (robot.EI() * u.head<2>().squaredNorm() + robot.GJ() * u.z() * u.z()) / 2;
 }
 
 // Kappa and tau of an arc as u = (-kappa_y, kappa_x, tau).
-Held OfArcs(const Robot& robot, const Loads& loads, const Solution& solution) {
-  Held held{Eigen::VectorXd::Zero(robot.tendons), Vector3d::Zero(), Vector3d::Zero(), 0, 0};
+void DescribeArcs(const Robot& robot, const Loads& loads, const Solution& solution,
+                  Details& details) {
   const double mass = robot.disk_mass + robot.density * robot.area() * robot.arc();
   for (int i = 0; i < robot.disks; ++i) {
     const Vector3d u = solution.u.col(i);
     const Arc arc(robot.arc(), u);
     Chord chord;
     for (int k = 0; k < robot.tendons; ++k) {
-      if (TendonChord(arc, robot.Hole(k), false, chord)) held.length[k] += chord.length;
+      if (TendonChord(arc, robot.Hole(k), false, chord)) details.length[k] += chord.length;
     }
-    held.energy += robot.arc() * ElasticPerLength(robot, u);
-    held.strain = std::max(held.strain, u.head<2>().norm() * robot.diameter / 2);
-    AddDead(mass * loads.gravity, solution.disks.col(i), (i + 1) * robot.arc(), held);
+    details.energy += robot.arc() * ElasticPerLength(robot, u);
+    details.strain = std::max(details.strain, u.head<2>().norm() * robot.diameter / 2);
+    AddDead(mass * loads.gravity, solution.disks.col(i), Straight((i + 1) * robot.arc()), details);
   }
-  AddDead(loads.tip_force, solution.disks.rightCols<1>(), robot.length, held);
-  return held;
 }
 
 // Of every tendon in every arc, n x m [N], by (13) with the contacts' shares.
@@ -75,36 +70,45 @@ Eigen::MatrixXd Tensions(const Robot& robot, const Loads& loads, const Solution&
   return tension;
 }
 
-Held OfRod(const Robot& robot, const Loads& loads, const Solution& solution) {
+void DescribeRod(const Robot& robot, const Loads& loads, const Solution& solution,
+                 Details& details) {
   const Line& line = solution.line;
-  Held held{Eigen::VectorXd::Zero(robot.tendons), Vector3d::Zero(), Vector3d::Zero(), 0, 0};
   const Eigen::VectorXd weights = Simpson(line.s);
   const Vector3d per_length = robot.density * robot.area() * loads.gravity;
   for (Eigen::Index i = 0; i < line.s.size(); ++i) {
     const Vector3d u = line.u.col(i);
     for (int k = 0; k < robot.tendons; ++k) {
       const Vector3d hole(robot.Hole(k).x(), robot.Hole(k).y(), 0);
-      held.length[k] += weights[i] * (Vector3d::UnitZ() + u.cross(hole)).norm();
+      details.length[k] += weights[i] * (Vector3d::UnitZ() + u.cross(hole)).norm();
     }
-    held.energy += weights[i] * ElasticPerLength(robot, u);
-    held.strain = std::max(held.strain, u.head<2>().norm() * robot.diameter / 2);
-    AddDead(weights[i] * per_length, line.points.col(i), line.s[i], held);
+    details.energy += weights[i] * ElasticPerLength(robot, u);
+    details.strain = std::max(details.strain, u.head<2>().norm() * robot.diameter / 2);
+    AddDead(weights[i] * per_length, line.points.col(i), Straight(line.s[i]), details);
   }
   for (int i = 0; i < robot.disks; ++i) {
-    AddDead(robot.disk_mass * loads.gravity, solution.disks.col(i), (i + 1) * robot.arc(), held);
+    AddDead(robot.disk_mass * loads.gravity, solution.disks.col(i), Straight((i + 1) * robot.arc()),
+            details);
   }
-  AddDead(loads.tip_force, solution.disks.rightCols<1>(), robot.length, held);
-  return held;
 }
 
 }  // namespace
 
-Held Describe(const Robot& robot, const Loads& loads, Method method, const Solution& solution) {
-  Held held = OfDisks(method) ? OfArcs(robot, loads, solution) : OfRod(robot, loads, solution);
-  for (int k = 0; k < robot.tendons; ++k) {
-    held.energy += loads.tension[static_cast<std::size_t>(k)] * (held.length[k] - robot.length);
+Details Describe(const Robot& robot, const Loads& loads, Method method, const Solution& solution) {
+  Details details;
+  details.length = Eigen::VectorXd::Zero(robot.tendons);
+  details.pull = solution.pull;
+  details.tip = LineOf(robot, loads, method, solution).frames.back();
+  if (OfDisks(method)) {
+    DescribeArcs(robot, loads, solution, details);
+  } else {
+    DescribeRod(robot, loads, solution, details);
   }
-  return held;
+  AddDead(loads.tip_force, solution.disks.rightCols<1>(), Straight(robot.length), details);
+  for (int k = 0; k < robot.tendons; ++k) {
+    const double tension = loads.tension[static_cast<std::size_t>(k)];
+    details.energy += tension * (details.length[k] - robot.length);
+  }
+  return details;
 }
 
 Line LineOf(const Robot& robot, const Loads& loads, Method method, const Solution& solution) {

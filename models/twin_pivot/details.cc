@@ -1,6 +1,5 @@
-#include "models/twin_pivot/held.h"
+#include "models/twin_pivot/details.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,6 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using statics::Details;
 
 struct Body {
   double mass;
@@ -45,46 +45,49 @@ std::vector<Body> Bodies(const Task& task, const VectorXd& beta) {
   return bodies;
 }
 
-double Potential(const Task& task, const VectorXd& beta) {
-  double energy = 0.5 * task.robot.Stiffness() * beta.squaredNorm();
-  const VectorXd length = CableLengths(task.robot, beta).colwise().sum();
+// All but strain and tensions.
+Details DescribeAt(const Task& task, const VectorXd& beta) {
+  const Robot& robot = task.robot;
+  const VectorXd straight = VectorXd::Zero(beta.size());
+  Details details;
+  details.length = CableLengths(robot, beta).colwise().sum();
+  details.energy = 0.5 * robot.Stiffness() * beta.squaredNorm();
+  const VectorXd before = CableLengths(robot, straight).colwise().sum();
   for (int j = 0; j < task.cables; ++j) {
-    energy += task.tension[static_cast<std::size_t>(j)] * length[j];
+    const double tension = task.tension[static_cast<std::size_t>(j)];
+    details.energy += tension * (details.length[j] - before[j]);
   }
-  for (const Body& body : Bodies(task, beta)) energy -= body.mass * task.gravity.dot(body.place);
-  return energy - task.force.dot(DiscFrames(task.robot, beta).back().translation());
+  const auto bodies = Bodies(task, beta), first = Bodies(task, straight);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    AddDead(bodies[i].mass * task.gravity, bodies[i].place, first[i].place, details);
+  }
+  const Eigen::Isometry3d tip = DiscFrames(robot, beta).back();
+  details.tip = Eigen::Quaterniond(tip.rotation());
+  AddDead(task.force, tip.translation(), DiscFrames(robot, straight).back().translation(), details);
+  details.moment += task.moment;
+  if (!task.moment.isZero(0)) details.energy = std::numeric_limits<double>::quiet_NaN();
+  return details;
 }
 
 }  // namespace
 
 double Energy(const Robot& robot, const Load& load, const VectorXd& beta) {
-  if (!load.moment.isZero(0)) return std::numeric_limits<double>::quiet_NaN();
-  const Task task(robot, load, Method::kVirtualWork);
-  return Potential(task, beta) - Potential(task, VectorXd::Zero(beta.size()));
+  return DescribeAt(Task(robot, load, Method::kVirtualWork), beta).energy;
 }
 
-Held Describe(const Robot& robot, const Load& load, const Solution& solution) {
-  const Task task(robot, load, Method::kVirtualWork);
-  const Eigen::Isometry3d tip = DiscFrames(robot, solution.beta).back();
-  Held held{{}, solution.length.colwise().sum(), Energy(robot, load, solution.beta)};
-  held.hold.tip = Eigen::Quaterniond(tip.rotation());
-  held.hold.force = task.force;
-  held.hold.moment = task.moment + tip.translation().cross(task.force);
-  for (const Body& body : Bodies(task, solution.beta)) {
-    held.hold.force += body.mass * task.gravity;
-    held.hold.moment += body.place.cross(body.mass * task.gravity);
-  }
+Details Describe(const Robot& robot, const Load& load, const Solution& solution) {
+  Details details = DescribeAt(Task(robot, load, Method::kVirtualWork), solution.beta);
+  details.pull = solution.pull;
   const double diameter = std::pow(64 * robot.I_z / std::numbers::pi, 0.25);
-  held.hold.strain = 0.5 * diameter / robot.L * solution.beta.cwiseAbs().maxCoeff();
-  return held;
+  details.strain = 0.5 * diameter / robot.L * solution.beta.cwiseAbs().maxCoeff();
+  return details;
 }
 
-std::vector<statics::ShapeTable::Place> Places(const Robot& robot, const Solution& solution,
-                                               int per_rod) {
+std::vector<statics::Place> Places(const Robot& robot, const Solution& solution, int per_rod) {
   const auto discs = DiscFrames(robot, solution.beta);
   const auto points = CentreLine(robot, solution.beta, per_rod);
   const double pitch = robot.L + robot.h;
-  std::vector<statics::ShapeTable::Place> places;
+  std::vector<statics::Place> places;
   std::size_t point = 0;
   for (int m = 0; m <= robot.Joints(); ++m) {
     const auto at = static_cast<std::size_t>(m);

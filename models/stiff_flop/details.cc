@@ -1,4 +1,4 @@
-#include "models/stiff_flop/held.h"
+#include "models/stiff_flop/details.h"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +14,7 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using statics::Details;
 
 constexpr int kPieces = 32;
 
@@ -58,32 +59,30 @@ double Work(const Module& module, const Method& method, const Vector3d& p,
 
 // Of one piece, and its strain.
 void AddPiece(const Module& module, const Method& method, const Case& row, const Axis<double>& axis,
-              double twist, const Vector3d& n, Held& held) {
+              double twist, const Vector3d& n, Details& details) {
   const double G = module.E / 3, h = module.l / kPieces;
   const auto reaction = ReactionOf(module, method, row.given, module.E, module.gamma, axis);
-  held.energy += h * Work(module, method, row.given, axis);
-  held.energy += h * 0.5 * G * reaction.polar * twist * twist;
-  held.energy += h * 0.5 * (n.x() * n.x() + n.z() * n.z()) / (G * reaction.area);
-  held.hold.strain = std::max(held.hold.strain, Strain(module, method, axis));
+  details.energy += h * Work(module, method, row.given, axis);
+  details.energy += h * 0.5 * G * reaction.polar * twist * twist;
+  details.energy += h * 0.5 * (n.x() * n.x() + n.z() * n.z()) / (G * reaction.area);
+  details.strain = std::max(details.strain, Strain(module, method, axis));
 }
 
-// Adds a dead force at p, straight at (0, y, 0).
-void AddDead(const Vector3d& force, const Vector3d& p, double y, Held& held) {
-  held.hold.force += force;
-  held.hold.moment += p.cross(force);
-  held.energy -= force.dot(p - Vector3d(0, y, 0));
-}
+// Of a point of the straight module.
+Vector3d Straight(double y) { return {0, y, 0}; }
 
 // Of mount and tip force.
 void AddMount(const Module& module, const Case& row, const Vector3d& tip, const Vector3d& tangent,
-              Held& held) {
+              Details& details) {
   const double l = module.l, l_fs = module.l_fs;
-  AddDead(module.m_fs * row.load.gravity, tip + 0.5 * l_fs * tangent, l + 0.5 * l_fs, held);
-  AddDead(row.load.force, tip + l_fs * tangent, l + l_fs, held);
+  AddDead(module.m_fs * row.load.gravity, tip + 0.5 * l_fs * tangent, Straight(l + 0.5 * l_fs),
+          details);
+  AddDead(row.load.force, tip + l_fs * tangent, Straight(l + l_fs), details);
 }
 
-Held OfRod(const Module& module, const Method& method, const Case& row, const Solution& solution) {
-  Held held{{}, 0};
+Details OfRod(const Module& module, const Method& method, const Case& row,
+              const Solution& solution) {
+  Details details;
   const auto states = States(module, method, row, solution);
   RodLaw law(module, method, row, 1, kPieces);
   statics::RodChain<RodLaw> chain(law, kPieces);
@@ -95,41 +94,44 @@ Held OfRod(const Module& module, const Method& method, const Case& row, const So
     const Vector3d F =
         row.load.force + (module.m_fs + module.m * (1 - (i + 0.5) / kPieces)) * row.load.gravity;
     const Vector3d n = shape[at].slerp(0.5, shape[at + 1]).conjugate() * F;
-    AddPiece(module, method, row, law.axis(i), chain.zeta()(1, i) / module.l, n, held);
+    AddPiece(module, method, row, law.axis(i), chain.zeta()(1, i) / module.l, n, details);
     const Vector3d middle = 0.5 * (states[at].head<3>() + states[at + 1].head<3>());
-    AddDead(module.m / kPieces * row.load.gravity, middle, module.l * (i + 0.5) / kPieces, held);
+    AddDead(module.m / kPieces * row.load.gravity, middle, Straight(module.l * (i + 0.5) / kPieces),
+            details);
   }
-  AddMount(module, row, solution.tip, solution.tangent, held);
-  held.hold.tip = Frame(states.back());
-  held.hold.moment = solution.moment * Rod(module, method, row, 1, 1).unit();
-  return held;
+  AddMount(module, row, solution.tip, solution.tangent, details);
+  details.tip = Frame(states.back());
+  details.moment = solution.moment * Rod(module, method, row, 1, 1).unit();
+  return details;
 }
 
-Held OfArc(const Module& module, const Method& method, const Case& row, const Solution& solution) {
-  Held held{{}, 0};
+Details OfArc(const Module& module, const Method& method, const Case& row,
+              const Solution& solution) {
+  Details details;
   const double kappa = row.given[0], phi = row.given[1];
   const Axis<double> axis = {row.given[2], kappa * std::cos(phi), kappa * std::sin(phi)};
   const Arc<double> arc(module.l, axis);
-  AddDead(module.m * row.load.gravity, Vector3d::Map(arc.centre.data()), 0.5 * module.l, held);
-  AddMount(module, row, solution.tip, solution.tangent, held);
-  held.hold.tip = Quaterniond::FromTwoVectors(Vector3d::UnitY(), solution.tangent);
-  held.hold.strain = Strain(module, method, axis);
-  held.energy = std::numeric_limits<double>::quiet_NaN();
-  return held;
+  AddDead(module.m * row.load.gravity, Vector3d::Map(arc.centre.data()), Straight(0.5 * module.l),
+          details);
+  AddMount(module, row, solution.tip, solution.tangent, details);
+  details.tip = Quaterniond::FromTwoVectors(Vector3d::UnitY(), solution.tangent);
+  details.strain = Strain(module, method, axis);
+  details.energy = std::numeric_limits<double>::quiet_NaN();
+  return details;
 }
 
 }  // namespace
 
-Held Describe(const Module& module, const Method& method, Direction direction, const Case& row,
-              const Solution& solution) {
+Details Describe(const Module& module, const Method& method, Direction direction, const Case& row,
+                 const Solution& solution) {
   return direction == Direction::kInverse ? OfArc(module, method, row, solution)
                                           : OfRod(module, method, row, solution);
 }
 
-std::vector<statics::ShapeTable::Place> Places(const Module& module, const Method& method,
-                                               const Case& row, const Solution& solution) {
+std::vector<statics::Place> Places(const Module& module, const Method& method, const Case& row,
+                                   const Solution& solution) {
   const auto states = States(module, method, row, solution);
-  std::vector<statics::ShapeTable::Place> places;
+  std::vector<statics::Place> places;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const int disk = i == 0 ? 0 : i + 1 == states.size() ? 1 : -1;
     places.push_back({module.l * static_cast<double>(i) / kPieces,

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "models/statics/details.h"
+#include "models/tdcr/model.h"
+
+namespace continuum::tdcr {
+
+/// Of a solution of the same case; outcome.ok(). The energy is that of bending and twist, plus
+/// tensions at the base times the changes of the tendons' lengths, less the work of the dead loads:
+///
+///   int (EI (kappa_x^2 + kappa_y^2) + GJ tau^2)/2 ds + sum T_k (l_k - L) - sum F.(p - p_0)     (1)
+///
+/// Without friction an equilibrium is a stationary point of it.
+statics::Details Describe(const Robot& robot, const Loads& loads, Method method,
+                          const Solution& solution);
+
+/// The rod between base and tip.
+Line LineOf(const Robot& robot, const Loads& loads, Method method, const Solution& solution);
+
+}  // namespace continuum::tdcr
