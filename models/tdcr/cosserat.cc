@@ -69,7 +69,7 @@ RodBalance RodBalance::Remembering(const Robot& robot, const Loads& loads, int s
   beyond.setConstant(count, robot.tendons, 1.0 / count);
   if (loads.from.length.size() > 0) beyond = loads.from.length / robot.length;
   for (int i = count - 2; i >= 0; --i) beyond.row(i) += beyond.row(i + 1);
-  balance.contacts_ = loads.AsItSlides() ? count : 1;
+  balance.contacts_ = loads.AsItSlides() && loads.mu > 0 ? count : 1;
   return balance;
 }
 
