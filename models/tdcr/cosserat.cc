@@ -258,6 +258,51 @@ template <class T, int kRubbing, bool kSlides>
   }
 }
 
+template <class T, int kRubbing, bool kSlides>
+RodBalance::State<T, kRubbing, kSlides> RodBalance::Base(const T* x) const {
+  State<T, kRubbing, kSlides> y;
+  y.q << T(1), T(0), T(0), T(0);
+  y.u << x[0], x[1], x[2];
+  y.p.setZero();
+  const auto tendons = static_cast<Eigen::Index>(rod_.pull.size());
+  if constexpr (kRubbing > 0) {
+    y.tension.resize(tendons);
+    for (Eigen::Index k = 0; k < tendons; ++k) {
+      y.tension[k] = T(rod_.pull[static_cast<std::size_t>(k)]);
+    }
+  }
+  if constexpr (kSlides) y.way.setZero(tendons);
+  return y;
+}
+
+// Shares of the contacts of a step, and their (5).
+template <class T, int kRubbing>
+void RodBalance::Slide(int step, const T* x, const State<T, kRubbing, true>& y, T* share,
+                       T* end) const {
+  const std::size_t tendons = rod_.pull.size();
+  for (std::size_t k = 0; k < tendons; ++k) {
+    share[k] = step < contacts_ ? Share(step, k, Beyond(x, step, k)) : T(rod_.direction[k]);
+    if (step == 0 || step >= contacts_) continue;
+    const T& way = y.way[static_cast<Eigen::Index>(k)];
+    end[3 + static_cast<std::size_t>(step) * tendons + k] =
+        Beyond(x, 0, k) - way - Beyond(x, step, k);
+  }
+}
+
+// R nu(1), and (5) of the first contacts.
+template <class T, int kRubbing, bool kSlides>
+void RodBalance::End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) const {
+  // R nu by the quaternion: nu + 2 q_0 (q x nu) + 2 q x (q x nu).
+  const Eigen::Matrix<T, 3, 1> axis = y.q.template tail<3>(), moment = Moment(y);
+  const Eigen::Matrix<T, 3, 1> turned = 2.0 * axis.cross(moment);
+  Eigen::Map<Eigen::Matrix<T, 3, 1>>(end, 3) = moment + y.q[0] * turned + axis.cross(turned);
+  if constexpr (kSlides) {
+    for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
+      end[3 + k] = y.way[static_cast<Eigen::Index>(k)] - x[3 + k];
+    }
+  }
+}
+
 // Dormand-Prince's fifth-order formula, `steps_` equal steps per piece. end: R nu(1), then (5).
 template <class T, int kRubbing, bool kSlides, class AtNode>
 bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
@@ -271,31 +316,12 @@ bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
       {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656},
       {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84}};
   using S = State<T, kRubbing, kSlides>;
-  const std::size_t tendons = rod_.pull.size();
-  S y;
-  y.q << T(1), T(0), T(0), T(0);
-  y.u << x[0], x[1], x[2];
-  y.p.setZero();
-  if constexpr (kRubbing > 0) {
-    y.tension.resize(static_cast<Eigen::Index>(tendons));
-    for (std::size_t k = 0; k < tendons; ++k) {
-      y.tension[static_cast<Eigen::Index>(k)] = T(rod_.pull[k]);
-    }
-  }
-  if constexpr (kSlides) y.way.setZero(static_cast<Eigen::Index>(tendons));
+  S y = Base<T, kRubbing, kSlides>(x);
   std::array<S, 6> slope;
   std::array<T, kSlides ? kRubbing : 1> share{};
   const double h = 1.0 / (rod_.disks * steps_);
   for (int step = 0; step < rod_.disks * steps_; ++step) {
-    if constexpr (kSlides) {
-      for (std::size_t k = 0; k < tendons; ++k) {
-        share[k] = step < contacts_ ? Share(step, k, Beyond(x, step, k)) : T(rod_.direction[k]);
-        if (step == 0 || step >= contacts_) continue;
-        const T& way = y.way[static_cast<Eigen::Index>(k)];
-        end[3 + static_cast<std::size_t>(step) * tendons + k] =
-            Beyond(x, 0, k) - way - Beyond(x, step, k);
-      }
-    }
+    if constexpr (kSlides) Slide(step, x, y, share.data(), end);
     for (int stage = 0; stage <= 6; ++stage) {
       S at = y;
       for (int j = 0; j < stage; ++j) {
@@ -310,15 +336,7 @@ bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
     }
     at_node(step + 1, y);
   }
-  // R nu by the quaternion: nu + 2 q_0 (q x nu) + 2 q x (q x nu).
-  const Eigen::Matrix<T, 3, 1> axis = y.q.template tail<3>(), moment = Moment(y);
-  const Eigen::Matrix<T, 3, 1> turned = 2.0 * axis.cross(moment);
-  Eigen::Map<Eigen::Matrix<T, 3, 1>>(end, 3) = moment + y.q[0] * turned + axis.cross(turned);
-  if constexpr (kSlides) {
-    for (std::size_t k = 0; k < tendons; ++k) {
-      end[3 + k] = y.way[static_cast<Eigen::Index>(k)] - x[3 + k];
-    }
-  }
+  End(x, y, end);
   return true;
 }
 

@@ -104,6 +104,12 @@ class RodBalance {
            State<T, kRubbing, kSlides>& dy) const;
   template <class T, int kRubbing, bool kSlides>
   Eigen::Matrix<T, 3, 1> Moment(const State<T, kRubbing, kSlides>& y) const;
+  template <class T, int kRubbing, bool kSlides>
+  State<T, kRubbing, kSlides> Base(const T* x) const;
+  template <class T, int kRubbing>
+  void Slide(int step, const T* x, const State<T, kRubbing, true>& y, T* share, T* end) const;
+  template <class T, int kRubbing, bool kSlides>
+  void End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) const;
   template <class T, int kRubbing, bool kSlides, class AtNode>
   bool Walk(const T* x, T* end, AtNode&& at_node) const;
   // Walk with room for as many tensions as there are.
