@@ -28,13 +28,21 @@ void WarnOfImplausibleCases(const SolveRequest& request, const CsvTable& table, 
   const double force = kMostBend * robot.moment() / robot.length;
   const double tension = kMostBend * robot.moment() / robot.tendon_radius;
   for (std::size_t row = 0; row < cases.size(); ++row) {
+    const auto check_range = [&](const std::string& column, double value, double low, double high,
+                                 const char* unit) {
+      statics::WarnIfImplausible(request, table.Where(row) + ", column '" + column + "'", value,
+                                 low, high, unit);
+    };
     const auto check = [&](const std::string& column, double value, double high, const char* unit) {
-      statics::WarnIfImplausible(request, table.Where(row) + ", column '" + column + "'", value, 0,
-                                 high, unit);
+      check_range(column, value, 0, high, unit);
     };
     const Loads& loads = cases[row].loads;
     for (std::size_t k = 0; k < loads.tension.size(); ++k) {
       check("T" + std::to_string(k + 1), loads.tension[k], tension, "N");
+    }
+    for (Eigen::Index k = 0; k < loads.length.size(); ++k) {
+      check_range("L" + std::to_string(k + 1), loads.length[k], 0.2 * robot.length,
+                  3 * robot.length, "m");
     }
     for (int i = 0; i < 3; ++i) {
       check(std::string("f") + "xyz"[i], loads.tip_force[i], 3 * force, "N");

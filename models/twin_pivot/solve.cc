@@ -77,16 +77,22 @@ void WarnOfImplausibleRobot(const SolveRequest& request, const Robot& robot) {
   }
 }
 
-// A tension is judged by the angle that it alone would bend a joint by.
-void WarnOfImplausibleTensions(const SolveRequest& request, const Robot& robot,
-                               const std::vector<Case>& cases) {
+// A tension is judged by the angle that it alone would bend a joint by, a length by the straight
+// robot's.
+void WarnOfImplausibleCables(const SolveRequest& request, const Robot& robot,
+                             const std::vector<Case>& cases) {
   constexpr double kMostBend = 3;  // rad in one joint
   for (const Case& row : cases) {
-    for (std::size_t j = 0; j < row.load.tension.size(); ++j) {
-      statics::WarnIfImplausible(
-          request,
-          request.input.string() + ": case '" + row.label + "', cable " + std::to_string(j + 1),
-          row.load.tension[j], 0, kMostBend * robot.Stiffness() / robot.r[j], "N");
+    for (int j = 0; j < robot.Cables(); ++j) {
+      const auto check = [&](double value, double low, double high, const char* unit) {
+        const std::string cable = "', cable " + std::to_string(j + 1);
+        statics::WarnIfImplausible(request, request.input.string() + ": case '" + row.label + cable,
+                                   value, low, high, unit);
+      };
+      const auto at = static_cast<std::size_t>(j);
+      check(row.load.tension[at], 0, kMostBend * robot.Stiffness() / robot.r[at], "N");
+      const double straight = robot.Anchor(j) * robot.L;
+      if (row.load.length.size() > 0) check(row.load.length[j], 0.2 * straight, 3 * straight, "m");
     }
   }
 }
@@ -220,7 +226,7 @@ int SolveTwinPivot(const SolveRequest& request) {
   if (request.equilibria && cases.front().load.length.size() > 0) {
     throw Error::Input(request.input.string() + ":1", "tensions with --equilibria", "'L1'");
   }
-  WarnOfImplausibleTensions(request, robot, cases);
+  WarnOfImplausibleCables(request, robot, cases);
   const std::vector<Solution> solved = SolveCases(robot, cases, method);
   const std::vector<Solved> rows = RowsOf(request, robot, cases, solved, method);
   WriteResults(request, robot, rows);

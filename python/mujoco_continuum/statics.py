@@ -33,7 +33,8 @@ def solve(robot: Document, cases: Table | None = None, *, method: str | None = N
     hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop).
     equilibria: all of every case that a search finds, a row each. lambda_: the weight of the method
     fit. plot: a picture of the shapes (.png, .svg, .pdf). shape: a table of places along the centre
-    lines (.csv, .json). progress: called with each warning. Raises JobError only where there are no results at all."""
+    lines (.csv, .json). progress: called with each warning. Raises JobError only where there are no
+    results at all."""
     options = {"--method": method, "--hybrid": "apply" if hybrid else None,
                "--sensitivity": sensitivity, "--equilibria": equilibria, "--lambda": lambda_,
                "--plot": None if plot is None else as_argument(plot),

@@ -33,6 +33,12 @@ class Solve(bench.Bench):
         mc.solve(TDCR / "tdcr.yaml", CASES, plot="shapes.svg", method="pcca")
         self.assertTrue((self.folder / "shapes.svg").exists())
 
+    def test_lists_equilibria_and_places(self):
+        push = {"case": ["a"], "T1": [0], "T2": [0], "T3": [0], "fx": [0.1], "fy": [0], "fz": [-2]}
+        rows = mc.solve(TDCR / "tdcr.yaml", push, method="crt", equilibria=True, shape="line.csv")
+        self.assertEqual([row["status"] for row in rows], ["ok", "saddle", "saddle"])
+        self.assertTrue((self.folder / "line.csv").exists())
+
     def test_gives_the_rows_that_failed_too(self):
         rest, pulled = mc.solve(TDCR / "tdcr.yaml", CASES | {"T1": [0, 1e5]})
         self.assertEqual(rest["status"], "ok")

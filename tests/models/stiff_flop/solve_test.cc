@@ -90,6 +90,27 @@ TEST_F(StiffFlopSolve, ShapesGivePressuresAndPressuresGiveShapes) {
   EXPECT_LT(forward.Number(0, "residual"), 1e-9);
 }
 
+TEST_F(StiffFlopSolve, ListsEquilibriaAndPlacesAlongThem) {
+  request_.method = "hooke+fixed+fixed";
+  request_.equilibria = true;
+  request_.shape = folder_ / "line.csv";
+  Cases("p1,p2,p3,fx,fy,fz\n0,0,0,0.01,-1.5,0\n");
+  const CsvTable table = Solved(0);
+  ASSERT_EQ(table.rows(), 3U);
+  EXPECT_EQ(table.Text(0, "status"), "ok");
+  EXPECT_EQ(table.Text(1, "status"), "saddle");
+  EXPECT_GT(table.Number(1, "energy"), table.Number(0, "energy"));
+  EXPECT_EQ(table.Number(2, "equilibrium"), 3);
+  const CsvTable line = CsvTable::Read(request_.shape);
+  EXPECT_NEAR(line.Number(line.rows() - 1, "y"), table.Number(2, "y"), 1e-6);
+  fs::remove(request_.out);
+  request_.method.clear();
+  Cases("kappa,phi,lambda_l\n20,0.5,1.2\n");
+  EXPECT_NE(Refusal().find("--equilibria"), std::string::npos);
+  request_.equilibria = false;
+  EXPECT_NE(Refusal().find("--shape"), std::string::npos);
+}
+
 TEST_F(StiffFlopSolve, SensitivitiesAreAppended) {
   request_.sensitivity = true;
   Cases("kappa,phi,lambda_l\n20,0.5,1.2\n");

@@ -224,6 +224,57 @@ TEST_F(TdcrSolve, ImplausibleValuesAreNamedWithTheirRange) {
   EXPECT_THAT(heard[0], testing::AllOf(HasSubstr("cases.csv:2, column 'T1'"), HasSubstr("3000 N")));
 }
 
+TEST_F(TdcrSolve, ALengthInMillimetresIsNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  request_.input = Write("cases.csv", "case,L1,L2,L3,fx,fy,fz\na,130,0.14,0.14,0,0,0\n");
+  EXPECT_EQ(SolveTdcr(request_), 0);
+  ASSERT_EQ(heard.size(), 1u);
+  EXPECT_THAT(heard[0], testing::AllOf(HasSubstr("cases.csv:2, column 'L1'"), HasSubstr("130 m")));
+}
+
+TEST_F(TdcrSolve, GivenLengthsGiveTensions) {
+  request_.input = Write("cases.csv", "case,L1,L2,L3,fx,fy,fz\na,0.13,0.14,0.14,0,0,0\n");
+  for (const char* method : {"eas", "pcca", "crt", "crt_friction"}) {
+    request_.method = method;
+    EXPECT_EQ(SolveTdcr(request_), 0);
+    const CsvTable table = CsvTable::Read(request_.out);
+    EXPECT_GT(table.Number(0, "T_1"), 1);
+    EXPECT_EQ(table.Number(0, "T_2"), 0);
+    EXPECT_FALSE(table.Has("l_1"));
+  }
+  std::filesystem::remove(request_.out);
+  request_.equilibria = true;
+  EXPECT_THAT(Message(), testing::AllOf(HasSubstr("cases.csv:1"), HasSubstr("'L1'")));
+  request_.equilibria = false;
+  EXPECT_THAT(MessageOfCases("case,L1,L2,L3,fx,fy,fz\na,-0.13,0.14,0.14,0,0,0\n"),
+              testing::AllOf(HasSubstr("column 'L1'"), HasSubstr("at least 0")));
+  EXPECT_THAT(MessageOfCases("case,L1,L2,fx,fy,fz\na,0.13,0.14,0,0,0\n"), HasSubstr("'L3'"));
+}
+
+TEST_F(TdcrSolve, ListsEquilibriaAndPlacesAlongThem) {
+  request_.input = Write("cases.csv", std::string(kHeader) + "a,0,0,0,0.1,0,-2\n");
+  request_.method = "crt";
+  request_.equilibria = true;
+  request_.shape = folder_ / "line.csv";
+  EXPECT_EQ(SolveTdcr(request_), 0);
+  const CsvTable table = CsvTable::Read(request_.out);
+  ASSERT_EQ(table.rows(), 3u);
+  for (std::size_t row = 0; row < 3; ++row) {
+    EXPECT_EQ(table.Number(row, "equilibrium"), static_cast<double>(row + 1));
+    EXPECT_EQ(table.Text(row, "status"), row == 0 ? "ok" : "saddle");
+  }
+  EXPECT_LT(table.Number(0, "energy"), table.Number(1, "energy"));
+  EXPECT_LT(table.Number(1, "energy"), table.Number(2, "energy"));
+  const CsvTable line = CsvTable::Read(request_.shape);
+  EXPECT_EQ(line.rows() % 3, 0u);
+  EXPECT_EQ(line.Number(line.rows() - 1, "disk"), 9);
+  EXPECT_EQ(line.Number(line.rows() - 1, "z"), table.Number(2, "z"));
+  std::filesystem::remove(request_.out);
+  request_.method = "fit";
+  EXPECT_THAT(Message(), HasSubstr("--equilibria"));
+}
+
 TEST_F(TdcrSolve, WrongUseIsRefused) {
   EXPECT_THAT(Message(), HasSubstr("--input"));
   request_.input = Write("cases.csv", std::string(kHeader) + "a,1,0,0,0,0,0\n");

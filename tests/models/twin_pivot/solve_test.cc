@@ -191,6 +191,38 @@ TEST_F(TwinPivotSolve, ReferenceIsTheSolutionOfAnEarlierRow) {
   EXPECT_GT(table.Number(1, "y"), table.Number(2, "y"));
 }
 
+TEST_F(TwinPivotSolve, GivenLengthsGiveTensions) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  Cases("case,L1,L2,L3,L4\nwound,0.036,0.036,0.04,0.04\nmm,0.036,36,0.04,0.04\n");
+  request_.shape = folder_ / "line.csv";
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  const CsvTable table = CsvTable::Read(request_.out);
+  EXPECT_GT(table.Number(0, "T_1"), 1);
+  EXPECT_EQ(table.Number(0, "T_3"), 0);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_NE(heard[0].find("case 'mm', cable 2: 36 m is implausible"), std::string::npos);
+  const CsvTable line = CsvTable::Read(request_.shape);
+  EXPECT_EQ(line.Number(line.rows() / 2 - 1, "x"), table.Number(0, "x"));
+  EXPECT_LT(line.Number(0, "T_1"), table.Number(0, "T_1"));  // friction at the base disc
+  fs::remove(request_.out);
+  request_.equilibria = true;
+  EXPECT_NE(Refusal().find("'L1'"), std::string::npos);
+}
+
+TEST_F(TwinPivotSolve, ListsEquilibria) {
+  Cases("case,F1,F2,F3,F4\none,5,5,1,1\n");
+  request_.equilibria = true;
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  const CsvTable table = CsvTable::Read(request_.out);
+  ASSERT_EQ(table.rows(), 1U);
+  EXPECT_EQ(table.Number(0, "equilibrium"), 1);
+  EXPECT_LT(table.Number(0, "energy"), 0);
+  fs::remove(request_.out);
+  request_.calibrate = true;
+  EXPECT_NE(Refusal().find("--equilibria"), std::string::npos);
+}
+
 TEST_F(TwinPivotSolve, AnAngleInDegreesAndAnImplausibleTensionAreNamed) {
   std::vector<std::string> heard;
   request_.warn = [&](const std::string& text) { heard.push_back(text); };
