@@ -38,10 +38,12 @@ Pose FramesOf(const mjSpec& spec, mjsElement* element) {
   return pose;
 }
 
-std::vector<mjsElement*> ChildrenOf(mjsBody& body, mjtObj kind) {
+// MuJoCo's own list of a body's children is of no use once one of them has been deleted.
+std::vector<mjsElement*> ChildrenOf(mjSpec& spec, mjsBody& body, mjtObj kind) {
   std::vector<mjsElement*> children;
-  for (mjsElement* e = mjs_firstChild(&body, kind, 0); e; e = mjs_nextChild(&body, e, 0))
-    children.push_back(e);
+  for (mjsElement* e = mjs_firstElement(&spec, kind); e; e = mjs_nextElement(&spec, e)) {
+    if (mjs_getParent(e) == &body) children.push_back(e);
+  }
   return children;
 }
 
@@ -62,17 +64,17 @@ Vector3d PlaceOf(const mjSpec& spec, mjsElement* element, const double* point) {
   return frames.p + frames.R * Eigen::Map<const Vector3d>(point);
 }
 
-Vector3d JointOf(const mjSpec& spec, mjsBody& body) {
-  const auto joints = ChildrenOf(body, mjOBJ_JOINT);
+Vector3d JointOf(mjSpec& spec, mjsBody& body) {
+  const auto joints = ChildrenOf(spec, body, mjOBJ_JOINT);
   if (joints.empty()) return Vector3d::Zero();
   return PlaceOf(spec, joints.front(), mjs_asJoint(joints.front())->pos);
 }
 
 // From the joint; zero: it has no axis.
-Vector3d AxisOf(const mjSpec& spec, mjsBody& body, const mjModel& compiled, const Vector3d& joint) {
+Vector3d AxisOf(mjSpec& spec, mjsBody& body, const mjModel& compiled, const Vector3d& joint) {
   constexpr double kLeast = 1e-9;  // m
   Vector3d farthest = Vector3d::Zero();
-  for (mjsElement* const child : ChildrenOf(body, mjOBJ_BODY)) {
+  for (mjsElement* const child : ChildrenOf(spec, body, mjOBJ_BODY)) {
     const Vector3d r = PlaceOf(spec, child, mjs_asBody(child)->pos) - joint;
     if (r.norm() > farthest.norm()) farthest = r;
   }
@@ -92,7 +94,7 @@ void ScaleBodyLength(mjSpec& spec, mjsBody& body, const mjModel& compiled, doubl
   const Matrix3d A = Matrix3d::Identity() + (factor - 1) * u * u.transpose();  // (1)
   MapBodyMass(spec, body, compiled, A, a - A * a);
   for (const mjtObj kind : {mjOBJ_BODY, mjOBJ_SITE, mjOBJ_GEOM}) {
-    for (mjsElement* const child : ChildrenOf(body, kind)) {
+    for (mjsElement* const child : ChildrenOf(spec, body, kind)) {
       before(child);
       const Pose frames = FramesOf(spec, child);
       for (double* const point : PointsOf(child)) {

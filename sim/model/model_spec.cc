@@ -252,6 +252,7 @@ void ModelSpec::DropVisuals() {
     if (!geom.contype && !geom.conaffinity && inferred && weighs) return;
   }
   spec_->compiler.discardvisual = 1;
+  CompileForNames(*spec_, name_);  // which deletes them, before an edit holds one
 }
 
 ModelSpec::ModelSpec(const ModelSpec& other)

@@ -305,8 +305,8 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["force_share"] = AroundBoundary(
       0.5, [](double share, const Criteria& c) { return ExplainsForce(share, 1, c); });
   e["rival_share"] = Number([](const Criteria& c) { return UnlistedThreshold(100, c); });
-  e["unseen"] = AroundBoundary(5, [](double unseen, const Criteria& c) {
-    return TooManyUnseen(static_cast<std::size_t>(unseen), 20, c);
+  e["unseen"] = AroundBoundary(500, [](double unseen, const Criteria& c) {
+    return TooManyUnseen(static_cast<std::size_t>(unseen), 2000, c);
   });
   e["outdoes"] = AroundBoundary(
       10, [](double explained, const Criteria& c) { return WorthFinishing(0, explained, 100, c); });

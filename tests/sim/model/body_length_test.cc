@@ -33,6 +33,15 @@ std::string Bar(double length, bool in_frame) {
       length / 2, length, place, in_frame ? "</frame>" : "");
 }
 
+// The same with the inertia of the bar written down, so that its geom only looks.
+std::string Weighed(std::string xml) {
+  const std::string weight = R"(<inertial pos=".15 0 0" mass=".4" diaginertia="1e-3 2e-3 2e-3"/>)";
+  xml.insert(xml.find("<joint name=\"j\""), weight);
+  const std::string wheel = R"(<inertial pos="0 0 0" mass=".1" diaginertia="1e-4 1e-4 1e-4"/>)";
+  xml.insert(xml.find("<joint name=\"k\""), wheel);
+  return xml;
+}
+
 // What moves the model at a bent pose: inertia, weight, spin forces, and the cable.
 std::vector<double> Motion(const ModelAndData& machine) {
   const mjModel& m = *machine.model;
@@ -70,6 +79,21 @@ TEST(BodyLength, AnExtendedModelHasIt) {
   const ModelSpec bar = ModelSpec::Parse(Bar(kLength, true));
   const auto there = Motion(ModelSpec::Parse(bar.With(longer, {}).Xml()).Build());
   EXPECT_THAT(there, Pointwise(DoubleNear(1e-12), Motion(bar.Build(longer))));
+}
+
+// MuJoCo deletes geoms that only look, as it compiles such a model.
+TEST(BodyLength, MovesNoGeomThatIsLeftOut) {
+  std::string xml = Bar(kLength, false);
+  const std::string looks = "<geom type='sphere' size='.02' mass='0' contype='0' conaffinity='0'/>";
+  for (int i = 0; i < 20; ++i) xml.insert(xml.find("<site name=\"near\""), looks);
+  ModelSpec arm = ModelSpec::Parse(Weighed(xml));
+  const std::vector<Change> longer{{"body:bar", "effect:link_length", kScale}};
+  const auto seen = Motion(arm.Build(longer)), before = Motion(arm.Build());
+  arm.DropVisuals();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(Motion(arm.Build(longer)), seen);
+    EXPECT_EQ(Motion(arm.Build()), before);
+  }
 }
 
 TEST(BodyLength, TheJointStaysWhereItIs) {
