@@ -56,10 +56,12 @@ Owned<mjModel> Compile(mjSpec& spec, const std::string& name) {
   return model;
 }
 
-// While it lives, textures that MuJoCo paints itself have one pixel.
+// While it lives, textures that MuJoCo paints itself have one pixel. It deletes them where it is to
+// leave out what only looks.
 class WithoutPaint {
  public:
   explicit WithoutPaint(mjSpec& spec) {
+    if (spec.compiler.discardvisual) return;
     for (mjsElement* e = mjs_firstElement(&spec, mjOBJ_TEXTURE); e; e = mjs_nextElement(&spec, e)) {
       mjsTexture* const t = mjs_asTexture(e);
       if (t->builtin == mjBUILTIN_NONE) continue;

@@ -216,6 +216,23 @@ TEST_F(Changed, PaintedTexturesKeepTheirSizes) {
   }
 }
 
+// MuJoCo deletes them as it compiles: nothing may be written to them then.
+TEST_F(Changed, PaintedTexturesMayBeLeftOut) {
+  std::string xml = kArm, textures;
+  for (int i = 0; i < 20; ++i) {
+    textures += "<texture name='chess" + std::to_string(i) +
+                "' type='2d' builtin='checker' width='32' height='16'/>";
+  }
+  xml.insert(xml.find("<worldbody>"),
+             "<compiler discardvisual='true'/><asset>" + textures + "</asset>");
+  const ModelSpec arm = Arm(xml);
+  const ModelSpec copy = arm;
+  EXPECT_EQ(copy.Build().model->ntex, 0);
+  ModelSpec later = Arm();
+  later.DropVisuals();
+  EXPECT_EQ(later.Build().model->nbody, Arm().Build().model->nbody);
+}
+
 TEST_F(Changed, AShortLagIsNearlyNone) {
   const ModelSpec arm = Arm();
   for (const double lag : {0.0, 1e-9}) {
