@@ -109,10 +109,13 @@ std::string WhyUnexplained(const Diagnosis& d) {
 }
 
 std::string WhyAmbiguous(const Diagnosis& d) {
-  std::string text = d.verdict.named.size() > 1 ? "These logs do not distinguish the causes." : "";
-  if (!TooManyUnseen(d)) return text.empty() ? "These logs do not distinguish the causes." : text;
-  if (text.empty()) text = "It does better than every other candidate that there was time for.";
-  return text + fmt::format(" There was no time to look at {}.", FirstOf(UnseenEffects(d)));
+  const std::string alike = "These logs do not distinguish the causes.";
+  if (!TooManyUnseen(d)) return alike;
+  return fmt::format("{} There was no time to look at {}.",
+                     d.verdict.named.size() > 1
+                         ? alike
+                         : "It does better than every other candidate that there was time for.",
+                     FirstOf(UnseenEffects(d)));
 }
 
 std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }

@@ -1,6 +1,6 @@
 #include "sim/model/body_length.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -20,12 +20,10 @@ struct Pose {
 };
 
 Matrix3d RotationOf(const mjSpec& spec, const mjsFrame& frame) {
-  double quat[4], r[9];
-  std::copy(frame.quat, frame.quat + 4, quat);
-  mjs_resolveOrientation(quat, spec.compiler.degree, spec.compiler.eulerseq, &frame.alt);
-  mju_normalize4(quat);
-  mju_quat2Mat(r, quat);
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r);
+  double q[4];
+  std::copy(frame.quat, frame.quat + 4, q);
+  mjs_resolveOrientation(q, spec.compiler.degree, spec.compiler.eulerseq, &frame.alt);
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 
 Pose FramesOf(const mjSpec& spec, mjsElement* element) {

@@ -6,16 +6,13 @@
 
 #include "models/stiff_flop/details.h"
 #include "models/stiff_flop/forward.h"
+#include "models/stiff_flop/published.h"
 
 namespace continuum::stiff_flop {
 namespace {
 
 using Eigen::Vector3d;
 using statics::Branch;
-
-Module Published() {
-  return {2.5e-3, 3e-3, 1.5599752854, 9e-3, 4.5e-3, 12.5e-3, 44e-3, 16.6e-3, 1e5, 24e-3, 1e-3, 1};
-}
 
 const Method kPlain = Method::Parse("hooke+fixed+fixed", Direction::kForward);
 

@@ -8,6 +8,7 @@
 
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
+#include "models/stiff_flop/published.h"
 
 namespace continuum::stiff_flop {
 
@@ -23,10 +24,6 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr double kThird = 2 * pi / 3;
-
-Module Published() {
-  return {2.5e-3, 3e-3, 1.5599752854, 9e-3, 4.5e-3, 12.5e-3, 44e-3, 16.6e-3, 1e5, 24e-3, 1e-3, 1};
-}
 
 // A braid that matters, two tubes per line. (At 80 deg the gas volume of the exact helix is nearly
 // stationary and pressures are huge.)

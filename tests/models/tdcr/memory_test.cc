@@ -4,39 +4,12 @@
 
 #include "models/tdcr/disks.h"
 #include "models/tdcr/model.h"
+#include "models/tdcr/pulled_rows.h"
 
 namespace continuum::tdcr {
 namespace {
 
 constexpr Method kMethods[] = {Method::kEas, Method::kPcca};
-
-Robot Nominal() { return ReadRobot(Yaml::Read(CONTINUUM_SOURCE "/models/tdcr/tdcr.yaml")); }
-
-Loads Pull(const Robot& robot, std::vector<double> tension) {
-  Loads loads = NoLoads(robot);
-  loads.tension = std::move(tension);
-  loads.tip_force = {0.02, 0.01, 0};
-  loads.direction.assign(3, kAsItSlides);
-  return loads;
-}
-
-// Tensions in equal rows from one set to another, each from the state of the row before.
-Solution InRows(const Robot& robot, const std::vector<double>& from, const std::vector<double>& to,
-                int rows, Method method, Solution state) {
-  Loads earlier = Pull(robot, from);
-  for (int row = 1; row <= rows; ++row) {
-    Loads load = Pull(robot, to);
-    for (std::size_t k = 0; k < to.size(); ++k) {
-      load.tension[k] = from[k] + (to[k] - from[k]) * row / rows;
-    }
-    state = SolveFrom(robot, earlier, state, load, method);
-    EXPECT_TRUE(state.outcome.ok()) << row << ": " << state.outcome.why;
-    earlier = load;
-  }
-  return state;
-}
-
-Eigen::Vector3d Tip(const Solution& s) { return s.disks.rightCols<1>(); }
 
 // The derivatives of the shares too, by differences.
 TEST(TdcrMemory, TheTangentIsTheDerivativeOfTheBalance) {

@@ -7,6 +7,7 @@
 #include "models/statics/slide.h"
 #include "models/tdcr/model.h"
 #include "models/tdcr/polygon.h"
+#include "models/tdcr/pulled_rows.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -14,33 +15,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr auto kRod = Method::kCrtFriction;
-
-Robot Nominal() { return ReadRobot(Yaml::Read(CONTINUUM_SOURCE "/models/tdcr/tdcr.yaml")); }
-
-Loads Pull(const Robot& robot, std::vector<double> tension) {
-  Loads loads = NoLoads(robot);
-  loads.tension = std::move(tension);
-  loads.tip_force = {0.02, 0.01, 0};
-  loads.direction.assign(3, kAsItSlides);
-  return loads;
-}
-
-Solution InRows(const Robot& robot, const std::vector<double>& from, const std::vector<double>& to,
-                int rows, Solution state) {
-  Loads earlier = Pull(robot, from);
-  for (int row = 1; row <= rows; ++row) {
-    Loads load = Pull(robot, to);
-    for (std::size_t k = 0; k < to.size(); ++k) {
-      load.tension[k] = from[k] + (to[k] - from[k]) * row / rows;
-    }
-    state = SolveFrom(robot, earlier, state, load, kRod);
-    EXPECT_TRUE(state.outcome.ok()) << row << ": " << state.outcome.why;
-    earlier = load;
-  }
-  return state;
-}
-
-Vector3d Tip(const Solution& s) { return s.disks.rightCols<1>(); }
 
 TEST(TdcrRodMemory, DirectionsAreThoseThatSlide) {
   const Robot robot = Nominal();
@@ -70,9 +44,9 @@ TEST(TdcrRodMemory, OnePullDoesNotDependOnTheNumberOfRows) {
   const Robot robot = Nominal();
   const std::vector<double> low{1, 0.5, 0.5}, high{5, 1, 0.5};
   const Solution start = SolveCase(robot, Pull(robot, low), kRod);
-  const Solution once = InRows(robot, low, high, 1, start);
+  const Solution once = InRows(robot, low, high, 1, kRod, start);
   for (const int rows : {2, 10}) {
-    EXPECT_LT((Tip(InRows(robot, low, high, rows, start)) - Tip(once)).norm(), 1e-6) << rows;
+    EXPECT_LT((Tip(InRows(robot, low, high, rows, kRod, start)) - Tip(once)).norm(), 1e-6) << rows;
   }
   EXPECT_LT((Tip(SolveCase(robot, Pull(robot, high), kRod)) - Tip(once)).norm(), 1e-6);
 }
@@ -81,10 +55,10 @@ TEST(TdcrRodMemory, ACycleClosesAHysteresisLoop) {
   const Robot robot = Nominal();
   const std::vector<double> low{1, 0.5, 0.5}, high{5, 0.5, 0.5};
   const Solution start = SolveCase(robot, Pull(robot, low), kRod);
-  const Solution up = InRows(robot, low, high, 2, start);
-  const Solution down = InRows(robot, high, low, 2, up);
-  const Solution again = InRows(robot, low, high, 2, down);
-  const Solution back = InRows(robot, high, low, 2, again);
+  const Solution up = InRows(robot, low, high, 2, kRod, start);
+  const Solution down = InRows(robot, high, low, 2, kRod, up);
+  const Solution again = InRows(robot, low, high, 2, kRod, down);
+  const Solution back = InRows(robot, high, low, 2, kRod, again);
   EXPECT_LT((Tip(back) - Tip(down)).norm(), 1e-9);
   EXPECT_GT((Tip(down) - Tip(start)).norm(), 5e-4);
   Loads released = Pull(robot, low);
@@ -98,8 +72,8 @@ TEST(TdcrRodMemory, APartOfTheWayBackIsThatOfAnIndependentPolygon) {
   const Robot robot = Nominal();
   const std::vector<double> low{1, 0.5, 0.5}, high{5, 0.5, 0.5}, part{4.4, 0.5, 0.5};
   const Solution start = SolveCase(robot, Pull(robot, low), kRod);
-  const Solution up = InRows(robot, low, high, 4, start);
-  const Solution down = InRows(robot, high, part, 1, up);
+  const Solution up = InRows(robot, low, high, 4, kRod, start);
+  const Solution down = InRows(robot, high, part, 1, kRod, up);
   const Contacts& c = down.contacts;
   EXPECT_LT(c.share.col(0).minCoeff(), -0.9);  // the base has turned
   EXPECT_GT(c.share.col(0).maxCoeff(), 0.9);   // the tip has not
