@@ -127,6 +127,9 @@ void AddParameter(const Param& card, const std::vector<std::string>& names, cons
   p.initial = factor ? null * (1 + typical) : null + typical * size;
   p.lower = factor ? std::min(0.1 * null, 10 * null) : card.unit == "s" ? 0 : null - size;
   p.upper = factor ? std::max(0.1 * null, 10 * null) : null + reach * size;
+  if (card.unit == "1" && !factor) {  // of a clock, whose card has its bounds
+    p.lower = std::max(p.lower, card.lower), p.upper = std::min(p.upper, card.upper);
+  }
   h.extra.push_back(p);
   h.null.push_back(null);
 }

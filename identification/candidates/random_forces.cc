@@ -35,6 +35,7 @@ ForceTerms Force(const std::vector<Term>& terms, const Sizes& sizes, const Speed
       const double q = d.qpos[m.jnt_qposadr[j]], v = scaled(d.qvel[dof]);
       const double load = d.qfrc_actuator[dof];
       for (std::size_t k = 0; k < terms.size(); ++k) {
+        if (theta[k] == 0) continue;
         const Term& t = terms[k];
         d.qfrc_applied[dof] +=
             theta[k] * std::cos(t.angle * q + t.speed * v + t.load * load + t.phase);

@@ -129,7 +129,7 @@ Fitted CandidateFitter::Continue(const Problem& problem, const Fitted& before) c
   Matrix slopes = SlopesOf(problem, before);
   options.slopes = &slopes;
   f.fit = FitParameters(problem, before.fit.x, train, options);
-  f.residuals = problem.Residuals(f.fit.x, problem.AllLogs());
+  f.residuals = problem.Residuals(f.fit.x, train);
   f.error.train = problem.PooledRms(f.residuals, train);
   f.cost = 2 * f.fit.cost;
   return f;

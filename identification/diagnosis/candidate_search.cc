@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -60,6 +61,14 @@ bool FollowsTheSameMotion(const CandidateFitter& fitter, const CandidateResult& 
                      fitter.whitening.active(), fitter.criteria);
 }
 
+// The directions of two candidates together.
+Probe Beside(const Probe& a, const Probe& b) {
+  Probe both{Problem::Matrix(a.columns.rows(), a.columns.cols() + b.columns.cols()), a.sign};
+  both.columns << a.columns, b.columns;
+  both.sign.insert(both.sign.end(), b.sign.begin(), b.sign.end());
+  return both;
+}
+
 // The experiment with the candidates of the options, if any, in place of its own.
 Experiment Asking(const Experiment& experiment, const DiagnosisOptions& options) {
   Experiment wanted = experiment;
@@ -91,6 +100,7 @@ CandidateSearch::CandidateSearch(const SearchContext& context, const BaseFit& ba
     : fitter_(context.fitter),
       base_(base),
       base_problem_(*context.fitter.experiment, *base.system, base.given),
+      as_fitted_{base.fitted->fit.x, base.fitted->residuals},
       noise_(context.noise),
       sizes_(context.sizes),
       options_(context.options),
@@ -107,9 +117,25 @@ std::vector<Probe> CandidateSearch::Probes(const CandidateResult& c,
                                            const ProjectedResidual& residual,
                                            const std::vector<std::size_t>& starts) const {
   Problem problem = ProblemOf(c, *fitter_.experiment);
-  if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
-  return ProbesOf(c.hypothesis, problem, *base_.fitted, residual, fitter_.whitening.active(),
-                  starts, criteria_);
+  const bool measured = c.hypothesis.OnlyMeasured();
+  const bool coarse = !measured && coarse_ && !NeedsOwnStep(problem);
+  if (measured) problem.Recall(base_problem_);
+  if (coarse) problem.StepBy(coarse_->step);
+  return ProbesOf(c.hypothesis, problem, coarse ? coarse_->base : as_fitted_, residual,
+                  fitter_.whitening.active(), starts, criteria_);
+}
+
+// The base in coarse steps, where it can be simulated in them.
+void CandidateSearch::SimulateCoarsely() {
+  Problem problem = base_problem_;
+  const double step = CoarseStep(problem);
+  if (!(step > problem.step())) return;
+  problem.StepBy(step);
+  const std::vector<bool> train = TrainLogs(*fitter_.experiment);
+  auto residuals = problem.Residuals(base_.fitted->fit.x, train);
+  for (std::size_t l = 0; l < train.size(); ++l)
+    if (train[l] && !residuals[l].allFinite()) return;
+  coarse_ = {step, {base_.fitted->fit.x, std::move(residuals)}};
 }
 
 void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
@@ -178,6 +204,12 @@ void CandidateSearch::KeepThoseThatMayOutdo(const CandidateResult& best) {
   std::erase_if(candidates, [&](const CandidateResult&) { return hopeless[i++] != 0; });
 }
 
+void CandidateSearch::DropHopeless(const std::set<std::string>& names) {
+  std::erase_if(candidates, [&](const CandidateResult& c) {
+    return !(c.force_promise > 0) && names.contains(c.hypothesis.NameAtPlace());
+  });
+}
+
 // Every candidate in its first shape and in that which the missing force wants; in all its shapes
 // where it is not hopeless in those, or where there is no missing force to see.
 void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forces) {
@@ -207,13 +239,15 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
   });
 }
 
-void CandidateSearch::Screen(const std::vector<EquationErrors>& views,
-                             const CandidateResult* rival) {
+void CandidateSearch::Screen(const std::vector<EquationErrors>& views, const CandidateResult* rival,
+                             const std::set<std::string>& hopeless) {
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
   base_squares_ = residual.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
+  SimulateCoarsely();
   for (const EquationErrors& view : views) LookAtForces(view, rival);
   if (rival) KeepThoseThatMayOutdo(*rival);
+  DropHopeless(hopeless);
   ProbeAll(residual, !views.empty() && views.front().any());
   std::vector<std::vector<Probe>> probes;
   for (CandidateResult& c : candidates) probes.push_back(std::move(c.probes));
@@ -324,6 +358,28 @@ double CandidateSearch::MostExplained() const {
   return best;
 }
 
+std::set<std::string> CandidateSearch::HopelessBeside(const CandidateResult& first) const {
+  constexpr double kShare = 0.2;  // first order is wrong by factors
+  if (first.probes.empty()) return {};
+  const Probe& own = first.probes.front();
+  const Problem::Vector z = fitter_.ProjectedResidualOf(*base_.fitted).vector();
+  const double alone = ExplainedBy(own, z).amount;
+  std::map<std::string, double> added;
+  double most = 0;
+  for (const auto* all : {&candidates, &dismissed}) {
+    for (const CandidateResult& c : *all) {
+      if (c.probes.empty()) continue;
+      double& more = added[c.hypothesis.NameAtPlace()];
+      more = ExplainedBy(Beside(own, c.probes.front()), z).amount - alone;
+      most = std::max(most, more);
+    }
+  }
+  std::set<std::string> names;
+  for (const auto& [name, more] : added)
+    if (more < kShare * most) names.insert(name);
+  return names;
+}
+
 double CandidateSearch::ExplainableShare() const {
   const double above = base_.fitted->cost - base_.fitted->sensitivities.value().freedom;
   return above > 0 ? MostExplained() / above : 0;
@@ -430,9 +486,12 @@ LackOfFit CandidateSearch::LackOf(CandidateResult* c) const {
 }
 
 // What a coarse step adds hides what else is wrong. Where joints stick and slip it falls slowly,
-// and a fit may end in another local minimum.
+// and a fit may end in another local minimum. Where it is of first order in the step it is taken
+// off already, and nothing more falls.
 bool CandidateSearch::FallsWithStep(CandidateResult& c) const {
-  if (!c.falls_with_step) c.falls_with_step = FitsBetterAtFineStep(c);
+  if (!c.falls_with_step)
+    c.falls_with_step = IsRough(fitter_.ProjectedResidualOf(c.fitted).roughness(), criteria_) &&
+                        FitsBetterAtFineStep(c);
   return *c.falls_with_step;
 }
 
@@ -449,6 +508,7 @@ bool CandidateSearch::FitsBetterAtFineStep(CandidateResult& c) const {
     Fitted known = c.at_quarter_step ? *c.at_quarter_step : fitter_.Continue(fine, c.fitted);
     c.at_quarter_x = known.fit.x;
     if (falls(std::move(known))) return true;
+    if (fitter_.TimeIsOver()) return false;
     Fitted anew = c.fitted;
     anew.fit.x = BestOf(fine, ExperimentStarts(fine, c)).x;
     return falls(fitter_.Continue(fine, anew));

@@ -2,6 +2,9 @@
 
 #include <limits>
 #include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/candidate_fitter.h"
@@ -41,8 +44,10 @@ class CandidateSearch {
   /// force at the measured states, and how often noise alone would let the best of so many do as
   /// well. views: of the forces that are missing at the base; rival: of candidates that nobody
   /// asked for, what they have to outdo: those that plainly do not are dropped after a look at one
-  /// log.
-  void Screen(const std::vector<EquationErrors>& views, const CandidateResult* rival = nullptr);
+  /// log. hopeless: names at places of those that are dropped unless the missing force promises
+  /// something.
+  void Screen(const std::vector<EquationErrors>& views, const CandidateResult* rival = nullptr,
+              const std::set<std::string>& hopeless = {});
   /// Fits those that come near the best to first order, if a candidate is significant or the
   /// residual is plainly not noise; then best first, the others dismissed. beside: a search from
   /// the same base that has been fitted, whose best they have to come near; limit: of fits.
@@ -84,6 +89,9 @@ class CandidateSearch {
   double Likelihood(const Fitted& fitted) const;
   /// What a fit takes of the base's squared error above the noise and what the time step adds.
   double ErrorShare(const Fitted& fitted) const;
+  /// Names at places of candidates that, to first order, explain little beside one of this search,
+  /// in comparison with what the best adds to that one.
+  std::set<std::string> HopelessBeside(const CandidateResult& first) const;
   double smallest_p() const { return smallest_p_; }  ///< of all candidates that are not skipped
   /// How much of the base's squares above the noise the best candidate explains, to first order.
   double ExplainableShare() const;
@@ -96,12 +104,14 @@ class CandidateSearch {
  private:
   std::vector<Probe> Probes(const CandidateResult& c, const ProjectedResidual& residual,
                             const std::vector<std::size_t>& starts) const;
+  void SimulateCoarsely();
   void ProbeOne(CandidateResult& c, const ProjectedResidual& residual,
                 const std::vector<std::size_t>& starts);
   std::vector<CandidateResult*> CheapestFirst();
   std::vector<CandidateResult*> InOrderOfForce();
   double LookAt(const CandidateResult& c, const ProjectedResidual& residual) const;
   void KeepThoseThatMayOutdo(const CandidateResult& best);
+  void DropHopeless(const std::set<std::string>& names);
   void ProbeAll(const ProjectedResidual& residual, bool sees_forces);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);
@@ -119,6 +129,7 @@ class CandidateSearch {
   bool ReachesNoise(const Fitted& fitted) const;
   bool TakesMainShare(const Fitted& fitted) const;
   bool IsEnough(const Fitted& fitted) const;
+  void LeaveOthers(double needed, std::size_t next);
   void SayFit(const CandidateResult& c, double needed) const;
   static constexpr std::size_t kStartsTried = 2;
   void FitOne(CandidateResult& c, double rival, std::size_t tried = kStartsTried) const;
@@ -155,6 +166,12 @@ class CandidateSearch {
   const CandidateFitter& fitter_;
   BaseFit base_;
   Problem base_problem_;
+  ProbeBase as_fitted_;
+  struct Coarse {
+    double step;  // [s]
+    ProbeBase base;
+  };
+  std::optional<Coarse> coarse_;
   const Noise& noise_;
   const Sizes& sizes_;
   const DiagnosisOptions options_;

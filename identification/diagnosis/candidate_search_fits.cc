@@ -18,6 +18,7 @@
 namespace continuum {
 namespace {
 constexpr std::size_t kWave = 4;  // candidates that are fitted beside each other
+constexpr double kBetter = 0.98;  // of the best cost so far
 
 // Without those that are next to one before them: two views of the missing force often say the
 // same.
@@ -95,11 +96,16 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
   const CandidateResult* const known = beside ? beside->leading() : nullptr;
   if (beside) needed = std::max(needed, UnlistedThreshold(beside->MostExplained(), criteria_));
   double rival = known ? known->fitted.fit.cost : kInfinity;
+  double best = rival;
   bool reached = known && IsEnough(known->fitted);
   const double alike =
       0.5 * (StepReduction(*base_.fitted) + criteria_.structure_least * base_.fitted->cost);
-  std::size_t next = 0;
+  std::size_t next = 0, since_better = 0;
   while (limit > 0) {
+    if (std::isfinite(fitter_.until) && GoOnInVain(since_better, criteria_)) {
+      LeaveOthers(needed, next);
+      break;
+    }
     const auto wave = NextWave(needed, std::min(limit, kWave), next);
     if (wave.empty()) break;
     limit -= wave.size();
@@ -114,7 +120,10 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
     StopIfRequested();
     FitPlainer();
     for (const CandidateResult* const c : wave) {
-      if (!noise_.known() || !c->was_fitted) continue;
+      ++since_better;
+      if (!c->was_fitted) continue;
+      if (c->fitted.fit.cost < kBetter * best) best = c->fitted.fit.cost, since_better = 0;
+      if (!noise_.known()) continue;
       rival = std::min(rival, c->fitted.fit.cost);
       if (!IsEnough(c->fitted)) continue;
       reached = true;
@@ -124,6 +133,12 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
   FinishAbandoned();
   CompleteCompetitive(known ? known->fitted.cost : kInfinity);
   Dismiss();
+}
+
+// From the next one on.
+void CandidateSearch::LeaveOthers(double needed, std::size_t next) {
+  for (; next < candidates.size(); ++next)
+    candidates[next].outdone = IsWorthAFit(candidates[next], needed);
 }
 
 // Those that are fitted beside each other, from the next one on: as many whatever the machine, as
@@ -426,8 +441,8 @@ bool CandidateSearch::CompleteOne(CandidateResult& c, double best) const {
   c.was_fitted = c.error.empty();
   if (!c.was_fitted) return false;
   const double behind = c.fitted.cost - best, promise = base_.fitted->cost - best;
-  if (!c.at_quarter_step && behind < std::min(StepReduction(c.fitted), promise))
-    RefitAtQuarterStep(c);
+  const bool close = behind < std::min(StepReduction(c.fitted), promise);
+  if (close && !c.at_quarter_step && !fitter_.TimeIsOver()) RefitAtQuarterStep(c);
   return true;
 }
 

@@ -73,7 +73,7 @@ class PairSearch {
     for (const CandidateResult* const c : FirstCauses()) {
       if (const CandidateResult* const complete = Completed(*c)) Await(*complete);
     }
-    while (!waiting_.empty() && static_cast<double>(tried_.size()) < criteria_.pair_bases &&
+    while (!waiting_.empty() && static_cast<double>(bases_) < criteria_.pair_bases &&
            !context_.fitter.TimeIsOver()) {
       const CandidateResult* const base = waiting_.front();
       waiting_.pop_front();
@@ -146,15 +146,80 @@ class PairSearch {
   // The best second cause beside a first; it is the next first.
   void Extend(const CandidateResult& first) {
     const auto inside = context_.options.Inside(DiagnosisStage::kSecondCause,
-                                                "beside " + Key(first.hypothesis), tried_.size());
+                                                "beside " + Key(first.hypothesis), bases_);
     CandidateSearch search =
-        ScreenBeside({context_.fitter, context_.noise, context_.sizes, inside}, first);
+        ScreenBeside({context_.fitter, context_.noise, context_.sizes, inside}, first,
+                     single_.HopelessBeside(first));
     if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
     search.Fit(nullptr, kSeconds);
+    ++bases_;
     if (!search.leading()) return;
     const std::string partner = Key(search.leading()->hypothesis);
     tried_.push_back({&first, std::move(search)});
+    Vary(first, *tried_.back().search.leading());
     if (const CandidateResult* const next = Alone(partner)) Await(*next, true);
+  }
+
+  // The same second cause beside others that explain nearly as much as the first one by themselves:
+  // which of them it is shows only beside it.
+  void Vary(const CandidateResult& first, const CandidateResult& second) {
+    constexpr double kAlike = 0.9;
+    constexpr std::size_t kMost = 3;
+    std::size_t varied = 0;
+    for (const CandidateResult& c : single_.candidates) {
+      if (varied == kMost || context_.fitter.TimeIsOver()) return;
+      const bool alike = c.was_fitted && c.likelihood >= kAlike * first.likelihood;
+      const std::set<std::string> both{Key(c.hypothesis), Key(second.hypothesis)};
+      if (alike && both.size() == 2 && !IsFitted(both)) varied += FitBeside(c, second);
+    }
+  }
+
+  bool IsFitted(const std::set<std::string>& pair) const {
+    return std::any_of(tried_.begin(), tried_.end(), [&](const Beside& one) {
+      const auto& seconds = one.search.candidates;
+      return std::any_of(seconds.begin(), seconds.end(), [&](const CandidateResult& c) {
+        return pair == std::set{Key(one.first->hypothesis), Key(c.hypothesis)};
+      });
+    });
+  }
+
+  // From where the second one has ended beside another first one. Whether there is such a pair.
+  bool FitBeside(const CandidateResult& first, const CandidateResult& second) {
+    const CandidateResult* const base = Completed(first);
+    if (!base) return false;
+    auto inside =
+        context_.options.Inside(DiagnosisStage::kSecondCause, "beside " + Key(first.hypothesis));
+    inside.candidates = {second.hypothesis.effect};
+    CandidateSearch search({context_.fitter, context_.noise, context_.sizes, inside},
+                           {&base->hypothesis.system, base->hypothesis.Free(), &base->fitted});
+    auto& all = search.candidates;
+    std::erase_if(all, [&](const CandidateResult& c) {
+      return Key(c.hypothesis) != Key(second.hypothesis) ||
+             c.hypothesis.extra.size() != second.hypothesis.extra.size();
+    });
+    if (all.empty()) return false;
+    all.front().other_starts = StartsBeside(*base, second);
+    try {
+      all.front() = search.FitAlone(all.front());
+    } catch (const Error&) {
+      return false;
+    }
+    tried_.push_back({base, std::move(search)});
+    return true;
+  }
+
+  // The other parameters as the first one wants them alone, or as they were beside the second one.
+  static std::vector<Problem::Vector> StartsBeside(const CandidateResult& first,
+                                                   const CandidateResult& second) {
+    const Problem::Vector& pair = second.fitted.fit.x;
+    const auto own = static_cast<Eigen::Index>(second.hypothesis.extra.size());
+    const auto others = pair.size() - own -
+                        static_cast<Eigen::Index>(second.hypothesis.given.size());
+    Problem::Vector alone(first.fitted.fit.x.size() + own);
+    alone << first.fitted.fit.x, pair.tail(own);
+    Problem::Vector beside = alone;
+    beside.head(others) = pair.head(others);
+    return {alone, beside};
   }
 
   // The fit of a cause without another; null when it has none.
@@ -341,8 +406,9 @@ class PairSearch {
   // A cause that is small beside the first; on logs that were not fitted too.
   bool TakesTheRest(const Fitting& pair) const {
     const TwoErrors &before = pair.a->fitted.error, &after = pair.b->fitted.error;
+    const double floor = context_.noise.floor();
     const auto falls = [&](double from, double to) {
-      return to <= (1 - criteria_.median_gain) * from;
+      return WithoutPart(to, floor) <= (1 - criteria_.median_gain) * WithoutPart(from, floor);
     };
     return ShareOfRest(pair) >= criteria_.main_share && falls(before.train, after.train) &&
            (before.validate == 0 || falls(before.validate, after.validate));
@@ -369,15 +435,18 @@ class PairSearch {
   std::set<std::string> known_;
   std::deque<CandidateResult> alone_;  // where single_ has no complete fit
   std::deque<Beside> tried_;
+  std::size_t bases_ = 0;  // that were searched for a second cause
 };
 
 }  // namespace
 
-CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult& first) {
+CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult& first,
+                             const std::set<std::string>& hopeless) {
   const Experiment& e = *context.fitter.experiment;
   CandidateSearch search(context,
                          {&first.hypothesis.system, first.hypothesis.Free(), &first.fitted});
-  search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))});
+  search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))},
+                nullptr, hopeless);
   return search;
 }
 

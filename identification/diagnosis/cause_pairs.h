@@ -5,7 +5,9 @@
 namespace continuum {
 
 /// What every candidate could explain beside a first cause, which has to stay where it is.
-CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult& first);
+/// hopeless: CandidateSearch::HopelessBeside.
+CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult& first,
+                             const std::set<std::string>& hopeless = {});
 
 /// Two causes that act together.
 struct Pair {

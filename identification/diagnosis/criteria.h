@@ -157,6 +157,9 @@ struct Criteria {
   Rule hopeless_factor{"hopeless_factor", 1.1, "times the best cost so far",
                        "a fit that is not going to come nearer is given up"};
   Rule hopeless_offset{"hopeless_offset", 50, "half squares", "added to that"};
+  Rule fits_in_vain{"fits_in_vain", 8, "fits",
+                    "in the order of what they promise: where so many in a row bring nothing, what "
+                    "is left of the time is better spent on two causes"};
   Rule completed_within{"completed_within", 50, "squares",
                         "behind the best: candidates beyond get no sensitivities, which are "
                         "expensive"};
@@ -181,7 +184,7 @@ struct Criteria {
   Rule second_share{"second_share", 0.05, "share of the squares above the noise",
                     "what is left by the way in which a cause is simulated is less: a second "
                     "cause of that size is told, not named"};
-  Rule rest_noise{"rest_noise", 2, "times the noise",
+  Rule rest_noise{"rest_noise", 1.25, "times the noise",
                   "a main cause that leaves more may hide one that is small beside it"};
   Rule correction{"correction", 0.05, "share of a number of the model",
                   "masses, gains and stiffnesses are known to a few per cent: such a change beside "
@@ -259,6 +262,7 @@ inline constexpr std::array kAllRules{
     &Criteria::outdoes,
     &Criteria::hopeless_factor,
     &Criteria::hopeless_offset,
+    &Criteria::fits_in_vain,
     &Criteria::completed_within,
     &Criteria::still_gains,
     &Criteria::still_gains_share,

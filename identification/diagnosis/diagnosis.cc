@@ -195,8 +195,8 @@ class Session {
     Judge(search);
     Begin(DiagnosisStage::kOtherCandidates);
     TryOtherPlaces(search);
-    const bool again = SomethingIsLeft(search) || search.HasLostFits();
-    if (again && search.RefitFromExperimentStart()) Judge(search);
+    FitAnew(search);
+    Begin(DiagnosisStage::kOtherCandidates);
     CompareUnlisted(search);
     Begin(DiagnosisStage::kSecondCause);
     const bool two = search.leading() && MayBeTwo(d_.verdict, d_.lack_of_fit, search.smallest_p(),
@@ -208,6 +208,7 @@ class Session {
       if (auto by_error = NameByError(search.Records(), d_.criteria)) d_.verdict = *by_error;
     }
     if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) &&
+        search.BestOverNoise() < d_.criteria.near_noise &&
         IsWithinNoise(d_.before.error.train, {d_.noise.rms, d_.noise.step})) {
       d_.verdict = Verdict::Adequate(
           "what shows is smaller than noise and time step, and no candidate of the list explains "
@@ -239,6 +240,7 @@ class Session {
 
   static Dismissed::Why WhyDismissed(const CandidateResult& c) {
     if (c.probes.empty()) return Dismissed::Why::kNoTimeForALook;
+    if (c.outdone) return Dismissed::Why::kOthersInVain;
     return c.no_time ? Dismissed::Why::kNoTimeForAFit : Dismissed::Why::kExplainsTooLittle;
   }
 
@@ -279,11 +281,10 @@ class Session {
   void ConfirmOnFolds() {
     if (!d_.chosen()) return;
     if (d_.verdict.complete) {
-      const double before = d_.before.error.validate;
-      if (!(before > 0) || d_.chosen()->fitted.error.validate < before) return;
+      if (!RaisesValidateSquares(d_.chosen()->fitted)) return;
       const std::string name = d_.chosen()->hypothesis.NameAtPlace();
       d_.verdict = Verdict::Adequate(fmt::format(
-          "{} does a little better on its own logs and no better on those left out", name));
+          "{} does a little better on its own logs and worse on those left out", name));
       d_.partner.reset();
       return;
     }
@@ -294,6 +295,17 @@ class Session {
         d_.before.error.validate, d_.chosen()->fitted.error.validate, floor, d_.criteria);
     if (held_out && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
     TakeNameBack("does not lower the error of logs left out as it does that of its own");
+  }
+
+  // In units of the noise, as the error of a log is mostly its own offset or drift; by more than
+  // chance, what a parameter gains from noise.
+  bool RaisesValidateSquares(const Fitted& fitted) const {
+    auto validate = TrainLogs(e_);
+    validate.flip();
+    const auto squares = [&](const Fitted& f) {
+      return fitter_.whitening.Stack(f.residuals, validate).squaredNorm();
+    };
+    return squares(fitted) > squares(d_.before) + d_.criteria.parameter_cost;
   }
 
   // The folds are made of train logs; the validate logs have a say of their own.
@@ -332,7 +344,9 @@ class Session {
 
   // Where no effect explains it at all joints together it may be at one of them.
   void TryOtherPlaces(CandidateSearch& search) {
+    constexpr double kShare = 0.08;  // of the time: single places are many
     if (!SomethingIsLeft(search) || !HasTimeFor("candidates at other places")) return;
+    fitter_.until = time_.EndOf(DiagnosisStage::kOtherCandidates, kShare);
     const auto inside = options_.Inside(DiagnosisStage::kOtherCandidates, "at other places");
     CandidateSearch others(Context(inside), Base(), SearchScope::kOthers);
     const bool fitted = Part("candidates at other places", [&] {
@@ -342,6 +356,13 @@ class Session {
     if (!fitted || others.candidates.empty()) return;
     search.Join(std::move(others));
     Judge(search);
+  }
+
+  void FitAnew(CandidateSearch& search) {
+    constexpr double kShare = 0.08;  // of the time
+    if (!SomethingIsLeft(search) && !search.HasLostFits()) return;
+    fitter_.until = time_.EndOf(DiagnosisStage::kOtherCandidates, kShare);
+    if (search.RefitFromExperimentStart()) Judge(search);
   }
 
   // A name that stands only because the list omits its rival is none.
@@ -454,7 +475,8 @@ class Session {
   void FitFinely() {
     for (const std::size_t i : d_.verdict.named) {
       CandidateResult& c = d_.candidates[i];
-      if (!c.fitted.complete()) continue;
+      const bool first = i == d_.verdict.named.front();
+      if (!c.fitted.complete() || (!first && fitter_.TimeIsOver())) continue;
       options_.Say(DiagnosisStage::kJudgement, "at a fine step, " + c.hypothesis.Name());
       fitter_.FitFinely(ProblemOf(c, e_), c.at_quarter_x, c.fitted);
     }

@@ -59,6 +59,10 @@ double TimeBudget::EndOf(DiagnosisStage stage) const {
   return begin_processor_ + shares.end[i] * shares.seconds;
 }
 
+double TimeBudget::EndOf(DiagnosisStage stage, double share) const {
+  return std::min(EndOf(stage), ProcessorSeconds() + share * SharesOf(effort_).seconds);
+}
+
 double TimeBudget::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }

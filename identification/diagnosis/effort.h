@@ -20,6 +20,8 @@ class TimeBudget {
 
   /// ProcessorSeconds until which a stage may go on; infinite for an effort without limit.
   double EndOf(DiagnosisStage stage) const;
+  /// The same of a part that begins now and takes at most this share of the whole.
+  double EndOf(DiagnosisStage stage, double share) const;
   double seconds() const;  ///< by the clock on the wall, since it began
 
  private:

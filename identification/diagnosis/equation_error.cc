@@ -22,25 +22,9 @@ using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
 constexpr double kNothing = 1e-6;  // of the missing force
-// Steps of the model: what a law changes in a force is seen in a few steps from the measured state
-// as well as in many. Not what a law remembers, which it learns on the way; and to the engine a
-// delay shorter than a step is a whole one.
+// Steps of the model: what a law changes in a force is seen in one step from the measured state as
+// well as in many.
 constexpr double kCoarse = 5;
-
-bool Remembers(const mjModel& m) {
-  for (int i = 0; i < m.nplugin; ++i) {
-    const EffectInfo* const effect = EffectOf(m, i);
-    if (effect && effect->remembers) return true;
-  }
-  return false;
-}
-
-bool NeedsOwnStep(const Problem& problem) {
-  const auto& parameters = problem.parameters();
-  return Remembers(problem.system().model()) ||
-         std::any_of(parameters.begin(), parameters.end(),
-                     [](const FreeParameter& p) { return p.change.attribute == "delay"; });
-}
 
 }  // namespace
 

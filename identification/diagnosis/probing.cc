@@ -24,11 +24,11 @@ double MostShare(const Hypothesis& h, const std::vector<double>& start, std::siz
 // Tries the amplitudes of a candidate one by one, beside the fit without it.
 class Prober {
  public:
-  Prober(const Hypothesis& h, const Problem& problem, const Fitted& null,
+  Prober(const Hypothesis& h, const Problem& problem, const ProbeBase& base,
          const ProjectedResidual& residual, bool calibrated, const Criteria& criteria)
       : h_(h),
         problem_(problem),
-        null_(null),
+        base_(base),
         residual_(residual),
         criteria_(criteria),
         amplitudes_(h.Amplitudes()),
@@ -106,7 +106,7 @@ class Prober {
   Vector Direction(std::size_t start, std::size_t one, double share) const {
     std::vector<double> shares(amplitudes_.size(), 0);
     shares[one] = share;
-    return Difference(null_.residuals, Residuals(start, shares), share);
+    return Difference(base_.residuals, Residuals(start, shares), share);
   }
 
   const std::vector<Vector>& Residuals(std::size_t start, const std::vector<double>& share) const {
@@ -118,7 +118,7 @@ class Prober {
   }
   std::vector<Vector> Simulate(const std::vector<double>& own) const {
     const auto& use = residual_.use();
-    auto r = problem_.Residuals(Append(null_.fit.x, own), use);
+    auto r = problem_.Residuals(Append(base_.x, own), use);
     for (std::size_t l = 0; l < use.size(); ++l) {
       if (use[l] && !r[l].allFinite()) throw Error::Job("the simulation diverges at its start");
     }
@@ -136,7 +136,7 @@ class Prober {
 
   const Hypothesis& h_;
   const Problem& problem_;
-  const Fitted& null_;
+  const ProbeBase& base_;
   const ProjectedResidual& residual_;
   const Criteria& criteria_;
   std::vector<std::size_t> amplitudes_;
@@ -154,10 +154,31 @@ Vector Append(const Vector& known, const std::vector<double>& own) {
   return x;
 }
 
-std::vector<Probe> ProbesOf(const Hypothesis& h, const Problem& problem, const Fitted& null,
+bool NeedsOwnStep(const Problem& problem) {
+  const auto& parameters = problem.parameters();
+  return std::any_of(parameters.begin(), parameters.end(), [](const FreeParameter& p) {
+    return p.change.attribute == "delay";
+  });
+}
+
+double CoarseStep(const Problem& problem) {
+  constexpr double kCoarse = 2.5;  // of the model's steps
+  std::vector<double> intervals;
+  for (const Log& log : problem.experiment().logs) {
+    for (std::size_t row = 1; row < log.rows(); ++row)
+      intervals.push_back(log.time[row] - log.time[row - 1]);
+  }
+  if (intervals.empty() || problem.experiment().quasi_static) return problem.step();
+  const auto middle = intervals.begin() + std::ssize(intervals) / 2;
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  const double steps = std::ceil(*middle / (kCoarse * problem.step()) - 1e-6);
+  return std::max(problem.step(), *middle / steps);
+}
+
+std::vector<Probe> ProbesOf(const Hypothesis& h, const Problem& problem, const ProbeBase& base,
                             const ProjectedResidual& residual, bool calibrated,
                             const std::vector<std::size_t>& starts, const Criteria& criteria) {
-  const Prober prober(h, problem, null, residual, calibrated, criteria);
+  const Prober prober(h, problem, base, residual, calibrated, criteria);
   std::vector<Probe> probes;
   for (const std::size_t start : starts) {
     const Probe whole = prober.AtStart(start);

@@ -106,6 +106,7 @@ struct CandidateResult {
   std::size_t force_start = 0;  ///< start of the shape in which it does
   bool was_fitted = false;
   bool no_time = false;                        ///< for the fit that it was worth
+  bool outdone = false;                        ///< none of many that promise more did any good
   Fitted fitted = {};                          ///< empty where it was not fitted
   std::optional<Fitted> at_quarter_step = {};  ///< where first order in the step does not hold
   std::optional<Problem::Vector> at_quarter_x = {};  ///< where such a fit ended, better or not
@@ -154,7 +155,7 @@ struct PairTried {
 
 /// A candidate that was not fitted.
 struct Dismissed {
-  enum class Why { kExplainsTooLittle, kNoTimeForALook, kNoTimeForAFit };
+  enum class Why { kExplainsTooLittle, kNoTimeForALook, kNoTimeForAFit, kOthersInVain };
   std::string effect, variant, where;
   double explained = 0, p = 1;  ///< to first order
   Why why = Why::kExplainsTooLittle;

@@ -78,6 +78,10 @@ bool WorthFinishing(std::size_t finished, double explained, double most, const C
          explained >= FitThresholdAtNoise(most, criteria);
 }
 
+bool GoOnInVain(std::size_t since_better, const Criteria& criteria) {
+  return static_cast<double>(since_better) >= criteria.fits_in_vain;
+}
+
 double HopelessCost(double rival, const Criteria& criteria) {
   return criteria.hopeless_factor * rival + criteria.hopeless_offset;
 }

@@ -67,6 +67,9 @@ double ChanceOfGain(double gain, std::size_t parameters, std::size_t fits);
 bool WorthFinishing(std::size_t finished, double explained, double most,
                     const Criteria& criteria = {});
 
+/// Whether fits have gone on in vain: so many since one was clearly better than all before it.
+bool GoOnInVain(std::size_t since_better, const Criteria& criteria = {});
+
 /// Cost that a fit has to come near. rival: the best cost so far.
 double HopelessCost(double rival, const Criteria& criteria = {});
 

@@ -143,6 +143,8 @@ std::string WhyNotFitted(const Dismissed& candidate) {
       return "there was no time for a look at it";
     case Dismissed::Why::kNoTimeForAFit:
       return "there was no time";
+    case Dismissed::Why::kOthersInVain:
+      return "of many that promise more none did better than the best";
   }
   return "";
 }

@@ -321,12 +321,15 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["second_chances"] = AroundBoundary(6, [](double finished, const Criteria& c) {
     return WorthFinishing(static_cast<std::size_t>(finished), 100, 100, c);
   });
+  e["fits_in_vain"] = AroundBoundary(8, [](double fits, const Criteria& c) {
+    return GoOnInVain(static_cast<std::size_t>(fits), c);
+  });
   e["second_share"] = AroundBoundary(0.05, [](double left, const Criteria& c) {
     Verdict named{Verdict::Kind::kNamed};
     named.leading_share = 1 - left;
     return MayBeTwo(named, {}, 1e-3, 1, c);
   });
-  e["rest_noise"] = AroundBoundary(2, [](double over, const Criteria& c) {
+  e["rest_noise"] = AroundBoundary(1.25, [](double over, const Criteria& c) {
     Verdict named{Verdict::Kind::kNamed};
     named.leading_share = 1;
     return MayBeTwo(named, {}, 1e-3, over, c);

@@ -29,8 +29,8 @@ TEST_F(ProbeTest, NothingIsSimulatedTwice) {
   const auto all = MakeCandidates(e, {&system}, SizesOf(null, fitted.fit.x), skipped);
   ASSERT_EQ(all.size(), 1u);
   const Problem problem(e, all[0].system, all[0].Free());
-  const auto probes = ProbesOf(all[0], problem, fitted, fitter.ProjectedResidualOf(fitted), false,
-                               {0, 1, 2, 3, 4, 5, 6});
+  const auto probes = ProbesOf(all[0], problem, {fitted.fit.x, fitted.residuals},
+                               fitter.ProjectedResidualOf(fitted), false, {0, 1, 2, 3, 4, 5, 6});
   ASSERT_EQ(probes.size(), all[0].starts.size());  // all at their starts
   for (const Probe& probe : probes) EXPECT_EQ(probe.on_top, (std::vector<bool>{false, true}));
   EXPECT_EQ(problem.evaluations(), 3 * probes.size());  // the friction, the excess, and both

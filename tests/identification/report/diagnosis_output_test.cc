@@ -311,12 +311,15 @@ TEST_F(DiagnosisOutput, SaysWhyACandidateWasNotFitted) {
   using Why = Dismissed::Why;
   d_->dismissed = {{"armature", "", "joint q", 1, 0.5, Why::kExplainsTooLittle},
                    {"dahl", "", "joint q", 0, 1, Why::kNoTimeForALook},
-                   {"stribeck", "", "joint q", 9, 0.1, Why::kNoTimeForAFit}};
+                   {"stribeck", "", "joint q", 9, 0.1, Why::kNoTimeForAFit},
+                   {"maxwell", "", "joint q", 9, 0.1, Why::kOthersInVain}};
   const auto all = WriteFiles(e_, *d_, Out()).json.at("candidates");
   const std::size_t last = all.size();
-  EXPECT_EQ(all[last - 3]["group"], "not fitted: to first order it explains too little");
-  EXPECT_EQ(all[last - 2]["group"], "not fitted: there was no time for a look at it");
-  EXPECT_EQ(all[last - 1]["group"], "not fitted: there was no time");
+  EXPECT_EQ(all[last - 4]["group"], "not fitted: to first order it explains too little");
+  EXPECT_EQ(all[last - 3]["group"], "not fitted: there was no time for a look at it");
+  EXPECT_EQ(all[last - 2]["group"], "not fitted: there was no time");
+  EXPECT_EQ(all[last - 1]["group"],
+            "not fitted: of many that promise more none did better than the best");
 }
 
 TEST_F(DiagnosisOutput, SaysWhichEffectsThereWasNoTimeToLookAt) {
