@@ -184,7 +184,7 @@ struct Criteria {
   Rule second_share{"second_share", 0.05, "share of the squares above the noise",
                     "what is left by the way in which a cause is simulated is less: a second "
                     "cause of that size is told, not named"};
-  Rule rest_noise{"rest_noise", 1.25, "times the noise",
+  Rule rest_noise{"rest_noise", 2, "times the noise",
                   "a main cause that leaves more may hide one that is small beside it"};
   Rule correction{"correction", 0.05, "share of a number of the model",
                   "masses, gains and stiffnesses are known to a few per cent: such a change beside "

@@ -22,9 +22,17 @@ using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
 constexpr double kNothing = 1e-6;  // of the missing force
-// Steps of the model: what a law changes in a force is seen in one step from the measured state as
-// well as in many.
+// Steps of the model: what a law changes in a force is seen in a few steps from the measured state
+// as well as in many. Not what a law remembers, which it learns on the way.
 constexpr double kCoarse = 5;
+
+bool Remembers(const mjModel& m) {
+  for (int i = 0; i < m.nplugin; ++i) {
+    const EffectInfo* const effect = EffectOf(m, i);
+    if (effect && effect->remembers) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -74,8 +82,9 @@ Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::siz
 }
 
 Vector EquationErrors::Change(const Problem& problem, const Vector& to, std::size_t thread) const {
-  return NeedsOwnStep(problem) ? Vector(Stacked(problem, to, thread) - missing_)
-                               : Vector(Stacked(problem, to, thread, coarse_step_) - coarse_);
+  return NeedsOwnStep(problem) || Remembers(problem.system().model())
+             ? Vector(Stacked(problem, to, thread) - missing_)
+             : Vector(Stacked(problem, to, thread, coarse_step_) - coarse_);
 }
 
 EquationStart EquationErrors::BestShape(const Hypothesis& h, const Problem& problem,

@@ -329,7 +329,7 @@ std::map<std::string, std::vector<Judged>> Examples() {
     named.leading_share = 1 - left;
     return MayBeTwo(named, {}, 1e-3, 1, c);
   });
-  e["rest_noise"] = AroundBoundary(1.25, [](double over, const Criteria& c) {
+  e["rest_noise"] = AroundBoundary(2, [](double over, const Criteria& c) {
     Verdict named{Verdict::Kind::kNamed};
     named.leading_share = 1;
     return MayBeTwo(named, {}, 1e-3, over, c);
