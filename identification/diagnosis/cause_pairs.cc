@@ -147,9 +147,8 @@ class PairSearch {
   void Extend(const CandidateResult& first) {
     const auto inside = context_.options.Inside(DiagnosisStage::kSecondCause,
                                                 "beside " + Key(first.hypothesis), bases_);
-    CandidateSearch search =
-        ScreenBeside({context_.fitter, context_.noise, context_.sizes, inside}, first,
-                     single_.HopelessBeside(first));
+    CandidateSearch search = ScreenBeside({context_.fitter, context_.noise, context_.sizes, inside},
+                                          first, single_.HopelessBeside(first));
     if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
     search.Fit(nullptr, kSeconds);
     ++bases_;
@@ -213,8 +212,8 @@ class PairSearch {
                                                    const CandidateResult& second) {
     const Problem::Vector& pair = second.fitted.fit.x;
     const auto own = static_cast<Eigen::Index>(second.hypothesis.extra.size());
-    const auto others = pair.size() - own -
-                        static_cast<Eigen::Index>(second.hypothesis.given.size());
+    const auto others =
+        pair.size() - own - static_cast<Eigen::Index>(second.hypothesis.given.size());
     Problem::Vector alone(first.fitted.fit.x.size() + own);
     alone << first.fitted.fit.x, pair.tail(own);
     Problem::Vector beside = alone;
@@ -445,8 +444,8 @@ CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult
   const Experiment& e = *context.fitter.experiment;
   CandidateSearch search(context,
                          {&first.hypothesis.system, first.hypothesis.Free(), &first.fitted});
-  search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))},
-                nullptr, hopeless);
+  search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))}, nullptr,
+                hopeless);
   return search;
 }
 

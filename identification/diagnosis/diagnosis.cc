@@ -283,8 +283,8 @@ class Session {
     if (d_.verdict.complete) {
       if (!RaisesValidateSquares(d_.chosen()->fitted)) return;
       const std::string name = d_.chosen()->hypothesis.NameAtPlace();
-      d_.verdict = Verdict::Adequate(fmt::format(
-          "{} does a little better on its own logs and worse on those left out", name));
+      d_.verdict = Verdict::Adequate(
+          fmt::format("{} does a little better on its own logs and worse on those left out", name));
       d_.partner.reset();
       return;
     }

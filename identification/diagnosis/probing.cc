@@ -156,9 +156,8 @@ Vector Append(const Vector& known, const std::vector<double>& own) {
 
 bool NeedsOwnStep(const Problem& problem) {
   const auto& parameters = problem.parameters();
-  return std::any_of(parameters.begin(), parameters.end(), [](const FreeParameter& p) {
-    return p.change.attribute == "delay";
-  });
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [](const FreeParameter& p) { return p.change.attribute == "delay"; });
 }
 
 double CoarseStep(const Problem& problem) {
