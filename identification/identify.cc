@@ -139,9 +139,14 @@ std::vector<Replayed> Predicted(const Problem& problem, const Vector& x) {
 // Computes one after the other what is stated of a fit; each may fail by itself.
 class Statement {
  public:
-  Statement(const Options& o, const Problem& problem, const std::vector<bool>& use,
-            IdentifyResult& all)
-      : o_(o), problem_(problem), use_(use), all_(all), residuals_(ResidualsOfAll()) {}
+  Statement(const Options& o, const Problem& problem, const ModelSpec& system,
+            const std::vector<bool>& use, IdentifyResult& all)
+      : o_(o),
+        problem_(problem),
+        system_(system),
+        use_(use),
+        all_(all),
+        residuals_(ResidualsOfAll()) {}
 
   void Make() {
     all_.logs = Predicted(problem_, all_.fit.x);
@@ -150,7 +155,7 @@ class Statement {
     Part("ahead", [&] { all_.ahead = PredictAhead(problem_, all_.fit.x, kRowsAhead); });
     Part("fitted_model", [&] {
       const Vector& x = all_.at_step ? all_.at_step->x : all_.fit.x;
-      all_.fitted = Extend(problem_, x, o_.folder, "fitted.xml");
+      all_.fitted = Extend(problem_, system_, x, o_.folder, "fitted.xml");
     });
     Part("noise", [&] { AddNoise(); });
     Part("divergence", [&] { AddDivergence(); });
@@ -217,6 +222,7 @@ class Statement {
 
   const Options& o_;
   const Problem& problem_;
+  const ModelSpec& system_;
   const std::vector<bool>& use_;
   IdentifyResult& all_;
   std::vector<Vector> residuals_;  // [log]
@@ -246,7 +252,7 @@ IdentifyResult Identify(const Experiment& e, const ModelSpec& system, const Iden
   auto unseen = use;
   unseen.flip();
   all.fit.x = FitStarts(problem, all.fit.x, unseen);
-  Statement(o, problem, use, all).Make();
+  Statement(o, problem, system, use, all).Make();
   return all;
 }
 

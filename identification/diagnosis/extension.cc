@@ -12,8 +12,9 @@ namespace {
 // With the cause that was chosen, or the model before.
 ExtendedModel Extended(const Experiment& e, const Diagnosis& d, const CandidateResult* chosen,
                        const std::filesystem::path& folder) {
-  return chosen ? Extend(ProblemOf(*chosen, e), chosen->fitted.fit.x, folder, kExtendedModel)
-                : Extend(Problem(e, d.system), d.before.fit.x, folder, kExtendedModel);
+  return chosen ? Extend(ProblemOf(*chosen, e), chosen->hypothesis.system, chosen->fitted.fit.x,
+                         folder, kExtendedModel)
+                : Extend(Problem(e, d.system), d.system, d.before.fit.x, folder, kExtendedModel);
 }
 
 // What cannot be written ends the job: only what cannot be made is a missing part.
@@ -53,8 +54,8 @@ ExtensionRun MeasureExtension(const Experiment& e, const Diagnosis& d,
   if (d.chosen() && !run.offered) WriteAndRun(e, d, nullptr, folder, run);
   if (d.fallback) {
     MakePart("fallback", run.missing, [&] {
-      run.fallback =
-          Extend(ProblemOf(*d.fallback, e), d.fallback->fitted.fit.x, folder, kFallbackModel);
+      run.fallback = Extend(ProblemOf(*d.fallback, e), d.fallback->hypothesis.system,
+                            d.fallback->fitted.fit.x, folder, kFallbackModel);
     });
   }
   if (d.next.log) {

@@ -179,7 +179,7 @@ std::string FoldsYaml(const Experiment& e) {
 
 }  // namespace
 
-ExtendedModel Extend(const Problem& problem, const Problem::Vector& x,
+ExtendedModel Extend(const Problem& problem, const ModelSpec& whole, const Problem::Vector& x,
                      const std::filesystem::path& folder, const std::string& model) {
   const Experiment& e = problem.experiment();
   const Experiment measured = problem.MeasuredBy(x, 0);
@@ -194,7 +194,7 @@ ExtendedModel Extend(const Problem& problem, const Problem::Vector& x,
   for (const Output& out : measured.outputs) y += OutputYaml(out);
   y += ParametersYaml(problem, x) + FoldsYaml(e);
   if (e.soft > 0) y += "loss: {soft_l1: " + Decimal(e.soft) + "}\n";
-  return {problem.system().Xml(problem.CommonChanges(x), {}, folder), y};
+  return {whole.Xml(problem.CommonChanges(x), {}, folder), y};
 }
 
 }  // namespace continuum

@@ -83,7 +83,7 @@ TEST_F(RegisteredFit, TheExtendedExperimentKnowsTheRegistration) {
   }
   const Problem problem(e, system);
   const Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs());
-  const ExtendedModel extension = Extend(problem, fit.x, arm_.folder().folder());
+  const ExtendedModel extension = Extend(problem, problem.system(), fit.x, arm_.folder().folder());
   arm_.folder().Write("extended.xml", extension.xml);
   Experiment extended = Experiment::Read(arm_.folder().Write("extended.yaml", extension.yaml));
   EXPECT_FALSE(extended.registration.estimates());

@@ -12,6 +12,7 @@
 #include "error.h"
 #include "identification/candidates/candidate_generator.h"
 #include "identification/fit/fit.h"
+#include "identification/identify.h"
 #include "identification/report/apply_extension.h"
 #include "sim/replay/replay.h"
 #include "support/pendulum.h"
@@ -70,7 +71,7 @@ class ExtensionTest : public Bench {
     const auto train = problem.TrainLogs();
     auto validate = train;
     validate.flip();
-    const SplitError files = ErrorsOf(Extend(problem, x, folder_ / "out"), "out");
+    const SplitError files = ErrorsOf(Extend(problem, problem.system(), x, folder_ / "out"), "out");
     EXPECT_NEAR(files.train, problem.PooledRms(r, train), 1e-9);
     EXPECT_NEAR(files.validate, problem.PooledRms(r, validate), 1e-9);
   }
@@ -82,7 +83,8 @@ class ExtensionTest : public Bench {
     held_out.flip();
     const double train = problem.PooledRms(r, problem.TrainLogs());
     const double validate = problem.PooledRms(r, held_out);
-    const SplitError files = ErrorsOf(Extend(problem, fit.x, folder_ / "out"), "out");
+    const SplitError files =
+        ErrorsOf(Extend(problem, problem.system(), fit.x, folder_ / "out"), "out");
     EXPECT_NEAR(files.train, train, 0.02 * train);
     EXPECT_NEAR(files.validate, validate, 0.02 * validate);
     // The fit moved something: the model as it was is far off.
@@ -130,7 +132,8 @@ TEST_F(ExtensionTest, ReproducesFrozenParameters) {
   const Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs());
   const double train =
       problem.PooledRms(problem.Residuals(fit.x, problem.AllLogs()), problem.TrainLogs());
-  EXPECT_NEAR(ErrorsOf(Extend(problem, fit.x, folder_ / "out"), "out").train, train, 0.02 * train);
+  EXPECT_NEAR(ErrorsOf(Extend(problem, problem.system(), fit.x, folder_ / "out"), "out").train,
+              train, 0.02 * train);
 }
 
 // The weight hangs on the mass that the log knows; written twice it would count twice.
@@ -175,13 +178,29 @@ TEST_F(ExtensionTest, ReproducesWeightsOfAllLogsBesideThoseOfOne) {
   const Problem problem(e, system);
   const auto x = problem.Start();
   const auto r = problem.Residuals(x, problem.AllLogs());
-  const ExtendedModel extension = Extend(problem, x, folder_ / "out");
+  const ExtendedModel extension = Extend(problem, problem.system(), x, folder_ / "out");
   EXPECT_NEAR(ErrorsOf(extension, "out").train, problem.PooledRms(r, problem.AllLogs()), 1e-9);
   // And so is where a fit of these files begins.
   const Experiment again = Experiment::Read(folder_ / "out/extended.yaml");
   const Problem on(again, ModelSpec::Load(folder_ / "out/extended.xml"));
   const auto s = on.Residuals(on.Start(), on.AllLogs());
   EXPECT_NEAR(on.PooledRms(s, on.AllLogs()), problem.PooledRms(r, problem.AllLogs()), 1e-9);
+}
+
+// Simulations without contacts go without it.
+TEST_F(ExtensionTest, KeepsGeomsThatOnlyShow) {
+  AddTrial(Pendulum(), "soft0", 0, "use: train");
+  std::string xml = Pendulum().Xml(CoulombInstance(0.1));
+  const std::string end = "</body>";
+  xml.insert(xml.find(end), R"(<geom name="skin" size="0.02" contype="0" conaffinity="0"/>)");
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", xml));
+  const Experiment e = ReadExperiment(kScaled);
+  const Problem problem(e, system);
+  const ExtendedModel extension = Extend(problem, system, problem.Start(), folder_ / "out");
+  EXPECT_THAT(extension.xml, HasSubstr("name=\"skin\""));
+  IdentifyOptions options;
+  options.folder = folder_ / "out";
+  EXPECT_THAT(Identify(e, system, options).fitted.xml, HasSubstr("name=\"skin\""));
 }
 
 TEST_F(ExtensionTest, KeepsWindowsTrialsOutputsAndFolds) {
@@ -193,7 +212,8 @@ TEST_F(ExtensionTest, KeepsWindowsTrialsOutputsAndFolds) {
                                       ", sigma: 0.001, weight: 2, bias: 0.01, delay: 0.002");
   const Problem problem(e, system);
   MakeFolder(folder_ / "out");
-  const ExtendedModel extension = Extend(problem, problem.Start(), folder_ / "out");
+  const ExtendedModel extension =
+      Extend(problem, problem.system(), problem.Start(), folder_ / "out");
   WriteFile(folder_ / "out" / "extended.xml", extension.xml);
   WriteFile(folder_ / "out" / "extended.yaml", extension.yaml);
   const Experiment again = Experiment::Read(folder_ / "out" / "extended.yaml");
@@ -233,7 +253,7 @@ TEST_P(Applied, GivesTheSameModelAsTheExtensionWithTheSameErrors) {
     const Problem problem(e, h.system, h.extra);
     auto x = problem.Start();
     x[0] = 1.15, x[1] = 0.04, x[2] = 0.09;
-    const ExtendedModel extension = Extend(problem, x, folder_ / "out");
+    const ExtendedModel extension = Extend(problem, problem.system(), x, folder_ / "out");
     const nlohmann::json json{
         {"extension", ChangesJson(problem.CommonChanges(x), {{h.instance, h.replaces}})}};
     EXPECT_EQ(ApplyJson(system, nlohmann::json::parse(json.dump()), "diagnosis.json"),

@@ -44,7 +44,7 @@ class Measured : public Bench {
     const ModelSpec system = ModelSpec::Load(folder_ / "model.xml");
     const Problem problem(e, system);
     const Fit fit = FitParameters(problem, problem.Start(), problem.AllLogs());
-    const ExtendedModel extension = Extend(problem, fit.x, folder_);
+    const ExtendedModel extension = Extend(problem, problem.system(), fit.x, folder_);
     Write("extended.xml", extension.xml);
     Experiment again = Experiment::Read(Write("extended.yaml", extension.yaml));
     const SplitError error = PooledError(again, Replay(again, ModelSpec::Load(again.model)));

@@ -145,7 +145,7 @@ TEST_F(StartsTest, TheExtendedExperimentBeginsThere) {
   const Experiment e = From("estimate");
   const Problem problem(e, Model());
   const Problem::Vector x = Fitted(problem);
-  const ExtendedModel extension = Extend(problem, x, folder_);
+  const ExtendedModel extension = Extend(problem, problem.system(), x, folder_);
   Write("extended.xml", extension.xml);
   Experiment extended = Experiment::Read(Write("extended.yaml", extension.yaml));
   const auto replayed = Replay(extended, ModelSpec::Load(extended.model));
