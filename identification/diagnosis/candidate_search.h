@@ -139,6 +139,8 @@ class CandidateSearch {
   bool RefitFromStart(CandidateResult& c) const;
   bool RefitFrom(const Problem& problem, CandidateResult& c,
                  const std::vector<Problem::Vector>& starts) const;
+  /// Whether first order in the step does not hold.
+  bool IsRough(const Fitted& fitted) const;
   bool FitsBetterAtFineStep(CandidateResult& c) const;
   /// Whether its squares above the noise fall, by the directions that both fits know.
   bool FallsTo(const CandidateResult& c, const Fitted& finer) const;
@@ -166,10 +168,9 @@ class CandidateSearch {
   const CandidateFitter& fitter_;
   BaseFit base_;
   Problem base_problem_;
-  ProbeBase as_fitted_;
   struct Coarse {
     double step;  // [s]
-    ProbeBase base;
+    std::vector<Problem::Vector> residuals;
   };
   std::optional<Coarse> coarse_;
   const Noise& noise_;

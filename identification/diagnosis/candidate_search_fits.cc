@@ -138,7 +138,8 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
 // From the next one on.
 void CandidateSearch::LeaveOthers(double needed, std::size_t next) {
   for (; next < candidates.size(); ++next)
-    candidates[next].outdone = IsWorthAFit(candidates[next], needed);
+    if (IsWorthAFit(candidates[next], needed))
+      candidates[next].why_not = Dismissed::Why::kOthersInVain;
 }
 
 // Those that are fitted beside each other, from the next one on: as many whatever the machine, as
@@ -159,8 +160,11 @@ std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size
       return IsPlainerThan(plain->hypothesis, c.hypothesis);
     });
     if (waits) break;
-    c.no_time = !fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out);
-    if (!c.no_time) wave.push_back(&c);
+    if (fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out)) {
+      wave.push_back(&c);
+    } else {
+      c.why_not = Dismissed::Why::kNoTimeForAFit;
+    }
   }
   return wave;
 }
@@ -444,76 +448,6 @@ bool CandidateSearch::CompleteOne(CandidateResult& c, double best) const {
   const bool close = behind < std::min(StepReduction(c.fitted), promise);
   if (close && !c.at_quarter_step && !fitter_.TimeIsOver()) RefitAtQuarterStep(c);
   return true;
-}
-
-// To the engine a delay shorter than a step is a whole one: a fit cannot find out which.
-bool CandidateSearch::RaiseDelays(const CandidateResult& c, double step, Problem::Vector& x) {
-  bool raised = false;
-  for (std::size_t i = 0; i < c.hypothesis.extra.size(); ++i) {
-    const Parameter& p = c.hypothesis.extra[i];
-    double& value = x[c.first_extra() + static_cast<Eigen::Index>(i)];
-    if (p.name != "delay" || !p.target.starts_with("actuator:") || value >= step) continue;
-    value = step, raised = true;
-  }
-  return raised;
-}
-
-// Where the time-discretisation error is not of first order a finer step may fit better. The values
-// remain those of the coarse one.
-void CandidateSearch::RefitAtQuarterStep(CandidateResult& c) const {
-  const Problem problem = ProblemOf(c, *fitter_.experiment);
-  Fitted from = c.fitted;
-  const bool raised = RaiseDelays(c, problem.step(), from.fit.x);
-  if (!raised && !IsRough(fitter_.ProjectedResidualOf(c.fitted).roughness(), criteria_)) return;
-  try {
-    const Problem fine = AtQuarter(problem);
-    Fitted finer = fitter_.Continue(fine, from);
-    c.at_quarter_x = finer.fit.x;
-    fitter_.Complete(fine, finer);
-    if (!(finer.cost < c.fitted.cost)) return;
-    c.fitted.cost = finer.cost;
-    c.at_quarter_step = std::move(finer);
-  } catch (const Error&) {
-    return;  // it diverges there
-  }
-}
-
-// A fit that is mostly what the time step makes ended in a wrong place, or its swing is one that
-// parts with the step.
-void CandidateSearch::Mend(const Problem& problem, CandidateResult& c) const {
-  if (RefitFromStart(c)) {
-    fitter_.Complete(problem, c.fitted);
-    c.error = FlawOf(problem, c.fitted);
-  }
-  if (!c.error.empty() && IsSoundAtQuarterStep(problem, c)) c.error.clear();
-}
-
-// Where a swing nearly comes to rest upside down its two sides part with the step: a fit at a
-// quarter of it says as much, if that one is sound.
-bool CandidateSearch::IsSoundAtQuarterStep(const Problem& problem, CandidateResult& c) const {
-  try {
-    const Problem fine = AtQuarter(problem);
-    Fitted finer = fitter_.Continue(fine, c.fitted);
-    fitter_.Complete(fine, finer);
-    if (!FlawOf(fine, finer).empty()) return false;
-    c.at_quarter_x = finer.fit.x;
-    c.fitted.cost = finer.cost;
-    c.at_quarter_step = std::move(finer);
-    return true;
-  } catch (const Error&) {
-    return false;  // it diverges there
-  }
-}
-
-// Why nothing can be said of a complete fit; empty when it can be judged. What the time step leaves
-// open is free to vary: a fit that is mostly that explains anything.
-std::string CandidateSearch::FlawOf(const Problem& problem, const Fitted& fitted) const {
-  if (!std::isfinite(fitted.cost)) return "the simulation diverges next to its fit";
-  const double removed = WithoutPart(base_.fitted->error.train, fitted.error.train);
-  const bool resolved =
-      IsResolved(fitter_.StepError(problem, fitted), fitter_.StepError(problem, *base_.fitted),
-                 removed, noise_.rms, criteria_);
-  return resolved ? "" : "the time step adds more to its fit than it removes";
 }
 
 }  // namespace continuum

@@ -214,8 +214,7 @@ class PairSearch {
     const auto own = static_cast<Eigen::Index>(second.hypothesis.extra.size());
     const auto others =
         pair.size() - own - static_cast<Eigen::Index>(second.hypothesis.given.size());
-    Problem::Vector alone(first.fitted.fit.x.size() + own);
-    alone << first.fitted.fit.x, pair.tail(own);
+    const Problem::Vector alone = Append(first.fitted.fit.x, {pair.end() - own, pair.end()});
     Problem::Vector beside = alone;
     beside.head(others) = pair.head(others);
     return {alone, beside};

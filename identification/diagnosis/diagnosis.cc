@@ -11,6 +11,7 @@
 #include "identification/candidates/candidate_generator.h"
 #include "identification/diagnosis/cause_pairs.h"
 #include "identification/diagnosis/condition_contrast.h"
+#include "identification/diagnosis/confirmation.h"
 #include "identification/diagnosis/effort.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/fallback_force.h"
@@ -57,12 +58,12 @@ class Session {
       CompleteNamed();
       FitFinely();
       ScoreFolds();
-      ConfirmOnFolds();
+      ConfirmOnFolds(fitter_, d_);
     } else {
       CompareFolds();
       MergePlaces();
       CompleteNamed();
-      ConfirmOnValidateLogs();
+      ConfirmOnValidateLogs(d_);
     }
     WeighUnseen();
     Part("interval of the gain", [&] { SetGainInterval(); });
@@ -83,6 +84,12 @@ class Session {
 
   // From now on fits end when the time of this stage is over.
   void Begin(DiagnosisStage stage) { fitter_.until = time_.EndOf(stage); }
+
+  // The same of a part that is often in vain.
+  void BeginPart(DiagnosisStage stage) {
+    constexpr double kShare = 0.08;  // of all the time
+    fitter_.until = time_.EndOf(stage, kShare);
+  }
 
   bool HasTimeFor(const std::string& what) { return fitter_.HasTimeFor(what, d_.left_out); }
 
@@ -239,9 +246,7 @@ class Session {
   }
 
   static Dismissed::Why WhyDismissed(const CandidateResult& c) {
-    if (c.probes.empty()) return Dismissed::Why::kNoTimeForALook;
-    if (c.outdone) return Dismissed::Why::kOthersInVain;
-    return c.no_time ? Dismissed::Why::kNoTimeForAFit : Dismissed::Why::kExplainsTooLittle;
+    return c.probes.empty() ? Dismissed::Why::kNoTimeForALook : c.why_not;
   }
 
   void Take(CandidateSearch& search) {
@@ -276,54 +281,6 @@ class Session {
     d_.ceiling_by = "noise alone";
   }
 
-  // A name by likelihoods stands only where it helps on logs left out; one that leaves nothing but
-  // noise may have found that in the noise.
-  void ConfirmOnFolds() {
-    if (!d_.chosen()) return;
-    if (d_.verdict.complete) {
-      if (!RaisesValidateSquares(d_.chosen()->fitted)) return;
-      const std::string name = d_.chosen()->hypothesis.NameAtPlace();
-      d_.verdict = Verdict::Adequate(
-          fmt::format("{} does a little better on its own logs and worse on those left out", name));
-      d_.partner.reset();
-      return;
-    }
-    if (d_.chosen()->record.after.empty()) return;
-    const double floor = d_.noise.floor();
-    const double possible = std::max(0.0, 1 - floor / d_.before.error.train);
-    const bool held_out = HoldsOnValidateLogs(
-        d_.before.error.validate, d_.chosen()->fitted.error.validate, floor, d_.criteria);
-    if (held_out && HoldsOnFolds(d_.chosen()->record, possible, d_.criteria)) return;
-    TakeNameBack("does not lower the error of logs left out as it does that of its own");
-  }
-
-  // In units of the noise, as the error of a log is mostly its own offset or drift; by more than
-  // chance, what a parameter gains from noise.
-  bool RaisesValidateSquares(const Fitted& fitted) const {
-    auto validate = TrainLogs(e_);
-    validate.flip();
-    const auto squares = [&](const Fitted& f) {
-      return fitter_.whitening.Stack(f.residuals, validate).squaredNorm();
-    };
-    return squares(fitted) > squares(d_.before) + d_.criteria.parameter_cost;
-  }
-
-  // The folds are made of train logs; the validate logs have a say of their own.
-  void ConfirmOnValidateLogs() {
-    if (d_.chosen() && d_.before.error.validate > 0 &&
-        d_.after().validate > d_.before.error.validate)
-      TakeNameBack("raises the error of the logs that are kept for validation");
-  }
-
-  void TakeNameBack(const std::string& why) {
-    const std::string name = d_.chosen()->hypothesis.NameAtPlace();
-    d_.verdict.kind = Verdict::Kind::kUnexplained;
-    d_.verdict.leading = d_.verdict.named.front();
-    d_.verdict.named.clear(), d_.verdict.siblings.clear();
-    d_.partner.reset();
-    d_.verdict.reason = fmt::format("the best candidate, {}, {}", name, why);
-  }
-
   // By likelihoods, which are calibrated where noise is the whole residual of the best model.
   void Judge(CandidateSearch& search) {
     options_.Say(DiagnosisStage::kFits, "lack of fit");
@@ -344,9 +301,8 @@ class Session {
 
   // Where no effect explains it at all joints together it may be at one of them.
   void TryOtherPlaces(CandidateSearch& search) {
-    constexpr double kShare = 0.08;  // of the time: single places are many
     if (!SomethingIsLeft(search) || !HasTimeFor("candidates at other places")) return;
-    fitter_.until = time_.EndOf(DiagnosisStage::kOtherCandidates, kShare);
+    BeginPart(DiagnosisStage::kOtherCandidates);
     const auto inside = options_.Inside(DiagnosisStage::kOtherCandidates, "at other places");
     CandidateSearch others(Context(inside), Base(), SearchScope::kOthers);
     const bool fitted = Part("candidates at other places", [&] {
@@ -359,9 +315,8 @@ class Session {
   }
 
   void FitAnew(CandidateSearch& search) {
-    constexpr double kShare = 0.08;  // of the time
     if (!SomethingIsLeft(search) && !search.HasLostFits()) return;
-    fitter_.until = time_.EndOf(DiagnosisStage::kOtherCandidates, kShare);
+    BeginPart(DiagnosisStage::kOtherCandidates);
     if (search.RefitFromExperimentStart()) Judge(search);
   }
 
@@ -475,8 +430,11 @@ class Session {
   void FitFinely() {
     for (const std::size_t i : d_.verdict.named) {
       CandidateResult& c = d_.candidates[i];
+      if (!c.fitted.complete()) continue;
       const bool first = i == d_.verdict.named.front();
-      if (!c.fitted.complete() || (!first && fitter_.TimeIsOver())) continue;
+      if (!first &&
+          !HasTimeFor("the interval of " + c.hypothesis.NameAtPlace() + " at a fine step"))
+        continue;
       options_.Say(DiagnosisStage::kJudgement, "at a fine step, " + c.hypothesis.Name());
       fitter_.FitFinely(ProblemOf(c, e_), c.at_quarter_x, c.fitted);
     }

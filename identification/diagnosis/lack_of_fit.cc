@@ -1,7 +1,5 @@
 #include "identification/diagnosis/lack_of_fit.h"
 
-#include <algorithm>
-
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "identification/candidates/random_forces.h"
@@ -40,23 +38,12 @@ Matrix ChannelColumns(const Problem& problem, const Trace& trace, const Log& log
   return columns;
 }
 
-bool Finite(const std::vector<Vector>& residuals) {
-  return std::all_of(residuals.begin(), residuals.end(),
-                     [](const Vector& r) { return r.allFinite(); });
-}
-
-// What the forces of free form do, in coarse steps where the model can be simulated in them.
-std::vector<Matrix> ForceColumns(Problem problem, const Vector& x, const std::vector<Matrix>& known,
-                                 Eigen::Index count) {
+// What the forces of free form do, in coarse steps where it can be; r: the residuals in its own.
+std::vector<Matrix> ForceColumns(Problem problem, const Vector& x, const std::vector<Vector>& r,
+                                 const std::vector<Matrix>& known, Eigen::Index count) {
   const std::vector<bool> train = problem.TrainLogs();
-  const double own = problem.step();
-  if (!NeedsOwnStep(problem)) problem.StepBy(CoarseStep(problem));
-  auto r = problem.Residuals(x, train);
-  if (!Finite(r)) {
-    problem.StepBy(own);
-    r = problem.Residuals(x, train);
-  }
-  auto J = problem.Jacobian(x, r, train, known);
+  const auto coarse = StepCoarsely(problem, x);
+  auto J = problem.Jacobian(x, coarse ? *coarse : r, train, known);
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = Matrix(J[l].rightCols(count));
   }
@@ -75,11 +62,11 @@ LackOfFit TestLackOfFit(const CandidateFitter& fitter, const Problem& without,
   const Problem problem(experiment, without.system(), extra, terms);  // at the model's own step
   const Vector x = Append(fitted.fit.x, std::vector<double>(terms.count, 0.0));
   const ProjectedResidual residual = fitter.ProjectedResidualOf(fitted);
-  auto J = ForceColumns(problem, x, fitted.sensitivities.value().jacobian,
+  const auto r = problem.Residuals(x, train);
+  auto J = ForceColumns(problem, x, r, fitted.sensitivities.value().jacobian,
                         static_cast<Eigen::Index>(terms.count));
   LackOfFit lack;
   lack.force = ChiSquared(residual.Project(J), residual.vector(), inflation);
-  problem.Residuals(x, train);  // which Predict remembers
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = ChannelColumns(problem, problem.Predict(x, l), experiment.logs[l]);
   }

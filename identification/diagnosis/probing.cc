@@ -21,6 +21,21 @@ double MostShare(const Hypothesis& h, const std::vector<double>& start, std::siz
   return ((step > 0 ? p.upper : p.lower) - h.null[i]) / step;
 }
 
+// [s]; the model's own where rows are no farther apart.
+double CoarseStep(const Problem& problem) {
+  constexpr double kCoarse = 2.5;  // of the model's steps
+  std::vector<double> intervals;
+  for (const Log& log : problem.experiment().logs) {
+    for (std::size_t row = 1; row < log.rows(); ++row)
+      intervals.push_back(log.time[row] - log.time[row - 1]);
+  }
+  if (intervals.empty() || problem.experiment().quasi_static) return problem.step();
+  const auto middle = intervals.begin() + std::ssize(intervals) / 2;
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  const double steps = std::ceil(*middle / (kCoarse * problem.step()) - 1e-6);
+  return std::max(problem.step(), *middle / steps);
+}
+
 // Tries the amplitudes of a candidate one by one, beside the fit without it.
 class Prober {
  public:
@@ -160,18 +175,16 @@ bool NeedsOwnStep(const Problem& problem) {
                      [](const FreeParameter& p) { return p.change.attribute == "delay"; });
 }
 
-double CoarseStep(const Problem& problem) {
-  constexpr double kCoarse = 2.5;  // of the model's steps
-  std::vector<double> intervals;
-  for (const Log& log : problem.experiment().logs) {
-    for (std::size_t row = 1; row < log.rows(); ++row)
-      intervals.push_back(log.time[row] - log.time[row - 1]);
-  }
-  if (intervals.empty() || problem.experiment().quasi_static) return problem.step();
-  const auto middle = intervals.begin() + std::ssize(intervals) / 2;
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  const double steps = std::ceil(*middle / (kCoarse * problem.step()) - 1e-6);
-  return std::max(problem.step(), *middle / steps);
+std::optional<std::vector<Vector>> StepCoarsely(Problem& problem, const Vector& x) {
+  const double own = problem.step(), step = CoarseStep(problem);
+  if (!(step > own) || NeedsOwnStep(problem)) return {};
+  problem.StepBy(step);
+  auto residuals = problem.Residuals(x, problem.TrainLogs());
+  const bool finite = std::all_of(residuals.begin(), residuals.end(),
+                                  [](const Vector& r) { return r.allFinite(); });
+  if (finite) return residuals;
+  problem.StepBy(own);
+  return {};
 }
 
 std::vector<Probe> ProbesOf(const Hypothesis& h, const Problem& problem, const ProbeBase& base,

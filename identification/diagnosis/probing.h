@@ -1,23 +1,28 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "identification/diagnosis/result.h"
 
 namespace continuum {
 
 /// The fit without a candidate, as a problem with these steps simulates it.
 struct ProbeBase {
-  Problem::Vector x;
-  std::vector<Problem::Vector> residuals;  ///< [log]
+  const Problem::Vector& x;
+  const std::vector<Problem::Vector>& residuals;  ///< [log]
 };
 
 /// Whether its time step decides what it does: to the engine a delay that is shorter than a step is
 /// a whole one.
 bool NeedsOwnStep(const Problem& problem);
 
-/// A step [s] that is coarse, and rows of the train logs are multiples of it, as far as they are
-/// evenly spaced: what an effect changes shows in it as well, at less than half the cost. The
-/// problem's own where rows are no farther apart.
-double CoarseStep(const Problem& problem);
+/// A problem goes on in a coarse step, of which rows are multiples as far as they are evenly
+/// spaced: what an effect changes shows in it as well, at less than half the cost. Returns the
+/// residuals of the train logs at x in it; nothing, and the step stays, where rows are no farther
+/// apart, the problem needs its own step, or diverges in a coarse one.
+std::optional<std::vector<Problem::Vector>> StepCoarsely(Problem& problem,
+                                                         const Problem::Vector& x);
 
 /// Directions in which a candidate moves the residuals, one probe or two for each of some of its
 /// starts.

@@ -94,6 +94,14 @@ struct ByEquation {
   std::vector<double> before, after;  ///< [train log] norm of its residual without and with it
 };
 
+/// A candidate that was not fitted.
+struct Dismissed {
+  enum class Why { kExplainsTooLittle, kNoTimeForALook, kNoTimeForAFit, kOthersInVain };
+  std::string effect, variant, where;
+  double explained = 0, p = 1;  ///< to first order
+  Why why = Why::kExplainsTooLittle;
+};
+
 /// A candidate, and all that was found of it.
 struct CandidateResult {
   Hypothesis hypothesis;
@@ -105,9 +113,8 @@ struct CandidateResult {
   double force_promise = 0;
   std::size_t force_start = 0;  ///< start of the shape in which it does
   bool was_fitted = false;
-  bool no_time = false;                        ///< for the fit that it was worth
-  bool outdone = false;                        ///< none of many that promise more did any good
-  Fitted fitted = {};                          ///< empty where it was not fitted
+  Dismissed::Why why_not = Dismissed::Why::kExplainsTooLittle;  ///< where it was not fitted
+  Fitted fitted = {};                                           ///< empty where it was not fitted
   std::optional<Fitted> at_quarter_step = {};  ///< where first order in the step does not hold
   std::optional<Problem::Vector> at_quarter_x = {};  ///< where such a fit ended, better or not
   std::optional<bool> falls_with_step = {};          ///< CandidateSearch::FallsWithStep, once asked
@@ -151,14 +158,6 @@ struct Partner {
 struct PairTried {
   std::string first, second;
   double likelihood;
-};
-
-/// A candidate that was not fitted.
-struct Dismissed {
-  enum class Why { kExplainsTooLittle, kNoTimeForALook, kNoTimeForAFit, kOthersInVain };
-  std::string effect, variant, where;
-  double explained = 0, p = 1;  ///< to first order
-  Why why = Why::kExplainsTooLittle;
 };
 
 /// What the model that a verdict leaves still gets wrong.

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "identification/diagnosis/candidate_fitter.h"
+#include "identification/diagnosis/result.h"
+
+namespace continuum {
+
+/// Takes a name by likelihoods back where it does not help on logs left out. One that leaves
+/// nothing but noise may have found that in the noise: it is judged on the validate logs, in units
+/// of the noise.
+void ConfirmOnFolds(const CandidateFitter& fitter, Diagnosis& d);
+
+/// Takes a name by folds back where it raises the error of the validate logs: folds are made of
+/// train logs.
+void ConfirmOnValidateLogs(Diagnosis& d);
+
+}  // namespace continuum
