@@ -370,12 +370,15 @@ CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {
 }
 
 // The start that is best after a few iterations, of those that are best as they are, in the logs
-// for a look.
-FitStart CandidateSearch::BestOf(const Problem& problem, const std::vector<Problem::Vector>& all,
+// for a look and in coarse steps.
+FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem::Vector>& all,
                                  std::size_t tried) const {
   constexpr double kNear = 2;  // times the best cost
-  const std::vector<Problem::Vector> starts = WithoutRepeats(problem, all);
+  const std::vector<Problem::Vector> starts = WithoutRepeats(whole, all);
   if (starts.size() == 1) return {starts.front()};
+  Problem problem = whole;
+  if (coarse_ && whole.step() == base_problem_.step() && !NeedsOwnStep(whole))
+    problem.StepBy(coarse_->step);
   FitOptions options{4, 1e-3};
   options.idle = true, options.rough = true, options.until = fitter_.until;
   if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;
