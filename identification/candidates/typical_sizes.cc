@@ -85,4 +85,16 @@ double InputSize(const Experiment& e, const std::vector<std::string>& actuators)
   return size > 0 ? size : 1;
 }
 
+double ReadingSize(const Experiment& e, const std::vector<std::string>& outputs) {
+  double size = 0;
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    if (std::find(outputs.begin(), outputs.end(), e.channels[c].name) == outputs.end()) continue;
+    for (const Log& log : e.logs) {
+      for (const double y : log.measured[c])
+        if (!std::isnan(y)) size = std::max(size, std::abs(y / e.channels[c].factor));
+    }
+  }
+  return size > 0 ? size : 1;
+}
+
 }  // namespace continuum

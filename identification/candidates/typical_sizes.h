@@ -17,6 +17,7 @@ struct Sizes {
   double length = 1;     ///< typical shift of a part [m]
   double lever = 1;      ///< from the joints to the bodies or sites in question [m]
   double input = 1;      ///< largest control of the actuators in question [their unit]
+  double reading = 1;    ///< largest value of the outputs in question [their unit]
   double period = 0.01;  ///< median sampling interval [s]
   double step = 0.002;   ///< of the model [s]
   double duration = 1;   ///< of the longest log [s]
@@ -25,6 +26,9 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
 
 /// Largest control that the logs give to some actuators [their unit]; 1 where they give none.
 double InputSize(const Experiment& experiment, const std::vector<std::string>& actuators);
+
+/// Largest value that the logs have of some outputs [their unit]; 1 where they have none.
+double ReadingSize(const Experiment& experiment, const std::vector<std::string>& outputs);
 
 /// The longest lever arm of some bodies or sites about the joints that carry them, in the model's
 /// reference pose [m]; 1 where no joint moves them. A slide joint counts as 1.

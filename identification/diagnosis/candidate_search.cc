@@ -211,8 +211,8 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
                             KinOf(c.hypothesis.Card()),
                             ErrorShare(c.fitted),
                             c.fitted.error.validate};
-    record.corrects =
-        c.was_fitted && OnlyCorrects(c.hypothesis, c.fitted, c.first_extra(), sizes_, criteria_);
+    record.corrects = c.was_fitted && OnlyCorrects(c.hypothesis, c.fitted, c.first_extra(),
+                                                   *fitter_.experiment, sizes_, criteria_);
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(fitter_, c, candidates[a])) record.contains.push_back(a);
     }

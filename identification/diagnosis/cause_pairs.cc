@@ -55,12 +55,12 @@ struct Fitting {
   }
   bool FirstCorrects(const SearchContext& context) const {
     const auto extra = static_cast<Eigen::Index>(a->hypothesis.extra.size());
-    return OnlyCorrects(a->hypothesis, b->fitted, b->first_extra() - extra, context.sizes,
-                        context.fitter.criteria);
+    return OnlyCorrects(a->hypothesis, b->fitted, b->first_extra() - extra,
+                        *context.fitter.experiment, context.sizes, context.fitter.criteria);
   }
   bool SecondCorrects(const SearchContext& context) const {
-    return OnlyCorrects(b->hypothesis, b->fitted, b->first_extra(), context.sizes,
-                        context.fitter.criteria);
+    return OnlyCorrects(b->hypothesis, b->fitted, b->first_extra(), *context.fitter.experiment,
+                        context.sizes, context.fitter.criteria);
   }
 };
 
@@ -366,8 +366,11 @@ class PairSearch {
     const Fitting& best = pairs[verdict.named.front()];
     Partner first{best.a->hypothesis};
     const bool this_one = best.FirstCorrects(context_), other = best.SecondCorrects(context_);
-    if (this_one != other) first.correction = this_one ? Correction::kThis : Correction::kOther;
-    first.main = first.correction == Correction::kNone ? IsMain(best) : other;
+    if (this_one || other)
+      first.correction = !other     ? Correction::kThis
+                         : this_one ? Correction::kBoth
+                                    : Correction::kOther;
+    first.main = this_one == other ? IsMain(best) : other;
     std::set<std::string> taken{best.a->hypothesis.effect, best.b->hypothesis.effect};
     for (const std::size_t n : verdict.named) {
       if (pairs[n].base == best.base) taken.insert(pairs[n].b->hypothesis.effect);

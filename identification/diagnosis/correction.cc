@@ -21,6 +21,7 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
       return criteria.whole_correction * sizes.robot;
     if (effect.kind == EffectInfo::Kind::kEdit && param.unit == "N")
       return criteria.whole_correction * kGravity * sizes.robot;
+    if (param.unit == "output") return criteria.whole_correction * sizes.reading;
     const bool direction = effect.places.front() == Place::kWorld && param.unit == "rad";
     const bool clock = effect.kind == EffectInfo::Kind::kMeasure && param.unit == "1";
     return direction || clock ? +criteria.whole_correction : 0;
@@ -28,9 +29,10 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
   return 0;
 }
 
-bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin, const Sizes& sizes,
-                  const Criteria& criteria) {
+bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
+                  const Experiment& experiment, Sizes sizes, const Criteria& criteria) {
   const EffectInfo& effect = EffectNamed(h.Card());
+  if (h.place == Place::kSensor) sizes.reading = ReadingSize(experiment, h.objects);
   const auto amplitudes = h.Amplitudes();
   return std::all_of(amplitudes.begin(), amplitudes.end(), [&](std::size_t i) {
     const double change = fitted.fit.x[begin + static_cast<Eigen::Index>(i)] - h.null[i];

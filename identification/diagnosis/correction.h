@@ -10,13 +10,14 @@ namespace continuum {
 
 /// How far the number of the model may be off that a parameter of an effect changes, null where the
 /// effect is absent: masses, gains and stiffnesses by a few per cent, the mass of the whole robot,
-/// its weight, the direction of gravity or the clock by less. 0 where there is no such number.
+/// its weight, the direction of gravity, the clock or the zero of a sensor by less. 0 where there
+/// is no such number.
 double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
                 const Sizes& sizes, const Criteria& criteria);
 
 /// Whether a fitted candidate only changes numbers that the model has, by so little as they may
 /// well be off. begin: of its parameters in the fit.
 bool OnlyCorrects(const Hypothesis& hypothesis, const Fitted& fitted, Eigen::Index begin,
-                  const Sizes& sizes, const Criteria& criteria);
+                  const Experiment& experiment, Sizes sizes, const Criteria& criteria);
 
 }  // namespace continuum

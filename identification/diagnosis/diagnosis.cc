@@ -379,6 +379,10 @@ class Session {
     d_.verdict.reason = fmt::format("no single candidate is enough, two are: {} beside this; {}",
                                     d_.partner->hypothesis.NameAtPlace(), d_.verdict.reason);
     d_.verdict.kind = IsOnePair() ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
+    if (d_.partner->correction == Partner::Correction::kBoth)
+      d_.verdict.reason +=
+          "; both change numbers of the model or the sensors by a few per cent, which others that "
+          "are off, as lengths, may do as well";
   }
 
   // Whether each cause of a pair is one; what corrects the model may be several things.
@@ -386,6 +390,7 @@ class Session {
     using Correction = Partner::Correction;
     const Partner& first = *d_.partner;
     const bool other_is_one = d_.verdict.named.size() == 1 && first.instead.empty();
+    if (first.correction == Correction::kBoth) return false;
     return (first.equivalent.empty() || first.correction == Correction::kThis) &&
            (other_is_one || first.correction == Correction::kOther);
   }
@@ -406,7 +411,8 @@ class Session {
       d_.verdict.reason = d_.noise_limited
                               ? "its residual shows " + ResidualInWords(d_.lack_of_fit, d_.criteria)
                               : "it passes all rules and is clearly better than every other effect";
-    } else if (d_.partner->equivalent.empty() && d_.partner->instead.empty()) {
+    } else if (d_.partner->equivalent.empty() && d_.partner->instead.empty() &&
+               d_.partner->correction != Partner::Correction::kBoth) {
       d_.verdict.kind = Verdict::Kind::kNamed;
     }
     d_.verdict.reason += "; the data do not distinguish these places: " + places;

@@ -141,8 +141,8 @@ struct CandidateResult {
 /// A cause that acts together with the one that the candidates are compared for.
 struct Partner {
   /// Which of both only corrects a number of the model that is a little off: the other is the
-  /// cause.
-  enum class Correction { kNone, kThis, kOther };
+  /// cause. Where both do, other numbers that are off may do the same, as lengths.
+  enum class Correction { kNone, kThis, kOther, kBoth };
 
   Hypothesis hypothesis;
   std::vector<std::string> equivalent = {};  ///< effects that the data do not distinguish from it
@@ -152,6 +152,13 @@ struct Partner {
   bool main =
       true;  ///< by itself it takes more of the error than the other one, or that one corrects
   Correction correction = Correction::kNone;
+
+  bool Corrects() const {
+    return correction == Correction::kThis || correction == Correction::kBoth;
+  }
+  bool OtherCorrects() const {
+    return correction == Correction::kOther || correction == Correction::kBoth;
+  }
 };
 
 /// Two causes that were fitted together, and what both gain in twice the log-likelihood.

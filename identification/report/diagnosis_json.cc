@@ -55,7 +55,7 @@ nlohmann::json PartnerJson(const Diagnosis& d) {
   return {{"effect", h.effect},
           {"variant", h.variant},
           {"equivalent", equivalent},
-          {"correction", d.partner->correction == Partner::Correction::kThis},
+          {"correction", d.partner->Corrects()},
           {"probability", d.chosen()->probability},
           {"probability_is", "of both causes together"},
           {"parameters", ParametersOf(h, d.chosen()->fitted, d.before.fit.x.size())},
@@ -141,7 +141,7 @@ nlohmann::json CausesJson(const Diagnosis& d) {
     equivalent.insert(equivalent.end(), d.partner->instead.begin(), d.partner->instead.end());
   json.push_back(CauseJson(d, *d.chosen(), equivalent));
   if (!d.partner) return json;
-  json.front()["correction"] = d.partner->correction == Partner::Correction::kOther;
+  json.front()["correction"] = d.partner->OtherCorrects();
   json.insert(d.partner->main ? json.begin() : json.end(), PartnerJson(d));
   return json;
 }

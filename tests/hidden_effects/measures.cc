@@ -100,7 +100,7 @@ void AddRobots(Tally& t) {
       .Share("one name, and wrong", AtMost(0.03), AtMost(0.01), {Robots, Single}, IsWrongAlone)
       .Share("one name, right, every rival 15 apart", AtLeast(0.85), AtLeast(0.95),
              {Robots, Single, [](const Outcome& o) { return o.closest >= kApart; }}, IsAlone)
-      .Share("not in the library: unexplained or a sibling", AtLeast(0.8), AtLeast(0.9),
+      .Share("not in the library: unexplained, a set or a sibling", AtLeast(0.8), AtLeast(0.9),
              {Robots, unlisted}, IsRight)
       .Share("not in the library: one name, and wrong", std::nullopt, AtMost(0.05),
              {Robots, unlisted}, [](const Outcome& o) { return o.unique && !o.sibling; })
@@ -187,7 +187,8 @@ bool IsRight(const Outcome& o) {
   if (!o.spoilt.empty()) return !o.unique;
   if (o.effects.empty() && o.suite == "outside") return !o.unique || IsOfFamily(o, "payload");
   if (o.effects.empty()) return o.suite == "background" ? !o.unique : o.verdict == "adequate";
-  if (!o.listed) return o.verdict == "unexplained" || (o.sibling && o.named.size() <= kFew);
+  if (!o.listed)
+    return o.verdict == "unexplained" || ((o.sibling || o.right) && o.named.size() <= kFew);
   return o.right && o.named.size() + o.partner.size() <= kFew;
 }
 
