@@ -206,9 +206,7 @@ class Session {
     Begin(DiagnosisStage::kOtherCandidates);
     CompareUnlisted(search);
     Begin(DiagnosisStage::kSecondCause);
-    const bool two = search.leading() && MayBeTwo(d_.verdict, d_.lack_of_fit, search.smallest_p(),
-                                                  search.BestOverNoise(), d_.criteria);
-    PairsFound pairs = two && HasTimeFor("a second cause") ? SecondCauses(search) : PairsFound{};
+    PairsFound pairs = SecondCauses(search);
     d_.pairs = std::move(pairs.tried);
     d_.remaining.would_take = std::move(pairs.would_take);
     if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) && !d_.verdict.unlisted_explains) {
@@ -232,10 +230,27 @@ class Session {
   }
 
   PairsFound SecondCauses(const CandidateSearch& search) {
+    const CandidateResult* const best = search.leading();
+    if (!best) return {};
+    const double over_noise = search.BestOverNoise();
+    const bool two =
+        MayBeTwo(d_.verdict, d_.lack_of_fit, search.smallest_p(), over_noise, d_.criteria);
+    const bool plainer =
+        !two && MayBeTwoPlainer(d_.verdict, IsRich(best->hypothesis), over_noise, d_.criteria);
+    if (!(two || plainer) || !HasTimeFor("a second cause")) return {};
     std::optional<PairsFound> found;
     Part("second cause",
          [&] { found.emplace(FindPair(Context(options_), search, d_.lack_of_fit.of_step)); });
-    return found ? std::move(*found) : PairsFound{};
+    if (!found || (plainer && !(found->best && IsPlainAndEnough(*found->best)))) return {};
+    return std::move(*found);
+  }
+
+  static bool IsRich(const Hypothesis& h) { return KinOf(h.Card()).depth > 0; }
+
+  static bool IsPlainAndEnough(const Pair& pair) {
+    const auto& seconds = pair.search.candidates;
+    return pair.verdict.complete && !IsRich(pair.first.hypothesis) &&
+           !IsRich(seconds[pair.verdict.named.front()].hypothesis);
   }
 
   // Whether the verdict may be another one with a better fit.

@@ -141,6 +141,12 @@ bool MayBeTwo(const Verdict& verdict, const LackOfFit& lack, double smallest_p, 
          over_noise < criteria.pair_hopeless;
 }
 
+bool MayBeTwoPlainer(const Verdict& verdict, bool rich, double over_noise,
+                     const Criteria& criteria) {
+  return rich && verdict.kind != Verdict::Kind::kAdequate && !verdict.complete &&
+         !verdict.unlisted_explains && over_noise >= criteria.at_noise;
+}
+
 bool WorthPartner(double smallest_p, double share, bool of_step, const Criteria& criteria) {
   return smallest_p < criteria.significance && (!of_step || share >= criteria.pair_share);
 }

@@ -119,6 +119,11 @@ bool WorthFolds(double before, double after, const Criteria& criteria = {});
 bool MayBeTwo(const Verdict& verdict, const LackOfFit& lack, double smallest_p, double over_noise,
               const Criteria& criteria = {});
 
+/// Whether a rich law of its family, which leaves more than noise, may stand for two plain causes:
+/// friction that differs by direction for friction and an offset.
+bool MayBeTwoPlainer(const Verdict& verdict, bool rich, double over_noise,
+                     const Criteria& criteria = {});
+
 /// Whether a partner is worth a search: share of the first one's squares above the noise that some
 /// candidate explains, which counts where the time step may explain them too.
 bool WorthPartner(double smallest_p, double share, bool of_step, const Criteria& criteria = {});

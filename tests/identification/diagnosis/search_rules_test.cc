@@ -30,5 +30,16 @@ TEST(SearchRules, NothingShowsBelowNoiseAndTimeStepTogether) {
   EXPECT_FALSE(IsWithinNoise(5.01, {3, 4}));
 }
 
+// Friction that differs by direction may be friction and an offset; what leaves only noise is not
+// looked at, nor what is plain.
+TEST(SearchRules, RichLawThatLeavesMoreThanNoiseMayBeTwoPlainOnes) {
+  Verdict named{Verdict::Kind::kNamed};
+  EXPECT_TRUE(MayBeTwoPlainer(named, true, 1.2));
+  EXPECT_FALSE(MayBeTwoPlainer(named, false, 1.2));
+  EXPECT_FALSE(MayBeTwoPlainer(named, true, 1.05));
+  named.complete = true;
+  EXPECT_FALSE(MayBeTwoPlainer(named, true, 1.2));
+}
+
 }  // namespace
 }  // namespace continuum
