@@ -62,6 +62,7 @@ class DiagnosisPage {
   }
 
   std::string WithIt() const {
+    if (OnlyCorrections(d_)) return " With both ";
     return Is(Verdict::Kind::kAmbiguous) ? " With the first " : " With it ";
   }
 
@@ -122,7 +123,7 @@ class DiagnosisPage {
       page_.Paragraph(
           "No cause was added: `extended.xml` is the model with its parameters fitted.");
     if (Is(Verdict::Kind::kAmbiguous) && run_.offered)
-      page_.Paragraph("It has the first of these causes.");
+      page_.Paragraph(OnlyCorrections(d_) ? "It has both." : "It has the first of these causes.");
     const auto changes = ChangesInWords(d_, run_);
     if (changes.empty()) {
       page_.Paragraph("Nothing.");

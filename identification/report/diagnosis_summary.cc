@@ -44,16 +44,16 @@ std::string CauseLines(const Diagnosis& d) {
     text += fmt::format("{} {}{}: {}", how, h.NameAtPlace(), note,
                         Plain(ValuesInWords(h, fitted, begin)));
   };
-  using Correction = Partner::Correction;
   const auto add_partner = [&](const std::string& how) {
     add(how, d.partner->hypothesis, d.chosen()->fitted, d.before.fit.x.size(), "");
     for (const std::string& other : d.partner->equivalent) text += ", or " + other;
     text += "\n";
   };
   const bool two = d.partner && d.chosen();
-  const bool corrects = two && d.partner->correction == Correction::kOther;
+  const bool corrects = two && d.partner->OtherCorrects();
   const bool partner_first = two && d.partner->main;
-  if (partner_first) add_partner("cause    ");
+  const std::string partner = two && d.partner->Corrects() ? "corrects " : "";
+  if (partner_first) add_partner(partner.empty() ? "cause    " : partner);
   for (const std::size_t i : d.verdict.named) {
     const CandidateResult& c = d.candidates[i];
     const std::string first = corrects ? "corrects " : partner_first ? "and      " : "cause    ";
@@ -65,8 +65,7 @@ std::string CauseLines(const Diagnosis& d) {
     add("   or    ", c.hypothesis, c.fitted, c.first_extra(), " (not asked for)");
     text += "\n";
   }
-  if (two && !partner_first)
-    add_partner(d.partner->correction == Correction::kThis ? "corrects " : "and      ");
+  if (two && !partner_first) add_partner(partner.empty() ? "and      " : partner);
   return text;
 }
 

@@ -109,6 +109,9 @@ std::string WhyUnexplained(const Diagnosis& d) {
 }
 
 std::string WhyAmbiguous(const Diagnosis& d) {
+  if (OnlyCorrections(d))
+    return "Both change numbers by a few per cent. Others that are a little off, such as lengths, "
+           "may do the same.";
   const std::string alike = "These logs do not distinguish the causes.";
   if (!TooManyUnseen(d)) return alike;
   return fmt::format("{} There was no time to look at {}.",
@@ -135,6 +138,11 @@ std::string GainOfFolds(const Diagnosis& d) {
 
 }  // namespace
 
+bool OnlyCorrections(const Diagnosis& d) {
+  return d.Is(Kind::kAmbiguous) && d.partner && d.verdict.named.size() == 1 &&
+         d.partner->correction == Partner::Correction::kBoth;
+}
+
 std::string WhyNotFitted(const Dismissed& candidate) {
   switch (candidate.why) {
     case Dismissed::Why::kExplainsTooLittle:
@@ -156,7 +164,8 @@ std::string HeadlineOf(const Diagnosis& d) {
     case Kind::kNamed:
       return (d.partner ? "Causes: " : "Cause: ") + CausesInWords(d);
     case Kind::kAmbiguous:
-      return "Cause: " + CausesInWords(d);
+      return (OnlyCorrections(d) ? "Numbers that are a little off: " : "Cause: ") +
+             CausesInWords(d);
     case Kind::kUnexplained:
       break;
   }
@@ -274,7 +283,9 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
                                              d.next.input, kNextInputs)
                                : Sentence(d.next.input + "."));
   }
-  if (extended && d.Is(Kind::kNamed))
+  if (OnlyCorrections(d))
+    steps.emplace_back("Measure lengths, masses and the zero of the sensors again.");
+  if (extended && (d.Is(Kind::kNamed) || OnlyCorrections(d)))
     steps.push_back(fmt::format("Simulate with `{}` in place of the model.", kExtendedModel));
   if (extended && d.Is(Kind::kNamed) && !OnlyNoiseRemains(d, run.after))
     steps.push_back(

@@ -8,6 +8,10 @@
 
 namespace continuum {
 
+/// Whether two numbers that are a little off are all that was found: no cause has a name, as others
+/// may do the same.
+bool OnlyCorrections(const Diagnosis& diagnosis);
+
 /// The verdict as the first line of a page: "Cause: payload at body tip".
 std::string HeadlineOf(const Diagnosis& diagnosis);
 /// "to first order it explains too little", or for what there was no time.

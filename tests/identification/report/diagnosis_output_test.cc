@@ -29,6 +29,7 @@ using ::testing::IsEmpty;
 using testing::Noisy;
 using ::testing::Not;
 using testing::Pendulum;
+using ::testing::StartsWith;
 using testing::WriteFiles;
 
 // The files of a pendulum with a payload that its model does not have.
@@ -357,6 +358,18 @@ TEST_F(DiagnosisOutput, IsOnlyLikelyWhereMoreThanNoiseIsLeft) {
   d_->noise = {};
   EXPECT_EQ(CertaintyOf(*d_), Certainty::kLikely);
   EXPECT_THAT(WhyInWords(*d_), HasSubstr("how large their noise is"));
+}
+
+TEST_F(DiagnosisOutput, OfTwoCorrectionsSaysThatOtherNumbersMayBeOff) {
+  EXPECT_FALSE(OnlyCorrections(*d_));
+  d_->partner = Partner{d_->candidates[1].hypothesis};
+  d_->partner->correction = Partner::Correction::kBoth;
+  d_->verdict.kind = Verdict::Kind::kAmbiguous;
+  ASSERT_TRUE(OnlyCorrections(*d_));
+  EXPECT_THAT(HeadlineOf(*d_), StartsWith("Numbers that are a little off: input_gain at"));
+  EXPECT_THAT(WhyInWords(*d_), HasSubstr("such as lengths"));
+  EXPECT_EQ(CertaintyOf(*d_), Certainty::kCannotSay);
+  EXPECT_THAT(NextStepsInWords(e_, *d_, {}).front(), HasSubstr("Measure lengths"));
 }
 
 }  // namespace
