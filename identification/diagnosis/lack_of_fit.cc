@@ -62,8 +62,7 @@ LackOfFit TestLackOfFit(const CandidateFitter& fitter, const Problem& without,
   const Problem problem(experiment, without.system(), extra, terms);  // at the model's own step
   const Vector x = Append(fitted.fit.x, std::vector<double>(terms.count, 0.0));
   const ProjectedResidual residual = fitter.ProjectedResidualOf(fitted);
-  const auto r = problem.Residuals(x, train);
-  auto J = ForceColumns(problem, x, r, fitted.sensitivities.value().jacobian,
+  auto J = ForceColumns(problem, x, fitted.residuals, fitted.sensitivities.value().jacobian,
                         static_cast<Eigen::Index>(terms.count));
   LackOfFit lack;
   lack.force = ChiSquared(residual.Project(J), residual.vector(), inflation);
