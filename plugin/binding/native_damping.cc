@@ -9,6 +9,8 @@
 namespace continuum {
 namespace {
 
+constexpr double kPrinted = 1e-5;  // MuJoCo saves models with six digits
+
 // The damping that the laws of a model give to each degree of freedom, as its MJCF says.
 std::map<int, double> SumsOf(const mjModel& m) {
   std::map<int, double> sums;
@@ -42,8 +44,8 @@ void NativeDamping::ImposeSums(mjModel& m, const std::vector<FrictionRow>& rows)
     double& native = m.dof_damping[row.index];
     const double sum = sums.at(row.index);
     foreign_.push_back(sum == 0 && native != 0);
-    if (native == 0) native = sum;
-    if (sum != 0 && std::abs(native - sum) > 1e-9 * sum) Refuse(m, row, sum);
+    if (native != 0 && std::abs(native - sum) > kPrinted * sum && sum != 0) Refuse(m, row, sum);
+    if (sum != 0) native = sum;
   }
 }
 

@@ -112,6 +112,30 @@ TEST_F(UserModels, ASavedJointHasNoFrictionThatTheUserDidNotWrite) {
   EXPECT_THAT(text.data(), ::testing::Not(HasSubstr("solimpfriction")));
 }
 
+// MuJoCo prints the damping that is ours with six digits: such a model loads, and moves as before.
+TEST_F(UserModels, ASavedModelWithManyDigitsLoadsAndMovesAsBefore) {
+  char error[1000] = "";
+  const std::string xml = Link(
+      Instance("stribeck", Key("joint", "h") + Key("tau_mu", "0.0123456789") + Key("tau_c", ".05")),
+      "");
+  const testing::Owned<mjSpec> spec(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
+  const testing::Owned<mjModel> m(mj_compile(spec.get(), nullptr));
+  ASSERT_TRUE(m) << mjs_getError(spec.get());
+  const auto d = Data(m);
+  ASSERT_TRUE(mj_copyBack(spec.get(), m.get()));
+  std::vector<char> text(100000);
+  ASSERT_EQ(
+      mj_saveXMLString(spec.get(), text.data(), static_cast<int>(text.size()), error, sizeof error),
+      0)
+      << error;
+  const auto saved = Model(text.data());
+  const auto e = Data(saved);
+  EXPECT_EQ(saved->dof_damping[0], 0.0123456789);
+  d->qvel[0] = e->qvel[0] = 1;
+  RunUntil(m, d, .1), RunUntil(saved, e, .1);
+  EXPECT_EQ(d->qpos[0], e->qpos[0]);
+}
+
 // Dry friction starts no motion: nothing acts on the joint.
 TEST_F(UserModels, APoseWrittenByHandStaysWhereItWasPut) {
   for (const bool ball : {false, true}) {
