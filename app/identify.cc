@@ -78,7 +78,8 @@ void AddIdentify(CLI::App& app) {
                   "fit.json to start from: go on with a fit that was interrupted, or was made "
                   "with other logs");
   sub->add_option("--method", o->method,
-                  "lm (Levenberg-Marquardt), pso (particle swarm, 20 x 40) or regressor (least "
+                  "lm (Levenberg-Marquardt), pso (particle swarm, 20 x 40, or the "
+                  "experiment's key swarm) or regressor (least "
                   "squares on the inverse model, where all joints are measured)")
       ->check(CLI::IsMember({"lm", "pso", "regressor"}))
       ->capture_default_str();

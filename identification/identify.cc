@@ -87,7 +87,8 @@ void FitSwarm(const Options& o, const Problem& problem, const std::vector<bool>&
               IdentifyResult& all) {
   SwarmFitOptions options{
       .seed = o.seed, .soft = problem.experiment().soft, .progress = o.progress};
-  if (o.iterations > 0) options.iterations = o.iterations;
+  if (const auto& file = problem.experiment().file; !file.empty()) options.swarm = ReadSwarm(file);
+  if (o.iterations > 0) options.swarm.iterations = o.iterations;
   all.fit = FitBySwarm(problem, use, options);
 }
 

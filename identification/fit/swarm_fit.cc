@@ -9,7 +9,7 @@
 
 #include "error.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/particle_swarm.h"
+#include "sim/io/yaml.h"
 #include "sim/numerics/portable_random.h"
 
 namespace continuum {
@@ -43,8 +43,7 @@ ParticleSwarm SwarmFor(const Problem& problem, const SwarmFitOptions& options) {
     upper[k] = problem.parameters()[k].upper;
   }
   SwarmOptions swarm;
-  swarm.particles = options.particles;
-  swarm.pull = 1.49618;
+  static_cast<SwarmConstants&>(swarm) = options.swarm;
   swarm.moving = swarm.by_vector = true;
   swarm.uniform = [random = Random64(options.seed)]() mutable { return random.Uniform(); };
   return {lower, upper, std::move(swarm), problem.Start()};
@@ -53,11 +52,33 @@ ParticleSwarm SwarmFor(const Problem& problem, const SwarmFitOptions& options) {
 void Say(const SwarmFitOptions& options, int generations, double cost, std::size_t simulations) {
   if (!options.progress) return;
   options.progress({"particle swarm", static_cast<std::size_t>(generations),
-                    static_cast<std::size_t>(options.iterations),
+                    static_cast<std::size_t>(options.swarm.iterations),
                     fmt::format("cost {:.6g}, {} simulations", cost, simulations)});
 }
 
 }  // namespace
+
+SwarmConstants ReadSwarm(const std::filesystem::path& experiment) {
+  SwarmConstants c = SwarmFitOptions{}.swarm;
+  const auto y = Yaml::Read(experiment).Find("swarm");
+  if (!y) return c;
+  y->Only({"particles", "iterations", "momentum", "cognitive", "social", "constriction",
+           "cost_tolerance", "spread_tolerance"});
+  const auto whole = [&](const std::string& key, int usual) {
+    const auto given = y->Find(key);
+    if (!given) return usual;
+    given->Number(1, 1e6);
+    return given->Integer();
+  };
+  c.particles = whole("particles", c.particles), c.iterations = whole("iterations", c.iterations);
+  c.inertia = y->NumberOr("momentum", c.inertia, 0, 1);
+  c.to_own = y->NumberOr("cognitive", c.to_own, 1e-9, 100);
+  c.to_all = y->NumberOr("social", c.to_all, 0, 100);
+  c.constriction = y->NumberOr("constriction", c.constriction, 1e-9, 1);
+  c.cost_tolerance = y->NumberOr("cost_tolerance", c.cost_tolerance, 0, 1);
+  c.spread_tolerance = y->NumberOr("spread_tolerance", c.spread_tolerance, 0, 1);
+  return c;
+}
 
 Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use,
                const SwarmFitOptions& options) {
@@ -66,7 +87,8 @@ Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use,
   const std::size_t before = problem.evaluations();
   ParticleSwarm swarm = SwarmFor(problem, options);
   Fit fit;
-  for (; fit.iterations < options.iterations && !StopRequested(); ++fit.iterations) {
+  const int most = options.swarm.iterations;
+  for (; fit.iterations < most && !swarm.Settled() && !StopRequested(); ++fit.iterations) {
     swarm.Evaluate([&](const Vector& x) { return CostAt(problem, x, use, options.soft); });
     if (!std::isfinite(swarm.best_cost())) {
       StopIfRequested();
@@ -78,8 +100,10 @@ Fit FitBySwarm(const Problem& problem, const std::vector<bool>& use,
   }
   fit.x = swarm.best();
   fit.cost = swarm.best_cost();
-  fit.converged = fit.iterations == options.iterations;
-  fit.message = fit.converged ? "all generations done" : "interrupted";
+  fit.converged = fit.iterations == most || swarm.Settled();
+  fit.message = swarm.Settled() ? "the swarm has settled"
+                : fit.converged ? "all generations done"
+                                : "interrupted";
   fit.evaluations = problem.evaluations() - before;
   fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return fit;

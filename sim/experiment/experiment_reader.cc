@@ -154,7 +154,7 @@ void ReadLogs(const Yaml& y, double time_unit, Experiment& e) {
 Experiment Experiment::Read(const std::filesystem::path& file) {
   const Yaml y = Yaml::Read(file);
   y.Only({"format", "model", "logs", "time", "start", "inputs", "outputs", "registration",
-          "quasi_static", "parameters", "candidates", "folds", "loss"});
+          "quasi_static", "parameters", "candidates", "folds", "loss", "swarm"});
   if (y.At("format").Number() != 1) {
     throw Error::Input(y.At("format").Where(), "format 1", y.At("format").Text());
   }

@@ -1,5 +1,6 @@
 #include "sim/numerics/particle_swarm.h"
 
+#include <cmath>
 #include <utility>
 
 #include "sim/io/interrupt.h"
@@ -27,12 +28,22 @@ ParticleSwarm::Vector ParticleSwarm::Draw() {
 }
 
 void ParticleSwarm::Evaluate(const std::function<double(const Vector&)>& cost) {
+  const double before = best_cost_;
+  std::vector<double> costs;
   for (Particle& p : particles_) {
     if (StopRequested()) return;
-    const double value = cost(p.place);
+    const double value = costs.emplace_back(cost(p.place));
     if (value < p.best_cost) p.best_cost = value, p.best = p.place;
     if (value < best_cost_) best_cost_ = value, best_ = p.place;
   }
+  Judge(costs, before);
+}
+
+void ParticleSwarm::Judge(const std::vector<double>& costs, double best_before) {
+  const auto all = Eigen::Map<const Vector>(costs.data(), std::ssize(costs));
+  const double mean = all.mean(), spread = std::sqrt((all.array() - mean).square().mean());
+  settled_ = best_before - best_cost_ < options_.cost_tolerance * std::abs(best_before) &&
+             spread < options_.spread_tolerance * std::abs(mean);
 }
 
 void ParticleSwarm::Move() {
@@ -51,10 +62,11 @@ void ParticleSwarm::Move() {
     const Vector to_all = all.cwiseProduct(goal - p.place);
     p.velocity = options_.inertia * p.velocity;
     if (options_.by_vector) {  // rounded as in the published runs
-      p.velocity = p.velocity + options_.pull * to_own + options_.pull * to_all;
+      p.velocity = p.velocity + options_.to_own * to_own + options_.to_all * to_all;
     } else {
-      p.velocity += options_.pull * (to_own + to_all);
+      p.velocity += options_.to_own * (to_own + options_.to_all / options_.to_own * to_all);
     }
+    p.velocity *= options_.constriction;
     const Vector next = p.place + p.velocity;
     p.place = next.cwiseMax(lower_).cwiseMin(upper_);
     p.velocity = (next.array() == p.place.array()).select(p.velocity, 0);

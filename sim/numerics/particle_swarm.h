@@ -8,11 +8,19 @@
 
 namespace continuum {
 
-struct SwarmOptions {
+/// Constants of a swarm, by default those of the constriction factor of Clerc and Kennedy (2002).
+struct SwarmConstants {
   int particles = 20, iterations = 40;
-  double inertia = 0.7298;  ///< share of its velocity that a particle keeps
-  double pull = 1.4962;     ///< towards its own best place and towards that of all
-  bool moving = false;      ///< particles start with random velocities instead of at rest
+  double inertia = 0.7298;      ///< ω: share of its velocity that a particle keeps
+  double to_own = 1.4962;       ///< λ₁ > 0: pull towards its own best place
+  double to_all = 1.4962;       ///< λ₂: towards that of all
+  double constriction = 1;      ///< χ: share of the whole velocity
+  double cost_tolerance = 0;    ///< least relative fall of the best cost in an iteration
+  double spread_tolerance = 0;  ///< least standard deviation of all costs over their mean
+};
+
+struct SwarmOptions : SwarmConstants {
+  bool moving = false;  ///< particles start with random velocities instead of at rest
   /// Whether the random numbers of a move are drawn coordinate by coordinate (own, all) or as two
   /// whole vectors (all, own): published numbers hang on it.
   bool by_vector = false;
@@ -20,12 +28,12 @@ struct SwarmOptions {
 };
 
 /// Minimises a cost within a box by particle swarm optimisation, without derivatives: particles fly
-/// on by inertia and are pulled to the best places found, with the constriction factor of Clerc and
-/// Kennedy (2002). One that would leave the box stops at its wall.
+/// on by inertia and are pulled to the best places found. One that would leave the box stops at its
+/// wall.
 ///
-///   v = inertia v + pull (u_1 (own best - x) + u_2 (best of all - x)),   x = x + v
+///   v = χ (ω v + λ₁ u₁ (own best − x) + λ₂ u₂ (best of all − x)),   x = x + v
 ///
-/// Alternate Evaluate and Move.
+/// Alternate Evaluate and Move, until the iterations or the swarm are done.
 class ParticleSwarm {
  public:
   using Vector = Eigen::VectorXd;
@@ -37,6 +45,9 @@ class ParticleSwarm {
   /// early when the user asks to stop (StopRequested).
   void Evaluate(const std::function<double(const Vector&)>& cost);
   void Move();
+  /// Whether in the last Evaluate the best cost fell by less than its tolerance, and the costs of
+  /// all particles differed by less than theirs. Never where one of these is 0.
+  bool Settled() const { return settled_; }
 
   /// The best place so far and its cost; empty and infinite before any cost was finite.
   const Vector& best() const { return best_; }
@@ -49,12 +60,14 @@ class ParticleSwarm {
   };
 
   Vector Draw();
+  void Judge(const std::vector<double>& costs, double best_before);
 
   Vector lower_, upper_;
   SwarmOptions options_;
   std::vector<Particle> particles_;
   Vector best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
+  bool settled_ = false;
 };
 
 }  // namespace continuum

@@ -181,7 +181,7 @@ TEST_F(RegressorTest, ASwarmFindsThePlaceButNotThePoint) {
       "  - {name: kp, target: 'actuator:servo', attribute: kp, initial: 2, lower: 1, upper: 9}\n");
   const Problem problem(e, system);
   SwarmFitOptions options;
-  options.iterations = 15;
+  options.swarm.iterations = 15;
   const Fit swarm = FitBySwarm(problem, problem.TrainLogs(), options);
   const Fit again = FitBySwarm(problem, problem.TrainLogs(), options);
   const Fit best = FitParameters(problem, problem.Start(), problem.TrainLogs());
@@ -191,6 +191,27 @@ TEST_F(RegressorTest, ASwarmFindsThePlaceButNotThePoint) {
   EXPECT_LT(best.evaluations * 10, swarm.evaluations);
   options.seed = 2;
   EXPECT_NE(FitBySwarm(problem, problem.TrainLogs(), options).x, swarm.x);
+}
+
+TEST_F(RegressorTest, ASwarmHasTheConstantsOfTheExperiment) {
+  const auto read = [&](const std::string& swarm) {
+    return ReadSwarm(Write("swarm.yaml", "format: 1\n" + swarm));
+  };
+  EXPECT_EQ(read("").to_own, 1.49618);
+  const SwarmConstants c = read(
+      "swarm: {particles: 30, iterations: 50, cost_tolerance: 0.001, spread_tolerance: 0.0001, "
+      "cognitive: 3, social: 2, momentum: 0.1, constriction: 0.1146}\n");
+  EXPECT_EQ(c.particles, 30);
+  EXPECT_EQ(c.iterations, 50);
+  EXPECT_EQ(c.cost_tolerance, 1e-3);
+  EXPECT_EQ(c.spread_tolerance, 1e-4);
+  EXPECT_EQ(c.to_own, 3);
+  EXPECT_EQ(c.to_all, 2);
+  EXPECT_EQ(c.inertia, 0.1);
+  EXPECT_EQ(c.constriction, 0.1146);
+  for (const std::string wrong : {"swarm: {lambda: 3}", "swarm: {cognitive: 0}",
+                                  "swarm: {particles: 2.5}", "swarm: {constriction: 2}"})
+    EXPECT_THROW(read(wrong), Error) << wrong;
 }
 
 }  // namespace

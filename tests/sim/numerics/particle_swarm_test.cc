@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +43,37 @@ TEST(ParticleSwarm, StartsInMotionToo) {
   SwarmOptions options = Seeded();
   options.moving = options.by_vector = true;
   ExpectBowlFound(options);
+}
+
+// v = χ ω v where λ₁ and λ₂ are as good as 0.
+TEST(ParticleSwarm, FliesAsItsConstantsSay) {
+  SwarmOptions options = Seeded();
+  options.moving = true, options.inertia = 0.5, options.constriction = 0.25;
+  options.to_own = 1e-300, options.to_all = 0;
+  options.particles = 1;
+  ParticleSwarm swarm(Eigen::Vector2d(-1e3, -1e3), Eigen::Vector2d(1e3, 1e3), options,
+                      Eigen::Vector2d(0, 0));
+  std::vector<Vector> places;
+  for (int k = 0; k < 4; ++k) {
+    swarm.Evaluate([&](const Vector& p) { return places.emplace_back(p).norm(); });
+    swarm.Move();
+  }
+  const Vector first = places[1] - places[0], second = places[2] - places[1];
+  EXPECT_GT(first.norm(), 0);
+  EXPECT_LT((second - 0.125 * first).norm(), 1e-12 * first.norm());
+}
+
+TEST(ParticleSwarm, SettlesWhenCostsAreAlikeAndTheBestStays) {
+  SwarmOptions options = Seeded();
+  options.cost_tolerance = 1e-3, options.spread_tolerance = 1e-4;
+  ParticleSwarm swarm(Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, 1), options);
+  const auto steps = [&](double slope) {
+    swarm.Evaluate([&](const Vector& p) { return 1 + slope * p.norm(); });
+    return swarm.Settled();
+  };
+  EXPECT_FALSE(steps(1e-6));  // nothing came before
+  EXPECT_TRUE(steps(1e-6));
+  EXPECT_FALSE(steps(1));
 }
 
 TEST(ParticleSwarm, BeginsAtAGivenPlace) {
