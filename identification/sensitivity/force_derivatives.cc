@@ -21,6 +21,13 @@ std::string ForceDerivatives::Obstacle(const mjModel& m) {
   return why.empty() ? TendonDerivatives::Obstacle(m) : why;
 }
 
+ForceDerivatives::Implicit ForceDerivatives::ImplicitOf(const mjModel& m) {
+  if (m.opt.integrator == mjINT_IMPLICIT) return Implicit::kMotion;
+  if (m.opt.integrator == mjINT_IMPLICITFAST) return Implicit::kForces;
+  const bool damped = m.opt.integrator == mjINT_EULER && !(m.opt.disableflags & mjDSBL_EULERDAMP);
+  return damped ? Implicit::kJoints : Implicit::kNothing;
+}
+
 ForceDerivatives::ForceDerivatives(const mjModel& m, const Parts& parts)
     : parts_(parts),
       rigid_(m),
@@ -33,7 +40,9 @@ ForceDerivatives::ForceDerivatives(const mjModel& m, const Parts& parts)
       by_position_(m.nv, m.nv),
       by_velocity_(m.nv, m.nv),
       by_activation_(m.nv, m.na),
-      damping_(m.nv, m.nv) {}
+      damping_(m.nv, m.nv) {
+  if (parts.implicit == Implicit::kMotion) beyond_.emplace(m);
+}
 
 // Spring and damper at the rate that is felt; at_rest: the same at no rate.
 ForceAlong ForceDerivatives::Weighed(ForceAlong at_rest, double felt) const {
@@ -43,11 +52,12 @@ ForceAlong ForceDerivatives::Weighed(ForceAlong at_rest, double felt) const {
 }
 
 ForceAlong ForceDerivatives::Joint(const mjModel& by, const mjData& d, int joint) const {
-  return Weighed(JointForce(by, d, joint, 0), felt_[by.jnt_dofadr[joint]]);
+  return Weighed(JointForce(by, d, joint, 0), FeltBy(Implicit::kJoints)[by.jnt_dofadr[joint]]);
 }
 
 ForceAlong ForceDerivatives::Tendon(const mjModel& by, const mjData& d, int tendon) const {
-  return Weighed(TendonForce(by, d, tendon, 0), tendons_.Rate(by, d, tendon, FeltByAll().data()));
+  return Weighed(TendonForce(by, d, tendon, 0),
+                 tendons_.Rate(by, d, tendon, FeltBy(Implicit::kForces).data()));
 }
 
 // What acts at d, but by the speeds that it feels: it is linear in them.
@@ -56,20 +66,16 @@ ForceAlong ForceDerivatives::Actuator(const mjModel& by, const mjData& d, int ac
     return OnTendon(by, actuator) ? tendons_.Rate(by, d, by.actuator_trnid[2 * actuator], v)
                                   : v[DofOf(by, actuator)];
   };
-  const double now = rate(d.qvel);
+  const double now = rate(d.qvel), more = rate(FeltBy(Implicit::kForces).data()) - now;
   if (!given_.empty() && !std::isnan(given_[actuator])) {
     const double gear = by.actuator_gear[6 * by.actuator_outadr[actuator]], f = given_[actuator];
     const double* const range = by.actuator_forcerange + 2 * actuator;
     const bool limited = by.actuator_forcelimited[actuator] && (f <= range[0] || f >= range[1]);
     const double by_rate =
         limited ? 0 : gear * UnlimitedOutput(by, d, actuator, now, step_).by_rate;
-    return ForceAlong{gear * f, 0, by_rate, 0}
-        .Felt(rate(FeltByAll().data()) - now)
-        .Times(parts_.actuators);
+    return ForceAlong{gear * f, 0, by_rate, 0}.Felt(more).Times(parts_.actuators);
   }
-  return ActuatorForce(by, d, actuator, now, step_)
-      .Felt(rate(FeltByAll().data()) - now)
-      .Times(parts_.actuators);
+  return ActuatorForce(by, d, actuator, now, step_).Felt(more).Times(parts_.actuators);
 }
 
 void ForceDerivatives::PullAlong(const mjModel& m, const mjData& d, int actuator, double f,
@@ -85,14 +91,14 @@ void ForceDerivatives::Update(const mjModel& m, const mjData& d, const double* a
                               const double* felt, double step) {
   v_.assign(d.qvel, d.qvel + m.nv), a_.assign(a, a + m.nv);
   felt_.assign(felt, felt + m.nv), step_ = step;
-  for (Matrix* all : {&by_position_, &by_velocity_, &by_activation_}) all->setZero();
+  for (Matrix* all : {&by_position_, &by_velocity_, &by_activation_, &damping_}) all->setZero();
   for (int t = 0; t < m.ntendon; ++t) of_tendon_[t] = Tendon(m, d, t);
   for (int j = 0; j < m.njnt; ++j) {
     const int i = m.jnt_dofadr[j];
     const ForceAlong pull = Joint(m, d, j);
     by_position_(i, i) += pull.by_length, by_velocity_(i, i) += pull.by_rate;
   }
-  damping_ = by_velocity_;
+  if (parts_.implicit >= Implicit::kJoints) damping_ = by_velocity_;
   for (int k = 0; k < m.nactuator; ++k) {
     const ForceAlong pull = Actuator(m, d, k);
     if (OnTendon(m, k)) {
@@ -108,14 +114,23 @@ void ForceDerivatives::Update(const mjModel& m, const mjData& d, const double* a
     ForceAlong& pull = of_tendon_[t];
     pull.f += pull_[t];
     if (pull.f == 0 && pull.by_length == 0 && pull.by_rate == 0) continue;
-    tendons_.Add(m, d, t, pull.f, pull.by_length, pull.by_rate, FeltByAll().data(), by_position_,
-                 by_velocity_);
+    tendons_.Add(m, d, t, pull.f, pull.by_length, pull.by_rate, FeltBy(Implicit::kForces).data(),
+                 by_position_, by_velocity_);
   }
-  if (parts_.all_felt) damping_ = by_velocity_;
-  if (parts_.motion == 0) return;
+  if (parts_.implicit >= Implicit::kForces) damping_ = by_velocity_;
+  if (parts_.motion != 0) AddMotion(m, d);
+}
+
+void ForceDerivatives::AddMotion(const mjModel& m, const mjData& d) {
   if (!parts_.moves) std::fill(v_.begin(), v_.end(), 0.0), a_ = v_;
-  rigid_.Update(m, d, v_.data(), a_.data());
+  rigid_.Update(m, d, FeltBy(Implicit::kMotion).data(), a_.data());
   rigid_.Add(-parts_.motion, by_position_, by_velocity_);
+  if (!beyond_) return;
+  std::vector<double> x(felt_), rest(m.nv, 0);
+  for (int i = 0; i < m.nv; ++i) x[i] -= v_[i];
+  beyond_->Update(m, d, x.data(), rest.data(), false);
+  damping_ = by_velocity_;  // ∂c/∂q̇ is 2 Q(q̇ + x, ·) − 2 Q(x, ·)
+  beyond_->Add(parts_.motion, by_position_, damping_);
 }
 
 void ForceDerivatives::Differ(const mjModel& m, const mjData& d, const mjModel& other,
@@ -129,8 +144,10 @@ void ForceDerivatives::Differ(const mjModel& m, const mjData& d, const mjModel& 
   for (const int k : difference.actuators)
     PullAlong(m, d, k, Actuator(other, d, k).f - Actuator(m, d, k).f, force);
   if (parts_.motion == 0) return;
-  for (const auto& body : difference.bodies)
+  for (const auto& body : difference.bodies) {
     rigid_.AddBody(m, d, body.id, body.inertia.data(), -parts_.motion, force);
+    if (beyond_) beyond_->AddBody(m, d, body.id, body.inertia.data(), parts_.motion, force);
+  }
   if (difference.gravity) rigid_.AddGravity(m, other, parts_.motion, force);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -19,16 +20,26 @@ namespace continuum {
 ///
 /// at fixed accelerations a; w are activations. Of hinges and slides with springs and dampers,
 /// tendons through sites or of joints, and actuators with affine gain and bias that pull either.
+///
+/// Forces act at the speeds that are felt, q̇ + x: those of the step's end for what a method is
+/// implicit in. What motion takes, c = g + Q(q̇, q̇), is of second degree in speeds; methods know its
+/// first order,
+///
+///   c + ∂c/∂q̇ x = g + Q(q̇ + x, q̇ + x) − Q(x, x)                                   (2)
 class ForceDerivatives {
  public:
   using Matrix = Eigen::MatrixXd;
+
+  /// What a method is implicit in, each with those before it: nothing (RK4), dampers of joints
+  /// (Euler), of tendons and actuators (implicitfast), the forces that motion takes (implicit).
+  enum class Implicit { kNothing, kJoints, kForces, kMotion };
+  static Implicit ImplicitOf(const mjModel& m);
 
   /// What of the forces counts, and how often.
   struct Parts {
     double springs = 1, dampers = 1, actuators = 1, motion = 1;
     bool moves = true;  ///< false: only gravity of the motion
-    /// Whether tendons and actuators feel the speeds of the step's end as joints do.
-    bool all_felt = true;
+    Implicit implicit = Implicit::kForces;
   };
 
   /// What a model has beyond that ("actuator 'a1' has dynamics of its own"); empty: nothing.
@@ -45,15 +56,15 @@ class ForceDerivatives {
   /// From now on the forces of these actuators, before their gears [nactuator], are given: only
   /// what a method knows of them at the speeds that are felt follows. NaN: they are native.
   void Give(std::vector<double> force) { given_ = std::move(force); }
-  /// At d, after a forward pass; a: accelerations [nv]; felt: speeds that dampers and actuators
-  /// feel [nv], those of d, or of the step's end where a method is implicit in them; step: of lags
-  /// that act early [s].
+  /// At d, after a forward pass; a: accelerations [nv]; felt: speeds [nv], those of d, or of the
+  /// step's end, which count where the method is implicit in them; step: of lags that act early
+  /// [s].
   void Update(const mjModel& m, const mjData& d, const double* a, const double* felt,
               double step = 0);
   const Matrix& by_position() const { return by_position_; }      ///< [nv × nv]
   const Matrix& by_velocity() const { return by_velocity_; }      ///< [nv × nv]
   const Matrix& by_activation() const { return by_activation_; }  ///< [nv × na]
-  /// ∂τ/∂q̇ of native forces alone, what implicit methods know [nv × nv].
+  /// ∂F/∂q̇ as the method knows it, at the speeds of d [nv × nv].
   const Matrix& damping() const { return damping_; }
 
   /// force[nv] += F of another model less F, at the state and accelerations of Update; the
@@ -62,7 +73,10 @@ class ForceDerivatives {
               const ModelDifference& difference, double* force) const;
 
  private:
-  const std::vector<double>& FeltByAll() const { return parts_.all_felt ? felt_ : v_; }
+  const std::vector<double>& FeltBy(Implicit part) const {
+    return parts_.implicit >= part ? felt_ : v_;
+  }
+  void AddMotion(const mjModel& m, const mjData& d);
   ForceAlong Weighed(ForceAlong at_rest, double felt) const;
   ForceAlong Joint(const mjModel& by, const mjData& d, int joint) const;
   ForceAlong Tendon(const mjModel& by, const mjData& d, int tendon) const;
@@ -71,6 +85,7 @@ class ForceDerivatives {
 
   Parts parts_;
   RigidBodyDerivatives rigid_;
+  std::optional<RigidBodyDerivatives> beyond_;  ///< Q(x, x) of (2)
   TendonDerivatives tendons_;
   std::vector<double> v_, a_, felt_;
   std::vector<ForceAlong> of_tendon_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "binding/force.h"
+#include "mujoco_compat.h"
 #include "sim/model/mujoco_handles.h"
 
 namespace continuum {
@@ -47,7 +48,6 @@ std::string ActuatorObstacle(const mjModel& m, int a) {
       dyn != mjDYN_FILTEREXACT)
     return "has dynamics of its own";
   if (m.actuator_actadr[a] >= 0 && m.actuator_actlimited[a]) return "limits its activation";
-  if (m.actuator_delay[a] > 0) return "has a delay";
   if (m.actuator_damping[a] != 0 || m.actuator_armature[a] != 0 ||
       !All0(m.actuator_dampingpoly + mjNPOLY * a, mjNPOLY))
     return "has a damping or an armature";
@@ -121,6 +121,14 @@ ForceAlong TendonForce(const mjModel& m, const mjData& d, int tendon, double rat
   return pull;
 }
 
+std::vector<double> ControlsMet(const mjModel& m, const mjData& d) {
+  std::vector<double> met(d.ctrl, d.ctrl + m.nu);
+  for (int a = 0; a < m.nactuator; ++a) {
+    if (m.actuator_delay[a] > 0) met[m.actuator_ctrladr[a]] = ReadControl(m, d, a);
+  }
+  return met;
+}
+
 double ControlWithin(const mjModel& m, const mjData& d, int a) {
   const bool clamped = m.actuator_ctrllimited[a] && !(m.opt.disableflags & mjDSBL_CLAMPCTRL);
   const double* const range = m.actuator_ctrlrange + 2 * a;
@@ -138,12 +146,14 @@ Activation RateOfActivation(const mjModel& m, const mjData& d, int a) {
   return {(u - d.act[m.actuator_actadr[a]]) / Lag(m, a), -1 / Lag(m, a), 1 / Lag(m, a)};
 }
 
+double ActivationSpan(const mjModel& m, int a, double step) {
+  if (m.actuator_dyntype[a] != mjDYN_FILTEREXACT) return step;
+  return Lag(m, a) * -std::expm1(-step / Lag(m, a));
+}
+
 Activation NextActivation(const mjModel& m, const mjData& d, int a, double step) {
-  const double act = d.act[m.actuator_actadr[a]];
+  const double act = d.act[m.actuator_actadr[a]], span = ActivationSpan(m, a, step);
   const Activation rate = RateOfActivation(m, d, a);
-  const double span = m.actuator_dyntype[a] == mjDYN_FILTEREXACT
-                          ? Lag(m, a) * -std::expm1(-step / Lag(m, a))
-                          : step;
   return {act + span * rate.value, 1 + span * rate.by_itself, span * rate.by_input};
 }
 

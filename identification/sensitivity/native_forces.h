@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <mujoco/mujoco.h>
 
@@ -31,13 +32,18 @@ ActuatorOutput UnlimitedOutput(const mjModel& m, const mjData& d, int actuator, 
                                double step);
 /// Length of the joint or tendon that an actuator pulls.
 double ActuatedLength(const mjModel& m, const mjData& d, int actuator);
-/// The control as an actuator meets it, within its range.
+/// Controls as actuators meet them at d's time, behind their delays [nu].
+std::vector<double> ControlsMet(const mjModel& m, const mjData& d);
+/// The control as an actuator meets it, within its range; d has it behind its delay.
 double ControlWithin(const mjModel& m, const mjData& d, int actuator);
 /// What an actuator's activation becomes, and how this follows it: its rate (step: 0), or its value
 /// after a step [s].
 struct Activation {
   double value = 0, by_itself = 0, by_input = 0;
 };
+/// What a rate of activation is multiplied by in a step [s]: less than the step where the lag is
+/// exact.
+double ActivationSpan(const mjModel& m, int actuator, double step);
 Activation RateOfActivation(const mjModel& m, const mjData& d, int actuator);
 Activation NextActivation(const mjModel& m, const mjData& d, int actuator, double step);
 

@@ -80,9 +80,9 @@ RigidBodyDerivatives::RigidBodyDerivatives(const mjModel& m)
 }
 
 void RigidBodyDerivatives::Update(const mjModel& m, const mjData& d, const double* v,
-                                  const double* a) {
+                                  const double* a, bool weighs) {
   velocity_[0].setZero(), rate_[0].setZero();
-  if (!(m.opt.disableflags & mjDSBL_GRAVITY)) rate_[0].tail<3>() = -At(m.opt.gravity);
+  if (weighs && !(m.opt.disableflags & mjDSBL_GRAVITY)) rate_[0].tail<3>() = -At(m.opt.gravity);
   for (int b = 1; b < m.nbody; ++b) {
     Vector6 twist = velocity_[m.body_parentid[b]], rate = rate_[m.body_parentid[b]];
     for (int i = m.body_dofadr[b], end = i + m.body_dofnum[b]; i < end; ++i) {

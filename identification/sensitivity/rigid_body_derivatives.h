@@ -28,8 +28,10 @@ class RigidBodyDerivatives {
 
   explicit RigidBodyDerivatives(const mjModel& m);
 
-  /// Takes up d, after a forward pass, with the speeds v and the accelerations a [nv].
-  void Update(const mjModel& m, const mjData& d, const double* v, const double* a);
+  /// Takes up d, after a forward pass, with the speeds v and the accelerations a [nv]; with weight,
+  /// or without.
+  void Update(const mjModel& m, const mjData& d, const double* v, const double* a,
+              bool weighs = true);
   /// Adds ∂τ/∂q and ∂τ/∂q̇ [nv × nv] times a factor.
   void Add(double factor, Matrix& by_position, Matrix& by_velocity) const;
   /// Adds to force [nv] what inertia, added to a body in its own frame, needs: (mass [kg], mass

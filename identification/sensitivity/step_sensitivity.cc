@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "identification/sensitivity/native_forces.h"
+#include "mujoco_compat.h"
 #include "sim/simulation/output_recorder.h"
 #include "sim/simulation/wiring.h"
 
@@ -10,12 +12,17 @@ namespace continuum {
 namespace {
 
 using Kind = Number::Kind;
+using Implicit = ForceDerivatives::Implicit;
 
-// Euler takes only the damping of joints implicitly.
-ForceDerivatives::Parts PartsOf(const mjModel& m) {
+ForceDerivatives::Parts PartsOf(Implicit implicit) {
   ForceDerivatives::Parts parts;
-  parts.all_felt = m.opt.integrator != mjINT_EULER;
+  parts.implicit = implicit;
   return parts;
+}
+
+// Friction of cables knows no derivatives of the motion's forces (step_inertia.h).
+ForceDerivatives::Parts PartsOfCables(const mjModel& m) {
+  return PartsOf(std::min(ForceDerivatives::ImplicitOf(m), Implicit::kForces));
 }
 
 // What loads gears: actuators less springs and weight (gear_load.h); actuators alone.
@@ -23,12 +30,19 @@ constexpr ForceDerivatives::Parts kTransmitted{
     .springs = -1, .dampers = 0, .motion = -1, .moves = false};
 constexpr ForceDerivatives::Parts kMotors{.springs = 0, .dampers = 0, .motion = 0};
 
+// Of a history that holds its samples nothing moves until the delay has moved by one.
+bool DelayIsInSamples(const mjModel& m, const mjModel& other) {
+  for (int a = 0; a < m.nactuator; ++a) {
+    if (m.actuator_delay[a] != other.actuator_delay[a] && m.actuator_history[2 * a + 1] == 0)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string StepSensitivity::Obstacle(const mjModel& m, const mjData& d, const Wiring& wiring) {
-  const bool damped = m.opt.integrator == mjINT_EULER && !(m.opt.disableflags & mjDSBL_EULERDAMP);
-  if (m.opt.integrator != mjINT_IMPLICITFAST && !damped)
-    return "the integrator is neither implicitfast nor Euler";
+  if (IsDiscrete(m)) return "the integrator is discrete";
   for (const std::string& why : {SolverRows::Obstacle(m), ForceDerivatives::Obstacle(m),
                                  SensorDerivatives::Obstacle(m, wiring)}) {
     if (!why.empty()) return why;
@@ -42,7 +56,7 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
     : move_(move),
       covered_(perturbed.size()),
       steps_(move),
-      derivatives_(*machine.model, PartsOf(*machine.model)),
+      derivatives_(*machine.model, PartsOf(ForceDerivatives::ImplicitOf(*machine.model))),
       transmitted_(*machine.model, kTransmitted),
       motors_(*machine.model, kMotors),
       sensors_(*machine.model, wiring),
@@ -51,7 +65,7 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
   const mjModel& m = *machine.model;
   for (std::size_t k = 0; k < perturbed.size(); ++k) {
     ModelDifference difference(m, *perturbed[k]->model);
-    covered_[k] = difference.alike;
+    covered_[k] = difference.alike && !DelayIsInSamples(m, *perturbed[k]->model);
     if (!covered_[k]) continue;
     const bool known = difference.field.empty();
     if (!known)
@@ -70,7 +84,8 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
     actuators_.emplace(machine, perturbed_, move);
     actuators_->WriteConstants(*numbers_);
   }
-  if (effects_->Cable(m, *machine.data, nullptr).law) cable_.emplace(m, PartsOf(m));
+  if (effects_->Cable(m, *machine.data, nullptr).law) cable_.emplace(m, PartsOfCables(m));
+  if (m.opt.integrator == mjINT_RK4) stages_.emplace(machine);
   activation_.setZero(m.na, count);
   force_.setZero(m.nv, count), answer_ = force_, differ_ = force_;
 }
@@ -87,7 +102,9 @@ void StepSensitivity::Start(std::size_t k, const State& difference) {
 void StepSensitivity::Before(const mjModel& m, const mjData& d) {
   q_.assign(d.qpos, d.qpos + m.nq), v_.assign(d.qvel, d.qvel + m.nv);
   w_.assign(d.act, d.act + m.na), z_.assign(d.plugin_state, d.plugin_state + m.npluginstate);
+  u_ = ControlsMet(m, d);
   steps_.Keep(m, d);
+  if (stages_) stages_->Keep(m, d);
 }
 
 void StepSensitivity::FollowTendons(const mjModel& m, const mjData& d) {
@@ -231,54 +248,110 @@ bool StepSensitivity::FollowRows(const mjModel& m, const mjData& d) {
   return true;
 }
 
-void StepSensitivity::FollowLags(const mjModel& m, const mjData& d) {
-  const double h = m.opt.timestep;
+// dẇ where derivatives stand.
+Tangents StepSensitivity::RateOfActivations(const mjModel& m, const mjData& d) const {
+  Tangents rates = Tangents::Zero(activation_.rows(), activation_.cols());
   for (int k = 0; k < m.nactuator; ++k) {
     const int w = m.actuator_actadr[k];
     if (w < 0) continue;
-    const Activation next = NextActivation(m, d, k, h);
-    activation_.row(w) *= next.by_itself;
-    if (actuators_) activation_.row(w) += next.by_input * Of(Kind::kInput).row(k);
+    const Activation rate = RateOfActivation(m, d, k);
+    rates.row(w) = rate.by_itself * activation_.row(w);
+    if (actuators_) rates.row(w) += rate.by_input * Of(Kind::kInput).row(k);
   }
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     for (const int k : differences_[c].activations) {
-      activation_(m.actuator_actadr[k], static_cast<Eigen::Index>(c)) +=
-          (NextActivation(*perturbed_[c]->model, d, k, h).value -
-           NextActivation(m, d, k, h).value) /
-          move_;
+      const double there = RateOfActivation(*perturbed_[c]->model, d, k).value;
+      rates(m.actuator_actadr[k], static_cast<Eigen::Index>(c)) +=
+          (there - RateOfActivation(m, d, k).value) / move_;
+    }
+  }
+  return rates;
+}
+
+// w⁺ = w + s ẇ, with s of ActivationSpan and the step's mean rate.
+void StepSensitivity::FollowActivations(const mjModel& m, const Tangents& rates) {
+  for (int k = 0; k < m.nactuator; ++k) {
+    const int w = m.actuator_actadr[k];
+    if (w >= 0) activation_.row(w) += ActivationSpan(m, k, m.opt.timestep) * rates.row(w);
+  }
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    for (const int k : differences_[c].activations) {
+      const int w = m.actuator_actadr[k];
+      const double here = ActivationSpan(m, k, m.opt.timestep),
+                   there = ActivationSpan(*perturbed_[c]->model, k, m.opt.timestep);
+      activation_(w, static_cast<Eigen::Index>(c)) += (there / here - 1) * w_change_[w] / move_;
     }
   }
 }
 
-// At the state of Before.
-bool StepSensitivity::Follow(const mjModel& m, mjData& d) {
-  derivatives_.Place(m, d);
-  FollowTendons(m, d);
-  const bool followed = FollowForces(m, d);
-  if (followed) FollowLags(m, d);
-  if (actuators_) actuators_->PutControlsBack(d);
-  if (followed) FollowStates(m, d);
-  return followed;
-}
-
 // da*, from which all else follows.
 bool StepSensitivity::FollowForces(const mjModel& m, mjData& d) {
-  if (!FollowEffects(m, d)) return false;
+  derivatives_.Place(m, d);
+  FollowTendons(m, d);
+  if (!rows_->Find(m, d) || !FollowEffects(m, d)) return false;
   rows_->AddPulls(d, pull_);
   derivatives_.Pull(pull_);
   if (!rows_->empty() && !FollowRows(m, d)) return false;
+  return FollowMethod(m, d);
+}
+
+// The second equation of (2).
+bool StepSensitivity::FollowMethod(const mjModel& m, const mjData& d) {
+  const Implicit implicit = derivatives_.parts().implicit;
+  if (implicit == Implicit::kNothing && !rows_->empty()) {  // it is the first one
+    force_ = answer_;
+    return true;
+  }
   Derive(m, d, a_.data(), after_.data(), force_);
   if (!rows_->empty()) rows_->AddForces(d, Of(Kind::kPosition), force_);
   mj_fullM(&m, &d, inertia_.data());
   inertia_ -= m.opt.timestep * derivatives_.damping();
-  return Solve(force_);
+  if (implicit != Implicit::kMotion) return Solve(force_);
+  force_ = inertia_.partialPivLu().solve(force_);
+  return force_.allFinite();
 }
 
-void StepSensitivity::FollowStates(const mjModel& m, const mjData& d) {
+// At the state of Before: q̇⁺ and q⁺ of (1), and activations.
+bool StepSensitivity::FollowStep(const mjModel& m, mjData& d) {
+  const bool followed = FollowForces(m, d);
+  if (followed) FollowActivations(m, RateOfActivations(m, d));
+  if (actuators_) actuators_->PutControlsBack(d);
+  if (!followed) return false;
   const double h = m.opt.timestep;
-  Tangents &speed = Of(Kind::kSpeedAfter), &position = Of(Kind::kPositionAfter);
+  Tangents& speed = Of(Kind::kSpeedAfter);
   speed = Of(Kind::kSpeed) + h * force_;
-  position = Of(Kind::kPosition) + h * speed;
+  Of(Kind::kPositionAfter) = Of(Kind::kPosition) + h * speed;
+  Advance(m, d);
+  return true;
+}
+
+// (1) and (2) of RungeKuttaStages.
+bool StepSensitivity::FollowStages(const mjModel& m) {
+  using Stages = RungeKuttaStages;
+  Tangents &q = Of(Kind::kPosition), &v = Of(Kind::kSpeed), &w = activation_;
+  const Tangents q_start = q, v_start = v, w_start = w;
+  Tangents &q_after = Of(Kind::kPositionAfter) = q, &v_after = Of(Kind::kSpeedAfter) = v;
+  Tangents rate = Tangents::Zero(w.rows(), w.cols()), mean = rate;
+  for (std::size_t i = 0; i < Stages::kReach.size(); ++i) {
+    const double reach = Stages::kReach[i] * m.opt.timestep,
+                 weight = Stages::kWeight[i] * m.opt.timestep;
+    if (i > 0) q = q_start + reach * v, v = v_start + reach * force_, w = w_start + reach * rate;
+    mjData& d = stages_->Evaluate(m, i);
+    a_.assign(d.qacc, d.qacc + m.nv);
+    const bool followed = FollowForces(m, d);
+    if (followed) rate = RateOfActivations(m, d);
+    if (actuators_) actuators_->PutControlsBack(d);
+    if (!followed) return false;
+    q_after += weight * v, v_after += weight * force_, mean += Stages::kWeight[i] * rate;
+    if (i + 1 == Stages::kReach.size()) Advance(m, d);
+  }
+  w = w_start;
+  FollowActivations(m, mean);
+  return true;
+}
+
+// What only the step as a whole changes: states of effects.
+void StepSensitivity::Advance(const mjModel& m, const mjData& d) {
   Of(Kind::kNext).setZero();
   effects_->AddNext(*numbers_);
   if (cable_) {
@@ -286,7 +359,8 @@ void StepSensitivity::FollowStates(const mjModel& m, const mjData& d) {
     rows_->AddConstraint(m, d, derivatives_.tendons(), Of(Kind::kPosition), answer_);
     cable_->AddNext(m, answer_, *numbers_);
   }
-  Of(Kind::kSpeed).swap(speed), Of(Kind::kPosition).swap(position);
+  Of(Kind::kSpeed).swap(Of(Kind::kSpeedAfter));
+  Of(Kind::kPosition).swap(Of(Kind::kPositionAfter));
   Of(Kind::kState).swap(Of(Kind::kNext));
 }
 
@@ -294,16 +368,24 @@ void StepSensitivity::SwapState(mjData& d) {
   std::swap_ranges(q_.begin(), q_.end(), d.qpos);
   std::swap_ranges(v_.begin(), v_.end(), d.qvel);
   std::swap_ranges(w_.begin(), w_.end(), d.act);
+  std::swap_ranges(u_.begin(), u_.end(), d.ctrl);
 }
 
 bool StepSensitivity::After(const mjModel& m, mjData& d) {
   q_after_.assign(d.qpos, d.qpos + m.nq), after_.assign(d.qvel, d.qvel + m.nv);
+  w_change_.assign(d.act, d.act + m.na);
+  for (int i = 0; i < m.na; ++i) w_change_[i] -= w_[i];
   a_.resize(m.nv);
   for (int i = 0; i < m.nv; ++i) a_[i] = (after_[i] - v_[i]) / m.opt.timestep;
   steps_.Take(m, d);
-  SwapState(d);  // it holds the step's forces already
-  const bool followed = rows_->Find(m, d) && Follow(m, d);
-  SwapState(d);
+  bool followed = false;
+  if (stages_) {
+    followed = FollowStages(m);
+  } else {
+    SwapState(d);  // it holds the step's forces already
+    followed = FollowStep(m, d);
+    SwapState(d);
+  }
   steps_.AddTo(*numbers_, activation_);
   return followed;
 }

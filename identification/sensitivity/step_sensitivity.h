@@ -11,6 +11,7 @@
 #include "identification/sensitivity/cable_derivatives.h"
 #include "identification/sensitivity/effect_derivatives.h"
 #include "identification/sensitivity/force_derivatives.h"
+#include "identification/sensitivity/runge_kutta_stages.h"
 #include "identification/sensitivity/sensor_derivatives.h"
 #include "identification/sensitivity/single_steps.h"
 #include "identification/sensitivity/solver_rows.h"
@@ -19,16 +20,20 @@
 
 namespace continuum {
 
-/// Derivatives of MuJoCo's own steps (implicitfast, Euler) with respect to parameters, in closed
-/// form. With F of ForceDerivatives, E the forces of effects, D what the method knows of ∂τ/∂q̇ and
-/// f the forces of the constraint solver,
+/// Derivatives of MuJoCo's own steps (Euler, implicitfast, implicit, RK4) with respect to
+/// parameters, in closed form. With F of ForceDerivatives, E the forces of effects, D what the
+/// method knows of ∂F/∂q̇ and f the forces of the constraint solver,
 ///
 ///   M a = F₀ + E + Jᵀ f,   (M − h D) a* = F₀ + E + Jᵀ f,   q̇⁺ = q̇ + h a*,   q⁺ = q + h q̇⁺   (1)
 ///
 /// are two equations for the step: the solver's a, which f follows (SolverRows), and a* of the
-/// method, whose forces are those of F at the speeds q̇⁺. To first order
+/// method, whose forces are those of F felt at the speeds q̇⁺. D is symmetric but for what
+/// `implicit` knows of the motion's forces. To first order
 ///
 ///   (M + Σ_hold D_r JᵀJ) da = dF(a) + dE + Jᵀ df,   (M − h D) da* = dF(a*) + dE + Jᵀ df (2)
+///
+/// RK4 knows no D: a is that of each of its stages, which follow each other as RungeKuttaStages has
+/// it, and so do their derivatives.
 ///
 /// States of effects are states like others: their next values follow what their laws read. What
 /// parameters change that are none of F's own, as geometry, is known from SingleSteps.
@@ -36,7 +41,7 @@ class StepSensitivity {
  public:
   using Matrix = Eigen::MatrixXd;
 
-  /// What keeps a model from it ("the integrator is RK4"); empty: nothing.
+  /// What keeps a model from it ("the integrator is discrete"); empty: nothing.
   static std::string Obstacle(const mjModel& m, const mjData& d, const Wiring& wiring);
 
   /// perturbed: the same machine with one parameter moved; move: as ContinuousSensitivity has it;
@@ -77,11 +82,14 @@ class StepSensitivity {
               Tangents& force);
   bool FollowRows(const mjModel& m, const mjData& d);
   bool Solve(Tangents& force);
-  bool Follow(const mjModel& m, mjData& d);
+  bool FollowStep(const mjModel& m, mjData& d);
+  bool FollowStages(const mjModel& m);
   bool FollowForces(const mjModel& m, mjData& d);
+  bool FollowMethod(const mjModel& m, const mjData& d);
   StepTaken Taken();
-  void FollowLags(const mjModel& m, const mjData& d);
-  void FollowStates(const mjModel& m, const mjData& d);
+  Tangents RateOfActivations(const mjModel& m, const mjData& d) const;
+  void FollowActivations(const mjModel& m, const Tangents& rates);
+  void Advance(const mjModel& m, const mjData& d);
   void SwapState(mjData& d);
   Tangents& Of(Number::Kind kind) { return (*numbers_)[kind]; }
   const Tangents& Of(Number::Kind kind) const { return (*numbers_)[kind]; }
@@ -98,12 +106,13 @@ class StepSensitivity {
   std::optional<EffectDerivatives> effects_;
   std::optional<SolverRows> rows_;
   std::optional<NumberTangents> numbers_;
-  std::optional<ActuatorDerivatives> actuators_;   ///< where effects read or change them
-  std::optional<CableDerivatives> cable_;          ///< where a law has friction of cables
-  std::vector<double> given_;                      ///< forces that signals change, else NaN
-  Tangents activation_;                            ///< dw
-  std::vector<double> q_, v_, w_, z_, after_, a_;  ///< of Before; a*
-  std::vector<double> q_after_, pull_;
+  std::optional<ActuatorDerivatives> actuators_;  ///< where effects read or change them
+  std::optional<CableDerivatives> cable_;         ///< where a law has friction of cables
+  std::vector<double> given_;                     ///< forces that signals change, else NaN
+  Tangents activation_;                           ///< dw
+  std::optional<RungeKuttaStages> stages_;
+  std::vector<double> q_, v_, w_, z_, u_, after_, a_;  ///< of Before; a*
+  std::vector<double> q_after_, w_change_, pull_;
   Matrix inertia_, differ_;
   Tangents force_, answer_;
   Eigen::LLT<Matrix> factor_;

@@ -118,16 +118,17 @@ class BoundFormulaFriction : public BoundLaw {
 
   void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
                      LawSlopes& slopes) const override {
-    rows_.Differentiate(d, step, slopes, [&](const FrictionRow& row, int r, double v, bool moves) {
-      FormulaValues<FormulaFriction> by_value;
-      if (level_.Differentiate(At(m, d, row, v), by_value) <= 0) return;
-      const double torque = row.joint ? GearTorque(m, d, row.index, 0) : 0;
-      by_value[2] *= torque < 0 ? -LoadOf(1, 0) : LoadOf(1, 0);
-      if (!moves) by_value[1] = 0;
-      if (!row.joint) by_value[2] = 0;
-      Put(slopes.levels, {Number::Kind::kLevel, r}, by_value,
-          NumbersOf<kParamCount<FormulaFriction>>(row, 0));
-    });
+    rows_.Differentiate(m, d, step, slopes,
+                        [&](const FrictionRow& row, int r, double v, bool moves) {
+                          FormulaValues<FormulaFriction> by_value;
+                          if (level_.Differentiate(At(m, d, row, v), by_value) <= 0) return;
+                          const double torque = row.joint ? GearTorque(m, d, row.index, 0) : 0;
+                          by_value[2] *= torque < 0 ? -LoadOf(1, 0) : LoadOf(1, 0);
+                          if (!moves) by_value[1] = 0;
+                          if (!row.joint) by_value[2] = 0;
+                          Put(slopes.levels, {Number::Kind::kLevel, r}, by_value,
+                              NumbersOf<kParamCount<FormulaFriction>>(row, 0));
+                        });
   }
 
   void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }

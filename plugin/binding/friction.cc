@@ -106,10 +106,9 @@ void FrictionRows::Harden(const mjModel& m, mjData& d, const FrictionRow& row, i
   impedance = kImpedance, d.efc_KBIP[4 * r + 3] = 0;
 }
 
-bool FrictionRows::IsAnotherPose(const mjModel& m, const mjData& d, const FrictionRow& row,
-                                 double change) {
+bool FrictionRows::IsAnotherPose(const mjModel& m, double speed, double change) {
   constexpr double kLeast = 1e-5;  // a difference of mjd_transitionFD is none
-  return std::abs(change) > kLeast + 2 * m.opt.timestep * std::abs(Speed(d, row));
+  return std::abs(change) > kLeast + 2 * m.opt.timestep * std::abs(speed);
 }
 
 bool FrictionRows::Find(const mjData& d, const FrictionRow& row, int& r) {
@@ -128,7 +127,7 @@ double FrictionRows::OffAnchor(const mjModel& m, const mjData& d, const double* 
   if (row.axis < 0) {
     if (z[0] == kUnknown) return 0;
     const double off = PositionOf(m, d, row) - z[1];
-    return IsAnotherPose(m, d, row, off - z[2]) ? z[2] : off;
+    return IsAnotherPose(m, Speed(d, row), off - z[2]) ? z[2] : off;
   }
   const double* const ball = z - kStates * row.axis;  // the joint's first row
   if (ball[0] == kUnknown) return 0;
@@ -137,7 +136,7 @@ double FrictionRows::OffAnchor(const mjModel& m, const mjData& d, const double* 
   for (int k = 0; k < 3; ++k) {
     FrictionRow each = row;
     each.index += k - row.axis;
-    if (IsAnotherPose(m, d, each, turn[k] - ball[6 + k])) return ball[6 + row.axis];
+    if (IsAnotherPose(m, Speed(d, each), turn[k] - ball[6 + k])) return ball[6 + row.axis];
   }
   return turn[row.axis];
 }
@@ -194,7 +193,7 @@ void FrictionRows::AdvanceLine(const mjModel& m, const mjData& d, const Friction
   const double q = PositionOf(m, d, row);
   if (z[0] == kUnknown || slides) {
     z[1] = q - (slides ? Yield(d, r) : 0);  // (2)
-  } else if (IsAnotherPose(m, d, row, q - z[1] - z[2])) {
+  } else if (IsAnotherPose(m, Speed(d, row), q - z[1] - z[2])) {
     z[1] = q - z[2];
   }
   z[0] = slides ? kSlid : kHeld;
@@ -211,7 +210,7 @@ void FrictionRows::AdvanceBall(const mjModel& m, const mjData& d, const Friction
     const bool full = Saturated(d, r) && d.efc_frictionloss[r] > 0;
     yield[k] = full ? -Yield(d, r) : -d.efc_pos[r];  // (2)
     slides |= full;
-    moved |= IsAnotherPose(m, d, rows[k], turn[k] - z[6 + k]);
+    moved |= IsAnotherPose(m, Speed(d, rows[k]), turn[k] - z[6 + k]);
     force[k] = std::abs(d.efc_force[r]);
     limit[k] = d.efc_frictionloss[r];
   }
@@ -243,29 +242,46 @@ std::string FrictionRows::WhyNoSlopes(const mjModel& m) const {
   return std::any_of(rows_.begin(), rows_.end(), ball) ? "it acts on a ball joint" : "";
 }
 
-void FrictionRows::DifferentiateAnchor(const mjData& d, const FrictionRow& row, int r, double grasp,
-                                       int state, LawSlopes& slopes) {
+void FrictionRows::DifferentiateAnchor(const mjModel& m, const mjData& d, const StepTaken& step,
+                                       const FrictionRow& row, int r, int first,
+                                       LawSlopes& slopes) {
   using Kind = Number::Kind;
-  const Number anchor{Kind::kState, state}, next{Kind::kNext, state};
+  const double* const z = step.z + first;
+  const Number anchor{Kind::kState, first + 1}, last{Kind::kState, first + 2};
   const int at = row.joint ? row.index : row.id;
-  if (row.owner && grasp != kUnknown) {
-    slopes.levels.push_back(
-        {{Kind::kOffset, r}, {row.joint ? Kind::kPosition : Kind::kLength, at}, 1});
-    slopes.levels.push_back({{Kind::kOffset, r}, anchor, -1});
+  if (row.owner && z[0] != kUnknown) {
+    const Number offset{Kind::kOffset, r};
+    if (IsAnotherPose(m, Speed(d, row), PositionOf(m, d, row) - z[1] - z[2])) {
+      slopes.levels.push_back({offset, last, 1});
+    } else {
+      slopes.levels.push_back({offset, {row.joint ? Kind::kPosition : Kind::kLength, at}, 1});
+      slopes.levels.push_back({offset, anchor, -1});
+    }
   }
   const bool slides = Saturated(d, r);
-  const Number end{row.joint ? Kind::kPositionAfter : Kind::kLength, at},
-      off{Kind::kNext, state + 1};
-  if (grasp != kUnknown && !slides) {
-    slopes.next.push_back({next, anchor, 1});
-    slopes.next.push_back({off, end, 1});
-    slopes.next.push_back({off, anchor, -1});
-    return;
-  }
-  slopes.next.push_back({next, end, 1});
+  if (z[0] != kUnknown && !slides) return DifferentiateHeldAnchor(m, d, step, row, first, slopes);
+  const Number next{Kind::kNext, first + 1}, off{Kind::kNext, first + 2};
+  slopes.next.push_back({next, {row.joint ? Kind::kPositionAfter : Kind::kLength, at}, 1});
   if (!slides) return;
   slopes.next.push_back({next, {Kind::kYield, r}, -1});  // (2)
   slopes.next.push_back({off, {Kind::kYield, r}, 1});
+}
+
+void FrictionRows::DifferentiateHeldAnchor(const mjModel& m, const mjData& d, const StepTaken& step,
+                                           const FrictionRow& row, int first, LawSlopes& slopes) {
+  using Kind = Number::Kind;
+  const double* const z = step.z + first;
+  const Number anchor{Kind::kState, first + 1}, last{Kind::kState, first + 2},
+      next{Kind::kNext, first + 1}, off{Kind::kNext, first + 2};
+  const Number end{row.joint ? Kind::kPositionAfter : Kind::kLength,
+                   row.joint ? row.index : row.id};
+  const double q = row.joint ? step.qpos[m.jnt_qposadr[row.id]] : PositionOf(m, d, row),
+               v = row.joint ? step.qvel[row.index] : Speed(d, row);
+  const bool moved = IsAnotherPose(m, v, q - z[1] - z[2]);
+  const Number kept = moved ? last : anchor, other = moved ? next : off;
+  slopes.next.push_back({moved ? off : next, kept, 1});
+  slopes.next.push_back({other, end, 1});
+  slopes.next.push_back({other, kept, -1});
 }
 
 }  // namespace continuum

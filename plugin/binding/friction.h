@@ -94,13 +94,13 @@ class FrictionRows {
   /// Adds the slopes of anchors, and calls level(row, r, v, moves) for each row that exists: it is
   /// constraint r, v: speed of sliding, which follows the state where it moves.
   template <class Level>
-  void Differentiate(const mjData& d, const StepTaken& step, LawSlopes& slopes,
+  void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step, LawSlopes& slopes,
                      Level&& level) const {
     int r = d.ne;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!Find(d, rows_[k], r)) continue;
       const double* const z = step.z + kStates * k;
-      DifferentiateAnchor(d, rows_[k], r, z[0], static_cast<int>(kStates * k + 1), slopes);
+      DifferentiateAnchor(m, d, step, rows_[k], r, static_cast<int>(kStates * k), slopes);
       level(rows_[k], r, SlidingOf(d, z, rows_[k]).v, z[0] != kHeld);
     }
   }
@@ -131,16 +131,19 @@ class FrictionRows {
   static bool IsNative(const mjModel& m, const FrictionRow& row);
   /// As an impedance of kImpedance makes it, where the model has MuJoCo's default.
   static void Harden(const mjModel& m, mjData& d, const FrictionRow& row, int r);
-  /// Whether a change of q − anchor since the end of the last step is none of the motion's.
-  static bool IsAnotherPose(const mjModel& m, const mjData& d, const FrictionRow& row,
-                            double change);
+  /// Whether a change of q − anchor since the end of the last step is none of a motion's at this
+  /// speed.
+  static bool IsAnotherPose(const mjModel& m, double speed, double change);
   /// q − anchor; 0 before the first step.
   static double OffAnchor(const mjModel& m, const mjData& d, const double* z,
                           const FrictionRow& row);
+  /// first: number of the row's first state. A pose that is another one takes the anchor along,
+  /// also where RK4 turns a motion around within a step.
+  static void DifferentiateAnchor(const mjModel& m, const mjData& d, const StepTaken& step,
+                                  const FrictionRow& row, int r, int first, LawSlopes& slopes);
+  static void DifferentiateHeldAnchor(const mjModel& m, const mjData& d, const StepTaken& step,
+                                      const FrictionRow& row, int first, LawSlopes& slopes);
   /// States of the row or of the three rows of a ball joint that begin at `rows`.
-  /// state: number of the anchor; grasp: of the last step.
-  static void DifferentiateAnchor(const mjData& d, const FrictionRow& row, int r, double grasp,
-                                  int state, LawSlopes& slopes);
   static void AdvanceLine(const mjModel& m, const mjData& d, const FrictionRow& row, double* z,
                           int& r);
   static void AdvanceBall(const mjModel& m, const mjData& d, const FrictionRow* rows, double* z,
@@ -240,29 +243,30 @@ class BoundFriction : public BoundLaw {
     constexpr std::size_t kLast = 3 + kParamCount<E>, kN = kLast + kMore;
     using T = Dual<kN>;
     const auto p = DualParams<kN>(AsParams<E>(p_), 3);
-    rows_.Differentiate(d, step, slopes, [&](const FrictionRow& row, int r, double v, bool moves) {
-      FrictionState<T> at{T(PositionOf(m, d, row), 0), moves ? T(v, 1) : T(v), T(0)};
-      auto by = NumbersOf<kParamCount<E>, kMore>(row, load_);
-      double sign = 1;
-      if constexpr (kLoaded) {
-        const double torque = GearTorque(m, d, row.index, load_);
-        at.load = T(LoadOf(torque, load_), 2), sign = (torque < 0 ? -1 : 1) * LoadOf(1, load_);
-      }
-      if constexpr (kTorques) {
-        at.motor = T(GearTorque(m, d, row.index, 1), kLast);
-        at.others = at.motor - T(GearTorque(m, d, row.index, 0), 2);
-        by[kLast] = {Number::Kind::kTorqueActuator, row.index};
-      }
-      if constexpr (kWorks) {
-        at.time = T(d.time - m.opt.timestep), at.work = T(step.z[WorkOf(row)], kLast);
-        by[kLast] = {Number::Kind::kState, static_cast<int>(WorkOf(row))};
-      }
-      Dual<kN> level = E::template Level<T>(at, p);
-      level.d[2] *= sign;
-      Put(slopes.levels, {Number::Kind::kLevel, r}, level, by);
-      if constexpr (kBiased)
-        Put(slopes.forces, {Number::Kind::kForce, row.index}, E::template Bias<T>(p), by);
-    });
+    rows_.Differentiate(
+        m, d, step, slopes, [&](const FrictionRow& row, int r, double v, bool moves) {
+          FrictionState<T> at{T(PositionOf(m, d, row), 0), moves ? T(v, 1) : T(v), T(0)};
+          auto by = NumbersOf<kParamCount<E>, kMore>(row, load_);
+          double sign = 1;
+          if constexpr (kLoaded) {
+            const double torque = GearTorque(m, d, row.index, load_);
+            at.load = T(LoadOf(torque, load_), 2), sign = (torque < 0 ? -1 : 1) * LoadOf(1, load_);
+          }
+          if constexpr (kTorques) {
+            at.motor = T(GearTorque(m, d, row.index, 1), kLast);
+            at.others = at.motor - T(GearTorque(m, d, row.index, 0), 2);
+            by[kLast] = {Number::Kind::kTorqueActuator, row.index};
+          }
+          if constexpr (kWorks) {
+            at.time = T(d.time - m.opt.timestep), at.work = T(step.z[WorkOf(row)], kLast);
+            by[kLast] = {Number::Kind::kState, static_cast<int>(WorkOf(row))};
+          }
+          Dual<kN> level = E::template Level<T>(at, p);
+          level.d[2] *= sign;
+          Put(slopes.levels, {Number::Kind::kLevel, r}, level, by);
+          if constexpr (kBiased)
+            Put(slopes.forces, {Number::Kind::kForce, row.index}, E::template Bias<T>(p), by);
+        });
     if constexpr (kWorks) DifferentiateWork(m, d, step, slopes);
   }
 

@@ -1,15 +1,18 @@
 // Sensitivities of single steps with effects, in closed form, against central differences of the
 // step on machines drawn at random.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "binding/cable_friction.h"
 #include "engine.h"
+#include "identification/sensitivity/runge_kutta_stages.h"
 #include "identification/sensitivity/step_sensitivity.h"
 #include "random_laws.h"
 #include "sim/model/model_spec.h"
@@ -44,6 +47,21 @@ std::vector<int> Branch(const mjModel& m, const mjData& d) {
     const auto* const cables = dynamic_cast<const CableFriction*>(&BoundOf(m, d, i));
     if (!cables) continue;
     for (const Bend& bend : cables->bends()) branch.push_back(bend.side);
+  }
+  return branch;
+}
+
+// Takes a step; the branches of all its stages.
+std::vector<int> StepOn(ModelAndData& machine) {
+  const mjModel& m = *machine.model;
+  mjData& d = *machine.data;
+  std::optional<RungeKuttaStages> stages;
+  if (m.opt.integrator == mjINT_RK4) stages.emplace(machine), stages->Keep(m, d);
+  mj_step(&m, &d);
+  std::vector<int> branch = Branch(m, d);  // of RK4: the last
+  for (std::size_t i = 0; stages && i + 1 < RungeKuttaStages::kReach.size(); ++i) {
+    const auto more = Branch(m, stages->Evaluate(m, i));
+    branch.insert(branch.end(), more.begin(), more.end());
   }
   return branch;
 }
@@ -109,8 +127,8 @@ Moved Step(ModelAndData& machine, const std::vector<double>& from, const State& 
   for (int i = 0; i < m.na; ++i) d.act[i] += by * along.w[i];
   for (int i = 0; i < m.npluginstate; ++i) d.plugin_state[i] += by * along.z[i];
   Drive(machine, step, phase);
-  mj_step(&m, &d);
-  return {State::Of(machine), Branch(m, d)};
+  const auto branch = StepOn(machine);
+  return {State::Of(machine), branch};
 }
 
 // How fast the state after a step moves with a direction, by central differences; nothing where
@@ -194,8 +212,7 @@ class Comparison {
     mj_setState(&m, &d, from.data(), kParts);
     Drive(machines_.here, step, phase_);
     sensitivity.Before(m, d);
-    mj_step(&m, &d);
-    const auto branch = Branch(m, d);
+    const auto branch = StepOn(machines_.here);
     EXPECT_TRUE(sensitivity.After(m, d));
     mj_setState(&m, &d, from.data(), kParts);
     const auto wide = Slope(machines_.wide, from, along, step, phase_, branch),
@@ -218,21 +235,29 @@ class Comparison {
 
 constexpr unsigned kMachines = testing::kIsSanitized ? 5 : 50;
 
+std::string AnyIntegrator(unsigned seed) {
+  constexpr std::array kAll{"Euler", "implicitfast", "RK4", "implicit"};
+  return kAll[seed % kAll.size()];
+}
+
 // alone: the one number that moves, those of the law first.
-Machines MachinesOf(const RandomLaw& law, unsigned seed, std::optional<std::size_t> alone = {}) {
+Machines MachinesOf(const RandomLaw& law, unsigned seed, const std::string& integrator,
+                    std::optional<std::size_t> alone = {}) {
   const auto xml = [&](double along) {
     RandomNumbers number(seed, along, alone);
-    return RandomArm(law, number, seed % 2 ? "implicitfast" : "Euler");
+    return RandomArm(law, number, integrator);
   };
   return {xml, alone ? kFarReach : kReach};
 }
 
-class EffectSensitivityTest : public ::testing::TestWithParam<RandomLaw> {};
+class IntegratorSensitivityTest
+    : public ::testing::TestWithParam<std::tuple<RandomLaw, std::string>> {};
 
-TEST_P(EffectSensitivityTest, AreThoseOfSingleSteps) {
+TEST_P(IntegratorSensitivityTest, AreThoseOfSingleSteps) {
+  const auto& [law, integrator] = GetParam();
   unsigned compared = 0;
   for (unsigned seed = 0; seed < kMachines; ++seed) {
-    Machines machines = MachinesOf(GetParam(), seed);
+    Machines machines = MachinesOf(law, seed, integrator);
     const Wiring wiring({}, *machines.here.model);
     ASSERT_EQ(StepSensitivity::Obstacle(*machines.here.model, *machines.here.data, wiring), "");
     const double error = Comparison(machines, seed).Worst(60, 15);
@@ -242,6 +267,8 @@ TEST_P(EffectSensitivityTest, AreThoseOfSingleSteps) {
   EXPECT_GT(compared, kMachines * 9 / 10);  // the others were near to a switch
 }
 
+class EffectSensitivityTest : public ::testing::TestWithParam<RandomLaw> {};
+
 TEST_P(EffectSensitivityTest, AreThoseOfEveryParameterAlone) {
   CONTINUUM_LONG_IF_SANITIZED("ten machines for each parameter");
   constexpr unsigned kSome = 10;
@@ -250,7 +277,7 @@ TEST_P(EffectSensitivityTest, AreThoseOfEveryParameterAlone) {
     unsigned compared = 0, seen = 0;
     for (unsigned seed = 0; seed < kSome; ++seed) {
       const auto error = [&](Mutation mutation) {
-        Machines machines = MachinesOf(GetParam(), seed, k);
+        Machines machines = MachinesOf(GetParam(), seed, AnyIntegrator(seed), k);
         return Comparison(machines, seed, mutation, Moves::kParameters).Worst(60, 15);
       };
       const double right = error(Mutation::kNone);
@@ -271,13 +298,19 @@ TEST_P(EffectSensitivityTest, SeesWhatIsLeftOut) {
        {Mutation::kFlippedParameters, Mutation::kNoPositions, Mutation::kNoStates}) {
     unsigned seen = 0;
     for (unsigned seed = 0; seed < kSome; ++seed) {
-      Machines machines = MachinesOf(GetParam(), seed);
+      Machines machines = MachinesOf(GetParam(), seed, AnyIntegrator(seed));
       if (mutation == Mutation::kNoStates && machines.here.model->npluginstate == 0) ++seen;
       seen += Comparison(machines, seed, mutation).Worst(60, 15) > 1e-4;
     }
     EXPECT_GT(seen, 0u) << static_cast<int>(mutation);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Law, IntegratorSensitivityTest,
+    ::testing::Combine(::testing::ValuesIn(testing::RandomLaws()),
+                       ::testing::Values("Euler", "implicitfast", "implicit", "RK4")),
+    [](const auto& info) { return std::get<0>(info.param).name + std::get<1>(info.param); });
 
 INSTANTIATE_TEST_SUITE_P(Law, EffectSensitivityTest, ::testing::ValuesIn(testing::RandomLaws()),
                          [](const auto& info) { return info.param.name; });

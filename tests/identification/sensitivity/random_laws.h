@@ -11,7 +11,8 @@ namespace continuum::testing {
 inline std::vector<RandomLaw> RandomLaws() {
   const std::string kJoints = "<config key='joint' value='x* y1'/>",
                     kTendons = "<config key='tendon' value='tb tf'/>",
-                    kActuated = "<config key='joint' value='y0 x1 x2'/>";
+                    kActuated = "<config key='joint' value='y0 x1 x2'/>",
+                    kLate = "delay='0.0073' nsample='8' interp='linear'";
   return {
       RandomLaw{"Coulomb", "coulomb", kJoints, {{"tau_c", {5e-3, 4e-2}}}},
       RandomLaw{"CoulombOfTendons", "coulomb", kTendons, {{"tau_c", {5e-3, 4e-1}}}},
@@ -121,6 +122,17 @@ inline std::vector<RandomLaw> RandomLaws() {
                 {{"tau_c", {5e-3, 4e-2}}},
                 "",
                 "limited='true' range='-6 6'"},
+      RandomLaw{"Delay", "", "", {}, "", "", "", "", "", kLate},
+      RandomLaw{"DelayBeforeALag",
+                "pt2",
+                "<config key='actuator' value='pull lagged'/>",
+                {{"w", {30, 60}}, {"zeta", {0.4, 1.2}}},
+                "",
+                "",
+                "",
+                "",
+                "",
+                kLate},
       RandomLaw{"Maxwell", "maxwell", kJoints, {{"k_m", {0.1, 0.5}}, {"tau_m", {0.02, 0.5}}}},
       RandomLaw{"Pt2",
                 "pt2",

@@ -46,6 +46,7 @@ struct RandomLaw {
   std::string joints = {}, cable = {};  ///< further attributes of all joints, of the cable 'tb'
   std::string equality = {};            ///< further elements
   std::string beside = {};              ///< further effects
+  std::string inputs = {};              ///< further attributes of the actuators 'pull' and 'lagged'
 };
 inline void PrintTo(const RandomLaw& law, std::ostream* out) { *out << law.name; }
 
@@ -93,9 +94,9 @@ inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
       "stiffness='{}' {}>"
       "<site site='b'/><site site='b0'/><site site='b1'/></spatial>"
       "<fixed name='tf'><joint joint='x0' coef='1'/><joint joint='y2' coef='-0.5'/></fixed>"
-      "</tendon>{}<actuator><general name='pull' tendon='ta' gainprm='{}' gear='{}'/>"
+      "</tendon>{}<actuator><general name='pull' tendon='ta' gainprm='{}' gear='{}' {}/>"
       "<general name='lagged' joint='y0' dyntype='filterexact' dynprm='{}' gainprm='0.3' "
-      "gear='{}'/><position name='servo' joint='x1' kp='{}' kv='{}' gear='{}'/>"
+      "gear='{}' {}/><position name='servo' joint='x1' kp='{}' kv='{}' gear='{}'/>"
       "<position name='winch' tendon='tb' gear='{}' kp='{}' forcerange='{} {}'/>"
       "<general name='p1' joint='s' gear='0'/><general name='p2' joint='s' gear='0'/><general "
       "name='p3' joint='s' gear='0' dyntype='filterexact' dynprm='7e-3'/></actuator>"
@@ -105,9 +106,9 @@ inline std::string RandomArm(const RandomLaw& law, RandomNumbers& number,
       "joint='s'/><framepos name='end' objtype='site' objname='a2'/></sensor>"
       "</mujoco>",
       integrator, plugins, bodies, close, segment, number(0.1, 0.5), number(5, 20), law.cable,
-      law.equality, number(-1.2, -0.8), number(0.9, 1.1), number(0.02, 0.05), number(1.4, 1.6),
-      number(0.5, 1), number(0.002, 0.01), number(0.8, 1.2), number(-1.1, -0.9), number(20, 60),
-      number(-1.2, -0.8), number(2, 4));
+      law.equality, number(-1.2, -0.8), number(0.9, 1.1), law.inputs, number(0.02, 0.05),
+      number(1.4, 1.6), law.inputs, number(0.5, 1), number(0.002, 0.01), number(0.8, 1.2),
+      number(-1.1, -0.9), number(20, 60), number(-1.2, -0.8), number(2, 4));
 }
 
 }  // namespace continuum::testing

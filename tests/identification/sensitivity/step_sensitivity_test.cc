@@ -18,8 +18,9 @@ namespace {
 using testing::Gradient;
 
 // Three links with two cables and a lagged motor that can be switched off; friction: of every
-// joint.
-std::string Arm(double friction) {
+// joint; lagged: further attributes of that motor.
+std::string Arm(double friction, const std::string& integrator = "implicitfast",
+                const std::string& lagged = "") {
   std::string bodies, close;
   for (int i = 0; i < 3; ++i) {
     bodies += fmt::format(
@@ -32,17 +33,17 @@ std::string Arm(double friction) {
     close += "</body>";
   }
   return fmt::format(
-      "<mujoco><option timestep='2e-3' integrator='implicitfast' tolerance='0' iterations='200'/>"
+      "<mujoco><option timestep='2e-3' integrator='{}' tolerance='0' iterations='200'/>"
       "<worldbody><site name='a' pos='0.03 0.01 0'/><site name='b' pos='-0.01 0.03 0'/>{}{}"
       "</worldbody><tendon><spatial name='ta' damping='0.5'><site site='a'/><site site='a0'/>"
       "<site site='a1'/><site site='a2'/></spatial><spatial name='tb' stiffness='20'>"
       "<site site='b'/><site site='b0'/><site site='b1'/></spatial></tendon><actuator>"
       "<general name='pull' tendon='ta' gainprm='-1'/><general name='lagged' joint='y0' "
-      "dyntype='filterexact' dynprm='0.04' gainprm='0.3' gear='1.5' actearly='true' "
+      "dyntype='filterexact' dynprm='0.04' gainprm='0.3' gear='1.5' actearly='true' {} "
       "biastype='affine' biasprm='0 0 -0.01'/></actuator><sensor><jointpos name='x0' joint='x0'/>"
       "<jointvel name='y2' joint='y2'/><framepos name='end' objtype='site' objname='a2'/>"
       "<framepos name='link' objtype='body' objname='link1'/></sensor></mujoco>",
-      bodies, close);
+      integrator, bodies, close, lagged);
 }
 
 constexpr char kParameters[] =
@@ -71,7 +72,8 @@ constexpr char kParameters[] =
 
 class ClosedFormTest : public testing::Bench {
  protected:
-  Experiment Read(double friction, const std::string& parameters, const std::string& start) {
+  Experiment Read(double friction, const std::string& parameters, const std::string& start,
+                  const std::string& integrator = "implicitfast", const std::string& lagged = "") {
     std::string csv = "time,pull,swing,on,x0,y2,ex,ey,ez,lx\n";
     for (int k = 0; k < 60; ++k) {
       csv += fmt::format("{:.4f},{},{:.6f},{},0,0,0,0,0,0\n", 0.0105 * k,
@@ -80,7 +82,7 @@ class ClosedFormTest : public testing::Bench {
                                   : 2,
                          0.3 * std::sin(0.4 * k), k < 20 || k > 30);
     }
-    Write("log.csv", csv), Write("model.xml", Arm(friction));
+    Write("log.csv", csv), Write("model.xml", Arm(friction, integrator, lagged));
     return Experiment::Read(Write(
         "e.yaml", "format: 1\nmodel: model.xml\ntime: {column: time, unit: s}\nstart: " + start +
                       "\ninputs:\n"
@@ -113,6 +115,7 @@ std::string Errors(const Problem& problem, const Problem::Matrix& found,
 struct Steps {
   std::string name, start;
   double friction;
+  std::string integrator = "implicitfast", lagged = "", parameters = "";
 };
 void PrintTo(const Steps& s, std::ostream* out) { *out << s.name; }
 
@@ -121,7 +124,8 @@ class ClosedFormStepsTest : public ClosedFormTest, public ::testing::WithParamIn
 // Joints that rest are springs in the solver, and its friction is not smooth where they let go:
 // differences narrower than the distance to that are rare events of rounding.
 TEST_P(ClosedFormStepsTest, AreThoseOfMuJoCosSteps) {
-  const Experiment e = Read(GetParam().friction, kParameters, GetParam().start);
+  const Experiment e = Read(GetParam().friction, kParameters + GetParam().parameters,
+                            GetParam().start, GetParam().integrator, GetParam().lagged);
   const ModelSpec system = ModelSpec::Load(e.model);
   const Problem problem(e, system);
   ASSERT_EQ(problem.NoClosedForm(), "");
@@ -137,11 +141,21 @@ TEST_P(ClosedFormStepsTest, AreThoseOfMuJoCosSteps) {
   EXPECT_EQ(Errors(problem, J, differences.Jacobian(x, r, use)[0], 1e-5), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Arm, ClosedFormStepsTest,
-                         ::testing::Values(Steps{"Smooth", "rest", 0},
-                                           Steps{"FromEquilibrium", "equilibrium", 0},
-                                           Steps{"Rubs", "rest", 0.02}),
-                         [](const auto& info) { return info.param.name; });
+constexpr char kLate[] = "delay='0.0133' nsample='20' interp='linear'";
+constexpr char kDelay[] =
+    "  - {name: late, target: 'actuator:lagged', attribute: delay, initial: 0.0133, lower: 0.004, "
+    "upper: 0.03}\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Arm, ClosedFormStepsTest,
+    ::testing::Values(Steps{"Smooth", "rest", 0}, Steps{"FromEquilibrium", "equilibrium", 0},
+                      Steps{"Rubs", "rest", 0.02}, Steps{"ImplicitInMotion", "rest", 0, "implicit"},
+                      Steps{"ImplicitInMotionRubs", "rest", 0.02, "implicit"},
+                      Steps{"RungeKutta", "equilibrium", 0, "RK4"},
+                      Steps{"RungeKuttaRubs", "rest", 0.02, "RK4"},
+                      Steps{"Late", "rest", 0, "implicitfast", kLate, kDelay},
+                      Steps{"LateRungeKutta", "rest", 0.02, "RK4", kLate, kDelay}),
+    [](const auto& info) { return info.param.name; });
 
 TEST_F(ClosedFormTest, FollowsAFrictionThatSlides) {
   const Experiment e = Read(0.02,
