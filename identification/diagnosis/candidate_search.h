@@ -133,6 +133,8 @@ class CandidateSearch {
   void SayFit(const CandidateResult& c, double needed) const;
   static constexpr std::size_t kStartsTried = 2;
   void FitOne(CandidateResult& c, double rival, std::size_t tried = kStartsTried) const;
+  std::optional<Problem::Vector> MakeRoom(const Problem& problem, const Problem::Vector& x) const;
+  bool StepAsBase(Problem& problem) const;
   std::vector<CandidateResult*> MostPromising();
   static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,
                                                        const CandidateResult& c);

@@ -325,10 +325,49 @@ void CandidateSearch::FitOne(CandidateResult& c, double rival, std::size_t tried
     const auto more = StartsFromPlain(plain, c.hypothesis);
     starts.insert(starts.end(), more.begin(), more.end());
   }
+  if (c.start.size() > 0) {
+    if (const auto room = MakeRoom(problem, c.start)) starts.push_back(*room);
+  }
   c.fitted = fitter_.Fit(problem, BestOf(problem, starts, tried), rival);
   c.was_fitted = true;
   Continue(problem, c, rival);
   WidenRanges(c, rival);
+}
+
+// The parameters of the base make room for the candidate at x, by a step along their slopes at its
+// fit: what the screen promises, it promises with that. Nothing where that cannot be simulated.
+std::optional<Problem::Vector> CandidateSearch::MakeRoom(const Problem& whole,
+                                                         const Problem::Vector& x) const {
+  const Eigen::Index given = base_.fitted->fit.x.size();
+  if (given == 0) return {};
+  Problem problem = whole;
+  const auto& before = StepAsBase(problem) ? coarse_->residuals : base_.fitted->residuals;
+  const auto train = TrainLogs(*fitter_.experiment);
+  std::vector<Problem::Vector> r = problem.Residuals(x, train);
+  for (std::size_t l = 0; l < r.size(); ++l) {
+    if (train[l]) r[l] += base_.fitted->residuals[l] - before[l];
+  }
+  const Problem::Vector wanted = fitter_.whitening.Stack(r, train);
+  if (!wanted.allFinite()) return {};
+  const Sensitivities& s = base_.fitted->sensitivities.value();
+  Problem::Matrix J = fitter_.whitening.Stack(s.jacobian, train);
+  Problem::Vector size = J.colwise().norm();
+  for (Eigen::Index i = 0; i < given; ++i) {
+    const bool moves = size[i] > 0 && !s.uncertainty.at_bound[static_cast<std::size_t>(i)];
+    if (!moves) J.col(i).setZero(), size[i] = 1;
+    J.col(i) /= size[i];
+  }
+  const Problem::Vector step = J.completeOrthogonalDecomposition().solve(wanted);
+  Problem::Vector next = x;
+  next.head(given) -= step.cwiseQuotient(size);
+  return problem.Clamp(next);
+}
+
+// In coarse steps where the base is simulated in them as well. Whether it is.
+bool CandidateSearch::StepAsBase(Problem& problem) const {
+  const bool coarse = coarse_ && problem.step() == base_problem_.step() && !NeedsOwnStep(problem);
+  if (coarse) problem.StepBy(coarse_->step);
+  return coarse;
 }
 
 // In what size an effect is looked for is a guess: a fit that ends there goes on beyond.
@@ -377,8 +416,7 @@ FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem
   const std::vector<Problem::Vector> starts = WithoutRepeats(whole, all);
   if (starts.size() == 1) return {starts.front()};
   Problem problem = whole;
-  if (coarse_ && whole.step() == base_problem_.step() && !NeedsOwnStep(whole))
-    problem.StepBy(coarse_->step);
+  StepAsBase(problem);
   FitOptions options{4, 1e-3};
   options.idle = true, options.rough = true, options.until = fitter_.until;
   if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;

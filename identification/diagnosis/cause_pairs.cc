@@ -353,11 +353,8 @@ class PairSearch {
   // Whether the first cause explains more than the second one, each by itself: then it does so on
   // average of both orders as well.
   bool IsMain(const Fitting& pair) const {
-    const auto& singles = single_.candidates;
-    const auto alone = std::find_if(singles.begin(), singles.end(), [&](const CandidateResult& c) {
-      return Key(c.hypothesis) == Key(pair.b->hypothesis);
-    });
-    return alone == singles.end() || pair.a->likelihood >= alone->likelihood;
+    const CandidateResult* const alone = Single(*pair.b);
+    return !alone || pair.a->likelihood >= alone->likelihood;
   }
 
   // The first cause of the best pair, and what of the other pairs in the set could stand for it.
@@ -387,7 +384,37 @@ class PairSearch {
     add(verdict.named, first.equivalent, first.instead);
     std::vector<std::string> of_second;  // they are siblings that the verdict has
     add(verdict.siblings, first.relatives, of_second);
+    AddTheSame(*best.a, taken, first.equivalent);
+    if (const CandidateResult* const alone = Single(*best.b))
+      AddTheSame(*alone, taken, first.instead);
     return first;
+  }
+
+  // Effects of other families that say by themselves what this one says, as an offset of a winch
+  // and a slack cable: beside another cause they would too.
+  void AddTheSame(const CandidateResult& cause, std::set<std::string>& taken,
+                  std::vector<std::string>& others) const {
+    for (const CandidateResult& c : single_.candidates) {
+      const bool kin = KinOf(c.hypothesis.Card()).Of(KinOf(cause.hypothesis.Card()));
+      if (c.was_fitted && !kin && SayTheSame(c, cause) && taken.insert(c.hypothesis.effect).second)
+        others.push_back(c.hypothesis.effect);
+    }
+  }
+
+  bool SayTheSame(const CandidateResult& a, const CandidateResult& b) const {
+    const auto train = TrainLogs(*context_.fitter.experiment);
+    const auto& whitening = context_.fitter.whitening;
+    return (whitening.Stack(a.fitted.residuals, train) - whitening.Stack(b.fitted.residuals, train))
+               .squaredNorm() <= criteria_.same_noise;
+  }
+
+  // The fit of a cause of a pair by itself, if it had one.
+  const CandidateResult* Single(const CandidateResult& cause) const {
+    const auto& all = single_.candidates;
+    const auto at = std::find_if(all.begin(), all.end(), [&](const CandidateResult& c) {
+      return c.was_fitted && Key(c.hypothesis) == Key(cause.hypothesis);
+    });
+    return at == all.end() ? nullptr : &*at;
   }
 
   // What the second cause takes of what can be explained at all, by the view that gives it more.
