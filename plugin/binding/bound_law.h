@@ -76,6 +76,10 @@ class BoundLaw {
   using TakeForce = std::function<void(int body, const double* point, const double* force)>;
   virtual void PointForces(const mjModel&, const mjData&, const TakeForce&) const {}
   virtual void Visualize(const mjModel&, const mjData&, mjvScene&) const {}
+  /// Largest tension of a cable now [N], of laws that draw cables from blue (0) to red.
+  virtual double LargestTension() const { return 0; }
+  /// Which tension Visualize draws red [N].
+  virtual void DrawRedAt(double /*tension*/) {}
   /// Takes over what was computed (not configured) from another Bound of the same kind.
   virtual void CopyFrom(const BoundLaw&) {}
 

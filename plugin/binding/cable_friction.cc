@@ -12,7 +12,6 @@
 namespace continuum {
 namespace {
 
-constexpr double kFull = 20;          // tension drawn in red [N]
 constexpr double kLeastPull = 1e-12;  // of a cable that was never tight, or is not yet [N]
 
 std::string NameOf(const mjModel& m, int tendon) { return mj_id2name(&m, mjOBJ_TENDON, tendon); }
@@ -336,6 +335,11 @@ void CableFriction::Add(std::span<double> force) {
       if (tension != base_[c]) geometry_.Add(s, base_[c] - tension, force.data());
     }
   }
+  largest_ = std::max(largest_, LargestTension());
+}
+
+double CableFriction::LargestTension() const {
+  return tension_.empty() ? 0 : *std::max_element(tension_.begin(), tension_.end());
 }
 
 void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
@@ -377,11 +381,12 @@ void CableFriction::PointForces(const mjModel&, const mjData& d, const TakeForce
 
 void CableFriction::Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const {
   std::size_t s = 0;
+  const double full = red_at_ > 0 ? red_at_ : std::max(largest_, kLeastPull);
   for (const Cable& cable : cables_) {
     const double width = 1.05 * m.tendon_width[cable.tendon];
     for (int k = 0; k < cable.segments(); ++k, ++s) {
       if (scene.ngeom >= scene.maxgeom) return;
-      const float x = static_cast<float>(std::clamp(tension_[s] / kFull, 0.0, 1.0));
+      const float x = static_cast<float>(std::clamp(tension_[s] / full, 0.0, 1.0));
       const float rgba[4] = {0.13f + 0.80f * x, 0.40f - 0.25f * x, 0.85f - 0.75f * x, 1};
       mjvGeom* const geom = scene.geoms + scene.ngeom++;
       mjv_initGeom(geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, rgba);
@@ -398,6 +403,7 @@ void CableFriction::CopyFrom(const BoundLaw& other) {
   const auto& from = static_cast<const CableFriction&>(other);
   geometry_ = from.geometry_, base_ = from.base_;
   band_ = from.band_, rho_ = from.rho_, ratio_ = from.ratio_, tension_ = from.tension_;
+  red_at_ = from.red_at_, largest_ = from.largest_;
 }
 
 // The segment just distal of a site or geom; the last one for the end of a cable.

@@ -60,7 +60,10 @@ class CableFriction : public BoundLaw {
   }
   std::string WhyIdle(const mjModel& m) const override;
   void PointForces(const mjModel&, const mjData& d, const TakeForce& take) const override;
+  /// Red is DrawRedAt's tension, without it the largest one since the law was bound.
   void Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const override;
+  double LargestTension() const override;
+  void DrawRedAt(double tension) override { red_at_ = tension; }
   void CopyFrom(const BoundLaw& other) override;
 
   /// Contacts [begin, end) of a cable that slide together, as segment end − 1 does.
@@ -112,6 +115,7 @@ class CableFriction : public BoundLaw {
   std::vector<Bend> bends_;  ///< [groups], of which the first count_ are those of tight cables
   std::vector<int> active_;  ///< [groups] group of each bend
   std::size_t count_ = 0;
+  double red_at_ = 0, largest_ = 0;  ///< tension drawn red, 0: the largest so far [N]
 };
 
 }  // namespace continuum

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "engine.h"
 #include "error.h"
 #include "sim/film/measured_points.h"
 #include "sim/film/video.h"
@@ -68,15 +69,12 @@ std::string CameraOf(const mjModel& m, const std::string& wanted) {
   return "";
 }
 
-constexpr double kEffectFull = 20;  // the tension that effects draw red [N]
-
 // What the colours of cables or chambers mean.
 std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
   if (options.tension) {
     const auto& [low, high] = *options.tension;
     return ColorBar{"cable tension [N]", Decimal(low), Decimal(high)};
   }
-  if (HasPathLaw(m)) return ColorBar{"cable tension [N]", "0", Decimal(kEffectFull)};
   if (!HasSegmentLaw(m)) return std::nullopt;
   double full = 0;  // all chambers are alike
   for (int a = 0; a < m.nu; ++a) {
@@ -84,6 +82,23 @@ std::optional<ColorBar> BarOf(const mjModel& m, const FilmOptions& options) {
     full = std::max(full, m.actuator_ctrlrange[2 * a + 1]);
   }
   return ColorBar{"chamber pressure [kPa]", "0", fmt::format("{:g}", 1e-3 * full)};
+}
+
+// Calls fn for each of our laws.
+template <class Fn>
+void ForEachLaw(const mjModel& m, const mjData& d, Fn&& fn) {
+  for (int i = 0; i < m.nplugin; ++i) {
+    if (BoundLaw* const law = FindBound(m, d, i)) fn(*law);
+  }
+}
+
+// The largest that an effect knows of each cable's segments [N].
+std::vector<std::optional<double>> EffectTensions(const mjModel& m, const mjData& d) {
+  std::vector<std::optional<double>> tensions;
+  ForEachLaw(m, d, [&](const BoundLaw& law) {
+    if (law.LargestTension() > 0) tensions.emplace_back(law.LargestTension());
+  });
+  return tensions;
 }
 
 // What actuators pull each tendon with [N]; nullopt of those that none pulls or nobody sees.
@@ -109,7 +124,7 @@ void ColorTendons(const mjModel& m, const mjData& d, const std::array<double, 2>
     mjvGeom& geom = scene.geoms[g];
     if (geom.objtype != mjOBJ_TENDON) continue;
     if (geom.category == mjCAT_DECOR)  // by an effect, which knows the tension of each segment
-      tension[geom.objid] = kEffectFull * (geom.rgba[0] - bar.from[0]) / (bar.to[0] - bar.from[0]);
+      tension[geom.objid] = range[1] * (geom.rgba[0] - bar.from[0]) / (bar.to[0] - bar.from[0]);
     const auto share = static_cast<float>(
         std::clamp((tension[geom.objid] - range[0]) / (range[1] - range[0]), 0.0, 1.0));
     for (int c = 0; c < 3; ++c) geom.rgba[c] = std::lerp(bar.from[c], bar.to[c], share);
@@ -234,7 +249,8 @@ void Outlook::Include(const std::vector<std::optional<double>>& tensions) {
   for (const auto& t : tensions) {
     if (!t) continue;
     if (!tension) tension = {0, 0};
-    tension = {std::min((*tension)[0], -RoundUp(-*t)), std::max((*tension)[1], RoundUp(*t))};
+    tension = {std::min((*tension)[0], -RoundUpClosely(-*t)),
+               std::max((*tension)[1], RoundUpClosely(*t))};
   }
 }
 
@@ -254,7 +270,7 @@ Outlook LookAhead(const Experiment& e, const ModelSpec& system, const Log& log,
   look.row = [&](const mjModel& m, mjData& d, std::size_t row) {
     if (!clock.Due(row)) return;
     ahead.framing.Include(m, d);
-    if (!options.tension && !HasPathLaw(m)) ahead.Include(TensionsOf(m, d));
+    if (!options.tension) ahead.Include(TensionsOf(m, d)), ahead.Include(EffectTensions(m, d));
     if (!options.ghost) return;
     if (const mjData* const ghost = measured.At(row))
       ahead.framing.Include(m, *ghost);
@@ -294,6 +310,8 @@ void DrawFrames(const Experiment& e, const ModelSpec& system, const Log& log, Fi
       Decorate(options, m, d, scene);
       for (const MeasuredPoint& point : points) DrawMeasured(point, m, scene);
     };
+    const double red = options.tension ? (*options.tension)[1] : 0;
+    ForEachLaw(m, d, [&](BoundLaw& law) { law.DrawRedAt(red); });
     take(renderer.Draw(m, d, overlay));
   };
   Simulate(machine, e, log, options.start, draw);

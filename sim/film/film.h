@@ -32,8 +32,8 @@ struct FilmOptions {
   std::string camera;  ///< empty: "front" or "side" when the model has it, else framed by itself
   std::optional<View> view = {};  ///< a camera that frames the robot by itself, whatever `camera`
   double speed = 1;               ///< seconds of the robot per second of the film
-  /// Drawn blue and red [N], of tendons that actuators pull; else as the effects say, else over
-  /// what the log reaches.
+  /// Drawn blue and red [N], of cables with friction and tendons that actuators pull; else over
+  /// what the log reaches, in round numbers.
   std::optional<std::array<double, 2>> tension = {};
   std::vector<Arrow> arrows = {};
   bool whole = false;  ///< throw when the simulation diverges; else the film ends there
@@ -58,8 +58,8 @@ void DrawMeasured(const MeasuredPoint& point, const mjModel& m, mjvScene& scene)
 struct Outlook {
   Framing framing;      ///< of all poses, those that were measured too
   bool marked = false;  ///< whether positions without a pose are measured in some frame
-  /// Of the tendons that actuators pull [N], from 0, in round numbers; where neither options nor an
-  /// effect say how tension is drawn.
+  /// Of cables with friction and tendons that actuators pull [N], from 0, in round numbers; where
+  /// options do not say how tension is drawn.
   std::optional<std::array<double, 2>> tension = {};
 
   void Include(const std::vector<std::optional<double>>& tensions);
@@ -69,8 +69,8 @@ struct Outlook {
 Outlook LookAhead(const Experiment& experiment, const ModelSpec& system, const Log& log,
                   const FilmOptions& options);
 
-/// Simulates a log and draws its frames: the simulation as it is, cables coloured by tension as a
-/// capstan effect, options.tension or the outlook says, chambers by pressure. ruler: gives the
+/// Simulates a log and draws its frames: the simulation as it is, cables coloured by tension as
+/// options.tension or the outlook says, chambers by pressure. ruler: gives the
 /// scale, and one scale to all films that share it.
 void DrawFrames(const Experiment& experiment, const ModelSpec& system, const Log& log,
                 FilmOptions options, const Outlook& ahead, Ruler& ruler,

@@ -19,8 +19,6 @@ bool HasKind(const mjModel& m, EffectInfo::Kind kind) {
 
 }  // namespace
 
-bool HasPathLaw(const mjModel& m) { return HasKind(m, EffectInfo::Kind::kPath); }
-
 bool HasSegmentLaw(const mjModel& m) { return HasKind(m, EffectInfo::Kind::kSegment); }
 
 std::vector<double> FrictionlessPath(const mjModel& m, int instance) {

@@ -6,10 +6,6 @@
 
 namespace continuum {
 
-/// Whether an effect of the model gives the friction of a cable along its path (PathLaw). Such
-/// effects colour cables by their tension.
-bool HasPathLaw(const mjModel& m);
-
 /// Whether an effect of the model drives a soft segment (SegmentLaw). Such effects colour chambers
 /// by their pressure.
 bool HasSegmentLaw(const mjModel& m);

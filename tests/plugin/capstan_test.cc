@@ -6,6 +6,8 @@
 namespace continuum {
 namespace {
 
+using ::testing::ElementsAre;
+using ::testing::FloatNear;
 using ::testing::HasSubstr;
 
 class Capstan : public testing::Engine {
@@ -204,6 +206,29 @@ TEST_F(Capstan, NamesWhatItCannotUse) {
   xml.replace(xml.find("objname=\"s1\""), 12, "objname=\"far\"");
   xml.insert(xml.find("<site name=\"s0\""), "<site name=\"far\"/>");
   EXPECT_THAT(Compile(xml).error, HasSubstr("a site or wrapped geom of the tendons"));
+}
+
+// Blue at 0, red at the largest tension so far.
+TEST_F(Capstan, ColoursFitTheTensionsOfTheCable) {
+  const auto m = Model(Crane(0.2));
+  const auto d = Data(m);
+  mjvScene scene;
+  mjv_defaultScene(&scene);
+  mjv_makeScene(m.get(), &scene, 100);
+  const auto red = [&](double pull) {
+    d->ctrl[0] = pull, d->qvel[0] = 0.1;
+    mj_forward(m.get(), d.get());
+    scene.ngeom = 0;
+    mjp_getPluginAtSlot(m->plugin[0])->visualize(m.get(), d.get(), nullptr, &scene, 0);
+    return std::vector{scene.geoms[0].rgba[0], scene.geoms[1].rgba[0]};
+  };
+  const auto share = [](double of) {
+    return FloatNear(static_cast<float>(0.13 + 0.8 * of), 1e-6f);
+  };
+  const double behind = std::exp(-0.2 * kAngle);
+  EXPECT_THAT(red(120), ElementsAre(share(1), share(behind)));
+  EXPECT_THAT(red(60), ElementsAre(share(0.5), share(behind / 2)));
+  mjv_freeScene(&scene);
 }
 
 TEST_F(Capstan, NeedsAContact) {

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/film/film_recipe.h"
+#include "sim/model/model_spec.h"
 #include "sim/model/mujoco_handles.h"
+#include "support/scratch.h"
 
 namespace continuum {
 namespace {
@@ -81,11 +84,30 @@ TEST(Outlook, RangeOfTheTensionIsRoundAndHoldsNought) {
   ahead.Include(std::vector<std::optional<double>>{std::nullopt});
   EXPECT_FALSE(ahead.tension);
   ahead.Include(std::vector<std::optional<double>>{3.2, std::nullopt, 0.7});
-  EXPECT_EQ(ahead.tension, (std::array{0.0, 5.0}));
+  EXPECT_EQ(ahead.tension, (std::array{0.0, 4.0}));
   Outlook other;
   other.Include(std::vector<std::optional<double>>{-11.0, 1.0});
   other.Include(ahead);
-  EXPECT_EQ(other.tension, (std::array{-20.0, 5.0}));
+  EXPECT_EQ(other.tension, (std::array{-15.0, 4.0}));
+}
+
+// A cable over a corner at 60 N, which a load draws out: 60 e^(0.2 pi/2) = 82 N behind the corner.
+TEST(Outlook, OfCablesWithFrictionEndsAboveTheLargestTension) {
+  const testing::Scratch files;
+  files.Write("crane.xml", R"(<mujoco><extension><plugin plugin="continuum.capstan">
+      <instance name="i"><config key="tendon" value="cable"/><config key="mu" value="0.2"/></instance>
+    </plugin></extension><worldbody><site name="a" pos="-1 0 1"/><site name="b" pos="0 0 1"/>
+      <body><joint type="slide" axis="0 0 1" damping="100"/><geom size=".05" mass="10"/>
+        <site name="c"/></body></worldbody>
+    <tendon><spatial name="cable"><site site="a"/><site site="b"/><site site="c"/></spatial></tendon>
+    <actuator><motor name="m" tendon="cable" gear="-1"/></actuator></mujoco>)");
+  const Clip clip =
+      Clip::Read(files.Write("clip.yaml",
+                             "model: crane.xml\ncamera: {azimuth: 90, elevation: 0}\nseconds: "
+                             "0.3\ncaption: c\ninputs: {m: [[0, 60], [1, 60]]}\n"));
+  const Experiment& e = clip.experiment;
+  const Outlook ahead = LookAhead(e, ModelSpec::Load(e.model), e.logs[0], clip.film);
+  EXPECT_EQ(ahead.tension, (std::array{0.0, 100.0}));
 }
 
 TEST_F(Decorated, AnArrowPointsAlongTheForceInTheWorld) {

@@ -14,6 +14,16 @@ TEST(RoundNumber, IsOneTwoOrFiveTimesAPowerOfTen) {
   EXPECT_DOUBLE_EQ(RoundDown(70), 50);
 }
 
+TEST(RoundNumber, OfAScaleIsAtMostHalfAsMuchAgain) {
+  for (double x = 0.011; x < 1000; x *= 1.013) {
+    EXPECT_GE(RoundUpClosely(x), x);
+    EXPECT_LE(RoundUpClosely(x), 1.5 * x);
+  }
+  EXPECT_DOUBLE_EQ(RoundUpClosely(40), 40);
+  EXPECT_DOUBLE_EQ(RoundUpClosely(20.6), 30);
+  EXPECT_EQ(RoundUpClosely(-1), 0);
+}
+
 TEST(RoundNumber, StaysWhatIsRound) {
   for (const double x : {1.0, 2.0, 5.0}) {
     EXPECT_DOUBLE_EQ(RoundUp(x), x);
