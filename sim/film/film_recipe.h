@@ -14,7 +14,7 @@ namespace continuum {
 ///     seconds: 4
 ///     caption: One chamber after the other
 ///     speed: 0.5                   # optional: half as fast as it is
-///     tension: [0, 15]             # optional: of cables, blue and red [N]; else from 0 to what is reached
+///     tension: [0, 15]             # optional: of cables, blue and red [N]; else what they reach
 ///     arrows:                      # optional, length: [m] per N or N m
 ///       - {sensor: base_force, length: 0.05, color: [0.1, 0.6, 0.3]}
 ///       - {sensor: base_torque, length: 4, radius: 0.07}             # bent around the torque
