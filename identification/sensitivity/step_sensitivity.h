@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "identification/sensitivity/actuator_derivatives.h"
 #include "identification/sensitivity/cable_derivatives.h"
