@@ -18,18 +18,7 @@ const std::string kSensor = "sensor:";
 
 // How far the measured values of some outputs reach [their unit].
 double OutputSize(const Experiment& e, const std::vector<std::string>& columns) {
-  double lower = kInfinity, upper = -kInfinity;
-  for (std::size_t c = 0; c < e.channels.size(); ++c) {
-    const bool wanted =
-        std::find(columns.begin(), columns.end(), e.channels[c].name) != columns.end();
-    for (const Log& log : e.logs) {
-      for (const double y : log.measured[c]) {
-        if (!wanted || std::isnan(y)) continue;
-        lower = std::min(lower, y / e.channels[c].factor);
-        upper = std::max(upper, y / e.channels[c].factor);
-      }
-    }
-  }
+  const auto [lower, upper] = ReadingRange(e, columns);
   return upper > lower ? upper - lower : 1;
 }
 

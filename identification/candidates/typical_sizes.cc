@@ -85,15 +85,25 @@ double InputSize(const Experiment& e, const std::vector<std::string>& actuators)
   return size > 0 ? size : 1;
 }
 
-double ReadingSize(const Experiment& e, const std::vector<std::string>& outputs) {
-  double size = 0;
+std::pair<double, double> ReadingRange(const Experiment& e,
+                                       const std::vector<std::string>& outputs) {
+  double lower = kInfinity, upper = -kInfinity;
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     if (std::find(outputs.begin(), outputs.end(), e.channels[c].name) == outputs.end()) continue;
     for (const Log& log : e.logs) {
-      for (const double y : log.measured[c])
-        if (!std::isnan(y)) size = std::max(size, std::abs(y / e.channels[c].factor));
+      for (const double y : log.measured[c]) {
+        if (std::isnan(y)) continue;
+        lower = std::min(lower, y / e.channels[c].factor);
+        upper = std::max(upper, y / e.channels[c].factor);
+      }
     }
   }
+  return {lower, upper};
+}
+
+double ReadingSize(const Experiment& e, const std::vector<std::string>& outputs) {
+  const auto [lower, upper] = ReadingRange(e, outputs);
+  const double size = std::max(-lower, upper);
   return size > 0 ? size : 1;
 }
 

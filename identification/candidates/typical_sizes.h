@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "effects/effect.h"
 #include "identification/problem/problem.h"
 
@@ -27,7 +31,12 @@ Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
 /// Largest control that the logs give to some actuators [their unit]; 1 where they give none.
 double InputSize(const Experiment& experiment, const std::vector<std::string>& actuators);
 
-/// Largest value that the logs have of some outputs [their unit]; 1 where they have none.
+/// Least and largest value that the logs have of some outputs [their unit]; infinity and its
+/// negative where they have none.
+std::pair<double, double> ReadingRange(const Experiment& experiment,
+                                       const std::vector<std::string>& outputs);
+
+/// Largest of these without sign; 1 where there is none.
 double ReadingSize(const Experiment& experiment, const std::vector<std::string>& outputs);
 
 /// The longest lever arm of some bodies or sites about the joints that carry them, in the model's

@@ -12,6 +12,7 @@
 
 #include "error.h"
 #include "identification/diagnosis/correction.h"
+#include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/look_logs.h"
 
 namespace continuum {
@@ -467,6 +468,11 @@ class PairSearch {
 };
 
 }  // namespace
+
+bool Pair::IsPlainAndEnough() const {
+  const Hypothesis& second = search.candidates[verdict.named.front()].hypothesis;
+  return verdict.complete && !IsRich(first.hypothesis) && !IsRich(second);
+}
 
 CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult& first,
                              const std::set<std::string>& hopeless) {

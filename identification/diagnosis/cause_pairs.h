@@ -16,6 +16,9 @@ struct Pair {
   double first_likelihood;  ///< gained by the first alone
   Verdict verdict;          ///< on the second; indices into search.candidates
   LackOfFit lack_of_fit;
+
+  /// Whether neither is a rich law of its family, and both leave nothing but noise.
+  bool IsPlainAndEnough() const;
 };
 
 struct PairsFound {

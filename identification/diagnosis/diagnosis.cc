@@ -15,6 +15,7 @@
 #include "identification/diagnosis/effort.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/fallback_force.h"
+#include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/fold_comparison.h"
 #include "identification/diagnosis/gain_interval.h"
 #include "identification/diagnosis/log_requirements.h"
@@ -241,16 +242,8 @@ class Session {
     std::optional<PairsFound> found;
     Part("second cause",
          [&] { found.emplace(FindPair(Context(options_), search, d_.lack_of_fit.of_step)); });
-    if (!found || (plainer && !(found->best && IsPlainAndEnough(*found->best)))) return {};
+    if (!found || (plainer && !(found->best && found->best->IsPlainAndEnough()))) return {};
     return std::move(*found);
-  }
-
-  static bool IsRich(const Hypothesis& h) { return KinOf(h.Card()).depth > 0; }
-
-  static bool IsPlainAndEnough(const Pair& pair) {
-    const auto& seconds = pair.search.candidates;
-    return pair.verdict.complete && !IsRich(pair.first.hypothesis) &&
-           !IsRich(seconds[pair.verdict.named.front()].hypothesis);
   }
 
   // Whether the verdict may be another one with a better fit.

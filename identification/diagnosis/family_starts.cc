@@ -44,6 +44,8 @@ bool IsPlainerThan(const Hypothesis& plain, const Hypothesis& rich) {
          (KinOf(plain.Card()).PlainerThan(KinOf(rich.Card())) || ContainsByCard(rich, plain));
 }
 
+bool IsRich(const Hypothesis& h) { return KinOf(h.Card()).depth > 0; }
+
 std::vector<Problem::Vector> StartsFromPlain(const CandidateResult& plain, const Hypothesis& rich) {
   const Hypothesis& law = plain.hypothesis;
   const std::size_t size = SizeOf(law);

@@ -14,6 +14,8 @@ bool ContainsByCard(const Hypothesis& rich, const Hypothesis& plain);
 /// Whether a law is a plainer one of another one's family, or that one contains it, at the same
 /// place.
 bool IsPlainerThan(const Hypothesis& plain, const Hypothesis& rich);
+/// Whether a family has a plainer law than this one.
+bool IsRich(const Hypothesis& hypothesis);
 
 /// Where the fit of a richer law of a family may begin once the plain one has a fit: with the model
 /// as that fit left it, and with its size. A Stribeck friction begins as the Coulomb friction that

@@ -50,13 +50,14 @@ std::string CauseLines(const Diagnosis& d) {
     text += "\n";
   };
   const bool two = d.partner && d.chosen();
-  const bool corrects = two && d.partner->OtherCorrects();
   const bool partner_first = two && d.partner->main;
-  const std::string partner = two && d.partner->Corrects() ? "corrects " : "";
-  if (partner_first) add_partner(partner.empty() ? "cause    " : partner);
+  const auto label = [](bool corrects, bool first) {
+    return corrects ? "corrects " : first ? "cause    " : "and      ";
+  };
+  if (partner_first) add_partner(label(d.partner->Corrects(), true));
   for (const std::size_t i : d.verdict.named) {
     const CandidateResult& c = d.candidates[i];
-    const std::string first = corrects ? "corrects " : partner_first ? "and      " : "cause    ";
+    const char* const first = label(two && d.partner->OtherCorrects(), !partner_first);
     add(i == d.verdict.named.front() ? first : "   or    ", c.hypothesis, c.fitted, c.first_extra(),
         "");
     text += "\n";
@@ -65,7 +66,7 @@ std::string CauseLines(const Diagnosis& d) {
     add("   or    ", c.hypothesis, c.fitted, c.first_extra(), " (not asked for)");
     text += "\n";
   }
-  if (two && !partner_first) add_partner(partner.empty() ? "and      " : partner);
+  if (two && !partner_first) add_partner(label(d.partner->Corrects(), false));
   return text;
 }
 
