@@ -357,11 +357,11 @@ Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
   const Vector change = found.x - x;
   found.train = Relative(equations, change, true);
   found.validate = Relative(equations, change, false);
-  std::vector<Scores> scores;
+  std::vector<std::vector<Scores>> scores;
   for (const Equations& q : equations) {
     if (!q.train) continue;
-    scores.push_back({q.informative.cwiseProduct(q.e + q.Y * change),
-                      q.informative.asDiagonal() * q.Y, Vector::Ones(q.e.size())});
+    scores.push_back({{q.informative.cwiseProduct(q.e + q.Y * change),
+                       q.informative.asDiagonal() * q.Y, Vector::Ones(q.e.size())}});
   }
   found.uncertainty = UncertaintyFrom(problem, found.x, scores);
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

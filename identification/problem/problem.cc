@@ -394,7 +394,6 @@ bool Problem::SameMotion(std::size_t a, std::size_t b) const {
                      [&](const FreeParameter& p) { return p.log[a] == p.log[b]; });
 }
 
-// The logs in use by the simulation that they share.
 std::vector<std::vector<std::size_t>> Problem::Motions(const std::vector<bool>& use) const {
   std::map<std::size_t, std::vector<std::size_t>> shared;
   for (std::size_t l = 0; l < use.size(); ++l) {

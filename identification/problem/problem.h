@@ -122,6 +122,8 @@ class Problem {
   const std::vector<std::size_t>& channels() const { return channels_; }
   /// SI per residual unit of a counted channel.
   double scale(std::size_t counted) const { return scale_[counted]; }
+  /// The logs in use by the simulation that they share: replicates, unless they start as measured.
+  std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
 
  private:
   void FindScales();
@@ -132,7 +134,6 @@ class Problem {
   std::string GroupOf(const Parameter& p, const Log& log) const;
   void RequireSeen(const Parameter& p) const;
   bool SameMotion(std::size_t a, std::size_t b) const;
-  std::vector<std::vector<std::size_t>> Motions(const std::vector<bool>& use) const;
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
   ModelAndData ModelAt(std::size_t thread, const Vector& x, std::size_t log, double step) const;
   Trace Rejected(const Log& log, const Error& error) const;

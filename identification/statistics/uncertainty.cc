@@ -57,13 +57,51 @@ Matrix ModelledCovariance(const Scores& block) {
   return noise.innovation * noise.innovation * y.transpose() * y;
 }
 
-// The rows that were measured.
-Scores Measured(const Scores& all) {
+// [row] measured.
+std::vector<Eigen::Index> MeasuredRows(const Scores& block) {
   std::vector<Eigen::Index> rows;
-  for (Eigen::Index k = 0; k < all.r.size(); ++k) {
-    if (all.r[k] != 0 || !all.J.row(k).isZero(0)) rows.push_back(k);
+  for (Eigen::Index k = 0; k < block.r.size(); ++k) {
+    if (block.r[k] != 0 || !block.J.row(k).isZero(0)) rows.push_back(k);
   }
+  return rows;
+}
+
+Scores Measured(const Scores& all) {
+  const auto rows = MeasuredRows(all);
   return {all.r(rows), all.J(rows, Eigen::all), all.curvature(rows)};
+}
+
+// [row measured by any block × parameters] s_t.
+Matrix SummedScores(const std::vector<Scores>& motion) {
+  Matrix sum = Matrix::Zero(motion.front().J.rows(), motion.front().J.cols());
+  std::vector<bool> any(sum.rows(), false);
+  for (const Scores& block : motion) {
+    sum += block.r.asDiagonal() * block.J;
+    for (const Eigen::Index k : MeasuredRows(block)) any[k] = true;
+  }
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index k = 0; k < sum.rows(); ++k) {
+    if (any[k]) rows.push_back(k);
+  }
+  return sum(rows, Eigen::all);
+}
+
+// Replicates of one channel as their mean and their differences.
+std::vector<Scores> MeanAndDifferences(const std::vector<Scores>& replicates) {
+  std::vector<Scores> out;
+  Scores sum = replicates.front();
+  for (std::size_t j = 1; j < replicates.size(); ++j) {
+    const auto before = static_cast<double>(j);
+    const double scale = 1 / std::sqrt(before * (before + 1));
+    const Scores& next = replicates[j];
+    out.push_back(
+        {scale * (sum.r - before * next.r), scale * (sum.J - before * next.J), next.curvature});
+    sum.r += next.r, sum.J += next.J, sum.curvature += next.curvature;
+  }
+  const auto m = static_cast<double>(replicates.size());
+  out.push_back({sum.r / std::sqrt(m), sum.J / std::sqrt(m), sum.curvature / m});
+  for (Scores& block : out) block.curvature = out.back().curvature;
+  return out;
 }
 
 // ρ' and ρ'' of the robust loss at residuals r.
@@ -106,35 +144,46 @@ void Widen(const Problem& problem, const Vector& low, const Vector& high, Uncert
 
 Uncertainty UncertaintyOf(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                           const std::vector<Matrix>& J, const Whitening& whitening, double soft) {
-  std::vector<Scores> blocks;
+  std::vector<bool> use;
+  for (const Matrix& columns : J) use.push_back(columns.size() > 0);
+  std::vector<std::vector<Scores>> motions;
   const auto channels = static_cast<Eigen::Index>(problem.channels().size());
-  for (std::size_t l = 0; l < J.size(); ++l) {
-    if (!J[l].size()) continue;
-    const Eigen::Index rows = r[l].size() / channels;
-    const Vector white = whitening.Apply(l, r[l]).col(0);
-    const Matrix columns = whitening.Apply(l, J[l]);
-    for (Eigen::Index c = 0; c < channels; ++c) {
-      const Loss loss = LossOf(soft, white.segment(c * rows, rows));
-      blocks.push_back({loss.slope, columns.middleRows(c * rows, rows), loss.curvature});
+  for (const auto& logs : problem.Motions(use)) {
+    std::vector<std::vector<Scores>> replicates(channels);
+    for (const std::size_t l : logs) {
+      const Eigen::Index rows = r[l].size() / channels;
+      const Vector white = whitening.Apply(l, r[l]).col(0);
+      const Matrix columns = whitening.Apply(l, J[l]);
+      for (Eigen::Index c = 0; c < channels; ++c) {
+        const Loss loss = LossOf(soft, white.segment(c * rows, rows));
+        replicates[c].push_back({loss.slope, columns.middleRows(c * rows, rows), loss.curvature});
+      }
+    }
+    std::vector<Scores>& motion = motions.emplace_back();
+    for (const auto& of_channel : replicates) {
+      for (Scores& block : MeanAndDifferences(of_channel)) motion.push_back(std::move(block));
     }
   }
-  return UncertaintyFrom(problem, x, blocks);
+  return UncertaintyFrom(problem, x, motions);
 }
 
 namespace {
 
-// What all blocks together say of n parameters.
+// What all motions together say of n parameters.
 struct Evidence {
   explicit Evidence(Eigen::Index n) : H(Matrix::Zero(n, n)), S(H), modelled(H) {}
 
-  void Add(const Scores& block) {
-    const Matrix scores = block.r.asDiagonal() * block.J;
+  void Add(const std::vector<Scores>& motion) {
+    const Matrix scores = SummedScores(motion);
     const double bandwidth = Bandwidth(scores);
-    H += block.J.transpose() * block.curvature.asDiagonal() * block.J;
     S += LongRunCovariance(scores, bandwidth);
-    modelled += ModelledCovariance(block);
-    independent += static_cast<double>(block.r.size()) / bandwidth;
-    rows += block.r.size();
+    for (const Scores& all : motion) {
+      const Scores block = Measured(all);
+      H += block.J.transpose() * block.curvature.asDiagonal() * block.J;
+      modelled += ModelledCovariance(block);
+      independent += static_cast<double>(block.r.size()) / bandwidth;
+      rows += block.r.size();
+    }
   }
   Eigen::Index determined() const { return (H.diagonal().array() > 0).count(); }
   // Whether it says anything of one parameter.
@@ -155,14 +204,14 @@ Matrix InformationInside(Matrix H, const std::vector<bool>& at_bound) {
 }  // namespace
 
 Uncertainty UncertaintyFrom(const Problem& problem, const Vector& x,
-                            const std::vector<Scores>& blocks) {
+                            const std::vector<std::vector<Scores>>& motions) {
   const Eigen::Index n = x.size();
   Uncertainty u;
   u.standard_error.resize(n), u.lower.resize(n), u.upper.resize(n);
   u.correlation = Matrix::Identity(n, n);
   if (n == 0) return u;
   Evidence all(n);
-  for (const Scores& block : blocks) all.Add(Measured(block));
+  for (const auto& motion : motions) all.Add(motion);
   u.at_bound = AtBounds(problem, x);
   u.information = InformationInside(all.H, u.at_bound);
   const double freedom = std::max(2.0, all.independent - static_cast<double>(all.determined()));

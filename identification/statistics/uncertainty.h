@@ -21,20 +21,25 @@ struct Scores {
 ///
 /// (of a robust loss ρ: H = Σ Jᵀρ''J, and ρ' for r) of whitened residuals, with S once from the
 /// autoregressive model of each block's residuals (NoiseFrom), Σ Jᵀ Cov(r) J, and once from the
-/// scores s_t = Jᵀ_t r_t themselves,
+/// scores s_t = Σ Jᵀ_t r_t of all blocks of a motion themselves,
 ///
-///   S = Σ_blocks Σ_lags w(lag) Σ_t s_t s_{t+lag}ᵀ
+///   S = Σ_motions Σ_lags w(lag) Σ_t s_t s_{t+lag}ᵀ
 ///
 /// with Bartlett weights and Andrews' bandwidth for AR(1) scores (heteroskedasticity and
-/// autocorrelation consistent, newey1987, andrews1991; of what lasts long it sees too little). Of
-/// each parameter the larger variance counts. n: independent rows, k: parameters that they
-/// determine. Intervals end at the bounds; that of a parameter at a bound goes from there inwards,
-/// and as its true value may lie inside, it counts as free for the others too. One without effect
-/// may be anything that its bounds allow (standard error: that of an even distribution); so may all
-/// where rows are no more than parameters.
+/// autocorrelation consistent, newey1987, andrews1991; of what lasts long it sees too little). So
+/// what a model gets wrong in all channels at once counts as one error. Of each parameter the
+/// larger variance counts. n: independent rows, k: parameters that they determine. Intervals end at
+/// the bounds; that of a parameter at a bound goes from there inwards, and as its true value may
+/// lie inside, it counts as free for the others too. One without effect may be anything that its
+/// bounds allow (standard error: that of an even distribution); so may all where rows are no more
+/// than parameters. motions: [motion][block], the blocks of one motion with the same rows.
 Uncertainty UncertaintyFrom(const Problem& problem, const Problem::Vector& x,
-                            const std::vector<Scores>& blocks);
-/// The same with one block per counted channel of every log that has a Jacobian.
+                            const std::vector<std::vector<Scores>>& motions);
+/// The same with one block per counted channel of every log that has a Jacobian. Replicates (logs
+/// l = 1 … m of one motion) count as their mean and their differences, which leaves sums of squares
+/// as they are: noise is in all of them, an error of the model in the mean alone.
+///
+///   r'_1 = Σ r_l / √m,   r'_j = (r_1 + … + r_{j−1} − (j − 1) r_j) / √(j (j − 1)),   J' likewise
 Uncertainty UncertaintyOf(const Problem& problem, const Problem::Vector& x,
                           const std::vector<Problem::Vector>& r,
                           const std::vector<Problem::Matrix>& J, const Whitening& whitening = {},

@@ -48,16 +48,16 @@ class UncertaintyTest : public testing::Bench {
       e[k] = k == 0 ? normal(random_) : rho * e[k - 1] + std::sqrt(1 - rho * rho) * normal(random_);
     return e;
   }
-  Uncertainty Of(const Vector& x, const std::vector<Scores>& blocks) const {
-    return UncertaintyFrom(*problem_, x, blocks);
+  Uncertainty Of(const Vector& x, const std::vector<Scores>& motion) const {
+    return UncertaintyFrom(*problem_, x, {motion});
   }
-  // How many of 600 intervals hold 0; estimate: the value and its scores for a draw of noise.
+  // How many of 600 intervals hold 0; estimate: the value and its blocks for a draw of noise.
   template <class Estimate>
   double Covered(double rho, const Estimate& estimate) {
     int held = 0;
     for (int draw = 0; draw < 300; ++draw) {
-      const auto [x, scores] = estimate(Noise(rho));
-      const Uncertainty u = Of(x, {scores});
+      const auto [x, motion] = estimate(Noise(rho));
+      const Uncertainty u = Of(x, motion);
       for (Eigen::Index i = 0; i < 2; ++i) held += u.lower[i] <= 0 && 0 <= u.upper[i];
     }
     return held / 600.0;
@@ -71,12 +71,40 @@ class UncertaintyTest : public testing::Bench {
 TEST_F(UncertaintyTest, NinetyFiveOfHundredIntervalsHoldUnderNoiseThatLasts) {
   const auto plain = [&](const Vector& e) {
     const Vector x = (J_.transpose() * J_).ldlt().solve(J_.transpose() * e);
-    return std::pair{x, Scores{e - J_ * x, J_, Vector::Ones(kRows)}};
+    return std::pair{x, std::vector<Scores>{{e - J_ * x, J_, Vector::Ones(kRows)}}};
   };
   for (const double rho : {0.0, 0.5, 0.9}) {
     EXPECT_GE(Covered(rho, plain), 0.93) << rho;
     EXPECT_LE(Covered(rho, plain), 0.97) << rho;
   }
+}
+
+// What a model gets wrong in two channels at once is one error, not two.
+TEST_F(UncertaintyTest, NineOfTenIntervalsHoldWhereChannelsErrTogether) {
+  const auto twice = [&](const Vector& e) {
+    const Vector x = (J_.transpose() * J_).ldlt().solve(J_.transpose() * e);
+    const Scores one{e - J_ * x, J_, Vector::Ones(kRows)};
+    return std::pair{x, std::vector<Scores>{one, one}};
+  };
+  EXPECT_GE(Covered(0.5, twice), 0.9);
+  EXPECT_LE(Covered(0.5, twice), 0.97);
+}
+
+// Recorded twice without noise, a log says no more of the parameters than once.
+TEST_F(UncertaintyTest, WhatReplicatesHaveInCommonCountsOnce) {
+  std::vector<double> measured(kRows);
+  for (std::size_t k = 0; k < kRows; ++k)
+    measured[k] = 0.3 * std::sin(0.02 * static_cast<double>(k));
+  for (const char* name : {"first", "second"})
+    AddLog(name, "trial: swing, use: train", testing::Command(0, kRows), measured);
+  const Experiment e = ReadExperiment(Bounds(-9));
+  const Problem problem(e, ModelSpec::Load(folder_ / "model.xml"));
+  const Vector x{{0.1, 0.5}};
+  const auto error = [&](const std::vector<bool>& use) {
+    const auto r = problem.Residuals(x, use);
+    return UncertaintyOf(problem, x, r, problem.Jacobian(x, r, use)).standard_error;
+  };
+  EXPECT_TRUE(error({false, true, true}).isApprox(error({false, true, false}), 0.02));
 }
 
 // Columns that look alike: what holds one at its bound moves the other.
@@ -92,7 +120,8 @@ TEST_F(UncertaintyTest, IntervalsHoldTooWhereAValueNextToItsBoundIsNotSeen) {
       const Vector y = J_ * truth + Noise(0);
       Vector x = H.ldlt().solve(J_.transpose() * y);
       if (x[0] < 0) x << 0, J_.col(1).dot(y) / H(1, 1);
-      const Uncertainty u = UncertaintyFrom(*bounded_, x, {{y - J_ * x, J_, Vector::Ones(kRows)}});
+      const Uncertainty u =
+          UncertaintyFrom(*bounded_, x, {{{y - J_ * x, J_, Vector::Ones(kRows)}}});
       at_bound += u.at_bound[0];
       EXPECT_TRUE(!u.at_bound[0] || (u.lower[0] == 0 && u.upper[0] > error)) << u.upper[0];
       for (Eigen::Index i = 0; i < 2; ++i)
