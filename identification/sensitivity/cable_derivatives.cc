@@ -60,11 +60,13 @@ Eigen::RowVectorXd AngleTangents(const mjModel& m, const mjData& d, const int* s
 // with the tension of the base.
 int SideOf(const Bend& bend) { return bend.band > 0 ? bend.side : 1; }
 
-double TensionOf(const CableFriction& law, std::size_t g) {
-  const auto rough = [](const Bend& bend) { return bend.band > 0; };
-  const Bend& bend = law.bends()[g];
-  return std::any_of(law.bends().begin(), law.bends().end(), rough) ? bend.tension
-                                                                    : law.base()[bend.cable];
+// r of the side on which a bend slides.
+double SideRatio(const Bend& bend) { return bend.side > 0 ? bend.grown : 1 / bend.grown; }
+
+// Of the ratio of a bend that slides by its band.
+double SlidingSlope(const Bend& bend) {
+  if (bend.band == 0) return 1;
+  return bend.side * ((1 - bend.turned) * SideRatio(bend) - bend.turned / SideRatio(bend));
 }
 
 }  // namespace
@@ -72,63 +74,104 @@ double TensionOf(const CableFriction& law, std::size_t g) {
 CableDerivatives::CableDerivatives(const mjModel& m, const ForceDerivatives::Parts& parts)
     : derivatives_(m, parts), curvature_(m.nv, m.nv) {}
 
+double CableDerivatives::TensionOf(std::size_t g) const {
+  const auto rough = [](const Bend& bend) { return bend.band > 0; };
+  const Bend& bend = bends_[g];
+  return std::any_of(bends_.begin(), bends_.end(), rough) ? bend.tension
+                                                          : law_.law->base()[bend.cable];
+}
+
 void CableDerivatives::Begin(const mjModel& m, const mjData& d, const Law& law,
                              std::span<const double> pull, const std::vector<double>& given) {
   law_ = law;
-  const auto bends = law.law->bends();
-  rests_ = std::any_of(bends.begin(), bends.end(), [](const Bend& b) { return SideOf(b) == 0; });
+  bends_ = law.law->bends(), give_way_ = law.law->sliding().give_way();
+  rests_ = std::any_of(bends_.begin(), bends_.end(), [](const Bend& b) { return SideOf(b) == 0; });
+  Take(m, d, law.law->sliding().change(), pull, given);
+}
+
+void CableDerivatives::BeginTurn(const mjModel& m, const mjData& d, const Law& law,
+                                 std::span<const double> pull, const std::vector<double>& given) {
+  const CableSliding::Turn& turn = law.law->sliding().turn();
+  law_ = law;
+  bends_ = turn.bends, give_way_ = turn.give_way;
+  rests_ = true;
+  Take(m, d, turn.velocity, pull, given);
+}
+
+// change: x; empty where the law found nothing: yields are not finite then.
+void CableDerivatives::Take(const mjModel& m, const mjData& d, std::span<const double> change,
+                            std::span<const double> pull, const std::vector<double>& given) {
   after_.assign(d.qvel, d.qvel + m.nv), rate_.assign(m.nv, 0);
   derivatives_.Place(m, d);
-  if (!rests_) return;
-  const CableSliding& sliding = law.law->sliding();
-  if (sliding.change().empty()) return;  // it found nothing: yields are not finite
-  for (int i = 0; i < sliding.inertia().size(); ++i) {
-    const int dof = sliding.inertia().dofs()[i];
-    after_[dof] += sliding.change()[i];
-    rate_[dof] = sliding.change()[i] / m.opt.timestep;
+  if (!rests_ || change.empty()) return;
+  const StepInertia& inertia = law_.law->sliding().inertia();
+  for (int i = 0; i < inertia.size(); ++i) {
+    const int dof = inertia.dofs()[i];
+    after_[dof] += change[i];
+    rate_[dof] = change[i] / m.opt.timestep;
   }
   derivatives_.Pull(pull);
   derivatives_.Give(given);
   derivatives_.Update(m, d, rate_.data(), after_.data(), m.opt.timestep);
 }
 
-const Tangents& CableDerivatives::Follow(const mjModel& m, const mjData& d,
-                                         const NumberTangents& numbers, const Tangents& other) {
-  const CableFriction& law = *law_.law;
+// Up to dt_g and dv_g⁺ at the same x; returns dF, with what the routes' curvatures add.
+Tangents CableDerivatives::AllTangents(const mjModel& m, const mjData& d,
+                                       const NumberTangents& numbers, const Tangents& other) {
   FollowBands(m, d, numbers);
   FollowBases(m, d, numbers);
   FollowRatios(numbers);
   AddCurvatures(m);
-  pulled_.setZero(m.nv, std::ssize(law.bends()));
-  speed_.setZero(std::ssize(law.bends()), other.cols());
-  speed_after_.assign(law.bends().size(), 0);
-  for (std::size_t g = law.bends().size(); g-- > 0;) FollowSpeed(g, numbers);
-  const Tangents bent = curvature_ * numbers[Kind::kPosition];
-  Tangents all = other + bent;
-  for (const int dof : law.sliding().inertia().dofs())
+  pulled_.setZero(m.nv, std::ssize(bends_));
+  speed_.setZero(std::ssize(bends_), other.cols());
+  speed_after_.assign(bends_.size(), 0);
+  for (std::size_t g = bends_.size(); g-- > 0;) FollowSpeed(g, numbers);
+  Tangents all = other + curvature_ * numbers[Kind::kPosition];
+  for (const int dof : law_.law->sliding().inertia().dofs())
     all.row(dof) += numbers[Kind::kState].row(law_.first_state + static_cast<int>(m.nwrap) + dof);
-  FollowTensions(m, d, std::move(all));
-  force_ = bent;
-  for (std::size_t g = 0; g < law.bends().size(); ++g) {
+  return all;
+}
+
+const Tangents& CableDerivatives::Follow(const mjModel& m, const mjData& d,
+                                         const NumberTangents& numbers, const Tangents& other) {
+  FollowTensions(m, d, AllTangents(m, d, numbers, other));
+  force_ = curvature_ * numbers[Kind::kPosition];
+  for (std::size_t g = 0; g < bends_.size(); ++g) {
     const auto row = static_cast<Eigen::Index>(g);
     ForEachArm(g, [&](int dof, double arm) {
-      force_.row(dof) -= arm * (tension_.row(row) - base_.row(law.bends()[g].cable));
+      force_.row(dof) -= arm * (tension_.row(row) - base_.row(bends_[g].cable));
     });
   }
   FollowShares();
   return force_;
 }
 
+void CableDerivatives::FollowTurn(const mjModel& m, const mjData& d, const NumberTangents& numbers,
+                                  const Tangents& other) {
+  const Tangents x = FollowTensions(m, d, AllTangents(m, d, numbers, other));
+  const std::vector<double> before(d.qvel, d.qvel + m.nv);
+  const auto after = Eigen::VectorXd::Map(after_.data(), std::ssize(after_));
+  turned_.setZero(std::ssize(bends_), other.cols());
+  for (std::size_t g = 0; g < bends_.size(); ++g) {
+    const auto row = static_cast<Eigen::Index>(g);
+    if (law_.law->bends()[g].turned == 0) continue;
+    const double v = bends_[g].speed, kept = pulled_.col(row).dot(after);
+    const RowVector kept_change =
+        SpeedChange(g, after_, numbers) + pulled_.col(row).transpose() * x;
+    turned_.row(row) =
+        (v * kept_change - kept * SpeedChange(g, before, numbers)) / ((v - kept) * (v - kept));
+  }
+}
+
 template <class Fn>
 void CableDerivatives::ForEachArm(std::size_t g, Fn&& fn) const {
   const CableGeometry& route = law_.law->geometry();
-  const int s = law_.law->bends()[g].segment;
+  const int s = bends_[g].segment;
   for (int l = route.begin[s]; l < route.begin[s + 1]; ++l) fn(route.dof[l], route.arm[l]);
 }
 
 bool CableDerivatives::First(std::size_t g) const {
-  const auto bends = law_.law->bends();
-  return g == 0 || bends[g - 1].cable != bends[g].cable;
+  return g == 0 || bends_[g - 1].cable != bends_[g].cable;
 }
 
 void CableDerivatives::FollowBands(const mjModel& m, const mjData& d,
@@ -199,14 +242,13 @@ void CableDerivatives::FollowBases(const mjModel& m, const mjData& d,
 // (2): what the tension behind a bend is to that before it, and how it yields.
 void CableDerivatives::FollowRatios(const NumberTangents& numbers) {
   const CableFriction& law = *law_.law;
-  const auto bends = law.bends();
   const Tangents& state = numbers[Kind::kState];
-  ratio_.assign(bends.size(), 1), yield_.assign(bends.size(), 0);
-  ratio_change_.setZero(std::ssize(bends), band_.cols()), yield_change_ = ratio_change_;
+  ratio_.assign(bends_.size(), 1), yield_.assign(bends_.size(), 0);
+  ratio_change_.setZero(std::ssize(bends_), band_.cols()), yield_change_ = ratio_change_;
   double expected = 0;
   RowVector expected_change, level;
-  for (std::size_t g = 0; g < bends.size(); ++g) {
-    const Bend& bend = bends[g];
+  for (std::size_t g = 0; g < bends_.size(); ++g) {
+    const Bend& bend = bends_[g];
     const auto row = static_cast<Eigen::Index>(g);
     const CableFriction::Group& group = law.group(g);
     const int first = law.geometry().first[bend.cable];
@@ -221,40 +263,49 @@ void CableDerivatives::FollowRatios(const NumberTangents& numbers) {
     }
     const int side = SideOf(bend);
     ratio_[g] = side == 0 ? std::exp(bend.memory) : bend.band > 0 ? bend.ratio : 1;
-    ratio_change_.row(row) = ratio_[g] * (side == 0 ? memory : RowVector(side * band));
+    ratio_change_.row(row) =
+        side == 0 ? RowVector(ratio_[g] * memory) : RowVector(SlidingSlope(bend) * band);
+    if (bend.turned > 0)
+      ratio_change_.row(row) += (1 / SideRatio(bend) - SideRatio(bend)) * turned_.row(row);
     expected_change = ratio_[g] * expected_change + expected * ratio_change_.row(row);
     expected *= ratio_[g];
     if (side != 0) continue;
     const double last = law_.state[first] * std::exp(bend.level);
     const bool lasts = last > expected;
-    const double stiff = lasts ? last : expected, give_way = law.sliding().give_way();
+    const double stiff = lasts ? last : expected;
     const RowVector stiff_change =
         lasts ? RowVector(last * level + std::exp(bend.level) * state.row(law_.first_state + first))
               : expected_change;
-    yield_[g] = bend.band * stiff / give_way;
-    yield_change_.row(row) = (band * stiff + bend.band * stiff_change) / give_way;
+    yield_[g] = bend.band * stiff / give_way_;
+    yield_change_.row(row) = (band * stiff + bend.band * stiff_change) / give_way_;
   }
 }
 
 // v_g⁺ = −Σ_{k ≥ g} dL_k/dq (q̇ + x), from the end of each cable on.
 void CableDerivatives::FollowSpeed(std::size_t g, const NumberTangents& numbers) {
-  const CableFriction& law = *law_.law;
-  const auto bends = law.bends();
-  const Bend& bend = bends[g];
+  const Bend& bend = bends_[g];
   const auto column = static_cast<Eigen::Index>(g);
-  if (g + 1 < bends.size() && bends[g + 1].cable == bend.cable)
+  if (g + 1 < bends_.size() && bends_[g + 1].cable == bend.cable)
     pulled_.col(column) = pulled_.col(column + 1);
   ForEachArm(g, [&](int dof, double arm) { pulled_(dof, column) -= arm; });
   if (SideOf(bend) != 0) return;
-  const Cable& cable = law.cables()[bend.cable];
-  std::vector<double> weight(cable.segments(), 0), bent(after_.size(), 0);
-  std::fill(weight.begin() + Place(bend.segment, bend.cable), weight.end(), -1.0);
-  derivatives_.tendons().AddBends(cable.tendon, weight, after_.data(), bent);
-  const auto moved = Eigen::VectorXd::Map(bent.data(), std::ssize(bent));
-  speed_.row(column) = moved.transpose() * numbers[Kind::kPosition] +
-                       pulled_.col(column).transpose() * numbers[Kind::kSpeed];
+  speed_.row(column) = SpeedChange(g, after_, numbers);
   speed_after_[g] =
       pulled_.col(column).dot(Eigen::VectorXd::Map(after_.data(), std::ssize(after_)));
+}
+
+// Of v_g at such speeds of the robot, as its pose and the speeds at the step's start change.
+CableDerivatives::RowVector CableDerivatives::SpeedChange(std::size_t g,
+                                                          const std::vector<double>& speeds,
+                                                          const NumberTangents& numbers) const {
+  const Bend& bend = bends_[g];
+  const Cable& cable = law_.law->cables()[bend.cable];
+  std::vector<double> weight(cable.segments(), 0), bent(speeds.size(), 0);
+  std::fill(weight.begin() + Place(bend.segment, bend.cable), weight.end(), -1.0);
+  derivatives_.tendons().AddBends(cable.tendon, weight, speeds.data(), bent);
+  const auto moved = Eigen::VectorXd::Map(bent.data(), std::ssize(bent));
+  return moved.transpose() * numbers[Kind::kPosition] +
+         pulled_.col(static_cast<Eigen::Index>(g)).transpose() * numbers[Kind::kSpeed];
 }
 
 void CableDerivatives::AddCurvatures(const mjModel& m) {
@@ -263,57 +314,58 @@ void CableDerivatives::AddCurvatures(const mjModel& m) {
   for (int c = 0; c < law.geometry().cables(); ++c) {
     const Cable& cable = law.cables()[c];
     std::vector<double> weight(cable.segments(), 0);
-    for (std::size_t g = 0; g < law.bends().size(); ++g) {
-      const Bend& bend = law.bends()[g];
-      if (bend.cable == c) weight[Place(bend.segment, c)] = law.base()[c] - TensionOf(law, g);
+    for (std::size_t g = 0; g < bends_.size(); ++g) {
+      const Bend& bend = bends_[g];
+      if (bend.cable == c) weight[Place(bend.segment, c)] = law.base()[c] - TensionOf(g);
     }
     derivatives_.tendons().AddCurvature(cable.tendon, weight, curvature_);
   }
 }
 
 // (1) and (2) with dt_g = constant_g + follow_g dx.
-void CableDerivatives::FollowTensions(const mjModel& m, const mjData& d, Tangents other) {
-  const auto bends = law_.law->bends();
-  tension_.setZero(std::ssize(bends), other.cols());
-  Eigen::MatrixXd follow = Eigen::MatrixXd::Zero(std::ssize(bends), m.nv);
-  for (std::size_t g = 0; g < bends.size(); ++g) {
+// dx, where it matters.
+Tangents CableDerivatives::FollowTensions(const mjModel& m, const mjData& d, Tangents other) {
+  tension_.setZero(std::ssize(bends_), other.cols());
+  Eigen::MatrixXd follow = Eigen::MatrixXd::Zero(std::ssize(bends_), m.nv);
+  for (std::size_t g = 0; g < bends_.size(); ++g) {
     const auto row = static_cast<Eigen::Index>(g);
     const bool first = First(g);
-    const double before = first ? law_.law->base()[bends[g].cable] : TensionOf(*law_.law, g - 1);
+    const double before = first ? law_.law->base()[bends_[g].cable] : TensionOf(g - 1);
     tension_.row(row) = before * ratio_change_.row(row) +
-                        ratio_[g] * (first ? base_.row(bends[g].cable) : tension_.row(row - 1)) -
+                        ratio_[g] * (first ? base_.row(bends_[g].cable) : tension_.row(row - 1)) -
                         speed_after_[g] * yield_change_.row(row) - yield_[g] * speed_.row(row);
     if (!first) follow.row(row) = ratio_[g] * follow.row(row - 1);
     follow.row(row) -= yield_[g] * pulled_.col(row).transpose();
   }
-  if (!rests_) return;
+  if (!rests_) return {};
   Eigen::MatrixXd inertia(m.nv, m.nv);
   mj_fullM(&m, &d, inertia.data());
   inertia = inertia / m.opt.timestep - derivatives_.damping();
-  for (std::size_t g = 0; g < bends.size(); ++g) {
+  for (std::size_t g = 0; g < bends_.size(); ++g) {
     const auto row = static_cast<Eigen::Index>(g);
     ForEachArm(g, [&](int dof, double arm) {
       inertia.row(dof) += arm * follow.row(row);
-      other.row(dof) -= arm * (tension_.row(row) - base_.row(bends[g].cable));
+      other.row(dof) -= arm * (tension_.row(row) - base_.row(bends_[g].cable));
     });
   }
-  const Tangents x = inertia.partialPivLu().solve(other);
+  Tangents x = inertia.partialPivLu().solve(other);
   tension_ += follow * x;
+  return x;
 }
 
 // ρ of every contact: bends that are several contacts share theirs (CableFriction::Spread).
 void CableDerivatives::FollowShares() {
   const CableFriction& law = *law_.law;
   rho_.setZero(band_.rows(), band_.cols());
-  for (std::size_t g = 0; g < law.bends().size(); ++g) {
-    const Bend& bend = law.bends()[g];
+  for (std::size_t g = 0; g < bends_.size(); ++g) {
+    const Bend& bend = bends_[g];
     const auto row = static_cast<Eigen::Index>(g);
     const CableFriction::Group& group = law.group(g);
     if (const int side = SideOf(bend); side != 0) {
       for (int k = group.begin; k < group.end; ++k) rho_.row(k) = side * band_.row(k);
       continue;
     }
-    const double before = First(g) ? law.base()[bend.cable] : TensionOf(law, g - 1);
+    const double before = First(g) ? law.base()[bend.cable] : TensionOf(g - 1);
     const RowVector ahead = First(g) ? base_.row(bend.cable) : tension_.row(row - 1);
     const RowVector all = tension_.row(row) / bend.tension - ahead / before;
     if (group.end == group.begin + 1) {

@@ -171,12 +171,20 @@ bool StepSensitivity::FollowEffects(const mjModel& m, mjData& d) {
 
 // Friction of cables sees all other forces but those of the solver.
 void StepSensitivity::FollowCable(const mjModel& m, const mjData& d) {
-  cable_->Begin(m, d, effects_->Cable(m, d, z_.data()), pull_, given_);
-  answer_.setZero();
-  if (cable_->rests()) {
+  const CableDerivatives::Law law = effects_->Cable(m, d, z_.data());
+  const auto follow_others = [&] {
+    answer_.setZero();
+    if (!cable_->rests()) return;
     Differ(m, d, cable_->derivatives(), answer_);
     AddEffects(m, d, 1, answer_);
+  };
+  if (!law.law->sliding().turn().bends.empty()) {
+    cable_->BeginTurn(m, d, law, pull_, given_);
+    follow_others();
+    cable_->FollowTurn(m, d, *numbers_, answer_);
   }
+  cable_->Begin(m, d, law, pull_, given_);
+  follow_others();
   const Tangents& more = cable_->Follow(m, d, *numbers_, answer_);
   Of(Kind::kForce) += more, Of(Kind::kTorqueTransmitted) -= more;
 }

@@ -293,7 +293,7 @@ bool CableFriction::Collect(const double* z) {
     bend.speed = geometry_.slip[bend.segment];
     bend.level = level;
     bend.fresh = z[first] == 0;
-    bend.given = false;
+    bend.given = false, bend.turned = 0;
     friction |= bend.band > 0;
   }
   return friction;
@@ -305,7 +305,11 @@ void CableFriction::Share(const double* z) {
     const double rho = bend.side != 0 ? bend.side * bend.band : std::log(bend.ratio);
     const Group& group = groups_[active_[g]];
     rho_[group.begin] = rho, ratio_[group.begin] = bend.ratio;
-    if (group.end > group.begin + 1) Spread(group, rho, z);
+    if (group.end == group.begin + 1) continue;
+    Spread(group, rho, z);
+    const double share = bend.turned > 0 ? std::log(bend.ratio) / rho : 1;
+    for (int k = group.begin; share != 1 && k < group.end; ++k)
+      ratio_[k] = std::exp(share * rho_[k]);
   }
 }
 

@@ -28,6 +28,11 @@ int FirstGuess(const Bend& bend) {
   return bend.memory > 0 ? 1 : -1;
 }
 
+double SlidingRatio(const Bend& bend) {
+  const double ratio = bend.side > 0 ? bend.grown : 1 / bend.grown;
+  return bend.turned > 0 ? bend.turned / ratio + (1 - bend.turned) * ratio : ratio;
+}
+
 bool Slides(const Bend& bend, double v) {
   return bend.band == 0 || bend.given || -bend.side * v > kStart;
 }
@@ -38,6 +43,7 @@ CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry)
     : islands_(m, geometry), work_(m.nv), none_(m.nv) {}
 
 void CableSliding::Solve(const World& w, std::span<Bend> bends) {
+  turn_.bends.clear();
   Guess(w, bends);
   GiveFresh(w, bends);
   islands_.Link(w.m, w.geometry, w.rows);
@@ -65,6 +71,7 @@ void CableSliding::SolveFree(const World& w, std::span<Bend> bends) {
     Begin(w, island);
     solver_.Begin(inertia().matrix(), inertia().size());
     SolveSides(w, some);
+    TurnWithinStep(w, some);
   }
 }
 
@@ -77,6 +84,7 @@ void CableSliding::SolveWithRows(const World& w, std::span<Bend> bends, int isla
   Begin(w, island);
   rows_.Begin(w.m, w.d, inertia(), w.rows, islands_.rows(island), w.native);
   SolveSides(w, some_);
+  TurnWithinStep(w, some_);
   auto solved = some_.begin();
   for (Bend& bend : bends) {
     if (here(bend)) bend = *solved++;
@@ -181,9 +189,7 @@ void CableSliding::Assign(const World& w, std::span<const Bend> bends) {
     const Bend& bend = bends[g];
     if (bend.cable != cable) cable = bend.cable, expected = w.base[cable];
     Part& part = parts_[g];
-    part.ratio = bend.side > 0   ? bend.grown
-                 : bend.side < 0 ? 1 / bend.grown
-                                 : std::exp(bend.memory);
+    part.ratio = bend.side != 0 ? SlidingRatio(bend) : std::exp(bend.memory);
     expected *= part.ratio;
     part.yield = 0;
     if (bend.side != 0) continue;

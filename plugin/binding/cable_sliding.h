@@ -23,7 +23,8 @@ struct Bend {
 
   int side = 0;                   ///< ±1: slides with ρ = ±band; 0: at rest
   double tension = 0, ratio = 1;  ///< behind it [N]; the same by that before it
-  bool given = false;             ///< slides as its speed says, whatever it is at the step's end
+  bool given = false;             ///< slides as its side says, whatever it is at the step's end
+  double turned = 0;              ///< τ of (5): part of the step on the other side
 };
 
 /// Dry friction of cables, solved for the end of the step.
@@ -55,6 +56,16 @@ struct Bend {
 /// is at the step's end: one mj_forward on fresh data gives the law at that state. Not so where
 /// friction as large as that would throw a bend back, beyond rest by more than 0.2 m/s in the step.
 ///
+/// A bend that comes into the step faster than 5 mm/s and leaves it the other way slides both ways
+/// in it. With ρ = +band or −band on the old side it would end at v₁, from rest on the new side it
+/// would gain w (its change of speed over a whole step). Where v₁ and w have the new direction it
+/// turns after the part τ of the step, and hands on the mean of both tensions:
+///
+///   τ = v/(v − v₁),   t_g = (τ e^(old ρ) + (1 − τ) e^(new ρ)) t_{g−1}         (5)
+///
+/// So v⁺ = (1 − τ) w, what the two stretches give with constant forces. (2) alone would let the new
+/// direction act all along: an error of first order in the step at every reversal.
+///
 /// Once it is known who slides which way, (1) is linear in q̇⁺, with a linear ρ in (4): ρ − memory =
 /// (t_g − e^memory t_{g−1})/t, t what t_g would be by the memories or was, if that is more. Bends
 /// that break (2), and rows that break λ ≥ 0 or that would push and do not, then change their part:
@@ -82,6 +93,14 @@ class CableSliding {
   /// v_c and q̇⁺ − q̇ [inertia().dofs()] of the last solution that has bends at rest.
   double give_way() const { return answer_.give_way; }
   const std::vector<double>& change() const { return answer_.velocity; }
+  /// What (5) comes from where bends turned in the last solution: all bends, v_c and q̇⁺ − q̇ with
+  /// those on their old side. No bends: none turned.
+  struct Turn {
+    std::vector<Bend> bends;
+    double give_way = 0;
+    std::vector<double> velocity;
+  };
+  const Turn& turn() const { return turn_; }
   /// Finds side and tension of the bends, cable after cable, each from its base on.
   void Solve(const World& w, std::span<Bend> bends);
 
@@ -99,6 +118,9 @@ class CableSliding {
   void Begin(const World& w, int island);
   void SolveSides(const World& w, std::span<Bend> bends);
   bool Settle(const World& w, std::span<Bend> bends);
+  void TurnWithinStep(const World& w, std::span<Bend> bends);
+  bool SolveTurns(const World& w, std::span<Bend> bends);
+  bool SettleForced(const World& w, std::span<Bend> bends, int way);
   void Assign(const World& w, std::span<const Bend> bends);
   int FirstAtRest(std::span<const Bend> bends) const;
   void SolveVelocity(const World& w, std::span<const Bend> bends);
@@ -120,7 +142,11 @@ class CableSliding {
     std::vector<double> velocity;
   } answer_;
   std::vector<Part> parts_;
-  std::vector<Bend> found_, some_;      ///< the last answer; the bends of an island with rows
+  std::vector<Bend> found_, some_;  ///< the last answer; the bends of an island with rows
+  std::vector<Bend> before_turns_;  ///< the answer by (2) alone
+  std::vector<bool> turns_;         ///< [bends] may turn within the step
+  Turn turn_;
+  std::vector<double> kept_;            ///< [bends] v₁ of (5)
   std::vector<double> follow_;          ///< [dofs]
   std::vector<double> velocity_;        ///< [dofs] q̇⁺ − q̇
   std::vector<double> change_, speed_;  ///< [bends] of v in the step; v⁺
