@@ -247,6 +247,11 @@ void CableDerivatives::FollowRatios(const NumberTangents& numbers) {
   ratio_change_.setZero(std::ssize(bends_), band_.cols()), yield_change_ = ratio_change_;
   double expected = 0;
   RowVector expected_change, level;
+  const double give = law.Give();  // v_c = give/h where it acts
+  const bool gives = law.sliding().gives();
+  const RowVector give_change =
+      gives ? numbers[Kind::kParameter].row(law_.first_parameter + law.GiveParameter())
+            : RowVector::Zero(band_.cols());
   for (std::size_t g = 0; g < bends_.size(); ++g) {
     const Bend& bend = bends_[g];
     const auto row = static_cast<Eigen::Index>(g);
@@ -278,6 +283,7 @@ void CableDerivatives::FollowRatios(const NumberTangents& numbers) {
               : expected_change;
     yield_[g] = bend.band * stiff / give_way_;
     yield_change_.row(row) = (band * stiff + bend.band * stiff_change) / give_way_;
+    if (gives) yield_change_.row(row) -= yield_[g] / give * give_change;
   }
 }
 

@@ -265,7 +265,7 @@ void CableFriction::Solve(const mjModel& m, mjData& d, const double* z) {
   for (int dof = 0; dof < m.nv; ++dof) force_[dof] += z[m.nwrap + dof];
   if (!tension_rows_.any()) rows_.Clear();
   AddContactRows(m, d, rows_);
-  sliding_.Solve({m, d, geometry_, native_, base_, last_, force_, rows_.all()},
+  sliding_.Solve({m, d, geometry_, native_, base_, last_, force_, rows_.all(), Give()},
                  {bends_.data(), count_});
   Share(z);
 }

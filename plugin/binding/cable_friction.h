@@ -82,6 +82,9 @@ class CableFriction : public BoundLaw {
   const std::vector<double>& band() const { return band_; }
   /// Tension of each cable at its base [N].
   const std::vector<double>& base() const { return base_; }
+  /// Which parameter is the sliding over which friction builds up [m]; −1: none.
+  virtual int GiveParameter() const { return -1; }
+  double Give() const { return GiveParameter() < 0 ? 0 : p_[GiveParameter()]; }
   /// How a band follows the wrap angle and the parameters.
   virtual void BandSlopes(double theta, double& by_theta, std::span<double> by_parameter) const = 0;
 

@@ -8,7 +8,7 @@
 namespace continuum {
 namespace {
 
-constexpr double kGiveWay = 1e-3, kGiveWayMost = 20, kEasier = 3;  // v_c of (4) [m/s]
+constexpr double kGiveWayMost = 20, kEasier = 3;  // v_c of (4) [m/s]
 constexpr double kStart = 1e-3;  // slower bends begin as they were in the last step [m/s]
 constexpr double kCreep = 1e-6, kNearly = 0.99;  // ... but these slid, and do [m/s]
 constexpr double kMoving = 0.02;                 // fresh bends that are faster slide [m/s]
@@ -33,8 +33,8 @@ double SlidingRatio(const Bend& bend) {
   return bend.turned > 0 ? bend.turned / ratio + (1 - bend.turned) * ratio : ratio;
 }
 
-bool Slides(const Bend& bend, double v) {
-  return bend.band == 0 || bend.given || -bend.side * v > kStart;
+bool Slides(const Bend& bend, double v, double least) {
+  return bend.band == 0 || bend.given || -bend.side * v > least;
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ CableSliding::CableSliding(const mjModel& m, const CableGeometry& geometry)
     : islands_(m, geometry), work_(m.nv), none_(m.nv) {}
 
 void CableSliding::Solve(const World& w, std::span<Bend> bends) {
-  turn_.bends.clear();
+  turn_.bends.clear(), gives_ = w.Gives();
   Guess(w, bends);
   GiveFresh(w, bends);
   islands_.Link(w.m, w.geometry, w.rows);
@@ -56,6 +56,7 @@ void CableSliding::Solve(const World& w, std::span<Bend> bends) {
 // Those without rows in which something is or comes near to rest in this step.
 void CableSliding::SolveFree(const World& w, std::span<Bend> bends) {
   bool changes = false;
+  const double least = w.Gives() ? 2 * w.GiveWay() : kStart;
   rows_.End();
   for (std::size_t begin = 0, end = 0; begin < bends.size(); begin = end) {
     const int island = islands_.of_cable(bends[begin].cable);
@@ -63,10 +64,10 @@ void CableSliding::SolveFree(const World& w, std::span<Bend> bends) {
     if (!islands_.rows(island).empty()) continue;
     const std::span<Bend> some = bends.subspan(begin, end - begin);
     bool slide = std::all_of(some.begin(), some.end(),
-                             [](const Bend& bend) { return Slides(bend, bend.speed); });
+                             [&](const Bend& bend) { return Slides(bend, bend.speed, least); });
     if (slide && !std::exchange(changes, true)) Changes(w, bends, w.force);
     for (std::size_t g = begin; slide && g < end; ++g)
-      slide = Slides(bends[g], bends[g].speed + change_[g]);
+      slide = Slides(bends[g], bends[g].speed + change_[g], least);
     if (slide) continue;
     Begin(w, island);
     solver_.Begin(inertia().matrix(), inertia().size());
@@ -108,12 +109,12 @@ double CableSliding::BaseOf(const World& w, int cable) const {
 }
 
 void CableSliding::SolveSides(const World& w, std::span<Bend> bends) {
-  give_way_ = kGiveWay;
-  while (!Settle(w, bends) && give_way_ < kGiveWayMost) give_way_ *= kEasier;
-  while (give_way_ > kGiveWay) {
+  const double least = give_way_ = w.GiveWay();
+  while (!Settle(w, bends) && give_way_ < std::max(kGiveWayMost, least)) give_way_ *= kEasier;
+  while (give_way_ > least) {
     found_.assign(bends.begin(), bends.end());
     const std::vector<bool> acting = rows_.Acting();
-    give_way_ = std::max(kGiveWay, give_way_ / kEasier);
+    give_way_ = std::max(least, give_way_ / kEasier);
     if (Settle(w, bends)) continue;
     std::copy(found_.begin(), found_.end(), bends.begin());
     rows_.Act(acting);
@@ -190,11 +191,12 @@ void CableSliding::Assign(const World& w, std::span<const Bend> bends) {
     if (bend.cable != cable) cable = bend.cable, expected = w.base[cable];
     Part& part = parts_[g];
     part.ratio = bend.side != 0 ? SlidingRatio(bend) : std::exp(bend.memory);
+    const double held = expected * (bend.side != 0 && gives_ ? std::exp(bend.memory) : part.ratio);
     expected *= part.ratio;
-    part.yield = 0;
-    if (bend.side != 0) continue;
-    const double stiff = std::max(expected, w.last[cable] * std::exp(bend.level));
-    part.yield = bend.band * stiff / give_way_;
+    part.yield = part.spring = 0;
+    if (bend.side != 0 && !gives_) continue;
+    const double stiff = std::max(held, w.last[cable] * std::exp(bend.level));
+    (bend.side == 0 ? part.yield : part.spring) = bend.band * stiff / give_way_;
   }
 }
 
@@ -296,7 +298,10 @@ int CableSliding::Judge(const World& w, std::span<Bend> bends) {
     part.better = bend.side;
     if (bend.side != 0) {
       bend.tension = part.ratio * before;
-      if (bend.band > 0 && !bend.given && bend.side * speed_[g] > kSpeedError) part.better = 0;
+      const double room = before * std::abs(std::exp(bend.memory) - part.ratio);
+      const double least = part.spring > 0 ? room / part.spring : 0;
+      if (bend.band > 0 && !bend.given && -bend.side * speed_[g] < least - kSpeedError)
+        part.better = 0;
     } else {
       bend.tension = std::clamp(wanted, before / bend.grown, before * bend.grown);
       const double error = kRelativeError * bend.tension;

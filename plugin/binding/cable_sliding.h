@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -50,13 +51,15 @@ struct Bend {
 ///   v_g⁺ = v_c (memory − ρ_g)/band,   v_c = 1 mm/s,                      (4)
 ///
 /// so that nothing changes without need. A step takes what gave way as the new memory: a bend at
-/// rest is a spring that reaches its band after h v_c, with a damper of v_c, and does not creep.
+/// rest is a spring that reaches its band after h v_c, with a damper of v_c, and does not creep. A
+/// cable that gives by more than that has v_c = give/h; there a bend slides from the speed on with
+/// which (4) would leave the band.
 ///
 /// Where no step has gone before, bends faster than 20 mm/s slide as their speed says, whatever it
 /// is at the step's end: one mj_forward on fresh data gives the law at that state. Not so where
 /// friction as large as that would throw a bend back, beyond rest by more than 0.2 m/s in the step.
 ///
-/// A bend that comes into the step faster than 5 mm/s and leaves it the other way slides both ways
+/// A bend that comes into the step faster than 5 v_c and leaves it the other way slides both ways
 /// in it. With ρ = +band or −band on the old side it would end at v₁, from rest on the new side it
 /// would gain w (its change of speed over a whole step). Where v₁ and w have the new direction it
 /// turns after the part τ of the step, and hands on the mean of both tensions:
@@ -83,11 +86,18 @@ class CableSliding {
     std::span<const double> last;   ///< the same in the last step [N]
     std::span<const double> force;  ///< F [nv]
     std::span<SolvedRow> rows;
+    double give;  ///< sliding over which friction builds up; 0: v_c h [m]
+
+    /// v_c: 1 mm/s, or what makes the give of a cable.
+    double GiveWay() const { return std::max(1e-3, give / m.opt.timestep); }
+    bool Gives() const { return GiveWay() > 1e-3; }
   };
   CableSliding(const mjModel& m, const CableGeometry& geometry);
 
   /// Islands of cables are solved each by itself. Rows of the last step may have linked some.
   int islands() const { return islands_.size(); }
+  /// Whether v_c was the give of the cable, in the last solution.
+  bool gives() const { return gives_; }
   /// Of the island solved last.
   const StepInertia& inertia() const { return islands_.inertia(island_); }
   /// v_c and q̇⁺ − q̇ [inertia().dofs()] of the last solution that has bends at rest.
@@ -107,8 +117,9 @@ class CableSliding {
  private:
   struct Part {
     double ratio;  // of the tension behind it to that before: exp of ρ when sliding, else of memory
-    double yield;  // d tension/d v of a bend at rest [N s/m]
-    int better;    // side it should have
+    double yield;   // d tension/d v of a bend at rest [N s/m]
+    double spring;  // the same of one that slides, were it at rest; 0 where the cable has no give
+    int better;     // side it should have
   };
   void Guess(const World& w, std::span<Bend> bends);
   void GiveFresh(const World& w, std::span<Bend> bends);
@@ -137,6 +148,7 @@ class CableSliding {
   BlockSolver solver_;
   std::vector<double> matrix_;  ///< with rows: what is solved [dofs · dofs]
   double give_way_ = 0;         ///< v_c
+  bool gives_ = false;
   struct {
     double give_way = 0;
     std::vector<double> velocity;

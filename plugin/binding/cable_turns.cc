@@ -8,12 +8,12 @@
 namespace continuum {
 namespace {
 
-constexpr double kTurning = 5e-3;  // 5 v_c: slower bends obey (2) at the end of the step [m/s]
+constexpr double kTurning = 5;  // slower bends obey (2) at the end of the step [v_c]
 
 int SideBySpeed(const Bend& bend) { return bend.speed > 0 ? -1 : 1; }
 
-bool MayTurn(const Bend& bend) {
-  return !bend.fresh && bend.band > 0 && std::abs(bend.speed) > kTurning &&
+bool MayTurn(const Bend& bend, double give_way) {
+  return !bend.fresh && bend.band > 0 && std::abs(bend.speed) > kTurning * give_way &&
          bend.side != SideBySpeed(bend);
 }
 
@@ -22,7 +22,7 @@ bool MayTurn(const Bend& bend) {
 void CableSliding::TurnWithinStep(const World& w, std::span<Bend> bends) {
   turns_.assign(bends.size(), false);
   bool any = false;
-  for (std::size_t g = 0; g < bends.size(); ++g) any |= turns_[g] = MayTurn(bends[g]);
+  for (std::size_t g = 0; g < bends.size(); ++g) any |= turns_[g] = MayTurn(bends[g], w.GiveWay());
   if (!any) return;
   before_turns_.assign(bends.begin(), bends.end());
   const std::vector<bool> acting = rows_.Acting();

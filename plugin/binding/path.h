@@ -19,6 +19,11 @@ class BoundPath : public CableFriction {
     std::copy(band.d.begin() + 1, band.d.end(), by_parameter.begin());
   }
 
+  int GiveParameter() const override {
+    if constexpr (requires { E::kGive; }) return E::kGive;
+    return -1;
+  }
+
  private:
   void Bands(std::span<const double> theta, std::span<double> band) const override {
     const auto p = AsParams<E>(p_);

@@ -163,7 +163,8 @@ concept BiasedFrictionLaw = FrictionLaw<E> && requires(ParamsOf<E, double> p) {
 };
 
 /// Path: friction of a cable that slides over contacts. Band(theta, choice, p) ≥ 0 is the logarithm
-/// of the largest tension ratio that a contact with wrap angle theta can hold.
+/// of the largest tension ratio that a contact with wrap angle theta can hold. kGive, where the
+/// card has it, is the index of the sliding over which friction builds up; 0: the solver's own.
 template <class E>
 concept PathLaw = Card<E> && requires(ParamsOf<E, double> p) {
   { E::template Band<double>(0.1, 0, p) } -> std::same_as<double>;

@@ -86,6 +86,7 @@ TYPED_TEST(EveryPath, IsConsistentInItsUnits) {
     std::vector<Answer> all;
     for (int option = 0; option < OptionsOf<E>(); ++option)
       all.push_back({E::template Band<double>(wrap, option, p), "1"});
+    if constexpr (requires { E::kGive; }) all.push_back({p[E::kGive], "m"});
     return all;
   });
 }

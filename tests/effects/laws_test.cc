@@ -33,7 +33,7 @@ TEST(Stribeck, BreaksAwayHigherThanItSlides) {
 }
 
 TEST(Capstan, BothLawsAgreeForSmallAngles) {
-  const Vec<double, 3> p{0.3, 0, 0};
+  const Vec<double, 4> p{0.3, 0, 0, 0};
   for (const double theta : {1e-3, 1e-2}) {
     EXPECT_NEAR(Capstan::Band(theta, 0, p), Capstan::Band(theta, 1, p), theta * theta * theta);
   }
@@ -41,7 +41,7 @@ TEST(Capstan, BothLawsAgreeForSmallAngles) {
 }
 
 TEST(Capstan, ANegativeFrictionPolynomialIsNoFriction) {
-  EXPECT_EQ(Capstan::Band(1.0, 0, Vec<double, 3>{0.1, -0.5, 0}), 0);
+  EXPECT_EQ(Capstan::Band(1.0, 0, Vec<double, 4>{0.1, -0.5, 0, 0}), 0);
 }
 
 TEST(Backlash, IsADeadZone) {
