@@ -249,9 +249,9 @@ void CableDerivatives::FollowRatios(const NumberTangents& numbers) {
   RowVector expected_change, level;
   const double give = law.Give();  // v_c = give/h where it acts
   const bool gives = law.sliding().gives();
-  const RowVector give_change =
-      gives ? numbers[Kind::kParameter].row(law_.first_parameter + law.GiveParameter())
-            : RowVector::Zero(band_.cols());
+  RowVector give_change = RowVector::Zero(band_.cols());
+  if (gives)
+    give_change = numbers[Kind::kParameter].row(law_.first_parameter + law.GiveParameter());
   for (std::size_t g = 0; g < bends_.size(); ++g) {
     const Bend& bend = bends_[g];
     const auto row = static_cast<Eigen::Index>(g);
