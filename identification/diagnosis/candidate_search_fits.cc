@@ -47,9 +47,10 @@ bool CandidateSearch::ReachesNoise(const Fitted& fitted) const {
   return continuum::ReachesNoise(fitted.error.train, {noise_.rms, noise_.step}, criteria_);
 }
 
-// By first order, or by the missing force: dropped only when both say no.
+// By first order, by the missing force, or by the error itself: dropped only when all say no.
 bool CandidateSearch::IsWorthAFit(const CandidateResult& c, double needed) const {
-  return c.explained >= needed || (needed < kInfinity && c.force_promise > 0);
+  return c.explained >= needed ||
+         (needed < kInfinity && (c.force_promise > 0 || c.error_promise > 0));
 }
 
 // Those behind it are less likely, and not fitted where they explain less than is needed.
@@ -62,7 +63,7 @@ void CandidateSearch::SayFit(const CandidateResult& c, double needed) const {
 
 // By whichever view promises more, as a share of what the best one promises there.
 double CandidateSearch::Promise(const CandidateResult& c, double most) {
-  return std::max(most > 0 ? c.explained / most : 0, c.force_promise);
+  return std::max({most > 0 ? c.explained / most : 0, c.force_promise, c.error_promise});
 }
 
 // The plainest law of a family goes first at a place, as if it promised what the best of them does:

@@ -176,6 +176,19 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
   });
 }
 
+// What the sensors alone explain of the error itself costs no simulation.
+void CandidateSearch::LookAtErrors() {
+  const auto train = TrainLogs(*fitter_.experiment);
+  for (CandidateResult& c : candidates) {
+    if (!c.hypothesis.OnlyMeasured() || !c.error.empty() || fitter_.TimeIsOver()) continue;
+    Problem problem = ProblemOf(c, *fitter_.experiment);
+    problem.Recall(base_problem_);
+    const double share =
+        PlainShare(c.hypothesis, problem, {base_.fitted->fit.x, base_.fitted->residuals}, train);
+    if (share >= criteria_.main_share) c.error_promise = share;
+  }
+}
+
 void CandidateSearch::Screen(const std::vector<EquationErrors>& views, const CandidateResult* rival,
                              const std::set<std::string>& hopeless) {
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
@@ -186,6 +199,7 @@ void CandidateSearch::Screen(const std::vector<EquationErrors>& views, const Can
   if (rival) KeepThoseThatMayOutdo(*rival);
   DropHopeless(hopeless);
   ProbeAll(residual, !views.empty() && views.front().any());
+  LookAtErrors();
   std::vector<std::vector<Probe>> probes;
   for (CandidateResult& c : candidates) probes.push_back(std::move(c.probes));
   options_.Say(DiagnosisStage::kScreen, "significance", candidates.size(), candidates.size());

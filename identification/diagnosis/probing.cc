@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include <Eigen/QR>
+
 #include "error.h"
 #include "identification/diagnosis/search_rules.h"
 
@@ -204,6 +206,22 @@ std::vector<Probe> ProbesOf(const Hypothesis& h, const Problem& problem, const P
     }
   }
   return probes;
+}
+
+double PlainShare(const Hypothesis& h, const Problem& problem, const ProbeBase& base,
+                  const std::vector<bool>& use) {
+  const Whitening plain;
+  const Vector r = plain.Stack(base.residuals, use);
+  const auto amplitudes = h.Amplitudes();
+  Matrix columns(r.size(), std::ssize(amplitudes));
+  for (std::size_t a = 0; a < amplitudes.size(); ++a) {
+    std::vector<double> own = h.starts.front();
+    for (const std::size_t other : amplitudes)
+      own[other] = h.AtShare(other, own[other], other == amplitudes[a] ? 1 : 0);
+    columns.col(static_cast<Eigen::Index>(a)) =
+        plain.Stack(problem.Residuals(Append(base.x, own), use), use) - r;
+  }
+  return 1 - (r - columns * columns.colPivHouseholderQr().solve(r)).squaredNorm() / r.squaredNorm();
 }
 
 Vector StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,

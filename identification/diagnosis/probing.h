@@ -35,6 +35,11 @@ std::vector<Probe> ProbesOf(const Hypothesis& h, const Problem& problem, const P
                             const ProjectedResidual& residual, bool calibrated,
                             const std::vector<std::size_t>& starts, const Criteria& criteria = {});
 
+/// The share of the plain squares over the logs in use, not in units of the noise, that the
+/// amplitudes of a candidate take in its first shape, to first order.
+double PlainShare(const Hypothesis& h, const Problem& problem, const ProbeBase& base,
+                  const std::vector<bool>& use);
+
 /// Where to begin a candidate's fit: a start of its own, with sizes from its probe. What does
 /// nothing without the others begins at excess times its start, as first order says little of it.
 Problem::Vector StartFrom(const Hypothesis& h, const Fitted& null, const Probe& probe,

@@ -112,6 +112,9 @@ struct CandidateResult {
   /// that is too little.
   double force_promise = 0;
   std::size_t force_start = 0;  ///< start of the shape in which it does
+  /// The share of the plain squares that an effect of the sensors alone takes; 0 where that is less
+  /// than the main share. To whitening that knows offsets of the noise a constant hardly counts.
+  double error_promise = 0;
   bool was_fitted = false;
   Dismissed::Why why_not = Dismissed::Why::kExplainsTooLittle;  ///< where it was not fitted
   Fitted fitted = {};                                           ///< empty where it was not fitted
