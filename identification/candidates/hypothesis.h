@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ struct Hypothesis {
   int option = 0;                         ///< of the effect's choice
   Place place = Place::kWorld;            ///< kind of the objects on which it acts
   std::vector<std::string> objects = {};  ///< their names (ObjectSet)
+  /// In which each parameter of its card is shown, by name; empty for pure numbers.
+  std::map<std::string, std::string> units = {};
 
   std::vector<Parameter> Free() const;  ///< given and extra
   /// Which of extra (values: theirs) says how large the effect is: the largest, in units of its

@@ -9,6 +9,7 @@
 #include "identification/candidates/model_candidates.h"
 #include "identification/candidates/per_condition.h"
 #include "identification/candidates/search_range.h"
+#include "identification/candidates/shown_units.h"
 #include "sim/experiment/measurement_model.h"
 
 namespace continuum {
@@ -72,6 +73,7 @@ Hypothesis HypothesisAt(const EffectInfo& effect, const Candidate& wanted, const
   Hypothesis h = MakeAt(effect, wanted, objects, option, c);
   h.candidate = wanted, h.option = option;
   h.place = objects.place, h.objects = objects.names;
+  h.units = ShownUnits(effect, objects, c);
   if (wanted.per_condition) SplitByCondition(h, TrainedConditions(c.experiment, wanted.Name()));
   h.starts = SearchStarts(h, effect.params, c.sizes);
   h.given = c.from.given;

@@ -84,6 +84,11 @@ std::string AttributeUnit(const std::string& name) {
 
 }  // namespace
 
+std::string UnitOn(const mjModel& m, const std::string& unit, std::string_view kind,
+                   std::string_view globs) {
+  return UnitForMotion(unit, MotionOf(m, kind, globs));
+}
+
 std::string UnitOf(const ModelSpec& system, const Parameter& p) {
   if (!p.unit.empty()) return p.unit;
   if (p.operation == Change::Operation::kScale) return "1";

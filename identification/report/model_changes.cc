@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "binding/effect_catalog.h"
 #include "error.h"
 #include "sim/experiment/measurement_model.h"
 
@@ -100,10 +99,9 @@ std::string AddedInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Index
 
 std::string UnitOfExtra(const Hypothesis& h, std::size_t i) {
   const std::string name = h.extra[i].name.substr(0, h.extra[i].name.find('['));  // of a condition
-  for (const Param& p : EffectNamed(h.Card()).params) {
-    if (p.name == name) return p.unit == "1" ? "" : std::string(p.unit);
-  }
-  return h.extra[i].unit;
+  const auto shown = h.units.find(name);
+  if (shown != h.units.end()) return shown->second;
+  return h.extra[i].unit == "1" ? "" : h.extra[i].unit;
 }
 
 std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin) {

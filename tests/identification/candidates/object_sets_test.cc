@@ -111,6 +111,22 @@ TEST_F(Sets, GrowByOneObjectAndShareTheirParameters) {
   EXPECT_THAT(two.system.Named("joint:j3 j5"), SizeIs(2));
 }
 
+TEST_F(Sets, ShowUnitsOfWhatIsMeasuredSentAndMoved) {
+  experiment_.inputs[0].unit = "kPa", experiment_.outputs[2].unit = "mm";
+  EXPECT_EQ(First("coulomb").units.at("tau_c"), "N*m");
+  EXPECT_EQ(First("sensor_scale").units.at("scale"), "");
+  EXPECT_EQ(At(First("sensor_bias"), {"p[0]"}, context_).units.at("bias"), "mm");
+  EXPECT_EQ(At(First("sensor_drift"), {"q1"}, context_).units.at("rate"), "rad/s");
+  EXPECT_EQ(At(First("input_offset"), {"m1"}, context_).units.at("offset"), "Pa");
+  EXPECT_EQ(At(First("input_offset"), {"m2"}, context_).units.at("offset"), "");
+  const ModelSpec slides = ModelSpec::Parse(
+      "<mujoco><worldbody><body><joint name='x' type='slide'/><geom size='.1'/></body></worldbody>"
+      "</mujoco>");
+  const SearchBase base{&slides};
+  const Hypothesis rubs = At(First("coulomb"), {"x"}, {experiment_, base, sizes_});
+  EXPECT_EQ(rubs.units.at("tau_c"), "N");
+}
+
 TEST_F(Sets, KeepTheChoiceOfTheEffect) {
   experiment_.candidates = {{"load_friction", "", false}};
   const auto all = MakeCandidates(experiment_, base_, sizes_, skipped_);
