@@ -73,7 +73,7 @@ Hypothesis HypothesisAt(const EffectInfo& effect, const Candidate& wanted, const
   Hypothesis h = MakeAt(effect, wanted, objects, option, c);
   h.candidate = wanted, h.option = option;
   h.place = objects.place, h.objects = objects.names;
-  h.units = ShownUnits(effect, objects, c);
+  h.units = ShownUnits(effect, objects.place, objects.names, c.experiment, c.from.system->model());
   if (wanted.per_condition) SplitByCondition(h, TrainedConditions(c.experiment, wanted.Name()));
   h.starts = SearchStarts(h, effect.params, c.sizes);
   h.given = c.from.given;

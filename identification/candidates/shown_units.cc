@@ -11,13 +11,15 @@
 namespace continuum {
 namespace {
 
-bool Has(const std::vector<std::string>& names, const std::string& name) {
+using Names = std::vector<std::string>;
+
+bool Has(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::string OutputUnit(const ObjectSet& objects, const Experiment& e) {
+std::string OutputUnit(const Names& objects, const Experiment& e) {
   for (const Output& out : e.outputs) {
-    if (Has(objects.names, out.name())) return out.unit;
+    if (Has(objects, out.name())) return out.unit;
   }
   return "1";
 }
@@ -31,9 +33,9 @@ std::string InSi(const std::string& unit, const std::string& where) {
   return "SI";
 }
 
-std::string InputUnit(const ObjectSet& objects, const Experiment& e) {
+std::string InputUnit(const Names& objects, const Experiment& e) {
   for (const Input& in : e.inputs) {
-    if (Has(objects.names, in.actuator)) return InSi(in.unit, in.where);
+    if (Has(objects, in.actuator)) return InSi(in.unit, in.where);
   }
   return "1";
 }
@@ -43,25 +45,24 @@ bool IsOfMotion(Place place, std::string_view unit) {
   return (place == Place::kJoint || place == Place::kTendon) && !unit.starts_with("1");
 }
 
-std::string UnitAt(std::string unit, const ObjectSet& objects, const CandidateContext& c) {
-  constexpr std::string_view kOutput = "output", kInput = "input";
-  if (unit.starts_with(kOutput)) {
-    unit.replace(0, kOutput.size(), OutputUnit(objects, c.experiment));
-  } else if (unit.starts_with(kInput)) {
-    unit.replace(0, kInput.size(), InputUnit(objects, c.experiment));
-  } else if (IsOfMotion(objects.place, unit)) {
-    unit = UnitOn(c.from.system->model(), unit, PlaceName(objects.place), GlobsOf(objects.names));
-  }
-  return unit == "1" ? "" : unit;
-}
-
 }  // namespace
 
-std::map<std::string, std::string> ShownUnits(const EffectInfo& effect, const ObjectSet& objects,
-                                              const CandidateContext& context) {
+std::map<std::string, std::string> ShownUnits(const EffectInfo& effect, Place place,
+                                              const std::vector<std::string>& objects,
+                                              const Experiment& e, const mjModel& m) {
+  constexpr std::string_view kOutput = "output", kInput = "input";
   std::map<std::string, std::string> units;
-  for (const Param& p : effect.params)
-    units[std::string(p.name)] = UnitAt(std::string(p.unit), objects, context);
+  for (const Param& p : effect.params) {
+    std::string unit(p.unit);
+    if (unit.starts_with(kOutput)) {
+      unit.replace(0, kOutput.size(), OutputUnit(objects, e));
+    } else if (unit.starts_with(kInput)) {
+      unit.replace(0, kInput.size(), InputUnit(objects, e));
+    } else if (IsOfMotion(place, unit)) {
+      unit = UnitOn(m, unit, PlaceName(place), GlobsOf(objects));
+    }
+    units[std::string(p.name)] = unit == "1" ? "" : unit;
+  }
   return units;
 }
 

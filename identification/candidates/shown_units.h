@@ -2,8 +2,12 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
-#include "identification/candidates/object_sets.h"
+#include <mujoco/mujoco.h>
+
+#include "binding/effect_catalog.h"
+#include "sim/experiment/experiment.h"
 
 namespace continuum {
 
@@ -12,7 +16,8 @@ namespace continuum {
 ///
 /// What its card says, with three exceptions: on slide joints and tendons the unit of a translation
 /// ("N" for "N*m"), "output" as the experiment records it, "input" in SI as the actuator gets it.
-std::map<std::string, std::string> ShownUnits(const EffectInfo& effect, const ObjectSet& objects,
-                                              const CandidateContext& context);
+std::map<std::string, std::string> ShownUnits(const EffectInfo& effect, Place place,
+                                              const std::vector<std::string>& objects,
+                                              const Experiment& experiment, const mjModel& m);
 
 }  // namespace continuum
