@@ -11,6 +11,7 @@
 #include "app/log_check.h"
 #include "error.h"
 #include "identification/identify.h"
+#include "identification/report/derivative_table.h"
 #include "identification/report/fit_output.h"
 #include "identification/report/fit_summary.h"
 #include "identification/report/parts.h"
@@ -26,6 +27,7 @@ namespace {
 
 struct Options {
   std::string experiment, out, from, method = "lm", path = "auto";
+  bool derivatives = false;
   IdentifyOptions fit;
 };
 
@@ -41,7 +43,18 @@ IdentifyOptions ReadOptions(const Options& o) {
   return options;
 }
 
+void ListDerivatives(const Options& o) {
+  const Experiment read = Experiment::Read(o.experiment);
+  const ModelSpec system = ModelSpec::Load(read.model);
+  CheckNames(read, system);
+  const Derivatives all = DerivativesOf(Registered(read, system), system, ReadOptions(o));
+  EndProgress();
+  std::fputs(DerivativesInWords(all).c_str(), stdout);
+}
+
 void RunIdentify(const Options& o) {
+  if (o.derivatives) return ListDerivatives(o);
+  if (o.out.empty()) throw CLI::RequiredError("--out");
   const Experiment read = Experiment::Read(o.experiment);
   const ModelSpec system = ModelSpec::Load(read.model);
   CheckNames(read, system);
@@ -72,8 +85,10 @@ void AddIdentify(CLI::App& app) {
   CLI::App* const sub = app.add_subcommand("identify", "Fit the parameters of an experiment");
   sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
   sub->add_option("--out", o->out,
-                  "folder for fit.json, fitted.xml, fitted.yaml, simulated/, report.html")
-      ->required();
+                  "folder for fit.json, fitted.xml, fitted.yaml, simulated/, report.html");
+  sub->add_flag("--derivatives", o->derivatives,
+                "fit nothing: list for each parameter how its derivative is made, and why not in "
+                "closed form");
   sub->add_option("--from", o->from,
                   "fit.json to start from: go on with a fit that was interrupted, or was made "
                   "with other logs");

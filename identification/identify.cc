@@ -28,6 +28,7 @@ using Vector = Problem::Vector;
 using Options = IdentifyOptions;
 
 constexpr std::size_t kRowsAhead = 10;  // of a prediction
+constexpr double kBesideNull = 1e-6;    // of a parameter's scale
 
 const char* NameOf(FitMethod method) {
   return method == FitMethod::kParticleSwarm ? "pso" : "regressor";
@@ -230,6 +231,29 @@ class Statement {
 };
 
 }  // namespace
+
+Derivatives DerivativesOf(const Experiment& e, const ModelSpec& system, const IdentifyOptions& o) {
+  if (o.method != FitMethod::kLevenbergMarquardt)
+    throw Error::Input("--derivatives", "--method lm", NameOf(o.method));
+  const auto use = o.all_logs ? std::vector<bool>(e.logs.size(), true) : TrainLogs(e);
+  Problem problem(e, system, {}, {}, use);
+  RequireFit(problem, use, o);
+  Vector x = o.from.empty() ? problem.Start() : FittedValues(o.from, problem);
+  const std::string not_smooth = TakePath(o, problem);
+  TakeDifferences(o, problem);
+  Derivatives all{HowSimulated(o, problem, not_smooth), {}, {}, {}};
+  for (const FreeParameter& p : problem.parameters()) all.parameters.push_back(p.name);
+  for (Eigen::Index k = 0; k < x.size(); ++k)  // off every null, as a fit soon is
+    x[k] += problem.StepOf(x, k, kBesideNull);
+  const auto ways = problem.WaysOf(x, use);
+  all.made.resize(ways.size());
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) continue;
+    all.logs.push_back(e.logs[l].label);
+    for (std::size_t k = 0; k < ways.size(); ++k) all.made[k].push_back(ways[k][l]);
+  }
+  return all;
+}
 
 IdentifyResult Identify(const Experiment& e, const ModelSpec& system, const IdentifyOptions& o) {
   const auto use = o.all_logs ? std::vector<bool>(e.logs.size(), true) : TrainLogs(e);

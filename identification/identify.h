@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "identification/result/derivatives.h"
 #include "identification/result/identify_result.h"
 #include "sim/experiment/experiment.h"
 #include "sim/io/progress.h"
@@ -43,6 +44,12 @@ struct IdentifyOptions {
 /// experiments that cannot be fitted, and (kJob) when the simulation diverges at the start.
 IdentifyResult Identify(const Experiment& experiment, const ModelSpec& system,
                         const IdentifyOptions& options = {});
+
+/// How the derivatives of such a fit are made at its start, parameter by parameter, with the reason
+/// of each that is not in closed form. Simulates the logs of the fit once or twice, as what acts on
+/// their way counts. Throws Error as Identify does, and (kInput) for methods without derivatives.
+Derivatives DerivativesOf(const Experiment& experiment, const ModelSpec& system,
+                          const IdentifyOptions& options = {});
 
 /// Throws Error as Identify would for parameters that no fit could have, were it to see all logs.
 void CheckParameters(const Experiment& experiment, const ModelSpec& system);

@@ -1,28 +1,15 @@
 // How the residuals of a problem follow its parameters.
+#include <atomic>
 #include <memory>
 #include <numeric>
 
-#include "error.h"
 #include "identification/problem/problem.h"
-#include "identification/sensitivity/model_difference.h"
 #include "identification/sensitivity/smooth_path.h"
-#include "identification/sensitivity/step_sensitivity.h"
-#include "identification/sensitivity/stepped_path.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/parallel.h"
-#include "sim/simulation/initial_state.h"
-#include "sim/simulation/input_signals.h"
 #include "sim/simulation/trace_measurement.h"
-#include "sim/simulation/wiring.h"
 
 namespace continuum {
-namespace {
-
-// A simulation with all columns in closed form takes as long as some four plain ones.
-constexpr std::size_t kWorth = 4;
-
-}  // namespace
-
 std::vector<Problem::Matrix> Problem::Jacobian(const Vector& x, const std::vector<Vector>& r,
                                                const std::vector<bool>& use,
                                                const std::vector<Matrix>& known, bool rough) const {
@@ -64,6 +51,15 @@ bool Problem::IsOfMeasurement(std::size_t k) const {
   return SideOf(parameters_[k].change) == Side::kMeasurement;
 }
 
+std::vector<std::size_t> Problem::ActingColumns(const std::vector<std::size_t>& columns,
+                                                std::size_t log) const {
+  std::vector<std::size_t> acting;
+  for (const std::size_t k : columns) {
+    if (parameters_[k].log[log]) acting.push_back(k);
+  }
+  return acting;
+}
+
 bool Problem::WithinBounds(std::size_t k, double value) const {
   return value >= parameters_[k].lower && value <= parameters_[k].upper;
 }
@@ -79,15 +75,18 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                                 std::vector<Matrix>& J) const {
   std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
   std::vector<std::vector<std::size_t>> left(motions.size());
+  std::atomic<std::size_t> exact = 0;  // simulations that gave columns in closed form
   ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
-    for (const std::size_t k : columns) {
-      if (parameters_[k].log[motions[i].front()]) left[i].push_back(k);
+    using Way = Derivative::Way;
+    const std::vector<std::size_t> acting = ActingColumns(columns, motions[i].front());
+    const std::vector<Derivative> made = ClosedFormColumns(x, motions[i], acting, thread, J);
+    for (std::size_t j = 0; j < acting.size(); ++j) {
+      if (made[j].way == Way::kDifferences || made[j].way == Way::kMeasurement)
+        left[i].push_back(acting[j]);
     }
-    left[i] = ClosedFormColumns(x, motions[i], left[i], thread, J);
+    exact += left[i].size() < acting.size();
   });
-  std::size_t exact = 0;  // simulations that gave columns in closed form
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    exact += left[i].size() < columns.size();
     for (const std::size_t k : left[i]) tasks.emplace_back(i, k);
   }
   ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
@@ -115,78 +114,16 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
   evaluations_ += (central_ ? 2 : 1) * tasks.size() + exact;
 }
 
-PerturbedRun Problem::RunOf(ModelAndData machine, const Vector& x, std::size_t log) const {
-  PerturbedRun trial{std::move(machine), {}, {}, {}, {}, {}};
-  const Log& logged = experiment_->logs[log];
-  InitialState start = StartAt(trial.machine, x, log);
-  if (start.qpos.empty()) start = StartOf(trial.machine, setup_, logged);
-  mjModel& m = *trial.machine.model;
-  mjData& d = *trial.machine.data;
-  const Wiring wiring(setup_, m);
-  Inputs inputs(m, setup_, logged, wiring);
-  inputs.AtRow(d, 0);
-  Settle(m, d);
-  inputs.EnableAll();
-  trial.q = std::move(start.qpos), trial.v = std::move(start.qvel);
-  trial.w.assign(d.act, d.act + m.na);
-  trial.z.assign(d.plugin_state, d.plugin_state + m.npluginstate);
-  return trial;
-}
-
-std::string Problem::NoClosedForm() const {
-  if (parameters_.size() < kWorth) return "they are cheaper for a few parameters";
-  if (!exact_) return "as asked for";
-  if (terms_.count > 0) return "a force of free form acts";
-  if (experiment_->quasi_static) return "the logs are quasi-static";
-  const ModelAndData machine = ModelAt(0, Start(), 0, 0);
-  return StepSensitivity::Obstacle(*machine.model, *machine.data, Wiring(setup_, *machine.model));
-}
-
-std::vector<std::size_t> Problem::ClosedFormColumns(const Vector& x,
-                                                    const std::vector<std::size_t>& motion,
-                                                    const std::vector<std::size_t>& columns,
-                                                    std::size_t thread,
-                                                    std::vector<Matrix>& J) const {
-  const std::size_t log = motion.front();
-  const Experiment setup = MeasuredBy(x, log);
-  if (!exact_ || path_ != Path::kStepped || columns.size() < kWorth || terms_.count > 0 ||
-      experiment_->quasi_static || setup.skew != experiment_->skew || StopRequested())
-    return columns;
-  std::vector<std::size_t> left, moving;
-  for (const std::size_t k : columns) (IsOfMeasurement(k) ? left : moving).push_back(k);
-  SteppedTraces traces;
-  try {
-    ModelAndData machine = ModelAt(thread, x, log, 0);
-    const mjModel& m = *machine.model;
-    if (!StepSensitivity::Obstacle(m, *machine.data, Wiring(setup, m)).empty()) return columns;
-    PerturbedRun trial = RunOf(std::move(machine), x, log);
-    std::vector<PerturbedRun> perturbed;
-    for (const std::size_t k : moving) {
-      Vector moved = x;
-      const double step = StepOf(x, k, kPerturbation);
-      moved[k] = x[k] + step;
-      perturbed.push_back(RunOf(ModelAt(thread, moved, log, 0), moved, log));
-      moved[k] = x[k] - step;
-      PerturbedRun& run = perturbed.back();
-      if (WithinBounds(k, moved[k]) && !ModelDifference(m, *run.machine.model).field.empty())
-        run.mirrored = ModelAt(thread, moved, log, 0);
-    }
-    traces = SimulateStepped(trial, perturbed, setup, experiment_->logs[log]);
-  } catch (const Error&) {  // of values that no machine has: differences look to the other side
-    return columns;
+std::vector<std::unique_ptr<ContinuousDynamics>> Problem::DynamicsBeside(
+    std::size_t thread, const Vector& x, std::size_t log,
+    const std::vector<std::size_t>& columns) const {
+  std::vector<std::unique_ptr<ContinuousDynamics>> beside;
+  for (const std::size_t k : columns) {
+    Vector moved = x;
+    moved[k] += StepOf(x, k, kPerturbation);
+    beside.push_back(DynamicsAt(thread, moved, log));
   }
-  for (std::size_t j = 0; j < moving.size(); ++j) {
-    const std::size_t k = moving[j];
-    if (!traces.perturbed[j] || !ResidualOf(log, *traces.perturbed[j]).allFinite()) {
-      left.push_back(k);
-      continue;
-    }
-    for (const std::size_t l : motion) {
-      J[l].col(k) = (ResidualOf(l, *traces.perturbed[j]) - ResidualOf(l, traces.trace)) /
-                    StepOf(x, k, kPerturbation);
-    }
-  }
-  return left;
+  return beside;
 }
 
 // Parameters of a motion are shared out so that no core waits for another.
@@ -202,8 +139,9 @@ void Problem::SensitivityColumns(const Vector& x,
   for (std::size_t i = 0; i < motions.size(); ++i) {
     std::vector<std::size_t> moving;
     for (std::size_t k = first; k < parameters_.size(); ++k) {
-      if (!IsOfMeasurement(k) && parameters_[k].log[motions[i].front()]) moving.push_back(k);
+      if (!IsOfMeasurement(k)) moving.push_back(k);
     }
+    moving = ActingColumns(moving, motions[i].front());
     for (std::size_t s = 0; s < shares; ++s) {
       const auto at = [&](std::size_t share) {
         return moving.begin() + static_cast<std::ptrdiff_t>(share * moving.size() / shares);
@@ -217,12 +155,7 @@ void Problem::SensitivityColumns(const Vector& x,
     if (StopRequested()) return;
     const auto& [i, moving] = tasks[t];
     const std::size_t log = motions[i].front();
-    std::vector<std::unique_ptr<ContinuousDynamics>> perturbed;
-    for (const std::size_t k : moving) {
-      Vector moved = x;
-      moved[k] += StepOf(x, k, kPerturbation);
-      perturbed.push_back(DynamicsAt(thread, moved, log));
-    }
+    const auto perturbed = DynamicsBeside(thread, x, log, moving);
     const auto dynamics = DynamicsAt(thread, x, log);
     const Log& logged = experiment_->logs[log];
     const Experiment measured = MeasuredBy(x, log);

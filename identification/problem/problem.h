@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "identification/result/derivatives.h"
 #include "identification/result/free_parameter.h"
 #include "identification/sensitivity/solver_options.h"
 #include "sim/simulation/score.h"
@@ -64,7 +65,7 @@ class Problem {
   /// gives the derivative itself.
   void DifferBy(double share) { share_ = share, exact_ = false; }
 
-  /// Why sensitivities of the stepped path come from differences ("an effect acts"); empty: they
+  /// Why sensitivities of the stepped path come from differences ("as asked for"); empty: they
   /// have a closed form, but for parameters that the motion follows in other ways.
   std::string NoClosedForm() const;
 
@@ -95,7 +96,10 @@ class Problem {
   std::vector<Matrix> Jacobian(const Vector& x, const std::vector<Vector>& r,
                                const std::vector<bool>& use, const std::vector<Matrix>& known = {},
                                bool rough = false) const;
-  /// The same, but only with respect to where the trials begin; other columns are zero.
+  /// How each column of it is made at x [parameter][log]; entries of logs not in use and of
+  /// parameters that do not act there are in closed form. Simulates every log.
+  std::vector<std::vector<Derivative>> WaysOf(const Vector& x, const std::vector<bool>& use) const;
+  /// The same Jacobian, but only with respect to where the trials begin; other columns are zero.
   std::vector<Matrix> StartJacobian(const Vector& x, const std::vector<Vector>& r,
                                     const std::vector<bool>& use) const;
   /// Pooled RMS (unit: see Pool) of residuals over all measured samples of the logs in use.
@@ -146,11 +150,28 @@ class Problem {
                          const std::vector<std::vector<std::size_t>>& motions,
                          const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
   PerturbedRun RunOf(ModelAndData machine, const Vector& x, std::size_t log) const;
-  /// By StepSensitivity, one simulation for all columns; returns those that are left.
-  std::vector<std::size_t> ClosedFormColumns(const Vector& x,
-                                             const std::vector<std::size_t>& motion,
-                                             const std::vector<std::size_t>& columns,
-                                             std::size_t thread, std::vector<Matrix>& J) const;
+  /// Those of columns whose parameters act in a log.
+  std::vector<std::size_t> ActingColumns(const std::vector<std::size_t>& columns,
+                                         std::size_t log) const;
+  std::string NotTried(const Vector& x, std::size_t log, std::size_t columns) const;
+  PerturbedRun RunBeside(const mjModel& m, const Vector& x, std::size_t log, std::size_t k,
+                         std::size_t thread) const;
+  Derivative TakeColumn(const Vector& x, const std::vector<std::size_t>& motion, std::size_t k,
+                        const PerturbedRun& run, const Trace& here, const Trace& there,
+                        std::vector<Matrix>& J) const;
+  std::vector<Derivative> SteppedColumns(const Vector& x, const std::vector<std::size_t>& motion,
+                                         const std::vector<std::size_t>& columns,
+                                         std::size_t thread, std::vector<Matrix>& J) const;
+  /// By StepSensitivity, one simulation for all columns; returns how each is made. Those by
+  /// differences and of the measurement are left out of J.
+  std::vector<Derivative> ClosedFormColumns(const Vector& x, const std::vector<std::size_t>& motion,
+                                            const std::vector<std::size_t>& columns,
+                                            std::size_t thread, std::vector<Matrix>& J) const;
+  std::vector<Derivative> SmoothColumns(const Vector& x, std::size_t log,
+                                        const std::vector<std::size_t>& columns) const;
+  std::vector<std::unique_ptr<ContinuousDynamics>> DynamicsBeside(
+      std::size_t thread, const Vector& x, std::size_t log,
+      const std::vector<std::size_t>& columns) const;
   void SensitivityColumns(const Vector& x, const std::vector<std::vector<std::size_t>>& motions,
                           std::size_t first, bool rough, std::vector<Matrix>& J) const;
   enum class Side { kModel, kMeasurement, kStart };

@@ -22,15 +22,17 @@ ContinuousSensitivity::ContinuousSensitivity(
     : dynamics_(dynamics),
       perturbed_(perturbed),
       move_(move),
-      covered_(perturbed.size()),
+      why_not_(perturbed.size(), Obstacle(dynamics)),
       derivatives_(dynamics.model()),
       rate_(dynamics.size()) {
-  if (!Obstacle(dynamics).empty()) return;
+  if (perturbed.empty() || !Covers(0)) return;
   const mjModel& m = dynamics.model();
   for (std::size_t k = 0; k < perturbed.size(); ++k) {
     ModelDifference difference(m, perturbed[k]->model());
-    covered_[k] = difference.field.empty();
-    if (!covered_[k]) continue;
+    if (!difference.field.empty()) {
+      why_not_[k] = difference.field + " differs";
+      continue;
+    }
     difference.AddGated(dynamics.wiring());
     columns_.push_back(k);
     differences_.push_back(std::move(difference));

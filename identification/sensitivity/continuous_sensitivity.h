@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -28,7 +29,9 @@ class ContinuousSensitivity {
                         double move);
 
   /// Whether a perturbed model differs by what the closed form knows.
-  bool Covers(std::size_t k) const { return covered_[k]; }
+  bool Covers(std::size_t k) const { return why_not_[k].empty(); }
+  /// Why it does not ("body_pos differs").
+  const std::string& WhyNot(std::size_t k) const { return why_not_[k]; }
   /// At the time t of the log and y; what was made there is kept.
   void At(double t, const double* y);
   /// ṡ of every perturbed model that is covered.
@@ -43,7 +46,7 @@ class ContinuousSensitivity {
   ContinuousDynamics& dynamics_;
   const std::vector<std::unique_ptr<ContinuousDynamics>>& perturbed_;
   double move_;
-  std::vector<bool> covered_;
+  std::vector<std::string> why_not_;          ///< [perturbed model]
   std::vector<std::size_t> columns_;          ///< perturbed models that are covered
   std::vector<ModelDifference> differences_;  ///< of these
   ForceDerivatives derivatives_;

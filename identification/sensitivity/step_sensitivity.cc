@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "identification/sensitivity/native_forces.h"
 #include "mujoco_compat.h"
 #include "sim/simulation/output_recorder.h"
@@ -39,6 +41,11 @@ bool DelayIsInSamples(const mjModel& m, const mjModel& other) {
   return false;
 }
 
+std::string NoColumn(const ModelDifference& difference, const mjModel& m, const mjModel& other) {
+  if (!difference.alike) return "it changes a size of the model (" + difference.field + ")";
+  return DelayIsInSamples(m, other) ? "the history holds samples: a delay counts whole ones" : "";
+}
+
 }  // namespace
 
 std::string StepSensitivity::Obstacle(const mjModel& m, const mjData& d, const Wiring& wiring) {
@@ -54,7 +61,7 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
                                  const std::vector<const ModelAndData*>& perturbed, double move,
                                  const std::vector<const ModelAndData*>& mirrored)
     : move_(move),
-      covered_(perturbed.size()),
+      why_not_(perturbed.size()),
       steps_(move),
       derivatives_(*machine.model, PartsOf(ForceDerivatives::ImplicitOf(*machine.model))),
       transmitted_(*machine.model, kTransmitted),
@@ -65,8 +72,8 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
   const mjModel& m = *machine.model;
   for (std::size_t k = 0; k < perturbed.size(); ++k) {
     ModelDifference difference(m, *perturbed[k]->model);
-    covered_[k] = difference.alike && !DelayIsInSamples(m, *perturbed[k]->model);
-    if (!covered_[k]) continue;
+    why_not_[k] = NoColumn(difference, m, *perturbed[k]->model);
+    if (!Covers(k)) continue;
     const bool known = difference.field.empty();
     if (!known)
       steps_.Add(*perturbed[k], mirrored.empty() ? nullptr : mirrored[k], std::ssize(columns_));
@@ -139,7 +146,8 @@ bool StepSensitivity::FollowActuators(const mjModel& m, mjData& d) {
   actuators_->Begin(m, d, *numbers_);
   effects_->Update(Group::kInputs, m, d, Taken());
   effects_->AddSignals(Group::kInputs, *numbers_);
-  if (!actuators_->SetInputs(m, d, activation_, *numbers_)) return false;
+  if (!actuators_->SetInputs(m, d, activation_, *numbers_))
+    return Fail("a signal is outside of the range of its control");
   effects_->Update(Group::kDrives, m, d, Taken());
   effects_->AddSignals(Group::kDrives, *numbers_);
   actuators_->Limit(m, *numbers_);
@@ -238,9 +246,14 @@ void StepSensitivity::Derive(const mjModel& m, const mjData& d, const double* a,
 
 bool StepSensitivity::Solve(Tangents& force) {
   factor_.compute(inertia_);
-  if (factor_.info() != Eigen::Success) return false;
+  if (factor_.info() != Eigen::Success) return Fail("the step's matrix is not positive definite");
   factor_.solveInPlace(force);
   return true;
+}
+
+bool StepSensitivity::Fail(std::string why) {
+  failure_ = std::move(why);
+  return false;
 }
 
 // df of (2).
@@ -296,7 +309,8 @@ void StepSensitivity::FollowActivations(const mjModel& m, const Tangents& rates)
 bool StepSensitivity::FollowForces(const mjModel& m, mjData& d) {
   derivatives_.Place(m, d);
   FollowTendons(m, d);
-  if (!rows_->Find(m, d) || !FollowEffects(m, d)) return false;
+  if (!rows_->Find(m, d)) return Fail("a contact acts");
+  if (!FollowEffects(m, d)) return false;
   rows_->AddPulls(d, pull_);
   derivatives_.Pull(pull_);
   if (!rows_->empty() && !FollowRows(m, d)) return false;
@@ -316,7 +330,7 @@ bool StepSensitivity::FollowMethod(const mjModel& m, const mjData& d) {
   inertia_ -= m.opt.timestep * derivatives_.damping();
   if (implicit != Implicit::kMotion) return Solve(force_);
   force_ = inertia_.partialPivLu().solve(force_);
-  return force_.allFinite();
+  return force_.allFinite() || Fail("the step's matrix is singular");
 }
 
 // At the state of Before: q̇⁺ and q⁺ of (1), and activations.
@@ -395,6 +409,7 @@ bool StepSensitivity::After(const mjModel& m, mjData& d) {
     SwapState(d);
   }
   steps_.AddTo(*numbers_, activation_);
+  if (!followed) failure_ += fmt::format(" at {:g} s", d.time);
   return followed;
 }
 

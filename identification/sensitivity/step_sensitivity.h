@@ -50,8 +50,10 @@ class StepSensitivity {
   StepSensitivity(const ModelAndData& machine, const Wiring& wiring,
                   const std::vector<const ModelAndData*>& perturbed, double move,
                   const std::vector<const ModelAndData*>& mirrored = {});
-  /// Whether a perturbed model has the machine's structure.
-  bool Covers(std::size_t k) const { return covered_[k]; }
+  /// Why a perturbed model cannot be followed ("it changes a size of the model (nsite)"); empty: it
+  /// can.
+  const std::string& WhyNot(std::size_t k) const { return why_not_[k]; }
+  bool Covers(std::size_t k) const { return why_not_[k].empty(); }
   /// The state from which a covered perturbed model starts less the machine's, by the move.
   struct State {
     std::vector<double> q, v, w, z;  ///< positions, speeds, activations, states of effects
@@ -59,9 +61,11 @@ class StepSensitivity {
   void Start(std::size_t k, const State& difference);
 
   /// Around every step: takes up the state it starts from; follows it. False: it has no closed
-  /// form, as there is a row of the constraint solver that SolverRows does not know.
+  /// form, as there is a row of the constraint solver that SolverRows does not know, above all.
   void Before(const mjModel& m, const mjData& d);
   bool After(const mjModel& m, mjData& d);
+  /// Why After returned false ("a contact acts at 0.31 s"); empty: it has not.
+  const std::string& failure() const { return failure_; }
   /// Lets recorders [perturbed model] see a row, with d as a step that began there, or a forward
   /// pass, has left it.
   void Observe(const mjModel& m, mjData& d, std::size_t row, std::span<Recorder> recorders);
@@ -83,6 +87,7 @@ class StepSensitivity {
               Tangents& force);
   bool FollowRows(const mjModel& m, const mjData& d);
   bool Solve(Tangents& force);
+  bool Fail(std::string why);
   bool FollowStep(const mjModel& m, mjData& d);
   bool FollowStages(const mjModel& m);
   bool FollowForces(const mjModel& m, mjData& d);
@@ -97,7 +102,8 @@ class StepSensitivity {
 
   std::vector<const ModelAndData*> perturbed_;  ///< those that are covered; the machine for steps_
   double move_;
-  std::vector<bool> covered_;
+  std::vector<std::string> why_not_;  ///< [perturbed model]
+  std::string failure_;
   std::vector<std::size_t> columns_;
   std::vector<ModelDifference> differences_;
   SingleSteps steps_;

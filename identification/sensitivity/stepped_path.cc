@@ -47,8 +47,10 @@ class PerturbedRuns {
     return hooks;
   }
 
-  std::optional<Trace> Release(std::size_t k) {
-    if (!closed_form_ || !sensitivity_.Covers(k)) return {};
+  std::string WhyNot(std::size_t k) const {
+    return closed_form_ ? sensitivity_.WhyNot(k) : sensitivity_.failure();
+  }
+  Trace Release(std::size_t k) {
     Trace perturbed;
     recorders_[k].Release(perturbed);
     return perturbed;
@@ -82,14 +84,15 @@ class PerturbedRuns {
 SteppedTraces SimulateStepped(PerturbedRun& trial, std::vector<PerturbedRun>& perturbed,
                               const Experiment& e, const Log& log) {
   SteppedTraces traces;
-  traces.perturbed.resize(perturbed.size());
+  traces.perturbed.resize(perturbed.size()), traces.why_not.resize(perturbed.size());
   const Wiring wiring(e, *trial.machine.model);
   PerturbedRuns runs(trial, perturbed, e, log, wiring);
   traces.trace = Simulate(trial.machine, e, log, {trial.q, trial.v}, runs.MakeHooks());
-  if (traces.trace.diverged) return traces;
   for (std::size_t k = 0; k < perturbed.size(); ++k) {
+    traces.why_not[k] = traces.trace.diverged ? "the simulation diverges" : runs.WhyNot(k);
+    if (!traces.why_not[k].empty()) continue;
     traces.perturbed[k] = runs.Release(k);
-    if (traces.perturbed[k]) MeasureTrace(e, wiring, log, *traces.perturbed[k]);
+    MeasureTrace(e, wiring, log, traces.perturbed[k]);
   }
   return traces;
 }

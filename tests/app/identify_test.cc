@@ -70,6 +70,38 @@ TEST_F(IdentifyPath, IsRefusedWhereItCannotGo) {
                 {"--path smooth", "'hinge' has dry friction"});
 }
 
+// Four parameters of the motion, one of a sensor, and a log on which the link touches the floor.
+TEST_F(IdentifyPath, ListsHowEachDerivativeIsMadeAndWhy) {
+  Spoil("model.xml", "<worldbody>",
+        "<worldbody><geom name=\"floor\" type=\"plane\" size=\"1 1 1\" pos=\"0 0 -0.33\"/>"
+        "<body name=\"falls\" pos=\"1 0 0\"><joint name=\"down\" type=\"slide\" axis=\"0 0 1\"/>"
+        "<geom size=\"0.05\" contype=\"0\" conaffinity=\"0\"/></body>");
+  files_.Write("long.csv", "t,u,q\n0,0.1,0\n0.1,0.1,0.01\n0.2,0.1,0.03\n0.4,0.1,0.06\n");
+  Spoil("experiment.yaml", "upper: 1}]",
+        "upper: 1},\n  {name: k, target: \"joint:hinge\", attribute: stiffness, lower: 0, upper: "
+        "9},\n"
+        "  {name: m, target: \"body:link\", attribute: mass, lower: 0.1, upper: 9},\n"
+        "  {name: tip, target: \"body:falls\", attribute: \"pos[0]\", lower: -1, upper: 2},\n"
+        "  {name: bias, target: \"sensor:angle\", attribute: bias, lower: -1, upper: 1}]");
+  Spoil("experiment.yaml", "{file: log.csv}", "{file: log.csv}, {file: long.csv}");
+  const auto f = Run({"identify", "experiment.yaml", "--derivatives", "--path", "stepped"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("b          closed form\n"));
+  EXPECT_THAT(f.out, HasSubstr("tip        single steps    body_pos differs\n"));
+  EXPECT_THAT(f.out, HasSubstr("bias       same motion     the motion stays the same\n"));
+  EXPECT_EQ(Listing().size(), 6u);  // nothing is written
+  Spoil("model.xml", "0 0 -0.33", "0 0 -0.3");
+  const auto touched = Run({"identify", "experiment.yaml", "--derivatives", "--path", "stepped"});
+  EXPECT_THAT(touched.out, HasSubstr("k          by differences  a contact acts at "));
+  const auto smooth = Run({"identify", "experiment.yaml", "--derivatives"});
+  EXPECT_THAT(smooth.out, HasSubstr("path: stepped"));
+  const auto few = Run({"identify", "experiment.yaml", "--derivatives", "--path", "stepped",
+                        "--differences", "1e-6"});
+  EXPECT_THAT(few.out, HasSubstr("k          by differences  as asked for\n"));
+  ExpectRefused({"identify", "experiment.yaml", "--derivatives", "--method", "pso"},
+                {"--derivatives", "--method lm", "pso"});
+}
+
 TEST_F(IdentifyPath, FromSeveralStartsSaysWhereEachEnds) {
   const auto fit = Identify({"--starts", "3", "--seed", "5"}, "fits from several starts (3 steps)");
   ASSERT_EQ(fit["starts"].size(), 3u);
