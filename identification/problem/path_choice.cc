@@ -1,7 +1,10 @@
 #include "identification/problem/path_choice.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
+#include "engine.h"
 #include "identification/sensitivity/smooth_path.h"
 #include "sim/simulation/simulate.h"
 
@@ -14,17 +17,51 @@ std::string ObstacleOf(const Problem& problem, const Problem::Vector& x, std::si
   return ContinuousDynamics::Obstacle(*machine.model, *machine.data);
 }
 
-// Whether a contact or a limit acts on the way; of the rows the first d.ne are equalities.
-std::string ContactObstacle(const Problem& problem, std::size_t log) {
+bool ActsContactOrLimit(const mjData& d) {
+  const auto acts = [](int type) {
+    return type >= mjCNSTR_LIMIT_JOINT;  // after equalities and friction
+  };
+  return std::any_of(d.efc_type, d.efc_type + d.nefc, acts);
+}
+
+bool ActsCableFriction(const mjModel& m, const mjData& d) {
+  for (int i = 0; i < m.nplugin; ++i) {
+    const BoundLaw& law = BoundOf(m, d, i);
+    if (law.NeedsAllForces() && law.LargestTension() > 0) return true;
+  }
+  return false;
+}
+
+// Whether a contact, a limit or a cable under tension acts on the way.
+std::string ObstacleOnTheWay(const Problem& problem, std::size_t log) {
   ModelAndData machine = problem.system().Build(problem.ChangesFor(problem.Start(), log));
-  double when = -1;
+  const char* what = nullptr;
+  double when = 0;
   Hooks hooks;
-  hooks.step = [&](const mjModel&, const mjData& d) {
-    if (d.nefc > d.ne && when < 0) when = d.time;
+  hooks.step = [&](const mjModel& m, const mjData& d) {
+    if (what) return;
+    when = d.time;
+    if (ActsContactOrLimit(d)) what = "a contact or limit acts";
+    if (ActsCableFriction(m, d)) what = "a cable with dry friction is under tension";
   };
   const Log& logged = problem.experiment().logs[log];
   Simulate(machine, problem.experiment(), logged, {}, hooks);
-  return when < 0 ? "" : fmt::format("{}: a contact or limit acts at {:g} s", logged.label, when);
+  return what ? fmt::format("{}: {} at {:g} s", logged.label, what, when) : "";
+}
+
+// A rate of the equation of motion costs what a step does.
+std::string SlowerThanSteps(const Problem& problem) {
+  const Experiment& e = problem.experiment();
+  const Log& log = e.logs[0];
+  ContinuousDynamics dynamics(problem.system().Build(problem.ChangesFor(problem.Start(), 0)), e,
+                              log);
+  if (!dynamics.rubs()) return "";
+  const SmoothTraces traces = SimulateSmooth(dynamics, {}, e, log, {});
+  if (traces.trace.diverged) return "CVODES cannot follow the dry friction: " + traces.trace.why;
+  const double steps = (log.time.back() - log.time.front()) / problem.step();
+  if (static_cast<double>(traces.work.rates) <= steps) return "";
+  return fmt::format("dry friction takes CVODES {} evaluations of the motion, and {:.0f} steps",
+                     traces.work.rates, steps);
 }
 
 }  // namespace
@@ -40,7 +77,7 @@ std::string SmoothObstacle(const Problem& problem) {
   }
   for (std::size_t l = 0; l < e.logs.size(); ++l) {
     std::string why = ObstacleOf(problem, beside, l);
-    if (why.empty()) why = ContactObstacle(problem, l);
+    if (why.empty()) why = ObstacleOnTheWay(problem, l);
     if (!why.empty()) return why;
   }
   return "";
@@ -55,9 +92,9 @@ std::string SmoothCost(const Problem& problem) {
     for (std::size_t row = 1; row < log.rows(); ++row) breaks += BreaksAt(e, log, row);
   }
   const double share = static_cast<double>(breaks) / static_cast<double>(rows);
-  return share <= kMost
-             ? ""
-             : fmt::format("the inputs jump or bend at {:.0f} % of the rows", 100 * share);
+  if (share > kMost)
+    return fmt::format("the inputs jump or bend at {:.0f} % of the rows", 100 * share);
+  return SlowerThanSteps(problem);
 }
 
 }  // namespace continuum

@@ -115,6 +115,8 @@ void Problem::Follow(Path path) {
   path_ = path;
   memory_.assign(memory_.size(), {});
   if (path == Path::kStepped) return;
+  solver_.stiff = true;
+  if (DynamicsAt(0, Start(), 0)->rubs()) return;
   std::array<long, 2> rates;
   for (const bool stiff : {false, true}) {
     solver_.stiff = stiff;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "binding/friction_row.h"
 #include "engine.h"
 #include "sim/model/mujoco_handles.h"
 #include "sim/simulation/initial_state.h"
@@ -9,13 +10,14 @@
 namespace continuum {
 namespace {
 
+// MuJoCo's own; that of effects is a bristle.
 std::string DryFriction(const mjModel& m) {
   for (int i = 0; i < m.nv; ++i) {
-    if (m.dof_frictionloss[i] > 0)
+    if (m.dof_frictionloss[i] > kRowMarker)
       return "joint " + Called(m, mjOBJ_JOINT, m.dof_jntid[i]) + " has dry friction";
   }
   for (int i = 0; i < m.ntendon; ++i) {
-    if (m.tendon_frictionloss[i] > 0)
+    if (m.tendon_frictionloss[i] > kRowMarker)
       return "tendon " + Called(m, mjOBJ_TENDON, i) + " has dry friction";
   }
   return "";
@@ -42,7 +44,12 @@ std::string Switches(const mjModel& m, const mjData& d) {
     if (!name.starts_with("continuum.")) return instance + " is not one of ours";
     const BoundLaw& law = BoundOf(m, d, i);
     const double* const z = d.plugin_state + m.plugin_stateadr[i];
-    if (law.IsRow() || law.NeedsAllForces()) return instance + " has dry friction";
+    if (law.NeedsAllForces()) continue;  // while no cable is under tension
+    if (law.IsRow()) {
+      const std::string why = law.WhyNoBristles(m);
+      if (why.empty()) continue;
+      return instance + " has dry friction: " + why;
+    }
     if (m.plugin_statenum[i] > 0 && !law.Rates(m, d, z, rate.data()))
       return instance + " has discrete states";
   }
@@ -105,7 +112,8 @@ ContinuousDynamics::ContinuousDynamics(ModelAndData machine, const Experiment& e
   ties_.FreeVelocities(start.qvel.data(), start_.data() + ties_.positions());
   moving_.resize(m.nq);
   start_.insert(start_.end(), d.act, d.act + m.na);
-  start_.insert(start_.end(), d.plugin_state, d.plugin_state + m.npluginstate);
+  FindStates();
+  for (const int z : states_) start_.push_back(d.plugin_state[z]);
   for (const Input& in : e.inputs) linear_ |= in.linear;
   for (const auto& source : wiring_.output) {
     if (source.kind != Output::Kind::kSensor) {
@@ -144,7 +152,8 @@ void ContinuousDynamics::Load(const double* y) {
   mjData& d = *machine_.data;
   ties_.Spread(m, y, y + ties_.positions(), d);
   std::copy_n(y += ties_.positions() + ties_.velocities(), m.na, d.act);
-  std::copy_n(y += m.na, m.npluginstate, d.plugin_state);
+  y += m.na;
+  for (std::size_t i = 0; i < states_.size(); ++i) d.plugin_state[states_[i]] = y[i];
 }
 
 void ContinuousDynamics::Rate(double t, const double* y, double* rate) {
@@ -153,7 +162,7 @@ void ContinuousDynamics::Rate(double t, const double* y, double* rate) {
   Load(y);
   if (linear_ && row_ + 1 < log_.rows()) inputs_.Interpolate(d, row_, t);
   mj_forwardSkip(&m, &d, mjSTAGE_NONE, 1);
-  if (!ties_.none()) ties_.Accelerate(m, d);
+  Complete();
   for (int j = 0; j < m.njnt; ++j) {
     const int q = m.jnt_qposadr[j], v = m.jnt_dofadr[j];
     switch (m.jnt_type[j]) {
@@ -172,10 +181,46 @@ void ContinuousDynamics::Rate(double t, const double* y, double* rate) {
   ties_.FreeVelocities(d.qacc, rate += ties_.positions());
   std::copy_n(d.act_dot, m.na, rate += ties_.velocities());
   rate += m.na;
+  for (std::size_t i = 0; i < states_.size(); ++i) rate[i] = state_rate_[states_[i]];
+}
+
+void ContinuousDynamics::FindStates() {
+  const mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  state_rate_.resize(m.npluginstate), friction_.resize(m.nv), friction_rate_.resize(m.nv);
   for (int i = 0; i < m.nplugin; ++i) {
-    const int z = m.plugin_stateadr[i];
-    if (m.plugin_statenum[i] > 0) BoundOf(m, d, i).Rates(m, d, d.plugin_state + z, rate + z);
+    const BoundLaw& law = BoundOf(m, d, i);
+    const int first = m.plugin_stateadr[i];
+    if (law.NeedsAllForces()) continue;
+    if (law.IsRow()) {
+      rubs_ = true;
+      for (const int z : law.BristleStates())
+        states_.push_back(first + z), d.plugin_state[first + z] = 0;
+    } else {
+      for (int z = 0; z < m.plugin_statenum[i]; ++z) states_.push_back(first + z);
+    }
   }
+}
+
+// What a forward pass does not know: rates of effects, dry friction, joints that are tied.
+void ContinuousDynamics::Complete() {
+  const mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  std::fill(friction_.begin(), friction_.end(), 0.0);
+  for (int i = 0; i < m.nplugin; ++i) {
+    const BoundLaw& law = BoundOf(m, d, i);
+    const double* const z = d.plugin_state + m.plugin_stateadr[i];
+    double* const rate = state_rate_.data() + m.plugin_stateadr[i];
+    if (law.IsRow()) law.Bristles(m, d, z, rate, friction_);
+    if (!law.IsRow() && !law.NeedsAllForces()) law.Rates(m, d, z, rate);
+  }
+  if (rubs_) {
+    mj_solveM(&m, &d, friction_rate_.data(), friction_.data(), 1);
+    mju_addTo(d.qfrc_smooth, friction_.data(), static_cast<int>(m.nv));
+    mju_addTo(d.qacc_smooth, friction_rate_.data(), static_cast<int>(m.nv));
+    mju_copy(d.qacc, d.qacc_smooth, static_cast<int>(m.nv));
+  }
+  if (!ties_.none()) ties_.Accelerate(m, d);
 }
 
 void ContinuousDynamics::Observe(const double* y, Recorder& recorder) {
@@ -185,8 +230,8 @@ void ContinuousDynamics::Observe(const double* y, Recorder& recorder) {
   if (linear_) inputs_.AtRow(d, row_);
   if (needs_ == Needs::kAll) {
     mj_forward(&m, &d);
-    if (!ties_.none()) {  // sensors of acceleration and of forces between bodies
-      ties_.Accelerate(m, d);
+    if (rubs_ || !ties_.none()) {  // sensors of acceleration and of forces between bodies
+      Complete();
       mj_rnePostConstraint(&m, &d);
       mj_sensorAcc(&m, &d);
     }

@@ -20,8 +20,10 @@ bool BreaksAt(const Experiment& e, const Log& log, std::size_t row);
 ///
 /// with τ all forces and c the bias of MuJoCo's forward dynamics, a the activations of actuators
 /// and z the states of our laws. The state y holds qpos (a quaternion p moves by ½ p ω), qvel, act
-/// and plugin_state, in SI. Joints that linear equalities tie to others are taken out of q and v
-/// (Ties). No other constraint acts: a model that needs one is refused by Obstacle.
+/// and plugin_state, in SI. Dry friction of effects is a bristle (binding/bristle.h), whose
+/// deflection is a state. Joints that linear equalities tie to others are taken out of q and v
+/// (Ties). No other constraint acts: a model that needs one is refused by Obstacle. Friction of
+/// cables is left out: whoever asks has to see that none of them is under tension.
 class ContinuousDynamics {
  public:
   /// What keeps a model from being such an equation ("joint 'j1' has dry friction"); empty: nothing
@@ -41,6 +43,8 @@ class ContinuousDynamics {
   mjData& data() { return *machine_.data; }
   /// Whether some joints are tied to others, so that y lacks them.
   bool tied() const { return !ties_.none(); }
+  /// Whether dry friction acts, which makes the equation stiff.
+  bool rubs() const { return rubs_; }
   /// From here to the next row the inputs are those of this one.
   void Hold(std::size_t row);
   /// dy/dt [size] at the time t of the log and y.
@@ -54,6 +58,8 @@ class ContinuousDynamics {
   enum class Needs { kState, kFrames, kPosition, kAll };  // what the outputs are made of
   static Needs NeedsOf(const mjModel& m, int sensor);
   void Load(const double* y);
+  void FindStates();
+  void Complete();
 
   ModelAndData machine_;
   const Log& log_;
@@ -62,6 +68,9 @@ class ContinuousDynamics {
   Inputs inputs_;
   std::vector<double> start_, moving_;  // moving_: rate of qpos
   Needs needs_ = Needs::kState;
+  std::vector<int> states_;  // of effects, those that move [index of plugin_state]
+  std::vector<double> state_rate_, friction_, friction_rate_;  // [npluginstate], [nv], [nv]
+  bool rubs_ = false;
   bool linear_ = false;
   std::size_t row_ = 0;
 };

@@ -55,6 +55,15 @@ class BoundLaw {
   virtual bool Rates(const mjModel&, const mjData&, const double* /*z*/, double* /*rate*/) const {
     return false;
   }
+  /// Why a dry friction has no form as a differential equation ("it acts on a ball joint"); empty:
+  /// Bristles is one.
+  virtual std::string WhyNoBristles(const mjModel&) const { return "has dry friction"; }
+  /// Its states that move as bristles [index of z].
+  virtual std::vector<int> BristleStates() const { return {}; }
+  /// At d, after a forward pass without rows: writes dz/dt of BristleStates, adds to force [nv]
+  /// what the model feels (bristle.h).
+  virtual void Bristles(const mjModel&, const mjData&, const double* /*z*/, double* /*rate*/,
+                        std::span<double> /*force*/) const {}
   /// Why Differentiate knows nothing of this law in this model ("its geometry moves"); empty: it
   /// does.
   virtual std::string WhyNoSlopes(const mjModel&) const { return "its slopes are not known"; }

@@ -114,6 +114,15 @@ class BoundFormulaFriction : public BoundLaw {
     return false;
   }
 
+  std::string WhyNoBristles(const mjModel&) const override { return rows_.WhyNoBristles(); }
+  std::vector<int> BristleStates() const override { return rows_.BristleStates(); }
+  void Bristles(const mjModel& m, const mjData& d, const double* z, double* rate,
+                std::span<double> force) const override {
+    rows_.Bristles(m, d, z, rate, force, 0, [&](const FrictionRow& row, double v) {
+      return std::max(0.0, level_(At(m, d, row, v)));
+    });
+  }
+
   std::string WhyNoSlopes(const mjModel& m) const override { return rows_.WhyNoSlopes(m); }
 
   void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,

@@ -11,10 +11,6 @@
 namespace continuum {
 namespace {
 
-// Creates a row without saying how large the friction is: the level is written in every evaluation.
-// MuJoCo's writer of XML takes for 0 what is below 2e-16, so a saved model is as the user wrote it.
-constexpr double kRowMarker = 1e-300;
-
 // By so much the share of a ball joint's rows follows in a step: what it takes for a moment to stop
 // the joint is no load.
 constexpr double kShareStep = 0.02;
@@ -237,9 +233,30 @@ void FrictionRows::Advance(const mjModel& m, const mjData& d, double* z) const {
 }
 
 std::string FrictionRows::WhyNoSlopes(const mjModel& m) const {
-  if (IsDiscrete(m)) return "its rows are folded into the inertia";
+  return IsDiscrete(m) ? "its rows are folded into the inertia" : WhyNoBristles();
+}
+
+std::string FrictionRows::WhyNoBristles() const {
   const auto ball = [](const FrictionRow& row) { return row.axis >= 0; };
   return std::any_of(rows_.begin(), rows_.end(), ball) ? "it acts on a ball joint" : "";
+}
+
+std::vector<int> FrictionRows::BristleStates() const {
+  std::vector<int> states;
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    states.push_back(static_cast<int>(kStates * k + kBristle));
+  return states;
+}
+
+void FrictionRows::Oppose(const mjModel& m, const mjData& d, const FrictionRow& row, double f,
+                          std::span<double> force) {
+  if (row.joint) {
+    force[row.index] -= f;
+    return;
+  }
+  const int adr = m.ten_J_rowadr[row.index];
+  for (int k = adr; k < adr + m.ten_J_rownnz[row.index]; ++k)
+    force[m.ten_J_colind[k]] -= f * d.ten_J[k];
 }
 
 void FrictionRows::DifferentiateAnchor(const mjModel& m, const mjData& d, const StepTaken& step,

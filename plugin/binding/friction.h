@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "binding/bound_law.h"
+#include "binding/bristle.h"
 #include "binding/friction_row.h"
 #include "binding/gear_load.h"
 #include "binding/native_damping.h"
@@ -89,6 +90,21 @@ class FrictionRows {
   /// Throws Error where other dry friction acts on a row.
   void RequireAlone(const mjModel& m, const std::string& who) const;
 
+  /// As a differential equation (BoundLaw::Bristles): calls level(row, v) → torque for each row.
+  std::string WhyNoBristles() const;
+  std::vector<int> BristleStates() const;
+  template <class Level>
+  void Bristles(const mjModel& m, const mjData& d, const double* z, double* rate,
+                std::span<double> force, double give, Level&& level) const {
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const std::size_t state = kStates * k + kBristle;
+      const double v = Speed(d, rows_[k]);
+      const Bristle bristle(z[state], v, give > 0 ? give : Bristle::kGive);
+      rate[state] = bristle.rate;
+      Oppose(m, d, rows_[k], bristle.u * level(rows_[k], v), force);
+    }
+  }
+
   /// Why Differentiate does not know these rows ("a ball joint"); empty: it does.
   std::string WhyNoSlopes(const mjModel& m) const;
   /// Adds the slopes of anchors, and calls level(row, r, v, moves) for each row that exists: it is
@@ -105,7 +121,8 @@ class FrictionRows {
     }
   }
 
-  static constexpr std::size_t kStates = 3;  ///< of a row
+  static constexpr std::size_t kStates = 3;   ///< of a row
+  static constexpr std::size_t kBristle = 1;  ///< which of them is the deflection of a bristle
 
  private:
   /// Grasp: what a row did in the last step.
@@ -117,6 +134,9 @@ class FrictionRows {
   static double Speed(const mjData& d, const FrictionRow& row) {
     return row.joint ? d.qvel[row.index] : d.ten_velocity[row.index];
   }
+  /// force [nv] −= f along a row.
+  static void Oppose(const mjModel& m, const mjData& d, const FrictionRow& row, double f,
+                     std::span<double> force);
   static Sliding SlidingOf(const mjData& d, const double* z, const FrictionRow& row);
 
   /// Whether a constraint gives all that it can.
@@ -204,25 +224,27 @@ class BoundFriction : public BoundLaw {
 
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double> force) override {
-    const auto p = AsParams<E>(p_);
     if constexpr (kBiased) std::fill(force.begin(), force.end(), 0.0);
     rows_.Write(
         m, d, z, stage, IsNull(),
         [&](const FrictionRow& row, double v) {
-          FrictionState<double> r{0, v, 0};
-          if (!row.joint) r.q = d.ten_length[row.index];
-          if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
-          if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);
-          if constexpr (kTorques) {
-            r.motor = GearTorque(m, d, row.index, 1);
-            r.others = r.motor - GearTorque(m, d, row.index, 0);
-          }
-          if constexpr (kWorks) r.time = d.time, r.work = z[WorkOf(row)];
-          if constexpr (kBiased) force[row.index] = E::template Bias<double>(p);
-          return E::template Level<double>(r, p);
+          if constexpr (kBiased) force[row.index] = E::template Bias<double>(AsParams<E>(p_));
+          return LevelAt(m, d, z, row, v);
         },
         Give());
     return kBiased;
+  }
+
+  std::string WhyNoBristles(const mjModel&) const override {
+    return kWorks ? "its level follows the work that is dissipated" : rows_.WhyNoBristles();
+  }
+  std::vector<int> BristleStates() const override { return rows_.BristleStates(); }
+  void Bristles(const mjModel& m, const mjData& d, const double* z, double* rate,
+                std::span<double> force) const override {
+    rows_.Bristles(m, d, z, rate, force, Give(), [&](const FrictionRow& row, double v) {
+      if constexpr (kBiased) force[row.index] += E::template Bias<double>(AsParams<E>(p_));
+      return LevelAt(m, d, z, row, v);
+    });
   }
 
   void Advance(const mjModel& m, const mjData& d, double* z) override {
@@ -280,6 +302,20 @@ class BoundFriction : public BoundLaw {
   static_assert(!kBiased || (E::kPlaces.size() == 1 && E::kPlaces[0] == Place::kJoint));
 
   static_assert(!(kTorques || kWorks) || E::kPlaces.size() == 1);  // joints of one direction
+
+  double LevelAt(const mjModel& m, const mjData& d, const double* z, const FrictionRow& row,
+                 double v) const {
+    FrictionState<double> r{0, v, 0};
+    if (!row.joint) r.q = d.ten_length[row.index];
+    if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
+    if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);
+    if constexpr (kTorques) {
+      r.motor = GearTorque(m, d, row.index, 1);
+      r.others = r.motor - GearTorque(m, d, row.index, 0);
+    }
+    if constexpr (kWorks) r.time = d.time, r.work = z[WorkOf(row)];
+    return E::template Level<double>(r, AsParams<E>(p_));
+  }
 
   double Give() const {
     if constexpr (requires { E::kGive; }) return p_[E::kGive];

@@ -6,6 +6,11 @@
 
 namespace continuum {
 
+/// Creates a row without saying how large the friction is: the level is written in every
+/// evaluation. MuJoCo's writer of XML takes for 0 what is below 2e-16, so a saved model is as the
+/// user wrote it.
+inline constexpr double kRowMarker = 1e-300;
+
 /// One row of MuJoCo's constraint solver that holds a dry friction: that of a degree of freedom or
 /// of a tendon.
 struct FrictionRow {

@@ -207,16 +207,16 @@ INSTANTIATE_TEST_SUITE_P(
                  "parameters: [{name: f, target: 'joint:y1', attribute: frictionloss, initial: 0, "
                  "lower: 0, upper: 1}]\n",
                  "'y1' has dry friction"},
-        Obstacle{"OurFriction",
+        Obstacle{"OurFrictionOfABall",
                  SmoothArm(Law("coulomb",
-                               "<config key='joint' value='x0'/>"
+                               "<config key='joint' value='ball'/>"
                                "<config key='tau_c' value='0.1'/>")),
-                 "", "'x0' has dry friction"},
+                 "", "has dry friction: it acts on a ball joint"},
         Obstacle{"Cable",
                  SmoothArm(Law("capstan",
                                "<config key='tendon' value='ta'/>"
                                "<config key='mu' value='0.1'/>")),
-                 "", "continuum.capstan 'law' has dry friction"},
+                 "", "a cable with dry friction is under tension"},
         Obstacle{"SecondOrderLag",
                  SmoothArm(Law("pt2",
                                "<config key='actuator' value='pull'/>"
