@@ -9,20 +9,25 @@ namespace continuum {
 
 /// What `continuum solve` was asked to do; empty text or path: not given.
 struct SolveRequest {
-  std::filesystem::path robot;     ///< the robot's YAML file
-  std::filesystem::path input;     ///< CASES.csv
-  std::filesystem::path measured;  ///< MEASURED.csv
-  std::filesystem::path out;       ///< .csv, .json or .yaml, as the job asks
-  std::filesystem::path plot;      ///< picture of the shapes, .png, .svg or .pdf
-  std::filesystem::path shape;     ///< places along the axes of the solved cases, .csv or .json
+  std::filesystem::path robot;       ///< the robot's YAML file
+  std::filesystem::path input;       ///< CASES.csv
+  std::filesystem::path measured;    ///< MEASURED.csv
+  std::filesystem::path out;         ///< .csv, .json or .yaml, as the job asks
+  std::filesystem::path plot;        ///< picture of the shapes, .png, .svg or .pdf
+  std::filesystem::path shape;       ///< places along the axes of the solved cases, .csv or .json
+  std::filesystem::path compliance;  ///< how the tips move by every input, .csv or .json
+  std::filesystem::path reach;       ///< TARGETS.csv: where tips or disks of the cases should be
   std::string method;
   std::string hybrid;  ///< train or apply
   bool calibrate = false;
   bool cross_validate = false;  ///< tdcr: choose the training's penalty
   bool sensitivity = false;
+  int sweep = 0;  ///< values of every column that differs in the two rows of `input`; 0: its rows
   bool equilibria = false;  ///< all of every case that a search finds, a row each
   /// Called for what was not used: a sentence with file and line.
   std::function<void(const std::string&)> warn = [](const std::string&) {};
+  /// Called with a sentence about the results.
+  std::function<void(const std::string&)> say = [](const std::string&) {};
   std::optional<double> lambda;  ///< tdcr: penalty of the fit or of the hybrid's training
 };
 

@@ -2,7 +2,7 @@
 #include <array>
 
 #include "error.h"
-#include "models/stiff_flop/case.h"
+#include "models/stiff_flop/cases.h"
 #include "sim/io/csv.h"
 #include "sim/io/decimal.h"
 
@@ -73,7 +73,10 @@ std::string Name(Status status) {
 }
 
 Cases Cases::Read(const std::filesystem::path& file, const Eigen::Vector3d& gravity) {
-  const CsvTable table = CsvTable::Read(file);
+  return ReadCases(CsvTable::Read(file), gravity);
+}
+
+Cases ReadCases(const CsvTable& table, const Eigen::Vector3d& gravity) {
   RefuseUnknown(table);
   table.RequireRows();
   Cases cases{DirectionOf(table), {}};

@@ -73,14 +73,11 @@ Eigen::MatrixXd Tensions(const Robot& robot, const Loads& loads, const Solution&
 void DescribeRod(const Robot& robot, const Loads& loads, const Solution& solution,
                  Details& details) {
   const Line& line = solution.line;
+  details.length = TendonLengths(robot, line);
   const Eigen::VectorXd weights = Simpson(line.s);
   const Vector3d per_length = robot.density * robot.area() * loads.gravity;
   for (Eigen::Index i = 0; i < line.s.size(); ++i) {
     const Vector3d u = line.u.col(i);
-    for (int k = 0; k < robot.tendons; ++k) {
-      const Vector3d hole(robot.Hole(k).x(), robot.Hole(k).y(), 0);
-      details.length[k] += weights[i] * (Vector3d::UnitZ() + u.cross(hole)).norm();
-    }
     details.energy += weights[i] * ElasticPerLength(robot, u);
     details.strain = std::max(details.strain, u.head<2>().norm() * robot.diameter / 2);
     AddDead(weights[i] * per_length, line.points.col(i), Straight(line.s[i]), details);
@@ -109,6 +106,18 @@ Details Describe(const Robot& robot, const Loads& loads, Method method, const So
     details.energy += tension * (details.length[k] - robot.length);
   }
   return details;
+}
+
+Eigen::VectorXd TendonLengths(const Robot& robot, const Line& line) {
+  const Eigen::VectorXd weights = Simpson(line.s);
+  Eigen::VectorXd length = Eigen::VectorXd::Zero(robot.tendons);
+  for (int k = 0; k < robot.tendons; ++k) {
+    const Vector3d hole(robot.Hole(k).x(), robot.Hole(k).y(), 0);
+    for (Eigen::Index i = 0; i < line.s.size(); ++i) {
+      length[k] += weights[i] * (Vector3d::UnitZ() + line.u.col(i).cross(hole)).norm();
+    }
+  }
+  return length;
 }
 
 Line LineOf(const Robot& robot, const Loads& loads, Method method, const Solution& solution) {

@@ -14,6 +14,9 @@ namespace continuum::tdcr {
 statics::Details Describe(const Robot& robot, const Loads& loads, Method method,
                           const Solution& solution);
 
+/// Of the tendons' paths along a rod with an even number of steps, by Simpson's rule [m].
+Eigen::VectorXd TendonLengths(const Robot& robot, const Line& line);
+
 /// The rod between base and tip.
 Line LineOf(const Robot& robot, const Loads& loads, Method method, const Solution& solution);
 

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "error.h"
+#include "models/tdcr/contacts.h"
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/equilibrium.h"
@@ -37,9 +39,6 @@ Solution SolveDisks(const Robot& robot, const Loads& loads, const Loads* earlier
 // Steps of the integrator: about 9 along the rod, a whole number in every piece. The shape is
 // taken from twice as many, so that every piece has a middle.
 int Steps(int disks) { return std::max(1, (9 + disks - 1) / disks); }
-
-// Steps per piece of contacts that remember: about 72 along the rod, an even number.
-int ContactSteps(int disks) { return 2 * std::max(1, (36 + disks - 1) / disks); }
 
 Outcome Refine(const Robot& robot, RodBalance& balance, Outcome outcome, Eigen::Vector3d& x,
                Solution& solution) {
@@ -148,12 +147,11 @@ Solution SolveWinches(const Robot& robot, const Loads& loads, Method method, con
   return solution;
 }
 
-// Contacts after a row whose directions were given: all as far as they go.
+// A row whose directions were given with its contacts.
 Solution WithContacts(const Robot& robot, const Loads& loads, Solution solution) {
-  const int steps = ContactSteps(robot.disks);
-  const RodBalance balance = RodBalance::Remembering(robot, loads, steps, nullptr);
-  solution.x = balance.Slid(solution.x.head<3>());
-  solution.contacts = balance.ContactsAt(solution.x);
+  Remembered remembered = AllSlid(robot, loads, solution.x.head<3>());
+  solution.x = std::move(remembered.x);
+  solution.contacts = std::move(remembered.contacts);
   return solution;
 }
 

@@ -103,7 +103,10 @@ Load ReadLoad(const CsvTable& table, std::size_t row, const std::vector<std::str
 }  // namespace
 
 std::vector<Case> ReadCases(const std::filesystem::path& file, const Robot& robot) {
-  const CsvTable table = CsvTable::Read(file);
+  return ReadCases(CsvTable::Read(file), robot);
+}
+
+std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
   const std::vector<std::string> columns = LoadColumns(table, robot.Cables());
   RequireColumns(table, columns);
   table.RequireRows();

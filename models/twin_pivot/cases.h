@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/twin_pivot/twin_pivot.h"
+#include "sim/io/csv.h"
 
 namespace continuum::twin_pivot {
 
@@ -20,6 +21,7 @@ struct Case {
 /// optional `condition` (I..V), `payload` [kg], `fx,fy,fz` [N], `Mx,My,Mz` [N m], `gx,gy,gz`
 /// [m/s^2] (base frame), `reference` (label of an earlier row).
 /// @throws Error (file:line, column) for anything missing, unknown or out of range.
+std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot);
 std::vector<Case> ReadCases(const std::filesystem::path& file, const Robot& robot);
 
 }  // namespace continuum::twin_pivot

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/io/csv.h"
+#include "sim/numerics/solver.h"
+
+namespace continuum::statics {
+
+/// Where disks of a case should be, and what its drives may do.
+struct Target {
+  std::string name;             ///< of the case
+  std::vector<int> coordinate;  ///< which are given: 3 i + 0, 1, 2 for x, y, z of disk i, from 0
+  Eigen::VectorXd values;       ///< theirs, base frame [m]
+  double low = 0, high = std::numeric_limits<double>::infinity();  ///< limits of every drive
+
+  /// Root mean square over the disks of the distances of these coordinates [m].
+  double Miss(const Eigen::VectorXd& coordinates) const;
+};
+
+/// Reads TARGETS.csv: `case`, any of `x, y, z` of the tip and of `x_i, y_i, z_i` of disks 1..disks
+/// (empty: any value will do) [m], optional `low`, `high`: limits of every tension [N] or pressure
+/// [Pa].
+/// @throws Error with file, line and column for bad input.
+std::vector<Target> ReadTargets(const CsvTable& table, int disks);
+
+/// The target of every case, by name. @throws Error for a case that has none, and for a target of
+/// no case; `file` is that of the targets.
+std::vector<Target> TargetsOf(const std::vector<Target>& targets,
+                              const std::vector<std::string>& cases, const std::string& file);
+
+/// Where a robot stands under its drives.
+struct Stand {
+  Eigen::VectorXd points;  ///< the target's coordinates [m]
+  Eigen::MatrixXd slopes;  ///< their derivatives by the drives
+};
+
+/// Drives that lead somewhere.
+struct Reached {
+  numerics::Outcome outcome;  ///< ok: within 1e-6 of the robot's length
+  Eigen::VectorXd drives;
+  double miss = std::numeric_limits<double>::infinity();  ///< Target::Miss [m]
+};
+
+/// The drives w with the least sum of squares that bring the target's coordinates to their values:
+///
+///   min |w|^2   with   p(w) = p*,  low <= w <= high                                           (1)
+///
+/// By Gauss-Newton: p is replaced by its tangent at w, and (1) by the minimum of
+/// |w|^2 + |p - p*|^2/1e-10 (w over `unit`, p over `length`), which reaches p* to 1e-10 where that
+/// is possible, and comes nearest where it is not. Steps that would move the disks by more than a
+/// fifth of the length, or that come no nearer, are made shorter. `stand` solves the case under
+/// drives and may fail; what it last solved need not be the answer.
+Reached Reach(const std::function<std::optional<Stand>(const Eigen::VectorXd& drives)>& stand,
+              Eigen::VectorXd start, const Target& target, double unit, double length);
+
+}  // namespace continuum::statics

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "models/statics/reach.h"
+#include "models/stiff_flop/case.h"
+
+namespace continuum::stiff_flop {
+
+/// The least pressures [Pa] of the forward model that bring the tip to a target (statics::Reach),
+/// from those of `row`.
+statics::Reached Reach(const Module& module, const Method& method, const Case& row,
+                       const statics::Target& target);
+
+}  // namespace continuum::stiff_flop

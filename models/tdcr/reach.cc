@@ -1,0 +1,29 @@
+#include "models/tdcr/reach.h"
+
+#include "models/tdcr/response.h"
+
+namespace continuum::tdcr {
+
+using Eigen::VectorXd;
+
+statics::Reached Reach(const Robot& robot, const Loads& loads, Method method,
+                       const statics::Target& target, const Before* before) {
+  Loads at = loads;
+  if (before != nullptr) at.from = LeftBy(robot, before->loads, method, before->solution);
+  const auto stand = [&](const VectorXd& drives) -> std::optional<statics::Stand> {
+    at.tension.assign(drives.begin(), drives.end());
+    const Solution s = before ? SolveFrom(robot, before->loads, before->solution, at, method)
+                              : SolveCase(robot, at, method);
+    if (!s.outcome.ok()) return std::nullopt;
+    const auto response = Respond(robot, at, method, s);
+    if (!response) return std::nullopt;
+    const VectorXd disks = s.disks.reshaped();
+    const Eigen::MatrixXd slopes =
+        response->slope.bottomRows(disks.size()).rightCols(robot.tendons);
+    return statics::Stand{disks(target.coordinate), slopes(target.coordinate, Eigen::all)};
+  };
+  const VectorXd start = VectorXd::Map(loads.tension.data(), robot.tendons);
+  return statics::Reach(stand, start, target, robot.moment() / robot.tendon_radius, robot.length);
+}
+
+}  // namespace continuum::tdcr

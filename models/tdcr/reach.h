@@ -1,0 +1,19 @@
+#pragma once
+
+#include "models/statics/reach.h"
+#include "models/tdcr/model.h"
+
+namespace continuum::tdcr {
+
+/// A case that another goes on from.
+struct Before {
+  const Loads& loads;
+  const Solution& solution;
+};
+
+/// The least tensions [N] that bring disks of a case to a target (statics::Reach), from those of
+/// `loads`. With `before`, its contacts go on from there: friction of all that was before counts.
+statics::Reached Reach(const Robot& robot, const Loads& loads, Method method,
+                       const statics::Target& target, const Before* before);
+
+}  // namespace continuum::tdcr
