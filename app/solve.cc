@@ -29,6 +29,14 @@ void AddSolve(CLI::App& app, int& exit_code) {
   solve->add_option("--plot", request->plot, "Picture of the shapes (.png, .svg or .pdf)");
   solve->add_option("--shape", request->shape,
                     "Places along the centre lines, with frames and tensions (.csv or .json)");
+  solve->add_option("--compliance", request->compliance,
+                    "How every tip moves by forces and by what drives the robot (.csv or .json)");
+  solve->add_option("--reach", request->reach,
+                    "Where tips or disks of the cases should be (CSV): the least tensions or "
+                    "pressures that bring them there");
+  solve->add_option("--sweep", request->sweep,
+                    "Workspace: the grid between the two rows of --input, of so many values of "
+                    "every column that differs");
   solve->add_flag("--equilibria", request->equilibria,
                   "All equilibria that a search finds, a row each, with energy and stability");
   solve->add_flag("--calibrate", request->calibrate,
@@ -50,11 +58,13 @@ void AddSolve(CLI::App& app, int& exit_code) {
       "--out shapes.csv --plot shapes.png");
   solve->callback([request, &exit_code] {
     const std::vector<std::filesystem::path> inputs{request->robot, request->input,
-                                                    request->measured};
+                                                    request->measured, request->reach};
     RequireWritable(request->out, inputs);
     if (!request->plot.empty()) RequireWritable(request->plot, inputs);
     if (!request->shape.empty()) RequireWritable(request->shape, inputs);
+    if (!request->compliance.empty()) RequireWritable(request->compliance, inputs);
     request->warn = [](const std::string& text) { std::cerr << "warning: " << text << '\n'; };
+    request->say = [](const std::string& text) { std::cerr << text << '\n'; };
     exit_code = Solve(*request);
   });
 }

@@ -11,6 +11,12 @@ void Append(const Texts& more, Texts& names) {
   names.insert(names.end(), more.begin(), more.end());
 }
 
+void SetEach(const std::string& prefix, const Eigen::VectorXd& values, Results& results) {
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    results.Set(prefix + std::to_string(k + 1), values[k]);
+  }
+}
+
 }  // namespace
 
 void AddDead(const Eigen::Vector3d& force, const Eigen::Vector3d& p,
@@ -34,7 +40,9 @@ Texts DetailColumns::Names() const {
   Texts names = FrameColumns();
   Append(kWrench, names);
   names.emplace_back("strain_max");
-  Append(Numbered(by_length ? "T_" : "l_", cables), names);
+  if (by_length || reaches) Append(Numbered("T_", cables), names);
+  if (!by_length) Append(Numbered("l_", cables), names);
+  if (reaches) names.emplace_back("miss");
   if (list) Append({"equilibrium", "energy"}, names);
   return names;
 }
@@ -47,11 +55,9 @@ void Set(const Details& details, int equilibrium, Results& results) {
     results.Set(kWrench[at + 3], details.moment[i]);
   }
   results.Set("strain_max", details.strain);
-  const bool by_length = details.pull.size() > 0;
-  const Eigen::VectorXd& cables = by_length ? details.pull : details.length;
-  for (Eigen::Index k = 0; k < cables.size(); ++k) {
-    results.Set((by_length ? "T_" : "l_") + std::to_string(k + 1), cables[k]);
-  }
+  SetEach("T_", details.pull, results);
+  if (details.pull.size() == 0 || details.miss) SetEach("l_", details.length, results);
+  if (details.miss) results.Set("miss", *details.miss);
   if (equilibrium == 0) return;
   results.Set("equilibrium", equilibrium);
   results.Set("energy", details.energy);

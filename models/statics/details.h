@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct Details {
   double energy = 0;  ///< 0 of the straight robot [J]; NaN where there is none
   /// Of every cable's path from base to end, slack or not, without stretch [m]. Empty: no cables.
   Eigen::VectorXd length = {};
-  Eigen::VectorXd pull = {};  ///< tensions at the base of cables driven by length [N]
+  Eigen::VectorXd pull = {};        ///< tensions at the base that were not given [N]
+  std::optional<double> miss = {};  ///< distance from a target [m]
 };
 
 /// Adds a dead force [N] at p; its work from where it acts on the straight robot lowers the energy.
@@ -28,10 +30,12 @@ void AddDead(const Eigen::Vector3d& force, const Eigen::Vector3d& p,
 /// Which columns there are.
 struct DetailColumns {
   int cables = 0;
-  bool by_length = false;  ///< their tensions are unknown
+  bool by_length = false;  ///< they are driven by length, their tensions are unknown
+  bool reaches = false;    ///< what drives them is unknown: both, and `miss`
   bool list = false;       ///< of equilibria
 
-  /// `qw..qz`, `Fx..Mz`, `strain_max`, then `l_1..` or `T_1..`, then `equilibrium`, `energy`.
+  /// `qw..qz`, `Fx..Mz`, `strain_max`, then `l_1..` or `T_1..`, or both and `miss`, then
+  /// `equilibrium`, `energy`.
   std::vector<std::string> Names() const;
 };
 

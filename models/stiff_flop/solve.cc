@@ -3,18 +3,25 @@
 #include <fmt/format.h>
 
 #include <initializer_list>
+#include <optional>
 #include <utility>
 
 #include "error.h"
 #include "models/statics/details.h"
+#include "models/statics/path_error.h"
 #include "models/statics/plausible.h"
 #include "models/statics/results.h"
+#include "models/statics/rows.h"
+#include "models/statics/sweep.h"
 #include "models/statics/write_figure.h"
+#include "models/stiff_flop/cases.h"
 #include "models/stiff_flop/details.h"
 #include "models/stiff_flop/equilibria.h"
 #include "models/stiff_flop/figure.h"
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
+#include "models/stiff_flop/reach.h"
+#include "models/stiff_flop/response.h"
 #include "sim/io/yaml.h"
 
 namespace continuum {
@@ -30,6 +37,7 @@ void RefuseOptions(const SolveRequest& request) {
       {"--hybrid", !request.hybrid.empty()},
       {"--lambda", request.lambda.has_value()},
       {"--cross-validate", request.cross_validate},
+      {"--reach with --equilibria", request.equilibria && !request.reach.empty()},
       {"--measured", !request.measured.empty()}};
   for (const auto& [option, given] : foreign) {
     if (given) throw Error::Input(option, "no such option for a stiff_flop robot");
@@ -37,11 +45,15 @@ void RefuseOptions(const SolveRequest& request) {
   if (request.input.empty()) throw Error::Input("--input", "a CSV file", "nothing");
 }
 
-// --equilibria and --shape are of the forward model, whose shape is not given.
+// --equilibria, --shape, --compliance and --reach are of the forward model, whose shape is not
+// given.
 void RefuseOfInverse(const SolveRequest& request, Direction direction) {
   if (direction == Direction::kForward) return;
   if (request.equilibria) throw Error::Input("--equilibria", "cases with p1, p2, p3", "kappa");
   if (!request.shape.empty()) throw Error::Input("--shape", "cases with p1, p2, p3", "kappa");
+  if (!request.compliance.empty())
+    throw Error::Input("--compliance", "cases with p1, p2, p3", "kappa");
+  if (!request.reach.empty()) throw Error::Input("--reach", "cases with p1, p2, p3", "kappa");
 }
 
 void Append(Names& names, std::initializer_list<const char*> more) {
@@ -114,7 +126,8 @@ Names Columns(const SolveRequest& request, Direction direction) {
     if (direction == Direction::kForward || name == "why") names.push_back(name);
   }
   if (request.sensitivity) Append(names, SensitivityColumns(direction));
-  Append(names, statics::DetailColumns{0, false, request.equilibria}.Names());
+  if (!request.reach.empty()) Append(names, {"p1", "p2", "p3", "miss"});
+  Append(names, statics::DetailColumns{0, false, false, request.equilibria}.Names());
   return names;
 }
 
@@ -128,6 +141,7 @@ struct Solved {
   Solution solution;
   std::vector<Eigen::Vector3d> line;  ///< for the picture
   int equilibrium = 0;                ///< of the case, counted from 1; 0: no list of them
+  std::optional<double> miss = {};    ///< distance from a target [m]
 };
 
 void WriteSection(const BaseSection& section, statics::Results& results) {
@@ -144,7 +158,8 @@ void WriteRow(const SolveRequest& request, const Module& module, const Method& m
               Direction direction, const Solved& solved, statics::Results& results) {
   const Solution& solution = solved.solution;
   const bool saddle = !solution.stability.stable();
-  const std::string status = saddle ? "saddle" : Name(solution.status);
+  const bool missed = solved.miss && !solution.outcome.ok();
+  const std::string status = saddle ? "saddle" : missed ? "out_of_reach" : Name(solution.status);
   results.Row();
   results.Set("case", solved.row.label);
   results.Set("status", status);
@@ -159,6 +174,10 @@ void WriteRow(const SolveRequest& request, const Module& module, const Method& m
   Set(results, {"x", "y", "z"}, solution.tip);
   Set(results, {"tx", "ty", "tz"}, solution.tangent);
   WriteSection(solution.section, results);
+  if (solved.miss) {
+    Set(results, {"p1", "p2", "p3"}, solved.row.given);
+    results.Set("miss", *solved.miss);
+  }
   const auto details = Describe(module, method, direction, solved.row, solution);
   Set(details, solved.equilibrium, results);
   if (!request.sensitivity) return;
@@ -191,6 +210,17 @@ void WriteShapes(const SolveRequest& request, const Module& module, const Method
   table.Write(request.shape);
 }
 
+void WriteCompliance(const SolveRequest& request, const Module& module, const Method& method,
+                     const std::vector<Solved>& rows) {
+  statics::ComplianceTable table(0, false);
+  for (const Solved& solved : rows) {
+    if (solved.solution.status != Status::kOk) continue;
+    const auto response = Respond(module, method, solved.row, solved.solution);
+    if (response) table.Add(solved.row.label, *response);
+  }
+  table.Write(request.compliance);
+}
+
 Solved SolveRow(const SolveRequest& request, const Module& module, const Method& method,
                 Direction direction, const Case& row) {
   const bool draw = !request.plot.empty();
@@ -202,6 +232,44 @@ Solved SolveRow(const SolveRequest& request, const Module& module, const Method&
     solved.solution =
         SolveForward(module, method, row, request.sensitivity, draw ? &solved.line : nullptr);
   }
+  return solved;
+}
+
+std::vector<Solved> SolveRows(const SolveRequest& request, const Module& module,
+                              const Method& method, const Cases& cases) {
+  std::vector<Solved> solved(cases.rows.size());
+  statics::ForRows(
+      solved.size(), [](std::size_t) { return -1; },
+      [&](std::size_t i) {
+        solved[i] = SolveRow(request, module, method, cases.direction, cases.rows[i]);
+      });
+  return solved;
+}
+
+// The rows with the pressures that lead to their targets.
+std::vector<Solved> ReachTargets(const SolveRequest& request, const Module& module,
+                                 const Method& method, const std::vector<Case>& rows) {
+  std::vector<std::string> names;
+  for (const Case& row : rows) names.push_back(row.label);
+  const auto read = statics::ReadTargets(CsvTable::Read(request.reach), 1);
+  const auto targets = statics::TargetsOf(read, names, request.reach.string());
+  statics::PathError error;
+  std::vector<Solved> solved;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto reached = Reach(module, method, rows[i], targets[i]);
+    Solved s;
+    s.row = rows[i];
+    if (reached.outcome.ok()) {
+      s.row.given = reached.drives;
+      s = SolveRow(request, module, method, Direction::kForward, s.row);
+      error.AtTarget(rows[i].label, reached.miss);
+    } else {
+      s.solution.outcome = reached.outcome;
+    }
+    s.miss = reached.miss;
+    solved.push_back(std::move(s));
+  }
+  request.say(error.Sentence());
   return solved;
 }
 
@@ -222,7 +290,7 @@ void AddRows(const SolveRequest& request, const Module& module, const Method& me
 int SolveStiffFlop(const SolveRequest& request) {
   RefuseOptions(request);
   const Robot robot = Robot::Read(request.robot);
-  const Cases cases = Cases::Read(request.input, robot.gravity);
+  const Cases cases = ReadCases(statics::CasesOf(request), robot.gravity);
   WarnOfTubesOutsideTheWall(request, robot);
   WarnOfImplausibleRobot(request, robot);
   WarnOfImplausibleCases(request, robot, cases);
@@ -232,12 +300,16 @@ int SolveStiffFlop(const SolveRequest& request) {
   RefuseOfInverse(request, cases.direction);
   if (!request.shape.empty())
     statics::RequireExtension(request.shape, {".csv", ".json"}, "--shape");
+  if (!request.compliance.empty())
+    statics::RequireExtension(request.compliance, {".csv", ".json"}, "--compliance");
+  const std::vector<Solved> own = request.reach.empty()
+                                      ? SolveRows(request, robot.module, method, cases)
+                                      : ReachTargets(request, robot.module, method, cases.rows);
   std::vector<Solved> rows;
   int failed = 0;
-  for (const Case& row : cases.rows) {
-    const Solved own = SolveRow(request, robot.module, method, cases.direction, row);
-    failed += own.solution.status != Status::kOk;
-    AddRows(request, robot.module, method, own, rows);
+  for (const Solved& solved : own) {
+    failed += solved.solution.status != Status::kOk;
+    AddRows(request, robot.module, method, solved, rows);
   }
   statics::Results results(Columns(request, cases.direction));
   for (const Solved& solved : rows) {
@@ -245,6 +317,7 @@ int SolveStiffFlop(const SolveRequest& request) {
   }
   results.Write(request.out);
   if (!request.shape.empty()) WriteShapes(request, robot.module, method, rows);
+  if (!request.compliance.empty()) WriteCompliance(request, robot.module, method, rows);
   if (!request.plot.empty()) Draw(request, robot, cases.direction, rows);
   return failed == 0 ? 0 : 1;
 }

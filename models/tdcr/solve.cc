@@ -9,8 +9,11 @@
 
 #include "error.h"
 #include "models/statics/details.h"
+#include "models/statics/path_error.h"
 #include "models/statics/results.h"
+#include "models/statics/rows.h"
 #include "models/statics/shape_table.h"
+#include "models/statics/sweep.h"
 #include "models/statics/write_figure.h"
 #include "models/tdcr/calibrate.h"
 #include "models/tdcr/columns.h"
@@ -24,6 +27,8 @@
 #include "models/tdcr/hybrid.h"
 #include "models/tdcr/model.h"
 #include "models/tdcr/plausible.h"
+#include "models/tdcr/reach.h"
+#include "models/tdcr/response.h"
 
 namespace continuum {
 namespace {
@@ -36,7 +41,8 @@ struct Solved {
   Loads loads;
   Solution solution;
   const Measured* measured = nullptr;
-  int equilibrium = 0;  ///< of the case, counted from 1; 0: no list of them
+  int equilibrium = 0;              ///< of the case, counted from 1; 0: no list of them
+  std::optional<double> miss = {};  ///< distance from a target [m]
 };
 
 void Need(const std::filesystem::path& path, const std::string& option, const std::string& job) {
@@ -64,7 +70,9 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
       columns.push_back(fmt::format("{}_{}", u, i));
   }
   if (request.method == "fit") return columns;
-  Append(statics::DetailColumns{robot.tendons, by_length, request.equilibria}.Names(), columns);
+  const bool reaches = !request.reach.empty();
+  Append(statics::DetailColumns{robot.tendons, by_length, reaches, request.equilibria}.Names(),
+         columns);
   return columns;
 }
 
@@ -128,6 +136,18 @@ void WriteShapes(const SolveRequest& request, const Robot& robot,
   table.Write(request.shape);
 }
 
+void WriteCompliance(const SolveRequest& request, const Robot& robot,
+                     const std::vector<Solved>& solved) {
+  const bool by_length = !solved.empty() && solved.front().loads.length.size() > 0;
+  statics::ComplianceTable table(robot.tendons, by_length);
+  for (const Solved& s : solved) {
+    if (!s.solution.outcome.ok()) continue;
+    const auto response = Respond(robot, s.loads, MethodOf(request), s.solution);
+    if (response) table.Add(s.name, *response);
+  }
+  table.Write(request.compliance);
+}
+
 int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
   const bool by_length = !solved.empty() && solved.front().loads.length.size() > 0;
   auto columns = Columns(request, robot, by_length);
@@ -139,7 +159,10 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     const bool ok = s.solution.outcome.ok();
     results.Row();
     results.Set("case", s.name);
-    results.Set(s.solution.outcome, statics::StatusOf(s.solution.outcome, s.solution.stability));
+    const bool missed = s.miss && !ok;
+    results.Set(
+        s.solution.outcome,
+        missed ? "out_of_reach" : statics::StatusOf(s.solution.outcome, s.solution.stability));
     if (ok) AddShape(robot, s, results);
     if (request.method == "fit") {
       results.Set("why", s.solution.outcome.why);
@@ -147,17 +170,19 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     }
     results.Set(s.solution.outcome, s.solution.stability);
     if (!ok) continue;
-    const auto details = Describe(robot, s.loads, MethodOf(request), s.solution);
+    auto details = Describe(robot, s.loads, MethodOf(request), s.solution);
+    details.miss = s.miss;
     Set(details, s.equilibrium, results);
   }
   results.Write(request.out);
   if (!request.shape.empty()) WriteShapes(request, robot, solved);
+  if (!request.compliance.empty()) WriteCompliance(request, robot, solved);
   if (!request.plot.empty()) Draw(request, robot, solved);
   return all ? 0 : 1;
 }
 
 std::vector<Case> ReadInput(const SolveRequest& request, const Robot& robot) {
-  const CsvTable table = CsvTable::Read(request.input);
+  const CsvTable table = statics::CasesOf(request);
   auto cases = ReadCases(table, robot);
   WarnOfImplausibleCases(request, table, robot, cases);
   return cases;
@@ -198,15 +223,21 @@ void CheckLambda(const SolveRequest& request, const std::string& method) {
   }
 }
 
-// --equilibria and --shape: of solved cases.
+// --equilibria, --shape and --compliance: of solved cases.
 void CheckLists(const SolveRequest& request, const std::string& method) {
-  const bool other = request.calibrate || request.hybrid == "train" || method == "fit";
-  Refuse(request.equilibria && (other || !request.hybrid.empty()), "--equilibria",
-         "calibration, --hybrid and --method fit");
-  Refuse(!request.shape.empty() && (other || !request.hybrid.empty()), "--shape",
-         "calibration, --hybrid and --method fit");
-  if (!request.shape.empty())
-    statics::RequireExtension(request.shape, {".csv", ".json"}, "--shape");
+  const bool other = request.calibrate || !request.hybrid.empty() || method == "fit";
+  const std::string jobs = "calibration, --hybrid and --method fit";
+  const bool measured = !request.measured.empty();
+  Refuse(request.equilibria && other, "--equilibria", jobs);
+  Refuse(request.sweep != 0 && (other || measured), "--sweep", "--measured, " + jobs);
+  Refuse(!request.reach.empty() && (other || request.equilibria || measured), "--reach",
+         "--equilibria, --measured, " + jobs);
+  for (const auto& [option, file] :
+       {std::pair("--shape", &request.shape), std::pair("--compliance", &request.compliance)}) {
+    if (file->empty()) continue;
+    Refuse(other, option, jobs);
+    statics::RequireExtension(*file, {".csv", ".json"}, option);
+  }
 }
 
 // Nothing: to be chosen by cross-validation.
@@ -238,6 +269,12 @@ void AddEquilibria(const Robot& robot, Method method, const Solved& s,
   if (!s.solution.outcome.ok()) solved.push_back(s);
 }
 
+std::vector<std::string> Names(const std::vector<Case>& cases) {
+  std::vector<std::string> names;
+  for (const Case& c : cases) names.push_back(c.name);
+  return names;
+}
+
 // Of jobs that take tensions.
 void RefuseLengths(const SolveRequest& request, const std::vector<Case>& cases,
                    const std::string& job) {
@@ -253,21 +290,89 @@ int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
   }
   const auto measured = ReadMeasurements(request, robot);
   if (!request.measured.empty()) RequireShared(cases, measured, request.measured.string());
+  std::vector<Solution> plain(cases.size());  // without the hybrid's correction
+  statics::ForRows(
+      cases.size(), [&](std::size_t i) { return cases[i].reference; },
+      [&](std::size_t i) { plain[i] = SolveInOrder(robot, cases, cases[i], method, plain); });
   std::vector<Solved> solved;
-  std::vector<Solution> plain;  // without the hybrid's correction
-  for (const Case& c : cases) {
-    plain.push_back(SolveInOrder(robot, cases, c, method, plain));
-    Solved s{c.name, c.loads, plain.back(), Find(measured, c.name)};
-    const Eigen::VectorXd& pull = plain.back().pull;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Case& c = cases[i];
+    Solved s{c.name, c.loads, plain[i], Find(measured, c.name)};
+    const Eigen::VectorXd& pull = plain[i].pull;
     if (pull.size() > 0) s.loads.tension.assign(pull.begin(), pull.end());
     if (hybrid != nullptr && s.solution.outcome.ok()) Apply(*hybrid, robot, c.loads, s.solution);
+    const auto before = static_cast<std::size_t>(std::max(c.reference, 0));
+    if (c.reference >= 0 && plain[before].outcome.ok()) {
+      s.loads.from = LeftBy(robot, cases[before].loads, method, plain[before]);
+    }
     if (request.equilibria) {
-      if (c.reference >= 0) s.loads.from = plain[static_cast<std::size_t>(c.reference)].contacts;
       AddEquilibria(robot, method, s, solved);
     } else {
       solved.push_back(std::move(s));
     }
   }
+  return Report(request, robot, solved);
+}
+
+// The error of the path halfway to a target.
+void AddHalfway(const Robot& robot, Method method, const Case& from, const Case& to,
+                const Solution& before, const Solution& after, statics::PathError& error) {
+  Loads half = to.loads;
+  for (std::size_t k = 0; k < half.tension.size(); ++k) {
+    half.tension[k] = 0.5 * (from.loads.tension[k] + to.loads.tension[k]);
+  }
+  const Solution s = SolveFrom(robot, from.loads, before, half, method);
+  if (!s.outcome.ok()) return;
+  error.Halfway(to.name, s.disks.rightCols<1>(), before.disks.rightCols<1>(),
+                after.disks.rightCols<1>());
+}
+
+// The case whose target it is, with its tensions; its reference is among those solved before.
+Solved ReachTarget(const Robot& robot, Method method, const statics::Target& target,
+                   const std::vector<Case>& cases, const std::vector<Solved>& solved, Case& c) {
+  std::optional<Before> before;
+  if (c.reference >= 0) {
+    const auto at = static_cast<std::size_t>(c.reference);
+    before.emplace(Before{cases[at].loads, solved[at].solution});
+  }
+  Solved s{c.name, c.loads, {}};
+  if (before && !before->solution.outcome.ok()) {
+    s.solution.outcome.why = "its reference failed";
+    return s;
+  }
+  const auto reached = Reach(robot, c.loads, method, target, before ? &*before : nullptr);
+  s.miss = reached.miss;
+  if (reached.outcome.ok()) {
+    c.loads.tension.assign(reached.drives.begin(), reached.drives.end());
+    s.loads = c.loads;
+    s.solution = before ? SolveFrom(robot, before->loads, before->solution, c.loads, method)
+                        : SolveCase(robot, c.loads, method);
+    s.solution.pull = reached.drives;
+    if (before) s.loads.from = LeftBy(robot, before->loads, method, before->solution);
+  } else {
+    s.solution.outcome = reached.outcome;
+  }
+  return s;
+}
+
+int ReachTargets(const SolveRequest& request, const Robot& robot, Method method) {
+  auto cases = ReadInput(request, robot);
+  RefuseLengths(request, cases, "--reach");
+  const auto targets =
+      statics::TargetsOf(statics::ReadTargets(CsvTable::Read(request.reach), robot.disks),
+                         Names(cases), request.reach.string());
+  statics::PathError error;
+  std::vector<Solved> solved;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    Case& c = cases[i];
+    solved.push_back(ReachTarget(robot, method, targets[i], cases, solved, c));
+    if (!solved[i].solution.outcome.ok()) continue;
+    error.AtTarget(c.name, *solved[i].miss);
+    if (c.reference < 0) continue;
+    const auto from = static_cast<std::size_t>(c.reference);
+    AddHalfway(robot, method, cases[from], c, solved[from].solution, solved[i].solution, error);
+  }
+  request.say(error.Sentence());
   return Report(request, robot, solved);
 }
 
@@ -421,6 +526,7 @@ int SolveTdcr(const SolveRequest& request) {
   if (method == "fit") return FitShapes(request, robot);
   const Method parsed = ParseMethod(method);
   Need(request.input, "--input", "the cases");
+  if (!request.reach.empty()) return ReachTargets(request, robot, parsed);
   if (request.hybrid.empty()) return SolveCases(request, robot, parsed, nullptr);
   const Hybrid hybrid = ReadHybrid(file, robot);
   return SolveCases(request, robot, parsed, &hybrid);

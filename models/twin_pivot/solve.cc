@@ -7,14 +7,19 @@
 
 #include "error.h"
 #include "models/statics/details.h"
+#include "models/statics/path_error.h"
 #include "models/statics/plausible.h"
 #include "models/statics/results.h"
+#include "models/statics/rows.h"
+#include "models/statics/sweep.h"
 #include "models/statics/write_figure.h"
 #include "models/twin_pivot/calibrate.h"
 #include "models/twin_pivot/cases.h"
 #include "models/twin_pivot/details.h"
 #include "models/twin_pivot/equilibria.h"
 #include "models/twin_pivot/figure.h"
+#include "models/twin_pivot/reach.h"
+#include "models/twin_pivot/response.h"
 #include "models/twin_pivot/twin_pivot.h"
 #include "sim/io/file.h"
 #include "sim/io/yaml.h"
@@ -33,10 +38,14 @@ void RefuseOptions(const SolveRequest& request) {
       {"--lambda", request.lambda.has_value()},
       {"--cross-validate", request.cross_validate},
       {"--sensitivity", request.sensitivity},
+      {"--sweep with --calibrate", request.calibrate && request.sweep != 0},
       {"--measured", !request.measured.empty()},
       {"--equilibria with --calibrate", request.calibrate && request.equilibria},
       {"--shape with --calibrate", request.calibrate && !request.shape.empty()},
+      {"--compliance with --calibrate", request.calibrate && !request.compliance.empty()},
       {"--plot with --calibrate", request.calibrate && !request.plot.empty()},
+      {"--reach with --calibrate", request.calibrate && !request.reach.empty()},
+      {"--reach with --equilibria", request.equilibria && !request.reach.empty()},
       {"--method with --calibrate", request.calibrate && !request.method.empty()}};
   for (const auto& [option, given] : foreign) {
     if (given) throw Error::Input(option, "no such option for a twin_pivot robot");
@@ -97,47 +106,50 @@ void WarnOfImplausibleCables(const SolveRequest& request, const Robot& robot,
   }
 }
 
-std::vector<Solution> SolveCases(const Robot& robot, const std::vector<Case>& cases,
-                                 Method method) {
-  std::vector<Solution> solved;
-  for (const Case& row : cases) {
-    if (row.reference < 0) {
-      solved.push_back(twin_pivot::Solve(robot, row.load, method));
-      continue;
-    }
-    const Solution from = solved[row.reference];
-    const Case& earlier = cases[row.reference];
-    if (from.outcome.ok()) {
-      solved.push_back(twin_pivot::SolveFrom(robot, earlier.load, from, row.load, method));
-    } else {
-      solved.emplace_back();
-      solved.back().outcome.why = "its reference '" + earlier.label + "' failed";
-    }
-  }
-  return solved;
-}
-
 // A row of the results.
 struct Solved {
   Case row;
   Solution solution;
-  int equilibrium = 0;  ///< of the case, counted from 1; 0: no list of them
+  int equilibrium = 0;              ///< of the case, counted from 1; 0: no list of them
+  std::optional<double> miss = {};  ///< distance from a target [m]
 };
+
+// Its reference is among those solved before.
+Solution SolveRow(const Robot& robot, const std::vector<Case>& cases, const Case& row,
+                  Method method, const std::vector<Solution>& solved) {
+  if (row.reference < 0) return twin_pivot::Solve(robot, row.load, method);
+  const auto at = static_cast<std::size_t>(row.reference);
+  if (solved[at].outcome.ok()) {
+    return twin_pivot::SolveFrom(robot, cases[at].load, solved[at], row.load, method);
+  }
+  Solution none;
+  none.outcome.why = "its reference '" + cases[at].label + "' failed";
+  return none;
+}
+
+std::vector<Solution> SolveCases(const Robot& robot, const std::vector<Case>& cases,
+                                 Method method) {
+  std::vector<Solution> solved(cases.size());
+  statics::ForRows(
+      cases.size(), [&](std::size_t i) { return cases[i].reference; },
+      [&](std::size_t i) { solved[i] = SolveRow(robot, cases, cases[i], method, solved); });
+  return solved;
+}
 
 // With --equilibria all of a case instead of its own answer, which is one of them.
 std::vector<Solved> RowsOf(const SolveRequest& request, const Robot& robot,
-                           const std::vector<Case>& cases, const std::vector<Solution>& solved,
-                           Method method) {
+                           const std::vector<Case>& cases, Method method) {
+  const std::vector<Solution> solved = SolveCases(robot, cases, method);
   std::vector<Solved> rows;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Case row = cases[i];
     const Eigen::VectorXd& pull = solved[i].pull;
     if (pull.size() > 0) row.load.tension.assign(pull.begin(), pull.end());
+    if (row.reference >= 0) {
+      row.load.reference = solved[row.reference].length;
+      row.load.slide = solved[row.reference].slide;
+    }
     if (request.equilibria) {
-      if (row.reference >= 0) {
-        row.load.reference = solved[row.reference].length;
-        row.load.slide = solved[row.reference].slide;
-      }
       int count = 0;
       for (Solution& s : twin_pivot::Equilibria(robot, row.load, method, solved[i])) {
         rows.push_back({row, std::move(s), ++count});
@@ -148,13 +160,78 @@ std::vector<Solved> RowsOf(const SolveRequest& request, const Robot& robot,
   return rows;
 }
 
+// The error of the path halfway to a target.
+void AddHalfway(const Robot& robot, Method method, const Solved& from, const Solved& to,
+                statics::PathError& error) {
+  twin_pivot::Load half = to.row.load;
+  for (std::size_t j = 0; j < half.tension.size(); ++j) {
+    half.tension[j] = 0.5 * (from.row.load.tension[j] + to.row.load.tension[j]);
+  }
+  const Solution s = twin_pivot::SolveFrom(robot, from.row.load, from.solution, half, method);
+  if (s.outcome.ok()) error.Halfway(to.row.label, s.tip, from.solution.tip, to.solution.tip);
+}
+
+// The case whose target it is, with its tensions; its reference is among those solved before.
+Solved ReachTarget(const Robot& robot, Method method, const statics::Target& target,
+                   const std::vector<Solved>& solved, const Case& row) {
+  std::optional<twin_pivot::Before> before;
+  if (row.reference >= 0) {
+    const Solved& earlier = solved[static_cast<std::size_t>(row.reference)];
+    before.emplace(twin_pivot::Before{earlier.row.load, earlier.solution});
+  }
+  Solved s{row, {}};
+  if (before && !before->solution.outcome.ok()) {
+    s.solution.outcome.why = "its reference failed";
+    return s;
+  }
+  const auto reached =
+      twin_pivot::Reach(robot, row.load, method, target, before ? &*before : nullptr);
+  s.miss = reached.miss;
+  if (!reached.outcome.ok()) {
+    s.solution.outcome = reached.outcome;
+    return s;
+  }
+  twin_pivot::Load& load = s.row.load;
+  load.tension.assign(reached.drives.begin(), reached.drives.end());
+  s.solution = before ? twin_pivot::SolveFrom(robot, before->load, before->solution, load, method)
+                      : twin_pivot::Solve(robot, load, method);
+  s.solution.pull = reached.drives;
+  if (before) {
+    load.reference = before->solution.length;
+    load.slide = before->solution.slide;
+  }
+  return s;
+}
+
+std::vector<Solved> ReachTargets(const SolveRequest& request, const Robot& robot,
+                                 const std::vector<Case>& cases, Method method) {
+  std::vector<std::string> names;
+  for (const Case& row : cases) names.push_back(row.label);
+  const auto read = statics::ReadTargets(CsvTable::Read(request.reach), robot.Joints());
+  const auto targets = statics::TargetsOf(read, names, request.reach.string());
+  statics::PathError error;
+  std::vector<Solved> solved;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    solved.push_back(ReachTarget(robot, method, targets[i], solved, cases[i]));
+    if (!solved[i].solution.outcome.ok()) continue;
+    error.AtTarget(cases[i].label, *solved[i].miss);
+    if (cases[i].reference < 0) continue;
+    const auto from = static_cast<std::size_t>(cases[i].reference);
+    AddHalfway(robot, method, solved[from], solved[i], error);
+  }
+  request.say(error.Sentence());
+  return solved;
+}
+
 void WriteRow(const Robot& robot, const Solved& solved, statics::Results& results) {
   const Solution& solution = solved.solution;
   const twin_pivot::Load& load = solved.row.load;
   results.Row();
   results.Set("case", solved.row.label);
   results.Set("condition", std::string(twin_pivot::kConditions[static_cast<int>(load.condition)]));
-  results.Set(solution.outcome, statics::StatusOf(solution.outcome, solution.stability));
+  const bool missed = solved.miss && !solution.outcome.ok();
+  results.Set(solution.outcome,
+              missed ? "out_of_reach" : statics::StatusOf(solution.outcome, solution.stability));
   results.Set(solution.outcome, solution.stability);
   if (!solution.outcome.ok()) return;
   for (int i = 0; i < 3; ++i) results.Set(std::string(1, "xyz"[i]), solution.tip[i]);
@@ -164,7 +241,9 @@ void WriteRow(const Robot& robot, const Solved& solved, statics::Results& result
   for (int j = 0; j < robot.Cables(); ++j) {
     results.Set("F_end_" + std::to_string(j + 1), solution.tension(robot.Anchor(j) - 1, j));
   }
-  Set(Describe(robot, load, solution), solved.equilibrium, results);
+  auto details = Describe(robot, load, solution);
+  details.miss = solved.miss;
+  Set(details, solved.equilibrium, results);
 }
 
 std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot, bool by_length) {
@@ -176,7 +255,8 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
   append(statics::StabilityColumns());
   append(statics::Numbered("beta_", robot.Joints()));
   append(statics::Numbered("F_end_", robot.Cables()));
-  append(statics::DetailColumns{robot.Cables(), by_length, request.equilibria}.Names());
+  const bool reaches = !request.reach.empty();
+  append(statics::DetailColumns{robot.Cables(), by_length, reaches, request.equilibria}.Names());
   return columns;
 }
 
@@ -197,6 +277,18 @@ void WriteShapes(const SolveRequest& request, const Robot& robot, const std::vec
     }
   }
   table.Write(request.shape);
+}
+
+void WriteCompliance(const SolveRequest& request, const Robot& robot, Method method,
+                     const std::vector<Solved>& rows) {
+  const bool by_length = !rows.empty() && rows.front().row.load.length.size() > 0;
+  statics::ComplianceTable table(robot.Cables(), by_length);
+  for (const Solved& solved : rows) {
+    if (!solved.solution.outcome.ok()) continue;
+    const auto response = twin_pivot::Respond(robot, solved.row.load, method, solved.solution);
+    if (response) table.Add(solved.row.label, *response);
+  }
+  table.Write(request.compliance);
 }
 
 void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& rows) {
@@ -222,18 +314,26 @@ int SolveTwinPivot(const SolveRequest& request) {
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
   if (!request.shape.empty())
     statics::RequireExtension(request.shape, {".csv", ".json"}, "--shape");
-  const std::vector<Case> cases = twin_pivot::ReadCases(request.input, robot);
-  if (request.equilibria && cases.front().load.length.size() > 0) {
-    throw Error::Input(request.input.string() + ":1", "tensions with --equilibria", "'L1'");
+  if (!request.compliance.empty())
+    statics::RequireExtension(request.compliance, {".csv", ".json"}, "--compliance");
+  const std::vector<Case> cases = twin_pivot::ReadCases(statics::CasesOf(request), robot);
+  const bool by_tension = cases.front().load.length.size() == 0;
+  for (const auto& [option, given] : {std::pair("--equilibria", request.equilibria),
+                                      std::pair("--reach", !request.reach.empty())}) {
+    if (!given || by_tension) continue;
+    throw Error::Input(request.input.string() + ":1", std::string("tensions with ") + option,
+                       "'L1'");
   }
   WarnOfImplausibleCables(request, robot, cases);
-  const std::vector<Solution> solved = SolveCases(robot, cases, method);
-  const std::vector<Solved> rows = RowsOf(request, robot, cases, solved, method);
+  const std::vector<Solved> rows = !request.reach.empty()
+                                       ? ReachTargets(request, robot, cases, method)
+                                       : RowsOf(request, robot, cases, method);
   WriteResults(request, robot, rows);
   if (!request.shape.empty()) WriteShapes(request, robot, rows);
+  if (!request.compliance.empty()) WriteCompliance(request, robot, method, rows);
   if (!request.plot.empty()) Draw(request, robot, rows);
-  for (const Solution& solution : solved) {
-    if (!solution.outcome.ok()) return 1;
+  for (const Solved& solved : rows) {
+    if (!solved.solution.outcome.ok()) return 1;
   }
   return 0;
 }

@@ -24,25 +24,30 @@ Table = Any
 
 
 def solve(robot: Document, cases: Table | None = None, *, method: str | None = None,
-          measured: Table | None = None, hybrid: bool = False, sensitivity: bool = False,
-          equilibria: bool = False, lambda_: float | None = None, plot: StrPath | None = None,
-          shape: StrPath | None = None, progress: Progress | None = None) -> list[Row]:
+          measured: Table | None = None, reach: Table | None = None, sweep: int | None = None,
+          hybrid: bool = False, sensitivity: bool = False, equilibria: bool = False,
+          lambda_: float | None = None, plot: StrPath | None = None, shape: StrPath | None = None,
+          compliance: StrPath | None = None, progress: Progress | None = None) -> list[Row]:
     """The static shape of a robot in every case. Returns a dict for each row, in SI units.
 
     A row has status "ok" or what failed, stable, x, y, z of the tip [m], and more for each robot.
-    hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop).
-    equilibria: all of every case that a search finds, a row each. lambda_: the weight of the method
-    fit. plot: a picture of the shapes (.png, .svg, .pdf). shape: a table of places along the centre
-    lines (.csv, .json). progress: called with each warning. Raises JobError only where there are no
-    results at all."""
-    options = {"--method": method, "--hybrid": "apply" if hybrid else None,
+    Rows are solved on all cores. reach: a table of targets of the cases, whose least tensions or
+    pressures are found. sweep: the grid of so many values of every column between two cases.
+    hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop). equilibria:
+    all of every case that a search finds, a row each. lambda_: the weight of the method fit. plot:
+    a picture of the shapes (.png, .svg, .pdf). shape: a table of places along the centre lines
+    (.csv, .json). compliance: a table of how every tip moves by its inputs (.csv, .json). progress:
+    called with each warning. Raises JobError only where there are no results at all."""
+    options = {"--method": method, "--sweep": sweep, "--hybrid": "apply" if hybrid else None,
                "--sensitivity": sensitivity, "--equilibria": equilibria, "--lambda": lambda_,
                "--plot": None if plot is None else as_argument(plot),
-               "--shape": None if shape is None else as_argument(shape)}
+               "--shape": None if shape is None else as_argument(shape),
+               "--compliance": None if compliance is None else as_argument(compliance)}
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
         out = pathlib.Path(folder, "results.json")
         try:
-            _solve(robot, cases, measured, out, options, folder, progress)
+            _solve(robot, {"--input": cases, "--measured": measured, "--reach": reach}, out, options,
+                   folder, progress)
         except JobError:
             if not out.exists():
                 raise
@@ -60,17 +65,17 @@ def calibrate(robot: Document, out: StrPath, cases: Table | None = None, *,
     options = {"--method": method, "--calibrate": not train, "--hybrid": "train" if train else None,
                "--cross-validate": cross_validate, "--lambda": lambda_}
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
-        _solve(robot, cases, measured, out, options, folder, progress)
+        _solve(robot, {"--input": cases, "--measured": measured}, out, options, folder, progress)
     return pathlib.Path(out)
 
 
-def _solve(robot: Document, cases: Table | None, measured: Table | None, out: StrPath,
+def _solve(robot: Document, tables: Mapping[str, Table | None], out: StrPath,
            options: Mapping[str, Any], folder: str, progress: Progress | None) -> None:
     with as_file(robot, "robot") as (file, rename):
         words = [file, "--out", as_argument(out)]
-        for name, table in (("cases", cases), ("measured", measured)):
+        for option, table in tables.items():
             if table is not None:
-                option = "--input" if name == "cases" else "--measured"
+                name = "cases" if option == "--input" else option[2:]
                 words += [option, _file(table, name, pathlib.Path(folder))]
         for option, value in options.items():
             if value is not None and value is not False:

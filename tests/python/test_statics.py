@@ -39,6 +39,19 @@ class Solve(bench.Bench):
         self.assertEqual([row["status"] for row in rows], ["ok", "saddle", "saddle"])
         self.assertTrue((self.folder / "line.csv").exists())
 
+    def test_reaches_places_and_says_how_the_tip_moves(self):
+        pulled = mc.solve(TDCR / "tdcr.yaml", CASES)[1]
+        target = {"case": ["rest", "pulled"], "x": [0, pulled["x"]], "y": [0, 0]}
+        rows = mc.solve(TDCR / "tdcr.yaml", CASES | {"T1": [0, 0]}, reach=target,
+                        compliance="c.csv")
+        self.assertAlmostEqual(rows[1]["T_1"], 3, 4)
+        self.assertLess(rows[1]["miss"], 2e-7)
+        with open("c.csv", newline="") as file:
+            self.assertEqual(next(csv.DictReader(file))["by"], "fx")
+
+    def test_sweeps_the_workspace(self):
+        self.assertEqual(len(mc.solve(TDCR / "tdcr.yaml", CASES | {"T2": [0, 2]}, sweep=3)), 9)
+
     def test_gives_the_rows_that_failed_too(self):
         rest, pulled = mc.solve(TDCR / "tdcr.yaml", CASES | {"T1": [0, 1e5]})
         self.assertEqual(rest["status"], "ok")
