@@ -25,49 +25,71 @@ VectorXd Change(const Shown& above, const Shown& below) {
   return change;
 }
 
-// Columns [show(step) - show(-step)]/(2 step); empty when something is out of the domain.
-template <class At, class Step>
-MatrixXd Slopes(Index rows, Index columns, const At& at, const Step& step) {
-  MatrixXd slopes(rows, columns);
+// The derivative at 0 of what changes by change(s): from both sides, or by three points of one
+// where the other is out of the domain (a slack cable cannot push). Right to the second order of
+// the step.
+template <class ChangeBy>
+std::optional<VectorXd> Slope(const ChangeBy& change, double step) {
+  const std::optional<VectorXd> above = change(step), below = change(-step);
+  if (above && below) return VectorXd((*above - *below) / (2 * step));
+  if (!above && !below) return std::nullopt;
+  const double side = above ? step : -step;
+  const std::optional<VectorXd> farther = change(2 * side);
+  if (!farther) return std::nullopt;
+  return VectorXd((4 * (above ? *above : *below) - *farther) / (2 * side));
+}
+
+// A column for every i, by step(i); empty when something is out of the domain.
+template <class ChangeBy, class Step>
+MatrixXd Slopes(Index columns, const ChangeBy& change, const Step& step) {
+  MatrixXd slopes;
   for (Index i = 0; i < columns; ++i) {
-    const auto above = at(i, step(i)), below = at(i, -step(i));
-    if (!above || !below) return {};
-    slopes.col(i) = Change(*above, *below) / (2 * step(i));
+    const auto slope = Slope([&](double s) { return change(i, s); }, step(i));
+    if (!slope) return {};
+    slopes.conservativeResize(slope->size(), i + 1);
+    slopes.col(i) = *slope;
   }
   return slopes;
 }
 
-MatrixXd ResidualByInputs(const Responding& robot, const VectorXd& z, Index inputs, double step) {
-  MatrixXd slopes(z.size(), inputs);
-  VectorXd above(z.size()), below(z.size());
-  for (Index i = 0; i < inputs; ++i) {
-    const VectorXd w = step * VectorXd::Unit(inputs, i);
-    if (!robot.Residual(z, w, above) || !robot.Residual(z, -w, below)) return {};
-    slopes.col(i) = (above - below) / (2 * step);
+// What changes from a root on; nothing out of the domain.
+struct FromRoot {
+  const Responding& robot;
+  const VectorXd& z;
+  VectorXd none;  // of the inputs
+  VectorXd f = VectorXd(z.size());
+  std::optional<Shown> here = robot.Show(z, none);
+  bool inside = here && robot.Residual(z, none, f);
+
+  std::optional<VectorXd> Seen(const VectorXd& at, const VectorXd& w) const {
+    const auto there = robot.Show(at, w);
+    if (!there) return std::nullopt;
+    return Change(*there, *here);
   }
-  return slopes;
-}
+  std::optional<VectorXd> Unbalanced(const VectorXd& w) const {
+    VectorXd there(z.size());
+    if (!robot.Residual(z, w, there)) return std::nullopt;
+    return VectorXd(there - f);
+  }
+};
 
 }  // namespace
 
 std::optional<MatrixXd> Respond(const Responding& robot, const VectorXd& z, Index inputs) {
-  constexpr double kStep = 1e-5;
-  const VectorXd none = VectorXd::Zero(inputs);
-  const auto here = robot.Show(z, none);
+  const FromRoot root{robot, z, VectorXd::Zero(inputs)};
   MatrixXd k(z.size(), z.size());
-  if (!here || !robot.Tangent(z, k)) return std::nullopt;
-  const Index rows = kTip + here->length.size() + here->points.size();
-  const MatrixXd by_unknowns = Slopes(
-      rows, z.size(),
-      [&](Index i, double step) {
-        return robot.Show(z + step * VectorXd::Unit(z.size(), i), none);
-      },
-      [&](Index i) { return robot.Step(i); });
-  const MatrixXd by_inputs = Slopes(
-      rows, inputs,
-      [&](Index i, double step) { return robot.Show(z, step * VectorXd::Unit(inputs, i)); },
-      [&](Index) { return kStep; });
-  const MatrixXd residual = ResidualByInputs(robot, z, inputs, kStep);
+  if (!root.inside || !robot.Tangent(z, k)) return std::nullopt;
+  const auto unknown = [&](Index i, double s) {
+    return root.Seen(z + s * VectorXd::Unit(z.size(), i), root.none);
+  };
+  const auto input = [&](Index i, double s) { return root.Seen(z, s * VectorXd::Unit(inputs, i)); };
+  const auto unbalanced = [&](Index i, double s) {
+    return root.Unbalanced(s * VectorXd::Unit(inputs, i));
+  };
+  const auto step = [](Index) { return 1e-5; };
+  const MatrixXd by_unknowns = Slopes(z.size(), unknown, [&](Index i) { return robot.Step(i); });
+  const MatrixXd by_inputs = Slopes(inputs, input, step);
+  const MatrixXd residual = Slopes(inputs, unbalanced, step);
   if (by_unknowns.size() == 0 || by_inputs.size() == 0 || residual.size() == 0) return std::nullopt;
   MatrixXd response = by_inputs - by_unknowns * Eigen::PartialPivLU<MatrixXd>(k).solve(residual);
   if (!response.allFinite()) return std::nullopt;

@@ -49,9 +49,10 @@ class Responding {
 ///
 ///   dy/dw = y_w - y_z f_z^-1 f_w                                                              (1)
 ///
-/// f_z is the tangent of the whole structure; the others are central differences of evaluations, no
-/// case is solved. Contacts that slide go on to slide and those that rest hold: against its
-/// direction a robot with friction is stiffer. Nothing where the tangent is singular.
+/// f_z is the tangent of the whole structure; the others are differences of evaluations, central or
+/// from the side that is in the domain (no tension below zero): no case is solved. Contacts that
+/// slide go on to slide and those that rest hold: against its direction a robot with friction is
+/// stiffer. Nothing where the tangent is singular.
 std::optional<Eigen::MatrixXd> Respond(const Responding& robot, const Eigen::VectorXd& z,
                                        Eigen::Index inputs);
 

@@ -41,6 +41,19 @@ TEST(TipResponse, IsThatOfSpringsInSeries) {
   EXPECT_LT((*slope - exact).cwiseAbs().maxCoeff(), 1e-9);  // differences of steps of 1e-5
 }
 
+// At no tension there is only one side to differentiate from.
+TEST(TipResponse, OfASlackCableIsThatOfThePull) {
+  class NeverPushes : public Arm {
+    bool Residual(const VectorXd& z, const VectorXd& w, VectorXd& f) const override {
+      return Arm::Residual(z, w, f) && w[2] >= 0;
+    }
+  };
+  const Eigen::Vector2d z(0, 0.4);
+  const auto pulled = Respond(NeverPushes(), z, 3), any = Respond(Arm(), z, 3);
+  ASSERT_TRUE(pulled && any);
+  EXPECT_LT((*pulled - *any).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 // A held cable keeps the slide: the force tensions the cable, the length moves the tip.
 TEST(TipResponse, AHeldCableHoldsTheTip) {
   TipResponse by_tension{{"fx", "Mz", "T1"}, 2, *Respond(Arm(), Eigen::Vector2d(0, 0), 3)};
