@@ -17,8 +17,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kReached = 1e-6;  // of the length
-
 // The tip and every disk, with the names of their columns.
 std::vector<std::pair<int, std::string>> Places(int disks) {
   std::vector<std::pair<int, std::string>> places = {{disks - 1, ""}};
@@ -40,15 +38,20 @@ void RequireKnown(const CsvTable& table, int disks) {
   }
 }
 
-Target ReadTarget(const CsvTable& table, std::size_t row, int disks) {
+Target ReadTarget(const CsvTable& table, std::size_t row, int disks, double least) {
   Target target;
   target.name = table.Text(row, "case");
   for (const auto& [disk, suffix] : Places(disks)) {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string column = "xyz"[axis] + suffix;
-      const double value = table.Has(column) ? table.NumberOrNan(row, column) : std::nan("");
-      if (std::isnan(value)) continue;
-      target.coordinate.push_back(3 * disk + axis);
+      if (!table.Has(column) || table.Text(row, column).empty()) continue;
+      const double value = table.Number(row, column);
+      auto& given = target.coordinate;
+      if (std::find(given.begin(), given.end(), 3 * disk + axis) != given.end()) {
+        throw Error::Input(table.Where(row) + ", column '" + column + "'",
+                           "an empty cell beside that of the tip", Decimal(value));
+      }
+      given.push_back(3 * disk + axis);
       target.values.conservativeResize(target.values.size() + 1);
       target.values.tail<1>()[0] = value;
     }
@@ -57,22 +60,109 @@ Target ReadTarget(const CsvTable& table, std::size_t row, int disks) {
     throw Error::Input(table.Where(row), "x, y or z of a disk", "none");
   if (table.Has("low")) target.low = table.Number(row, "low");
   if (table.Has("high")) target.high = table.Number(row, "high");
+  if (target.low < least) {
+    throw Error::Input(table.Where(row) + ", column 'low'", "at least " + Decimal(least),
+                       Decimal(target.low));
+  }
   if (target.low <= target.high) return target;
   throw Error::Input(table.Where(row) + ", column 'high'", "at least " + Decimal(target.low),
                      Decimal(target.high));
 }
 
-// The drives at the minimum of (1) with the tangent, over `unit`.
-VectorXd Best(const Stand& at, const VectorXd& w, const Target& target, double unit,
-              double length) {
-  constexpr double kWeight = 1e10;
-  const MatrixXd slopes = at.slopes * (unit / length);
-  const VectorXd wanted = (target.values - at.points) / length + slopes * w;
-  const MatrixXd H = MatrixXd::Identity(w.size(), w.size()) / kWeight + slopes.transpose() * slopes;
-  return WithinLimits(H, slopes.transpose() * wanted,
-                      VectorXd::Constant(w.size(), target.low / unit),
-                      VectorXd::Constant(w.size(), target.high / unit));
-}
+// Drives over `unit`, and where they lead.
+struct Place {
+  VectorXd w;
+  Stand stand;
+  double miss = 0;
+};
+
+class Search {
+ public:
+  Search(const StandUnder& stand, const Target& target, double unit, double length)
+      : stand_(stand), target_(target), unit_(unit), length_(length) {}
+
+  // From w on; drives are empty where w has no stable shape.
+  Reached From(const VectorXd& w) const {
+    constexpr int kMostRounds = 60;
+    constexpr double kSettled = 1e-5;
+    Reached reached;
+    auto place = At(w.cwiseMax(target_.low / unit_).cwiseMin(target_.high / unit_));
+    double change = 1, nearer = 0;
+    while (place && change > kSettled && reached.outcome.iterations++ < kMostRounds) {
+      const VectorXd step = Best(*place) - place->w;
+      nearer = Nearer(*place, step);
+      auto next = Nearest(*place, step);
+      if (!next) break;
+      change = (next->w - place->w).norm();
+      place = std::move(next);
+    }
+    if (place) Judge(*place, nearer, reached);
+    return reached;
+  }
+
+ private:
+  double close() const { return 1e-6 * length_; }
+
+  std::optional<Place> At(VectorXd w) const {
+    auto stand = stand_(unit_ * w);
+    if (!stand) return std::nullopt;
+    const double miss = target_.Miss(stand->points);
+    return Place{std::move(w), std::move(*stand), miss};
+  }
+
+  // The drives at the minimum of (1) with the tangent.
+  VectorXd Best(const Place& place) const {
+    constexpr double kWeight = 1e10;
+    const VectorXd& w = place.w;
+    const MatrixXd slopes = place.stand.slopes * (unit_ / length_);
+    const VectorXd wanted = (target_.values - place.stand.points) / length_ + slopes * w;
+    const MatrixXd H =
+        MatrixXd::Identity(w.size(), w.size()) / kWeight + slopes.transpose() * slopes;
+    return WithinLimits(H, slopes.transpose() * wanted,
+                        VectorXd::Constant(w.size(), target_.low / unit_),
+                        VectorXd::Constant(w.size(), target_.high / unit_));
+  }
+
+  // By how much the step comes nearer by the tangent [m].
+  double Nearer(const Place& place, const VectorXd& step) const {
+    return place.miss - target_.Miss(place.stand.points + unit_ * place.stand.slopes * step);
+  }
+
+  // The place that the step leads to, or a shorter one; nothing when none comes nearer. Along the
+  // points at the target the drives still fall.
+  std::optional<Place> Nearest(const Place& place, const VectorXd& step) const {
+    constexpr double kLongest = 0.2, kLargest = 1, kShortest = 1e-4, kArmijo = 0.1;
+    const double moved = unit_ / length_ * (place.stand.slopes * step).norm();
+    const double nearer = Nearer(place, step);
+    double share = std::min({1.0, kLongest / moved, kLargest / step.norm()});
+    for (; share > kShortest; share /= 2) {
+      auto next = At(place.w + share * step);
+      if (!next) continue;
+      if (next->miss <= std::max(place.miss - kArmijo * share * nearer, close())) return next;
+    }
+    return std::nullopt;
+  }
+
+  void Judge(const Place& place, double nearer, Reached& reached) const {
+    constexpr double kNoNearer = 1e-2;  // of the distance
+    reached.drives = unit_ * place.w;
+    reached.miss = place.miss;
+    reached.outcome.residual = place.miss / length_;
+    if (place.miss <= close()) {
+      reached.outcome.status = numerics::Status::kOk;
+    } else if (nearer <= kNoNearer * place.miss) {
+      reached.outcome.status = numerics::Status::kOutOfDomain;
+      reached.outcome.why =
+          fmt::format("out of reach within the limits: {:.3g} m off at the nearest", place.miss);
+    } else {
+      reached.outcome.why = fmt::format("the search ends {:.3g} m off", place.miss);
+    }
+  }
+
+  const StandUnder& stand_;
+  const Target& target_;
+  double unit_, length_;
+};
 
 }  // namespace
 
@@ -82,12 +172,12 @@ double Target::Miss(const VectorXd& coordinates) const {
   return (values - coordinates).norm() / std::sqrt(static_cast<double>(disks.size()));
 }
 
-std::vector<Target> ReadTargets(const CsvTable& table, int disks) {
+std::vector<Target> ReadTargets(const CsvTable& table, int disks, double least) {
   RequireKnown(table, disks);
   table.RequireRows();
   std::vector<Target> targets;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    targets.push_back(ReadTarget(table, row, disks));
+    targets.push_back(ReadTarget(table, row, disks, least));
   }
   return targets;
 }
@@ -99,6 +189,9 @@ std::vector<Target> TargetsOf(const std::vector<Target>& targets,
     const auto its = [&](const Target& target) { return target.name == name; };
     const auto found = std::find_if(targets.begin(), targets.end(), its);
     if (found == targets.end()) throw Error::Input(file, "a target of case '" + name + "'", "none");
+    if (std::find_if(found + 1, targets.end(), its) != targets.end()) {
+      throw Error::Input(file, "one target of case '" + name + "'", "more of them");
+    }
     ordered.push_back(*found);
   }
   for (const Target& target : targets) {
@@ -108,45 +201,15 @@ std::vector<Target> TargetsOf(const std::vector<Target>& targets,
   return ordered;
 }
 
-Reached Reach(const std::function<std::optional<Stand>(const VectorXd&)>& stand, VectorXd start,
-              const Target& target, double unit, double length) {
-  constexpr int kMostRounds = 60;
-  constexpr double kLongest = 0.2, kSettled = 1e-5, kShortest = 1e-4;
-  Reached reached;
-  VectorXd w = (start / unit).cwiseMax(target.low / unit).cwiseMin(target.high / unit);
-  auto at = stand(unit * w);
-  if (!at) {
-    reached.outcome.why = "the start has no stable shape";
-    return reached;
-  }
-  reached.miss = target.Miss(at->points);
-  while (reached.outcome.iterations++ < kMostRounds) {
-    const VectorXd step = Best(*at, w, target, unit, length) - w;
-    const double moved = unit / length * (at->slopes * step).norm();
-    double share = std::min(1.0, kLongest / std::max(moved, 1e-300));
-    std::optional<Stand> next;
-    double miss = 0;
-    for (; share > kShortest; share /= 2) {
-      next = stand(unit * (w + share * step));
-      if (!next) continue;
-      miss = target.Miss(next->points);
-      // Along the points of equal distance the drives still fall.
-      if (miss <= std::max((1 - 0.1 * share) * reached.miss, kReached * length)) break;
-    }
-    if (!next || share <= kShortest) break;
-    w += share * step;
-    at = std::move(next);
-    reached.miss = miss;
-    if (share * step.norm() <= kSettled) break;
-  }
-  reached.drives = unit * w;
-  reached.outcome.residual = reached.miss / length;
-  if (reached.miss <= kReached * length) {
-    reached.outcome.status = numerics::Status::kOk;
-  } else {
-    reached.outcome.why =
-        fmt::format("out of reach within the limits: {:.3g} m off at the nearest", reached.miss);
-  }
+Reached Reach(const StandUnder& stand, const VectorXd& start, const Target& target, double unit,
+              double length) {
+  const Search search(stand, target, unit, length);
+  Reached reached = search.From(start / unit);
+  if (reached.outcome.ok()) return reached;
+  Reached other = search.From(VectorXd::Zero(start.size()));
+  other.outcome.iterations += reached.outcome.iterations;
+  if (other.miss < reached.miss) return other;
+  if (reached.drives.size() == 0) reached.outcome.why = "no start has a stable shape";
   return reached;
 }
 

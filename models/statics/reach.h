@@ -25,12 +25,12 @@ struct Target {
 
 /// Reads TARGETS.csv: `case`, any of `x, y, z` of the tip and of `x_i, y_i, z_i` of disks 1..disks
 /// (empty: any value will do) [m], optional `low`, `high`: limits of every tension [N] or pressure
-/// [Pa].
+/// [Pa]; `least`: the lowest `low`, as cables do not push.
 /// @throws Error with file, line and column for bad input.
-std::vector<Target> ReadTargets(const CsvTable& table, int disks);
+std::vector<Target> ReadTargets(const CsvTable& table, int disks, double least = 0);
 
-/// The target of every case, by name. @throws Error for a case that has none, and for a target of
-/// no case; `file` is that of the targets.
+/// The target of every case, by name. @throws Error for a case that has none or two, and for a
+/// target of no case; `file` is that of the targets.
 std::vector<Target> TargetsOf(const std::vector<Target>& targets,
                               const std::vector<std::string>& cases, const std::string& file);
 
@@ -40,11 +40,18 @@ struct Stand {
   Eigen::MatrixXd slopes;  ///< their derivatives by the drives
 };
 
+/// Solves the case under drives and may fail; what it last solved need not be the answer.
+using StandUnder = std::function<std::optional<Stand>(const Eigen::VectorXd& drives)>;
+
 /// Drives that lead somewhere.
 struct Reached {
-  numerics::Outcome outcome;  ///< ok: within 1e-6 of the robot's length
+  /// ok: within 1e-6 of the robot's length. kOutOfDomain: out of reach, by the tangent no drives
+  /// within the limits come nearer by a hundredth. kNoConvergence: the search ended elsewhere.
+  numerics::Outcome outcome;
   Eigen::VectorXd drives;
   double miss = std::numeric_limits<double>::infinity();  ///< Target::Miss [m]
+
+  bool out_of_reach() const { return outcome.status == numerics::Status::kOutOfDomain; }
 };
 
 /// The drives w with the least sum of squares that bring the target's coordinates to their values:
@@ -53,10 +60,10 @@ struct Reached {
 ///
 /// By Gauss-Newton: p is replaced by its tangent at w, and (1) by the minimum of
 /// |w|^2 + |p - p*|^2/1e-10 (w over `unit`, p over `length`), which reaches p* to 1e-10 where that
-/// is possible, and comes nearest where it is not. Steps that would move the disks by more than a
-/// fifth of the length, or that come no nearer, are made shorter. `stand` solves the case under
-/// drives and may fail; what it last solved need not be the answer.
-Reached Reach(const std::function<std::optional<Stand>(const Eigen::VectorXd& drives)>& stand,
-              Eigen::VectorXd start, const Target& target, double unit, double length);
+/// is possible, and comes nearest where it is not. Steps that move the disks by more than a fifth
+/// of the length or the drives by more than `unit`, or that come no nearer, are made shorter. Where
+/// `start` does not lead to the target, the search begins again without drives.
+Reached Reach(const StandUnder& stand, const Eigen::VectorXd& start, const Target& target,
+              double unit, double length);
 
 }  // namespace continuum::statics

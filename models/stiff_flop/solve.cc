@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -158,7 +159,7 @@ void WriteRow(const SolveRequest& request, const Module& module, const Method& m
               Direction direction, const Solved& solved, statics::Results& results) {
   const Solution& solution = solved.solution;
   const bool saddle = !solution.stability.stable();
-  const bool missed = solved.miss && !solution.outcome.ok();
+  const bool missed = solved.miss && solution.outcome.status == numerics::Status::kOutOfDomain;
   const std::string status = saddle ? "saddle" : missed ? "out_of_reach" : Name(solution.status);
   results.Row();
   results.Set("case", solved.row.label);
@@ -251,7 +252,8 @@ std::vector<Solved> ReachTargets(const SolveRequest& request, const Module& modu
                                  const Method& method, const std::vector<Case>& rows) {
   std::vector<std::string> names;
   for (const Case& row : rows) names.push_back(row.label);
-  const auto read = statics::ReadTargets(CsvTable::Read(request.reach), 1);
+  const auto read = statics::ReadTargets(CsvTable::Read(request.reach), 1,
+                                         -std::numeric_limits<double>::infinity());
   const auto targets = statics::TargetsOf(read, names, request.reach.string());
   statics::PathError error;
   std::vector<Solved> solved;
@@ -265,6 +267,7 @@ std::vector<Solved> ReachTargets(const SolveRequest& request, const Module& modu
       error.AtTarget(rows[i].label, reached.miss);
     } else {
       s.solution.outcome = reached.outcome;
+      error.NotReached();
     }
     s.miss = reached.miss;
     solved.push_back(std::move(s));

@@ -159,7 +159,7 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     const bool ok = s.solution.outcome.ok();
     results.Row();
     results.Set("case", s.name);
-    const bool missed = s.miss && !ok;
+    const bool missed = s.miss && s.solution.outcome.status == numerics::Status::kOutOfDomain;
     results.Set(
         s.solution.outcome,
         missed ? "out_of_reach" : statics::StatusOf(s.solution.outcome, s.solution.stability));
@@ -366,7 +366,10 @@ int ReachTargets(const SolveRequest& request, const Robot& robot, Method method)
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Case& c = cases[i];
     solved.push_back(ReachTarget(robot, method, targets[i], cases, solved, c));
-    if (!solved[i].solution.outcome.ok()) continue;
+    if (!solved[i].solution.outcome.ok()) {
+      error.NotReached();
+      continue;
+    }
     error.AtTarget(c.name, *solved[i].miss);
     if (c.reference < 0) continue;
     const auto from = static_cast<std::size_t>(c.reference);

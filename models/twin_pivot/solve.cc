@@ -213,7 +213,10 @@ std::vector<Solved> ReachTargets(const SolveRequest& request, const Robot& robot
   std::vector<Solved> solved;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     solved.push_back(ReachTarget(robot, method, targets[i], solved, cases[i]));
-    if (!solved[i].solution.outcome.ok()) continue;
+    if (!solved[i].solution.outcome.ok()) {
+      error.NotReached();
+      continue;
+    }
     error.AtTarget(cases[i].label, *solved[i].miss);
     if (cases[i].reference < 0) continue;
     const auto from = static_cast<std::size_t>(cases[i].reference);
@@ -229,7 +232,7 @@ void WriteRow(const Robot& robot, const Solved& solved, statics::Results& result
   results.Row();
   results.Set("case", solved.row.label);
   results.Set("condition", std::string(twin_pivot::kConditions[static_cast<int>(load.condition)]));
-  const bool missed = solved.miss && !solution.outcome.ok();
+  const bool missed = solved.miss && solution.outcome.status == numerics::Status::kOutOfDomain;
   results.Set(solution.outcome,
               missed ? "out_of_reach" : statics::StatusOf(solution.outcome, solution.stability));
   results.Set(solution.outcome, solution.stability);

@@ -66,6 +66,24 @@ TEST(Reach, TakesTheLeastDrives) {
   EXPECT_LE(limited.drives.maxCoeff(), 0.4);
 }
 
+// From the start downhill ends at a local minimum of the distance; without drives it does not.
+TEST(Reach, BeginsAgainWithoutDrives) {
+  const auto stand = [](const VectorXd& w) -> std::optional<Stand> {
+    if (w[0] > 8) return std::nullopt;
+    return Stand{VectorXd::Constant(1, std::sin(w[0])), MatrixXd::Constant(1, 1, std::cos(w[0]))};
+  };
+  Target target{"", {0}, VectorXd::Constant(1, 0.5)};
+  for (const double start : {1.0, 4.8, 9.0}) {
+    const Reached reached = Reach(stand, VectorXd::Constant(1, start), target, 1, 1);
+    ASSERT_TRUE(reached.outcome.ok()) << start << ": " << reached.outcome.why;
+    EXPECT_NEAR(std::sin(reached.drives[0]), 0.5, 1e-8);
+  }
+  target.values[0] = 2;
+  const Reached missed = Reach(stand, VectorXd::Zero(1), target, 1, 1);
+  EXPECT_TRUE(missed.out_of_reach()) << missed.outcome.why;
+  EXPECT_NEAR(missed.miss, 1, 1e-3);
+}
+
 TEST(ReadTargets, TakesTheTipAndAnyDisks) {
   const auto targets = ReadTargets(
       CsvTable::Parse("case,x,y,z,x_1,y_1,z_1,high\na,1,2,3,,,,5\nb,,,,4,,6,7\n", "t"), 9);
@@ -75,10 +93,13 @@ TEST(ReadTargets, TakesTheTipAndAnyDisks) {
   EXPECT_EQ(targets[1].values, Eigen::Vector2d(4, 6));
   EXPECT_EQ(targets[1].high, 7);
   for (const char* wrong :
-       {"case,x,y\na,,\n", "case,x,y,z,q\na,1,2,3,4\n", "case,x,y,z,low,high\na,1,2,3,4,3\n"}) {
+       {"case,x,y\na,,\n", "case,x,y,z,q\na,1,2,3,4\n", "case,x,y,z,low,high\na,1,2,3,4,3\n",
+        "case,x,y\na,nan,1\n", "case,x,x_9\na,1,2\n", "case,x,low\na,1,-2\n"}) {
     EXPECT_THROW(ReadTargets(CsvTable::Parse(wrong, "t"), 9), Error) << wrong;
   }
+  EXPECT_EQ(ReadTargets(CsvTable::Parse("case,x,low\na,1,-2\n", "t"), 9, -3)[0].low, -2);
   EXPECT_THROW(TargetsOf(targets, {"a"}, "t"), Error);
+  EXPECT_THROW(TargetsOf({targets[0], targets[0]}, {"a"}, "t"), Error);
   EXPECT_THROW(TargetsOf(targets, {"a", "b", "c"}, "t"), Error);
 }
 
