@@ -110,17 +110,17 @@ class Search {
     return Place{std::move(w), std::move(*stand), miss};
   }
 
-  // The drives at the minimum of (1) with the tangent.
+  // The drives at the minimum of (1) with the tangent, as far as that is believed.
   VectorXd Best(const Place& place) const {
-    constexpr double kWeight = 1e10;
+    constexpr double kWeight = 1e10, kFarthest = 1;
     const VectorXd& w = place.w;
     const MatrixXd slopes = place.stand.slopes * (unit_ / length_);
     const VectorXd wanted = (target_.values - place.stand.points) / length_ + slopes * w;
     const MatrixXd H =
         MatrixXd::Identity(w.size(), w.size()) / kWeight + slopes.transpose() * slopes;
     return WithinLimits(H, slopes.transpose() * wanted,
-                        VectorXd::Constant(w.size(), target_.low / unit_),
-                        VectorXd::Constant(w.size(), target_.high / unit_));
+                        (w.array() - kFarthest).max(target_.low / unit_).matrix(),
+                        (w.array() + kFarthest).min(target_.high / unit_).matrix());
   }
 
   // By how much the step comes nearer by the tangent [m].
@@ -131,11 +131,11 @@ class Search {
   // The place that the step leads to, or a shorter one; nothing when none comes nearer. Along the
   // points at the target the drives still fall.
   std::optional<Place> Nearest(const Place& place, const VectorXd& step) const {
-    constexpr double kLongest = 0.2, kLargest = 1, kShortest = 1e-4, kArmijo = 0.1;
+    constexpr double kLongest = 0.2, kShortest = 1e-4, kArmijo = 0.1;
     const double moved = unit_ / length_ * (place.stand.slopes * step).norm();
     const double nearer = Nearer(place, step);
-    double share = std::min({1.0, kLongest / moved, kLargest / step.norm()});
-    for (; share > kShortest; share /= 2) {
+    const double longest = std::min(1.0, kLongest / moved);
+    for (double share = longest; share > kShortest * longest; share /= 2) {
       auto next = At(place.w + share * step);
       if (!next) continue;
       if (next->miss <= std::max(place.miss - kArmijo * share * nearer, close())) return next;
