@@ -89,11 +89,19 @@ class Search {
     auto place = At(w.cwiseMax(target_.low / unit_).cwiseMin(target_.high / unit_));
     double change = 1, nearer = 0;
     while (place && change > kSettled && reached.outcome.iterations++ < kMostRounds) {
-      const VectorXd step = Best(*place) - place->w;
+      const VectorXd step = Best(*place, VectorXd::Zero(w.size())) - place->w;
       nearer = Nearer(*place, step);
       auto next = Nearest(*place, step);
+      if (next) change = (next->w - place->w).norm();
+      if (place->miss > close() && (!next || next->miss > 0.5 * place->miss)) {
+        // While contacts turn, on 1 um, the tangent holds for the way to the target alone.
+        auto closer = Nearest(*place, Best(*place, place->w) - place->w);
+        if (closer && (!next || closer->miss < next->miss)) {
+          next = std::move(closer);
+          change = 1;
+        }
+      }
       if (!next) break;
-      change = (next->w - place->w).norm();
       place = std::move(next);
     }
     if (place) Judge(*place, nearer, reached);
@@ -110,17 +118,18 @@ class Search {
     return Place{std::move(w), std::move(*stand), miss};
   }
 
-  // The drives at the minimum of (1) with the tangent, as far as that is believed.
-  VectorXd Best(const Place& place) const {
+  // By the tangent, as far as that is believed: the drives nearest to `from` at the minimum of (1).
+  VectorXd Best(const Place& place, const VectorXd& from) const {
     constexpr double kWeight = 1e10, kFarthest = 1;
     const VectorXd& w = place.w;
     const MatrixXd slopes = place.stand.slopes * (unit_ / length_);
-    const VectorXd wanted = (target_.values - place.stand.points) / length_ + slopes * w;
+    const VectorXd wanted = (target_.values - place.stand.points) / length_ + slopes * (w - from);
     const MatrixXd H =
         MatrixXd::Identity(w.size(), w.size()) / kWeight + slopes.transpose() * slopes;
-    return WithinLimits(H, slopes.transpose() * wanted,
-                        (w.array() - kFarthest).max(target_.low / unit_).matrix(),
-                        (w.array() + kFarthest).min(target_.high / unit_).matrix());
+    const Eigen::ArrayXd low = (w.array() - kFarthest).max(target_.low / unit_);
+    const Eigen::ArrayXd high = (w.array() + kFarthest).min(target_.high / unit_);
+    return from +
+           WithinLimits(H, slopes.transpose() * wanted, low.matrix() - from, high.matrix() - from);
   }
 
   // By how much the step comes nearer by the tangent [m].

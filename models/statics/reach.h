@@ -62,7 +62,8 @@ struct Reached {
 /// |w|^2 + |p - p*|^2/1e-10 (w over `unit`, p over `length`), which reaches p* to 1e-10 where that
 /// is possible, and comes nearest where it is not. Steps that move the disks by more than a fifth
 /// of the length or the drives by more than `unit`, or that come no nearer, are made shorter. Where
-/// `start` does not lead to the target, the search begins again without drives.
+/// contacts turn, the least change of w is tried beside the least w. Where `start` does not lead to
+/// the target, the search begins again without drives.
 Reached Reach(const StandUnder& stand, const Eigen::VectorXd& start, const Target& target,
               double unit, double length);
 
