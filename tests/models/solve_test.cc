@@ -69,10 +69,15 @@ TEST_F(SolveRequests, ReachTheTipsOfOtherCases) {
   }
 }
 
+// Pressures without a limit have no farthest place.
 TEST_F(SolveRequests, SayWhatIsOutOfReach) {
-  for (const auto& [robot, cases] : kCases) {
-    Take(robot, cases);
-    request_.reach = folder_.Write("targets.csv", "case,x,y,z\na,1,1,1\n");
+  const char* const limits[] = {"", "", "60e3"};
+  for (int i = 0; i < 3; ++i) {
+    Take(kCases[i].first, kCases[i].second);
+    const std::string high = limits[i];
+    request_.reach =
+        folder_.Write("targets.csv", high.empty() ? "case,x,y,z\na,1,1,1\n"
+                                                  : "case,x,y,z,high\na,1,1,1," + high + "\n");
     EXPECT_EQ(Solve(request_), 1);
     EXPECT_EQ(Out().Text(0, "status"), "out_of_reach");
     EXPECT_THAT(Out().Text(0, "why"), HasSubstr("out of reach"));
