@@ -43,21 +43,18 @@ IdentifyOptions ReadOptions(const Options& o) {
   return options;
 }
 
-void ListDerivatives(const Options& o) {
-  const Experiment read = Experiment::Read(o.experiment);
-  const ModelSpec system = ModelSpec::Load(read.model);
-  CheckNames(read, system);
+void ListDerivatives(const Options& o, const Experiment& read, const ModelSpec& system) {
   const Derivatives all = DerivativesOf(Registered(read, system), system, ReadOptions(o));
   EndProgress();
   std::fputs(DerivativesInWords(all).c_str(), stdout);
 }
 
 void RunIdentify(const Options& o) {
-  if (o.derivatives) return ListDerivatives(o);
-  if (o.out.empty()) throw CLI::RequiredError("--out");
+  if (!o.derivatives && o.out.empty()) throw CLI::RequiredError("--out");
   const Experiment read = Experiment::Read(o.experiment);
   const ModelSpec system = ModelSpec::Load(read.model);
   CheckNames(read, system);
+  if (o.derivatives) return ListDerivatives(o, read, system);
   const OutputFolder made(o.out,
                           {"fit.json", "fitted.xml", "fitted.yaml", "simulated/", "report.html"},
                           {read.file, read.model});

@@ -112,7 +112,7 @@ class CandidateSearch {
   double LookAt(const CandidateResult& c, const ProjectedResidual& residual) const;
   void KeepThoseThatMayOutdo(const CandidateResult& best);
   void DropHopeless(const std::set<std::string>& names);
-  void LookAtErrors();
+  void LookAtError(CandidateResult& c) const;
   void ProbeAll(const ProjectedResidual& residual, bool sees_forces);
   Significance Significant(const ProjectedResidual& residual,
                            const std::vector<std::vector<Probe>>& probes);

@@ -86,6 +86,22 @@ void CandidateSearch::ProbeOne(CandidateResult& c, const ProjectedResidual& resi
   }
 }
 
+// What the sensors alone explain of the error itself costs no simulation. Where it cannot be said
+// the other views are left.
+void CandidateSearch::LookAtError(CandidateResult& c) const {
+  if (!c.hypothesis.OnlyMeasured() || !c.error.empty()) return;
+  Problem problem = ProblemOf(c, *fitter_.experiment);
+  problem.Recall(base_problem_);
+  try {
+    const double share =
+        PlainShare(c.hypothesis, problem, {base_.fitted->fit.x, base_.fitted->residuals},
+                   TrainLogs(*fitter_.experiment));
+    if (share >= criteria_.main_share) c.error_promise = share;
+  } catch (const Error&) {
+    return;
+  }
+}
+
 // Those with few sizes and shapes first, so that as many as can be have been looked at when the
 // time is over.
 std::vector<CandidateResult*> CandidateSearch::CheapestFirst() {
@@ -165,6 +181,7 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
     auto starts = c.hypothesis.StartsOfShape(true);
     if (c.force_start > 0) starts.push_back(c.force_start);
     ProbeOne(c, residual, starts);
+    LookAtError(c);
   });
   const double least = sees_forces ? criteria_.fit_share * MostExplained() : 0;
   ParallelFor(order.size(), [&](std::size_t, std::size_t i) {
@@ -174,19 +191,6 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
     if (c.explained < least || c.probes.empty() || others.empty()) return;
     if (say(c, "other shapes of ")) ProbeOne(c, residual, others);
   });
-}
-
-// What the sensors alone explain of the error itself costs no simulation.
-void CandidateSearch::LookAtErrors() {
-  const auto train = TrainLogs(*fitter_.experiment);
-  for (CandidateResult& c : candidates) {
-    if (!c.hypothesis.OnlyMeasured() || !c.error.empty() || fitter_.TimeIsOver()) continue;
-    Problem problem = ProblemOf(c, *fitter_.experiment);
-    problem.Recall(base_problem_);
-    const double share =
-        PlainShare(c.hypothesis, problem, {base_.fitted->fit.x, base_.fitted->residuals}, train);
-    if (share >= criteria_.main_share) c.error_promise = share;
-  }
 }
 
 void CandidateSearch::Screen(const std::vector<EquationErrors>& views, const CandidateResult* rival,
@@ -199,7 +203,6 @@ void CandidateSearch::Screen(const std::vector<EquationErrors>& views, const Can
   if (rival) KeepThoseThatMayOutdo(*rival);
   DropHopeless(hopeless);
   ProbeAll(residual, !views.empty() && views.front().any());
-  LookAtErrors();
   std::vector<std::vector<Probe>> probes;
   for (CandidateResult& c : candidates) probes.push_back(std::move(c.probes));
   options_.Say(DiagnosisStage::kScreen, "significance", candidates.size(), candidates.size());

@@ -112,6 +112,10 @@ std::vector<std::string> Numbered(const std::string& prefix, int count) {
   return names;
 }
 
+void RequireTable(const std::filesystem::path& path, const std::string& option) {
+  if (!path.empty()) RequireExtension(path, {".csv", ".json"}, option);
+}
+
 void RequireExtension(const std::filesystem::path& path, const std::vector<std::string>& allowed,
                       const std::string& option) {
   const std::string extension = path.extension().string();

@@ -58,5 +58,7 @@ std::vector<std::string> Numbered(const std::string& prefix, int count);
 /// before the work, so that a wrong name costs nothing.
 void RequireExtension(const std::filesystem::path& path, const std::vector<std::string>& allowed,
                       const std::string& option);
+/// The same of a table that is asked for: .csv or .json; an empty path is none.
+void RequireTable(const std::filesystem::path& path, const std::string& option);
 
 }  // namespace continuum::statics

@@ -301,10 +301,8 @@ int SolveStiffFlop(const SolveRequest& request) {
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
   RefuseOfInverse(request, cases.direction);
-  if (!request.shape.empty())
-    statics::RequireExtension(request.shape, {".csv", ".json"}, "--shape");
-  if (!request.compliance.empty())
-    statics::RequireExtension(request.compliance, {".csv", ".json"}, "--compliance");
+  statics::RequireTable(request.shape, "--shape");
+  statics::RequireTable(request.compliance, "--compliance");
   const std::vector<Solved> own = request.reach.empty()
                                       ? SolveRows(request, robot.module, method, cases)
                                       : ReachTargets(request, robot.module, method, cases.rows);

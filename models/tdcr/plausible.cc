@@ -26,7 +26,7 @@ void WarnOfImplausibleCases(const SolveRequest& request, const CsvTable& table, 
                             const std::vector<Case>& cases) {
   constexpr double kMostBend = 20;  // rad: three turns
   const double force = kMostBend * robot.moment() / robot.length;
-  const double tension = kMostBend * robot.moment() / robot.tendon_radius;
+  const double tension = kMostBend * robot.tension();
   for (std::size_t row = 0; row < cases.size(); ++row) {
     const auto check_range = [&](const std::string& column, double value, double low, double high,
                                  const char* unit) {

@@ -23,7 +23,7 @@ statics::Reached Reach(const Robot& robot, const Loads& loads, Method method,
     return statics::Stand{disks(target.coordinate), slopes(target.coordinate, Eigen::all)};
   };
   const VectorXd start = VectorXd::Map(loads.tension.data(), robot.tendons);
-  return statics::Reach(stand, start, target, robot.moment() / robot.tendon_radius, robot.length);
+  return statics::Reach(stand, start, target, robot.tension(), robot.length);
 }
 
 }  // namespace continuum::tdcr

@@ -24,7 +24,7 @@ class Tendons : public statics::Responding {
       : robot_(robot), loads_(loads), stretch_(robot.tendon_EA, loads.length) {}
 
   double force() const { return robot_.moment() / robot_.length; }
-  double tension() const { return robot_.moment() / robot_.tendon_radius; }
+  double tension() const { return robot_.tension(); }
 
  protected:
   Loads At(const VectorXd& w) const {

@@ -40,6 +40,8 @@ struct Robot {
   double GJ() const { return EI() / (1 + nu); }  // G = E/(2 (1 + nu)), J = 2 I
   /// Moments are divided by this in residuals.
   double moment() const { return EI() / length; }
+  /// Tensions are divided by this: that of a tendon with this moment about the rod [N].
+  double tension() const { return moment() / tendon_radius; }
   Eigen::Vector2d Hole(int tendon) const;
   /// R^c = R_x R_y R_z of base_rotation: measuring frame to base frame.
   Eigen::Matrix3d MeasuringToBase() const;

@@ -234,9 +234,8 @@ void CheckLists(const SolveRequest& request, const std::string& method) {
          "--equilibria, --measured, " + jobs);
   for (const auto& [option, file] :
        {std::pair("--shape", &request.shape), std::pair("--compliance", &request.compliance)}) {
-    if (file->empty()) continue;
-    Refuse(other, option, jobs);
-    statics::RequireExtension(*file, {".csv", ".json"}, option);
+    Refuse(!file->empty() && other, option, jobs);
+    statics::RequireTable(*file, option);
   }
 }
 

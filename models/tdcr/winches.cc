@@ -19,7 +19,7 @@ class Tendons {
   Tendons(const Robot& robot, const VectorXd& given)
       : robot_(robot), given_(given), stretch_(robot.tendon_EA, given) {}
 
-  double unit() const { return robot_.moment() / robot_.tendon_radius; }
+  double unit() const { return robot_.tension(); }
   double reach() const { return robot_.tendon_radius; }
   VectorXd Compliance() const { return stretch_.Compliance(); }
 

@@ -315,10 +315,8 @@ int SolveTwinPivot(const SolveRequest& request) {
   const Method method = ReadMethod(request.method);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
-  if (!request.shape.empty())
-    statics::RequireExtension(request.shape, {".csv", ".json"}, "--shape");
-  if (!request.compliance.empty())
-    statics::RequireExtension(request.compliance, {".csv", ".json"}, "--compliance");
+  statics::RequireTable(request.shape, "--shape");
+  statics::RequireTable(request.compliance, "--compliance");
   const std::vector<Case> cases = twin_pivot::ReadCases(statics::CasesOf(request), robot);
   const bool by_tension = cases.front().load.length.size() == 0;
   for (const auto& [option, given] : {std::pair("--equilibria", request.equilibria),
