@@ -74,7 +74,7 @@ Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr double kNear = 1e-3;  // of the cost that a step gains: what follows goes on from there
   constexpr double kTimes = 2;
   const double begin = ProcessorSeconds();
-  const auto logs = LogsForALook(*experiment);
+  const auto logs = LogsForALook(*experiment, problem.step());
   FitOptions options{.iterations = kIterations, .tolerance = kNear, .rough = true, .until = until};
   continuum::Fit best = FitBySearch(problem, problem.Start(), logs, {}, options).fit;
   const double now = ProcessorSeconds();
@@ -89,7 +89,7 @@ Fitted CandidateFitter::FitNull(const Problem& problem) const {
 
 std::vector<Vector> CandidateFitter::OverShortHorizons(const Problem& problem,
                                                        const Vector& x) const {
-  const auto logs = LogsForALook(*experiment);
+  const auto logs = LogsForALook(*experiment, problem.step());
   const auto pieces = OnShortHorizons(problem, logs);
   if (!pieces) return {};
   try {

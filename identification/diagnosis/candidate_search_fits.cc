@@ -415,13 +415,14 @@ FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem
                                  std::size_t tried) const {
   constexpr double kNear = 2;  // times the best cost
   const std::vector<Problem::Vector> starts = WithoutRepeats(whole, all);
-  if (starts.size() == 1) return {starts.front()};
+  const auto logs = LogsForALook(*fitter_.experiment, base_problem_.step());
+  const auto train = TrainLogs(*fitter_.experiment);
+  if (starts.size() == 1) return {starts.front(), SlopesNear(whole, starts.front(), train)};
   Problem problem = whole;
-  StepAsBase(problem);
+  const bool coarse = StepAsBase(problem);
   FitOptions options{4, 1e-3};
   options.idle = true, options.rough = true, options.until = fitter_.until;
   if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;
-  const auto logs = LogsForALook(*fitter_.experiment);
   std::vector<std::pair<double, const Problem::Vector*>> order;
   for (const auto& start : starts)
     order.emplace_back(CostAt(problem, start, logs, options), &start);
@@ -433,7 +434,7 @@ FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem
   for (const auto& [cost, start] : order) {
     if (!(cost < kInfinity) || cost > kNear * order.front().first) continue;
     try {
-      Problem::Matrix slopes;
+      Problem::Matrix slopes = SlopesNear(problem, *start, logs);
       options.slopes = &slopes;
       continuum::Fit fit = FitParameters(problem, *start, logs, options);
       if (fit.cost < best_cost) best_cost = fit.cost, best = {std::move(fit.x), std::move(slopes)};
@@ -441,9 +442,23 @@ FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem
       continue;
     }
   }
-  if (best.x.size() == 0) throw Error::Job("the simulation diverges from every start");
-  if (logs != TrainLogs(*fitter_.experiment)) best.slopes.resize(0, 0);
+  if (best.x.size() == 0 && !coarse) throw Error::Job("the simulation diverges from every start");
+  if (best.x.size() == 0) return {starts.front()};
+  if (logs != train) best.slopes.resize(0, 0);
   return best;
+}
+
+// As FitOptions::slopes has them: of the base at its own fit, which the search mends on its way,
+// and of the candidate at x. Nothing where these cannot be simulated.
+Problem::Matrix CandidateSearch::SlopesNear(const Problem& problem, const Problem::Vector& x,
+                                            const std::vector<bool>& logs) const {
+  const auto& base = base_.fitted->sensitivities.value().jacobian;
+  const Problem::Vector at = problem.Clamp(x);
+  const auto J = problem.Jacobian(at, problem.Residuals(at, logs), logs, base, true);
+  Problem::Matrix slopes = fitter_.whitening.Stack(J, logs);
+  for (Eigen::Index i = 0; i < slopes.cols(); ++i) slopes.col(i) *= problem.parameters()[i].scale;
+  if (!slopes.allFinite()) slopes.resize(0, 0);
+  return slopes;
 }
 
 // By what the time step leaves open: a fit that imitates it has less to spare than the others.

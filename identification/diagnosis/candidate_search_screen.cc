@@ -12,6 +12,7 @@
 #include "error.h"
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/equation_error.h"
+#include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/quantisation.h"
 #include "sim/io/interrupt.h"
@@ -55,23 +56,31 @@ Probe Beside(const Probe& a, const Probe& b) {
 
 }  // namespace
 
+// In coarse steps where the base can be simulated in them and the candidate as well.
 std::vector<Probe> CandidateSearch::Probes(const CandidateResult& c,
                                            const ProjectedResidual& residual,
                                            const std::vector<std::size_t>& starts) const {
   Problem problem = ProblemOf(c, *fitter_.experiment);
-  const bool measured = c.hypothesis.OnlyMeasured();
-  const bool coarse = !measured && coarse_ && !NeedsOwnStep(problem);
-  if (measured) problem.Recall(base_problem_);
-  if (coarse) problem.StepBy(coarse_->step);
-  const ProbeBase base{base_.fitted->fit.x, coarse ? coarse_->residuals : base_.fitted->residuals};
-  return ProbesOf(c.hypothesis, problem, base, residual, fitter_.whitening.active(), starts,
-                  criteria_);
+  const auto probe = [&](const std::vector<Problem::Vector>& residuals) {
+    return ProbesOf(c.hypothesis, problem, {base_.fitted->fit.x, residuals}, residual,
+                    fitter_.whitening.active(), starts, criteria_);
+  };
+  if (c.hypothesis.OnlyMeasured()) {
+    problem.Recall(base_problem_);
+  } else if (const double own = problem.step(); StepAsBase(problem)) {
+    try {
+      return probe(coarse_->residuals);
+    } catch (const Error&) {
+      problem.StepBy(own);
+    }
+  }
+  return probe(base_.fitted->residuals);
 }
 
 // The base in coarse steps, where it can be simulated in them.
 void CandidateSearch::SimulateCoarsely() {
   Problem problem = base_problem_;
-  if (auto residuals = StepCoarsely(problem, base_.fitted->fit.x))
+  if (auto residuals = StepCoarsely(problem, base_.fitted->fit.x, base_.fitted->residuals))
     coarse_ = {problem.step(), std::move(*residuals)};
 }
 
@@ -193,9 +202,17 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
   });
 }
 
+// What probes are to explain. Where nothing is significant anyway, as the noise is not known, in
+// the logs for a look.
+ProjectedResidual CandidateSearch::ScreenedResidual() const {
+  const Experiment& e = *fitter_.experiment;
+  return fitter_.ProjectedResidualOf(
+      *base_.fitted, noise_.known() ? TrainLogs(e) : LogsForALook(e, base_problem_.step()));
+}
+
 void CandidateSearch::Screen(const std::vector<EquationErrors>& views, const CandidateResult* rival,
                              const std::set<std::string>& hopeless) {
-  const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
+  const ProjectedResidual residual = ScreenedResidual();
   base_squares_ = residual.cost();
   base_problem_.Residuals(base_.fitted->fit.x, TrainLogs(*fitter_.experiment));
   SimulateCoarsely();
@@ -310,7 +327,7 @@ std::set<std::string> CandidateSearch::HopelessBeside(const CandidateResult& fir
   constexpr double kShare = 0.2;  // first order is wrong by factors
   if (first.probes.empty()) return {};
   const Probe& own = first.probes.front();
-  const Problem::Vector z = fitter_.ProjectedResidualOf(*base_.fitted).vector();
+  const Problem::Vector z = ScreenedResidual().vector();
   const double alone = ExplainedBy(own, z).amount;
   std::map<std::string, double> added;
   double most = 0;

@@ -479,8 +479,9 @@ CandidateSearch ScreenBeside(const SearchContext& context, const CandidateResult
   const Experiment& e = *context.fitter.experiment;
   CandidateSearch search(context,
                          {&first.hypothesis.system, first.hypothesis.Free(), &first.fitted});
-  search.Screen({EquationErrors(ProblemOf(first, e), first.fitted.fit.x, LogsForALook(e))}, nullptr,
-                hopeless);
+  const Problem beside = ProblemOf(first, e);
+  const std::vector<bool> logs = LogsForALook(e, beside.step());
+  search.Screen({EquationErrors(beside, first.fitted.fit.x, logs)}, nullptr, hopeless);
   return search;
 }
 

@@ -5,20 +5,41 @@
 
 #include <fmt/format.h>
 
+#include "identification/diagnosis/screening.h"
 #include "identification/diagnosis/verdict.h"
 
 namespace continuum {
 namespace {
 
-// As the error of a log is mostly its own offset or drift; by more than chance, what a parameter
-// gains from noise.
-bool RaisesValidateSquares(const CandidateFitter& fitter, const Diagnosis& d) {
-  auto validate = TrainLogs(*fitter.experiment);
+// Squares of the validate logs in units of the noise, without what the time step and the
+// parameters of the experiment, which are free there as well, make of them. What is added keeps
+// what the train logs give it at a time step of zero.
+double HeldOutSquares(const CandidateFitter& fitter, const Problem& problem, const Fitted& fitted,
+                      Eigen::Index first_added) {
+  auto validate = problem.TrainLogs();
   validate.flip();
-  const auto squares = [&](const Fitted& f) {
-    return fitter.whitening.Stack(f.residuals, validate).squaredNorm();
-  };
-  return squares(d.chosen()->fitted) > squares(d.before) + d.criteria.parameter_cost;
+  const Problem::Vector& x = fitted.fit.x;
+  const auto J = problem.Jacobian(x, fitted.residuals, validate);
+  const auto step = problem.StepEffects(x, fitted.residuals, validate);
+  const Eigen::Index added = x.size() - first_added;
+  const Problem::Vector shift = fitter.ProjectedResidualOf(fitted).shift().tail(added);
+  std::vector<Problem::Vector> r = fitted.residuals;
+  for (std::size_t l = 0; l < r.size(); ++l)
+    if (validate[l]) r[l] += J[l].rightCols(added) * shift;
+  std::vector<bool> fixed = fitted.sensitivities->uncertainty.at_bound;
+  std::fill(fixed.begin() + first_added, fixed.end(), true);
+  return ProjectedResidual(fitter.whitening, validate, r, J, fixed, step, fitter.criteria).cost();
+}
+
+// By more than chance, what a parameter gains from noise. As the error of a log is mostly its own
+// offset or drift, in units of the noise.
+bool RaisesValidateSquares(const CandidateFitter& fitter, const Diagnosis& d) {
+  const Experiment& e = *fitter.experiment;
+  if (!d.chosen()->fitted.complete()) return false;
+  const Eigen::Index added = d.before.fit.x.size();
+  const double before = HeldOutSquares(fitter, Problem(e, d.system), d.before, added);
+  const double after = HeldOutSquares(fitter, ProblemOf(*d.chosen(), e), d.chosen()->fitted, added);
+  return after > before + d.criteria.parameter_cost;
 }
 
 void TakeNameBack(Diagnosis& d, const std::string& why) {

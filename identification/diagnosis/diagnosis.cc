@@ -84,12 +84,12 @@ class Session {
   }
 
   // From now on fits end when the time of this stage is over.
-  void Begin(DiagnosisStage stage) { fitter_.until = time_.EndOf(stage); }
+  void Begin(DiagnosisStage stage) { fitter_.until = time_.Begin(stage); }
 
   // The same of a part that is often in vain.
   void BeginPart(DiagnosisStage stage) {
     constexpr double kShare = 0.08;  // of all the time
-    fitter_.until = time_.EndOf(stage, kShare);
+    fitter_.until = time_.BeginPart(stage, kShare);
   }
 
   bool HasTimeFor(const std::string& what) { return fitter_.HasTimeFor(what, d_.left_out); }
@@ -182,7 +182,7 @@ class Session {
   // The force that is missing at the null fit; and with the values of the experiment, as a fit that
   // leaves much has made up for what the model lacks.
   void LookAtForces() {
-    const std::vector<bool> use = LogsForALook(e_);
+    const std::vector<bool> use = LogsForALook(e_, null_.step());
     views_.emplace_back(null_, d_.before.fit.x, use);
     if (d_.before.error.train > d_.criteria.model_limited * d_.noise.floor() || !d_.noise.known())
       views_.emplace_back(null_, null_.Start(), use);
@@ -269,7 +269,7 @@ class Session {
 
   void CompareByEquation() {
     options_.Say(DiagnosisStage::kJudgement, "missing force");
-    const bool known = LogsForALook(e_) == TrainLogs(e_);
+    const bool known = LogsForALook(e_, null_.step()) == TrainLogs(e_);
     const EquationErrors forces =
         known ? views_.front() : EquationErrors(null_, d_.before.fit.x, TrainLogs(e_));
     ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {

@@ -53,14 +53,18 @@ TimeBudget::TimeBudget(Effort effort)
       begin_processor_(ProcessorSeconds()),
       effort_(effort) {}
 
-double TimeBudget::EndOf(DiagnosisStage stage) const {
+double TimeBudget::Begin(DiagnosisStage stage) {
   const Shares& shares = SharesOf(effort_);
-  const auto i = std::min(static_cast<std::size_t>(stage), kStages - 1);
-  return begin_processor_ + shares.end[i] * shares.seconds;
+  const double end = shares.end[std::min(static_cast<std::size_t>(stage), kStages - 1)];
+  if (end == share_) return end_;
+  const double left = begin_processor_ + shares.seconds - ProcessorSeconds();
+  const double own = (end - share_) / (1 - share_) * std::max(0.0, left);
+  share_ = end;
+  return end_ = std::max(begin_processor_ + end * shares.seconds, ProcessorSeconds() + own);
 }
 
-double TimeBudget::EndOf(DiagnosisStage stage, double share) const {
-  return std::min(EndOf(stage), ProcessorSeconds() + share * SharesOf(effort_).seconds);
+double TimeBudget::BeginPart(DiagnosisStage stage, double share) {
+  return std::min(Begin(stage), ProcessorSeconds() + share * SharesOf(effort_).seconds);
 }
 
 double TimeBudget::seconds() const {

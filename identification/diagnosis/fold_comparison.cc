@@ -30,6 +30,7 @@ class FoldComparison {
                  const std::vector<Parameter>& given)
       : fitter_(fitter), e_(*fitter.experiment), options_(options), d_(d), given_(given) {}
 
+  // The one that fits best gets its folds whatever time is left: without them there is no verdict.
   void Run() {
     options_.Say(DiagnosisStage::kJudgement, "folds");
     fitter_.AddFolds(Problem(e_, d_.system, given_), d_.folds, d_.before);
@@ -41,7 +42,7 @@ class FoldComparison {
       if (!WorthFolds(d_.before.error.train, c.fitted.error.train, d_.criteria)) continue;
       c.record.behind = GainOfFit(c) < d_.criteria.rival_gain * GainOfFit(d_.candidates.front());
       if (c.record.behind) continue;
-      c.record.no_time = !HasTimeFor("folds of " + c.hypothesis.NameAtPlace());
+      c.record.no_time = done > 0 && !HasTimeFor("folds of " + c.hypothesis.NameAtPlace());
       if (c.record.no_time) continue;
       options_.Say(DiagnosisStage::kJudgement, "folds of " + c.hypothesis.Name(), done,
                    d_.candidates.size());

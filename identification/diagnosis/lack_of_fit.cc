@@ -42,7 +42,7 @@ Matrix ChannelColumns(const Problem& problem, const Trace& trace, const Log& log
 std::vector<Matrix> ForceColumns(Problem problem, const Vector& x, const std::vector<Vector>& r,
                                  const std::vector<Matrix>& known, Eigen::Index count) {
   const std::vector<bool> train = problem.TrainLogs();
-  const auto coarse = StepCoarsely(problem, x);
+  const auto coarse = StepCoarsely(problem, x, r);
   auto J = problem.Jacobian(x, coarse ? *coarse : r, train, known);
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (train[l]) J[l] = Matrix(J[l].rightCols(count));

@@ -24,12 +24,18 @@ std::vector<std::size_t> InOrder(const Experiment& e) {
 
 }  // namespace
 
-std::vector<bool> LogsForALook(const Experiment& e) {
-  constexpr std::size_t kRows = 1500;
+std::vector<bool> LogsForALook(const Experiment& e, double step) {
+  constexpr std::size_t kRows = 1500, kSteps = 40'000;
   const std::vector<std::size_t> logs = InOrder(e);
   std::size_t rows = 0;
-  for (const std::size_t l : logs) rows += e.logs[l].rows();
-  const std::size_t every = std::max<std::size_t>(1, std::min(logs.size() / 2, rows / kRows));
+  double seconds = 0;
+  for (const std::size_t l : logs) {
+    rows += e.logs[l].rows();
+    seconds += e.logs[l].time.back() - e.logs[l].time.front();
+  }
+  const auto steps = static_cast<std::size_t>(e.quasi_static ? 0 : seconds / step);
+  const std::size_t times = std::max(rows / kRows, steps / kSteps);  // too many
+  const std::size_t every = std::max<std::size_t>(1, std::min(logs.size() / 2, times));
   std::vector<bool> use(e.logs.size(), false);
   for (std::size_t i = 0; i < logs.size(); i += every) use[logs[i]] = true;
   return use;

@@ -1,6 +1,7 @@
 #include "identification/diagnosis/probing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -23,9 +24,8 @@ double MostShare(const Hypothesis& h, const std::vector<double>& start, std::siz
   return ((step > 0 ? p.upper : p.lower) - h.null[i]) / step;
 }
 
-// [s]; the model's own where rows are no farther apart.
-double CoarseStep(const Problem& problem) {
-  constexpr double kCoarse = 2.5;  // of the model's steps
+// At least so many of the problem's steps, and no more than the rows are apart [s].
+double CoarseStep(const Problem& problem, double steps) {
   std::vector<double> intervals;
   for (const Log& log : problem.experiment().logs) {
     for (std::size_t row = 1; row < log.rows(); ++row)
@@ -34,8 +34,19 @@ double CoarseStep(const Problem& problem) {
   if (intervals.empty() || problem.experiment().quasi_static) return problem.step();
   const auto middle = intervals.begin() + std::ssize(intervals) / 2;
   std::nth_element(intervals.begin(), middle, intervals.end());
-  const double steps = std::ceil(*middle / (kCoarse * problem.step()) - 1e-6);
-  return std::max(problem.step(), *middle / steps);
+  const double in_a_row = std::ceil(*middle / (steps * problem.step()) - 1e-6);
+  return std::max(problem.step(), *middle / in_a_row);
+}
+
+// Whether what a coarse step changes is little beside the residuals r.
+bool IsAlike(const Problem& problem, const std::vector<Vector>& r,
+             const std::vector<Vector>& coarse) {
+  constexpr double kLittle = 0.1;
+  const std::vector<bool> train = problem.TrainLogs();
+  std::vector<Vector> change(r.size());
+  for (std::size_t l = 0; l < r.size(); ++l)
+    if (train[l]) change[l] = coarse[l] - r[l];
+  return problem.PooledRms(change, train) <= kLittle * problem.PooledRms(r, train);
 }
 
 // Tries the amplitudes of a candidate one by one, beside the fit without it.
@@ -177,15 +188,23 @@ bool NeedsOwnStep(const Problem& problem) {
                      [](const FreeParameter& p) { return p.change.attribute == "delay"; });
 }
 
-std::optional<std::vector<Vector>> StepCoarsely(Problem& problem, const Vector& x) {
-  const double own = problem.step(), step = CoarseStep(problem);
-  if (!(step > own) || NeedsOwnStep(problem)) return {};
-  problem.StepBy(step);
-  auto residuals = problem.Residuals(x, problem.TrainLogs());
-  const bool finite = std::all_of(residuals.begin(), residuals.end(),
-                                  [](const Vector& r) { return r.allFinite(); });
-  if (finite) return residuals;
-  problem.StepBy(own);
+std::optional<std::vector<Vector>> StepCoarsely(Problem& problem, const Vector& x,
+                                                const std::vector<Vector>& r) {
+  constexpr std::array kSteps{10.0, 5.0, 2.5};
+  if (NeedsOwnStep(problem)) return {};
+  const double own = problem.step();
+  const double least = CoarseStep(problem, kSteps.back());  // taken whatever it changes
+  double tried = own;
+  for (const double steps : kSteps) {
+    const double step = CoarseStep(problem, steps);
+    if (!(step > own) || step == tried) continue;
+    problem.StepBy(tried = step);
+    auto residuals = problem.Residuals(x, problem.TrainLogs());
+    const bool finite = std::all_of(residuals.begin(), residuals.end(),
+                                    [](const Vector& part) { return part.allFinite(); });
+    if (finite && (step <= least || IsAlike(problem, r, residuals))) return residuals;
+    problem.StepBy(own);
+  }
   return {};
 }
 

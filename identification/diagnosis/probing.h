@@ -18,11 +18,12 @@ struct ProbeBase {
 bool NeedsOwnStep(const Problem& problem);
 
 /// A problem goes on in a coarse step, of which rows are multiples as far as they are evenly
-/// spaced: what an effect changes shows in it as well, at less than half the cost. Returns the
-/// residuals of the train logs at x in it; nothing, and the step stays, where rows are no farther
-/// apart, the problem needs its own step, or diverges in a coarse one.
-std::optional<std::vector<Problem::Vector>> StepCoarsely(Problem& problem,
-                                                         const Problem::Vector& x);
+/// spaced: what an effect changes shows in it as well, at less than half the cost, and at a tenth
+/// where the residuals r at x are nearly the same in so coarse a step. Returns those of the train
+/// logs in it; nothing, and the step stays, where rows are no farther apart, the problem needs its
+/// own step, or diverges in a coarse one.
+std::optional<std::vector<Problem::Vector>> StepCoarsely(Problem& problem, const Problem::Vector& x,
+                                                         const std::vector<Problem::Vector>& r);
 
 /// Directions in which a candidate moves the residuals, one probe or two for each of some of its
 /// starts.

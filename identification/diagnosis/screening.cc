@@ -258,8 +258,9 @@ ProjectedResidual::ProjectedResidual(const Whitening& whitening, const std::vect
   const auto n = r.size(), priors = static_cast<Eigen::Index>(spread.size());
   Matrix A = Matrix::Zero(n + priors, J.cols() + priors);  // the last rows are the priors of S
   Eigen::Index free = 0;
+  std::vector<Eigen::Index> parameters;
   for (Eigen::Index i = 0; i < J.cols(); ++i) {
-    if (!fixed[i]) A.col(free++).head(n) = J.col(i);
+    if (!fixed[i]) A.col(free++).head(n) = J.col(i), parameters.push_back(i);
   }
   std::vector<double> most;
   for (Eigen::Index i = 0; i < priors; ++i) {
@@ -273,6 +274,8 @@ ProjectedResidual::ProjectedResidual(const Whitening& whitening, const std::vect
   Limit(A, padded, free, std::move(most));
   basis_ = Basis(A);
   residual_ = Out(padded).col(0);
+  shift_ = Vector::Zero(J.cols());
+  shift_(parameters) = -A.completeOrthogonalDecomposition().solve(padded).head(free);
   const double measured = static_cast<double>((r.array() != 0).count());
   freedom_ = measured - static_cast<double>(free);
 }

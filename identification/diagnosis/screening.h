@@ -36,6 +36,8 @@ class ProjectedResidual {
   double cost() const { return residual_.squaredNorm(); }
   /// The logs that it is made of.
   const std::vector<bool>& use() const { return use_; }
+  /// By how much the parameters change to get there, those that are fixed by nothing.
+  const Vector& shift() const { return shift_; }
   /// M applied to columns given per log.
   Matrix Project(const std::vector<Matrix>& columns) const;
   /// How much of |z|² may be expected from noise of size 1: measured numbers less free parameters.
@@ -49,6 +51,7 @@ class ProjectedResidual {
   const Whitening* whitening_;
   std::vector<bool> use_;
   Matrix basis_;  // orthonormal, of A
+  Vector shift_;
   Vector residual_;
   double freedom_;
   double roughness_ = 0;

@@ -176,10 +176,17 @@ class Monitor : public ceres::IterationCallback {
   bool settled_ = false, out_of_time_ = false;
 };
 
+constexpr const char* kOutOfTime = "out of time";
+
+// Of whitened residuals.
+double CostOf(const Vector& r, const FitOptions& options) {
+  return 0.5 * r.unaryExpr([&](double v) { return SoftL1(v, options.soft).first; }).squaredNorm();
+}
+
 // Why a fit ended.
 std::string InWords(const ceres::Solver::Summary& summary, const Monitor& watch,
                     const FitOptions& o) {
-  if (watch.out_of_time()) return "out of time";
+  if (watch.out_of_time()) return kOutOfTime;
   if (watch.settled()) return "a further step gains less than the errors of the simulation";
   if (summary.termination_type == ceres::USER_SUCCESS)
     return StopRequested() ? "interrupted" : "given up: it cannot come near a better one";
@@ -228,8 +235,7 @@ double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& 
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const Vector r = whitening.Stack(problem.Residuals(x, use), use);
-  if (!r.allFinite()) return std::numeric_limits<double>::infinity();
-  return 0.5 * r.unaryExpr([&](double v) { return SoftL1(v, options.soft).first; }).squaredNorm();
+  return r.allFinite() ? CostOf(r, options) : std::numeric_limits<double>::infinity();
 }
 
 Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<bool>& use,
@@ -243,9 +249,14 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const Vector all = whitening.Stack(r, use);
   RequireFinite(problem, fit.x, r, use, "at the start of the fit");
+  fit.cost = CostOf(all, options);
+  fit.evaluations = problem.evaluations() - before;
   if (x.size() == 0) {
-    fit.cost = 0.5 * all.squaredNorm();
     fit.converged = true;
+    return fit;
+  }
+  if (ProcessorSeconds() > options.until) {
+    fit.trace = {fit.cost}, fit.message = kOutOfTime;
     return fit;
   }
   Matrix none_yet, &slopes = options.slopes ? *options.slopes : none_yet;
@@ -279,6 +290,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
 
 Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector> r,
                      const std::vector<Matrix>& J, const std::vector<bool>& use, int iterations) {
+  constexpr double kNothing = 1e-4;  // of the squares, that is worth no simulation
   const Eigen::Index n = x.size();
   Matrix H = Matrix::Zero(n, n);
   for (std::size_t l = 0; l < use.size(); ++l) {
@@ -297,6 +309,8 @@ Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector
       if (use[l]) g += J[l].transpose() * r[l];
     }
     const Vector step = BoundedStep(box, best, H, g);
+    const double promised = -2 * g.dot(step) - step.dot(H * step);
+    if (!(promised > kNothing * cost)) return best;
     bool lower = false;
     for (double share = 1; share > 0.2 && !lower; share /= 2) {
       const Vector next = problem.Clamp(best + share * step);
@@ -304,9 +318,7 @@ Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector
       const double value = SumOfSquares(there);
       if (!(value < cost)) continue;
       lower = true;
-      const bool done = value > cost * (1 - 1e-4);
       best = next, r = std::move(there), cost = value;
-      if (done) return best;
     }
     if (!lower) break;
   }

@@ -36,5 +36,25 @@ TEST_F(ProbeTest, NothingIsSimulatedTwice) {
   EXPECT_EQ(problem.evaluations(), 3 * probes.size());  // the friction, the excess, and both
 }
 
+// Where something is wrong that is far more than what ten steps in one change, these will do; where
+// nothing is, half of them.
+TEST_F(ProbeTest, StepsAreAsCoarseAsWhatIsWrongAllows) {
+  Pendulum truth;
+  const auto u = Command(0, 200);
+  AddLog("log", "use: train", u, truth.Run(u, testing::kPeriod));
+  const Experiment e = ReadExperiment("");
+  const auto coarse_over_own = [&](double damping) {
+    Pendulum model;
+    model.damping = damping;
+    Problem problem(e, ModelSpec::Load(Write("model.xml", model.Xml("", 5e-4))));
+    const double own = problem.step();
+    const auto r = problem.Residuals(problem.Start(), problem.AllLogs());
+    EXPECT_TRUE(StepCoarsely(problem, problem.Start(), r));
+    return problem.step() / own;
+  };
+  EXPECT_NEAR(coarse_over_own(10 * truth.damping), 10, 1e-9);
+  EXPECT_NEAR(coarse_over_own(truth.damping), 2.5, 0.5);
+}
+
 }  // namespace
 }  // namespace continuum

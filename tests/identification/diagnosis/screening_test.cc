@@ -37,6 +37,21 @@ TEST_F(Screened, ExplainsThePartAlongItsColumn) {
   EXPECT_NEAR(e.amount, std::pow(c.dot(z), 2) / c.squaredNorm(), 1e-9);
 }
 
+// r = r₀ + J d: back by −d, but for what is fixed.
+TEST_F(Screened, TheShiftIsWhereTheResidualIsLeast) {
+  Matrix J(kRows, 3);
+  J << Normal(), Normal(), Normal();
+  const Vector d{{0.3, -2, 0.7}}, noise = 1e-6 * Normal();
+  const Vector r = noise + J * d;
+  const std::vector<bool> use{true};
+  const std::vector<Matrix> none{Matrix(kRows, 0)};  // of the time step
+  const ProjectedResidual all(Whitening(), use, {r}, {J}, {false, false, false}, none);
+  EXPECT_LT((all.shift() + d).norm(), 1e-6);
+  const ProjectedResidual some(Whitening(), use, {r}, {J}, {false, true, false}, none);
+  EXPECT_EQ(some.shift()[1], 0);
+  EXPECT_NEAR((r + J * some.shift()).squaredNorm(), some.cost(), 1e-9 * some.cost());
+}
+
 TEST_F(Screened, AForbiddenSignExplainsNothing) {
   const Vector c = Normal();
   const Vector z = 3 * c;  // wants −3

@@ -520,6 +520,22 @@ TEST_F(FitTest, ASoftLossIsNotDrawnByOutliers) {
   EXPECT_LT(error(0.002), 0.2 * error(0));
 }
 
+TEST_F(FitTest, WithoutTimeItEndsWhereItBegins) {
+  AddTrials({}, 1, 2e-3);
+  const ModelSpec system = Model({});
+  const Experiment e = ReadExperiment("parameters:\n" + kDamping);
+  const Problem problem(e, system);
+  FitOptions options;
+  options.until = 0;
+  const Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs(), options);
+  EXPECT_EQ(fit.x, problem.Start());
+  EXPECT_FALSE(fit.converged);
+  EXPECT_EQ(fit.message, "out of time");
+  EXPECT_EQ(fit.evaluations, 1u);
+  const auto r = problem.Residuals(problem.Start(), problem.TrainLogs());
+  EXPECT_DOUBLE_EQ(fit.cost, 0.5 * SumOfSquares(r));
+}
+
 TEST_F(FitTest, ChordsReachTheSameOptimumFromNearby) {
   AddTrials({}, 3, 2e-3);
   const ModelSpec system = Model({});
