@@ -20,6 +20,7 @@
 #include "identification/diagnosis/gain_interval.h"
 #include "identification/diagnosis/log_requirements.h"
 #include "identification/diagnosis/look_logs.h"
+#include "identification/diagnosis/needless_sizes.h"
 #include "identification/diagnosis/next_experiment.h"
 #include "identification/diagnosis/quantisation.h"
 #include "identification/diagnosis/remaining.h"
@@ -57,6 +58,7 @@ class Session {
     if (d_.noise_limited) {
       MergePlaces();
       CompleteNamed();
+      Part("sizes that are not needed", [&] { DropSizes(); });
       FitFinely();
       ScoreFolds();
       ConfirmOnFolds(fitter_, d_);
@@ -438,6 +440,14 @@ class Session {
       } catch (const Error&) {
         StopIfRequested();  // else it goes without
       }
+    }
+  }
+
+  void DropSizes() {
+    for (const std::size_t i : d_.verdict.named) {
+      CandidateResult& c = d_.candidates[i];
+      options_.Say(DiagnosisStage::kJudgement, "sizes of " + c.hypothesis.Name());
+      DropNeedlessSizes(fitter_, c);
     }
   }
 

@@ -275,7 +275,7 @@ ProjectedResidual::ProjectedResidual(const Whitening& whitening, const std::vect
   basis_ = Basis(A);
   residual_ = Out(padded).col(0);
   shift_ = Vector::Zero(J.cols());
-  shift_(parameters) = -A.completeOrthogonalDecomposition().solve(padded).head(free);
+  if (free > 0) shift_(parameters) = -A.completeOrthogonalDecomposition().solve(padded).head(free);
   const double measured = static_cast<double>((r.array() != 0).count());
   freedom_ = measured - static_cast<double>(free);
 }

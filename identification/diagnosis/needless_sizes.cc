@@ -1,0 +1,78 @@
+#include "identification/diagnosis/needless_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "error.h"
+#include "sim/io/interrupt.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+
+bool MayLoseSizes(const CandidateResult& c) {
+  const Hypothesis& h = c.hypothesis;
+  const auto sizes = h.Amplitudes();
+  if (sizes.size() < 2 || !c.fitted.complete() || c.at_quarter_step) return false;
+  return !EffectNamed(h.Card()).coulomb_level &&
+         std::all_of(sizes.begin(), sizes.end(), [&](std::size_t i) {
+           const Parameter& p = h.extra[i];
+           return p.unit == h.extra[sizes.front()].unit && p.per == Parameter::Per::kAll &&
+                  p.condition.empty();
+         });
+}
+
+Hypothesis Without(Hypothesis h, std::size_t i) {
+  const auto at = static_cast<std::ptrdiff_t>(i);
+  h.extra.erase(h.extra.begin() + at);
+  h.null.erase(h.null.begin() + at);
+  for (std::vector<double>& start : h.starts) start.erase(start.begin() + at);
+  return h;
+}
+
+Vector Without(const Vector& x, Eigen::Index k) {
+  Vector less(x.size() - 1);
+  less << x.head(k), x.tail(x.size() - 1 - k);
+  return less;
+}
+
+// The fit without one of the sizes, the one that costs least; null where all diverge.
+std::optional<CandidateResult> WithoutOne(const CandidateFitter& fitter, const CandidateResult& c) {
+  std::optional<CandidateResult> best;
+  for (const std::size_t i : c.hypothesis.Amplitudes()) {
+    CandidateResult less = c;
+    less.hypothesis = Without(c.hypothesis, i);
+    const Vector start = Without(c.fitted.fit.x, c.first_extra() + static_cast<Eigen::Index>(i));
+    try {
+      less.fitted = fitter.FitAll(ProblemOf(less, *fitter.experiment), start);
+    } catch (const Error&) {
+      continue;
+    }
+    if (!best || less.fitted.cost < best->fitted.cost) best = std::move(less);
+  }
+  return best;
+}
+
+}  // namespace
+
+bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& c) {
+  bool dropped = false;
+  while (MayLoseSizes(c) && !fitter.TimeIsOver()) {
+    std::optional<CandidateResult> less = WithoutOne(fitter, c);
+    if (!less) break;
+    const double scale = std::max(1.0, c.fitted.cost / c.fitted.sensitivities->freedom);
+    const double rises = less->fitted.cost - c.fitted.cost;
+    if (rises > scale * (fitter.criteria.parameter_cost + fitter.criteria.nested_margin) ||
+        less->fitted.error.validate > c.fitted.error.validate)
+      break;
+    less->likelihood -= rises;
+    less->probes.clear(), less->at_quarter_x.reset(), less->falls_with_step.reset();
+    c = std::move(*less), dropped = true;
+  }
+  return dropped;
+}
+
+}  // namespace continuum

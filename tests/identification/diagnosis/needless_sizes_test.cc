@@ -1,0 +1,87 @@
+#include "identification/diagnosis/needless_sizes.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "identification/candidates/candidate_generator.h"
+#include "support/pendulum.h"
+
+namespace continuum {
+namespace {
+
+using testing::Command;
+using testing::kPeriod;
+using testing::Noisy;
+using testing::Pendulum;
+
+// A pendulum on a servo, gravity in its plane turned by `tilt`: it hangs at −tilt.
+std::vector<double> Tilted(const std::vector<double>& u, double tilt) {
+  constexpr double h = 2e-5, g = 9.81;
+  const Pendulum p;
+  const double mass = p.bob + p.tip, j = p.inertia + mass * p.length * p.length;
+  double q = 0, v = 0;
+  std::vector<double> angle;
+  for (const double input : u) {
+    angle.push_back(q);
+    for (double t = 0; t < kPeriod - h / 2; t += h) {
+      const double weight = mass * g * p.length * std::sin(q + tilt);
+      v += h * (p.kp * (input - q) - p.damping * v - weight) / j;
+      q += h * v;
+    }
+  }
+  return angle;
+}
+
+class NeedlessSizes : public testing::Bench {
+ protected:
+  // The only candidate of that name, fitted to logs with a tilt of 0.03 rad.
+  CandidateResult Fitted(const std::string& effect) {
+    for (int trial = 0; trial < 2; ++trial) {
+      const auto u = Command(trial, 150);
+      AddLog("log" + std::to_string(trial), "use: train", u,
+             Noisy(Tilted(u, 0.03), 1e-3, 0, static_cast<unsigned>(trial + 1)));
+    }
+    e_ = ReadExperiment("candidates: [" + effect + "]\n", ", sigma: 0.001");
+    const ModelSpec system = ModelSpec::Load(Write("model.xml", Pendulum().Xml("", 5e-4)));
+    fitter_.experiment = &e_;
+    const Problem null(e_, system);
+    fitter_.whitening = Whitening(null, NoiseOf(e_));
+    const auto base = fitter_.FitAll(null, null.Start());
+    std::vector<std::string> skipped;
+    const auto all = MakeCandidates(e_, {&system}, SizesOf(null, base.fit.x), skipped);
+    CandidateResult c{all.at(0)};
+    const std::vector<double>& start = c.hypothesis.starts.front();
+    c.fitted = fitter_.FitAll(ProblemOf(c, e_),
+                              Eigen::Map<const Problem::Vector>(start.data(), std::ssize(start)));
+    return c;
+  }
+
+  Experiment e_;
+  CandidateFitter fitter_{nullptr};
+};
+
+// Out of its plane a tilt changes little of what a pendulum does, and nothing of that is there.
+TEST_F(NeedlessSizes, OneAxisOfATiltIsEnough) {
+  CandidateResult c = Fitted("gravity_tilt");
+  ASSERT_EQ(c.hypothesis.extra.size(), 2u);
+  const double cost = c.fitted.cost;
+  EXPECT_TRUE(DropNeedlessSizes(fitter_, c));
+  ASSERT_EQ(c.hypothesis.extra.size(), 1u);
+  EXPECT_EQ(c.hypothesis.extra[0].name, "pitch");
+  EXPECT_NEAR(std::abs(c.fitted.fit.x[0]), 0.03, 1e-3);
+  EXPECT_LT(c.fitted.cost - cost, 6.7);
+  EXPECT_FALSE(DropNeedlessSizes(fitter_, c));  // the last one stays
+}
+
+TEST_F(NeedlessSizes, AFrictionKeepsItsOwn) {
+  CandidateResult c = Fitted("stribeck");
+  const std::size_t sizes = c.hypothesis.extra.size();
+  EXPECT_FALSE(DropNeedlessSizes(fitter_, c));
+  EXPECT_EQ(c.hypothesis.extra.size(), sizes);
+}
+
+}  // namespace
+}  // namespace continuum
