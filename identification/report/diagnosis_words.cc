@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/gain.h"
 #include "identification/diagnosis/unseen_effects.h"
 #include "identification/report/model_changes.h"
@@ -134,6 +135,11 @@ std::string GainOfFolds(const Diagnosis& d) {
   return Percent(Median(Gains(d.chosen()->record))) +
          " of the error is removed, in the median of the logs that were left out in turn" +
          IntervalInWords(d);
+}
+
+// Whether a named cause changes less than the time-discretisation error.
+bool IsBelowStep(const Diagnosis& d) {
+  return WithoutPart(d.before.error.train, d.chosen()->fitted.error.train) <= d.noise.step;
 }
 
 }  // namespace
@@ -287,6 +293,9 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
     steps.emplace_back("Measure lengths, masses and the zero of the sensors again.");
   if (extended && (d.Is(Kind::kNamed) || OnlyCorrections(d)))
     steps.push_back(fmt::format("Simulate with `{}` in place of the model.", kExtendedModel));
+  if (!extended && d.chosen() && IsBelowStep(d))
+    steps.emplace_back(
+        "Take a finer time step: the cause changes less than the error of this one.");
   if (extended && d.Is(Kind::kNamed) && !OnlyNoiseRemains(d, run.after))
     steps.push_back(
         fmt::format("Look for the next cause: `continuum diagnose {}`.", kExtendedExperiment));
