@@ -28,13 +28,12 @@ nlohmann::json ParametersOf(const Hypothesis& h, const Fitted& fitted, Eigen::In
   for (std::size_t i = 0; i < h.extra.size(); ++i) {
     const Eigen::Index at = begin + static_cast<Eigen::Index>(i);
     const std::string unit = UnitOfExtra(h, i);
-    nlohmann::json interval = nullptr;  // of a fit that has none
-    if (fitted.complete()) {
-      const Uncertainty& u = fitted.sensitivities->uncertainty;
-      interval = {u.lower[at], u.upper[at]};
-    }
-    parameters[h.extra[i].name] = {
-        {"value", fitted.fit.x[at]}, {"unit", unit.empty() ? "1" : unit}, {"ci95", interval}};
+    nlohmann::json& json = parameters[h.extra[i].name];
+    json = {{"value", fitted.fit.x[at]}, {"unit", unit.empty() ? "1" : unit}, {"ci95", nullptr}};
+    if (!fitted.complete()) continue;
+    const Uncertainty& u = fitted.sensitivities->uncertainty;
+    json["ci95"] = {u.lower[at], u.upper[at]};
+    if (u.step.size() > 0) json["fine_step"] = fitted.fit.x[at] + u.step[at];
   }
   return parameters;
 }

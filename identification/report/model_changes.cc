@@ -34,6 +34,12 @@ std::string Interval(const Uncertainty& u, Eigen::Index at) {
   return fmt::format("95 %: {} … {}", Value(u.lower[at]), Value(u.upper[at]));
 }
 
+// What a fit at a step of zero would give, where the interval of the noise alone leaves that out.
+std::string AtFineStep(const Uncertainty& u, double value, Eigen::Index at) {
+  if (u.step.size() <= at || !(std::abs(u.step[at]) > u.standard_error[at])) return "";
+  return fmt::format("{} at a time step of zero", Value(value + u.step[at]));
+}
+
 bool AtBound(const Fitted& f, Eigen::Index at) {
   if (!f.complete()) return false;
   const auto& bound = f.sensitivities->uncertainty.at_bound;
@@ -113,10 +119,17 @@ std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Inde
     const bool from = std::isfinite(null) && null != 0;
     text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", h.extra[i].name,
                         from ? Value(null) + " → " : "", Value(value), Unit(UnitOfExtra(h, i)));
-    std::string notes = fitted.complete() ? Interval(fitted.sensitivities->uncertainty, at) : "";
+    std::string notes;
+    const auto add = [&](const std::string& note) {
+      if (!note.empty()) notes += (notes.empty() ? "" : "; ") + note;
+    };
+    if (fitted.complete()) {
+      add(Interval(fitted.sensitivities->uncertainty, at));
+      add(AtFineStep(fitted.sensitivities->uncertainty, value, at));
+    }
     if (AtBound(fitted, at))
-      notes += fmt::format("{}**at its {} bound**", notes.empty() ? "" : "; ",
-                           NearerBound(value, h.extra[i].lower, h.extra[i].upper));
+      add(fmt::format("**at its {} bound**",
+                      NearerBound(value, h.extra[i].lower, h.extra[i].upper)));
     if (!notes.empty()) text += " (" + notes + ")";
   }
   return text;

@@ -34,7 +34,7 @@ class Interval(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """A fitted number. Of a cause only name, value, unit and interval are given."""
+    """A fitted number. Of a cause only name, value, unit, interval and fine_step are given."""
 
     name: str
     value: float
@@ -46,6 +46,8 @@ class Parameter:
     upper: float = math.inf
     start: float = math.nan
     at_bound: bool = False
+    fine_step: float = math.nan
+    """What a fit at a time step of zero would give; nan where that is not known."""
 
     def __str__(self) -> str:
         around = "" if self.interval is None else " (95 %: {:.4g} … {:.4g})".format(*self.interval)
@@ -237,11 +239,16 @@ def _errors(error: Json, unit: str | None) -> Errors:
 def _parameters(documents: Sequence[Json]) -> dict[str, Parameter]:
     return {p["name"]: Parameter(p["name"], _number(p["value"]), p["unit"], _interval(p["ci95"]),
                                  _number(p["standard_error"]), p["lower"], p["upper"], p["start"],
-                                 p["at_bound"]) for p in documents}
+                                 p["at_bound"], _fine_step(p)) for p in documents}
+
+
+def _fine_step(parameter: Json) -> float:
+    return parameter.get("fine_step", math.nan)
 
 
 def _cause(document: Json) -> Cause:
-    parameters = {name: Parameter(name, _number(p["value"]), p["unit"], _interval(p["ci95"]))
+    parameters = {name: Parameter(name, _number(p["value"]), p["unit"], _interval(p["ci95"]),
+                                  fine_step=_fine_step(p))
                   for name, p in document["parameters"].items()}
     return Cause(document["effect"], document["where"], parameters,
                  _number(document["probability"]), document["equivalent"], document["evidence"])

@@ -201,9 +201,9 @@ void ReadSize(const Case& c, const CandidateResult& one, Answer& a) {
   for (std::size_t k = 0; k < one.hypothesis.extra.size(); ++k) {
     if (one.hypothesis.extra[k].name != h.parameter) continue;
     const Eigen::Index at = one.first_extra() + static_cast<Eigen::Index>(k);
-    a.value = one.fitted.fit.x[at];
-    a.low = one.fitted.sensitivities->uncertainty.lower[at],
-    a.high = one.fitted.sensitivities->uncertainty.upper[at];
+    const Uncertainty& u = one.fitted.sensitivities->uncertainty;
+    a.value = one.fitted.fit.x[at] + (u.step.size() > 0 ? u.step[at] : 0);  // no machine has a step
+    a.low = u.lower[at], a.high = u.upper[at];
   }
 }
 
