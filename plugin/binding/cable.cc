@@ -60,7 +60,9 @@ std::vector<CablePoint> PointsOf(const mjModel& m, const Branch& branch) {
 }
 
 Cable MakeCable(const mjModel& m, int tendon, const Branch& branch, Driven driven) {
-  Cable cable{tendon, {}, {}, {}, {0}, branch.divisor, driven == Driven::kLast, {}};
+  Cable cable{};
+  cable.tendon = tendon, cable.begin = {0}, cable.divisor = branch.divisor;
+  cable.from_last = driven == Driven::kLast, cable.both = driven == Driven::kBoth;
   std::vector<CablePoint> points = PointsOf(m, branch);
   if (cable.from_last) std::reverse(points.begin(), points.end());
   for (const CablePoint& point : points) {

@@ -23,10 +23,11 @@ struct CablePoint {
   int item;  ///< of the tendon's path, as mjModel counts them (wrap_type)
 };
 
-/// A branch of a spatial tendon, from its driven end to where it is fixed. Without pulleys a tendon
-/// is one branch. Segment k runs straight from point k to point k + 1; between the two tangent
-/// points of a geom the cable lies on that geom, and there is no segment. Contact k is what segment
-/// k − 1 and k meet at, 1 ≤ k < segments(): an interior site or a wrapped geom.
+/// A branch of a spatial tendon, from its driven end to where it is fixed, or to its other driven
+/// end. Without pulleys a tendon is one branch. Segment k runs straight from point k to point k +
+/// 1; between the two tangent points of a geom the cable lies on that geom, and there is no
+/// segment. Contact k is what segment k − 1 and k meet at, 1 ≤ k < segments(): an interior site or
+/// a wrapped geom.
 struct Cable {
   int tendon;
   std::vector<int> sites;              ///< of the branch, in this order
@@ -35,6 +36,7 @@ struct Cable {
   std::vector<int> begin;              ///< [segments + 1] of a segment's entries
   double divisor = 1;                  ///< it carries the tendon's tension by this
   bool from_last = false;              ///< driven at the end that the MJCF writes last
+  bool both = false;                   ///< pulled at both ends: it is fixed nowhere
   struct Segment {
     CablePoint near, far;
   };
@@ -46,7 +48,7 @@ struct Cable {
 };
 
 /// Which end of a tendon is pulled.
-enum class Driven { kFirst, kLast };
+enum class Driven { kFirst, kLast, kBoth };
 
 /// Why friction cannot act on a tendon ("a fixed tendon"); empty: it can.
 std::string WhyNoCable(const mjModel& m, int tendon);

@@ -20,7 +20,9 @@ Driven DrivenEnd(const Config& config) {
   const std::string_view text = config.Get("driven");
   if (text.empty() || text == "first") return Driven::kFirst;
   if (text == "last") return Driven::kLast;
-  throw Error::Input(config.Who() + ": driven", "first | last", "'" + std::string(text) + "'");
+  if (text == "both") return Driven::kBoth;
+  throw Error::Input(config.Who() + ": driven", "first | last | both",
+                     "'" + std::string(text) + "'");
 }
 
 // Cables of one robot one after the other, as CableSliding needs them.
@@ -180,7 +182,8 @@ CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector
   for (int c = 0; c < geometry_.cables(); ++c) {
     int begin = geometry_.first[c] + 1;
     for (int s = begin; s < geometry_.first[c + 1]; ++s) {
-      if (geometry_.begin[s] == geometry_.begin[s + 1]) continue;  // nothing changes its length
+      const bool runs = geometry_.both[c] && s + 1 == geometry_.first[c + 1];
+      if (geometry_.begin[s] == geometry_.begin[s + 1] && !runs) continue;  // nothing moves it
       groups_.push_back({c, begin, s + 1});
       begin = s + 1;
     }
@@ -198,6 +201,7 @@ std::string CableFriction::WhyNoSlopes(const mjModel& m) const {
   const bool none = std::all_of(p_.begin(), p_.end(), [](double p) { return p == 0; });
   if (none) return "without friction nobody knows which contacts would rest";
   if (tension_rows_.any()) return "a limit or an equality pulls a cable";
+  if (std::ranges::count(geometry_.both, true) > 0) return "a cable is pulled at both ends";
   if (sliding_.islands() > 1) return "its cables belong to several robots";
   for (const Cable& cable : cables_) {
     const int t = cable.tendon;
@@ -218,6 +222,7 @@ bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage
   if (stage == Stage::kPassive) {
     geometry_.Update(m, d);
     Bands(geometry_.theta, band_);
+    RunAlong(geometry_.slip);
     if (std::any_of(p_.begin(), p_.end(), [](double p) { return p != 0; }))
       SoftenContacts(m, d, trees_);
   } else if (Silent(m)) {
@@ -232,6 +237,28 @@ bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage
   if (stage == Stage::kAfterAll) Solve(m, d, z);
   Add(force);
   return true;
+}
+
+// A cable that is pulled at both ends runs along itself so that the friction of its contacts
+// cancels
+// ((3a) of CableSliding): by the median of their speeds, weighted by their bands. Nothing else
+// would have as much friction one way as the other.
+void CableFriction::RunAlong(std::span<double> slip) const {
+  for (int c = 0; c < geometry_.cables(); ++c) {
+    if (!geometry_.both[c]) continue;
+    const int begin = geometry_.first[c] + 1, end = geometry_.first[c + 1];
+    double median = 0, least = kInfinity;
+    for (int s = begin; s < end; ++s) {
+      double slower = 0, faster = 0;
+      for (int k = begin; k < end; ++k) {
+        if (slip[k] < slip[s]) slower += band_[k];
+        if (slip[k] > slip[s]) faster += band_[k];
+      }
+      if (const double more = std::max(slower, faster); more < least)
+        least = more, median = slip[s];
+    }
+    for (int s = begin - 1; s < end; ++s) slip[s] -= median;
+  }
 }
 
 void CableFriction::Remember(const double* z) {

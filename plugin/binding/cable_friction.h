@@ -14,7 +14,8 @@ namespace continuum {
 ///
 /// t_0 is all that pulls the tendon: actuators, spring and damper, and length limits and equalities
 /// (TensionRows), which are solved together with the friction. It is the tension at the first site,
-/// or the last (key driven="last").
+/// the last (key driven="last"), or at both ends ("both"): such a cable runs along itself until
+/// friction leaves it there.
 ///
 /// The friction is found once all other forces are known (kAfterAll), for the end of the step. In
 /// kPassive, all that mj_inverse calls, every contact keeps the ratio of the last answer.
@@ -93,6 +94,7 @@ class CableFriction : public BoundLaw {
   virtual void Bands(std::span<const double> theta, std::span<double> band) const = 0;
 
  private:
+  void RunAlong(std::span<double> slip) const;
   void Remember(const double* z);
   void Solve(const mjModel& m, mjData& d, const double* z);
   bool Collect(const double* z);

@@ -36,6 +36,7 @@ CableGeometry::CableGeometry(const mjModel& m, std::span<const Cable> cables) : 
       begin.push_back(static_cast<int>(dof.size()));
     }
     first.push_back(static_cast<int>(near_.size()));
+    both.push_back(cable.both);
   }
   for (auto* const each : {&theta, &slip, &x_, &y_, &z_, &half_}) each->assign(segments(), 0);
   arm.assign(entries(), 0);

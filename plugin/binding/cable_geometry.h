@@ -48,6 +48,7 @@ struct CableGeometry {
   }
 
   std::vector<int> first;  ///< [cables + 1] segment of each cable
+  std::vector<bool> both;  ///< [cables] pulled at both ends
   std::vector<int> begin;  ///< [segments + 1] entry of each segment
   std::vector<int> dof;    ///< [entries]
 

@@ -7,7 +7,7 @@
 namespace continuum {
 
 CableIslands::CableIslands(const mjModel& m, const CableGeometry& geometry)
-    : of_cable_(geometry.cables()) {
+    : of_cable_(geometry.cables()), end_(geometry.cables()) {
   for (int c = 0; c < geometry.cables(); ++c) {
     const int* const all = geometry.dof.data();
     moved_.emplace_back(all + geometry.begin[geometry.first[c]],
@@ -31,7 +31,7 @@ void CableIslands::Link(const mjModel& m, const CableGeometry& geometry,
     for (const int dof : moved_[k]) island_of_tree[m.dof_treeid[dof]] = group[k];
     if (k >= of_cable_.size()) rows_[group[k]].push_back(static_cast<int>(k - of_cable_.size()));
   }
-  if (island_of_tree == island_of_tree_) return;
+  if (island_of_tree == island_of_tree_ && !inertias_.empty()) return;
   island_of_tree_.swap(island_of_tree);
   Build(m, geometry);
 }
@@ -42,8 +42,11 @@ void CableIslands::Build(const mjModel& m, const CableGeometry& geometry) {
     const int island = island_of_tree_[m.dof_treeid[dof]];
     if (island >= 0) dofs[island].push_back(dof);
   }
+  std::vector<int> ends(rows_.size());
+  for (int c = 0; c < geometry.cables(); ++c)
+    end_[c] = geometry.both[c] ? ends[of_cable_[c]]++ : -1;
   inertias_.clear(), place_.clear();
-  for (const auto& each : dofs) inertias_.emplace_back(m, each);
+  for (std::size_t k = 0; k < dofs.size(); ++k) inertias_.emplace_back(m, dofs[k], ends[k]);
   least_.assign(geometry.segments(), 0);
   for (int c = 0; c < geometry.cables(); ++c) AddPlaces(geometry, c);
 }
@@ -52,7 +55,8 @@ void CableIslands::AddPlaces(const CableGeometry& geometry, int c) {
   const StepInertia& inertia = inertias_[of_cable_[c]];
   for (int l = geometry.begin[geometry.first[c]]; l < geometry.begin[geometry.first[c + 1]]; ++l)
     place_.push_back(inertia.index(geometry.dof[l]));
-  int least = inertia.size();
+  if (end_[c] >= 0) end_[c] += static_cast<int>(inertia.dofs().size());
+  int least = end_[c] >= 0 ? end_[c] : inertia.size();
   for (int s = geometry.first[c + 1]; s-- > geometry.first[c];) {
     for (int l = geometry.begin[s]; l < geometry.begin[s + 1]; ++l)
       least = std::min(least, place_[l]);

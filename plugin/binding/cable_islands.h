@@ -27,6 +27,8 @@ class CableIslands {
   std::span<const int> rows(int island) const { return rows_[island]; }
   /// Place of an entry's degree of freedom in the inertia of its island.
   int place(int entry) const { return place_[entry]; }
+  /// Place of the far end of a cable that is pulled at both ends; −1: something holds it.
+  int end(int cable) const { return end_[cable]; }
   /// The first place that moves a segment or what is distal of it.
   int least(int segment) const { return least_[segment]; }
 
@@ -40,6 +42,7 @@ class CableIslands {
   std::vector<std::vector<int>> rows_;  // [islands]
   std::vector<StepInertia> inertias_;
   std::vector<int> place_, least_;
+  std::vector<int> end_;  // [cables]
 };
 
 }  // namespace continuum

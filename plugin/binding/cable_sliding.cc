@@ -28,6 +28,10 @@ int FirstGuess(const Bend& bend) {
   return bend.memory > 0 ? 1 : -1;
 }
 
+bool IsLast(std::span<const Bend> bends, std::size_t g) {
+  return g + 1 == bends.size() || bends[g + 1].cable != bends[g].cable;
+}
+
 double SlidingRatio(const Bend& bend) {
   const double ratio = bend.side > 0 ? bend.grown : 1 / bend.grown;
   return bend.turned > 0 ? bend.turned / ratio + (1 - bend.turned) * ratio : ratio;
@@ -108,6 +112,12 @@ double CableSliding::BaseOf(const World& w, int cable) const {
   return rows ? rows_.base(cable).At(velocity_) : w.base[cable];
 }
 
+// Change of the speed with which a cable runs along itself.
+double CableSliding::EndSpeed(int cable) const {
+  const int end = islands_.end(cable);
+  return end >= 0 ? velocity_[end] : 0;
+}
+
 void CableSliding::SolveSides(const World& w, std::span<Bend> bends) {
   const double least = give_way_ = w.GiveWay();
   while (!Settle(w, bends) && give_way_ < std::max(kGiveWayMost, least)) give_way_ *= kEasier;
@@ -152,7 +162,23 @@ void CableSliding::Guess(const World& w, std::span<Bend> bends) {
     bend.side = FirstGuess(bend);
     bend.ratio = bend.side > 0 ? bend.grown : 1 / bend.grown;
     before = bend.tension = before * bend.ratio;
+    if (IsLast(bends, g) && w.geometry.both[bend.cable]) BalanceBySlowest(w, bends.first(g + 1));
   }
+}
+
+// (3a) for the guess of the last of these cables: what the others leave is at the bend that its
+// running along itself has brought to rest.
+void CableSliding::BalanceBySlowest(const World& w, std::span<Bend> bends) const {
+  std::size_t slowest = bends.size() - 1, g = slowest;
+  double product = bends[g].ratio;
+  while (g > 0 && !IsLast(bends, g - 1)) {
+    product *= bends[--g].ratio;
+    if (std::abs(bends[g].speed) < std::abs(bends[slowest].speed)) slowest = g;
+  }
+  Bend& rest = bends[slowest];
+  rest.ratio = std::clamp(rest.ratio / product, 1 / rest.grown, rest.grown);
+  double before = w.base[rest.cable];
+  for (Bend& bend : bends.subspan(g)) before = bend.tension = before * bend.ratio;
 }
 
 // Of the speeds by this force and friction, if every bend slides as guessed. Damping, left out
@@ -167,7 +193,7 @@ void CableSliding::Changes(const World& w, std::span<const Bend> bends,
   change_.resize(bends.size());
   double change = 0;
   for (std::size_t g = bends.size(); g-- > 0;) {
-    if (g + 1 == bends.size() || bends[g + 1].cable != bends[g].cable) change = 0;
+    if (IsLast(bends, g)) change = 0;
     change -= w.m.opt.timestep * w.geometry.Rate(bends[g].segment, work_.data());
     change_[g] = change;
   }
@@ -209,13 +235,14 @@ int CableSliding::FirstAtRest(std::span<const Bend> bends) const {
   return first;
 }
 
-// follow += f dv_g/dq̇ = −f Σ_{k ≥ g} dL_k/dq.
+// follow += f dv_g/dq̇ = −f Σ_{k ≥ g} dL_k/dq; f for the cable's own speed.
 void CableSliding::Follow(const World& w, const Bend& bend, double f,
                           std::span<double> follow) const {
   const CableGeometry& route = w.geometry;
   const int end = route.begin[route.first[bend.cable + 1]];
   for (int l = route.begin[bend.segment]; l < end; ++l)
     follow[islands_.place(l)] -= f * route.arm[l];
+  if (const int place = islands_.end(bend.cable); place >= 0) follow[place] += f;
 }
 
 // Solves (1) with t_g = constant − scale follow · (q̇⁺ − q̇), where follow collects the speeds of the
@@ -225,9 +252,10 @@ void CableSliding::SolveVelocity(const World& w, std::span<const Bend> bends) {
   const int n = inertia().size(), first = rows ? 0 : FirstAtRest(bends);
   if (rows) matrix_ = rows_.matrix();
   const std::span<double> block = rows ? std::span<double>(matrix_) : solver_.Block(first);
+  const auto joints = static_cast<int>(inertia().dofs().size());
   for (int i = 0; i < n; ++i) {
     const double push = rows ? rows_.push()[i] : 0;
-    velocity_[i] = w.m.opt.timestep * (w.force[inertia().dofs()[i]] + push);
+    velocity_[i] = w.m.opt.timestep * ((i < joints ? w.force[inertia().dofs()[i]] : 0) + push);
   }
   Assemble(w, bends, first, block);
   if (rows) {
@@ -263,15 +291,16 @@ void CableSliding::Assemble(const World& w, std::span<const Bend> bends, int fir
       follows = true;
       Follow(w, bend, part.yield / scale, follow_);
     }
-    for (int l = w.geometry.begin[bend.segment]; l < w.geometry.begin[bend.segment + 1]; ++l) {
-      const double arm = h * w.geometry.arm[l];
-      const int place = islands_.place(l);
+    const auto pull = [&](int place, double arm) {
       velocity_[place] -= arm * (constant - base);
-      if (!follows) continue;
+      if (!follows) return;
       double* const row = block.data() + (place - first) * rest;
       for (int j = 0; j < rest; ++j) row[j] -= arm * scale * follow_[first + j];
       for (int j = 0; slope && j < rest; ++j) row[j] += arm * (*slope)[j];
-    }
+    };
+    for (int l = w.geometry.begin[bend.segment]; l < w.geometry.begin[bend.segment + 1]; ++l)
+      pull(islands_.place(l), h * w.geometry.arm[l]);
+    if (const int place = islands_.end(cable); place >= 0 && IsLast(bends, g)) pull(place, -h);
   }
 }
 
@@ -281,7 +310,7 @@ int CableSliding::Judge(const World& w, std::span<Bend> bends) {
   speed_.resize(bends.size());
   for (std::size_t g = bends.size(); g-- > 0;) {
     const int s = bends[g].segment;
-    if (g + 1 == bends.size() || bends[g + 1].cable != bends[g].cable) change = 0;
+    if (IsLast(bends, g)) change = EndSpeed(bends[g].cable);
     for (int l = w.geometry.begin[s]; l < w.geometry.begin[s + 1]; ++l) {
       change -= w.geometry.arm[l] * velocity_[islands_.place(l)];
     }

@@ -45,6 +45,11 @@ struct Bend {
 ///   v_g⁺ ≥ 0, ρ_g = −band;   v_g⁺ ≤ 0, ρ_g = +band;   |ρ_g| ≤ band, v_g⁺ = 0       (2)
 ///   v_g = −Σ_{k ≥ g} dL_k/dt,   ρ_g = log(t_g/t_{g−1})                   (3)
 ///
+/// A cable that is pulled with t_0 at both ends runs along itself, with a speed u that adds to all
+/// its v_g. It has next to no mass, so that u is what makes the tension at the far end t_0:
+///
+///   Σ_g ρ_g = 0                                                                        (3a)
+///
 /// which holds for any inertia and step: what can stop within the step stops, what rests stays.
 /// Bends at rest may be more than what moves can tell apart. Each therefore gives way a little,
 ///
@@ -141,6 +146,8 @@ class CableSliding {
   void Change(std::span<Bend> bends, bool one);
 
   double BaseOf(const World& w, int cable) const;
+  double EndSpeed(int cable) const;
+  void BalanceBySlowest(const World& w, std::span<Bend> cable) const;
 
   CableIslands islands_;
   int island_ = 0;

@@ -29,12 +29,13 @@ double Damping(const mjModel& m, const mjData& d, int a) {
 
 }  // namespace
 
-StepInertia::StepInertia(const mjModel& m, std::span<const int> dofs) : index_(m.nv, -1) {
+StepInertia::StepInertia(const mjModel& m, std::span<const int> dofs, int ends)
+    : index_(m.nv, -1), ends_(ends) {
   std::vector<bool> used(m.ntree);
   for (const int dof : dofs) used[m.dof_treeid[dof]] = true;
   for (int dof = 0; dof < m.nv; ++dof) {
     if (!used[m.dof_treeid[dof]]) continue;
-    index_[dof] = size();
+    index_[dof] = static_cast<int>(dofs_.size());
     dofs_.push_back(dof);
   }
 }
@@ -45,9 +46,10 @@ void StepInertia::Update(const mjModel& m, const mjData& d) {
 }
 
 void StepInertia::Mass(const mjModel& m, const mjData& d, std::vector<double>& mass) const {
-  const int n = size();
+  const int n = size(), joints = n - ends_;
   mass.assign(n * n, 0);
-  for (int i = 0; i < n; ++i) {
+  for (int i = joints; i < n; ++i) mass[i * (n + 1)] = kEndDrag * m.opt.timestep;
+  for (int i = 0; i < joints; ++i) {
     const int begin = m.M_rowadr[dofs_[i]], end = begin + m.M_rownnz[dofs_[i]];
     for (int k = begin; k < end; ++k) {
       const int j = index_[m.M_colind[k]];
@@ -59,7 +61,8 @@ void StepInertia::Mass(const mjModel& m, const mjData& d, std::vector<double>& m
 void StepInertia::AddDamping(const mjModel& m, const mjData& d) {
   const double h = m.opt.timestep;
   if (TakesJointDamping(m)) {
-    for (int i = 0; i < size(); ++i) matrix_[i * (size() + 1)] += h * m.dof_damping[dofs_[i]];
+    for (std::size_t i = 0; i < dofs_.size(); ++i)
+      matrix_[i * (size() + 1)] += h * m.dof_damping[dofs_[i]];
   }
   if (!TakesAllDamping(m)) return;
   for (int t = 0; t < m.ntendon; ++t) {

@@ -13,12 +13,15 @@ namespace continuum {
 /// forces, actuators that are not affine) only makes a force stop less than it could in one step.
 class StepInertia {
  public:
-  /// Of the kinematic trees that carry the given dofs.
-  StepInertia(const mjModel& m, std::span<const int> dofs);
+  /// Of the kinematic trees that carry the given dofs; behind them stand as many ends of cables
+  /// that nothing holds, with the inertia of a drag of kEndDrag.
+  StepInertia(const mjModel& m, std::span<const int> dofs, int ends = 0);
+
+  static constexpr double kEndDrag = 1e-9;  ///< [N s/m], so that a cable has next to no mass
 
   void Update(const mjModel& m, const mjData& d);
 
-  int size() const { return static_cast<int>(dofs_.size()); }
+  int size() const { return static_cast<int>(dofs_.size()) + ends_; }
   const std::vector<int>& dofs() const { return dofs_; }
   /// Place of a dof among dofs().
   int index(int dof) const { return index_[dof]; }
@@ -32,6 +35,7 @@ class StepInertia {
   void AddOuter(double scale, std::span<const int> dofs, const double* x);
 
   std::vector<int> dofs_, index_;
+  int ends_;
   std::vector<double> matrix_;
 };
 

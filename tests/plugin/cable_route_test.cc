@@ -262,7 +262,7 @@ TEST_F(CableRoute, TheDrivenEndIsSaid) {
   rig.config += Key("driven", "motor");
   const auto [m, error] = Compile(Xml(rig));
   EXPECT_FALSE(m);
-  EXPECT_THAT(error, HasSubstr("driven: expected first | last, found 'motor'"));
+  EXPECT_THAT(error, HasSubstr("driven: expected first | last | both, found 'motor'"));
 }
 
 TEST_F(CableRoute, ASlackCableKeepsItsMemory) {
