@@ -143,6 +143,9 @@ const Tangents& CableDerivatives::Follow(const mjModel& m, const mjData& d,
     });
   }
   FollowShares();
+  for (int c = 0; c < law_.law->geometry().cables(); ++c) {
+    if (law_.law->base()[c] == 0) FollowFade(m, d, c, numbers);
+  }
   return force_;
 }
 
@@ -394,16 +397,51 @@ void CableDerivatives::FollowShares() {
   }
 }
 
+// Of −Σ_{k ≥ s} dL_k/dq q̇ at the start of the step.
+CableDerivatives::RowVector CableDerivatives::SlipChange(const mjData& d, int c, int s,
+                                                         const NumberTangents& numbers) const {
+  const CableGeometry& route = law_.law->geometry();
+  const Cable& cable = law_.law->cables()[c];
+  const Eigen::Index nv = numbers[Kind::kSpeed].rows();
+  std::vector<double> weight(cable.segments(), 0), bent(nv, 0);
+  std::fill(weight.begin() + Place(s, c), weight.end(), -1.0);
+  derivatives_.tendons().AddBends(cable.tendon, weight, d.qvel, bent);
+  RowVector change = Eigen::VectorXd::Map(bent.data(), nv).transpose() * numbers[Kind::kPosition];
+  for (int l = route.begin[s]; l < route.begin[route.first[c + 1]]; ++l)
+    change -= route.arm[l] * numbers[Kind::kSpeed].row(route.dof[l]);
+  return change;
+}
+
+// What a slack cable remembers after the step, as CableFriction::Fade has it.
+void CableDerivatives::FollowFade(const mjModel& m, const mjData& d, int c,
+                                  const NumberTangents& numbers) {
+  const CableFriction& law = *law_.law;
+  const double h = m.opt.timestep, give_way = CableSliding::GiveWay(law.Give(), h);
+  for (int s = law.geometry().first[c] + 1; s < law.geometry().first[c + 1]; ++s) {
+    const double z = law_.state[s], band = law.band()[s], slip = law.geometry().slip[s];
+    rho_.row(s).setZero();
+    if (std::abs(z) <= band * std::abs(slip) / give_way) continue;
+    RowVector fade = std::abs(slip) * band_.row(s);
+    if (slip != 0) fade += (slip < 0 ? -band : band) * SlipChange(d, c, s, numbers);
+    if (law.Give() / h == give_way) {
+      const auto give = law_.first_parameter + law.GiveParameter();
+      fade -= band * std::abs(slip) / law.Give() * numbers[Kind::kParameter].row(give);
+    }
+    rho_.row(s) =
+        numbers[Kind::kState].row(law_.first_state + s) - (z < 0 ? -1 : 1) / give_way * fade;
+  }
+}
+
 void CableDerivatives::AddNext(const mjModel& m, const Tangents& constraint,
                                NumberTangents& numbers) const {
   const CableFriction& law = *law_.law;
   Tangents& next = numbers[Kind::kNext];
   for (Eigen::Index k = 0; k < rho_.rows(); ++k) next.row(law_.first_state + k) = rho_.row(k);
   for (int c = 0; c < law.geometry().cables(); ++c) {
-    const int first = law.geometry().first[c], end = law.geometry().first[c + 1];
+    const int first = law.geometry().first[c];
     next.row(law_.first_state + first) = base_.row(c);
-    for (int s = first; law.base()[c] == 0 && s < end; ++s)  // a slack cable keeps its states
-      next.row(law_.first_state + s) = numbers[Kind::kState].row(law_.first_state + s);
+    if (law.base()[c] == 0)  // a slack cable keeps it
+      next.row(law_.first_state + first) = numbers[Kind::kState].row(law_.first_state + first);
   }
   next.middleRows(law_.first_state + static_cast<Eigen::Index>(m.nwrap), m.nv) =
       constraint.topRows(m.nv);

@@ -74,6 +74,9 @@ class CableDerivatives {
   Tangents FollowTensions(const mjModel& m, const mjData& d, Tangents other);
   double TensionOf(std::size_t g) const;
   void FollowShares();
+  void FollowFade(const mjModel& m, const mjData& d, int cable, const NumberTangents& numbers);
+  RowVector SlipChange(const mjData& d, int cable, int segment,
+                       const NumberTangents& numbers) const;
   /// Calls fn(dof, dL/dq) of the moving segment of a bend.
   template <class Fn>
   void ForEachArm(std::size_t g, Fn&& fn) const;

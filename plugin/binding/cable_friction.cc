@@ -77,55 +77,63 @@ bool IsBeyond(const mjModel& m, int body, int base) {
   return body == base;
 }
 
-// A native sensor of force or torque that a cable passes.
-std::string BlindSensor(const mjModel& m, const Config& config) {
+void Join(std::string& list, const std::string& what, const char* between) {
+  if (!what.empty()) list += (list.empty() ? "" : between) + what;
+}
+
+// Whether friction of a cable acts between the bodies from `base` on and all others: a part of the
+// cable beyond its first contact leads from one to the other.
+bool Passes(const mjModel& m, const Cable& cable, int base) {
+  for (int k = 1; k < cable.segments(); ++k) {
+    const auto& [near, far] = cable.path[k];
+    if (cable.both && k + 1 == cable.segments()) continue;  // it carries the base tension
+    if (IsBeyond(m, near.body, base) != IsBeyond(m, far.body, base)) return true;
+  }
+  return false;
+}
+
+// Native sensors of force or torque that a cable passes.
+std::string BlindSensors(const mjModel& m, std::span<const Cable> cables) {
+  std::string blind;
   for (int s = 0; s < m.nsensor; ++s) {
     if (m.sensor_type[s] != mjSENS_FORCE && m.sensor_type[s] != mjSENS_TORQUE) continue;
     const int base = m.site_bodyid[m.sensor_objid[s]];
-    for (const int t : config.Match(Place::kTendon)) {
-      for (int w = m.tendon_adr[t]; w < m.tendon_adr[t] + m.tendon_num[t]; ++w) {
-        const int id = m.wrap_objid[w], type = m.wrap_type[w];
-        if (type == mjWRAP_JOINT || type == mjWRAP_PULLEY) continue;
-        if (!IsBeyond(m, type == mjWRAP_SITE ? m.site_bodyid[id] : m.geom_bodyid[id], base))
-          continue;
-        const char* const name = mj_id2name(&m, mjOBJ_SENSOR, s);
-        return name && *name ? "'" + std::string(name) + "'" : std::to_string(s);
-      }
-    }
+    const auto passes = [&](const Cable& cable) { return Passes(m, cable, base); };
+    if (std::none_of(cables.begin(), cables.end(), passes)) continue;
+    const char* const name = mj_id2name(&m, mjOBJ_SENSOR, s);
+    Join(blind, name && *name ? "'" + std::string(name) + "'" : "number " + std::to_string(s),
+         ", ");
   }
-  return "";
+  return blind;
 }
 
 // What of the routes may not be meant.
-std::string DoubtsOf(const mjModel& m, const Config& config) {
-  std::string left, outward;
-  const auto add = [&](std::string& list, int t) {
-    list += (list.empty() ? "'" : ", '") + NameOf(m, t) + "'";
-  };
+std::string DoubtsOf(const mjModel& m, const Config& config, std::span<const Cable> cables) {
+  std::string left, outward, doubts;
   for (const int t : config.Match(Place::kTendon)) {
+    const std::string name = "'" + NameOf(m, t) + "'";
     if (const std::string why = WhyNoCable(m, t); !why.empty()) {
-      add(left, t), left += " (" + why + ")";
+      Join(left, name + " (" + why + ")", ", ");
       continue;
     }
     const int first = m.wrap_objid[m.tendon_adr[t]],
               last = m.wrap_objid[m.tendon_adr[t] + m.tendon_num[t] - 1];
-    if (DepthOf(m, first) > DepthOf(m, last)) add(outward, t);
+    if (DepthOf(m, first) > DepthOf(m, last)) Join(outward, name, ", ");
   }
-  const std::string blind = BlindSensor(m, config);
-  std::string doubts;
-  if (!blind.empty()) {
-    doubts = "MuJoCo's sensor " + blind +
-             " does not feel the friction of the cable beyond it; a sensor of plugin "
-             "continuum.wrench does";
+  if (const std::string blind = BlindSensors(m, cables); !blind.empty()) {
+    Join(doubts,
+         "MuJoCo's sensors of force and torque do not feel the friction of a cable that passes "
+         "them, as here " +
+             blind + "; a sensor of plugin continuum.wrench does",
+         "; ");
   }
-  if (!left.empty())
-    doubts += (doubts.empty() ? "" : "; ") + std::string("it leaves out tendons ") + left;
+  if (!left.empty()) Join(doubts, "it leaves out tendons " + left, "; ");
   if (!outward.empty() && config.Get("driven").empty()) {
-    doubts += (doubts.empty() ? "" : "; ") +
-              std::string(
-                  "it takes the first site as the end that is pulled, which is farther from "
-                  "the world than the last on ") +
-              outward + ": say driven=\"last\" or driven=\"first\"";
+    Join(doubts,
+         "it takes the first site as the end that is pulled, which is farther from the world than "
+         "the last on " +
+             outward + ": say driven=\"last\" or driven=\"first\"",
+         "; ");
   }
   return doubts;
 }
@@ -167,8 +175,8 @@ void Exponential(std::span<const double> x, std::span<double> y) {
 
 CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters)
     : BoundLaw(std::move(parameters)),
-      doubts_(DoubtsOf(m, config)),
       cables_(MatchCables(m, config)),
+      doubts_(DoubtsOf(m, config, cables_)),
       tension_rows_(m, cables_),
       geometry_(m, cables_),
       sliding_(m, geometry_),
@@ -373,14 +381,25 @@ double CableFriction::LargestTension() const {
   return tension_.empty() ? 0 : *std::max_element(tension_.begin(), tension_.end());
 }
 
+// Nothing presses a slack cable on its contacts. What they remember goes as it came, by the sliding
+// over which friction builds up: |ρ| falls by band · |v| h/give.
+void CableFriction::Fade(const mjModel& m, int cable, double* z) const {
+  const double give_way = CableSliding::GiveWay(Give(), m.opt.timestep);  // give/h
+  for (int s = geometry_.first[cable] + 1; s < geometry_.first[cable + 1]; ++s) {
+    const double rest = std::abs(z[s]) - band_[s] * std::abs(geometry_.slip[s]) / give_way;
+    z[s] = std::copysign(std::max(0.0, rest), z[s]);
+  }
+}
+
 void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
   for (std::size_t c = 0; c < base_.size(); ++c) {
     const int first = geometry_.first[c], end = geometry_.first[c + 1];
     if (base_[c] > 0) {
       std::copy(rho_.begin() + first, rho_.begin() + end, z + first);
       z[first] = base_[c];
-    } else if (z[first] == 0) {
-      z[first] = kLeastPull;  // no longer fresh
+    } else {
+      if (z[first] == 0) z[first] = kLeastPull;  // no longer fresh
+      Fade(m, static_cast<int>(c), z);
     }
   }
   std::vector<int> rows;

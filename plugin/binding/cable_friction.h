@@ -38,8 +38,9 @@ namespace continuum {
 ///
 /// States, as the last step left them: ρ = log(t_k/t_{k−1}) of the contact in front of each
 /// segment, for the first segment of a cable t_0 instead; and the forces of the other rows. A slack
-/// cable keeps its states, so that a step without tension forgets nothing. Several instances see
-/// each other's states.
+/// cable keeps them while it lies still, so that a step without tension forgets nothing. As it runs
+/// past a contact its |ρ| falls, to 0 where what is remembered would have built up again (give).
+/// Several instances see each other's states.
 class CableFriction : public BoundLaw {
  public:
   CableFriction(const mjModel& m, const Config& config, std::vector<double> parameters);
@@ -99,13 +100,14 @@ class CableFriction : public BoundLaw {
   void Solve(const mjModel& m, mjData& d, const double* z);
   bool Collect(const double* z);
   void Share(const double* z);
+  void Fade(const mjModel& m, int cable, double* z) const;
   void Spread(const Group& group, double rho, const double* z);
   void Add(std::span<double> force);
   int Index(mjtObj kind, int id) const;
   void FindRows(const mjModel& m, const mjData& d, const double* z);
 
-  std::string doubts_;  ///< what the user should know of the routes
   std::vector<Cable> cables_;
+  std::string doubts_;  ///< what the user should know of the routes
   TensionRows tension_rows_;
   CableGeometry geometry_;
   std::vector<Group> groups_;

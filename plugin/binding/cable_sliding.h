@@ -93,11 +93,13 @@ class CableSliding {
     std::span<SolvedRow> rows;
     double give;  ///< sliding over which friction builds up; 0: v_c h [m]
 
-    /// v_c: 1 mm/s, or what makes the give of a cable.
-    double GiveWay() const { return std::max(1e-3, give / m.opt.timestep); }
+    double GiveWay() const { return CableSliding::GiveWay(give, m.opt.timestep); }
     bool Gives() const { return GiveWay() > 1e-3; }
   };
   CableSliding(const mjModel& m, const CableGeometry& geometry);
+
+  /// v_c of (4): 1 mm/s, or what makes the give of a cable.
+  static double GiveWay(double give, double step) { return std::max(1e-3, give / step); }
 
   /// Islands of cables are solved each by itself. Rows of the last step may have linked some.
   int islands() const { return islands_.size(); }
