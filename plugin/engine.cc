@@ -105,8 +105,8 @@ void WarnOfIdleLaws(const mjModel& m, const Instance& self, const Config& config
   if (self.bound->GivesForce() && !passive) {
     WarnOnce(config.Who() + ": with springs and dampers disabled MuJoCo applies no passive forces");
   }
-  if (const std::string why = self.bound->WhyIdle(m); !why.empty()) {
-    WarnOnce(config.Who() + ": " + why);
+  for (const std::string& why : {self.bound->WhyIdle(m), config.LeftOut()}) {
+    if (!why.empty()) WarnOnce(config.Who() + ": " + why);
   }
 }
 

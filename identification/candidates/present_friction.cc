@@ -13,7 +13,10 @@ std::set<std::string> ObjectsOf(const mjModel& m, int instance, Place place) {
   std::set<std::string> names;
   const Config config(m, instance);
   if (config.Get(PlaceName(place)).empty()) return names;
-  for (const int id : config.Match(place)) names.insert(mj_id2name(&m, ObjectType(place), id));
+  for (const int id : config.Match(place)) {
+    if (place == Place::kJoint && m.jnt_type[id] == mjJNT_FREE) continue;  // globs leave it out
+    names.insert(mj_id2name(&m, ObjectType(place), id));
+  }
   return names;
 }
 

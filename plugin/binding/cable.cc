@@ -5,7 +5,6 @@
 
 #include "binding/actuator_force.h"
 #include "binding/force.h"
-#include "error.h"
 #include "mujoco_compat.h"
 
 namespace continuum {
@@ -102,24 +101,21 @@ bool Cable::Wraps() const {
   return std::any_of(path.begin(), path.end(), [](const Segment& s) { return s.far.geom >= 0; });
 }
 
-std::string WhyNoCable(const mjModel& m, int tendon) {
-  if (m.wrap_type[m.tendon_adr[tendon]] == mjWRAP_JOINT) return "a fixed tendon";
+Misfit WhyNoCable(const mjModel& m, int tendon) {
+  if (m.wrap_type[m.tendon_adr[tendon]] == mjWRAP_JOINT)
+    return {"a spatial tendon", "a fixed tendon"};
   int contacts = 0;
   for (const Branch& branch : BranchesOf(m, tendon)) {
-    if (!(branch.divisor > 0)) return "a pulley with divisor " + std::to_string(branch.divisor);
+    if (!(branch.divisor > 0))
+      return {"a spatial tendon", "a pulley with divisor " + std::to_string(branch.divisor)};
     contacts += std::max(0, Contacts(branch));
   }
-  return contacts > 0 ? "" : std::to_string(m.tendon_num[tendon]) + " sites";
+  if (contacts > 0) return {};
+  return {"a contact, which is a site or a wrapped geom between two sites",
+          std::to_string(m.tendon_num[tendon]) + " sites"};
 }
 
-std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven, const std::string& who) {
-  if (const std::string why = WhyNoCable(m, tendon); !why.empty()) {
-    throw Error::Input(who + ": tendon '" + mj_id2name(&m, mjOBJ_TENDON, tendon) + "'",
-                       why.ends_with("sites")
-                           ? "a contact, which is a site or a wrapped geom between two sites"
-                           : "a spatial tendon",
-                       why);
-  }
+std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven) {
   std::vector<Cable> cables;
   for (const Branch& branch : BranchesOf(m, tendon)) {
     if (Contacts(branch) > 0) cables.push_back(MakeCable(m, tendon, branch, driven));

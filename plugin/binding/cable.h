@@ -6,6 +6,8 @@
 
 #include <mujoco/mujoco.h>
 
+#include "binding/config.h"
+
 namespace continuum {
 
 /// An entry of a segment's Jacobian dL/dq that is not zero. Its degree of freedom moves the far end
@@ -50,11 +52,11 @@ struct Cable {
 /// Which end of a tendon is pulled.
 enum class Driven { kFirst, kLast, kBoth };
 
-/// Why friction cannot act on a tendon ("a fixed tendon"); empty: it can.
-std::string WhyNoCable(const mjModel& m, int tendon);
+/// Why friction cannot act on a tendon ("a fixed tendon").
+Misfit WhyNoCable(const mjModel& m, int tendon);
 
-/// The branches of a tendon that have contacts. Throws Error where friction cannot act.
-std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven, const std::string& who);
+/// The branches of a tendon that have contacts.
+std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven);
 
 /// What pulls a tendon [N] but for rows of the constraint solver: −sum(gear · force) of its
 /// actuators, forces within their ranges, and its spring and damper.

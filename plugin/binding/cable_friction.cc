@@ -42,25 +42,11 @@ std::vector<Cable> Grouped(const mjModel& m, std::vector<Cable> cables) {
   return sorted;
 }
 
-// A glob takes what it can; what is written by its name must be a cable.
-bool IsWritten(const Config& config, const std::string& name) {
-  if (config.Get("tendon") == name) return true;
-  for (const std::string& word : Words(config.Get("tendon"))) {
-    const std::string plain = Unescaped(word);
-    if (name == plain || (plain.find_first_of("*?[") == plain.npos && name.ends_with(plain)))
-      return true;
-  }
-  return false;
-}
-
 std::vector<Cable> MatchCables(const mjModel& m, const Config& config) {
   std::vector<Cable> cables;
-  const auto tendons = config.Match(Place::kTendon);
-  for (const int t : tendons) {
-    const bool glob = !IsWritten(config, NameOf(m, t));
-    if (glob && !WhyNoCable(m, t).empty() && t != tendons.back()) continue;
-    if (glob && !WhyNoCable(m, t).empty() && !cables.empty()) continue;
-    const auto branches = MakeCables(m, t, DrivenEnd(config), config.Who());
+  const Driven driven = DrivenEnd(config);
+  for (const int t : config.MatchFit(Place::kTendon, [&](int id) { return WhyNoCable(m, id); })) {
+    const auto branches = MakeCables(m, t, driven);
     cables.insert(cables.end(), branches.begin(), branches.end());
   }
   return Grouped(m, std::move(cables));
@@ -109,16 +95,12 @@ std::string BlindSensors(const mjModel& m, std::span<const Cable> cables) {
 
 // What of the routes may not be meant.
 std::string DoubtsOf(const mjModel& m, const Config& config, std::span<const Cable> cables) {
-  std::string left, outward, doubts;
-  for (const int t : config.Match(Place::kTendon)) {
-    const std::string name = "'" + NameOf(m, t) + "'";
-    if (const std::string why = WhyNoCable(m, t); !why.empty()) {
-      Join(left, name + " (" + why + ")", ", ");
-      continue;
-    }
-    const int first = m.wrap_objid[m.tendon_adr[t]],
-              last = m.wrap_objid[m.tendon_adr[t] + m.tendon_num[t] - 1];
-    if (DepthOf(m, first) > DepthOf(m, last)) Join(outward, name, ", ");
+  std::string outward, doubts;
+  for (const Cable& cable : cables) {
+    const int begin = m.tendon_adr[cable.tendon], end = begin + m.tendon_num[cable.tendon];
+    const bool known = outward.find("'" + NameOf(m, cable.tendon) + "'") != outward.npos;
+    if (!known && DepthOf(m, m.wrap_objid[begin]) > DepthOf(m, m.wrap_objid[end - 1]))
+      Join(outward, "'" + NameOf(m, cable.tendon) + "'", ", ");
   }
   if (const std::string blind = BlindSensors(m, cables); !blind.empty()) {
     Join(doubts,
@@ -127,7 +109,6 @@ std::string DoubtsOf(const mjModel& m, const Config& config, std::span<const Cab
              blind + "; a sensor of plugin continuum.wrench does",
          "; ");
   }
-  if (!left.empty()) Join(doubts, "it leaves out tendons " + left, "; ");
   if (!outward.empty() && config.Get("driven").empty()) {
     Join(doubts,
          "it takes the first site as the end that is pulled, which is farther from the world than "
@@ -146,6 +127,7 @@ void RequireAlone(const mjModel& m, const Config& config) {
     const auto theirs = other.Match(Place::kTendon);
     for (const int t : config.Match(Place::kTendon)) {
       if (std::find(theirs.begin(), theirs.end(), t) == theirs.end()) continue;
+      if (!WhyNoCable(m, t).found.empty()) continue;
       throw Error::Input(config.Who() + ": tendon '" + mj_id2name(&m, mjOBJ_TENDON, t) + "'",
                          "one instance on a cable (with the sum of their mu)",
                          other.Who() + " on it too");

@@ -228,6 +228,39 @@ int Config::Find(Place place, const std::string& name) const {
   return written;
 }
 
+// Whether the key has this name, and not only a glob that matches it.
+bool Config::IsWritten(Place place, const std::string& name) const {
+  const std::string text(Get(PlaceName(place)));
+  if (text == name) return true;
+  for (const std::string& word : Words(text)) {
+    const std::string plain = Unescaped(word);
+    const bool glob = plain.find_first_of("*?[") != plain.npos;
+    if (name == plain || (!glob && name.ends_with(plain))) return true;  // with a prefix
+  }
+  return false;
+}
+
+std::vector<int> Config::MatchFit(Place place, const std::function<Misfit(int)>& judge) const {
+  const std::string key(PlaceName(place));
+  std::vector<int> fit;
+  std::string left;
+  const std::vector<int> matched = Match(place);
+  for (const int id : matched) {
+    const Misfit misfit = judge(id);
+    const std::string name = NameOf(*m_, place, id);
+    const bool all = id == matched.back() && fit.empty();
+    if (misfit.found.empty()) {
+      fit.push_back(id);
+    } else if (all || IsWritten(place, name)) {
+      throw Error::Input(Who() + ": " + key + " '" + name + "'", misfit.expected, misfit.found);
+    } else {
+      left += (left.empty() ? "'" : ", '") + name + "' (" + misfit.found + ")";
+    }
+  }
+  left_out_ = left.empty() ? "" : "it leaves out " + key + "s " + left;
+  return fit;
+}
+
 Lines Config::MatchLines(Joints types) const {
   const bool joints = !Get("joint").empty(), tendons = !Get("tendon").empty();
   if (joints == tendons) {
@@ -235,15 +268,13 @@ Lines Config::MatchLines(Joints types) const {
   }
   if (tendons) return {false, Match(Place::kTendon)};
   const bool ball = types == Joints::kHingeSlideBall;
-  Lines lines{true, Match(Place::kJoint)};
-  for (const int j : lines.ids) {
-    const int type = m_->jnt_type[j];
-    if (type == mjJNT_HINGE || type == mjJNT_SLIDE || (ball && type == mjJNT_BALL)) continue;
-    throw Error::Input(Who() + ": joint '" + mj_id2name(m_, mjOBJ_JOINT, j) + "'",
-                       ball ? "a hinge, slide or ball joint" : "a hinge or slide joint",
-                       std::string(JointType(type)));
-  }
-  return lines;
+  return {true, MatchFit(Place::kJoint, [&](int j) -> Misfit {
+            const int type = m_->jnt_type[j];
+            if (type == mjJNT_HINGE || type == mjJNT_SLIDE || (ball && type == mjJNT_BALL))
+              return {};
+            return {ball ? "a hinge, slide or ball joint" : "a hinge or slide joint",
+                    std::string(JointType(type))};
+          })};
 }
 
 }  // namespace continuum

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,12 @@ struct Lines {
   std::vector<int> ids;
 };
 
+/// Why an effect cannot act on an object: "a hinge or slide joint", "a free joint". Nothing is
+/// found where it can.
+struct Misfit {
+  std::string expected, found;
+};
+
 /// The configuration of one plugin instance, as the MJCF gives it.
 class Config {
  public:
@@ -58,17 +65,25 @@ class Config {
   /// The id of the object of this exact name, found in the same way; -1: there is none.
   int Find(Place place, const std::string& name) const;
 
-  /// What one of the keys 'joint' and 'tendon' matches. Throws Error when both or none are given,
-  /// and for joints of other types.
+  /// Of what Match finds, all that an effect can act on. Throws Error for others that are written
+  /// by their name; a glob leaves them out, but not all that it matches.
+  std::vector<int> MatchFit(Place place, const std::function<Misfit(int)>& judge) const;
+  /// What MatchFit has left out ("it leaves out joints 'root' (a free joint)"); empty: nothing.
+  const std::string& LeftOut() const { return left_out_; }
+
+  /// What one of the keys 'joint' and 'tendon' matches, as MatchFit for joints of other types.
+  /// Throws Error when both or none are given.
   Lines MatchLines(Joints types) const;
 
  private:
   std::vector<int> MatchBehind(const std::string& prefix, Place place, std::string* missing) const;
   std::vector<std::string> Prefixes(Place place) const;
   bool IsAttached(const std::string& prefix) const;
+  bool IsWritten(Place place, const std::string& name) const;
 
   const mjModel* m_;
   int instance_;
+  mutable std::string left_out_;
 };
 
 /// The type of a joint in words: "a hinge joint".

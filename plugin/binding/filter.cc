@@ -43,16 +43,13 @@ void ActuatorInput::Shift(const mjModel& m, mjData& d, double change) const {
 }
 
 std::vector<ActuatorInput> MatchInputs(const mjModel& m, const Config& config) {
+  const auto judge = [&](int a) -> Misfit {
+    if (IsUsable(m, a)) return {};
+    return {"one control with a fixed gain, without dynamics or through a lag or an integrator",
+            Found(m, a)};
+  };
   std::vector<ActuatorInput> inputs;
-  for (const int a : config.Match(Place::kActuator)) {
-    if (!IsUsable(m, a)) {
-      throw Error::Input(config.Who() + ": actuator '" + mj_id2name(&m, mjOBJ_ACTUATOR, a) + "'",
-                         "one control with a fixed gain, without dynamics or through a lag or an "
-                         "integrator",
-                         Found(m, a));
-    }
-    inputs.push_back({a});
-  }
+  for (const int a : config.MatchFit(Place::kActuator, judge)) inputs.push_back({a});
   return inputs;
 }
 

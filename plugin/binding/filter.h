@@ -17,8 +17,8 @@ struct ActuatorInput {
   void Shift(const mjModel& m, mjData& d, double change) const;
 };
 
-/// The inputs of the actuators named in config. Throws Error for an actuator with several controls,
-/// another gain or other dynamics.
+/// The inputs of the actuators named in config. Those with several controls, another gain or other
+/// dynamics are none: Config::MatchFit.
 std::vector<ActuatorInput> MatchInputs(const mjModel& m, const Config& config);
 
 /// A Signal law with states at the input of actuators: they receive y = Eval(u, z) instead of u.

@@ -16,20 +16,8 @@ class BoundSignal : public BoundLaw {
 
  public:
   BoundSignal(const mjModel& m, const Config& config)
-      : BoundLaw(ReadParams<E>(config)), actuators_(config.Match(Place::kActuator)) {
-    for (const int a : actuators_) {
-      const double kp = m.actuator_gainprm[mjNGAIN * a], k = -m.actuator_biasprm[mjNBIAS * a + 1];
-      const bool servo =
-          m.actuator_gaintype[a] == mjGAIN_FIXED && m.actuator_biastype[a] == mjBIAS_AFFINE;
-      if (servo && kp == k) continue;
-      throw Error::Input(config.Who() + ": actuator '" + mj_id2name(&m, mjOBJ_ACTUATOR, a) + "'",
-                         "a position servo",
-                         servo ? "a gain of " + std::to_string(kp) + " on the control and of " +
-                                     std::to_string(k) + " on the position"
-                               : ActuatorType(m.actuator_gaintype[a], m.actuator_biastype[a],
-                                              m.actuator_dyntype[a]));
-    }
-  }
+      : BoundLaw(ReadParams<E>(config)),
+        actuators_(config.MatchFit(Place::kActuator, [&](int a) { return WhyNoServo(m, a); })) {}
   static int StateSize(const mjModel&, const Config&) { return 0; }
 
   bool IsSignal() const override { return true; }
@@ -76,6 +64,18 @@ class BoundSignal : public BoundLaw {
   }
 
  private:
+  static Misfit WhyNoServo(const mjModel& m, int a) {
+    const double kp = m.actuator_gainprm[mjNGAIN * a], k = -m.actuator_biasprm[mjNBIAS * a + 1];
+    const bool servo =
+        m.actuator_gaintype[a] == mjGAIN_FIXED && m.actuator_biastype[a] == mjBIAS_AFFINE;
+    if (servo && kp == k) return {};
+    return {"a position servo", servo ? "a gain of " + std::to_string(kp) +
+                                            " on the control and of " + std::to_string(k) +
+                                            " on the position"
+                                      : ActuatorType(m.actuator_gaintype[a], m.actuator_biastype[a],
+                                                     m.actuator_dyntype[a])};
+  }
+
   std::vector<int> actuators_;
 };
 
