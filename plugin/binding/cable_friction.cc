@@ -42,10 +42,14 @@ std::vector<Cable> Grouped(const mjModel& m, std::vector<Cable> cables) {
   return sorted;
 }
 
+std::vector<int> TendonsOf(const mjModel& m, const Config& config) {
+  return config.MatchFit(Place::kTendon, [&](int t) { return WhyNoCable(m, t); });
+}
+
 std::vector<Cable> MatchCables(const mjModel& m, const Config& config) {
   std::vector<Cable> cables;
   const Driven driven = DrivenEnd(config);
-  for (const int t : config.MatchFit(Place::kTendon, [&](int id) { return WhyNoCable(m, id); })) {
+  for (const int t : TendonsOf(m, config)) {
     const auto branches = MakeCables(m, t, driven);
     cables.insert(cables.end(), branches.begin(), branches.end());
   }
@@ -124,10 +128,9 @@ void RequireAlone(const mjModel& m, const Config& config) {
   for (int j = 0; j < m.nplugin; ++j) {
     const Config other(m, j);
     if (m.plugin[j] != m.plugin[config.instance()] || j == config.instance()) continue;
-    const auto theirs = other.Match(Place::kTendon);
-    for (const int t : config.Match(Place::kTendon)) {
+    const auto theirs = TendonsOf(m, other);
+    for (const int t : TendonsOf(m, config)) {
       if (std::find(theirs.begin(), theirs.end(), t) == theirs.end()) continue;
-      if (!WhyNoCable(m, t).found.empty()) continue;
       throw Error::Input(config.Who() + ": tendon '" + mj_id2name(&m, mjOBJ_TENDON, t) + "'",
                          "one instance on a cable (with the sum of their mu)",
                          other.Who() + " on it too");

@@ -6,6 +6,7 @@
 namespace continuum {
 namespace {
 
+constexpr double kNothing = 1e-9;  // segments that are shorter have no direction of their own [m]
 constexpr double kSmall = 0.01;  // sin²(θ/2) up to which the series of the arcsine is good to 1e-16
 
 // arcsin(√s)/√s.
@@ -124,15 +125,32 @@ double CableGeometry::WrapAngle(const mjModel& m, const mjData& d, const Wrap& w
 void CableGeometry::Directions(const mjData& d) {
   const int n = segments();
   double *const x = x_.data(), *const y = y_.data(), *const z = z_.data(), *const l = half_.data();
+  int without = 0;
   for (int s = 0; s < n; ++s) {
     const double *const p = At(d, near_[s]), *const q = At(d, far_[s]);
     x[s] = q[0] - p[0], y[s] = q[1] - p[1], z[s] = q[2] - p[2];
     l[s] = x[s] * x[s] + y[s] * y[s] + z[s] * z[s];
-    if (l[s] <= mjMINVAL * mjMINVAL) x[s] = l[s] = 1, y[s] = z[s] = 0;
+    const bool none = l[s] <= kNothing * kNothing;
+    without += none;
+    if (none) x[s] = l[s] = 1, y[s] = z[s] = 0;
   }
   for (int s = 0; s < n; ++s) {
     const double scale = 1 / std::sqrt(l[s]);
     x[s] *= scale, y[s] *= scale, z[s] *= scale;
+  }
+  for (int c = 0; without > 0 && c < cables(); ++c) FillDirections(d, c);
+}
+
+// Where sites coincide the cable goes on as before: the whole angle is at one of them.
+void CableGeometry::FillDirections(const mjData& d, int c) {
+  int known = -1;
+  for (int s = first[c]; s < first[c + 1]; ++s) {
+    const double *const p = At(d, near_[s]), *const q = At(d, far_[s]);
+    const bool none = mju_dist3(p, q) <= kNothing;
+    if (none && known >= 0) x_[s] = x_[known], y_[s] = y_[known], z_[s] = z_[known];
+    for (int k = first[c]; !none && known < 0 && k < s; ++k)
+      x_[k] = x_[s], y_[k] = y_[s], z_[k] = z_[s];
+    if (!none) known = s;
   }
 }
 

@@ -72,6 +72,7 @@ struct CableGeometry {
   void Miss(const mjModel& m, const mjData& d, const Wrap& wrap, double* tangents) const;
   double WrapAngle(const mjModel& m, const mjData& d, const Wrap& wrap) const;
   void Directions(const mjData& d);
+  void FillDirections(const mjData& d, int cable);
   void Angles();
   double HalfCosine(int s) const;
   void Arms(const mjData& d);

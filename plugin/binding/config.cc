@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cstring>
 #include <set>
 #include <sstream>
 
@@ -36,6 +37,82 @@ std::string Hint(const mjModel& m, Place place) {
   }
   if (spaces) return "; a space in a name is written '\\ '";
   return names || ObjectCount(m, place) == 0 ? "" : "; give it a name: here none has one";
+}
+
+// Ids of what all words of a text match between a prefix and an ending; none, and the word, where
+// one of them matches nothing.
+std::vector<int> MatchBetween(const mjModel& m, std::string_view text, const std::string& prefix,
+                              const std::string& ending, Place place, std::string* missing) {
+  const std::string all = prefix + std::string(text) + ending;
+  const int whole = text.empty() ? -1 : mj_name2id(&m, ObjectType(place), all.c_str());
+  if (whole >= 0) return {whole};  // also with spaces in it
+  std::set<int> ids;
+  for (const std::string& word : Words(text)) {
+    const std::string glob = Escaped(prefix) + word + Escaped(ending);
+    const bool bare = prefix.empty() && ending.empty();
+    bool known = false;
+    for (int i = 0; i < ObjectCount(m, place); ++i) {
+      const std::string name = NameOf(m, place, i);
+      const bool matches = bare ? GlobMatches(word, name)
+                                : name == prefix + word + ending || GlobMatches(glob, name);
+      if (!name.empty() && matches) known = true, ids.insert(i);
+    }
+    if (known) continue;
+    if (missing) *missing = word;
+    return {};
+  }
+  return {ids.begin(), ids.end()};
+}
+
+std::string_view Attributes(const mjModel& m, int i) {
+  const char* const begin = m.plugin_attr + m.plugin_attradr[i];
+  const char* const all = m.plugin_attr + m.npluginattr;
+  const char* end = all;
+  for (int j = 0; j < m.nplugin; ++j) {
+    if (m.plugin_attradr[j] > m.plugin_attradr[i])
+      end = std::min<const char*>(end, m.plugin_attr + m.plugin_attradr[j]);
+  }
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+// "" where it has none.
+std::string InstanceName(const mjModel& m, int i) {
+  const char* const name = mj_id2name(&m, mjOBJ_PLUGIN, i);
+  return name ? name : "";
+}
+
+// The instance of the same effect that was attached together with an object of this name; "": none.
+// mine: the prefix that the instance itself was attached with.
+std::string CameWith(const mjModel& m, int instance, const std::string& mine,
+                     const std::string& name) {
+  const std::string self = InstanceName(m, instance);
+  for (int j = 0; j < m.nplugin; ++j) {
+    const std::string other = InstanceName(m, j);
+    if (self.empty() || m.plugin[j] != m.plugin[instance]) continue;
+    if (other.size() <= self.size() || !other.ends_with(self)) continue;
+    if (name.starts_with(other.substr(0, other.size() - self.size()) + mine)) return other;
+  }
+  return "";
+}
+
+// Attach may put a suffix behind all names, and replicate a number, but not into configurations:
+// "friction_l" and "friction_r". What the name of such an instance may end with, the shortest
+// first; none where no other instance is the same but for that.
+std::vector<std::string> Endings(const mjModel& m, int instance) {
+  const std::string mine = InstanceName(m, instance);
+  std::size_t common = mine.size();
+  bool copied = false;
+  for (int j = 0; j < m.nplugin; ++j) {
+    const std::string other = InstanceName(m, j);
+    if (j == instance || m.plugin[j] != m.plugin[instance] || other.size() != mine.size()) continue;
+    if (Attributes(m, j) != Attributes(m, instance)) continue;
+    const auto differ = std::mismatch(mine.begin(), mine.end(), other.begin()).first;
+    common = std::min(common, static_cast<std::size_t>(differ - mine.begin()));
+    copied = true;
+  }
+  std::vector<std::string> endings;
+  for (std::size_t k = common; copied && k > 0; --k) endings.push_back(mine.substr(k));
+  return endings;
 }
 
 }  // namespace
@@ -149,28 +226,9 @@ int Config::Read(const Choice& choice) const {
   throw Error::Input(Who() + ": " + std::string(choice.name), all, "'" + std::string(text) + "'");
 }
 
-// Ids of what all words match behind a prefix; none, and the word, where one of them matches
-// nothing.
 std::vector<int> Config::MatchBehind(const std::string& prefix, Place place,
                                      std::string* missing) const {
-  const std::string text = prefix + std::string(Get(PlaceName(place)));
-  const int whole = mj_name2id(m_, ObjectType(place), text.c_str());
-  if (whole >= 0 && text.size() > prefix.size()) return {whole};  // also with spaces in it
-  std::set<int> ids;
-  for (const std::string& word : Words(Get(PlaceName(place)))) {
-    const std::string glob = Escaped(prefix) + word;
-    bool known = false;
-    for (int i = 0; i < ObjectCount(*m_, place); ++i) {
-      const std::string name = NameOf(*m_, place, i);
-      const bool matches = prefix.empty() ? GlobMatches(word, name)
-                                          : name == prefix + word || GlobMatches(glob, name);
-      if (!name.empty() && matches) known = true, ids.insert(i);
-    }
-    if (known) continue;
-    if (missing) *missing = word;
-    return {};
-  }
-  return {ids.begin(), ids.end()};
+  return MatchBetween(*m_, Get(PlaceName(place)), prefix, "", place, missing);
 }
 
 // What the name of the instance and the name of an object both begin with, the longest first.
@@ -206,6 +264,15 @@ std::vector<int> Config::Match(Place place) const {
   const std::vector<int> written = MatchBehind("", place, &missing);
   if (missing.empty() && written.empty())
     throw Error::Input(Who(), "the key '" + key + "'", "none");
+  const std::vector<std::string> endings = Endings(*m_, instance_);
+  std::vector<std::string> prefixes = endings.empty() ? endings : Prefixes(place);
+  prefixes.emplace_back();
+  for (const std::string& ending : endings) {
+    for (const std::string& prefix : prefixes) {
+      const auto ids = MatchBetween(*m_, Get(key), prefix, ending, place, nullptr);
+      if (!ids.empty()) return ids;
+    }
+  }
   for (const std::string& prefix : Prefixes(place)) {
     if (!written.empty() && !IsAttached(prefix)) continue;
     const auto ids = MatchBehind(prefix, place, nullptr);
@@ -220,6 +287,9 @@ int Config::Find(Place place, const std::string& name) const {
   const auto id = [&](const std::string& whole) {
     return mj_name2id(m_, ObjectType(place), whole.c_str());
   };
+  for (const std::string& ending : Endings(*m_, instance_)) {
+    if (const int found = id(name + ending); found >= 0) return found;
+  }
   const int written = id(name);
   for (const std::string& prefix : Prefixes(place)) {
     if (written >= 0 && !IsAttached(prefix)) continue;
@@ -236,6 +306,9 @@ bool Config::IsWritten(Place place, const std::string& name) const {
     const std::string plain = Unescaped(word);
     const bool glob = plain.find_first_of("*?[") != plain.npos;
     if (name == plain || (!glob && name.ends_with(plain))) return true;  // with a prefix
+    for (const std::string& ending : Endings(*m_, instance_)) {
+      if (!glob && name.ends_with(plain + ending)) return true;
+    }
   }
   return false;
 }
@@ -245,13 +318,20 @@ std::vector<int> Config::MatchFit(Place place, const std::function<Misfit(int)>&
   std::vector<int> fit;
   std::string left;
   const std::vector<int> matched = Match(place);
+  std::vector<std::string> prefixes = Prefixes(place);
+  std::erase_if(prefixes,
+                [&](const std::string& p) { return MatchBehind(p, place, nullptr) != matched; });
+  const std::string mine = prefixes.empty() ? "" : prefixes.front();
   for (const int id : matched) {
-    const Misfit misfit = judge(id);
+    Misfit misfit = judge(id);
     const std::string name = NameOf(*m_, place, id);
-    const bool all = id == matched.back() && fit.empty();
+    const bool all = id == matched.back() && fit.empty(), written = IsWritten(place, name);
+    const std::string owner = written ? "" : CameWith(*m_, instance_, mine, name);
+    if (!owner.empty())
+      misfit = {"one that came with no other instance", "that of '" + owner + "'"};
     if (misfit.found.empty()) {
       fit.push_back(id);
-    } else if (all || IsWritten(place, name)) {
+    } else if (all || written) {
       throw Error::Input(Who() + ": " + key + " '" + name + "'", misfit.expected, misfit.found);
     } else {
       left += (left.empty() ? "'" : ", '") + name + "' (" + misfit.found + ")";

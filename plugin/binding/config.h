@@ -66,7 +66,9 @@ class Config {
   int Find(Place place, const std::string& name) const;
 
   /// Of what Match finds, all that an effect can act on. Throws Error for others that are written
-  /// by their name; a glob leaves them out, but not all that it matches.
+  /// by their name; a glob leaves them out, but not all that it matches. The globs of "friction"
+  /// also leave out "b_joint" where there is an instance "b_friction" of the same effect: that came
+  /// with the robot to which both belong.
   std::vector<int> MatchFit(Place place, const std::function<Misfit(int)>& judge) const;
   /// What MatchFit has left out ("it leaves out joints 'root' (a free joint)"); empty: nothing.
   const std::string& LeftOut() const { return left_out_; }

@@ -196,6 +196,32 @@ TEST_F(CableRoute, ForcesAreThoseOfTheTensionsAtTheTangentPoints) {
   }
 }
 
+// Where one hole ends and the next begins the cable has no direction of its own.
+TEST_F(CableRoute, SitesThatCoincideBendTheCableAsOneDoes) {
+  for (const std::string gap : {"0 0", "1e-16 0", "1e-12 1e-12"}) {
+    for (const std::string path :
+         {"end corner twin load", "corner twin load", "twin corner load"}) {
+      const bool turned = path.starts_with("twin"), whole = path.starts_with("end");
+      const std::string pair = turned ? R"(<site site="twin"/><site site="corner"/>)"
+                                      : R"(<site site="corner"/><site site="twin"/>)";
+      const auto m = Model("<mujoco>" + Instance("capstan", Key("tendon", "t") + Key("mu", "0.3")) +
+                           R"(<option gravity="0 0 0"/><worldbody><site name="end" pos="0 -.5 1"/>
+        <site name="corner" pos="0 0 1"/><site name="twin" pos=")" +
+                           gap + R"( 1"/><body pos="0 0 .5"><joint type="slide" axis="0 0 1"/>
+        <geom size=".02" mass="1" contype="0"/><site name="load"/></body></worldbody>
+        <tendon><spatial name="t">)" +
+                           (whole ? R"(<site site="end"/>)" : "") + pair +
+                           R"(<site site="load"/></spatial></tendon>
+        <actuator><motor tendon="t" gear="-1"/></actuator></mujoco>)");
+      const auto d = Data(m);
+      d->ctrl[0] = 12, d->qvel[0] = .1;
+      mj_forward(m.get(), d.get());
+      const double theta = whole ? mjPI / 2 : 0;
+      EXPECT_NEAR(d->qacc[0], 12 * std::exp(-.3 * theta), 1e-6) << path << " " << gap;
+    }
+  }
+}
+
 TEST_F(CableRoute, TensionIsReadableAtSitesAndGeomsAndUnchangedWhereAGeomIsNotTouched) {
   const auto sensor = [](const char* type, const char* name) {
     return fmt::format(

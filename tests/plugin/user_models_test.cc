@@ -217,6 +217,86 @@ TEST_F(UserModels, AnInstanceFindsTheNamesThatWereAttachedWithIt) {
   for (int r = 0; r < 6; ++r) EXPECT_DOUBLE_EQ(d->efc_frictionloss[d->ne + r], .05);
 }
 
+// An arm with dry joints and a cable with friction; each instance is kept by a body of its own.
+std::string Arm(const std::string& joints, const std::string& tendons) {
+  return R"(<mujoco model="arm"><option timestep=".001" integrator="implicitfast"/><extension>
+      <plugin plugin="continuum.capstan"><instance name="cf">)" +
+         std::string("<config key=\"tendon\" value=\"") + tendons +
+         R"("/><config key="mu" value=".3"/></instance></plugin><plugin plugin="continuum.coulomb">
+      <instance name="jf"><config key="joint" value=")" +
+         joints + R"("/><config key="tau_c" value=".002"/></instance></plugin></extension>
+      <worldbody><body name="base" pos="0 0 1"><plugin plugin="continuum.capstan" instance="cf"/>
+      <site name="c0" pos="-.05 0 .02"/><site name="c1" pos="0 0 .02"/>
+      <body name="l1"><plugin plugin="continuum.coulomb" instance="jf"/>
+        <joint name="bend1" axis="0 1 0" stiffness=".5" damping=".01"/>
+        <geom type="capsule" fromto="0 0 0 .1 0 0" size=".01" mass=".05" contype="0"/>
+        <site name="c2" pos=".05 0 .02"/><body name="l2" pos=".1 0 0">
+          <joint name="bend2" axis="0 1 0" stiffness=".5" damping=".01"/>
+          <geom type="capsule" fromto="0 0 0 .1 0 0" size=".01" mass=".05" contype="0"/>
+          <site name="c3" pos=".05 0 .02"/></body></body></body></worldbody><tendon><spatial name="cable"><site site="c0"/><site site="c1"/>
+        <site site="c2"/><site site="c3"/></spatial></tendon>
+      <actuator><motor name="pull" tendon="cable" gear="-1"/></actuator></mujoco>)";
+}
+
+std::vector<double> Swung(const mjModel& m) {
+  const testing::Owned<mjData> d(mj_makeData(&m));
+  for (int k = 0; k < 300; ++k) {
+    for (int u = 0; u < m.nu; ++u) d->ctrl[u] = 3 + 2 * std::sin(.05 * k);
+    mj_step(&m, d.get());
+  }
+  return {d->qpos, d->qpos + m.nq};
+}
+
+// As attach with a suffix, and replicate, name them: "jf_l" and "jf_r", both with the configuration
+// of "jf".
+TEST_F(UserModels, RobotsThatDifferByASuffixHaveTheirOwnEffects) {
+  const std::vector<double> alone = Swung(*Model(Arm("bend1 bend2", "cable")));
+  EXPECT_GT(std::abs(alone[0]), .01);
+  char error[1000] = "";
+  using Names = std::vector<const char*>;
+  for (const auto& [joints, tendons] : {std::pair{"bend*", "c*"}, {"bend1 bend2", "cable"}}) {
+    for (const Names& suffixes : {Names{"_l", "_r"}, {"0", "1", "2"}, {"-08", "-09", "-10"}}) {
+      const testing::Owned<mjSpec> scene(mj_makeSpec());
+      std::vector<testing::Owned<mjSpec>> arms;
+      for (const char* const suffix : suffixes) {
+        arms.emplace_back(
+            mj_parseXMLString(Arm(joints, tendons).c_str(), nullptr, error, sizeof error));
+        ASSERT_TRUE(arms.back()) << error;
+        scene->option = arms.back()->option;
+        mjsFrame* const frame = mjs_addFrame(mjs_findBody(scene.get(), "world"), nullptr);
+        const mjsBody* const base = mjs_findBody(arms.back().get(), "base");
+        ASSERT_TRUE(mjs_attach(frame->element, base->element, "", suffix));
+      }
+      const testing::Owned<mjModel> m(mj_compile(scene.get(), nullptr));
+      ASSERT_TRUE(m) << mjs_getError(scene.get());
+      ASSERT_EQ(m->nplugin, 2 * std::ssize(suffixes));
+      const std::vector<double> all = Swung(*m);
+      for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(all[i], alone[i % 2], 1e-12) << i;
+    }
+  }
+}
+
+// A glob of a robot is not meant for another one that brings the same effect along.
+TEST_F(UserModels, GlobsOfARobotLeaveAnAttachedOneToItsOwnInstance) {
+  const std::vector<double> alone = Swung(*Model(Arm("bend1 bend2", "cable")));
+  char error[1000] = "";
+  const testing::Owned<mjSpec> scene(
+      mj_parseXMLString(Arm("*", "*").c_str(), nullptr, error, sizeof error));
+  ASSERT_TRUE(scene) << error;
+  std::vector<testing::Owned<mjSpec>> others;
+  for (const char* const prefix : {"b_", "b_b_"}) {
+    others.emplace_back(mj_parseXMLString(Arm("*", "*").c_str(), nullptr, error, sizeof error));
+    mjsFrame* const frame = mjs_addFrame(mjs_findBody(scene.get(), "world"), nullptr);
+    const mjsBody* const base = mjs_findBody(others.back().get(), "base");
+    ASSERT_TRUE(mjs_attach(frame->element, base->element, prefix, ""));
+  }
+  const testing::Owned<mjModel> m(mj_compile(scene.get(), nullptr));
+  ASSERT_TRUE(m) << mjs_getError(scene.get());
+  ASSERT_EQ(m->nplugin, 6);
+  const std::vector<double> all = Swung(*m);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(all[i], alone[i % 2], 1e-12) << i;
+}
+
 // Robots of this project that have effects.
 std::vector<std::string> Robots() {
   std::vector<std::string> robots;
