@@ -26,9 +26,13 @@ class EffectLogsTest : public testing::Bench, public ::testing::WithParamInterfa
     std::string csv = "time,pull,swing,turn,wind,p1,p2,p3,x0,y2,x1,ex,ez,u,v,s\n";
     for (int k = 0; k < 60; ++k) {
       const double t = 0.0105 * k;
-      csv += fmt::format("{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},{:.1f},{:.1f},2e4,0,0,0,0,0,0,0,0\n",
-                         t, k < 35 ? 5.0 : 2.0, 0.9 * std::sin(7 * t), 0.8 * std::sin(5 * t),
-                         -0.2 + 0.1 * std::sin(4 * t), 2e4 * (1 + std::sin(9 * t)), 3e4 * t);
+      csv +=
+          fmt::format("{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},{:.1f},{:.1f},2e4,0,0,0,0,0,0,0,0\n", t,
+                      k < 35   ? 5.0
+                      : k < 37 ? -3.0
+                               : 2.0,
+                      0.9 * std::sin(7 * t), 0.8 * std::sin(5 * t), -0.2 + 0.1 * std::sin(4 * t),
+                      2e4 * (1 + std::sin(9 * t)), 3e4 * t);
     }
     Write("log.csv", csv);
     std::string parameters =
@@ -117,6 +121,14 @@ TEST_P(EffectLogsTest, HaveTheSensitivitiesOfNarrowDifferences) {
         << problem.parameters()[k].name;
   }
 }
+
+// A cable that remembers over the rows without tension, and forgets some of it.
+INSTANTIATE_TEST_SUITE_P(Slack, EffectLogsTest,
+                         ::testing::Values(RandomLaw{
+                             "CapstanThatForgets",
+                             "capstan",
+                             "<config key='tendon' value='ta'/>",
+                             {{"mu", {0.05, 0.4}}, {"give", {0.05, 0.1}}}}));
 
 class NoFrictionTest : public EffectLogsTest {};
 
