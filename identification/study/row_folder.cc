@@ -5,12 +5,12 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 
 #include "error.h"
+#include "sim/io/host_name.h"
 
 namespace continuum {
 namespace {
@@ -44,11 +44,6 @@ bool IsLeftBehind(std::string name) {
 }
 
 }  // namespace
-
-std::string HostName() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 RowFolder::RowFolder(const fs::path& study, const std::string& row)
     : study_(study),

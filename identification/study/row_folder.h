@@ -26,7 +26,4 @@ class RowFolder {
 /// Takes away what processes of this machine that were killed left aside in a study's folder.
 void RemoveLeftBehind(const std::filesystem::path& study);
 
-/// The name of this machine.
-std::string HostName();
-
 }  // namespace continuum

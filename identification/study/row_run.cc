@@ -10,6 +10,7 @@
 #include "identification/study/row_result.h"
 #include "sim/io/child_process.h"
 #include "sim/io/file.h"
+#include "sim/io/host_name.h"
 #include "sim/io/interrupt.h"
 
 namespace continuum {

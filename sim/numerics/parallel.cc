@@ -1,5 +1,7 @@
 #include "sim/numerics/parallel.h"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <ctime>
@@ -8,13 +10,31 @@
 #include <thread>
 #include <vector>
 
+#include "sim/numerics/parallel_scope.h"
+#include "sim/numerics/rank_messages.h"
+
 namespace continuum {
 
 namespace {
 thread_local bool is_parallel = false;
+
+// By the system, to this process.
+std::size_t CoresAllowed() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  if (sched_getaffinity(0, sizeof cores, &cores) != 0) return std::thread::hardware_concurrency();
+  return static_cast<std::size_t>(CPU_COUNT(&cores));
 }
 
-std::size_t ThreadCount() { return std::max(1u, std::thread::hardware_concurrency()); }
+}  // namespace
+
+bool InParallelFor() { return is_parallel; }
+
+// Ranks on one machine divide its cores, and mpirun may have bound this one to few of them.
+std::size_t ThreadCount() {
+  const std::size_t cores = std::thread::hardware_concurrency();
+  return std::max<std::size_t>(1, std::min(CoresAllowed(), cores / mpi::RanksOnThisHost()));
+}
 
 double ProcessorSeconds() {
   return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);

@@ -1,0 +1,14 @@
+#include "sim/io/host_name.h"
+
+#include <unistd.h>
+
+#include <array>
+
+namespace continuum {
+
+std::string HostName() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+}  // namespace continuum

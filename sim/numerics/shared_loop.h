@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "sim/numerics/bytes.h"
+
+namespace continuum {
+
+/// Loops that all ranks of a job (ranks.h) work on. Every rank must come to the same loops in the
+/// same order.
+///
+/// Calls work(i) for each i < n on whichever rank is free, one call at a time on each, and on rank
+/// 0 take(i, what work(i) returned) for one after the other, as they come; not always in the
+/// calling thread. Ends on all ranks together. Throws Error when the user asks to stop.
+void HandOut(std::size_t n, const std::function<std::string(std::size_t i)>& work,
+             const std::function<void(std::size_t i, const std::string& result)>& take);
+
+/// ParallelFor with the threads of all ranks. What work(thread, i) stores is then on every rank, as
+/// if all of it had run there: pack(i) gives it as bytes, unpack(i, bytes) stores it. An Error of
+/// the first i that has one is thrown on every rank. Where the result of a task follows from its
+/// number alone, it is the same to the last bit for any number of ranks and threads.
+///
+/// n is the same on every rank. A single task runs on every rank.
+void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work,
+              const std::function<std::string(std::size_t i)>& pack,
+              const std::function<void(std::size_t i, const std::string& bytes)>& unpack);
+
+/// The same, where fields(archive, i) lists what work(thread, i) stores (bytes.h).
+template <class Fields>
+void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work,
+              const Fields& fields) {
+  const auto pack = [&](std::size_t i) {
+    BytesOut bytes;
+    fields(bytes, i);
+    return std::move(bytes.bytes());
+  };
+  ShareOut(n, work, pack, [&](std::size_t i, const std::string& all) {
+    BytesIn bytes(all);
+    fields(bytes, i);
+  });
+}
+
+}  // namespace continuum
