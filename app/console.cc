@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/numerics/ranks.h"
+
 namespace continuum {
 namespace {
 
@@ -40,6 +42,7 @@ CLI::Validator Within(const std::string& range, Number lower, Number upper) {
 }  // namespace
 
 void ShowProgress(const Progress& progress) {
+  if (ThisRank() > 0) return;
   static ProgressText text;
   if (isatty(STDERR_FILENO)) {
     const std::string line = text.Line(progress, Now(), Columns() - 1);

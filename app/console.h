@@ -11,6 +11,7 @@
 namespace continuum {
 
 /// Progress on stderr: one line that is rewritten on a terminal, else a line for each new stage.
+/// Of several ranks the first one shows its own.
 void ShowProgress(const Progress& progress);
 /// Ends a rewritten line.
 void EndProgress();

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include "app/console.h"
 #include "app/models_folder.h"
+#include "app/rank_job.h"
 #include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
@@ -21,6 +23,7 @@
 #include "sim/io/interrupt.h"
 #include "sim/io/json.h"
 #include "sim/io/output_folder.h"
+#include "sim/numerics/ranks.h"
 #include "sim/replay/replay.h"
 #include "sim/simulation/registration_fit.h"
 
@@ -85,7 +88,15 @@ void Film(const Experiment& e, const ModelSpec& system, const std::filesystem::p
   std::printf("video     %s\n", (folder / "extended.mp4").c_str());
 }
 
+// By the time that it used each rank would leave out other things.
+void RequireNoTimeLimit(const Options& o) {
+  if (RankCount() > 1 && EffortNamed(o.effort) != Effort::kThorough)
+    throw Error::Input("--effort", "thorough, as ranks of mpirun share work without a time limit",
+                       o.effort);
+}
+
 void RunDiagnose(const Options& o) {
+  RequireNoTimeLimit(o);
   const Experiment read = Experiment::Read(o.experiment);
   const ModelSpec system = ModelSpec::Load(read.model);
   const std::string old = OldComparison(o.compare, read);
@@ -104,13 +115,16 @@ void RunDiagnose(const Options& o) {
                                    kFallbackModel,   kFallbackExperiment, "simulated/",
                                    kNextInputs,      "report.html"};
   if (o.video) outputs.push_back("extended.mp4");
-  const OutputFolder made(o.out, outputs, {read.file, read.model});
+  std::optional<OutputFolder> made;
+  if (ThisRank() == 0) made.emplace(o.out, outputs, std::vector{read.file, read.model});
   const Experiment e = Registered(read, system);
-  if (e.soft > 0)
+  if (e.soft > 0 && ThisRank() == 0)
     fmt::print(stderr, "warning: {}: `loss: soft_l1` is for identify; diagnose uses squares\n",
                e.file.string());
-  const GracefulEnd graceful;
+  std::optional<GracefulEnd> graceful;
+  if (RankCount() == 1) graceful.emplace();
   const Diagnosis d = Diagnose(e, system, options);
+  if (!GoOnAlone()) return;
   ShowProgress(ProgressOf(DiagnosisStage::kFiles));
   MakeFolder(o.out);
   const ExtensionRun run = MeasureExtension(e, d, o.out);

@@ -1,6 +1,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "app/console.h"
 #include "app/log_check.h"
+#include "app/rank_job.h"
 #include "error.h"
 #include "identification/identify.h"
 #include "identification/report/derivative_table.h"
@@ -18,6 +20,7 @@
 #include "sim/experiment/registration.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/output_folder.h"
+#include "sim/numerics/ranks.h"
 #include "sim/replay/replay.h"
 #include "sim/replay/replay_report.h"
 #include "sim/simulation/registration_fit.h"
@@ -55,16 +58,21 @@ void RunIdentify(const Options& o) {
   const ModelSpec system = ModelSpec::Load(read.model);
   CheckNames(read, system);
   if (o.derivatives) return ListDerivatives(o, read, system);
-  const OutputFolder made(o.out,
-                          {"fit.json", "fitted.xml", "fitted.yaml", "simulated/", "report.html"},
-                          {read.file, read.model});
+  std::optional<OutputFolder> made;
+  if (ThisRank() == 0)
+    made.emplace(o.out,
+                 std::vector<std::string>{"fit.json", "fitted.xml", "fitted.yaml", "simulated/",
+                                          "report.html"},
+                 std::vector{read.file, read.model});
   const Experiment e = Registered(read, system);
   IdentifyOptions options = ReadOptions(o);
   options.accepted = [&](const std::string& how) {
+    if (ThisRank() > 0) return;
     std::fprintf(stderr, "%s\n", how.c_str());
     PrintLogCheck(o.experiment, e);
   };
   const IdentifyResult result = Identify(e, system, options);
+  if (!GoOnAlone()) return;
   const auto missing = WriteFit(e, result, o.out);
   EndProgress();
   std::fputs(FitSummary(e, result, o.out).c_str(), stdout);

@@ -7,6 +7,7 @@
 #include <exception>
 #include <string>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "app/console.h"
@@ -14,6 +15,8 @@
 #include "app/study.h"
 #include "error.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/rank_messages.h"
+#include "sim/numerics/ranks.h"
 
 namespace {
 
@@ -35,12 +38,29 @@ void RefuseEmptyValues(CLI::App& app) {
   }
 }
 
+// What several ranks can work on; of anything else each would do the same, into one place.
+void RequireSharedWork(const std::string& subcommand) {
+  if (continuum::RankCount() == 1) return;
+  for (const char* const shared : {"study", "identify", "diagnose"})
+    if (subcommand == shared) return;
+  throw continuum::Error::Input("mpirun", "study, identify or diagnose", subcommand);
+}
+
+// Says why the program ends, on one rank for all of them.
+int Fail(const std::string& why, int exit_code) {
+  continuum::EndProgress();
+  continuum::EndRanks(exit_code, [&](const std::string& who) {
+    std::fprintf(stderr, "continuum: %s%s\n", who.c_str(), why.c_str());
+  });
+  return exit_code;
+}
+
 // CLI11 has exit codes of its own; ours are 0 done, 1 failed, 2 wrong use.
 int Parse(CLI::App& app, int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-' && !IsSubcommand(app, argv[1])) {
-    std::fprintf(stderr, "continuum: no subcommand '%s'. See continuum --help.\n", argv[1]);
-    return 2;
+    return Fail(fmt::format("no subcommand '{}'. See continuum --help.", argv[1]), 2);
   }
+  if (argc > 1 && IsSubcommand(app, argv[1])) RequireSharedWork(argv[1]);
   try {
     app.parse(argc, argv);
     return 0;
@@ -51,8 +71,7 @@ int Parse(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::CallForVersion& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    std::fprintf(stderr, "continuum: %s\nSee continuum --help.\n", e.what());
-    return 2;
+    return Fail(std::string(e.what()) + "\nSee continuum --help.", 2);
   }
 }
 
@@ -64,10 +83,17 @@ void RequirePrinted() {
                                 errno ? std::strerror(errno) : "one that failed");
 }
 
+// "0.1.0" and, on a line of its own, by what ranks talk.
+std::string Version() {
+  const std::string mpi = continuum::mpi::Library();
+  return std::string(CONTINUUM_VERSION) + "\n" + (mpi.empty() ? "without MPI" : "with " + mpi);
+}
+
 // Asks the work to end with whole files; who asks again does not want to wait for them.
 void Stop(int) {
   if (continuum::StopRequested()) std::_Exit(1);
   continuum::RequestStop();
+  if (continuum::RankCount() > 1) return;  // mpirun said it
   constexpr char kText[] = "\ncontinuum: stopping; once more to end at once\n";
   [[maybe_unused]] const auto written = write(STDERR_FILENO, kText, sizeof kText - 1);
 }
@@ -79,7 +105,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit fails where it is written
   CLI::App app{
       "Continuum robots in MuJoCo: run, fit, and find out what the simulation gets wrong."};
-  app.set_version_flag("--version", CONTINUUM_VERSION);
+  app.set_version_flag("--version", Version());
   app.require_subcommand(1);
   app.footer(
       "Example:\n  continuum demo\n"
@@ -99,17 +125,16 @@ int main(int argc, char** argv) {
   continuum::AddModels(app);
   RefuseEmptyValues(app);
   try {
+    continuum::JoinRanks(CONTINUUM_VERSION);
+    if (continuum::ThisRank() > 0 && !std::freopen("/dev/null", "w", stdout)) return 1;
     const int parsed = Parse(app, argc, argv);
     continuum::EndProgress();
     RequirePrinted();
+    continuum::LeaveRanks();
     return parsed ? parsed : exit_code;
   } catch (const continuum::Error& e) {
-    continuum::EndProgress();
-    std::fprintf(stderr, "continuum: %s\n", e.what());
-    return e.exit_code();
+    return Fail(e.what(), e.exit_code());
   } catch (const std::exception& e) {
-    continuum::EndProgress();
-    std::fprintf(stderr, "continuum: %s\n", e.what());
-    return 1;
+    return Fail(e.what(), 1);
   }
 }

@@ -1,9 +1,11 @@
 #include "app/study.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include "app/console.h"
+#include "app/rank_job.h"
 #include "error.h"
 #include "identification/study/row_folder.h"
 #include "identification/study/row_run.h"
@@ -20,6 +23,8 @@
 #include "sim/io/file.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/output_folder.h"
+#include "sim/numerics/ranks.h"
+#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -61,25 +66,61 @@ void PrintList(const StudyTable& study, const std::vector<std::size_t>& rows) {
   for (const std::size_t r : rows) std::printf("%s\n", study.rows[r].name.c_str());
 }
 
-// Runs the rows in turn; returns how all of these stand.
-std::vector<RowStatus> RunRows(const StudyTable& study, const std::vector<std::size_t>& rows,
-                               const StudyRun& run, bool again, FileHashes& hashes) {
-  std::vector<RowStatus> all;
-  for (std::size_t i = 0; i < rows.size() && !StopRequested(); ++i) {
-    const StudyRow& row = study.rows[rows[i]];
-    RowStatus status = StatusOf(study, row, run.out, run.version, hashes);
-    const bool was_done = status.state == State::kDone;
-    if (MayRun(status, again))
-      status = RunRow(study, row, run, status, {"study", i, rows.size(), row.name});
-    if (!was_done && !StopRequested()) Print(study, row, status, run.out);
-    all.push_back(std::move(status));
+// The rows of a run, shared between the ranks.
+class Rows {
+ public:
+  Rows(const StudyTable& study, const std::vector<std::size_t>& rows, StudyRun run, bool again)
+      : study_(study), rows_(rows), run_(std::move(run)), again_(again), all_(rows.size()) {
+    run_.progress = [this](const Progress& progress) {
+      const std::lock_guard lock(console_);
+      ShowProgress(progress);
+    };
   }
-  EndProgress();
-  StopIfRequested();
-  return all;
-}
 
-std::vector<RowStatus> LookAtAll(const StudyTable& study, const StudyRun& run, FileHashes& hashes) {
+  // How all of these stand, as rank 0 knows. Throws Error when the user asked to stop, or mpirun
+  // did as a rank is gone.
+  const std::vector<RowStatus>& Run() {
+    const auto work = [&](std::size_t i) { return RunOne(i); };
+    HandOut(rows_.size(), work, [&](std::size_t i, const std::string& m) { Take(i, m); });
+    EndProgress();
+    return all_;
+  }
+  const std::vector<RowStatus>& all() const { return all_; }
+
+ private:
+  // A mark where it is news, and the status.
+  std::string RunOne(std::size_t i) {
+    const StudyRow& row = study_.rows[rows_[i]];
+    RowStatus status = StatusOf(study_, row, run_.out, run_.version, hashes_);
+    const bool was_done = status.state == State::kDone;
+    if (MayRun(status, again_))
+      status = RunRow(study_, row, run_, status, {"study", done_, rows_.size(), row.name});
+    return (was_done || StopRequested() ? kNoNews : kNews) + ToMessage(status);
+  }
+
+  void Take(std::size_t i, const std::string& message) {
+    const StudyRow& row = study_.rows[rows_[i]];
+    all_[i] = StatusFrom(message.substr(kNews.size()));
+    ++done_;
+    const std::lock_guard lock(console_);
+    if (message.starts_with(kNews)) Print(study_, row, all_[i], run_.out);
+    if (RankCount() > 1) ShowProgress({"study", done_, rows_.size(), row.name});
+  }
+
+  inline static const std::string kNews = "+", kNoNews = "-";
+
+  const StudyTable& study_;
+  const std::vector<std::size_t>& rows_;
+  StudyRun run_;
+  const bool again_;
+  FileHashes hashes_;
+  std::mutex console_;
+  std::vector<RowStatus> all_;
+  std::atomic<std::size_t> done_ = 0;
+};
+
+std::vector<RowStatus> LookAtAll(const StudyTable& study, const StudyRun& run) {
+  FileHashes hashes;
   std::vector<RowStatus> all;
   for (const StudyRow& row : study.rows)
     all.push_back(StatusOf(study, row, run.out, run.version, hashes));
@@ -98,6 +139,40 @@ void PrintSummary(const StudyTable& study, std::vector<RowStatus> all, const fs:
   std::printf("report: %s\n", (out / "study.html").c_str());
 }
 
+std::vector<State> StatesOf(const std::vector<RowStatus>& rows) {
+  std::vector<State> states;
+  for (const RowStatus& status : rows) states.push_back(status.state);
+  return states;
+}
+
+// Says what stands also where it comes to no end.
+std::vector<RowStatus> RunRows(const StudyTable& study, const std::vector<std::size_t>& which,
+                               const StudyRun& run, bool again) {
+  Rows rows(study, which, run, again);
+  try {
+    return rows.Run();
+  } catch (const Error&) {
+    EndProgress();
+    if (ThisRank() == 0) std::printf("%s\n", CountsInWords(StatesOf(rows.all())).c_str());
+    std::fflush(stdout);
+    throw;
+  }
+}
+
+// The first rank looks at the folder for all; they must then see the same rows.
+void Prepare(const StudyTable& study, const StudyRun& run,
+             const std::vector<std::string>& sources) {
+  if (ThisRank() == 0) {
+    MakeFolder(run.out);
+    for (const char* const file : {"study.csv", "study.json", "study.html"})
+      RequireWritable(run.out / file, {sources.begin(), sources.end()});
+  }
+  std::vector<std::string> names;
+  for (const StudyRow& row : study.rows) names.push_back(row.name);
+  RequireSameOnRanks("rows of the study", fmt::format("{}", fmt::join(names, ", ")));
+  RemoveLeftBehind(run.out);
+}
+
 int RunStudy(const Options& o) {
   const StudyTable study = ReadStudy(o.sources, o.defaults);
   const auto rows = SelectRows(study, o.rows, o.shard);
@@ -107,19 +182,16 @@ int RunStudy(const Options& o) {
   }
   if (o.out.empty()) throw Error::Input("--out", "a folder for the results", "nothing");
   const StudyRun run = RunOf(o);
-  MakeFolder(run.out);
-  for (const char* const file : {"study.csv", "study.json", "study.html"})
-    RequireWritable(run.out / file, {o.sources.begin(), o.sources.end()});
-  RemoveLeftBehind(run.out);
-  FileHashes hashes;
-  const bool whole = o.rows.empty() && o.shard.empty();
-  std::vector<RowStatus> all =
-      o.summary ? LookAtAll(study, run, hashes) : RunRows(study, rows, run, o.again, hashes);
-  std::vector<State> states;
-  for (const RowStatus& status : all) states.push_back(status.state);
+  Prepare(study, run, o.sources);
+  std::vector<RowStatus> all;
+  if (!o.summary) all = RunRows(study, rows, run, o.again);
+  if (!GoOnAlone()) return 0;
+  if (o.summary) all = LookAtAll(study, run);
+  const auto states = StatesOf(all);
   const bool done =
       std::all_of(states.begin(), states.end(), [](State state) { return state == State::kDone; });
   std::printf("%s\n", CountsInWords(states).c_str());
+  const bool whole = o.rows.empty() && o.shard.empty();
   if (whole || o.summary) PrintSummary(study, std::move(all), run.out);
   return done ? 0 : kNotAllDone;
 }

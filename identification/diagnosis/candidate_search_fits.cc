@@ -7,9 +7,10 @@
 #include "error.h"
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/family_starts.h"
+#include "identification/diagnosis/search_bytes.h"
 #include "identification/statistics/uncertainty.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/parallel.h"
+#include "sim/numerics/shared_loop.h"
 
 // The fits of a search: who gets one, and which are worth their sensitivities.
 namespace continuum {
@@ -92,13 +93,14 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
     if (wave.empty()) break;
     limit -= wave.size();
     SayFit(*wave.front(), needed);
-    ParallelFor(wave.size(), [&](std::size_t, std::size_t i) {
+    const auto fit = [&](std::size_t, std::size_t i) {
       try {
         FitOne(*wave[i], rival + alike, reached ? 1 : kStartsTried);
       } catch (const Error& error) {
         wave[i]->error = error.what();
       }
-    });
+    };
+    ShareOut(wave.size(), fit, [&](auto& a, std::size_t i) { FieldsOfFit(a, *wave[i]); });
     StopIfRequested();
     FitPlainer();
     for (const CandidateResult* const c : wave) {

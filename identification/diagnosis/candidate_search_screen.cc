@@ -15,8 +15,9 @@
 #include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/quantisation.h"
+#include "identification/diagnosis/search_bytes.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/parallel.h"
+#include "sim/numerics/shared_loop.h"
 
 // The screen of a search: what every candidate could explain, before any fit.
 namespace continuum {
@@ -157,11 +158,12 @@ void CandidateSearch::KeepThoseThatMayOutdo(const CandidateResult& best) {
   if (!std::isfinite(needed)) return;
   options_.Say(DiagnosisStage::kScreen, "one log");
   std::vector<std::uint8_t> hopeless(candidates.size(), 0);
-  ParallelFor(candidates.size(), [&](std::size_t, std::size_t i) {
+  const auto look = [&](std::size_t, std::size_t i) {
     const CandidateResult& c = candidates[i];
     if (!c.hypothesis.OnlyMeasured() && !(c.force_promise > 0))
       hopeless[i] = LookAt(c, residual) < needed;
-  });
+  };
+  ShareOut(candidates.size(), look, [&](auto& a, std::size_t i) { a(hopeless[i]); });
   std::size_t i = 0;
   std::erase_if(candidates, [&](const CandidateResult&) { return hopeless[i++] != 0; });
 }
@@ -184,22 +186,25 @@ void CandidateSearch::ProbeAll(const ProjectedResidual& residual, bool sees_forc
     return fitter_.HasTimeFor(look + c.hypothesis.NameAtPlace(), left_out);
   };
   const std::vector<CandidateResult*> order = InOrderOfForce();
-  ParallelFor(order.size(), [&](std::size_t, std::size_t i) {
+  const auto probes = [&](auto& archive, std::size_t i) { FieldsOfProbes(archive, *order[i]); };
+  const auto first_shape = [&](std::size_t, std::size_t i) {
     CandidateResult& c = *order[i];
     if (!say(c, "a look at ")) return;
     auto starts = c.hypothesis.StartsOfShape(true);
     if (c.force_start > 0) starts.push_back(c.force_start);
     ProbeOne(c, residual, starts);
     LookAtError(c);
-  });
+  };
+  ShareOut(order.size(), first_shape, probes);
   const double least = sees_forces ? criteria_.fit_share * MostExplained() : 0;
-  ParallelFor(order.size(), [&](std::size_t, std::size_t i) {
+  const auto other_shapes = [&](std::size_t, std::size_t i) {
     CandidateResult& c = *order[i];
     auto others = c.hypothesis.StartsOfShape(false);
     std::erase(others, c.force_start);
     if (c.explained < least || c.probes.empty() || others.empty()) return;
     if (say(c, "other shapes of ")) ProbeOne(c, residual, others);
-  });
+  };
+  ShareOut(order.size(), other_shapes, probes);
 }
 
 // What probes are to explain. Where nothing is significant anyway, as the noise is not known, in
@@ -272,10 +277,13 @@ void CandidateSearch::LookAtForces(const EquationErrors& view, const CandidateRe
   if (!view.any()) return;
   const std::vector<CandidateResult*> order = CheapestFirst();
   std::vector<std::optional<EquationStart>> found(order.size());
-  ParallelFor(order.size(),
-              [&](std::size_t, std::size_t i) { found[i] = LookAtForce(view, *order[i]); });
-  ParallelFor(order.size(),
-              [&](std::size_t, std::size_t i) { LookAtOtherShapes(view, *order[i], found[i]); });
+  const auto start = [&](auto& archive, std::size_t i) { archive(found[i]); };
+  const auto look = [&](std::size_t, std::size_t i) { found[i] = LookAtForce(view, *order[i]); };
+  const auto look_on = [&](std::size_t, std::size_t i) {
+    LookAtOtherShapes(view, *order[i], found[i]);
+  };
+  ShareOut(order.size(), look, start);
+  ShareOut(order.size(), look_on, start);
   auto best = rival ? LookAtForce(view, *rival) : std::nullopt;
   if (rival) LookAtOtherShapes(view, *rival, best);
   double most = best ? best->share : 0;

@@ -24,12 +24,13 @@
 #include "identification/diagnosis/next_experiment.h"
 #include "identification/diagnosis/quantisation.h"
 #include "identification/diagnosis/remaining.h"
+#include "identification/diagnosis/search_bytes.h"
 #include "identification/diagnosis/second_by_folds.h"
 #include "identification/diagnosis/unseen_effects.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/parallel.h"
+#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -274,9 +275,11 @@ class Session {
     const bool known = LogsForALook(e_, null_.step()) == TrainLogs(e_);
     const EquationErrors forces =
         known ? views_.front() : EquationErrors(null_, d_.before.fit.x, TrainLogs(e_));
-    ParallelFor(d_.candidates.size(), [&](std::size_t, std::size_t i) {
+    const auto look = [&](std::size_t, std::size_t i) {
       d_.candidates[i].by_equation = forces.Of(d_.candidates[i]);
-    });
+    };
+    ShareOut(d_.candidates.size(), look,
+             [&](auto& archive, std::size_t i) { archive(d_.candidates[i].by_equation); });
   }
 
   // Likelihoods have judged; the folds show what that is worth.

@@ -13,7 +13,7 @@
 #include "identification/diagnosis/probing.h"
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/bounded_least_squares.h"
-#include "sim/numerics/parallel.h"
+#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -47,7 +47,7 @@ EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector
   coarse_step_ = kCoarse * base.step();
   coarse_ = Stacked(base, x_, 0, coarse_step_);
   columns_ = Matrix::Zero(missing_.size(), x_.size());
-  ParallelFor(static_cast<std::size_t>(x_.size()), [&](std::size_t thread, std::size_t i) {
+  const auto differ = [&](std::size_t thread, std::size_t i) {
     if (base.parameters()[i].IsStart()) return;
     const auto k = static_cast<Eigen::Index>(i);
     const double step = base.StepOf(x_, i, 1e-3);
@@ -55,6 +55,9 @@ EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector
     moved[k] += step;
     const Vector column = Change(base, moved, thread) / step;
     if (column.allFinite() && column.norm() * std::abs(step) > 1e-12) columns_.col(k) = column;
+  };
+  ShareOut(static_cast<std::size_t>(x_.size()), differ, [&](auto& archive, std::size_t i) {
+    FieldsOfBlock(archive, columns_.col(static_cast<Eigen::Index>(i)));
   });
   bounds_ = BoundsOf(base);
   force_ = Beside(Matrix(missing_.size(), 0), {}).left;

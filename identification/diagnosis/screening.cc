@@ -9,8 +9,8 @@
 
 #include "identification/diagnosis/plainest.h"
 #include "identification/statistics/uncertainty.h"
-#include "sim/numerics/parallel.h"
 #include "sim/numerics/portable_random.h"
+#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -202,11 +202,13 @@ Matrix TailProbabilities(std::vector<ReducedCandidate>& candidates, const Matrix
                          const std::vector<double>& explained) {
   Matrix p(static_cast<Eigen::Index>(candidates.size()), noise.cols() + 1);
   p.rightCols(1) = Eigen::Map<const Vector>(explained.data(), p.rows());
-  ParallelFor(candidates.size(), [&](std::size_t, std::size_t c) {
+  const auto rank = [&](std::size_t, std::size_t c) {
     for (Eigen::Index d = 0; d < noise.cols(); ++d) p(c, d) = candidates[c].Best(noise.col(d));
     const Tail tail(p.row(c));
     for (double& amount : p.row(c)) amount = tail(amount);
-  });
+  };
+  ShareOut(candidates.size(), rank,
+           [&](auto& archive, std::size_t c) { FieldsOfBlock(archive, p.row(c)); });
   return p;
 }
 

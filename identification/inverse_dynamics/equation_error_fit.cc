@@ -14,7 +14,7 @@
 #include "identification/inverse_dynamics/missing_force.h"
 #include "identification/statistics/noise_model.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/parallel.h"
+#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -54,13 +54,16 @@ class ForceCost : public ceres::CostFunction {
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(
         jacobians[0], f.size(), x.size());
     J.setZero();
-    ParallelFor(static_cast<std::size_t>(x.size()), [&](std::size_t thread, std::size_t k) {
+    const auto differ = [&](std::size_t thread, std::size_t k) {
       if (StopRequested() || problem_.parameters()[k].IsStart()) return;
       const double step = problem_.StepOf(x, k, 1e-3);
       Vector moved = x;
       moved[static_cast<Eigen::Index>(k)] += step;
       J.col(static_cast<Eigen::Index>(k)) =
           (Forces(moved, thread) - f) * (problem_.parameters()[k].scale / step);
+    };
+    ShareOut(static_cast<std::size_t>(x.size()), differ, [&](auto& archive, std::size_t k) {
+      FieldsOfBlock(archive, J.col(static_cast<Eigen::Index>(k)));
     });
     return J.allFinite();
   }

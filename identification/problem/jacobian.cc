@@ -1,12 +1,12 @@
 // How the residuals of a problem follow its parameters.
-#include <atomic>
+#include <algorithm>
 #include <memory>
 #include <numeric>
 
 #include "identification/problem/problem.h"
 #include "identification/sensitivity/smooth_path.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/parallel.h"
+#include "sim/numerics/shared_loop.h"
 #include "sim/simulation/trace_measurement.h"
 
 namespace continuum {
@@ -75,8 +75,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                                 std::vector<Matrix>& J) const {
   std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
   std::vector<std::vector<std::size_t>> left(motions.size());
-  std::atomic<std::size_t> exact = 0;  // simulations that gave columns in closed form
-  ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
+  const auto closed_form = [&](std::size_t thread, std::size_t i) {
     using Way = Derivative::Way;
     const std::vector<std::size_t> acting = ActingColumns(columns, motions[i].front());
     const std::vector<Derivative> made = ClosedFormColumns(x, motions[i], acting, thread, J);
@@ -84,12 +83,20 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
       if (made[j].way == Way::kDifferences || made[j].way == Way::kMeasurement)
         left[i].push_back(acting[j]);
     }
-    exact += left[i].size() < acting.size();
+  };
+  ShareOut(motions.size(), closed_form, [&](auto& archive, std::size_t i) {
+    archive(left[i]);
+    for (const std::size_t k : ActingColumns(columns, motions[i].front())) {
+      if (std::find(left[i].begin(), left[i].end(), k) != left[i].end()) continue;
+      for (const std::size_t l : motions[i]) FieldsOfBlock(archive, J[l].col(k));
+    }
   });
+  std::size_t exact = 0;  // simulations that gave columns in closed form
   for (std::size_t i = 0; i < motions.size(); ++i) {
+    exact += left[i].size() < ActingColumns(columns, motions[i].front()).size();
     for (const std::size_t k : left[i]) tasks.emplace_back(i, k);
   }
-  ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
+  const auto differ = [&](std::size_t thread, std::size_t t) {
     if (StopRequested()) return;
     const std::size_t i = tasks[t].first, k = tasks[t].second;
     double step = StepOf(x, k, share_);
@@ -110,6 +117,10 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
     for (const std::size_t l : motions[i])
       J[l].col(k) = both ? (ResidualOf(l, there) - ResidualOf(l, back)) / (2 * step)
                          : (ResidualOf(l, there) - r[l]) / step;
+  };
+  ShareOut(tasks.size(), differ, [&](auto& archive, std::size_t t) {
+    for (const std::size_t l : motions[tasks[t].first])
+      FieldsOfBlock(archive, J[l].col(tasks[t].second));
   });
   evaluations_ += (central_ ? 2 : 1) * tasks.size() + exact;
 }
@@ -126,7 +137,8 @@ std::vector<std::unique_ptr<ContinuousDynamics>> Problem::DynamicsBeside(
   return beside;
 }
 
-// Parameters of a motion are shared out so that no core waits for another.
+// Parameters of a motion are shared out so that no core waits for another; in the same way on any
+// number of cores, as the tolerance holds for those of a task together.
 void Problem::SensitivityColumns(const Vector& x,
                                  const std::vector<std::vector<std::size_t>>& motions,
                                  std::size_t first, bool rough, std::vector<Matrix>& J) const {
@@ -135,7 +147,8 @@ void Problem::SensitivityColumns(const Vector& x,
     std::vector<std::size_t> moving;
   };
   std::vector<Task> tasks;
-  const std::size_t shares = ThreadCount() / std::gcd(motions.size(), ThreadCount());
+  constexpr std::size_t kCores = 2;
+  const std::size_t shares = kCores / std::gcd(motions.size(), kCores);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     std::vector<std::size_t> moving;
     for (std::size_t k = first; k < parameters_.size(); ++k) {
@@ -151,7 +164,7 @@ void Problem::SensitivityColumns(const Vector& x,
   }
   SolverOptions how = solver_;
   if (rough) how.relative = 1e-3, how.absolute = 1e-5;
-  ParallelFor(tasks.size(), [&](std::size_t thread, std::size_t t) {
+  const auto integrate = [&](std::size_t thread, std::size_t t) {
     if (StopRequested()) return;
     const auto& [i, moving] = tasks[t];
     const std::size_t log = motions[i].front();
@@ -166,6 +179,11 @@ void Problem::SensitivityColumns(const Vector& x,
         J[l].col(moving[j]) = (ResidualOf(l, traces.perturbed[j]) - ResidualOf(l, traces.trace)) /
                               StepOf(x, moving[j], kPerturbation);
       }
+    }
+  };
+  ShareOut(tasks.size(), integrate, [&](auto& archive, std::size_t t) {
+    for (const std::size_t l : motions[tasks[t].motion]) {
+      for (const std::size_t k : tasks[t].moving) FieldsOfBlock(archive, J[l].col(k));
     }
   });
   evaluations_ += tasks.size();

@@ -13,10 +13,12 @@
 #include "identification/problem/inertia_range.h"
 #include "identification/problem/parameter_units.h"
 #include "identification/problem/start_parameters.h"
+#include "identification/problem/trace_bytes.h"
 #include "identification/sensitivity/smooth_path.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/numerics/parallel.h"
+#include "sim/numerics/shared_loop.h"
 #include "sim/simulation/initial_state.h"
 #include "sim/simulation/registration_fit.h"
 #include "sim/simulation/simulate.h"
@@ -410,13 +412,18 @@ std::vector<Problem::Vector> Problem::Residuals(const Vector& x,
                                                 const std::vector<bool>& use) const {
   const auto motions = Motions(use);
   std::vector<Vector> out(use.size());
-  ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
+  const auto simulate = [&](std::size_t thread, std::size_t i) {
     const std::size_t first = motions[i].front();
     Trace trace = Run(thread, x, first);
     for (const std::size_t l : motions[i]) out[l] = ResidualOf(l, trace);
     memory_[motion_[first]] = {ChangesFor(x, first), ChangesAt(x, first, Side::kStart),
                                x.tail(static_cast<Eigen::Index>(terms_.count)),
                                MeasuredBy(x, first).skew, std::move(trace)};
+  };
+  ShareOut(motions.size(), simulate, [&](auto& archive, std::size_t i) {
+    for (const std::size_t l : motions[i]) archive(out[l]);
+    Memory& m = memory_[motion_[motions[i].front()]];
+    archive(m.changes, m.starts, m.theta, m.skew, m.trace);
   });
   evaluations_ += motions.size();
   return out;
@@ -436,7 +443,7 @@ std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::ve
   std::vector<Matrix> out(use.size());
   const double h = step();
   const auto motions = Motions(use);
-  ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
+  const auto compare = [&](std::size_t thread, std::size_t i) {
     const std::size_t first = motions[i].front();
     const Trace quarter = Run(thread, x, first, h / 4), half = Run(thread, x, first, h / 2);
     const Trace later = Delayed(Run(thread, x, first), x, first, h);
@@ -449,6 +456,9 @@ std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::ve
       out[l].col(1) = ResidualOf(l, later) - r[l];
       if (experiment_->quasi_static) out[l].col(1).setZero();  // rows know no time
     }
+  };
+  ShareOut(motions.size(), compare, [&](auto& archive, std::size_t i) {
+    for (const std::size_t l : motions[i]) archive(out[l]);
   });
   evaluations_ += motions.size();
   return out;

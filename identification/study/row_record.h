@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "identification/study/row_inputs.h"
 
 namespace continuum {
@@ -19,6 +21,10 @@ struct RowRecord {
   double peak_megabytes = 0;  ///< of memory [1e6 bytes]
   std::string host;           ///< the machine's name
 };
+
+/// As its file has it. From throws nlohmann::json::exception for what is no record.
+nlohmann::json ToJson(const RowRecord& record);
+RowRecord RecordFrom(const nlohmann::json& json);
 
 /// Writes it into a folder. Throws Error when that is impossible.
 void WriteRecord(const RowRecord& record, const std::filesystem::path& folder);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "error.h"
 
@@ -91,6 +92,22 @@ RowStatus StatusOf(const StudyTable& study, const StudyRow& row, const fs::path&
     const std::string reason = row.where + ": " + failed->reason;
     return say(State::kFailed, reason, std::move(failed));
   }
+  return s;
+}
+
+// Of the inputs a record without a run.
+std::string ToMessage(const RowStatus& s) {
+  nlohmann::json json{{"state", s.state}, {"reason", s.reason}};
+  if (s.inputs) json["inputs"] = ToJson(RowRecord{.inputs = *s.inputs, .reason = "", .host = ""});
+  if (s.record) json["record"] = ToJson(*s.record);
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+RowStatus StatusFrom(const std::string& message) {
+  const auto json = nlohmann::json::parse(message);
+  RowStatus s{json.at("state"), json.at("reason"), {}, {}};
+  if (json.contains("inputs")) s.inputs = RecordFrom(json["inputs"]).inputs;
+  if (json.contains("record")) s.record = RecordFrom(json["record"]);
   return s;
 }
 

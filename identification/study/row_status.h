@@ -40,4 +40,8 @@ std::string FailedName(const StudyRow& row);
 RowStatus StatusOf(const StudyTable& study, const StudyRow& row, const std::filesystem::path& out,
                    const std::string& version, FileHashes& hashes);
 
+/// A status as a message between ranks, and back to the last bit.
+std::string ToMessage(const RowStatus& status);
+RowStatus StatusFrom(const std::string& message);
+
 }  // namespace continuum

@@ -175,29 +175,7 @@ TEST_F(Studies, OfAPatternTakeTheCommandFromTheirOptions) {
 // Files, bytes and summary but for times are those of a run in one go.
 class Shards : public Studies {
  protected:
-  Shards() {
-    WriteManyRows(9);
-    fs::create_directories(files_ / "bin");
-    fs::create_symlink(CONTINUUM_EXECUTABLE, files_ / "bin/continuum");
-  }
-  // In a shell whose PATH has the tool.
-  Finished Shell(const std::string& script) const {
-    return testing::RunProcess({"/bin/bash", "-c", "export PATH=\"$PWD/bin:$PATH\"; " + script},
-                               files_.folder());
-  }
-  // The first block of the page that has a text.
-  static std::string Example(const std::string& text, const std::string& language = "bash") {
-    const std::string page = Scratch::Text(CONTINUUM_SOURCE "/docs/many-logs.md");
-    const std::string fence = "```" + language + "\n";
-    for (std::size_t at = 0; (at = page.find(fence, at)) != page.npos; at += 3) {
-      const std::size_t begin = at + fence.size();
-      const std::string block = page.substr(begin, page.find("```", begin) - begin);
-      at = begin + block.size();
-      if (block.find(text) != block.npos) return block;
-    }
-    ADD_FAILURE() << "docs/many-logs.md has no example with " << text;
-    return "";
-  }
+  Shards() { WriteManyRows(9); }
   void ExpectAsInOneGo() const {
     ASSERT_EQ(Study({"--summary"}).exit_code, 0);
     ASSERT_EQ(Run({"study", "study.csv", "--out", "whole"}).exit_code, 0);
@@ -218,7 +196,7 @@ class Shards : public Studies {
 };
 
 TEST_F(Shards, ByXargsGiveWhatOneRunGives) {
-  const Finished f = Shell(Example("xargs"));
+  const Finished f = Shell(PageExample("xargs"));
   EXPECT_EQ(f.exit_code, 0) << f.err << f.out;
   ExpectAsInOneGo();
 }
@@ -226,14 +204,14 @@ TEST_F(Shards, ByXargsGiveWhatOneRunGives) {
 TEST_F(Shards, ByGnuParallelGiveWhatOneRunGives) {
   if (Shell("parallel --version | grep -q GNU").exit_code != 0)
     GTEST_SKIP() << "GNU parallel is not installed";
-  const Finished f = Shell(Example("parallel "));
+  const Finished f = Shell(PageExample("parallel "));
   EXPECT_EQ(f.exit_code, 0) << f.err << f.out;
   ExpectAsInOneGo();
 }
 
 // sbatch runs the script once for each number of the array.
 TEST_F(Shards, ByASlurmArrayGiveWhatOneRunGives) {
-  const std::string script = Example("#SBATCH --array");
+  const std::string script = PageExample("#SBATCH --array");
   EXPECT_THAT(script, HasSubstr("#SBATCH --array=1-4"));
   files_.Write("study.slurm", script);
   for (const char* task : {"1", "2", "3", "4"}) {
@@ -246,7 +224,7 @@ TEST_F(Shards, ByASlurmArrayGiveWhatOneRunGives) {
 
 TEST_F(Shards, BySnakemakeGiveWhatOneRunGives) {
   if (Shell("snakemake --version").exit_code != 0) GTEST_SKIP() << "Snakemake is not installed";
-  files_.Write("Snakefile", Example("rule row", "python"));
+  files_.Write("Snakefile", PageExample("rule row", "python"));
   const Finished f = Shell("snakemake --cores 2 --keep-going");
   EXPECT_EQ(f.exit_code, 0) << f.err << f.out;
   ExpectAsInOneGo();
