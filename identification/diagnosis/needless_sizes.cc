@@ -65,9 +65,7 @@ bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& c) {
     if (!less) break;
     const double scale = std::max(1.0, c.fitted.cost / c.fitted.sensitivities->freedom);
     const double rises = less->fitted.cost - c.fitted.cost;
-    if (rises > scale * (fitter.criteria.parameter_cost + fitter.criteria.nested_margin) ||
-        less->fitted.error.validate > c.fitted.error.validate)
-      break;
+    if (rises > scale * (fitter.criteria.parameter_cost + fitter.criteria.nested_margin)) break;
     less->likelihood -= rises;
     less->probes.clear(), less->at_quarter_x.reset(), less->falls_with_step.reset();
     c = std::move(*less), dropped = true;

@@ -6,10 +6,9 @@
 namespace continuum {
 
 /// Takes those of the sizes of a complete fit out that the data do not need, as one axis of a tilt
-/// or of a force: one after the other the one that costs least, as long as the squares
-/// do not rise by what a parameter has to earn, nor the error of the validate logs. Only sizes in
-/// one unit, and none of a law with a Coulomb level: without its excess that is another law.
-/// Returns whether any was taken out.
+/// or of a force: one after the other the one that costs least, as long as the squares do not rise
+/// by what a parameter has to earn. Only sizes in one unit, and none of a law with a Coulomb level:
+/// without its excess that is another law. Returns whether any was taken out.
 bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& candidate);
 
 }  // namespace continuum
