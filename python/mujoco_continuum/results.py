@@ -46,8 +46,8 @@ class Parameter:
     upper: float = math.inf
     start: float = math.nan
     at_bound: bool = False
-    fine_step: float = math.nan
-    """What a fit at a time step of zero would give; nan where that is not known."""
+    fine_step: float | None = None
+    """What a fit at a time step of zero would give; None where that is not known."""
 
     def __str__(self) -> str:
         around = "" if self.interval is None else " (95 %: {:.4g} … {:.4g})".format(*self.interval)
@@ -242,8 +242,8 @@ def _parameters(documents: Sequence[Json]) -> dict[str, Parameter]:
                                  p["at_bound"], _fine_step(p)) for p in documents}
 
 
-def _fine_step(parameter: Json) -> float:
-    return parameter.get("fine_step", math.nan)
+def _fine_step(parameter: Json) -> float | None:
+    return parameter.get("fine_step")
 
 
 def _cause(document: Json) -> Cause:
