@@ -156,8 +156,6 @@ class CandidateSearch {
   FitStart BestOf(const Problem& problem, const std::vector<Problem::Vector>& all,
                   std::size_t tried = kStartsTried) const;
   ProjectedResidual ScreenedResidual() const;
-  Problem::Matrix SlopesNear(const Problem& problem, const Problem::Vector& x,
-                             const std::vector<bool>& logs) const;
   static double StepReduction(const Fitted& fitted);
   void CompleteCompetitive(double best);
   bool CompleteOne(CandidateResult& c, double best) const;

@@ -176,11 +176,10 @@ FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem
                                  std::size_t tried) const {
   constexpr double kNear = 2;  // times the best cost
   const std::vector<Problem::Vector> starts = WithoutRepeats(whole, all);
-  const auto logs = LogsForALook(*fitter_.experiment, base_problem_.step());
-  const auto train = TrainLogs(*fitter_.experiment);
-  if (starts.size() == 1) return {starts.front(), SlopesNear(whole, starts.front(), train)};
+  if (starts.size() == 1) return {starts.front()};
   Problem problem = whole;
   const bool coarse = StepAsBase(problem);
+  const auto logs = LogsForALook(*fitter_.experiment, base_problem_.step());
   FitOptions options{4, 1e-3};
   options.idle = true, options.rough = true, options.until = fitter_.until;
   if (fitter_.whitening.active()) options.whitening = &fitter_.whitening;
@@ -195,7 +194,7 @@ FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem
   for (const auto& [cost, start] : order) {
     if (!(cost < kInfinity) || cost > kNear * order.front().first) continue;
     try {
-      Problem::Matrix slopes = SlopesNear(problem, *start, logs);
+      Problem::Matrix slopes;
       options.slopes = &slopes;
       continuum::Fit fit = FitParameters(problem, *start, logs, options);
       if (fit.cost < best_cost) best_cost = fit.cost, best = {std::move(fit.x), std::move(slopes)};
@@ -205,21 +204,8 @@ FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem
   }
   if (best.x.size() == 0 && !coarse) throw Error::Job("the simulation diverges from every start");
   if (best.x.size() == 0) return {starts.front()};
-  if (logs != train) best.slopes.resize(0, 0);
+  if (logs != TrainLogs(*fitter_.experiment)) best.slopes.resize(0, 0);
   return best;
-}
-
-// As FitOptions::slopes has them: of the base at its own fit, which the search mends on its way,
-// and of the candidate at x. Nothing where these cannot be simulated.
-Problem::Matrix CandidateSearch::SlopesNear(const Problem& problem, const Problem::Vector& x,
-                                            const std::vector<bool>& logs) const {
-  const auto& base = base_.fitted->sensitivities.value().jacobian;
-  const Problem::Vector at = problem.Clamp(x);
-  const auto J = problem.Jacobian(at, problem.Residuals(at, logs), logs, base, true);
-  Problem::Matrix slopes = fitter_.whitening.Stack(J, logs);
-  for (Eigen::Index i = 0; i < slopes.cols(); ++i) slopes.col(i) *= problem.parameters()[i].scale;
-  if (!slopes.allFinite()) slopes.resize(0, 0);
-  return slopes;
 }
 
 }  // namespace continuum
