@@ -141,17 +141,23 @@ Fitted CandidateFitter::FitAll(const Problem& problem, const Vector& start) cons
   return f;
 }
 
+void CandidateFitter::CompleteOnValidate(const Problem& problem, Fitted& fitted) const {
+  auto& known = fitted.sensitivities.value().jacobian;
+  std::vector<bool> missing = TrainLogs(*experiment);
+  missing.flip();
+  for (std::size_t l = 0; l < missing.size(); ++l) missing[l] = missing[l] && known[l].size() == 0;
+  if (std::find(missing.begin(), missing.end(), true) == missing.end()) return;
+  auto J = problem.Jacobian(fitted.fit.x, fitted.residuals, missing);
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    if (missing[l]) known[l] = std::move(J[l]);
+  }
+}
+
 void CandidateFitter::AddFolds(const Problem& problem, const std::vector<Fold>& folds,
                                Fitted& fitted) const {
-  auto validate = TrainLogs(*experiment);
-  validate.flip();
-  auto& known = fitted.sensitivities.value().jacobian;
-  auto J = problem.Jacobian(fitted.fit.x, fitted.residuals, validate);
-  for (std::size_t l = 0; l < J.size(); ++l) {
-    if (!validate[l]) J[l] = known[l];
-  }
-  known = std::move(J);
-  fitted.folds = CrossValidate(problem, fitted.fit.x, fitted.residuals, known, folds);
+  CompleteOnValidate(problem, fitted);
+  fitted.folds =
+      CrossValidate(problem, fitted.fit.x, fitted.residuals, fitted.sensitivities->jacobian, folds);
 }
 
 ProjectedResidual CandidateFitter::ProjectedResidualOf(const Fitted& fitted) const {

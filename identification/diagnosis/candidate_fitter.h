@@ -55,6 +55,8 @@ struct CandidateFitter {
   Fitted Continue(const Problem& problem, const Fitted& fitted) const;
   /// Fit and Complete.
   Fitted FitAll(const Problem& problem, const Problem::Vector& start) const;
+  /// Adds the sensitivities of the validate logs to a complete fit, once.
+  void CompleteOnValidate(const Problem& problem, Fitted& fitted) const;
   /// Leaves out each fold in turn, of a complete fit.
   void AddFolds(const Problem& problem, const std::vector<Fold>& folds, Fitted& fitted) const;
   /// The residual of a complete fit to first order.

@@ -14,12 +14,13 @@ namespace {
 // Squares of the validate logs in units of the noise, without what the time step and the
 // parameters of the experiment, which are free there as well, make of them. What is added keeps
 // what the train logs give it at a time step of zero.
-double HeldOutSquares(const CandidateFitter& fitter, const Problem& problem, const Fitted& fitted,
+double HeldOutSquares(const CandidateFitter& fitter, const Problem& problem, Fitted fitted,
                       Eigen::Index first_added) {
   auto validate = problem.TrainLogs();
   validate.flip();
+  fitter.CompleteOnValidate(problem, fitted);
   const Problem::Vector& x = fitted.fit.x;
-  const auto J = problem.Jacobian(x, fitted.residuals, validate);
+  const auto& J = fitted.sensitivities->jacobian;
   const auto step = problem.StepEffects(x, fitted.residuals, validate);
   const Eigen::Index added = x.size() - first_added;
   const Problem::Vector shift = fitter.ProjectedResidualOf(fitted).shift().tail(added);

@@ -1,12 +1,10 @@
 #include "identification/diagnosis/needless_sizes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "error.h"
-#include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {

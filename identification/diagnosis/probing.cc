@@ -24,18 +24,22 @@ double MostShare(const Hypothesis& h, const std::vector<double>& start, std::siz
   return ((step > 0 ? p.upper : p.lower) - h.null[i]) / step;
 }
 
-// At least so many of the problem's steps, and no more than the rows are apart [s].
-double CoarseStep(const Problem& problem, double steps) {
+// How far rows are apart, in the median [s]; 0 where they know no time.
+double RowInterval(const Problem& problem) {
   std::vector<double> intervals;
   for (const Log& log : problem.experiment().logs) {
     for (std::size_t row = 1; row < log.rows(); ++row)
       intervals.push_back(log.time[row] - log.time[row - 1]);
   }
-  if (intervals.empty() || problem.experiment().quasi_static) return problem.step();
+  if (intervals.empty() || problem.experiment().quasi_static) return 0;
   const auto middle = intervals.begin() + std::ssize(intervals) / 2;
   std::nth_element(intervals.begin(), middle, intervals.end());
-  const double in_a_row = std::ceil(*middle / (steps * problem.step()) - 1e-6);
-  return std::max(problem.step(), *middle / in_a_row);
+  return *middle;
+}
+
+// At least so long, and no longer than the rows are apart [s].
+double CoarseStep(double interval, double least) {
+  return interval / std::ceil(interval / least - 1e-6);
 }
 
 // Whether what a coarse step changes is little beside the residuals r.
@@ -191,12 +195,12 @@ bool NeedsOwnStep(const Problem& problem) {
 std::optional<std::vector<Vector>> StepCoarsely(Problem& problem, const Vector& x,
                                                 const std::vector<Vector>& r) {
   constexpr std::array kSteps{10.0, 5.0, 2.5};
-  if (NeedsOwnStep(problem)) return {};
-  const double own = problem.step();
-  const double least = CoarseStep(problem, kSteps.back());  // taken whatever it changes
+  const double own = problem.step(), interval = RowInterval(problem);
+  if (!(interval > own) || NeedsOwnStep(problem)) return {};
+  const double least = CoarseStep(interval, kSteps.back() * own);  // taken whatever it changes
   double tried = own;
   for (const double steps : kSteps) {
-    const double step = CoarseStep(problem, steps);
+    const double step = CoarseStep(interval, steps * own);
     if (!(step > own) || step == tried) continue;
     problem.StepBy(tried = step);
     auto residuals = problem.Residuals(x, problem.TrainLogs());

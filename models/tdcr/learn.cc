@@ -23,6 +23,13 @@ std::optional<double> Penalty(const SolveRequest& request) {
   return request.lambda.value_or(0);
 }
 
+void CheckLearning(const SolveRequest& request, const std::string& job) {
+  Need(request.input, "--input", job);
+  Need(request.measured, "--measured", job);
+  Refuse(!request.plot.empty(), "--plot", job);
+  statics::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
+}
+
 std::vector<Pair> ReadPairs(const SolveRequest& request, const std::vector<Case>& cases,
                             const std::vector<Measured>& measured) {
   RefuseLengths(request, cases, "calibration and training");
@@ -88,10 +95,7 @@ YAML::Node CalibrationDocument(const SolveRequest& request, const Yaml& file,
 
 int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& robot,
                    Method method) {
-  Need(request.input, "--input", "--calibrate");
-  Need(request.measured, "--measured", "--calibrate");
-  Refuse(!request.plot.empty(), "--plot", "--calibrate");
-  statics::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
+  CheckLearning(request, "--calibrate");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
   const Calibration c =
@@ -101,10 +105,7 @@ int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& r
 }
 
 int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot) {
-  Need(request.input, "--input", "--hybrid train");
-  Need(request.measured, "--measured", "--hybrid train");
-  Refuse(!request.plot.empty(), "--plot", "--hybrid train");
-  statics::RequireExtension(request.out, {".yaml", ".yml"}, "--out");
+  CheckLearning(request, "--hybrid train");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
   const Hybrid h = Train(robot, ReadPairs(request, cases, measured), request.measured.string(),
