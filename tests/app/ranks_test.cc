@@ -206,27 +206,36 @@ class KilledRanks : public Ranks {
     for (pid_t child = 0; list >> child;) children.push_back(child);
     return children;
   }
-  void ExpectWholeFolders() const {
-    if (!fs::exists(files_ / "out")) return;
-    for (const auto& entry : fs::directory_iterator(files_ / "out")) {
-      if (!entry.is_directory() || entry.path().filename().string().starts_with(".")) continue;
-      EXPECT_TRUE(nlohmann::json::accept(Text(entry.path() / "row.json"))) << entry.path();
-    }
+  std::vector<fs::path> Rows() const {
+    std::vector<fs::path> rows;
+    if (!fs::exists(files_ / "out")) return rows;
+    for (const auto& entry : fs::directory_iterator(files_ / "out"))
+      if (entry.path().filename().string().starts_with("row_")) rows.push_back(entry);
+    return rows;
   }
-  // Whether the job was told that one of its ranks is gone.
-  bool KillOneAfter(std::chrono::milliseconds wait, std::mt19937& random) const {
+  void ExpectWholeFolders() const {
+    for (const fs::path& row : Rows())
+      EXPECT_TRUE(nlohmann::json::accept(Text(row / "row.json"))) << row;
+  }
+  // Kills a rank as soon as the job has written one more row: all have joined by then, and work.
+  // Returns whether the job was told that one of its ranks is gone; it may have ended before.
+  bool KillOneAtWork(std::mt19937& random) const {
+    if (Rows().size() > kRows / 2) fs::remove_all(files_ / "out");
+    const std::size_t before = Rows().size();
     const pid_t job = Start("mpirun -n 3 continuum study study.csv --out out");
-    std::this_thread::sleep_for(wait);
+    int status = 0;
+    while (Rows().size() == before) {
+      if (waitpid(job, &status, WNOHANG) == job) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
     const std::vector<pid_t> ranks = ChildrenOf(job);
     const bool killed = !ranks.empty() && kill(ranks[random() % ranks.size()], SIGKILL) == 0;
-    int status = 0;
     waitpid(job, &status, 0);
     const std::string said = Text(files_ / "said");
     const bool noticed = said.find("mpirun noticed that process rank") != npos;
-    // Of one that has not joined yet, or has left, mpirun does not know the name.
+    // Of one that has left, mpirun does not know the name.
     const bool outside = said.find("1 process returned") != npos;
     EXPECT_TRUE(noticed || outside || !killed || status == 0) << said;
-    if (status == 0) fs::remove_all(files_ / "out");
     return noticed;
   }
 };
@@ -236,7 +245,7 @@ TEST_F(KilledRanks, LeaveWholeFoldersAndTheNextRunCompletes) {
   std::mt19937 random(1);
   int kills = 0;
   for (int round = 0; round < 8; ++round) {
-    kills += KillOneAfter(std::chrono::milliseconds(500 + random() % 2000), random);
+    kills += KillOneAtWork(random);
     ExpectWholeFolders();
   }
   EXPECT_GE(kills, 4);
