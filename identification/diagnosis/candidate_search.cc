@@ -213,6 +213,7 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
                             c.fitted.error.validate};
     record.corrects = c.was_fitted && OnlyCorrects(c.hypothesis, c.fitted, c.first_extra(),
                                                    *fitter_.experiment, sizes_, criteria_);
+    record.far_off = c.was_fitted && IsFarOff(c.hypothesis, c.fitted, c.first_extra(), criteria_);
     for (std::size_t a = 0; a < candidates.size(); ++a) {
       if (&candidates[a] != &c && Contains(fitter_, c, candidates[a])) record.contains.push_back(a);
     }

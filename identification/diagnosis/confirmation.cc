@@ -47,7 +47,7 @@ void TakeNameBack(Diagnosis& d, const std::string& why) {
   const std::string name = d.chosen()->hypothesis.NameAtPlace();
   d.verdict.kind = Verdict::Kind::kUnexplained;
   d.verdict.leading = d.verdict.named.front();
-  d.verdict.named.clear(), d.verdict.siblings.clear();
+  d.verdict.named.clear(), d.verdict.siblings.clear(), d.verdict.far_off.clear();
   d.partner.reset();
   d.verdict.reason = fmt::format("the best candidate, {}, {}", name, why);
 }

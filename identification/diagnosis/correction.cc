@@ -8,6 +8,14 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s²
 
+// Of a pure number: a parameter of the model that is scaled, or one of the effect's card.
+bool IsNumber(const Parameter& p, const EffectInfo& effect) {
+  const std::string name = p.name.substr(0, p.name.find('['));  // of a condition
+  return p.unit == "1" ||
+         std::any_of(effect.params.begin(), effect.params.end(),
+                     [&](const Param& one) { return one.name == name && one.unit == "1"; });
+}
+
 }  // namespace
 
 double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
@@ -37,6 +45,19 @@ bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
   return std::all_of(amplitudes.begin(), amplitudes.end(), [&](std::size_t i) {
     const double change = fitted.fit.x[begin + static_cast<Eigen::Index>(i)] - h.null[i];
     return std::abs(change) <= MayBeOff(effect, h.extra[i].name, h.null[i], sizes, criteria);
+  });
+}
+
+bool IsFarOff(double factor, const Criteria& criteria) {
+  return factor > criteria.factor_most || factor * criteria.factor_most < 1;
+}
+
+bool IsFarOff(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
+              const Criteria& criteria) {
+  const auto amplitudes = h.Amplitudes();
+  return std::any_of(amplitudes.begin(), amplitudes.end(), [&](std::size_t i) {
+    return h.null[i] == 1 && IsNumber(h.extra[i], EffectNamed(h.Card())) &&
+           IsFarOff(fitted.fit.x[begin + static_cast<Eigen::Index>(i)], criteria);
   });
 }
 

@@ -20,4 +20,11 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
 bool OnlyCorrects(const Hypothesis& hypothesis, const Fitted& fitted, Eigen::Index begin,
                   const Experiment& experiment, Sizes sizes, const Criteria& criteria);
 
+/// Whether a factor on a number of the model is further from 1 than such numbers are off.
+bool IsFarOff(double factor, const Criteria& criteria);
+
+/// The same of the factors of a fitted candidate, if it has any.
+bool IsFarOff(const Hypothesis& hypothesis, const Fitted& fitted, Eigen::Index begin,
+              const Criteria& criteria);
+
 }  // namespace continuum

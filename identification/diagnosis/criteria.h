@@ -192,6 +192,9 @@ struct Criteria {
   Rule whole_correction{"whole_correction", 0.02, "share of mass, weight or time; rad",
                         "the whole is known better than its parts: scales, screws, how it stands, "
                         "a cheap clock"};
+  Rule factor_most{"factor_most", 2, "times a number of the model, or its inverse",
+                   "gains, scales, lengths and masses are rarely further off: a cause that has to "
+                   "be is none beside another one that does as well"};
   Rule pair_share{"pair_share", 0.5, "share of the squares above the noise",
                   "a second cause must explain where the time step may explain them too"};
 
@@ -276,6 +279,7 @@ inline constexpr std::array kAllRules{
     &Criteria::rest_noise,
     &Criteria::correction,
     &Criteria::whole_correction,
+    &Criteria::factor_most,
     &Criteria::pair_share,
     &Criteria::fallback_ceiling,
     &Criteria::fallback_size,

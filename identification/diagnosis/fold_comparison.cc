@@ -31,15 +31,33 @@ class FoldComparison {
       : fitter_(fitter), e_(*fitter.experiment), options_(options), d_(d), given_(given) {}
 
   // The one that fits best gets its folds whatever time is left: without them there is no verdict.
+  // Where none is worth them, and noise tells that something is wrong, it stands without those of
+  // the model as it is.
   void Run() {
     options_.Say(DiagnosisStage::kJudgement, "folds");
-    fitter_.AddFolds(Problem(e_, d_.system, given_), d_.folds, d_.before);
+    const bool any = std::any_of(d_.candidates.begin(), d_.candidates.end(),
+                                 [&](const CandidateResult& c) { return IsWorthFolds(c); });
+    if (any || !Known() || HasTimeFor("the errors of groups of logs that are left out")) {
+      fitter_.AddFolds(Problem(e_, d_.system, given_), d_.folds, d_.before);
+      RunCandidates();
+    }
+    RunCeiling();
+    RunPlacebos();
+    Rank();
+  }
+
+ private:
+  bool IsWorthFolds(const CandidateResult& c) const {
+    return WorthFolds(d_.before.error.train, c.fitted.error.train, d_.criteria);
+  }
+
+  void RunCandidates() {
     std::stable_sort(d_.candidates.begin(), d_.candidates.end(), [](const auto& a, const auto& b) {
       return a.fitted.error.train < b.fitted.error.train;
     });
     for (std::size_t done = 0; done < d_.candidates.size(); ++done) {
       CandidateResult& c = d_.candidates[done];
-      if (!WorthFolds(d_.before.error.train, c.fitted.error.train, d_.criteria)) continue;
+      if (!IsWorthFolds(c)) continue;
       c.record.behind = GainOfFit(c) < d_.criteria.rival_gain * GainOfFit(d_.candidates.front());
       if (c.record.behind) continue;
       c.record.no_time = done > 0 && !HasTimeFor("folds of " + c.hypothesis.NameAtPlace());
@@ -48,12 +66,8 @@ class FoldComparison {
                    d_.candidates.size());
       RecordFolds(fitter_, d_, c);
     }
-    RunCeiling();
-    RunPlacebos();
-    Rank();
   }
 
- private:
   // Where it was fitted: on logs left out it will hardly be a larger share of the best one's.
   double GainOfFit(const CandidateResult& c) const {
     return 1 - c.fitted.error.train / d_.before.error.train;

@@ -48,6 +48,15 @@ class Ranking {
     return best;
   }
 
+  /// The same, or where it is far off the first of those that do as well and are not.
+  std::size_t BestNotFarOff() const {
+    const std::size_t best = Best();
+    if (!candidates_[best].far_off) return best;
+    for (const std::size_t i : Near(best))
+      if (candidates_[i].listed && !candidates_[i].far_off) return i;
+    return best;
+  }
+
   /// Others of the best one's family that do as well, or better; and laws that contain it and do
   /// better where they were fitted alone.
   std::vector<std::size_t> Siblings(std::size_t best) const {
@@ -179,10 +188,15 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
   Verdict verdict{Verdict::Kind::kNamed};
   verdict.complete = !more;
   verdict.siblings = all.Siblings(best);
-  std::string unlisted;
+  std::string unlisted, far_off;
   bool close = true;
   for (const std::size_t i : all.Near(best)) {
     const LikelihoodRecord& one = all.of(i);
+    if (one.far_off && !all.of(best).far_off) {
+      far_off += (far_off.empty() ? "" : ", ") + one.name;
+      if (one.listed) verdict.far_off.push_back(i);
+      continue;
+    }
     (one.listed ? verdict.named : verdict.unlisted).push_back(i);
     if (!one.listed) unlisted += (unlisted.empty() ? "" : ", ") + one.name;
     close = close && all.Score(best) - all.Score(i) < criteria.rival_margin;
@@ -196,7 +210,7 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
     verdict.kind = Verdict::Kind::kAmbiguous;
     verdict.reason =
         fmt::format("the likelihoods of {} candidates are {}", verdict.named.size(), near);
-  } else if (verdict.unlisted.empty()) {
+  } else if (verdict.unlisted.empty() && far_off.empty()) {
     verdict.reason = fmt::format(
         "{}, and the next candidate is {:.1f} behind in 2 ln L, less {:g} for each parameter",
         shows, all.Lead(best), +criteria.parameter_cost);
@@ -205,6 +219,9 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
   }
   if (!unlisted.empty())
     verdict.reason += fmt::format("; not listed, but as likely ({}): {}", near, unlisted);
+  if (!far_off.empty())
+    verdict.reason += fmt::format("; as likely, but more than {:g} times off the model: {}",
+                                  +criteria.factor_most, far_off);
   return verdict;
 }
 
@@ -290,7 +307,7 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
     return Unexplained("the residual shows something beside noise that no candidate explains");
   if (!any) return Adequate(lack, p, criteria);
   const Ranking all(candidates, base, more, criteria);
-  const std::size_t best = all.Best();
+  const std::size_t best = all.BestNotFarOff();
   Verdict verdict;
   if (more && all.share(all.first()) < criteria.main_share) {
     verdict = Unexplained(fmt::format(

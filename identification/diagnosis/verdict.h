@@ -26,6 +26,8 @@ struct Verdict {
   /// Candidates of the named one's family, or that contain it, that do as well, or better by less
   /// than a richer law has to earn.
   std::vector<std::size_t> siblings = {};
+  /// Candidates that do as well as the named one, but would put a number of the model too far off.
+  std::vector<std::size_t> far_off = {};
   bool complete = false;                    ///< what the verdict leaves looks like noise
   std::optional<std::size_t> leading = {};  ///< the candidate that comes closest; none: none helps
   double leading_share = 0;                 ///< what it takes of what can be explained [squares]
@@ -131,6 +133,7 @@ struct LikelihoodRecord {
   double held_out = 0;  ///< error of the logs left out with it; 0: there are none
   bool corrects =
       false;  ///< it only changes numbers of the model, by a few per cent (OnlyCorrects)
+  bool far_off = false;  ///< it multiplies numbers of the model by more than they are off (IsFarOff)
 };
 
 /// The model without a candidate, by the same measure: whitened squares, and how many of them noise

@@ -338,6 +338,8 @@ std::map<std::string, std::vector<Judged>> Examples() {
       [](const Criteria& c) { return MayBeOff(EffectNamed("armature"), "armature", 0.1, {}, c); });
   e["whole_correction"] =
       Number([](const Criteria& c) { return MayBeOff(EffectNamed("payload"), "mass", 0, {}, c); });
+  e["factor_most"] = AroundBoundary(
+      2, [](double factor, const Criteria& c) { return IsFarOff(factor, c); });
   e["pair_hopeless"] = AroundBoundary(100, [](double over, const Criteria& c) {
     return MayBeTwo(kUnexplained, {}, 1e-3, over, c);
   });

@@ -196,6 +196,19 @@ TEST(Likelihoods, ASmallCorrectionIsOneOfAllThatDoMoreThanItLeaves) {
   EXPECT_THAT(JudgeLikelihoods({a, b, c}, {1e-6}, 1e-3, kLoud).named, ElementsAre(0, 1));
 }
 
+// A gain of a third says what a large mass says; nothing else does: then it is the gain.
+TEST(Likelihoods, AFactorThatIsFarOffIsNoCauseBesideAnotherThatDoesAsWell) {
+  LikelihoodRecord gain{"input_gain", 1, 4790}, mass{"payload", 1, 4780}, other{"other", 1, 3000};
+  EXPECT_THAT(JudgeLikelihoods({gain, mass, other}, {1e-6}, 1e-3, kLoud).named, ElementsAre(0, 1));
+  gain.far_off = true;
+  const Verdict v = JudgeLikelihoods({gain, mass, other}, {1e-6}, 1e-3, kLoud);
+  EXPECT_THAT(v.named, ElementsAre(1));
+  EXPECT_EQ(v.word(), "named");
+  EXPECT_THAT(v.reason, HasSubstr("more than 2 times off the model: input_gain"));
+  mass.likelihood = 4000;
+  EXPECT_THAT(JudgeLikelihoods({gain, mass, other}, {1e-6}, 1e-3, kLoud).named, ElementsAre(0));
+}
+
 // The best leaves 200 squares above the noise: a rival that leaves 20 more is not behind on that
 // scale, though twenty is much for noise.
 TEST(Likelihoods, RivalsAreBehindByWhatIsLeftNotByNoiseAlone) {
