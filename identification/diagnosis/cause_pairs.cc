@@ -13,6 +13,7 @@
 #include "error.h"
 #include "identification/diagnosis/correction.h"
 #include "identification/diagnosis/family_starts.h"
+#include "identification/diagnosis/lengths_and_masses.h"
 #include "identification/diagnosis/look_logs.h"
 
 namespace continuum {
@@ -316,10 +317,8 @@ class PairSearch {
     if (&best != &pairs[likeliest]) lack = LackOf(best);
     const bool matters = SecondShare(best) >= criteria_.second_share ||
                          (TakesTheRest(best) && !best.SecondCorrects(context_));
-    if (!matters || verdict.named.empty()) {
-      found.would_take = InWords(best);
-      return;
-    }
+    found.would_take = InWords(best);
+    if (!matters || verdict.named.empty()) return;
     Partner first = FirstOf(pairs, verdict);
     for (auto* const some : {&verdict.named, &verdict.siblings}) {
       std::vector<std::size_t> seconds;
@@ -358,17 +357,32 @@ class PairSearch {
     return !alone || pair.a->likelihood >= alone->likelihood;
   }
 
+  // Which of both only changes numbers of the model by as little as they may be off, or does what
+  // lengths and masses would do in its place.
+  Partner::Correction CorrectionOf(const Fitting& pair) const {
+    using Correction = Partner::Correction;
+    const bool first = pair.FirstCorrects(context_), second = pair.SecondCorrects(context_);
+    if (first && second) return Correction::kBoth;
+    if (first) return Correction::kThis;
+    if (second || DoLengthsAndMasses(*pair.a, pair.b->likelihood)) return Correction::kOther;
+    const CandidateResult* const alone = Single(*pair.b);
+    return alone && DoLengthsAndMasses(*alone, pair.likelihood() - alone->likelihood)
+               ? Correction::kThis
+               : Correction::kNone;
+  }
+
+  // Whether they explain about as much beside a cause as the other one of a pair does.
+  bool DoLengthsAndMasses(const CandidateResult& beside, double other) const {
+    return MayBeLengthsAndMasses(ExplainedByLengthsAndMasses(context_, beside), other, criteria_);
+  }
+
   // The first cause of the best pair, and what of the other pairs in the set could stand for it.
   Partner FirstOf(const std::vector<Fitting>& pairs, const Verdict& verdict) const {
-    using Correction = Partner::Correction;
     const Fitting& best = pairs[verdict.named.front()];
     Partner first{best.a->hypothesis};
-    const bool this_one = best.FirstCorrects(context_), other = best.SecondCorrects(context_);
-    if (this_one || other)
-      first.correction = !other     ? Correction::kThis
-                         : this_one ? Correction::kBoth
-                                    : Correction::kOther;
-    first.main = this_one == other ? IsMain(best) : other;
+    first.correction = CorrectionOf(best);
+    const bool one = first.Corrects() != first.OtherCorrects();
+    first.main = one ? first.OtherCorrects() : IsMain(best);
     std::set<std::string> taken{best.a->hypothesis.effect, best.b->hypothesis.effect};
     for (const std::size_t n : verdict.named) {
       if (pairs[n].base == best.base) taken.insert(pairs[n].b->hypothesis.effect);

@@ -24,7 +24,7 @@ struct Pair {
 struct PairsFound {
   std::optional<Pair> best = {};      ///< none: no second cause takes enough
   std::vector<PairTried> tried = {};  ///< best first
-  std::string would_take = {};        ///< what a second cause that is not named takes, in words
+  std::string would_take = {};        ///< what the second cause of the best takes, in words
 };
 
 /// Looks for two causes when one is not enough: forward from the best single candidates, and

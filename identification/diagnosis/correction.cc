@@ -48,6 +48,10 @@ bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
   });
 }
 
+bool MayBeLengthsAndMasses(double explained, double other, const Criteria& criteria) {
+  return explained >= criteria.correction_share * other;
+}
+
 bool IsFarOff(double factor, const Criteria& criteria) {
   return factor > criteria.factor_most || factor * criteria.factor_most < 1;
 }

@@ -20,6 +20,10 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
 bool OnlyCorrects(const Hypothesis& hypothesis, const Fitted& fitted, Eigen::Index begin,
                   const Experiment& experiment, Sizes sizes, const Criteria& criteria);
 
+/// Whether lengths and masses that are a little off explain so much [squares] that another cause,
+/// which explains this much in their place, is none of its own.
+bool MayBeLengthsAndMasses(double explained, double other, const Criteria& criteria);
+
 /// Whether a factor on a number of the model is further from 1 than such numbers are off.
 bool IsFarOff(double factor, const Criteria& criteria);
 

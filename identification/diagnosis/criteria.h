@@ -192,6 +192,11 @@ struct Criteria {
   Rule whole_correction{"whole_correction", 0.02, "share of mass, weight or time; rad",
                         "the whole is known better than its parts: scales, screws, how it stands, "
                         "a cheap clock"};
+  Rule link_known{"link_known", 0.015, "share of a length or a mass of a body",
+                  "drawings and scales are a per cent or two off: one standard deviation"};
+  Rule correction_share{"correction_share", 0.5, "share of what a cause explains beside another",
+                        "where lengths and masses that are a little off explain as much, it is no "
+                        "cause of its own"};
   Rule factor_most{"factor_most", 2, "times a number of the model, or its inverse",
                    "gains, scales, lengths and masses are rarely further off: a cause that has to "
                    "be is none beside another one that does as well"};
@@ -279,6 +284,8 @@ inline constexpr std::array kAllRules{
     &Criteria::rest_noise,
     &Criteria::correction,
     &Criteria::whole_correction,
+    &Criteria::link_known,
+    &Criteria::correction_share,
     &Criteria::factor_most,
     &Criteria::pair_share,
     &Criteria::fallback_ceiling,

@@ -212,7 +212,11 @@ class Session {
     Begin(DiagnosisStage::kSecondCause);
     PairsFound pairs = SecondCauses(search);
     d_.pairs = std::move(pairs.tried);
-    d_.remaining.would_take = std::move(pairs.would_take);
+    // Where two numbers are a little off others may be too: what stands by itself is told first.
+    if (pairs.best && pairs.best->first.correction == Partner::Correction::kBoth &&
+        d_.Is(Verdict::Kind::kNamed))
+      pairs.best.reset();
+    if (!pairs.best) d_.remaining.would_take = std::move(pairs.would_take);
     if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) && !d_.verdict.unlisted_explains) {
       if (auto by_error = NameByError(search.Records(), d_.criteria)) d_.verdict = *by_error;
     }

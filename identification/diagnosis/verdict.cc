@@ -118,7 +118,7 @@ class Ranking {
     const bool most =
         AreKin(a, first) &&
         candidates_[a].likelihood >= criteria_.family_share * candidates_[first].likelihood;
-    return most || HasNotEarned(first, a) || !Behind(first, a, AtLeast(criteria_.nested_margin));
+    return most || HasNotEarned(first, a) || !Behind(first, a, OfNested());
   }
   // Where more than noise is left, a law that contains another one makes up for some of that.
   bool HasNotEarned(std::size_t rich, std::size_t plain) const {
@@ -127,9 +127,12 @@ class Ranking {
            after > (1 - criteria_.earned_share) * before;
   }
   bool IsBehind(std::size_t best, std::size_t rival) const {
-    const double structure = criteria_.structure_least * most_ / scale_;
-    return Behind(best, rival, std::max(AtLeast(criteria_.rival_margin), structure));
+    return Behind(best, rival, std::max(AtLeast(criteria_.rival_margin), OfStructure()));
   }
+  // What lengths and masses may leave of what the best one explains.
+  double OfStructure() const { return criteria_.structure_least * most_ / scale_; }
+  // A richer law bends to that as well.
+  double OfNested() const { return std::max(AtLeast(criteria_.nested_margin), OfStructure()); }
   // A margin, or what else is wrong with a model may make of one. What is left beside a number that
   // is a little off is other such numbers: the best of them explains no more than all of that.
   double AtLeast(double margin) const {
@@ -150,8 +153,7 @@ class Ranking {
   }
   // To the one that it contains. Where only the time step leaves that open, both stay.
   bool AddsNothing(std::size_t a, std::size_t b) const {
-    return HasNotEarned(a, b) ||
-           (Contains(a, b) && Score(a) - Score(b) < scale_ * AtLeast(criteria_.nested_margin));
+    return HasNotEarned(a, b) || (Contains(a, b) && Score(a) - Score(b) < scale_ * OfNested());
   }
 
   const std::vector<LikelihoodRecord>& candidates_;

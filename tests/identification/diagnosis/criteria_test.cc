@@ -338,8 +338,11 @@ std::map<std::string, std::vector<Judged>> Examples() {
       [](const Criteria& c) { return MayBeOff(EffectNamed("armature"), "armature", 0.1, {}, c); });
   e["whole_correction"] =
       Number([](const Criteria& c) { return MayBeOff(EffectNamed("payload"), "mass", 0, {}, c); });
-  e["factor_most"] = AroundBoundary(
-      2, [](double factor, const Criteria& c) { return IsFarOff(factor, c); });
+  e["correction_share"] = AroundBoundary(0.5, [](double share, const Criteria& c) {
+    return MayBeLengthsAndMasses(share * 100, 100, c);
+  });
+  e["factor_most"] =
+      AroundBoundary(2, [](double factor, const Criteria& c) { return IsFarOff(factor, c); });
   e["pair_hopeless"] = AroundBoundary(100, [](double over, const Criteria& c) {
     return MayBeTwo(kUnexplained, {}, 1e-3, over, c);
   });
@@ -357,8 +360,8 @@ std::map<std::string, std::vector<Judged>> Examples() {
 }
 
 // How many of something a search tries: what changes with them needs a whole diagnosis.
-const std::set<std::string> kOnlyInSearches{"fresh_starts", "pair_singles", "pair_bases",
-                                            "next_rivals"};
+const std::set<std::string> kOnlyInSearches{"fresh_starts", "link_known", "pair_singles",
+                                            "pair_bases", "next_rivals"};
 
 std::vector<std::string> JudgedBy(const std::vector<Judged>& examples, const Criteria& criteria) {
   std::vector<std::string> out;

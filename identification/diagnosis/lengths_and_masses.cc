@@ -1,0 +1,84 @@
+#include "identification/diagnosis/lengths_and_masses.h"
+
+#include <optional>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "binding/effect_catalog.h"
+#include "error.h"
+#include "identification/candidates/effect_places.h"
+#include "identification/diagnosis/probing.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+using Matrix = Problem::Matrix;
+
+// Each body that has a length or a mass, by itself; none of those that the experiment fits.
+std::vector<Hypothesis> NumbersOfBodies(const CandidateContext& context) {
+  std::vector<Hypothesis> all;
+  std::vector<std::string> skipped;
+  for (const char* const name : {"link_length", "link_mass"}) {
+    const EffectInfo& effect = EffectNamed(name);
+    const mjModel& m = context.from.system->model();
+    const auto bodies = PlacesFor(m, effect, Place::kBody, "*", context.experiment);
+    for (const std::string& body : bodies) {
+      try {
+        all.push_back(HypothesisAt(effect, {name, "", false}, {Place::kBody, {body}}, 0, context));
+      } catch (const Error&) {
+        continue;  // it has none, or the experiment fits it
+      }
+    }
+  }
+  return all;
+}
+
+// What a number that is off by a share of itself does to the residuals; nothing where the
+// simulation diverges.
+std::vector<Vector> ColumnOf(const Problem& problem, const Fitted& cause, double share) {
+  const std::vector<bool> train = problem.TrainLogs();
+  std::vector<Vector> column;
+  try {
+    column = problem.Residuals(Append(cause.fit.x, {1 + share}), train);
+  } catch (const Error&) {
+    return {};
+  }
+  for (std::size_t l = 0; l < column.size(); ++l)
+    if (train[l]) column[l] -= cause.residuals[l];
+  return column;
+}
+
+// (1) by its normal equations.
+double SquaresWithPriors(const Matrix& C, const Vector& z) {
+  const Matrix normal = C.transpose() * C + Matrix::Identity(C.cols(), C.cols());
+  const Vector b = C.transpose() * z;
+  return b.dot(normal.ldlt().solve(b));
+}
+
+}  // namespace
+
+double ExplainedByLengthsAndMasses(const SearchContext& context, const CandidateResult& cause) {
+  if (!cause.fitted.complete()) return 0;
+  const CandidateFitter& fitter = context.fitter;
+  const Experiment& e = *fitter.experiment;
+  const Problem problem = ProblemOf(cause, e);
+  const SearchBase base{&cause.hypothesis.system, cause.hypothesis.Free(),
+                        problem.CommonChanges(cause.fitted.fit.x)};
+  const ProjectedResidual residual = fitter.ProjectedResidualOf(cause.fitted);
+  const Vector z = residual.vector();
+  Matrix C(z.size(), 0);
+  for (const Hypothesis& h : NumbersOfBodies({e, base, context.sizes})) {
+    if (fitter.TimeIsOver()) return 0;
+    const auto column =
+        ColumnOf(Problem(e, h.system, h.Free()), cause.fitted, fitter.criteria.link_known);
+    if (column.empty()) continue;
+    const std::vector<Matrix> columns(column.begin(), column.end());
+    C.conservativeResize(Eigen::NoChange, C.cols() + 1);
+    C.rightCols(1) = residual.Project(columns);
+  }
+  return C.cols() > 0 ? SquaresWithPriors(C, z) : 0;
+}
+
+}  // namespace continuum
