@@ -15,6 +15,7 @@
 #include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/lengths_and_masses.h"
 #include "identification/diagnosis/look_logs.h"
+#include "identification/diagnosis/pair_fit.h"
 
 namespace continuum {
 namespace {
@@ -23,47 +24,10 @@ constexpr std::size_t kSeconds = 6;  // that are fitted beside one first cause
 
 std::string Key(const Hypothesis& h) { return h.Name() + " at " + h.where; }
 
-// Whether the interval of a size leaves out its absence. It reaches over what the time step does.
-bool IsThere(const Hypothesis& h, const Uncertainty& u, Eigen::Index begin) {
-  for (const std::size_t a : h.Amplitudes()) {
-    const Eigen::Index i = begin + static_cast<Eigen::Index>(a);
-    const double null = std::min(h.null[a], h.extra[a].upper);
-    if (null < u.lower[i] || null > u.upper[i]) return true;
-  }
-  return false;
-}
-
 // A first cause, and the search for a second beside it.
 struct Beside {
   const CandidateResult* first;
   CandidateSearch search;
-};
-
-// One pair that was fitted.
-struct Fitting {
-  std::size_t base;    // index of its Beside
-  std::size_t second;  // index in its search
-  const CandidateResult* a;
-  CandidateResult* b;
-
-  double likelihood() const { return a->likelihood + b->likelihood; }
-  bool complete() const { return b->fitted.complete(); }
-  bool BothAreThere() const {
-    if (!complete()) return true;  // plainly behind, or out of time
-    const Uncertainty& u = b->fitted.sensitivities->uncertainty;
-    const auto first = static_cast<Eigen::Index>(a->hypothesis.extra.size());
-    return IsThere(a->hypothesis, u, b->first_extra() - first) &&
-           IsThere(b->hypothesis, u, b->first_extra());
-  }
-  bool FirstCorrects(const SearchContext& context) const {
-    const auto extra = static_cast<Eigen::Index>(a->hypothesis.extra.size());
-    return OnlyCorrects(a->hypothesis, b->fitted, b->first_extra() - extra,
-                        *context.fitter.experiment, context.sizes, context.fitter.criteria);
-  }
-  bool SecondCorrects(const SearchContext& context) const {
-    return OnlyCorrects(b->hypothesis, b->fitted, b->first_extra(), *context.fitter.experiment,
-                        context.sizes, context.fitter.criteria);
-  }
 };
 
 class PairSearch {
@@ -239,30 +203,30 @@ class PairSearch {
   }
 
   // Every pair of causes that both are there, once, best first.
-  std::vector<Fitting> All() {
-    std::map<std::set<std::string>, Fitting> all;
+  std::vector<PairFit> All() {
+    std::map<std::set<std::string>, PairFit> all;
     for (std::size_t t = 0; t < tried_.size(); ++t) {
       auto& candidates = tried_[t].search.candidates;
       for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const Fitting one{t, i, tried_[t].first, &candidates[i]};
+        const PairFit one{t, i, tried_[t].first, &candidates[i]};
         if (!one.BothAreThere()) continue;
         const auto [at, fresh] =
             all.try_emplace({Key(one.a->hypothesis), Key(one.b->hypothesis)}, one);
         if (!fresh && IsBetter(one, at->second)) at->second = one;
       }
     }
-    std::vector<Fitting> list;
+    std::vector<PairFit> list;
     for (const auto& [keys, one] : all) list.push_back(one);
-    std::stable_sort(list.begin(), list.end(), [](const Fitting& a, const Fitting& b) {
+    std::stable_sort(list.begin(), list.end(), [](const PairFit& a, const PairFit& b) {
       return a.likelihood() > b.likelihood();
     });
-    const auto begin = std::find_if(list.begin(), list.end(), std::mem_fn(&Fitting::complete));
+    const auto begin = std::find_if(list.begin(), list.end(), std::mem_fn(&PairFit::complete));
     list.erase(list.begin(), begin);  // these were out of time
     return list;
   }
 
   // Of two fits of one pair; where both say the same, the one that corrects the model first.
-  bool IsBetter(const Fitting& one, const Fitting& other) const {
+  bool IsBetter(const PairFit& one, const PairFit& other) const {
     if (one.complete() != other.complete()) return one.complete();
     const double difference = std::abs(one.likelihood() - other.likelihood());
     const bool same = difference < std::max<double>(criteria_.rival_margin,
@@ -274,7 +238,7 @@ class PairSearch {
 
   // A pair contains another when they share a cause and its other one contains the other's,
   // whichever was the first.
-  bool Inside(const Fitting& outer, const Fitting& inner) const {
+  bool Inside(const PairFit& outer, const PairFit& inner) const {
     const std::array<const CandidateResult*, 2> of_outer{outer.a, outer.b},
         of_inner{inner.a, inner.b};
     for (const int i : {0, 1}) {
@@ -287,9 +251,9 @@ class PairSearch {
     return false;
   }
 
-  std::vector<LikelihoodRecord> RecordsOf(const std::vector<Fitting>& pairs) const {
+  std::vector<LikelihoodRecord> RecordsOf(const std::vector<PairFit>& pairs) const {
     std::vector<LikelihoodRecord> records;
-    for (const Fitting& p : pairs) {
+    for (const PairFit& p : pairs) {
       const Hypothesis &a = p.a->hypothesis, &b = p.b->hypothesis;
       LikelihoodRecord record{
           a.Name() + " and " + b.Name(), a.extra.size() + b.extra.size(), p.likelihood(), {}};
@@ -303,7 +267,7 @@ class PairSearch {
     return records;
   }
 
-  void TakeBest(const std::vector<Fitting>& pairs, PairsFound& found) {
+  void TakeBest(const std::vector<PairFit>& pairs, PairsFound& found) {
     const auto records = RecordsOf(pairs);
     Verdict verdict = JudgeLikelihoods(records, {}, 0, single_.Base(), criteria_);
     if (verdict.named.empty()) return;
@@ -312,7 +276,7 @@ class PairSearch {
     LackOfFit lack = LackOf(pairs[likeliest]);
     verdict = JudgeLikelihoods(records, lack, 0, single_.Base(), criteria_);
     // Where more than noise is left a plainer pair may be enough.
-    const Fitting& best = pairs[verdict.named.empty() ? likeliest : verdict.named.front()];
+    const PairFit& best = pairs[verdict.named.empty() ? likeliest : verdict.named.front()];
     if (!Complete(best)) return;
     if (&best != &pairs[likeliest]) lack = LackOf(best);
     const bool matters = SecondShare(best) >= criteria_.second_share ||
@@ -335,7 +299,7 @@ class PairSearch {
 
   // A plain pair that was behind others of its search, and is to speak for them, has no
   // sensitivities so far. False: it diverges next to its fit.
-  bool Complete(const Fitting& pair) const {
+  bool Complete(const PairFit& pair) const {
     if (pair.complete()) return true;
     try {
       context_.fitter.Complete(ProblemOf(*pair.b, *context_.fitter.experiment), pair.b->fitted);
@@ -345,21 +309,21 @@ class PairSearch {
     }
   }
 
-  LackOfFit LackOf(const Fitting& pair) const {
+  LackOfFit LackOf(const PairFit& pair) const {
     const CandidateSearch& search = tried_[pair.base].search;
     return of_step_ ? search.TestsOf(*pair.b) : search.LackOf(pair.b);
   }
 
   // Whether the first cause explains more than the second one, each by itself: then it does so on
   // average of both orders as well.
-  bool IsMain(const Fitting& pair) const {
+  bool IsMain(const PairFit& pair) const {
     const CandidateResult* const alone = Single(*pair.b);
     return !alone || pair.a->likelihood >= alone->likelihood;
   }
 
   // Which of both only changes numbers of the model by as little as they may be off, or does what
   // lengths and masses would do in its place.
-  Partner::Correction CorrectionOf(const Fitting& pair) const {
+  Partner::Correction CorrectionOf(const PairFit& pair) const {
     using Correction = Partner::Correction;
     const bool first = pair.FirstCorrects(context_), second = pair.SecondCorrects(context_);
     if (first && second) return Correction::kBoth;
@@ -373,12 +337,13 @@ class PairSearch {
 
   // Whether they explain about as much beside a cause as the other one of a pair does.
   bool DoLengthsAndMasses(const CandidateResult& beside, double other) const {
-    return MayBeLengthsAndMasses(ExplainedByLengthsAndMasses(context_, beside), other, criteria_);
+    return MayBeLengthsAndMasses(
+        ExplainedByLengthsAndMasses(context_.fitter, context_.sizes, beside), other, criteria_);
   }
 
   // The first cause of the best pair, and what of the other pairs in the set could stand for it.
-  Partner FirstOf(const std::vector<Fitting>& pairs, const Verdict& verdict) const {
-    const Fitting& best = pairs[verdict.named.front()];
+  Partner FirstOf(const std::vector<PairFit>& pairs, const Verdict& verdict) const {
+    const PairFit& best = pairs[verdict.named.front()];
     Partner first{best.a->hypothesis};
     first.correction = CorrectionOf(best);
     const bool one = first.Corrects() != first.OtherCorrects();
@@ -433,21 +398,21 @@ class PairSearch {
   }
 
   // What the second cause takes of what can be explained at all, by the view that gives it more.
-  double SecondShare(const Fitting& pair) const {
+  double SecondShare(const PairFit& pair) const {
     const double whitened = ShareOf({"", 0, pair.b->likelihood}, single_.Base());
     return std::max(whitened,
                     single_.ErrorShare(pair.b->fitted) - single_.ErrorShare(pair.a->fitted));
   }
 
   // What the second cause takes of the squares above the noise that the first leaves.
-  double ShareOfRest(const Fitting& pair) const {
+  double ShareOfRest(const PairFit& pair) const {
     const BaseSquares base = single_.Base();
     const double left = base.squares - base.freedom - pair.a->likelihood;
     return std::clamp(pair.b->likelihood / std::max(left, 1e-300), 0.0, 1.0);
   }
 
   // A cause that is small beside the first; on logs that were not fitted too.
-  bool TakesTheRest(const Fitting& pair) const {
+  bool TakesTheRest(const PairFit& pair) const {
     const TwoErrors &before = pair.a->fitted.error, &after = pair.b->fitted.error;
     const double floor = context_.noise.floor();
     const auto falls = [&](double from, double to) {
@@ -457,15 +422,15 @@ class PairSearch {
            (before.validate == 0 || falls(before.validate, after.validate));
   }
 
-  std::string InWords(const Fitting& pair) const {
+  std::string InWords(const PairFit& pair) const {
     return fmt::format("{} beside {} takes {:.0f} % of that", pair.b->hypothesis.NameAtPlace(),
                        pair.a->hypothesis.NameAtPlace(), 100 * ShareOfRest(pair));
   }
 
   // All that was fitted, best first.
-  static std::vector<PairTried> List(const std::vector<Fitting>& pairs) {
+  static std::vector<PairTried> List(const std::vector<PairFit>& pairs) {
     std::vector<PairTried> list;
-    for (const Fitting& p : pairs)
+    for (const PairFit& p : pairs)
       list.push_back({Key(p.a->hypothesis), Key(p.b->hypothesis), p.likelihood()});
     return list;
   }

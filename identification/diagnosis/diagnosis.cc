@@ -20,6 +20,7 @@
 #include "identification/diagnosis/gain_interval.h"
 #include "identification/diagnosis/log_requirements.h"
 #include "identification/diagnosis/look_logs.h"
+#include "identification/diagnosis/merged_places.h"
 #include "identification/diagnosis/needless_sizes.h"
 #include "identification/diagnosis/next_experiment.h"
 #include "identification/diagnosis/quantisation.h"
@@ -57,7 +58,7 @@ class Session {
     Begin(DiagnosisStage::kJudgement);
     Part("view by the missing force", [&] { CompareByEquation(); });
     if (d_.noise_limited) {
-      MergePlaces();
+      MergePlaces(d_);
       CompleteNamed();
       Part("sizes that are not needed", [&] { DropSizes(); });
       FitFinely();
@@ -65,7 +66,7 @@ class Session {
       ConfirmOnFolds(fitter_, d_);
     } else {
       CompareFolds();
-      MergePlaces();
+      MergePlaces(d_);
       CompleteNamed();
       ConfirmOnValidateLogs(d_);
     }
@@ -410,30 +411,6 @@ class Session {
     if (first.correction == Correction::kBoth) return false;
     return (first.equivalent.empty() || first.correction == Correction::kThis) &&
            (other_is_one || first.correction == Correction::kOther);
-  }
-
-  // One effect at several places is one name: the data do not distinguish the places.
-  void MergePlaces() {
-    auto& named = d_.verdict.named;
-    if (named.size() < 2) return;
-    const std::string& effect = d_.candidates[named.front()].hypothesis.effect;
-    std::string places;
-    for (const std::size_t i : named) {
-      const Hypothesis& h = d_.candidates[i].hypothesis;
-      if (h.effect != effect) return;
-      places += (places.empty() ? "" : ", ") + (h.variant.empty() ? h.where : h.NameAtPlace());
-    }
-    if (!d_.partner) {
-      d_.verdict.kind = Verdict::Kind::kNamed;
-      d_.verdict.reason = d_.noise_limited
-                              ? "its residual shows " + ResidualInWords(d_.lack_of_fit, d_.criteria)
-                              : "it passes all rules and is clearly better than every other effect";
-    } else if (d_.partner->equivalent.empty() && d_.partner->instead.empty() &&
-               d_.partner->correction != Partner::Correction::kBoth) {
-      d_.verdict.kind = Verdict::Kind::kNamed;
-    }
-    d_.verdict.reason += "; the data do not distinguish these places: " + places;
-    named.resize(1);
   }
 
   // A rival that is far behind on one of the scales has no intervals so far.

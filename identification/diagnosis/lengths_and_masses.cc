@@ -8,6 +8,7 @@
 #include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/candidates/effect_places.h"
+#include "identification/candidates/object_sets.h"
 #include "identification/diagnosis/probing.h"
 
 namespace continuum {
@@ -59,9 +60,9 @@ double SquaresWithPriors(const Matrix& C, const Vector& z) {
 
 }  // namespace
 
-double ExplainedByLengthsAndMasses(const SearchContext& context, const CandidateResult& cause) {
+double ExplainedByLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
+                                   const CandidateResult& cause) {
   if (!cause.fitted.complete()) return 0;
-  const CandidateFitter& fitter = context.fitter;
   const Experiment& e = *fitter.experiment;
   const Problem problem = ProblemOf(cause, e);
   const SearchBase base{&cause.hypothesis.system, cause.hypothesis.Free(),
@@ -69,7 +70,7 @@ double ExplainedByLengthsAndMasses(const SearchContext& context, const Candidate
   const ProjectedResidual residual = fitter.ProjectedResidualOf(cause.fitted);
   const Vector z = residual.vector();
   Matrix C(z.size(), 0);
-  for (const Hypothesis& h : NumbersOfBodies({e, base, context.sizes})) {
+  for (const Hypothesis& h : NumbersOfBodies({e, base, sizes})) {
     if (fitter.TimeIsOver()) return 0;
     const auto column =
         ColumnOf(Problem(e, h.system, h.Free()), cause.fitted, fitter.criteria.link_known);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/diagnosis/candidate_search.h"
+#include "identification/diagnosis/candidate_fitter.h"
 
 namespace continuum {
 
@@ -12,6 +12,7 @@ namespace continuum {
 /// of C is what link_known of the length or of the mass of one body does to z, a its size in units
 /// of that, as likely a priori as a standard normal number. 0 where the cause has no complete fit
 /// or there is no time for it.
-double ExplainedByLengthsAndMasses(const SearchContext& context, const CandidateResult& cause);
+double ExplainedByLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
+                                   const CandidateResult& cause);
 
 }  // namespace continuum

@@ -1,0 +1,38 @@
+#include "identification/diagnosis/pair_fit.h"
+
+#include <algorithm>
+
+#include "identification/diagnosis/correction.h"
+
+namespace continuum {
+namespace {
+
+// Whether the interval of a size leaves out its absence. It reaches over what the time step does.
+bool IsThere(const Hypothesis& h, const Uncertainty& u, Eigen::Index begin) {
+  for (const std::size_t a : h.Amplitudes()) {
+    const Eigen::Index i = begin + static_cast<Eigen::Index>(a);
+    const double null = std::min(h.null[a], h.extra[a].upper);
+    if (null < u.lower[i] || null > u.upper[i]) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool PairFit::BothAreThere() const {
+  if (!complete()) return true;
+  const Uncertainty& u = b->fitted.sensitivities->uncertainty;
+  return IsThere(a->hypothesis, u, first_extra()) && IsThere(b->hypothesis, u, b->first_extra());
+}
+
+bool PairFit::FirstCorrects(const SearchContext& context) const {
+  return OnlyCorrects(a->hypothesis, b->fitted, first_extra(), *context.fitter.experiment,
+                      context.sizes, context.fitter.criteria);
+}
+
+bool PairFit::SecondCorrects(const SearchContext& context) const {
+  return OnlyCorrects(b->hypothesis, b->fitted, b->first_extra(), *context.fitter.experiment,
+                      context.sizes, context.fitter.criteria);
+}
+
+}  // namespace continuum
