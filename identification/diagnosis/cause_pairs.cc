@@ -259,6 +259,7 @@ class PairSearch {
           a.Name() + " and " + b.Name(), a.extra.size() + b.extra.size(), p.likelihood(), {}};
       record.kin = KinOf(a.Card(), b.Card());
       record.error_share = single_.ErrorShare(p.b->fitted);
+      record.far_off = p.AnyIsFarOff(criteria_);
       for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (&pairs[i] != &p && Inside(p, pairs[i])) record.contains.push_back(i);
       }
@@ -284,7 +285,7 @@ class PairSearch {
     found.would_take = InWords(best);
     if (!matters || verdict.named.empty()) return;
     Partner first = FirstOf(pairs, verdict);
-    for (auto* const some : {&verdict.named, &verdict.siblings}) {
+    for (auto* const some : {&verdict.named, &verdict.siblings, &verdict.far_off}) {
       std::vector<std::size_t> seconds;
       for (const std::size_t n : *some) {
         if (pairs[n].base == best.base) seconds.push_back(pairs[n].second);

@@ -35,4 +35,9 @@ bool PairFit::SecondCorrects(const SearchContext& context) const {
                       context.sizes, context.fitter.criteria);
 }
 
+bool PairFit::AnyIsFarOff(const Criteria& criteria) const {
+  return IsFarOff(a->hypothesis, b->fitted, first_extra(), criteria) ||
+         IsFarOff(b->hypothesis, b->fitted, b->first_extra(), criteria);
+}
+
 }  // namespace continuum

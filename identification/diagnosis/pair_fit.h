@@ -20,6 +20,8 @@ struct PairFit {
   /// OnlyCorrects of the one and the other, beside each other.
   bool FirstCorrects(const SearchContext& context) const;
   bool SecondCorrects(const SearchContext& context) const;
+  /// IsFarOff of any of both.
+  bool AnyIsFarOff(const Criteria& criteria) const;
 
  private:
   Eigen::Index first_extra() const {
