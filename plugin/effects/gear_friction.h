@@ -42,7 +42,7 @@ struct GearFriction {
                                       Magnitude("q_m", "1/N/m", 0),
                                       Magnitude("q_e", "1/N/m", 0),
                                       Positive("v_d", "rad/s", 0.2),
-                                      Param{"alpha", "1", 1, 10, 1.35, kAsIs, 1.35},
+                                      Param{"alpha", "1", 0.2, 10, 1.35, kAsIs, 1.35},
                                       Param{"give", "rad", 0, kInfinity, 0, 0, 0}};
   static constexpr std::size_t kCoulombLevel = 0, kGive = 10;
 
