@@ -71,12 +71,19 @@ def model(law):
 
 
 def start_of(law, name, fits):
-    """Where a parameter begins: where the rung below has ended, if it has it; else at a start of its own."""
+    """Where a parameter begins: where the rung below has ended, if it has it; else at a start of its own.
+    So does a delay, as one below the time step has no derivative."""
     below, names = BELOW.get(law, (None, {}))
     there, factor = names.get(name, (name, 1))
-    if below and there in fits.get(below, {}):
+    if name != "delay" and there in fits.get(below, {}):
         return factor * fits[below][there]
     return OWN_START.get(law, {}).get(name)
+
+
+def inside(value, lower, upper):
+    """A start a hundredth of the range off the bounds."""
+    margin = (upper - lower) / 100
+    return min(max(value, lower + margin), upper - margin)
 
 
 def parameter_lines(law, text, fits):
@@ -87,11 +94,14 @@ def parameter_lines(law, text, fits):
         if not name or name[1] == "tau_c":
             continue
         value = start_of(law, name[1], fits)
-        line = re.sub(r" initial: [^,]*,", "", line) if value is not None else line
-        lines.append(line if value is None else line.replace(", lower", f", initial: {value!r}, lower"))
+        if value is not None:
+            bounds = (float(x) for x in re.search(r"lower: (\S+), upper: (\S+)\}", line).groups())
+            line = re.sub(r" initial: [^,]*,", "", line)
+            line = line.replace(", lower", f", initial: {inside(value, *bounds)!r}, lower")
+        lines.append(line)
     for name, (lower, upper) in LAWS[law][2].items():
         value = start_of(law, name, fits)
-        first = "" if value is None else f"initial: {min(max(value, lower), upper)!r}, "
+        first = "" if value is None else f"initial: {inside(value, lower, upper)!r}, "
         lines.append(f"  - {{name: {name}, target: \"plugin:friction\", attribute: {name}, {first}"
                      f"lower: {lower}, upper: {upper}}}")
     return lines
