@@ -158,9 +158,10 @@ def main():
             chosen[gain] = min(chosen.get(gain, (math.inf,)), (fitted[-1], law, held_out[-1]))
         cells = " | ".join(f"{error:.1f}" for error in [*held_out, mean(held_out), mean(fitted)])
         print(f"| {law}: {WHAT[law]} | {len(OTHERS) + len(LAWS[law][2])} | {cells} |", flush=True)
+    print()
     for gain, (_, law, error) in chosen.items():
-        print(f"without {gain} the fits choose {law}: {error:.1f} mrad on it")
-    print(f"the law that is chosen, on average: {mean([error for _, _, error in chosen.values()]):.1f} mrad")
+        print(f"- Without {gain} the fits choose {law}: {error:.1f} mrad on it.")
+    print(f"- The law that is chosen, on average: {mean([error for _, _, error in chosen.values()]):.1f} mrad.")
 
 
 if __name__ == "__main__":
