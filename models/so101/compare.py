@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Held-out errors of an SO-101 arm, joint by joint, of models side by side.
 
-usage: compare.py SOURCE_FOLDER RESULT_FOLDER [CONTINUUM]
+usage: compare.py [--fitted] SOURCE_FOLDER RESULT_FOLDER [CONTINUUM]
 
 SOURCE_FOLDER: of import.py, which is run first. CONTINUUM: the executable (default: continuum). Every motion
 is held out once: first.yaml trains on every other one, second.yaml on those between. Printed: RMS over all
@@ -12,7 +12,7 @@ rows of all motions [mrad], each by the fit that has not seen it, for
   fitted               `identify`: stiffness, damping and friction of each servo, zeros, delay
   extended             the same with the cause that `diagnose` offers for the train motions
 and the same for repetitive_motion alone, beside the scatter of its cycles. What lies in RESULT_FOLDER
-already is not made again.
+already is not made again. --fitted: without the last row, which takes two diagnoses and two more fits.
 """
 import csv
 import json
@@ -127,17 +127,18 @@ def extend(runs, half):
 
 
 def main():
-    if not 3 <= len(sys.argv) <= 4:
+    arguments = [argument for argument in sys.argv[1:] if argument != "--fitted"]
+    if not 2 <= len(arguments) <= 3:
         sys.exit(__doc__.strip())
-    source, results = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-    runs = Runs(source, results, sys.argv[3] if len(sys.argv) == 4 else "continuum")
+    source, results = (pathlib.Path(argument).resolve() for argument in arguments[:2])
+    runs = Runs(source, results, arguments[2] if len(arguments) == 3 else "continuum")
     menagerie = held_out(runs.make("replay", "menagerie.yaml", "menagerie", "errors.json"))
     motions = sorted(menagerie)
     models = {"goal as position": goal_errors(results, motions), "menagerie": menagerie,
               "unfitted": of_halves(runs, "replay", "{}.yaml", "{}_unfitted", "errors.json"),
               "fitted": of_halves(runs, "identify", "{}.yaml", "{}_fit", "fit.json")}
-    extended = [extend(runs, half) for half in HALVES]
-    if all(extended):
+    extended = [extend(runs, half) for half in HALVES] if len(arguments) == len(sys.argv) - 1 else []
+    if extended and all(extended):
         models["extended"] = extended[0] | extended[1]
     table("all motions, held out [mrad]", models, motions)
     if CYCLES in motions:

@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 """Turns logs of an SO-101 arm into an experiment folder.
 
-usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER
+usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER [SECONDS]
 
 SOURCE_FOLDER holds logs/*.csv, one for each motion: t [s], goal_<joint> and q_<joint> [rad] of pan, lift,
 elbow, wrist_flex, wrist_roll, and of the gripper as a share of its range, 0 to 1. Written: one CSV per
 motion, in which the gripper is the jaw's angle [rad], and
-  first.yaml, second.yaml   every other motion trains (its first 25 s), the others are held out, whole
+  first.yaml, second.yaml   every other motion trains (its first SECONDS, default 25), the others are
+                            held out, whole
   menagerie.yaml            all motions, whole, with the actuators of the menagerie's model
-  first_diagnosis.yaml, second_diagnosis.yaml   15 s of the motions that train in first.yaml and
-                            second.yaml, three of four to train, with candidates
+  first_diagnosis.yaml, second_diagnosis.yaml   15 s (at most SECONDS) of the motions that train in
+                            first.yaml and second.yaml, three of four to train, with candidates
 """
 import pathlib
 import sys
@@ -74,22 +75,29 @@ def table(path):
     return "\n".join(rows) + "\n"
 
 
-def halves(names, first, model):
+def read_seconds(text):
+    seconds = importer.number(text, "SECONDS")
+    if seconds <= 0:
+        importer.refuse("SECONDS", "a positive number of seconds", text)
+    return seconds
+
+
+def halves(names, first, model, seconds):
     """Every other motion trains, from the first or the second on; the others are held out."""
-    window = f"window: [0, {TRAIN_SECONDS}]"
+    window = f"window: [0, {seconds:g}]"
     logs = [(name, "train", window) if k % 2 == first else (name, "validate", "")
             for k, name in enumerate(names)]
     return experiment(logs, model, parameters() + ["candidates: []", "folds: trial"])
 
 
-def diagnosed(names, model):
+def diagnosed(names, model, seconds):
     """The beginnings of some motions, a quarter of them held out, with candidates."""
-    window = f"window: [0, {DIAGNOSIS_SECONDS}]"
+    window = f"window: [0, {min(seconds, DIAGNOSIS_SECONDS):g}]"
     logs = [(name, "validate" if k % 4 == 1 else "train", window) for k, name in enumerate(names)]
     return experiment(logs, model, parameters() + [f"candidates: {CANDIDATES}", "folds: trial"])
 
 
-def convert(source, model):
+def convert(source, model, seconds=TRAIN_SECONDS):
     files = sorted((source / "logs").glob("*.csv"))
     if len(files) < 4:
         importer.refuse(source, "at least 4 motions (logs/*.csv)", len(files))
@@ -99,14 +107,14 @@ def convert(source, model):
             importer.refuse(source / "logs" / f"{name}.csv", "letters, digits and _ as a name", name)
     written = {f"{file.stem}.csv": table(file) for file in files}
     written |= {
-        "first.yaml": halves(names, 0, model),
-        "second.yaml": halves(names, 1, model),
+        "first.yaml": halves(names, 0, model, seconds),
+        "second.yaml": halves(names, 1, model, seconds),
         "menagerie.yaml": experiment([(name, "validate", MENAGERIE) for name in names], model, []),
-        "first_diagnosis.yaml": diagnosed(names[::2], model),
-        "second_diagnosis.yaml": diagnosed(names[1::2], model),
+        "first_diagnosis.yaml": diagnosed(names[::2], model, seconds),
+        "second_diagnosis.yaml": diagnosed(names[1::2], model, seconds),
     }
     return written, f"{len(names)} motions and 5 experiments"
 
 
 if __name__ == "__main__":
-    importer.run(__file__, __doc__, convert)
+    importer.run(__file__, __doc__, convert, "SECONDS", read_seconds)

@@ -33,6 +33,14 @@ TEST(GearFriction, WithoutALoadIsStribecks) {
   EXPECT_NEAR(Level(50, 0, 0), 0.02, 1e-15);
 }
 
+TEST(GearFriction, FallsFromTheFirstMotionOnWhereAlphaIsBelowOne) {
+  auto law = kLaw;
+  law[9] = 0.45;
+  EXPECT_DOUBLE_EQ(Level(0, 0, 0, law), 0.02 + 0.05);
+  EXPECT_NEAR(Level(2e-3, 0, 0, law), 0.02 + 0.05 * std::exp(-std::pow(0.01, 0.45)), 1e-15);
+  EXPECT_NEAR(Level(2, 0, 0, law), 0.02 + 0.05 * std::exp(-std::pow(10, 0.45)), 1e-15);
+}
+
 TEST(GearFriction, IsAlikeInBothDirections) {
   for (const double v : {0.0, 0.1, 0.7}) {
     EXPECT_EQ(Level(v, 0.3, -0.2), Level(-v, -0.3, 0.2));
