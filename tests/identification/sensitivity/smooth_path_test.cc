@@ -244,11 +244,12 @@ INSTANTIATE_TEST_SUITE_P(
                                "<config key='joint' value='ball'/>"
                                "<config key='tau_c' value='0.1'/>")),
                  "", "has dry friction: it acts on a ball joint"},
-        Obstacle{"Cable",
-                 SmoothArm(Law("capstan",
-                               "<config key='tendon' value='ta'/>"
-                               "<config key='mu' value='0.1'/>")),
-                 "", "a cable with dry friction is under tension"},
+        Obstacle{"CableWithALimit",
+                 Edited(SmoothArm(Law("capstan",
+                                      "<config key='tendon' value='ta'/>"
+                                      "<config key='mu' value='0.1'/>")),
+                        "name='ta'", "name='ta' limited='true' range='0 9'"),
+                 "", "a cable whose friction is no bristle is under tension"},
         Obstacle{"SecondOrderLag",
                  SmoothArm(Law("pt2",
                                "<config key='actuator' value='pull'/>"
