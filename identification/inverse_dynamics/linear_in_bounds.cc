@@ -35,10 +35,14 @@ void LinearEquations::RequireDistinct() const {
     throw Error::Input("parameter '" + problem_.parameters()[columns_[i]].name + "'",
                        "an effect on the forces of a train log where its joints move", "none");
   }
+  if (!AreDistinct()) throw Error::Job("the logs do not distinguish the parameters");
+}
+
+bool LinearEquations::AreDistinct() const {
+  if (!(H_.diagonal().minCoeff() > 0)) return false;
   const Vector size = H_.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix unit = size.asDiagonal() * H_ * size.asDiagonal();
-  if (unit.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() < 1e-10)
-    throw Error::Job("the logs do not distinguish the parameters");
+  return unit.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() >= 1e-10;
 }
 
 LinearEquations::Solution LinearEquations::Solve() const {

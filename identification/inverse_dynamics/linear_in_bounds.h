@@ -23,6 +23,8 @@ class LinearEquations {
   };
   /// Least squares within the bounds: what leaves them stays at them, the others once more.
   Solution Solve() const;
+  /// Whether the equations distinguish all parameters.
+  bool AreDistinct() const;
   /// Throws Error for a parameter without effect, and where the equations do not distinguish them.
   void RequireDistinct() const;
 

@@ -47,7 +47,7 @@ class InverseFit {
   }
 
  private:
-  // Takes from left what the wrench depends on.
+  // Takes from left what the wrench depends on, where it distinguishes all of it.
   void FitWrench(Columns& left) {
     Columns seen;
     const auto r = wrench_.Residuals(found_.x);
@@ -57,6 +57,8 @@ class InverseFit {
         seen.push_back(k);
     }
     if (seen.empty()) return;
+    const auto slopes = wrench_.Slopes(found_.x, r, seen, kLinearStep);
+    if (!wrench_.Linear(found_.x, r, slopes, seen).AreDistinct()) return;
     std::erase_if(left, [&](auto k) { return std::ranges::find(seen, k) != seen.end(); });
     found_.x = wrench_.Refined(found_.x, seen);
     Say(NamesOf(seen) + " from forces and torques");

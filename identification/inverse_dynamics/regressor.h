@@ -9,7 +9,8 @@ namespace continuum {
 /// Least squares on the inverse dynamics along the measured motion, without a simulation
 /// (MeasuredEquations; gautier1997, janot2014), in three steps as spa2022 (section V):
 ///
-/// 1. What forces and torques of the base depend on, such as the mass, from these alone.
+/// 1. What forces and torques of the base depend on, such as the mass, from these alone, where they
+///    distinguish all of it.
 /// 2. A particle swarm within the bounds over parameters that enter the joints' equations along a
 ///    curve, with linear least squares for all others inside. Without such parameters: only these.
 /// 3. After a swarm Gauss-Newton of all parameters of step 2, from its best place.
