@@ -100,7 +100,7 @@ void AddIdentify(CLI::App& app) {
   sub->add_option("--method", o->method,
                   "lm (Levenberg-Marquardt), pso (particle swarm, 20 x 40, or the "
                   "experiment's key swarm) or regressor (least "
-                  "squares on the inverse model, where all joints are measured)")
+                  "squares on the inverse model, along joints or places that are measured)")
       ->check(CLI::IsMember({"lm", "pso", "regressor"}))
       ->capture_default_str();
   sub->add_option("--path", o->path, "how logs are simulated: smooth (CVODES), stepped, or auto")

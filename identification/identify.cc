@@ -95,12 +95,16 @@ void FitSwarm(const Options& o, const Problem& problem, const std::vector<bool>&
 
 void FitInverseModel(const Options& o, const Problem& problem, const std::vector<bool>& use,
                      IdentifyResult& all) {
-  all.regression = FitByRegressor(problem, use, {o.cutoff});
+  RegressorOptions options{.cutoff = o.cutoff, .seed = o.seed, .progress = o.progress};
+  if (const auto& file = problem.experiment().file; !file.empty()) options.swarm = ReadSwarm(file);
+  if (o.iterations > 0) options.swarm.iterations = o.iterations;
+  all.regression = FitByRegressor(problem, use, options);
   all.fit.x = all.regression->x;
+  all.fit.iterations = all.regression->iterations;
   all.fit.cost = 0.5 * SumOfSquares(problem.Residuals(all.fit.x, use));
   all.fit.seconds = all.regression->seconds;
   all.fit.converged = true;
-  all.fit.message = "linear least squares";
+  all.fit.message = all.regression->how;
 }
 
 FitOptions LeastSquaresOptions(const Options& o, const Problem& problem) {

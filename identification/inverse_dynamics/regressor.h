@@ -1,27 +1,26 @@
 #pragma once
 
+#include "identification/inverse_dynamics/regressor_options.h"
 #include "identification/problem/problem.h"
 #include "identification/result/regression.h"
 
 namespace continuum {
 
-struct RegressorOptions {
-  double cutoff = 0;  ///< of the low-pass [Hz]; 0: 50 Hz, or a fifth of the sampling rate
-};
-
-/// Least squares on the inverse dynamics of parameters that enter linearly:
+/// Least squares on the inverse dynamics along the measured motion, without a simulation
+/// (MeasuredEquations; gautier1997, janot2014), in three steps as spa2022 (section V):
 ///
-///   F [ID(q, v, a; p) − Bᵀ f] = 0,   ID = M a + c − (passive forces and dry friction)
+/// 1. What forces and torques of the base depend on, such as the mass, from these alone, where they
+///    distinguish all of it.
+/// 2. A particle swarm within the bounds over parameters that enter the joints' equations along a
+///    curve, with linear least squares for all others inside. Without such parameters: only these.
+/// 3. After a swarm Gauss-Newton of all parameters of step 2, from its best place.
 ///
-/// at measured q, with v and a as its derivatives; f are measured actuator forces, or what the
-/// model gives under the logged inputs. F low-passes positions first and then both sides, without
-/// phase (gautier1997, janot2014). Each joint's equation is weighted by its RMS force; where dry
-/// friction may hold the joint it is left out (MarkStationary), but counts in the errors. No
-/// simulation: a start is not needed, but every joint (hinge or slide) must be measured, evenly in
-/// time; those that linear joint equalities tie to others follow them (Ties).
+/// Within the bounds, which stand for the source's penalty: least squares inside the swarm keep to
+/// them too. Where dry friction may hold a joint, its equation is left out (MarkStationary), but
+/// counts in the errors.
 ///
-/// Throws Error for joints that are not measured, states that cannot be (activations, laws with
-/// states, cable friction), parameters that do not enter linearly, or that nothing determines.
+/// Throws Error for motion that is not measured, states that cannot be (laws with states, cable
+/// friction), and parameters that nothing determines.
 Regression FitByRegressor(const Problem& problem, const std::vector<bool>& use,
                           const RegressorOptions& options = {});
 

@@ -50,6 +50,10 @@ std::vector<double> Derivative(const std::vector<double>& y, double step) {
   const std::size_t n = y.size();
   std::vector<double> rate(n);
   for (std::size_t k = 0; k < n; ++k) {
+    if (k >= 2 && k + 2 < n) {
+      rate[k] = (y[k - 2] - 8 * y[k - 1] + 8 * y[k + 1] - y[k + 2]) / (12 * step);
+      continue;
+    }
     const std::size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, n - 1);
     rate[k] = (y[after] - y[before]) / (step * static_cast<double>(after - before));
   }

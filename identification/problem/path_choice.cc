@@ -27,7 +27,8 @@ bool ActsContactOrLimit(const mjData& d) {
 bool ActsCableFriction(const mjModel& m, const mjData& d) {
   for (int i = 0; i < m.nplugin; ++i) {
     const BoundLaw& law = BoundOf(m, d, i);
-    if (law.NeedsAllForces() && law.LargestTension() > 0) return true;
+    if (law.NeedsAllForces() && !law.WhyNoBristles(m).empty() && law.LargestTension() > 0)
+      return true;
   }
   return false;
 }
@@ -42,7 +43,7 @@ std::string ObstacleOnTheWay(const Problem& problem, std::size_t log) {
     if (what) return;
     when = d.time;
     if (ActsContactOrLimit(d)) what = "a contact or limit acts";
-    if (ActsCableFriction(m, d)) what = "a cable with dry friction is under tension";
+    if (ActsCableFriction(m, d)) what = "a cable whose friction is no bristle is under tension";
   };
   const Log& logged = problem.experiment().logs[log];
   Simulate(machine, problem.experiment(), logged, {}, hooks);

@@ -7,8 +7,8 @@
 namespace continuum {
 
 /// What keeps the smooth path from following a problem's model at its start: native dry friction,
-/// contacts, limits or friction of cables that act, delays, discrete states. Empty: nothing does.
-/// Simulates every log once.
+/// contacts and limits that act, friction of cables that is no bristle, delays, discrete states.
+/// Empty: nothing does. Simulates every log once.
 std::string SmoothObstacle(const Problem& problem);
 
 /// Why the smooth path would gain nothing: it begins anew at every row where an input jumps or

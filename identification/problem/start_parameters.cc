@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "error.h"
+#include "identification/problem/resting_joints.h"
 #include "sim/model/joint_equalities.h"
 #include "sim/simulation/initial_state.h"
 
@@ -51,41 +52,49 @@ std::vector<int> IndependentJoints(const mjModel& m) {
   return joints;
 }
 
+// Within its size of what the first rows say or of another value: of speeds rest, as noise may hide
+// it.
+FreeParameter StartParameter(const std::string& joint, const std::string& what,
+                             const std::string& unit, double value, double size, double other,
+                             std::size_t log, const Experiment& e) {
+  FreeParameter p;
+  p.name = joint + " " + what + "[" + e.logs[log].label + "]";
+  p.unit = unit;
+  p.initial = value;
+  p.lower = std::min(value, other) - size, p.upper = std::max(value, other) + size;
+  p.scale = size;
+  p.change.target = "start:" + joint, p.change.attribute = what;
+  p.log.assign(e.logs.size(), false);
+  p.log[log] = true;
+  return p;
+}
+
+void AddStarts(const Experiment& e, const ModelSpec& system, std::size_t l,
+               std::vector<FreeParameter>& all) {
+  const Log& log = e.logs[l];
+  ModelAndData machine = system.Build(log.set);
+  const mjModel& m = *machine.model;
+  const InitialState start = StartOf(machine, e, log);
+  const std::vector<int> joints = IndependentJoints(m);
+  const std::vector<int> resting = RestingJoints(machine, e, log, start, joints);
+  for (const int j : joints) {
+    if (std::find(resting.begin(), resting.end(), j) != resting.end()) continue;
+    const std::string joint = JointName(m, j);
+    const double travel = Travel(m, j, e, log);
+    const double fast = 10 * travel;  // 1/s: back and forth three times a second
+    const bool slide = m.jnt_type[j] == mjJNT_SLIDE;
+    const double q = start.qpos[m.jnt_qposadr[j]], v = start.qvel[m.jnt_dofadr[j]];
+    all.push_back(StartParameter(joint, kPosition, slide ? "m" : "rad", q, travel, q, l, e));
+    all.push_back(StartParameter(joint, kSpeed, slide ? "m/s" : "rad/s", v, fast, 0, l, e));
+  }
+}
+
 }  // namespace
 
 std::vector<FreeParameter> StartParameters(const Experiment& e, const ModelSpec& system) {
   std::vector<FreeParameter> all;
   if (e.start != Experiment::Start::kEstimate) return all;
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    const Log& log = e.logs[l];
-    ModelAndData machine = system.Build(log.set);
-    const mjModel& m = *machine.model;
-    const InitialState start = StartOf(machine, e, log);
-    std::vector<bool> own(e.logs.size(), false);
-    own[l] = true;
-    for (const int j : IndependentJoints(m)) {
-      const std::string joint = JointName(m, j);
-      const double travel = Travel(m, j, e, log);
-      const double fast = 10 * travel;  // 1/s: back and forth three times a second
-      const bool slide = m.jnt_type[j] == mjJNT_SLIDE;
-      // Within its size of what the first rows say or of another value: of speeds rest, as noise
-      // may hide it.
-      const auto add = [&](const char* what, const char* unit, double value, double size,
-                           double other) {
-        all.push_back({joint + " " + what + "[" + log.label + "]",
-                       unit,
-                       value,
-                       std::min(value, other) - size,
-                       std::max(value, other) + size,
-                       size,
-                       {"start:" + joint, what, 0},
-                       own});
-      };
-      const double q = start.qpos[m.jnt_qposadr[j]], v = start.qvel[m.jnt_dofadr[j]];
-      add(kPosition, slide ? "m" : "rad", q, travel, q);
-      add(kSpeed, slide ? "m/s" : "rad/s", v, fast, 0);
-    }
-  }
+  for (std::size_t l = 0; l < e.logs.size(); ++l) AddStarts(e, system, l, all);
   return all;
 }
 

@@ -56,6 +56,13 @@ std::string DivergenceLines(const Experiment& e, const IdentifyResult& result) {
   return lines;
 }
 
+std::string RegressionLines(const Regression& found) {
+  std::string lines =
+      fmt::format("forces by the inverse model: error {:.3g} % (train)", found.train);
+  if (found.validate > 0) lines += fmt::format(" {:.3g} % (validate)", found.validate);
+  return lines + "\n" + found.how + "\n";
+}
+
 std::string ErrorLines(const Experiment& e, const IdentifyResult& result) {
   RequireWhole(e, result.logs);
   std::vector<ChannelScore> scores;
@@ -65,10 +72,7 @@ std::string ErrorLines(const Experiment& e, const IdentifyResult& result) {
       ErrorText(e, PooledError(e, result.logs)) + MeanAbsoluteErrorText(scores) + "\n";
   if (result.at_step)
     lines += "as the model steps: " + ErrorText(e, PooledError(e, result.at_step->logs)) + "\n";
-  if (result.regression)
-    lines +=
-        fmt::format("forces by the inverse model: error {:.3g} % (train) {:.3g} % (validate)\n",
-                    result.regression->train, result.regression->validate);
+  if (result.regression) lines += RegressionLines(*result.regression);
   return lines;
 }
 

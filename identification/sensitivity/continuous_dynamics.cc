@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "binding/cable_friction.h"
 #include "binding/friction_row.h"
 #include "engine.h"
+#include "sim/model/effect_kind.h"
 #include "sim/model/mujoco_handles.h"
 #include "sim/simulation/initial_state.h"
 
@@ -44,7 +46,7 @@ std::string Switches(const mjModel& m, const mjData& d) {
     if (!name.starts_with("continuum.")) return instance + " is not one of ours";
     const BoundLaw& law = BoundOf(m, d, i);
     const double* const z = d.plugin_state + m.plugin_stateadr[i];
-    if (law.NeedsAllForces()) continue;  // while no cable is under tension
+    if (law.NeedsAllForces()) continue;  // as bristles, or while no cable is under tension
     if (law.IsRow()) {
       const std::string why = law.WhyNoBristles(m);
       if (why.empty()) continue;
@@ -60,6 +62,39 @@ std::string Switches(const mjModel& m, const mjData& d) {
 void Turn(const double* p, const double* w, double* rate) {
   const double half[4] = {0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]};
   mju_mulQuat(rate, p, half);
+}
+
+// A motor that pulls nothing in a log: a force in proportion to a control that stays zero.
+bool RestsAll(const mjModel& m, const Log& log, const Wiring& wiring, int actuator) {
+  if (m.actuator_gaintype[actuator] != mjGAIN_FIXED ||
+      m.actuator_biastype[actuator] != mjBIAS_NONE || m.actuator_dyntype[actuator] != mjDYN_NONE)
+    return false;
+  for (std::size_t i = 0; i < wiring.actuator.size(); ++i) {
+    const auto& u = log.input[i];
+    if (wiring.actuator[i] == actuator &&
+        std::any_of(u.begin(), u.end(), [](double value) { return value != 0; }))
+      return false;
+  }
+  return true;
+}
+
+// Whether no cable of a law is ever under tension, whatever the fit does: its contacts need no
+// states.
+bool AreSlack(const mjModel& m, const BoundLaw& law, const Experiment& e, const Log& log,
+              const Wiring& wiring) {
+  for (const Parameter& p : e.parameters)
+    if (p.target.starts_with("tendon:") || p.target.starts_with("actuator:")) return false;
+  const auto& cables = dynamic_cast<const CableFriction&>(law).cables();
+  const auto none = [&](const mjtNum* linear, const mjtNum* more, int t) {
+    return linear[t] == 0 && std::all_of(more + mjNPOLY * t, more + mjNPOLY * (t + 1),
+                                         [](double value) { return value == 0; });
+  };
+  return std::all_of(cables.begin(), cables.end(), [&](const Cable& cable) {
+    return none(m.tendon_stiffness, m.tendon_stiffnesspoly, cable.tendon) &&
+           none(m.tendon_damping, m.tendon_dampingpoly, cable.tendon) &&
+           std::all_of(cable.actuators.begin(), cable.actuators.end(),
+                       [&](int a) { return RestsAll(m, log, wiring, a); });
+  });
 }
 
 bool Jumps(const std::vector<double>& u, std::size_t row) { return u[row] != u[row - 1]; }
@@ -112,6 +147,7 @@ ContinuousDynamics::ContinuousDynamics(ModelAndData machine, const Experiment& e
   ties_.FreeVelocities(start.qvel.data(), start_.data() + ties_.positions());
   moving_.resize(m.nq);
   start_.insert(start_.end(), d.act, d.act + m.na);
+  TakeCables(e);
   FindStates();
   for (const int z : states_) start_.push_back(d.plugin_state[z]);
   for (const Input& in : e.inputs) linear_ |= in.linear;
@@ -191,8 +227,10 @@ void ContinuousDynamics::FindStates() {
   for (int i = 0; i < m.nplugin; ++i) {
     const BoundLaw& law = BoundOf(m, d, i);
     const int first = m.plugin_stateadr[i];
-    if (law.NeedsAllForces()) continue;
-    if (law.IsRow()) {
+    const auto taken = [i](const CableLaw& cable) { return cable.instance == i; };
+    const bool cables = std::any_of(cables_.begin(), cables_.end(), taken);
+    if (law.NeedsAllForces() && !cables) continue;
+    if (cables || law.IsRow()) {
       rubs_ = true;
       for (const int z : law.BristleStates())
         states_.push_back(first + z), d.plugin_state[first + z] = 0;
@@ -202,11 +240,54 @@ void ContinuousDynamics::FindStates() {
   }
 }
 
+// From here on the forward pass knows no friction of cables.
+void ContinuousDynamics::TakeCables(const Experiment& e) {
+  mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  for (int i = 0; i < m.nplugin; ++i) {
+    const BoundLaw& law = BoundOf(m, d, i);
+    if (!law.NeedsAllForces() || !law.WhyNoBristles(m).empty() ||
+        AreSlack(m, law, e, log_, wiring_))
+      continue;
+    cables_.push_back({i, law.parameters()});
+    SetParameters(m, d, i, FrictionlessPath(m, i));
+  }
+}
+
+// Loads on gears see it as they do in steps.
+void ContinuousDynamics::AddCables() {
+  const mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  for (CableLaw& cable : cables_) {
+    BoundLaw& law = BoundOf(m, d, cable.instance);
+    const int first = m.plugin_stateadr[cable.instance];
+    std::vector<double> none = law.parameters();
+    law.Set(cable.parameters);
+    law.Bristles(m, d, d.plugin_state + first, state_rate_.data() + first, friction_);
+    law.Set(std::move(none));
+  }
+  if (!cables_.empty()) mju_addTo(d.qfrc_passive, friction_.data(), static_cast<int>(m.nv));
+}
+
+// Sensors of their tensions, which the forward pass has without friction.
+void ContinuousDynamics::SenseCables() {
+  const mjModel& m = *machine_.model;
+  mjData& d = *machine_.data;
+  for (const CableLaw& cable : cables_) {
+    const BoundLaw& law = BoundOf(m, d, cable.instance);
+    for (int s = 0; s < m.nsensor; ++s) {
+      if (m.sensor_type[s] == mjSENS_PLUGIN && m.sensor_plugin[s] == cable.instance)
+        law.Sense(m, d, s, {d.sensordata + m.sensor_adr[s], std::size_t(m.sensor_dim[s])});
+    }
+  }
+}
+
 // What a forward pass does not know: rates of effects, dry friction, joints that are tied.
 void ContinuousDynamics::Complete() {
   const mjModel& m = *machine_.model;
   mjData& d = *machine_.data;
   std::fill(friction_.begin(), friction_.end(), 0.0);
+  AddCables();
   for (int i = 0; i < m.nplugin; ++i) {
     const BoundLaw& law = BoundOf(m, d, i);
     const double* const z = d.plugin_state + m.plugin_stateadr[i];
@@ -234,6 +315,7 @@ void ContinuousDynamics::Observe(const double* y, Recorder& recorder) {
       Complete();
       mj_rnePostConstraint(&m, &d);
       mj_sensorAcc(&m, &d);
+      SenseCables();
     }
   } else {
     if (needs_ >= Needs::kFrames) mj_kinematics(&m, &d);

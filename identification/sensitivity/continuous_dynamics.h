@@ -23,7 +23,8 @@ bool BreaksAt(const Experiment& e, const Log& log, std::size_t row);
 /// and plugin_state, in SI. Dry friction of effects is a bristle (binding/bristle.h), whose
 /// deflection is a state. Joints that linear equalities tie to others are taken out of q and v
 /// (Ties). No other constraint acts: a model that needs one is refused by Obstacle. Friction of
-/// cables is left out: whoever asks has to see that none of them is under tension.
+/// cables without bristles (BoundLaw::WhyNoBristles) is left out: whoever asks has to see that none
+/// of them is under tension.
 class ContinuousDynamics {
  public:
   /// What keeps a model from being such an equation ("joint 'j1' has dry friction"); empty: nothing
@@ -59,6 +60,9 @@ class ContinuousDynamics {
   static Needs NeedsOf(const mjModel& m, int sensor);
   void Load(const double* y);
   void FindStates();
+  void TakeCables(const Experiment& e);
+  void AddCables();
+  void SenseCables();
   void Complete();
 
   ModelAndData machine_;
@@ -68,7 +72,12 @@ class ContinuousDynamics {
   Inputs inputs_;
   std::vector<double> start_, moving_;  // moving_: rate of qpos
   Needs needs_ = Needs::kState;
-  std::vector<int> states_;  // of effects, those that move [index of plugin_state]
+  struct CableLaw {
+    int instance;
+    std::vector<double> parameters;
+  };
+  std::vector<CableLaw> cables_;  // whose friction is bristles; in mjData they have none
+  std::vector<int> states_;       // of effects, those that move [index of plugin_state]
   std::vector<double> state_rate_, friction_, friction_rate_;  // [npluginstate], [nv], [nv]
   bool rubs_ = false;
   bool linear_ = false;

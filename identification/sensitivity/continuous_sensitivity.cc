@@ -10,8 +10,7 @@ std::string Obstacle(const ContinuousDynamics& dynamics) {
   const mjModel& m = dynamics.model();
   if (dynamics.tied()) return "joints are tied";
   if (m.nplugin > 0) return "an effect acts";
-  const std::string why = ForceDerivatives::Obstacle(m);
-  return why.empty() ? SensorDerivatives::Obstacle(m, dynamics.wiring()) : why;
+  return ForceDerivatives::Obstacle(m);
 }
 
 }  // namespace
@@ -39,7 +38,8 @@ ContinuousSensitivity::ContinuousSensitivity(
   }
   const auto count = static_cast<Eigen::Index>(columns_.size());
   const Eigen::Index nv = m.nv, na = m.na;
-  sensors_ = std::make_unique<SensorDerivatives>(m, dynamics.wiring());
+  if (SensorDerivatives::Cover(m, dynamics.wiring()))
+    sensors_ = std::make_unique<SensorDerivatives>(m, dynamics.wiring());
   inertia_.resize(nv, nv), follow_.resize(nv, 2 * nv + na), driven_.resize(nv, count);
   lag_.resize(na, 1 + count);
   in_.resize(2 * nv + na, count), out_.resize(nv, count);
@@ -95,7 +95,7 @@ void ContinuousSensitivity::Rates(const std::vector<double*>& s,
 
 void ContinuousSensitivity::Observe(const std::vector<const double*>& s,
                                     const std::vector<Recorder*>& recorders) {
-  if (columns_.empty()) return;
+  if (columns_.empty() || !sensors_) return;
   const mjModel& m = dynamics_.model();
   mjData& d = dynamics_.data();
   mj_comPos(&m, &d);

@@ -38,6 +38,9 @@ class ContinuousSensitivity {
   void Rates(const std::vector<double*>& s, const std::vector<double*>& rates);
   /// Inputs have changed.
   void Forget() { y_.clear(); }
+  /// Whether Observe lets recorders see a covered perturbed model; else it has to be observed
+  /// itself, as its sensors have no closed form.
+  bool Observes(std::size_t k) const { return Covers(k) && sensors_; }
   /// Lets recorders of the covered perturbed models see the row that is held, where the dynamics
   /// have just been observed.
   void Observe(const std::vector<const double*>& s, const std::vector<Recorder*>& recorders);
@@ -50,7 +53,7 @@ class ContinuousSensitivity {
   std::vector<std::size_t> columns_;          ///< perturbed models that are covered
   std::vector<ModelDifference> differences_;  ///< of these
   ForceDerivatives derivatives_;
-  std::unique_ptr<SensorDerivatives> sensors_;
+  std::unique_ptr<SensorDerivatives> sensors_;  ///< null: of outputs without closed form
   double t_ = 0;
   std::vector<double> y_, rate_;
   Matrix inertia_, follow_, driven_;  ///< M; M⁻¹ ∂F/∂(q, q̇, w); M⁻¹ (F' − F)

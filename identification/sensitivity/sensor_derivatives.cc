@@ -16,8 +16,12 @@ bool IsLine(const mjModel& m, int joint) {
   return m.jnt_type[joint] == mjJNT_HINGE || m.jnt_type[joint] == mjJNT_SLIDE;
 }
 
+bool HasPast(const mjModel& m, int s) {
+  return m.sensor_delay[s] > 0 || m.sensor_interval[2 * s] > 0;
+}
+
 bool Covers(const mjModel& m, int s) {
-  if (m.sensor_cutoff[s] > 0 || m.sensor_delay[s] > 0 || m.sensor_interval[2 * s] > 0) return false;
+  if (m.sensor_cutoff[s] > 0) return false;
   switch (m.sensor_type[s]) {
     case mjSENS_JOINTPOS:
     case mjSENS_JOINTVEL:
@@ -29,33 +33,27 @@ bool Covers(const mjModel& m, int s) {
   }
 }
 
-int BodyOf(const mjModel& m, int type, int id) {
-  switch (type) {
-    case mjOBJ_SITE:
-      return m.site_bodyid[id];
-    case mjOBJ_GEOM:
-      return m.geom_bodyid[id];
-    case mjOBJ_CAMERA:
-      return m.cam_bodyid[id];
-    default:
-      return id;
-  }
-}
-
 }  // namespace
 
 std::string SensorDerivatives::Obstacle(const mjModel& m, const Wiring& wiring) {
-  if (wiring.marked) return "a marker's offset";
   for (const auto& source : wiring.output) {
-    if (source.kind != Output::Kind::kSensor) return "an actuator's force or control";
-    if (!Covers(m, source.sensor)) return "sensor " + Called(m, mjOBJ_SENSOR, source.sensor);
+    if (source.kind == Output::Kind::kSensor && HasPast(m, source.sensor))
+      return "sensor " + Called(m, mjOBJ_SENSOR, source.sensor);
   }
   return "";
+}
+
+bool SensorDerivatives::Cover(const mjModel& m, const Wiring& wiring) {
+  return !wiring.marked &&
+         std::all_of(wiring.output.begin(), wiring.output.end(), [&](const auto& source) {
+           return source.kind == Output::Kind::kSensor && Covers(m, source.sensor);
+         });
 }
 
 SensorDerivatives::SensorDerivatives(const mjModel& m, const Wiring& wiring) : was_(m.nsensordata) {
   for (const auto& source : wiring.output) {
     const int s = source.sensor;
+    if (source.kind != Output::Kind::kSensor || !Covers(m, s)) continue;
     const auto known = [&](const Read& read) { return read.sensor == s; };
     if (std::any_of(reads_.begin(), reads_.end(), known)) continue;
     const bool frame = m.sensor_type[s] == mjSENS_FRAMEPOS;

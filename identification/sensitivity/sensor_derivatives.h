@@ -15,8 +15,11 @@ namespace continuum {
 /// the world.
 class SensorDerivatives {
  public:
-  /// What an output is made of beyond that ("sensor 'tip_force'"); empty: nothing.
+  /// What keeps an output from being known at a state ("sensor 'y'"); empty: nothing.
   static std::string Obstacle(const mjModel& m, const Wiring& wiring);
+  /// Whether all outputs are made of these; others need MovedSensors.
+  static bool Cover(const mjModel& m, const Wiring& wiring);
+  /// Of the sensors that they cover.
   SensorDerivatives(const mjModel& m, const Wiring& wiring);
 
   /// At d, whose positions' frames and axes (mj_comPos) are known.

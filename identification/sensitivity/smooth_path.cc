@@ -67,7 +67,7 @@ class Observation {
       s.push_back(solver.s(k)), recorders.push_back(&recorders_[k + 1]);
     sensitivity_.Observe(s, recorders);
     for (std::size_t k = 0; k < perturbed_.size(); ++k) {
-      if (sensitivity_.Covers(k)) continue;
+      if (sensitivity_.Observes(k)) continue;
       for (std::size_t i = 0; i < near_.size(); ++i)
         near_[i] = solver.y()[i] + kPerturbation * solver.s(k)[i];
       perturbed_[k]->Observe(near_.data(), recorders_[k + 1]);

@@ -12,6 +12,7 @@
 #include "identification/sensitivity/cable_derivatives.h"
 #include "identification/sensitivity/effect_derivatives.h"
 #include "identification/sensitivity/force_derivatives.h"
+#include "identification/sensitivity/moved_sensors.h"
 #include "identification/sensitivity/runge_kutta_stages.h"
 #include "identification/sensitivity/sensor_derivatives.h"
 #include "identification/sensitivity/single_steps.h"
@@ -110,6 +111,7 @@ class StepSensitivity {
   ForceDerivatives derivatives_;
   ForceDerivatives transmitted_, motors_;  ///< what loads gears
   SensorDerivatives sensors_;
+  std::optional<MovedSensors> moved_sensors_;  ///< where these do not cover all outputs
   std::optional<EffectDerivatives> effects_;
   std::optional<SolverRows> rows_;
   std::optional<NumberTangents> numbers_;

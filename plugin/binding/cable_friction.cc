@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "binding/applied_force.h"
+#include "binding/bristle.h"
 #include "binding/row_softness.h"
 #include "binding/tree_groups.h"
 #include "error.h"
@@ -391,6 +392,37 @@ void CableFriction::Advance(const mjModel& m, const mjData& d, double* z) {
   for (const TensionRow& row : tension_rows_.At(m, d)) rows.push_back(row.row);
   OtherConstraintForces(m, d, rows, force_);
   std::copy(force_.begin(), force_.end(), z + m.nwrap);
+}
+
+std::string CableFriction::WhyNoBristles(const mjModel&) const {
+  if (tension_rows_.any()) return "a limit or an equality pulls a cable";
+  if (std::ranges::count(geometry_.both, true) > 0) return "a cable is pulled at both ends";
+  return "";
+}
+
+std::vector<int> CableFriction::BristleStates() const {
+  std::vector<int> contacts;
+  for (int c = 0; c < geometry_.cables(); ++c) {
+    for (int s = geometry_.first[c] + 1; s < geometry_.first[c + 1]; ++s) contacts.push_back(s);
+  }
+  return contacts;
+}
+
+void CableFriction::Bristles(const mjModel&, const mjData&, const double* z, double* rate,
+                             std::span<double> force) const {
+  const double give = Give() > 0 ? Give() : Bristle::kGive;
+  std::vector<double> band(geometry_.segments());
+  Bands(geometry_.theta, band);
+  for (int c = 0; c < geometry_.cables(); ++c) {
+    double tension = base_[c];
+    tension_[geometry_.first[c]] = tension;
+    for (int s = geometry_.first[c] + 1; s < geometry_.first[c + 1]; ++s) {
+      const Bristle bristle(z[s], geometry_.slip[s], give);
+      rate[s] = bristle.rate;
+      tension_[s] = tension *= std::exp(-band[s] * bristle.u);
+      geometry_.Add(s, base_[c] - tension, force.data());
+    }
+  }
 }
 
 std::string_view CableFriction::SensorPlace(const mjModel&, mjtObj kind, int id) const {

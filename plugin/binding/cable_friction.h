@@ -56,6 +56,15 @@ class CableFriction : public BoundLaw {
                 std::span<double> force) override;
   void Advance(const mjModel& m, const mjData& d, double* z) override;
 
+  /// As a differential equation each contact is a bristle (bristle.h) over the sliding of the
+  /// cable, and hands on t_k = t_{k−1} exp(−band u): it gives by `give`, else by Bristle::kGive,
+  /// before it slides. The states of contacts are deflections then, and Evaluate must not add
+  /// friction of its own: whoever integrates sets its parameters to their null in between.
+  std::string WhyNoBristles(const mjModel&) const override;
+  std::vector<int> BristleStates() const override;
+  void Bristles(const mjModel&, const mjData&, const double* z, double* rate,
+                std::span<double> force) const override;
+
   std::string_view SensorPlace(const mjModel&, mjtObj kind, int id) const override;
   void Sense(const mjModel& m, const mjData&, int sensor, std::span<double> out) const override {
     out[0] = tension_[Index(static_cast<mjtObj>(m.sensor_objtype[sensor]), m.sensor_objid[sensor])];
@@ -112,11 +121,12 @@ class CableFriction : public BoundLaw {
   CableGeometry geometry_;
   std::vector<Group> groups_;
   CableSliding sliding_;
-  std::vector<bool> trees_;                    ///< [ntree] that a cable moves
-  std::vector<double> band_, grown_;           ///< per segment: of its front contact, and exp of it
-  std::vector<double> rho_, ratio_, tension_;  ///< ρ, exp of it; behind the contact [N]
-  std::vector<double> native_;                 ///< t_0 of each cable but for constraints [N]
-  std::vector<double> base_, last_;            ///< t_0 of each cable, now and before [N]
+  std::vector<bool> trees_;              ///< [ntree] that a cable moves
+  std::vector<double> band_, grown_;     ///< per segment: of its front contact, and exp of it
+  std::vector<double> rho_, ratio_;      ///< ρ, exp of it
+  mutable std::vector<double> tension_;  ///< behind the contact [N]; of Bristles too
+  std::vector<double> native_;           ///< t_0 of each cable but for constraints [N]
+  std::vector<double> base_, last_;      ///< t_0 of each cable, now and before [N]
   SolvedRows rows_;
   std::vector<double> force_;
   std::vector<Bend> bends_;  ///< [groups], of which the first count_ are those of tight cables

@@ -25,4 +25,18 @@ inline ObjectFrame FrameOf(const mjData& d, int type, int id) {
   }
 }
 
+/// The body that carries a sensor's object.
+inline int BodyOf(const mjModel& m, int type, int id) {
+  switch (type) {
+    case mjOBJ_SITE:
+      return m.site_bodyid[id];
+    case mjOBJ_GEOM:
+      return m.geom_bodyid[id];
+    case mjOBJ_CAMERA:
+      return m.cam_bodyid[id];
+    default:
+      return id;
+  }
+}
+
 }  // namespace continuum

@@ -47,7 +47,7 @@ inline std::string WhyByDifferences(const ByDifferences& c) {
   Experiment e;
   e.outputs.emplace_back();
   e.outputs[0].columns = {"y"}, e.outputs[0].unit = "1";
-  e.outputs[0].source = c.parts.sensor.find("framequat") == std::string::npos ? "y" : "y[0]";
+  e.outputs[0].source = "y";
   return StepSensitivity::Obstacle(*machine.model, *machine.data, Wiring(e, *machine.model));
 }
 
@@ -127,12 +127,9 @@ inline std::vector<ByDifferences> CasesByDifferences() {
       {"equalities other than of joints",
        kNotWritten,
        {.more = "<equality><weld body1='tip' body2='world'/></equality>"}},
-      {"sensors other than of joints and of frames' positions",
-       "their derivatives are not written",
-       {.sensor = "<framequat name='y' objtype='body' objname='tip'/>"}},
-      {"sensors with a delay, an interval or a cutoff",
+      {"sensors with a delay or an interval",
        "MuJoCo keeps their past",
-       {.sensor = "<jointpos name='y' joint='a' cutoff='1'/>"}},
+       {.sensor = "<jointpos name='y' joint='a' delay='0.01' nsample='8'/>"}},
       {"effects on models without springs and dampers",
        "MuJoCo calls them differently",
        {.option = "><flag spring='disable' damper='disable'/>",
@@ -170,8 +167,6 @@ inline std::vector<std::pair<std::string, std::string>> QuestionsByDifferences()
   return {
       {"fewer than four parameters", "differences are cheaper for fewer than four parameters"},
       {"`--differences`", "as asked for"},
-      {"an output that is an actuator's force or control", "an actuator's force or control"},
-      {"a marker's offset that is estimated", "a marker's offset"},
       {"a smooth force without a law", "a force of free form acts"},
       {"`quasi_static` logs", "the logs are quasi-static"},
       {"the skew of the clock", "the rows' times change"},

@@ -1,6 +1,7 @@
 #include "identification/sensitivity/smooth_path.h"
 
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,37 @@ INSTANTIATE_TEST_SUITE_P(Attribute, GradientTest,
                                            Gradient{"Gravity", "option", "gravity[2]", -9.81},
                                            Gradient{"Creep", "plugin:law", "k_m", 0.3},
                                            Gradient{"CreepTime", "plugin:law", "tau_m", 0.2}),
+                         [](const auto& param) { return param.param.name; });
+
+// Gyro and accelerometer of the last link, three numbers each, alone.
+class ImuGradientTest : public SmoothTest, public ::testing::WithParamInterface<Gradient> {};
+
+TEST_P(ImuGradientTest, AgreesWithTightCentralDifferences) {
+  CONTINUUM_LONG_IF_SANITIZED("a solver with tight tolerances");
+  std::string model = SmoothArm(), outputs = "outputs:\n", experiment = testing::kSmoothExperiment;
+  model.insert(model.find("</sensor>"), "<accelerometer name='acc' site='end'/>");
+  for (int i = 0; i < 3; ++i)
+    outputs += fmt::format(
+        "  - {{column: g{0}, unit: rad/s, sensor: 'gyro[{0}]', sigma: 1}}\n"
+        "  - {{column: a{0}, unit: m/s^2, sensor: 'acc[{0}]', sigma: 1}}\n",
+        i);
+  const std::size_t from = experiment.find("outputs:"), to = experiment.find("logs:");
+  experiment.replace(from, to - from, outputs);
+  Write("model.xml", model);
+  std::string log, line;
+  for (std::istringstream lines(SmoothLog(60)); std::getline(lines, line);)
+    log += line + (log.empty() ? ",g0,g1,g2,a0,a1,a2\n" : ",0,0,0,0,0,0\n");
+  Write("log.csv", log);
+  const Experiment e = Experiment::Read(Write("e.yaml", experiment));
+  EXPECT_LT(SlopeError(Slopes(e, GetParam()), CentralDifferences(e, GetParam())), 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Attribute, ImuGradientTest,
+                         ::testing::Values(Gradient{"Mass", "body:link1", "mass", 0.1},
+                                           Gradient{"Stiffness", "joint:y*", "stiffness", 0.6},
+                                           Gradient{"Lag", "actuator:lagged", "dynprm[0]", 0.04},
+                                           Gradient{"Mount", "site:end", "pos[2]", -0.06},
+                                           Gradient{"Body", "body:link2", "pos[2]", -0.1}),
                          [](const auto& param) { return param.param.name; });
 
 // x(t) of m x'' = F − k x − c x' from rest, with F held: sensitivities in closed form.
@@ -212,11 +244,12 @@ INSTANTIATE_TEST_SUITE_P(
                                "<config key='joint' value='ball'/>"
                                "<config key='tau_c' value='0.1'/>")),
                  "", "has dry friction: it acts on a ball joint"},
-        Obstacle{"Cable",
-                 SmoothArm(Law("capstan",
-                               "<config key='tendon' value='ta'/>"
-                               "<config key='mu' value='0.1'/>")),
-                 "", "a cable with dry friction is under tension"},
+        Obstacle{"CableWithALimit",
+                 Edited(SmoothArm(Law("capstan",
+                                      "<config key='tendon' value='ta'/>"
+                                      "<config key='mu' value='0.1'/>")),
+                        "name='ta'", "name='ta' limited='true' range='0 9'"),
+                 "", "a cable whose friction is no bristle is under tension"},
         Obstacle{"SecondOrderLag",
                  SmoothArm(Law("pt2",
                                "<config key='actuator' value='pull'/>"

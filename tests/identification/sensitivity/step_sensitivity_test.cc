@@ -73,16 +73,19 @@ constexpr char kParameters[] =
 class ClosedFormTest : public testing::Bench {
  protected:
   Experiment Read(double friction, const std::string& parameters, const std::string& start,
-                  const std::string& integrator = "implicitfast", const std::string& lagged = "") {
-    std::string csv = "time,pull,swing,on,x0,y2,ex,ey,ez,lx\n";
+                  const std::string& integrator = "implicitfast", const std::string& lagged = "",
+                  const std::string& sensors = "", const std::string& outputs = "") {
+    std::string csv = "time,pull,swing,on,x0,y2,ex,ey,ez,lx,g0,g1,g2,a0,a1,a2,l0,l1,l2,u\n";
     for (int k = 0; k < 60; ++k) {
-      csv += fmt::format("{:.4f},{},{:.6f},{},0,0,0,0,0,0\n", 0.0105 * k,
+      csv += fmt::format("{:.4f},{},{:.6f},{},0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n", 0.0105 * k,
                          k < 5    ? 0
                          : k < 35 ? 6
                                   : 2,
                          0.3 * std::sin(0.4 * k), k < 20 || k > 30);
     }
-    Write("log.csv", csv), Write("model.xml", Arm(friction, integrator, lagged));
+    std::string model = Arm(friction, integrator, lagged);
+    model.insert(model.find("</sensor>"), sensors);
+    Write("log.csv", csv), Write("model.xml", model);
     return Experiment::Read(Write(
         "e.yaml", "format: 1\nmodel: model.xml\ntime: {column: time, unit: s}\nstart: " + start +
                       "\ninputs:\n"
@@ -94,9 +97,8 @@ class ClosedFormTest : public testing::Bench {
                       "  - {column: ex, unit: m, sensor: 'end[0]', sigma: 1}\n"
                       "  - {column: ey, unit: m, sensor: 'end[1]', sigma: 1}\n"
                       "  - {column: ez, unit: m, sensor: 'end[2]', sigma: 1}\n"
-                      "  - {column: lx, unit: m, sensor: 'link[0]', sigma: 1}\n"
-                      "logs:\n  - {file: log.csv, use: train}\n" +
-                      parameters));
+                      "  - {column: lx, unit: m, sensor: 'link[0]', sigma: 1}\n" +
+                      outputs + "logs:\n  - {file: log.csv, use: train}\n" + parameters));
   }
 };
 
@@ -156,6 +158,58 @@ INSTANTIATE_TEST_SUITE_P(
                       Steps{"Late", "rest", 0, "implicitfast", kLate, kDelay},
                       Steps{"LateRungeKutta", "rest", 0.02, "RK4", kLate, kDelay}),
     [](const auto& info) { return info.param.name; });
+
+// Sensors without derivatives of their own, each held to its own size: accelerometers see forces.
+class ClosedFormSensorsTest : public ClosedFormTest, public ::testing::WithParamInterface<Steps> {};
+
+TEST_P(ClosedFormSensorsTest, AreThoseOfMuJoCosSteps) {
+  std::string outputs;
+  for (const char* const sensor : {"gyro", "acc", "load"}) {
+    const char* const unit = sensor[0] == 'g' ? "rad/s" : sensor[0] == 'a' ? "m/s^2" : "N";
+    for (int i = 0; i < 3; ++i)
+      outputs += fmt::format("  - {{column: {0}{3}, unit: {1}, sensor: '{2}[{3}]', sigma: 1}}\n",
+                             sensor[0], unit, sensor, i);
+  }
+  outputs += "  - {column: u, unit: N, actuator: lagged, quantity: force, sigma: 1}\n";
+  const Experiment e = Read(GetParam().friction, kParameters, GetParam().start,
+                            GetParam().integrator, GetParam().lagged,
+                            "<gyro name='gyro' site='a2'/><accelerometer name='acc' site='a2'/>"
+                            "<force name='load' site='a0'/>",
+                            outputs);
+  const ModelSpec system = ModelSpec::Load(e.model);
+  const Problem problem(e, system);
+  ASSERT_EQ(problem.NoClosedForm(), "");
+  constexpr double kShare = 1e-6;
+  Problem differences(e, system);
+  differences.DifferBy(kShare);
+  differences.Center();
+  const auto use = problem.AllLogs();
+  const auto x = problem.Start();
+  const auto r = problem.Residuals(x, use);
+  const std::size_t before = problem.evaluations();
+  const auto found = problem.Jacobian(x, r, use)[0];
+  EXPECT_EQ(problem.evaluations() - before, 2);
+  const auto expected = differences.Jacobian(x, r, use)[0];
+  const Eigen::Index rows = 60;
+  for (Eigen::Index k = 0; k < expected.cols(); ++k) {
+    const double step = std::abs(problem.StepOf(x, static_cast<std::size_t>(k), kShare));
+    for (Eigen::Index at = 0; at < expected.rows(); at += rows) {
+      const auto here = expected.col(k).segment(at, rows);
+      const double size = here.cwiseAbs().maxCoeff(), rounding = 2e-12 / step;  // of the solver
+      EXPECT_LT((found.col(k).segment(at, rows) - here).cwiseAbs().maxCoeff(),
+                1e-5 * size + rounding)
+          << problem.parameters()[k].name << " channel " << at / rows << " of size " << size;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Arm, ClosedFormSensorsTest,
+                         ::testing::Values(Steps{"Smooth", "rest", 0},
+                                           Steps{"FromEquilibrium", "equilibrium", 0},
+                                           Steps{"Rubs", "rest", 0.02},
+                                           Steps{"Implicit", "rest", 0, "implicit"},
+                                           Steps{"RungeKutta", "equilibrium", 0, "RK4"}),
+                         [](const auto& info) { return info.param.name; });
 
 TEST_F(ClosedFormTest, FollowsAFrictionThatSlides) {
   const Experiment e = Read(0.02,
