@@ -17,6 +17,7 @@
 #include "binding/pull.h"
 #include "binding/segment.h"
 #include "binding/signal.h"
+#include "binding/supply.h"
 #include "effects/all.h"
 #include "mujoco_compat.h"
 #include "one_mujoco.h"
@@ -375,6 +376,8 @@ auto BoundType() {
     return std::type_identity<BoundFilter<E>>{};
   else if constexpr (PullLaw<E>)
     return std::type_identity<BoundPull<E>>{};
+  else if constexpr (SupplyLaw<E>)
+    return std::type_identity<BoundSupply<E>>{};
   else if constexpr (SegmentLaw<E>)
     return std::type_identity<BoundSegment<E>>{};
   else

@@ -29,7 +29,7 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
       const bool servo = m.actuator_gaintype[id] == mjGAIN_FIXED &&
                          m.actuator_biastype[id] == mjBIAS_AFFINE && kp != 0 &&
                          kp == -m.actuator_biasprm[mjNBIAS * id + 1];
-      if (effect.servo && !servo) return false;
+      if (effect.tap == Tap::kServoError && !servo) return false;
       const char* name = mj_id2name(&m, mjOBJ_ACTUATOR, id);
       return std::any_of(experiment.inputs.begin(), experiment.inputs.end(), [&](const Input& in) {
         return !in.column.empty() && name && in.actuator == name;

@@ -38,6 +38,7 @@
 #include "effects/slack.h"
 #include "effects/stiffness.h"
 #include "effects/stribeck.h"
+#include "effects/supply_sag.h"
 #include "effects/tendon_stretch.h"
 #include "effects/torque_limit.h"
 #include "effects/torque_ripple.h"
@@ -56,12 +57,12 @@ struct List {
 };
 
 /// Every effect the library knows. Adding one is one line here. Signals act in this order: input,
-/// servo, cable.
+/// servo, cable, supply.
 using All =
     List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction, DirectionalFriction,
          FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple, Maxwell, Pt2, Backlash,
-         Slack, TendonStretch, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness,
-         Payload, LinkMass, LinkLength, Armature, GravityTilt, ExternalForce, InputGain,
+         Slack, TendonStretch, SupplySag, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous,
+         Stiffness, Payload, LinkMass, LinkLength, Armature, GravityTilt, ExternalForce, InputGain,
          InputOffset, TorqueLimit, DeadTime, Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift,
          SensorEccentricity, Misalignment, ClockSkew>;
 
