@@ -37,9 +37,10 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
     }
     case Place::kSite:
       return true;
-    default: {  // bodies: the ends of the tree, or every one for what scales them
+    default: {  // bodies: the ends of the tree, or every one for what scales or turns them
       if (id == 0) return false;
-      if (effect.params.front().null == 1) return m.body_mass[id] > 0;
+      const Param& first = effect.params.front();
+      if (first.null == 1 || first.unit == "rad") return m.body_mass[id] > 0;
       for (int b = id + 1; b < m.nbody; ++b) {
         if (m.body_parentid[b] == id) return false;
       }

@@ -12,6 +12,7 @@
 #include "sim/model/actuator_edit.h"
 #include "sim/model/body_inertia.h"
 #include "sim/model/body_length.h"
+#include "sim/model/body_turn.h"
 #include "sim/model/spec_fields.h"
 
 namespace continuum {
@@ -160,6 +161,8 @@ void SpecElement::Set(std::string_view attribute, double value) {
 void SpecElement::Add(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass")
     return AddPointMass(*spec_, *mjs_asBody(element_), *compiled_, value);
+  if (element_->elemtype == mjOBJ_BODY && attribute.starts_with("turn["))
+    return TurnBody(*spec_, *mjs_asBody(element_), SplitIndex(attribute).second, value);
   const bool place = element_->elemtype == mjOBJ_BODY || element_->elemtype == mjOBJ_SITE;
   if (place && attribute.starts_with("force[")) return AddForce(attribute, value);
   if (element_->elemtype == mjOBJ_ACTUATOR && attribute == "input") {

@@ -14,7 +14,8 @@ namespace continuum {
 /// what a user means by them:
 ///
 ///   body      mass (scales the inertia with it), point_mass (added at the body's origin), length
-///             (Scale: stretches it along its axis, see body_length.h)
+///             (Scale: stretches it along its axis, see body_length.h), turn[i] (Add: about an axis
+///             of the parent through its joint, see body_turn.h)
 ///   body and site  force[i] (Add: a constant force in world axes, by an actuator of its own)
 ///   tendon    springlength (without an index both ends of its range: the rest length; the length
 ///             at qpos0 where the model has none)
