@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "binding/config.h"
+#include "sim/model/elastic_gear.h"
 
 namespace continuum {
 namespace {
@@ -42,7 +43,7 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
       const Param& first = effect.params.front();
       if (first.null == 1 || first.unit == "rad") return m.body_mass[id] > 0;
       for (int b = id + 1; b < m.nbody; ++b) {
-        if (m.body_parentid[b] == id) return false;
+        if (m.body_parentid[b] == id && !IsGearMotor(m, m.body_jntadr[b])) return false;
       }
       return true;
     }

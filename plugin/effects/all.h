@@ -13,6 +13,7 @@
 #include "effects/dead_time.h"
 #include "effects/directional_friction.h"
 #include "effects/drum_radius.h"
+#include "effects/elastic_gear.h"
 #include "effects/external_force.h"
 #include "effects/formula.h"
 #include "effects/friction_drift.h"
@@ -66,8 +67,9 @@ using All =
          FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple, Maxwell, Pt2, Backlash,
          Slack, TendonStretch, SupplySag, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous,
          Stiffness, Payload, LinkMass, LinkLength, MountingAngle, SitePlace, DrumRadius, Armature,
-         GravityTilt, ExternalForce, InputGain, InputOffset, TorqueLimit, DeadTime, Pt1, SensorBias,
-         SensorScale, SensorDelay, SensorDrift, SensorEccentricity, Misalignment, ClockSkew>;
+         ElasticGear, GravityTilt, ExternalForce, InputGain, InputOffset, TorqueLimit, DeadTime,
+         Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, SensorEccentricity, Misalignment,
+         ClockSkew>;
 
 /// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.
 using FormulaLaws = List<Formula, FormulaFriction>;

@@ -245,7 +245,8 @@ concept MeasureLaw = ScalarMeasureLaw<E> || VectorMeasureLaw<E>;
 
 /// Edit: a native attribute of MuJoCo as an effect. Apply(element, p) edits one element of a model
 /// through Element's Get, Set, Add, Scale (names and units of MJCF). kNative, where the card has
-/// it, is the attribute that an experiment may fit in the effect's place.
+/// it, is the attribute that an experiment may fit in the effect's place. kOwnStep, where it is
+/// true: what it adds moves as fast as the model's time step allows; no coarser one shows it.
 struct AnyElement {
   double Get(std::string_view) const;
   void Set(std::string_view, double);
