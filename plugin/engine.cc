@@ -343,10 +343,8 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.bound = a.bind(m, Config(m, i), i);
   b.bound->Set(a.bound->parameters());
   b.bound->CopyFrom(*a.bound);
-  b.force = a.force, b.changed = a.changed;
-  b.sensors = a.sensors, b.signals = a.signals;
-  b.givers = a.givers, b.forces = a.forces;
-  b.after_all = a.after_all, b.rows = a.rows;
+  b.force = a.force, b.changed = a.changed, b.after_all = a.after_all, b.rows = a.rows;
+  b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers, b.forces = a.forces;
   b.before = a.before, b.sum = a.sum, b.next = a.next;
 }
 
