@@ -17,6 +17,7 @@
 #include "binding/pull.h"
 #include "binding/segment.h"
 #include "binding/signal.h"
+#include "binding/supply.h"
 #include "effects/all.h"
 #include "mujoco_compat.h"
 #include "one_mujoco.h"
@@ -342,10 +343,8 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.bound = a.bind(m, Config(m, i), i);
   b.bound->Set(a.bound->parameters());
   b.bound->CopyFrom(*a.bound);
-  b.force = a.force, b.changed = a.changed;
-  b.sensors = a.sensors, b.signals = a.signals;
-  b.givers = a.givers, b.forces = a.forces;
-  b.after_all = a.after_all, b.rows = a.rows;
+  b.force = a.force, b.changed = a.changed, b.after_all = a.after_all, b.rows = a.rows;
+  b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers, b.forces = a.forces;
   b.before = a.before, b.sum = a.sum, b.next = a.next;
 }
 
@@ -375,6 +374,8 @@ auto BoundType() {
     return std::type_identity<BoundFilter<E>>{};
   else if constexpr (PullLaw<E>)
     return std::type_identity<BoundPull<E>>{};
+  else if constexpr (SupplyLaw<E>)
+    return std::type_identity<BoundSupply<E>>{};
   else if constexpr (SegmentLaw<E>)
     return std::type_identity<BoundSegment<E>>{};
   else

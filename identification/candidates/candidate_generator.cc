@@ -106,7 +106,8 @@ class Entry {
     const std::size_t colon = wanted_.where.find(':');
     bool first = true;
     for (const Place place : effect_.places) {
-      if (anywhere() ? place == Place::kSite : wanted_.where.substr(0, colon) != PlaceName(place))
+      if (anywhere() ? place == Place::kSite && effect_.places.size() > 1
+                     : wanted_.where.substr(0, colon) != PlaceName(place))
         continue;  // a site is a body's
       const Names names = PlacesFor(model(), effect_, place, Globs(), c_.experiment);
       if (names.empty()) continue;

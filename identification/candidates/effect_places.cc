@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "binding/config.h"
+#include "sim/model/elastic_gear.h"
 
 namespace continuum {
 namespace {
@@ -29,7 +30,7 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
       const bool servo = m.actuator_gaintype[id] == mjGAIN_FIXED &&
                          m.actuator_biastype[id] == mjBIAS_AFFINE && kp != 0 &&
                          kp == -m.actuator_biasprm[mjNBIAS * id + 1];
-      if (effect.servo && !servo) return false;
+      if (effect.tap == Tap::kServoError && !servo) return false;
       const char* name = mj_id2name(&m, mjOBJ_ACTUATOR, id);
       return std::any_of(experiment.inputs.begin(), experiment.inputs.end(), [&](const Input& in) {
         return !in.column.empty() && name && in.actuator == name;
@@ -37,11 +38,12 @@ bool Fits(const mjModel& m, const EffectInfo& effect, Place place, int id,
     }
     case Place::kSite:
       return true;
-    default: {  // bodies: the ends of the tree, or every one for what scales them
+    default: {  // bodies: the ends of the tree, or every one for what scales or turns them
       if (id == 0) return false;
-      if (effect.params.front().null == 1) return m.body_mass[id] > 0;
+      const Param& first = effect.params.front();
+      if (first.null == 1 || first.unit == "rad") return m.body_mass[id] > 0;
       for (int b = id + 1; b < m.nbody; ++b) {
-        if (m.body_parentid[b] == id) return false;
+        if (m.body_parentid[b] == id && !IsGearMotor(m, m.body_jntadr[b])) return false;
       }
       return true;
     }

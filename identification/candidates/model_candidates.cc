@@ -99,6 +99,7 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place,
       AddAttribute(effect, param, place, names, system, fitted, sizes, h);
       continue;
     }
+    if (param.held == param.null) continue;
     h.extra.push_back(CandidateParameter(param, place, sizes, target,
                                          fmt::format("effect:{}.{}", effect.name, param.name),
                                          Change::Operation::kSet));

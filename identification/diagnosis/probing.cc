@@ -9,6 +9,8 @@
 
 #include "error.h"
 #include "identification/diagnosis/search_rules.h"
+#include "sim/model/elastic_gear.h"
+#include "sim/model/native_effect.h"
 
 namespace continuum {
 namespace {
@@ -188,8 +190,11 @@ Vector Append(const Vector& known, const std::vector<double>& own) {
 
 bool NeedsOwnStep(const Problem& problem) {
   const auto& parameters = problem.parameters();
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [](const FreeParameter& p) { return p.change.attribute == "delay"; });
+  return GearMotors(problem.system().model()) > 0 ||
+         std::any_of(parameters.begin(), parameters.end(), [](const FreeParameter& p) {
+           return p.change.attribute == "delay" ||
+                  (IsNativeEffect(p.change) && NativeEffectNeedsOwnStep(p.change.attribute));
+         });
 }
 
 std::optional<std::vector<Vector>> StepCoarsely(Problem& problem, const Vector& x,

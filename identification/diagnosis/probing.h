@@ -14,7 +14,7 @@ struct ProbeBase {
 };
 
 /// Whether its time step decides what it does: to the engine a delay that is shorter than a step is
-/// a whole one.
+/// a whole one, and a gear may swing as fast as steps can follow.
 bool NeedsOwnStep(const Problem& problem);
 
 /// A problem goes on in a coarse step, of which rows are multiples as far as they are evenly

@@ -59,8 +59,9 @@ std::optional<PredictionError> PredictAhead(const Problem& problem, const Proble
     const auto changes = problem.ChangesFor(x, l);
     const std::size_t stride = std::max(rows, log.rows() / kMostStarts);
     auto memories = Memories(problem, x, l, stride);
+    const ModelAndData fitted = problem.system().Build(changes);
     for (std::size_t first = 0; first + rows < log.rows(); first += stride) {
-      auto state = StateAt(problem.system().model(), measured, log, first);
+      auto state = StateAt(*fitted.model, measured, log, first);
       if (!state) continue;
       state->memory = std::move(memories[first]);
       ModelAndData machine = problem.system().Build(changes);

@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 
 #include "identification/inverse_dynamics/measured_motion.h"
+#include "sim/model/elastic_gear.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
@@ -16,12 +17,13 @@ namespace {
 
 constexpr double kStill = 1e-2;  // of the largest motion: less is none
 
-// Joints without a channel; none that could only be at rest in several directions.
+// Joints without a channel but motors of elastic gears, whose motion is a memory of the model's;
+// none that could only be at rest in several directions.
 std::optional<std::vector<int>> OtherJoints(const mjModel& m,
                                             const std::map<int, std::size_t>& measured) {
   std::vector<int> others;
   for (int joint = 0; joint < m.njnt; ++joint) {
-    if (measured.contains(joint)) continue;
+    if (measured.contains(joint) || IsGearMotor(m, joint)) continue;
     if (m.jnt_type[joint] != mjJNT_HINGE && m.jnt_type[joint] != mjJNT_SLIDE) return {};
     others.push_back(joint);
   }
@@ -110,10 +112,8 @@ class LogForces {
   }
 
   void Place(const mjModel& m, mjData& d, std::size_t k) const {
-    for (const auto& [joint, motion] : measured_) {
-      d.qpos[m.jnt_qposadr[joint]] = motion.angle[k];
-      d.qvel[m.jnt_dofadr[joint]] = motion.velocity[k];
-    }
+    for (const auto& [joint, motion] : measured_)
+      PlaceJoint(m, d, joint, motion.angle[k], motion.velocity[k]);
   }
 
   // Every row begins at the measured state; from there to the next the model moves by itself, so
@@ -198,7 +198,7 @@ bool MeasuresEveryJoint(const Problem& problem, std::size_t log) {
   const Log& rows = e.logs[log];
   const mjModel& m = problem.system().model();
   return !e.quasi_static && rows.rows() >= kQuarticRows &&
-         std::ssize(JointChannels(e, m)) == m.njnt && EveryRowIsThere(e, m, rows);
+         std::ssize(JointChannels(e, m)) + GearMotors(m) == m.njnt && EveryRowIsThere(e, m, rows);
 }
 
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "error.h"
@@ -9,6 +10,7 @@
 #include "identification/inverse_dynamics/measured_motion.h"
 #include "identification/inverse_dynamics/missing_force.h"
 #include "sim/io/interrupt.h"
+#include "sim/model/elastic_gear.h"
 
 namespace continuum {
 namespace {
@@ -17,15 +19,13 @@ constexpr std::size_t kPieces = 8, kLeastRows = 12;
 
 // Positions and speeds at one time of a log.
 struct Restart {
-  double time;  // from the first row
-  std::vector<int> joints = {};
+  double time;                           // from the first row
+  std::vector<std::string> joints = {};  // names: candidates may have more joints
   std::vector<double> q = {}, v = {};
 
   void WriteTo(const mjModel& m, mjData& d) const {
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      d.qpos[m.jnt_qposadr[joints[i]]] = q[i];
-      d.qvel[m.jnt_dofadr[joints[i]]] = v[i];
-    }
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      PlaceJoint(m, d, mj_name2id(&m, mjOBJ_JOINT, joints[i].c_str()), q[i], v[i]);
   }
 };
 
@@ -39,7 +39,7 @@ std::vector<Restart> RestartsOf(const Experiment& e, const mjModel& m, const Log
     restarts.push_back({log.time[q.begin + kHalfRows] - log.time[0]});
   for (const auto& [joint, motion] : MotionsOf(e, m, log, quartics)) {
     for (std::size_t k = 0; k < restarts.size(); ++k) {
-      restarts[k].joints.push_back(joint);
+      restarts[k].joints.emplace_back(mj_id2name(&m, mjOBJ_JOINT, joint));
       restarts[k].q.push_back(motion.angle[k]), restarts[k].v.push_back(motion.velocity[k]);
     }
   }

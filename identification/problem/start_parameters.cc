@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "identification/problem/resting_joints.h"
+#include "sim/model/elastic_gear.h"
 #include "sim/model/joint_equalities.h"
 #include "sim/simulation/initial_state.h"
 
@@ -38,7 +39,7 @@ std::string JointName(const mjModel& m, int joint) {
   throw Error::Input("start: estimate", "joints with names", "one without");
 }
 
-// Those that no equality ties to others.
+// Those that no equality ties to others, and no motors of elastic gears, which follow their joints.
 std::vector<int> IndependentJoints(const mjModel& m) {
   const JointEqualities ties(m);
   std::vector<int> joints;
@@ -46,6 +47,7 @@ std::vector<int> IndependentJoints(const mjModel& m) {
     if (m.jnt_type[j] != mjJNT_HINGE && m.jnt_type[j] != mjJNT_SLIDE)
       throw Error::Input("start: estimate", "hinge and slide joints", "'" + JointName(m, j) + "'");
     const auto& free = ties.dofs();
+    if (IsGearMotor(m, j)) continue;
     const bool tied = std::find(free.begin(), free.end(), m.jnt_dofadr[j]) == free.end();
     if (!tied || !ties.obstacle().empty()) joints.push_back(j);
   }
@@ -108,6 +110,7 @@ void SetInitialState(const mjModel& m, const Change& change, InitialState& state
 }
 
 void SetTiedJoints(ModelAndData& machine, InitialState& state) {
+  FollowGears(*machine.model, state.qpos.data(), state.qvel.data());
   const JointEqualities ties(*machine.model);
   if (ties.none() || !ties.obstacle().empty()) return;
   std::vector<double> q(ties.positions()), v(ties.velocities());

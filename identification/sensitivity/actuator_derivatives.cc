@@ -40,6 +40,7 @@ ActuatorDerivatives::ActuatorDerivatives(const ModelAndData& machine,
 
 void ActuatorDerivatives::WriteConstants(NumberTangents& numbers) const {
   numbers[Kind::kGain] = gain_, numbers[Kind::kBias] = bias_, numbers[Kind::kGear] = gear_;
+  numbers[Kind::kRange] = range_;
 }
 
 void ActuatorDerivatives::Begin(const mjModel& m, const mjData& d, NumberTangents& numbers) {

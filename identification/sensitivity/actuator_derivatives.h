@@ -15,7 +15,7 @@ class ActuatorDerivatives {
  public:
   ActuatorDerivatives(const ModelAndData& machine, std::span<const ModelAndData* const> perturbed,
                       double move);
-  /// Writes the tangents that no step changes: gains, biases, gears.
+  /// Writes the tangents that no step changes: gains, biases, gears, ranges.
   void WriteConstants(NumberTangents& numbers) const;
 
   /// Takes up the controls where a step begins.

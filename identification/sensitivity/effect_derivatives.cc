@@ -14,8 +14,8 @@ using Kind = Number::Kind;
 using Group = EffectDerivatives::Group;
 
 Group GroupOf(const EffectInfo& info) {
-  if (info.kind != EffectInfo::Kind::kSignal) return Group::kOthers;
-  return info.servo || info.places[0] == Place::kTendon ? Group::kDrives : Group::kInputs;
+  if (!info.tap) return Group::kOthers;
+  return info.tap == Tap::kInput ? Group::kInputs : Group::kDrives;
 }
 
 bool UsesActuators(const EffectInfo& info) {

@@ -46,6 +46,7 @@ class NumberTangents {
                             Kind::kActuatorRate, Kind::kGain, Kind::kGear})
       (*this)[kind].setZero(m.nactuator, perturbed);
     (*this)[Kind::kBias].setZero(3 * m.nactuator, perturbed);
+    (*this)[Kind::kRange].setZero(2 * m.nactuator, perturbed);
     (*this)[Kind::kParameter].setZero(parameters, perturbed);
   }
 

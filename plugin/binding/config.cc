@@ -143,7 +143,7 @@ std::string_view JointType(int type) {
 }
 
 bool GlobMatches(const std::string& glob, const std::string& name) {
-  return glob == name || fnmatch(glob.c_str(), name.c_str(), 0) == 0;
+  return glob == name || fnmatch(glob.c_str(), name.c_str(), FNM_PERIOD) == 0;
 }
 
 std::vector<std::string> Words(std::string_view text) {

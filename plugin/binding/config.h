@@ -92,7 +92,8 @@ class Config {
 std::string_view JointType(int type);
 
 /// Whether a glob (* ? [..]) matches the whole name. A backslash takes the meaning of the character
-/// after it; a text that is the name itself matches it whatever its characters mean.
+/// after it; a text that is the name itself matches it whatever its characters mean. A dot that a
+/// name begins with is matched by a dot only: so are named the parts that an effect has made.
 bool GlobMatches(const std::string& glob, const std::string& name);
 
 /// The words of a text. A space after a backslash belongs to its word.

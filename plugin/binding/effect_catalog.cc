@@ -34,7 +34,7 @@ EffectInfo InfoOf() {
   info.params.assign(E::kParams.begin(), E::kParams.end());
   const auto choices = ChoicesOf<E>();
   info.choices.assign(choices.begin(), choices.end());
-  if constexpr (SignalLaw<E>) info.servo = E::kTap == Tap::kServoError;
+  if constexpr (SignalLaw<E>) info.tap = E::kTap;
   if constexpr (requires { E::kStates.size(); }) info.remembers = E::kStates.size() > 0;
   if constexpr (FormulaLaw<E>) info.text = E::kText;
   if constexpr (requires { E::kNative; }) info.native = E::kNative;

@@ -19,7 +19,7 @@ struct EffectInfo {
   std::vector<Place> places;
   std::vector<Param> params;
   std::vector<Choice> choices;
-  bool servo = false;             ///< a Signal at the error of a position servo
+  std::optional<Tap> tap = {};    ///< where a Signal is inserted
   bool remembers = false;         ///< a law with states of its own
   bool only_listed = false;       ///< no candidate where the experiment does not name it
   std::string_view text = {};     ///< key of the formula that a law of the MJCF is written under

@@ -32,6 +32,7 @@ struct Number {
     kGain,               ///< of an actuator, gainprm[0]
     kBias,               ///< biasprm [3 actuator + i]
     kGear,               ///< gear[0]
+    kRange,              ///< forcerange [2 actuator + i]
     kScratch,            ///< sums of the instance's own
     kForce,              ///< generalized, at a degree of freedom [N*m or N]
     kPull,               ///< along a tendon, as MuJoCo counts it: a spring pulls with < 0 [N]

@@ -12,6 +12,8 @@
 #include "effects/dahl.h"
 #include "effects/dead_time.h"
 #include "effects/directional_friction.h"
+#include "effects/drum_radius.h"
+#include "effects/elastic_gear.h"
 #include "effects/external_force.h"
 #include "effects/formula.h"
 #include "effects/friction_drift.h"
@@ -25,6 +27,7 @@
 #include "effects/lugre.h"
 #include "effects/maxwell.h"
 #include "effects/misalignment.h"
+#include "effects/mounting_angle.h"
 #include "effects/payload.h"
 #include "effects/pcc_segment.h"
 #include "effects/position_friction.h"
@@ -35,9 +38,11 @@
 #include "effects/sensor_drift.h"
 #include "effects/sensor_eccentricity.h"
 #include "effects/sensor_scale.h"
+#include "effects/site_place.h"
 #include "effects/slack.h"
 #include "effects/stiffness.h"
 #include "effects/stribeck.h"
+#include "effects/supply_sag.h"
 #include "effects/tendon_stretch.h"
 #include "effects/torque_limit.h"
 #include "effects/torque_ripple.h"
@@ -56,14 +61,15 @@ struct List {
 };
 
 /// Every effect the library knows. Adding one is one line here. Signals act in this order: input,
-/// servo, cable.
+/// servo, cable, supply.
 using All =
     List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction, DirectionalFriction,
          FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple, Maxwell, Pt2, Backlash,
-         Slack, TendonStretch, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous, Stiffness,
-         Payload, LinkMass, LinkLength, Armature, GravityTilt, ExternalForce, InputGain,
-         InputOffset, TorqueLimit, DeadTime, Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift,
-         SensorEccentricity, Misalignment, ClockSkew>;
+         Slack, TendonStretch, SupplySag, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous,
+         Stiffness, Payload, LinkMass, LinkLength, MountingAngle, SitePlace, DrumRadius, Armature,
+         ElasticGear, GravityTilt, ExternalForce, InputGain, InputOffset, TorqueLimit, DeadTime,
+         Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, SensorEccentricity, Misalignment,
+         ClockSkew>;
 
 /// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.
 using FormulaLaws = List<Formula, FormulaFriction>;

@@ -181,9 +181,9 @@ concept SegmentLaw = Card<E> && requires(Vec<double, 3> x, ParamsOf<E, double> p
   { E::template Segment<double>(p).d } -> std::convertible_to<double>;
 };
 
-/// Where a Signal law is inserted: the input of an actuator, the error of a position servo, or
-/// between position servos and the tendon that they pull.
-enum class Tap { kInput, kServoError, kTendon };
+/// Where a Signal law is inserted: the input of an actuator, the error of a position servo, between
+/// position servos and the tendon that they pull, or the supply that actuators share.
+enum class Tap { kInput, kServoError, kTendon, kSupply };
 
 /// What position servos do to a tendon: the tension they would give without the law [N], and their
 /// stiffness along the tendon [N/m].
@@ -212,8 +212,15 @@ concept PullLaw = Card<E> && requires(Pull<double> pull, ParamsOf<E, double> p) 
   Tap{E::kTap};
   { E::template Eval<double>(pull, p) } -> std::same_as<double>;
 };
+/// Signal at a supply: Share(load, p) → the part of its force that each actuator on it gives. load:
+/// the sum of what all would give by themselves, without sign [N*m].
 template <class E>
-concept SignalLaw = GainLaw<E> || FilterLaw<E> || PullLaw<E>;
+concept SupplyLaw = Card<E> && requires(ParamsOf<E, double> p) {
+  Tap{E::kTap};
+  { E::template Share<double>(0.1, p) } -> std::same_as<double>;
+};
+template <class E>
+concept SignalLaw = GainLaw<E> || FilterLaw<E> || PullLaw<E> || SupplyLaw<E>;
 
 /// A signal of time, of one number or of a vector.
 struct AnySignal {
@@ -238,7 +245,8 @@ concept MeasureLaw = ScalarMeasureLaw<E> || VectorMeasureLaw<E>;
 
 /// Edit: a native attribute of MuJoCo as an effect. Apply(element, p) edits one element of a model
 /// through Element's Get, Set, Add, Scale (names and units of MJCF). kNative, where the card has
-/// it, is the attribute that an experiment may fit in the effect's place.
+/// it, is the attribute that an experiment may fit in the effect's place. kOwnStep, where it is
+/// true: what it adds moves as fast as the model's time step allows; no coarser one shows it.
 struct AnyElement {
   double Get(std::string_view) const;
   void Set(std::string_view, double);

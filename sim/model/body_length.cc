@@ -6,44 +6,13 @@
 
 #include <Eigen/Dense>
 
+#include "sim/model/body_frames.h"
 #include "sim/model/body_inertia.h"
 
 namespace continuum {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
-
-// From the axes in which an element is written, those of its frames, to those of its body.
-struct Pose {
-  Matrix3d R = Matrix3d::Identity();
-  Vector3d p = Vector3d::Zero();
-};
-
-Matrix3d RotationOf(const mjSpec& spec, const mjsFrame& frame) {
-  double q[4];
-  std::copy(frame.quat, frame.quat + 4, q);
-  mjs_resolveOrientation(q, spec.compiler.degree, spec.compiler.eulerseq, &frame.alt);
-  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
-}
-
-Pose FramesOf(const mjSpec& spec, mjsElement* element) {
-  Pose pose;
-  for (mjsFrame* f = mjs_getFrame(element); f; f = mjs_getFrame(f->element)) {
-    const Matrix3d R = RotationOf(spec, *f);
-    pose.p = Eigen::Map<const Vector3d>(f->pos) + R * pose.p;
-    pose.R = R * pose.R;
-  }
-  return pose;
-}
-
-// MuJoCo's own list of a body's children is of no use once one of them has been deleted.
-std::vector<mjsElement*> ChildrenOf(mjSpec& spec, mjsBody& body, mjtObj kind) {
-  std::vector<mjsElement*> children;
-  for (mjsElement* e = mjs_firstElement(&spec, kind); e; e = mjs_nextElement(&spec, e)) {
-    if (mjs_getParent(e) == &body) children.push_back(e);
-  }
-  return children;
-}
 
 // The points of an element that a body carries, each three numbers.
 std::vector<double*> PointsOf(mjsElement* element) {
@@ -55,17 +24,6 @@ std::vector<double*> PointsOf(mjsElement* element) {
   mjsGeom& geom = *mjs_asGeom(element);
   if (std::isnan(geom.fromto[0])) return {geom.pos};
   return {geom.fromto, geom.fromto + 3};
-}
-
-Vector3d PlaceOf(const mjSpec& spec, mjsElement* element, const double* point) {
-  const Pose frames = FramesOf(spec, element);
-  return frames.p + frames.R * Eigen::Map<const Vector3d>(point);
-}
-
-Vector3d JointOf(mjSpec& spec, mjsBody& body) {
-  const auto joints = ChildrenOf(spec, body, mjOBJ_JOINT);
-  if (joints.empty()) return Vector3d::Zero();
-  return PlaceOf(spec, joints.front(), mjs_asJoint(joints.front())->pos);
 }
 
 // From the joint; zero: it has no axis.
@@ -94,7 +52,7 @@ void ScaleBodyLength(mjSpec& spec, mjsBody& body, const mjModel& compiled, doubl
   for (const mjtObj kind : {mjOBJ_BODY, mjOBJ_SITE, mjOBJ_GEOM}) {
     for (mjsElement* const child : ChildrenOf(spec, body, kind)) {
       before(child);
-      const Pose frames = FramesOf(spec, child);
+      const FramePose frames = FramesOf(spec, child);
       for (double* const point : PointsOf(child)) {
         Eigen::Map<Vector3d> x(point);
         const Vector3d from_joint = frames.p + frames.R * x - a;

@@ -215,22 +215,20 @@ class ModelSpec::Edits {
     for (SpecElement& e :
          MatchElements(&spec_, system.compiled_.get(), change.target, change.target)) {
       elements_.push_back(e.Save());
-      if (IsNativeEffect(change)) {
-        ApplyNativeEffect(e, changes, change);
-        elements_.insert(elements_.end(), e.others().begin(), e.others().end());
-        continue;
-      }
-      switch (change.operation) {
-        case Change::Operation::kSet:
-          e.Set(change.attribute, change.value);
-          break;
-        case Change::Operation::kScale:
-          e.Scale(change.attribute, change.value);
-          break;
-        case Change::Operation::kAdd:
-          e.Add(change.attribute, change.value);
-          break;
-      }
+      ApplyTo(e, changes, change);
+      elements_.insert(elements_.end(), e.others().begin(), e.others().end());
+    }
+  }
+
+  static void ApplyTo(SpecElement& e, std::span<const Change> changes, const Change& change) {
+    if (IsNativeEffect(change)) return ApplyNativeEffect(e, changes, change);
+    switch (change.operation) {
+      case Change::Operation::kSet:
+        return e.Set(change.attribute, change.value);
+      case Change::Operation::kScale:
+        return e.Scale(change.attribute, change.value);
+      case Change::Operation::kAdd:
+        return e.Add(change.attribute, change.value);
     }
   }
 

@@ -123,6 +123,14 @@ double NullOfNativeEffect(const std::string& attribute) {
   return null;
 }
 
+bool NativeEffectNeedsOwnStep(const std::string& attribute) {
+  bool needs = false;
+  WithNative(attribute, [&]<class E>() {
+    if constexpr (requires { E::kOwnStep; }) needs = E::kOwnStep;
+  });
+  return needs;
+}
+
 std::string UnitOfNativeEffect(const std::string& attribute) {
   std::string unit;
   WithNative(attribute,

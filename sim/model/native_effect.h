@@ -33,6 +33,8 @@ std::size_t ParameterIndex(const std::string& plugin, const std::string& paramet
 
 /// The value of a parameter at which its effect is absent; 0 when that is what the model has.
 double NullOfNativeEffect(const std::string& attribute);
+/// Whether steps of the model's own length are needed to show it (effect.h: kOwnStep).
+bool NativeEffectNeedsOwnStep(const std::string& attribute);
 /// Its unit, of what turns.
 std::string UnitOfNativeEffect(const std::string& attribute);
 

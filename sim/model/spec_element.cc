@@ -12,6 +12,8 @@
 #include "sim/model/actuator_edit.h"
 #include "sim/model/body_inertia.h"
 #include "sim/model/body_length.h"
+#include "sim/model/body_turn.h"
+#include "sim/model/elastic_gear.h"
 #include "sim/model/spec_fields.h"
 
 namespace continuum {
@@ -47,7 +49,7 @@ SpecElement::SpecElement(mjSpec* spec, mjsElement* element, const mjModel* compi
 SpecElement::Saved SpecElement::Save() const {
   // The structs hold numbers and pointers to strings; only numbers are edited here.
   const auto copy = [](auto* s) {
-    Saved saved{s, std::vector<std::byte>(sizeof *s), nullptr};
+    Saved saved{s, std::vector<std::byte>(sizeof *s)};
     std::memcpy(saved.bytes.data(), s, sizeof *s);
     return saved;
   };
@@ -70,7 +72,9 @@ SpecElement::Saved SpecElement::Save() const {
 }
 
 void SpecElement::Saved::Restore() const {
-  if (created_in) {
+  if (undo) {
+    undo();
+  } else if (created_in) {
     mjs_delete(created_in, static_cast<mjsElement*>(address));
   } else {
     std::memcpy(address, bytes.data(), bytes.size());
@@ -83,6 +87,10 @@ std::string SpecElement::Who() const { return KindName(element_->elemtype) + " '
 
 double* SpecElement::Address(std::string_view attribute, double& unit) const {
   const auto [name, index] = SplitIndex(attribute);
+  if (element_->elemtype == mjOBJ_JOINT && name == "armature") {
+    mjsJoint* const motor = GearMotorOf(*spec_, *mjs_asJoint(element_));
+    if (motor) return SpecElement(spec_, motor->element, compiled_).Address(attribute, unit);
+  }
   const Fields fields = FieldsOf(element_);
   const auto field = fields.find(name);
   if (field == fields.end()) {
@@ -123,7 +131,39 @@ double SpecElement::Get(std::string_view attribute) const {
   return *Address(attribute, unit) * unit;
 }
 
+// What belongs to the gear of a joint; false: nothing else is called so.
+bool SpecElement::SetGear(std::string_view attribute, double value) {
+  mjsJoint& joint = *mjs_asJoint(element_);
+  const auto save = [&](mjsElement* e) {
+    others_.push_back(SpecElement(spec_, e, compiled_).Save());
+  };
+  if (attribute == "gear_compliance") {
+    const GearEdits edits{save,
+                          [&](mjsElement* e) {
+                            others_.push_back({e, {}, spec_});
+                          },
+                          [&](std::function<void()> undo) {
+                            others_.push_back({nullptr, {}, nullptr, std::move(undo)});
+                          }};
+    SetGearCompliance(*spec_, joint, *compiled_, value, edits);
+    return true;
+  }
+  if (mjsJoint* const motor = GearMotorOf(*spec_, joint); motor && attribute == "armature")
+    save(motor->element);
+  if (attribute != "gear_damping" && attribute != "gear_play") return false;
+  mjsTendon* const gear = GearOf(*spec_, joint);
+  if (!gear) return true;  // of a rigid gear
+  save(gear->element);
+  if (attribute == "gear_damping") {
+    gear->damping[0] = value;
+  } else {
+    gear->springlength[0] = 0 - value / 2, gear->springlength[1] = value / 2;
+  }
+  return true;
+}
+
 void SpecElement::Set(std::string_view attribute, double value) {
+  if (element_->elemtype == mjOBJ_JOINT && SetGear(attribute, value)) return;
   if (element_->elemtype == mjOBJ_BODY && attribute == "mass")
     return SetBodyMass(*spec_, *mjs_asBody(element_), *compiled_, value);
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass")
@@ -160,6 +200,8 @@ void SpecElement::Set(std::string_view attribute, double value) {
 void SpecElement::Add(std::string_view attribute, double value) {
   if (element_->elemtype == mjOBJ_BODY && attribute == "point_mass")
     return AddPointMass(*spec_, *mjs_asBody(element_), *compiled_, value);
+  if (element_->elemtype == mjOBJ_BODY && attribute.starts_with("turn["))
+    return TurnBody(*spec_, *mjs_asBody(element_), SplitIndex(attribute).second, value);
   const bool place = element_->elemtype == mjOBJ_BODY || element_->elemtype == mjOBJ_SITE;
   if (place && attribute.starts_with("force[")) return AddForce(attribute, value);
   if (element_->elemtype == mjOBJ_ACTUATOR && attribute == "input") {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,8 +15,11 @@ namespace continuum {
 /// what a user means by them:
 ///
 ///   body      mass (scales the inertia with it), point_mass (added at the body's origin), length
-///             (Scale: stretches it along its axis, see body_length.h)
+///             (Scale: stretches it along its axis, see body_length.h), turn[i] (Add: about an axis
+///             of the parent through its joint, see body_turn.h)
 ///   body and site  force[i] (Add: a constant force in world axes, by an actuator of its own)
+///   joint     gear_compliance (puts a spring between it and its motor, see elastic_gear.h),
+///             gear_damping and gear_play of that; armature: of the motor, where there is one
 ///   tendon    springlength (without an index both ends of its range: the rest length; the length
 ///             at qpos0 where the model has none)
 ///   actuator  kp, kv (gain and bias), force_scale (gain, bias and force range), input (what it
@@ -40,6 +44,7 @@ class SpecElement {
     void* address;
     std::vector<std::byte> bytes;
     mjSpec* created_in = nullptr;
+    std::function<void()> undo = {};  ///< in place of both
     void Restore() const;
   };
   Saved Save() const;
@@ -62,6 +67,7 @@ class SpecElement {
   double* Address(std::string_view attribute, double& unit) const;
   double RestLength(int end) const;
   void AddForce(std::string_view attribute, double newtons);
+  bool SetGear(std::string_view attribute, double value);
   mjsActuator& Affine();
 
   mjSpec* spec_;

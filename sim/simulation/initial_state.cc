@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "sim/experiment/measurement_model.h"
+#include "sim/model/elastic_gear.h"
 #include "sim/simulation/equilibrium.h"
 
 namespace continuum {
@@ -92,6 +93,8 @@ InitialState StartOf(ModelAndData& machine, const Experiment& e, const Log& log)
     state.qpos[m.jnt_qposadr[joint]] = known[0];
     state.qvel[m.jnt_dofadr[joint]] = known[1];
   }
+  if (e.start != Experiment::Start::kEquilibrium)
+    FollowGears(m, state.qpos.data(), state.qvel.data());
   return state;
 }
 
@@ -115,6 +118,7 @@ std::optional<InitialState> StateAt(const mjModel& m, const Experiment& e, const
     state.qpos[dof] = q[row];
     if (!sensed[dof]) state.qvel[dof] = SlopeAt(log.time, q, row);
   }
+  FollowGears(m, state.qpos.data(), state.qvel.data());
   for (const auto* const all : {&state.qpos, &state.qvel}) {
     if (std::any_of(all->begin(), all->end(), [](double x) { return std::isnan(x); })) return {};
   }

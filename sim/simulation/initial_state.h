@@ -24,13 +24,15 @@ inline std::vector<double> MemoryOf(const mjModel& m, const mjData& d) {
 
 /// The initial state of a log as the experiment's key `start` defines it: qpos0 at rest, the static
 /// equilibrium, what joint sensors measure in the first row, or (estimate) also the slope of the
-/// measured positions there. The log's own key `start` replaces single joints. Throws Error for
+/// measured positions there. The log's own key `start` replaces single joints. Motors of elastic
+/// gears follow their joints, but in equilibrium. Throws Error for
 /// joints there that are neither hinge nor slide.
 InitialState StartOf(ModelAndData& machine, const Experiment& e, const Log& log);
 
 /// The measured state of all joints at a row, or nothing where a joint is not measured or is
-/// neither hinge nor slide. Velocities are measured ones, else slopes of a least-squares line
-/// through the row and its next two neighbours on either side.
+/// neither hinge nor slide. Motors of elastic gears follow their joints. Velocities are measured
+/// ones, else slopes of a least-squares line through the row and its next two neighbours on either
+/// side.
 std::optional<InitialState> StateAt(const mjModel& m, const Experiment& e, const Log& log,
                                     std::size_t row);
 

@@ -47,7 +47,7 @@ TYPED_TEST(EveryEffect, HasACompleteCard) {
 }
 
 TYPED_TEST(EveryEffect, IsTestedByASuiteOfItsKind) {
-  EXPECT_GE((kSuites<TypeParam, Forces, Frictions, Paths, Segments, Gains, Filters, Pulls,
+  EXPECT_GE((kSuites<TypeParam, Forces, Frictions, Paths, Segments, Gains, Filters, Pulls, Supplies,
                      ScalarMeasures, VectorMeasures, Edits>),
             1);
 }

@@ -12,13 +12,24 @@ constexpr double kValue = 0.37;
 
 // Attributes that effects edit, and their units. An index ("gravity[2]") does not count.
 std::string UnitOf(std::string_view attribute) {
-  static const std::map<std::string, std::string, std::less<>> units{
-      {"armature", "kg*m^2"}, {"damping", "N*m*s/rad"},
-      {"delay", "s"},         {"force", "N"},
-      {"force_limit", "N*m"}, {"gravity", "m/s^2"},
-      {"input", "input"},     {"lag", "s"},
-      {"length", "m"},        {"mass", "kg"},
-      {"point_mass", "kg"},   {"stiffness", "N*m/rad"}};
+  static const std::map<std::string, std::string, std::less<>> units{{"armature", "kg*m^2"},
+                                                                     {"damping", "N*m*s/rad"},
+                                                                     {"delay", "s"},
+                                                                     {"force", "N"},
+                                                                     {"force_limit", "N*m"},
+                                                                     {"gear", "1"},
+                                                                     {"gear_compliance", "rad/N/m"},
+                                                                     {"gear_damping", "N*m*s/rad"},
+                                                                     {"gear_play", "rad"},
+                                                                     {"gravity", "m/s^2"},
+                                                                     {"input", "input"},
+                                                                     {"lag", "s"},
+                                                                     {"length", "m"},
+                                                                     {"mass", "kg"},
+                                                                     {"point_mass", "kg"},
+                                                                     {"pos", "m"},
+                                                                     {"stiffness", "N*m/rad"},
+                                                                     {"turn", "rad"}};
   const auto found = units.find(attribute.substr(0, attribute.find('[')));
   if (found != units.end()) return found->second;
   ADD_FAILURE() << "attribute '" << attribute << "': its unit is not listed in this test";

@@ -90,5 +90,37 @@ TYPED_TEST(EveryPull, DoesNothingAtItsNull) {
   }
 }
 
+template <class E>
+struct EverySupply : ::testing::Test {};
+TYPED_TEST_SUITE(EverySupply, Supplies::Into<Types>, EffectName);
+
+TYPED_TEST(EverySupply, IsConsistentInItsUnits) {
+  using E = TypeParam;
+  ExpectConsistentUnits<E>([](Quantities& in, const ParamsOf<E, double>& p) {
+    return std::vector<Answer>{{E::template Share<double>(in.Uniform(0, 3, "N*m"), p), "1"}};
+  });
+}
+
+TYPED_TEST(EverySupply, DoesNothingAtItsNull) {
+  using E = TypeParam;
+  EXPECT_EQ(E::template Share<double>(0.3, NullParams<E>()), 1);
+}
+
+// None turns an actuator round, makes it stronger, or gives more where more is drawn.
+TYPED_TEST(EverySupply, GivesEachLessTheMoreIsDrawn) {
+  using E = TypeParam;
+  std::mt19937 rng{0};
+  for (int k = 0; k < 100; ++k) {
+    const auto p = RandomParams<E>(rng);
+    double last = 1;
+    for (double load = 0; load < 1e3; load = 0.1 + 2 * load) {
+      const double share = E::template Share<double>(load, p);
+      EXPECT_GE(share, 0);
+      EXPECT_LE(share, last);
+      last = share;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace continuum

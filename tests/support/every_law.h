@@ -61,6 +61,7 @@ inline std::map<std::string, std::string> ChosenLaws() {
       {"backlash", key("actuator", "servo") + key("gap", ".05")},
       {"pt2", key("actuator", "servo pull") + key("w", "30") + key("zeta", ".5")},
       {"tendon_stretch", key("tendon", "wire") + key("compliance", ".01")},
+      {"supply_sag", key("actuator", "servo pull winch") + key("r", ".2")},
       {"slack", key("tendon", "wire") + key("length", ".02")},
       {"capstan", key("tendon", "cable") + key("mu", ".3")},
       {"pcc_segment", key("body", "base tip") + key("actuator", "p1 p2 p3") + key("x_m", "-4e-4") +

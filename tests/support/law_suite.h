@@ -63,6 +63,8 @@ using IsFilter = std::bool_constant<FilterLaw<E>>;
 template <class E>
 using IsPull = std::bool_constant<PullLaw<E>>;
 template <class E>
+using IsSupply = std::bool_constant<SupplyLaw<E>>;
+template <class E>
 using IsScalarMeasure = std::bool_constant<ScalarMeasureLaw<E>>;
 template <class E>
 using IsVectorMeasure = std::bool_constant<VectorMeasureLaw<E>>;
@@ -86,6 +88,7 @@ using Segments = All::Into<Where<IsSegment>::Of>;
 using Gains = All::Into<Where<IsGain>::Of>;
 using Filters = All::Into<Where<IsFilter>::Of>;
 using Pulls = All::Into<Where<IsPull>::Of>;
+using Supplies = All::Into<Where<IsSupply>::Of>;
 using ScalarMeasures = All::Into<Where<IsScalarMeasure>::Of>;
 using VectorMeasures = All::Into<Where<IsVectorMeasure>::Of>;
 using Edits = All::Into<Where<IsEdit>::Of>;

@@ -11,6 +11,7 @@
 #include "identification/problem/path_choice.h"
 #include "identification/problem/start_parameters.h"
 #include "sim/replay/replay.h"
+#include "sim/simulation/initial_state.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -102,6 +103,26 @@ TEST_F(StartsTest, OfTiedJointsAreThoseOfTheOthers) {
   SetTiedJoints(machine, state);
   EXPECT_THAT(state.qpos, ::testing::ElementsAre(::testing::DoubleEq(0.4), 0.4));
   EXPECT_THAT(state.qvel, ::testing::ElementsAre(0.5, 1));
+}
+
+// The motor of an elastic gear begins where its spring is at rest.
+TEST_F(StartsTest, OfAGearAreThoseOfItsJoint) {
+  const ModelSpec rigid = Model();
+  const ModelSpec system = rigid.With(
+      {{{"joint:hinge", "armature", 0.01}, {"joint:hinge", "effect:elastic_gear.c", 0.02}}}, {});
+  const Experiment e = From("estimate");
+  const Problem problem(e, system);
+  ASSERT_EQ(problem.parameters().size(), 2 + 2 * e.logs.size());
+  ModelAndData machine = system.Build();
+  const InitialState start = StartOf(machine, e, e.logs[0]);
+  ASSERT_EQ(start.qpos.size(), 2u);
+  EXPECT_NE(start.qpos[0], 0);
+  EXPECT_EQ(start.qpos[1], start.qpos[0]);
+  EXPECT_EQ(start.qvel[1], start.qvel[0]);
+  InitialState moved{{0.4, 0}, {1, 0}};
+  SetTiedJoints(machine, moved);
+  EXPECT_EQ(moved.qpos[1], 0.4);
+  EXPECT_EQ(moved.qvel[1], 1);
 }
 
 TEST_F(StartsTest, AHeldOutLogMovesNothingButItsOwnStart) {

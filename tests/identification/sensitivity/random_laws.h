@@ -156,6 +156,21 @@ inline std::vector<RandomLaw> RandomLaws() {
                 "tendon_stretch",
                 "<config key='tendon' value='tb'/>",
                 {{"compliance", {1e-3, 2e-2}}}},
+      RandomLaw{"SupplySag",
+                "supply_sag",
+                "<config key='actuator' value='pull lagged servo winch'/>",
+                {{"r", {0.02, 0.2}}}},
+      RandomLaw{"SupplySagOfAStretchedTendon",
+                "supply_sag",
+                "<config key='actuator' value='servo winch'/>",
+                {{"r", {0.1, 1}}},
+                "",
+                "",
+                "",
+                "",
+                "<plugin plugin='continuum.tendon_stretch'><instance name='soft'>"
+                "<config key='tendon' value='tb'/><config key='compliance' value='0.01'/>"
+                "</instance></plugin>"},
       RandomLaw{"Capstan",
                 "capstan",
                 "<config key='tendon' value='ta'/>",
@@ -234,7 +249,11 @@ inline std::vector<RandomLaw> LawsThatDoNothing() {
       RandomLaw{
           "Backlash", "backlash", "<config key='actuator' value='servo'/>", {{"gap", {0, 0}}}},
       RandomLaw{"Slack", "slack", kCable, {{"length", {0, 0}}}},
-      RandomLaw{"TendonStretch", "tendon_stretch", kCable, {{"compliance", {0, 0}}}}};
+      RandomLaw{"TendonStretch", "tendon_stretch", kCable, {{"compliance", {0, 0}}}},
+      RandomLaw{"SupplySag",
+                "supply_sag",
+                "<config key='actuator' value='servo winch'/>",
+                {{"r", {0, 0}}}}};
 }
 
 }  // namespace continuum::testing

@@ -148,6 +148,22 @@ constexpr char kDelay[] =
     "  - {name: late, target: 'actuator:lagged', attribute: delay, initial: 0.0133, lower: 0.004, "
     "upper: 0.03}\n";
 
+constexpr char kGear[] =
+    "  - {name: motor, target: 'joint:y0', attribute: armature, initial: 2e-3, lower: 1e-4, upper: "
+    "1e-2}\n"
+    "  - {name: soft, target: 'joint:y0', attribute: 'effect:elastic_gear.c', initial: 0.05, "
+    "lower: "
+    "0.01, upper: 1}\n"
+    "  - {name: loss, target: 'joint:y0', attribute: 'effect:elastic_gear.d', initial: 0.01, "
+    "lower: "
+    "0, upper: 1}\n"
+    "  - {name: roll, target: 'body:link1', attribute: 'effect:mounting_angle.roll', initial: 0.1, "
+    "lower: -1, upper: 1}\n"
+    "  - {name: place, target: 'site:a1', attribute: 'effect:site_place.dy', initial: 0.01, lower: "
+    "-1, upper: 1}\n"
+    "  - {name: drum, target: 'actuator:pull', attribute: 'effect:drum_radius', initial: 1.1, "
+    "lower: 0.5, upper: 2}\n";
+
 INSTANTIATE_TEST_SUITE_P(
     Arm, ClosedFormStepsTest,
     ::testing::Values(Steps{"Smooth", "rest", 0}, Steps{"FromEquilibrium", "equilibrium", 0},
@@ -155,6 +171,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Steps{"ImplicitInMotionRubs", "rest", 0.02, "implicit"},
                       Steps{"RungeKutta", "equilibrium", 0, "RK4"},
                       Steps{"RungeKuttaRubs", "rest", 0.02, "RK4"},
+                      Steps{"GearAndGeometry", "rest", 0, "implicitfast", "", kGear},
+                      Steps{"GearAndGeometryRub", "rest", 0.02, "RK4", "", kGear},
                       Steps{"Late", "rest", 0, "implicitfast", kLate, kDelay},
                       Steps{"LateRungeKutta", "rest", 0.02, "RK4", kLate, kDelay}),
     [](const auto& info) { return info.param.name; });

@@ -79,6 +79,29 @@ TEST_F(NativeEffect, TorqueLimitNarrowsTheRangeOfTheForce) {
   EXPECT_FALSE(system.Build().model->actuator_forcelimited[0]);
 }
 
+TEST_F(NativeEffect, SitePlaceMovesASiteInTheAxesOfItsBody) {
+  const ModelSpec system = Load();
+  const ModelAndData machine = Forward(system, {{"site:tip", "effect:site_place.dx", 0.03},
+                                                {"site:tip", "effect:site_place.dz", -0.05}});
+  const double* const tip = machine.data->site_xpos;  // the body is turned: x down, z along x
+  EXPECT_NEAR(tip[0], 0.15, 1e-15);
+  EXPECT_NEAR(tip[1], 0, 1e-15);
+  EXPECT_NEAR(tip[2], 1 - 0.03, 1e-15);
+}
+
+// A servo on a drum turns the joint by its angle over the gear, with its torque times the gear.
+TEST_F(NativeEffect, DrumRadiusScalesLengthAndForceOfAnActuator) {
+  const ModelSpec system = ModelSpec::Load(scratch_.Write("drum.xml", R"(<mujoco><worldbody><body>
+      <joint name="j"/><geom size=".1"/></body></worldbody>
+      <actuator><position name="u" joint="j" kp="5" gear="2"/></actuator></mujoco>)"));
+  const ModelAndData machine = system.Build({{{"actuator:u", "effect:drum_radius", 1.5}}});
+  mjData& d = *machine.data;
+  d.qpos[0] = 0.1, d.ctrl[0] = 0.7;
+  mj_forward(machine.model.get(), &d);
+  EXPECT_NEAR(d.actuator_length[0], 3 * 0.1, 1e-15);
+  EXPECT_NEAR(d.qfrc_actuator[0], 3 * 5 * (0.7 - 3 * 0.1), 1e-14);
+}
+
 TEST_F(NativeEffect, LinkMassScalesMassAndInertiaAboutTheSameCentre) {
   const ModelSpec system = Load();
   const ModelAndData plain = system.Build(),
@@ -149,7 +172,8 @@ TEST_F(NativeEffect, AtTheirNullTheModelMovesBitByBitAsBefore) {
   const auto plain = Run(system.Build());
   for (const Change& change :
        {Change{"body:link", "effect:link_mass", 1}, Change{"body:link", "effect:link_length", 1},
-        Change{"world", "effect:gravity_tilt.pitch", 0},
+        Change{"body:link", "effect:mounting_angle.yaw", 0},
+        Change{"site:tip", "effect:site_place", 0}, Change{"world", "effect:gravity_tilt.pitch", 0},
         Change{"body:link", "effect:external_force", 0},
         Change{"site:tip", "effect:external_force.fz", 0}}) {
     EXPECT_EQ(Run(system.Build({{change}})), plain) << change.attribute;
