@@ -1,6 +1,5 @@
 #include "identification/diagnosis/lengths_and_masses.h"
 
-#include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -17,17 +16,23 @@ namespace {
 using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
+// Whether an effect multiplies one number of each body, its length or its mass.
+bool ScalesBodies(const EffectInfo& effect) {
+  return effect.kind == EffectInfo::Kind::kEdit && effect.places.front() == Place::kBody &&
+         effect.params.size() == 1 && effect.params.front().null == 1;
+}
+
 // Each body that has a length or a mass, by itself; none of those that the experiment fits.
 std::vector<Hypothesis> NumbersOfBodies(const CandidateContext& context) {
   std::vector<Hypothesis> all;
-  std::vector<std::string> skipped;
-  for (const char* const name : {"link_length", "link_mass"}) {
-    const EffectInfo& effect = EffectNamed(name);
-    const mjModel& m = context.from.system->model();
+  const mjModel& m = context.from.system->model();
+  for (const EffectInfo& effect : Catalog()) {
+    if (!ScalesBodies(effect)) continue;
     const auto bodies = PlacesFor(m, effect, Place::kBody, "*", context.experiment);
     for (const std::string& body : bodies) {
+      const Candidate wanted{std::string(effect.name), "", false};
       try {
-        all.push_back(HypothesisAt(effect, {name, "", false}, {Place::kBody, {body}}, 0, context));
+        all.push_back(HypothesisAt(effect, wanted, {Place::kBody, {body}}, 0, context));
       } catch (const Error&) {
         continue;  // it has none, or the experiment fits it
       }

@@ -133,7 +133,8 @@ struct LikelihoodRecord {
   double held_out = 0;  ///< error of the logs left out with it; 0: there are none
   bool corrects =
       false;  ///< it only changes numbers of the model, by a few per cent (OnlyCorrects)
-  bool far_off = false;  ///< it multiplies numbers of the model by more than they are off (IsFarOff)
+  bool far_off =
+      false;  ///< it multiplies numbers of the model by more than they are off (IsFarOff)
 };
 
 /// The model without a candidate, by the same measure: whitened squares, and how many of them noise

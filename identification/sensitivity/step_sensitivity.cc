@@ -54,6 +54,9 @@ std::string StepSensitivity::Obstacle(const mjModel& m, const mjData& d, const W
                                  SensorDerivatives::Obstacle(m, wiring)}) {
     if (!why.empty()) return why;
   }
+  if (ForceDerivatives::ImplicitOf(m) >= ForceDerivatives::Implicit::kForces) {
+    if (auto why = TendonDerivatives::DampingObstacle(m); !why.empty()) return why;
+  }
   return EffectDerivatives::Obstacle(m, d);
 }
 

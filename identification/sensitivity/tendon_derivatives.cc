@@ -1,6 +1,7 @@
 #include "identification/sensitivity/tendon_derivatives.h"
 
 #include <algorithm>
+#include <span>
 
 #include "sim/model/mujoco_handles.h"
 #include "sim/model/point_jacobian.h"
@@ -20,7 +21,38 @@ std::vector<int> Chain(const mjModel& m, int site) {
   return dofs;
 }
 
+bool IsDamped(const mjModel& m, int tendon) {
+  if (m.tendon_damping[tendon] != 0) return true;
+  for (int k = 0; k < m.nactuator; ++k) {
+    if (m.actuator_trntype[k] != mjTRN_TENDON || m.actuator_trnid[2 * k] != tendon) continue;
+    if (m.actuator_biasprm[mjNBIAS * k + 2] != 0 || m.actuator_gainprm[mjNGAIN * k + 2] != 0)
+      return true;
+  }
+  return false;
+}
+
+// Whether one of two joints moves the other, or they are one.
+bool AreInLine(const mjModel& m, int i, int j) {
+  const int* const first = m.D_colind + m.D_rowadr[i];
+  return std::find(first, first + m.D_rownnz[i], j) != first + m.D_rownnz[i];
+}
+
 }  // namespace
+
+std::string TendonDerivatives::DampingObstacle(const mjModel& m) {
+  for (int t = 0; t < m.ntendon; ++t) {
+    if (!IsDamped(m, t)) continue;
+    const std::span joints(m.ten_J_colind + m.ten_J_rowadr[t],
+                           static_cast<std::size_t>(m.ten_J_rownnz[t]));
+    for (const int i : joints) {
+      for (const int j : joints) {
+        if (!AreInLine(m, i, j))
+          return "tendon " + Called(m, mjOBJ_TENDON, t) + " damps joints of two branches";
+      }
+    }
+  }
+  return "";
+}
 
 std::string TendonDerivatives::Obstacle(const mjModel& m) {
   for (int t = 0; t < m.ntendon; ++t) {

@@ -24,6 +24,10 @@ class TendonDerivatives {
 
   /// What keeps a model's tendons from it ("tendon 't1' wraps around a geom"); empty: nothing.
   static std::string Obstacle(const mjModel& m);
+  /// The same of a step that is implicit in damping: MuJoCo's methods know how it couples joints of
+  /// which one moves the other, and take that of others, as of two fingers, at the speeds before
+  /// the step.
+  static std::string DampingObstacle(const mjModel& m);
   explicit TendonDerivatives(const mjModel& m);
 
   /// At d, after a forward pass.
