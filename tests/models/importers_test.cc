@@ -180,6 +180,8 @@ TEST_F(Importers, ReadAllSourcesBeforeTheyWrite) {
 TEST_F(Importers, LeaveAWholeFolder) {
   Source("one_train.csv", Arm("11,rep1_pair12_same_hold,0,0,0,0,0,0,0,0,0,1,2,3\n"));
   EXPECT_THAT(Refusal(kArm, {"in", "out", "0"}), HasSubstr("EVERY: expected a number of rows"));
+  EXPECT_THAT(Refusal("so101", {"in", "out", "0"}),
+              HasSubstr("SECONDS: expected a positive number of seconds"));
   const auto done = Import(kArm, {"in", "out"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(done.out, "2 logs and experiment.yaml in out\n");
