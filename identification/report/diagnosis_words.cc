@@ -230,8 +230,8 @@ std::string WhyInWords(const Diagnosis& d) {
   if (doubts.empty())
     return "With it the error is what the noise and the time step make, and every other candidate "
            "does clearly worse.";
-  return fmt::format("It does clearly better than every other candidate. {}",
-                     fmt::join(doubts, " "));
+  return fmt::format("It does clearly better than every other {}candidate. {}",
+                     d.verdict.far_off.empty() ? "" : "plausible ", fmt::join(doubts, " "));
 }
 
 std::string NoiseSourceInWords(const Noise& noise) {
