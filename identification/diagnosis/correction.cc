@@ -8,12 +8,18 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s²
 
+// On the card of an effect; null where it is none of its parameters.
+const Param* OnCard(const EffectInfo& effect, std::string_view parameter) {
+  const std::string_view name = parameter.substr(0, parameter.find('['));  // of a condition
+  const auto at = std::find_if(effect.params.begin(), effect.params.end(),
+                               [&](const Param& one) { return one.name == name; });
+  return at == effect.params.end() ? nullptr : &*at;
+}
+
 // Of a pure number: a parameter of the model that is scaled, or one of the effect's card.
 bool IsNumber(const Parameter& p, const EffectInfo& effect) {
-  const std::string name = p.name.substr(0, p.name.find('['));  // of a condition
-  return p.unit == "1" ||
-         std::any_of(effect.params.begin(), effect.params.end(),
-                     [&](const Param& one) { return one.name == name && one.unit == "1"; });
+  const Param* const param = OnCard(effect, p.name);
+  return p.unit == "1" || (param && param->unit == "1");
 }
 
 }  // namespace
@@ -22,19 +28,16 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
                 const Sizes& sizes, const Criteria& criteria) {
   if (!std::isfinite(null)) return 0;
   if (null != 0) return criteria.correction * std::abs(null);
-  const std::string_view name = parameter.substr(0, parameter.find('['));  // of a condition
-  for (const Param& param : effect.params) {
-    if (param.name != name) continue;
-    if (effect.kind == EffectInfo::Kind::kEdit && param.unit == "kg")
-      return criteria.whole_correction * sizes.robot;
-    if (effect.kind == EffectInfo::Kind::kEdit && param.unit == "N")
-      return criteria.whole_correction * kGravity * sizes.robot;
-    if (param.unit == "output") return criteria.whole_correction * sizes.reading;
-    const bool direction = effect.places.front() == Place::kWorld && param.unit == "rad";
-    const bool clock = effect.kind == EffectInfo::Kind::kMeasure && param.unit == "1";
-    return direction || clock ? +criteria.whole_correction : 0;
-  }
-  return 0;
+  const Param* const param = OnCard(effect, parameter);
+  if (!param) return 0;
+  if (effect.kind == EffectInfo::Kind::kEdit && param->unit == "kg")
+    return criteria.whole_correction * sizes.robot;
+  if (effect.kind == EffectInfo::Kind::kEdit && param->unit == "N")
+    return criteria.whole_correction * kGravity * sizes.robot;
+  if (param->unit == "output") return criteria.whole_correction * sizes.reading;
+  const bool direction = effect.places.front() == Place::kWorld && param->unit == "rad";
+  const bool clock = effect.kind == EffectInfo::Kind::kMeasure && param->unit == "1";
+  return direction || clock ? +criteria.whole_correction : 0;
 }
 
 bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
