@@ -73,19 +73,6 @@ class AppBench : public ::testing::Test {
     return RunProcess({"/bin/bash", "-c", "export PATH=\"$PWD/bin:$PATH\"; " + script},
                       files_.folder(), seconds);
   }
-  /// The first block of docs/many-logs.md that has a text.
-  static std::string PageExample(const std::string& text, const std::string& language = "bash") {
-    const std::string page = Scratch::Text(CONTINUUM_SOURCE "/docs/many-logs.md");
-    const std::string fence = "```" + language + "\n";
-    for (std::size_t at = 0; (at = page.find(fence, at)) != page.npos; at += 3) {
-      const std::size_t begin = at + fence.size();
-      const std::string block = page.substr(begin, page.find("```", begin) - begin);
-      at = begin + block.size();
-      if (block.find(text) != block.npos) return block;
-    }
-    ADD_FAILURE() << "docs/many-logs.md has no example with " << text;
-    return "";
-  }
   /// Replaces one text in a file.
   void Spoil(const std::string& file, const std::string& old, const std::string& by) const {
     std::string text = Scratch::Text(files_ / file);

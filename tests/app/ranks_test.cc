@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench.h"
+#include "page_example.h"
 
 namespace continuum {
 namespace {
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 using testing::Finished;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::PageExample;
 using testing::Scratch;
 
 // A pendulum with dry friction that the model does not have.

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench.h"
+#include "page_example.h"
 #include "sim/io/csv.h"
 
 namespace continuum {
@@ -22,6 +23,7 @@ using ::testing::HasSubstr;
 using testing::kExperiment;
 using testing::kLog;
 using ::testing::Not;
+using testing::PageExample;
 using testing::Scratch;
 
 constexpr char kOtherLog[] = "t,u,q\n0,0.1,0\n0.1,0.1,0.02\n0.2,0.1,0.05\n0.3,0.1,0.09\n";
