@@ -111,6 +111,25 @@ void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {
   const ProjectedResidual residual = ProjectedResidualOf(f);
   f.cost = residual.cost();
   f.sensitivities->freedom = residual.freedom();
+  f.sensitivities->simulated = SimulatedSquaresOf(problem, f, residual.shift());
+}
+
+SimulatedSquares CandidateFitter::SimulatedSquaresOf(const Problem& problem, const Fitted& f,
+                                                     const Vector& shift) const {
+  const auto train = TrainLogs(*experiment);
+  const Sensitivities& s = f.sensitivities.value();
+  const std::vector<bool> fixed(shift.size(), true);
+  const auto squares = [&](const std::vector<Vector>& residuals) {
+    return ProjectedResidual(whitening, train, residuals, s.jacobian, fixed, s.step, criteria)
+        .cost();
+  };
+  SimulatedSquares out{squares(f.residuals), std::numeric_limits<double>::infinity()};
+  try {
+    out.there = squares(problem.Residuals(problem.Clamp(f.fit.x + shift), train));
+  } catch (const Error&) {
+    return out;  // it diverges there
+  }
+  return out;
 }
 
 void CandidateFitter::FitFinely(const Problem& problem, const std::optional<Vector>& fine,

@@ -73,6 +73,8 @@ struct CandidateFitter {
  private:
   FitOptions Options() const;
   FitOptions FewSteps() const;
+  SimulatedSquares SimulatedSquaresOf(const Problem& problem, const Fitted& fitted,
+                                      const Problem::Vector& shift) const;
   Problem::Matrix SlopesOf(const Problem& problem, const Fitted& fitted) const;
   std::vector<Problem::Vector> StepColumn(const Fitted& fitted) const;
 };

@@ -102,7 +102,12 @@ void CandidateSearch::JoinUnlisted(CandidateSearch other) {
 }
 
 double CandidateSearch::Likelihood(const Fitted& fitted) const {
-  return (base_.fitted->cost - fitted.cost) / inflation_;
+  const double promised = base_.fitted->cost - fitted.cost;
+  if (!fitted.complete() || !base_.fitted->complete()) return promised / inflation_;
+  const SimulatedSquares before = base_.fitted->sensitivities->simulated,
+                         after = fitted.sensitivities->simulated;
+  return GainKept(promised, before.here - after.here, before.there - after.there, criteria_) /
+         inflation_;
 }
 
 void CandidateSearch::Dismiss() {
@@ -156,8 +161,7 @@ CandidateResult* CandidateSearch::leading() {
 }
 
 double CandidateSearch::BestOverNoise() const {
-  const Fitted& best = leading() ? leading()->fitted : *base_.fitted;
-  return std::sqrt(best.cost / (best.complete() ? best.sensitivities->freedom : 0));
+  return (leading() ? leading()->fitted : *base_.fitted).over_noise();
 }
 
 LackOfFit CandidateSearch::TestsOf(const CandidateResult& c) const {

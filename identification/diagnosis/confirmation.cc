@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "identification/diagnosis/screening.h"
+#include "identification/diagnosis/search_rules.h"
 #include "identification/diagnosis/verdict.h"
 
 namespace continuum {
@@ -54,6 +55,11 @@ void TakeNameBack(Diagnosis& d, const std::string& why) {
 
 }  // namespace
 
+bool IsSmallerThanNoise(const Diagnosis& d, double best) {
+  return best < d.criteria.near_noise &&
+         IsWithinNoise(d.before.error.train, {d.noise.rms, d.noise.step});
+}
+
 void ConfirmOnFolds(const CandidateFitter& fitter, Diagnosis& d) {
   if (!d.chosen()) return;
   if (d.verdict.complete) {
@@ -70,6 +76,14 @@ void ConfirmOnFolds(const CandidateFitter& fitter, Diagnosis& d) {
   const bool held_out = HoldsOnValidateLogs(d.before.error.validate,
                                             d.chosen()->fitted.error.validate, floor, d.criteria);
   if (held_out && HoldsOnFolds(d.chosen()->record, possible, d.criteria)) return;
+  if (IsSmallerThanNoise(d, d.chosen()->fitted.over_noise())) {
+    const std::string name = d.chosen()->hypothesis.NameAtPlace();
+    d.verdict = Verdict::Adequate(fmt::format(
+        "what shows is smaller than noise and time step, and {} takes it off its own logs alone",
+        name));
+    d.partner.reset();
+    return;
+  }
   TakeNameBack(d, "does not lower the error of logs left out as it does that of its own");
 }
 

@@ -5,6 +5,10 @@
 
 namespace continuum {
 
+/// Whether what shows in the logs is smaller than noise and time step make together, and the best
+/// explanation leaves no more than that. best: its squares over those of noise, root.
+bool IsSmallerThanNoise(const Diagnosis& d, double best);
+
 /// Takes a name by likelihoods back where it does not help on logs left out. One that leaves
 /// nothing but noise may have found that in the noise: it is judged on the validate logs, in units
 /// of the noise.

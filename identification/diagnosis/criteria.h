@@ -160,6 +160,8 @@ struct Criteria {
   Rule fits_in_vain{"fits_in_vain", 8, "fits",
                     "in the order of what they promise: where so many in a row bring nothing, what "
                     "is left of the time is better spent on two causes"};
+  Rule kept_share{"kept_share", 0.5, "share of what first order promises",
+                  "where a simulation keeps less, first order was asked too far from the fit"};
   Rule completed_within{"completed_within", 50, "squares",
                         "behind the best: candidates beyond get no sensitivities, which are "
                         "expensive"};
@@ -271,6 +273,7 @@ inline constexpr std::array kAllRules{
     &Criteria::hopeless_factor,
     &Criteria::hopeless_offset,
     &Criteria::fits_in_vain,
+    &Criteria::kept_share,
     &Criteria::completed_within,
     &Criteria::still_gains,
     &Criteria::still_gains_share,

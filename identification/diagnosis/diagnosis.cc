@@ -222,8 +222,7 @@ class Session {
       if (auto by_error = NameByError(search.Records(), d_.criteria)) d_.verdict = *by_error;
     }
     if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) &&
-        search.BestOverNoise() < d_.criteria.near_noise &&
-        IsWithinNoise(d_.before.error.train, {d_.noise.rms, d_.noise.step})) {
+        IsSmallerThanNoise(d_, search.BestOverNoise())) {
       d_.verdict = Verdict::Adequate(
           "what shows is smaller than noise and time step, and no candidate of the list explains "
           "it");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,6 +69,12 @@ struct TwoErrors {
   double train = 0, validate = 0;  ///< pooled RMS
 };
 
+/// Whitened squares that were simulated, with nothing free but what the time step adds.
+struct SimulatedSquares {
+  double here = 0;   ///< where the fit ended
+  double there = 0;  ///< where first order has its least; infinite where that diverges
+};
+
 /// What is known of a model next to its fit. It is expensive, so that only those fits have it that
 /// may matter to the verdict.
 struct Sensitivities {
@@ -74,6 +82,7 @@ struct Sensitivities {
   std::vector<Problem::Matrix> step;      ///< [train log] Problem::StepEffects
   Uncertainty uncertainty;
   double freedom = 0;  ///< what noise alone would make Fitted::cost; 0 where it is not known
+  SimulatedSquares simulated = {};  ///< where the noise is known
 };
 
 /// A model after its fit.
@@ -86,6 +95,11 @@ struct Fitted {
   FoldScores folds = {};  ///< empty where it was not cross-validated
 
   bool complete() const { return sensitivities.has_value(); }
+  /// The root of its squares over those of noise; infinite where these are not known.
+  double over_noise() const {
+    return complete() ? std::sqrt(cost / sensitivities->freedom)
+                      : std::numeric_limits<double>::infinity();
+  }
 };
 
 /// How a candidate explains the missing force (identification/diagnosis/equation_error.h).

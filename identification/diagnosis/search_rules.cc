@@ -27,6 +27,11 @@ bool IsAsGood(double explained, double best, const Criteria& criteria) {
   return explained >= criteria.as_good * best;
 }
 
+double GainKept(double promised, double here, double there, const Criteria& criteria) {
+  const double kept = std::max(here, there);  // `here` where `there` is no number
+  return kept < criteria.kept_share * promised ? kept : promised;
+}
+
 bool ReachesNoise(double error, const ErrorParts& parts, const Criteria& criteria) {
   return error < std::hypot(criteria.at_noise * parts.noise, criteria.step_tolerance * parts.step);
 }

@@ -31,6 +31,11 @@ struct ErrorParts {
   double step = 0;  ///< time-discretisation error
 };
 
+/// The squares that a candidate takes off. promised: to first order, from where both fits ended;
+/// here, there: simulated, where both ended and where first order has its least. Far away first
+/// order may promise what nothing keeps.
+double GainKept(double promised, double here, double there, const Criteria& criteria = {});
+
 /// Whether a fit's error is hardly more than the noise and the time-discretisation error.
 bool ReachesNoise(double error, const ErrorParts& parts, const Criteria& criteria = {});
 

@@ -312,6 +312,8 @@ std::map<std::string, std::vector<Judged>> Examples() {
       10, [](double explained, const Criteria& c) { return WorthFinishing(0, explained, 100, c); });
   e["hopeless_factor"] = Number([](const Criteria& c) { return HopelessCost(1000, c); });
   e["hopeless_offset"] = Number([](const Criteria& c) { return HopelessCost(0, c); });
+  e["kept_share"] = AroundBoundary(
+      50, [](double kept, const Criteria& c) { return GainKept(100, kept, -1e6, c) > 99; });
   e["completed_within"] = AroundBoundary(
       50, [](double behind, const Criteria& c) { return WorthCompleting(behind, 0, 0, c); });
   e["still_gains"] = AroundBoundary(

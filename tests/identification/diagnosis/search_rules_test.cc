@@ -1,6 +1,7 @@
 #include "identification/diagnosis/search_rules.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -25,6 +26,15 @@ TEST(ChanceOfGain, IsOneWithoutAGain) {
 }
 
 // Noise of 3 and a step of 4 make 5.
+// A tilt of gravity beside a sideways swing: its slope is that of the cosine, next to nothing where
+// the fit ended, so that first order goes 20 times as far and promises 690 squares.
+TEST(SearchRules, WhatNoSimulationKeepsIsNoGain) {
+  EXPECT_DOUBLE_EQ(GainKept(690, -240, -1e5), -240);
+  EXPECT_DOUBLE_EQ(GainKept(690, 100, 680), 690);  // kept where first order has its least
+  EXPECT_DOUBLE_EQ(GainKept(690, 600, -1e5), 690);
+  EXPECT_DOUBLE_EQ(GainKept(690, 20, std::numeric_limits<double>::quiet_NaN()), 20);
+}
+
 TEST(SearchRules, NothingShowsBelowNoiseAndTimeStepTogether) {
   EXPECT_TRUE(IsWithinNoise(4.99, {3, 4}));
   EXPECT_FALSE(IsWithinNoise(5.01, {3, 4}));
