@@ -271,21 +271,26 @@ void CandidateSearch::LookAtOtherShapes(const EquationErrors& view, const Candid
 
 // First order is blind where an effect is large or the base far off; the missing force is not. It
 // decides who comes first, by what the best explains, the rival among them. All candidates in one
-// shape, then in their others those of which no view has said yet which one it wants.
+// shape, then in their others those of which no view has said yet which one it wants, and that are
+// not far behind the rival. Where a rival that leaves but noise in simulation explains nothing here,
+// the missing force is noise.
 void CandidateSearch::LookAtForces(const EquationErrors& view, const CandidateResult* rival) {
   options_.Say(DiagnosisStage::kScreen, "missing force");
   if (!view.any()) return;
+  auto best = rival ? LookAtForce(view, *rival) : std::nullopt;
+  if (rival) LookAtOtherShapes(view, *rival, best);
+  const bool sees_rival = best && best->share >= criteria_.force_least;
+  if (rival && !sees_rival && rival->fitted.over_noise() < criteria_.near_noise) return;
   const std::vector<CandidateResult*> order = CheapestFirst();
   std::vector<std::optional<EquationStart>> found(order.size());
   const auto start = [&](auto& archive, std::size_t i) { archive(found[i]); };
   const auto look = [&](std::size_t, std::size_t i) { found[i] = LookAtForce(view, *order[i]); };
-  const auto look_on = [&](std::size_t, std::size_t i) {
-    LookAtOtherShapes(view, *order[i], found[i]);
-  };
   ShareOut(order.size(), look, start);
+  const double least = best ? criteria_.rival_share * best->share : 0;
+  const auto look_on = [&](std::size_t, std::size_t i) {
+    if (found[i] && found[i]->share >= least) LookAtOtherShapes(view, *order[i], found[i]);
+  };
   ShareOut(order.size(), look_on, start);
-  auto best = rival ? LookAtForce(view, *rival) : std::nullopt;
-  if (rival) LookAtOtherShapes(view, *rival, best);
   double most = best ? best->share : 0;
   for (const auto& one : found) most = std::max(most, one ? one->share : 0);
   for (std::size_t i = 0; i < order.size(); ++i) {
