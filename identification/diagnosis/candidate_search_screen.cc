@@ -272,8 +272,8 @@ void CandidateSearch::LookAtOtherShapes(const EquationErrors& view, const Candid
 // First order is blind where an effect is large or the base far off; the missing force is not. It
 // decides who comes first, by what the best explains, the rival among them. All candidates in one
 // shape, then in their others those of which no view has said yet which one it wants, and that are
-// not far behind the rival. Where a rival that leaves but noise in simulation explains nothing here,
-// the missing force is noise.
+// not far behind the rival. Where a rival that leaves but noise in simulation explains nothing
+// here, the missing force is noise.
 void CandidateSearch::LookAtForces(const EquationErrors& view, const CandidateResult* rival) {
   options_.Say(DiagnosisStage::kScreen, "missing force");
   if (!view.any()) return;
