@@ -338,8 +338,10 @@ class PairSearch {
 
   // Whether they explain about as much beside a cause as the other one of a pair does.
   bool DoLengthsAndMasses(const CandidateResult& beside, double other) const {
-    return MayBeLengthsAndMasses(
-        ExplainedByLengthsAndMasses(context_.fitter, context_.sizes, beside), other, criteria_);
+    const Hypothesis& h = beside.hypothesis;
+    const ByLengthsAndMasses by = ExplainedByLengthsAndMasses(context_.fitter, context_.sizes,
+                                                              h.system, h.Free(), beside.fitted);
+    return MayBeLengthsAndMasses(by.squares, other, criteria_);
   }
 
   // The first cause of the best pair, and what of the other pairs in the set could stand for it.

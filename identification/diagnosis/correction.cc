@@ -55,6 +55,14 @@ bool MayBeLengthsAndMasses(double explained, double other, const Criteria& crite
   return explained >= criteria.correction_share * other;
 }
 
+bool AreNumbersEnough(const ByLengthsAndMasses& by, double shows, double best,
+                      const Criteria& criteria) {
+  const double margin =
+      criteria.rival_margin + criteria.parameter_cost * static_cast<double>(by.numbers);
+  return by.off > 0 && by.off <= criteria.numbers_most && by.squares > best + margin &&
+         by.squares >= criteria.numbers_share * shows;
+}
+
 bool IsFarOff(double factor, const Criteria& criteria) {
   return factor > criteria.factor_most || factor * criteria.factor_most < 1;
 }

@@ -4,6 +4,7 @@
 
 #include "binding/effect_catalog.h"
 #include "identification/diagnosis/criteria.h"
+#include "identification/diagnosis/lengths_and_masses.h"
 #include "identification/diagnosis/result.h"
 
 namespace continuum {
@@ -23,6 +24,11 @@ bool OnlyCorrects(const Hypothesis& hypothesis, const Fitted& fitted, Eigen::Ind
 /// Whether lengths and masses that are a little off explain so much [squares] that another cause,
 /// which explains this much in their place, is none of its own.
 bool MayBeLengthsAndMasses(double explained, double other, const Criteria& criteria);
+
+/// Whether lengths and masses that are a little off do all that shows [squares], and clearly more
+/// than the best cause: one that is enough by itself stands.
+bool AreNumbersEnough(const ByLengthsAndMasses& by, double shows, double best,
+                      const Criteria& criteria);
 
 /// Whether a factor on a number of the model is further from 1 than such numbers are off.
 bool IsFarOff(double factor, const Criteria& criteria);

@@ -196,6 +196,10 @@ struct Criteria {
                         "a cheap clock"};
   Rule link_known{"link_known", 0.015, "share of a length or a mass of a body",
                   "drawings and scales are a per cent or two off: one standard deviation"};
+  Rule numbers_most{"numbers_most", 0.02, "share of a length or a mass of a body",
+                    "where no more than that does all that shows, nothing is missing"};
+  Rule numbers_share{"numbers_share", 0.95, "share of the squares above the noise",
+                     "what they do not do by themselves is something else"};
   Rule correction_share{"correction_share", 0.5, "share of what a cause explains beside another",
                         "where lengths and masses that are a little off explain as much, it is no "
                         "cause of its own"};
@@ -288,6 +292,8 @@ inline constexpr std::array kAllRules{
     &Criteria::correction,
     &Criteria::whole_correction,
     &Criteria::link_known,
+    &Criteria::numbers_most,
+    &Criteria::numbers_share,
     &Criteria::correction_share,
     &Criteria::factor_most,
     &Criteria::pair_share,

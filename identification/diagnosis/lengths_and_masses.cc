@@ -43,48 +43,49 @@ std::vector<Hypothesis> NumbersOfBodies(const CandidateContext& context) {
 
 // What a number that is off by a share of itself does to the residuals; nothing where the
 // simulation diverges.
-std::vector<Vector> ColumnOf(const Problem& problem, const Fitted& cause, double share) {
+std::vector<Vector> ColumnOf(const Problem& problem, const Fitted& fitted, double share) {
   const std::vector<bool> train = problem.TrainLogs();
   std::vector<Vector> column;
   try {
-    column = problem.Residuals(Append(cause.fit.x, {1 + share}), train);
+    column = problem.Residuals(Append(fitted.fit.x, {1 + share}), train);
   } catch (const Error&) {
     return {};
   }
   for (std::size_t l = 0; l < column.size(); ++l)
-    if (train[l]) column[l] -= cause.residuals[l];
+    if (train[l]) column[l] -= fitted.residuals[l];
   return column;
 }
 
 // (1) by its normal equations.
-double SquaresWithPriors(const Matrix& C, const Vector& z) {
+ByLengthsAndMasses WithPriors(const Matrix& C, const Vector& z, double known) {
   const Matrix normal = C.transpose() * C + Matrix::Identity(C.cols(), C.cols());
   const Vector b = C.transpose() * z;
-  return b.dot(normal.ldlt().solve(b));
+  const Vector a = normal.ldlt().solve(b);
+  return {b.dot(a), known * a.cwiseAbs().maxCoeff(), a.size()};
 }
 
 }  // namespace
 
-double ExplainedByLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
-                                   const CandidateResult& cause) {
-  if (!cause.fitted.complete()) return 0;
+ByLengthsAndMasses ExplainedByLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
+                                               const ModelSpec& system,
+                                               const std::vector<Parameter>& given,
+                                               const Fitted& fitted) {
+  if (!fitted.complete()) return {};
   const Experiment& e = *fitter.experiment;
-  const Problem problem = ProblemOf(cause, e);
-  const SearchBase base{&cause.hypothesis.system, cause.hypothesis.Free(),
-                        problem.CommonChanges(cause.fitted.fit.x)};
-  const ProjectedResidual residual = fitter.ProjectedResidualOf(cause.fitted);
+  const SearchBase base{&system, given, Problem(e, system, given).CommonChanges(fitted.fit.x)};
+  const ProjectedResidual residual = fitter.ProjectedResidualOf(fitted);
   const Vector z = residual.vector();
+  const double known = fitter.criteria.link_known;
   Matrix C(z.size(), 0);
   for (const Hypothesis& h : NumbersOfBodies({e, base, sizes})) {
-    if (fitter.TimeIsOver()) return 0;
-    const auto column =
-        ColumnOf(Problem(e, h.system, h.Free()), cause.fitted, fitter.criteria.link_known);
+    if (fitter.TimeIsOver()) return {};
+    const auto column = ColumnOf(Problem(e, h.system, h.Free()), fitted, known);
     if (column.empty()) continue;
     const std::vector<Matrix> columns(column.begin(), column.end());
     C.conservativeResize(Eigen::NoChange, C.cols() + 1);
     C.rightCols(1) = residual.Project(columns);
   }
-  return C.cols() > 0 ? SquaresWithPriors(C, z) : 0;
+  return C.cols() > 0 ? WithPriors(C, z, known) : ByLengthsAndMasses{};
 }
 
 }  // namespace continuum

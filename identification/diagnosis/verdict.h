@@ -31,6 +31,9 @@ struct Verdict {
   bool complete = false;                    ///< what the verdict leaves looks like noise
   std::optional<std::size_t> leading = {};  ///< the candidate that comes closest; none: none helps
   double leading_share = 0;                 ///< what it takes of what can be explained [squares]
+  /// Adequate, as lengths and masses that are off by at most this share of themselves do what
+  /// shows; 0: nothing shows.
+  double numbers_off = 0;
 
   /// That nothing is left to explain.
   static Verdict Adequate(std::string reason);

@@ -75,7 +75,7 @@ class DiagnosisPage {
       return;
     }
     constexpr std::size_t kShown = 3;
-    page_.Paragraph(Is(Verdict::Kind::kAdequate)
+    page_.Paragraph(Is(Verdict::Kind::kAdequate) && d_.verdict.numbers_off == 0
                         ? "Nothing that these logs show. The largest differences, with the "
                           "model's parameters fitted:"
                         : "With its parameters fitted the model differs most from the measurement "

@@ -149,6 +149,17 @@ bool IsBelowStep(const Diagnosis& d) {
   return WithoutPart(d.before.error.train, d.chosen()->fitted.error.train) <= d.noise.step;
 }
 
+std::string WhyAdequate(const Diagnosis& d) {
+  if (d.verdict.numbers_off > 0)
+    return fmt::format(
+        "What shows in these logs is what lengths and masses would do that are at most {:.1f} % "
+        "off.",
+        100 * d.verdict.numbers_off);
+  return d.noise.known() ? "The error is what the noise and the model's own time step make."
+                         : "No candidate lowers the error, but these logs do not show how large "
+                           "their noise is.";
+}
+
 }  // namespace
 
 bool OnlyCorrections(const Diagnosis& d) {
@@ -173,7 +184,9 @@ std::string WhyNotFitted(const Dismissed& candidate) {
 std::string HeadlineOf(const Diagnosis& d) {
   switch (d.verdict.kind) {
     case Kind::kAdequate:
-      return "The model follows these logs";
+      return d.verdict.numbers_off > 0
+                 ? "The model follows these logs, but for lengths and masses that are a little off"
+                 : "The model follows these logs";
     case Kind::kNamed:
       return (d.partner ? "Causes: " : "Cause: ") + CausesInWords(d);
     case Kind::kAmbiguous:
@@ -208,6 +221,7 @@ std::string InWords(Certainty certainty) {
 Certainty CertaintyOf(const Diagnosis& d) {
   if (d.Is(Kind::kAmbiguous) || d.Is(Kind::kUnexplained)) return Certainty::kCannotSay;
   if (d.interrupted) return Certainty::kLikely;
+  if (d.Is(Kind::kAdequate) && d.verdict.numbers_off > 0) return Certainty::kLikely;
   if (d.Is(Kind::kAdequate)) return d.noise.known() ? Certainty::kSure : Certainty::kLikely;
   return Doubts(d).empty() ? Certainty::kSure : Certainty::kLikely;
 }
@@ -215,10 +229,7 @@ Certainty CertaintyOf(const Diagnosis& d) {
 std::string WhyInWords(const Diagnosis& d) {
   switch (d.verdict.kind) {
     case Kind::kAdequate:
-      return d.noise.known()
-                 ? "The error is what the noise and the model's own time step make."
-                 : "No candidate lowers the error, but these logs do not show how large their "
-                   "noise is.";
+      return WhyAdequate(d);
     case Kind::kAmbiguous:
       return WhyAmbiguous(d);
     case Kind::kUnexplained:
@@ -296,7 +307,7 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
                                              d.next.input, kNextInputs)
                                : Sentence(d.next.input + "."));
   }
-  if (OnlyCorrections(d))
+  if (OnlyCorrections(d) || d.verdict.numbers_off > 0)
     steps.emplace_back("Measure lengths, masses and the zero of the sensors again.");
   if (extended && (d.Is(Kind::kNamed) || OnlyCorrections(d)))
     steps.push_back(fmt::format("Simulate with `{}` in place of the model.", kExtendedModel));

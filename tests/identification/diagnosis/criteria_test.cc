@@ -340,6 +340,12 @@ std::map<std::string, std::vector<Judged>> Examples() {
       [](const Criteria& c) { return MayBeOff(EffectNamed("armature"), "armature", 0.1, {}, c); });
   e["whole_correction"] =
       Number([](const Criteria& c) { return MayBeOff(EffectNamed("payload"), "mass", 0, {}, c); });
+  e["numbers_most"] = AroundBoundary(0.02, [](double off, const Criteria& c) {
+    return AreNumbersEnough({100, off, 2}, 100, 50, c);
+  });
+  e["numbers_share"] = AroundBoundary(95, [](double squares, const Criteria& c) {
+    return AreNumbersEnough({squares, 0.01, 2}, 100, 50, c);
+  });
   e["correction_share"] = AroundBoundary(0.5, [](double share, const Criteria& c) {
     return MayBeLengthsAndMasses(share * 100, 100, c);
   });
