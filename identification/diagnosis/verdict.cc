@@ -210,6 +210,8 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
   const std::string shows = Shows(all, best, lack, more, criteria);
   if (verdict.named.size() > 1) {
     verdict.kind = Verdict::Kind::kAmbiguous;
+    verdict.numbers = std::all_of(verdict.named.begin(), verdict.named.end(),
+                                  [&](std::size_t i) { return all.of(i).corrects; });
     verdict.reason =
         fmt::format("the likelihoods of {} candidates are {}", verdict.named.size(), near);
   } else if (verdict.unlisted.empty() && far_off.empty()) {

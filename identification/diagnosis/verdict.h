@@ -31,6 +31,8 @@ struct Verdict {
   bool complete = false;                    ///< what the verdict leaves looks like noise
   std::optional<std::size_t> leading = {};  ///< the candidate that comes closest; none: none helps
   double leading_share = 0;                 ///< what it takes of what can be explained [squares]
+  /// Ambiguous between numbers of the model that are hardly off: any other one may be off as well.
+  bool numbers = false;
   /// Adequate, as lengths and masses that are off by at most this share of themselves do what
   /// shows; 0: nothing shows.
   double numbers_off = 0;

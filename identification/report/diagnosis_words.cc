@@ -116,7 +116,15 @@ std::string WhyUnexplained(const Diagnosis& d) {
          Closest(d);
 }
 
+// Whether one of several numbers is a little off, no one knows which.
+bool NumbersInstead(const Diagnosis& d) {
+  return d.Is(Kind::kAmbiguous) && !d.partner && d.verdict.numbers;
+}
+
 std::string WhyAmbiguous(const Diagnosis& d) {
+  if (NumbersInstead(d))
+    return "Each changes a number by a few per cent. Others that are a little off, such as "
+           "lengths, may do the same.";
   if (OnlyCorrections(d))
     return "Both change numbers by a few per cent. Others that are a little off, such as lengths, "
            "may do the same.";
@@ -190,7 +198,9 @@ std::string HeadlineOf(const Diagnosis& d) {
     case Kind::kNamed:
       return (d.partner ? "Causes: " : "Cause: ") + CausesInWords(d);
     case Kind::kAmbiguous:
-      return (OnlyCorrections(d) ? "Numbers that are a little off: " : "Cause: ") +
+      return (OnlyCorrections(d)  ? "Numbers that are a little off: "
+              : NumbersInstead(d) ? "A number that is a little off: "
+                                  : "Cause: ") +
              CausesInWords(d);
     case Kind::kUnexplained:
       break;
@@ -307,7 +317,7 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
                                              d.next.input, kNextInputs)
                                : Sentence(d.next.input + "."));
   }
-  if (OnlyCorrections(d) || d.verdict.numbers_off > 0)
+  if (OnlyCorrections(d) || NumbersInstead(d) || d.verdict.numbers_off > 0)
     steps.emplace_back("Measure lengths, masses and the zero of the sensors again.");
   if (extended && (d.Is(Kind::kNamed) || OnlyCorrections(d)))
     steps.push_back(fmt::format("Simulate with `{}` in place of the model.", kExtendedModel));

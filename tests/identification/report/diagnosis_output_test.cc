@@ -22,6 +22,7 @@ namespace {
 
 using testing::Bench;
 using testing::Command;
+using ::testing::Contains;
 using testing::DiagnosisFiles;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -370,6 +371,23 @@ TEST_F(DiagnosisOutput, OfTwoCorrectionsSaysThatOtherNumbersMayBeOff) {
   EXPECT_THAT(WhyInWords(*d_), HasSubstr("such as lengths"));
   EXPECT_EQ(CertaintyOf(*d_), Certainty::kCannotSay);
   EXPECT_THAT(NextStepsInWords(e_, *d_, {}).front(), HasSubstr("Measure lengths"));
+}
+
+TEST_F(DiagnosisOutput, OfAnyOfSeveralNumbersSaysThatOthersMayBeOff) {
+  d_->verdict.kind = Verdict::Kind::kAmbiguous;
+  d_->verdict.named = {0, 1}, d_->verdict.numbers = true;
+  EXPECT_THAT(HeadlineOf(*d_), StartsWith("A number that is a little off: "));
+  EXPECT_THAT(WhyInWords(*d_), StartsWith("Each changes a number by a few per cent."));
+  EXPECT_THAT(NextStepsInWords(e_, *d_, {}), Contains(HasSubstr("Measure lengths")));
+}
+
+TEST_F(DiagnosisOutput, SaysThatLengthsAndMassesAreEnough) {
+  d_->verdict = Verdict::Adequate("");
+  d_->verdict.numbers_off = 0.013, d_->verdict.complete = false;
+  EXPECT_THAT(HeadlineOf(*d_), HasSubstr("but for lengths and masses"));
+  EXPECT_THAT(WhyInWords(*d_), HasSubstr("at most 1.3 % off"));
+  EXPECT_EQ(CertaintyOf(*d_), Certainty::kLikely);
+  EXPECT_THAT(NextStepsInWords(e_, *d_, {}), Contains(HasSubstr("Measure lengths")));
 }
 
 }  // namespace
