@@ -1,9 +1,11 @@
 #include "identification/fit/intervals.h"
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 
 #include "error.h"
+#include "identification/fit/local_search.h"
 #include "identification/statistics/information_modes.h"
 #include "identification/statistics/uncertainty.h"
 #include "sim/io/interrupt.h"
@@ -59,6 +61,22 @@ void TakeStart(const Problem& problem, std::size_t log, const Uncertainty& own, 
   if (u.step.size() && own.step.size()) u.step(starts) = own.step(starts);
 }
 
+// Whether the time step changes a value by more than its standard error.
+bool StepMatters(const Uncertainty& u) {
+  return u.step.size() > 0 && (u.step.array().abs() > u.standard_error.array()).any();
+}
+
+// At a quarter of the step. Where dry friction acts, a fit from x ends in the next of many minima.
+Vector FineFit(const Problem& problem, const Vector& x, FitOptions options) {
+  constexpr std::uint64_t kSeed = 1;
+  constexpr int kIterations = 30;
+  const Problem fine = AtQuarter(problem);
+  Fit fit = FitParameters(fine, x, problem.seen(), options);
+  options.iterations = kIterations;
+  SearchAround(fine, {}, problem.seen(), kSeed, options, fit);
+  return fit.x;
+}
+
 }  // namespace
 
 Uncertainty UnknownUncertainty(const Problem& problem, const Vector& x, const std::string& why) {
@@ -75,7 +93,7 @@ Uncertainty UnknownUncertainty(const Problem& problem, const Vector& x, const st
 void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                     const std::vector<Matrix>& J, const std::vector<Matrix>& step,
                     const FitOptions& options, const std::optional<Vector>& fine, Uncertainty& u) {
-  if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
+  if (!StepMatters(u)) return;
   std::vector<bool> use;
   for (const Matrix& columns : J) use.push_back(columns.size() > 0);
   Vector moved;
@@ -116,7 +134,13 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   AllowForStep(problem, WeightedByCurvature(J, soft, r), WeightedByCurvature(step, soft, r), {}, u);
   FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
   few.progress = Within({"fit at a fine step"}, progress);
-  ReachByFineFit(centered, x, r, J, step, few, {}, u);
+  std::optional<Vector> fine;
+  try {
+    if (StepMatters(u)) fine = FineFit(centered, x, few);
+  } catch (const Error&) {
+    fine.reset();  // it diverges there
+  }
+  ReachByFineFit(centered, x, r, J, step, few, fine, u);
   for (std::size_t l = 0; l < own.size(); ++l)
     if (own[l]) TakeStart(problem, l, *own[l], u);
   return u;

@@ -8,9 +8,9 @@
 #include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/fit/bounded_least_squares.h"
+#include "identification/fit/evolution.h"
 #include "identification/fit/wide_slope_fit.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/portable_random.h"
 
 namespace continuum {
 namespace {
@@ -18,9 +18,9 @@ namespace {
 using Vector = Problem::Vector;
 using Matrix = Problem::Matrix;
 
-constexpr std::size_t kFits = 4;
-constexpr double kHigher = 0.1;  // of the cost
 constexpr double kLower = 1e-4;  // of the cost
+constexpr int kRounds = 2;
+constexpr double kAgain = 0.02;  // of the cost that a round takes off, for another one
 
 bool Rubs(const mjModel& m) {
   const auto positive = [](double value) { return value > 0; };
@@ -35,19 +35,46 @@ bool Rubs(const mjModel& m) {
   return false;
 }
 
-// Where the cost is higher by a share of it, in a random direction, as the slopes at x say. So a
-// parameter that the logs say little of moves far.
-Vector Beside(const Problem& problem, const Fit& fit, const Matrix& slopes, Random& random) {
-  Vector z(fit.x.size());
-  for (double& one : z) one = random.Normal();
+// Spread of a normal distribution around a fit by whose points the cost doubles on average, as the
+// slopes at it say: far along a valley, in which a parameter is hardly seen. Nothing where the cost
+// does not depend on all parameters.
+Matrix SpreadOf(const Fit& fit, const Matrix& slopes) {
+  const Eigen::Index n = slopes.cols();
   const Eigen::HouseholderQR<Matrix> qr(slopes);
-  const Matrix R = qr.matrixQR().topRows(z.size()).triangularView<Eigen::Upper>();
-  for (Eigen::Index i = 0; i < z.size(); ++i)
-    if (!(std::abs(R(i, i)) > 0)) return fit.x;  // nothing depends on it
-  const Vector step =
-      R.triangularView<Eigen::Upper>().solve(std::sqrt(2 * kHigher * fit.cost) / z.norm() * z);
-  const Vector y = Scaled(problem, fit.x) + step;
-  return Unscaled(problem, y.data());
+  const Matrix R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  if (!(R.diagonal().cwiseAbs().minCoeff() > 0)) return {};
+  return R.triangularView<Eigen::Upper>().solve(
+      Matrix(Matrix::Identity(n, n) * std::sqrt(2 * fit.cost / static_cast<double>(n))));
+}
+
+// The costs of points; outside of the bounds that on them, and more by the distance.
+std::vector<double> CostsOf(const Problem& problem, const std::vector<Vector>& points,
+                            const std::vector<bool>& use, const FitOptions& options) {
+  std::vector<double> costs;
+  for (const Vector& y : points) {
+    const Vector x = problem.Clamp(Unscaled(problem, y.data()));
+    const double beyond = (Scaled(problem, x) - y).norm();
+    costs.push_back((1 + beyond) * CostAt(problem, x, use, options));
+  }
+  return costs;
+}
+
+// Where the cost is least around a fit.
+Vector LeastAround(const Problem& problem, const Fit& fit, const Matrix& slopes,
+                   const std::vector<bool>& use, std::uint64_t seed, const FitOptions& options,
+                   std::size_t& evaluations) {
+  constexpr std::size_t kGenerations = 40;
+  const Matrix spread = SpreadOf(fit, slopes);
+  if (spread.size() == 0) return fit.x;
+  std::size_t generation = 0;
+  const auto costs = [&](const std::vector<Vector>& points) {
+    if (options.progress) options.progress({"look around it", generation++, kGenerations});
+    return CostsOf(problem, points, use, options);
+  };
+  const Evolved best = Evolve(costs, Scaled(problem, fit.x), spread,
+                              {.generations = kGenerations, .flat = kLower, .seed = seed});
+  evaluations += best.evaluations;
+  return problem.Clamp(Unscaled(problem, best.y.data()));
 }
 
 // The lower one of both, as one more iteration, with the effort of both.
@@ -66,30 +93,35 @@ LocalMinima SearchAround(const Problem& problem, const Vector& start, const std:
   LocalMinima minima;
   if (fit.x.size() < 2 || problem.path() != Path::kStepped || !Rubs(problem.system().model()))
     return minima;
-  Random random(seed);
-  Matrix slopes;  // where the fit has ended
   FitOptions plain = options, secants = options;
   plain.idle = secants.idle = true, secants.rough = true;
-  enum { kFromStart, kFromFit, kBeside };
-  for (std::size_t k = 0; k < kBeside + kFits && !StopRequested(); ++k) {
-    Matrix own = k < kBeside ? Matrix() : slopes;
-    secants.slopes = &own;
-    secants.progress = Within({"fits from beside it", k, kBeside + kFits}, options.progress);
+  const auto take = [&](const Fit& other) {
+    const bool lower = other.cost < fit.cost * (1 - kLower);
+    minima.found.push_back(lower ? LocalMinimum{fit.x, fit.cost}
+                                 : LocalMinimum{other.x, other.cost});
+    Take(other, fit);
+    return lower;
+  };
+  const auto try_from = [&](const Vector& x) {
     try {
-      const Vector from = k == kFromStart ? start
-                          : k == kFromFit ? fit.x
-                                          : Beside(problem, fit, slopes, random);
-      const Fit other = FitParameters(problem, from, use, secants);
-      const bool lower = other.cost < fit.cost * (1 - kLower);
-      if (k != kFromFit)
-        minima.found.push_back(lower ? LocalMinimum{fit.x, fit.cost}
-                                     : LocalMinimum{other.x, other.cost});
-      Take(other, fit);
-      if (lower) Take(FitWithWideSlopes(problem, fit.x, use, plain), fit);
-      if (lower || k == kFromFit) slopes = std::move(own);
+      if (take(FitParameters(problem, x, use, secants)))
+        Take(FitWithWideSlopes(problem, fit.x, use, plain), fit);
     } catch (const Error& error) {
-      if (error.kind() != Error::Kind::kJob || k == kFromFit) throw;
+      if (error.kind() != Error::Kind::kJob) throw;  // it diverges there
     }
+  };
+  if (start.size() > 0 && !StopRequested()) try_from(start);
+  for (int round = 0; round < kRounds && !StopRequested(); ++round) {
+    Matrix slopes;
+    secants.slopes = &slopes;
+    Take(FitParameters(problem, fit.x, use, secants), fit);
+    secants.slopes = nullptr;
+    const double before = fit.cost;
+    std::size_t evaluations = 0;
+    const Vector x = LeastAround(problem, fit, slopes, use, seed + round, plain, evaluations);
+    fit.evaluations += evaluations;
+    if (!StopRequested()) try_from(x);
+    if (fit.cost > (1 - kAgain) * before) break;
   }
   return minima;
 }

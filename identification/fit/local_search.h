@@ -10,9 +10,10 @@ namespace continuum {
 /// Looks around a fit for other minima of the cost, where dry friction acts in the model: there
 /// it has many, and which of them a fit ends in depends on where it began.
 ///
-/// Fits by secants begin where the fit did, where it ended, and a few beside that, where first
-/// order says that the cost is higher by a tenth. One that ends lower takes its place, fitted to
-/// the end. Repeats with the same seed.
+/// From the start of the fit (none if it is empty) another one goes by secants. Then an evolution
+/// (identification/fit/evolution.h) looks for lower costs around the best, in the directions that
+/// change the cost least; from the least another fit goes on. As long as that helps much, again.
+/// Repeats with the same seed.
 LocalMinima SearchAround(const Problem& problem, const Problem::Vector& start,
                          const std::vector<bool>& use, std::uint64_t seed,
                          const FitOptions& options, Fit& fit);
