@@ -109,15 +109,18 @@ class _Arm:
         return numpy.linalg.lstsq(slopes, turning.ravel(), rcond=SEEN)[0]
 
     def tilted(self, q, falling, steps=5):
-        """From q on to where accelerometers would show gravity alone as [accelerometers x 3]."""
-        if not self.accelerometers:
+        """From q on to where accelerometers would show gravity alone as [accelerometers x 3]. One
+        that shows nothing, as in free fall, says nothing."""
+        sites = [site for site, shown in zip(self.accelerometers, falling) if shown.any()]
+        if not sites:
             return q
+        falling = falling[falling.any(axis=1)]
         up = -self.model.opt.gravity / numpy.linalg.norm(self.model.opt.gravity)
         shown = falling / numpy.linalg.norm(falling, axis=1, keepdims=True)
         for _ in range(steps):
             self._place(q)
             slopes, errors = [], []
-            for (axes, turn), direction in zip(self._turns(self.accelerometers), shown):
+            for (axes, turn), direction in zip(self._turns(sites), shown):
                 errors.append(direction - axes.T @ up)
                 slopes.append(axes.T @ numpy.cross(up, turn, axisb=0, axisc=0))
             step = numpy.linalg.lstsq(numpy.vstack(slopes), numpy.hstack(errors), rcond=SEEN)[0]

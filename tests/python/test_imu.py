@@ -84,6 +84,16 @@ class Imu(bench.Bench):
             self.assertAlmostEqual(found["a"][-1], 0.1 * PERIOD * share / (1 - share), places=9)
         self.assertAlmostEqual(found["a rate"][-1], 0.1)
 
+    def test_a_row_in_free_fall_is_left_to_the_gyros(self):
+        log, truth, _ = swing(2)
+        fallen = {name: values.copy() for name, values in log.items()}
+        for name in (name for three in ACCELEROMETERS.values() for name in three):
+            fallen[name][100] = 0
+        found, _ = angles(fallen)
+        self.assertTrue(numpy.all(numpy.isfinite(found)))
+        self.assertLess(numpy.abs(found - angles(log)[0]).max(), 1e-3)
+        self.assertLess(numpy.abs(found - truth).max(), 0.05)
+
     def test_is_a_log_of_an_experiment(self):
         log, truth, _ = swing(3)
         found = angles(log, share=0.98)[1]
