@@ -1,7 +1,7 @@
 #include "identification/fit/local_search.h"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 
 #include <Eigen/Dense>
 
@@ -36,15 +36,15 @@ bool Rubs(const mjModel& m) {
 }
 
 // Spread of a normal distribution around a fit by whose points the cost doubles on average, as the
-// slopes at it say: far along a valley, in which a parameter is hardly seen. Nothing where the cost
-// does not depend on all parameters.
-Matrix SpreadOf(const Fit& fit, const Matrix& slopes) {
-  const Eigen::Index n = slopes.cols();
-  const Eigen::HouseholderQR<Matrix> qr(slopes);
-  const Matrix R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-  if (!(R.diagonal().cwiseAbs().minCoeff() > 0)) return {};
-  return R.triangularView<Eigen::Upper>().solve(
-      Matrix(Matrix::Identity(n, n) * std::sqrt(2 * fit.cost / static_cast<double>(n))));
+// slopes J at it say, and in no direction further than the parameters' sizes:
+//   B Bᵀ = (JᵀJ n / 2C + I)⁻¹.
+// It is long along a valley, in which a parameter is hardly seen.
+Matrix SpreadOf(const Fit& fit, const Matrix& J) {
+  const Eigen::Index n = J.cols();
+  const Matrix precision =
+      static_cast<double>(n) / (2 * fit.cost) * J.transpose() * J + Matrix::Identity(n, n);
+  const Eigen::LLT<Matrix> factor(precision);
+  return factor.matrixU().solve(Matrix(Matrix::Identity(n, n)));
 }
 
 // The costs of points; outside of the bounds that on them, and more by the distance.
@@ -59,21 +59,20 @@ std::vector<double> CostsOf(const Problem& problem, const std::vector<Vector>& p
   return costs;
 }
 
-// Where the cost is least around a fit.
-Vector LeastAround(const Problem& problem, const Fit& fit, const Matrix& slopes,
-                   const std::vector<bool>& use, std::uint64_t seed, const FitOptions& options,
-                   std::size_t& evaluations) {
+// Where the cost is least around a fit, which bears the effort.
+Vector LeastAround(const Problem& problem, const Matrix& slopes, const std::vector<bool>& use,
+                   std::uint64_t seed, const FitOptions& options, Fit& fit) {
   constexpr std::size_t kGenerations = 40;
-  const Matrix spread = SpreadOf(fit, slopes);
-  if (spread.size() == 0) return fit.x;
+  const auto begin = std::chrono::steady_clock::now();
   std::size_t generation = 0;
   const auto costs = [&](const std::vector<Vector>& points) {
     if (options.progress) options.progress({"look around it", generation++, kGenerations});
     return CostsOf(problem, points, use, options);
   };
-  const Evolved best = Evolve(costs, Scaled(problem, fit.x), spread,
+  const Evolved best = Evolve(costs, Scaled(problem, fit.x), SpreadOf(fit, slopes),
                               {.generations = kGenerations, .flat = kLower, .seed = seed});
-  evaluations += best.evaluations;
+  fit.evaluations += best.evaluations;
+  fit.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return problem.Clamp(Unscaled(problem, best.y.data()));
 }
 
@@ -111,15 +110,13 @@ LocalMinima SearchAround(const Problem& problem, const Vector& start, const std:
     }
   };
   if (start.size() > 0 && !StopRequested()) try_from(start);
-  for (int round = 0; round < kRounds && !StopRequested(); ++round) {
+  for (int round = 0; round < kRounds && fit.cost > 0 && !StopRequested(); ++round) {
     Matrix slopes;
     secants.slopes = &slopes;
     Take(FitParameters(problem, fit.x, use, secants), fit);
     secants.slopes = nullptr;
     const double before = fit.cost;
-    std::size_t evaluations = 0;
-    const Vector x = LeastAround(problem, fit, slopes, use, seed + round, plain, evaluations);
-    fit.evaluations += evaluations;
+    const Vector x = LeastAround(problem, slopes, use, seed + round, plain, fit);
     if (!StopRequested()) try_from(x);
     if (fit.cost > (1 - kAgain) * before) break;
   }
