@@ -28,19 +28,39 @@ void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::s
               const std::function<std::string(std::size_t i)>& pack,
               const std::function<void(std::size_t i, const std::string& bytes)>& unpack);
 
-/// The same, where fields(archive, i) lists what work(thread, i) stores (bytes.h).
+/// The same of larger tasks, as whole fits: one at a time on each rank, where the loops inside of
+/// work(i) use its threads. A single rank takes one after the other.
+void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work,
+                const std::function<std::string(std::size_t i)>& pack,
+                const std::function<void(std::size_t i, const std::string& bytes)>& unpack);
+
+/// Pack and unpack where fields(archive, i) lists what a task stores (bytes.h).
 template <class Fields>
-void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work,
-              const Fields& fields) {
-  const auto pack = [&](std::size_t i) {
+auto PackOf(const Fields& fields) {
+  return [&fields](std::size_t i) {
     BytesOut bytes;
     fields(bytes, i);
     return std::move(bytes.bytes());
   };
-  ShareOut(n, work, pack, [&](std::size_t i, const std::string& all) {
+}
+template <class Fields>
+auto UnpackOf(const Fields& fields) {
+  return [&fields](std::size_t i, const std::string& all) {
     BytesIn bytes(all);
     fields(bytes, i);
-  });
+  };
+}
+
+/// The same loops with such a list.
+template <class Fields>
+void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work,
+              const Fields& fields) {
+  ShareOut(n, work, PackOf(fields), UnpackOf(fields));
+}
+template <class Fields>
+void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work,
+                const Fields& fields) {
+  ShareTasks(n, work, PackOf(fields), UnpackOf(fields));
 }
 
 }  // namespace continuum
