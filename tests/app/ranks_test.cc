@@ -25,19 +25,26 @@ using ::testing::Not;
 using testing::PageExample;
 using testing::Scratch;
 
-// A pendulum with dry friction that the model does not have.
-std::string PendulumLog(double frequency) {
-  constexpr double kStep = 0.001, kInertia = 0.03, kWeight = 1.47, kDamping = 0.1, kDry = 0.1;
+// A pendulum with dry friction that the model does not have, and an offset of its motor.
+struct Pendulum {
+  double inertia = 0.03, dry = 0.1, offset = 0;  // [kg m^2], [Nm], [Nm]
+  bool held = false;                             // its input, from row to row
+};
+
+std::string PendulumLog(double frequency, const Pendulum& p = {}) {
+  constexpr double kStep = 0.001, kWeight = 1.47, kDamping = 0.1;
   std::string text = "t,u,q\n";
-  double q = 0, v = 0;
+  double q = 0, v = 0, u = 0;
   for (int k = 0; k < 2000; ++k) {
-    const double u = 0.9 * std::sin(frequency * k * kStep);
-    if (k % 20 == 0) {
+    const bool row = k % 20 == 0;
+    if (row || !p.held) u = 0.9 * std::sin(frequency * k * kStep);
+    if (row) {
       const double noise = 1e-3 * std::sin(12.9898 * k * frequency);
       text += std::to_string(k * kStep) + "," + std::to_string(u) + "," +
               std::to_string(q + noise) + "\n";
     }
-    v += kStep * (u - kDamping * v - kDry * std::tanh(50 * v) - kWeight * std::sin(q)) / kInertia;
+    const double load = p.dry * std::tanh(50 * v) + kDamping * v + kWeight * std::sin(q);
+    v += kStep * (u + p.offset - load) / p.inertia;
     q += kStep * v;
   }
   return text;
@@ -54,6 +61,8 @@ parameters:
 candidates: [coulomb, stiffness]
 logs: [{file: one.csv}, {file: two.csv}, {file: three.csv, use: validate}]
 )";
+constexpr char kPairCandidates[] =
+    "candidates: [coulomb, stribeck, directional_friction, input_offset, gravity_tilt]";
 
 // What does not say how long it took, or where.
 nlohmann::json WithoutTimes(const nlohmann::json& json) {
@@ -80,6 +89,7 @@ class Ranks : public testing::AppBench {
     files_.Write("two.csv", PendulumLog(5));
     files_.Write("three.csv", PendulumLog(3));
     files_.Write("arm.yaml", kThreeLogs);
+    WritePair();
     std::string study = "experiment,command,name\n";
     for (int i = 0; i < kRows; ++i) {
       const char* const command = i % 3 == 0 ? "replay" : i % 3 == 1 ? "check" : "identify";
@@ -94,6 +104,27 @@ class Ranks : public testing::AppBench {
   }
 
   static std::string Text(const fs::path& file) { return Scratch::Text(file); }
+  nlohmann::json Json(const std::string& file) const {
+    return nlohmann::json::parse(Text(files_ / file));
+  }
+
+  // An experiment, pair.yaml, with two causes, in time steps that leave noise alone.
+  void WritePair() const {
+    std::string text = kThreeLogs, model = testing::kModel;
+    const auto replace = [](std::string& in, const std::string& old, const std::string& by) {
+      for (std::size_t at = 0; (at = in.find(old, at)) != in.npos; at += by.size())
+        in.replace(at, old.size(), by);
+    };
+    replace(text, "candidates: [coulomb, stiffness]", kPairCandidates);
+    replace(text, "{file: ", "{file: pair_");
+    replace(text, "model.xml", "fine.xml");
+    replace(model, "timestep=\"0.01\"", "timestep=\"0.001\"");
+    files_.Write("pair.yaml", text);
+    files_.Write("fine.xml", model);
+    const Pendulum p{.inertia = 0.05, .dry = 0.03, .offset = 0.05, .held = true};
+    for (const auto& [name, frequency] : {std::pair{"one", 2}, {"two", 5}, {"three", 3}})
+      files_.Write(std::string("pair_") + name + ".csv", PendulumLog(frequency, p));
+  }
 
   // Of each data file of folders; times are left out.
   std::map<std::string, std::string> Results(const std::vector<std::string>& folders) const {
@@ -110,12 +141,13 @@ class Ranks : public testing::AppBench {
     return all;
   }
 
-  // What a script with "mpirun -n 2 " writes without that, and with 2, 3 and 8 ranks.
+  // What a script with "mpirun -n 2 " writes without that, on one core, and with 2, 3 and 8 ranks.
   void ExpectTheSameBytes(const std::string& script,
                           const std::vector<std::string>& folders) const {
     const auto wanted = ResultsWith("", script, folders);
     EXPECT_GE(wanted.size(), 2);
-    for (const char* const start : {"mpirun -n 2 ", "mpirun -n 3 ", "mpirun -n 8 "})
+    for (const char* const start :
+         {"taskset -c 0 ", "mpirun -n 2 ", "mpirun -n 3 ", "mpirun -n 8 "})
       ExpectEqual(ResultsWith(start, script, folders), wanted, start);
   }
 
@@ -130,7 +162,7 @@ class Ranks : public testing::AppBench {
       script.replace(at, two.size(), start);
     const Finished f = Shell("set -e\n" + script, kSeconds);
     EXPECT_EQ(f.exit_code, 0) << start << f.err;
-    EXPECT_EQ(f.err.find(" ranks: tasks ") != f.err.npos, !start.empty()) << f.err;
+    EXPECT_EQ(f.err.find(" ranks: tasks ") != f.err.npos, start.starts_with("mpirun")) << f.err;
     return Results(folders);
   }
   static void ExpectEqual(const std::map<std::string, std::string>& found,
@@ -146,6 +178,20 @@ class Ranks : public testing::AppBench {
 
 TEST_F(Ranks, OfTheExamplesOfThePageGiveTheSameBytes) {
   ExpectTheSameBytes(PageExample("mpirun -n 2"), {"out", "fit", "cause"});
+  const auto cause = Json("cause/diagnosis.json");
+  EXPECT_EQ(cause["folds"].size(), 3);
+  EXPECT_EQ(cause["candidates"][0]["placebos"].size(), 20);
+}
+
+TEST_F(Ranks, WithPairsOfCausesGiveTheSameBytes) {
+  ExpectTheSameBytes("mpirun -n 2 continuum diagnose pair.yaml --effort thorough --out cause",
+                     {"cause"});
+  EXPECT_GE(Json("cause/diagnosis.json")["pairs"].size(), 3);
+}
+
+TEST_F(Ranks, WithSeveralStartsGiveTheSameBytes) {
+  ExpectTheSameBytes("mpirun -n 2 continuum identify arm.yaml --starts 7 --out fit", {"fit"});
+  EXPECT_EQ(Json("fit/fit.json")["starts"].size(), 7);
 }
 
 TEST_F(Ranks, OnTheSmoothPathGiveTheSameBytes) {
