@@ -20,7 +20,15 @@ using Unpack = std::function<void(std::size_t i, const std::string& bytes)>;
 
 enum class On { kThreads, kRank };  // each thread of a rank has tasks of its own, or one has all
 
-bool is_task = false;  // whether this rank works on a task that uses all its threads
+bool is_task = false;  // whether this rank works on tasks
+
+// While it is there, loops run on this rank alone.
+class AtTasks {
+ public:
+  AtTasks() { is_task = true; }
+  ~AtTasks() { is_task = false; }
+  AtTasks(const AtTasks&) = delete;
+};
 
 template <class Side, class Work>
 void Share(Side& side, const Work& work) {
@@ -54,6 +62,7 @@ std::vector<Result> ResultsOf(
     const auto share = [&](std::size_t thread, std::size_t) {
       Share(side, [&](std::size_t i) { return work(thread, i); });
     };
+    const AtTasks alone;
     if (on == On::kRank) return share(0, 0);
     ParallelFor(ThreadCount(), share);
   };
@@ -91,14 +100,6 @@ void ShareAll(std::size_t n, On on, const Work& work, const Pack& pack, const Un
     if (!here[i]) unpack(i, all[i].bytes);
 }
 
-// While it is there, loops run on this rank alone.
-class Task {
- public:
-  Task() { is_task = true; }
-  ~Task() { is_task = false; }
-  Task(const Task&) = delete;
-};
-
 bool IsAlone(std::size_t n) { return RankCount() == 1 || n < 2 || InParallelFor() || is_task; }
 
 }  // namespace
@@ -130,10 +131,7 @@ void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work, c
     for (std::size_t i = 0; i < n; ++i) work(i);
     return;
   }
-  const auto task = [&](std::size_t, std::size_t i) {
-    const Task whole;
-    work(i);
-  };
+  const auto task = [&](std::size_t, std::size_t i) { work(i); };
   ShareAll(n, On::kRank, task, pack, unpack);
 }
 

@@ -23,7 +23,7 @@ void HandOut(std::size_t n, const std::function<std::string(std::size_t i)>& wor
 /// the first i that has one is thrown on every rank. Where the result of a task follows from its
 /// number alone, it is the same to the last bit for any number of ranks and threads.
 ///
-/// n is the same on every rank. A single task runs on every rank.
+/// n is the same on every rank. A single task runs on every rank, and loops inside it are shared.
 void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work,
               const std::function<std::string(std::size_t i)>& pack,
               const std::function<void(std::size_t i, const std::string& bytes)>& unpack);
