@@ -18,7 +18,7 @@ namespace continuum {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kBeside = 4;  // fits that know nothing of each other
+constexpr std::size_t kBeside = 8;  // fits that know nothing of each other
 
 double Drawn(const FreeParameter& p, double share) {
   constexpr double kWide = 10;  // of the bounds: their sizes matter, not their difference

@@ -10,7 +10,7 @@
 namespace continuum {
 
 /// Fits from x, then from random points within the bounds, in equal ratios where these span more
-/// than a factor of ten. The first is fitted alone, then four at a time. Those that cannot come
+/// than a factor of ten. The first is fitted alone, then eight at a time. Those that cannot come
 /// near the best of those before them give up.
 ///
 /// Repeats exactly for a seed. Throws Error as FitParameters, and when every start diverges.

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr char kStudy[] = "study.csv", kExperiment[] = "experiment.yaml";
+constexpr char kStudy[] = "study.csv", kExperiment[] = "experiment.yaml", kRecord[] = "row.json";
 
 std::string FolderOf(std::size_t row) { return fmt::format("case_{:05}", row + 1); }
 
@@ -125,9 +125,12 @@ void ReadProbabilities(const Json& d, Answer& a) {
   }
 }
 
-std::string WhyFailed(const fs::path& folder) {
-  const Json record = Json::parse(ReadFile(folder / "row.json"));
-  return record.value("reason", "failed");
+Json JsonOf(const fs::path& file) { return Json::parse(ReadFile(file)); }
+
+Answer AnswerIn(const Case& c, const fs::path& folder) {
+  Answer a = AnswerFrom(c, JsonOf(folder / "diagnosis.json"));
+  a.cpu = JsonOf(folder / kRecord).at("processor_seconds");
+  return a;
 }
 
 }  // namespace
@@ -156,10 +159,9 @@ std::vector<Json> LinesOfStudy(const std::vector<Case>& cases, const fs::path& s
       throw Error::Input(table.Where(i), "the case '" + name + "'", table.Text(i, "case"));
     const fs::path whole = results / FolderOf(i), failed = results / (FolderOf(i) + ".failed");
     if (fs::exists(whole)) {
-      const Json diagnosis = Json::parse(ReadFile(whole / "diagnosis.json"));
-      lines.push_back(LineOf(cases[i], AnswerFrom(cases[i], diagnosis)));
+      lines.push_back(LineOf(cases[i], AnswerIn(cases[i], whole)));
     } else if (fs::exists(failed)) {
-      lines.push_back(NoAnswer(cases[i], WhyFailed(failed)));
+      lines.push_back(NoAnswer(cases[i], JsonOf(failed / kRecord).at("reason")));
     }
   }
   return lines;
@@ -168,7 +170,7 @@ std::vector<Json> LinesOfStudy(const std::vector<Case>& cases, const fs::path& s
 Answer AnswerFrom(const Case& c, const Json& d) {
   Answer a;
   a.verdict = d.at("verdict"), a.complete = d.at("complete").get<bool>();
-  a.seconds = a.cpu = d.at("seconds");
+  a.seconds = d.at("seconds");
   const Json& explained = d.at("gain").at("explainable_error_removed");
   a.explained = explained.is_number() ? explained.get<double>() : 0;
   const Json& lack = d.at("lack_of_fit");
