@@ -16,6 +16,9 @@
 #include "identification/diagnosis/lengths_and_masses.h"
 #include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/pair_fit.h"
+#include "identification/diagnosis/search_bytes.h"
+#include "sim/numerics/ranks.h"
+#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -126,17 +129,33 @@ class PairSearch {
   }
 
   // The same second cause beside others that explain nearly as much as the first one by themselves:
-  // which of them it is shows only beside it.
+  // which of them it is shows only beside it. Several ranks fit one each.
   void Vary(const CandidateResult& first, const CandidateResult& second) {
-    constexpr double kAlike = 0.9;
     constexpr std::size_t kMost = 3;
-    std::size_t varied = 0;
-    for (const CandidateResult& c : single_.candidates) {
-      if (varied == kMost || context_.fitter.TimeIsOver()) return;
-      const bool alike = c.was_fitted && c.likelihood >= kAlike * first.likelihood;
-      const std::set<std::string> both{Key(c.hypothesis), Key(second.hypothesis)};
-      if (alike && both.size() == 2 && !IsFitted(both)) varied += FitBeside(c, second);
+    auto c = single_.candidates.begin();
+    for (std::size_t varied = 0; varied < kMost;) {
+      std::vector<Beside> beside;
+      const std::size_t most = std::min(kMost - varied, RankCount());
+      for (; c != single_.candidates.end() && beside.size() < most; ++c) {
+        if (context_.fitter.TimeIsOver() || HasFirst(beside, Key(c->hypothesis))) break;
+        if (MayVary(*c, first, second)) AddBeside(*c, second, beside);
+      }
+      if (beside.empty()) return;
+      varied += FitAll(beside);
     }
+  }
+
+  static bool HasFirst(const std::vector<Beside>& beside, const std::string& key) {
+    return std::any_of(beside.begin(), beside.end(),
+                       [&](const Beside& one) { return Key(one.first->hypothesis) == key; });
+  }
+
+  bool MayVary(const CandidateResult& c, const CandidateResult& first,
+               const CandidateResult& second) const {
+    constexpr double kAlike = 0.9;
+    const bool alike = c.was_fitted && c.likelihood >= kAlike * first.likelihood;
+    const std::set<std::string> both{Key(c.hypothesis), Key(second.hypothesis)};
+    return alike && both.size() == 2 && !IsFitted(both);
   }
 
   bool IsFitted(const std::set<std::string>& pair) const {
@@ -148,10 +167,12 @@ class PairSearch {
     });
   }
 
-  // From where the second one has ended beside another first one. Whether there is such a pair.
-  bool FitBeside(const CandidateResult& first, const CandidateResult& second) {
+  // The second one is to begin where it has ended beside another first one. Nothing where there is
+  // no such pair.
+  void AddBeside(const CandidateResult& first, const CandidateResult& second,
+                 std::vector<Beside>& beside) {
     const CandidateResult* const base = Completed(first);
-    if (!base) return false;
+    if (!base) return;
     auto inside =
         context_.options.Inside(DiagnosisStage::kSecondCause, "beside " + Key(first.hypothesis));
     inside.candidates = {second.hypothesis.effect};
@@ -162,28 +183,28 @@ class PairSearch {
       return Key(c.hypothesis) != Key(second.hypothesis) ||
              c.hypothesis.extra.size() != second.hypothesis.extra.size();
     });
-    if (all.empty()) return false;
+    if (all.empty()) return;
     all.front().other_starts = StartsBeside(*base, second);
-    try {
-      all.front() = search.FitAlone(all.front());
-    } catch (const Error&) {
-      return false;
-    }
-    tried_.push_back({base, std::move(search)});
-    return true;
+    beside.push_back({base, std::move(search)});
   }
 
-  // The other parameters as the first one wants them alone, or as they were beside the second one.
-  static std::vector<Problem::Vector> StartsBeside(const CandidateResult& first,
-                                                   const CandidateResult& second) {
-    const Problem::Vector& pair = second.fitted.fit.x;
-    const auto own = static_cast<Eigen::Index>(second.hypothesis.extra.size());
-    const auto others =
-        pair.size() - own - static_cast<Eigen::Index>(second.hypothesis.given.size());
-    const Problem::Vector alone = Append(first.fitted.fit.x, {pair.end() - own, pair.end()});
-    Problem::Vector beside = alone;
-    beside.head(others) = pair.head(others);
-    return {alone, beside};
+  // Each with its only candidate. How many could be fitted.
+  std::size_t FitAll(std::vector<Beside>& beside) {
+    const auto second = [&](std::size_t i) -> CandidateResult& {
+      return beside[i].search.candidates.front();
+    };
+    const auto fit = [&](std::size_t i) {
+      try {
+        second(i) = beside[i].search.FitAlone(second(i));
+      } catch (const Error&) {
+        return;  // there is no such pair
+      }
+    };
+    ShareTasks(beside.size(), fit, [&](auto& a, std::size_t i) { FieldsOfFitAlone(a, second(i)); });
+    const std::size_t before = tried_.size();
+    for (std::size_t i = 0; i < beside.size(); ++i)
+      if (second(i).was_fitted) tried_.push_back(std::move(beside[i]));
+    return tried_.size() - before;
   }
 
   // The fit of a cause without another; null when it has none.

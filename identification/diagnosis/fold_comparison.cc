@@ -10,6 +10,8 @@
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/fit/cross_validation.h"
+#include "sim/numerics/ranks.h"
+#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -126,22 +128,33 @@ class FoldComparison {
       const auto done = [&](const CandidateResult* c) {
         return !Failures(c->record, d_.criteria).empty() || LostTooOften(*c, gains);
       };
-      for (int k = 0; k < options_.placebos; ++k) {
+      const auto wanted = static_cast<std::size_t>(options_.placebos);
+      std::vector<double> ahead;  // gains that are known, but not yet compared with
+      for (std::size_t k = 0; k < wanted; ++k) {
         std::erase_if(open, done);
         if (open.empty() || !HasTimeFor("some of the random forces")) break;
         options_.Say(DiagnosisStage::kJudgement,
-                     fmt::format("random forces, {} parameter(s)", count),
-                     static_cast<std::size_t>(k), static_cast<std::size_t>(options_.placebos));
-        gains.push_back(GainOfPlacebo(count, k));
+                     fmt::format("random forces, {} parameter(s)", count), k, wanted);
+        if (k == ahead.size()) AddGains(count, std::min(wanted, k + RankCount()), ahead);
+        gains.push_back(ahead[k]);
       }
       for (CandidateResult* const c : alike) c->record.placebo_gains = gains;
     }
   }
 
-  double GainOfPlacebo(std::size_t count, int k) const {
+  // Up to some number of them, of several ranks one each: a few may be in vain.
+  void AddGains(std::size_t count, std::size_t end, std::vector<double>& gains) const {
+    const std::size_t known = gains.size();
+    gains.resize(end);
+    ShareTasks(
+        end - known, [&](std::size_t i) { gains[known + i] = GainOfPlacebo(count, known + i); },
+        [&](auto& archive, std::size_t i) { archive(gains[known + i]); });
+  }
+
+  double GainOfPlacebo(std::size_t count, std::size_t k) const {
     FoldRecord record;
     record.before = d_.before.folds.error;
-    const std::uint64_t seed = options_.seed + 1000 * count + static_cast<unsigned>(k);
+    const std::uint64_t seed = options_.seed + 1000 * count + k;
     record.after = TryForce(RandomForce(count, k % 2 == 1, d_.sizes, seed), nullptr).error;
     return Median(Gains(record));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "identification/diagnosis/correction.h"
+#include "identification/diagnosis/probing.h"
 
 namespace continuum {
 namespace {
@@ -38,6 +39,17 @@ bool PairFit::SecondCorrects(const SearchContext& context) const {
 bool PairFit::AnyIsFarOff(const Criteria& criteria) const {
   return IsFarOff(a->hypothesis, b->fitted, first_extra(), criteria) ||
          IsFarOff(b->hypothesis, b->fitted, b->first_extra(), criteria);
+}
+
+std::vector<Problem::Vector> StartsBeside(const CandidateResult& first,
+                                          const CandidateResult& second) {
+  const Problem::Vector& pair = second.fitted.fit.x;
+  const auto own = static_cast<Eigen::Index>(second.hypothesis.extra.size());
+  const auto others = pair.size() - own - static_cast<Eigen::Index>(second.hypothesis.given.size());
+  const Problem::Vector alone = Append(first.fitted.fit.x, {pair.end() - own, pair.end()});
+  Problem::Vector beside = alone;
+  beside.head(others) = pair.head(others);
+  return {alone, beside};
 }
 
 }  // namespace continuum

@@ -29,4 +29,9 @@ struct PairFit {
   }
 };
 
+/// Where a second cause begins beside a first one, from its fit beside another one: the other
+/// parameters as the first one wants them alone, or as they were in that fit.
+std::vector<Problem::Vector> StartsBeside(const CandidateResult& first,
+                                          const CandidateResult& second);
+
 }  // namespace continuum

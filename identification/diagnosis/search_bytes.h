@@ -2,6 +2,7 @@
 
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/result.h"
+#include "identification/result/fit_bytes.h"
 
 /// What the tasks of a search find, for BytesOut and BytesIn (sim/numerics/bytes.h).
 namespace continuum {
@@ -18,17 +19,23 @@ void Fields(A& a, EquationStart& s) {
   a(start, share, x, together);
 }
 
-template <class A>
-void Fields(A& a, Fit& f) {
-  auto& [x, cost, iterations, evaluations, seconds, converged, anew, message, trace] = f;
-  a(x, cost, iterations, evaluations, seconds, converged, anew, message, trace);
-}
-
 /// Of a fit before its sensitivities and folds, which it does not have yet.
 template <class A>
 void Fields(A& a, Fitted& f) {
   auto& [fit, residuals, error, cost, sensitivities, folds] = f;
   a(fit, residuals, error.train, error.validate, cost);
+}
+
+template <class A>
+void Fields(A& a, Uncertainty& u) {
+  auto& [standard_error, lower, upper, step, correlation, information, at_bound, lacks] = u;
+  a(standard_error, lower, upper, step, correlation, information, at_bound, lacks);
+}
+
+template <class A>
+void Fields(A& a, Sensitivities& s) {
+  auto& [jacobian, step, uncertainty, freedom] = s;
+  a(jacobian, step, uncertainty, freedom);
 }
 
 template <class A>
@@ -42,6 +49,13 @@ template <class A>
 void FieldsOfFit(A& a, CandidateResult& c) {
   a(c.fitted, c.was_fitted, c.error);
   for (Parameter& p : c.hypothesis.extra) a(p.lower, p.upper);
+}
+
+/// Of a candidate after CandidateSearch::FitAlone.
+template <class A>
+void FieldsOfFitAlone(A& a, CandidateResult& c) {
+  FieldsOfFit(a, c);
+  a(c.fitted.sensitivities, c.likelihood);
 }
 
 /// Of a candidate after CandidateSearch::ProbeOne and LookAtError.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "sim/numerics/shared_loop.h"
+
 namespace continuum {
 
 std::vector<Fold> FoldsOf(const Experiment& e) {
@@ -32,17 +34,17 @@ constexpr double kDiverged = 1e6;
 FoldScores CrossValidate(const Problem& problem, const Problem::Vector& x,
                          const std::vector<Problem::Vector>& r,
                          const std::vector<Problem::Matrix>& J, const std::vector<Fold>& folds) {
-  FoldScores scores;
-  for (const Fold& fold : folds) {
-    std::vector<bool> kept = fold.left_out;
+  FoldScores scores{std::vector<double>(folds.size()), std::vector<Problem::Vector>(folds.size())};
+  const auto leave_out = [&](std::size_t f) {
+    const std::vector<bool>& out = folds[f].left_out;
+    std::vector<bool> kept = out;
     kept.flip();
-    const auto refitted = RefitByChords(problem, x, r, J, kept);
-    scores.x.push_back(FitStarts(problem, refitted, fold.left_out));
-    const auto there = problem.Residuals(scores.x.back(), fold.left_out);
-    const double error = problem.PooledRms(there, fold.left_out);
-    scores.error.push_back(std::isfinite(error) ? error
-                                                : kDiverged * problem.PooledRms(r, fold.left_out));
-  }
+    scores.x[f] = FitStarts(problem, RefitByChords(problem, x, r, J, kept), out);
+    const double error = problem.PooledRms(problem.Residuals(scores.x[f], out), out);
+    scores.error[f] = std::isfinite(error) ? error : kDiverged * problem.PooledRms(r, out);
+  };
+  ShareTasks(folds.size(), leave_out,
+             [&](auto& archive, std::size_t f) { archive(scores.error[f], scores.x[f]); });
   return scores;
 }
 

@@ -10,7 +10,8 @@
 namespace continuum {
 
 /// Fits from x, then from random points within the bounds, in equal ratios where these span more
-/// than a factor of ten. Those that cannot come near the best any more give up.
+/// than a factor of ten. The first is fitted alone, then eight at a time. Those that cannot come
+/// near the best of those before them give up.
 ///
 /// Repeats exactly for a seed. Throws Error as FitParameters, and when every start diverges.
 MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,

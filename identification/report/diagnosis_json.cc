@@ -54,6 +54,7 @@ nlohmann::json PartnerJson(const Diagnosis& d) {
   return {{"effect", h.effect},
           {"variant", h.variant},
           {"equivalent", equivalent},
+          {"relatives", d.partner->relatives},
           {"correction", d.partner->Corrects()},
           {"probability", d.chosen()->probability},
           {"probability_is", "of both causes together"},
@@ -153,10 +154,15 @@ nlohmann::json LeadingJson(const Diagnosis& d) {
           {"share", d.verdict.leading_share}};
 }
 
-nlohmann::json AlternativesJson(const Diagnosis& d) {
+nlohmann::json CausesAt(const Diagnosis& d, const std::vector<std::size_t>& candidates) {
   auto json = nlohmann::json::array();
-  for (const std::size_t i : d.verdict.named) json.push_back(CauseJson(d, d.candidates[i], {}));
+  for (const std::size_t i : candidates) json.push_back(CauseJson(d, d.candidates[i], {}));
   return json;
+}
+
+// To first order, as the screen saw it.
+nlohmann::json FirstOrderJson(double explained, double p) {
+  return {{"explained", explained}, {"p", p}};
 }
 
 nlohmann::json GainJson(const Diagnosis& d, const TwoErrors& after) {
@@ -230,6 +236,7 @@ nlohmann::json CandidateJson(const Diagnosis& d, std::size_t i) {
           {"where", c.hypothesis.where},
           {"score", score},
           {"p", d.noise_limited ? c.p : ByPlacebos(c.record.placebo_gains, score)},
+          {"first_order", FirstOrderJson(c.explained, c.p)},
           {"likelihood", c.likelihood},
           {"probability", c.probability},
           {"lambda", c.lambda},
@@ -254,6 +261,7 @@ nlohmann::json CandidatesJson(const Diagnosis& d) {
                     {"where", c.where},
                     {"score", 0},
                     {"p", c.p},
+                    {"first_order", FirstOrderJson(c.explained, c.p)},
                     {"group", "not fitted: " + WhyNotFitted(c)}});
   }
   return json;
@@ -303,7 +311,8 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
     MakePart(key, missing, [&] { json[key] = make(); });
   };
   part("causes", [&] { return CausesJson(d); });
-  part("alternatives", [&] { return AlternativesJson(d); });
+  part("alternatives", [&] { return CausesAt(d, d.verdict.named); });
+  part("relatives", [&] { return CausesAt(d, d.verdict.siblings); });
   part("gain", [&] { return GainJson(d, run.after); });
   part("between_conditions", [&] {
     const CandidateResult* const chosen = d.chosen();

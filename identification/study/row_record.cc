@@ -19,6 +19,7 @@ nlohmann::json ToJson(const RowRecord& r) {
           {"reason", r.reason},
           {"exit_code", r.exit_code},
           {"seconds", r.seconds},
+          {"processor_seconds", r.processor_seconds},
           {"peak_megabytes", r.peak_megabytes},
           {"host", r.host}};
 }
@@ -33,6 +34,7 @@ RowRecord RecordFrom(const nlohmann::json& json) {
   json.at("reason").get_to(r.reason);
   json.at("exit_code").get_to(r.exit_code);
   json.at("seconds").get_to(r.seconds);
+  r.processor_seconds = json.value("processor_seconds", 0.0);
   json.at("peak_megabytes").get_to(r.peak_megabytes);
   json.at("host").get_to(r.host);
   return r;

@@ -15,9 +15,10 @@ inline constexpr char kRowRecord[] = "row.json";
 
 struct RowRecord {
   RowInputs inputs;
-  std::string reason;         ///< why it failed; empty: it is done
-  int exit_code = 0;          ///< of the subcommand; -1: a signal ended it, or it never began
-  double seconds = 0;         ///< by the clock
+  std::string reason;  ///< why it failed; empty: it is done
+  int exit_code = 0;   ///< of the subcommand; -1: a signal ended it, or it never began
+  double seconds = 0;  ///< by the clock
+  double processor_seconds = 0;
   double peak_megabytes = 0;  ///< of memory [1e6 bytes]
   std::string host;           ///< the machine's name
 };

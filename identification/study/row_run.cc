@@ -65,13 +65,14 @@ class OneRow {
       : study_(study), row_(row), run_(run), status_(std::move(status)) {}
 
   RowStatus Run(const Progress& outer) {
-    RowRecord record{*status_.inputs, "", -1, 0, 0, HostName()};
+    RowRecord record{*status_.inputs, "", -1, 0, 0, 0, HostName()};
     try {
       RowFolder aside(run_.out, row_.name);
       const ChildEnd end = RunIn(aside.path(), outer);
       if (end.stopped || StopRequested()) return status_;
       record.exit_code = end.exit_code;
       record.seconds = end.seconds;
+      record.processor_seconds = end.processor_seconds;
       record.peak_megabytes = end.peak_megabytes;
       record.reason = WhyFailed(end);
       Finish(aside, end, record);

@@ -90,6 +90,10 @@ void Follow(int fd, pid_t child, ChildEnd& end, Lines lines) {
   }
 }
 
+double SecondsOf(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 void Wait(pid_t child, ChildEnd& end) {
   int status = 0;
   rusage used{};
@@ -97,6 +101,7 @@ void Wait(pid_t child, ChildEnd& end) {
   }
   if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  end.processor_seconds = SecondsOf(used.ru_utime) + SecondsOf(used.ru_stime);
   end.peak_megabytes = static_cast<double>(used.ru_maxrss) * 1024 / 1e6;
 }
 

@@ -16,12 +16,13 @@ struct ChildCommand {
 
 /// What became of it.
 struct ChildEnd {
-  int exit_code = -1;         ///< -1: a signal ended it
-  int signal = 0;             ///< that ended it, or 0
-  std::string messages;       ///< what it wrote to standard error
-  double seconds = 0;         ///< by the clock
-  double peak_megabytes = 0;  ///< of memory [1e6 bytes]
-  bool stopped = false;       ///< by us, as the user asked to stop (StopRequested)
+  int exit_code = -1;            ///< -1: a signal ended it
+  int signal = 0;                ///< that ended it, or 0
+  std::string messages;          ///< what it wrote to standard error
+  double seconds = 0;            ///< by the clock
+  double processor_seconds = 0;  ///< of all its threads
+  double peak_megabytes = 0;     ///< of memory [1e6 bytes]
+  bool stopped = false;          ///< by us, as the user asked to stop (StopRequested)
 
   /// "ended by signal 9"; empty when it ended by itself.
   std::string InWords() const;

@@ -41,7 +41,7 @@ double ProcessorSeconds() {
 }
 
 void ParallelFor(std::size_t n, const std::function<void(std::size_t, std::size_t)>& work) {
-  if (is_parallel) {
+  if (is_parallel || n == 1) {
     for (std::size_t i = 0; i < n; ++i) work(0, i);
     return;
   }

@@ -23,24 +23,44 @@ void HandOut(std::size_t n, const std::function<std::string(std::size_t i)>& wor
 /// the first i that has one is thrown on every rank. Where the result of a task follows from its
 /// number alone, it is the same to the last bit for any number of ranks and threads.
 ///
-/// n is the same on every rank. A single task runs on every rank.
+/// n is the same on every rank. A single task runs on every rank, and loops inside it are shared.
 void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work,
               const std::function<std::string(std::size_t i)>& pack,
               const std::function<void(std::size_t i, const std::string& bytes)>& unpack);
 
-/// The same, where fields(archive, i) lists what work(thread, i) stores (bytes.h).
+/// The same of larger tasks, as whole fits: one at a time on each rank, where the loops inside of
+/// work(i) use its threads. A single rank takes one after the other.
+void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work,
+                const std::function<std::string(std::size_t i)>& pack,
+                const std::function<void(std::size_t i, const std::string& bytes)>& unpack);
+
+/// Pack and unpack where fields(archive, i) lists what a task stores (bytes.h).
 template <class Fields>
-void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work,
-              const Fields& fields) {
-  const auto pack = [&](std::size_t i) {
+auto PackOf(const Fields& fields) {
+  return [&fields](std::size_t i) {
     BytesOut bytes;
     fields(bytes, i);
     return std::move(bytes.bytes());
   };
-  ShareOut(n, work, pack, [&](std::size_t i, const std::string& all) {
+}
+template <class Fields>
+auto UnpackOf(const Fields& fields) {
+  return [&fields](std::size_t i, const std::string& all) {
     BytesIn bytes(all);
     fields(bytes, i);
-  });
+  };
+}
+
+/// The same loops with such a list.
+template <class Fields>
+void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work,
+              const Fields& fields) {
+  ShareOut(n, work, PackOf(fields), UnpackOf(fields));
+}
+template <class Fields>
+void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work,
+                const Fields& fields) {
+  ShareTasks(n, work, PackOf(fields), UnpackOf(fields));
 }
 
 }  // namespace continuum

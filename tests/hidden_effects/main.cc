@@ -9,9 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "binding/effect_catalog.h"
+#include "error.h"
 #include "hidden_effects/outside/cases.h"
 #include "hidden_effects/pictures.h"
 #include "hidden_effects/report.h"
+#include "hidden_effects/study_cases.h"
 #include "identification/diagnosis/effort.h"
 #include "support/child.h"
 #include "support/json_lines.h"
@@ -105,20 +107,26 @@ std::vector<Case> SpoiltCases(int repeats) {
   return all;
 }
 
+// All suites, of every robot.
+std::vector<Case> AllCases(int repeats) {
+  std::vector<Case> all;
+  const auto add = [&](std::vector<Case> some) {
+    all.insert(all.end(), std::make_move_iterator(some.begin()),
+               std::make_move_iterator(some.end()));
+  };
+  for (const char* const robot : {"arm", "servo", "silverbox", "bouc_wen", "spa", "annelida"})
+    add(Cases(robot, repeats));
+  add(OutsideCases(false));
+  add(BackgroundCases(repeats));
+  add(SpoiltCases(repeats));
+  return all;
+}
+
 // Those with one hidden effect, which alone is tried: for its size and interval, at little cost.
 std::vector<Case> DescribedCases(std::vector<Case> cases) {
   std::erase_if(cases, [](const Case& c) { return c.effects.size() != 1 || !c.listed; });
   for (Case& c : cases) c.told = true;
   return cases;
-}
-
-// Of a case that ended without a diagnosis.
-nlohmann::json NoAnswer(const Case& c, const std::string& why) {
-  Answer none;
-  none.verdict = "no answer";
-  nlohmann::json line = LineOf(c, none);
-  line["what"] = why;
-  return line;
 }
 
 nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool follow, bool verbose) {
@@ -154,15 +162,25 @@ int Show(const std::vector<std::string>& files, const std::string& pictures) {
   return 0;
 }
 
+// One line per case of what a study has found, and how many it lacks.
+void TakeResults(const std::vector<Case>& cases, const std::string& study,
+                 const std::string& results, const std::string& out) {
+  if (std::filesystem::exists(out)) throw Error::Input("--out", "a file that is not there", out);
+  const auto lines = LinesOfStudy(cases, study, results);
+  for (const auto& line : lines) testing::AppendJsonLine(out, line);
+  if (lines.size() < cases.size())
+    fmt::print(stderr, "{} of {} cases have not run\n", cases.size() - lines.size(), cases.size());
+}
+
 int Main(int argc, char** argv) {
   CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
-  std::string out, only, keep, pictures, robot = "arm";
+  std::string out, only, keep, pictures, study, results, robot = "arm";
   std::vector<std::string> tables;
   int repeats = 1;
   std::string effort = "thorough";
   double limit = 1200;
   bool write = false, verbose = false, told = false, quick = false, background = false,
-       spoilt = false, outside = false, follow = false;
+       spoilt = false, outside = false, every = false, follow = false;
   app.add_option("--out", out, "one JSON line per case");
   app.add_option("--table", tables, "files of earlier runs: print what they measure together, only")
       ->check(CLI::ExistingFile);
@@ -177,6 +195,11 @@ int Main(int argc, char** argv) {
   app.add_flag(
       "--outside", outside,
       "machines whose masses and lengths are 1 % off their models (--quick: some of them)");
+  app.add_flag("--all", every, "all of these suites, of every robot");
+  app.add_option("--study", study,
+                 "a folder: write the cases there as one study for `continuum study`");
+  app.add_option("--results", results, "what that has found: write it as lines (--out)")
+      ->needs("--study");
   app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
   app.add_option("--effort", effort, "quick, normal or thorough")
       ->check(CLI::IsMember({"quick", "normal", "thorough"}))
@@ -192,18 +215,30 @@ int Main(int argc, char** argv) {
   app.add_flag("--verbose", verbose, "print each summary");
   CLI11_PARSE(app, argc, argv);
   if (!tables.empty()) return Show(tables, pictures);
-  if (out.empty()) return app.exit(CLI::RequiredError("--out"));
+  const bool only_write = !study.empty() && results.empty();
+  if (out.empty() && !only_write) return app.exit(CLI::RequiredError("--out"));
+  auto cases = every        ? AllCases(repeats)
+               : background ? BackgroundCases(repeats)
+               : spoilt     ? SpoiltCases(repeats)
+               : outside    ? OutsideCases(quick)
+               : quick      ? QuickCases(robot)
+                            : Cases(robot, repeats);
+  for (Case& c : cases) c.effort = EffortNamed(effort);
+  if (told) cases = DescribedCases(std::move(cases));
+  if (!study.empty())
+    std::erase_if(cases, [&](const Case& c) { return c.Name().find(only) == std::string::npos; });
+  if (only_write) {
+    WriteStudy(cases, effort, study);
+    return 0;
+  }
+  if (!results.empty()) {
+    TakeResults(cases, study, results, out);
+    return Show({out}, pictures);
+  }
   std::set<std::string> done;
   for (const auto& line : testing::ReadJsonLines(out)) done.insert(line.at("case"));
   const auto temporary =
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
-  auto cases = background ? BackgroundCases(repeats)
-               : spoilt   ? SpoiltCases(repeats)
-               : outside  ? OutsideCases(quick)
-               : quick    ? QuickCases(robot)
-                          : Cases(robot, repeats);
-  for (Case& c : cases) c.effort = EffortNamed(effort);
-  if (told) cases = DescribedCases(std::move(cases));
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const std::string name = cases[i].Name();
     if (done.contains(name) || name.find(only) == name.npos) continue;
