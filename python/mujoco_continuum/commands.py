@@ -44,8 +44,8 @@ def replay(experiment: Document, out: StrPath | None = None, *, video: bool = Fa
            progress: Progress | bool | None = None) -> Replay:
     """Simulates every log as it stands. Returns errors.json: errors per log and channel, pooled.
 
-    video: also replay.mp4; of it log (only this one), size ("960x720"), fps, camera, gl (osmesa |
-    egl)."""
+    video: also replay.mp4; of it log (only this one), size ("960x720"), fps, camera, gl (auto |
+    osmesa | egl)."""
     options = {"video": video, "log": log, "size": size, "fps": fps, "camera": camera, "gl": gl}
     return _job("replay", "errors.json", Replay, experiment, out, options, folder, progress)
 
