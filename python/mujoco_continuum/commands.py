@@ -97,6 +97,17 @@ def apply(diagnosis: Document, model: StrPath, out: StrPath) -> pathlib.Path:
     return pathlib.Path(out)
 
 
+def make(robot: Document, out: StrPath, *, variant: str | None = None) -> pathlib.Path:
+    """Writes the MJCF of a robot to `out`, which is returned.
+
+    robot: path of models/<robot>/<name>.yaml, or a dict with its keys. An arm of your own has the
+    keys of models/trunk/trunk.yaml. variant: another model of it, where there is one."""
+    with as_file(robot, "robot") as (file, rename):
+        words = ["make", file, "--out", as_argument(out), *_options({"variant": variant})]
+        run(words, rename=rename)
+    return pathlib.Path(out)
+
+
 def effects() -> list[Json]:
     """Every effect: name, kind, what it binds to, parameters with unit, bounds and null."""
     return json.loads(run(["effects", "--json"]))
