@@ -97,6 +97,7 @@ struct Cvodes::Solver {
     Require(memory != nullptr);
     Set(CVodeInit(memory.get(), Rate, 0, y.get()));
     Set(BeQuiet(memory.get()));
+    Set(CVodeSetMaxHnilWarns(memory.get(), -1));  // SUNDIALS 7 prints them, whatever handles errors
     Set(CVodeSetUserData(memory.get(), this));
     Set(CVodeSStolerances(memory.get(), how.relative, how.absolute));
     Set(CVodeSetMaxNumSteps(memory.get(), kMostInternalSteps));
