@@ -30,6 +30,7 @@ void AddIdentify(CLI::App& app);
 void AddDiagnose(CLI::App& app);
 void AddDemo(CLI::App& app);
 void AddApply(CLI::App& app);
+void AddMake(CLI::App& app);
 void AddEffects(CLI::App& app);
 void AddModels(CLI::App& app);
 

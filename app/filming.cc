@@ -30,7 +30,8 @@ std::vector<CLI::Option*> Filming::AddTo(CLI::App& command) {
               ->check(WholeNumberWithin(1, 1000))
               ->capture_default_str(),
           command.add_option("--camera", camera, "a camera of the model"),
-          command.add_option("--gl", gl, "osmesa or egl")->capture_default_str(),
+          command.add_option("--gl", gl, "auto (osmesa, else egl), osmesa or egl")
+              ->capture_default_str(),
           command.add_option("--log", log, "film only this log")};
 }
 

@@ -11,7 +11,7 @@ namespace continuum {
 
 /// The options of commands that film the logs of an experiment.
 struct Filming {
-  std::string size = "960x720", camera, gl = "osmesa", log;
+  std::string size = "960x720", camera, gl = "auto", log;
   int fps = 25;
 
   /// Adds them to a command.

@@ -121,6 +121,7 @@ int main(int argc, char** argv) {
   continuum::AddDemo(app);
   continuum::AddApply(app);
   continuum::AddSolve(app, exit_code);
+  continuum::AddMake(app);
   continuum::AddEffects(app);
   continuum::AddModels(app);
   RefuseEmptyValues(app);

@@ -152,7 +152,8 @@ std::string InputsYaml(const Experiment& e) {
     if (!in.column.empty()) y += ", column: " + Quoted(in.column);
     if (!in.enable.empty()) y += ", enable: " + Quoted(in.enable);
     if (in.unwrap) y += ", unwrap: true";
-    y += in.linear ? ", interpolate: linear}\n" : "}\n";
+    if (in.linear || in.gaps) y += in.linear ? ", interpolate: linear" : ", interpolate: hold";
+    y += "}\n";
   }
   return y;
 }

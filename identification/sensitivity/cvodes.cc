@@ -31,7 +31,31 @@ bool Finite(const double* y, std::size_t n) {
   return std::all_of(y, y + n, [](double v) { return std::isfinite(v); });
 }
 
-void Quiet(int, const char*, const char*, char*, void*) {}
+#if SUNDIALS_VERSION_MAJOR >= 7
+
+SUNContext NewContext() {
+  SUNContext made = nullptr;
+  Require(SUNContext_Create(SUN_COMM_NULL, &made) == SUN_SUCCESS);
+  Require(SUNContext_ClearErrHandlers(made) == SUN_SUCCESS);
+  return made;
+}
+
+int BeQuiet(void*) { return CV_SUCCESS; }  // its context is
+
+#else
+
+SUNContext NewContext() {
+  SUNContext made = nullptr;
+  Require(SUNContext_Create(nullptr, &made) == 0);
+  return made;
+}
+
+int BeQuiet(void* memory) {
+  return CVodeSetErrHandlerFn(
+      memory, [](int, const char*, const char*, char*, void*) {}, nullptr);
+}
+
+#endif
 
 }  // namespace
 
@@ -57,8 +81,7 @@ struct Cvodes::Solver {
   Work before;  // the last start
 
   Solver(const Ode& o, const SolverOptions& how) : ode(o), in(o.parameters), out(o.parameters) {
-    SUNContext made = nullptr;
-    Require(SUNContext_Create(nullptr, &made) == 0);
+    SUNContext const made = NewContext();
     context.reset(made);
     const auto n = static_cast<sunindextype>(ode.size);
     y.reset(N_VNew_Serial(n, made));
@@ -73,7 +96,8 @@ struct Cvodes::Solver {
     memory.reset(CVodeCreate(how.stiff ? CV_BDF : CV_ADAMS, made));
     Require(memory != nullptr);
     Set(CVodeInit(memory.get(), Rate, 0, y.get()));
-    Set(CVodeSetErrHandlerFn(memory.get(), Quiet, nullptr));
+    Set(BeQuiet(memory.get()));
+    Set(CVodeSetMaxHnilWarns(memory.get(), -1));  // SUNDIALS 7 prints them, whatever handles errors
     Set(CVodeSetUserData(memory.get(), this));
     Set(CVodeSStolerances(memory.get(), how.relative, how.absolute));
     Set(CVodeSetMaxNumSteps(memory.get(), kMostInternalSteps));

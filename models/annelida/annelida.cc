@@ -16,7 +16,7 @@ constexpr int kCables = 4;
 constexpr double kPlate = 0.004, kHub = 0.014, kBackbone = 0.008;
 
 const char* const kComment =
-    "Written by: continuum_generate annelida models/annelida/annelida.yaml. Values, their sources "
+    "Written by: continuum make models/annelida/annelida.yaml. Values, their sources "
     "and conventions: annelida.yaml and README.md";
 
 std::string Indexed(const std::string& stem, int i, const std::string& end = "") {

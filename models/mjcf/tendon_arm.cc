@@ -75,8 +75,7 @@ class Builder {
 
 Builder::Builder(const TendonArm& arm)
     : arm_(arm),
-      mjcf_(arm.robot, "Written by: continuum_generate " + arm.robot + " models/" + arm.robot +
-                           "/" + arm.robot +
+      mjcf_(arm.robot, "Written by: continuum make " + arm.robot +
                            ".yaml. Values and their sources: there and README.md") {
   mjcf_.spec().option.timestep = arm.timestep;
   mjcf_.spec().option.integrator = mjINT_IMPLICITFAST;

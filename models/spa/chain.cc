@@ -14,9 +14,8 @@ constexpr double kSupply = 75e3;   // [Pa]
 constexpr double kSpacing = 0.16;  // of arms in a row [m]
 
 const char* const kComment =
-    "Written by: continuum_generate spa (or spa_free, spa_series) models/spa/spa.yaml. Values, "
-    "their sources "
-    "and conventions: spa.yaml and README.md";
+    "Written by: continuum make models/spa/spa.yaml. Values, their sources and conventions: "
+    "spa.yaml and README.md";
 
 SoftSegment Actuator(const SpaFile& file, const SpaLayout& layout) {
   const SpaParameters<double>& p = file.parameters;

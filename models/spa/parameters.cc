@@ -58,7 +58,7 @@ SpaParameters<double> Parameters(const Yaml& node) {
 
 SpaFile ReadSpa(const std::filesystem::path& file) {
   const Yaml root = Yaml::Read(file);
-  root.Only({"mass", "actuation", "gravity", "parameters"});
+  root.Only({"robot", "mass", "actuation", "gravity", "parameters"});
   SpaFile spa;
   spa.options.mass =
       Choose<SpaMass>(root.At("mass"), {"centroid", SpaMass::kCentroid}, {"arc", SpaMass::kArc});

@@ -23,9 +23,9 @@ constexpr double kStep = 2e-3;     // [s]
 
 std::string Comment(Threads threads) {
   return fmt::format(
-      "Written by: continuum_generate {} models/stiff_flop/no_load.yaml. Values, their "
-      "sources and conventions: no_load.yaml and README.md",
-      threads == Threads::kRings ? "stiff_flop" : "stiff_flop_braid");
+      "Written by: continuum make models/stiff_flop/no_load.yaml{}. Values, their sources and "
+      "conventions: no_load.yaml and README.md",
+      threads == Threads::kRings ? "" : " --variant braid");
 }
 
 // E a [N] and E K [N m^2] of the unloaded straight section.

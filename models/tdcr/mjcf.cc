@@ -18,7 +18,7 @@ constexpr ModalLimit kPace{200, 0.02};
 constexpr double kDiskThickness = 2e-3;
 
 const char* const kComment =
-    "Written by: continuum_generate {} models/tdcr/tdcr.yaml. Values, their sources and "
+    "Written by: continuum make models/tdcr/tdcr.yaml{}. Values, their sources and "
     "conventions: tdcr.yaml and README.md. Armature and damping of the joints pace it for statics";
 
 class Builder {
@@ -28,7 +28,7 @@ class Builder {
         links_(links),
         guides_(guides),
         mjcf_("tdcr", fmt::format(fmt::runtime(kComment),
-                                  guides == Guides::kLinks ? "tdcr" : "tdcr_disks")),
+                                  guides == Guides::kLinks ? "" : " --variant disks")),
         holes_(static_cast<std::size_t>(robot.tendons)) {
     if (links < robot.disks || links % robot.disks != 0) {
       throw Error::Input("links", fmt::format("a multiple of the {} disks", robot.disks),

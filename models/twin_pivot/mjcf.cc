@@ -21,7 +21,7 @@ constexpr ModalLimit kPace{500, 0.01};
 constexpr double kDiscRadius = 8e-3, kRodRadius = 0.4e-3, kRodApart = 3e-3, kLead = 10e-3;
 
 const char* const kComment =
-    "Written by: continuum_generate twin_pivot models/twin_pivot/a.yaml. Values, their sources and "
+    "Written by: continuum make models/twin_pivot/a.yaml. Values, their sources and "
     "conventions: a.yaml and README.md. Armature and damping of the joints pace it for statics";
 
 // Point masses and a disc as one body.

@@ -12,6 +12,7 @@ run the packaged executable `continuum`:
     read       a log of another format (MCAP, LeRobot, HDF5, npz)
     joint_angles  joint angles from gyros and accelerometers of the links
     solve      the static shape of a robot; calibrate: its parameters
+    make       the MJCF of a robot from its description
     study      many experiments, each in a folder of its own, done once
     identify_many, diagnose_many: many experiments on threads, processes or a cluster
 
@@ -29,7 +30,7 @@ except ModuleNotFoundError as error:
 from ._engine import load as _load
 from ._paths import EXECUTABLE, MODELS, PLUGINS
 from ._tool import Error, InputError, JobError
-from .commands import apply, check, diagnose, effects, identify, models, replay
+from .commands import apply, check, diagnose, effects, identify, make, models, replay
 from .imu import joint_angles
 from .laws import force_law, friction_law
 from .many import diagnose_many, identify_many, study
@@ -40,7 +41,7 @@ from .statics import calibrate, solve
 __all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Cause", "Channel", "Diagnosis",
            "Error", "Errors", "Fit", "InputError", "Interval", "JobError", "Parameter", "Replay",
            "apply", "calibrate", "check", "diagnose", "diagnose_many", "effects", "force_law",
-           "friction_law", "identify", "identify_many", "joint_angles", "models", "read", "replay",
-           "solve", "study"]
+           "friction_law", "identify", "identify_many", "joint_angles", "make", "models", "read",
+           "replay", "solve", "study"]
 
 PLUGIN = _load()

@@ -44,8 +44,8 @@ def replay(experiment: Document, out: StrPath | None = None, *, video: bool = Fa
            progress: Progress | bool | None = None) -> Replay:
     """Simulates every log as it stands. Returns errors.json: errors per log and channel, pooled.
 
-    video: also replay.mp4; of it log (only this one), size ("960x720"), fps, camera, gl (osmesa |
-    egl)."""
+    video: also replay.mp4; of it log (only this one), size ("960x720"), fps, camera, gl (auto |
+    osmesa | egl)."""
     options = {"video": video, "log": log, "size": size, "fps": fps, "camera": camera, "gl": gl}
     return _job("replay", "errors.json", Replay, experiment, out, options, folder, progress)
 
@@ -94,6 +94,17 @@ def apply(diagnosis: Document, model: StrPath, out: StrPath) -> pathlib.Path:
     diagnosis: path of a diagnosis.json, or what diagnose() returned."""
     with as_file(diagnosis, "diagnosis") as (file, rename):
         run(["apply", file, as_argument(model), "--out", as_argument(out)], rename=rename)
+    return pathlib.Path(out)
+
+
+def make(robot: Document, out: StrPath, *, variant: str | None = None) -> pathlib.Path:
+    """Writes the MJCF of a robot to `out`, which is returned.
+
+    robot: path of models/<robot>/<name>.yaml, or a dict with its keys. An arm of your own has the
+    keys of models/trunk/trunk.yaml. variant: another model of it, where there is one."""
+    with as_file(robot, "robot") as (file, rename):
+        words = ["make", file, "--out", as_argument(out), *_options({"variant": variant})]
+        run(words, rename=rename)
     return pathlib.Path(out)
 
 

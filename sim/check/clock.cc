@@ -56,8 +56,14 @@ void ReportJitter(const std::vector<double>& time, const std::vector<double>& st
   }
 }
 
-// One log in milliseconds among others in seconds.
+// One log in milliseconds among others in seconds, or all of them in milliseconds.
 void CheckUnit(const CheckedLog& log, Findings& out) {
+  constexpr double kSlow = 1;  // [s] between rows: ms at 1 kHz, read as s
+  const Experiment& e = *log.experiment;
+  if (log.period >= kSlow && log.usual_period >= kSlow && e.time_unit == "s" && !e.quasi_static) {
+    out.Add(Severity::kWarning, "", "unit_suspect",
+            fmt::format("its rows are {:.3g} s apart: are these times in ms?", log.period));
+  }
   const double ratio = log.period / log.usual_period;
   for (const double factor : {1e3, 1e-3, 1e6, 1e-6}) {
     if (std::abs(std::log(ratio / factor)) > std::log(1.5)) continue;

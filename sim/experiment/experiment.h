@@ -22,6 +22,7 @@ struct Input {
   bool linear = false;  ///< else held between rows
   std::string where;    ///< file:line: key, for messages
   bool unwrap = false;  ///< full turns that an angle lost are put back
+  bool gaps = false;    ///< empty cells are filled: with the number before, or on a line if linear
 };
 
 /// How a channel is measured: y_meas(t) = scale · (e + Eccentricity(e)) + bias + rate (t − t_0), e

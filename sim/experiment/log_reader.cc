@@ -118,7 +118,8 @@ class LogClock {
                          "the other, unlike the first row");
     }
     if (!origin_) return rec_.Number(row, e_.time_column, false) * unit_;
-    const long double passed = (time.value - *origin_) * (stamps_ ? 1 : unit_);
+    long double passed = (time.value - *origin_) * (stamps_ ? 1 : unit_);
+    if (OverMidnight(passed, time)) passed += kDay;
     return static_cast<double>(std::round(passed * 1e9L) / 1e9L);
   }
 
@@ -140,6 +141,13 @@ class LogClock {
  private:
   static constexpr double kLongAgo = 1e8;       // [s], three years
   static constexpr double kLongestTime = 1e11;  // [s], three thousand years
+
+  static constexpr double kDay = 86400;  // [s]
+
+  // Times of day begin anew at midnight.
+  bool OverMidnight(long double passed, const CsvTable::Time& time) const {
+    return stamps_ && time.value < kDay && passed < -kDay / 2;
+  }
 
   [[noreturn]] void RefuseUnit(long double first) const {
     const double size = static_cast<double>(std::abs(first));
@@ -208,17 +216,48 @@ void Unwrap(std::vector<double>& angle) {
   }
 }
 
+// Fills what is missing of an input: with the number before it, or on the line to the next one.
+void FillGaps(std::vector<double>& values, const std::vector<double>& time, bool linear) {
+  std::size_t last = 0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    if (std::isnan(values[k])) continue;
+    const double slope = linear ? (values[k] - values[last]) / (time[k] - time[last]) : 0;
+    for (std::size_t i = last + 1; i < k; ++i)
+      values[i] = values[last] + slope * (time[i] - time[last]);
+    last = k;
+  }
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(last), values.end(), values[last]);
+}
+
+// An input's numbers as they stand, nan where it may have gaps.
+std::vector<double> ReadInput(const Input& in, const Recording& rec,
+                              const std::vector<std::size_t>& kept) {
+  std::vector<double> values(kept.size(), 0.0);
+  if (in.column.empty()) return values;
+  const double factor = UnitFactor(in.unit, "");
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    values[k] = factor * rec.Number(kept[k], in.column, true);
+    if (!std::isnan(values[k]) || (in.gaps && k > 0)) continue;
+    throw Error::Input(rec.Where(kept[k]) + ", column '" + in.column + "'",
+                       in.gaps ? "a number in the first row (later ones begin with `window`)"
+                               : "a number in every row, as inputs have",
+                       in.gaps ? "none"
+                               : "none (slower than the other columns? `interpolate: hold` keeps "
+                                 "the last number, `linear` draws lines)");
+  }
+  return values;
+}
+
 void ReadInputs(Log& log, const Experiment& e, const Recording& rec,
                 const std::vector<std::size_t>& kept) {
   for (const Input& in : e.inputs) {
-    std::vector<double> values;
+    std::vector<double> values = ReadInput(in, rec, kept);
+    if (in.unwrap) Unwrap(values);
+    if (in.gaps) FillGaps(values, log.time, in.linear);
     std::vector<bool> on;
-    const double factor = UnitFactor(in.unit, "");
     for (const std::size_t row : kept) {
-      values.push_back(in.column.empty() ? 0 : factor * rec.Number(row, in.column, false));
       if (!in.enable.empty()) on.push_back(rec.Flag(row, in.enable));
     }
-    if (in.unwrap) Unwrap(values);
     log.input.push_back(std::move(values));
     log.enable.push_back(std::move(on));
   }

@@ -84,6 +84,7 @@ Input ReadInput(const Yaml& y) {
   }
   if (const auto i = y.Find("interpolate")) {
     in.linear = i->OneOf<bool>({{"hold", false}, {"linear", true}});
+    in.gaps = true;
   }
   if (const auto unit = y.Find("unit")) UnitFactor(in.unit, unit->Where());
   in.unwrap = ReadUnwrap(y, in.unit);

@@ -37,7 +37,7 @@ struct FilmOptions {
   std::optional<std::array<double, 2>> tension = {};
   std::vector<Arrow> arrows = {};
   bool whole = false;  ///< throw when the simulation diverges; else the film ends there
-  Gl gl = Gl::kOsmesa;
+  Gl gl = Gl::kAuto;
   std::string caption;
   /// The measured pose, translucent, where joint sensors measure all of it; else green balls where
   /// positions are measured.

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <initializer_list>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -28,27 +27,52 @@ constexpr unsigned kGlMaxRenderbufferSize = 0x84E8;
 
 std::string Name(Gl backend) { return backend == Gl::kOsmesa ? "osmesa" : "egl"; }
 
-// Whoever asks first decides for the process.
-void Reserve(Gl backend) {
+// Where a backend is found.
+struct Files {
+  std::array<const char*, 2> names;  // of the library
+  const char* package;               // Debian's
+};
+constexpr Files kOsmesaFiles{{"libOSMesa.so.8", "libOSMesa.so.6"}, "libosmesa6"};
+constexpr Files kEglFiles{{"libEGL.so.1", "libEGL.so"}, "libegl1"};
+
+// Never closed: MuJoCo keeps pointers into it. nullptr if there is none.
+void* Open(const Files& files) {
+  for (const char* name : files.names) {
+    if (void* const handle = dlopen(name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE)) return handle;
+  }
+  return nullptr;
+}
+
+// The one that is there.
+Gl Found() {
+  if (Open(kOsmesaFiles)) return Gl::kOsmesa;
+  if (Open(kEglFiles)) return Gl::kEgl;
+  throw Error::Job(fmt::format(
+      "pictures need EGL or OSMesa, and neither {} nor {} can be opened; on Debian: apt install "
+      "{}, or {} where the system has it",
+      kEglFiles.names[0], kOsmesaFiles.names[0], kEglFiles.package, kOsmesaFiles.package));
+}
+
+// The backend of this process: whoever asks first decides.
+Gl Reserve(Gl backend) {
   static std::mutex mutex;
   static std::optional<Gl> used;
   const std::lock_guard lock(mutex);
+  if (backend == Gl::kAuto) backend = used ? *used : Found();
   if (used && *used != backend) {
     throw Error::Input("OpenGL", "the backend this process already uses, " + Name(*used),
                        Name(backend));
   }
   used = backend;
+  return backend;
 }
 
-// Never closed: MuJoCo keeps pointers into it.
 class Library {
  public:
-  Library(std::initializer_list<const char*> names, const char* package) : name_(*names.begin()) {
-    for (const char* name : names) {
-      handle_ = dlopen(name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-      if (handle_) return;
-    }
-    throw Error::Job(fmt::format("{} cannot be opened; on Debian: apt install {}", name_, package));
+  explicit Library(const Files& files) : name_(files.names[0]), handle_(Open(files)) {
+    if (handle_) return;
+    throw Error::Job(
+        fmt::format("{} cannot be opened; on Debian: apt install {}", name_, files.package));
   }
 
   template <class F>
@@ -59,11 +83,11 @@ class Library {
 
  private:
   std::string name_;
-  void* handle_ = nullptr;
+  void* handle_;
 };
 
 struct Osmesa {
-  Library library{{"libOSMesa.so.8", "libOSMesa.so", "libOSMesa.so.6"}, "libosmesa6"};
+  Library library{kOsmesaFiles};
   void* (*create)(unsigned format, int depth, int stencil, int accumulation, void* share);
   void (*destroy)(void* context);
   unsigned char (*make_current)(void* context, void* buffer, unsigned type, int width, int height);
@@ -109,7 +133,7 @@ constexpr unsigned kEglPlatformDevice = 0x313F;
 constexpr unsigned kEglPlatformSurfaceless = 0x31DD;
 
 struct Egl {
-  Library library{{"libEGL.so.1", "libEGL.so"}, "libegl1"};
+  Library library{kEglFiles};
   unsigned (*initialize)(void* display, int* major, int* minor);
   unsigned (*bind_api)(unsigned api);
   unsigned (*choose_config)(void* display, const int* attributes, void** configs, int size,
@@ -207,17 +231,17 @@ class EglContext : public GlContext::Impl {
 };
 
 std::unique_ptr<GlContext::Impl> Create(Gl backend) {
-  Reserve(backend);
-  if (backend == Gl::kOsmesa) return std::make_unique<OsmesaContext>();
+  if (Reserve(backend) == Gl::kOsmesa) return std::make_unique<OsmesaContext>();
   return std::make_unique<EglContext>();
 }
 
 }  // namespace
 
 Gl ParseGl(std::string_view name) {
+  if (name == "auto") return Gl::kAuto;
   if (name == "osmesa") return Gl::kOsmesa;
   if (name == "egl") return Gl::kEgl;
-  throw Error::Input("OpenGL", "osmesa or egl", std::string(name));
+  throw Error::Input("OpenGL", "auto, osmesa or egl", std::string(name));
 }
 
 GlContext::GlContext(Gl backend) : impl_(Create(backend)) { MakeCurrent(); }

@@ -5,10 +5,11 @@
 
 namespace continuum {
 
-/// How to get OpenGL without a screen: OSMesa (software) or EGL (graphics card, or software).
-enum class Gl { kOsmesa, kEgl };
+/// How to get OpenGL without a screen: OSMesa (software), EGL (graphics card, or software), or the
+/// one of them that is there: OSMesa first, which newer systems lack.
+enum class Gl { kAuto, kOsmesa, kEgl };
 
-/// "osmesa" or "egl". Throws Error for anything else.
+/// "auto", "osmesa" or "egl". Throws Error for anything else.
 Gl ParseGl(std::string_view name);
 
 /// An OpenGL context without a window, for drawing into framebuffer objects.

@@ -35,7 +35,7 @@ class Renderer {
  public:
   /// width, height: of the frames [px], at least 64. Throws Error (kInput) for sizes that OpenGL
   /// does not have, and as GlContext does.
-  Renderer(const mjModel& m, int width, int height, Gl gl = Gl::kOsmesa);
+  Renderer(const mjModel& m, int width, int height, Gl gl = Gl::kAuto);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

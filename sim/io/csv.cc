@@ -124,11 +124,14 @@ class CsvTable::Reader {
   [[noreturn]] void RefuseRow(std::size_t found, int number) const {
     const std::size_t expected = table_.columns_.size();
     const bool commas = delimiter_ == ',' && found == 2 * expected;
+    const bool cut = found < expected && number == lines_.back().second;
     throw Error::Input(
         Where(number),
         std::to_string(expected) +
             (table_.numbered_ ? " cells as in the first row" : " cells as in the header"),
-        std::to_string(found) + (commas ? " (decimal commas? Then put ';' between cells)" : ""));
+        std::to_string(found) + (commas ? " (decimal commas? Then put ';' between cells)"
+                                 : cut  ? " in the last line (cut off? Then delete it)"
+                                        : ""));
   }
 
   void FindDecimalComma() {
@@ -212,13 +215,21 @@ double CsvTable::Number(std::size_t row, std::string_view column) const {
   RefuseCell(row, column, read ? "a number within +-1e100" : "a finite number");
 }
 
+// Lines that some programs write among the numbers.
+std::string CsvTable::Hint(std::size_t row) const {
+  const auto& cells = cells_.at(row);
+  if (cells == columns_) return " (the header again? Delete this line)";
+  const bool words = std::none_of(cells.begin(), cells.end(), IsNumber);
+  return row == 0 && words ? " (a line of units? Put # before it)" : "";
+}
+
 void CsvTable::RefuseCell(std::size_t row, std::string_view column,
                           const std::string& expected) const {
   const std::string& cell = Text(row, column);
   const bool comma = !decimal_comma_ && HasDecimalComma(cell);
   throw Error::Input(Where(row) + ", column '" + std::string(column) + "'",
                      expected + (comma ? " with a decimal point, as elsewhere in the file" : ""),
-                     cell.empty() ? "an empty cell" : "'" + Excerpt(cell) + "'");
+                     (cell.empty() ? "an empty cell" : "'" + Excerpt(cell) + "'") + Hint(row));
 }
 
 CsvTable::Time CsvTable::TimeAt(std::size_t row, std::string_view column) const {

@@ -54,6 +54,8 @@ class CsvTable {
   std::size_t Column(std::string_view column) const;
   /// The cell as a number of C++, without '+' and with a decimal point.
   std::string Plain(const std::string& cell) const;
+  /// What a row that is none may be.
+  std::string Hint(std::size_t row) const;
   [[noreturn]] void RefuseCell(std::size_t row, std::string_view column,
                                const std::string& expected) const;
 

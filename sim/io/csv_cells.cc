@@ -136,7 +136,8 @@ std::string_view TrimBlanks(std::string_view text) {
 
 bool IsComment(std::string_view line) {
   const std::string_view text = TrimBlanks(line);
-  return text.starts_with('#') || text.starts_with('%') || text.starts_with("//");
+  return text.starts_with('#') || text.starts_with('%') || text.starts_with("//") ||
+         (text.starts_with("sep=") && text.size() <= 5);
 }
 
 bool IsMissing(std::string_view cell) {

@@ -9,7 +9,8 @@ namespace continuum {
 /// A text without blanks, tabs and carriage returns at its ends.
 std::string_view TrimBlanks(std::string_view text);
 
-/// Whether a line of a text table is a comment: it begins with '#', '%' or "//".
+/// Whether a line of a text table is a comment: it begins with '#', '%' or "//", or is the line by
+/// which Excel knows the delimiter, "sep=;".
 bool IsComment(std::string_view line);
 
 /// Whether a cell says that a value was not measured: empty, "nan", "NA", "null", "-" and the like.

@@ -22,7 +22,7 @@ double Since(Clock::time_point begin) {
 // Draws the scene of a pose again and again, as the renderer sets it up.
 class Bare {
  public:
-  explicit Bare(const ModelAndData& machine) : gl_(Gl::kOsmesa) {
+  explicit Bare(const ModelAndData& machine) : gl_(Gl::kAuto) {
     gl_.MakeCurrent();
     mjModel sized = *machine.model;  // shares all arrays
     sized.vis.global.offwidth = kWidth;

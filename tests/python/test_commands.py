@@ -74,7 +74,7 @@ class Outputs(bench.Bench):
 class Options(bench.Bench):
     def test_a_film_has_those_of_the_command_line(self):
         mc.replay(self.experiment, "out", video=True, log="log", size="128x96", fps=10,
-                  gl="osmesa")
+                  gl="auto")
         self.assertTrue((self.folder / "out/replay.mp4").exists())
         with self.assertRaisesRegex(mc.InputError, "--size requires --video"):
             mc.replay(self.experiment, size="128x96")

@@ -13,6 +13,19 @@ ROD = {"format": 1, "robot": "tdcr", "length": 0.134, "diameter": 0.99e-3, "disk
        "gravity": [0, 0, 9.81], "base_rotation": [0, 0, 0]}
 
 
+class Make(bench.Bench):
+    def test_writes_the_robots_that_come_with_the_package(self):
+        for robot, variant, file in (("trunk", None, "trunk"), ("tdcr", "disks", "tdcr_disks")):
+            folder = mc.MODELS / robot
+            made = mc.make(folder / f"{robot}.yaml", "made.xml", variant=variant)
+            self.assertEqual(made.read_text(), (folder / f"{file}.xml").read_text())
+
+    def test_takes_a_robot_as_a_dict_and_names_what_is_wrong(self):
+        self.assertIn("<mujoco model=\"tdcr\">", mc.make(ROD, "rod.xml").read_text())
+        with self.assertRaisesRegex(mc.InputError, "twin_pivot.*found 'worm'"):
+            mc.make({"robot": "worm"}, "worm.xml")
+
+
 class Solve(bench.Bench):
     def test_gives_a_row_for_each_case(self):
         rest, pulled = mc.solve(TDCR / "tdcr.yaml", CASES)

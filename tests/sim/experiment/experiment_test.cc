@@ -159,6 +159,25 @@ TEST_F(ExperimentFile, CountsAClockThatBeganLongAgoFromItsFirstRow) {
   }
 }
 
+TEST_F(ExperimentFile, CountsTimesOfDayOnOverMidnight) {
+  scratch_.Write("log.csv", "t,T1,on,q1\n23:59:59,1,1,1\n00:00:00.5,1,1,1\n00:00:01,1,1,1\n");
+  EXPECT_THAT(Read(kExperiment).logs[0].time, ElementsAre(0, 1.5, 2));
+  EXPECT_THAT(Wrong("t,T1,on,q1\n12:00:01,1,1,1\n12:00:00,1,1,1\n"), HasSubstr("increasing"));
+}
+
+TEST_F(ExperimentFile, FillsGapsOfInputsAsTheyInterpolate) {
+  scratch_.Write("log.csv", "t,T1,on,q1\n0,1,1,1\n1,,1,2\n3,4,1,3\n4,,1,4\n");
+  EXPECT_THAT(With("unit: mN", "unit: mN, interpolate: hold").logs[0].input[0],
+              ElementsAre(1e-3, 1e-3, 4e-3, 4e-3));
+  EXPECT_THAT(With("unit: mN", "unit: mN, interpolate: linear").logs[0].input[0],
+              ElementsAre(1e-3, 2e-3, 4e-3, 4e-3));
+  EXPECT_THAT(Message([&] { Read(kExperiment); }),
+              AllOf(HasSubstr("log.csv:3, column 'T1'"), HasSubstr("`interpolate: hold` keeps")));
+  scratch_.Write("log.csv", "t,T1,on,q1\n0,,1,1\n1,1,1,2\n");
+  EXPECT_THAT(Wrong("unit: mN", "unit: mN, interpolate: hold"),
+              AllOf(HasSubstr("log.csv:2, column 'T1'"), HasSubstr("`window`")));
+}
+
 TEST_F(ExperimentFile, AsksForTheUnitOfTimesThatNoClockHas) {
   scratch_.Write("log.csv", "t,T1,on,q1\n1714564800000000000,1,1,10\n1714564801000000000,1,1,20\n");
   EXPECT_THAT(Wrong("unit: ms", "unit: s"),

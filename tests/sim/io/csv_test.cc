@@ -16,6 +16,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string Message(const std::function<void()>& action) {
   try {
@@ -150,6 +151,22 @@ TEST(CsvTable, SaysWhichCellIsNoFiniteNumber) {
   const CsvTable t = CsvTable::Parse("t\n0\n", "log.csv");
   EXPECT_THAT(Message([&] { t.Numbers("x"); }),
               AllOf(HasSubstr("column 'x'"), HasSubstr("found t")));
+}
+
+TEST(CsvTable, SaysWhatLinesWithoutNumbersMayBe) {
+  const auto wrong = [](const std::string& text, std::size_t row) {
+    return Message([&] { CsvTable::Parse(text, "log.csv").Number(row, "t"); });
+  };
+  EXPECT_THAT(wrong("t,x\ns,rad\n0,1\n", 0), HasSubstr("a line of units? Put # before it"));
+  EXPECT_THAT(wrong("t,x\n0,1\nt,x\n", 1), HasSubstr("the header again?"));
+  EXPECT_THAT(ParseError("t,x\n0,1\n1\n"), HasSubstr("cut off? Then delete it"));
+  EXPECT_THAT(ParseError("t,x\n0\n1,1\n"), Not(HasSubstr("cut off")));
+}
+
+TEST(CsvTable, SkipsTheLineByWhichExcelKnowsTheDelimiter) {
+  const CsvTable t = CsvTable::Parse("sep=;\nt;x\n0,5;1\n", "log.csv");
+  EXPECT_THAT(t.columns(), ElementsAre("t", "x"));
+  EXPECT_THAT(t.Numbers("t"), ElementsAre(0.5));
 }
 
 TEST(CsvTable, ReadsFlagsInTheUsualSpellings) {

@@ -1,0 +1,32 @@
+#include "models/make.h"
+
+#include <memory>
+
+#include "app/console.h"
+#include "sim/io/file.h"
+#include "sim/io/output_folder.h"
+
+namespace continuum {
+
+void AddMake(CLI::App& app) {
+  struct Request {
+    std::string robot, variant, out;
+  };
+  CLI::App* const make =
+      app.add_subcommand("make", "Write the MJCF of a robot from its description");
+  const auto request = std::make_shared<Request>();
+  make->add_option("robot", request->robot,
+                   "The robot: models/<robot>/<name>.yaml, or an arm of your own as "
+                   "models/trunk/trunk.yaml")
+      ->required();
+  make->add_option("--variant", request->variant,
+                   "Another model of it. tdcr: disks; spa: free, series; stiff_flop: braid");
+  make->add_option("--out", request->out, "The MJCF file")->required();
+  make->footer("Example:\n  continuum make models/trunk/trunk.yaml --out trunk.xml");
+  make->callback([request] {
+    RequireWritable(request->out, {request->robot});
+    WriteFile(request->out, MakeMjcf(request->robot, request->variant));
+  });
+}
+
+}  // namespace continuum

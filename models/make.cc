@@ -1,0 +1,87 @@
+#include "models/make.h"
+
+#include <functional>
+#include <map>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "error.h"
+#include "models/annelida/annelida.h"
+#include "models/mjcf/tendon_arm.h"
+#include "models/spa/chain.h"
+#include "models/spa/parameters.h"
+#include "models/stiff_flop/mjcf.h"
+#include "models/tdcr/mjcf.h"
+#include "models/twin_pivot/mjcf.h"
+#include "sim/io/yaml.h"
+
+namespace continuum {
+namespace {
+
+namespace fs = std::filesystem;
+using Variants = std::map<std::string, std::function<std::string(const fs::path&)>>;
+
+std::string Rod(const fs::path& file, tdcr::Guides guides) {
+  constexpr int kLinksPerDisk = 5;
+  const tdcr::Robot robot = tdcr::ReadRobot(Yaml::Read(file));
+  return tdcr::SegmentMjcf(robot, kLinksPerDisk * robot.disks, guides);
+}
+
+std::string Module(const fs::path& file, stiff_flop::Threads threads) {
+  return stiff_flop::ModuleMjcf(stiff_flop::Robot::Read(file), threads);
+}
+
+std::string Spa(const fs::path& file, const SpaLayout& layout) {
+  return SpaMjcf(ReadSpa(file), layout);
+}
+
+const std::map<std::string, Variants>& Robots() {
+  using stiff_flop::Threads, tdcr::Guides;
+  static const std::map<std::string, Variants> robots{
+      {"annelida", {{"", [](const auto& file) { return AnnelidaMjcf(ReadAnnelida(file)); }}}},
+      {"tdcr",
+       {{"", [](const auto& file) { return Rod(file, Guides::kLinks); }},
+        {"disks", [](const auto& file) { return Rod(file, Guides::kDisks); }}}},
+      {"twin_pivot",
+       {{"",
+         [](const auto& file) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }}}},
+      {"stiff_flop",
+       {{"", [](const auto& file) { return Module(file, Threads::kRings); }},
+        {"braid", [](const auto& file) { return Module(file, Threads::kBraid); }}}},
+      {"spa",
+       {{"", [](const auto& file) { return Spa(file, {}); }},
+        {"free", [](const auto& file) { return Spa(file, {.evenness = 1}); }},
+        {"series", [](const auto& file) { return Spa(file, {.series = 2}); }}}}};
+  return robots;
+}
+
+template <class Map>
+std::string Names(const Map& map) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : map) names.push_back(name.empty() ? "none" : name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+const Variants& VariantsOf(const Yaml& robot) {
+  static const Variants arm{
+      {"", [](const auto& file) { return TendonArmMjcf(ReadTendonArm(file)); }}};
+  if (robot.Has("segments")) return arm;
+  const Yaml kind =
+      robot.Has("robot") || !robot.Has("model") ? robot.At("robot") : robot.At("model");
+  const auto found = Robots().find(kind.Text());
+  if (found != Robots().end()) return found->second;
+  throw Error::Input(kind.Where(), Names(Robots()) + ", or an arm with the key 'segments'",
+                     "'" + kind.Text() + "'");
+}
+
+}  // namespace
+
+std::string MakeMjcf(const fs::path& robot, const std::string& variant) {
+  const Variants& variants = VariantsOf(Yaml::Read(robot));
+  const auto found = variants.find(variant);
+  if (found != variants.end()) return found->second(robot);
+  throw Error::Input("variant", Names(variants), "'" + variant + "'");
+}
+
+}  // namespace continuum
