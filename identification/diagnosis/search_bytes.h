@@ -34,8 +34,8 @@ void Fields(A& a, Uncertainty& u) {
 
 template <class A>
 void Fields(A& a, Sensitivities& s) {
-  auto& [jacobian, step, uncertainty, freedom] = s;
-  a(jacobian, step, uncertainty, freedom);
+  auto& [jacobian, step, uncertainty, freedom, simulated] = s;
+  a(jacobian, step, uncertainty, freedom, simulated.here, simulated.there);
 }
 
 template <class A>
