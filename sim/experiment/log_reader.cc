@@ -58,6 +58,11 @@ class Recording {
     throw Error::Input(Where(row) + ", column '" + column + "'", "a number within +-1e100",
                        std::isnan(value) ? "none" : Decimal(value));
   }
+  // What stands where a number is missing.
+  std::string Missing(std::size_t row, const std::string& column) const {
+    const std::string cell = table_ ? table_->Text(row, column) : "";
+    return cell.empty() ? "an empty cell" : "'" + cell + "'";
+  }
   CsvTable::Time Time(std::size_t row, const std::string& column) const {
     if (table_) return table_->TimeAt(row, column);
     return {Number(row, column, false), false};
@@ -239,11 +244,12 @@ std::vector<double> ReadInput(const Input& in, const Recording& rec,
     values[k] = factor * rec.Number(kept[k], in.column, true);
     if (!std::isnan(values[k]) || (in.gaps && k > 0)) continue;
     throw Error::Input(rec.Where(kept[k]) + ", column '" + in.column + "'",
-                       in.gaps ? "a number in the first row (later ones begin with `window`)"
-                               : "a number in every row, as inputs have",
-                       in.gaps ? "none"
-                               : "none (slower than the other columns? `interpolate: hold` keeps "
-                                 "the last number, `linear` draws lines)");
+                       in.gaps ? "a finite number in the first row (or begin later, by `window`)"
+                               : "a finite number",
+                       rec.Missing(kept[k], in.column) +
+                           (in.gaps ? ""
+                                    : " (slower than the other columns? `interpolate: hold` keeps "
+                                      "the last number, `linear` draws lines)"));
   }
   return values;
 }
