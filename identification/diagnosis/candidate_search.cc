@@ -110,6 +110,11 @@ double CandidateSearch::Likelihood(const Fitted& fitted) const {
          inflation_;
 }
 
+void CandidateSearch::CountAs(const CandidateSearch& other) {
+  for (CandidateResult& c : candidates) c.likelihood *= inflation_ / other.inflation_;
+  inflation_ = other.inflation_;
+}
+
 void CandidateSearch::Dismiss() {
   std::vector<CandidateResult> kept;
   for (CandidateResult& c : candidates) {

@@ -87,6 +87,8 @@ class CandidateSearch {
   BaseSquares Base() const;
   /// Twice the logarithm of what a fit gains over the base.
   double Likelihood(const Fitted& fitted) const;
+  /// From now on in the unit of noise of another search, so that likelihoods of both compare.
+  void CountAs(const CandidateSearch& other);
   /// What a fit takes of the base's squared error above the noise and what the time step adds.
   double ErrorShare(const Fitted& fitted) const;
   /// Names at places of candidates that, to first order, explain little beside one of this search,

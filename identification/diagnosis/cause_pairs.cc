@@ -120,6 +120,7 @@ class PairSearch {
                                           first, single_.HopelessBeside(first));
     if (!WorthPartner(search.smallest_p(), search.ExplainableShare(), of_step_, criteria_)) return;
     search.Fit(nullptr, kSeconds);
+    search.CountAs(single_);
     ++bases_;
     if (!search.leading()) return;
     const std::string partner = Key(search.leading()->hypothesis);
@@ -185,6 +186,7 @@ class PairSearch {
     });
     if (all.empty()) return;
     all.front().other_starts = StartsBeside(*base, second);
+    search.CountAs(single_);
     beside.push_back({base, std::move(search)});
   }
 

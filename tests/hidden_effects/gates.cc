@@ -108,6 +108,12 @@ void AddForArm(std::vector<Gate>& gates) {
                    true,
                    {{{"cubic_stiffness", "sensor_scale"}, 2, NoiseKind::kSlow, 22}},
                    All<IsFound>});
+  // Pairs that are found in searches of their own are compared in one unit of rounded values. A
+  // case of the large suite.
+  gates.push_back({"PairsOfSeveralSearchesCompare",
+                   true,
+                   {{{"gravity_tilt", "armature"}, 2, NoiseKind::kQuantised, 24}},
+                   All<IsFound>});
   // What a large first cause leaves by the time step is no second one. A case of the large suite.
   gates.push_back({"ALargeOneStaysAlone",
                    true,
