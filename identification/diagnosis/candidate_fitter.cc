@@ -138,7 +138,11 @@ void CandidateFitter::FitFinely(const Problem& problem, const std::optional<Vect
   Matrix slopes = SlopesOf(problem, f);
   FitOptions options = FewSteps();
   options.slopes = &slopes;
-  ReachByFineFit(problem, f.fit.x, f.residuals, s.jacobian, s.step, options, fine, s.uncertainty);
+  const auto fit = [&] {
+    return fine ? *fine
+                : FitParameters(AtQuarter(problem), f.fit.x, TrainLogs(*experiment), options).x;
+  };
+  ReachByFineFit(problem, f.fit.x, f.residuals, s.jacobian, s.step, options, fit, s.uncertainty);
 }
 
 Fitted CandidateFitter::Continue(const Problem& problem, const Fitted& before) const {

@@ -44,6 +44,13 @@ bool RaisesValidateSquares(const CandidateFitter& fitter, const Diagnosis& d) {
   return after > before + d.criteria.parameter_cost;
 }
 
+// why: with {} for the name.
+void NameNothing(Diagnosis& d, const char* why) {
+  d.verdict =
+      Verdict::Adequate(fmt::format(fmt::runtime(why), d.chosen()->hypothesis.NameAtPlace()));
+  d.partner.reset();
+}
+
 void TakeNameBack(Diagnosis& d, const std::string& why) {
   const std::string name = d.chosen()->hypothesis.NameAtPlace();
   d.verdict.kind = Verdict::Kind::kUnexplained;
@@ -63,11 +70,8 @@ bool IsSmallerThanNoise(const Diagnosis& d, double best) {
 void ConfirmOnFolds(const CandidateFitter& fitter, Diagnosis& d) {
   if (!d.chosen()) return;
   if (d.verdict.complete) {
-    if (!RaisesValidateSquares(fitter, d)) return;
-    const std::string name = d.chosen()->hypothesis.NameAtPlace();
-    d.verdict = Verdict::Adequate(
-        fmt::format("{} does a little better on its own logs and worse on those left out", name));
-    d.partner.reset();
+    if (RaisesValidateSquares(fitter, d))
+      NameNothing(d, "{} does a little better on its own logs and worse on those left out");
     return;
   }
   if (d.chosen()->record.after.empty()) return;
@@ -77,11 +81,9 @@ void ConfirmOnFolds(const CandidateFitter& fitter, Diagnosis& d) {
                                             d.chosen()->fitted.error.validate, floor, d.criteria);
   if (held_out && HoldsOnFolds(d.chosen()->record, possible, d.criteria)) return;
   if (IsSmallerThanNoise(d, d.chosen()->fitted.over_noise())) {
-    const std::string name = d.chosen()->hypothesis.NameAtPlace();
-    d.verdict = Verdict::Adequate(fmt::format(
-        "what shows is smaller than noise and time step, and {} takes it off its own logs alone",
-        name));
-    d.partner.reset();
+    NameNothing(d,
+                "what shows is smaller than noise and time step, and {} takes it off its own "
+                "logs alone");
     return;
   }
   TakeNameBack(d, "does not lower the error of logs left out as it does that of its own");

@@ -12,19 +12,18 @@
 #include "identification/diagnosis/cause_pairs.h"
 #include "identification/diagnosis/condition_contrast.h"
 #include "identification/diagnosis/confirmation.h"
-#include "identification/diagnosis/correction.h"
 #include "identification/diagnosis/effort.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/fallback_force.h"
 #include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/fold_comparison.h"
 #include "identification/diagnosis/gain_interval.h"
-#include "identification/diagnosis/lengths_and_masses.h"
 #include "identification/diagnosis/log_requirements.h"
 #include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/merged_places.h"
 #include "identification/diagnosis/needless_sizes.h"
 #include "identification/diagnosis/next_experiment.h"
+#include "identification/diagnosis/numbers_off.h"
 #include "identification/diagnosis/quantisation.h"
 #include "identification/diagnosis/remaining.h"
 #include "identification/diagnosis/search_bytes.h"
@@ -229,7 +228,7 @@ class Session {
           "what shows is smaller than noise and time step, and no candidate of the list explains "
           "it");
     }
-    if (AllowForNumbers(search, pairs)) pairs.best.reset();
+    if (AllowForNumbers(fitter_, search, pairs.best, d_)) pairs.best.reset();
     d_.noise_limited = pairs.best || !d_.Is(Verdict::Kind::kUnexplained) ||
                        d_.verdict.unlisted_explains ||
                        search.BestOverNoise() < d_.criteria.model_limited;
@@ -238,39 +237,6 @@ class Session {
     } else {
       Take(search);
     }
-  }
-
-  // What lengths and masses do that are as far off as they may be is no cause. They are asked where
-  // a number of the model that is a little off does nearly as well as the best; whether they did
-  // it.
-  bool AllowForNumbers(const CandidateSearch& search, const PairsFound& pairs) {
-    const CandidateResult* const best =
-        pairs.best ? pairs.best->search.leading() : search.leading();
-    if (d_.Is(Verdict::Kind::kAdequate) || !best || !best->fitted.complete()) return false;
-    if (!(pairs.best ? pairs.best->first.correction == Partner::Correction::kBoth
-                     : ACorrectionDoesAsWell(search)))
-      return false;
-    const double explained = d_.before.cost - best->fitted.cost,
-                 above = d_.before.cost - d_.before.sensitivities->freedom;
-    const ByLengthsAndMasses by =
-        ExplainedByLengthsAndMasses(fitter_, d_.sizes, d_.system, {}, d_.before);
-    if (!AreNumbersEnough(by, above, explained, d_.criteria)) return false;
-    const std::string numbers =
-        fmt::format("lengths and masses that are at most {:.1f} % off", 100 * by.off);
-    const std::optional<std::size_t> leading = d_.verdict.leading;
-    d_.verdict = Verdict::Adequate(numbers + " do what shows");
-    d_.verdict.leading = leading, d_.verdict.numbers_off = by.off, d_.verdict.complete = false;
-    d_.remaining.would_take = numbers + " would take it";
-    return true;
-  }
-
-  bool ACorrectionDoesAsWell(const CandidateSearch& search) const {
-    const std::vector<LikelihoodRecord> records = search.Records();
-    double most = 0;
-    for (const LikelihoodRecord& one : records) most = std::max(most, one.likelihood);
-    return std::any_of(records.begin(), records.end(), [&](const LikelihoodRecord& one) {
-      return one.corrects && one.likelihood > d_.criteria.correction_share * most;
-    });
   }
 
   PairsFound SecondCauses(const CandidateSearch& search) {

@@ -61,11 +61,6 @@ void TakeStart(const Problem& problem, std::size_t log, const Uncertainty& own, 
   if (u.step.size() && own.step.size()) u.step(starts) = own.step(starts);
 }
 
-// Whether the time step changes a value by more than its standard error.
-bool StepMatters(const Uncertainty& u) {
-  return u.step.size() > 0 && (u.step.array().abs() > u.standard_error.array()).any();
-}
-
 // At a quarter of the step. Where dry friction acts, a fit from x ends in the next of many minima.
 Vector FineFit(const Problem& problem, const Vector& x, FitOptions options) {
   constexpr std::uint64_t kSeed = 1;
@@ -92,13 +87,12 @@ Uncertainty UnknownUncertainty(const Problem& problem, const Vector& x, const st
 
 void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                     const std::vector<Matrix>& J, const std::vector<Matrix>& step,
-                    const FitOptions& options, const std::optional<Vector>& fine, Uncertainty& u) {
-  if (!StepMatters(u)) return;
-  std::vector<bool> use;
-  for (const Matrix& columns : J) use.push_back(columns.size() > 0);
+                    const FitOptions& options, const std::function<Vector()>& fine,
+                    Uncertainty& u) {
+  if (u.step.size() == 0 || !(u.step.array().abs() > u.standard_error.array()).any()) return;
   Vector moved;
   try {
-    moved = (fine ? *fine : FitParameters(AtQuarter(problem), x, use, options).x) - x;
+    moved = fine() - x;
   } catch (const Error&) {
     return;  // it diverges at the finer step: first order has to do
   }
@@ -134,13 +128,8 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   AllowForStep(problem, WeightedByCurvature(J, soft, r), WeightedByCurvature(step, soft, r), {}, u);
   FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
   few.progress = Within({"fit at a fine step"}, progress);
-  std::optional<Vector> fine;
-  try {
-    if (StepMatters(u)) fine = FineFit(centered, x, few);
-  } catch (const Error&) {
-    fine.reset();  // it diverges there
-  }
-  ReachByFineFit(centered, x, r, J, step, few, fine, u);
+  ReachByFineFit(
+      centered, x, r, J, step, few, [&] { return FineFit(centered, x, few); }, u);
   for (std::size_t l = 0; l < own.size(); ++l)
     if (own[l]) TakeStart(problem, l, *own[l], u);
   return u;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,12 +18,12 @@ Uncertainty UnknownUncertainty(const Problem& problem, const Problem::Vector& x,
 /// Does so where the time step moves a value by more than its standard error. Intervals reach over
 /// that fit's values, and further (over twice its move, and by WidenByStepSize) where first order
 /// did not predict half of it. r [log], J [log][rows × parameters] and step (Problem::StepEffects):
-/// of the logs of the fit, at x; fine: what that fit gives, where it was made already; u: after
+/// of the logs of the fit, at x; fine: makes that fit, and throws Error where it diverges; u: after
 /// AllowForStep.
 void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
                     const std::vector<Problem::Matrix>& step, const FitOptions& options,
-                    const std::optional<Problem::Vector>& fine, Uncertainty& u);
+                    const std::function<Problem::Vector()>& fine, Uncertainty& u);
 /// Standard errors, 95 % intervals and correlations as a fit.json states them: from the logs of the
 /// fit, and of the initial state of another log from that log alone, given all else.
 ///

@@ -1,0 +1,47 @@
+#include "identification/diagnosis/numbers_off.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "identification/diagnosis/correction.h"
+#include "identification/diagnosis/lengths_and_masses.h"
+
+namespace continuum {
+namespace {
+
+bool ACorrectionDoesAsWell(const CandidateSearch& search, const Criteria& criteria) {
+  const std::vector<LikelihoodRecord> records = search.Records();
+  double most = 0;
+  for (const LikelihoodRecord& one : records) most = std::max(most, one.likelihood);
+  return std::any_of(records.begin(), records.end(), [&](const LikelihoodRecord& one) {
+    return one.corrects && one.likelihood > criteria.correction_share * most;
+  });
+}
+
+}  // namespace
+
+bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& search,
+                     const std::optional<Pair>& pair, Diagnosis& d) {
+  const CandidateResult* const best = pair ? pair->search.leading() : search.leading();
+  if (d.Is(Verdict::Kind::kAdequate) || !best || !best->fitted.complete()) return false;
+  const bool wanted = pair ? pair->first.correction == Partner::Correction::kBoth
+                           : ACorrectionDoesAsWell(search, d.criteria);
+  if (!wanted) return false;
+  const double explained = d.before.cost - best->fitted.cost,
+               above = d.before.cost - d.before.sensitivities->freedom;
+  const ByLengthsAndMasses by =
+      ExplainedByLengthsAndMasses(fitter, d.sizes, d.system, {}, d.before);
+  if (!AreNumbersEnough(by, above, explained, d.criteria)) return false;
+  const std::string numbers =
+      fmt::format("lengths and masses that are at most {:.1f} % off", 100 * by.off);
+  const std::optional<std::size_t> leading = d.verdict.leading;
+  d.verdict = Verdict::Adequate(numbers + " do what shows");
+  d.verdict.leading = leading, d.verdict.numbers_off = by.off, d.verdict.complete = false;
+  d.remaining.would_take = numbers + " would take it";
+  return true;
+}
+
+}  // namespace continuum

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+
+#include "identification/diagnosis/cause_pairs.h"
+
+namespace continuum {
+
+/// Calls a model adequate whose lengths and masses do all that shows, off by no more than they may
+/// be (lengths_and_masses.h). They are asked where a number of the model that is a little off does
+/// nearly as well as the best of the search, or two of them are the best pair. Whether they did it.
+bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& search,
+                     const std::optional<Pair>& pair, Diagnosis& d);
+
+}  // namespace continuum
