@@ -106,6 +106,7 @@ void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {
   s.uncertainty = UncertaintyOf(problem, f.fit.x, f.residuals, s.jacobian, whitening);
   s.step = problem.StepEffects(f.fit.x, f.residuals, train);
   AllowForStep(problem, s.jacobian, s.step, whitening, s.uncertainty);
+  LeaveOutStep(problem, f.fit.x, f.residuals, s.jacobian, s.step, whitening, 0, s.uncertainty);
   f.sensitivities = std::move(s);
   if (!whitening.active()) return;
   const ProjectedResidual residual = ProjectedResidualOf(f);

@@ -144,17 +144,29 @@ void CandidateSearch::Rank() {
   ComputeLambda();
 }
 
-// |v − P v|², v what the leading candidate's directions explain, P onto the other's directions.
+// |M (r_1 − r)|² between the fits, M what the other one's parameters cannot follow; without both
+// fits |v − P v|², v what the leading candidate's directions explain, P onto the other's.
 void CandidateSearch::ComputeLambda() {
   if (!noise_.known() || candidates.empty() || candidates.front().probes.empty()) return;
+  const CandidateResult& first = candidates.front();
   const ProjectedResidual residual = fitter_.ProjectedResidualOf(*base_.fitted);
-  const Probe& lead = candidates.front().probes.front();
+  const Probe& lead = first.probes.front();
   const Problem::Vector v = lead.columns * ExplainedBy(lead, residual.vector()).coefficients;
   for (CandidateResult& c : candidates) {
     if (c.probes.empty()) continue;
     const Problem::Matrix& B = c.probes.front().columns;
-    c.lambda = (v - B * B.completeOrthogonalDecomposition().solve(v)).squaredNorm() / inflation_;
+    const double apart = first.fitted.complete() && c.fitted.complete()
+                             ? DistanceOf(first.fitted, c.fitted)
+                             : (v - B * B.completeOrthogonalDecomposition().solve(v)).squaredNorm();
+    c.lambda = apart / inflation_;
   }
+}
+
+double CandidateSearch::DistanceOf(const Fitted& a, const Fitted& b) const {
+  std::vector<Problem::Matrix> difference(a.residuals.size());
+  for (std::size_t l = 0; l < difference.size(); ++l)
+    difference[l] = a.residuals[l] - b.residuals[l];
+  return fitter_.ProjectedResidualOf(b).Project(difference).squaredNorm();
 }
 
 const CandidateResult* CandidateSearch::leading() const {

@@ -170,6 +170,7 @@ class CandidateSearch {
   void Dismiss();
   void Rank();
   void ComputeLambda();
+  double DistanceOf(const Fitted& a, const Fitted& b) const;
 
   const CandidateFitter& fitter_;
   BaseFit base_;

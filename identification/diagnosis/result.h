@@ -144,8 +144,8 @@ struct CandidateResult {
   double p = 1;            ///< family-wise, of explained
   double likelihood = 0;   ///< twice the logarithm of the likelihood gained by its fit
   double probability = 0;  ///< among all candidates, each as likely before; noise-limited only
-  /// How well the data distinguish it from the leading candidate, to first order [squares]: what it
-  /// cannot imitate of what that explains.
+  /// How well the data distinguish it from the leading candidate [squares]: what it cannot imitate
+  /// of what that one's fit simulates; to first order from the null fit where one has no fit.
   double lambda = 0;
   std::optional<double> contrast = {};  ///< ConditionContrast; none without such pairs of logs
 

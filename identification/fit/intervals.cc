@@ -106,7 +106,7 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
   const auto slopes = first_order_holds ? J : Secants(problem, x, r, J, step, whitening);
   u = UncertaintyOf(problem, x, r, slopes, whitening, options.soft);
   WidenByStep(problem, moved, u);
-  if (first_order_holds) return;
+  if (first_order_holds) return LeaveOutStep(problem, x, r, J, step, whitening, options.soft, u);
   const Vector more = (kWholeRoot - kWholeStep) * moved;
   Widen(problem, more.cwiseMin(0), more.cwiseMax(0), u);
   WidenByStepSize(problem, x, slopes, step, whitening, u);
@@ -126,6 +126,7 @@ Uncertainty IntervalsOf(const Problem& problem, const Vector& x, const std::vect
   const auto own = OfOwnStarts(centered, x, r, soft);
   if (StopRequested()) return UnknownUncertainty(problem, x, "interrupted");
   AllowForStep(problem, WeightedByCurvature(J, soft, r), WeightedByCurvature(step, soft, r), {}, u);
+  LeaveOutStep(centered, x, r, J, step, {}, soft, u);
   FitOptions few{.iterations = 5, .tolerance = 1e-4, .soft = soft, .idle = true};
   few.progress = Within({"fit at a fine step"}, progress);
   ReachByFineFit(

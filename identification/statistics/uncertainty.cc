@@ -262,6 +262,22 @@ void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
   WidenByStep(problem, InformationModes(u.information).Inverse() * pull, u);
 }
 
+void LeaveOutStep(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                  const std::vector<Matrix>& J, const std::vector<Matrix>& step,
+                  const Whitening& whitening, double soft, Uncertainty& u) {
+  if (u.step.size() == 0) return;
+  std::vector<bool> use;
+  std::vector<Vector> fine = r;
+  for (std::size_t l = 0; l < J.size(); ++l) {
+    use.push_back(J[l].size() > 0);
+    if (use[l]) fine[l] += J[l] * u.step - kWholeStep * step[l].col(0);
+  }
+  if (!(whitening.Stack(fine, use).squaredNorm() < whitening.Stack(r, use).squaredNorm())) return;
+  const Vector quarter = u.step / kWholeStep;
+  u = UncertaintyOf(problem, x, fine, J, whitening, soft);
+  WidenByStep(problem, quarter, u);
+}
+
 std::vector<Matrix> Secants(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
                             const std::vector<Matrix>& J, const std::vector<Matrix>& step,
                             const Whitening& whitening) {

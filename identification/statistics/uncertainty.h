@@ -76,6 +76,16 @@ void WidenByStep(const Problem& problem, const Problem::Vector& quarter, Uncerta
 void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
                   const std::vector<Problem::Matrix>& step, const Whitening& whitening,
                   Uncertainty& u);
+/// Standard errors from what a simulation without a time step would leave, as the robot has none:
+/// an error that repeats is no noise. To first order, where that leaves less than r does:
+///
+///   r' = r − 4/3 s + J step
+///
+/// u: after WidenByStep or AllowForStep, which widens them again; soft: of a robust loss.
+void LeaveOutStep(const Problem& problem, const Problem::Vector& x,
+                  const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
+                  const std::vector<Problem::Matrix>& step, const Whitening& whitening, double soft,
+                  Uncertainty& u);
 /// Mean slopes in place of J's [log][rows × parameters]: over the distance at which a parameter
 /// changes the residuals r at x as much as the time step does. Where the cost has many local
 /// minima, slopes within one mean little.

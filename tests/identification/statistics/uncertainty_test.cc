@@ -107,6 +107,31 @@ TEST_F(UncertaintyTest, WhatReplicatesHaveInCommonCountsOnce) {
   EXPECT_TRUE(error({false, true, true}).isApprox(error({false, true, false}), 0.02));
 }
 
+// What the time step adds is known: errors follow from the noise alone, and intervals still reach
+// over the value at a step of zero.
+TEST_F(UncertaintyTest, WhatTheStepAddsIsNoNoise) {
+  Matrix added = Matrix::Zero(kRows, 3);
+  for (Eigen::Index k = 0; k < kRows; ++k)
+    added(k, 0) = 3 * std::sin(0.003 * static_cast<double>(k));
+  const Vector e = Noise(0);
+  const auto of = [&](const Vector& r) {
+    const Vector x = -(J_.transpose() * J_).ldlt().solve(J_.transpose() * r);
+    return std::pair{x, std::vector<Vector>{r + J_ * x}};
+  };
+  const auto [x, r] = of(e + kWholeStep * added.col(0));
+  const auto [pure, noise] = of(e);
+  Uncertainty u = UncertaintyOf(*problem_, x, r, {J_});
+  const double before = u.standard_error[0];
+  AllowForStep(*problem_, {J_}, {added}, {}, u);
+  LeaveOutStep(*problem_, x, r, {J_}, {added}, {}, 0, u);
+  const Uncertainty want = UncertaintyOf(*problem_, pure, noise, {J_});
+  EXPECT_TRUE(u.standard_error.isApprox(want.standard_error, 1e-9));
+  EXPECT_GT(before, 3 * want.standard_error[0]);
+  const double margin = 1.9 * want.standard_error[0];
+  EXPECT_LE(u.lower[0], std::min(pure[0], x[0]) - margin);
+  EXPECT_GE(u.upper[0], std::max(pure[0], x[0]) + margin);
+}
+
 // Columns that look alike: what holds one at its bound moves the other.
 TEST_F(UncertaintyTest, IntervalsHoldTooWhereAValueNextToItsBoundIsNotSeen) {
   J_.col(1) += 2 * J_.col(0);
