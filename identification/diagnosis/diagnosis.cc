@@ -63,6 +63,8 @@ class Session {
       CompleteNamed();
       Part("sizes that are not needed", [&] { DropSizes(); });
       FitFinely();
+      if (!d_.verdict.complete)
+        Part("intervals over lengths and masses", [&] { ReachOverNumbers(fitter_, options_, d_); });
       ScoreFolds();
       ConfirmOnFolds(fitter_, d_);
     } else {

@@ -1,5 +1,7 @@
 #include "identification/diagnosis/lengths_and_masses.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -9,6 +11,8 @@
 #include "identification/candidates/effect_places.h"
 #include "identification/candidates/object_sets.h"
 #include "identification/diagnosis/probing.h"
+#include "identification/statistics/information_modes.h"
+#include "identification/statistics/uncertainty.h"
 
 namespace continuum {
 namespace {
@@ -64,6 +68,60 @@ ByLengthsAndMasses WithPriors(const Matrix& C, const Vector& z, double known) {
   return {b.dot(a), known * a.cwiseAbs().maxCoeff(), a.size()};
 }
 
+// [number][log] what each number that is off by link_known does to the residuals of a fit; nothing
+// where there is no time for it.
+std::vector<std::vector<Vector>> ColumnsOf(const CandidateFitter& fitter, const Sizes& sizes,
+                                           const ModelSpec& system,
+                                           const std::vector<Parameter>& given,
+                                           const Fitted& fitted) {
+  const Experiment& e = *fitter.experiment;
+  const SearchBase base{&system, given, Problem(e, system, given).CommonChanges(fitted.fit.x)};
+  std::vector<std::vector<Vector>> columns;
+  for (const Hypothesis& h : NumbersOfBodies({e, base, sizes})) {
+    if (fitter.TimeIsOver()) return {};
+    auto column = ColumnOf(Problem(e, h.system, h.Free()), fitted, fitter.criteria.link_known);
+    if (!column.empty()) columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+// J, without what a bound holds, and C beside it, whitened.
+Matrix Beside(const CandidateFitter& fitter, const Fitted& fitted,
+              const std::vector<std::vector<Vector>>& columns) {
+  const std::vector<bool> train = TrainLogs(*fitter.experiment);
+  const Sensitivities& s = fitted.sensitivities.value();
+  const Matrix J = fitter.whitening.Stack(s.jacobian, train);
+  const Eigen::Index n = J.cols();
+  Matrix all(J.rows(), n + static_cast<Eigen::Index>(columns.size()));
+  all.leftCols(n) = J;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (s.uncertainty.at_bound[static_cast<std::size_t>(i)]) all.col(i).setZero();
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    all.col(n + static_cast<Eigen::Index>(k)) = fitter.whitening.Stack(columns[k], train);
+  return all;
+}
+
+// [parameter] standard errors over those that white noise would make, at least 1: what lasts in the
+// residual, and what of it is no noise.
+Vector Lasting(const Uncertainty& u, const Matrix& normal) {
+  const Eigen::Index n = u.standard_error.size();
+  const Matrix white = InformationModes(normal.topLeftCorner(n, n)).Inverse();
+  Vector times = Vector::Ones(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (white(i, i) > 0) times[i] = std::max(1.0, u.standard_error[i] / std::sqrt(white(i, i)));
+  }
+  return times;
+}
+
+// The residual at a step of zero, whitened.
+Vector AtStepOfZero(const CandidateFitter& fitter, const Fitted& fitted) {
+  const std::vector<bool> train = TrainLogs(*fitter.experiment);
+  std::vector<Vector> fine = fitted.residuals;
+  for (std::size_t l = 0; l < train.size(); ++l)
+    if (train[l]) fine[l] -= kWholeStep * fitted.sensitivities->step[l].col(0);
+  return fitter.whitening.Stack(fine, train);
+}
+
 }  // namespace
 
 ByLengthsAndMasses ExplainedByLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
@@ -71,21 +129,35 @@ ByLengthsAndMasses ExplainedByLengthsAndMasses(const CandidateFitter& fitter, co
                                                const std::vector<Parameter>& given,
                                                const Fitted& fitted) {
   if (!fitted.complete()) return {};
-  const Experiment& e = *fitter.experiment;
-  const SearchBase base{&system, given, Problem(e, system, given).CommonChanges(fitted.fit.x)};
   const ProjectedResidual residual = fitter.ProjectedResidualOf(fitted);
   const Vector z = residual.vector();
-  const double known = fitter.criteria.link_known;
   Matrix C(z.size(), 0);
-  for (const Hypothesis& h : NumbersOfBodies({e, base, sizes})) {
-    if (fitter.TimeIsOver()) return {};
-    const auto column = ColumnOf(Problem(e, h.system, h.Free()), fitted, known);
-    if (column.empty()) continue;
-    const std::vector<Matrix> columns(column.begin(), column.end());
+  for (const auto& column : ColumnsOf(fitter, sizes, system, given, fitted)) {
     C.conservativeResize(Eigen::NoChange, C.cols() + 1);
-    C.rightCols(1) = residual.Project(columns);
+    C.rightCols(1) = residual.Project({column.begin(), column.end()});
   }
-  return C.cols() > 0 ? WithPriors(C, z, known) : ByLengthsAndMasses{};
+  return C.cols() > 0 ? WithPriors(C, z, fitter.criteria.link_known) : ByLengthsAndMasses{};
+}
+
+void ReachOverLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
+                               const ModelSpec& system, const std::vector<Parameter>& given,
+                               Fitted& fitted) {
+  if (!fitted.complete()) return;
+  const auto columns = ColumnsOf(fitter, sizes, system, given, fitted);
+  if (columns.empty()) return;
+  constexpr double kT = 1.96;
+  const Matrix A = Beside(fitter, fitted, columns);
+  const Vector z = AtStepOfZero(fitter, fitted), &x = fitted.fit.x;
+  Matrix normal = A.transpose() * A;
+  normal.diagonal().tail(static_cast<Eigen::Index>(columns.size())).array() += 1;
+  const Matrix inverse = InformationModes(normal).Inverse();
+  const Vector change = -inverse * (A.transpose() * z);
+  Uncertainty& u = fitted.sensitivities->uncertainty;
+  const Vector half = kT * Lasting(u, normal).cwiseProduct(
+                               inverse.diagonal().head(x.size()).cwiseMax(0).cwiseSqrt()),
+               there = x + change.head(x.size());
+  Widen(Problem(*fitter.experiment, system, given), (there - half - u.lower).cwiseMin(0),
+        (there + half - u.upper).cwiseMax(0), u);
 }
 
 }  // namespace continuum

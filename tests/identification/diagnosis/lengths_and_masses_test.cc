@@ -17,11 +17,7 @@ class LengthsAndMasses : public testing::Bench {
   // Of the squares above the noise that the model as it is leaves of logs of another pendulum, the
   // share that they explain.
   ByLengthsAndMasses By(const Pendulum& truth) {
-    for (int trial = 0; trial < 2; ++trial) {
-      const auto u = Command(trial, 200);
-      AddLog("log" + std::to_string(trial), "use: train", u,
-             Noisy(truth.Run(u, kPeriod), 1e-4, 0, static_cast<unsigned>(trial + 1)));
-    }
+    AddLogs(truth);
     const Experiment e = ReadExperiment("", ", sigma: 0.0001");
     const ModelSpec system = ModelSpec::Load(Write("model.xml", Pendulum().Xml("", 5e-4)));
     CandidateFitter fitter{&e};
@@ -34,6 +30,13 @@ class LengthsAndMasses : public testing::Bench {
     ByLengthsAndMasses by = ExplainedByLengthsAndMasses(fitter, sizes, system, {}, as_it_is);
     by.squares /= above;
     return by;
+  }
+  void AddLogs(const Pendulum& truth) {
+    for (int trial = 0; trial < 2; ++trial) {
+      const auto u = Command(trial, 200);
+      AddLog("log" + std::to_string(trial), "use: train", u,
+             Noisy(truth.Run(u, kPeriod), 1e-4, 0, static_cast<unsigned>(trial + 1)));
+    }
   }
   double ShareOf(const Pendulum& truth) { return By(truth).squares; }
 };
@@ -58,6 +61,32 @@ TEST_F(LengthsAndMasses, ExplainLessOfWhatIsFarOff) {
   Pendulum load;
   load.payload = 0.6;
   EXPECT_LT(ShareOf(load), 0.5);
+}
+
+// A stiffness of 0.01 N m/rad holds the pendulum as 1.7 % of its weight does; damping nothing does.
+TEST_F(LengthsAndMasses, WidenTheIntervalOfWhatMakesUpForThem) {
+  Pendulum longer;
+  longer.length *= 1.01;
+  AddLogs(longer);
+  const Experiment e = ReadExperiment(
+      "parameters:\n"
+      "  - {name: k, target: 'joint:hinge', attribute: stiffness, lower: -1, upper: 1}\n"
+      "  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1}\n",
+      ", sigma: 0.0001");
+  const ModelSpec system = ModelSpec::Load(Write("model.xml", Pendulum().Xml("", 5e-4)));
+  CandidateFitter fitter{&e};
+  const Problem problem(e, system);
+  fitter.whitening = Whitening(problem, NoiseOf(e));
+  Fitted fitted = fitter.FitAll(problem, problem.Start());
+  const Uncertainty before = fitted.sensitivities->uncertainty;
+  ReachOverLengthsAndMasses(fitter, SizesOf(problem, fitted.fit.x), system, {}, fitted);
+  const Uncertainty& after = fitted.sensitivities->uncertainty;
+  const Problem::Vector wide = after.upper - after.lower, narrow = before.upper - before.lower;
+  EXPECT_GT(wide[0], 0.02);
+  EXPECT_GT(wide[0], 3 * narrow[0]);
+  EXPECT_LT(wide[1], 2 * narrow[1]);
+  EXPECT_LE(after.lower[0], 0);
+  EXPECT_GE(after.upper[0], 0);
 }
 
 }  // namespace
