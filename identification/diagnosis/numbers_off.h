@@ -14,7 +14,6 @@ bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& searc
 
 /// Extends the intervals of all that is named, where more than noise is left, to what lengths and
 /// masses that are a little off leave open (ReachOverLengthsAndMasses).
-void ReachOverNumbers(const CandidateFitter& fitter, const DiagnosisOptions& options,
-                      Diagnosis& d);
+void ReachOverNumbers(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d);
 
 }  // namespace continuum
