@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "error.h"
 #include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/fit/intervals.h"
+#include "identification/fit/local_search.h"
 #include "identification/fit/wide_slope_fit.h"
 #include "identification/inverse_dynamics/search_fit.h"
 #include "identification/inverse_dynamics/short_horizon.h"
@@ -68,11 +70,13 @@ Fitted CandidateFitter::Fit(const Problem& problem, FitStart start, double rival
 }
 
 // As `identify` does, of many logs with those for a look, then with all and in units of the noise.
-// By secants first; where these leave much, on along slopes, in twice their time.
+// By secants first; where these leave much, on along slopes, in twice their time, and without a
+// limit of time around that.
 Fitted CandidateFitter::FitNull(const Problem& problem) const {
   constexpr int kIterations = 100;
   constexpr double kNear = 1e-3;  // of the cost that a step gains: what follows goes on from there
   constexpr double kTimes = 2;
+  constexpr std::uint64_t kSeed = 1;
   const double begin = ProcessorSeconds();
   const auto logs = LogsForALook(*experiment, problem.step());
   FitOptions options{.iterations = kIterations, .tolerance = kNear, .rough = true, .until = until};
@@ -83,6 +87,7 @@ Fitted CandidateFitter::FitNull(const Problem& problem) const {
   if (IsFarOverNoise(problem, best.x, logs) && !TimeIsOver()) {
     continuum::Fit other = FitWithWideSlopes(problem, best.x, logs, options);
     if (other.cost < best.cost) best = std::move(other);
+    if (std::isinf(until)) SearchAround(problem, problem.Start(), logs, kSeed, options, best);
   }
   return Fit(problem, {best.x}, std::numeric_limits<double>::infinity(), false);
 }
