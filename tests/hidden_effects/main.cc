@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "binding/effect_catalog.h"
 #include "error.h"
+#include "hidden_effects/case_lists.h"
 #include "hidden_effects/outside/cases.h"
 #include "hidden_effects/pictures.h"
 #include "hidden_effects/report.h"
@@ -20,114 +20,6 @@
 
 namespace continuum::hidden {
 namespace {
-
-constexpr double kFactors[] = {0.125, 0.25, 0.5, 1, 2, 4};
-
-constexpr const char* kPairs[][2] = {
-    {"payload", "coulomb"},           {"cubic_stiffness", "sensor_scale"},
-    {"input_gain", "coulomb"},        {"gravity_tilt", "armature"},
-    {"payload", "sensor_delay"},      {"coulomb", "input_offset"},
-    {"dead_time", "cubic_stiffness"}, {"external_force", "armature"}};
-
-bool Known(const std::string& effect) {
-  for (const EffectInfo& info : Catalog()) {
-    if (info.name == effect) return true;
-  }
-  return false;
-}
-
-void AddNone(const std::string& robot, NoiseKind noise, int times, std::vector<Case>& all) {
-  for (int n = 0; n < times; ++n) all.push_back({{}, 1, noise, all.size() + 1, true, false, robot});
-}
-
-// The large suite: every effect at six sizes, nothing hidden, effects that are not listed; noise of
-// five kinds in turn.
-std::vector<Case> Cases(const std::string& robot, int repeats) {
-  std::vector<Case> all;
-  for (int r = 0; r < repeats; ++r) {
-    for (int kind = 0; kind < 5; ++kind) AddNone(robot, static_cast<NoiseKind>(kind), 4, all);
-    int turn = r;
-    const auto add = [&](std::vector<std::string> effects, double factor, bool listed) {
-      const auto noise = static_cast<NoiseKind>(turn++ % 5);
-      all.push_back({std::move(effects), factor, noise, all.size() + 1, listed, false, robot});
-    };
-    if (robot == "arm") {
-      for (const auto& pair : kPairs) add({pair[0], pair[1]}, 2, true);
-    }
-    for (const Hidden& h : RobotNamed(robot).effects) {
-      if (!Known(h.name)) continue;
-      for (const double factor : kFactors) add({h.name}, factor, true);
-      add({h.name}, 2, false);
-    }
-  }
-  return all;
-}
-
-// White noise, two sizes of every effect, and nothing hidden twice.
-std::vector<Case> QuickCases(const std::string& robot) {
-  std::vector<Case> all;
-  AddNone(robot, NoiseKind::kWhite, 2, all);
-  for (const Hidden& h : RobotNamed(robot).effects) {
-    if (!Known(h.name)) continue;
-    for (const double factor : {1.0, 2.0})
-      all.push_back({{h.name}, factor, NoiseKind::kWhite, all.size() + 1, true, false, robot});
-  }
-  return all;
-}
-
-// The background suite: every effect, and nothing beside the background as often.
-std::vector<Case> BackgroundCases(int repeats) {
-  std::vector<Case> all;
-  for (int r = 0; r < repeats; ++r) {
-    for (const Hidden& h : RobotNamed("arm").effects) {
-      if (!Known(h.name)) continue;
-      for (const bool hidden : {true, false}) {
-        Case c{{}, 1, NoiseKind::kWhite, 1000 * all.size() + 17};
-        if (hidden) c.effects = {h.name};
-        c.background = true;
-        all.push_back(std::move(c));
-      }
-    }
-  }
-  return all;
-}
-
-// Logs that are wrong themselves, with nothing hidden.
-std::vector<Case> SpoiltCases(int repeats) {
-  std::vector<Case> all;
-  for (int r = 0; r < repeats; ++r) {
-    for (const char* const how : {"turned", "late", "flipped", "exchanged"}) {
-      for (int kind = 0; kind < 5; ++kind) {
-        Case c{{}, 1, static_cast<NoiseKind>(kind), 7000 + all.size()};
-        c.spoilt = how;
-        all.push_back(std::move(c));
-      }
-    }
-  }
-  return all;
-}
-
-// All suites, of every robot.
-std::vector<Case> AllCases(int repeats) {
-  std::vector<Case> all;
-  const auto add = [&](std::vector<Case> some) {
-    all.insert(all.end(), std::make_move_iterator(some.begin()),
-               std::make_move_iterator(some.end()));
-  };
-  for (const char* const robot : {"arm", "servo", "silverbox", "bouc_wen", "spa", "annelida"})
-    add(Cases(robot, repeats));
-  add(OutsideCases(false));
-  add(BackgroundCases(repeats));
-  add(SpoiltCases(repeats));
-  return all;
-}
-
-// Those with one hidden effect, which alone is tried: for its size and interval, at little cost.
-std::vector<Case> DescribedCases(std::vector<Case> cases) {
-  std::erase_if(cases, [](const Case& c) { return c.effects.size() != 1 || !c.listed; });
-  for (Case& c : cases) c.told = true;
-  return cases;
-}
 
 nlohmann::json Line(const Case& c, const std::filesystem::path& folder, bool follow, bool verbose) {
   try {
@@ -172,91 +64,117 @@ void TakeResults(const std::vector<Case>& cases, const std::string& study,
     fmt::print(stderr, "{} of {} cases have not run\n", cases.size() - lines.size(), cases.size());
 }
 
-int Main(int argc, char** argv) {
-  CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
-  std::string out, only, keep, pictures, study, results, robot = "arm";
+// What the command line asks for.
+struct Options {
+  std::string out, only, keep, pictures, study, results, robot = "arm", effort = "thorough";
   std::vector<std::string> tables;
   int repeats = 1;
-  std::string effort = "thorough";
-  double limit = 1200;
+  double limit = 1200;  // s of processor time
   bool write = false, verbose = false, told = false, quick = false, background = false,
        spoilt = false, outside = false, every = false, follow = false;
-  app.add_option("--out", out, "one JSON line per case");
-  app.add_option("--table", tables, "files of earlier runs: print what they measure together, only")
-      ->check(CLI::ExistingFile);
-  app.add_option("--robot", robot,
+
+  bool OnlyWritesStudy() const { return !study.empty() && results.empty(); }
+};
+
+void AddSuites(CLI::App& app, Options& o) {
+  app.add_option("--robot", o.robot,
                  "arm, servo, silverbox, bouc_wen, spa or annelida; of --outside all")
       ->capture_default_str();
-  app.add_flag("--quick", quick, "white noise, two sizes of every effect, nothing hidden twice");
-  app.add_flag("--background", background,
+  app.add_flag("--quick", o.quick, "white noise, two sizes of every effect, nothing hidden twice");
+  app.add_flag("--background", o.background,
                "one log in windows, in which much else is wrong too, of the arm");
-  app.add_flag("--spoilt", spoilt,
+  app.add_flag("--spoilt", o.spoilt,
                "logs of the arm that are turned, late, of flipped or of other inputs");
   app.add_flag(
-      "--outside", outside,
+      "--outside", o.outside,
       "machines whose masses and lengths are 1 % off their models (--quick: some of them)");
-  app.add_flag("--all", every, "all of these suites, of every robot");
-  app.add_option("--study", study,
+  app.add_flag("--all", o.every, "all of these suites, of every robot");
+  app.add_option("--repeats", o.repeats, "of the whole suite")->capture_default_str();
+  app.add_option("--only", o.only, "cases whose name holds this");
+  app.add_flag("--told", o.told, "only cases of one effect, as the only candidate: for intervals");
+}
+
+void AddRuns(CLI::App& app, Options& o) {
+  app.add_option("--out", o.out, "one JSON line per case");
+  app.add_option("--table", o.tables,
+                 "files of earlier runs: print what they measure together, only")
+      ->check(CLI::ExistingFile);
+  app.add_option("--study", o.study,
                  "a folder: write the cases there as one study for `continuum study`");
-  app.add_option("--results", results, "what that has found: write it as lines (--out)")
+  app.add_option("--results", o.results, "what that has found: write it as lines (--out)")
       ->needs("--study");
-  app.add_option("--repeats", repeats, "of the whole suite")->capture_default_str();
-  app.add_option("--effort", effort, "quick, normal or thorough")
+  app.add_option("--effort", o.effort, "quick, normal or thorough")
       ->check(CLI::IsMember({"quick", "normal", "thorough"}))
       ->capture_default_str();
-  app.add_option("--limit", limit, "processor seconds for a case; later it has no answer")
+  app.add_option("--limit", o.limit, "processor seconds for a case; later it has no answer")
       ->capture_default_str();
-  app.add_option("--only", only, "cases whose name holds this");
-  app.add_option("--keep", keep, "a folder that keeps model, logs and experiment of each case");
-  app.add_option("--pictures", pictures, "a folder for confusion, power and calibration as SVG");
-  app.add_flag("--write", write, "write the cases (--keep), without a diagnosis");
-  app.add_flag("--told", told, "only cases of one effect, as the only candidate: for intervals");
-  app.add_flag("--follow", follow, "run the experiment that a set proposes, and diagnose again");
-  app.add_flag("--verbose", verbose, "print each summary");
-  CLI11_PARSE(app, argc, argv);
-  if (!tables.empty()) return Show(tables, pictures);
-  const bool only_write = !study.empty() && results.empty();
-  if (out.empty() && !only_write) return app.exit(CLI::RequiredError("--out"));
-  auto cases = every        ? AllCases(repeats)
-               : background ? BackgroundCases(repeats)
-               : spoilt     ? SpoiltCases(repeats)
-               : outside    ? OutsideCases(quick)
-               : quick      ? QuickCases(robot)
-                            : Cases(robot, repeats);
-  for (Case& c : cases) c.effort = EffortNamed(effort);
-  if (told) cases = DescribedCases(std::move(cases));
-  if (!study.empty())
-    std::erase_if(cases, [&](const Case& c) { return c.Name().find(only) == std::string::npos; });
-  if (only_write) {
-    WriteStudy(cases, effort, study);
-    return 0;
-  }
-  if (!results.empty()) {
-    TakeResults(cases, study, results, out);
-    return Show({out}, pictures);
-  }
+  app.add_option("--keep", o.keep, "a folder that keeps model, logs and experiment of each case");
+  app.add_option("--pictures", o.pictures, "a folder for confusion, power and calibration as SVG");
+  app.add_flag("--write", o.write, "write the cases (--keep), without a diagnosis");
+  app.add_flag("--follow", o.follow, "run the experiment that a set proposes, and diagnose again");
+  app.add_flag("--verbose", o.verbose, "print each summary");
+}
+
+std::vector<Case> CasesOf(const Options& o) {
+  auto cases = o.every        ? AllCases(o.repeats)
+               : o.background ? BackgroundCases(o.repeats)
+               : o.spoilt     ? SpoiltCases(o.repeats)
+               : o.outside    ? OutsideCases(o.quick)
+               : o.quick      ? QuickCases(o.robot)
+                              : Cases(o.robot, o.repeats);
+  for (Case& c : cases) c.effort = EffortNamed(o.effort);
+  return o.told ? DescribedCases(std::move(cases)) : cases;
+}
+
+bool IsWanted(const Case& c, const Options& o) {
+  return c.Name().find(o.only) != std::string::npos;
+}
+
+// Each case in its folder, diagnosed if that is wanted; those that an earlier run did are skipped.
+void RunCases(const std::vector<Case>& cases, const Options& o) {
   std::set<std::string> done;
-  for (const auto& line : testing::ReadJsonLines(out)) done.insert(line.at("case"));
+  for (const auto& line : testing::ReadJsonLines(o.out)) done.insert(line.at("case"));
   const auto temporary =
       std::filesystem::temp_directory_path() / ("hidden_effects_" + std::to_string(getpid()));
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const std::string name = cases[i].Name();
-    if (done.contains(name) || name.find(only) == name.npos) continue;
+    const Case& c = cases[i];
+    if (done.contains(c.Name()) || !IsWanted(c, o)) continue;
     std::filesystem::remove_all(temporary);
     const auto folder =
-        keep.empty() ? temporary : std::filesystem::path(keep) / std::to_string(i + 1);
-    if (write) {
-      WriteCase(cases[i], folder);
+        o.keep.empty() ? temporary : std::filesystem::path(o.keep) / std::to_string(i + 1);
+    if (o.write) {
+      WriteCase(c, folder);
       continue;
     }
-    const nlohmann::json line = LineApart(cases[i], folder, follow, verbose, limit);
-    testing::AppendJsonLine(out, line);
-    fmt::print(stderr, "{}/{} {}: {} {} {:.1f} s\n", i + 1, cases.size(), name,
+    const nlohmann::json line = LineApart(c, folder, o.follow, o.verbose, o.limit);
+    testing::AppendJsonLine(o.out, line);
+    fmt::print(stderr, "{}/{} {}: {} {} {:.1f} s\n", i + 1, cases.size(), c.Name(),
                line.at("verdict").get<std::string>(),
                line.value("named", nlohmann::json::array()).dump(), line.value("seconds", 0.0));
   }
   std::filesystem::remove_all(temporary);
-  return Show({out}, pictures);
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app{"Diagnoses logs with hidden effects; goes on where an earlier run stopped"};
+  Options o;
+  AddRuns(app, o);
+  AddSuites(app, o);
+  CLI11_PARSE(app, argc, argv);
+  if (!o.tables.empty()) return Show(o.tables, o.pictures);
+  if (o.out.empty() && !o.OnlyWritesStudy()) return app.exit(CLI::RequiredError("--out"));
+  std::vector<Case> cases = CasesOf(o);
+  if (!o.study.empty()) std::erase_if(cases, [&](const Case& c) { return !IsWanted(c, o); });
+  if (o.OnlyWritesStudy()) {
+    WriteStudy(cases, o.effort, o.study);
+    return 0;
+  }
+  if (o.results.empty()) {
+    RunCases(cases, o);
+  } else {
+    TakeResults(cases, o.study, o.results, o.out);
+  }
+  return Show({o.out}, o.pictures);
 }
 
 }  // namespace
