@@ -10,6 +10,7 @@
 #include "benchmark/stick_slip/experiment.h"
 #include "identification/fit/intervals.h"
 #include "identification/statistics/uncertainty.h"
+#include "support/long_test.h"
 #include "support/pendulum_fit.h"
 
 namespace continuum {
