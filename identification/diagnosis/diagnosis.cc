@@ -63,8 +63,7 @@ class Session {
       CompleteNamed();
       Part("sizes that are not needed", [&] { DropSizes(); });
       FitFinely();
-      if (!d_.verdict.complete)
-        Part("intervals over lengths and masses", [&] { ReachOverNumbers(fitter_, options_, d_); });
+      Part("lengths and masses in intervals", [&] { AllowInIntervals(fitter_, options_, d_); });
       ScoreFolds();
       ConfirmOnFolds(fitter_, d_);
     } else {

@@ -122,6 +122,27 @@ Vector AtStepOfZero(const CandidateFitter& fitter, const Fitted& fitted) {
   return fitter.whitening.Stack(fine, train);
 }
 
+// (2); A: J and C beside each other.
+Vector MovedBy(const Matrix& A, Eigen::Index parameters) {
+  const Matrix J = A.leftCols(parameters), C = A.rightCols(A.cols() - parameters);
+  const Matrix moved = InformationModes(J.transpose() * J).Inverse() * (J.transpose() * C);
+  return moved.rowwise().norm();
+}
+
+// (3); z: the whitened residual.
+void ReachOver(const Problem& problem, const Matrix& A, const Vector& z, const Vector& x,
+               Uncertainty& u) {
+  constexpr double kT = 1.96;
+  const Eigen::Index n = x.size();
+  Matrix normal = A.transpose() * A;
+  normal.diagonal().tail(A.cols() - n).array() += 1;
+  const Matrix inverse = InformationModes(normal).Inverse();
+  const Vector change = -inverse * (A.transpose() * z);
+  const Vector spread = inverse.diagonal().head(n).cwiseMax(0).cwiseSqrt(),
+               half = kT * Lasting(u, normal).cwiseProduct(spread), there = x + change.head(n);
+  Widen(problem, (there - half - u.lower).cwiseMin(0), (there + half - u.upper).cwiseMax(0), u);
+}
+
 }  // namespace
 
 ByLengthsAndMasses ExplainedByLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
@@ -139,25 +160,18 @@ ByLengthsAndMasses ExplainedByLengthsAndMasses(const CandidateFitter& fitter, co
   return C.cols() > 0 ? WithPriors(C, z, fitter.criteria.link_known) : ByLengthsAndMasses{};
 }
 
-void ReachOverLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
-                               const ModelSpec& system, const std::vector<Parameter>& given,
-                               Fitted& fitted) {
+void AllowForLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
+                              const ModelSpec& system, const std::vector<Parameter>& given,
+                              bool more_is_left, Fitted& fitted) {
   if (!fitted.complete()) return;
   const auto columns = ColumnsOf(fitter, sizes, system, given, fitted);
   if (columns.empty()) return;
-  constexpr double kT = 1.96;
   const Matrix A = Beside(fitter, fitted, columns);
-  const Vector z = AtStepOfZero(fitter, fitted), &x = fitted.fit.x;
-  Matrix normal = A.transpose() * A;
-  normal.diagonal().tail(static_cast<Eigen::Index>(columns.size())).array() += 1;
-  const Matrix inverse = InformationModes(normal).Inverse();
-  const Vector change = -inverse * (A.transpose() * z);
   Uncertainty& u = fitted.sensitivities->uncertainty;
-  const Vector half = kT * Lasting(u, normal).cwiseProduct(
-                               inverse.diagonal().head(x.size()).cwiseMax(0).cwiseSqrt()),
-               there = x + change.head(x.size());
-  Widen(Problem(*fitter.experiment, system, given), (there - half - u.lower).cwiseMin(0),
-        (there + half - u.upper).cwiseMax(0), u);
+  u.by_numbers = MovedBy(A, fitted.fit.x.size());
+  if (more_is_left)
+    ReachOver(Problem(*fitter.experiment, system, given), A, AtStepOfZero(fitter, fitted),
+              fitted.fit.x, u);
 }
 
 }  // namespace continuum

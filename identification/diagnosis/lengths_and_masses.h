@@ -24,16 +24,20 @@ ByLengthsAndMasses ExplainedByLengthsAndMasses(const CandidateFitter& fitter, co
                                                const std::vector<Parameter>& given,
                                                const Fitted& fitted);
 
-/// Extends the intervals of a complete fit to those of a fit whose lengths and masses are free as
-/// well: there the model leaves more than noise, part of which may be theirs. To first order, with
-/// the columns of C not projected, at a time step of zero:
+/// What those numbers do to the parameters of a complete fit, to first order, with the columns of C
+/// not projected and P = (JᵀJ)⁻¹: by themselves they move each parameter by
 ///
-///   min over d, a of |r + J d + C a|² + |a|²,   x + d ± t s √(N⁻¹),                       (2)
+///   √Σ_k (P JᵀC)_ik²                                                                      (2)
+///
+/// (Uncertainty::by_numbers). Where the model leaves more than noise, part of which may be theirs,
+/// intervals are extended to those of a fit whose numbers are free as well, at a time step of zero:
+///
+///   min over d, a of |r + J d + C a|² + |a|²,   x + d ± t s √(N⁻¹),                       (3)
 ///
 /// N: the matrix of its normal equations; s: the standard error of the fit over what white noise
 /// would make of it, at least 1.
-void ReachOverLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
-                               const ModelSpec& system, const std::vector<Parameter>& given,
-                               Fitted& fitted);
+void AllowForLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
+                              const ModelSpec& system, const std::vector<Parameter>& given,
+                              bool more_is_left, Fitted& fitted);
 
 }  // namespace continuum

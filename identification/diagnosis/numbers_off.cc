@@ -44,12 +44,13 @@ bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& searc
   return true;
 }
 
-void ReachOverNumbers(const CandidateFitter& fitter, const DiagnosisOptions& options,
+void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& options,
                       Diagnosis& d) {
   for (const std::size_t i : d.verdict.named) {
     CandidateResult& c = d.candidates[i];
     options.Say(DiagnosisStage::kJudgement, "lengths and masses beside " + c.hypothesis.Name());
-    ReachOverLengthsAndMasses(fitter, d.sizes, c.hypothesis.system, c.hypothesis.Free(), c.fitted);
+    AllowForLengthsAndMasses(fitter, d.sizes, c.hypothesis.system, c.hypothesis.Free(),
+                             !d.verdict.complete, c.fitted);
   }
 }
 

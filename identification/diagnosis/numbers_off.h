@@ -12,8 +12,7 @@ namespace continuum {
 bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& search,
                      const std::optional<Pair>& pair, Diagnosis& d);
 
-/// Extends the intervals of all that is named, where more than noise is left, to what lengths and
-/// masses that are a little off leave open (ReachOverLengthsAndMasses).
-void ReachOverNumbers(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d);
+/// AllowForLengthsAndMasses in the intervals of all that is named.
+void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d);
 
 }  // namespace continuum

@@ -28,8 +28,9 @@ void Fields(A& a, Fitted& f) {
 
 template <class A>
 void Fields(A& a, Uncertainty& u) {
-  auto& [standard_error, lower, upper, step, correlation, information, at_bound, lacks] = u;
-  a(standard_error, lower, upper, step, correlation, information, at_bound, lacks);
+  auto& [standard_error, lower, upper, step, by_numbers, correlation, information, at_bound,
+         lacks] = u;
+  a(standard_error, lower, upper, step, by_numbers, correlation, information, at_bound, lacks);
 }
 
 template <class A>

@@ -34,6 +34,7 @@ nlohmann::json ParametersOf(const Hypothesis& h, const Fitted& fitted, Eigen::In
     const Uncertainty& u = fitted.sensitivities->uncertainty;
     json["ci95"] = {u.lower[at], u.upper[at]};
     if (u.step.size() > 0) json["fine_step"] = fitted.fit.x[at] + u.step[at];
+    if (u.by_numbers.size() > 0) json["if_numbers_are_off"] = u.by_numbers[at];
   }
   return parameters;
 }

@@ -40,6 +40,13 @@ std::string AtFineStep(const Uncertainty& u, double value, Eigen::Index at) {
   return fmt::format("{} at a time step of zero", Value(value + u.step[at]));
 }
 
+// What numbers of the model may add, where the interval of the noise alone leaves that out.
+std::string ByNumbers(const Uncertainty& u, Eigen::Index at, const std::string& unit) {
+  if (u.by_numbers.size() <= at || !(2 * u.by_numbers[at] > u.upper[at] - u.lower[at])) return "";
+  return fmt::format("± {}{} if lengths and masses are {:g} % off", Value(u.by_numbers[at]), unit,
+                     100 * Criteria{}.link_known);
+}
+
 bool AtBound(const Fitted& f, Eigen::Index at) {
   if (!f.complete()) return false;
   const auto& bound = f.sensitivities->uncertainty.at_bound;
@@ -126,6 +133,7 @@ std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Inde
     if (fitted.complete()) {
       add(Interval(fitted.sensitivities->uncertainty, at));
       add(AtFineStep(fitted.sensitivities->uncertainty, value, at));
+      add(ByNumbers(fitted.sensitivities->uncertainty, at, Unit(UnitOfExtra(h, i))));
     }
     if (AtBound(fitted, at))
       add(fmt::format("**at its {} bound**",

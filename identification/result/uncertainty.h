@@ -12,7 +12,9 @@ namespace continuum {
 struct Uncertainty {
   Eigen::VectorXd standard_error;  ///< [parameter] in its unit; NaN: not known
   Eigen::VectorXd lower, upper;    ///< [parameter] 95 % interval, within the bounds
-  Eigen::VectorXd step = {};    ///< what a fine time step would add to the value; empty: not known
+  Eigen::VectorXd step = {};  ///< what a fine time step would add to the value; empty: not known
+  Eigen::VectorXd by_numbers = {};  ///< what lengths and masses that are a little off may add to
+                                    ///< the value (standard deviation); empty: not known
   Eigen::MatrixXd correlation;  ///< [parameters × parameters]
   Eigen::MatrixXd information;  ///< H [parameters × parameters]; zero for parameters at a bound
   std::vector<bool> at_bound;

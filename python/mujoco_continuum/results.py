@@ -34,7 +34,8 @@ class Interval(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """A fitted number. Of a cause only name, value, unit, interval and fine_step are given."""
+    """A fitted number. Of a cause only name, value, unit, interval, fine_step and
+    if_numbers_are_off are given."""
 
     name: str
     value: float
@@ -48,6 +49,9 @@ class Parameter:
     at_bound: bool = False
     fine_step: float | None = None
     """What a fit at a time step of zero would give; None where that is not known."""
+    if_numbers_are_off: float | None = None
+    """What lengths and masses of the model that are 1.5 % off may add to it (one standard
+    deviation); None where that is not known."""
 
     def __str__(self) -> str:
         around = "" if self.interval is None else " (95 %: {:.4g} … {:.4g})".format(*self.interval)
@@ -248,7 +252,8 @@ def _fine_step(parameter: Json) -> float | None:
 
 def _cause(document: Json) -> Cause:
     parameters = {name: Parameter(name, _number(p["value"]), p["unit"], _interval(p["ci95"]),
-                                  fine_step=_fine_step(p))
+                                  fine_step=_fine_step(p),
+                                  if_numbers_are_off=p.get("if_numbers_are_off"))
                   for name, p in document["parameters"].items()}
     return Cause(document["effect"], document["where"], parameters,
                  _number(document["probability"]), document["equivalent"], document["evidence"])

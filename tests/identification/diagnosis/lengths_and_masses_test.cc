@@ -1,5 +1,9 @@
 #include "identification/diagnosis/lengths_and_masses.h"
 
+#include <cmath>
+#include <optional>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "support/pendulum.h"
@@ -63,30 +67,59 @@ TEST_F(LengthsAndMasses, ExplainLessOfWhatIsFarOff) {
   EXPECT_LT(ShareOf(load), 0.5);
 }
 
-// A stiffness of 0.01 N m/rad holds the pendulum as 1.7 % of its weight does; damping nothing does.
-TEST_F(LengthsAndMasses, WidenTheIntervalOfWhatMakesUpForThem) {
+const std::string kStiffnessAndDamping =
+    "parameters:\n"
+    "  - {name: k, target: 'joint:hinge', attribute: stiffness, lower: -1, upper: 1}\n"
+    "  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1}\n";
+
+class FittedBesideNumbers : public LengthsAndMasses {
+ protected:
+  // Stiffness and damping of the logs, with a model like this.
+  Fitted FitWith(const Pendulum& model) {
+    experiment_.emplace(ReadExperiment(kStiffnessAndDamping, ", sigma: 0.0001"));
+    system_.emplace(ModelSpec::Load(Write("model.xml", model.Xml("", 5e-4))));
+    fitter_.experiment = &*experiment_;
+    const Problem problem(*experiment_, *system_);
+    fitter_.whitening = Whitening(problem, NoiseOf(*experiment_));
+    return fitter_.FitAll(problem, problem.Start());
+  }
+  void Allow(bool more_is_left, Fitted& fitted) {
+    const Sizes sizes = SizesOf(Problem(*experiment_, *system_), fitted.fit.x);
+    AllowForLengthsAndMasses(fitter_, sizes, *system_, {}, more_is_left, fitted);
+  }
+
+  std::optional<Experiment> experiment_;
+  std::optional<ModelSpec> system_;
+  CandidateFitter fitter_{};
+};
+
+// Against fits with other models; these keep the inertia of the arm, of which the damping depends.
+TEST_F(FittedBesideNumbers, MoveAsTheyDoWhenTheNumbersChange) {
+  AddLogs({});
+  Pendulum longer, heavier;
+  longer.length *= 1.015, heavier.bob *= 1.015;
+  const double by_length = FitWith(longer).fit.x[0], by_mass = FitWith(heavier).fit.x[0];
+  Fitted fitted = FitWith({});
+  const double k = fitted.fit.x[0], moved = std::hypot(by_length - k, by_mass - k);
+  Allow(false, fitted);
+  EXPECT_NEAR(fitted.sensitivities->uncertainty.by_numbers[0], moved, 0.15 * moved);
+}
+
+TEST_F(FittedBesideNumbers, HaveIntervalsThatReachOverThem) {
   Pendulum longer;
   longer.length *= 1.01;
   AddLogs(longer);
-  const Experiment e = ReadExperiment(
-      "parameters:\n"
-      "  - {name: k, target: 'joint:hinge', attribute: stiffness, lower: -1, upper: 1}\n"
-      "  - {name: b, target: 'joint:hinge', attribute: damping, lower: 0, upper: 1}\n",
-      ", sigma: 0.0001");
-  const ModelSpec system = ModelSpec::Load(Write("model.xml", Pendulum().Xml("", 5e-4)));
-  CandidateFitter fitter{&e};
-  const Problem problem(e, system);
-  fitter.whitening = Whitening(problem, NoiseOf(e));
-  Fitted fitted = fitter.FitAll(problem, problem.Start());
+  Fitted fitted = FitWith({});
   const Uncertainty before = fitted.sensitivities->uncertainty;
-  ReachOverLengthsAndMasses(fitter, SizesOf(problem, fitted.fit.x), system, {}, fitted);
+  Allow(true, fitted);
   const Uncertainty& after = fitted.sensitivities->uncertainty;
   const Problem::Vector wide = after.upper - after.lower, narrow = before.upper - before.lower;
-  EXPECT_GT(wide[0], 0.02);
   EXPECT_GT(wide[0], 3 * narrow[0]);
   EXPECT_LT(wide[1], 2 * narrow[1]);
   EXPECT_LE(after.lower[0], 0);
   EXPECT_GE(after.upper[0], 0);
+  EXPECT_LE(after.lower[1], longer.damping);
+  EXPECT_GE(after.upper[1], longer.damping);
 }
 
 }  // namespace

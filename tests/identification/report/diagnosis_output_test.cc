@@ -221,6 +221,17 @@ TEST_F(DiagnosisOutput, MarksAValueAtABound) {
   EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr("at its lower bound"));
 }
 
+TEST_F(DiagnosisOutput, SaysWhatLengthsAndMassesMayDoToASize) {
+  Fitted& fitted = d_->candidates[0].fitted;
+  Uncertainty& u = fitted.sensitivities->uncertainty;
+  u.by_numbers = Eigen::VectorXd::Zero(fitted.fit.x.size());
+  EXPECT_THAT(Summary(e_, *d_, WriteFiles(e_, *d_, Out()).run), Not(HasSubstr("% off")));
+  u.by_numbers = u.upper - u.lower;
+  const DiagnosisFiles files = WriteFiles(e_, *d_, Out());
+  EXPECT_THAT(Summary(e_, *d_, files.run), HasSubstr("kg if lengths and masses are 1.5 % off"));
+  EXPECT_GT(files.json.at("causes").at(0).at("parameters").at("mass").at("if_numbers_are_off"), 0);
+}
+
 TEST_F(DiagnosisOutput, OfTheUnexplainedShowsTheMissingForceAndNoProbability) {
   d_->verdict = {Verdict::Kind::kUnexplained, {}, "no candidate passes all rules (p = 0.01)"};
   d_->verdict.leading = 0;
