@@ -15,7 +15,7 @@ struct Uncertainty {
   Eigen::VectorXd step = {};  ///< what a fine time step would add to the value; empty: not known
   Eigen::VectorXd by_numbers = {};  ///< what lengths and masses that are a little off may add to
                                     ///< the value (standard deviation); empty: not known
-  Eigen::MatrixXd correlation;  ///< [parameters × parameters]
+  Eigen::MatrixXd correlation;      ///< [parameters × parameters]
   Eigen::MatrixXd information;  ///< H [parameters × parameters]; zero for parameters at a bound
   std::vector<bool> at_bound;
   std::string lacks = {};  ///< in words, what the user did not wait for; empty: nothing
