@@ -94,6 +94,54 @@ Eigen::Vector2d Robot::Hole(int tendon) const {
   return {tendon_radius * std::cos(sigma), tendon_radius * std::sin(sigma)};
 }
 
+std::vector<Section> Robot::Sections() const {
+  if (has_sections()) return sections;
+  Section whole;
+  whole.diameter = diameter;
+  whole.EI = EI();
+  whole.GJ = GJ();
+  whole.mass_per_length = density * area();
+  whole.disk_mass = disk_mass;
+  whole.natural = natural;
+  for (int i = 1; i <= disks; ++i) whole.disks.push_back(i * length / disks);
+  return {whole};
+}
+
+Route Robot::RouteOf(int tendon) const {
+  if (has_sections()) return routes[static_cast<std::size_t>(tendon)];
+  const auto places = static_cast<std::size_t>(disks) + 1;
+  return {std::vector<double>(places, tendon_radius),
+          std::vector<double>(places, 2 * std::numbers::pi * tendon / tendons)};
+}
+
+double Robot::Place(int disk) const {
+  if (!has_sections()) return disk * length / disks;
+  double start = 0;
+  auto rest = static_cast<std::size_t>(disk);
+  for (const Section& s : sections) {
+    if (rest == 0) break;
+    if (rest <= s.disks.size()) return start + s.disks[rest - 1];
+    rest -= s.disks.size();
+    start += s.length();
+  }
+  return start;
+}
+
+double Robot::mass() const {
+  if (!has_sections()) return disks * disk_mass + density * area() * length;
+  double sum = 0;
+  for (const Section& s : sections) {
+    sum += s.mass_per_length * s.length() + static_cast<double>(s.disks.size()) * s.disk_mass;
+  }
+  return sum;
+}
+
+double Robot::SoftestEI() const {
+  double softest = EI();
+  for (const Section& s : sections) softest = std::min(softest, s.EI);
+  return softest;
+}
+
 Eigen::Matrix3d Robot::MeasuringToBase() const {
   const double cx = std::cos(base_rotation.x()), sx = std::sin(base_rotation.x());
   const double cy = std::cos(base_rotation.y()), sy = std::sin(base_rotation.y());
@@ -109,6 +157,8 @@ Loads Loads::Scaled(double load) const {
   Loads scaled = *this;
   for (double& t : scaled.tension) t *= load;
   scaled.tip_force *= load;
+  scaled.disk_force *= load;
+  scaled.disk_moment *= load;
   scaled.gravity *= load;
   return scaled;
 }
@@ -118,8 +168,8 @@ bool Loads::AsItSlides() const {
 }
 
 double Loads::DeadForce(const Robot& robot) const {
-  const double mass = robot.disks * robot.disk_mass + robot.density * robot.area() * robot.length;
-  return tip_force.norm() + mass * gravity.norm();
+  return tip_force.norm() + robot.mass() * gravity.norm() + disk_force.colwise().norm().sum() +
+         disk_moment.colwise().norm().sum() / robot.length;
 }
 
 Loads NoLoads(const Robot& robot) {
