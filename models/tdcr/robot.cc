@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "models/tdcr/columns.h"
+#include "models/tdcr/read_sections.h"
 #include "sim/io/decimal.h"
 
 namespace continuum::tdcr {
@@ -181,11 +182,10 @@ Loads NoLoads(const Robot& robot) {
   return loads;
 }
 
-Robot ReadRobot(const Yaml& file) {
-  Robot robot;
-  if (const int format = file.At("format").Integer(); format != 1) {
-    throw Error::Input(file.At("format").Where(), "format 1", std::to_string(format));
-  }
+namespace {
+
+// The segment of the paper.
+void ReadSegment(const Yaml& file, Robot& robot) {
   robot.length = Positive(file, "length");
   robot.diameter = Positive(file, "diameter");
   robot.disks = Count(file, "disks", 2, 1000);
@@ -198,6 +198,20 @@ Robot ReadRobot(const Yaml& file) {
   }
   robot.density = NotNegative(file, "density");
   robot.disk_mass = NotNegative(file, "disk_mass");
+}
+
+}  // namespace
+
+Robot ReadRobot(const Yaml& file) {
+  Robot robot;
+  if (const int format = file.At("format").Integer(); format != 1) {
+    throw Error::Input(file.At("format").Where(), "format 1", std::to_string(format));
+  }
+  if (file.Has("sections")) {
+    ReadSections(file, robot);
+  } else {
+    ReadSegment(file, robot);
+  }
   robot.mu = Friction(file.At("mu").Parameter(), file.At("mu").Where());
   if (file.Has("tendon_EA")) robot.tendon_EA = Positive(file, "tendon_EA");
   robot.gravity = Gravity(file.At("gravity"));
@@ -205,8 +219,38 @@ Robot ReadRobot(const Yaml& file) {
   return robot;
 }
 
+namespace {
+
+Eigen::Vector3d Vector(const CsvTable& table, std::size_t row, const std::string& name,
+                       const std::string& end) {
+  Eigen::Vector3d v;
+  for (int i = 0; i < 3; ++i) v[i] = table.Number(row, name + "xyz"[i] + end);
+  return v;
+}
+
+bool Has(const CsvTable& table, const std::string& name, const std::string& end) {
+  return HasVector(table, {name + "x" + end, name + "y" + end, name + "z" + end});
+}
+
+// fx_i .., mx_i .. at disk i, and mx .. at the tip.
+void ReadDiskLoads(const CsvTable& table, std::size_t row, const Robot& robot, Loads& loads) {
+  const auto add = [&](const std::string& name, const std::string& end, int disk,
+                       Eigen::Matrix3Xd& all) {
+    if (!Has(table, name, end)) return;
+    if (all.cols() == 0) all.setZero(3, robot.disks);
+    all.col(disk) += Vector(table, row, name, end);
+  };
+  for (int i = 0; i < robot.disks; ++i) {
+    add("f", "_" + std::to_string(i + 1), i, loads.disk_force);
+    add("m", "_" + std::to_string(i + 1), i, loads.disk_moment);
+  }
+  add("m", "", robot.disks - 1, loads.disk_moment);
+}
+
+}  // namespace
+
 std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
-  RequireKnownCaseColumns(table, robot.tendons);
+  RequireKnownCaseColumns(table, robot.tendons, robot.disks);
   const std::string drive = table.Has("L1") ? "L" : "T";
   std::vector<std::string> needed{"case", "fx", "fy", "fz"};
   for (int k = 1; k <= robot.tendons; ++k) needed.push_back(drive + std::to_string(k));
@@ -232,6 +276,7 @@ std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
       if (table.Has(direction)) c.loads.direction[i] = Direction(table, row, direction);
     }
     c.loads.tip_force = {table.Number(row, "fx"), table.Number(row, "fy"), table.Number(row, "fz")};
+    ReadDiskLoads(table, row, robot, c.loads);
     if (gravity) {
       c.loads.gravity = {table.Number(row, "gx"), table.Number(row, "gy"), table.Number(row, "gz")};
     }
