@@ -2,7 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "models/tdcr/robot.h"
@@ -16,8 +17,8 @@ namespace continuum::tdcr {
 ///   n' = -f - weight,  m' = -p' x n - l,  f = sum T t',  l = sum R a x T t'                 (2)
 ///
 /// and at disks m and n fall by their loads, by T t where a tendon ends and by T (t_before - t) where
-/// it turns. t' depends on u', which (2) gives by a linear system. Six unknowns at the base, n and m
-/// there; the tip is free. Runge-Kutta's fourth order, Newton's method by differences.
+/// it turns. t' depends on u', which (2) gives by a linear system. Walks from the base by Runge-Kutta's
+/// fourth order: an equilibrium has a free tip, m = n = 0.
 class RodInSpace {
  public:
   RodInSpace(const Robot& robot, Loads loads, int steps)
@@ -28,20 +29,29 @@ class RodInSpace {
     for (int k = 0; k < robot.tendons; ++k) routes_.push_back(robot.RouteOf(k));
   }
 
-  /// O_1..O_n [m], under loads that grow in parts.
-  Eigen::Matrix3Xd Disks(int parts = 4) {
-    Vector6 x = Vector6::Zero();
-    for (int i = 1; i <= parts; ++i) {
-      load_ = static_cast<double>(i) / parts;
-      for (int round = 0; round < 30 && Scaled(Shoot(x)).norm() > 1e-11; ++round) Step(x);
+  /// Walks from a base of curvature u (kappa_x, kappa_y, tau as a rotation vector) [1/m].
+  void Walk(const Eigen::Vector3d& u) {
+    const Section& first = sections_.front();
+    const Vector3 rest(-first.natural.y(), first.natural.x(), first.natural.z());
+    State y{Vector3::Zero(), Vector3::Zero(), loads_.tip_force, Matrix3::Identity()};
+    y.m = Vector3(first.EI, first.EI, first.GJ).cwiseProduct(u - rest);
+    for (int arc = 0; arc < robot_.disks; ++arc) y.n += Weight(arc) + AtDisk(loads_.disk_force, arc);
+    for (std::size_t k = 0; k < routes_.size(); ++k) y.n -= Pull(k) * Tangent(k, 0, 0, y);
+    for (int arc = 0; arc < robot_.disks; ++arc) {
+      y = Walk(arc, y);
+      disks_.col(arc) = y.p;
+      Pass(arc, y);
     }
-    return Scaled(Shoot(x)).norm() < 1e-9 ? disks_ : Eigen::Matrix3Xd::Constant(3, 1, 1e9);
+    moment_ = y.m;
+    force_ = y.n;
   }
+  const Eigen::Matrix3Xd& disks() const { return disks_; }  ///< O_1..O_n [m]
+  const Eigen::Vector3d& moment() const { return moment_; }  ///< beyond the tip [N m]
+  const Eigen::Vector3d& force() const { return force_; }    ///< beyond the tip [N]
 
  private:
   using Vector3 = Eigen::Vector3d;
   using Matrix3 = Eigen::Matrix3d;
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
   struct State {
     Vector3 p, m, n;
     Matrix3 R;
@@ -58,11 +68,15 @@ class RodInSpace {
     s << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
     return s;
   }
-  static Vector6 Scaled(Vector6 f) {
-    f.head<3>() *= 100;
-    return f;
+  double Pull(std::size_t k) const { return loads_.tension[k]; }
+  static Vector3 AtDisk(const Eigen::Matrix3Xd& loads, int arc) {
+    return loads.cols() > 0 ? Vector3(loads.col(arc)) : Vector3::Zero();
   }
-  double Pull(std::size_t k) const { return load_ * loads_.tension[k]; }
+  // Of an arc and the disk at its end.
+  Vector3 Weight(int arc) const {
+    const double length = robot_.Place(arc + 1) - robot_.Place(arc);
+    return (Of(arc).disk_mass + Of(arc).mass_per_length * length) * loads_.gravity;
+  }
   const Section& Of(int arc) const { return sections_[static_cast<std::size_t>(arc)]; }
   Vector3 Curvature(int arc, const State& y) const {
     const Section& section = Of(arc);
@@ -103,7 +117,7 @@ class RodInSpace {
     d.p = y.R * e3;
     d.R = y.R * Skew(u);
     d.m = -d.p.cross(y.n) - y.R * (l + by_l * du);
-    d.n = -y.R * (f + by_f * du) - load_ * section.mass_per_length * loads_.gravity;
+    d.n = -y.R * (f + by_f * du) - section.mass_per_length * loads_.gravity;
     return d;
   }
 
@@ -121,8 +135,7 @@ class RodInSpace {
       const State c = Slope(arc, s + h / 2, y.Plus(h / 2, b));
       const State d = Slope(arc, s + h, y.Plus(h, c));
       y = y.Plus(h / 6, a).Plus(h / 3, b).Plus(h / 3, c).Plus(h / 6, d);
-      const Eigen::JacobiSVD<Matrix3> svd(y.R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      y.R = svd.matrixU() * svd.matrixV().transpose();
+      y.R = Eigen::Quaterniond(y.R).normalized().toRotationMatrix();
     }
     return y;
   }
@@ -131,13 +144,11 @@ class RodInSpace {
   void Pass(int arc, State& y) const {
     const double s = robot_.Place(arc + 1);
     const bool last = arc + 1 == robot_.disks;
-    Vector3 force = load_ * Of(arc).disk_mass * loads_.gravity, moment = Vector3::Zero();
-    if (last) force += load_ * loads_.tip_force;
-    if (loads_.disk_force.cols() > 0) force += load_ * loads_.disk_force.col(arc);
-    if (loads_.disk_moment.cols() > 0) moment += load_ * loads_.disk_moment.col(arc);
+    Vector3 force = Of(arc).disk_mass * loads_.gravity + AtDisk(loads_.disk_force, arc);
+    if (last) force += loads_.tip_force;
     const State before = y;
     y.n -= force;
-    y.m -= moment;
+    y.m -= AtDisk(loads_.disk_moment, arc);
     const State loaded = y;
     for (int round = 0; round < (last ? 1 : 60); ++round) {
       State next = loaded;
@@ -148,39 +159,19 @@ class RodInSpace {
         next.n -= pull;
         next.m -= (y.R * At(k, arc, s).a).cross(pull);
       }
+      const bool same = (next.m - y.m).norm() < 1e-15;
       y = next;
+      if (same) break;
     }
-  }
-
-  // Moment and force that the tip lacks.
-  Vector6 Shoot(const Vector6& x) {
-    State y{Vector3::Zero(), x.head<3>(), x.tail<3>(), Matrix3::Identity()};
-    for (int arc = 0; arc < robot_.disks; ++arc) {
-      y = Walk(arc, y);
-      disks_.col(arc) = y.p;
-      Pass(arc, y);
-    }
-    Vector6 rest;
-    rest << y.m, y.n;
-    return rest;
-  }
-
-  void Step(Vector6& x) {
-    Eigen::Matrix<double, 6, 6> jacobian;
-    for (int i = 0; i < 6; ++i) {
-      const Vector6 small = (i < 3 ? 1e-8 : 1e-6) * Vector6::Unit(i);
-      jacobian.col(i) = (Shoot(x + small) - Shoot(x - small)) / (2 * small[i]);
-    }
-    x -= jacobian.lu().solve(Shoot(x));
   }
 
   const Robot& robot_;
   Loads loads_;
   int steps_;
-  double load_ = 1;
   std::vector<Section> sections_;  ///< of the arcs
   std::vector<Route> routes_;
   Eigen::Matrix3Xd disks_;
+  Vector3 moment_ = Vector3::Zero(), force_ = Vector3::Zero();
 };
 
 }  // namespace continuum::tdcr
