@@ -18,9 +18,9 @@ struct RodSection {
   Eigen::Matrix3d moment_by_zeta, moment_by_n, stretch_by_zeta, stretch_by_n;
 };
 
-/// A rod clamped at s = 0 and free at its end, cut into pieces, equal ones if nothing else is said: the frames R_0 = 1, R_1, ..,
-/// R_N of its nodes are the unknowns. It says how stable an equilibrium of the whole rod is, and it
-/// can fall from one that is not.
+/// A rod clamped at s = 0 and free at its end, cut into pieces, equal ones if nothing else is said:
+/// the frames R_0 = 1, R_1, .., R_N of its nodes are the unknowns. It says how stable an
+/// equilibrium of the whole rod is, and it can fall from one that is not.
 ///
 /// Dead forces make the internal force F(s) known beforehand, so that the energy is a sum over
 /// pieces of h w(zeta, R^T F), with M = dw/dzeta and -Gamma = dw/dn. A turn phi(s) of the sections,
@@ -31,13 +31,13 @@ struct RodSection {
 ///
 /// g_i is what turns node i back; (1) is m' = F x t. P: dead force times its lever beyond the tip,
 /// along the last tangent. Where the law has `DeadMoment(node)`, g_i is less by it: a dead moment
-/// [N m] at node i = 1..N, base frame. Middles of pieces stand for pieces: the error falls with the square of
-/// their number.
+/// [N m] at node i = 1..N, base frame. Middles of pieces stand for pieces: the error falls with the
+/// square of their number.
 ///
 /// Law: `static constexpr bool kShear` (false: Gamma is the axis), `length()`, `axis()`,
 /// `Force(s)` [N] of all loads beyond s in 0..1, `TipLever()` [N m], `elastic()` or
-/// `ElasticOf(piece)`: dM/dzeta of the unloaded section, `Prepare(zeta)` with the strains of all pieces, `At(piece, zeta, n, section)`,
-/// false out of the domain.
+/// `ElasticOf(piece)`: dM/dzeta of the unloaded section, `Prepare(zeta)` with the strains of all
+/// pieces, `At(piece, zeta, n, section)`, false out of the domain.
 template <class Law>
 class RodChain {
  public:

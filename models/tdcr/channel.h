@@ -17,9 +17,9 @@ struct ChannelPoint {
 struct Channel {
   Eigen::Vector2d hole;  ///< a where it begins; of a parallel channel everywhere
   bool parallel = true;
-  double start = 0;                ///< s where it begins
-  double radius = 0, widens = 0;   ///< r there, r'
-  double angle = 0, turns = 0;     ///< phi there, phi'
+  double start = 0;               ///< s where it begins
+  double radius = 0, widens = 0;  ///< r there, r'
+  double angle = 0, turns = 0;    ///< phi there, phi'
 
   ChannelPoint At(double s) const {
     if (parallel) return {hole, {0, 0}, {0, 0}};

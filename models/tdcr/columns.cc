@@ -42,8 +42,8 @@ void RequireKnown(const CsvTable& table, const std::vector<std::string>& known) 
 
 void RequireKnownKeys(const Yaml& robot) {
   if (robot.Has("sections")) {
-    return robot.Only({"format", "robot", "sections", "tendons", "mu", "tendon_EA", "gravity",
-                       "base_rotation"});
+    return robot.Only(
+        {"format", "robot", "sections", "tendons", "mu", "tendon_EA", "gravity", "base_rotation"});
   }
   robot.Only({"format", "robot", "length", "diameter", "disks", "tendons", "tendon_radius", "E",
               "nu", "density", "disk_mass", "mu", "tendon_EA", "gravity", "base_rotation",

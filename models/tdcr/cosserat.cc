@@ -15,7 +15,7 @@ struct NoTensions {};
 struct NoLengths {};
 
 constexpr double kRoundsOff = 1e-24;  // the kink of a norm at zero
-constexpr int kFewTendons = 4;  // more of them need larger states, which cost time to copy
+constexpr int kFewTendons = 4;        // more of them need larger states, which cost time to copy
 
 template <class Matrix>
 auto Values(const Matrix& m) {
@@ -97,8 +97,8 @@ template <class T, int kRubbing, bool kSlides>
   const T ny = (q0 * q0 - q1 * q1 + q2 * q2 - q3 * q3) * force.y() +
                2.0 * ((q1 * q2 - q0 * q3) * force.x() + (q2 * q3 + q0 * q1) * force.z());
   Vector3 right(moment.y() * u.z() - moment.z() * u.y() + ny,
-                      moment.z() * u.x() - moment.x() * u.z() - nx,
-                      moment.x() * u.y() - moment.y() * u.x());
+                moment.z() * u.x() - moment.x() * u.z() - nx,
+                moment.x() * u.y() - moment.y() * u.x());
 
   if (sum.slanted) right -= sum.drift;
   dy.u = sum.Solve(right);
@@ -220,8 +220,8 @@ void RodBalance::LoseAtDisk(int arc, const T* share, const State<T, kRubbing, kS
   }
 }
 
-// The curvature just after a disk, where the section or the tendons are others, by (2). Rounds after
-// the last one that counts give duals their derivatives.
+// The curvature just after a disk, where the section or the tendons are others, by (2). Rounds
+// after the last one that counts give duals their derivatives.
 template <class T, int kRubbing, bool kSlides>
 bool RodBalance::Jump(int arc, const T* share, State<T, kRubbing, kSlides>& y) const {
   using Vector3 = Eigen::Matrix<T, 3, 1>;

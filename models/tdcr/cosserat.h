@@ -36,8 +36,8 @@ namespace continuum::tdcr {
 ///
 /// With friction (beyond the paper) the tension falls along the channel, T_k' = -s_k mu T_k |t_k'|
 /// with t_k the unit vector of w_k, and T_k' a_k x t_k joins H u' on the left (rubbing.h). s_k is
-/// dir_k; where a tendon turns by an angle b at a disk, T_k falls by exp(-s_k mu b). Or, of contacts
-/// that remember,
+/// dir_k; where a tendon turns by an angle b at a disk, T_k falls by exp(-s_k mu b). Or, of
+/// contacts that remember,
 ///
 ///   s_k = SlideFrom(s_before, (b_before - b_k)/eps),  b_k = int_s^1 |w_k|                    (5)
 ///

@@ -39,8 +39,7 @@ Eigen::MatrixXd RodBalance::RestLengths(int steps) const {
     const double part = 1 / (rod.per_rod * steps);
     const double from = rod.start() + (i % steps) * part;
     for (int k = 0; k < tendons_; ++k) {
-      rest(i, k) =
-          rod_.shape->RestLength(static_cast<std::size_t>(k), arc, from, from + part);
+      rest(i, k) = rod_.shape->RestLength(static_cast<std::size_t>(k), arc, from, from + part);
     }
   }
   return rest;
@@ -95,7 +94,8 @@ Line RodBalance::LineOf(const Shape& shape) const {
             Eigen::MatrixXd::Zero(count, tendons_)};
   const Eigen::Index per_disk = (count - 1) / disks_;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const RodArc& arc = rod_.Arc(static_cast<int>(std::min(i / per_disk, disks_ - Eigen::Index{1})));
+    const RodArc& arc =
+        rod_.Arc(static_cast<int>(std::min(i / per_disk, disks_ - Eigen::Index{1})));
     const auto within = static_cast<double>(i % per_disk) / static_cast<double>(per_disk);
     line.s[i] = i == count - 1 ? length_ : length_ * (arc.before + within) / arc.per_rod;
   }

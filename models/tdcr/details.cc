@@ -20,7 +20,8 @@ template <class F>
 double OverArc(const Line& line, int arc, F&& f) {
   const Eigen::Index parts = (line.s.size() - 1) / line.ends.cols(), first = arc * parts;
   const double h = (line.s[first + parts] - line.s[first]) / static_cast<double>(parts);
-  double sum = f(Vector3d(line.u.col(first)), first) + f(Vector3d(line.ends.col(arc)), first + parts);
+  double sum =
+      f(Vector3d(line.u.col(first)), first) + f(Vector3d(line.ends.col(arc)), first + parts);
   for (Eigen::Index i = 1; i < parts; ++i) {
     sum += (i % 2 == 1 ? 4 : 2) * f(Vector3d(line.u.col(first + i)), first + i);
   }

@@ -235,9 +235,7 @@ double Size(const Robot& robot, const Loads& loads) {
   return loads.DeadForce(robot) * robot.length * robot.length / robot.SoftestEI();
 }
 
-bool Direct(const Robot& robot, const Loads& loads) {
-  return Size(robot, loads) < kOneEquilibrium;
-}
+bool Direct(const Robot& robot, const Loads& loads) { return Size(robot, loads) < kOneEquilibrium; }
 
 statics::RisingOptions Steps(const Robot& robot, const Loads& loads) {
   statics::RisingOptions options;

@@ -52,7 +52,8 @@ double RadiusOf(const Robot& robot, const std::vector<Section>& sections, int di
   double radius = 0;
   for (int k = 0; k < robot.tendons; ++k) {
     const Route route = robot.RouteOf(k);
-    if (disk <= route.end()) radius = std::max(radius, route.radius[static_cast<std::size_t>(disk)]);
+    if (disk <= route.end())
+      radius = std::max(radius, route.radius[static_cast<std::size_t>(disk)]);
   }
   auto rest = static_cast<std::size_t>(disk);
   for (const Section& section : sections) {

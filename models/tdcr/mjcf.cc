@@ -38,9 +38,9 @@ class Builder {
         per_arc_(links / robot.disks),
         guides_(guides),
         sections_(robot.Sections()),
-        mjcf_("tdcr", fmt::format(fmt::runtime(kComment),
-                                  robot.has_sections() ? "" : "models/tdcr/", name,
-                                  guides == Guides::kLinks ? "" : " --variant disks")),
+        mjcf_("tdcr",
+              fmt::format(fmt::runtime(kComment), robot.has_sections() ? "" : "models/tdcr/", name,
+                          guides == Guides::kLinks ? "" : " --variant disks")),
         holes_(static_cast<std::size_t>(robot.tendons)) {
     for (std::size_t s = 0; s < sections_.size(); ++s) {
       section_.insert(section_.end(), sections_[s].disks.size(), s);
@@ -87,7 +87,8 @@ class Builder {
     if (section.disk_radius > 0) return section.disk_radius;
     double radius = 0;
     for (const Route& route : routes_) {
-      if (disk <= route.end()) radius = std::max(radius, route.radius[static_cast<std::size_t>(disk)]);
+      if (disk <= route.end())
+        radius = std::max(radius, route.radius[static_cast<std::size_t>(disk)]);
     }
     return std::max(radius, section.diameter / 2) + kRim;
   }
@@ -160,7 +161,8 @@ class Builder {
     return link;
   }
 
-  // A piece of thin rod, its mass spread evenly, and the disk on it, both about their common centre.
+  // A piece of thin rod, its mass spread evenly, and the disk on it, both about their common
+  // centre.
   void Weigh(mjsBody* link, int i, double length) {
     const Section& section = Of(i);
     const double rod = i < links_ ? RodMass(i, length) : section.mass_per_length * length;

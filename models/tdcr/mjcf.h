@@ -18,11 +18,11 @@ enum class Guides { kDisks, kLinks };
 ///
 /// World z is up and the base frame's z down along the straight rod: base x = world x, base y =
 /// -world y. Link i reaches from the middle of piece i to that of piece i + 1, so that the end of
-/// piece i is inside it; disks sit there, tendons pass through holes there and end at their disks. With kLinks the tendons
-/// come along a straight lead, so half of the first bend rubs before the first span: the friction
-/// of a channel to second order in l. With kDisks nothing is lost at disk 0.
-/// `name` is that of the robot's file. Bodies link<i>, tip (s = L, mass 0); actuators cable<k> [N], tip_fx .. [N, base frame]; sensor
-/// tip_pos [m, base frame].
+/// piece i is inside it; disks sit there, tendons pass through holes there and end at their disks.
+/// With kLinks the tendons come along a straight lead, so half of the first bend rubs before the
+/// first span: the friction of a channel to second order in l. With kDisks nothing is lost at disk
+/// 0. `name` is that of the robot's file. Bodies link<i>, tip (s = L, mass 0); actuators cable<k>
+/// [N], tip_fx .. [N, base frame]; sensor tip_pos [m, base frame].
 /// @throws Error (input) when links is no multiple of the disks.
 std::string RobotMjcf(const Robot& robot, int links, Guides guides,
                       const std::string& name = "tdcr.yaml");

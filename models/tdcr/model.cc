@@ -182,7 +182,7 @@ void RequireTaken(const Robot& robot, const Loads& loads, Method method, const s
   const bool at_disks = loads.disk_force.size() > 0 || loads.disk_moment.size() > 0;
   if (!robot.has_sections() && !at_disks) return;
   throw Error::Input(where,
-                     std::string("--method crt or crt_friction for a robot with ") +
+                     std::string("the method crt or crt_friction for a robot with ") +
                          (at_disks ? "loads at disks" : "sections"),
                      method == Method::kEas ? "eas" : "pcca");
 }

@@ -31,7 +31,8 @@ std::vector<double> Disks(const Yaml& node, double length) {
   if (!node.Quantity().IsList()) {
     const double count = node.Parameter();
     if (!(count >= 1 && count <= kMostDisks && count == std::floor(count))) {
-      throw Error::Input(node.Where(), fmt::format("1 to {} disks, or a list of places", kMostDisks),
+      throw Error::Input(node.Where(),
+                         fmt::format("1 to {} disks, or a list of places", kMostDisks),
                          Decimal(count));
     }
     for (int i = 1; i <= static_cast<int>(count); ++i) places.push_back(i * length / count);
@@ -56,22 +57,22 @@ std::vector<double> Disks(const Yaml& node, double length) {
 }
 
 // Stiffness and weight of a rod or tube of one material.
-void ReadMaterial(const Yaml& y, double bore, Section& section) {
+void ReadMaterial(const Yaml& y, Section& section) {
   const double E = Above0(y.At("E"), 1e13), nu = y.At("nu").Parameter();
   if (!(nu > -1 && nu <= 0.5)) {
     throw Error::Input(y.At("nu").Where(), "-1 < nu <= 0.5", Decimal(nu));
   }
-  const double d = section.diameter;
+  const double d = section.diameter, bore = section.bore;
   const double area = std::numbers::pi / 4 * (d * d - bore * bore);
   section.EI = E * std::numbers::pi / 64 * (std::pow(d, 4) - std::pow(bore, 4));
   section.GJ = section.EI / (1 + nu);
   section.mass_per_length = y.At("density").Parameter(0, 1e5) * area;
 }
 
-void ReadStiffness(const Yaml& y, double bore, Section& section) {
+void ReadStiffness(const Yaml& y, Section& section) {
   const bool given = y.Has("EI") || y.Has("GJ") || y.Has("mass_per_length");
   const char* const material[] = {"E", "nu", "density"};
-  if (!given) return ReadMaterial(y, bore, section);
+  if (!given) return ReadMaterial(y, section);
   for (const char* key : material) {
     if (y.Has(key)) {
       throw Error::Input(y.At(key).Where(),
@@ -84,19 +85,19 @@ void ReadStiffness(const Yaml& y, double bore, Section& section) {
   section.mass_per_length = y.At("mass_per_length").Parameter(0, kMostMass);
 }
 
-// @returns the bore.
-double ReadSection(const Yaml& y, Section& section) {
+Section ReadSection(const Yaml& y) {
+  Section section;
   y.Only({"length", "diameter", "bore", "E", "nu", "density", "EI", "GJ", "mass_per_length",
           "disks", "disk_mass", "disk_radius", "precurvature"});
   const double length = Above0(y.At("length"), kMostLength);
   section.diameter = Above0(y.At("diameter"), length);
-  const double bore = y.Has("bore") ? y.At("bore").Parameter() : 0;
-  if (!(bore >= 0 && bore < section.diameter)) {
+  if (y.Has("bore")) section.bore = y.At("bore").Parameter();
+  if (!(section.bore >= 0 && section.bore < section.diameter)) {
     throw Error::Input(y.At("bore").Where(),
                        "a bore from 0 to below the diameter, " + Decimal(section.diameter),
-                       Decimal(bore));
+                       Decimal(section.bore));
   }
-  ReadStiffness(y, bore, section);
+  ReadStiffness(y, section);
   section.disks = Disks(y.At("disks"), length);
   section.disk_mass = AtLeast0(y, "disk_mass");
   if (y.Has("disk_radius")) section.disk_radius = Above0(y.At("disk_radius"), length);
@@ -108,7 +109,7 @@ double ReadSection(const Yaml& y, Section& section) {
     }
     section.natural = {u[0], u[1], u[2]};
   }
-  return bore;
+  return section;
 }
 
 int DiskNumber(const Yaml& node, double value, int disks) {
@@ -119,8 +120,13 @@ int DiskNumber(const Yaml& node, double value, int disks) {
 /// Reads tendons, given the sections.
 class TendonReader {
  public:
-  TendonReader(const Robot& robot, std::vector<double> bores)
-      : robot_(robot), bores_(std::move(bores)) {}
+  explicit TendonReader(const std::vector<Section>& sections) : sections_(sections) {
+    double start = 0;
+    for (const Section& section : sections) {
+      for (const double disk : section.disks) places_.push_back(start + disk);
+      start += section.length();
+    }
+  }
 
   Route Read(const Yaml& y) const {
     y.Only({"radius", "angle", "section", "disk", "at"});
@@ -135,6 +141,9 @@ class TendonReader {
   }
 
  private:
+  int disks() const { return static_cast<int>(places_.size()) - 1; }
+  double Place(int disk) const { return places_[static_cast<std::size_t>(disk)]; }
+
   // The disk where the tendon ends; 0: not said.
   int End(const Yaml& y) const {
     if (y.Has("section") && y.Has("disk")) {
@@ -142,12 +151,12 @@ class TendonReader {
                          "both");
     }
     if (y.Has("disk")) {
-      const int disk = DiskNumber(y.At("disk"), y.At("disk").Parameter(), robot_.disks);
+      const int disk = DiskNumber(y.At("disk"), y.At("disk").Parameter(), disks());
       if (disk > 0) return disk;
       throw Error::Input(y.At("disk").Where(), "a disk beyond the base, where it begins", "0");
     }
     if (!y.Has("section")) return 0;
-    const auto sections = static_cast<int>(robot_.sections.size());
+    const auto sections = static_cast<int>(sections_.size());
     const int section = y.At("section").Integer();
     if (section < 1 || section > sections) {
       throw Error::Input(y.At("section").Where(), fmt::format("a section from 1 to {}", sections),
@@ -155,7 +164,7 @@ class TendonReader {
     }
     int end = 0;
     for (int i = 0; i < section; ++i) {
-      end += static_cast<int>(robot_.sections[static_cast<std::size_t>(i)].disks.size());
+      end += static_cast<int>(sections_[static_cast<std::size_t>(i)].disks.size());
     }
     return end;
   }
@@ -163,11 +172,11 @@ class TendonReader {
   // Disks at which radius and angle are given, from the base to its end.
   std::vector<int> Knots(const Yaml& y) const {
     const int end = End(y);
-    if (!y.Has("at")) return {0, end > 0 ? end : robot_.disks};
+    if (!y.Has("at")) return {0, end > 0 ? end : disks()};
     const Yaml node = y.At("at");
     std::vector<int> knots;
     for (const double value : node.Parameters()) {
-      const int disk = DiskNumber(node, value, robot_.disks);
+      const int disk = DiskNumber(node, value, disks());
       if (knots.empty() ? disk != 0 : disk <= knots.back()) {
         throw Error::Input(node.Where(), "disks that rise from 0 (the base)", Decimal(value));
       }
@@ -175,8 +184,7 @@ class TendonReader {
     }
     if (knots.size() < 2) throw Error::Input(node.Where(), "at least two disks", node.Found());
     if (end > 0 && knots.back() != end) {
-      throw Error::Input(node.Where(),
-                         fmt::format("a last disk where the tendon ends, {}", end),
+      throw Error::Input(node.Where(), fmt::format("a last disk where the tendon ends, {}", end),
                          std::to_string(knots.back()));
     }
     return knots;
@@ -193,9 +201,9 @@ class TendonReader {
     }
     std::vector<double> values{given.front()};
     for (std::size_t i = 1; i < at.size(); ++i) {
-      const double from = robot_.Place(at[i - 1]), to = robot_.Place(at[i]);
+      const double from = Place(at[i - 1]), to = Place(at[i]);
       for (int disk = at[i - 1] + 1; disk <= at[i]; ++disk) {
-        const double share = disk == at[i] ? 1 : (robot_.Place(disk) - from) / (to - from);
+        const double share = disk == at[i] ? 1 : (Place(disk) - from) / (to - from);
         values.push_back(given[i - 1] + share * (given[i] - given[i - 1]));
       }
     }
@@ -205,12 +213,12 @@ class TendonReader {
   // Of a tendon at a disk: outside the rod or in its bore, and within the disk.
   void RequireRoom(const Yaml& node, int disk, double radius) const {
     std::size_t i = 0;
-    for (int before = disk; i + 1 < robot_.sections.size(); ++i) {
-      before -= static_cast<int>(robot_.sections[i].disks.size());
+    for (int before = disk; i + 1 < sections_.size(); ++i) {
+      before -= static_cast<int>(sections_[i].disks.size());
       if (before <= 0) break;
     }
-    const Section& section = robot_.sections[i];
-    const double rod = section.diameter / 2, bore = bores_[i] / 2;
+    const Section& section = sections_[i];
+    const double rod = section.diameter / 2, bore = section.bore / 2;
     if (!(radius >= rod || (radius >= 0 && radius < bore))) {
       throw Error::Input(node.Where(),
                          fmt::format("a radius outside the rod of {} m radius at disk {}{}",
@@ -218,54 +226,47 @@ class TendonReader {
                          Decimal(radius));
     }
     if (section.disk_radius > 0 && !(radius < section.disk_radius)) {
-      throw Error::Input(node.Where(),
-                         fmt::format("a radius within disk {} of {} m radius", disk,
-                                     Decimal(section.disk_radius)),
-                         Decimal(radius));
+      throw Error::Input(
+          node.Where(),
+          fmt::format("a radius within disk {} of {} m radius", disk, Decimal(section.disk_radius)),
+          Decimal(radius));
     }
   }
 
-  const Robot& robot_;
-  std::vector<double> bores_;
+  const std::vector<Section>& sections_;
+  std::vector<double> places_{0};  ///< of the disks, 0 is the base [m]
 };
-
-// Sizes of the whole robot.
-void Summarize(Robot& robot) {
-  robot.diameter = robot.tendon_radius = 0;
-  for (const Section& s : robot.sections) robot.diameter = std::max(robot.diameter, s.diameter);
-  for (const Route& r : robot.routes) {
-    robot.tendon_radius =
-        std::max(robot.tendon_radius, *std::max_element(r.radius.begin(), r.radius.end()));
-  }
-}
 
 }  // namespace
 
-void ReadSections(const Yaml& file, Robot& robot) {
-  std::vector<double> bores;
-  robot.length = 0;
-  robot.disks = 0;
+std::vector<Section> ReadSections(const Yaml& file) {
+  std::vector<Section> sections;
+  std::size_t disks = 0;
   for (const Yaml& y : file.At("sections").Items()) {
-    bores.push_back(ReadSection(y, robot.sections.emplace_back()));
-    robot.length += robot.sections.back().length();
-    robot.disks += static_cast<int>(robot.sections.back().disks.size());
+    sections.push_back(ReadSection(y));
+    disks += sections.back().disks.size();
   }
-  if (robot.disks < 1 || robot.disks > kMostDisks) {
-    throw Error::Input(file.At("sections").Where(),
-                       fmt::format("sections with 1 to {} disks together", kMostDisks),
-                       std::to_string(robot.disks));
+  if (disks >= 1 && disks <= kMostDisks) return sections;
+  throw Error::Input(file.At("sections").Where(),
+                     fmt::format("sections with 1 to {} disks together", kMostDisks),
+                     std::to_string(disks));
+}
+
+std::vector<Route> ReadRoutes(const Yaml& file, const std::vector<Section>& sections) {
+  const TendonReader reader(sections);
+  std::vector<Route> routes;
+  bool beside = false;
+  for (const Yaml& y : file.At("tendons").Items()) {
+    routes.push_back(reader.Read(y));
+    for (const double radius : routes.back().radius) beside = beside || radius > 0;
   }
-  const TendonReader reader(robot, std::move(bores));
-  for (const Yaml& y : file.At("tendons").Items()) robot.routes.push_back(reader.Read(y));
-  robot.tendons = static_cast<int>(robot.routes.size());
-  if (robot.tendons < 1 || robot.tendons > kMaxTendons) {
-    throw Error::Input(file.At("tendons").Where(), fmt::format("1 to {} tendons", kMaxTendons),
-                       std::to_string(robot.tendons));
+  const Yaml node = file.At("tendons");
+  if (routes.empty() || routes.size() > kMaxTendons) {
+    throw Error::Input(node.Where(), fmt::format("1 to {} tendons", kMaxTendons),
+                       std::to_string(routes.size()));
   }
-  Summarize(robot);
-  if (!(robot.tendon_radius > 0)) {
-    throw Error::Input(file.At("tendons").Where(), "a tendon beside the rod's axis", "none");
-  }
+  if (!beside) throw Error::Input(node.Where(), "a tendon beside the rod's axis", "none");
+  return routes;
 }
 
 }  // namespace continuum::tdcr

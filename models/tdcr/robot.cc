@@ -184,6 +184,24 @@ Loads NoLoads(const Robot& robot) {
 
 namespace {
 
+// A robot of sections, and its sizes.
+void ReadArm(const Yaml& file, Robot& robot) {
+  robot.sections = ReadSections(file);
+  robot.routes = ReadRoutes(file, robot.sections);
+  robot.tendons = static_cast<int>(robot.routes.size());
+  robot.length = robot.diameter = robot.tendon_radius = 0;
+  robot.disks = 0;
+  for (const Section& s : robot.sections) {
+    robot.length += s.length();
+    robot.disks += static_cast<int>(s.disks.size());
+    robot.diameter = std::max(robot.diameter, s.diameter);
+  }
+  for (const Route& r : robot.routes) {
+    const double widest = *std::max_element(r.radius.begin(), r.radius.end());
+    robot.tendon_radius = std::max(robot.tendon_radius, widest);
+  }
+}
+
 // The segment of the paper.
 void ReadSegment(const Yaml& file, Robot& robot) {
   robot.length = Positive(file, "length");
@@ -208,7 +226,7 @@ Robot ReadRobot(const Yaml& file) {
     throw Error::Input(file.At("format").Where(), "format 1", std::to_string(format));
   }
   if (file.Has("sections")) {
-    ReadSections(file, robot);
+    ReadArm(file, robot);
   } else {
     ReadSegment(file, robot);
   }

@@ -13,8 +13,6 @@
 
 namespace continuum::tdcr {
 
-inline constexpr int kMaxTendons = 64;
-
 /// An elastic rod along z with n disks and m tendons. SI units.
 ///
 /// Without `sections` it is the segment of the paper: one straight rod, disks at equal distances,
@@ -93,7 +91,7 @@ struct Loads {
   /// Dead forces [N] and moments [N m] at disks 1..n, base frame, 3 x n; empty: none. That at disk
   /// n adds to `tip_force`.
   Eigen::Matrix3Xd disk_force = {}, disk_moment = {};
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();    ///< [m/s^2]
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
   double mu = 0;
   bool own_mu = false;  ///< mu belongs to this case, whatever the robot's
   /// Of tendons that are driven by length: what is between base and tip without tension [m]; then

@@ -123,8 +123,8 @@ bool RodLaw::At(int piece, const Vector3d& u, const Vector3d& /*n*/,
     const ChannelPoint hole = Hole(piece, k);
     const bool parallel = rod_.ChannelOf(static_cast<std::size_t>(k), ArcOf(piece)).parallel;
     const double pull = tension_(k, piece);
-    const bool inside = parallel ? sum.AddParallel(hole.a, pull, u, along)
-                                 : sum.AddSlanted(hole, pull, u, along);
+    const bool inside =
+        parallel ? sum.AddParallel(hole.a, pull, u, along) : sum.AddSlanted(hole, pull, u, along);
     if (!inside) return false;
   }
   section.moment = sum.moment;

@@ -19,8 +19,8 @@ class RodLaw {
  public:
   static constexpr bool kShear = false;
 
-  /// pieces: a multiple of the arcs. share: of the contacts along the rod, rows x tendons, held as they are; empty: the directions
-  /// of the rod's tendons.
+  /// pieces: a multiple of the arcs. share: of the contacts along the rod, rows x tendons, held as
+  /// they are; empty: the directions of the rod's tendons.
   RodLaw(UnitRod rod, int pieces, Eigen::MatrixXd share = {});
 
   bool friction() const { return rod_.friction; }

@@ -5,9 +5,12 @@
 
 namespace continuum::tdcr {
 
+inline constexpr int kMaxTendons = 64;
+
 /// A part of the rod with one cross-section, a rod or a tube, and the disks on it. SI units.
 struct Section {
   double diameter = 0;         ///< of the outside [m]
+  double bore = 0;             ///< diameter of the inside of a tube [m]
   double EI = 0, GJ = 0;       ///< [N m^2]
   double mass_per_length = 0;  ///< of the rod [kg/m]
   double disk_mass = 0;        ///< of one disk [kg]

@@ -184,7 +184,7 @@ int ReachTargets(const SolveRequest& request, const Robot& robot, Method method)
 // A robot with sections: the Cosserat rod alone knows it.
 void RequireSolvable(const SolveRequest& request, const Yaml& file, const Robot& robot,
                      const std::string& method) {
-  const std::string where = file.At("sections").Where(), only = "--method crt or crt_friction";
+  const std::string where = file.At("sections").Where(), only = "the method crt or crt_friction";
   if (method == "fit") throw Error::Input(where, only + " with sections", "fit");
   if (request.calibrate || !request.hybrid.empty()) {
     throw Error::Input(where, "a robot of one section (keys length, diameter, ..) for calibration",

@@ -59,8 +59,8 @@ RodShape::RodShape(const Robot& robot) {
     start += section.length();
   }
   for (std::size_t i = 1; i < arcs.size(); ++i) {
-    arcs[i].jump = arcs[i].stiffness != arcs[i - 1].stiffness ||
-                   arcs[i].natural != arcs[i - 1].natural;
+    arcs[i].jump =
+        arcs[i].stiffness != arcs[i - 1].stiffness || arcs[i].natural != arcs[i - 1].natural;
   }
   channels.resize(static_cast<std::size_t>(robot.tendons) * arcs.size());
   for (int k = 0; k < robot.tendons; ++k) {
@@ -78,7 +78,9 @@ RodShape::RodShape(const Robot& robot) {
 double RodShape::RestLength(std::size_t tendon, std::size_t arc, double from, double to) const {
   if (arc >= ends[tendon]) return 0;
   if (At(tendon, arc).parallel && arcs[arc].natural.isZero(0)) return to - from;
-  const auto along = [&](double s) { return Along(At(tendon, arc).At(s), arcs[arc].natural).norm(); };
+  const auto along = [&](double s) {
+    return Along(At(tendon, arc).At(s), arcs[arc].natural).norm();
+  };
   return (to - from) / 6 * (along(from) + 4 * along((from + to) / 2) + along(to));
 }
 
@@ -155,9 +157,8 @@ void UnitRod::SetForces(const Robot& robot, const Loads& loads) {
 
 int UnitRod::ArcAt(double s) const {
   const auto& all = shape->arcs;
-  const auto after = std::upper_bound(all.begin(), all.end(), s, [](double at, const RodArc& arc) {
-    return at < arc.start();
-  });
+  const auto after = std::upper_bound(
+      all.begin(), all.end(), s, [](double at, const RodArc& arc) { return at < arc.start(); });
   return std::max(0, static_cast<int>(after - all.begin()) - 1);
 }
 

@@ -11,8 +11,8 @@ namespace continuum::tdcr {
 
 /// The rod between two disks, in units of the whole length L and of the first section's EI.
 struct RodArc {
-  double per_rod;  ///< L over its length
-  double before;   ///< arcs of its length between the base and where it begins
+  double per_rod;                      ///< L over its length
+  double before;                       ///< arcs of its length between the base and where it begins
   Eigen::Vector3d stiffness, natural;  ///< K, u_0
   /// Whether u is another one just after the disk where it begins: the stiffness or u_0 changes,
   /// or a tendon ends or turns there.
@@ -35,7 +35,7 @@ struct RodShape {
   double RestLength(std::size_t tendon) const;
 
   std::vector<RodArc> arcs;
-  std::vector<std::size_t> ends;   ///< of every tendon: arcs that it runs through
+  std::vector<std::size_t> ends;  ///< of every tendon: arcs that it runs through
   std::vector<Channel> channels;  ///< tendons x arcs
 };
 

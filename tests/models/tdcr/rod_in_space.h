@@ -16,9 +16,9 @@ namespace continuum::tdcr {
 ///   p' = R e_3,  R' = R [u]x,  K (u - u_0) = R^T m                                          (1)
 ///   n' = -f - weight,  m' = -p' x n - l,  f = sum T t',  l = sum R a x T t'                 (2)
 ///
-/// and at disks m and n fall by their loads, by T t where a tendon ends and by T (t_before - t) where
-/// it turns. t' depends on u', which (2) gives by a linear system. Walks from the base by Runge-Kutta's
-/// fourth order: an equilibrium has a free tip, m = n = 0.
+/// and at disks m and n fall by their loads, by T t where a tendon ends and by T (t_before - t)
+/// where it turns. t' depends on u', which (2) gives by a linear system. Walks from the base by
+/// Runge-Kutta's fourth order: an equilibrium has a free tip, m = n = 0.
 class RodInSpace {
  public:
   RodInSpace(const Robot& robot, Loads loads, int steps)
@@ -35,7 +35,8 @@ class RodInSpace {
     const Vector3 rest(-first.natural.y(), first.natural.x(), first.natural.z());
     State y{Vector3::Zero(), Vector3::Zero(), loads_.tip_force, Matrix3::Identity()};
     y.m = Vector3(first.EI, first.EI, first.GJ).cwiseProduct(u - rest);
-    for (int arc = 0; arc < robot_.disks; ++arc) y.n += Weight(arc) + AtDisk(loads_.disk_force, arc);
+    for (int arc = 0; arc < robot_.disks; ++arc)
+      y.n += Weight(arc) + AtDisk(loads_.disk_force, arc);
     for (std::size_t k = 0; k < routes_.size(); ++k) y.n -= Pull(k) * Tangent(k, 0, 0, y);
     for (int arc = 0; arc < robot_.disks; ++arc) {
       y = Walk(arc, y);
@@ -45,7 +46,7 @@ class RodInSpace {
     moment_ = y.m;
     force_ = y.n;
   }
-  const Eigen::Matrix3Xd& disks() const { return disks_; }  ///< O_1..O_n [m]
+  const Eigen::Matrix3Xd& disks() const { return disks_; }   ///< O_1..O_n [m]
   const Eigen::Vector3d& moment() const { return moment_; }  ///< beyond the tip [N m]
   const Eigen::Vector3d& force() const { return force_; }    ///< beyond the tip [N]
 
@@ -81,7 +82,8 @@ class RodInSpace {
   Vector3 Curvature(int arc, const State& y) const {
     const Section& section = Of(arc);
     const Vector3 b = y.R.transpose() * y.m, k = section.natural;
-    return Vector3(b.x() / section.EI - k.y(), b.y() / section.EI + k.x(), b.z() / section.GJ + k.z());
+    return Vector3(b.x() / section.EI - k.y(), b.y() / section.EI + k.x(),
+                   b.z() / section.GJ + k.z());
   }
   Hole At(std::size_t k, int arc, double s) const {
     const auto i = static_cast<std::size_t>(arc);

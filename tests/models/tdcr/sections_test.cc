@@ -19,9 +19,7 @@ using Eigen::Vector3d;
 
 const std::string kFolder = std::string(CONTINUUM_SOURCE) + "/models/tdcr/examples/";
 
-Robot Example(const std::string& name) {
-  return ReadRobot(Yaml::Read(kFolder + name + ".yaml"));
-}
+Robot Example(const std::string& name) { return ReadRobot(Yaml::Read(kFolder + name + ".yaml")); }
 
 std::vector<Case> CasesOf(const std::string& name, const Robot& robot) {
   return ReadCases(CsvTable::Read(kFolder + name + ".csv"), robot);
@@ -57,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(Robots, TdcrExample,
                                          "tube_in_discs"),
                          [](const auto& info) { return std::string(info.param); });
 
-// The solution's base, walked to a tip that must be free. Tolerances: the error of the walk's steps.
+// The solution's base, walked to a tip that must be free. Tolerances: the error of the walk's
+// steps.
 void ExpectBalanceInSpace(const Robot& robot, const Loads& loads) {
   const Solution s = Solved(robot, loads);
   RodInSpace space(robot, loads, 24);
@@ -131,7 +130,8 @@ TEST_P(TdcrExample, HoldsStillWithFriction) {
   EXPECT_LT(Apart(first.disks, again.disks), 1e-9);
 }
 
-// Tensions along the line against the turns of the tendons through the holes in space, T exp(-mu b).
+// Tensions along the line against the turns of the tendons through the holes in space, T exp(-mu
+// b).
 TEST_P(TdcrExample, LosesTensionByTheTurnsOfItsTendons) {
   const Robot robot = Example(GetParam());
   Loads loads = CasesOf(GetParam(), robot)[4].loads;
@@ -144,8 +144,10 @@ TEST_P(TdcrExample, LosesTensionByTheTurnsOfItsTendons) {
     if (route.radius.front() != route.radius.back() && route.end() < robot.disks) continue;  // knee
     std::vector<Vector3d> hole;
     for (Eigen::Index i = 0; i <= route.end() * parts; ++i) {
-      const auto disk = static_cast<std::size_t>(std::min<Eigen::Index>(i / parts, route.end() - 1));
-      const double w = static_cast<double>(i) / static_cast<double>(parts) - static_cast<double>(disk);
+      const auto disk =
+          static_cast<std::size_t>(std::min<Eigen::Index>(i / parts, route.end() - 1));
+      const double w =
+          static_cast<double>(i) / static_cast<double>(parts) - static_cast<double>(disk);
       const double r = (1 - w) * route.radius[disk] + w * route.radius[disk + 1];
       const double q = (1 - w) * route.angle[disk] + w * route.angle[disk + 1];
       hole.push_back(line.points.col(i) + line.frames[static_cast<std::size_t>(i)] *
@@ -214,7 +216,8 @@ TEST(TdcrSections, AHelicalTendonTwistsAndBendsTheRod) {
   }
 }
 
-// In a plane nu = EI kappa - T d|w|/dkappa = 0 with w = (r', 1 - kappa r), here to first order in T.
+// In a plane nu = EI kappa - T d|w|/dkappa = 0 with w = (r', 1 - kappa r), here to first order in
+// T.
 TEST(TdcrSections, AConvergingTendonBendsLessWhereItIsNearer) {
   const double T = 1e-4;
   const Robot robot = Made(kOne, "  - {radius: [10.0e-3, 2.0e-3], angle: 0}\n");
@@ -253,7 +256,8 @@ TEST(TdcrSections, AMomentAtADiskBendsTheRodUpToIt) {
 
 TEST(TdcrSections, APrecurvedTubeRestsInItsShape) {
   const Robot robot = Made(
-      "  - {length: 0.2, diameter: 2.0e-3, bore: 1.0e-3, E: 50.0e9, nu: 0.25, density: 0, disks: 10, "
+      "  - {length: 0.2, diameter: 2.0e-3, bore: 1.0e-3, E: 50.0e9, nu: 0.25, density: 0, disks: "
+      "10, "
       "precurvature: [3, 4, 0]}\n",
       "  - {radius: 6.0e-3, angle: 0}\n");
   EXPECT_NEAR(robot.EI(), 50e9 * std::numbers::pi / 64 * (16e-12 - 1e-12), 1e-12);
@@ -326,7 +330,8 @@ TEST_P(TdcrBadSections, AreRefusedWithTheirPlace) {
 }
 
 const Refused kRefused[] = {
-    {"OutsideItsDisk", "disks: 5, disk_radius: 5.0e-3", "radius: 6.0e-3, angle: 0", "within disk 0"},
+    {"OutsideItsDisk", "disks: 5, disk_radius: 5.0e-3", "radius: 6.0e-3, angle: 0",
+     "within disk 0"},
     {"InsideTheRod", "disks: 5", "radius: [6.0e-3, 0.1e-3], angle: 0", "outside the rod"},
     {"AtTheBase", "disks: 5", "radius: 6.0e-3, angle: 0, disk: 0", "beyond the base"},
     {"NoSuchSection", "disks: 5", "radius: 6.0e-3, angle: 0, section: 2", "from 1 to 1"},
