@@ -1,5 +1,6 @@
 #include "models/make.h"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 
@@ -23,9 +24,11 @@ namespace fs = std::filesystem;
 using Variants = std::map<std::string, std::function<std::string(const fs::path&)>>;
 
 std::string Rod(const fs::path& file, tdcr::Guides guides) {
-  constexpr int kLinksPerDisk = 5;
+  constexpr int kLinksPerDisk = 5, kLinks = 45;  // at least
   const tdcr::Robot robot = tdcr::ReadRobot(Yaml::Read(file));
-  return tdcr::SegmentMjcf(robot, kLinksPerDisk * robot.disks, guides);
+  const int per_disk = std::max(kLinksPerDisk, (kLinks + robot.disks - 1) / robot.disks);
+  return tdcr::RobotMjcf(robot, per_disk * robot.disks, guides,
+                         robot.has_sections() ? file.filename().string() : "tdcr.yaml");
 }
 
 std::string Module(const fs::path& file, stiff_flop::Threads threads) {

@@ -195,8 +195,9 @@ void Mjcf::AddBend(mjsBody* body, const std::string& name, const Point& axis, do
 }
 
 void Mjcf::AddElasticHinge(mjsBody* body, const std::string& name, const Point& axis,
-                           double stiffness, const ModalLimit& pace) {
+                           double stiffness, const ModalLimit& pace, double rest) {
   mjsJoint* const joint = AddJoint(body, name, axis, stiffness);
+  joint->springref = rest;
   joint->armature = stiffness / (pace.fastest * pace.fastest);
   joint->damping[0] = stiffness * pace.lag;
 }

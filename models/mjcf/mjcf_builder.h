@@ -56,7 +56,7 @@ class Mjcf {
                double damping);
   /// A hinge without stops whose stiffness [N m/rad] is that of a piece of an elastic body.
   void AddElasticHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
-                       const ModalLimit& pace);
+                       const ModalLimit& pace, double rest = 0);
   /// A slide along z or a hinge through the body's origin, free of springs and stops; armature [kg]
   /// or [kg m^2].
   void AddFreeJoint(mjsBody* body, const std::string& name, mjtJoint type, const Point& axis,

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "models/statics/block_tridiagonal.h"
@@ -17,9 +18,9 @@ struct RodSection {
   Eigen::Matrix3d moment_by_zeta, moment_by_n, stretch_by_zeta, stretch_by_n;
 };
 
-/// A rod clamped at s = 0 and free at its end, cut into equal pieces: the frames R_0 = 1, R_1, ..,
-/// R_N of its nodes are the unknowns. It says how stable an equilibrium of the whole rod is, and it
-/// can fall from one that is not.
+/// A rod clamped at s = 0 and free at its end, cut into pieces, equal ones if nothing else is said:
+/// the frames R_0 = 1, R_1, .., R_N of its nodes are the unknowns. It says how stable an
+/// equilibrium of the whole rod is, and it can fall from one that is not.
 ///
 /// Dead forces make the internal force F(s) known beforehand, so that the energy is a sum over
 /// pieces of h w(zeta, R^T F), with M = dw/dzeta and -Gamma = dw/dn. A turn phi(s) of the sections,
@@ -29,13 +30,14 @@ struct RodSection {
 ///   g_i = m_i - m_i+1 + h/2 [(F x t)_i + (F x t)_i+1],  m_N+1 = t_N x P                     (1)
 ///
 /// g_i is what turns node i back; (1) is m' = F x t. P: dead force times its lever beyond the tip,
-/// along the last tangent. Middles of pieces stand for pieces: the error falls with the square of
-/// their number.
+/// along the last tangent. Where the law has `DeadMoment(node)`, g_i is less by it: a dead moment
+/// [N m] at node i = 1..N, base frame. Middles of pieces stand for pieces: the error falls with the
+/// square of their number.
 ///
 /// Law: `static constexpr bool kShear` (false: Gamma is the axis), `length()`, `axis()`,
-/// `Force(s)` [N] of all loads beyond s in 0..1, `TipLever()` [N m], `elastic()`: dM/dzeta of the
-/// unloaded section, `Prepare(zeta)` with the strains of all pieces, `At(piece, zeta, n, section)`,
-/// false out of the domain.
+/// `Force(s)` [N] of all loads beyond s in 0..1, `TipLever()` [N m], `elastic()` or
+/// `ElasticOf(piece)`: dM/dzeta of the unloaded section, `Prepare(zeta)` with the strains of all
+/// pieces, `At(piece, zeta, n, section)`, false out of the domain.
 template <class Law>
 class RodChain {
  public:
@@ -43,13 +45,25 @@ class RodChain {
   using Step = Eigen::Matrix3Xd;                  ///< phi_1..phi_N [rad]
 
   RodChain(Law& law, int pieces)
+      : RodChain(law, std::vector<double>(At(pieces), law.length() / pieces)) {
+    for (int i = 0; i < pieces; ++i) middle_[At(i)] = (i + 0.5) / pieces;
+  }
+  /// Pieces of these lengths.
+  RodChain(Law& law, std::vector<double> lengths)
       : law_(law),
-        pieces_(pieces),
-        h_(law.length() / pieces),
-        zeta_(3, pieces),
-        residual_(3, pieces),
-        stiffness_(pieces),
-        metric_(pieces) {}
+        pieces_(static_cast<int>(lengths.size())),
+        h_(std::move(lengths)),
+        middle_(h_.size()),
+        zeta_(3, pieces_),
+        residual_(3, pieces_),
+        stiffness_(pieces_),
+        metric_(pieces_) {
+    double start = 0;
+    for (std::size_t i = 0; i < h_.size(); ++i) {
+      middle_[i] = (start + h_[i] / 2) / law.length();
+      start += h_[i];
+    }
+  }
 
   int pieces() const { return pieces_; }
 
@@ -101,13 +115,21 @@ class RodChain {
     return s;
   }
 
+  Eigen::Matrix3d ElasticOf(int piece) const {
+    if constexpr (requires { law_.ElasticOf(piece); }) {
+      return law_.ElasticOf(piece);
+    } else {
+      return law_.elastic();
+    }
+  }
+
   void FindStrains(const Shape& shape) {
     for (int i = 0; i < pieces_; ++i) {
       Eigen::Quaterniond turn = shape[At(i)].conjugate() * shape[At(i + 1)];
       if (turn.w() < 0) turn.coeffs() *= -1;
       const double sine = turn.vec().norm();
       const double angle = 2 * std::atan2(sine, turn.w());
-      zeta_.col(i) = turn.vec() * ((sine > 1e-8 ? angle / sine : 2.0) / h_);
+      zeta_.col(i) = turn.vec() * ((sine > 1e-8 ? angle / sine : 2.0) / h_[At(i)]);
     }
   }
 
@@ -132,13 +154,14 @@ class RodChain {
     if (from.dot(to) < 0) to.coeffs() *= -1;
     const Eigen::Matrix3d R =
         Eigen::Quaterniond(from.coeffs() + to.coeffs()).normalized().toRotationMatrix();
-    const Eigen::Vector3d F = law_.Force((i + 0.5) / pieces_);
+    const Eigen::Vector3d F = law_.Force(middle_[At(i)]);
     RodSection section;
     if (!law_.At(i, zeta_.col(i), R.transpose() * F, section)) return false;
     const Eigen::Vector3d m = R * section.moment, t = R * section.stretch;
-    const Eigen::Vector3d push = 0.5 * h_ * F.cross(t);
+    const Eigen::Vector3d push = 0.5 * h_[At(i)] * F.cross(t);
     residual_.col(i) += m + push;
     if (i > 0) residual_.col(i - 1) += push - m;
+    if constexpr (requires { law_.DeadMoment(i + 1); }) residual_.col(i) -= law_.DeadMoment(i + 1);
     if (kTangent) AddTangent(i, R, F, m, t, section);
     return true;
   }
@@ -149,14 +172,15 @@ class RodChain {
     const auto turned = [&](const Eigen::Matrix3d& x) -> Eigen::Matrix3d {
       return R * x * R.transpose();
     };
+    const double h = h_[At(i)];
     const Eigen::Matrix3d by_F = Skew(F);
-    const Eigen::Matrix3d elastic = law_.elastic() / h_;
-    Eigen::Matrix3d A = turned(section.moment_by_zeta / h_ + shift_ * elastic), N = -0.5 * Skew(m);
-    Eigen::Matrix3d G = Eigen::Matrix3d::Zero(), H = -0.25 * h_ * by_F * Skew(t);
+    const Eigen::Matrix3d elastic = ElasticOf(i) / h;
+    Eigen::Matrix3d A = turned(section.moment_by_zeta / h + shift_ * elastic), N = -0.5 * Skew(m);
+    Eigen::Matrix3d G = Eigen::Matrix3d::Zero(), H = -0.25 * h * by_F * Skew(t);
     if constexpr (Law::kShear) {
       N += 0.5 * turned(section.moment_by_n) * by_F;
       G = 0.5 * by_F * turned(section.stretch_by_zeta);
-      H += 0.25 * h_ * by_F * turned(section.stretch_by_n) * by_F;
+      H += 0.25 * h * by_F * turned(section.stretch_by_n) * by_F;
     }
     Couple(i, A + N + G + H, N - A + H - G, G + H - A - N, A - G + H - N, stiffness_);
     if (shift_ != 0) return;
@@ -185,7 +209,8 @@ class RodChain {
 
   Law& law_;
   int pieces_;
-  double h_, shift_ = 0;
+  std::vector<double> h_, middle_;  ///< lengths of the pieces; their middles over the whole length
+  double shift_ = 0;
   Eigen::Matrix3Xd zeta_, residual_;
   BlockTridiagonal stiffness_, metric_;
 };

@@ -10,10 +10,16 @@ namespace {
 
 constexpr std::size_t kShown = 200;  // characters of a list of names
 
-std::vector<std::string> KnownColumns(const std::string& drive, int tendons) {
-  std::vector<std::string> known{"case", "fx", "fy", "fz", "gx", "gy", "gz", "mu", "reference"};
+std::vector<std::string> KnownColumns(const std::string& drive, int tendons, int disks) {
+  std::vector<std::string> known{"case", "fx", "fy", "fz", "gx", "gy",
+                                 "gz",   "mu", "mx", "my", "mz", "reference"};
   for (const std::string& prefix : {drive, std::string("dir")}) {
     for (int k = 1; k <= tendons; ++k) known.push_back(prefix + std::to_string(k));
+  }
+  for (int i = 1; i <= disks; ++i) {
+    for (const char* load : {"fx_", "fy_", "fz_", "mx_", "my_", "mz_"}) {
+      known.push_back(load + std::to_string(i));
+    }
   }
   return known;
 }
@@ -35,13 +41,17 @@ void RequireKnown(const CsvTable& table, const std::vector<std::string>& known) 
 }  // namespace
 
 void RequireKnownKeys(const Yaml& robot) {
+  if (robot.Has("sections")) {
+    return robot.Only(
+        {"format", "robot", "sections", "tendons", "mu", "tendon_EA", "gravity", "base_rotation"});
+  }
   robot.Only({"format", "robot", "length", "diameter", "disks", "tendons", "tendon_radius", "E",
               "nu", "density", "disk_mass", "mu", "tendon_EA", "gravity", "base_rotation",
               "calibration", "hybrid"});
 }
 
-void RequireKnownCaseColumns(const CsvTable& cases, int tendons) {
-  RequireKnown(cases, KnownColumns(cases.Has("L1") ? "L" : "T", tendons));
+void RequireKnownCaseColumns(const CsvTable& cases, int tendons, int disks) {
+  RequireKnown(cases, KnownColumns(cases.Has("L1") ? "L" : "T", tendons, disks));
 }
 
 void RequireKnownMeasuredColumns(const CsvTable& measured, int disks) {

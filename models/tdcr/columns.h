@@ -8,7 +8,7 @@ namespace continuum::tdcr {
 /// Keys and columns that nothing reads are a mistake of spelling or of unit more often than a note.
 /// @throws Error that names the file, the line and the first of them.
 void RequireKnownKeys(const Yaml& robot);
-void RequireKnownCaseColumns(const CsvTable& cases, int tendons);
+void RequireKnownCaseColumns(const CsvTable& cases, int tendons, int disks);
 void RequireKnownMeasuredColumns(const CsvTable& measured, int disks);
 
 }  // namespace continuum::tdcr

@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "models/statics/dual_value.h"
-#include "models/statics/slide.h"
 #include "models/tdcr/rubbing.h"
 
 namespace continuum::tdcr {
@@ -15,11 +14,20 @@ namespace {
 struct NoTensions {};
 struct NoLengths {};
 
-constexpr int kFewTendons = 4;  // more of them need larger states, which cost time to copy
+constexpr double kRoundsOff = 1e-24;  // the kink of a norm at zero
+constexpr int kFewTendons = 4;        // more of them need larger states, which cost time to copy
 
 template <class Matrix>
 auto Values(const Matrix& m) {
   return m.unaryExpr([](const auto& x) { return statics::Value(x); }).eval();
+}
+
+// R^T m of a vector of the base frame.
+template <class T>
+Eigen::Matrix<T, 3, 1> ToSection(const Eigen::Matrix<T, 4, 1>& q, const Eigen::Vector3d& m) {
+  const Eigen::Matrix<T, 3, 1> axis = -q.template tail<3>(), vector = m.cast<T>();
+  const Eigen::Matrix<T, 3, 1> turned = 2.0 * axis.cross(vector);
+  return vector + q[0] * turned + axis.cross(turned);
 }
 
 }  // namespace
@@ -48,135 +56,39 @@ struct RodBalance::State {
   }
 };
 
-RodBalance::RodBalance(const Robot& robot, const Loads& loads, bool friction, int steps)
-    : length_(robot.length),
-      unit_(robot.moment() / robot.length),
-      tendons_(robot.tendons),
-      to_(robot, loads, friction),
-      from_(to_.Unloaded()),
-      rod_(to_),
-      steps_(steps) {}
-
-RodBalance RodBalance::Remembering(const Robot& robot, const Loads& loads, int steps,
-                                   const Loads* earlier) {
-  RodBalance balance(robot, loads, true, steps);
-  balance.remembers_ = &loads;
-  balance.to_ = UnitRod(robot, loads, true, true);
-  balance.from_ = earlier ? UnitRod(robot, *earlier, true, true) : balance.to_.Unloaded();
-  balance.rod_ = balance.to_;
-  const int count = robot.disks * steps;
-  Eigen::MatrixXd& beyond = balance.beyond_before_;
-  beyond.setConstant(count, robot.tendons, 1.0 / count);
-  if (loads.from.length.size() > 0) beyond = loads.from.length / robot.length;
-  for (int i = count - 2; i >= 0; --i) beyond.row(i) += beyond.row(i + 1);
-  balance.contacts_ = loads.AsItSlides() && loads.mu > 0 ? count : 1;
-  return balance;
-}
-
-Eigen::VectorXd RodBalance::Unslid(const Eigen::Vector3d& u) const {
-  return Unknowns(u, beyond_before_);
-}
-
-Eigen::VectorXd RodBalance::Unknowns(const Eigen::Vector3d& u,
-                                     const Eigen::MatrixXd& beyond) const {
-  Eigen::VectorXd x(unknowns());
-  x.head<3>() = u;
-  const auto parts = static_cast<double>(beyond.rows());
-  const Eigen::Index tendons = beyond.cols(), last = beyond.rows() - 1;
-  for (Eigen::Index i = 0; i < contacts_; ++i) {
-    const double at = parts * static_cast<double>(i) / contacts_;
-    const auto part = static_cast<Eigen::Index>(at);
-    const double within = at - static_cast<double>(part);
-    x.segment(3 + i * tendons, tendons) = (1 - within) * beyond.row(part);
-    if (part < last) x.segment(3 + i * tendons, tendons) += within * beyond.row(part + 1);
-  }
-  return x;
-}
-
-Eigen::VectorXd RodBalance::Slid(const Eigen::Vector3d& u) const {
-  const Eigen::MatrixXd& way = Integrate(Unslid(u)).way;
-  const Eigen::Index count = way.rows() - 1;
-  return Unknowns(u, way.row(count).replicate(count, 1) - way.topRows(count));
-}
-
-void RodBalance::SetLoad(double load) {
-  load_ = load;
-  rod_.Mix(from_, to_, load);
-}
-
-void RodBalance::SetTension(const Eigen::VectorXd& tension) {
-  for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
-    rod_.pull[k] = to_.pull[k] = from_.pull[k] = tension[static_cast<Eigen::Index>(k)] / unit_;
-  }
-  for (Integrated& known : integrated_) known.load = -1;
-}
-
-// (5), of a tendon whose direction is not given.
-template <class T>
-T RodBalance::Share(int step, std::size_t tendon, const T& beyond) const {
-  const int direction = rod_.direction[tendon];
-  if (direction != kAsItSlides) return T(direction);
-  const auto k = static_cast<Eigen::Index>(tendon);
-  const Contacts& from = remembers_->from;
-  const double before = from.share.size() > 0 ? from.share(step, k) : 0;
-  return statics::SlideFrom(before, T((length_ / kGivesWay) * (beyond_before_(step, k) - beyond)));
-}
-
+// The tendons that run through an arc, and, with dy, their lengths per unit of rod.
 template <class T, int kRubbing, bool kSlides>
-Eigen::Matrix<T, 3, 1> RodBalance::Moment(const State<T, kRubbing, kSlides>& y) const {
-  using std::sqrt;
-  Eigen::Matrix<T, 3, 1> moment(y.u.x() - rod_.natural.x(), y.u.y() - rod_.natural.y(),
-                                rod_.twist * (y.u.z() - rod_.natural.z()));
-  for (std::size_t k = 0; k < rod_.holes.size(); ++k) {
-    const double ax = rod_.holes[k].x(), ay = rod_.holes[k].y(), r2 = rod_.holes[k].squaredNorm();
-    const T wz = 1.0 + y.u.x() * ay - y.u.y() * ax;
-    T pull = T(rod_.pull[k]);
-    if constexpr (kRubbing > 0) pull = y.tension[static_cast<Eigen::Index>(k)];
-    pull /= sqrt(wz * wz + r2 * y.u.z() * y.u.z());
-    moment.x() += pull * wz * ay;
-    moment.y() -= pull * wz * ax;
-    moment.z() += pull * y.u.z() * r2;
+bool RodBalance::AddTendons(const Place& at, const State<T, kRubbing, kSlides>& y,
+                            SectionMoment<T>& sum, State<T, kRubbing, kSlides>* dy) const {
+  for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    T along(0);
+    if (rod_.Runs(k, at.arc)) {
+      T pull = T(rod_.pull[k]);
+      if constexpr (kRubbing > 0) pull = y.tension[i];
+      const Channel& channel = rod_.ChannelOf(k, at.arc);
+      const bool inside = channel.parallel ? sum.AddParallel(channel.hole, pull, y.u, along)
+                                           : sum.AddSlanted(channel.At(at.s), pull, y.u, along);
+      if (!inside) return false;
+    }
+    if constexpr (kSlides) {
+      if (dy != nullptr) dy->way[i] = along;
+    }
   }
-  return moment;
+  return true;
 }
 
 // Flattened, as Rub is: dual numbers are so short that calls would cost as much as the work.
 template <class T, int kRubbing, bool kSlides>
-[[gnu::flatten]] bool RodBalance::Slope(const State<T, kRubbing, kSlides>& y,
-                                        const Eigen::Vector3d& force, const T* share,
-                                        State<T, kRubbing, kSlides>& dy) const {
-  using std::sqrt;
+[[gnu::flatten]] bool RodBalance::Slope(const Place& at, const State<T, kRubbing, kSlides>& y,
+                                        const T* share, State<T, kRubbing, kSlides>& dy) const {
   using Vector3 = Eigen::Matrix<T, 3, 1>;
   const Vector3& u = y.u;
-  Vector3 moment(u.x() - rod_.natural.x(), u.y() - rod_.natural.y(),
-                 rod_.twist * (u.z() - rod_.natural.z()));
-  T hxx(1), hxy(0), hyy(1), hxz(0), hyz(0), hzz(rod_.twist);
   if constexpr (kSlides) dy.way.resize(y.way.size());
-  for (std::size_t k = 0; k < rod_.holes.size(); ++k) {
-    const double ax = rod_.holes[k].x(), ay = rod_.holes[k].y(), r2 = rod_.holes[k].squaredNorm();
-    T pull = T(rod_.pull[k]);
-    if constexpr (kRubbing > 0) pull = y.tension[static_cast<Eigen::Index>(k)];
-    const T wz = 1.0 + u.x() * ay - u.y() * ax;
-    if (!(wz > T(0))) return false;
-    const T side = r2 * u.z() * u.z();
-    const T square = wz * wz + side;
-    const T along = sqrt(square);
-    if constexpr (kSlides) dy.way[static_cast<Eigen::Index>(k)] = along;
-    const T inverse = pull / along;
-    moment.x() += inverse * wz * ay;
-    moment.y() -= inverse * wz * ax;
-    moment.z() += inverse * u.z() * r2;
-    // Hessian of T |w| by (wz, u_z), with dwz/du = (ay, -ax, 0).
-    const T cube = inverse / square;
-    const T by_wz = cube * side;
-    const T mixed = cube * wz * u.z() * r2;
-    hxx += by_wz * (ay * ay);
-    hxy -= by_wz * (ax * ay);
-    hyy += by_wz * (ax * ax);
-    hxz -= mixed * ay;
-    hyz += mixed * ax;
-    hzz += cube * wz * wz * r2;
-  }
+  SectionMoment<T> sum = Elastic(at.arc, u);
+  if (!AddTendons(at, y, sum, &dy)) return false;
+  const Vector3& moment = sum.moment;
+  const Eigen::Vector3d force = rod_.Force(at.arc, at.s);
   const T &q0 = y.q[0], &q1 = y.q[1], &q2 = y.q[2], &q3 = y.q[3];
   const Vector3 tangent(2.0 * (q1 * q3 + q0 * q2), 2.0 * (q2 * q3 - q0 * q1),
                         q0 * q0 - q1 * q1 - q2 * q2 + q3 * q3);
@@ -184,23 +96,14 @@ template <class T, int kRubbing, bool kSlides>
                2.0 * ((q1 * q2 + q0 * q3) * force.y() + (q1 * q3 - q0 * q2) * force.z());
   const T ny = (q0 * q0 - q1 * q1 + q2 * q2 - q3 * q3) * force.y() +
                2.0 * ((q1 * q2 - q0 * q3) * force.x() + (q2 * q3 + q0 * q1) * force.z());
-  const Vector3 right(moment.y() * u.z() - moment.z() * u.y() + ny,
-                      moment.z() * u.x() - moment.x() * u.z() - nx,
-                      moment.x() * u.y() - moment.y() * u.x());
+  Vector3 right(moment.y() * u.z() - moment.z() * u.y() + ny,
+                moment.z() * u.x() - moment.x() * u.z() - nx,
+                moment.x() * u.y() - moment.y() * u.x());
 
-  const T cxx = hyy * hzz - hyz * hyz, cxy = hxz * hyz - hxy * hzz, cxz = hxy * hyz - hxz * hyy;
-  const T cyy = hxx * hzz - hxz * hxz, cyz = hxy * hxz - hxx * hyz, czz = hxx * hyy - hxy * hxy;
-  const T determinant = 1.0 / (hxx * cxx + hxy * cxy + hxz * cxz);
-  const auto solve = [&](const Vector3& b) {
-    return Vector3((cxx * b.x() + cxy * b.y() + cxz * b.z()) * determinant,
-                   (cxy * b.x() + cyy * b.y() + cyz * b.z()) * determinant,
-                   (cxz * b.x() + cyz * b.y() + czz * b.z()) * determinant);
-  };
-  dy.u = solve(right);
+  if (sum.slanted) right -= sum.drift;
+  dy.u = sum.Solve(right);
   if constexpr (kRubbing > 0) {
-    Eigen::Matrix<T, 3, 3> hessian;
-    hessian << hxx, hxy, hxz, hxy, hyy, hyz, hxz, hyz, hzz;
-    Rub(y, hessian, right, share, dy);
+    Rub(at, y, sum.Hessian(), right, share, dy);
   }
   if constexpr (State<T, kRubbing, kSlides>::kPosition) dy.p = tangent;
   dy.q = 0.5 * Eigen::Matrix<T, 4, 1>(
@@ -212,7 +115,7 @@ template <class T, int kRubbing, bool kSlides>
 // u' with friction: H u' + sum_k T_k'(u') a_k x t_k = right, from the u' without it. Steps along
 // the first tangent, off by a thousandth, in plain numbers; one more in T has the derivatives too.
 template <class T, int kRubbing, bool kSlides>
-[[gnu::flatten]] void RodBalance::Rub(const State<T, kRubbing, kSlides>& y,
+[[gnu::flatten]] void RodBalance::Rub(const Place& at, const State<T, kRubbing, kSlides>& y,
                                       const Eigen::Matrix<T, 3, 3>& hessian,
                                       const Eigen::Matrix<T, 3, 1>& right, const T* share,
                                       State<T, kRubbing, kSlides>& dy) const {
@@ -229,30 +132,39 @@ template <class T, int kRubbing, bool kSlides>
   for (std::size_t k = 0; k < count; ++k) {
     const double tension = statics::Value(y.tension[static_cast<Eigen::Index>(k)]);
     const double direction = kSlides ? statics::Value(share[k]) : rod_.direction[k];
-    plain[k] = Rubbing<double>(rod_.holes[k], Values(y.u), direction * rod_.mu * tension);
+    const Channel& channel = rod_.ChannelOf(k, at.arc);
+    if (!rod_.Runs(k, at.arc)) continue;
+    plain[k] = Rubbing<double>(channel.At(at.s), channel.parallel, Values(y.u),
+                               direction * rod_.mu * tension);
     tangent += plain[k].Lever() * plain[k].Gradient(du).transpose();
   }
   const Eigen::Matrix3d inverse = tangent.inverse();
   for (int round = 0; round < kMostRounds; ++round) {
     Vector rest = known - elastic * du;
-    for (std::size_t k = 0; k < count; ++k) rest -= plain[k].Slope(du) * plain[k].Lever();
+    for (std::size_t k = 0; k < count; ++k) {
+      if (rod_.Runs(k, at.arc)) rest -= plain[k].Slope(du) * plain[k].Lever();
+    }
     const Vector step = inverse * rest;
     du += step;
     if (step.squaredNorm() <= kLastStep * kLastStep * (1 + du.squaredNorm())) break;
   }
-  const Vector3 at = du.cast<T>();
-  Vector3 rest = right - hessian * at;
+  const Vector3 near = du.cast<T>();
+  Vector3 rest = right - hessian * near;
   dy.tension.resize(y.tension.size());
   for (std::size_t k = 0; k < count; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
+    dy.tension[i] = T(0);
+    if (!rod_.Runs(k, at.arc)) continue;
     const T loss = kSlides ? T(rod_.mu * share[k]) : T(rod_.direction[k] * rod_.mu);
-    const Rubbing<T> rubbing(rod_.holes[k], y.u, loss * y.tension[i]);
-    dy.tension[i] = rubbing.Slope(at);
+    const Channel& channel = rod_.ChannelOf(k, at.arc);
+    const Rubbing<T> rubbing(channel.At(at.s), channel.parallel, y.u, loss * y.tension[i]);
+    dy.tension[i] = rubbing.Slope(near);
     rest -= dy.tension[i] * rubbing.Lever();
   }
   const Vector3 step = inverse.cast<T>() * rest;
-  dy.u = at + step;
+  dy.u = near + step;
   for (std::size_t k = 0; k < count; ++k) {
+    if (!rod_.Runs(k, at.arc)) continue;
     const Vector gradient = plain[k].Gradient(du);
     for (int i = 0; i < 3; ++i) dy.tension[static_cast<Eigen::Index>(k)] += gradient[i] * step[i];
   }
@@ -289,13 +201,60 @@ void RodBalance::Slide(int step, const T* x, const State<T, kRubbing, true>& y, 
   }
 }
 
-// R nu(1), and (5) of the first contacts.
+// Of tendons that turn at the disk where an arc begins: T exp(-s mu b), b the angle.
+template <class T, int kRubbing, bool kSlides>
+void RodBalance::LoseAtDisk(int arc, const T* share, const State<T, kRubbing, kSlides>& before,
+                            State<T, kRubbing, kSlides>& y) const {
+  using std::asin;
+  using std::exp;
+  using std::sqrt;
+  const double s = rod_.Arc(arc).start();
+  for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
+    if (!rod_.Runs(k, arc)) continue;
+    const auto from = Along(rod_.ChannelOf(k, arc - 1).At(s), before.u).normalized();
+    const auto to = Along(rod_.ChannelOf(k, arc).At(s), y.u).normalized();
+    const T angle = 2.0 * asin(0.5 * sqrt((to - from).squaredNorm() + kRoundsOff));
+    const T sliding = kSlides ? share[k] : T(rod_.direction[k]);
+    const auto i = static_cast<Eigen::Index>(k);
+    y.tension[i] = before.tension[i] * exp(-rod_.mu * sliding * angle);
+  }
+}
+
+// The curvature just after a disk, where the section or the tendons are others, by (2). Rounds
+// after the last one that counts give duals their derivatives.
+template <class T, int kRubbing, bool kSlides>
+bool RodBalance::Jump(int arc, const T* share, State<T, kRubbing, kSlides>& y) const {
+  using Vector3 = Eigen::Matrix<T, 3, 1>;
+  constexpr int kMostRounds = 40, kMore = kRubbing > 0 ? 8 : 1;
+  constexpr double kLastStep = 1e-13;
+  const State<T, kRubbing, kSlides> before = y;
+  const Place from{arc - 1, rod_.Arc(arc).start()}, to{arc, from.s};
+  SectionMoment<T> sum = Elastic(arc - 1, y.u);
+  if (!AddTendons(from, y, sum, static_cast<State<T, kRubbing, kSlides>*>(nullptr))) return false;
+  const Vector3 moment = sum.moment - ToSection(y.q, rod_.MomentAfter(arc - 1));
+  for (int round = 0, more = 0; round < kMostRounds && more < kMore; ++round) {
+    if constexpr (kRubbing > 0) LoseAtDisk(arc, share, before, y);
+    sum = Elastic(arc, y.u);
+    if (!AddTendons(to, y, sum, static_cast<State<T, kRubbing, kSlides>*>(nullptr))) return false;
+    const Vector3 step = sum.Solve(moment - sum.moment);
+    y.u += step;
+    if (Values(step).norm() <= kLastStep * (1 + Values(y.u).norm())) ++more;
+  }
+  return true;
+}
+
+// R nu(1) less the moment at the tip, and (5) of the first contacts.
 template <class T, int kRubbing, bool kSlides>
 void RodBalance::End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) const {
+  const int last = disks_ - 1;
+  SectionMoment<T> sum = Elastic(last, y.u);
+  AddTendons({last, 1}, y, sum, static_cast<State<T, kRubbing, kSlides>*>(nullptr));
   // R nu by the quaternion: nu + 2 q_0 (q x nu) + 2 q x (q x nu).
-  const Eigen::Matrix<T, 3, 1> axis = y.q.template tail<3>(), moment = Moment(y);
-  const Eigen::Matrix<T, 3, 1> turned = 2.0 * axis.cross(moment);
-  Eigen::Map<Eigen::Matrix<T, 3, 1>>(end, 3) = moment + y.q[0] * turned + axis.cross(turned);
+  const Eigen::Matrix<T, 3, 1> axis = y.q.template tail<3>();
+  const Eigen::Matrix<T, 3, 1> turned = 2.0 * axis.cross(sum.moment);
+  Eigen::Map<Eigen::Matrix<T, 3, 1>> residual(end, 3);
+  residual = sum.moment + y.q[0] * turned + axis.cross(turned);
+  if (rod_.has_moments()) residual -= rod_.MomentAfter(last).template cast<T>();
   if constexpr (kSlides) {
     for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
       end[3 + k] = y.way[static_cast<Eigen::Index>(k)] - x[3 + k];
@@ -303,7 +262,8 @@ void RodBalance::End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) c
   }
 }
 
-// Dormand-Prince's fifth-order formula, `steps_` equal steps per piece. end: R nu(1), then (5).
+// Dormand-Prince's fifth-order formula, `steps_` equal steps per arc. end: R nu(1), then (5).
+// at_node(step, y) after every step, and once more where u has jumped.
 template <class T, int kRubbing, bool kSlides, class AtNode>
 bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
   static constexpr double kNodes[6] = {0, 0.2, 0.3, 0.8, 8. / 9, 1};
@@ -319,9 +279,16 @@ bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
   S y = Base<T, kRubbing, kSlides>(x);
   std::array<S, 6> slope;
   std::array<T, kSlides ? kRubbing : 1> share{};
-  const double h = 1.0 / (rod_.disks * steps_);
-  for (int step = 0; step < rod_.disks * steps_; ++step) {
+  for (int step = 0; step < disks_ * steps_; ++step) {
+    const int number = step / steps_;
+    const RodArc& arc = rod_.Arc(number);
+    const double h = 1.0 / (arc.per_rod * steps_);
+    const double from = arc.before * steps_ + (step - number * steps_);  // in steps
     if constexpr (kSlides) Slide(step, x, y, share.data(), end);
+    if (step == number * steps_ && rod_.Jumps(number)) {
+      if (!Jump(number, share.data(), y)) return false;
+      at_node(step, y);
+    }
     for (int stage = 0; stage <= 6; ++stage) {
       S at = y;
       for (int j = 0; j < stage; ++j) {
@@ -329,7 +296,7 @@ bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
       }
       if (stage == 6) {
         y = at;
-      } else if (!Slope(at, rod_.Force(step / steps_, h * (step + kNodes[stage])), share.data(),
+      } else if (!Slope({number, h * (from + kNodes[stage])}, at, share.data(),
                         slope[static_cast<std::size_t>(stage)])) {
         return false;
       }
@@ -413,9 +380,10 @@ const RodBalance::Shape& RodBalance::Integrate(const Eigen::VectorXd& x) const {
   now.load = load_;
   now.steps = steps_;
   Shape& shape = now.shape;
-  const int count = rod_.disks * steps_;
-  shape.disks.setZero(3, rod_.disks);
-  shape.middles.setZero(3, rod_.disks);
+  const int count = disks_ * steps_;
+  shape.disks.setZero(3, disks_);
+  shape.middles.setZero(3, disks_);
+  shape.ends.setZero(3, disks_);
   shape.frames.assign(1, Eigen::Quaterniond::Identity());
   shape.frames.reserve(static_cast<std::size_t>(count) + 1);
   shape.points.setZero(3, count + 1);
@@ -428,55 +396,24 @@ const RodBalance::Shape& RodBalance::Integrate(const Eigen::VectorXd& x) const {
   }
   if (remembers()) shape.way.setZero(count + 1, tendons);
   const auto keep = [&](int step, const auto& y) {
-    const int piece = (step - 1) / steps_, within = step - piece * steps_;
-    shape.frames.push_back(Eigen::Quaterniond(y.q[0], y.q[1], y.q[2], y.q[3]).normalized());
+    const int arc = (step - 1) / steps_, within = step - arc * steps_;
+    if (static_cast<int>(shape.frames.size()) == step) {
+      shape.ends.col(arc) = y.u;
+      shape.frames.push_back(Eigen::Quaterniond(y.q[0], y.q[1], y.q[2], y.q[3]).normalized());
+    }
     shape.points.col(step) = y.p;
     shape.u.col(step) = y.u;
     if constexpr (requires { y.tension.size(); }) shape.tension.row(step) = y.tension.transpose();
     if constexpr (requires { y.way.size(); }) shape.way.row(step) = y.way.transpose();
     if (2 * within == steps_)
-      shape.middles.col(piece) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
-    if (within == steps_) shape.disks.col(piece) = y.p * length_;
+      shape.middles.col(arc) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
+    if (within == steps_) shape.disks.col(arc) = y.p * length_;
   };
   Eigen::VectorXd end = Eigen::VectorXd::Zero(unknowns());
   shape.valid = remembers() ? WalkAny<double, true>(x.data(), end.data(), keep)
                             : WalkAny<double, false>(x.data(), end.data(), keep);
   shape.residual = end.head<3>();
   return shape;
-}
-
-Line RodBalance::LineOf(const Shape& shape) const {
-  const Eigen::Index count = shape.points.cols();
-  Line line{Eigen::VectorXd::LinSpaced(count, 0, length_),
-            length_ * shape.points,
-            shape.frames,
-            std::vector<int>(static_cast<std::size_t>(count), -1),
-            shape.u / length_,
-            Eigen::MatrixXd::Zero(count, tendons_)};
-  const Eigen::Index per_disk = (count - 1) / rod_.disks;
-  for (int i = 0; i <= rod_.disks; ++i) line.disk[static_cast<std::size_t>(i * per_disk)] = i;
-  for (std::size_t k = 0; k < rod_.tendon.size(); ++k) {
-    line.tension.col(rod_.tendon[k]) = unit_ * shape.tension.col(static_cast<Eigen::Index>(k));
-  }
-  return line;
-}
-
-Contacts RodBalance::ContactsAt(const Eigen::VectorXd& x) const {
-  const Eigen::MatrixXd& way = Integrate(x).way;
-  const Eigen::Index count = way.rows() - 1, tendons = way.cols();
-  Eigen::MatrixXd beyond = way.row(count).replicate(count, 1) - way.topRows(count);
-  if (contacts_ == count) {
-    beyond = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(x.data() + 3, count,
-                                                                              tendons);
-  }
-  Contacts contacts{length_ * beyond, Eigen::MatrixXd(count, tendons)};
-  contacts.length.topRows(count - 1) -= length_ * beyond.bottomRows(count - 1);
-  for (Eigen::Index k = 0; k < tendons; ++k) {
-    for (int i = 0; i < count; ++i) {
-      contacts.share(i, k) = Share(i, static_cast<std::size_t>(k), beyond(i, k));
-    }
-  }
-  return contacts;
 }
 
 }  // namespace continuum::tdcr

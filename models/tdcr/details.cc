@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "models/tdcr/disks.h"
+#include "models/tdcr/unit_rod.h"
 
 namespace continuum::tdcr {
 namespace {
@@ -13,16 +14,18 @@ using statics::Details;
 
 bool OfDisks(Method method) { return method == Method::kEas || method == Method::kPcca; }
 
-// Weights of an integral over the places by Simpson's rule, times their distance; the number of
-// places is odd.
-Eigen::VectorXd Simpson(const Eigen::VectorXd& s) {
-  const Eigen::Index last = s.size() - 1;
-  const double h = s[last] / static_cast<double>(last);
-  Eigen::VectorXd weights(s.size());
-  for (Eigen::Index i = 0; i <= last; ++i) {
-    weights[i] = h / 3 * (i == 0 || i == last ? 1 : i % 2 == 1 ? 4 : 2);
+// The integral of f(u) over an arc by Simpson's rule: u at its places, which are of an odd number;
+// at the last one that of the line's `ends`, just before the disk.
+template <class F>
+double OverArc(const Line& line, int arc, F&& f) {
+  const Eigen::Index parts = (line.s.size() - 1) / line.ends.cols(), first = arc * parts;
+  const double h = (line.s[first + parts] - line.s[first]) / static_cast<double>(parts);
+  double sum =
+      f(Vector3d(line.u.col(first)), first) + f(Vector3d(line.ends.col(arc)), first + parts);
+  for (Eigen::Index i = 1; i < parts; ++i) {
+    sum += (i % 2 == 1 ? 4 : 2) * f(Vector3d(line.u.col(first + i)), first + i);
   }
-  return weights;
+  return h / 3 * sum;
 }
 
 // Of a point of the straight rod.
@@ -70,22 +73,45 @@ Eigen::MatrixXd Tensions(const Robot& robot, const Loads& loads, const Solution&
   return tension;
 }
 
+// What an arc of a section holds; `natural` as a rotation vector.
+void DescribeArc(const Section& section, const Vector3d& gravity, int arc, const Line& line,
+                 Details& details) {
+  const Vector3d natural(-section.natural.y(), section.natural.x(), section.natural.z());
+  const Vector3d stiffness(section.EI, section.EI, section.GJ);
+  details.energy += OverArc(line, arc, [&](const Vector3d& u, Eigen::Index /*place*/) {
+    const Vector3d strain = u - natural;
+    const double bend = strain.head<2>().norm() * section.diameter / 2;
+    details.strain = std::max(details.strain, bend);
+    return strain.dot(stiffness.cwiseProduct(strain)) / 2;
+  });
+  Vector3d middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    middle[axis] = OverArc(line, arc, [&](const Vector3d& /*u*/, Eigen::Index place) {
+      return line.points(axis, place);
+    });
+  }
+  const Eigen::Index parts = (line.s.size() - 1) / line.ends.cols();
+  const double from = line.s[arc * parts], to = line.s[(arc + 1) * parts];
+  AddDead(section.mass_per_length * (to - from) * gravity, middle / (to - from),
+          Straight((from + to) / 2), details);
+}
+
 void DescribeRod(const Robot& robot, const Loads& loads, const Solution& solution,
                  Details& details) {
-  const Line& line = solution.line;
-  details.length = TendonLengths(robot, line);
-  const Eigen::VectorXd weights = Simpson(line.s);
-  const Vector3d per_length = robot.density * robot.area() * loads.gravity;
-  for (Eigen::Index i = 0; i < line.s.size(); ++i) {
-    const Vector3d u = line.u.col(i);
-    details.energy += weights[i] * ElasticPerLength(robot, u);
-    details.strain = std::max(details.strain, u.head<2>().norm() * robot.diameter / 2);
-    AddDead(weights[i] * per_length, line.points.col(i), Straight(line.s[i]), details);
+  details.length = TendonLengths(robot, solution.line);
+  int disk = 0;
+  for (const Section& section : robot.Sections()) {
+    for (std::size_t i = 0; i < section.disks.size(); ++i, ++disk) {
+      DescribeArc(section, loads.gravity, disk, solution.line, details);
+      AddDead(section.disk_mass * loads.gravity, solution.disks.col(disk),
+              Straight(robot.Place(disk + 1)), details);
+    }
   }
-  for (int i = 0; i < robot.disks; ++i) {
-    AddDead(robot.disk_mass * loads.gravity, solution.disks.col(i), Straight((i + 1) * robot.arc()),
-            details);
+  for (Eigen::Index i = 0; i < loads.disk_force.cols(); ++i) {
+    AddDead(loads.disk_force.col(i), solution.disks.col(i),
+            Straight(robot.Place(static_cast<int>(i) + 1)), details);
   }
+  details.moment += loads.disk_moment.rowwise().sum();
 }
 
 }  // namespace
@@ -101,20 +127,25 @@ Details Describe(const Robot& robot, const Loads& loads, Method method, const So
     DescribeRod(robot, loads, solution, details);
   }
   AddDead(loads.tip_force, solution.disks.rightCols<1>(), Straight(robot.length), details);
+  const Eigen::VectorXd rest = RestLengths(robot);
   for (int k = 0; k < robot.tendons; ++k) {
     const double tension = loads.tension[static_cast<std::size_t>(k)];
-    details.energy += tension * (details.length[k] - robot.length);
+    details.energy += tension * (details.length[k] - rest[k]);
   }
   return details;
 }
 
 Eigen::VectorXd TendonLengths(const Robot& robot, const Line& line) {
-  const Eigen::VectorXd weights = Simpson(line.s);
+  const RodShape shape(robot);
   Eigen::VectorXd length = Eigen::VectorXd::Zero(robot.tendons);
   for (int k = 0; k < robot.tendons; ++k) {
-    const Vector3d hole(robot.Hole(k).x(), robot.Hole(k).y(), 0);
-    for (Eigen::Index i = 0; i < line.s.size(); ++i) {
-      length[k] += weights[i] * (Vector3d::UnitZ() + line.u.col(i).cross(hole)).norm();
+    const auto tendon = static_cast<std::size_t>(k);
+    for (std::size_t arc = 0; arc < shape.ends[tendon]; ++arc) {
+      const Channel& channel = shape.At(tendon, arc);
+      length[k] += OverArc(line, static_cast<int>(arc), [&](const Vector3d& u, Eigen::Index place) {
+        const Vector3d unit = robot.length * u;
+        return Along(channel.At(line.s[place] / robot.length), unit).norm();
+      });
     }
   }
   return length;

@@ -8,9 +8,10 @@ namespace continuum::tdcr {
 /// Of a solution of the same case; outcome.ok(). The energy is that of bending and twist, plus
 /// tensions at the base times the changes of the tendons' lengths, less the work of the dead loads:
 ///
-///   int (EI (kappa_x^2 + kappa_y^2) + GJ tau^2)/2 ds + sum T_k (l_k - L) - sum F.(p - p_0)     (1)
+///   int (u - u_0).K(u - u_0)/2 ds + sum T_k (l_k - l_k0) - sum F.(p - p_0),  K = (EI, EI, GJ)  (1)
 ///
-/// Without friction an equilibrium is a stationary point of it.
+/// l_k0: length of the tendon when nothing acts, p_0: place on the straight rod. Dead moments have
+/// no part in it. Without friction an equilibrium is a stationary point of it.
 statics::Details Describe(const Robot& robot, const Loads& loads, Method method,
                           const Solution& solution);
 

@@ -18,9 +18,10 @@ using Eigen::VectorXd;
 // Curvatures of the base that a shape can have, in 1/L: a rod under a dead force P L^2/EI bends by
 // at most 2 sqrt(P) more than its tendons do.
 double Largest(const Robot& robot, const Loads& loads) {
+  const double moment = robot.SoftestEI() / robot.length;
   double tendons = 0;
-  for (const double t : loads.tension) tendons += t * robot.tendon_radius / robot.moment();
-  return 2 + 2 * std::sqrt(loads.DeadForce(robot) * robot.length / robot.moment()) + tendons;
+  for (const double t : loads.tension) tendons += t * robot.tendon_radius / moment;
+  return 2 + 2 * std::sqrt(loads.DeadForce(robot) * robot.length / moment) + tendons;
 }
 
 Vector3d Curvature(Random& random, double largest) {

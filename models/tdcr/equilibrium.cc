@@ -153,11 +153,11 @@ class RodSystem {
     const Eigen::MatrixXd share = Shares(x);
     balance_.SetLoad(load);
     RodLaw law(balance_.rod(), Pieces(shape), share);
-    Chain chain(law, Pieces(shape));
+    Chain chain(law, law.lengths());
     statics::Fall fall = statics::FallToRest(chain, shape);
     if (!fall.ok) return fall;
     const Eigen::Matrix3Xd zeta = chain.zeta();
-    const Vector3d u = 1.5 * zeta.col(0) - 0.5 * zeta.col(1);
+    const Vector3d u = BaseCurvature(law, zeta);
     x = balance_.remembers() ? balance_.Unknowns(u, law.Beyond(zeta)) : Eigen::VectorXd(u);
     fall.ok = numerics::Newton(balance_, x, Limits()).ok() && Near(x, shape.back()) &&
               Unstable(load, x) == 0;
@@ -174,7 +174,7 @@ class RodSystem {
     if (shape.empty()) return kUnknown;
     RodLaw law(balance_.rod(), Pieces(shape), Shares(x));
     law.SetWinches(winches_);
-    Chain chain(law, Pieces(shape));
+    Chain chain(law, law.lengths());
     if (spare > 0 && chain.DefiniteAt(shape, -spare)) return 0;
     if (!chain.Linearize(shape)) return kUnknown;
     if (spare == 0) return UnstableDirections(chain, law, shape);
@@ -214,6 +214,12 @@ class RodSystem {
     return some;
   }
 
+  // From the middles of the first two pieces, where they are of one arc.
+  static Vector3d BaseCurvature(const RodLaw& law, const Eigen::Matrix3Xd& zeta) {
+    if (!law.OneArc(0, 1)) return zeta.col(0);
+    return 1.5 * zeta.col(0) - 0.5 * zeta.col(1);
+  }
+
   bool Near(const Vector& x, const Eigen::Quaterniond& end) const {
     const auto& shape = balance_.Integrate(x);
     return shape.valid && shape.frames.back().angularDistance(end) < 0.2;
@@ -224,13 +230,16 @@ class RodSystem {
   Eigen::VectorXd winches_;
 };
 
-bool Direct(const Robot& robot, const Loads& loads) {
-  return loads.DeadForce(robot) * robot.length / robot.moment() < kOneEquilibrium;
+// Of the dead loads [EI/L^2], EI that of the softest section.
+double Size(const Robot& robot, const Loads& loads) {
+  return loads.DeadForce(robot) * robot.length * robot.length / robot.SoftestEI();
 }
+
+bool Direct(const Robot& robot, const Loads& loads) { return Size(robot, loads) < kOneEquilibrium; }
 
 statics::RisingOptions Steps(const Robot& robot, const Loads& loads) {
   statics::RisingOptions options;
-  const double size = loads.DeadForce(robot) * robot.length / robot.moment();
+  const double size = Size(robot, loads);
   options.largest_step = std::clamp(2 / size, 0.02, 1.0);
   options.first_step = std::min(0.25, options.largest_step);
   return options;
@@ -249,7 +258,7 @@ Eigen::VectorXd WithoutFriction(const Robot& robot, const Loads& loads, const Ro
   Loads smooth = loads;
   smooth.mu = 0;
   const RodBalance rod(robot, smooth, false, balance.steps());
-  Eigen::Vector3d u = Eigen::Vector3d::Zero();
+  Eigen::Vector3d u = rod.Natural();
   if (!numerics::Newton(rod, u, Limits()).ok()) return {};
   return balance.Slid(u);
 }

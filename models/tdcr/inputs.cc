@@ -36,6 +36,11 @@ void Refuse(bool given, const std::string& option, const std::string& job) {
   if (given) throw Error::Input(option, "not with " + job);
 }
 
+std::string MethodName(const SolveRequest& request, const Robot& robot) {
+  if (!request.method.empty()) return request.method;
+  return robot.has_sections() ? "crt" : "eas";
+}
+
 std::vector<Case> ReadInput(const SolveRequest& request, const Robot& robot) {
   const CsvTable table = statics::CasesOf(request);
   auto cases = ReadCases(table, robot);

@@ -14,6 +14,7 @@ Line LineOfArcs(const Robot& robot, const Eigen::Matrix3Xd& u, const Eigen::Matr
             {},
             std::vector<int>(static_cast<std::size_t>(count), -1),
             Eigen::Matrix3Xd(3, count),
+            Eigen::Matrix3Xd(3, u.cols()),
             Eigen::MatrixXd(count, tension.cols())};
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index arc = std::min(i / per_arc, u.cols() - 1), within = i - arc * per_arc;
@@ -27,6 +28,7 @@ Line LineOfArcs(const Robot& robot, const Eigen::Matrix3Xd& u, const Eigen::Matr
       line.disk[static_cast<std::size_t>(i)] = static_cast<int>(i / per_arc);
     }
   }
+  line.ends << -u.row(1), u.row(0), u.row(2);
   return line;
 }
 

@@ -9,6 +9,7 @@
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/disks.h"
 #include "models/tdcr/equilibrium.h"
+#include "models/tdcr/unit_rod.h"
 #include "models/tdcr/winches.h"
 #include "sim/numerics/solver.h"
 
@@ -73,7 +74,7 @@ Solution SolveRod(const Robot& robot, const Loads& loads, bool friction, Find&& 
   Solution solution;
   solution.outcome = numerics::Timed([&] {
     RodBalance balance(robot, loads, friction, Steps(robot.disks));
-    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    Eigen::Vector3d x = balance.Natural();
     const Found found = find(balance, x);
     solution.stability = found.stability;
     balance.SetLoad(1);
@@ -92,7 +93,7 @@ Solution SolveRemembering(const Robot& robot, const Loads& loads, const Loads* e
   Solution solution;
   solution.outcome = numerics::Timed([&] {
     RodBalance balance = RodBalance::Remembering(robot, loads, ContactSteps(robot.disks), earlier);
-    Eigen::VectorXd x = balance.Unslid(Eigen::Vector3d::Zero());
+    Eigen::VectorXd x = balance.Unslid(balance.Natural());
     const Found found = find(balance, x);
     solution.stability = found.stability;
     balance.SetLoad(1);
@@ -117,8 +118,7 @@ struct Wound {
 };
 
 Wound Unwound(const Robot& robot) {
-  return {Eigen::VectorXd::Constant(robot.tendons, robot.length),
-          Eigen::VectorXd::Zero(robot.tendons)};
+  return {RestLengths(robot), Eigen::VectorXd::Zero(robot.tendons)};
 }
 
 // To where the row before ended.
@@ -177,8 +177,19 @@ Method ParseMethod(const std::string& name) {
   throw Error::Input("--method", "eas, pcca, crt, crt_friction or fit", "'" + name + "'");
 }
 
+void RequireTaken(const Robot& robot, const Loads& loads, Method method, const std::string& where) {
+  if (method == Method::kCrt || method == Method::kCrtFriction) return;
+  const bool at_disks = loads.disk_force.size() > 0 || loads.disk_moment.size() > 0;
+  if (!robot.has_sections() && !at_disks) return;
+  throw Error::Input(where,
+                     std::string("the method crt or crt_friction for a robot with ") +
+                         (at_disks ? "loads at disks" : "sections"),
+                     method == Method::kEas ? "eas" : "pcca");
+}
+
 Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& before, Loads loads,
                    Method method) {
+  RequireTaken(robot, loads, method);
   const bool rod = method == Method::kCrtFriction;
   const Solution state =
       rod && before.contacts.share.size() == 0 ? WithContacts(robot, earlier, before) : before;
@@ -205,6 +216,7 @@ Solution SolveFrom(const Robot& robot, const Loads& earlier, const Solution& bef
 
 Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
                    const Eigen::VectorXd* start) {
+  RequireTaken(robot, loads, method);
   if (loads.length.size() > 0) return SolveWinches(robot, loads, method, Unwound(robot));
   const auto find = [&](auto& balance, auto& x) {
     return FindEquilibrium(robot, loads, balance, x, start);
@@ -218,6 +230,7 @@ Solution SolveCase(const Robot& robot, const Loads& loads, Method method,
 
 Solution SolveNear(const Robot& robot, const Loads& loads, Method method,
                    const Eigen::VectorXd& start) {
+  RequireTaken(robot, loads, method);
   if (method == Method::kEas) return DisksNear<6>(robot, loads, start);
   if (method == Method::kPcca) return DisksNear<Eigen::Dynamic>(robot, loads, start);
   const auto find = [&](RodBalance& balance, auto& x) {

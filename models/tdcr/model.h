@@ -18,6 +18,11 @@ enum class Method { kEas, kPcca, kCrt, kCrtFriction };
 /// @throws Error for another name than eas, pcca, crt, crt_friction.
 Method ParseMethod(const std::string& name);
 
+/// Throws Error where eas or pcca, which know one section and parallel tendons, are asked for
+/// another robot, or for loads at disks.
+void RequireTaken(const Robot& robot, const Loads& loads, Method method,
+                  const std::string& where = "--method");
+
 struct Solution {
   numerics::Outcome outcome;
   statics::Stability stability;
@@ -31,7 +36,7 @@ struct Solution {
 
 /// The equilibrium that is reached by raising all loads together from zero.
 ///
-/// Without `start`: from the straight rod. Dead forces below 2.4 EI/L^2 leave one
+/// Without `start`: from the rod at rest. Dead forces below 2.4 EI/L^2 leave one
 /// equilibrium and damped Newton finds it; above, the path of equilibria is followed from zero
 /// load, and where it ends the shape falls to the next stable one (statics::FollowRisingLoad). With
 /// `start` (x of a neighbouring case): Newton from there, and as above when that fails or ends at a

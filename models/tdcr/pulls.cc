@@ -17,21 +17,21 @@ namespace {
 
 constexpr int kLinksPerDisk[] = {1, 2, 3, 5, 6};
 
-void Print(const std::filesystem::path& folder) {
-  const Robot robot = ReadRobot(Yaml::Read(folder / "tdcr.yaml"));
+void Print(const std::filesystem::path& file, const std::filesystem::path& table) {
+  const Robot robot = ReadRobot(Yaml::Read(file));
   std::vector<ModelSpec> models;
   fmt::print("| tip off by [% L] |");
   for (const int per_disk : kLinksPerDisk) {
     const int links = per_disk * robot.disks;
-    models.push_back(ModelSpec::Parse(SegmentMjcf(robot, links, Guides::kLinks)));
+    models.push_back(ModelSpec::Parse(RobotMjcf(robot, links, Guides::kLinks)));
     fmt::print(" {} links |", links);
   }
   const int fine = kLinksPerDisk[3] * robot.disks;
-  models.push_back(ModelSpec::Parse(SegmentMjcf(robot, fine, Guides::kDisks)));
+  models.push_back(ModelSpec::Parse(RobotMjcf(robot, fine, Guides::kDisks)));
   fmt::print(" {} links, tendons through the disks only |\n|---|", fine);
   for (std::size_t i = 0; i < models.size(); ++i) fmt::print("---|");
   fmt::print("\n");
-  for (const Case& c : ReadCases(CsvTable::Read(folder / "pulls.csv"), robot)) {
+  for (const Case& c : ReadCases(CsvTable::Read(table), robot)) {
     const Solution rod = SolveCase(robot, c.loads, Method::kCrtFriction);
     if (!rod.outcome.ok()) throw Error::Job(c.name + ": " + rod.outcome.why);
     fmt::print("| {} |", c.name);
@@ -48,8 +48,8 @@ void Print(const std::filesystem::path& folder) {
 
 int main(int count, char** arguments) {
   try {
-    if (count != 2) throw continuum::Error::Input("continuum_tdcr_pulls", "FOLDER of tdcr.yaml");
-    continuum::tdcr::Print(arguments[1]);
+    if (count != 3) throw continuum::Error::Input("continuum_tdcr_pulls", "ROBOT.yaml CASES.csv");
+    continuum::tdcr::Print(arguments[1], arguments[2]);
     return 0;
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());

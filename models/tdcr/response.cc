@@ -111,8 +111,8 @@ class RespondingRod : public Tendons {
     if (by_length()) {
       const Eigen::Index parts = shape.way.rows() - 1;
       const MatrixXd length = shape.way.bottomRows(parts) - shape.way.topRows(parts);
-      const MatrixXd twice = line.tension.topRows(parts) + line.tension.bottomRows(parts);
-      rest -= stretch_.Of(0.5 * twice, robot_.length * length);
+      const MatrixXd twice = shape.tension.topRows(parts) + shape.tension.bottomRows(parts);
+      rest -= stretch_.Of(0.5 * force() * twice, robot_.length * length);
     }
     return Shown{line.points.rightCols<1>(), shape.frames.back(), rest, shape.disks.reshaped()};
   }

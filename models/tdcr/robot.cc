@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "models/tdcr/columns.h"
+#include "models/tdcr/read_sections.h"
 #include "sim/io/decimal.h"
 
 namespace continuum::tdcr {
@@ -94,6 +95,54 @@ Eigen::Vector2d Robot::Hole(int tendon) const {
   return {tendon_radius * std::cos(sigma), tendon_radius * std::sin(sigma)};
 }
 
+std::vector<Section> Robot::Sections() const {
+  if (has_sections()) return sections;
+  Section whole;
+  whole.diameter = diameter;
+  whole.EI = EI();
+  whole.GJ = GJ();
+  whole.mass_per_length = density * area();
+  whole.disk_mass = disk_mass;
+  whole.natural = natural;
+  for (int i = 1; i <= disks; ++i) whole.disks.push_back(i * length / disks);
+  return {whole};
+}
+
+Route Robot::RouteOf(int tendon) const {
+  if (has_sections()) return routes[static_cast<std::size_t>(tendon)];
+  const auto places = static_cast<std::size_t>(disks) + 1;
+  return {std::vector<double>(places, tendon_radius),
+          std::vector<double>(places, 2 * std::numbers::pi * tendon / tendons)};
+}
+
+double Robot::Place(int disk) const {
+  if (!has_sections()) return disk * length / disks;
+  double start = 0;
+  auto rest = static_cast<std::size_t>(disk);
+  for (const Section& s : sections) {
+    if (rest == 0) break;
+    if (rest <= s.disks.size()) return start + s.disks[rest - 1];
+    rest -= s.disks.size();
+    start += s.length();
+  }
+  return start;
+}
+
+double Robot::mass() const {
+  if (!has_sections()) return disks * disk_mass + density * area() * length;
+  double sum = 0;
+  for (const Section& s : sections) {
+    sum += s.mass_per_length * s.length() + static_cast<double>(s.disks.size()) * s.disk_mass;
+  }
+  return sum;
+}
+
+double Robot::SoftestEI() const {
+  double softest = EI();
+  for (const Section& s : sections) softest = std::min(softest, s.EI);
+  return softest;
+}
+
 Eigen::Matrix3d Robot::MeasuringToBase() const {
   const double cx = std::cos(base_rotation.x()), sx = std::sin(base_rotation.x());
   const double cy = std::cos(base_rotation.y()), sy = std::sin(base_rotation.y());
@@ -109,6 +158,8 @@ Loads Loads::Scaled(double load) const {
   Loads scaled = *this;
   for (double& t : scaled.tension) t *= load;
   scaled.tip_force *= load;
+  scaled.disk_force *= load;
+  scaled.disk_moment *= load;
   scaled.gravity *= load;
   return scaled;
 }
@@ -118,8 +169,8 @@ bool Loads::AsItSlides() const {
 }
 
 double Loads::DeadForce(const Robot& robot) const {
-  const double mass = robot.disks * robot.disk_mass + robot.density * robot.area() * robot.length;
-  return tip_force.norm() + mass * gravity.norm();
+  return tip_force.norm() + robot.mass() * gravity.norm() + disk_force.colwise().norm().sum() +
+         disk_moment.colwise().norm().sum() / robot.length;
 }
 
 Loads NoLoads(const Robot& robot) {
@@ -131,11 +182,28 @@ Loads NoLoads(const Robot& robot) {
   return loads;
 }
 
-Robot ReadRobot(const Yaml& file) {
-  Robot robot;
-  if (const int format = file.At("format").Integer(); format != 1) {
-    throw Error::Input(file.At("format").Where(), "format 1", std::to_string(format));
+namespace {
+
+// A robot of sections, and its sizes.
+void ReadArm(const Yaml& file, Robot& robot) {
+  robot.sections = ReadSections(file);
+  robot.routes = ReadRoutes(file, robot.sections);
+  robot.tendons = static_cast<int>(robot.routes.size());
+  robot.length = robot.diameter = robot.tendon_radius = 0;
+  robot.disks = 0;
+  for (const Section& s : robot.sections) {
+    robot.length += s.length();
+    robot.disks += static_cast<int>(s.disks.size());
+    robot.diameter = std::max(robot.diameter, s.diameter);
   }
+  for (const Route& r : robot.routes) {
+    const double widest = *std::max_element(r.radius.begin(), r.radius.end());
+    robot.tendon_radius = std::max(robot.tendon_radius, widest);
+  }
+}
+
+// The segment of the paper.
+void ReadSegment(const Yaml& file, Robot& robot) {
   robot.length = Positive(file, "length");
   robot.diameter = Positive(file, "diameter");
   robot.disks = Count(file, "disks", 2, 1000);
@@ -148,6 +216,20 @@ Robot ReadRobot(const Yaml& file) {
   }
   robot.density = NotNegative(file, "density");
   robot.disk_mass = NotNegative(file, "disk_mass");
+}
+
+}  // namespace
+
+Robot ReadRobot(const Yaml& file) {
+  Robot robot;
+  if (const int format = file.At("format").Integer(); format != 1) {
+    throw Error::Input(file.At("format").Where(), "format 1", std::to_string(format));
+  }
+  if (file.Has("sections")) {
+    ReadArm(file, robot);
+  } else {
+    ReadSegment(file, robot);
+  }
   robot.mu = Friction(file.At("mu").Parameter(), file.At("mu").Where());
   if (file.Has("tendon_EA")) robot.tendon_EA = Positive(file, "tendon_EA");
   robot.gravity = Gravity(file.At("gravity"));
@@ -155,8 +237,38 @@ Robot ReadRobot(const Yaml& file) {
   return robot;
 }
 
+namespace {
+
+Eigen::Vector3d Vector(const CsvTable& table, std::size_t row, const std::string& name,
+                       const std::string& end) {
+  Eigen::Vector3d v;
+  for (int i = 0; i < 3; ++i) v[i] = table.Number(row, name + "xyz"[i] + end);
+  return v;
+}
+
+bool Has(const CsvTable& table, const std::string& name, const std::string& end) {
+  return HasVector(table, {name + "x" + end, name + "y" + end, name + "z" + end});
+}
+
+// fx_i .., mx_i .. at disk i, and mx .. at the tip.
+void ReadDiskLoads(const CsvTable& table, std::size_t row, const Robot& robot, Loads& loads) {
+  const auto add = [&](const std::string& name, const std::string& end, int disk,
+                       Eigen::Matrix3Xd& all) {
+    if (!Has(table, name, end)) return;
+    if (all.cols() == 0) all.setZero(3, robot.disks);
+    all.col(disk) += Vector(table, row, name, end);
+  };
+  for (int i = 0; i < robot.disks; ++i) {
+    add("f", "_" + std::to_string(i + 1), i, loads.disk_force);
+    add("m", "_" + std::to_string(i + 1), i, loads.disk_moment);
+  }
+  add("m", "", robot.disks - 1, loads.disk_moment);
+}
+
+}  // namespace
+
 std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
-  RequireKnownCaseColumns(table, robot.tendons);
+  RequireKnownCaseColumns(table, robot.tendons, robot.disks);
   const std::string drive = table.Has("L1") ? "L" : "T";
   std::vector<std::string> needed{"case", "fx", "fy", "fz"};
   for (int k = 1; k <= robot.tendons; ++k) needed.push_back(drive + std::to_string(k));
@@ -182,6 +294,7 @@ std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
       if (table.Has(direction)) c.loads.direction[i] = Direction(table, row, direction);
     }
     c.loads.tip_force = {table.Number(row, "fx"), table.Number(row, "fy"), table.Number(row, "fz")};
+    ReadDiskLoads(table, row, robot, c.loads);
     if (gravity) {
       c.loads.gravity = {table.Number(row, "gx"), table.Number(row, "gy"), table.Number(row, "gz")};
     }

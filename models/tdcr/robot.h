@@ -7,15 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "models/tdcr/section.h"
 #include "sim/io/csv.h"
 #include "sim/io/yaml.h"
 
 namespace continuum::tdcr {
 
-inline constexpr int kMaxTendons = 64;
-
-/// One segment driven by tendons: a straight elastic rod along z with n disks at equal distances
-/// and m tendons at equal angles, tendon 1 on +x. SI units.
+/// An elastic rod along z with n disks and m tendons. SI units.
+///
+/// Without `sections` it is the segment of the paper: one straight rod, disks at equal distances,
+/// tendons at equal angles that run parallel to the rod to the tip, tendon 1 on +x. With them
+/// `sections` and `routes` say what it is; of the scalars up to `disk_mass` then only `length`,
+/// `disks`, `tendons` and, as sizes, `diameter` and `tendon_radius` (the largest ones) are set.
 struct Robot {
   double length = 0.134;
   double diameter = 0.99e-3;
@@ -34,10 +37,27 @@ struct Robot {
   Eigen::Vector3d natural = Eigen::Vector3d::Zero();
   Eigen::Vector3d base_rotation = Eigen::Vector3d::Zero();  ///< theta_x, theta_y, theta_z of (31)
 
-  double arc() const { return length / disks; }
+  std::vector<Section> sections;
+  std::vector<Route> routes;  ///< of the tendons; given with `sections`
+
+  bool has_sections() const { return !sections.empty(); }
+  /// The sections; without them the whole rod as one.
+  std::vector<Section> Sections() const;
+  /// The route of a tendon, given or parallel to the rod.
+  Route RouteOf(int tendon) const;
+  /// Distance of a disk from the base along the rod; 0 is the base [m].
+  double Place(int disk) const;
+  double mass() const;  ///< of the rod and all disks [kg]
+  /// Stiffness of the section that bends most easily [N m^2].
+  double SoftestEI() const;
+
+  double arc() const { return length / disks; }  ///< without sections
   double area() const { return std::numbers::pi * diameter * diameter / 4; }
-  double EI() const { return E * std::numbers::pi * std::pow(diameter, 4) / 64; }
-  double GJ() const { return EI() / (1 + nu); }  // G = E/(2 (1 + nu)), J = 2 I
+  /// Of the first section.
+  double EI() const {
+    return has_sections() ? sections.front().EI : E * std::numbers::pi * std::pow(diameter, 4) / 64;
+  }
+  double GJ() const { return EI() / (1 + nu); }  ///< without sections: G = E/(2 (1 + nu)), J = 2 I
   /// Moments are divided by this in residuals.
   double moment() const { return EI() / length; }
   /// Tensions are divided by this: that of a tendon with this moment about the rod [N].
@@ -68,7 +88,10 @@ struct Loads {
   std::vector<double> tension;  ///< T_k at the base [N], at least 0
   std::vector<int> direction;   ///< 1 pulled, -1 released, 0 without friction, or kAsItSlides
   Eigen::Vector3d tip_force = Eigen::Vector3d::Zero();  ///< dead force at the tip, base frame [N]
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();    ///< [m/s^2]
+  /// Dead forces [N] and moments [N m] at disks 1..n, base frame, 3 x n; empty: none. That at disk
+  /// n adds to `tip_force`.
+  Eigen::Matrix3Xd disk_force = {}, disk_moment = {};
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
   double mu = 0;
   bool own_mu = false;  ///< mu belongs to this case, whatever the robot's
   /// Of tendons that are driven by length: what is between base and tip without tension [m]; then
@@ -80,9 +103,10 @@ struct Loads {
 
   bool AsItSlides() const;
 
-  /// The tensions, the tip force and the weights multiplied by `load`.
+  /// The tensions, the forces, moments and weights multiplied by `load`.
   Loads Scaled(double load) const;
-  /// All of the dead forces added as if they pulled in one direction at the tip [N].
+  /// All of the dead forces added as if they pulled in one direction at the tip, and moments as if
+  /// forces at its end made them [N].
   double DeadForce(const Robot& robot) const;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "models/tdcr/section_moment.h"
 #include "sim/numerics/decompositions.h"
 
 namespace continuum::tdcr {
@@ -27,10 +28,28 @@ int NegativeEigenvalues(const Eigen::MatrixXd& symmetric) {
 RodLaw::RodLaw(UnitRod rod, int pieces, Eigen::MatrixXd share)
     : rod_(std::move(rod)),
       pieces_(pieces),
+      per_arc_(pieces / rod_.arcs()),
       share_(std::move(share)),
       tension_(pulling(), pieces) {}
 
-Vector3d RodLaw::Force(double s) const { return rod_.Force(static_cast<int>(s * rod_.disks), s); }
+std::vector<double> RodLaw::lengths() const {
+  std::vector<double> lengths;
+  for (int i = 0; i < pieces_; ++i) lengths.push_back(Length(i));
+  return lengths;
+}
+
+Vector3d RodLaw::Force(double s) const { return rod_.Force(rod_.ArcAt(s), s); }
+
+Vector3d RodLaw::DeadMoment(int node) const {
+  return node % per_arc_ == 0 ? rod_.MomentAfter(node / per_arc_ - 1) : Vector3d::Zero();
+}
+
+// In the middle of a piece.
+ChannelPoint RodLaw::Hole(int piece, int tendon) const {
+  const int arc = ArcOf(piece);
+  const double s = rod_.Arc(arc).start() + (piece - arc * per_arc_ + 0.5) * Length(piece);
+  return rod_.ChannelOf(static_cast<std::size_t>(tendon), arc).At(s);
+}
 
 double RodLaw::Share(int i, int tendon) const {
   if (share_.size() == 0) return rod_.direction[static_cast<std::size_t>(tendon)];
@@ -51,7 +70,7 @@ Eigen::MatrixXd RodLaw::Beyond(const Eigen::Matrix3Xd& zeta) const {
   for (int k = 0; k < pulling(); ++k) {
     double length = 0;
     for (int i = pieces_ - 1; i >= 0; --i) {
-      length += Along(rod_.holes[static_cast<std::size_t>(k)], zeta.col(i)).norm() / pieces_;
+      if (Runs(i, k)) length += Along(Hole(i, k), Vector3d(zeta.col(i))).norm() * Length(i);
       beyond(i, k) = length;
     }
   }
@@ -59,50 +78,58 @@ Eigen::MatrixXd RodLaw::Beyond(const Eigen::Matrix3Xd& zeta) const {
 }
 
 bool RodLaw::Prepare(const Eigen::Matrix3Xd& zeta) {
-  const double h = 1.0 / pieces_;
   for (int k = 0; k < pulling(); ++k) {
     const auto at = static_cast<std::size_t>(k);
-    tension_.row(k).setConstant(rod_.pull[at]);
-    if (!rod_.friction || rod_.direction[at] == 0) continue;
-    Vector3d before = Along(rod_.holes[at], zeta.col(0)).normalized();
-    double angle = 0.5 * h * Share(0, k) * zeta.col(0).cross(before).norm();
-    for (int i = 0; i < pieces_; ++i) {
-      const Vector3d t = Along(rod_.holes[at], zeta.col(i)).normalized();
-      if (i > 0) {
-        const Vector3d u = 0.5 * (zeta.col(i) + zeta.col(i - 1));
-        angle += Share(i, k) * (h * u.cross(Vector3d(0.5 * (t + before))) + t - before).norm();
-      }
-      before = t;
-      tension_(k, i) *= std::exp(-rod_.mu * angle);
-    }
+    for (int i = 0; i < pieces_; ++i) tension_(k, i) = Runs(i, k) ? rod_.pull[at] : 0;
+    if (rod_.friction && rod_.direction[at] != 0) LoseTension(k, zeta);
   }
   return true;
 }
 
-Vector3d RodLaw::Lever(int tendon, const Vector3d& u) const {
-  const Eigen::Vector2d& hole = rod_.holes[static_cast<std::size_t>(tendon)];
-  const Vector3d w = Along(hole, u);
-  return Vector3d(w.z() * hole.y(), -w.z() * hole.x(), u.z() * hole.squaredNorm()) / w.norm();
+// Half of the first piece's turn, then the turns from middle to middle.
+void RodLaw::LoseTension(int k, const Eigen::Matrix3Xd& zeta) {
+  const Vector3d first = zeta.col(0);
+  const ChannelPoint hole = Hole(0, k);
+  const double length = Along(hole, first).norm();
+  Vector3d before = Along(hole, first) / length;
+  const Vector3d drift = AlongDrift(hole, first);
+  const Vector3d turn = first.cross(before) + (drift - before * before.dot(drift)) / length;
+  double angle = 0.5 * Length(0) * Share(0, k) * turn.norm();
+  for (int i = 0; i < pieces_ && Runs(i, k); ++i) {
+    const Vector3d t = Along(Hole(i, k), Vector3d(zeta.col(i))).normalized();
+    if (i > 0) {
+      const double h = 0.5 * (Length(i) + Length(i - 1));
+      const Vector3d u = 0.5 * (zeta.col(i) + zeta.col(i - 1));
+      angle += Share(i, k) * (h * u.cross(Vector3d(0.5 * (t + before))) + t - before).norm();
+    }
+    before = t;
+    tension_(k, i) *= std::exp(-rod_.mu * angle);
+  }
+}
+
+Vector3d RodLaw::LeverOf(int piece, int tendon, const Vector3d& u) const {
+  if (!Runs(piece, tendon)) return Vector3d::Zero();
+  const ChannelPoint hole = Hole(piece, tendon);
+  return Lever(hole.a, Vector3d(Along(hole, u).normalized()));
 }
 
 bool RodLaw::At(int piece, const Vector3d& u, const Vector3d& /*n*/,
                 statics::RodSection& section) const {
-  section.moment = elastic() * (u - rod_.natural);
-  section.stretch = axis();
-  section.moment_by_zeta = elastic();
+  const RodArc& arc = rod_.Arc(ArcOf(piece));
+  SectionMoment<double> sum(u, arc.natural, arc.stiffness);
+  double along = 0;
   for (int k = 0; k < pulling(); ++k) {
-    const Eigen::Vector2d& hole = rod_.holes[static_cast<std::size_t>(k)];
-    const Vector3d w = Along(hole, u);
-    if (!(w.z() > 0)) return false;
-    const double r2 = hole.squaredNorm(), square = w.squaredNorm();
-    const double share = tension_(k, piece) / std::sqrt(square);
-    const Vector3d by_z(hole.y(), -hole.x(), 0);  // dw_z/du
-    section.moment += share * (w.z() * by_z + Vector3d(0, 0, u.z() * r2));
-    // Hessian of |w| by (w_z, u_z): (u_z^2 r2, -w_z u_z r2; ., w_z^2 r2)/|w|^3.
-    const double cube = share / square * r2;
-    const Vector3d across = u.z() * by_z - Vector3d(0, 0, w.z());
-    section.moment_by_zeta += cube * across * across.transpose();
+    if (!Runs(piece, k)) continue;
+    const ChannelPoint hole = Hole(piece, k);
+    const bool parallel = rod_.ChannelOf(static_cast<std::size_t>(k), ArcOf(piece)).parallel;
+    const double pull = tension_(k, piece);
+    const bool inside =
+        parallel ? sum.AddParallel(hole.a, pull, u, along) : sum.AddSlanted(hole, pull, u, along);
+    if (!inside) return false;
   }
+  section.moment = sum.moment;
+  section.stretch = axis();
+  section.moment_by_zeta = sum.Hessian();
   return true;
 }
 
@@ -130,7 +157,7 @@ int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law
                        const statics::RodChain<RodLaw>::Shape& shape) {
   if (!law.friction() && !law.holds()) return chain.UnstableDirections();
   const int pieces = chain.pieces();
-  const double h = 1.0 / pieces;
+  const std::vector<double> lengths = law.lengths();
   // What tensions do to the nodes, and how they follow the strains, which follow the turns.
   Eigen::MatrixXd force = Eigen::MatrixXd::Zero(3 * pieces, law.pulling() * pieces);
   Eigen::MatrixXd follow(law.pulling() * pieces, 3 * pieces);
@@ -151,11 +178,11 @@ int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law
     const auto at = static_cast<std::size_t>(i);
     const Eigen::Matrix3d R = shape[at].slerp(0.5, shape[at + 1]).normalized().toRotationMatrix();
     for (int k = 0; k < law.pulling(); ++k) {
-      const Vector3d lever = R * law.Lever(k, zeta.col(i));
+      const Vector3d lever = R * law.LeverOf(i, k, zeta.col(i));
       force.block<3, 1>(3 * i, law.pulling() * i + k) = lever;
       if (i > 0) force.block<3, 1>(3 * (i - 1), law.pulling() * i + k) = -lever;
     }
-    const Eigen::MatrixXd turned = by_strain.middleCols<3>(3 * i) * R.transpose() / h;
+    const Eigen::MatrixXd turned = by_strain.middleCols<3>(3 * i) * R.transpose() / lengths[at];
     follow.middleCols<3>(3 * i) = turned;
     if (i > 0) follow.middleCols<3>(3 * (i - 1)) -= turned;
   }

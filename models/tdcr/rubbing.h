@@ -3,11 +3,14 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "models/tdcr/channel.h"
+
 namespace continuum::tdcr {
 
 /// A tendon that loses tension along its channel, at one point of a rod of curvature u:
 ///
-///   w = e_3 + u x a,  t = w/|w|,  t' = u x t + (w' - t t.w')/|w|  with w' = u' x a          (1)
+///   w = e_3 + u x a + a',  t = w/|w|,  t' = u x t + (w' - t t.w')/|w|
+///   w' = u' x a + u x a' + a''                                                              (1)
 ///   T' = -loss |t'|,  loss = dir mu T                                                       (2)
 ///
 /// a = (ax, ay, 0) is the hole. |t'| has a kink where the tendon is straight; 1e-12 rounds it off.
@@ -17,13 +20,14 @@ class Rubbing {
   using Vector3 = Eigen::Matrix<T, 3, 1>;
 
   Rubbing() = default;
-  Rubbing(const Eigen::Vector2d& hole, const Vector3& u, const T& loss)
-      : ax_(hole.x()), ay_(hole.y()), loss_(loss) {
+  Rubbing(const ChannelPoint& at, bool parallel, const Vector3& u, const T& loss)
+      : ax_(at.a.x()), ay_(at.a.y()), loss_(loss) {
     using std::sqrt;
-    const Vector3 w(-u.z() * ay_, u.z() * ax_, 1.0 + u.x() * ay_ - u.y() * ax_);
+    const Vector3 w = Along(at, u);
     inverse_ = 1.0 / sqrt(w.squaredNorm());
     t_ = w * inverse_;
     still_ = u.cross(t_);
+    if (!parallel) still_ += Across(AlongDrift(at, u));
   }
 
   /// T' by (2).
@@ -48,8 +52,9 @@ class Rubbing {
   }
   Vector3 Turn(const Vector3& du) const {
     const Vector3 dw(-du.z() * ay_, du.z() * ax_, du.x() * ay_ - du.y() * ax_);
-    return still_ + (dw - t_ * t_.dot(dw)) * inverse_;
+    return still_ + Across(dw);
   }
+  Vector3 Across(const Vector3& dw) const { return (dw - t_ * t_.dot(dw)) * inverse_; }
 
   double ax_ = 0, ay_ = 0;
   T loss_, inverse_;

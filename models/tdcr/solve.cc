@@ -181,6 +181,18 @@ int ReachTargets(const SolveRequest& request, const Robot& robot, Method method)
   return Report(request, robot, solved);
 }
 
+// A robot with sections: the Cosserat rod alone knows it.
+void RequireSolvable(const SolveRequest& request, const Yaml& file, const Robot& robot,
+                     const std::string& method) {
+  const std::string where = file.At("sections").Where(), only = "the method crt or crt_friction";
+  if (method == "fit") throw Error::Input(where, only + " with sections", "fit");
+  if (request.calibrate || !request.hybrid.empty()) {
+    throw Error::Input(where, "a robot of one section (keys length, diameter, ..) for calibration",
+                       "sections");
+  }
+  RequireTaken(robot, NoLoads(robot), ParseMethod(method), where);
+}
+
 int FitShapes(const SolveRequest& request, const Robot& robot) {
   Need(request.measured, "--measured", "--method fit");
   Refuse(!request.input.empty(), "--input", "--method fit");
@@ -201,7 +213,8 @@ int SolveTdcr(const SolveRequest& request) {
   const Robot robot = ReadRobot(file);
   RequireKnownKeys(file);
   WarnOfImplausibleRobot(request, file, robot);
-  const std::string method = request.method.empty() ? "eas" : request.method;
+  const std::string method = MethodName(request, robot);
+  if (robot.has_sections()) RequireSolvable(request, file, robot, method);
   Refuse(request.sensitivity, "--sensitivity", "the robot tdcr");
   Need(request.out, "--out", "the results");
   CheckLists(request, method);

@@ -12,6 +12,7 @@
 #include "models/statics/write_figure.h"
 #include "models/tdcr/details.h"
 #include "models/tdcr/figure.h"
+#include "models/tdcr/inputs.h"
 #include "models/tdcr/line.h"
 #include "models/tdcr/response.h"
 
@@ -73,7 +74,7 @@ void AddShape(const Robot& robot, const Solved& s, statics::Results& results) {
 
 void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
   statics::Figure figure = EmptyFigure(robot);
-  figure.title = "tdcr " + (request.method.empty() ? "eas" : request.method);
+  figure.title = "tdcr " + MethodName(request, robot);
   for (const Solved& s : solved) {
     if (!s.solution.outcome.ok()) continue;
     figure.shapes.push_back(ShapeOf(robot, s.loads, s.solution, s.measured));
@@ -82,8 +83,8 @@ void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Sol
   statics::WriteFigure(request.plot, figure);
 }
 
-Method MethodOf(const SolveRequest& request) {
-  return ParseMethod(request.method.empty() ? "eas" : request.method);
+Method MethodOf(const SolveRequest& request, const Robot& robot) {
+  return ParseMethod(MethodName(request, robot));
 }
 
 void WriteShapes(const SolveRequest& request, const Robot& robot,
@@ -91,7 +92,7 @@ void WriteShapes(const SolveRequest& request, const Robot& robot,
   statics::ShapeTable table(robot.tendons);
   for (const Solved& s : solved) {
     if (!s.solution.outcome.ok()) continue;
-    const Line line = LineOf(robot, s.loads, MethodOf(request), s.solution);
+    const Line line = LineOf(robot, s.loads, MethodOf(request, robot), s.solution);
     for (Eigen::Index i = 0; i < line.s.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       table.Add(s.name, {line.s[i], line.disk[at], line.points.col(i), line.frames[at],
@@ -107,7 +108,7 @@ void WriteCompliance(const SolveRequest& request, const Robot& robot,
   statics::ComplianceTable table(robot.tendons, by_length);
   for (const Solved& s : solved) {
     if (!s.solution.outcome.ok()) continue;
-    const auto response = Respond(robot, s.loads, MethodOf(request), s.solution);
+    const auto response = Respond(robot, s.loads, MethodOf(request, robot), s.solution);
     if (response) table.Add(s.name, *response);
   }
   table.Write(request.compliance);
@@ -137,7 +138,7 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     }
     results.Set(s.solution.outcome, s.solution.stability);
     if (!ok) continue;
-    auto details = Describe(robot, s.loads, MethodOf(request), s.solution);
+    auto details = Describe(robot, s.loads, MethodOf(request, robot), s.solution);
     details.miss = s.miss;
     Set(details, s.equilibrium, results);
   }

@@ -19,7 +19,7 @@ const std::string kFolder = std::string(CONTINUUM_SOURCE) + "/models/tdcr/";
 Robot Segment() { return ReadRobot(Yaml::Read(kFolder + "tdcr.yaml")); }
 
 ModelSpec Links(const Robot& robot, int links) {
-  return ModelSpec::Parse(SegmentMjcf(robot, links, Guides::kLinks));
+  return ModelSpec::Parse(RobotMjcf(robot, links, Guides::kLinks));
 }
 
 Eigen::Vector3d RodTip(const Robot& robot, const Loads& loads, Method method) {
@@ -30,8 +30,8 @@ Eigen::Vector3d RodTip(const Robot& robot, const Loads& loads, Method method) {
 
 TEST(TdcrMjcf, TheCommittedFilesAreTheGeneratedOnes) {
   const Robot robot = Segment();
-  EXPECT_EQ(ReadFile(kFolder + "tdcr.xml"), SegmentMjcf(robot, 45, Guides::kLinks));
-  EXPECT_EQ(ReadFile(kFolder + "tdcr_disks.xml"), SegmentMjcf(robot, 45, Guides::kDisks));
+  EXPECT_EQ(ReadFile(kFolder + "tdcr.xml"), RobotMjcf(robot, 45, Guides::kLinks));
+  EXPECT_EQ(ReadFile(kFolder + "tdcr_disks.xml"), RobotMjcf(robot, 45, Guides::kDisks));
 }
 
 TEST(TdcrMjcf, HangsStraightAndWeighsWhatRodAndDisksWeigh) {
@@ -86,7 +86,7 @@ TEST(TdcrMjcf, WithoutFrictionABeamBendsAsTheClosedForm) {
 }
 
 TEST(TdcrMjcf, LinksAreAMultipleOfTheDisks) {
-  EXPECT_THROW(SegmentMjcf(Segment(), 50, Guides::kLinks), Error);
+  EXPECT_THROW(RobotMjcf(Segment(), 50, Guides::kLinks), Error);
 }
 
 }  // namespace
