@@ -124,7 +124,18 @@ bool Attachment::IsOfRobot(int body) const {
 
 bool Attachment::CanHave(int body, const Affixes& affixes) const {
   const std::string name = body > 0 ? NameOf(*m_, mjOBJ_BODY, body) : "";
-  return name.empty() || (name.starts_with(affixes.prefix) && name.ends_with(affixes.suffix));
+  if (name.empty()) return true;
+  const std::string &prefix = affixes.prefix, &suffix = affixes.suffix;
+  if (!name.starts_with(prefix) || !name.ends_with(suffix)) return false;
+  const std::string own = name_.substr(prefix.size(), name_.size() - prefix.size() - suffix.size());
+  return std::none_of(twins_.begin(), twins_.end(), [&](const Twin& twin) {
+    const std::size_t at = twin.name.find(own);
+    if (at == twin.name.npos) return false;
+    const std::string theirs = twin.name.substr(0, at), end = twin.name.substr(at + own.size());
+    const bool longer = theirs.size() + end.size() > prefix.size() + suffix.size();
+    return longer && theirs.starts_with(prefix) && end.ends_with(suffix) &&
+           name.starts_with(theirs) && name.ends_with(end);
+  });
 }
 
 bool Attachment::IsOfBranch(int body) const {

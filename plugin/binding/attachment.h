@@ -31,7 +31,8 @@ class Attachment {
   const std::vector<Affixes>& possible() const { return possible_; }
   /// Whether a body is of the robot that refers to the instance: of the tree that it hangs on.
   bool IsOfRobot(int body) const;
-  /// Whether a body may have been attached so: its name, if it has one, has these affixes.
+  /// Whether a body may have been attached so: its name, if it has one, has these affixes,
+  /// and not the longer ones of a twin ("h1" and "h10").
   bool CanHave(int body, const Affixes& affixes) const;
   /// Whether a body is of the branch of the one that refers to the instance.
   bool IsOfBranch(int body) const;

@@ -78,6 +78,32 @@ TEST_F(Attachments, DoNotActOnEachOther) {
   }
 }
 
+// A model of two fingers side by side, of which one refers to the instance.
+TEST_F(Attachments, OfSeveralBranchesAreOneRobot) {
+  const std::string hand = R"(<mujoco model="hand"><extension><plugin plugin="continuum.coulomb">
+    <instance name="fr"><config key="joint" value="*bend"/><config key="tau_c" value=".05"/></instance>
+    </plugin></extension><worldbody>
+    <body name="thumb"><plugin plugin="continuum.coulomb" instance="fr"/>
+      <joint name="tbend"/><geom size=".02" pos="0 0 -.3"/></body>
+    <body name="index"><joint name="ibend"/><geom size=".02" pos="0 0 -.3"/></body>
+    </worldbody></mujoco>)";
+  char error[1000] = "";
+  const testing::Owned<mjSpec> scene(mj_makeSpec());
+  std::vector<testing::Owned<mjSpec>> hands;
+  for (const char* const prefix : {"h1", "h10", "h2"}) {
+    hands.emplace_back(mj_parseXMLString(hand.c_str(), nullptr, error, sizeof error));
+    mjsFrame* const frame = mjs_addFrame(mjs_findBody(scene.get(), "world"), nullptr);
+    mjsBody* const world = mjs_findBody(hands.back().get(), "world");
+    ASSERT_TRUE(mjs_attach(frame->element, world->element, prefix, ""));
+  }
+  const testing::Owned<mjModel> m(mj_compile(scene.get(), nullptr));
+  ASSERT_TRUE(m) << mjs_getError(scene.get());
+  const auto d = Data(m);
+  mj_forward(m.get(), d.get());
+  ASSERT_EQ(d->nf, 6);
+  for (int r = 0; r < 6; ++r) EXPECT_DOUBLE_EQ(d->efc_frictionloss[d->ne + r], .05);
+}
+
 TEST_F(Attachments, OnABodyOfAnotherRobotAreFoundThere) {
   for (const std::string joints : {"bend*", "bend1 bend2"}) {
     for (const std::string prefix : {"a", "a/", "wr"})
