@@ -170,6 +170,7 @@ CableFriction::CableFriction(const mjModel& m, const Config& config, std::vector
       native_(cables_.size()),
       base_(cables_.size()),
       last_(cables_.size()),
+      answer_(cables_.size(), -1),
       force_(m.nv) {
   RequireAlone(m, config);
   for (const int dof : geometry_.dof) trees_[m.dof_treeid[dof]] = true;
@@ -226,9 +227,9 @@ bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage
     native_[c] = NativeTension(m, d, cables_[c]) / cables_[c].divisor;
     base_[c] = std::max(0.0, native_[c]);
   }
-  if (tension_rows_.any()) FindRows(m, d, z);
+  if (tension_rows_.any()) FindRows(m, d, z, stage);
   if (stage == Stage::kActuator) Remember(z);
-  if (stage == Stage::kAfterAll) Solve(m, d, z);
+  if (stage == Stage::kAfterAll) Solve(m, d, z), answer_ = base_;
   Add(force);
   return true;
 }
@@ -263,8 +264,8 @@ void CableFriction::Remember(const double* z) {
 }
 
 // Constraint rows that pull cables: the tension that they give is that of the last step until it is
-// solved for.
-void CableFriction::FindRows(const mjModel& m, const mjData& d, const double* z) {
+// solved for. mj_inverse solves for none and keeps the last answer.
+void CableFriction::FindRows(const mjModel& m, const mjData& d, const double* z, Stage stage) {
   rows_.Clear();
   for (const TensionRow& row : tension_rows_.At(m, d)) {
     SolvedRow& solved = rows_.Add(m, d, row.row, row.limit);
@@ -274,7 +275,9 @@ void CableFriction::FindRows(const mjModel& m, const mjData& d, const double* z)
     const auto all = rows_.all();
     const bool pulled =
         std::any_of(all.begin(), all.end(), [&](const SolvedRow& row) { return row.On(c) != 0; });
-    if (pulled) base_[c] = std::max(z[geometry_.first[c]], kLeastPull);
+    if (!pulled) continue;
+    const bool answered = stage == Stage::kPassive && answer_[c] >= 0;
+    base_[c] = answered ? answer_[c] : std::max(z[geometry_.first[c]], kLeastPull);
   }
 }
 
@@ -468,7 +471,7 @@ void CableFriction::Visualize(const mjModel& m, const mjData& d, mjvScene& scene
 
 void CableFriction::CopyFrom(const BoundLaw& other) {
   const auto& from = static_cast<const CableFriction&>(other);
-  geometry_ = from.geometry_, base_ = from.base_;
+  geometry_ = from.geometry_, base_ = from.base_, answer_ = from.answer_;
   band_ = from.band_, rho_ = from.rho_, ratio_ = from.ratio_, tension_ = from.tension_;
   red_at_ = from.red_at_, largest_ = from.largest_;
 }

@@ -113,7 +113,7 @@ class CableFriction : public BoundLaw {
   void Spread(const Group& group, double rho, const double* z);
   void Add(std::span<double> force);
   int Index(mjtObj kind, int id) const;
-  void FindRows(const mjModel& m, const mjData& d, const double* z);
+  void FindRows(const mjModel& m, const mjData& d, const double* z, Stage stage);
 
   std::vector<Cable> cables_;
   std::string doubts_;  ///< what the user should know of the routes
@@ -127,6 +127,7 @@ class CableFriction : public BoundLaw {
   mutable std::vector<double> tension_;  ///< behind the contact [N]; of Bristles too
   std::vector<double> native_;           ///< t_0 of each cable but for constraints [N]
   std::vector<double> base_, last_;      ///< t_0 of each cable, now and before [N]
+  std::vector<double> answer_;           ///< base_ as last solved for; −1: never
   SolvedRows rows_;
   std::vector<double> force_;
   std::vector<Bend> bends_;  ///< [groups], of which the first count_ are those of tight cables

@@ -10,6 +10,8 @@
 #include <set>
 #include <sstream>
 
+#include "binding/attachment.h"
+
 namespace continuum {
 namespace {
 
@@ -81,15 +83,43 @@ std::string InstanceName(const mjModel& m, int i) {
   return name ? name : "";
 }
 
+// A body that an object hangs on; -1: not known.
+int BodyOf(const mjModel& m, Place place, int id) {
+  switch (place) {
+    case Place::kBody:
+      return id;
+    case Place::kJoint:
+      return m.jnt_bodyid[id];
+    case Place::kSite:
+      return m.site_bodyid[id];
+    case Place::kTendon: {
+      const int first = m.tendon_adr[id], object = m.wrap_objid[first];
+      const bool site = m.wrap_type[first] == mjWRAP_SITE;
+      return site ? m.site_bodyid[object] : m.jnt_bodyid[object];
+    }
+    case Place::kActuator: {
+      const int type = m.actuator_trntype[id], object = m.actuator_trnid[2 * id];
+      if (type == mjTRN_JOINT || type == mjTRN_JOINTINPARENT)
+        return BodyOf(m, Place::kJoint, object);
+      if (type == mjTRN_TENDON) return BodyOf(m, Place::kTendon, object);
+      return type == mjTRN_SITE ? BodyOf(m, Place::kSite, object) : -1;
+    }
+    default:
+      return -1;
+  }
+}
+
 // The instance of the same effect that was attached together with an object of this name; "": none.
-// mine: the prefix that the instance itself was attached with.
+// mine: the prefix that the instance itself was attached with. body: of the object.
 std::string CameWith(const mjModel& m, int instance, const std::string& mine,
-                     const std::string& name) {
+                     const std::string& name, int body) {
+  const Attachment attachment(m, instance);
   const std::string self = InstanceName(m, instance);
   for (int j = 0; j < m.nplugin; ++j) {
     const std::string other = InstanceName(m, j);
     if (self.empty() || m.plugin[j] != m.plugin[instance]) continue;
     if (other.size() <= self.size() || !other.ends_with(self)) continue;
+    if (attachment.IsOwn(body, j)) continue;
     if (name.starts_with(other.substr(0, other.size() - self.size()) + mine)) return other;
   }
   return "";
@@ -104,14 +134,15 @@ std::vector<std::string> Endings(const mjModel& m, int instance) {
   bool copied = false;
   for (int j = 0; j < m.nplugin; ++j) {
     const std::string other = InstanceName(m, j);
-    if (j == instance || m.plugin[j] != m.plugin[instance] || other.size() != mine.size()) continue;
+    if (j == instance || m.plugin[j] != m.plugin[instance]) continue;
     if (Attributes(m, j) != Attributes(m, instance)) continue;
-    const auto differ = std::mismatch(mine.begin(), mine.end(), other.begin()).first;
+    const auto differ = std::mismatch(mine.begin(), mine.end(), other.begin(), other.end()).first;
     common = std::min(common, static_cast<std::size_t>(differ - mine.begin()));
     copied = true;
   }
   std::vector<std::string> endings;
-  for (std::size_t k = common; copied && k > 0; --k) endings.push_back(mine.substr(k));
+  for (std::size_t k = copied ? std::min(common, mine.size() - 1) : 0; k > 0; --k)
+    endings.push_back(mine.substr(k));
   return endings;
 }
 
@@ -258,12 +289,38 @@ bool Config::IsAttached(const std::string& prefix) const {
   return false;
 }
 
+// With affixes that attach has put around all names of the robot.
+std::vector<int> Config::MatchAttached(Place place, const std::vector<int>& written) const {
+  const Attachment attachment(*m_, instance_);
+  std::vector<Affixes> all = attachment.certain();
+  const auto words = Words(Get(PlaceName(place)));
+  const bool vague = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    return kMeaning.find(word[0]) != kMeaning.npos;
+  });
+  const bool own = std::any_of(written.begin(), written.end(), [&](int id) {
+    const int body = BodyOf(*m_, place, id);
+    return body < 0 || (vague ? attachment.IsOfRobot(body) : attachment.IsOfBranch(body));
+  });
+  if (!own) all.insert(all.end(), attachment.possible().begin(), attachment.possible().end());
+  for (const Affixes& affixes : all) {
+    const auto& [prefix, suffix] = affixes;
+    auto ids = MatchBetween(*m_, Get(PlaceName(place)), prefix, suffix, place, nullptr);
+    std::erase_if(ids, [&](int id) {
+      const int body = BodyOf(*m_, place, id);
+      return attachment.IsOfTwin(body) || !attachment.CanHave(body, affixes);
+    });
+    if (!ids.empty()) return ids;
+  }
+  return {};
+}
+
 std::vector<int> Config::Match(Place place) const {
   const std::string key(PlaceName(place));
   std::string missing;
   const std::vector<int> written = MatchBehind("", place, &missing);
   if (missing.empty() && written.empty())
     throw Error::Input(Who(), "the key '" + key + "'", "none");
+  if (const auto ids = MatchAttached(place, written); !ids.empty()) return ids;
   const std::vector<std::string> endings = Endings(*m_, instance_);
   std::vector<std::string> prefixes = endings.empty() ? endings : Prefixes(place);
   prefixes.emplace_back();
@@ -287,10 +344,18 @@ int Config::Find(Place place, const std::string& name) const {
   const auto id = [&](const std::string& whole) {
     return mj_name2id(m_, ObjectType(place), whole.c_str());
   };
+  const int written = id(name);
+  const Attachment attachment(*m_, instance_);
+  std::vector<Affixes> all = attachment.certain();
+  const int body = written < 0 ? 0 : BodyOf(*m_, place, written);
+  if (body >= 0 && !attachment.IsOfBranch(body))
+    all.insert(all.end(), attachment.possible().begin(), attachment.possible().end());
+  for (const auto& [prefix, suffix] : all) {
+    if (const int found = id(prefix + name + suffix); found >= 0) return found;
+  }
   for (const std::string& ending : Endings(*m_, instance_)) {
     if (const int found = id(name + ending); found >= 0) return found;
   }
-  const int written = id(name);
   for (const std::string& prefix : Prefixes(place)) {
     if (written >= 0 && !IsAttached(prefix)) continue;
     if (const int found = id(prefix + name); found >= 0) return found;
@@ -309,6 +374,12 @@ bool Config::IsWritten(Place place, const std::string& name) const {
     for (const std::string& ending : Endings(*m_, instance_)) {
       if (!glob && name.ends_with(plain + ending)) return true;
     }
+    const Attachment attachment(*m_, instance_);
+    for (const auto* const each : {&attachment.certain(), &attachment.possible()}) {
+      for (const auto& [prefix, suffix] : *each) {
+        if (!glob && name == prefix + plain + suffix) return true;
+      }
+    }
   }
   return false;
 }
@@ -326,7 +397,8 @@ std::vector<int> Config::MatchFit(Place place, const std::function<Misfit(int)>&
     Misfit misfit = judge(id);
     const std::string name = NameOf(*m_, place, id);
     const bool all = id == matched.back() && fit.empty(), written = IsWritten(place, name);
-    const std::string owner = written ? "" : CameWith(*m_, instance_, mine, name);
+    const std::string owner =
+        written ? "" : CameWith(*m_, instance_, mine, name, BodyOf(*m_, place, id));
     if (!owner.empty())
       misfit = {"one that came with no other instance", "that of '" + owner + "'"};
     if (misfit.found.empty()) {
@@ -338,7 +410,22 @@ std::vector<int> Config::MatchFit(Place place, const std::function<Misfit(int)>&
     }
   }
   left_out_ = left.empty() ? "" : "it leaves out " + key + "s " + left;
+  LeaveOutUnnamed(place, [&](int id) { return judge(id).found.empty(); });
   return fit;
+}
+
+// What has no name no glob finds. "*" says that all are meant.
+void Config::LeaveOutUnnamed(Place place, const std::function<bool(int)>& fits) const {
+  const std::string key(PlaceName(place));
+  const auto words = Words(Get(key));
+  if (std::find(words.begin(), words.end(), "*") == words.end()) return;
+  int count = 0;
+  for (int id = 0; id < ObjectCount(*m_, place); ++id)
+    count += NameOf(*m_, place, id).empty() && fits(id);
+  if (count == 0) return;
+  left_out_ += left_out_.empty() ? "" : "; ";
+  left_out_ += "it leaves out " + std::to_string(count) + " " + key +
+               (count > 1 ? "s without names: give them names" : " without a name: give it one");
 }
 
 Lines Config::MatchLines(Joints types) const {
@@ -346,7 +433,11 @@ Lines Config::MatchLines(Joints types) const {
   if (joints == tendons) {
     throw Error::Input(Who(), "one of the keys 'joint' and 'tendon'", joints ? "both" : "none");
   }
-  if (tendons) return {false, Match(Place::kTendon)};
+  if (tendons) {
+    left_out_.clear();
+    LeaveOutUnnamed(Place::kTendon, [](int) { return true; });
+    return {false, Match(Place::kTendon)};
+  }
   const bool ball = types == Joints::kHingeSlideBall;
   return {true, MatchFit(Place::kJoint, [&](int j) -> Misfit {
             const int type = m_->jnt_type[j];

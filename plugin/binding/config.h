@@ -60,7 +60,8 @@ class Config {
   ///
   /// MuJoCo's attach puts a prefix before the names of a model, that of the instance too, but not
   /// into configurations. Names are therefore looked for with the prefix of the instance first (of
-  /// "a_friction", "bend*" finds "a_bend1"), then as written.
+  /// "a_friction", "bend*" finds "a_bend1"), then as written. What Attachment knows goes before
+  /// both.
   std::vector<int> Match(Place place) const;
   /// The id of the object of this exact name, found in the same way; -1: there is none.
   int Find(Place place, const std::string& name) const;
@@ -79,8 +80,10 @@ class Config {
 
  private:
   std::vector<int> MatchBehind(const std::string& prefix, Place place, std::string* missing) const;
+  std::vector<int> MatchAttached(Place place, const std::vector<int>& written) const;
   std::vector<std::string> Prefixes(Place place) const;
   bool IsAttached(const std::string& prefix) const;
+  void LeaveOutUnnamed(Place place, const std::function<bool(int)>& fits) const;
   bool IsWritten(Place place, const std::string& name) const;
 
   const mjModel* m_;

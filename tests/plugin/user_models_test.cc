@@ -319,6 +319,7 @@ std::vector<double> Pulled(const mjModel& m) {
   return {d->qpos, d->qpos + m.nq};
 }
 
+// By a prefix with a separator, and without.
 TEST_F(UserModels, EveryRobotKeepsItsEffectsWhenItIsAttached) {
   const auto robots = Robots();
   EXPECT_GE(robots.size(), 12U);
@@ -328,15 +329,19 @@ TEST_F(UserModels, EveryRobotKeepsItsEffectsWhenItIsAttached) {
     ASSERT_TRUE(child) << file << error;
     const testing::Owned<mjModel> alone(mj_compile(child.get(), nullptr));
     ASSERT_TRUE(alone) << file << mjs_getError(child.get());
-    const testing::Owned<mjSpec> scene(mj_makeSpec());
-    scene->option = child->option;
-    mjsFrame* const frame = mjs_addFrame(mjs_findBody(scene.get(), "world"), nullptr);
-    ASSERT_TRUE(mjs_attach(frame->element, mjs_findBody(child.get(), "world")->element, "a_", ""))
-        << mjs_getError(scene.get());
-    const testing::Owned<mjModel> m(mj_compile(scene.get(), nullptr));
-    ASSERT_TRUE(m) << file << mjs_getError(scene.get());
-    EXPECT_EQ(m->nplugin, alone->nplugin) << file;
-    EXPECT_THAT(Pulled(*m), Pointwise(DoubleNear(1e-15), Pulled(*alone))) << file;  // rounding
+    const std::vector<double> pulled = Pulled(*alone);
+    for (const char* const prefix : {"a_", "left"}) {
+      const testing::Owned<mjSpec> arm(mj_copySpec(child.get())), scene(mj_makeSpec());
+      scene->option = child->option;
+      mjsFrame* const frame = mjs_addFrame(mjs_findBody(scene.get(), "world"), nullptr);
+      mjsBody* const world = mjs_findBody(arm.get(), "world");
+      ASSERT_TRUE(mjs_attach(frame->element, world->element, prefix, ""))
+          << mjs_getError(scene.get());
+      const testing::Owned<mjModel> m(mj_compile(scene.get(), nullptr));
+      ASSERT_TRUE(m) << file << mjs_getError(scene.get());
+      EXPECT_EQ(m->nplugin, alone->nplugin) << file;
+      EXPECT_THAT(Pulled(*m), Pointwise(DoubleNear(1e-15), pulled)) << file;  // rounding
+    }
   }
 }
 
