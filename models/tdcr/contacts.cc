@@ -5,7 +5,7 @@
 namespace continuum::tdcr {
 
 Remembered AllSlid(const Robot& robot, const Loads& loads, const Eigen::Vector3d& u) {
-  const int steps = ContactSteps(robot.disks);
+  const int steps = ContactSteps(CountArcs(robot));
   const RodBalance balance = RodBalance::Remembering(robot, loads, steps, nullptr);
   const Eigen::VectorXd x = balance.Slid(u);
   return {x, balance.ContactsAt(x)};

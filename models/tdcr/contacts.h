@@ -9,7 +9,7 @@
 namespace continuum::tdcr {
 
 /// Steps per piece of contacts that remember: about 72 along the rod, an even number.
-inline int ContactSteps(int disks) { return 2 * std::max(1, (36 + disks - 1) / disks); }
+inline int ContactSteps(int arcs) { return 2 * std::max(1, (36 + arcs - 1) / arcs); }
 
 /// A rod whose contacts remember.
 struct Remembered {

@@ -246,7 +246,7 @@ bool RodBalance::Jump(int arc, const T* share, State<T, kRubbing, kSlides>& y) c
 // R nu(1) less the moment at the tip, and (5) of the first contacts.
 template <class T, int kRubbing, bool kSlides>
 void RodBalance::End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) const {
-  const int last = disks_ - 1;
+  const int last = rod_.arcs() - 1;
   SectionMoment<T> sum = Elastic(last, y.u);
   AddTendons({last, 1}, y, sum, static_cast<State<T, kRubbing, kSlides>*>(nullptr));
   // R nu by the quaternion: nu + 2 q_0 (q x nu) + 2 q x (q x nu).
@@ -279,7 +279,7 @@ bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
   S y = Base<T, kRubbing, kSlides>(x);
   std::array<S, 6> slope;
   std::array<T, kSlides ? kRubbing : 1> share{};
-  for (int step = 0; step < disks_ * steps_; ++step) {
+  for (int step = 0; step < rod_.arcs() * steps_; ++step) {
     const int number = step / steps_;
     const RodArc& arc = rod_.Arc(number);
     const double h = 1.0 / (arc.per_rod * steps_);
@@ -380,10 +380,10 @@ const RodBalance::Shape& RodBalance::Integrate(const Eigen::VectorXd& x) const {
   now.load = load_;
   now.steps = steps_;
   Shape& shape = now.shape;
-  const int count = disks_ * steps_;
+  const int count = rod_.arcs() * steps_;
   shape.disks.setZero(3, disks_);
   shape.middles.setZero(3, disks_);
-  shape.ends.setZero(3, disks_);
+  shape.ends.setZero(3, rod_.arcs());
   shape.frames.assign(1, Eigen::Quaterniond::Identity());
   shape.frames.reserve(static_cast<std::size_t>(count) + 1);
   shape.points.setZero(3, count + 1);
@@ -396,18 +396,19 @@ const RodBalance::Shape& RodBalance::Integrate(const Eigen::VectorXd& x) const {
   }
   if (remembers()) shape.way.setZero(count + 1, tendons);
   const auto keep = [&](int step, const auto& y) {
-    const int arc = (step - 1) / steps_, within = step - arc * steps_;
+    const int number = (step - 1) / steps_, within = step - number * steps_;
+    const RodArc& arc = rod_.Arc(number);
     if (static_cast<int>(shape.frames.size()) == step) {
-      shape.ends.col(arc) = y.u;
+      shape.ends.col(number) = y.u;
       shape.frames.push_back(Eigen::Quaterniond(y.q[0], y.q[1], y.q[2], y.q[3]).normalized());
     }
     shape.points.col(step) = y.p;
     shape.u.col(step) = y.u;
     if constexpr (requires { y.tension.size(); }) shape.tension.row(step) = y.tension.transpose();
     if constexpr (requires { y.way.size(); }) shape.way.row(step) = y.way.transpose();
-    if (2 * within == steps_)
-      shape.middles.col(arc) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
-    if (within == steps_) shape.disks.col(arc) = y.p * length_;
+    if (2 * (arc.part * steps_ + within) == arc.parts * steps_)
+      shape.middles.col(arc.disk - 1) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
+    if (within == steps_ && arc.ends_at_disk()) shape.disks.col(arc.disk - 1) = y.p * length_;
   };
   Eigen::VectorXd end = Eigen::VectorXd::Zero(unknowns());
   shape.valid = remembers() ? WalkAny<double, true>(x.data(), end.data(), keep)

@@ -88,7 +88,7 @@ class RodBalance {
     std::vector<Eigen::Quaterniond> frames;  ///< R at the ends of all steps, from R(0) = 1
     Eigen::Matrix3Xd points;                 ///< p there [L]
     Eigen::Matrix3Xd u;                      ///< u there, from the place on [1/L]
-    Eigen::Matrix3Xd ends;                   ///< u just before the disks [1/L]
+    Eigen::Matrix3Xd ends;                   ///< u where arcs end, before the disks [1/L]
     Eigen::MatrixXd tension;                 ///< T_k there [EI/L^2]
     Eigen::MatrixXd way;                     ///< int |w_k| to there, of contacts that remember [L]
     Eigen::Vector3d residual = Eigen::Vector3d::Zero();  ///< R nu(1)

@@ -22,7 +22,7 @@ RodBalance RodBalance::Remembering(const Robot& robot, const Loads& loads, int s
   balance.from_ = earlier ? UnitRod(robot, *earlier, true, true) : balance.to_.Unloaded();
   balance.to_.ShareMoments(balance.from_);
   balance.rod_ = balance.to_;
-  const int count = robot.disks * steps;
+  const int count = balance.rod_.arcs() * steps;
   Eigen::MatrixXd& beyond = balance.beyond_before_;
   beyond = balance.RestLengths(steps);
   if (loads.from.length.size() > 0) beyond = loads.from.length / robot.length;
@@ -32,8 +32,8 @@ RodBalance RodBalance::Remembering(const Robot& robot, const Loads& loads, int s
 }
 
 Eigen::MatrixXd RodBalance::RestLengths(int steps) const {
-  Eigen::MatrixXd rest(disks_ * steps, tendons_);
-  for (int i = 0; i < disks_ * steps; ++i) {
+  Eigen::MatrixXd rest(rod_.arcs() * steps, tendons_);
+  for (int i = 0; i < rest.rows(); ++i) {
     const auto arc = static_cast<std::size_t>(i / steps);
     const RodArc& rod = rod_.shape->arcs[arc];
     const double part = 1 / (rod.per_rod * steps);
@@ -92,18 +92,20 @@ Line RodBalance::LineOf(const Shape& shape) const {
             shape.u / length_,
             shape.ends / length_,
             Eigen::MatrixXd::Zero(count, tendons_)};
-  const Eigen::Index per_disk = (count - 1) / disks_;
+  const int arcs = rod_.arcs();
+  const Eigen::Index per_arc = (count - 1) / arcs;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const RodArc& arc =
-        rod_.Arc(static_cast<int>(std::min(i / per_disk, disks_ - Eigen::Index{1})));
-    const auto within = static_cast<double>(i % per_disk) / static_cast<double>(per_disk);
+    const RodArc& arc = rod_.Arc(static_cast<int>(std::min(i / per_arc, arcs - Eigen::Index{1})));
+    const auto within = static_cast<double>(i % per_arc) / static_cast<double>(per_arc);
     line.s[i] = i == count - 1 ? length_ : length_ * (arc.before + within) / arc.per_rod;
   }
-  for (int i = 0; i <= disks_; ++i) line.disk[static_cast<std::size_t>(i * per_disk)] = i;
+  for (int i = 0; i <= disks_; ++i) {
+    line.disk[rod_.shape->ArcsTo(i) * static_cast<std::size_t>(per_arc)] = i;
+  }
   for (std::size_t k = 0; k < rod_.tendon.size(); ++k) {
     // A tendon that ends before the tip has no tension from there on.
     const auto end = static_cast<int>(rod_.shape->ends[static_cast<std::size_t>(rod_.tendon[k])]);
-    const Eigen::Index places = end == disks_ ? count : end * per_disk;
+    const Eigen::Index places = end == arcs ? count : end * per_arc;
     line.tension.col(rod_.tendon[k]).head(places) =
         unit_ * shape.tension.col(static_cast<Eigen::Index>(k)).head(places);
   }

@@ -99,10 +99,13 @@ void DescribeArc(const Section& section, const Vector3d& gravity, int arc, const
 void DescribeRod(const Robot& robot, const Loads& loads, const Solution& solution,
                  Details& details) {
   details.length = TendonLengths(robot, solution.line);
+  const RodShape shape(robot);
   int disk = 0;
   for (const Section& section : robot.Sections()) {
     for (std::size_t i = 0; i < section.disks.size(); ++i, ++disk) {
-      DescribeArc(section, loads.gravity, disk, solution.line, details);
+      for (auto arc = shape.ArcsTo(disk); arc < shape.ArcsTo(disk + 1); ++arc) {
+        DescribeArc(section, loads.gravity, static_cast<int>(arc), solution.line, details);
+      }
       AddDead(section.disk_mass * loads.gravity, solution.disks.col(disk),
               Straight(robot.Place(disk + 1)), details);
     }

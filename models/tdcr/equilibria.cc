@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 // Curvatures of the base that a shape can have, in 1/L: a rod under a dead force P L^2/EI bends by
 // at most 2 sqrt(P) more than its tendons do.
 double Largest(const Robot& robot, const Loads& loads) {
-  const double moment = robot.SoftestEI() / robot.length;
+  const double moment = robot.Softest() / robot.length;
   double tendons = 0;
   for (const double t : loads.tension) tendons += t * robot.tendon_radius / moment;
   return 2 + 2 * std::sqrt(loads.DeadForce(robot) * robot.length / moment) + tendons;
@@ -77,7 +77,7 @@ std::vector<VectorXd> RootsOfRod(const Robot& robot, const Loads& loads, Method 
                                  const VectorXd& known) {
   constexpr int kSteps = 36;  // along the rod
   const bool friction = method == Method::kCrtFriction;
-  const RodBalance balance(robot, loads, friction, std::max(1, kSteps / robot.disks));
+  const RodBalance balance(robot, loads, friction, std::max(1, kSteps / CountArcs(robot)));
   const double largest = Largest(robot, loads);
   const auto draw = [&](Random& random) { return Curvature(random, largest); };
   std::vector<Vector3d> starts;

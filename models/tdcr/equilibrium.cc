@@ -199,7 +199,8 @@ class RodSystem {
   // that frames are left out instead.
   Chain::Shape Frames(const Vector& x, int pieces) {
     const int steps = balance_.steps();
-    const int wanted = std::max(1, (pieces + robot_.disks - 1) / robot_.disks);
+    const int arcs = balance_.rod().arcs();
+    const int wanted = std::max(1, (pieces + arcs - 1) / arcs);
     if (!balance_.remembers()) balance_.SetSteps(wanted);
     const RodBalance::Shape& shape = balance_.Integrate(x);
     balance_.SetSteps(steps);
@@ -230,9 +231,36 @@ class RodSystem {
   Eigen::VectorXd winches_;
 };
 
-// Of the dead loads [EI/L^2], EI that of the softest section.
+// Sum of the dead forces F at s, times the integral of the rod's compliance c(s) = int_0^s 1/K from
+// 0 to s, and of the moments times c: by Cauchy, turns phi of the sections have
+// phi(s)^2 <= c(s) int K phi'^2, so that below 1 no load buckles the rod.
+double ShareOfBuckling(const Robot& robot, const Loads& loads) {
+  double compliance = 0, integral = 0, sum = 0;
+  Eigen::Index disk = 0;
+  for (const Section& section : robot.sections) {
+    const double softness = 1 / section.Softest();
+    double from = 0;
+    for (const double place : section.disks) {
+      const double h = place - from;
+      integral += h * (compliance + h * softness / 2);
+      compliance += h * softness;
+      double force = (section.disk_mass + h * section.mass_per_length) * loads.gravity.norm();
+      if (loads.disk_force.size() > 0) force += loads.disk_force.col(disk).norm();
+      sum += force * integral;
+      if (loads.disk_moment.size() > 0) sum += loads.disk_moment.col(disk).norm() * compliance;
+      from = place;
+      ++disk;
+    }
+  }
+  return sum + loads.tip_force.norm() * integral;
+}
+
+// Of the dead loads [EI/L^2]: all at the tip of a rod as soft as the softest section, or, where
+// that is less, each where it is.
 double Size(const Robot& robot, const Loads& loads) {
-  return loads.DeadForce(robot) * robot.length * robot.length / robot.SoftestEI();
+  const double size = loads.DeadForce(robot) * robot.length * robot.length / robot.Softest();
+  if (!robot.has_sections()) return size;
+  return std::min(size, kOneEquilibrium * ShareOfBuckling(robot, loads));
 }
 
 bool Direct(const Robot& robot, const Loads& loads) { return Size(robot, loads) < kOneEquilibrium; }

@@ -15,7 +15,7 @@ constexpr int kParts = 4;     // points of the rod for each arc
 /// The rod as it is drawn: frames at its disks and between them.
 struct Drawn {
   Chain chain;
-  std::size_t per_arc;
+  std::vector<std::size_t> disks{0};  ///< places of the disks; 0 is the base
 };
 
 // kParts for each arc of constant curvature, or the places along the Cosserat rod.
@@ -24,14 +24,19 @@ Drawn FineChain(const Robot& robot, const Solution& solution) {
   if (line.s.size() == 0) {
     Eigen::Matrix3Xd fine(3, kParts * robot.disks);
     for (int i = 0; i < fine.cols(); ++i) fine.col(i) = solution.u.col(i / kParts);
-    return {Forward(robot.arc() / kParts, fine), kParts};
+    Drawn drawn{Forward(robot.arc() / kParts, fine)};
+    for (int i = 1; i <= robot.disks; ++i)
+      drawn.disks.push_back(static_cast<std::size_t>(i * kParts));
+    return drawn;
   }
-  Chain chain;
+  Drawn drawn;
   for (Eigen::Index i = 0; i < line.s.size(); ++i) {
-    chain.O.emplace_back(line.points.col(i));
-    chain.R.push_back(line.frames[static_cast<std::size_t>(i)].toRotationMatrix());
+    const auto at = static_cast<std::size_t>(i);
+    drawn.chain.O.emplace_back(line.points.col(i));
+    drawn.chain.R.push_back(line.frames[at].toRotationMatrix());
+    if (line.disk[at] > 0) drawn.disks.push_back(at);
   }
-  return {chain, static_cast<std::size_t>((line.s.size() - 1) / robot.disks)};
+  return drawn;
 }
 
 statics::Drive Tendon(const Robot& robot, const Loads& loads, const Drawn& drawn, int tendon) {
@@ -39,7 +44,7 @@ statics::Drive Tendon(const Robot& robot, const Loads& loads, const Drawn& drawn
   drive.active = loads.tension[static_cast<std::size_t>(tendon)] > 0;
   const Route route = robot.RouteOf(tendon);
   for (std::size_t disk = 0; disk < route.radius.size(); ++disk) {
-    const std::size_t i = disk * drawn.per_arc;
+    const std::size_t i = drawn.disks[disk];
     const Eigen::Vector3d hole(route.radius[disk] * std::cos(route.angle[disk]),
                                route.radius[disk] * std::sin(route.angle[disk]), 0);
     drive.line.emplace_back(drawn.chain.O[i] + drawn.chain.R[i] * hole);
@@ -83,7 +88,7 @@ statics::Shape ShapeOf(const Robot& robot, const Loads& loads, const Solution& s
   shape.backbone = drawn.chain.O;
   shape.diameter = robot.diameter;
   for (int i = 0; i < robot.disks; ++i) {
-    const std::size_t at = drawn.per_arc * static_cast<std::size_t>(i + 1);
+    const std::size_t at = drawn.disks[static_cast<std::size_t>(i + 1)];
     shape.discs.push_back(
         {solution.disks.col(i), drawn.chain.R[at].col(2), RadiusOf(robot, sections, i + 1)});
   }

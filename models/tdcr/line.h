@@ -15,7 +15,7 @@ struct Line {
   std::vector<Eigen::Quaterniond> frames;  ///< z along the rod
   std::vector<int> disk;                   ///< the one that is there; 0 is the base, -1: none
   Eigen::Matrix3Xd u;                      ///< R' = R [u]x, from the place on [1/m]
-  Eigen::Matrix3Xd ends;                   ///< u just before disks 1..n [1/m]
+  Eigen::Matrix3Xd ends;                   ///< u where arcs end, just before the disks [1/m]
   Eigen::MatrixXd tension;                 ///< of every tendon there, towards the tip [N]
 };
 

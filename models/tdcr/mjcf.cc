@@ -201,7 +201,7 @@ class Builder {
   std::vector<Section> sections_;
   std::vector<std::size_t> section_;  ///< of the arcs
   std::vector<Route> routes_;
-  RodShape shape_{robot_};
+  RodShape shape_{robot_, false};
   Mjcf mjcf_;
   std::vector<std::vector<std::string>> holes_;  ///< names, by tendon
 };

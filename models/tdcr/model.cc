@@ -39,7 +39,7 @@ Solution SolveDisks(const Robot& robot, const Loads& loads, const Loads* earlier
 
 // Steps of the integrator: about 9 along the rod, a whole number in every piece. The shape is
 // taken from twice as many, so that every piece has a middle.
-int Steps(int disks) { return std::max(1, (9 + disks - 1) / disks); }
+int Steps(int arcs) { return std::max(1, (9 + arcs - 1) / arcs); }
 
 Outcome Refine(const Robot& robot, RodBalance& balance, Outcome outcome, Eigen::Vector3d& x,
                Solution& solution) {
@@ -73,7 +73,7 @@ template <class Find>
 Solution SolveRod(const Robot& robot, const Loads& loads, bool friction, Find&& find) {
   Solution solution;
   solution.outcome = numerics::Timed([&] {
-    RodBalance balance(robot, loads, friction, Steps(robot.disks));
+    RodBalance balance(robot, loads, friction, Steps(CountArcs(robot)));
     Eigen::Vector3d x = balance.Natural();
     const Found found = find(balance, x);
     solution.stability = found.stability;
@@ -92,7 +92,7 @@ Solution SolveRemembering(const Robot& robot, const Loads& loads, const Loads* e
                           Find&& find) {
   Solution solution;
   solution.outcome = numerics::Timed([&] {
-    RodBalance balance = RodBalance::Remembering(robot, loads, ContactSteps(robot.disks), earlier);
+    RodBalance balance = RodBalance::Remembering(robot, loads, ContactSteps(CountArcs(robot)), earlier);
     Eigen::VectorXd x = balance.Unslid(balance.Natural());
     const Found found = find(balance, x);
     solution.stability = found.stability;

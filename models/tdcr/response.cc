@@ -123,7 +123,7 @@ class RespondingRod : public Tendons {
 
  private:
   RodBalance BalanceOf(const Loads& loads) const {
-    const int steps = ContactSteps(robot_.disks);
+    const int steps = ContactSteps(CountArcs(robot_));
     return remembers_ ? RodBalance::Remembering(robot_, loads, steps, nullptr)
                       : RodBalance(robot_, loads, friction_, steps);
   }

@@ -137,9 +137,9 @@ double Robot::mass() const {
   return sum;
 }
 
-double Robot::SoftestEI() const {
+double Robot::Softest() const {
   double softest = EI();
-  for (const Section& s : sections) softest = std::min(softest, s.EI);
+  for (const Section& s : sections) softest = std::min(softest, s.Softest());
   return softest;
 }
 

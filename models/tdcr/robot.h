@@ -48,8 +48,8 @@ struct Robot {
   /// Distance of a disk from the base along the rod; 0 is the base [m].
   double Place(int disk) const;
   double mass() const;  ///< of the rod and all disks [kg]
-  /// Stiffness of the section that bends most easily [N m^2].
-  double SoftestEI() const;
+  /// Stiffness of the softest section [N m^2].
+  double Softest() const;
 
   double arc() const { return length / disks; }  ///< without sections
   double area() const { return std::numbers::pi * diameter * diameter / 4; }

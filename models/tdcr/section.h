@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 namespace continuum::tdcr {
@@ -21,6 +22,8 @@ struct Section {
   std::vector<double> disks;
 
   double length() const { return disks.back(); }
+  /// EI, or where the rod twists more easily than one of a material, 3/2 GJ [N m^2].
+  double Softest() const { return std::min(EI, 1.5 * GJ); }
 };
 
 /// Where a tendon passes the disks: 0 is the base, the last one holds its end. Between disks radius

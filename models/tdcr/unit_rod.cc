@@ -11,14 +11,37 @@ using Eigen::Vector3d;
 // (kappa_x, kappa_y, tau) as a rotation vector.
 Vector3d Rotation(const Vector3d& u) { return {-u.y(), u.x(), u.z()}; }
 
+/// Into how many arcs the rod between two disks is cut: none is longer than twice their mean, nor
+/// bends twice as easily. So integrator and chain of pieces are fine where the rod moves.
+class Cuts {
+ public:
+  explicit Cuts(const Robot& robot) : robot_(robot) {
+    for (const Section& s : robot.sections) compliance_ += s.length() / Stiffness(s);
+  }
+  int Of(const Section& section, double length) const {
+    if (!robot_.has_sections()) return 1;
+    const double share =
+        std::max(length / robot_.length, length / Stiffness(section) / compliance_);
+    return std::max(1, static_cast<int>(std::ceil(robot_.disks * share / 2 - 1e-6)));
+  }
+
+ private:
+  static double Stiffness(const Section& section) { return std::min(section.EI, section.GJ); }
+
+  const Robot& robot_;
+  double compliance_ = 0;  ///< of the whole rod [rad/(N m)]
+};
+
 // Arcs of a section that begins at `start` [m].
-void AddArcs(const Robot& robot, const Section& section, double start, std::vector<RodArc>& arcs) {
+void AddArcs(const Robot& robot, const Section& section, double start, bool cut, RodShape& shape) {
   const double unit = robot.EI();
   const Vector3d stiffness(section.EI / unit, section.EI / unit, section.GJ / unit);
   const auto count = static_cast<double>(section.disks.size());
   double from = 0;
   for (std::size_t i = 0; i < section.disks.size(); ++i) {
-    const double length = section.disks[i] - from;
+    const double whole = section.disks[i] - from;
+    const int parts = cut ? Cuts(robot).Of(section, whole) : 1;
+    const double length = whole / parts;
     RodArc arc{robot.length / length, (start + from) / length, stiffness,
                robot.length * Rotation(section.natural), false};
     if (!robot.has_sections()) {  // without rounding
@@ -26,21 +49,27 @@ void AddArcs(const Robot& robot, const Section& section, double start, std::vect
       arc.before = static_cast<double>(i);
       arc.stiffness.z() = 1 / (1 + robot.nu);
     }
-    arcs.push_back(arc);
+    arc.disk = static_cast<int>(shape.arcs_to.size());
+    arc.parts = parts;
+    for (; arc.part < parts; ++arc.part, arc.before += 1) shape.arcs.push_back(arc);
+    shape.arcs_to.push_back(shape.arcs.size());
     from = section.disks[i];
   }
 }
 
-Channel ChannelBetween(const Route& route, std::size_t arc, const RodArc& rod, double L) {
+Channel ChannelIn(const RodArc& arc, const Route& route, double L) {
+  const auto disk = static_cast<std::size_t>(arc.disk);
+  const double wider = (route.radius[disk] - route.radius[disk - 1]) / arc.parts;
+  const double turned = (route.angle[disk] - route.angle[disk - 1]) / arc.parts;
+  const double radius = route.radius[disk - 1] + arc.part * wider;
   Channel channel;
-  channel.start = rod.start();
-  channel.radius = route.radius[arc] / L;
-  channel.angle = route.angle[arc];
-  channel.widens = (route.radius[arc + 1] - route.radius[arc]) / L * rod.per_rod;
-  channel.turns = (route.angle[arc + 1] - route.angle[arc]) * rod.per_rod;
+  channel.start = arc.start();
+  channel.radius = radius / L;
+  channel.angle = route.angle[disk - 1] + arc.part * turned;
+  channel.widens = wider / L * arc.per_rod;
+  channel.turns = turned * arc.per_rod;
   channel.parallel = channel.widens == 0 && (channel.turns == 0 || channel.radius == 0);
-  channel.hole = {route.radius[arc] * std::cos(channel.angle) / L,
-                  route.radius[arc] * std::sin(channel.angle) / L};
+  channel.hole = {radius * std::cos(channel.angle) / L, radius * std::sin(channel.angle) / L};
   return channel;
 }
 
@@ -52,10 +81,10 @@ bool Bends(const Channel& before, const Channel& after) {
 
 }  // namespace
 
-RodShape::RodShape(const Robot& robot) {
+RodShape::RodShape(const Robot& robot, bool cut) {
   double start = 0;
   for (const Section& section : robot.Sections()) {
-    AddArcs(robot, section, start, arcs);
+    AddArcs(robot, section, start, cut, *this);
     start += section.length();
   }
   for (std::size_t i = 1; i < arcs.size(); ++i) {
@@ -65,10 +94,10 @@ RodShape::RodShape(const Robot& robot) {
   channels.resize(static_cast<std::size_t>(robot.tendons) * arcs.size());
   for (int k = 0; k < robot.tendons; ++k) {
     const Route route = robot.RouteOf(k);
-    ends.push_back(static_cast<std::size_t>(route.end()));
+    ends.push_back(ArcsTo(route.end()));
     Channel* const channel = &channels[static_cast<std::size_t>(k) * arcs.size()];
     for (std::size_t i = 0; i < ends.back(); ++i) {
-      channel[i] = ChannelBetween(route, i, arcs[i], robot.length);
+      channel[i] = ChannelIn(arcs[i], route, robot.length);
       if (i > 0 && Bends(channel[i - 1], channel[i])) arcs[i].jump = true;
     }
     if (ends.back() < arcs.size()) arcs[ends.back()].jump = true;
@@ -96,6 +125,8 @@ double RodShape::RestLength(std::size_t tendon) const {
   }
   return length;
 }
+
+int CountArcs(const Robot& robot) { return static_cast<int>(RodShape(robot).arcs.size()); }
 
 Eigen::VectorXd RestLengths(const Robot& robot) {
   if (!robot.has_sections()) return Eigen::VectorXd::Constant(robot.tendons, robot.length);
@@ -141,18 +172,26 @@ void UnitRod::SetForces(const Robot& robot, const Loads& loads) {
     const Vector3d disk = unit * section.disk_mass * loads.gravity;
     const auto disks = static_cast<int>(section.disks.size());
     for (int i = 1; i <= disks; ++i) {
-      --arc;
-      weight.col(arc) = unit * section.mass_per_length * robot.length * loads.gravity;
-      beyond.col(arc) = after + i * disk + more;
+      do {
+        --arc;
+        weight.col(arc) = unit * section.mass_per_length * robot.length * loads.gravity;
+        beyond.col(arc) = after + i * disk + more;
+      } while (Arc(arc).part > 0);
     }
     after += disks * disk;
   }
   Vector3d sum = Vector3d::Zero();
   for (Eigen::Index i = loads.disk_force.cols(); i-- > 0;) {
     sum += unit * loads.disk_force.col(i);
-    beyond.col(i) += sum;
+    const auto from = shape->ArcsTo(static_cast<int>(i)),
+               to = shape->ArcsTo(static_cast<int>(i) + 1);
+    for (auto at = from; at < to; ++at) beyond.col(static_cast<Eigen::Index>(at)) += sum;
   }
-  moment = loads.disk_moment / robot.moment();
+  if (loads.disk_moment.cols() > 0) moment.setZero(3, arcs());
+  for (Eigen::Index i = 0; i < loads.disk_moment.cols(); ++i) {
+    const auto last = shape->ArcsTo(static_cast<int>(i) + 1) - 1;
+    moment.col(static_cast<Eigen::Index>(last)) = loads.disk_moment.col(i) / robot.moment();
+  }
 }
 
 int UnitRod::ArcAt(double s) const {

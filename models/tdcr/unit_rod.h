@@ -9,7 +9,8 @@
 
 namespace continuum::tdcr {
 
-/// The rod between two disks, in units of the whole length L and of the first section's EI.
+/// The rod between two disks, in units of the whole length L and of the first section's EI. Where
+/// disks are far apart, or the rod between them is soft, it is cut into equal parts: an arc each.
 struct RodArc {
   double per_rod;                      ///< L over its length
   double before;                       ///< arcs of its length between the base and where it begins
@@ -17,14 +18,18 @@ struct RodArc {
   /// Whether u is another one just after the disk where it begins: the stiffness or u_0 changes,
   /// or a tendon ends or turns there.
   bool jump;
+  int disk = 0;             ///< the next one towards the tip, 1..n
+  int part = 0, parts = 1;  ///< which of how many between disks
 
+  bool ends_at_disk() const { return part + 1 == parts; }
   double start() const { return before / per_rod; }
   double length() const { return 1 / per_rod; }
 };
 
 /// Rod and channels of a robot when nothing acts.
 struct RodShape {
-  explicit RodShape(const Robot& robot);
+  /// cut: arcs that are long or soft among the others. Otherwise every arc ends at a disk.
+  explicit RodShape(const Robot& robot, bool cut = true);
 
   const Channel& At(std::size_t tendon, std::size_t arc) const {
     return channels[tendon * arcs.size() + arc];
@@ -34,10 +39,17 @@ struct RodShape {
   /// Of a whole tendon.
   double RestLength(std::size_t tendon) const;
 
+  /// Arcs between the base and a disk.
+  std::size_t ArcsTo(int disk) const { return arcs_to[static_cast<std::size_t>(disk)]; }
+
   std::vector<RodArc> arcs;
-  std::vector<std::size_t> ends;  ///< of every tendon: arcs that it runs through
-  std::vector<Channel> channels;  ///< tendons x arcs
+  std::vector<std::size_t> arcs_to{0};  ///< of disks 0 (the base) to n
+  std::vector<std::size_t> ends;        ///< of every tendon: arcs that it runs through
+  std::vector<Channel> channels;        ///< tendons x arcs
 };
+
+/// Arcs of the whole rod.
+int CountArcs(const Robot& robot);
 
 /// Lengths of a robot's tendons between base and end when nothing acts [m].
 Eigen::VectorXd RestLengths(const Robot& robot);

@@ -289,6 +289,100 @@ TEST(TdcrSections, AColumnOfTwoSectionsBucklesAtItsLoad) {
   EXPECT_GT(bent.disks(0, robot.disks - 1), 0.05);
 }
 
+// Disks that crowd at either end leave a long rod without any.
+const std::string kCrowded[] = {"[0.19, 0.191, 0.192, 0.194, 0.195, 0.196, 0.197, 0.198, 0.2]",
+                                "[0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.007, 0.01, 0.2]"};
+
+Robot RodWithDisks(const std::string& disks) {
+  return Made(
+      "  - {length: 0.2, diameter: 1.0e-3, EI: 4.0e-3, GJ: 3.0e-3, mass_per_length: 0, disks: " +
+          disks + "}\n",
+      "  - {radius: 7.0e-3, angle: [0, 1]}\n  - {radius: 7.0e-3, angle: 2}\n");
+}
+
+// Euler's load pi^2/4 EI/L^2, wherever the disks are.
+TEST(TdcrSections, ALongRodBetweenCrowdedDisksBuckles) {
+  const double euler = std::numbers::pi * std::numbers::pi / 4 * 4e-3 / 0.04;
+  for (const std::string& disks : kCrowded) {
+    const Robot robot = RodWithDisks(disks);
+    Loads loads = NoLoads(robot);
+    loads.tip_force = {0, 0, -0.99 * euler};
+    EXPECT_LT(Solved(robot, loads).disks.topRows<2>().norm(), 1e-9);
+    loads.tip_force = {1e-6, 0, -1.05 * euler};
+    EXPECT_GT(Solved(robot, loads).disks(0, robot.disks - 1), 0.05);
+  }
+}
+
+// The tip does not depend on massless disks, also where tensions fall along the rod; 1e-7 L is the
+// accuracy of crt, 5e-5 L that of the contacts of rows that remember.
+TEST(TdcrSections, DisksWithoutMassAndLoadChangeNothing) {
+  const Robot even = RodWithDisks("10");
+  Loads loads = NoLoads(even);
+  loads.tension = {3, 1};
+  loads.tip_force = {0.02, 0.05, -0.03};
+  loads.mu = 0.3;
+  const auto tip = [](const Solution& s) { return Vector3d(s.disks.rightCols<1>()); };
+  for (const std::string& disks : kCrowded) {
+    const Robot robot = RodWithDisks(disks);
+    for (const Method method : {Method::kCrt, Method::kCrtFriction}) {
+      const Vector3d apart = tip(Solved(even, loads, method)) - tip(Solved(robot, loads, method));
+      EXPECT_LT(apart.norm(), 1e-7 * even.length);
+    }
+    Loads slides = loads;
+    slides.direction.assign(2, kAsItSlides);
+    const Vector3d apart = tip(Solved(even, slides, Method::kCrtFriction)) -
+                           tip(Solved(robot, slides, Method::kCrtFriction));
+    EXPECT_LT(apart.norm(), 5e-5 * even.length);
+  }
+}
+
+// A load at a disk, and what the results say of it: disks, lengths and moment in one balance.
+TEST(TdcrSections, LoadsAtCrowdedDisksAreInBalance) {
+  for (const std::string& disks : kCrowded) {
+    const Robot robot = RodWithDisks(disks);
+    Loads loads = NoLoads(robot);
+    loads.tension = {3, 1};
+    loads.disk_force.setZero(3, robot.disks);
+    loads.disk_force.col(7) = Vector3d(0.02, 0.05, -0.03);
+    loads.disk_moment.setZero(3, robot.disks);
+    loads.disk_moment.col(6) = Vector3d(1e-3, 2e-3, 1e-3);
+    const Solution s = Solved(robot, loads);
+    RodInSpace space(robot, loads, 400);
+    space.Walk(s.line.u.col(0));
+    EXPECT_LT(Apart(s.disks, space.disks()), 1e-6 * robot.length);
+    EXPECT_LT(space.moment().norm(), 1e-6 * robot.moment());
+    Loads longer = loads;
+    longer.tension[0] += 1e-4;
+    Loads pushed = loads;
+    pushed.disk_force(0, 7) += 1e-4;
+    // Betti: a tension moves the disk as a force there moves the tendon.
+    loads.disk_moment.setZero();
+    longer.disk_moment.setZero();
+    pushed.disk_moment.setZero();
+    const Solution at = Solved(robot, loads), pulled = Solved(robot, longer);
+    const double moved = pulled.disks(0, 7) - at.disks(0, 7);
+    const double drawn =
+        TendonLengths(robot, at.line)[0] - TendonLengths(robot, Solved(robot, pushed).line)[0];
+    EXPECT_NEAR(drawn / moved, 1, 1e-3);
+  }
+}
+
+// Tapered rods below their buckling load are solved without following the load.
+TEST(TdcrSections, WeightAtTheStiffBaseCountsThere) {
+  const Robot robot = ReadRobot(Yaml::Parse(
+      "format: 1\nrobot: tdcr\nsections:\n"
+      "  - {length: 0.2, diameter: 4.0e-3, EI: 0.5, GJ: 0.4, mass_per_length: 0.1, disks: 5, "
+      "disk_mass: 6.0e-3}\n"
+      "  - {length: 0.1, diameter: 1.0e-3, EI: 2.0e-3, GJ: 1.5e-3, mass_per_length: 5.0e-3, "
+      "disks: 5, disk_mass: 0.2e-3}\n"
+      "tendons:\n  - {radius: 6.0e-3, angle: 0}\nmu: 0\ngravity: [0, 0, -9.81]\n",
+      "tapered.yaml"));
+  Loads loads = NoLoads(robot);
+  loads.tension = {0.3};
+  ExpectBalanceInSpace(robot, loads);
+  EXPECT_LT(Solved(robot, loads).outcome.iterations, 10);
+}
+
 // The segment of the paper, written as a robot with one section.
 TEST(TdcrSections, OneSectionIsTheSegmentOfThePaper) {
   const std::string folder = std::string(CONTINUUM_SOURCE) + "/models/tdcr/";
