@@ -92,7 +92,8 @@ Solution SolveRemembering(const Robot& robot, const Loads& loads, const Loads* e
                           Find&& find) {
   Solution solution;
   solution.outcome = numerics::Timed([&] {
-    RodBalance balance = RodBalance::Remembering(robot, loads, ContactSteps(CountArcs(robot)), earlier);
+    RodBalance balance =
+        RodBalance::Remembering(robot, loads, ContactSteps(CountArcs(robot)), earlier);
     Eigen::VectorXd x = balance.Unslid(balance.Natural());
     const Found found = find(balance, x);
     solution.stability = found.stability;

@@ -67,6 +67,9 @@ void WarnOfImplausibleRobot(const SolveRequest& request, const Yaml& file, const
   statics::WarnIfImplausible(request, file.At("gravity").Where(), robot.gravity.norm(), 0.1, 100,
                              "m/s^2");
   WarnOfAngles(request, file, robot);
+  if (file.Has("tendon_EA")) {
+    statics::WarnIfImplausible(request, file.At("tendon_EA").Where(), robot.tendon_EA, 1, 1e7, "N");
+  }
   if (robot.has_sections()) return WarnOfSections(request, file, robot);
   const auto check = [&](const char* key, double value, double low, double high, const char* unit) {
     statics::WarnIfImplausible(request, file.At(key).Where(), value, low, high, unit);
@@ -112,6 +115,10 @@ void WarnOfImplausibleCases(const SolveRequest& request, const CsvTable& table, 
     }
     for (int i = 0; i < 3; ++i) {
       check(std::string("f") + "xyz"[i], loads.tip_force[i], 3 * force, "N");
+      const std::string moment = std::string("m") + "xyz"[i];
+      if (table.Has(moment)) {
+        check(moment, table.Number(row, moment), kMostBend * robot.moment(), "N m");
+      }
       if (table.Has("gx")) check(std::string("g") + "xyz"[i], loads.gravity[i], 100, "m/s^2");
     }
   }

@@ -224,6 +224,18 @@ TEST_F(TdcrSolve, ImplausibleValuesAreNamedWithTheirRange) {
   EXPECT_THAT(heard[0], testing::AllOf(HasSubstr("cases.csv:2, column 'T1'"), HasSubstr("3000 N")));
 }
 
+TEST_F(TdcrSolve, ImplausibleTipMomentsAndTendonStiffnessAreNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  request_.method = "crt";
+  request_.robot = Write("robot.yaml", std::string(kRobot) + "tendon_EA: 1.0e-9\n");
+  request_.input = Write("cases.csv", "case,T1,T2,T3,fx,fy,fz,mx,my,mz\na,0,0,0,0,0,0,0,0,5\n");
+  SolveTdcr(request_);
+  ASSERT_EQ(heard.size(), 2u);
+  EXPECT_THAT(heard[0], HasSubstr("tendon_EA: 1e-09 N is"));
+  EXPECT_THAT(heard[1], HasSubstr("column 'mz': 5 N m is"));
+}
+
 TEST_F(TdcrSolve, ALengthInMillimetresIsNamed) {
   std::vector<std::string> heard;
   request_.warn = [&](const std::string& text) { heard.push_back(text); };
