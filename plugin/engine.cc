@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "binding/attachment.h"
 #include "binding/effect_catalog.h"
 #include "binding/filter.h"
 #include "binding/force.h"
@@ -54,15 +55,6 @@ PluginDataSlots<Instance>& instances = *new PluginDataSlots<Instance>;
 // Null in data that never were init-ed: MuJoCo steps such data while it compiles, where it computes
 // the length ranges of actuators. Every callback then does nothing, as if there were no effect.
 Instance* Get(const mjData& d, int i) { return instances.Find(d.plugin_data[i]); }
-
-std::string_view ConfigBytes(const mjModel& m, int i) {
-  const int begin = m.plugin_attradr[i];
-  int end = static_cast<int>(m.npluginattr);
-  for (int j = 0; j < m.nplugin; ++j) {
-    if (m.plugin_attradr[j] > begin) end = std::min(end, m.plugin_attradr[j]);
-  }
-  return {m.plugin_attr + begin, static_cast<std::size_t>(end - begin)};
-}
 
 bool IsOurs(const mjModel& m, int i) { return !EffectNameOf(m, i).empty(); }
 

@@ -29,15 +29,6 @@ int ReferringBody(const mjModel& m, int instance) {
   return -1;
 }
 
-std::string_view ConfigOf(const mjModel& m, int i) {
-  const int begin = m.plugin_attradr[i];
-  int end = static_cast<int>(m.npluginattr);
-  for (int j = 0; j < m.nplugin; ++j) {
-    if (m.plugin_attradr[j] > begin) end = std::min(end, m.plugin_attradr[j]);
-  }
-  return {m.plugin_attr + begin, static_cast<std::size_t>(end - begin)};
-}
-
 // Names of bodies, joints, geoms and sites of a branch.
 std::vector<std::string> NamesBelow(const mjModel& m, int top) {
   std::vector<std::string> names;
@@ -89,13 +80,22 @@ std::vector<Affixes> CommonAffixes(const std::string& name,
 
 }  // namespace
 
+std::string_view ConfigBytes(const mjModel& m, int instance) {
+  const int begin = m.plugin_attradr[instance];
+  int end = static_cast<int>(m.npluginattr);
+  for (int j = 0; j < m.nplugin; ++j) {
+    if (m.plugin_attradr[j] > begin) end = std::min(end, m.plugin_attradr[j]);
+  }
+  return {m.plugin_attr + begin, static_cast<std::size_t>(end - begin)};
+}
+
 Attachment::Attachment(const mjModel& m, int instance)
     : m_(&m), name_(NameOf(m, mjOBJ_PLUGIN, instance)), body_(ReferringBody(m, instance)) {
   if (body_ < 0 || name_.empty()) return;
   for (int j = 0; j < m.nplugin; ++j) {
     if (j == instance || m.plugin[j] != m.plugin[instance]) continue;
     const int theirs = ReferringBody(m, j);
-    if (theirs >= 0 && ConfigOf(m, j) == ConfigOf(m, instance))
+    if (theirs >= 0 && ConfigBytes(m, j) == ConfigBytes(m, instance))
       twins_.push_back({theirs, NameOf(m, mjOBJ_PLUGIN, j)});
   }
   const auto names = NamesBelow(m, body_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <mujoco/mujoco.h>
@@ -12,6 +13,9 @@ namespace continuum {
 struct Affixes {
   std::string prefix, suffix;
 };
+
+/// All keys and values of an instance, as the model keeps them: copies of one have the same.
+std::string_view ConfigBytes(const mjModel& m, int instance);
 
 /// How an instance came into a model, by the body that refers to it and by the names around that
 /// body. Attach gives a prefix and a suffix to all names of a robot; mjModel does not keep which.

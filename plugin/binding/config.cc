@@ -66,17 +66,6 @@ std::vector<int> MatchBetween(const mjModel& m, std::string_view text, const std
   return {ids.begin(), ids.end()};
 }
 
-std::string_view Attributes(const mjModel& m, int i) {
-  const char* const begin = m.plugin_attr + m.plugin_attradr[i];
-  const char* const all = m.plugin_attr + m.npluginattr;
-  const char* end = all;
-  for (int j = 0; j < m.nplugin; ++j) {
-    if (m.plugin_attradr[j] > m.plugin_attradr[i])
-      end = std::min<const char*>(end, m.plugin_attr + m.plugin_attradr[j]);
-  }
-  return {begin, static_cast<std::size_t>(end - begin)};
-}
-
 // "" where it has none.
 std::string InstanceName(const mjModel& m, int i) {
   const char* const name = mj_id2name(&m, mjOBJ_PLUGIN, i);
@@ -135,7 +124,7 @@ std::vector<std::string> Endings(const mjModel& m, int instance) {
   for (int j = 0; j < m.nplugin; ++j) {
     const std::string other = InstanceName(m, j);
     if (j == instance || m.plugin[j] != m.plugin[instance]) continue;
-    if (Attributes(m, j) != Attributes(m, instance)) continue;
+    if (ConfigBytes(m, j) != ConfigBytes(m, instance)) continue;
     const auto differ = std::mismatch(mine.begin(), mine.end(), other.begin(), other.end()).first;
     common = std::min(common, static_cast<std::size_t>(differ - mine.begin()));
     copied = true;
