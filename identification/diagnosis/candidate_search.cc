@@ -220,6 +220,12 @@ double CandidateSearch::ErrorShare(const Fitted& fitted) const {
   return before.validate > 0 ? std::max(train, share(before.validate, after.validate)) : train;
 }
 
+// What noise and time step make says nothing of a model; 0: there are no such logs.
+double CandidateSearch::HeldOutError(const Fitted& fitted) const {
+  const double error = fitted.error.validate;
+  return error > 0 ? std::max(error, noise_.floor()) : 0;
+}
+
 std::vector<LikelihoodRecord> CandidateSearch::Records() const {
   std::vector<LikelihoodRecord> records;
   for (const CandidateResult& c : candidates) {
@@ -231,7 +237,7 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
                             c.listed,
                             KinOf(c.hypothesis.Card()),
                             ErrorShare(c.fitted),
-                            c.fitted.error.validate};
+                            HeldOutError(c.fitted)};
     record.corrects = c.was_fitted && OnlyCorrects(c.hypothesis, c.fitted, c.first_extra(),
                                                    *fitter_.experiment, sizes_, criteria_);
     record.far_off = c.was_fitted && IsFarOff(c.hypothesis, c.fitted, c.first_extra(), criteria_);

@@ -171,6 +171,7 @@ class CandidateSearch {
   void Rank();
   void ComputeLambda();
   double DistanceOf(const Fitted& a, const Fitted& b) const;
+  double HeldOutError(const Fitted& fitted) const;
 
   const CandidateFitter& fitter_;
   BaseFit base_;

@@ -71,11 +71,12 @@ class Ranking {
 
   /// One of another family that was not asked for and does clearly better; null when there is none.
   const LikelihoodRecord* Outdoing(std::size_t best) const {
-    for (const std::size_t i : order_) {
-      if (!candidates_[i].listed && !AreKin(i, best) && IsBehind(i, first()))
-        return &candidates_[i];
-    }
-    return nullptr;
+    return NotAskedFor([&](std::size_t i) { return !AreKin(i, best) && IsBehind(i, first()); });
+  }
+
+  /// One that was not asked for, that the best contains and adds nothing to; null when none.
+  const LikelihoodRecord* SayingTheSame(std::size_t best) const {
+    return NotAskedFor([&](std::size_t i) { return Contains(best, i) && AddsNothing(best, i); });
   }
 
   /// The best, and those of other families, or not asked for, that the data do not distinguish from
@@ -107,6 +108,13 @@ class Ranking {
   }
 
  private:
+  template <typename Test>
+  const LikelihoodRecord* NotAskedFor(const Test& test) const {
+    for (const std::size_t i : order_) {
+      if (!candidates_[i].listed && test(i)) return &candidates_[i];
+    }
+    return nullptr;
+  }
   bool AreKin(std::size_t a, std::size_t b) const {
     return candidates_[a].kin.Of(candidates_[b].kin);
   }
@@ -233,6 +241,12 @@ Verdict Unexplained(std::string reason) {
   return {Verdict::Kind::kUnexplained, {}, std::move(reason)};
 }
 
+Verdict ByUnlisted(std::string reason) {
+  Verdict verdict = Unexplained(std::move(reason));
+  verdict.unlisted_explains = true;
+  return verdict;
+}
+
 }  // namespace
 
 Kin KinOf(std::string_view effect) {
@@ -312,17 +326,22 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
   if (!any) return Adequate(lack, p, criteria);
   const Ranking all(candidates, base, more, criteria);
   const std::size_t best = all.BestNotFarOff();
+  const bool main = !more || all.share(all.first()) >= criteria.main_share;
+  const LikelihoodRecord* const other = all.Outdoing(best);
   Verdict verdict;
-  if (more && all.share(all.first()) < criteria.main_share) {
+  if (other && (main || ShareOf(*other, base) >= criteria.main_share)) {
+    verdict = ByUnlisted(
+        fmt::format("the best candidate, {}, is clearly outdone by {}, which is not listed",
+                    all.of(best).name, other->name));
+  } else if (!main) {
     verdict = Unexplained(fmt::format(
         "the best candidate, {}, explains {:.0f} % of what noise does not, and {:.0f} % are asked "
         "for: another cause is at work, or one more",
         all.of(all.first()).name, 100 * all.share(all.first()), 100 * criteria.main_share));
-  } else if (const LikelihoodRecord* const other = all.Outdoing(best)) {
-    verdict = Unexplained(
-        fmt::format("the best candidate, {}, is clearly outdone by {}, which is not listed",
-                    all.of(best).name, other->name));
-    verdict.unlisted_explains = true;
+  } else if (const LikelihoodRecord* const plainer = all.SayingTheSame(best)) {
+    verdict = ByUnlisted(fmt::format(
+        "{}, which is not listed, says in fewer numbers what the best candidate, {}, does",
+        plainer->name, all.of(best).name));
   } else {
     verdict = Name(all, best, lack, more, criteria);
   }

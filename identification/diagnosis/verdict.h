@@ -135,7 +135,8 @@ struct LikelihoodRecord {
   Kin kin = {};
   double error_share =
       1;                ///< of the squared error above noise and step that it takes, in plain rows
-  double held_out = 0;  ///< error of the logs left out with it; 0: there are none
+  double held_out = 0;  ///< error of the logs left out with it, no less than noise and time step
+                        ///< make; 0: there are none
   bool corrects =
       false;  ///< it only changes numbers of the model, by a few per cent (OnlyCorrects)
   bool far_off =

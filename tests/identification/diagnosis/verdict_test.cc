@@ -127,11 +127,16 @@ TEST(Likelihoods, OneOutsideTheListThatDoesAsWellIsToldBesideTheName) {
               IsEmpty());
 }
 
-TEST(Likelihoods, APlainLawOutsideTheListDoesNotTakeTheNameOfOneThatContainsIt) {
-  const std::vector<std::size_t> inner{0};
-  const auto v = JudgeLikelihoods({Unlisted(40), {"rich", 2, 44, inner}}, {0.5}, 1e-3, kCalibrated);
-  EXPECT_THAT(v.named, ElementsAre(1));
-  EXPECT_THAT(v.unlisted, ElementsAre(0));
+TEST(Likelihoods, APlainLawOutsideTheListTakesTheNameOfOneThatContainsItAndAddsNothing) {
+  const auto with = [](double rich) {
+    const std::vector<std::size_t> inner{0};
+    return JudgeLikelihoods({Unlisted(40), {"rich", 2, rich, inner}}, {0.5}, 1e-3, kCalibrated);
+  };
+  EXPECT_EQ(with(44).word(), "unexplained");
+  EXPECT_THAT(with(44).reason,
+              HasSubstr("unlisted, which is not listed, says in fewer numbers what the best "
+                        "candidate, rich, does"));
+  EXPECT_THAT(with(50).named, ElementsAre(1));
 }
 
 TEST(Likelihoods, ARichLawOutsideTheListHasNothingToAdd) {
@@ -149,6 +154,14 @@ TEST(Likelihoods, NothingOutsideTheListMakesANameWhereNoneOfItHelps) {
 
 // 5000 squares above 100 of noise.
 constexpr BaseSquares kLoud{5100, 100};
+
+TEST(Likelihoods, OneOutsideTheListThatTakesTheMainShareIsToldWhereNoneOfTheListDoes) {
+  const auto v = JudgeLikelihoods({{"a", 1, 2000}, Unlisted(4800)}, {1e-6}, 1e-3, kLoud);
+  EXPECT_TRUE(v.unlisted_explains);
+  EXPECT_THAT(v.reason, HasSubstr("a, is clearly outdone by unlisted"));
+  EXPECT_FALSE(
+      JudgeLikelihoods({{"a", 1, 2000}, Unlisted(3000)}, {1e-6}, 1e-3, kLoud).unlisted_explains);
+}
 
 TEST(Likelihoods, TheMainCauseIsNamedWhereMoreThanNoiseIsLeft) {
   const auto v = JudgeLikelihoods({{"a", 1, 4800}, {"b", 1, 3000}}, {1e-6}, 1e-3, kLoud);
