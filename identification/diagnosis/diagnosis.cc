@@ -220,7 +220,7 @@ class Session {
         d_.Is(Verdict::Kind::kNamed))
       pairs.best.reset();
     if (!pairs.best) d_.remaining.would_take = std::move(pairs.would_take);
-    if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) && !d_.verdict.unlisted_explains) {
+    if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) && d_.verdict.explained_by.empty()) {
       if (auto by_error = NameByError(search.Records(), d_.criteria)) d_.verdict = *by_error;
     }
     if (!pairs.best && d_.Is(Verdict::Kind::kUnexplained) &&
@@ -231,7 +231,7 @@ class Session {
     }
     if (AllowForNumbers(fitter_, search, pairs.best, d_)) pairs.best.reset();
     d_.noise_limited = pairs.best || !d_.Is(Verdict::Kind::kUnexplained) ||
-                       d_.verdict.unlisted_explains ||
+                       !d_.verdict.explained_by.empty() ||
                        search.BestOverNoise() < d_.criteria.model_limited;
     if (pairs.best) {
       JudgePair(*pairs.best);
@@ -360,9 +360,9 @@ class Session {
     const std::size_t listed = search.candidates.size();
     search.JoinUnlisted(std::move(unlisted));
     Decide(search);
-    if (enough) {
+    if (enough && d_.verdict.explained_by.empty()) {
       d_.verdict.reason += fmt::format("; {}, which is not listed, is enough", name);
-      d_.verdict.unlisted_explains = true;
+      d_.verdict.explained_by = name;
     }
     KeepListed(search, listed);
   }

@@ -142,14 +142,14 @@ bool MayBeTwo(const Verdict& verdict, const LackOfFit& lack, double smallest_p, 
   const bool left = 1 - verdict.leading_share >= criteria.second_share ||
                     (!lack.of_step && over_noise >= criteria.rest_noise);
   const bool more = !adequate && (!verdict.complete || lack.of_step) && left;
-  return more && !verdict.unlisted_explains && smallest_p < criteria.significance &&
+  return more && verdict.explained_by.empty() && smallest_p < criteria.significance &&
          over_noise < criteria.pair_hopeless;
 }
 
 bool MayBeTwoPlainer(const Verdict& verdict, bool rich, double over_noise,
                      const Criteria& criteria) {
   return rich && verdict.kind != Verdict::Kind::kAdequate && !verdict.complete &&
-         !verdict.unlisted_explains && over_noise >= criteria.at_noise;
+         verdict.explained_by.empty() && over_noise >= criteria.at_noise;
 }
 
 bool WorthPartner(double smallest_p, double share, bool of_step, const Criteria& criteria) {

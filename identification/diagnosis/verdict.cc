@@ -241,9 +241,9 @@ Verdict Unexplained(std::string reason) {
   return {Verdict::Kind::kUnexplained, {}, std::move(reason)};
 }
 
-Verdict ByUnlisted(std::string reason) {
+Verdict ExplainedBy(const LikelihoodRecord& unlisted, std::string reason) {
   Verdict verdict = Unexplained(std::move(reason));
-  verdict.unlisted_explains = true;
+  verdict.explained_by = unlisted.name;
   return verdict;
 }
 
@@ -330,9 +330,9 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
   const LikelihoodRecord* const other = all.Outdoing(best);
   Verdict verdict;
   if (other && (main || ShareOf(*other, base) >= criteria.main_share)) {
-    verdict = ByUnlisted(
-        fmt::format("the best candidate, {}, is clearly outdone by {}, which is not listed",
-                    all.of(best).name, other->name));
+    verdict = ExplainedBy(
+        *other, fmt::format("the best candidate, {}, is clearly outdone by {}, which is not listed",
+                            all.of(best).name, other->name));
   } else if (!main) {
     verdict = Unexplained(fmt::format(
         "the best candidate, {}, explains {:.0f} % of what noise does not, and {:.0f} % are asked "

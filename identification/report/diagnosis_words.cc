@@ -110,7 +110,7 @@ std::string WithoutP(std::string reason) {
 }
 
 std::string WhyUnexplained(const Diagnosis& d) {
-  if (d.verdict.unlisted_explains) return Sentence(WithoutP(d.verdict.reason) + ".");
+  if (!d.verdict.explained_by.empty()) return Sentence(WithoutP(d.verdict.reason) + ".");
   return (d.left_out.empty() ? "No candidate explains enough of it."
                              : "No candidate that there was time for explains enough of it.") +
          Closest(d);
@@ -205,7 +205,7 @@ std::string HeadlineOf(const Diagnosis& d) {
     case Kind::kUnexplained:
       break;
   }
-  if (d.verdict.unlisted_explains)
+  if (!d.verdict.explained_by.empty())
     return "Something is missing in the model, and none of the candidates asked for explains it";
   if (!d.left_out.empty())
     return "Something is missing in the model, and there was no time to find out what";
@@ -328,7 +328,9 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
     steps.push_back(
         fmt::format("Look for the next cause: `continuum diagnose {}`.", kExtendedExperiment));
   if (d.Is(Kind::kUnexplained)) {
-    if (!e.all_candidates && d.left_out.empty())
+    if (!d.verdict.explained_by.empty())
+      steps.push_back(fmt::format("Add {} to the candidates.", d.verdict.explained_by));
+    else if (!e.all_candidates && d.left_out.empty())
       steps.emplace_back("Try every effect: write `candidates: all` in the experiment.");
     if (d.missing_force.joint.empty())
       steps.emplace_back("Measure every joint: then the report shows which force is missing.");

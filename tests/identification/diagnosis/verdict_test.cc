@@ -157,10 +157,10 @@ constexpr BaseSquares kLoud{5100, 100};
 
 TEST(Likelihoods, OneOutsideTheListThatTakesTheMainShareIsToldWhereNoneOfTheListDoes) {
   const auto v = JudgeLikelihoods({{"a", 1, 2000}, Unlisted(4800)}, {1e-6}, 1e-3, kLoud);
-  EXPECT_TRUE(v.unlisted_explains);
+  EXPECT_EQ(v.explained_by, "unlisted");
   EXPECT_THAT(v.reason, HasSubstr("a, is clearly outdone by unlisted"));
-  EXPECT_FALSE(
-      JudgeLikelihoods({{"a", 1, 2000}, Unlisted(3000)}, {1e-6}, 1e-3, kLoud).unlisted_explains);
+  EXPECT_EQ(JudgeLikelihoods({{"a", 1, 2000}, Unlisted(3000)}, {1e-6}, 1e-3, kLoud).explained_by,
+            "");
 }
 
 TEST(Likelihoods, TheMainCauseIsNamedWhereMoreThanNoiseIsLeft) {
