@@ -339,9 +339,11 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
         "for: another cause is at work, or one more",
         all.of(all.first()).name, 100 * all.share(all.first()), 100 * criteria.main_share));
   } else if (const LikelihoodRecord* const plainer = all.SayingTheSame(best)) {
-    verdict = ByUnlisted(fmt::format(
-        "{}, which is not listed, says in fewer numbers what the best candidate, {}, does",
-        plainer->name, all.of(best).name));
+    verdict = ExplainedBy(
+        *plainer,
+        fmt::format(
+            "{}, which is not listed, says in fewer numbers what the best candidate, {}, does",
+            plainer->name, all.of(best).name));
   } else {
     verdict = Name(all, best, lack, more, criteria);
   }
