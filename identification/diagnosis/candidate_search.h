@@ -159,7 +159,7 @@ class CandidateSearch {
                   std::size_t tried = kStartsTried) const;
   ProjectedResidual ScreenedResidual() const;
   static double StepReduction(const Fitted& fitted);
-  void CompleteCompetitive(double best);
+  void CompleteCompetitive(const Fitted* known);
   bool CompleteOne(CandidateResult& c, double best) const;
   void RefitAtQuarterStep(CandidateResult& c) const;
   void Mend(const Problem& problem, CandidateResult& c) const;

@@ -115,7 +115,7 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
     }
   }
   FinishAbandoned();
-  CompleteCompetitive(known ? known->fitted.cost : kInfinity);
+  CompleteCompetitive(known ? &known->fitted : nullptr);
   Dismiss();
 }
 
@@ -249,7 +249,7 @@ bool CandidateSearch::RefitFromExperimentStart() {
     better = RefitFromStart(*c) || better;
   }
   if (!better) return false;
-  CompleteCompetitive(kInfinity);
+  CompleteCompetitive(nullptr);
   Dismiss();
   return true;
 }
@@ -261,16 +261,17 @@ double CandidateSearch::StepReduction(const Fitted& f) {
 }
 
 // Sensitivities are expensive: only those get theirs that may come near the best with them. What
-// the time step leaves open takes about as much off everybody's cost. best: the least cost that is
-// known already.
-void CandidateSearch::CompleteCompetitive(double best) {
+// the time step leaves open takes about as much off everybody's cost. known: the best fit of
+// another search, or null.
+void CandidateSearch::CompleteCompetitive(const Fitted* known) {
   std::vector<CandidateResult*> order;
   for (CandidateResult& c : candidates) {
     if (c.was_fitted) order.push_back(&c);
   }
   std::stable_sort(order.begin(), order.end(),
                    [](const auto* a, const auto* b) { return a->fitted.cost < b->fitted.cost; });
-  double step_reduction = StepReduction(*base_.fitted);
+  double best = known ? known->cost : kInfinity, step_reduction = StepReduction(*base_.fitted);
+  if (known) step_reduction = std::max(step_reduction, StepReduction(*known));
   for (CandidateResult* const c : order) {
     if (noise_.known() && !c->fitted.complete() &&
         WorthCompleting(c->fitted.cost, best, step_reduction, criteria_)) {
