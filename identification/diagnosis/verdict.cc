@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "binding/effect_catalog.h"
+#include "sim/io/rounded.h"
 
 namespace continuum {
 namespace {
@@ -315,9 +316,9 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
   Verdict verdict;
   if (more && all.share(all.first()) < criteria.main_share) {
     verdict = Unexplained(fmt::format(
-        "the best candidate, {}, explains {:.0f} % of what noise does not, and {:.0f} % are asked "
+        "the best candidate, {}, explains {} of what noise does not, and {:.0f} % are asked "
         "for: another cause is at work, or one more",
-        all.of(all.first()).name, 100 * all.share(all.first()), 100 * criteria.main_share));
+        all.of(all.first()).name, Percent(all.share(all.first())), 100 * criteria.main_share));
   } else if (const LikelihoodRecord* const other = all.Outdoing(best)) {
     verdict = Unexplained(
         fmt::format("the best candidate, {}, is clearly outdone by {}, which is not listed",
