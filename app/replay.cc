@@ -18,6 +18,7 @@
 #include "sim/film/video.h"
 #include "sim/io/file.h"
 #include "sim/io/output_folder.h"
+#include "sim/io/rounded.h"
 #include "sim/replay/replay_report.h"
 #include "sim/replay/sensor_score.h"
 
@@ -72,9 +73,10 @@ void RunReplay(const Options& o) {
     traces.push_back(logs[l].trace);
     for (const ChannelScore& s : logs[l].score) {
       std::printf(
-          "%-28s %-8s %-12s rmse %.4g  mean abs. %.4g  largest %.4g %s at %.3f s  fit %.1f %%\n",
+          "%-28s %-8s %-12s rmse %.4g  mean abs. %.4g  largest %.4g %s at %s s  fit %s %%\n",
           e.logs[l].label.c_str(), e.logs[l].train ? "train" : "validate", s.channel.c_str(),
-          s.rmse, s.mae, s.largest, s.unit.c_str(), s.when, s.fit);
+          s.rmse, s.mae, s.largest, s.unit.c_str(), Fixed(s.when, 3).c_str(),
+          Fixed(s.fit, 1).c_str());
       scores.push_back(s);
     }
   }

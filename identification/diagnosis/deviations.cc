@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/io/rounded.h"
 #include "sim/simulation/score.h"
 
 namespace continuum {
@@ -46,8 +47,8 @@ std::string WhenInWords(const Log& log, const std::vector<double>& residual, std
   const auto large = [&](std::size_t k) { return residual[k] / residual[peak] > 0.5; };
   while (from > 0 && large(from - 1)) --from;
   while (to + 1 < log.rows() && large(to + 1)) ++to;
-  if (from == to) return fmt::format("{:.2f} s", log.time[peak]);
-  return fmt::format("{:.2f}-{:.2f} s", log.time[from], log.time[to]);
+  if (from == to) return Fixed(log.time[peak], 2) + " s";
+  return Fixed(log.time[from], 2) + "-" + Fixed(log.time[to], 2) + " s";
 }
 
 std::size_t Peak(const std::vector<double>& residual) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "identification/diagnosis/verdict.h"
+#include "sim/io/rounded.h"
 
 // The verdict by cross-validation.
 namespace continuum {
@@ -197,9 +198,8 @@ std::vector<std::string> Failures(const FoldRecord& record, const Criteria& crit
     failures.push_back(fmt::format("the error falls in only {} of {} folds", better, gains.size()));
   }
   if (!(Median(gains) >= criteria.median_gain)) {
-    failures.push_back(
-        fmt::format("the error falls by {:.1f} % in the median, {:.0f} % are asked for",
-                    100 * Median(gains), 100 * criteria.median_gain));
+    failures.push_back(fmt::format("the error falls by {} in the median, {:.0f} % are asked for",
+                                   Percent(Median(gains), 1), 100 * criteria.median_gain));
   }
   if (!HasOneSize(record.amplitude, criteria)) {
     failures.push_back(fmt::format("its size varies over the folds by more than {:.0f} %",

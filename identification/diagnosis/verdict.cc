@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "binding/effect_catalog.h"
+#include "sim/io/rounded.h"
 
 namespace continuum {
 namespace {
@@ -335,9 +336,9 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
                             all.of(best).name, other->name));
   } else if (!main) {
     verdict = Unexplained(fmt::format(
-        "the best candidate, {}, explains {:.0f} % of what noise does not, and {:.0f} % are asked "
+        "the best candidate, {}, explains {} of what noise does not, and {:.0f} % are asked "
         "for: another cause is at work, or one more",
-        all.of(all.first()).name, 100 * all.share(all.first()), 100 * criteria.main_share));
+        all.of(all.first()).name, Percent(all.share(all.first())), 100 * criteria.main_share));
   } else if (const LikelihoodRecord* const plainer = all.SayingTheSame(best)) {
     verdict = ExplainedBy(
         *plainer,

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/io/rounded.h"
+
 namespace continuum {
 
 void AddSecondView(Page& page, const Diagnosis& d) {
@@ -36,10 +38,10 @@ void AddLikelihoodTable(Page& page, const Diagnosis& d) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& c : d.candidates) {
     rows.push_back({c.hypothesis.Name(), c.hypothesis.where,
-                    c.fitted.complete() ? fmt::format("{:.1f}", c.likelihood) : "",
+                    c.fitted.complete() ? Fixed(c.likelihood, 1) : "",
                     std::to_string(c.hypothesis.extra.size()), fmt::format("{:.2g}", c.p),
                     d.Is(Verdict::Kind::kUnexplained) ? "" : fmt::format("{:.3f}", c.probability),
-                    fmt::format("{:.1f}", c.lambda)});
+                    Fixed(c.lambda, 1)});
   }
   for (const auto& c : d.dismissed) {
     rows.push_back({c.effect, c.where, "", "", fmt::format("{:.2g}", c.p), "", ""});

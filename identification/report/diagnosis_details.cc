@@ -13,6 +13,7 @@
 #include "identification/report/line_diff.h"
 #include "identification/report/missing_force_plots.h"
 #include "identification/report/parts.h"
+#include "sim/io/rounded.h"
 #include "sim/replay/replay.h"
 #include "sim/replay/replay_report.h"
 
@@ -96,14 +97,14 @@ class DiagnosisDetails {
       const auto last = static_cast<double>(p.size()) - 1;
       if (!p.empty())
         placebo = std::max(
-            placebo, p[static_cast<std::size_t>(Percent(rules().placebo_share) * last / 100)]);
+            placebo, p[static_cast<std::size_t>(InPercent(rules().placebo_share) * last / 100)]);
     }
     if (placebo > -1) {
       bars.marks.push_back(
-          {fmt::format("{:.0f} % of random forces stay below", Percent(rules().placebo_share)),
+          {fmt::format("{:.0f} % of random forces stay below", InPercent(rules().placebo_share)),
            100 * placebo});
     }
-    if (!d_.noise_limited) bars.marks.push_back({"asked for", Percent(rules().median_gain)});
+    if (!d_.noise_limited) bars.marks.push_back({"asked for", InPercent(rules().median_gain)});
     page_.Bars(bars);
   }
 
@@ -116,10 +117,10 @@ class DiagnosisDetails {
     }
     for (const Dismissed& c : d_.dismissed) {
       if (d_.noise_limited) break;  // in the table of likelihoods
-      items.push_back(
-          fmt::format("**{} at {}**: explains {:.1f} % of the squared error to first order, and "
-                      "was not fitted: {}.",
-                      c.effect, c.where, 100 * c.explained / d_.before.cost, WhyNotFitted(c)));
+      items.push_back(fmt::format(
+          "**{} at {}**: explains {} of the squared error to first order, and "
+          "was not fitted: {}.",
+          c.effect, c.where, Percent(c.explained / d_.before.cost, 1), WhyNotFitted(c)));
     }
     if (items.empty()) return;
     page_.Paragraph("Why the others are not named:");
@@ -148,9 +149,9 @@ class DiagnosisDetails {
         {row("before", d_.before.error), row("after", run_.after),
          row(d_.noise_limited ? "noise (floor)" : "ceiling: " + d_.ceiling_by, d_.ceiling_error)},
         {fmt::format(
-            "Free simulation of every log. Noise: {}. Gain: {}, whole trials resampled; {:.0f} "
-            "% of what is explainable above the noise.",
-            NoiseInWords(), GainInWords(d_, run_), 100 * gain.explainable)});
+            "Free simulation of every log. Noise: {}. Gain: {}, whole trials resampled; {} of "
+            "what is explainable above the noise.",
+            NoiseInWords(), GainInWords(d_, run_), Percent(gain.explainable))});
     if (const std::string contrast = ContrastInWords(d_); !contrast.empty())
       page_.Paragraph("Between conditions: " + contrast + ".");
     page_.Paragraph(Reached());
@@ -169,8 +170,8 @@ class DiagnosisDetails {
              "Nothing that was tried, forces without a name among it, does better on the held-out "
              "logs.";
     return text +
-           fmt::format("The extension reaches {:.0f} % of what {} on the held-out logs.",
-                       100 * ShareReached(d_, run_.after),
+           fmt::format("The extension reaches {} of what {} on the held-out logs.",
+                       Percent(ShareReached(d_, run_.after)),
                        d_.noise_limited ? "lies above the noise" : d_.ceiling_by + " reaches");
   }
 
@@ -198,7 +199,7 @@ class DiagnosisDetails {
           "channels explain, it also has to take {:.0f} % of the squared error above the noise, "
           "and "
           "to help on logs left out.",
-          Percent(c.significance), Percent(c.main_share));
+          InPercent(c.significance), InPercent(c.main_share));
     }
     return fmt::format(
         "A cause is named when the error falls in at least {better:.0f} % of the folds and by at "
@@ -209,9 +210,10 @@ class DiagnosisDetails {
         "what {placebos:.0f} % of those forces remove. Of a law and one that contains it the "
         "plainer is named, unless it is clearly worse. No probability is given: on such data none "
         "would be calibrated.",
-        fmt::arg("better", Percent(c.folds_better)), fmt::arg("gain", Percent(c.median_gain)),
-        fmt::arg("spread", Percent(c.amplitude_spread)),
-        fmt::arg("placebos", Percent(c.placebo_share)), fmt::arg("margin", Percent(c.fold_margin)));
+        fmt::arg("better", InPercent(c.folds_better)), fmt::arg("gain", InPercent(c.median_gain)),
+        fmt::arg("spread", InPercent(c.amplitude_spread)),
+        fmt::arg("placebos", InPercent(c.placebo_share)),
+        fmt::arg("margin", InPercent(c.fold_margin)));
   }
 
   void Assumptions() {
@@ -234,7 +236,7 @@ class DiagnosisDetails {
   }
 
   const Criteria& rules() const { return d_.criteria; }
-  static double Percent(double share) { return 100 * share; }
+  static double InPercent(double share) { return 100 * share; }
 
   Page& page_;
   const Experiment& e_;

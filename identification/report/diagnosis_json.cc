@@ -10,6 +10,7 @@
 #include "identification/report/diagnosis_words.h"
 #include "identification/report/fit_json.h"
 #include "identification/report/model_changes.h"
+#include "sim/io/rounded.h"
 
 namespace continuum {
 namespace {
@@ -89,17 +90,17 @@ nlohmann::json CauseJson(const Diagnosis& d, const CandidateResult& c,
   const auto falls = std::count_if(
       c.record.after.begin(), c.record.after.end(),
       [&](const double& a) { return a < c.record.before[&a - c.record.after.data()]; });
-  std::string evidence =
-      d.noise_limited ? fmt::format(
-                            "consistent with the data: twice the log-likelihood rises by {:.1f} "
-                            "(family-wise p = {:.2g}); {}",
-                            c.likelihood, c.p, d.verdict.reason)
-                      : fmt::format("consistent with the data: {}", d.verdict.reason);
+  std::string evidence = d.noise_limited
+                             ? fmt::format(
+                                   "consistent with the data: twice the log-likelihood rises by {} "
+                                   "(family-wise p = {:.2g}); {}",
+                                   Fixed(c.likelihood, 1), c.p, d.verdict.reason)
+                             : fmt::format("consistent with the data: {}", d.verdict.reason);
   if (!c.record.after.empty()) {
     evidence += fmt::format(
-        "; leaving out one group at a time, the error falls in {} of {} folds, by {:.0f} % in the "
+        "; leaving out one group at a time, the error falls in {} of {} folds, by {} in the "
         "median",
-        falls, c.record.after.size(), 100 * Median(Gains(c.record)));
+        falls, c.record.after.size(), Percent(Median(Gains(c.record))));
   }
   return {{"effect", c.hypothesis.effect},
           {"variant", c.hypothesis.variant},

@@ -7,6 +7,7 @@
 #include "identification/diagnosis/gain.h"
 #include "identification/report/diagnosis_words.h"
 #include "identification/report/model_changes.h"
+#include "sim/io/rounded.h"
 
 namespace continuum {
 namespace {
@@ -26,8 +27,7 @@ std::string Ranking(const Experiment& e, const Diagnosis& d) {
   if (d.candidates.empty()) text += " no candidate was fitted";
   for (std::size_t i = 0; i < std::min(kShown, d.candidates.size()); ++i) {
     const CandidateResult& c = d.candidates[i];
-    text +=
-        fmt::format("{} {} {:.0f} %", i ? "," : "", c.hypothesis.NameAtPlace(), 100 * Share(d, c));
+    text += fmt::format("{} {} {}", i ? "," : "", c.hypothesis.NameAtPlace(), Percent(Share(d, c)));
   }
   if (d.candidates.size() > kShown) text += fmt::format(" … ({} in all)", d.candidates.size());
   text += "\n";
@@ -112,8 +112,8 @@ std::string DeviationLines(const Diagnosis& d, const std::vector<Deviation>& dev
 std::string FallbackInWords(const Diagnosis& d) {
   const CandidateResult& c = *d.fallback;
   return fmt::format(
-      "no cause, but a smooth force at {} takes {:.0f} % off the error in the median of the folds",
-      c.hypothesis.where, 100 * Median(Gains(c.record)));
+      "no cause, but a smooth force at {} takes {} off the error in the median of the folds",
+      c.hypothesis.where, Percent(Median(Gains(c.record))));
 }
 
 std::string ContrastInWords(const Diagnosis& d) {

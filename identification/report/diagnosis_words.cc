@@ -10,6 +10,7 @@
 #include "identification/diagnosis/gain.h"
 #include "identification/diagnosis/unseen_effects.h"
 #include "identification/report/model_changes.h"
+#include "sim/io/rounded.h"
 
 namespace continuum {
 namespace {
@@ -92,9 +93,9 @@ std::vector<std::string> Doubts(const Diagnosis& d) {
 std::string Closest(const Diagnosis& d) {
   const auto leading = d.verdict.leading;
   if (!leading || *leading >= d.candidates.size()) return "";
-  return fmt::format(" {} comes closest: it takes {:.0f} % of what can be explained.",
+  return fmt::format(" {} comes closest: it takes {} of what can be explained.",
                      d.candidates[*leading].hypothesis.NameAtPlace(),
-                     100 * d.verdict.leading_share);
+                     Percent(d.verdict.leading_share));
 }
 
 std::string Sentence(std::string text) {
@@ -137,12 +138,10 @@ std::string WhyAmbiguous(const Diagnosis& d) {
                      FirstOf(UnseenEffects(d)));
 }
 
-std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
-
 std::string IntervalInWords(const Diagnosis& d) {
   if (!d.gain_interval) return " (interval not computed)";
-  return fmt::format(" (95 %: {:.0f} … {:.0f} %)", 100 * d.gain_interval->low,
-                     100 * d.gain_interval->high);
+  return fmt::format(" (95 %: {} … {})", Fixed(100 * d.gain_interval->low, 0),
+                     Percent(d.gain_interval->high));
 }
 
 // Where no log is kept for validation.

@@ -7,6 +7,7 @@
 
 #include "identification/report/parts.h"
 #include "identification/report/residual_plots.h"
+#include "sim/io/rounded.h"
 #include "sim/replay/replay_report.h"
 
 namespace continuum {
@@ -123,10 +124,10 @@ class FitPage {
     std::vector<std::vector<std::string>> rows;
     for (const Start& start : all.starts) {
       const bool ended = std::isfinite(start.cost);
-      const double over = 100 * (start.cost / all.best.cost - 1);
+      const double over = start.cost / all.best.cost - 1;
       rows.push_back({rows.empty() ? "given" : fmt::format("random {}", rows.size()),
                       ended ? fmt::format("{:.6g}", start.cost) : "diverged",
-                      ended ? fmt::format("{:.2g} %", over) : ""});
+                      ended ? Significant(100 * over, 2) + " %" : ""});
       for (const Eigen::Index i : drawn) rows.back().push_back(fmt::format("{:.4g}", start.x[i]));
     }
     page_.Heading("Starts");
@@ -146,7 +147,7 @@ class FitPage {
         }
         rows.back().insert(rows.back().end(),
                            {fmt::format("{:.4g}", s.rmse), fmt::format("{:.4g}", s.mae),
-                            fmt::format("{:.3f}", s.nrmse), fmt::format("{:.1f}", s.fit)});
+                            fmt::format("{:.3f}", s.nrmse), Fixed(s.fit, 1)});
       }
     }
     page_.Table({"log", "use", "channel", "unit", "RMSE", "mean abs.", "NRMSE", "fit %"}, rows);

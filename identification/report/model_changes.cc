@@ -9,11 +9,12 @@
 
 #include "error.h"
 #include "sim/experiment/measurement_model.h"
+#include "sim/io/rounded.h"
 
 namespace continuum {
 namespace {
 
-std::string Value(double value) { return fmt::format("{:.3g}", value); }
+std::string Value(double value) { return Significant(value, 3); }
 
 // " N m/rad"; nothing for a pure number.
 std::string Unit(std::string unit) {

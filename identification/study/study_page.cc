@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "identification/study/summary.h"
+#include "sim/io/rounded.h"
 #include "sim/page/page.h"
 
 namespace continuum {
@@ -16,10 +17,12 @@ namespace {
 using State = RowStatus::State;
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string Short(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : ""; }
+std::string Short(double value) { return std::isfinite(value) ? Significant(value, 4) : ""; }
 
 std::string Interval(double low, double high) {
-  return std::isfinite(low) && std::isfinite(high) ? fmt::format("{:.3g} … {:.3g}", low, high) : "";
+  return std::isfinite(low) && std::isfinite(high)
+             ? Significant(low, 3) + " … " + Significant(high, 3)
+             : "";
 }
 
 // "12 s", "3.2 min", "5.1 h".
@@ -179,12 +182,11 @@ class StudyPage {
     for (const Population& p : summary_.populations) {
       const RandomEffects& s = p.spread;
       const auto odd = OddUnits(p, summary_.lines);
-      rows.push_back(
-          {p.model, p.name, p.unit, std::to_string(p.units.size()), Short(s.mean),
-           Interval(s.mean_low, s.mean_high), Short(s.between),
-           Interval(s.between_low, s.between_high),
-           s.mean == 0 ? "" : fmt::format("{:.1f} %", 100 * s.between / std::abs(s.mean)),
-           fmt::format("{}", fmt::join(odd, ", "))});
+      rows.push_back({p.model, p.name, p.unit, std::to_string(p.units.size()), Short(s.mean),
+                      Interval(s.mean_low, s.mean_high), Short(s.between),
+                      Interval(s.between_low, s.between_high),
+                      s.mean == 0 ? "" : Percent(s.between / std::abs(s.mean), 1),
+                      fmt::format("{}", fmt::join(odd, ", "))});
       if (!p.left_out.empty()) rows.back()[3] += fmt::format(" (+{} left out)", p.left_out.size());
     }
     page_.Table(

@@ -10,6 +10,7 @@
 #include "error.h"
 #include "sim/io/csv.h"
 #include "sim/io/file.h"
+#include "sim/io/rounded.h"
 
 namespace continuum {
 namespace {
@@ -174,10 +175,10 @@ std::string VerdictInWords(const RowResult& r) {
 
 std::string GainInWords(const RowResult& r) {
   if (!std::isfinite(r.gain)) return "";
-  const std::string gain = fmt::format("{:.0f} %", 100 * r.gain);
-  return std::isfinite(r.gain_low)
-             ? gain + fmt::format(" [{:.0f}, {:.0f}]", 100 * r.gain_low, 100 * r.gain_high)
-             : gain;
+  const std::string gain = Percent(r.gain);
+  return std::isfinite(r.gain_low) ? gain + fmt::format(" [{}, {}]", Fixed(100 * r.gain_low, 0),
+                                                        Fixed(100 * r.gain_high, 0))
+                                   : gain;
 }
 
 std::string InWords(const RowResult& r) {

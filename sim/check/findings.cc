@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <fmt/core.h>
+#include "sim/io/rounded.h"
 
 namespace continuum {
 
@@ -27,11 +27,11 @@ bool Findings::Has(const std::string& channel, const std::string& what) const {
 }
 
 std::string Clock(double time) {
-  return std::abs(time) < 1000 ? fmt::format("{:.4g} s", time) : fmt::format("{:.3f} s", time);
+  return std::abs(time) < 1000 ? Significant(time, 4) + " s" : Fixed(time, 3) + " s";
 }
 
 std::string Amount(double value, const std::string& unit) {
-  return fmt::format("{:.3g}{}", value, unit == "1" ? "" : " " + unit);
+  return Significant(value, 3) + (unit == "1" ? "" : " " + unit);
 }
 
 }  // namespace continuum

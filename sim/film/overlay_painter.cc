@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/io/rounded.h"
 #include "sim/numerics/round_number.h"
 
 namespace continuum {
@@ -62,7 +63,7 @@ class Painter {
   }
 
   void Time(double time) {
-    const std::string text = fmt::format("t = {:.2f} s", time);
+    const std::string text = "t = " + Fixed(time, 2) + " s";
     const int top = image_.height - 2 * pad_ - line_;
     Plate(pad_, top, font_.Width(text) + 2 * pad_, line_ + pad_);
     Line(text, 2 * pad_, top + pad_ / 2);

@@ -10,6 +10,7 @@
 #include "sim/io/csv.h"
 #include "sim/io/decimal.h"
 #include "sim/io/output_manifest.h"
+#include "sim/io/rounded.h"
 #include "sim/replay/sensor_score.h"
 #include "sim/simulation/score.h"
 
@@ -140,8 +141,8 @@ void WriteReplayReport(const Experiment& e, const std::vector<Replayed>& logs,
     for (const ChannelScore& s : logs[l].score) {
       rows.push_back({e.logs[l].label, e.logs[l].train ? "train" : "validate", s.channel, s.unit,
                       fmt::format("{:.4g}", s.rmse), fmt::format("{:.4g}", s.mae),
-                      fmt::format("{:.3f}", s.nrmse), fmt::format("{:.1f}", s.fit),
-                      fmt::format("{:.4g}", s.largest), fmt::format("{:.3f}", s.when)});
+                      fmt::format("{:.3f}", s.nrmse), Fixed(s.fit, 1),
+                      fmt::format("{:.4g}", s.largest), Fixed(s.when, 3)});
     }
   }
   page.Table(
