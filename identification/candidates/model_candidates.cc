@@ -89,6 +89,7 @@ Hypothesis EditCandidate(const EffectInfo& effect, Place place,
                          const std::vector<std::string>& names, const Experiment& e,
                          const ModelSpec& system, const std::vector<Change>& fitted, Sizes sizes) {
   if (place == Place::kActuator) sizes.input = InputSize(e, names);
+  if (place == Place::kJoint) sizes.inertia = InertiaOf(system.model(), names);
   if (place == Place::kBody || place == Place::kSite)
     sizes.lever = LeverOf(system.model(), place, names);
   Hypothesis h{std::string(effect.name), "", PlaceText(place, names), system, {}, {}, "", {}};

@@ -71,6 +71,17 @@ double LeverOf(const mjModel& m, Place place, const std::vector<std::string>& na
   return longest > 0 ? longest : 1;
 }
 
+double InertiaOf(const mjModel& m, const std::vector<std::string>& joints) {
+  double sum = 0;
+  int count = 0;
+  for (const std::string& name : joints) {
+    const int id = mj_name2id(&m, mjOBJ_JOINT, name.c_str());
+    for (int v = 0; v < m.nv; ++v)
+      if (m.dof_jntid[v] == id) sum += m.dof_M0[v], ++count;
+  }
+  return count > 0 ? sum / count : 1;
+}
+
 double InputSize(const Experiment& e, const std::vector<std::string>& actuators) {
   double size = 0;
   for (std::size_t i = 0; i < e.inputs.size(); ++i) {

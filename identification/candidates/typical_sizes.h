@@ -17,7 +17,7 @@ struct Sizes {
   double tension = 1;    ///< typical force along tendons [N]
   double mass = 1;       ///< mean mass of the moving bodies [kg]
   double robot = 1;      ///< mass of all of them [kg]
-  double inertia = 1;    ///< inertia that a joint sees [kg*m^2]
+  double inertia = 1;    ///< inertia that the joints in question see [kg*m^2]
   double length = 1;     ///< typical shift of a part [m]
   double lever = 1;      ///< from the joints to the bodies or sites in question [m]
   double input = 1;      ///< largest control of the actuators in question [their unit]
@@ -42,5 +42,9 @@ double ReadingSize(const Experiment& experiment, const std::vector<std::string>&
 /// The longest lever arm of some bodies or sites about the joints that carry them, in the model's
 /// reference pose [m]; 1 where no joint moves them. A slide joint counts as 1.
 double LeverOf(const mjModel& m, Place place, const std::vector<std::string>& names);
+
+/// What some joints move in the model's reference pose, on average of their directions [kg*m^2]; 1
+/// where there is none. Of a slide joint it is a mass.
+double InertiaOf(const mjModel& m, const std::vector<std::string>& joints);
 
 }  // namespace continuum

@@ -27,8 +27,11 @@ bool IsNumber(const Parameter& p, const EffectInfo& effect) {
 double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
                 const Sizes& sizes, const Criteria& criteria) {
   if (!std::isfinite(null)) return 0;
-  if (null != 0) return criteria.correction * std::abs(null);
   const Param* const param = OnCard(effect, parameter);
+  const double share = criteria.correction * std::abs(null);
+  if (effect.kind == EffectInfo::Kind::kEdit && param && param->unit == "kg*m^2")
+    return std::max(share, criteria.whole_correction * sizes.inertia);
+  if (null != 0) return share;
   if (!param) return 0;
   if (effect.kind == EffectInfo::Kind::kEdit && param->unit == "kg")
     return criteria.whole_correction * sizes.robot;
@@ -44,6 +47,7 @@ bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
                   const Experiment& experiment, Sizes sizes, const Criteria& criteria) {
   const EffectInfo& effect = EffectNamed(h.Card());
   if (h.place == Place::kSensor) sizes.reading = ReadingSize(experiment, h.objects);
+  if (h.place == Place::kJoint) sizes.inertia = InertiaOf(h.system.model(), h.objects);
   const auto amplitudes = h.Amplitudes();
   return std::all_of(amplitudes.begin(), amplitudes.end(), [&](std::size_t i) {
     const double change = fitted.fit.x[begin + static_cast<Eigen::Index>(i)] - h.null[i];

@@ -11,8 +11,8 @@ namespace continuum {
 
 /// How far the number of the model may be off that a parameter of an effect changes, null where the
 /// effect is absent: masses, gains and stiffnesses by a few per cent, the mass of the whole robot,
-/// its weight, the direction of gravity, the clock or the zero of a sensor by less. 0 where there
-/// is no such number.
+/// its weight, what a joint moves, the direction of gravity, the clock or the zero of a sensor by
+/// less. 0 where there is no such number.
 double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
                 const Sizes& sizes, const Criteria& criteria);
 

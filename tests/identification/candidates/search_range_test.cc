@@ -146,5 +146,17 @@ TEST(TypicalSizes, ALeverIsTheLongestFromAJointToThePart) {
   EXPECT_EQ(LeverOf(model.model(), Place::kBody, {"fixed"}), 1);
 }
 
+TEST(TypicalSizes, AnInertiaIsThatOfWhatTheJointsInQuestionMove) {
+  const ModelSpec model = ModelSpec::Parse(R"(<mujoco><worldbody>
+    <body name="cart"><joint name="x" type="slide" axis="1 0 0"/>
+      <inertial pos="0 0 0" mass="2" diaginertia=".1 .1 .1"/>
+      <body name="rod"><joint name="q" axis="0 1 0" armature="0.01"/>
+        <inertial pos="0 0 .5" mass="1" diaginertia=".02 .02 .02"/></body></body>
+    </worldbody></mujoco>)");
+  EXPECT_NEAR(InertiaOf(model.model(), {"x"}), 3, 1e-12);
+  EXPECT_NEAR(InertiaOf(model.model(), {"q"}), 0.02 + 0.25 + 0.01, 1e-12);
+  EXPECT_EQ(InertiaOf(model.model(), {}), 1);
+}
+
 }  // namespace
 }  // namespace continuum

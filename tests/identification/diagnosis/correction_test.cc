@@ -20,6 +20,15 @@ TEST(Corrections, ConstantOfASensorIsOneUpToAShareOfItsLargestValue) {
   EXPECT_EQ(OfSensor("sensor_drift", "rate", 0), 0);
 }
 
+// Masses 1 % and lengths 0.5 % off change what a joint moves by 2 %, whatever armature it has.
+TEST(Corrections, ArmatureIsOneUpToAShareOfWhatTheJointMoves) {
+  const Sizes sizes{.inertia = 0.02};
+  const EffectInfo& effect = EffectNamed("armature");
+  EXPECT_DOUBLE_EQ(MayBeOff(effect, "armature", 0, sizes, {}), 0.0004);
+  EXPECT_DOUBLE_EQ(MayBeOff(effect, "armature", 0.001, sizes, {}), 0.0004);
+  EXPECT_DOUBLE_EQ(MayBeOff(effect, "armature", 0.016, sizes, {}), 0.0008);
+}
+
 TEST(Corrections, LargestValueIsInTheUnitOfTheOutput) {
   Experiment e;
   e.channels.resize(2);

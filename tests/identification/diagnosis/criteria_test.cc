@@ -337,7 +337,7 @@ std::map<std::string, std::vector<Judged>> Examples() {
     return MayBeTwo(named, {}, 1e-3, over, c);
   });
   e["correction"] = Number(
-      [](const Criteria& c) { return MayBeOff(EffectNamed("armature"), "armature", 0.1, {}, c); });
+      [](const Criteria& c) { return MayBeOff(EffectNamed("input_gain"), "gain", 1, {}, c); });
   e["whole_correction"] =
       Number([](const Criteria& c) { return MayBeOff(EffectNamed("payload"), "mass", 0, {}, c); });
   e["numbers_most"] = AroundBoundary(0.02, [](double off, const Criteria& c) {
