@@ -9,6 +9,7 @@
 #include "identification/diagnosis/correction.h"
 #include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/lack_of_fit.h"
+#include "identification/diagnosis/needless_sizes.h"
 #include "identification/diagnosis/probing.h"
 #include "identification/statistics/uncertainty.h"
 
@@ -44,8 +45,8 @@ Experiment Asking(const Experiment& experiment, const DiagnosisOptions& options)
 
 bool Contains(const CandidateFitter& fitter, const CandidateResult& b, const CandidateResult& a) {
   if (ContainsByCard(b.hypothesis, a.hypothesis)) return true;
-  if (b.hypothesis.extra.size() > a.hypothesis.extra.size() && FollowsTheSameMotion(fitter, b, a))
-    return true;
+  if (NumbersThatShow(b) <= NumbersThatShow(a)) return false;
+  if (FollowsTheSameMotion(fitter, b, a)) return true;
   if (a.probes.empty() || b.probes.empty()) return false;
   const Problem::Matrix &A = a.probes.front().AtStart(), &B = b.probes.front().AtStart();
   if (A.cols() >= B.cols()) return false;
@@ -230,7 +231,7 @@ std::vector<LikelihoodRecord> CandidateSearch::Records() const {
   std::vector<LikelihoodRecord> records;
   for (const CandidateResult& c : candidates) {
     LikelihoodRecord record{c.hypothesis.Name(),
-                            c.hypothesis.extra.size(),
+                            NumbersThatShow(c),
                             c.likelihood,
                             {},
                             StepReduction(c.fitted) / inflation_,

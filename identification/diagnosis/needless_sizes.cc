@@ -1,6 +1,7 @@
 #include "identification/diagnosis/needless_sizes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -9,6 +10,7 @@
 namespace continuum {
 namespace {
 
+using Matrix = Problem::Matrix;
 using Vector = Problem::Vector;
 
 bool MayLoseSizes(const CandidateResult& c) {
@@ -54,7 +56,38 @@ std::optional<CandidateResult> WithoutOne(const CandidateFitter& fitter, const C
   return best;
 }
 
+// Products of the columns of its own numbers, each over its whole range.
+Matrix SquaresOfOwn(const CandidateResult& c) {
+  const auto n = static_cast<Eigen::Index>(c.hypothesis.extra.size());
+  Matrix squares = Matrix::Zero(n, n);
+  for (const Matrix& J : c.fitted.sensitivities->jacobian) {
+    if (J.size() == 0) continue;
+    const auto own = J.middleCols(c.first_extra(), n);
+    squares += own.transpose() * own;
+  }
+  Vector range(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Parameter& p = c.hypothesis.extra[static_cast<std::size_t>(i)];
+    range[i] = p.upper - p.lower;
+  }
+  return range.asDiagonal() * squares * range.asDiagonal();
+}
+
 }  // namespace
+
+std::size_t NumbersThatShow(const CandidateResult& c) {
+  constexpr double kLeast = 1e-6;  // of squares, which differences of simulations resolve
+  const std::size_t n = c.hypothesis.extra.size();
+  if (!c.fitted.complete() || n < 2) return n;
+  const Matrix squares = SquaresOfOwn(c);
+  const double most = squares.diagonal().maxCoeff();
+  if (!(most > 0) || !std::isfinite(most)) return n;
+  Vector unit = squares.diagonal();
+  for (double& square : unit) square = square > kLeast * kLeast * most ? 1 / std::sqrt(square) : 0;
+  const Matrix alike = unit.asDiagonal() * squares * unit.asDiagonal();
+  const Vector shares = alike.selfadjointView<Eigen::Lower>().eigenvalues();
+  return static_cast<std::size_t>((shares.array() > kLeast).count());
+}
 
 bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& c) {
   bool dropped = false;

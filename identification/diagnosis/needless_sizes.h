@@ -11,4 +11,9 @@ namespace continuum {
 /// without its excess that is another law. Returns whether any was taken out.
 bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& candidate);
 
+/// How many numbers of its own a complete fit has that change these logs, each in its own way: of a
+/// force on a slide one of its three, of a tilt one where nothing tells its axes apart. Only these
+/// have to be paid for. All of them where the fit is not complete.
+std::size_t NumbersThatShow(const CandidateResult& candidate);
+
 }  // namespace continuum

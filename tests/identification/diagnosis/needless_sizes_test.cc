@@ -83,5 +83,31 @@ TEST_F(NeedlessSizes, AFrictionKeepsItsOwn) {
   EXPECT_EQ(c.hypothesis.extra.size(), sizes);
 }
 
+// Of two logs, after one number that is fitted anyway; the columns are those of the candidate.
+CandidateResult WithColumns(std::vector<Problem::Vector> columns) {
+  CandidateResult c{{"", "", "", ModelSpec::Parse("<mujoco/>"), {}, {}, "", {}}};
+  Sensitivities known;
+  known.jacobian.assign(2, Problem::Matrix::Ones(4, 1 + static_cast<int>(columns.size())));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    c.hypothesis.extra.emplace_back();
+    c.hypothesis.extra.back().lower = -1, c.hypothesis.extra.back().upper = 1;
+    for (auto& J : known.jacobian) J.col(1 + static_cast<int>(i)) = columns[i];
+  }
+  c.fitted.fit.x = Problem::Vector::Zero(1 + static_cast<int>(columns.size()));
+  c.fitted.sensitivities = known;
+  return c;
+}
+
+TEST(NumbersThatShow, AreThoseThatChangeTheLogsEachInItsOwnWay) {
+  const Eigen::Vector4d none(0, 0, 0, 0), a(1, 2, 3, 4), b(1, -1, 1, -1);
+  EXPECT_EQ(NumbersThatShow(WithColumns({none, a, none})), 1u);
+  EXPECT_EQ(NumbersThatShow(WithColumns({a, -0.1 * a})), 1u);
+  EXPECT_EQ(NumbersThatShow(WithColumns({a, b})), 2u);
+  EXPECT_EQ(NumbersThatShow(WithColumns({a, a + 0.01 * b, b})), 2u);
+  CandidateResult unknown = WithColumns({none, a});
+  unknown.fitted.sensitivities.reset();
+  EXPECT_EQ(NumbersThatShow(unknown), 2u);
+}
+
 }  // namespace
 }  // namespace continuum
