@@ -22,6 +22,11 @@ bool IsNumber(const Parameter& p, const EffectInfo& effect) {
   return p.unit == "1" || (param && param->unit == "1");
 }
 
+// Of gravity: of the whole robot.
+bool IsTilt(const EffectInfo& effect, const Param& param) {
+  return effect.places.front() == Place::kWorld && param.unit == "rad";
+}
+
 }  // namespace
 
 double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
@@ -38,9 +43,8 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
   if (effect.kind == EffectInfo::Kind::kEdit && param->unit == "N")
     return criteria.whole_correction * kGravity * sizes.robot;
   if (param->unit == "output") return criteria.whole_correction * sizes.reading;
-  const bool direction = effect.places.front() == Place::kWorld && param->unit == "rad";
   const bool clock = effect.kind == EffectInfo::Kind::kMeasure && param->unit == "1";
-  return direction || clock ? +criteria.whole_correction : 0;
+  return IsTilt(effect, *param) || clock ? +criteria.whole_correction : 0;
 }
 
 bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
@@ -71,12 +75,19 @@ bool IsFarOff(double factor, const Criteria& criteria) {
   return factor > criteria.factor_most || factor * criteria.factor_most < 1;
 }
 
+bool IsFarTilt(double tilt, const Criteria& criteria) {
+  return std::abs(tilt) > criteria.tilt_most;
+}
+
 bool IsFarOff(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
               const Criteria& criteria) {
+  const EffectInfo& effect = EffectNamed(h.Card());
   const auto amplitudes = h.Amplitudes();
   return std::any_of(amplitudes.begin(), amplitudes.end(), [&](std::size_t i) {
-    return h.null[i] == 1 && IsNumber(h.extra[i], EffectNamed(h.Card())) &&
-           IsFarOff(fitted.fit.x[begin + static_cast<Eigen::Index>(i)], criteria);
+    const double value = fitted.fit.x[begin + static_cast<Eigen::Index>(i)];
+    const Param* const param = OnCard(effect, h.extra[i].name);
+    if (param && IsTilt(effect, *param)) return IsFarTilt(value, criteria);
+    return h.null[i] == 1 && IsNumber(h.extra[i], effect) && IsFarOff(value, criteria);
   });
 }
 

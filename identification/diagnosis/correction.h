@@ -32,8 +32,10 @@ bool AreNumbersEnough(const ByLengthsAndMasses& by, double shows, double best,
 
 /// Whether a factor on a number of the model is further from 1 than such numbers are off.
 bool IsFarOff(double factor, const Criteria& criteria);
+/// Whether a tilt of the whole robot [rad] would have been seen.
+bool IsFarTilt(double tilt, const Criteria& criteria);
 
-/// The same of the factors of a fitted candidate, if it has any.
+/// Whether a fitted candidate has such a size, which is not plausible.
 bool IsFarOff(const Hypothesis& hypothesis, const Fitted& fitted, Eigen::Index begin,
               const Criteria& criteria);
 

@@ -206,6 +206,10 @@ struct Criteria {
   Rule factor_most{"factor_most", 2, "times a number of the model, or its inverse",
                    "gains, scales, lengths and masses are rarely further off: a cause that has to "
                    "be is none beside another one that does as well"};
+  Rule tilt_most{
+      "tilt_most", 0.25, "rad",
+      "a base that stands 14 degrees askew is seen: a larger tilt of gravity is no cause "
+      "beside another one that does as well"};
   Rule pair_share{"pair_share", 0.5, "share of the squares above the noise",
                   "a second cause must explain where the time step may explain them too"};
 
@@ -296,6 +300,7 @@ inline constexpr std::array kAllRules{
     &Criteria::numbers_share,
     &Criteria::correction_share,
     &Criteria::factor_most,
+    &Criteria::tilt_most,
     &Criteria::pair_share,
     &Criteria::fallback_ceiling,
     &Criteria::fallback_size,

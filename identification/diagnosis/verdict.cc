@@ -232,9 +232,7 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
   }
   if (!unlisted.empty())
     verdict.reason += fmt::format("; not listed, but as likely ({}): {}", near, unlisted);
-  if (!far_off.empty())
-    verdict.reason += fmt::format("; as likely, but more than {:g} times off the model: {}",
-                                  +criteria.factor_most, far_off);
+  if (!far_off.empty()) verdict.reason += "; as likely, but of no plausible size: " + far_off;
   return verdict;
 }
 

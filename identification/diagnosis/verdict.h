@@ -26,7 +26,7 @@ struct Verdict {
   /// Candidates of the named one's family, or that contain it, that do as well, or better by less
   /// than a richer law has to earn.
   std::vector<std::size_t> siblings = {};
-  /// Candidates that do as well as the named one, but would put a number of the model too far off.
+  /// Candidates that do as well as the named one, but are of no plausible size.
   std::vector<std::size_t> far_off = {};
   bool complete = false;                    ///< what the verdict leaves looks like noise
   std::optional<std::size_t> leading = {};  ///< the candidate that comes closest; none: none helps
@@ -138,9 +138,8 @@ struct LikelihoodRecord {
   double held_out = 0;  ///< error of the logs left out with it, no less than noise and time step
                         ///< make; 0: there are none
   bool corrects =
-      false;  ///< it only changes numbers of the model, by a few per cent (OnlyCorrects)
-  bool far_off =
-      false;  ///< it multiplies numbers of the model by more than they are off (IsFarOff)
+      false;             ///< it only changes numbers of the model, by a few per cent (OnlyCorrects)
+  bool far_off = false;  ///< its size is not plausible (IsFarOff)
 };
 
 /// The model without a candidate, by the same measure: whitened squares, and how many of them noise

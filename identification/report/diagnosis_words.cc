@@ -74,10 +74,8 @@ std::vector<std::string> Doubts(const Diagnosis& d) {
     doubts.push_back(fmt::format("Relatives of it fit as well: {}.", Siblings(d)));
   for (const std::size_t i : d.verdict.far_off) {
     if (i < d.candidates.size())
-      doubts.push_back(
-          fmt::format("{} fits as well, but a number of the model would be more than "
-                      "{:g} times off.",
-                      d.candidates[i].hypothesis.NameAtPlace(), +d.criteria.factor_most));
+      doubts.push_back(fmt::format("{} fits as well, but its size is not plausible.",
+                                   d.candidates[i].hypothesis.NameAtPlace()));
   }
   if (const auto unseen = UnseenEffects(d); !unseen.empty())
     doubts.push_back(fmt::format("There was no time to look at {}.", FirstOf(unseen)));

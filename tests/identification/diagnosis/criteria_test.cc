@@ -351,6 +351,8 @@ std::map<std::string, std::vector<Judged>> Examples() {
   });
   e["factor_most"] =
       AroundBoundary(2, [](double factor, const Criteria& c) { return IsFarOff(factor, c); });
+  e["tilt_most"] =
+      AroundBoundary(0.25, [](double tilt, const Criteria& c) { return IsFarTilt(tilt, c); });
   e["pair_hopeless"] = AroundBoundary(100, [](double over, const Criteria& c) {
     return MayBeTwo(kUnexplained, {}, 1e-3, over, c);
   });

@@ -217,7 +217,7 @@ TEST(Likelihoods, AFactorThatIsFarOffIsNoCauseBesideAnotherThatDoesAsWell) {
   const Verdict v = JudgeLikelihoods({gain, mass, other}, {1e-6}, 1e-3, kLoud);
   EXPECT_THAT(v.named, ElementsAre(1));
   EXPECT_EQ(v.word(), "named");
-  EXPECT_THAT(v.reason, HasSubstr("more than 2 times off the model: input_gain"));
+  EXPECT_THAT(v.reason, HasSubstr("of no plausible size: input_gain"));
   mass.likelihood = 4000;
   EXPECT_THAT(JudgeLikelihoods({gain, mass, other}, {1e-6}, 1e-3, kLoud).named, ElementsAre(0));
 }
