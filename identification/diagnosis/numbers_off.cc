@@ -1,6 +1,7 @@
 #include "identification/diagnosis/numbers_off.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,16 @@ bool ACorrectionDoesAsWell(const CandidateSearch& search, const Criteria& criter
 }
 
 }  // namespace
+
+bool NumbersMayDoAsMuch(const CandidateResult& c) {
+  const Hypothesis& h = c.hypothesis;
+  if (h.extra.empty() || !c.fitted.complete()) return false;
+  const Eigen::VectorXd& by = c.fitted.sensitivities->uncertainty.by_numbers;
+  const Eigen::VectorXd own = c.fitted.fit.x.tail(static_cast<Eigen::Index>(h.extra.size()));
+  const std::size_t main = h.Main({own.data(), h.extra.size()});
+  const Eigen::Index at = c.first_extra() + static_cast<Eigen::Index>(main);
+  return at < by.size() && std::abs(own[static_cast<Eigen::Index>(main)] - h.null[main]) <= by[at];
+}
 
 bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& search,
                      const std::optional<Pair>& pair, Diagnosis& d) {
@@ -52,6 +63,13 @@ void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& opt
     AllowForLengthsAndMasses(fitter, d.sizes, c.hypothesis.system, c.hypothesis.Free(),
                              !d.verdict.complete, c.fitted);
   }
+  const CandidateResult* const one = d.Is(Verdict::Kind::kNamed) ? d.chosen() : nullptr;
+  if (!one || d.partner || !NumbersMayDoAsMuch(*one)) return;
+  if (!OnlyCorrects(one->hypothesis, one->fitted, one->first_extra(), *fitter.experiment, d.sizes,
+                    d.criteria))
+    return;
+  d.verdict.kind = Verdict::Kind::kAmbiguous, d.verdict.numbers = true;
+  d.verdict.reason += "; lengths and masses that are a little off may do as much";
 }
 
 }  // namespace continuum

@@ -12,7 +12,12 @@ namespace continuum {
 bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& search,
                      const std::optional<Pair>& pair, Diagnosis& d);
 
-/// AllowForLengthsAndMasses in the intervals of all that is named.
+/// Whether lengths and masses that are a little off move the main size of a cause by as much as it
+/// is (Uncertainty::by_numbers).
+bool NumbersMayDoAsMuch(const CandidateResult& candidate);
+
+/// AllowForLengthsAndMasses in the intervals of all that is named. A cause that only corrects a
+/// number, by no more than they may do, is not named alone: no one knows which number is off.
 void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d);
 
 }  // namespace continuum

@@ -40,14 +40,7 @@ class Ranking {
 
   /// The first, or the plainest of its family or of what it contains that it does not clearly beat:
   /// only as deep as the data allow.
-  std::size_t Best() const {
-    const std::size_t f = first();
-    std::size_t best = f;
-    for (const std::size_t i : order_) {
-      if (candidates_[i].listed && IsPlainer(i, best) && IsEnough(i, f)) best = i;
-    }
-    return best;
-  }
+  std::size_t Best() const { return PlainestLike(first()); }
 
   /// The same, or where it is far off the first of those that do as well and are not.
   std::size_t BestNotFarOff() const {
@@ -72,12 +65,16 @@ class Ranking {
 
   /// One of another family that was not asked for and does clearly better; null when there is none.
   const LikelihoodRecord* Outdoing(std::size_t best) const {
-    return NotAskedFor([&](std::size_t i) { return !AreKin(i, best) && IsBehind(i, first()); });
+    const auto first_of_others =
+        NotAskedFor([&](std::size_t i) { return !AreKin(i, best) && IsBehind(i, first()); });
+    return first_of_others ? &candidates_[PlainestLike(*first_of_others)] : nullptr;
   }
 
   /// One that was not asked for, that the best contains and adds nothing to; null when none.
   const LikelihoodRecord* SayingTheSame(std::size_t best) const {
-    return NotAskedFor([&](std::size_t i) { return Contains(best, i) && AddsNothing(best, i); });
+    const auto one =
+        NotAskedFor([&](std::size_t i) { return Contains(best, i) && AddsNothing(best, i); });
+    return one ? &candidates_[*one] : nullptr;
   }
 
   /// The best, and those of other families, or not asked for, that the data do not distinguish from
@@ -109,12 +106,22 @@ class Ranking {
   }
 
  private:
-  template <typename Test>
-  const LikelihoodRecord* NotAskedFor(const Test& test) const {
+  // Of those that were asked for, as this one was, or of the others.
+  std::size_t PlainestLike(std::size_t first) const {
+    std::size_t best = first;
     for (const std::size_t i : order_) {
-      if (!candidates_[i].listed && test(i)) return &candidates_[i];
+      if (candidates_[i].listed == candidates_[first].listed && IsPlainer(i, best) &&
+          IsEnough(i, first))
+        best = i;
     }
-    return nullptr;
+    return best;
+  }
+  template <typename Test>
+  std::optional<std::size_t> NotAskedFor(const Test& test) const {
+    for (const std::size_t i : order_) {
+      if (!candidates_[i].listed && test(i)) return i;
+    }
+    return {};
   }
   bool AreKin(std::size_t a, std::size_t b) const {
     return candidates_[a].kin.Of(candidates_[b].kin);

@@ -8,6 +8,7 @@
 
 #include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/gain.h"
+#include "identification/diagnosis/numbers_off.h"
 #include "identification/diagnosis/unseen_effects.h"
 #include "identification/report/model_changes.h"
 #include "sim/io/rounded.h"
@@ -72,6 +73,10 @@ std::vector<std::string> Doubts(const Diagnosis& d) {
     doubts.push_back(fmt::format("It fits as well at {}.", fmt::join(places, " and at ")));
   if (!d.verdict.siblings.empty())
     doubts.push_back(fmt::format("Relatives of it fit as well: {}.", Siblings(d)));
+  if (d.chosen() && NumbersMayDoAsMuch(*d.chosen())) {
+    doubts.push_back(fmt::format("Lengths and masses that are {:g} % off may do as much.",
+                                 100 * d.criteria.link_known));
+  }
   for (const std::size_t i : d.verdict.far_off) {
     if (i < d.candidates.size())
       doubts.push_back(fmt::format("{} fits as well, but its size is not plausible.",
@@ -122,8 +127,10 @@ bool NumbersInstead(const Diagnosis& d) {
 
 std::string WhyAmbiguous(const Diagnosis& d) {
   if (NumbersInstead(d))
-    return "Each changes a number by a few per cent. Others that are a little off, such as "
-           "lengths, may do the same.";
+    return fmt::format(
+        "{} a number by a few per cent. Others that are a little off, such as lengths, may do the "
+        "same.",
+        d.verdict.named.size() > 1 ? "Each changes" : "It changes");
   if (OnlyCorrections(d))
     return "Both change numbers by a few per cent. Others that are a little off, such as lengths, "
            "may do the same.";
