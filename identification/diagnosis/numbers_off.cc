@@ -22,6 +22,16 @@ bool ACorrectionDoesAsWell(const CandidateSearch& search, const Criteria& criter
   });
 }
 
+// Whether what a named cause corrects, and does, lengths and masses may be and do as well.
+bool NumbersInsteadOf(const CandidateResult& c, const CandidateFitter& fitter, const Diagnosis& d) {
+  if (!NumbersMayDoAsMuch(c) || !OnlyCorrects(c.hypothesis, c.fitted, c.first_extra(),
+                                              *fitter.experiment, d.sizes, d.criteria))
+    return false;
+  const ByLengthsAndMasses by =
+      ExplainedByLengthsAndMasses(fitter, d.sizes, d.system, {}, d.before);
+  return by.squares >= d.criteria.numbers_share * (d.before.cost - c.fitted.cost);
+}
+
 }  // namespace
 
 bool NumbersMayDoAsMuch(const CandidateResult& c) {
@@ -63,13 +73,10 @@ void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& opt
     AllowForLengthsAndMasses(fitter, d.sizes, c.hypothesis.system, c.hypothesis.Free(),
                              !d.verdict.complete, c.fitted);
   }
-  const CandidateResult* const one = d.Is(Verdict::Kind::kNamed) ? d.chosen() : nullptr;
-  if (!one || d.partner || !NumbersMayDoAsMuch(*one)) return;
-  if (!OnlyCorrects(one->hypothesis, one->fitted, one->first_extra(), *fitter.experiment, d.sizes,
-                    d.criteria))
-    return;
-  d.verdict.kind = Verdict::Kind::kAmbiguous, d.verdict.numbers = true;
-  d.verdict.reason += "; lengths and masses that are a little off may do as much";
+  if (d.Is(Verdict::Kind::kNamed) && !d.partner && NumbersInsteadOf(*d.chosen(), fitter, d)) {
+    d.verdict.kind = Verdict::Kind::kAmbiguous, d.verdict.numbers = true;
+    d.verdict.reason += "; lengths and masses that are a little off do as much";
+  }
 }
 
 }  // namespace continuum

@@ -17,7 +17,8 @@ bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& searc
 bool NumbersMayDoAsMuch(const CandidateResult& candidate);
 
 /// AllowForLengthsAndMasses in the intervals of all that is named. A cause that only corrects a
-/// number, by no more than they may do, is not named alone: no one knows which number is off.
+/// number, by no more than they may, where they explain as much, is not named alone: no one knows
+/// which number is off.
 void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d);
 
 }  // namespace continuum
