@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
+#include "app/log_check.h"
 #include "app/models_folder.h"
 #include "app/rank_job.h"
 #include "binding/effect_catalog.h"
@@ -121,6 +122,7 @@ void RunDiagnose(const Options& o) {
   if (e.soft > 0 && ThisRank() == 0)
     fmt::print(stderr, "warning: {}: `loss: soft_l1` is for identify; diagnose uses squares\n",
                e.file.string());
+  if (ThisRank() == 0) PrintLogCheck(o.experiment, e, system);
   std::optional<GracefulEnd> graceful;
   if (RankCount() == 1) graceful.emplace();
   const Diagnosis d = Diagnose(e, system, options);

@@ -71,6 +71,15 @@ double LeverOf(const mjModel& m, Place place, const std::vector<std::string>& na
   return longest > 0 ? longest : 1;
 }
 
+double MassOf(const mjModel& m, const std::vector<std::string>& bodies) {
+  double sum = 0;
+  for (const std::string& name : bodies) {
+    const int id = mj_name2id(&m, mjOBJ_BODY, name.c_str());
+    if (id >= 0) sum += m.body_mass[id];
+  }
+  return sum > 0 ? sum : 1;
+}
+
 double InertiaOf(const mjModel& m, const std::vector<std::string>& joints) {
   double sum = 0;
   int count = 0;

@@ -43,6 +43,9 @@ double ReadingSize(const Experiment& experiment, const std::vector<std::string>&
 /// reference pose [m]; 1 where no joint moves them. A slide joint counts as 1.
 double LeverOf(const mjModel& m, Place place, const std::vector<std::string>& names);
 
+/// The mass of some bodies together, without those that hang on them [kg]; 1 where they have none.
+double MassOf(const mjModel& m, const std::vector<std::string>& bodies);
+
 /// What some joints move in the model's reference pose, on average of their directions [kg*m^2]; 1
 /// where there is none. Of a slide joint it is a mass.
 double InertiaOf(const mjModel& m, const std::vector<std::string>& joints);

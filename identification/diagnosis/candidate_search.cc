@@ -204,8 +204,8 @@ LackOfFit CandidateSearch::LackOf(CandidateResult* c) const {
 }
 
 BaseSquares CandidateSearch::Base() const {
-  return {base_.fitted->cost / inflation_,
-          base_.fitted->sensitivities.value().freedom / inflation_};
+  return {base_.fitted->cost / inflation_, base_.fitted->sensitivities.value().freedom / inflation_,
+          noise_.floor()};
 }
 
 // Of the train logs or of those left out, whichever shows more: what else is wrong may hide in one

@@ -364,7 +364,7 @@ class PairSearch {
     const Hypothesis& h = beside.hypothesis;
     const ByLengthsAndMasses by = ExplainedByLengthsAndMasses(context_.fitter, context_.sizes,
                                                               h.system, h.Free(), beside.fitted);
-    return MayBeLengthsAndMasses(by.squares, other, criteria_);
+    return MayBeLengthsAndMasses(by, other, criteria_);
   }
 
   // The first cause of the best pair, and what of the other pairs in the set could stand for it.

@@ -36,6 +36,8 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
   const double share = criteria.correction * std::abs(null);
   if (effect.kind == EffectInfo::Kind::kEdit && param && param->unit == "kg*m^2")
     return std::max(share, criteria.whole_correction * sizes.inertia);
+  if (effect.places.front() == Place::kBody && param && param->unit == "1")
+    return std::max(share, criteria.whole_correction * sizes.robot / sizes.mass);
   if (null != 0) return share;
   if (!param) return 0;
   if (effect.kind == EffectInfo::Kind::kEdit && param->unit == "kg")
@@ -51,6 +53,7 @@ bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
                   const Experiment& experiment, Sizes sizes, const Criteria& criteria) {
   const EffectInfo& effect = EffectNamed(h.Card());
   if (h.place == Place::kSensor) sizes.reading = ReadingSize(experiment, h.objects);
+  if (h.place == Place::kBody) sizes.mass = MassOf(h.system.model(), h.objects);
   if (h.place == Place::kJoint) sizes.inertia = InertiaOf(h.system.model(), h.objects);
   const auto amplitudes = h.Amplitudes();
   return std::all_of(amplitudes.begin(), amplitudes.end(), [&](std::size_t i) {
@@ -59,8 +62,8 @@ bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
   });
 }
 
-bool MayBeLengthsAndMasses(double explained, double other, const Criteria& criteria) {
-  return explained >= criteria.correction_share * other;
+bool MayBeLengthsAndMasses(const ByLengthsAndMasses& by, double other, const Criteria& criteria) {
+  return by.off <= 2 * criteria.link_known && by.squares >= criteria.correction_share * other;
 }
 
 bool AreNumbersEnough(const ByLengthsAndMasses& by, double shows, double best,

@@ -21,9 +21,9 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
 bool OnlyCorrects(const Hypothesis& hypothesis, const Fitted& fitted, Eigen::Index begin,
                   const Experiment& experiment, Sizes sizes, const Criteria& criteria);
 
-/// Whether lengths and masses that are a little off explain so much [squares] that another cause,
-/// which explains this much in their place, is none of its own.
-bool MayBeLengthsAndMasses(double explained, double other, const Criteria& criteria);
+/// Whether lengths and masses that are a little off, by no more than twice link_known, explain so
+/// much [squares] that another cause, which explains this much in their place, is none of its own.
+bool MayBeLengthsAndMasses(const ByLengthsAndMasses& by, double other, const Criteria& criteria);
 
 /// Whether lengths and masses that are a little off do all that shows [squares], and clearly more
 /// than the best cause: one that is enough by itself stands.

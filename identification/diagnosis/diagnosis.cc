@@ -317,6 +317,9 @@ class Session {
     const bool coarse = d_.lack_of_fit.of_step || d_.noise.step > d_.noise.rms;
     if (coarse && !named.empty() && !MoreThanStep(search.candidates[named.front()].fitted))
       d_.verdict = Verdict::Adequate("no candidate does more than the time step; try a finer one");
+    // Tests of the residual see nothing where nothing moves.
+    const TwoErrors& left = search.leading() ? search.leading()->fitted.error : d_.before.error;
+    if (left.train > d_.criteria.model_limited * d_.noise.floor()) d_.verdict.complete = false;
   }
 
   // Where no effect explains it at all joints together it may be at one of them.

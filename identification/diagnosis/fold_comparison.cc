@@ -184,7 +184,8 @@ class FoldComparison {
     }
     ErrorLevel error{.over_noise = Known() ? d_.before.error.train / d_.noise.floor() : 0,
                      .ceiling_gain = CeilingGain(d_),
-                     .over_scatter = 0};
+                     .over_scatter = 0,
+                     .by_replicates = Known() && d_.noise.source == "replicates"};
     if (d_.noise.source == "differences" && d_.noise.rms > 0)
       error.over_scatter = d_.before.error.train / d_.noise.rms;
     d_.verdict = JudgeFolds(records, error, d_.criteria);

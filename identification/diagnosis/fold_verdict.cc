@@ -60,6 +60,7 @@ class FoldJudge {
           fmt::format("the model's error is {:.2f} times the noise", error_.over_noise));
     }
     Verdict verdict = passing_.empty() ? WithoutAName() : Name();
+    if (!verdict.named.empty() && !IsMain(verdict.named.front())) verdict = NotMain(verdict);
     if (verdict.kind == Verdict::Kind::kAdequate || order_.empty()) return verdict;
     const std::size_t leading = passing_.empty() ? order_.front() : verdict.named.front();
     if (!(Gain(leading) > 0)) return verdict;
@@ -76,6 +77,22 @@ class FoldJudge {
   // Of the squares that the best of all forces takes off, or this candidate where that is more.
   double Share(std::size_t i) const {
     return std::clamp(Squares(i) / SquaresOf(std::max(error_.ceiling_gain, Gain(i))), 0.0, 1.0);
+  }
+
+  // Of the squares above the noise, which repeated trials tell: a model would repeat the rest.
+  double OfExplainable(std::size_t i) const {
+    return Squares(i) / (1 - 1 / (error_.over_noise * error_.over_noise));
+  }
+  bool IsMain(std::size_t i) const {
+    return !error_.by_replicates || OfExplainable(i) >= criteria_.fold_share;
+  }
+  Verdict NotMain(const Verdict& verdict) const {
+    const std::size_t i = verdict.named.front();
+    return {Verdict::Kind::kUnexplained,
+            {},
+            fmt::format("{} passes all rules, but takes only {} of the squares above the noise on "
+                        "logs left out",
+                        candidates_[i].name, Percent(OfExplainable(i)))};
   }
 
   Verdict WithoutAName() const {

@@ -46,7 +46,10 @@ class Ranking {
   std::size_t BestNotFarOff() const {
     const std::size_t best = Best();
     if (!candidates_[best].far_off) return best;
-    for (const std::size_t i : Near(best))
+    auto others = Siblings(best);
+    const auto near = Near(best);
+    others.insert(others.end(), near.begin(), near.end());
+    for (const std::size_t i : others)
       if (candidates_[i].listed && !candidates_[i].far_off) return i;
     return best;
   }
@@ -132,9 +135,17 @@ class Ranking {
   // Whether a says what the first one of its family says, but for what a richer law has to earn.
   bool IsEnough(std::size_t a, std::size_t first) const {
     const bool most =
-        AreKin(a, first) &&
+        AreKin(a, first) && !TakesTheRest(first, a) &&
         candidates_[a].likelihood >= criteria_.family_share * candidates_[first].likelihood;
     return most || HasNotEarned(first, a) || !Behind(first, a, OfNested());
+  }
+  // Whether a richer law takes the main share of what a plain one leaves plainly above noise and
+  // time step, on logs left out.
+  bool TakesTheRest(std::size_t rich, std::size_t plain) const {
+    const double before = candidates_[plain].held_out, after = candidates_[rich].held_out;
+    const double floor = base_.floor * base_.floor;
+    return before > criteria_.near_noise * base_.floor &&
+           after * after - floor <= (1 - criteria_.main_share) * (before * before - floor);
   }
   // Where more than noise is left, a law that contains another one makes up for some of that.
   bool HasNotEarned(std::size_t rich, std::size_t plain) const {

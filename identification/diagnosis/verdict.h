@@ -103,9 +103,10 @@ bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin = 0,
 
 /// What is known of the model's error beside the folds.
 struct ErrorLevel {
-  double over_noise = 0;    ///< of the present model; 0: noise not known
-  double ceiling_gain = 0;  ///< median share of the error that any smooth force removes
-  double over_scatter = 0;  ///< over the scatter from row to row, where no noise is known better
+  double over_noise = 0;       ///< of the present model; 0: noise not known
+  double ceiling_gain = 0;     ///< median share of the error that any smooth force removes
+  double over_scatter = 0;     ///< over the scatter from row to row, where no noise is known better
+  bool by_replicates = false;  ///< whether repeated trials say so
 };
 
 /// The verdict by cross-validation.
@@ -146,6 +147,7 @@ struct LikelihoodRecord {
 /// alone would make.
 struct BaseSquares {
   double squares = 0, freedom = 0;
+  double floor = 0;  ///< of an error in plain rows: what noise and time step make
 };
 
 /// Likelihood less what its parameters gain from noise alone. scale: of that noise's squares.

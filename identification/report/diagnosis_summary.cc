@@ -80,9 +80,12 @@ std::string ChangeLines(const Diagnosis& d, const ExtensionRun& run) {
 
 std::string ErrorLines(const Diagnosis& d, const ExtensionRun& run) {
   const std::string unit = d.pool.unit();
-  std::string text = fmt::format(
-      "error     train {:.4g} -> {:.4g} {u}, validate {:.4g} -> {:.4g} {u}\n", d.before.error.train,
-      run.after.train, d.before.error.validate, run.after.validate, fmt::arg("u", unit));
+  std::string text = fmt::format("error     train {:.4g} -> {:.4g} {}", d.before.error.train,
+                                 run.after.train, unit);
+  if (d.before.error.validate > 0)
+    text += fmt::format(", validate {:.4g} -> {:.4g} {}", d.before.error.validate,
+                        run.after.validate, unit);
+  text += "\n";
   text += "gain      " + GainInWords(d, run) + "\n";
   for (const std::string& fold : WorseFoldsInWords(d)) text += "worse     " + fold + "\n";
   text += d.noise.rms > 0

@@ -72,7 +72,8 @@ std::vector<std::string> Doubts(const Diagnosis& d) {
   if (const auto places = OpenPlaces(d); !places.empty())
     doubts.push_back(fmt::format("It fits as well at {}.", fmt::join(places, " and at ")));
   if (!d.verdict.siblings.empty())
-    doubts.push_back(fmt::format("Relatives of it fit as well: {}.", Siblings(d)));
+    doubts.push_back(
+        fmt::format("Relatives of it fit nearly as well, or as well: {}.", Siblings(d)));
   if (d.chosen() && NumbersMayDoAsMuch(*d.chosen())) {
     doubts.push_back(fmt::format("Lengths and masses that are {:g} % off may do as much.",
                                  100 * d.criteria.link_known));
@@ -96,9 +97,12 @@ std::vector<std::string> Doubts(const Diagnosis& d) {
 std::string Closest(const Diagnosis& d) {
   const auto leading = d.verdict.leading;
   if (!leading || *leading >= d.candidates.size()) return "";
+  const CandidateResult& c = d.candidates[*leading];
+  if (!d.noise_limited && !c.failures.empty())
+    return fmt::format(" {} comes closest, but {}.", c.hypothesis.NameAtPlace(),
+                       c.failures.front());
   return fmt::format(" {} comes closest: it takes {} of what can be explained.",
-                     d.candidates[*leading].hypothesis.NameAtPlace(),
-                     Percent(d.verdict.leading_share));
+                     c.hypothesis.NameAtPlace(), Percent(d.verdict.leading_share));
 }
 
 std::string Sentence(std::string text) {
@@ -343,8 +347,10 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
                                   "a smooth force that has no cause"));
   }
   if (!d.left_out.empty())
-    steps.push_back(fmt::format("There was no time for {}. `--effort thorough` takes it.",
-                                FirstOf(d.left_out)));
+    steps.push_back((d.interrupted ? "It was stopped before " : "There was no time for ") +
+                    FirstOf(d.left_out) +
+                    (d.interrupted ? ". The same command again takes its time."
+                                   : ". `--effort thorough` takes it."));
   if (d.noise.source != "replicates")
     steps.emplace_back("Record each trial twice: only that shows how large the noise is.");
   return steps;

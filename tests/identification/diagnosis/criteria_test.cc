@@ -1,6 +1,7 @@
 #include "identification/diagnosis/criteria.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <set>
@@ -235,6 +236,10 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["at_noise"] = AroundBoundary(1.1, [](double over, const Criteria& c) {
     return JudgeFolds({}, {over}, c).kind == Verdict::Kind::kAdequate;
   });
+  e["fold_share"] = AroundBoundary(0.5, [](double squares, const Criteria& c) {
+    const ErrorLevel known{.over_noise = 1e6, .ceiling_gain = 0.9, .by_replicates = true};
+    return KindOf({Folds(std::sqrt(1 - squares))}, known, c) == "named";
+  });
   e["near_noise"] = AroundBoundary(1.25, [](double over, const Criteria& c) {
     return JudgeFolds({Folds(0.5, over)}, kKnown, c).complete;
   });
@@ -347,7 +352,7 @@ std::map<std::string, std::vector<Judged>> Examples() {
     return AreNumbersEnough({squares, 0.01, 2}, 100, 50, c);
   });
   e["correction_share"] = AroundBoundary(0.5, [](double share, const Criteria& c) {
-    return MayBeLengthsAndMasses(share * 100, 100, c);
+    return MayBeLengthsAndMasses({share * 100, 0.01, 2}, 100, c);
   });
   e["factor_most"] =
       AroundBoundary(2, [](double factor, const Criteria& c) { return IsFarOff(factor, c); });
