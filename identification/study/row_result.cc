@@ -80,14 +80,20 @@ void ReadFindings(const json& findings, RowResult& r) {
 
 }  // namespace
 
+const char* ResultFile(const std::string& command) {
+  if (command == "check") return kFindings;
+  if (command == "replay") return "errors.json";
+  return command == "identify" ? "fit.json" : "diagnosis.json";
+}
+
 RowResult ReadResult(const std::filesystem::path& folder, const std::string& command) {
   RowResult r;
-  const auto read = [&](const char* file) { return ReadJson(folder / file); };
+  const json result = ReadJson(folder / ResultFile(command));
   try {
-    if (command == "check") ReadFindings(read(kFindings), r);
-    if (command == "replay") ReadErrors(read("errors.json"), r);
-    if (command == "identify") ReadFit(read("fit.json"), r);
-    if (command == "diagnose") ReadDiagnosis(read("diagnosis.json"), r);
+    if (command == "check") ReadFindings(result, r);
+    if (command == "replay") ReadErrors(result, r);
+    if (command == "identify") ReadFit(result, r);
+    if (command == "diagnose") ReadDiagnosis(result, r);
   } catch (const json::exception& e) {
     throw Error::Input(folder.string(), "the result of " + command, e.what());
   }
