@@ -17,6 +17,12 @@ double Number(const json& value) {
   return value.is_number() ? value.get<double>() : RowResult::kNone;
 }
 
+// 0 where there are no such logs.
+double Rms(const json& value) {
+  const double error = Number(value);
+  return error > 0 ? error : RowResult::kNone;
+}
+
 void ReadInterval(const json& ends, double& low, double& high) {
   low = high = RowResult::kNone;
   if (ends.is_array() && ends.size() == 2) low = Number(ends[0]), high = Number(ends[1]);
@@ -36,16 +42,16 @@ void ReadDiagnosis(const json& d, RowResult& r) {
   }
   const json& error = d.at("error");
   error.at("unit").get_to(r.unit);
-  r.train = Number(error.at("before").at("train"));
-  r.validate = Number(error.at("before").at("validate"));
-  r.validate_after = Number(error.at("after").at("validate"));
+  r.train = Rms(error.at("before").at("train"));
+  r.validate = Rms(error.at("before").at("validate"));
+  r.validate_after = Rms(error.at("after").at("validate"));
 }
 
 void ReadErrors(const json& error, RowResult& r) {
   if (!error.is_object()) return;
   error.at("unit").get_to(r.unit);
-  r.train = Number(error.at("train"));
-  r.validate = Number(error.at("validate"));
+  r.train = Rms(error.at("train"));
+  r.validate = Rms(error.at("validate"));
 }
 
 void ReadFit(const json& fit, RowResult& r) {

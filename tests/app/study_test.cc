@@ -143,6 +143,15 @@ TEST_F(Studies, AResultOutlivesARunOfChangedInputsThatFails) {
   EXPECT_THAT(f.out, HasSubstr("and the present ones failed (log.csv:5"));
 }
 
+TEST_F(Studies, WithoutValidateLogsShowTheErrorOfTheOthers) {
+  ASSERT_EQ(Study({"--rows", "fit"}).exit_code, 0);
+  ASSERT_EQ(Study({"--summary"}).exit_code, 3);
+  EXPECT_THAT(Text("out/study.html"), Not(HasSubstr(">0 rad<")));
+  const auto table = CsvTable::Read(files_ / "out/study.csv");
+  EXPECT_EQ(table.Text(2, "error_validate"), "");
+  EXPECT_GT(table.Number(2, "error_train"), 0);
+}
+
 TEST_F(Studies, ARowWithoutAResultFails) {
   files_.Write("study.csv",
                "experiment,command,options,name\nexperiment.yaml,replay,--help,help\n");
