@@ -1,19 +1,23 @@
 #include "identification/problem/path_choice.h"
 
 #include <algorithm>
+#include <atomic>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "engine.h"
 #include "identification/sensitivity/smooth_path.h"
+#include "sim/numerics/shared_loop.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
 namespace {
 
 // Of the model of one log, at a start that lies a little beside the null of every parameter.
-std::string ObstacleOf(const Problem& problem, const Problem::Vector& x, std::size_t log) {
-  const ModelAndData machine = problem.system().Build(problem.ChangesFor(x, log));
+std::string ObstacleOf(const Problem& problem, std::size_t thread, const Problem::Vector& x,
+                       std::size_t log) {
+  const ModelAndData machine = problem.system(thread).Build(problem.ChangesFor(x, log));
   return ContinuousDynamics::Obstacle(*machine.model, *machine.data);
 }
 
@@ -34,8 +38,8 @@ bool ActsCableFriction(const mjModel& m, const mjData& d) {
 }
 
 // Whether a contact, a limit or a cable under tension acts on the way.
-std::string ObstacleOnTheWay(const Problem& problem, std::size_t log) {
-  ModelAndData machine = problem.system().Build(problem.ChangesFor(problem.Start(), log));
+std::string ObstacleOnTheWay(const Problem& problem, std::size_t thread, std::size_t log) {
+  ModelAndData machine = problem.system(thread).Build(problem.ChangesFor(problem.Start(), log));
   const char* what = nullptr;
   double when = 0;
   Hooks hooks;
@@ -65,6 +69,23 @@ std::string SlowerThanSteps(const Problem& problem) {
                      traces.work.rates, steps);
 }
 
+// That of the first log which has one; later logs need not be looked at then.
+std::string FirstObstacle(const Problem& problem, const Problem::Vector& beside) {
+  std::vector<std::string> why(problem.experiment().logs.size());
+  std::atomic<std::size_t> first = why.size();
+  const auto look = [&](std::size_t thread, std::size_t l) {
+    if (l > first) return;
+    why[l] = ObstacleOf(problem, thread, beside, l);
+    if (why[l].empty()) why[l] = ObstacleOnTheWay(problem, thread, l);
+    if (why[l].empty()) return;
+    for (std::size_t before = first; l < before && !first.compare_exchange_weak(before, l);) {
+    }
+  };
+  ShareOut(why.size(), look, [&](auto& archive, std::size_t l) { archive(why[l]); });
+  const auto found = std::find_if(why.begin(), why.end(), [](const auto& w) { return !w.empty(); });
+  return found == why.end() ? "" : *found;
+}
+
 }  // namespace
 
 std::string SmoothObstacle(const Problem& problem) {
@@ -76,12 +97,7 @@ std::string SmoothObstacle(const Problem& problem) {
     if (problem.parameters()[k].change.attribute == "skew") return "the clock is a parameter";
     beside[k] += problem.StepOf(beside, k, kPerturbation);
   }
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    std::string why = ObstacleOf(problem, beside, l);
-    if (why.empty()) why = ObstacleOnTheWay(problem, l);
-    if (!why.empty()) return why;
-  }
-  return "";
+  return FirstObstacle(problem, beside);
 }
 
 std::string SmoothCost(const Problem& problem) {
@@ -95,7 +111,7 @@ std::string SmoothCost(const Problem& problem) {
   const double share = static_cast<double>(breaks) / static_cast<double>(rows);
   if (share > kMost)
     return fmt::format("the inputs jump or bend at {:.0f} % of the rows", 100 * share);
-  return SlowerThanSteps(problem);
+  return OnFirstRank([&] { return SlowerThanSteps(problem); });
 }
 
 }  // namespace continuum

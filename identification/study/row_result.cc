@@ -17,6 +17,12 @@ double Number(const json& value) {
   return value.is_number() ? value.get<double>() : RowResult::kNone;
 }
 
+// 0 where there are no such logs.
+double Rms(const json& value) {
+  const double error = Number(value);
+  return error > 0 ? error : RowResult::kNone;
+}
+
 void ReadInterval(const json& ends, double& low, double& high) {
   low = high = RowResult::kNone;
   if (ends.is_array() && ends.size() == 2) low = Number(ends[0]), high = Number(ends[1]);
@@ -36,16 +42,16 @@ void ReadDiagnosis(const json& d, RowResult& r) {
   }
   const json& error = d.at("error");
   error.at("unit").get_to(r.unit);
-  r.train = Number(error.at("before").at("train"));
-  r.validate = Number(error.at("before").at("validate"));
-  r.validate_after = Number(error.at("after").at("validate"));
+  r.train = Rms(error.at("before").at("train"));
+  r.validate = Rms(error.at("before").at("validate"));
+  r.validate_after = Rms(error.at("after").at("validate"));
 }
 
 void ReadErrors(const json& error, RowResult& r) {
   if (!error.is_object()) return;
   error.at("unit").get_to(r.unit);
-  r.train = Number(error.at("train"));
-  r.validate = Number(error.at("validate"));
+  r.train = Rms(error.at("train"));
+  r.validate = Rms(error.at("validate"));
 }
 
 void ReadFit(const json& fit, RowResult& r) {
@@ -80,14 +86,20 @@ void ReadFindings(const json& findings, RowResult& r) {
 
 }  // namespace
 
+const char* ResultFile(const std::string& command) {
+  if (command == "check") return kFindings;
+  if (command == "replay") return "errors.json";
+  return command == "identify" ? "fit.json" : "diagnosis.json";
+}
+
 RowResult ReadResult(const std::filesystem::path& folder, const std::string& command) {
   RowResult r;
-  const auto read = [&](const char* file) { return ReadJson(folder / file); };
+  const json result = ReadJson(folder / ResultFile(command));
   try {
-    if (command == "check") ReadFindings(read(kFindings), r);
-    if (command == "replay") ReadErrors(read("errors.json"), r);
-    if (command == "identify") ReadFit(read("fit.json"), r);
-    if (command == "diagnose") ReadDiagnosis(read("diagnosis.json"), r);
+    if (command == "check") ReadFindings(result, r);
+    if (command == "replay") ReadErrors(result, r);
+    if (command == "identify") ReadFit(result, r);
+    if (command == "diagnose") ReadDiagnosis(result, r);
   } catch (const json::exception& e) {
     throw Error::Input(folder.string(), "the result of " + command, e.what());
   }

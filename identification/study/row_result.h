@@ -34,6 +34,9 @@ struct RowResult {
   std::string page;                        ///< file in the folder that shows it; may be empty
 };
 
+/// Where a command writes what ReadResult reads.
+const char* ResultFile(const std::string& command);
+
 /// Reads the files of a row that is done. Throws Error for files that are not what the command
 /// writes.
 RowResult ReadResult(const std::filesystem::path& folder, const std::string& command);

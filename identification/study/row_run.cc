@@ -52,8 +52,17 @@ std::string ReasonIn(const std::string& messages) {
   return reason.empty() ? last : reason;
 }
 
+// As after the option --help.
+std::string WhyNoResult(const fs::path& folder, const std::string& command) {
+  try {
+    ReadResult(folder, command);
+    return "";
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
 std::string WhyFailed(const ChildEnd& end) {
-  if (end.exit_code == 0) return "";
   if (end.signal != 0) return end.InWords();
   const std::string reason = ReasonIn(end.messages);
   return reason.empty() ? fmt::format("exit code {}", end.exit_code) : reason;
@@ -74,7 +83,7 @@ class OneRow {
       record.seconds = end.seconds;
       record.processor_seconds = end.processor_seconds;
       record.peak_megabytes = end.peak_megabytes;
-      record.reason = WhyFailed(end);
+      record.reason = end.exit_code == 0 ? WhyNoResult(aside.path(), row_.command) : WhyFailed(end);
       Finish(aside, end, record);
     } catch (const Error& e) {
       record.reason = e.what();

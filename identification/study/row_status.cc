@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
+#include "identification/study/row_result.h"
 
 namespace continuum {
 namespace {
@@ -80,7 +81,12 @@ RowStatus StatusOf(const StudyTable& study, const StudyRow& row, const fs::path&
   }
   const fs::path place = out / row.name;
   auto old = ReadRecord(place);
-  if (old && old->inputs == *s.inputs) return say(State::kDone, "", std::move(old));
+  if (old && old->inputs == *s.inputs) {
+    const fs::path result = place / ResultFile(row.command);
+    std::error_code unseen;
+    if (fs::exists(result, unseen)) return say(State::kDone, "", std::move(old));
+    return say(State::kMissing, row.where + ": " + result.string() + " is gone", {});
+  }
   auto failed = ReadRecord(out / FailedName(row));
   if (failed && !(failed->inputs == *s.inputs)) failed.reset();
   if (old || IsOccupied(place)) {

@@ -15,7 +15,7 @@ struct RowStatus {
     kDone,     ///< its folder holds the result of these inputs
     kFailed,   ///< it cannot run, or its last run with these inputs failed
     kChanged,  ///< its folder holds something else
-    kMissing   ///< it did not run yet
+    kMissing   ///< it did not run yet, or its result was deleted
   };
   State state = State::kMissing;
   std::string reason;               ///< of a row that is not done

@@ -65,7 +65,21 @@ class StudyPage {
     page_.Badge(all                                  ? Tone::kGood
                 : summary_.Count(State::kFailed) > 0 ? Tone::kBad
                                                      : Tone::kWarn,
-                summary_.InWords(), "Time of all rows together: " + Duration(seconds) + ".");
+                summary_.InWords(),
+                "Time of all rows together: " + Duration(seconds) + "." + OddInWords());
+  }
+
+  // " Odd units: arm_17 (b, J)."
+  std::string OddInWords() const {
+    std::map<std::string, std::vector<std::string>> parameters;
+    for (const Population& p : summary_.populations) {
+      for (const std::string& unit : OddUnits(p, summary_.lines))
+        parameters[unit].push_back(p.name);
+    }
+    std::string text;
+    for (const auto& [unit, of] : parameters)
+      text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", unit, fmt::join(of, ", "));
+    return text.empty() ? "" : " Odd units: " + text + ".";
   }
 
   // Failures first.
@@ -189,12 +203,13 @@ class StudyPage {
                       fmt::format("{}", fmt::join(odd, ", "))});
       if (!p.left_out.empty()) rows.back()[3] += fmt::format(" (+{} left out)", p.left_out.size());
     }
-    page_.Table(
-        {"model", "parameter", "unit", "units", "mean", "95 %", "between units", "95 %",
-         "of the mean", "odd"},
-        rows,
-        {"Between units: standard deviation of the units' true values. Left out: at a bound, "
-         "or without an interval."});
+    TableOptions options{
+        "Between units: standard deviation of the units' true values. Left out: at a bound, "
+        "or without an interval."};
+    options.sortable = true;
+    page_.Table({"model", "parameter", "unit", "units", "mean", "95 %", "between units", "95 %",
+                 "of the mean", "odd"},
+                rows, options);
   }
 
   void AddUnits(const Population& p) {

@@ -147,7 +147,7 @@ StudyTable ReadYaml(const fs::path& file, const Yaml& y, const StudyDefaults& de
   Builder builder(file.string(), file.parent_path());
   for (const Yaml& item : y.At("rows").Items()) {
     item.Only({"experiment", "command", "options", "name", "labels"});
-    Entry entry{PlaceOf(item), item.At("experiment").Text(), item.TextOr("command", command),
+    Entry entry{PlaceOf(item), item.TextOr("experiment", ""), item.TextOr("command", command),
                 item.TextOr("options", options), item.TextOr("name", "")};
     if (const auto labels = item.Find("labels")) {
       for (const std::string& label : labels->Keys()) {

@@ -100,7 +100,8 @@ void ShareAll(std::size_t n, On on, const Work& work, const Pack& pack, const Un
     if (!here[i]) unpack(i, all[i].bytes);
 }
 
-bool IsAlone(std::size_t n) { return RankCount() == 1 || n < 2 || InParallelFor() || is_task; }
+// Whether there is no other rank to share with here.
+bool IsAlone() { return RankCount() == 1 || InParallelFor() || is_task; }
 
 }  // namespace
 
@@ -121,18 +122,26 @@ void HandOut(std::size_t n, const std::function<std::string(std::size_t i)>& wor
 }
 
 void ShareOut(std::size_t n, const Work& work, const Pack& pack, const Unpack& unpack) {
-  if (IsAlone(n)) return ParallelFor(n, work);
+  if (IsAlone() || n < 2) return ParallelFor(n, work);
   ShareAll(n, On::kThreads, work, pack, unpack);
 }
 
 void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work, const Pack& pack,
                 const Unpack& unpack) {
-  if (IsAlone(n)) {
+  if (IsAlone() || n < 2) {
     for (std::size_t i = 0; i < n; ++i) work(i);
     return;
   }
   const auto task = [&](std::size_t, std::size_t i) { work(i); };
   ShareAll(n, On::kRank, task, pack, unpack);
+}
+
+void OnFirstRank(const std::function<void()>& work, const std::function<std::string()>& pack,
+                 const std::function<void(const std::string& bytes)>& unpack) {
+  if (IsAlone()) return work();
+  ShareAll(
+      1, On::kRank, [&](std::size_t, std::size_t) { work(); }, [&](std::size_t) { return pack(); },
+      [&](std::size_t, const std::string& bytes) { unpack(bytes); });
 }
 
 }  // namespace continuum

@@ -34,6 +34,11 @@ void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work,
                 const std::function<std::string(std::size_t i)>& pack,
                 const std::function<void(std::size_t i, const std::string& bytes)>& unpack);
 
+/// A step that cannot be shared: the first rank does it, with its threads, and the others wait for
+/// what it stores. An Error is thrown on every rank.
+void OnFirstRank(const std::function<void()>& work, const std::function<std::string()>& pack,
+                 const std::function<void(const std::string& bytes)>& unpack);
+
 /// Pack and unpack where fields(archive, i) lists what a task stores (bytes.h).
 template <class Fields>
 auto PackOf(const Fields& fields) {
@@ -61,6 +66,15 @@ template <class Fields>
 void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work,
                 const Fields& fields) {
   ShareTasks(n, work, PackOf(fields), UnpackOf(fields));
+}
+
+/// The same for what a step returns (bytes.h).
+template <class Work>
+auto OnFirstRank(const Work& work) {
+  decltype(work()) result{};
+  OnFirstRank([&] { result = work(); }, [&] { return ToBytes(result); },
+              [&](const std::string& bytes) { result = FromBytes<decltype(work())>(bytes); });
+  return result;
 }
 
 }  // namespace continuum

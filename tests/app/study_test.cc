@@ -143,6 +143,45 @@ TEST_F(Studies, AResultOutlivesARunOfChangedInputsThatFails) {
   EXPECT_THAT(f.out, HasSubstr("and the present ones failed (log.csv:5"));
 }
 
+TEST_F(Studies, WithoutValidateLogsShowTheErrorOfTheOthers) {
+  ASSERT_EQ(Study({"--rows", "fit"}).exit_code, 0);
+  ASSERT_EQ(Study({"--summary"}).exit_code, 3);
+  EXPECT_THAT(Text("out/study.html"), Not(HasSubstr(">0 rad<")));
+  const auto table = CsvTable::Read(files_ / "out/study.csv");
+  EXPECT_EQ(table.Text(2, "error_validate"), "");
+  EXPECT_GT(table.Number(2, "error_train"), 0);
+}
+
+TEST_F(Studies, ARowWithoutAResultFails) {
+  files_.Write("study.csv",
+               "experiment,command,options,name\nexperiment.yaml,replay,--help,help\n");
+  const Finished f = Study();
+  EXPECT_EQ(f.exit_code, 3) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("failed   study.csv:2: "));
+  EXPECT_THAT(f.out, HasSubstr("help.failed/errors.json: expected a readable file"));
+  EXPECT_FALSE(fs::exists(files_ / "out/help"));
+}
+
+TEST_F(Studies, AResultThatWasDeletedIsMadeAgain) {
+  ASSERT_EQ(Study().exit_code, 0);
+  fs::remove(files_ / "out/before/errors.json");
+  const Finished seen = Study({"--summary"});
+  EXPECT_EQ(seen.exit_code, 3);
+  EXPECT_THAT(seen.out, HasSubstr("3 rows: 2 done, 1 missing"));
+  EXPECT_EQ(Study().exit_code, 0);
+  EXPECT_TRUE(fs::exists(files_ / "out/before/errors.json"));
+}
+
+TEST_F(Studies, OfYamlNameARowWithoutAnExperiment) {
+  files_.Write("study.yaml",
+               "command: check\nrows:\n  - {name: none}\n"
+               "  - {name: good, experiment: experiment.yaml}\n");
+  const Finished f = Run({"study", "study.yaml", "--out", "out"});
+  EXPECT_EQ(f.exit_code, 3) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("study.yaml:3, experiment: expected a file, found nothing"));
+  EXPECT_THAT(f.out, HasSubstr("2 rows: 1 done, 1 failed"));
+}
+
 TEST_F(Studies, WhatIsNoResultIsNotOverwritten) {
   fs::create_directories(files_ / "out/look");
   files_.Write("out/look/thesis.txt", "three years");

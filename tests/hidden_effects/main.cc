@@ -180,4 +180,11 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace continuum::hidden
 
-int main(int argc, char** argv) { return continuum::hidden::Main(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return continuum::hidden::Main(argc, argv);
+  } catch (const continuum::Error& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  }
+}
