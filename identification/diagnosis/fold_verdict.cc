@@ -60,9 +60,9 @@ class FoldJudge {
           fmt::format("the model's error is {:.2f} times the noise", error_.over_noise));
     }
     Verdict verdict = passing_.empty() ? WithoutAName() : Name();
-    if (!verdict.named.empty() && !IsMain(verdict.named.front())) verdict = NotMain(verdict);
     if (verdict.kind == Verdict::Kind::kAdequate || order_.empty()) return verdict;
     const std::size_t leading = passing_.empty() ? order_.front() : verdict.named.front();
+    if (!passing_.empty() && !IsMain(leading)) verdict = NotMain(leading);
     if (!(Gain(leading) > 0)) return verdict;
     verdict.leading = leading, verdict.leading_share = Share(leading);
     return verdict;
@@ -86,8 +86,7 @@ class FoldJudge {
   bool IsMain(std::size_t i) const {
     return !error_.by_replicates || OfExplainable(i) >= criteria_.fold_share;
   }
-  Verdict NotMain(const Verdict& verdict) const {
-    const std::size_t i = verdict.named.front();
+  Verdict NotMain(std::size_t i) const {
     return {Verdict::Kind::kUnexplained,
             {},
             fmt::format("{} passes all rules, but takes only {} of the squares above the noise on "
