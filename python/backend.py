@@ -59,7 +59,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         (stage / PACKAGE / "_build.py").write_text(
             f'"""What this package was built as."""\nVERSION = "{VERSION}"\nMUJOCO = "{MUJOCO}"\n'
             f'FILMS = "{_films(folder)}"\n')
-        _run("cmake", "--install", folder, "--prefix", stage / PACKAGE, "--strip")
+        _run("cmake", "--install", folder, "--prefix", stage / PACKAGE, "--strip",
+             "--component", "Unspecified")  # all but the libraries for C++
         _add_plugins((config_settings or {}).get("plugins"), stage / PACKAGE / "lib" / "releases")
         _write_metadata(stage / INFO)
         _pack(stage, pathlib.Path(wheel_directory) / name)

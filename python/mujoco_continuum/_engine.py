@@ -9,7 +9,7 @@ def load() -> pathlib.Path:
     """Registers the effects; returns the plugin that does it.
 
     Raises ImportError when MuJoCo is not here or is a release without a plugin (each belongs to
-    exactly one), or when another copy of the plugin is in this process."""
+    exactly one), or when a second MuJoCo or another copy of the plugin is in this process."""
     releases = list(PLUGINS)
     listed = ", ".join(releases[:-1]) + (" or " if releases[1:] else "") + releases[-1]
     need = f"mujoco_continuum {VERSION} needs MuJoCo {listed}"
@@ -24,17 +24,20 @@ def load() -> pathlib.Path:
         raise ImportError(f"{need} and finds {found}: pip install mujoco-core=={MUJOCO}, or build "
                           f"mujoco_continuum for {found}")
     plugin = PLUGINS[found]
-    for other in _loaded_copies():
-        if other != plugin:
+    engines = sorted(str(file) for file in _loaded() if file.name.startswith("libmujoco.so"))
+    if len(engines) > 1:
+        raise ImportError(f"expected one MuJoCo library in the process, found {' and '.join(engines)}; "
+                          "import and load only one of them (sys.path, LD_LIBRARY_PATH)")
+    for other in _loaded():
+        if other.name == plugin.name and other != plugin:
             raise ImportError(f"the plugin is loaded already, from {other}; without that "
                               "mj_loadPluginLibrary, importing mujoco_continuum loads its own")
     mujoco.mj_loadPluginLibrary(str(plugin))
     return plugin
 
 
-def _loaded_copies() -> set[pathlib.Path]:
-    """Files of this process that are a plugin of ours."""
+def _loaded() -> set[pathlib.Path]:
+    """Files that are loaded in this process."""
     with open("/proc/self/maps") as maps:
         words = [line.split(maxsplit=5) for line in maps]
-    files = {pathlib.Path(word[5].strip()) for word in words if len(word) == 6}
-    return {file for file in files if file.name == PLUGINS[MUJOCO].name}
+    return {pathlib.Path(word[5].strip()) for word in words if len(word) == 6}

@@ -39,20 +39,30 @@ def read(file: StrPath, *, group: str = "", episode: int | None = None,
     path = pathlib.Path(file)
     if not path.exists():
         raise InputError(f"{path}: expected a recording, found no such file")
+    try:
+        columns = _columns(path, group, episode, _names(topics), clock)
+    except (InputError, ImportError, MemoryError):
+        raise
+    except Exception as error:  # each library has errors of its own for a file that is damaged
+        raise InputError(f"{path}: expected a recording as its name says, found one that cannot be "
+                         f"read ({error}); copy or record it again") from error
+    return held(columns, _names(hold) or (), str(path))
+
+
+def _columns(path: pathlib.Path, group: str, episode: int | None, topics: list[str] | None,
+             clock: str) -> Columns:
     kind = "lerobot" if path.is_dir() else path.suffix.lower()
     if kind == ".mcap":
         from ._mcap import read_mcap
-        columns = read_mcap(path, _names(topics), clock)
-    elif kind in (".npz", ".npy"):
-        columns = _numpy(path)
-    elif kind in (".h5", ".hdf5"):
-        columns = _hdf5(path, group)
-    elif kind in (".parquet", "lerobot"):
-        columns = _parquet(path, episode)
-    else:
-        raise InputError(f"{path}: expected .npz, .npy, .h5, .hdf5, .parquet, .mcap or the folder "
-                         "of a LeRobot dataset; CSV and MAT files are logs as they are")
-    return held(columns, _names(hold) or (), str(path))
+        return read_mcap(path, topics, clock)
+    if kind in (".npz", ".npy"):
+        return _numpy(path)
+    if kind in (".h5", ".hdf5"):
+        return _hdf5(path, group)
+    if kind in (".parquet", "lerobot"):
+        return _parquet(path, episode)
+    raise InputError(f"{path}: expected .npz, .npy, .h5, .hdf5, .parquet, .mcap or the folder "
+                     "of a LeRobot dataset; CSV and MAT files are logs as they are")
 
 
 def held(columns: Columns, globs: Iterable[str], place: str) -> Columns:

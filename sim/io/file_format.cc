@@ -11,6 +11,9 @@ namespace {
 
 using namespace std::string_view_literals;
 
+constexpr char kMcap[] =
+    "python3 -c \"import mujoco_continuum, pandas; "
+    "pandas.DataFrame(mujoco_continuum.read('FILE')).to_csv('NAME.csv', index=False)\"";
 constexpr char kRosbags[] = "the Python package rosbags (topics to columns)";
 
 // In a line of conversion FILE and NAME stand for the file and its name without extension.
@@ -29,7 +32,7 @@ constexpr Format kFormats[]{
      "in f if f[k].ndim == 1}).to_csv('NAME.csv', index=False)\""},
     {"\x93NUMPY"sv, "a NumPy array",
      "python3 -c \"import numpy; numpy.savetxt('NAME.csv', numpy.load('FILE'), delimiter=',')\""},
-    {"\x89MCAP0\r\n"sv, "an MCAP recording", kRosbags},
+    {"\x89MCAP0\r\n"sv, "an MCAP recording", kMcap},
     {"#ROSBAG V"sv, "a ROS bag", kRosbags},
     {"SQLite format 3\0"sv, "an SQLite file, as ROS 2 records", kRosbags},
     {"ULog\x01\x12\x35"sv, "a ULog of PX4", "ulog2csv FILE (pip install pyulog)"},

@@ -67,6 +67,15 @@ class Import(unittest.TestCase):
         run = python(LOADS_ANOTHER)
         self.assertEqual(run.stdout, "loads /there/3.12.0/libmujoco_continuum.so\n", run.stderr)
 
+    def test_beside_a_second_mujoco_says_so(self):
+        run = python("import ctypes, glob, mujoco, pathlib, shutil, tempfile\n"
+                     "library, = glob.glob(mujoco.__path__[0] + '/libmujoco.so.*')\n"
+                     "copy = shutil.copy(library, tempfile.mkdtemp())\n"
+                     "ctypes.CDLL(copy)\n"
+                     "try: import mujoco_continuum\n"
+                     "finally: shutil.rmtree(pathlib.Path(copy).parent)")
+        self.assertIn("ImportError: expected one MuJoCo library in the process, found /", run.stderr)
+
     def test_beside_another_copy_of_the_plugin_says_so(self):
         run = python("import mujoco, pathlib, shutil, sys, tempfile, importlib.util\n"
                      f"copy = shutil.copy({str(mujoco_continuum.PLUGIN)!r}, tempfile.mkdtemp())\n"

@@ -3,6 +3,7 @@ import importlib.metadata
 import importlib.util
 import json
 import math
+import pathlib
 import sys
 import unittest.mock
 
@@ -37,6 +38,11 @@ class Numpy(Reading):
     def test_of_several_lengths_are_refused(self):
         numpy.savez("log.npz", t=[0, 0.1], q=[1])
         with self.assertRaisesRegex(mc.InputError, "^log.npz: .* 't' 2, 'q' 1"):
+            mc.read("log.npz")
+
+    def test_that_are_damaged_are_named(self):
+        pathlib.Path("log.npz").write_text("no archive")
+        with self.assertRaisesRegex(mc.InputError, "^log.npz: .* cannot be read .*copy or record"):
             mc.read("log.npz")
 
     def test_as_a_log(self):

@@ -34,7 +34,9 @@ TEST(FileFormat, NamesTheFormatAndTheLineThatConverts) {
   EXPECT_THAT(Message("\x93NUMPY\x01\0"sv), HasSubstr("a NumPy array"));
   EXPECT_THAT(Message("PK\x03\x04\0\0qpos.npy"sv), HasSubstr("an archive of NumPy arrays"));
   EXPECT_THAT(Message("PK\x03\x04\0\0[Content_Types].xml"sv), HasSubstr("an Excel file"));
-  EXPECT_THAT(Message("\x89MCAP0\r\n\x01\0"sv), HasSubstr("an MCAP recording"));
+  EXPECT_THAT(
+      Message("\x89MCAP0\r\n\x01\0"sv),
+      HasSubstr("an MCAP recording; it is converted by: python3 -c \"import mujoco_continuum"));
   EXPECT_THAT(Message("#ROSBAG V2.0\n\0\0"sv), HasSubstr("a ROS bag"));
   EXPECT_THAT(Message("SQLite format 3\0"sv), HasSubstr("SQLite"));
   EXPECT_THAT(Message("ULog\x01\x12\x35\x01"sv), HasSubstr("ulog2csv runs/log.bin"));
