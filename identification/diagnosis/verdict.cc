@@ -67,10 +67,14 @@ class Ranking {
   }
 
   /// One of another family that was not asked for and does clearly better; null when there is none.
-  const LikelihoodRecord* Outdoing(std::size_t best) const {
-    const auto first_of_others =
-        NotAskedFor([&](std::size_t i) { return !AreKin(i, best) && IsBehind(i, first()); });
-    return first_of_others ? &candidates_[PlainestLike(*first_of_others)] : nullptr;
+  /// Where the best of the list does not take the main share, one that does and does not contain
+  /// it: with more numbers it would make up for what else is wrong.
+  const LikelihoodRecord* Outdoing(std::size_t best, bool main) const {
+    const auto one = NotAskedFor([&](std::size_t i) {
+      const bool other = main || (!Contains(i, best) && share(i) >= criteria_.main_share);
+      return other && !AreKin(i, best) && IsBehind(i, first());
+    });
+    return one ? &candidates_[PlainestLike(*one)] : nullptr;
   }
 
   /// One that was not asked for, that the best contains and adds nothing to; null when none.
@@ -344,9 +348,8 @@ Verdict JudgeLikelihoods(const std::vector<LikelihoodRecord>& candidates, const 
   const Ranking all(candidates, base, more, criteria);
   const std::size_t best = all.BestNotFarOff();
   const bool main = !more || all.share(all.first()) >= criteria.main_share;
-  const LikelihoodRecord* const other = all.Outdoing(best);
   Verdict verdict;
-  if (other && (main || ShareOf(*other, base) >= criteria.main_share)) {
+  if (const LikelihoodRecord* const other = all.Outdoing(best, main)) {
     verdict = ExplainedBy(
         *other, fmt::format("the best candidate, {}, is clearly outdone by {}, which is not listed",
                             all.of(best).name, other->name));

@@ -161,6 +161,10 @@ TEST(Likelihoods, OneOutsideTheListThatTakesTheMainShareIsToldWhereNoneOfTheList
   EXPECT_THAT(v.reason, HasSubstr("a, is clearly outdone by unlisted"));
   EXPECT_EQ(JudgeLikelihoods({{"a", 1, 2000}, Unlisted(3000)}, {1e-6}, 1e-3, kLoud).explained_by,
             "");
+  const std::vector<std::size_t> inner{0};
+  EXPECT_EQ(
+      JudgeLikelihoods({{"a", 1, 2000}, Unlisted(4800, inner)}, {1e-6}, 1e-3, kLoud).explained_by,
+      "");
 }
 
 TEST(Likelihoods, TheMainCauseIsNamedWhereMoreThanNoiseIsLeft) {
