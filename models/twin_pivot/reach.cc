@@ -31,8 +31,8 @@ statics::Reached Reach(const Robot& robot, const Load& load, Method method,
     return statics::Stand{points(target.coordinate), slopes(target.coordinate, Eigen::all)};
   };
   const VectorXd start = VectorXd::Map(load.tension.data(), cables);
-  const double length = robot.Joints() * (robot.L + robot.h);
-  return statics::Reach(stand, start, target, robot.Stiffness() / robot.r.front(), length);
+  return statics::Reach(stand, start, target, robot.Stiffness() / robot.r.front(),
+                        robot.Length());
 }
 
 }  // namespace continuum::twin_pivot

@@ -29,6 +29,7 @@ namespace {
 
 using twin_pivot::Case;
 using twin_pivot::Method;
+using twin_pivot::PerSection;
 using twin_pivot::Robot;
 using twin_pivot::Solution;
 
@@ -70,15 +71,19 @@ void WarnOfImplausibleRobot(const SolveRequest& request, const Robot& robot) {
   const auto check = [&](const char* key, double value, double low, double high, const char* unit) {
     statics::WarnIfImplausible(request, file.At(key).Where(), value, low, high, unit);
   };
-  const double pitch = robot.L + robot.h;
-  check("L", robot.L, 1e-4, 0.5, "m");
-  check("h", robot.h, 1e-5, 0.5, "m");
-  check("E", robot.E, 1e6, 1e12, "Pa");
-  check("I_z", robot.I_z, 1e-20, 1e-6, "m^4");
-  check("m_D", robot.m_D, 1e-7, 5, "kg");
-  check("m_NiTi", robot.m_NiTi, 1e-8, 5, "kg");
-  check("rho_cable", robot.rho_cable, 1e-7, 5, "kg/m");
-  check("m_CL", robot.m_CL, 1e-8, 5, "kg");
+  const auto each = [&](const char* key, const PerSection& values, double low, double high,
+                        const char* unit) {
+    for (const double value : values.values()) check(key, value, low, high, unit);
+  };
+  const double pitch = robot.L[0] + robot.h[0];
+  each("L", robot.L, 1e-4, 0.5, "m");
+  each("h", robot.h, 1e-5, 0.5, "m");
+  each("E", robot.E, 1e6, 1e12, "Pa");
+  each("I_z", robot.I_z, 1e-20, 1e-6, "m^4");
+  each("m_D", robot.m_D, 1e-7, 5, "kg");
+  each("m_NiTi", robot.m_NiTi, 1e-8, 5, "kg");
+  each("rho_cable", robot.rho_cable, 1e-7, 5, "kg/m");
+  each("m_CL", robot.m_CL, 1e-8, 5, "kg");
   check("gravity", robot.gravity.norm(), 0.1, 100, "m/s^2");
   for (const double r : robot.r) check("r", r, pitch / 100, 5 * pitch, "m");
   for (const double phi : robot.phi) {
@@ -100,7 +105,7 @@ void WarnOfImplausibleCables(const SolveRequest& request, const Robot& robot,
       };
       const auto at = static_cast<std::size_t>(j);
       check(row.load.tension[at], 0, kMostBend * robot.Stiffness() / robot.r[at], "N");
-      const double straight = robot.Anchor(j) * robot.L;
+      const double straight = robot.LengthOfCable(j);
       if (row.load.length.size() > 0) check(row.load.length[j], 0.2 * straight, 3 * straight, "m");
     }
   }

@@ -31,7 +31,7 @@ inline std::vector<Matrix4d> Discs(const Robot& robot, const VectorXd& beta) {
   std::vector<Matrix4d> disc = {Matrix4d::Identity()};
   for (int m = 1; m <= beta.size(); ++m) {
     const double b = beta[m - 1];
-    const double t = robot.L / b * std::tan(b / 2) + robot.h / 2;
+    const double t = robot.L[0] / b * std::tan(b / 2) + robot.h[0] / 2;
     disc.push_back(disc.back() * Along(t) * Turn(b, Vector3d::UnitZ()) *
                    Turn(m % 2 ? M_PI_2 : -M_PI_2, Vector3d::UnitX()) * Along(t));
   }
@@ -46,7 +46,7 @@ inline Vector3d Hole(const Robot& robot, const std::vector<Matrix4d>& disc, int 
                      bool distal) {
   const double y = robot.r[j] * std::cos(robot.phi[j]);
   const double z = robot.r[j] * std::sin(robot.phi[j]);
-  const double x = (distal ? 0.5 : -0.5) * robot.h;
+  const double x = (distal ? 0.5 : -0.5) * robot.h[0];
   return At(disc[m], m % 2 ? Vector3d(x, z, -y) : Vector3d(x, y, z));
 }
 
@@ -65,16 +65,16 @@ inline std::vector<Body> Bodies(const Robot& robot, const VectorXd& beta) {
   std::vector<Body> bodies;
   for (int m = 1; m <= beta.size(); ++m) {
     const double b = beta[m - 1];
-    const Vector3d centroid(robot.h / 2 + robot.L * (1 - std::cos(b)) / (b * b),
-                            robot.L * (b - std::sin(b)) / (b * b), 0);
-    bodies.push_back({m, robot.m_NiTi, At(disc[m - 1], centroid)});
-    bodies.push_back({m, robot.m_D, disc[m].topRightCorner<3, 1>()});
+    const Vector3d centroid(robot.h[0] / 2 + robot.L[0] * (1 - std::cos(b)) / (b * b),
+                            robot.L[0] * (b - std::sin(b)) / (b * b), 0);
+    bodies.push_back({m, robot.m_NiTi[0], At(disc[m - 1], centroid)});
+    bodies.push_back({m, robot.m_D[0], disc[m].topRightCorner<3, 1>()});
     for (int j = 0; j < robot.Cables(); ++j) {
       if (m > robot.Anchor(j)) continue;
       const Vector3d from = Hole(robot, disc, m - 1, j, true);
       const Vector3d to = Hole(robot, disc, m, j, false);
-      bodies.push_back({m, robot.rho_cable * (to - from).norm(), 0.5 * (from + to)});
-      if (m == robot.Anchor(j)) bodies.push_back({m, robot.m_CL, Hole(robot, disc, m, j, true)});
+      bodies.push_back({m, robot.rho_cable[0] * (to - from).norm(), 0.5 * (from + to)});
+      if (m == robot.Anchor(j)) bodies.push_back({m, robot.m_CL[0], Hole(robot, disc, m, j, true)});
     }
   }
   return bodies;
@@ -85,7 +85,7 @@ inline std::vector<Body> Bodies(const Robot& robot, const VectorXd& beta) {
 inline double Energy(const Robot& robot, const Load& load, const VectorXd& beta,
                      const std::vector<Body>& weights) {
   const std::vector<Matrix4d> disc = Discs(robot, beta);
-  double energy = 0.5 * robot.rods * robot.E * robot.I_z / robot.L * beta.squaredNorm();
+  double energy = 0.5 * robot.rods[0] * robot.E[0] * robot.I_z[0] / robot.L[0] * beta.squaredNorm();
   for (int j = 0; j < robot.Cables(); ++j) {
     for (int m = 1; m <= robot.Anchor(j); ++m) {
       energy += load.tension[j] * CableLength(robot, disc, m, j);
