@@ -222,9 +222,4 @@ Reached Reach(const StandUnder& stand, const VectorXd& start, const Target& targ
   return reached;
 }
 
-Reached Nearest(const StandUnder& stand, const VectorXd& start, const Target& target, double unit,
-                double length) {
-  return Search(stand, target, unit, length).From(start / unit);
-}
-
 }  // namespace continuum::statics

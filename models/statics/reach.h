@@ -67,9 +67,4 @@ struct Reached {
 Reached Reach(const StandUnder& stand, const Eigen::VectorXd& start, const Target& target,
               double unit, double length);
 
-/// The same from `start` alone: of a target that no drives reach the drives that come nearest, with
-/// the status kOutOfDomain.
-Reached Nearest(const StandUnder& stand, const Eigen::VectorXd& start, const Target& target,
-                double unit, double length);
-
 }  // namespace continuum::statics

@@ -58,7 +58,8 @@ std::vector<Following> Follow(const Robot& robot, const Load& load, Method metho
     const auto reached = Approach(robot, row.load, method, target, from);
     row.miss = reached.miss;
     row.solution.outcome = reached.outcome;
-    if (reached.outcome.ok() || reached.out_of_reach()) {
+    row.settled = reached.outcome.ok();
+    if (reached.drives.size() > 0) {
       row.load.tension.assign(reached.drives.begin(), reached.drives.end());
       row.solution = SolveGoingOn(robot, row.load, method, from);
       row.off = Off(robot, path, row.base, row.solution.beta);

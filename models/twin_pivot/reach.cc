@@ -1,5 +1,6 @@
 #include "models/twin_pivot/reach.h"
 
+#include "models/statics/nearest.h"
 #include "models/twin_pivot/geometry.h"
 #include "models/twin_pivot/response.h"
 

@@ -16,7 +16,7 @@ struct Before {
 statics::Reached Reach(const Robot& robot, const Load& load, Method method,
                        const statics::Target& target, const Before* before);
 
-/// The same by statics::Nearest: as near as it comes, from the tensions of `load` alone.
+/// The same by statics::Nearest: as near as it comes by low tensions.
 statics::Reached Approach(const Robot& robot, const Load& load, Method method,
                           const statics::Target& target, const Before* before);
 

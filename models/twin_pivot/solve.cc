@@ -254,6 +254,7 @@ std::vector<Solved> FollowPath(const SolveRequest& request, const Robot& robot,
       const double most = at.off.maxCoeff(&disc);
       text += fmt::format("{:.3g} m off the path on average, {:.3g} m at most, disc {}",
                           at.off.mean(), most, disc + 1);
+      if (!at.settled) text += "; a nearer place may exist";
       sum += at.off.mean(), worst = std::max(worst, most), ++reached;
     } else {
       text += at.solution.outcome.why;
