@@ -202,6 +202,9 @@ std::string RobotMjcf(const Robot& robot) { return Builder(robot).Build(); }
 
 Eigen::Vector3d PulledTip(const ModelSpec& mjcf, const Load& load) {
   if (!load.moment.isZero()) throw Error::Input("Mx, My, Mz", "no moment on the MJCF", "one");
+  if (!load.on_discs.empty() || load.disc_payload.size() > 0) {
+    throw Error::Input("fx_k .. payload_k", "loads at the tip of the MJCF alone", "one on a disc");
+  }
   const Change payload{"body:tip", "mass", load.condition == Condition::kV ? load.payload : 0};
   const ModelAndData machine = mjcf.Build(std::span(&payload, 1));
   SlowPull pull;
