@@ -1,5 +1,7 @@
 #include "models/twin_pivot/reach.h"
 
+#include <algorithm>
+
 #include "models/statics/nearest.h"
 #include "models/twin_pivot/geometry.h"
 #include "models/twin_pivot/response.h"
@@ -10,18 +12,20 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The discs of a case under tensions.
+// The discs of a case under tensions, with the slopes of contacts that turn within `width` [m].
 class Standing {
  public:
-  Standing(const Robot& robot, const Load& load, Method method, const statics::Target& target,
-           const Before* before)
-      : robot_(robot), load_(load), method_(method), target_(target), before_(before) {}
+  Standing(const Robot& robot, double width, const Load& load, Method method,
+           const statics::Target& target, const Before* before)
+      : robot_(robot), wide_(robot), load_(load), method_(method), target_(target), before_(before) {
+    wide_.eps = width;
+  }
 
   std::optional<statics::Stand> operator()(const VectorXd& drives) {
     load_.tension.assign(drives.begin(), drives.end());
     const Solution s = SolveGoingOn(robot_, load_, method_, before_);
     if (!s.outcome.ok()) return std::nullopt;
-    const auto response = Respond(robot_, load_, method_, s);
+    const auto response = Respond(wide_, load_, method_, s);
     if (!response) return std::nullopt;
     const auto discs = DiscFrames(robot_, s.beta);
     VectorXd points(3 * robot_.Joints());
@@ -35,6 +39,7 @@ class Standing {
 
  private:
   const Robot& robot_;
+  Robot wide_;
   Load load_;
   Method method_;
   const statics::Target& target_;
@@ -42,10 +47,10 @@ class Standing {
 };
 
 template <class Search>
-statics::Reached ReachBy(const Search& search, const Robot& robot, const Load& load, Method method,
-                         const statics::Target& target, const Before* before) {
+statics::Reached ReachBy(const Search& search, const Robot& robot, double width, const Load& load,
+                         Method method, const statics::Target& target, const Before* before) {
   const VectorXd start = VectorXd::Map(load.tension.data(), robot.Cables());
-  return search(Standing(robot, load, method, target, before), start, target,
+  return search(Standing(robot, width, load, method, target, before), start, target,
                 robot.Stiffness() / robot.r.front(), robot.Length());
 }
 
@@ -53,12 +58,14 @@ statics::Reached ReachBy(const Search& search, const Robot& robot, const Load& l
 
 statics::Reached Reach(const Robot& robot, const Load& load, Method method,
                        const statics::Target& target, const Before* before) {
-  return ReachBy(statics::Reach, robot, load, method, target, before);
+  return ReachBy(statics::Reach, robot, robot.eps, load, method, target, before);
 }
 
 statics::Reached Approach(const Robot& robot, const Load& load, Method method,
                           const statics::Target& target, const Before* before) {
-  return ReachBy(statics::Nearest, robot, load, method, target, before);
+  // Within 1 um slopes say nothing of a step that turns the contacts.
+  const double width = std::max(robot.eps, 1e-4);
+  return ReachBy(statics::Nearest, robot, width, load, method, target, before);
 }
 
 Solution SolveGoingOn(const Robot& robot, Load& load, Method method, const Before* before) {
