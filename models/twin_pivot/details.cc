@@ -82,10 +82,12 @@ double Energy(const Robot& robot, const Load& load, const VectorXd& beta) {
 
 double Strain(const Robot& robot, const VectorXd& beta) {
   double strain = 0;
-  for (int m = 0; m < beta.size(); ++m) {
-    const int section = robot.SectionOfJoint(m);
-    const double by_angle = 0.5 * robot.RodDiameter(section) / robot.L[section];
-    strain = std::max(strain, by_angle * std::abs(beta[m]));
+  Eigen::Index first = 0;
+  for (int section = 0; section < robot.Sections(); ++section) {
+    const int joints = robot.discs[static_cast<std::size_t>(section)];
+    const double bent = beta.segment(first, joints).cwiseAbs().maxCoeff();
+    strain = std::max(strain, 0.5 * robot.RodDiameter(section) / robot.L[section] * bent);
+    first += joints;
   }
   return strain;
 }

@@ -267,6 +267,8 @@ std::vector<Solved> FollowPath(const SolveRequest& request, const Robot& robot,
   return rows;
 }
 
+bool HasLimits(const Robot& robot) { return robot.strain_limit > 0 || robot.theta_max > 0; }
+
 // One sentence for each limit that some row is beyond: how far at most, and how often.
 void WarnOfLimits(const SolveRequest& request, const Robot& robot,
                   const std::vector<Solved>& rows) {
@@ -295,8 +297,6 @@ void WarnOfLimits(const SolveRequest& request, const Robot& robot,
   warn(theta, "friction.theta_max: a, b, c are not measured where cables turn by [rad]",
        robot.theta_max);
 }
-
-bool HasLimits(const Robot& robot) { return robot.strain_limit > 0 || robot.theta_max > 0; }
 
 void WriteRow(const Robot& robot, const Solved& solved, statics::Results& results) {
   const Solution& solution = solved.solution;
@@ -415,7 +415,7 @@ int SolveTwinPivot(const SolveRequest& request) {
                      : !request.follow.empty() ? FollowPath
                                                : RowsOf;
   const std::vector<Solved> rows = solve(request, robot, cases, method);
-  WarnOfLimits(request, robot, rows);
+  if (HasLimits(robot)) WarnOfLimits(request, robot, rows);
   WriteResults(request, robot, rows);
   if (!request.shape.empty()) WriteShapes(request, robot, rows);
   if (!request.compliance.empty()) WriteCompliance(request, robot, method, rows);

@@ -1,7 +1,7 @@
 """Prints a path for c360.yaml, 300 mm: 30 mm straight, 120 mm toward Z, 150 mm toward Y, radius 400 mm."""
 import math
 
-STEP, EVERY, RADIUS, LONG = 1e-4, 100, 0.4, 0.3  # m, points every 10 mm
+STEP, EVERY, RADIUS, LONG = 1e-4, 200, 0.4, 0.3  # m, points every 20 mm
 
 
 def toward(s):
