@@ -60,9 +60,8 @@ void AddSolve(CLI::App& app, int& exit_code) {
       "  continuum solve models/tdcr/tdcr.yaml --method eas --input models/tdcr/cases.csv "
       "--out shapes.csv --plot shapes.png");
   solve->callback([request, &exit_code] {
-    const std::vector<std::filesystem::path> inputs{request->robot, request->input,
-                                                    request->measured, request->reach,
-                                                    request->follow};
+    const std::vector<std::filesystem::path> inputs{
+        request->robot, request->input, request->measured, request->reach, request->follow};
     RequireWritable(request->out, inputs);
     if (!request->plot.empty()) RequireWritable(request->plot, inputs);
     if (!request->shape.empty()) RequireWritable(request->shape, inputs);

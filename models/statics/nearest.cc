@@ -42,12 +42,11 @@ Reached Nearest(const StandUnder& stand, const VectorXd& start, const Target& ta
         kPrice * MatrixXd::Identity(place->w.size(), place->w.size()) + J.transpose() * J;
     const Eigen::ArrayXd least = (place->w.array() - kLongest).max(low);
     const Eigen::ArrayXd most = (place->w.array() + kLongest).min(high);
-    const VectorXd best = WithinLimits(
-        H, J.transpose() * (J * place->w - place->off), least.matrix(), most.matrix());
+    const VectorXd best =
+        WithinLimits(H, J.transpose() * (J * place->w - place->off), least.matrix(), most.matrix());
     const VectorXd step = best - place->w;
     const double now = place->Cost();
-    const double gain =
-        now - (place->off + J * step).squaredNorm() - kPrice * best.squaredNorm();
+    const double gain = now - (place->off + J * step).squaredNorm() - kPrice * best.squaredNorm();
     settled = gain < kSettled * now;
     std::optional<Place> next;
     for (double share = 1; share > kShortest && !settled; share /= 2) {

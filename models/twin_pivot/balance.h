@@ -26,11 +26,12 @@ struct Task {
   Method method;
   int joints, cables;
   std::vector<Link> links;
-  Eigen::VectorXd stiffness;     ///< of every joint [N m/rad]
-  Friction friction;             ///< all zero when there is none
-  Eigen::VectorXd m_D, m_NiTi;   ///< weights that count, of every disc with its payload and joint [kg]
-  Eigen::VectorXd rho, m_CL;     ///< of every cable [kg/m] and of its lock [kg]
-  double payload;                ///< at the tip
+  Eigen::VectorXd stiffness;  ///< of every joint [N m/rad]
+  Friction friction;          ///< all zero when there is none
+  Eigen::VectorXd m_D,
+      m_NiTi;                 ///< weights that count, of every disc with its payload and joint [kg]
+  Eigen::VectorXd rho, m_CL;  ///< of every cable [kg/m] and of its lock [kg]
+  double payload;             ///< at the tip
   Eigen::Vector3d gravity, force, moment;
   std::vector<DiscLoad> loads;  ///< on other discs, none of which is all zero
   std::vector<double> tension;  ///< F_SC [N]
@@ -121,9 +122,9 @@ struct Beyond {
 ///   ...]
 ///         - rods E I_z beta_m / L
 ///
-/// F_EX, M_EX: on every disc that has them, p_n the place of that disc. Three passes over the joints, O(n): cable forces, the base frame's vectors outward, masses
-/// inward. `load` scales everything that acts, `friction` the coefficients of friction; for
-/// continuation.
+/// F_EX, M_EX: on every disc that has them, p_n the place of that disc. Three passes over the
+/// joints, O(n): cable forces, the base frame's vectors outward, masses inward. `load` scales
+/// everything that acts, `friction` the coefficients of friction; for continuation.
 struct Balance {
   const Task& task;
   double load = 1;
@@ -237,8 +238,8 @@ struct Balance {
       if (m >= task.anchor[j]) continue;
       const double y = task.Y(m, j);
       const Planar<T> hole = at.Hole(y);
-      beyond.Add(task.rho[j] * at.Length(y), 0.5 * (task.links[m].before + hole.x), 0.5 * (y + hole.y),
-                 T(task.Z(m, j)));
+      beyond.Add(task.rho[j] * at.Length(y), 0.5 * (task.links[m].before + hole.x),
+                 0.5 * (y + hole.y), T(task.Z(m, j)));
     }
   }
 

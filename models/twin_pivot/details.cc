@@ -29,13 +29,15 @@ std::vector<Body> Bodies(const Task& task, const VectorXd& beta) {
     const auto at = static_cast<std::size_t>(m);
     const Eigen::Isometry3d& before = discs[at];
     bodies.push_back({task.m_D[m], discs[at + 1].translation()});
-    bodies.push_back({task.m_NiTi[m], before * Vector3d(joint[at].centre.x, joint[at].centre.y, 0)});
+    bodies.push_back(
+        {task.m_NiTi[m], before * Vector3d(joint[at].centre.x, joint[at].centre.y, 0)});
     for (int j = 0; j < task.cables; ++j) {
       const auto cable = static_cast<std::size_t>(j);
       if (m >= task.anchor[cable]) continue;
       const double y = task.Y(m, j);
       const auto hole = joint[at].Hole(y);
-      const Vector3d middle(0.5 * (task.links[at].before + hole.x), 0.5 * (y + hole.y), task.Z(m, j));
+      const Vector3d middle(0.5 * (task.links[at].before + hole.x), 0.5 * (y + hole.y),
+                            task.Z(m, j));
       bodies.push_back({task.rho[j] * joint[at].Length(y), before * middle});
       if (task.anchor[cable] != m + 1) continue;
       const Vector3d lock(task.links[at].after, task.hole_y[cable], task.hole_z[cable]);

@@ -12,9 +12,9 @@ struct Following {
   Load load;  ///< tensions, and the contacts' state that the solution goes on from
   Solution solution;
   bool settled = false;  ///< no step comes nearer by more than a thousandth
-  double base = 0;      ///< place of O_0 along the base's axis, x of the path's frame [m]
-  double miss = 0;      ///< root mean square over the discs of what they are off their points [m]
-  Eigen::VectorXd off;  ///< distance of every disc from the path [m]
+  double base = 0;       ///< place of O_0 along the base's axis, x of the path's frame [m]
+  double miss = 0;       ///< root mean square over the discs of what they are off their points [m]
+  Eigen::VectorXd off;   ///< distance of every disc from the path [m]
 };
 
 /// Follow the leader: the base comes along its axis, so that the tip reaches one point after the

@@ -20,11 +20,9 @@ Eigen::MatrixXd CableLengths(const Robot& robot, const VectorXd& beta) {
   Eigen::MatrixXd length = Eigen::MatrixXd::Zero(robot.Joints(), robot.Cables());
   const std::vector<Joint<double>> joint = JointsAt(robot, beta);
   for (int j = 0; j < robot.Cables(); ++j) {
-    for (int m = 0; m < robot.Anchor(j); ++m) {
-      const double angle = robot.phi[j];
-      const double y = robot.r[j] * (m % 2 == 0 ? std::cos(angle) : std::sin(angle));
-      length(m, j) = joint[m].Length(y);
-    }
+    const int last = robot.Anchor(j);
+    const double y = robot.r[j] * std::cos(robot.phi[j]), z = robot.r[j] * std::sin(robot.phi[j]);
+    for (int m = 0; m < last; ++m) length(m, j) = joint[m].Length(m % 2 == 0 ? y : z);
   }
   return length;
 }
@@ -52,8 +50,8 @@ std::vector<Eigen::Vector3d> CentreLine(const Robot& robot, const VectorXd& beta
       const double share = static_cast<double>(i) / (per_rod - 1);
       const auto c = Stumpff(share * beta[m]);
       const double s = share * links[at].L;
-      points.emplace_back(discs[at] *
-                          Eigen::Vector3d(links[at].before + s * c[1], s * share * beta[m] * c[2], 0));
+      points.emplace_back(
+          discs[at] * Eigen::Vector3d(links[at].before + s * c[1], s * share * beta[m] * c[2], 0));
     }
     points.emplace_back(discs[at + 1].translation());
   }

@@ -33,8 +33,8 @@ struct Load {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< at O_n, in the base frame [N]
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< in the base frame [N m]
   std::vector<DiscLoad> on_discs;                    ///< beside these
-  Eigen::VectorXd disc_payload;  ///< [kg] at O_1..O_n, counts in V only; empty: none
-  Eigen::Vector3d gravity = {0, -9.81, 0};           ///< in the base frame [m/s^2]
+  Eigen::VectorXd disc_payload;             ///< [kg] at O_1..O_n, counts in V only; empty: none
+  Eigen::Vector3d gravity = {0, -9.81, 0};  ///< in the base frame [m/s^2]
   /// l_ref [m], joints x cables: the state from which the cables started to slide; empty: straight.
   Eigen::MatrixXd reference;
   /// s of every contact in that state, -1..1, row m at disc m; empty: nothing has slid, 0.

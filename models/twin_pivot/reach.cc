@@ -17,7 +17,12 @@ class Standing {
  public:
   Standing(const Robot& robot, double width, const Load& load, Method method,
            const statics::Target& target, const Before* before)
-      : robot_(robot), wide_(robot), load_(load), method_(method), target_(target), before_(before) {
+      : robot_(robot),
+        wide_(robot),
+        load_(load),
+        method_(method),
+        target_(target),
+        before_(before) {
     wide_.eps = width;
   }
 

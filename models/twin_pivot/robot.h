@@ -58,7 +58,7 @@ struct Robot {
   /// The disc (counted from 1) that holds the end of a cable: the last one of its section.
   int Anchor(int cable) const;
   std::vector<Link> Links() const;
-  double Place(int disc) const;             ///< O_disc from O_0, straight [m]
+  double Place(int disc) const;  ///< O_disc from O_0, straight [m]
   double Length() const { return Place(Joints()); }
   double Thickness(int disc) const;         ///< of disc 0..n [m]
   double LengthOfCable(int cable) const;    ///< between the discs' faces, straight [m]

@@ -403,9 +403,9 @@ int SolveTwinPivot(const SolveRequest& request) {
   statics::RequireTable(request.compliance, "--compliance");
   const std::vector<Case> cases = twin_pivot::ReadCases(statics::CasesOf(request), robot);
   const bool by_tension = cases.front().load.length.size() == 0;
-  for (const auto& [option, given] : {std::pair("--equilibria", request.equilibria),
-                                      std::pair("--reach", !request.reach.empty()),
-                                      std::pair("--follow", !request.follow.empty())}) {
+  for (const auto& [option, given] :
+       {std::pair("--equilibria", request.equilibria), std::pair("--reach", !request.reach.empty()),
+        std::pair("--follow", !request.follow.empty())}) {
     if (!given || by_tension) continue;
     throw Error::Input(request.input.string() + ":1", std::string("tensions with ") + option,
                        "'L1'");

@@ -41,8 +41,7 @@ inline std::vector<Matrix4d> Discs(const Robot& robot, const VectorXd& beta) {
     const int section = SectionOfDisc(robot, m);
     const double t = robot.L[section] / b * std::tan(b / 2);
     disc.push_back(disc.back() * Along(t + robot.h[SectionOfDisc(robot, m - 1)] / 2) *
-                   Turn(b, Vector3d::UnitZ()) *
-                   Turn(m % 2 ? M_PI_2 : -M_PI_2, Vector3d::UnitX()) *
+                   Turn(b, Vector3d::UnitZ()) * Turn(m % 2 ? M_PI_2 : -M_PI_2, Vector3d::UnitX()) *
                    Along(t + robot.h[section] / 2));
   }
   return disc;
@@ -77,8 +76,8 @@ inline std::vector<Body> Bodies(const Robot& robot, const VectorXd& beta) {
     const double b = beta[m - 1];
     const int section = SectionOfDisc(robot, m);
     const double L = robot.L[section], half = robot.h[SectionOfDisc(robot, m - 1)] / 2;
-    const Vector3d centroid(half + L * (1 - std::cos(b)) / (b * b),
-                            L * (b - std::sin(b)) / (b * b), 0);
+    const Vector3d centroid(half + L * (1 - std::cos(b)) / (b * b), L * (b - std::sin(b)) / (b * b),
+                            0);
     bodies.push_back({m, robot.m_NiTi[section], At(disc[m - 1], centroid)});
     bodies.push_back({m, robot.m_D[section], disc[m].topRightCorner<3, 1>()});
     for (int j = 0; j < robot.Cables(); ++j) {
