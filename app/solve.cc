@@ -34,6 +34,9 @@ void AddSolve(CLI::App& app, int& exit_code) {
   solve->add_option("--reach", request->reach,
                     "Where tips or disks of the cases should be (CSV): the least tensions or "
                     "pressures that bring them there");
+  solve->add_option("--follow", request->follow,
+                    "twin_pivot: a path (CSV of points) that the whole robot lies on while its "
+                    "base comes along its axis: the tensions for each point");
   solve->add_option("--sweep", request->sweep,
                     "Workspace: the grid between the two rows of --input, of so many values of "
                     "every column that differs");
@@ -57,8 +60,8 @@ void AddSolve(CLI::App& app, int& exit_code) {
       "  continuum solve models/tdcr/tdcr.yaml --method eas --input models/tdcr/cases.csv "
       "--out shapes.csv --plot shapes.png");
   solve->callback([request, &exit_code] {
-    const std::vector<std::filesystem::path> inputs{request->robot, request->input,
-                                                    request->measured, request->reach};
+    const std::vector<std::filesystem::path> inputs{
+        request->robot, request->input, request->measured, request->reach, request->follow};
     RequireWritable(request->out, inputs);
     if (!request->plot.empty()) RequireWritable(request->plot, inputs);
     if (!request->shape.empty()) RequireWritable(request->shape, inputs);

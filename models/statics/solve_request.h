@@ -17,6 +17,7 @@ struct SolveRequest {
   std::filesystem::path shape;       ///< places along the axes of the solved cases, .csv or .json
   std::filesystem::path compliance;  ///< how the tips move by every input, .csv or .json
   std::filesystem::path reach;       ///< TARGETS.csv: where tips or disks of the cases should be
+  std::filesystem::path follow;      ///< PATH.csv: what the whole robot should lie on
   std::string method;
   std::string hybrid;  ///< train or apply
   bool calibrate = false;

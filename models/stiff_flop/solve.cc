@@ -38,6 +38,7 @@ void RefuseOptions(const SolveRequest& request) {
       {"--hybrid", !request.hybrid.empty()},
       {"--lambda", request.lambda.has_value()},
       {"--cross-validate", request.cross_validate},
+      {"--follow", !request.follow.empty()},
       {"--reach with --equilibria", request.equilibria && !request.reach.empty()},
       {"--measured", !request.measured.empty()}};
   for (const auto& [option, given] : foreign) {

@@ -46,6 +46,7 @@ void CheckLists(const SolveRequest& request, const std::string& method) {
   const bool measured = !request.measured.empty();
   Refuse(request.equilibria && other, "--equilibria", jobs);
   Refuse(request.sweep != 0 && (other || measured), "--sweep", "--measured, " + jobs);
+  if (!request.follow.empty()) throw Error::Input("--follow", "no such option for a tdcr robot");
   Refuse(!request.reach.empty() && (other || request.equilibria || measured), "--reach",
          "--equilibria, --measured, " + jobs);
   for (const auto& [option, file] :

@@ -6,23 +6,59 @@
 
 namespace continuum::twin_pivot {
 
+namespace {
+
+// One value of each joint's section.
+Eigen::VectorXd ByJoint(const Robot& robot, const PerSection& value) {
+  Eigen::VectorXd of(robot.Joints());
+  for (int m = 0; m < of.size(); ++m) of[m] = value[robot.SectionOfJoint(m)];
+  return of;
+}
+
+Eigen::VectorXd ByCable(const Robot& robot, const PerSection& value) {
+  Eigen::VectorXd of(robot.Cables());
+  for (int j = 0; j < of.size(); ++j) of[j] = value[robot.SectionOfCable(j)];
+  return of;
+}
+
+// Forces are taken where one of two tasks has any.
+std::vector<DiscLoad> Mix(const std::vector<DiscLoad>& from, const std::vector<DiscLoad>& to,
+                          double share) {
+  std::vector<DiscLoad> mixed;
+  const auto add = [&](const std::vector<DiscLoad>& loads, double part) {
+    for (const DiscLoad& load : loads) {
+      mixed.push_back({load.disc, part * load.force, part * load.moment});
+    }
+  };
+  add(from, 1 - share);
+  add(to, share);
+  return mixed;
+}
+
+}  // namespace
+
 Task::Task(const Robot& r, const Load& load, Method chosen)
     : robot(r),
       method(chosen),
       joints(r.Joints()),
       cables(r.Cables()),
-      m_D(r.m_D),
+      links(r.Links()),
+      stiffness(joints),
+      m_D(ByJoint(r, r.m_D)),
       payload(load.condition == Condition::kV ? load.payload : 0),
       gravity(load.gravity),
       force(load.force),
       moment(load.moment),
+      loads(load.on_discs),
       tension(load.tension),
       reference(load.reference),
       slide(load.slide) {
   const bool all = load.condition != Condition::kIV;
-  m_NiTi = all ? r.m_NiTi : 0;
-  rho = all ? r.rho_cable : 0;
-  m_CL = all ? r.m_CL : 0;
+  m_NiTi = ByJoint(r, all ? r.m_NiTi : 0);
+  rho = ByCable(r, all ? r.rho_cable : 0);
+  m_CL = ByCable(r, all ? r.m_CL : 0);
+  for (int m = 0; m < joints; ++m) stiffness[m] = r.Stiffness(r.SectionOfJoint(m));
+  if (load.condition == Condition::kV && load.disc_payload.size() > 0) m_D += load.disc_payload;
   if (load.condition == Condition::kIII) {
     friction.c = r.mu_const;
   } else if (load.condition != Condition::kI) {
@@ -39,15 +75,16 @@ Task::Task(const Robot& r, const Load& load, Method chosen)
 
 Task Task::Between(const Task& from, double share) const {
   Task task = *this;
-  const auto mix = [share](auto a, auto b) { return (1 - share) * a + share * b; };
+  const auto mix = [share](const auto& a, const auto& b) { return (1 - share) * a + share * b; };
   task.m_D = mix(from.m_D, m_D);
   task.m_NiTi = mix(from.m_NiTi, m_NiTi);
   task.rho = mix(from.rho, rho);
   task.m_CL = mix(from.m_CL, m_CL);
   task.payload = mix(from.payload, payload);
-  task.gravity = (1 - share) * from.gravity + share * gravity;
-  task.force = (1 - share) * from.force + share * force;
-  task.moment = (1 - share) * from.moment + share * moment;
+  task.gravity = mix(from.gravity, gravity);
+  task.force = mix(from.force, force);
+  task.moment = mix(from.moment, moment);
+  task.loads = Mix(from.loads, loads, share);
   for (std::size_t j = 0; j < tension.size(); ++j) {
     task.tension[j] = mix(from.tension[j], tension[j]);
   }
@@ -59,6 +96,7 @@ Task Task::Unloaded() const {
   task.gravity.setZero();
   task.force.setZero();
   task.moment.setZero();
+  task.loads.clear();
   std::fill(task.tension.begin(), task.tension.end(), 0.0);
   return task;
 }

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "models/statics/slide.h"
+#include "models/twin_pivot/disc_loads.h"
 #include "models/twin_pivot/joint.h"
 #include "models/twin_pivot/load.h"
 #include "models/twin_pivot/robot.h"
@@ -25,10 +25,15 @@ struct Task {
   const Robot& robot;
   Method method;
   int joints, cables;
-  Friction friction;              ///< all zero when there is none
-  double m_D, m_NiTi, rho, m_CL;  ///< weights that count [kg], [kg/m]
-  double payload;
+  std::vector<Link> links;
+  Eigen::VectorXd stiffness;  ///< of every joint [N m/rad]
+  Friction friction;          ///< all zero when there is none
+  Eigen::VectorXd m_D,
+      m_NiTi;                 ///< weights that count, of every disc with its payload and joint [kg]
+  Eigen::VectorXd rho, m_CL;  ///< of every cable [kg/m] and of its lock [kg]
+  double payload;             ///< at the tip
   Eigen::Vector3d gravity, force, moment;
+  std::vector<DiscLoad> loads;  ///< on other discs, none of which is all zero
   std::vector<double> tension;  ///< F_SC [N]
   std::vector<int> anchor;      ///< last joint of every cable, counted from 1
   /// Distance of every cable from the two axes of a disc with even number: y for odd joints, z for
@@ -87,25 +92,6 @@ bool CableForces(const Task& task, const std::vector<Joint<T>>& joint, double fr
   return true;
 }
 
-/// A vector fixed in the base frame, seen from disc m: v_m = Rx(-+90 deg) Rz(-beta_m) v_m-1.
-template <class T>
-using Vector = std::array<T, 3>;
-
-template <class T>
-Vector<T> IntoNext(const Joint<T>& joint, bool odd, const Vector<T>& v) {
-  const T x = joint.cosine * v[0] + joint.sine * v[1];
-  const T y = joint.cosine * v[1] - joint.sine * v[0];
-  return odd ? Vector<T>{x, v[2], -y} : Vector<T>{x, -v[2], y};
-}
-
-/// The reverse: a vector of disc m seen from disc m-1.
-template <class T>
-Vector<T> IntoPrevious(const Joint<T>& joint, bool odd, const Vector<T>& v) {
-  const T y = odd ? -v[2] : v[2];
-  const T z = odd ? v[1] : -v[1];
-  return {joint.cosine * v[0] - joint.sine * y, joint.sine * v[0] + joint.cosine * y, z};
-}
-
 /// Bodies beyond a point: their mass and first moment, and the place of the tip.
 template <class T>
 struct Beyond {
@@ -120,12 +106,6 @@ struct Beyond {
     first[2] += m * z;
   }
 };
-
-/// z component of a x b.
-template <class T>
-T CrossZ(const T& ax, const T& ay, const Vector<T>& b) {
-  return ax * b[1] - ay * b[0];
-}
 
 /// f_m(beta), m = 1..n [N m]: the balance of moments in every joint, (17)-(41).
 ///
@@ -142,9 +122,9 @@ T CrossZ(const T& ax, const T& ay, const Vector<T>& b) {
 ///   ...]
 ///         - rods E I_z beta_m / L
 ///
-/// Three passes over the joints, O(n): cable forces, the base frame's vectors outward, masses
-/// inward. `load` scales everything that acts, `friction` the coefficients of friction; for
-/// continuation.
+/// F_EX, M_EX: on every disc that has them, p_n the place of that disc. Three passes over the
+/// joints, O(n): cable forces, the base frame's vectors outward, masses inward. `load` scales
+/// everything that acts, `friction` the coefficients of friction; for continuation.
 struct Balance {
   const Task& task;
   double load = 1;
@@ -158,7 +138,7 @@ struct Balance {
     joint.reserve(task.joints);
     for (int m = 0; m < task.joints; ++m) {
       if (!(std::abs(Value(beta[m])) < M_PI)) return false;
-      joint.emplace_back(task.robot, beta[m]);
+      joint.emplace_back(task.links[m], beta[m]);
     }
     std::vector<T> cable;
     if (!CableForces(task, joint, friction, eps, cable, frozen)) return false;
@@ -191,6 +171,7 @@ struct Balance {
   template <class T>
   void Moments(const std::vector<Joint<T>>& joint, const std::vector<T>& cable, T* f) const {
     const std::vector<Fixed<T>> fixed = Outward(joint);
+    const LoadsBeyond<T> loads(task.loads, load, joint);
     const bool exact = task.method == Method::kVirtualWork;
     Beyond<T> beyond;
     beyond.mass = T(task.payload);
@@ -201,23 +182,26 @@ struct Balance {
       if (exact) f[m] = AboutCentre(m, at, fixed[m], beyond);
       AddRodAndCables(m, at, beyond);
       if (!exact) f[m] = AboutDisc(fixed[m], beyond);
+      if (!loads.empty()) {
+        f[m] += exact ? loads.About(m, at.centre.x, at.centre.y) : loads.About(m, T(0), T(0));
+      }
       for (int j = 0; j < task.cables; ++j) {
         if (m >= task.anchor[j]) continue;
         const double y = task.Y(m, j);
-        const T arm = exact ? at.Arm(y) : y * at.half_cosine - 0.5 * task.robot.h * at.half_sine;
+        const T arm = exact ? at.Arm(y) : y * at.half_cosine - task.links[m].before * at.half_sine;
         f[m] += load * cable[m * task.cables + j] * arm;
       }
-      f[m] -= task.robot.Stiffness() * at.beta;
+      f[m] -= task.stiffness[m] * at.beta;
     }
   }
 
   /// Disc m+1 and the locks on its distal face.
   template <class T>
   void AddDisc(int m, Beyond<T>& beyond) const {
-    beyond.mass += task.m_D;
+    beyond.mass += task.m_D[m];
     for (int j = 0; j < task.cables; ++j) {
       if (task.anchor[j] != m + 1) continue;
-      beyond.Add(T(task.m_CL), T(0.5 * task.robot.h), T(task.hole_y[j]), T(task.hole_z[j]));
+      beyond.Add(T(task.m_CL[j]), T(task.links[m].after), T(task.hole_y[j]), T(task.hole_z[j]));
     }
   }
 
@@ -237,25 +221,25 @@ struct Balance {
     const Vector<T>& g = fixed.gravity;
     T moment = fixed.moment[2] + CrossZ(beyond.tip[0] - c.x, beyond.tip[1] - c.y, fixed.force) +
                CrossZ(beyond.first[0] - beyond.mass * c.x, beyond.first[1] - beyond.mass * c.y, g);
-    moment += task.m_NiTi * (g[0] * at.centre_slope.x + g[1] * at.centre_slope.y);
+    moment += task.m_NiTi[m] * (g[0] * at.centre_slope.x + g[1] * at.centre_slope.y);
     for (int j = 0; j < task.cables; ++j) {
       if (m >= task.anchor[j]) continue;
       const double y = task.Y(m, j);
       const Planar<T> hole = at.Hole(y);
-      moment += 0.5 * task.rho * at.Length(y) * CrossZ(hole.x - c.x, hole.y - c.y, g);
+      moment += 0.5 * task.rho[j] * at.Length(y) * CrossZ(hole.x - c.x, hole.y - c.y, g);
     }
     return moment;
   }
 
   template <class T>
   void AddRodAndCables(int m, const Joint<T>& at, Beyond<T>& beyond) const {
-    beyond.Add(T(task.m_NiTi), at.centre.x, at.centre.y, T(0));
+    beyond.Add(T(task.m_NiTi[m]), at.centre.x, at.centre.y, T(0));
     for (int j = 0; j < task.cables; ++j) {
       if (m >= task.anchor[j]) continue;
       const double y = task.Y(m, j);
       const Planar<T> hole = at.Hole(y);
-      beyond.Add(task.rho * at.Length(y), 0.5 * (0.5 * task.robot.h + hole.x), 0.5 * (y + hole.y),
-                 T(task.Z(m, j)));
+      beyond.Add(task.rho[j] * at.Length(y), 0.5 * (task.links[m].before + hole.x),
+                 0.5 * (y + hole.y), T(task.Z(m, j)));
     }
   }
 

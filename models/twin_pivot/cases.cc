@@ -1,7 +1,10 @@
 #include "models/twin_pivot/cases.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
+
+#include <fmt/format.h>
 
 #include "error.h"
 #include "models/statics/results.h"
@@ -32,7 +35,19 @@ std::vector<std::string> LoadColumns(const CsvTable& table, int cables) {
   return statics::Numbered(table.Has("L1") ? "L" : table.Has("F1") ? "F" : "m", cables);
 }
 
-void RequireColumns(const CsvTable& table, const std::vector<std::string>& loads) {
+// Of loads on discs: fx_k .. Mz_k and payload_k, k = 1..discs.
+bool IsDiscLoad(const std::string& column, int discs) {
+  const std::size_t at = column.find('_');
+  if (at == column.npos) return false;
+  constexpr std::array<const char*, 7> kLoads = {"fx", "fy", "fz", "Mx", "My", "Mz", "payload"};
+  if (std::find(kLoads.begin(), kLoads.end(), column.substr(0, at)) == kLoads.end()) return false;
+  for (int k = 1; k <= discs; ++k) {
+    if (column.substr(at + 1) == std::to_string(k)) return true;
+  }
+  return false;
+}
+
+void RequireColumns(const CsvTable& table, const std::vector<std::string>& loads, int discs) {
   std::vector<std::string> known = {"case", "condition", "payload", "fx", "fy", "fz",       "Mx",
                                     "My",   "Mz",        "gx",      "gy", "gz", "reference"};
   known.insert(known.end(), loads.begin(), loads.end());
@@ -41,7 +56,12 @@ void RequireColumns(const CsvTable& table, const std::vector<std::string>& loads
   const std::string header = table.name() + ":1";
   for (const std::string& column : table.columns()) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    throw Error::Input(header + ", column '" + column + "'", "one of the columns " + all,
+    if (IsDiscLoad(column, discs)) continue;
+    throw Error::Input(header + ", column '" + column + "'",
+                       "one of the columns " + all +
+                           fmt::format(", or fx_k, fy_k, fz_k, Mx_k, My_k, Mz_k, payload_k of a "
+                                       "disc k = 1 to {}",
+                                       discs),
                        "'" + column + "'");
   }
   std::vector<std::string> needed = {"case"};
@@ -63,9 +83,9 @@ Condition ReadCondition(const CsvTable& table, std::size_t row) {
 
 // The components that have a column; the others stay as they are.
 void ReadVector(const CsvTable& table, std::size_t row, const std::string& prefix,
-                Eigen::Vector3d& vector) {
+                Eigen::Vector3d& vector, const std::string& suffix = "") {
   for (int i = 0; i < 3; ++i) {
-    const std::string column = prefix + "xyz"[i];
+    const std::string column = prefix + "xyz"[i] + suffix;
     if (table.Has(column)) vector[i] = table.Number(row, column);
   }
 }
@@ -78,6 +98,19 @@ int ReadReference(const CsvTable& table, std::size_t row,
   const auto found = earlier.find(label);
   if (found != earlier.end()) return found->second;
   throw Error::Input(Cell(table, row, "reference"), "the case of an earlier row", Quoted(label));
+}
+
+void ReadDiscLoads(const CsvTable& table, std::size_t row, int discs, Load& load) {
+  for (int k = 1; k <= discs; ++k) {
+    const std::string suffix = "_" + std::to_string(k);
+    DiscLoad on_disc{k};
+    ReadVector(table, row, "f", on_disc.force, suffix);
+    ReadVector(table, row, "M", on_disc.moment, suffix);
+    if (!on_disc.force.isZero(0) || !on_disc.moment.isZero(0)) load.on_discs.push_back(on_disc);
+    if (!table.Has("payload" + suffix)) continue;
+    if (load.disc_payload.size() == 0) load.disc_payload.setZero(discs);
+    load.disc_payload[k - 1] = NotNegative(table, row, "payload" + suffix);
+  }
 }
 
 Load ReadLoad(const CsvTable& table, std::size_t row, const std::vector<std::string>& columns,
@@ -97,6 +130,7 @@ Load ReadLoad(const CsvTable& table, std::size_t row, const std::vector<std::str
   ReadVector(table, row, "f", load.force);
   ReadVector(table, row, "M", load.moment);
   ReadVector(table, row, "g", load.gravity);
+  ReadDiscLoads(table, row, robot.Joints(), load);
   return load;
 }
 
@@ -108,7 +142,7 @@ std::vector<Case> ReadCases(const std::filesystem::path& file, const Robot& robo
 
 std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
   const std::vector<std::string> columns = LoadColumns(table, robot.Cables());
-  RequireColumns(table, columns);
+  RequireColumns(table, columns, robot.Joints());
   table.RequireRows();
   std::vector<Case> cases;
   std::map<std::string, int> earlier;

@@ -13,8 +13,11 @@ namespace continuum::twin_pivot {
 /// base to anchor.
 statics::Details Describe(const Robot& robot, const Load& load, const Solution& solution);
 
+/// Of the most strained fibre of the rods, bent to arcs: d beta/(2 L).
+double Strain(const Robot& robot, const Eigen::VectorXd& beta);
+
 /// Energy at any angles [J]: of the rods, plus tensions times the changes of the cables' lengths,
-/// less the work of weights and tip force,
+/// less the work of weights and forces on discs,
 ///
 ///   rods E I_z/L sum beta^2/2 + sum F_SC (l - l_0) - sum W.(p - p_0) (1)
 ///

@@ -22,7 +22,7 @@ statics::Drive Cable(const Robot& robot, const Load& load,
   for (int m = 0; m <= robot.Anchor(cable); ++m) {
     const bool odd = m % 2 == 1;
     for (const double face : {-0.5, 0.5}) {
-      const Eigen::Vector3d hole(face * robot.h, odd ? z : y, odd ? -y : z);
+      const Eigen::Vector3d hole(face * robot.Thickness(m), odd ? z : y, odd ? -y : z);
       drive.line.emplace_back(discs[static_cast<std::size_t>(m)] * hole);
     }
   }
@@ -45,10 +45,14 @@ statics::Shape ShapeOf(const Robot& robot, const Load& load, const Solution& sol
   statics::Shape shape;
   shape.backbone = CentreLine(robot, solution.beta);
   for (const Eigen::Isometry3d& disc : discs) {
-    shape.discs.push_back({disc.translation(), disc.linear().col(0), Rim(robot), robot.h});
+    const double thickness = robot.Thickness(static_cast<int>(shape.discs.size()));
+    shape.discs.push_back({disc.translation(), disc.linear().col(0), Rim(robot), thickness});
   }
   for (int j = 0; j < robot.Cables(); ++j) shape.drives.push_back(Cable(robot, load, discs, j));
   shape.force = load.force;
+  for (const DiscLoad& on_disc : load.on_discs) {
+    if (on_disc.disc == robot.Joints()) shape.force += on_disc.force;
+  }
   if (load.condition == Condition::kV) shape.force += load.payload * load.gravity;
   shape.gravity = load.gravity;
   shape.load = std::accumulate(load.tension.begin(), load.tension.end(), 0.0);

@@ -47,7 +47,8 @@ struct Planar {
 };
 
 /// Joint m in the frame of disc m-1 (x along the disc's normal, bending about z by beta): what
-/// depends on beta alone. Rod from (h/2, 0), an arc of length L; cable j at distance y from the
+/// depends on beta alone. Rod from (h/2, 0), h the thickness
+/// of disc m-1, an arc of length L; cable j at distance y from the
 /// bending axis, a straight line from the distal face of disc m-1 to the proximal face of disc m.
 template <class T>
 struct Joint {
@@ -60,9 +61,8 @@ struct Joint {
   T chord;                 ///< 2 (L/beta) sin(beta/2)
   T bend;                  ///< -d chord/d beta
 
-  Joint(const Robot& robot, const T& b) : beta(b) {
-    const double L = robot.L;
-    const double h = robot.h;
+  Joint(const Link& link, const T& b) : beta(b) {
+    const double L = link.L;
     const std::array<T, 6> c = Stumpff(b);
     const T u = 0.5 * b;
     const std::array<T, 6> d = Stumpff(u);
@@ -70,9 +70,9 @@ struct Joint {
     sine = b * c[1];
     half_cosine = d[0];
     half_sine = u * d[1];
-    rod_end = {0.5 * h + L * c[1], L * b * c[2]};
-    origin = {rod_end.x + 0.5 * h * cosine, rod_end.y + 0.5 * h * sine};
-    centre = {0.5 * h + L * c[2], L * b * c[3]};
+    rod_end = {link.before + L * c[1], L * b * c[2]};
+    origin = {rod_end.x + link.after * cosine, rod_end.y + link.after * sine};
+    centre = {link.before + L * c[2], L * b * c[3]};
     centre_slope = {L * b * (2.0 * c[4] - c[3]), L * (c[3] + b * b * (3.0 * c[5] - c[4]))};
     chord = L * d[1];
     bend = 0.5 * L * u * (d[2] - d[3]);

@@ -7,6 +7,13 @@
 
 namespace continuum::twin_pivot {
 
+/// Dead force [N] and moment [N m] on disc m at O_m, in the base frame.
+struct DiscLoad {
+  int disc = 0;  ///< 1..n
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+};
+
 /// What the model counts (Tab 5): I no friction; II friction mu(theta); III friction mu_const; IV
 /// friction mu(theta) but weights of discs only; V all, and the payload.
 enum class Condition { kI, kII, kIII, kIV, kV };
@@ -25,7 +32,9 @@ struct Load {
   double payload = 0;                                ///< [kg] at O_n; counts in V only
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< at O_n, in the base frame [N]
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< in the base frame [N m]
-  Eigen::Vector3d gravity = {0, -9.81, 0};           ///< in the base frame [m/s^2]
+  std::vector<DiscLoad> on_discs;                    ///< beside these
+  Eigen::VectorXd disc_payload;             ///< [kg] at O_1..O_n, counts in V only; empty: none
+  Eigen::Vector3d gravity = {0, -9.81, 0};  ///< in the base frame [m/s^2]
   /// l_ref [m], joints x cables: the state from which the cables started to slide; empty: straight.
   Eigen::MatrixXd reference;
   /// s of every contact in that state, -1..1, row m at disc m; empty: nothing has slid, 0.

@@ -54,7 +54,10 @@ class Lump {
 class Builder {
  public:
   explicit Builder(const Robot& robot)
-      : robot_(robot), mjcf_("twin_pivot", kComment), holes_(robot.Cables()) {}
+      : robot_(robot),
+        links_(robot.Links()),
+        mjcf_("twin_pivot", kComment),
+        holes_(robot.Cables()) {}
 
   std::string Build() {
     mjcf_.spec().option.timestep = kStep;
@@ -77,7 +80,7 @@ class Builder {
   }
 
  private:
-  double Length() const { return robot_.Joints() * (robot_.L + robot_.h); }
+  double Length() const { return robot_.Length(); }
 
   void AddScene() {
     mjcf_.AddMaterial("disc", {0.66F, 0.69F, 0.73F, 1}, 0.5F);
@@ -111,26 +114,29 @@ class Builder {
   mjsBody* AddBase() {
     mjsBody* const base = mjcf_.AddBody(mjcf_.world(), "base", {0, 0, 0});
     base->quat[0] = base->quat[1] = std::sqrt(0.5);  // Y up
-    const double face = robot_.h / 2;
+    const double face = links_.front().before;
     mjcf_.AddSite(base, "base", {0, 0, 0}, 0.5e-3);
     AddHoles(base, "lead", -face - kLead, 0);
     AddHoles(base, "out0", face, 0);
     mjcf_.AddCylinder(base, {-face - kLead, 0, 0}, {face, 0, 0}, 1.1 * kDiscRadius, "disc");
-    DrawRods(base, 1, face, face + robot_.L / 6);
+    DrawRods(base, 1, face, face + links_.front().L / 6);
     return base;
   }
 
   // Rod m and disc m, behind the disc before, whose centre is the origin of `before`, or, from the
-  // second on, L/6 + h/2 beyond it.
+  // second on, L/6 + h/2 beyond it, L of rod m-1.
   mjsBody* AddJoint(mjsBody* before, int m) {
-    const double L = robot_.L, h = robot_.h, stub = L / 6;
+    const int section = robot_.SectionOfJoint(m - 1);
+    const Link& link = links_[static_cast<std::size_t>(m - 1)];
+    const double L = link.L, stub = L / 6, h = 2 * link.after, mass = robot_.m_NiTi[section];
+    const double last = m == 1 ? 0 : links_[static_cast<std::size_t>(m - 2)].L / 6;
     const Point axis = m % 2 ? Point{0, 0, 1} : Point{0, -1, 0};
-    const double stiffness = 2 * robot_.Stiffness();
-    mjsBody* const rod =
-        mjcf_.AddBody(before, fmt::format("rod{}", m), {(m == 1 ? h / 2 : stub + h) + stub, 0, 0});
+    const double stiffness = 2 * robot_.Stiffness(section);
+    const double to_face = m == 1 ? link.before : last + 2 * link.before;
+    mjsBody* const rod = mjcf_.AddBody(before, fmt::format("rod{}", m), {to_face + stub, 0, 0});
     mjcf_.AddElasticHinge(rod, fmt::format("bend{}_in", m), axis, stiffness, kPace);
-    const double swing = robot_.m_NiTi * L * L / 12, roll = robot_.m_NiTi * kRodApart * kRodApart;
-    mjcf_.SetInertia(rod, robot_.m_NiTi, {L / 3, 0, 0},
+    const double swing = mass * L * L / 12, roll = mass * kRodApart * kRodApart;
+    mjcf_.SetInertia(rod, mass, {L / 3, 0, 0},
                      {roll, swing + (m % 2 ? roll : 0), swing + (m % 2 ? 0 : roll)});
     DrawRods(rod, m, 0, 4 * stub);
 
@@ -141,27 +147,35 @@ class Builder {
     Weigh(disc, m);
     mjcf_.AddCylinder(disc, {stub, 0, 0}, {stub + h, 0, 0}, kDiscRadius, "disc");
     DrawRods(disc, m, 0, stub);
-    if (m < robot_.Joints()) DrawRods(disc, m + 1, stub + h, 2 * stub + h);
+    if (m < robot_.Joints()) {
+      DrawRods(disc, m + 1, stub + h, stub + h + links_[static_cast<std::size_t>(m)].L / 6);
+    }
     return disc;
   }
 
   // Disc m, half of the cables' pieces on either side, and locks.
   void Weigh(mjsBody* disc, int m) {
-    const double near = robot_.L / 6, far = near + robot_.h, h = robot_.h;
-    const double R2 = kDiscRadius * kDiscRadius, across = robot_.m_D * (3 * R2 + h * h) / 12;
+    const Link& link = links_[static_cast<std::size_t>(m - 1)];
+    const double near = link.L / 6, h = 2 * link.after, far = near + h;
+    const double mass = robot_.m_D[robot_.SectionOfJoint(m - 1)];
+    const double R2 = kDiscRadius * kDiscRadius, across = mass * (3 * R2 + h * h) / 12;
     Lump lump;
-    lump.Add(robot_.m_D, {near + h / 2, 0, 0}, {robot_.m_D * R2 / 2, across, across});
-    const double half = robot_.rho_cable * robot_.L / 2;
+    lump.Add(mass, {near + h / 2, 0, 0}, {mass * R2 / 2, across, across});
     for (int j = 0; j < robot_.Cables(); ++j) {
-      if (m <= robot_.Anchor(j)) lump.Add(half, Hole(j, near));
-      if (m < robot_.Anchor(j)) lump.Add(half, Hole(j, far));
-      if (m == robot_.Anchor(j)) lump.Add(robot_.m_CL, Hole(j, far));
+      const int section = robot_.SectionOfCable(j);
+      const double half = robot_.rho_cable[section] / 2;
+      if (m <= robot_.Anchor(j)) lump.Add(half * link.L, Hole(j, near));
+      if (m < robot_.Anchor(j)) {
+        lump.Add(half * links_[static_cast<std::size_t>(m)].L, Hole(j, far));
+      }
+      if (m == robot_.Anchor(j)) lump.Add(robot_.m_CL[section], Hole(j, far));
     }
     lump.Give(mjcf_, disc);
   }
 
   void AddTip(mjsBody* last) {
-    mjsBody* const tip = mjcf_.AddBody(last, "tip", {robot_.L / 6 + robot_.h / 2, 0, 0});
+    const Link& link = links_.back();
+    mjsBody* const tip = mjcf_.AddBody(last, "tip", {link.L / 6 + link.after, 0, 0});
     mjcf_.SetInertia(tip, 0, {0, 0, 0}, {0, 0, 0});
     mjcf_.AddSite(tip, "tip", {0, 0, 0}, 1e-3);
   }
@@ -177,6 +191,7 @@ class Builder {
   }
 
   const Robot& robot_;
+  const std::vector<Link> links_;
   Mjcf mjcf_;
   std::vector<std::vector<std::string>> holes_;  ///< names, by cable
 };
@@ -187,6 +202,9 @@ std::string RobotMjcf(const Robot& robot) { return Builder(robot).Build(); }
 
 Eigen::Vector3d PulledTip(const ModelSpec& mjcf, const Load& load) {
   if (!load.moment.isZero()) throw Error::Input("Mx, My, Mz", "no moment on the MJCF", "one");
+  if (!load.on_discs.empty() || load.disc_payload.size() > 0) {
+    throw Error::Input("fx_k .. payload_k", "loads at the tip of the MJCF alone", "one on a disc");
+  }
   const Change payload{"body:tip", "mass", load.condition == Condition::kV ? load.payload : 0};
   const ModelAndData machine = mjcf.Build(std::span(&payload, 1));
   SlowPull pull;

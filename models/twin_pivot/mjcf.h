@@ -20,7 +20,7 @@ namespace continuum::twin_pivot {
 std::string RobotMjcf(const Robot& robot);
 
 /// Tip [m, base frame] after a slow pull of the MJCF from straight: all loads together.
-/// @throws Error (input) when the case has a moment, (job) as Pull.
+/// @throws Error (input) when the case has a moment or loads on discs, (job) as Pull.
 Eigen::Vector3d PulledTip(const ModelSpec& mjcf, const Load& load);
 
 }  // namespace continuum::twin_pivot

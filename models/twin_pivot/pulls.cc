@@ -33,6 +33,13 @@ struct Loop {
   bool Has(const Case& c) const { return std::stoi(c.label.substr(1)) % 10 == 0; }
 };
 
+/// All of a table.
+struct All {
+  const char* name;
+
+  static bool Has(const Case& /*c*/) { return true; }
+};
+
 template <class Choice>
 void Print(const Robot& robot, const ModelSpec& mjcf, const std::vector<Case>& cases,
            const Choice& choice) {
@@ -69,6 +76,7 @@ void Print(const std::filesystem::path& folder) {
   Print<Sweep>(folder / "b.yaml", cases,
                {{"B, in plane", 16, 26}, {"B, out of plane", 27, 30}, {"B, payload 20 g", 37, 42}});
   Print<Loop>(folder / "c.yaml", folder / "trajectory.csv", {{"C, loop"}});
+  Print<All>(folder / "c360.yaml", folder / "hanging.csv", {{"360 mm, hanging"}});
 }
 
 }  // namespace
@@ -77,7 +85,7 @@ void Print(const std::filesystem::path& folder) {
 int main(int count, char** arguments) {
   try {
     if (count != 2) {
-      throw continuum::Error::Input("continuum_twin_pivot_pulls", "FOLDER of a.yaml, b.yaml");
+      throw continuum::Error::Input("continuum_twin_pivot_pulls", "FOLDER of the robots' files");
     }
     continuum::twin_pivot::Print(arguments[1]);
     return 0;

@@ -16,4 +16,12 @@ struct Before {
 statics::Reached Reach(const Robot& robot, const Load& load, Method method,
                        const statics::Target& target, const Before* before);
 
+/// The same by statics::Nearest: as near as it comes by low tensions.
+statics::Reached Approach(const Robot& robot, const Load& load, Method method,
+                          const statics::Target& target, const Before* before);
+
+/// Solves a case from straight or from the one before, whose contacts `load` then gets and the
+/// solution has as `pull`.
+Solution SolveGoingOn(const Robot& robot, Load& load, Method method, const Before* before);
+
 }  // namespace continuum::twin_pivot

@@ -24,7 +24,7 @@ class RespondingRobot : public statics::Responding {
 
   VectorXd Units() const {
     VectorXd units(kLoads + robot_.Cables());
-    const double k = robot_.Stiffness(), length = robot_.Joints() * (robot_.L + robot_.h);
+    const double k = robot_.Stiffness(), length = robot_.Length();
     units.head<3>().setConstant(k / length);
     units.segment<3>(3).setConstant(k);
     units.tail(robot_.Cables()).setConstant(k / robot_.r.front());

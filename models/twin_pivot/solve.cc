@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "error.h"
 #include "models/statics/details.h"
 #include "models/statics/path_error.h"
@@ -18,6 +20,8 @@
 #include "models/twin_pivot/details.h"
 #include "models/twin_pivot/equilibria.h"
 #include "models/twin_pivot/figure.h"
+#include "models/twin_pivot/follow.h"
+#include "models/twin_pivot/limits.h"
 #include "models/twin_pivot/reach.h"
 #include "models/twin_pivot/response.h"
 #include "models/twin_pivot/twin_pivot.h"
@@ -29,6 +33,7 @@ namespace {
 
 using twin_pivot::Case;
 using twin_pivot::Method;
+using twin_pivot::PerSection;
 using twin_pivot::Robot;
 using twin_pivot::Solution;
 
@@ -46,6 +51,10 @@ void RefuseOptions(const SolveRequest& request) {
       {"--plot with --calibrate", request.calibrate && !request.plot.empty()},
       {"--reach with --calibrate", request.calibrate && !request.reach.empty()},
       {"--reach with --equilibria", request.equilibria && !request.reach.empty()},
+      {"--follow with --calibrate", request.calibrate && !request.follow.empty()},
+      {"--follow with --equilibria", request.equilibria && !request.follow.empty()},
+      {"--follow with --reach", !request.reach.empty() && !request.follow.empty()},
+      {"--follow with --sweep", request.sweep != 0 && !request.follow.empty()},
       {"--method with --calibrate", request.calibrate && !request.method.empty()}};
   for (const auto& [option, given] : foreign) {
     if (given) throw Error::Input(option, "no such option for a twin_pivot robot");
@@ -70,15 +79,19 @@ void WarnOfImplausibleRobot(const SolveRequest& request, const Robot& robot) {
   const auto check = [&](const char* key, double value, double low, double high, const char* unit) {
     statics::WarnIfImplausible(request, file.At(key).Where(), value, low, high, unit);
   };
-  const double pitch = robot.L + robot.h;
-  check("L", robot.L, 1e-4, 0.5, "m");
-  check("h", robot.h, 1e-5, 0.5, "m");
-  check("E", robot.E, 1e6, 1e12, "Pa");
-  check("I_z", robot.I_z, 1e-20, 1e-6, "m^4");
-  check("m_D", robot.m_D, 1e-7, 5, "kg");
-  check("m_NiTi", robot.m_NiTi, 1e-8, 5, "kg");
-  check("rho_cable", robot.rho_cable, 1e-7, 5, "kg/m");
-  check("m_CL", robot.m_CL, 1e-8, 5, "kg");
+  const auto each = [&](const char* key, const PerSection& values, double low, double high,
+                        const char* unit) {
+    for (const double value : values.values()) check(key, value, low, high, unit);
+  };
+  const double pitch = robot.L[0] + robot.h[0];
+  each("L", robot.L, 1e-4, 0.5, "m");
+  each("h", robot.h, 1e-5, 0.5, "m");
+  each("E", robot.E, 1e6, 1e12, "Pa");
+  each("I_z", robot.I_z, 1e-20, 1e-6, "m^4");
+  each("m_D", robot.m_D, 1e-7, 5, "kg");
+  each("m_NiTi", robot.m_NiTi, 1e-8, 5, "kg");
+  each("rho_cable", robot.rho_cable, 1e-7, 5, "kg/m");
+  each("m_CL", robot.m_CL, 1e-8, 5, "kg");
   check("gravity", robot.gravity.norm(), 0.1, 100, "m/s^2");
   for (const double r : robot.r) check("r", r, pitch / 100, 5 * pitch, "m");
   for (const double phi : robot.phi) {
@@ -100,7 +113,7 @@ void WarnOfImplausibleCables(const SolveRequest& request, const Robot& robot,
       };
       const auto at = static_cast<std::size_t>(j);
       check(row.load.tension[at], 0, kMostBend * robot.Stiffness() / robot.r[at], "N");
-      const double straight = robot.Anchor(j) * robot.L;
+      const double straight = robot.LengthOfCable(j);
       if (row.load.length.size() > 0) check(row.load.length[j], 0.2 * straight, 3 * straight, "m");
     }
   }
@@ -112,6 +125,8 @@ struct Solved {
   Solution solution;
   int equilibrium = 0;              ///< of the case, counted from 1; 0: no list of them
   std::optional<double> miss = {};  ///< distance from a target [m]
+  std::optional<double> base = {};  ///< its x on the way along a path [m]
+  Eigen::VectorXd off = {};         ///< of every disc from the path [m]
 };
 
 // Its reference is among those solved before.
@@ -184,8 +199,8 @@ Solved ReachTarget(const Robot& robot, Method method, const statics::Target& tar
     s.solution.outcome.why = "its reference failed";
     return s;
   }
-  const auto reached =
-      twin_pivot::Reach(robot, row.load, method, target, before ? &*before : nullptr);
+  const auto* const from = before ? &*before : nullptr;
+  const auto reached = twin_pivot::Reach(robot, row.load, method, target, from);
   s.miss = reached.miss;
   if (!reached.outcome.ok()) {
     s.solution.outcome = reached.outcome;
@@ -193,13 +208,7 @@ Solved ReachTarget(const Robot& robot, Method method, const statics::Target& tar
   }
   twin_pivot::Load& load = s.row.load;
   load.tension.assign(reached.drives.begin(), reached.drives.end());
-  s.solution = before ? twin_pivot::SolveFrom(robot, before->load, before->solution, load, method)
-                      : twin_pivot::Solve(robot, load, method);
-  s.solution.pull = reached.drives;
-  if (before) {
-    load.reference = before->solution.length;
-    load.slide = before->solution.slide;
-  }
+  s.solution = twin_pivot::SolveGoingOn(robot, load, method, from);
   return s;
 }
 
@@ -226,6 +235,69 @@ std::vector<Solved> ReachTargets(const SolveRequest& request, const Robot& robot
   return solved;
 }
 
+// The points of --follow, with the loads of the one row of --input.
+std::vector<Solved> FollowPath(const SolveRequest& request, const Robot& robot,
+                               const std::vector<Case>& cases, Method method) {
+  if (cases.size() != 1) {
+    throw Error::Input(request.input.string(), "one row, of the first point's tensions",
+                       std::to_string(cases.size()));
+  }
+  const twin_pivot::PathLine path(CsvTable::Read(request.follow));
+  std::vector<Solved> rows;
+  double sum = 0, worst = 0;
+  int reached = 0;
+  for (auto& at : twin_pivot::Follow(robot, cases.front().load, method, path)) {
+    Case row{std::to_string(rows.size() + 1), std::move(at.load)};
+    std::string text = fmt::format("point {}: base at {:.4g} m, ", row.label, at.base);
+    if (at.off.size() > 0) {
+      Eigen::Index disc = 0;
+      const double most = at.off.maxCoeff(&disc);
+      text += fmt::format("{:.3g} m off the path on average, {:.3g} m at most, disc {}",
+                          at.off.mean(), most, disc + 1);
+      if (!at.settled) text += "; a nearer place may exist";
+      sum += at.off.mean(), worst = std::max(worst, most), ++reached;
+    } else {
+      text += at.solution.outcome.why;
+    }
+    request.say(text);
+    rows.push_back({std::move(row), std::move(at.solution), 0, at.miss, at.base, at.off});
+  }
+  request.say(fmt::format("{} of {} points, {:.3g} m off the path on average, {:.3g} m at most",
+                          reached, rows.size(), sum / std::max(reached, 1), worst));
+  return rows;
+}
+
+bool HasLimits(const Robot& robot) { return robot.strain_limit > 0 || robot.theta_max > 0; }
+
+// One sentence for each limit that some row is beyond: how far at most, and how often.
+void WarnOfLimits(const SolveRequest& request, const Robot& robot,
+                  const std::vector<Solved>& rows) {
+  struct Worst {
+    double value = 0;
+    std::string label;
+    int count = 0;
+    void See(double now, const std::string& at) {
+      ++count;
+      if (now > value) value = now, label = at;
+    }
+  } strain, theta;
+  for (const Solved& solved : rows) {
+    if (!solved.solution.outcome.ok()) continue;
+    const twin_pivot::Extent extent(robot, solved.row.load, solved.solution);
+    if (extent.BeyondStrain(robot)) strain.See(extent.strain, solved.row.label);
+    if (extent.BeyondTheta(robot)) theta.See(extent.theta, solved.row.label);
+  }
+  const auto warn = [&](const Worst& worst, const std::string& what, double limit) {
+    if (worst.count == 0) return;
+    request.warn(fmt::format("{}: {} {:.3g} at '{}' is beyond {:.3g}, in {} of {} rows",
+                             request.robot.string(), what, worst.value, worst.label, limit,
+                             worst.count, rows.size()));
+  };
+  warn(strain, "strain_limit: a strain of", robot.strain_limit);
+  warn(theta, "friction.theta_max: a, b, c are not measured where cables turn by [rad]",
+       robot.theta_max);
+}
+
 void WriteRow(const Robot& robot, const Solved& solved, statics::Results& results) {
   const Solution& solution = solved.solution;
   const twin_pivot::Load& load = solved.row.load;
@@ -247,6 +319,16 @@ void WriteRow(const Robot& robot, const Solved& solved, statics::Results& result
   auto details = Describe(robot, load, solution);
   details.miss = solved.miss;
   Set(details, solved.equilibrium, results);
+  if (solved.base) {
+    Eigen::Index disc = 0;
+    results.Set("base_x", *solved.base);
+    results.Set("off_mean", solved.off.mean());
+    results.Set("off_max", solved.off.maxCoeff(&disc));
+    results.Set("off_disc", static_cast<int>(disc) + 1);
+  }
+  if (HasLimits(robot)) {
+    results.Set("beyond", twin_pivot::Extent(robot, load, solution).Beyond(robot));
+  }
 }
 
 std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot, bool by_length) {
@@ -258,8 +340,10 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
   append(statics::StabilityColumns());
   append(statics::Numbered("beta_", robot.Joints()));
   append(statics::Numbered("F_end_", robot.Cables()));
-  const bool reaches = !request.reach.empty();
+  const bool reaches = !request.reach.empty() || !request.follow.empty();
   append(statics::DetailColumns{robot.Cables(), by_length, reaches, request.equilibria}.Names());
+  if (!request.follow.empty()) append({"base_x", "off_mean", "off_max", "off_disc"});
+  if (HasLimits(robot)) append({"beyond"});
   return columns;
 }
 
@@ -319,16 +403,19 @@ int SolveTwinPivot(const SolveRequest& request) {
   statics::RequireTable(request.compliance, "--compliance");
   const std::vector<Case> cases = twin_pivot::ReadCases(statics::CasesOf(request), robot);
   const bool by_tension = cases.front().load.length.size() == 0;
-  for (const auto& [option, given] : {std::pair("--equilibria", request.equilibria),
-                                      std::pair("--reach", !request.reach.empty())}) {
+  for (const auto& [option, given] :
+       {std::pair("--equilibria", request.equilibria), std::pair("--reach", !request.reach.empty()),
+        std::pair("--follow", !request.follow.empty())}) {
     if (!given || by_tension) continue;
     throw Error::Input(request.input.string() + ":1", std::string("tensions with ") + option,
                        "'L1'");
   }
   WarnOfImplausibleCables(request, robot, cases);
-  const std::vector<Solved> rows = !request.reach.empty()
-                                       ? ReachTargets(request, robot, cases, method)
-                                       : RowsOf(request, robot, cases, method);
+  const auto solve = !request.reach.empty()    ? ReachTargets
+                     : !request.follow.empty() ? FollowPath
+                                               : RowsOf;
+  const std::vector<Solved> rows = solve(request, robot, cases, method);
+  if (HasLimits(robot)) WarnOfLimits(request, robot, rows);
   WriteResults(request, robot, rows);
   if (!request.shape.empty()) WriteShapes(request, robot, rows);
   if (!request.compliance.empty()) WriteCompliance(request, robot, method, rows);

@@ -82,18 +82,25 @@ void RequirePositiveFriction(const Task& task, const VectorXd& beta) {
 }
 
 // Whether the dead loads, all at the tip and along it, leave one equilibrium: below pi^2/4 EI/l^2
-// of a column with the joints' stiffness less that which bent cables take away, F L/12 each.
+// of a column with the stiffness of the softest joint less that which bent cables take away, F L/12
+// each.
 bool FarFromBuckling(const Task& task) {
   constexpr double kMost = 2;  // < pi^2/4
   const Robot& robot = task.robot;
-  double weight = task.payload + task.joints * (task.m_D + task.m_NiTi) + task.cables * task.m_CL;
-  weight += task.cables * task.joints * task.rho * robot.L;
+  double weight = task.payload + task.m_D.sum() + task.m_NiTi.sum() + task.m_CL.sum();
+  for (int j = 0; j < task.cables; ++j) {
+    weight += task.rho[j] * robot.LengthOfCable(j);
+  }
   double tension = 0;
   for (const double t : task.tension) tension += t;
-  const double pitch = robot.L + robot.h, length = task.joints * pitch;
-  const double stiffness = 2 * pitch * (robot.Stiffness() - tension * robot.L / 12);
-  const double force =
-      weight * task.gravity.norm() + task.force.norm() + task.moment.norm() / length;
+  const double length = robot.Length(), pitch = length / task.joints;
+  double rod = 0;
+  for (const Link& link : task.links) rod = std::max(rod, link.L);
+  const double stiffness = 2 * pitch * (task.stiffness.minCoeff() - tension * rod / 12);
+  double force = weight * task.gravity.norm() + task.force.norm() + task.moment.norm() / length;
+  for (const DiscLoad& load : task.loads) {
+    force += load.force.norm() + load.moment.norm() / length;
+  }
   return force * length * length < kMost * stiffness;
 }
 

@@ -24,19 +24,20 @@ Table = Any
 
 
 def solve(robot: Document, cases: Table | None = None, *, method: str | None = None,
-          measured: Table | None = None, reach: Table | None = None, sweep: int | None = None,
-          hybrid: bool = False, sensitivity: bool = False, equilibria: bool = False,
-          lambda_: float | None = None, plot: StrPath | None = None, shape: StrPath | None = None,
-          compliance: StrPath | None = None, progress: Progress | None = None) -> list[Row]:
+          measured: Table | None = None, reach: Table | None = None, follow: Table | None = None,
+          sweep: int | None = None, hybrid: bool = False, sensitivity: bool = False,
+          equilibria: bool = False, lambda_: float | None = None, plot: StrPath | None = None,
+          shape: StrPath | None = None, compliance: StrPath | None = None, progress: Progress | None = None) -> list[Row]:
     """The static shape of a robot in every case. Returns a dict for each row, in SI units.
 
     A row has status "ok" or what failed, stable, x, y, z of the tip [m], and more for each robot.
     Rows are solved on all cores. reach: a table of targets of the cases, whose least tensions or
-    pressures are found. sweep: the grid of so many values of every column between two cases.
-    hybrid: correct by the training in `robot`. sensitivity: derivatives (stiff_flop). equilibria:
-    all of every case that a search finds, a row each. lambda_: the weight of the method fit. plot:
-    a picture of the shapes (.png, .svg, .pdf). shape: a table of places along the centre lines
-    (.csv, .json). compliance: a table of how every tip moves by its inputs (.csv, .json). progress:
+    pressures are found. follow: a path that all of the robot lies on (twin_pivot). sweep: the grid
+    of so many values of every column between two cases. hybrid: correct by the training in `robot`.
+    sensitivity: derivatives (stiff_flop). equilibria: all of every case that a search finds, a row
+    each. lambda_: the weight of the method fit. plot: a picture of the shapes (.png, .svg, .pdf).
+    shape: a table of places along the centre lines (.csv, .json). compliance: a table of how every
+    tip moves by its inputs (.csv, .json). progress:
     called with each warning. Raises JobError only where there are no results at all."""
     options = {"--method": method, "--sweep": sweep, "--hybrid": "apply" if hybrid else None,
                "--sensitivity": sensitivity, "--equilibria": equilibria, "--lambda": lambda_,
@@ -46,8 +47,8 @@ def solve(robot: Document, cases: Table | None = None, *, method: str | None = N
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
         out = pathlib.Path(folder, "results.json")
         try:
-            _solve(robot, {"--input": cases, "--measured": measured, "--reach": reach}, out, options,
-                   folder, progress)
+            _solve(robot, {"--input": cases, "--measured": measured, "--reach": reach,
+                           "--follow": follow}, out, options, folder, progress)
         except JobError:
             if not out.exists():
                 raise

@@ -26,14 +26,23 @@ inline Matrix4d Turn(double angle, const Vector3d& axis) {
   return t;
 }
 
+// Section of disc m, counted by its discs; the fixed disc is of the first one.
+inline int SectionOfDisc(const Robot& robot, int m) {
+  int section = 0;
+  for (int last = robot.discs[0]; m > last; last += robot.discs[++section]) continue;
+  return section;
+}
+
 // Discs 0..n; no angle may be 0.
 inline std::vector<Matrix4d> Discs(const Robot& robot, const VectorXd& beta) {
   std::vector<Matrix4d> disc = {Matrix4d::Identity()};
   for (int m = 1; m <= beta.size(); ++m) {
     const double b = beta[m - 1];
-    const double t = robot.L / b * std::tan(b / 2) + robot.h / 2;
-    disc.push_back(disc.back() * Along(t) * Turn(b, Vector3d::UnitZ()) *
-                   Turn(m % 2 ? M_PI_2 : -M_PI_2, Vector3d::UnitX()) * Along(t));
+    const int section = SectionOfDisc(robot, m);
+    const double t = robot.L[section] / b * std::tan(b / 2);
+    disc.push_back(disc.back() * Along(t + robot.h[SectionOfDisc(robot, m - 1)] / 2) *
+                   Turn(b, Vector3d::UnitZ()) * Turn(m % 2 ? M_PI_2 : -M_PI_2, Vector3d::UnitX()) *
+                   Along(t + robot.h[section] / 2));
   }
   return disc;
 }
@@ -46,7 +55,7 @@ inline Vector3d Hole(const Robot& robot, const std::vector<Matrix4d>& disc, int 
                      bool distal) {
   const double y = robot.r[j] * std::cos(robot.phi[j]);
   const double z = robot.r[j] * std::sin(robot.phi[j]);
-  const double x = (distal ? 0.5 : -0.5) * robot.h;
+  const double x = (distal ? 0.5 : -0.5) * robot.h[SectionOfDisc(robot, m)];
   return At(disc[m], m % 2 ? Vector3d(x, z, -y) : Vector3d(x, y, z));
 }
 
@@ -65,16 +74,20 @@ inline std::vector<Body> Bodies(const Robot& robot, const VectorXd& beta) {
   std::vector<Body> bodies;
   for (int m = 1; m <= beta.size(); ++m) {
     const double b = beta[m - 1];
-    const Vector3d centroid(robot.h / 2 + robot.L * (1 - std::cos(b)) / (b * b),
-                            robot.L * (b - std::sin(b)) / (b * b), 0);
-    bodies.push_back({m, robot.m_NiTi, At(disc[m - 1], centroid)});
-    bodies.push_back({m, robot.m_D, disc[m].topRightCorner<3, 1>()});
+    const int section = SectionOfDisc(robot, m);
+    const double L = robot.L[section], half = robot.h[SectionOfDisc(robot, m - 1)] / 2;
+    const Vector3d centroid(half + L * (1 - std::cos(b)) / (b * b), L * (b - std::sin(b)) / (b * b),
+                            0);
+    bodies.push_back({m, robot.m_NiTi[section], At(disc[m - 1], centroid)});
+    bodies.push_back({m, robot.m_D[section], disc[m].topRightCorner<3, 1>()});
     for (int j = 0; j < robot.Cables(); ++j) {
       if (m > robot.Anchor(j)) continue;
       const Vector3d from = Hole(robot, disc, m - 1, j, true);
       const Vector3d to = Hole(robot, disc, m, j, false);
-      bodies.push_back({m, robot.rho_cable * (to - from).norm(), 0.5 * (from + to)});
-      if (m == robot.Anchor(j)) bodies.push_back({m, robot.m_CL, Hole(robot, disc, m, j, true)});
+      const int end = SectionOfDisc(robot, robot.Anchor(j));
+      bodies.push_back({m, robot.rho_cable[end] * (to - from).norm(), 0.5 * (from + to)});
+      if (m != robot.Anchor(j)) continue;
+      bodies.push_back({m, robot.m_CL[end], Hole(robot, disc, m, j, true)});
     }
   }
   return bodies;
@@ -85,7 +98,12 @@ inline std::vector<Body> Bodies(const Robot& robot, const VectorXd& beta) {
 inline double Energy(const Robot& robot, const Load& load, const VectorXd& beta,
                      const std::vector<Body>& weights) {
   const std::vector<Matrix4d> disc = Discs(robot, beta);
-  double energy = 0.5 * robot.rods * robot.E * robot.I_z / robot.L * beta.squaredNorm();
+  double energy = 0;
+  for (int m = 1; m <= beta.size(); ++m) {
+    const int s = SectionOfDisc(robot, m);
+    const double k = robot.rods[s] * robot.E[s] * robot.I_z[s] / robot.L[s];
+    energy += 0.5 * k * beta[m - 1] * beta[m - 1];
+  }
   for (int j = 0; j < robot.Cables(); ++j) {
     for (int m = 1; m <= robot.Anchor(j); ++m) {
       energy += load.tension[j] * CableLength(robot, disc, m, j);
@@ -94,6 +112,12 @@ inline double Energy(const Robot& robot, const Load& load, const VectorXd& beta,
   const std::vector<Body> now = Bodies(robot, beta);
   for (std::size_t i = 0; i < now.size(); ++i) {
     energy -= weights[i].mass * load.gravity.dot(now[i].place);
+  }
+  for (const DiscLoad& on_disc : load.on_discs) {
+    energy -= on_disc.force.dot(disc[on_disc.disc].topRightCorner<3, 1>());
+  }
+  for (int m = 1; m <= load.disc_payload.size(); ++m) {
+    energy -= load.disc_payload[m - 1] * load.gravity.dot(disc[m].topRightCorner<3, 1>());
   }
   const Vector3d tip = disc.back().topRightCorner<3, 1>();
   return energy - tip.dot(load.force + load.payload * load.gravity);

@@ -70,7 +70,7 @@ TEST_P(BalanceOfPrototype, PrintedBalanceTakesMomentsAboutTheProximalDisc) {
     for (int j = 0; j < robot_.Cables(); ++j) {
       if (m > robot_.Anchor(j)) continue;
       const double y = robot_.r[j] * (m % 2 ? std::cos(robot_.phi[j]) : std::sin(robot_.phi[j]));
-      expected += load_.tension[j] * (y * std::cos(u) - robot_.h / 2 * std::sin(u));
+      expected += load_.tension[j] * (y * std::cos(u) - robot_.h[0] / 2 * std::sin(u));
     }
     EXPECT_NEAR(f[m - 1], expected, 1e-15) << "joint " << m;
   }
@@ -83,7 +83,7 @@ TEST(TwinPivotBalance, PrintedMethodStiffensByTheTensionOverAQuarterDiscAndATwel
   const VectorXd beta = VectorXd::Constant(12, 1e-4);
   const VectorXd more = *Residual(robot, load, Method::kVirtualWork, beta) -
                         *Residual(robot, load, Method::kPrinted, beta);
-  const double stiffness = 20 * (robot.h / 4 + robot.L / 12);
+  const double stiffness = 20 * (robot.h[0] / 4 + robot.L[0] / 12);
   // The next terms of the series are smaller by beta^2 = 1e-8.
   EXPECT_NEAR(more[0] / beta[0], stiffness, 1e-7 * stiffness);
 }

@@ -163,7 +163,7 @@ TEST(TwinPivotDetails, IsThatOfAnIndependentDescription) {
     for (int m = 1; m <= robot.Anchor(j); ++m) length += again::CableLength(robot, disc, m, j);
     EXPECT_NEAR(details.length[j], length, 1e-14);
   }
-  EXPECT_NEAR(details.strain, 0.4e-3 * s.beta.cwiseAbs().maxCoeff() / robot.L, 1e-9);
+  EXPECT_NEAR(details.strain, 0.4e-3 * s.beta.cwiseAbs().maxCoeff() / robot.L[0], 1e-9);
 }
 
 }  // namespace

@@ -33,17 +33,17 @@ TEST(TwinPivotGeometry, StumpffFunctionsAreTheClosedForms) {
 
 TEST(TwinPivotGeometry, NothingHappensAtZeroBend) {
   const Robot robot = Prototype("a");
-  const Joint<double> straight(robot, 0.0);
-  EXPECT_DOUBLE_EQ(straight.origin.x, robot.L + robot.h);
-  EXPECT_DOUBLE_EQ(straight.centre.x, (robot.h + robot.L) / 2);
-  EXPECT_DOUBLE_EQ(straight.Length(0.003), robot.L);
+  const Joint<double> straight(robot.Links().front(), 0.0);
+  EXPECT_DOUBLE_EQ(straight.origin.x, robot.L[0] + robot.h[0]);
+  EXPECT_DOUBLE_EQ(straight.centre.x, (robot.h[0] + robot.L[0]) / 2);
+  EXPECT_DOUBLE_EQ(straight.Length(0.003), robot.L[0]);
   for (const double b : {1e-12, 1e-6, 1e-3}) {
-    const Joint<double> bent(robot, b);
+    const Joint<double> bent(robot.Links().front(), b);
     // First terms of the series in b; what follows is smaller by b^2, or rounding.
-    const double next = robot.L * b * (b * b + 1e-15);
-    EXPECT_NEAR(bent.bend, robot.L * b / 12, next);
-    EXPECT_NEAR(bent.centre.y, robot.L * b / 6, next);
-    EXPECT_NEAR(bent.Length(0.003), robot.L - 0.003 * b, robot.L * b * b);
+    const double next = robot.L[0] * b * (b * b + 1e-15);
+    EXPECT_NEAR(bent.bend, robot.L[0] * b / 12, next);
+    EXPECT_NEAR(bent.centre.y, robot.L[0] * b / 6, next);
+    EXPECT_NEAR(bent.Length(0.003), robot.L[0] - 0.003 * b, robot.L[0] * b * b);
   }
 }
 

@@ -43,7 +43,7 @@ TEST(TwinPivotLengths, SlackCablesHaveNoTension) {
   const Robot robot = Weightless(Prototype("a"));
   Load load = Pull({}, Condition::kI);
   load.tension.assign(4, 0);
-  const double straight = 6 * robot.L;
+  const double straight = 6 * robot.L[0];
   load.length = VectorXd::Constant(4, straight + 2e-3);
   load.length.head<2>().setConstant(straight - 1e-3);
   const Solution s = Solve(robot, load);
@@ -64,7 +64,7 @@ TEST(TwinPivotLengths, EqualWindingIsStretchAlone) {
   robot.cable_EA = 2e4;
   Load load = Pull({}, Condition::kI);
   load.tension.assign(4, 0);
-  load.length = VectorXd::Constant(4, 6 * robot.L * (1 - 1e-4));
+  load.length = VectorXd::Constant(4, 6 * robot.L[0] * (1 - 1e-4));
   const Solution s = Solve(robot, load);
   ASSERT_TRUE(s.outcome.ok()) << s.outcome.why;
   for (int j = 0; j < 4; ++j) EXPECT_NEAR(s.pull[j], 2, 1e-3);  // 1e-4 of it is of second order
@@ -77,7 +77,7 @@ TEST(TwinPivotLengths, WindingInRowsIsWindingInOne) {
   const auto at = [&](double share) {
     Load load = Pull({}, Condition::kV);
     load.tension.assign(4, 0);
-    load.length = VectorXd::Constant(4, 12 * robot.L + 4e-3);
+    load.length = VectorXd::Constant(4, 12 * robot.L[0] + 4e-3);
     load.length.head<2>().array() -= 4e-3 + share * 3e-3;
     return load;
   };

@@ -122,7 +122,7 @@ TEST(TwinPivotLimits, OneJointAloneIsAScalarEquation) {
   const double b = solution.beta[0];
   const double w = robot.friction.At(b / 2) * std::sin(b / 2);
   const double c = std::cos(b / 2);
-  const double e = robot.L * (2 * std::sin(b / 2) / (b * b) - c / b);
+  const double e = robot.L[0] * (2 * std::sin(b / 2) / (b * b) - c / b);
   const double y = robot.r[0] * std::cos(robot.phi[0]);
   const double f_up = up / (1 + w), f_low = low / (1 - w);
   // The contact is sharp to exp(-2 DeltaL/eps), nothing at DeltaL = 0.3 mm; phi has eight digits.

@@ -27,7 +27,7 @@ TEST(TwinPivotMjcf, TheCommittedFileIsTheGeneratedOne) {
 TEST(TwinPivotMjcf, WeighsWhatThePaperSays) {
   // All but half of the cables' pieces in the first joint, which hang on the base: 18.5 mg.
   const Robot robot = Prototype("a");
-  const double at_base = 4 * robot.rho_cable * robot.L / 2;
+  const double at_base = 4 * robot.rho_cable[0] * robot.L[0] / 2;
   EXPECT_NEAR(1e3 * (ModelSpec::Parse(RobotMjcf(robot)).model().body_subtreemass[0] + at_base),
               14.40, 0.005);
 }

@@ -262,6 +262,10 @@ TEST_F(TwinPivotSolve, BadCasesAreRefusedWithLineAndColumn) {
       {"case,m1,m2,m3,m4,reference\none,1,1,1,1,two\ntwo,1,1,1,1,\n",
        "cases.csv:2, column 'reference'"},
       {"case,m1,m2,m3,m4\none,1,1,1,1\none,1,1,1,1\n", "cases.csv:3, column 'case'"},
+      {"case,F1,F2,F3,F4,fx_7\none,1,1,1,1,1\n", "column 'fx_7'"},
+      {"case,F1,F2,F3,F4,fx_01\none,1,1,1,1,1\n", "k = 1 to 6"},
+      {"case,F1,F2,F3,F4,Mx_2\none,1,1,1,1,much\n", "cases.csv:2, column 'Mx_2'"},
+      {"case,F1,F2,F3,F4,payload_2\none,1,1,1,1,-1\n", "cases.csv:2, column 'payload_2'"},
       {"case,m1,m2,m3,m4\n", "cases.csv"}};
   for (const auto& [text, place] : bad) {
     Cases(text);
@@ -286,12 +290,61 @@ TEST_F(TwinPivotSolve, BadRobotsAreRefusedWithLineAndKey) {
       {"value: 1.0e-6", "value: 0", "friction.eps"},
       {"[0, -9.81, 0]", "[0, -9.81]", "gravity"},
       {"m_D:", "m_disc:", "m_disc"},
+      {"m_D:", "cables: [2]\nm_D:", "3 to 60 cables in a section"},
+      {"m_D:", "cables: [3, 3]\nm_D:", "one per section"},
+      {"m_D:", "cables: [3]\nm_D:", "3 numbers, one for each cable"},
+      {"value: 1.4e-3", "value: [1.4e-3, 1e-3]", "m_D"},
+      {"m_D:", "strain_limit: 0\nm_D:", "strain_limit"},
+      {"value: 1.0e-6", "value: 1.0e-6}\n  theta_max: {value: 2", "friction.theta_max"},
       {"value: 0.3,", "value: .nan,", "mu_const"}};
   for (const auto& [from, to, key] : bad) {
     const std::string message = RobotRefusal(from, to);
     EXPECT_THAT(message, HasSubstr("robot.yaml:")) << to;
     EXPECT_THAT(message, HasSubstr(key)) << to;
   }
+}
+
+TEST_F(TwinPivotSolve, StrainAndAngleBeyondTheirLimitsAreNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  std::string text = ReadFile(kFolder / "a.yaml");
+  text.replace(text.find("m_D:"), 4, "strain_limit: 0.002\nm_D:");
+  text.replace(text.find("  eps:"), 6, "  theta_max: 0.02\n  eps:");
+  request_.robot = folder_ / "limits.yaml";
+  WriteFile(request_.robot, text);
+  Cases("case,F1,F2,F3,F4,condition\nlow,1,1,1,1,V\nhigh,8,8,1,1,V\nno mu,8,8,1,1,I\n");
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  const CsvTable table = CsvTable::Read(request_.out);
+  EXPECT_EQ(table.Text(0, "beyond"), "");
+  EXPECT_THAT(table.Text(1, "beyond"), HasSubstr("> 0.002; theta "));
+  EXPECT_THAT(table.Text(1, "beyond"), HasSubstr("> 0.02 rad"));
+  EXPECT_THAT(table.Text(2, "beyond"), Not(HasSubstr("theta")));
+  ASSERT_EQ(heard.size(), 2U);
+  EXPECT_THAT(heard[0], HasSubstr("is beyond 0.002, in 2 of 3 rows"));
+  EXPECT_THAT(heard[1], HasSubstr("at 'high' is beyond 0.02, in 1 of 3 rows"));
+}
+
+TEST_F(TwinPivotSolve, BadPathsAreRefused) {
+  Cases("case,F1,F2,F3,F4\none,1,1,1,1\n");
+  request_.follow = folder_ / "path.csv";
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"x,y\n0,0\n1,0\n", "a column 'z'"},
+      {"x,y,z,t\n0,0,0,0\n0.01,0,0,0\n", "column 't'"},
+      {"x,y,z\n0,0,0\n", "two points"},
+      {"x,y,z\n0,0.01,0\n0.01,0.01,0\n", "y = z = 0"},
+      {"x,y,z\n0,0,0\n0,0,0\n", "path.csv:3"},
+      {"x,y,z,low\n0,0,0,-1\n0.01,0,0,1\n", "path.csv:2, column 'low'"},
+      {"x,y,z,low,high\n0,0,0,3,2\n0.01,0,0,1,2\n", "path.csv:2, column 'high'"},
+      {"x,y,z\n0,0,0\n0.01,0.001,0\n0.1,0.002,0\n", "path.csv:4"}};
+  for (const auto& [text, place] : bad) {
+    WriteFile(request_.follow, text);
+    EXPECT_THAT(Refusal(), HasSubstr(place)) << text;
+  }
+  WriteFile(request_.follow, "x,y,z\n0,0,0\n0.01,0,0\n");
+  Cases("case,F1,F2,F3,F4\none,1,1,1,1\ntwo,1,1,1,1\n");
+  EXPECT_THAT(Refusal(), HasSubstr("one row"));
+  Cases("case,L1,L2,L3,L4\none,0.03,0.03,0.04,0.04\n");
+  EXPECT_THAT(Refusal(), HasSubstr("--follow"));
 }
 
 TEST_F(TwinPivotSolve, NegativeFrictionInUseNamesTheFile) {

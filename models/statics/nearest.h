@@ -1,0 +1,18 @@
+#pragma once
+
+#include "models/statics/reach.h"
+
+namespace continuum::statics {
+
+/// The drives w that bring the target's coordinates p near to values p* that need not be in reach,
+/// by low tensions:
+///
+///   min |p(w) - p*|^2/length^2 + 1e-7 |w|^2/unit^2   with   low <= w <= high                  (1)
+///
+/// By Gauss-Newton from `start`; steps of at most `unit` that do not lower (1) are made shorter.
+/// `ok` when a step lowers (1) by less than a thousandth, kNoConvergence otherwise; drives are
+/// those of the last step, none where `start` has no stable shape.
+Reached Nearest(const StandUnder& stand, const Eigen::VectorXd& start, const Target& target,
+                double unit, double length);
+
+}  // namespace continuum::statics
