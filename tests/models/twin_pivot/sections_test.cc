@@ -41,7 +41,8 @@ Load Loaded(const Robot& robot) {
   Load load = Pull(RandomTension(robot.Cables(), 3));
   load.payload = 0.005;
   load.force = {0.01, -0.02, 0.03};
-  load.on_discs = {{3, {0.1, 0.2, -0.1}, {}}, {robot.Joints() - 1, {-0.1, 0.1, 0.1}, {}}};
+  load.on_discs = {{3, {0.1, 0.2, -0.1}, Eigen::Vector3d::Zero()},
+                   {robot.Joints() - 1, {-0.1, 0.1, 0.1}, Eigen::Vector3d::Zero()}};
   load.disc_payload = VectorXd::Zero(robot.Joints());
   load.disc_payload[4] = 0.003;
   return load;
