@@ -29,7 +29,7 @@ bool NumbersInsteadOf(const CandidateResult& c, const CandidateFitter& fitter, c
     return false;
   const ByLengthsAndMasses by =
       ExplainedByLengthsAndMasses(fitter, d.sizes, d.system, {}, d.before);
-  return by.squares >= d.criteria.numbers_share * (d.before.cost - c.fitted.cost);
+  return by.squares + d.criteria.parameter_cost >= d.before.cost - c.fitted.cost;
 }
 
 }  // namespace
