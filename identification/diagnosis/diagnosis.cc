@@ -63,7 +63,10 @@ class Session {
       CompleteNamed();
       Part("sizes that are not needed", [&] { DropSizes(); });
       FitFinely();
-      Part("lengths and masses in intervals", [&] { AllowInIntervals(fitter_, options_, d_); });
+      Part("lengths and masses in intervals", [&] {
+        AllowInIntervals(fitter_, options_, d_);
+        DoubtByNumbers(fitter_, d_);
+      });
       ScoreFolds();
       ConfirmOnFolds(fitter_, d_);
     } else {

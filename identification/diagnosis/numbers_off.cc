@@ -73,10 +73,13 @@ void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& opt
     AllowForLengthsAndMasses(fitter, d.sizes, c.hypothesis.system, c.hypothesis.Free(),
                              !d.verdict.complete, c.fitted);
   }
-  if (d.Is(Verdict::Kind::kNamed) && !d.partner && NumbersInsteadOf(*d.chosen(), fitter, d)) {
-    d.verdict.kind = Verdict::Kind::kAmbiguous, d.verdict.numbers = true;
-    d.verdict.reason += "; lengths and masses that are a little off do as much";
-  }
+}
+
+void DoubtByNumbers(const CandidateFitter& fitter, Diagnosis& d) {
+  if (!d.Is(Verdict::Kind::kNamed) || d.partner || !NumbersInsteadOf(*d.chosen(), fitter, d))
+    return;
+  d.verdict.kind = Verdict::Kind::kAmbiguous, d.verdict.numbers = true;
+  d.verdict.reason += "; lengths and masses that are a little off do as much";
 }
 
 }  // namespace continuum

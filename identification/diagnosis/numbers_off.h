@@ -16,9 +16,11 @@ bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& searc
 /// is (Uncertainty::by_numbers).
 bool NumbersMayDoAsMuch(const CandidateResult& candidate);
 
-/// AllowForLengthsAndMasses in the intervals of all that is named. A cause that only corrects a
-/// number, by no more than they may, where they explain as much, is not named alone: no one knows
-/// which number is off.
+/// AllowForLengthsAndMasses in the intervals of all that is named.
 void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d);
+
+/// After that: a cause that only corrects a number, by no more than lengths and masses may, is not
+/// named alone where they explain as much. No one knows which number is off.
+void DoubtByNumbers(const CandidateFitter& fitter, Diagnosis& d);
 
 }  // namespace continuum

@@ -47,7 +47,7 @@ Vector3d Nearest(const Vector3d& p, const Vector3d& from, const Vector3d& to) {
 
 }  // namespace
 
-PathLine::PathLine(const CsvTable& table) : name_(table.name()) {
+PathLine::PathLine(const CsvTable& table) {
   RequireColumns(table);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const Vector3d p(table.Number(row, "x"), table.Number(row, "y"), table.Number(row, "z"));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,7 +30,6 @@ class PathLine {
   double Base(std::size_t point, double length) const;
 
  private:
-  std::string name_;
   std::vector<std::string> where_;  ///< of every point, for messages
   std::vector<Eigen::Vector3d> points_;
   std::vector<double> s_, low_, high_;
