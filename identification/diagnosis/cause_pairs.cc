@@ -13,8 +13,10 @@
 #include "error.h"
 #include "identification/diagnosis/correction.h"
 #include "identification/diagnosis/family_starts.h"
+#include "identification/diagnosis/first_causes.h"
 #include "identification/diagnosis/lengths_and_masses.h"
 #include "identification/diagnosis/look_logs.h"
+#include "identification/diagnosis/names_of_a_set.h"
 #include "identification/diagnosis/pair_fit.h"
 #include "identification/diagnosis/search_bytes.h"
 #include "sim/numerics/ranks.h"
@@ -39,7 +41,7 @@ class PairSearch {
       : context_(context), criteria_(context.fitter.criteria), single_(single), of_step_(of_step) {}
 
   PairsFound Run() {
-    for (const CandidateResult* const c : FirstCauses()) {
+    for (const CandidateResult* const c : FirstCauses(single_.candidates, criteria_)) {
       if (const CandidateResult* const complete = Completed(*c)) Await(*complete);
     }
     while (!waiting_.empty() && static_cast<double>(bases_) < criteria_.pair_bases &&
@@ -56,43 +58,6 @@ class PairSearch {
   }
 
  private:
-  // The best of each family, or the plainest of it that explains nearly as much. A plain one that
-  // explains less comes before it: beside another cause it may do as well.
-  std::vector<const CandidateResult*> FirstCauses() const {
-    struct Family {
-      std::string name;
-      const CandidateResult *best, *plain = nullptr;
-    };
-    std::vector<Family> families;
-    for (const CandidateResult& c : single_.candidates) {
-      if (!c.was_fitted) continue;
-      const std::string name = FamilyOf(c.hypothesis.Card());
-      const auto known = std::find_if(families.begin(), families.end(),
-                                      [&](const Family& f) { return f.name == name; });
-      if (known == families.end()) {
-        if (static_cast<double>(families.size()) < criteria_.pair_singles)
-          families.push_back({name, &c});
-        continue;
-      }
-      if (!IsPlainer(c, *known->best) || (known->plain && !IsPlainer(c, *known->plain))) continue;
-      if (c.likelihood >= criteria_.family_share * known->best->likelihood) {
-        known->best = &c;
-      } else if (MayDoBesideAnother(c.likelihood, known->best->likelihood, criteria_)) {
-        known->plain = &c;
-      }
-    }
-    std::vector<const CandidateResult*> firsts;
-    for (const Family& f : families) {
-      if (f.plain && IsPlainer(*f.plain, *f.best)) firsts.push_back(f.plain);
-      firsts.push_back(f.best);
-    }
-    return firsts;
-  }
-
-  static bool IsPlainer(const CandidateResult& a, const CandidateResult& b) {
-    return KinOf(a.hypothesis.Card()).PlainerThan(KinOf(b.hypothesis.Card()));
-  }
-
   // With sensitivities; null where it diverges next to its fit.
   const CandidateResult* Completed(const CandidateResult& c) {
     if (c.fitted.complete()) return &c;
@@ -374,36 +339,37 @@ class PairSearch {
     first.correction = CorrectionOf(best);
     const bool one = first.Corrects() != first.OtherCorrects();
     first.main = one ? first.OtherCorrects() : IsMain(best);
-    std::set<std::string> taken{best.a->hypothesis.effect, best.b->hypothesis.effect};
+    NamesOfASet taken;
+    taken.Insert(best.a->hypothesis), taken.Insert(best.b->hypothesis);
     for (const std::size_t n : verdict.named) {
-      if (pairs[n].base == best.base) taken.insert(pairs[n].b->hypothesis.effect);
+      if (pairs[n].base == best.base) taken.Insert(pairs[n].b->hypothesis);
     }
     const auto add = [&](const std::vector<std::size_t>& some, auto& for_first, auto& for_second) {
       for (const std::size_t n : some) {
-        const std::string &a = pairs[n].a->hypothesis.effect, &b = pairs[n].b->hypothesis.effect;
+        const Hypothesis &a = pairs[n].a->hypothesis, &b = pairs[n].b->hypothesis;
         const std::string& first_effect = best.a->hypothesis.effect;
-        auto& others = a == first_effect || b == first_effect ? for_second : for_first;
-        for (const std::string& effect : {a, b})
-          if (taken.insert(effect).second) others.push_back(effect);
+        const bool has_first = a.effect == first_effect || b.effect == first_effect;
+        auto& others = has_first ? for_second : for_first;
+        taken.Add(a, first.relatives, others), taken.Add(b, first.relatives, others);
       }
     };
     add(verdict.named, first.equivalent, first.instead);
     std::vector<std::string> of_second;  // they are siblings that the verdict has
     add(verdict.siblings, first.relatives, of_second);
-    AddTheSame(*best.a, taken, first.equivalent);
+    AddTheSame(*best.a, taken, first.relatives, first.equivalent);
     if (const CandidateResult* const alone = Single(*best.b))
-      AddTheSame(*alone, taken, first.instead);
+      AddTheSame(*alone, taken, first.relatives, first.instead);
     return first;
   }
 
   // Effects of other families that say by themselves what this one says, as an offset of a winch
-  // and a slack cable: beside another cause they would too.
-  void AddTheSame(const CandidateResult& cause, std::set<std::string>& taken,
-                  std::vector<std::string>& others) const {
+  // and a slack cable: beside another cause they would too. Of each family one; others of it are
+  // relatives.
+  void AddTheSame(const CandidateResult& cause, NamesOfASet& taken,
+                  std::vector<std::string>& relatives, std::vector<std::string>& others) const {
     for (const CandidateResult& c : single_.candidates) {
       const bool kin = KinOf(c.hypothesis.Card()).Of(KinOf(cause.hypothesis.Card()));
-      if (c.was_fitted && !kin && SayTheSame(c, cause) && taken.insert(c.hypothesis.effect).second)
-        others.push_back(c.hypothesis.effect);
+      if (c.was_fitted && !kin && SayTheSame(c, cause)) taken.Add(c.hypothesis, relatives, others);
     }
   }
 

@@ -27,6 +27,11 @@ bool IsTilt(const EffectInfo& effect, const Param& param) {
   return effect.places.front() == Place::kWorld && param.unit == "rad";
 }
 
+// The clock's rate.
+bool IsClock(const EffectInfo& effect, const Param& param) {
+  return effect.kind == EffectInfo::Kind::kMeasure && param.null == 0 && param.unit == "1";
+}
+
 }  // namespace
 
 double MayBeOff(const EffectInfo& effect, std::string_view parameter, double null,
@@ -45,8 +50,7 @@ double MayBeOff(const EffectInfo& effect, std::string_view parameter, double nul
   if (effect.kind == EffectInfo::Kind::kEdit && param->unit == "N")
     return criteria.whole_correction * kGravity * sizes.robot;
   if (param->unit == "output") return criteria.whole_correction * sizes.reading;
-  const bool clock = effect.kind == EffectInfo::Kind::kMeasure && param->unit == "1";
-  return IsTilt(effect, *param) || clock ? +criteria.whole_correction : 0;
+  return IsTilt(effect, *param) || IsClock(effect, *param) ? +criteria.whole_correction : 0;
 }
 
 bool OnlyCorrects(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
@@ -82,6 +86,10 @@ bool IsFarTilt(double tilt, const Criteria& criteria) {
   return std::abs(tilt) > criteria.tilt_most;
 }
 
+bool IsFarClock(double skew, const Criteria& criteria) {
+  return std::abs(skew) > criteria.clock_most;
+}
+
 bool IsFarOff(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
               const Criteria& criteria) {
   const EffectInfo& effect = EffectNamed(h.Card());
@@ -90,6 +98,7 @@ bool IsFarOff(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin,
     const double value = fitted.fit.x[begin + static_cast<Eigen::Index>(i)];
     const Param* const param = OnCard(effect, h.extra[i].name);
     if (param && IsTilt(effect, *param)) return IsFarTilt(value, criteria);
+    if (param && IsClock(effect, *param)) return IsFarClock(value, criteria);
     return h.null[i] == 1 && IsNumber(h.extra[i], effect) && IsFarOff(value, criteria);
   });
 }

@@ -34,6 +34,8 @@ bool AreNumbersEnough(const ByLengthsAndMasses& by, double shows, double best,
 bool IsFarOff(double factor, const Criteria& criteria);
 /// Whether a tilt of the whole robot [rad] would have been seen.
 bool IsFarTilt(double tilt, const Criteria& criteria);
+/// Whether a clock that is off by this share of time would be the worst of its kind.
+bool IsFarClock(double skew, const Criteria& criteria);
 
 /// Whether a fitted candidate has such a size, which is not plausible.
 bool IsFarOff(const Hypothesis& hypothesis, const Fitted& fitted, Eigen::Index begin,

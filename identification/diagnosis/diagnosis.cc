@@ -440,6 +440,8 @@ class Session {
       CandidateResult& c = d_.candidates[i];
       options_.Say(DiagnosisStage::kJudgement, "sizes of " + c.hypothesis.Name());
       DropNeedlessSizes(fitter_, c);
+      if (d_.partner && i == d_.verdict.named.front())
+        DropNeedlessSizes(fitter_, c, d_.partner->hypothesis);
     }
   }
 

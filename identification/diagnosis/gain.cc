@@ -10,7 +10,7 @@ Gain GainOf(const Diagnosis& d, const TwoErrors& after) {
   const double noise2 = d.noise.rms * d.noise.rms;
   Gain gain;
   gain.removed = before2 > 0 ? 1 - std::sqrt(after2 / before2) : 0;
-  gain.explainable = before2 > noise2 ? (before2 - after2) / (before2 - noise2) : 0;
+  if (before2 > noise2) gain.explainable = (before2 - after2) / (before2 - noise2);
   return gain;
 }
 

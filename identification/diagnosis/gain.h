@@ -1,13 +1,16 @@
 #pragma once
 
+#include <optional>
+
 #include "identification/diagnosis/result.h"
 
 namespace continuum {
 
 /// What an extension takes off the error on the validate logs.
 struct Gain {
-  double removed = 0;      ///< 1 − RMS ratio
-  double explainable = 0;  ///< (MSE0 − MSE1)/(MSE0 − noise MSE)
+  double removed = 0;  ///< 1 − RMS ratio
+  /// (MSE0 − MSE1)/(MSE0 − noise MSE); none where the error before is not above the noise.
+  std::optional<double> explainable = {};
 };
 /// after: pooled errors with the extension.
 Gain GainOf(const Diagnosis& diagnosis, const TwoErrors& after);

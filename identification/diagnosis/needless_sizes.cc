@@ -13,24 +13,22 @@ namespace {
 using Matrix = Problem::Matrix;
 using Vector = Problem::Vector;
 
-bool MayLoseSizes(const CandidateResult& c) {
-  const Hypothesis& h = c.hypothesis;
+// Whether a cause has several sizes, in one unit, and is not another law without one of them.
+bool MayLoseSizes(const Hypothesis& h) {
   const auto sizes = h.Amplitudes();
-  if (sizes.size() < 2 || !c.fitted.complete() || c.at_quarter_step) return false;
-  return !EffectNamed(h.Card()).coulomb_level &&
-         std::all_of(sizes.begin(), sizes.end(), [&](std::size_t i) {
-           const Parameter& p = h.extra[i];
-           return p.unit == h.extra[sizes.front()].unit && p.per == Parameter::Per::kAll &&
-                  p.condition.empty();
-         });
+  if (sizes.size() < 2 || EffectNamed(h.Card()).coulomb_level) return false;
+  return std::all_of(sizes.begin(), sizes.end(), [&](std::size_t i) {
+    const Parameter& p = h.extra[i];
+    return p.unit == h.extra[sizes.front()].unit && p.per == Parameter::Per::kAll &&
+           p.condition.empty();
+  });
 }
 
-Hypothesis Without(Hypothesis h, std::size_t i) {
+void TakeOut(std::size_t i, Hypothesis& h) {
   const auto at = static_cast<std::ptrdiff_t>(i);
   h.extra.erase(h.extra.begin() + at);
   h.null.erase(h.null.begin() + at);
   for (std::vector<double>& start : h.starts) start.erase(start.begin() + at);
-  return h;
 }
 
 Vector Without(const Vector& x, Eigen::Index k) {
@@ -39,19 +37,38 @@ Vector Without(const Vector& x, Eigen::Index k) {
   return less;
 }
 
-// The fit without one of the sizes, the one that costs least; null where all diverge.
-std::optional<CandidateResult> WithoutOne(const CandidateFitter& fitter, const CandidateResult& c) {
-  std::optional<CandidateResult> best;
-  for (const std::size_t i : c.hypothesis.Amplitudes()) {
-    CandidateResult less = c;
-    less.hypothesis = Without(c.hypothesis, i);
-    const Vector start = Without(c.fitted.fit.x, c.first_extra() + static_cast<Eigen::Index>(i));
+// Squares of the simulation itself: to first order a size that does nothing would promise much.
+double Simulated(const CandidateResult& c) { return c.fitted.sensitivities->simulated.here; }
+
+// A fit without one of the sizes of a cause.
+struct Fewer {
+  CandidateResult candidate;
+  std::size_t size;
+};
+
+// The one that costs least; null where all diverge. of: the candidate's own cause, or the one
+// beside which it acts.
+std::optional<Fewer> WithoutOne(const CandidateFitter& fitter, const CandidateResult& c,
+                                const Hypothesis& of) {
+  const bool own = &of == &c.hypothesis;
+  const auto count = static_cast<Eigen::Index>(own ? 0 : c.hypothesis.given.size());
+  std::optional<Fewer> best;
+  for (const std::size_t i : of.Amplitudes()) {
+    Fewer less{c, i};
+    Hypothesis& h = less.candidate.hypothesis;
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    if (own) {
+      TakeOut(i, h);
+    } else {
+      h.given.erase(h.given.begin() + at);
+    }
+    const Vector start = Without(c.fitted.fit.x, c.first_extra() - count + at);
     try {
-      less.fitted = fitter.FitAll(ProblemOf(less, *fitter.experiment), start);
+      less.candidate.fitted = fitter.FitAll(ProblemOf(less.candidate, *fitter.experiment), start);
     } catch (const Error&) {
       continue;
     }
-    if (!best || less.fitted.cost < best->fitted.cost) best = std::move(less);
+    if (!best || Simulated(less.candidate) < Simulated(best->candidate)) best = std::move(less);
   }
   return best;
 }
@@ -73,6 +90,30 @@ Matrix SquaresOfOwn(const CandidateResult& c) {
   return range.asDiagonal() * squares * range.asDiagonal();
 }
 
+// Squares that a fit leaves over those of noise, at least 1.
+double OverNoise(const CandidateResult& c) {
+  return std::max(1.0, c.fitted.cost / c.fitted.sensitivities->freedom);
+}
+
+// Takes the size of a cause out of the candidate's fit that costs least, where the squares rise by
+// less than what a parameter has to earn. Returns which.
+std::optional<std::size_t> DropOne(const CandidateFitter& fitter, const Hypothesis& of,
+                                   CandidateResult& c) {
+  if (!fitter.whitening.active() || !MayLoseSizes(of) || !c.fitted.complete() ||
+      c.at_quarter_step || fitter.TimeIsOver())
+    return {};
+  std::optional<Fewer> less = WithoutOne(fitter, c, of);
+  if (!less) return {};
+  CandidateResult& fewer = less->candidate;
+  const double rises = Simulated(fewer) - Simulated(c);
+  if (rises > OverNoise(c) * (fitter.criteria.parameter_cost + fitter.criteria.nested_margin))
+    return {};
+  fewer.likelihood -= rises;
+  fewer.probes.clear(), fewer.at_quarter_x.reset(), fewer.falls_with_step.reset();
+  c = std::move(fewer);
+  return less->size;
+}
+
 }  // namespace
 
 std::size_t NumbersThatShow(const CandidateResult& c) {
@@ -91,16 +132,13 @@ std::size_t NumbersThatShow(const CandidateResult& c) {
 
 bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& c) {
   bool dropped = false;
-  while (MayLoseSizes(c) && !fitter.TimeIsOver()) {
-    std::optional<CandidateResult> less = WithoutOne(fitter, c);
-    if (!less) break;
-    const double scale = std::max(1.0, c.fitted.cost / c.fitted.sensitivities->freedom);
-    const double rises = less->fitted.cost - c.fitted.cost;
-    if (rises > scale * (fitter.criteria.parameter_cost + fitter.criteria.nested_margin)) break;
-    less->likelihood -= rises;
-    less->probes.clear(), less->at_quarter_x.reset(), less->falls_with_step.reset();
-    c = std::move(*less), dropped = true;
-  }
+  while (DropOne(fitter, c.hypothesis, c)) dropped = true;
+  return dropped;
+}
+
+bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& c, Hypothesis& beside) {
+  bool dropped = false;
+  while (const auto size = DropOne(fitter, beside, c)) TakeOut(*size, beside), dropped = true;
   return dropped;
 }
 

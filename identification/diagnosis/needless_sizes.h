@@ -11,6 +11,11 @@ namespace continuum {
 /// without its excess that is another law. Returns whether any was taken out.
 bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& candidate);
 
+/// The same for sizes of the cause beside which it was fitted (all of its hypothesis.given), which
+/// that cause loses as well.
+bool DropNeedlessSizes(const CandidateFitter& fitter, CandidateResult& candidate,
+                       Hypothesis& beside);
+
 /// How many numbers of its own a complete fit has that change these logs, each in its own way: of a
 /// force on a slide one of its three, of a tilt one where nothing tells its axes apart. Only these
 /// have to be paid for. All of them where the fit is not complete.

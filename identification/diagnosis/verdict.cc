@@ -148,7 +148,7 @@ class Ranking {
   bool TakesTheRest(std::size_t rich, std::size_t plain) const {
     const double before = candidates_[plain].held_out, after = candidates_[rich].held_out;
     const double floor = base_.floor * base_.floor;
-    return before > criteria_.near_noise * base_.floor &&
+    return before > criteria_.plainly_more * base_.floor &&
            after * after - floor <= (1 - criteria_.main_share) * (before * before - floor);
   }
   // Where more than noise is left, a law that contains another one makes up for some of that.
@@ -216,6 +216,19 @@ std::string Shows(const Ranking& all, std::size_t best, const LackOfFit& lack, b
       100 * all.share(best));
 }
 
+// Of each family the plainest law stands for it, and of these the likeliest.
+void AddByFamily(const Ranking& all, std::size_t one, Verdict& verdict) {
+  const Kin& kin = all.of(one).kin;
+  const auto of_family = std::find_if(verdict.named.begin(), verdict.named.end(),
+                                      [&](std::size_t i) { return kin.Of(all.of(i).kin); });
+  if (of_family == verdict.named.end()) {
+    verdict.named.push_back(one);
+    return;
+  }
+  if (kin.PlainerThan(all.of(*of_family).kin)) std::swap(one, *of_family);
+  verdict.siblings.push_back(one);
+}
+
 Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool more,
              const Criteria& criteria) {
   Verdict verdict{Verdict::Kind::kNamed};
@@ -230,7 +243,11 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
       if (one.listed) verdict.far_off.push_back(i);
       continue;
     }
-    (one.listed ? verdict.named : verdict.unlisted).push_back(i);
+    if (one.listed) {
+      AddByFamily(all, i, verdict);
+    } else {
+      verdict.unlisted.push_back(i);
+    }
     if (!one.listed) unlisted += (unlisted.empty() ? "" : ", ") + one.name;
     close = close && all.Score(best) - all.Score(i) < criteria.rival_margin;
   }

@@ -149,12 +149,16 @@ class DiagnosisDetails {
         {row("before", d_.before.error), row("after", run_.after),
          row(d_.noise_limited ? "noise (floor)" : "ceiling: " + d_.ceiling_by, d_.ceiling_error)},
         {fmt::format(
-            "Free simulation of every log. Noise: {}. Gain: {}, whole trials resampled; {} of "
-            "what is explainable above the noise.",
-            NoiseInWords(), GainInWords(d_, run_), Percent(gain.explainable))});
+            "Free simulation of every log. Noise: {}. Gain: {}, whole trials resampled; {}.",
+            NoiseInWords(), GainInWords(d_, run_), ExplainableInWords(gain))});
     if (const std::string contrast = ContrastInWords(d_); !contrast.empty())
       page_.Paragraph("Between conditions: " + contrast + ".");
     page_.Paragraph(Reached());
+  }
+
+  static std::string ExplainableInWords(const Gain& gain) {
+    return gain.explainable ? Percent(*gain.explainable) + " of what is explainable above the noise"
+                            : "the error before is not above the noise";
   }
 
   std::string NoiseInWords() const {

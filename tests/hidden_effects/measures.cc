@@ -114,10 +114,11 @@ void AddNumbers(Tally& t) {
       .Share("size of the effect: 95 % interval holds", std::nullopt, Goal{0.93, 0.97},
              {Robots, sized}, [](const Outcome& o) { return o.Covered(); })
       .Median("held-out explainable error removed, median", AtLeast(0.001), AtLeast(0.9),
-              {Robots, Single, IsAlone}, [](const Outcome& o) { return o.explained; })
+              {Robots, Single, IsAlone, [](const Outcome& o) { return o.explained.has_value(); }},
+              [](const Outcome& o) { return *o.explained; })
       .Share("an extension never raises the held-out error", AtLeast(1), AtLeast(1),
              {[](const Outcome& o) { return !o.named.empty(); }},
-             [](const Outcome& o) { return o.explained >= 0; })
+             [](const Outcome& o) { return o.removed >= 0; })
       .Share("proposed experiment leaves one right name", std::nullopt, AtLeast(0.8),
              {[](const Outcome& o) { return o.followed && o.right; }},
              [](const Outcome& o) { return o.followed->right && o.followed->unique; })

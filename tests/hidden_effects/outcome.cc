@@ -41,7 +41,7 @@ nlohmann::json LineOf(const Case& c, const Answer& a) {
                       {"value", a.value},
                       {"low", a.low},
                       {"high", a.high},
-                      {"explained", a.explained},
+                      {"removed", a.removed},
                       {"p", a.p},
                       {"lack", a.lack},
                       {"next", a.next},
@@ -52,6 +52,7 @@ nlohmann::json LineOf(const Case& c, const Answer& a) {
                       {"screened", a.screened},
                       {"leading", a.leading}};
   if (a.complete) line["complete"] = *a.complete;
+  if (a.explained) line["explained"] = *a.explained;
   if (a.followed) {
     const Followed& f = *a.followed;
     line["followed"] = {{"input", f.input},
@@ -71,7 +72,8 @@ void ReadMore(const nlohmann::json& line, Outcome& o) {
   o.spoilt = line.value("spoilt", "");
   o.exact = line.value("exact", o.right), o.sibling = line.value("sibling", false);
   o.cpu = line.value("cpu", o.seconds), o.p = line.value("p", 1.0);
-  o.explained = line.contains("explained") ? NumberOr(line["explained"], 0) : 0;
+  if (line.contains("explained")) o.explained = line["explained"].get<double>();
+  o.removed = line.value("removed", o.explained.value_or(0));
   o.screened = line.value("screened", ""), o.leading = line.value("leading", "");
   if (line.contains("complete")) o.complete = line["complete"].get<bool>();
 }

@@ -25,11 +25,12 @@ struct Outcome {
   double truth = 0, value = 0, low = 0, high = 0;
   std::map<std::string, double> stated;  ///< probability of every effect
   double seconds = 0, cpu = 0;
-  double p = 1;                       ///< to first order
-  double explained = 0;               ///< of the explainable error on logs left out
-  std::string screened, leading;      ///< best to first order; closest where nothing is named
-  std::optional<bool> complete = {};  ///< whether what is left looks like noise
-  double closest = 0;                 ///< how far the closest other effect is, λ
+  double p = 1;                          ///< to first order
+  double removed = 0;                    ///< of the error on logs left out
+  std::optional<double> explained = {};  ///< of what is explainable of it, where that is known
+  std::string screened, leading;         ///< best to first order; closest where nothing is named
+  std::optional<bool> complete = {};     ///< whether what is left looks like noise
+  double closest = 0;                    ///< how far the closest other effect is, λ
   struct Followed {
     bool right, unique;
   };

@@ -171,8 +171,9 @@ Answer AnswerFrom(const Case& c, const Json& d) {
   Answer a;
   a.verdict = d.at("verdict"), a.complete = d.at("complete").get<bool>();
   a.seconds = d.at("seconds");
-  const Json& explained = d.at("gain").at("explainable_error_removed");
-  a.explained = explained.is_number() ? explained.get<double>() : 0;
+  const Json &gain = d.at("gain"), &explained = gain.at("explainable_error_removed");
+  a.removed = gain.at("validate_error_removed");
+  if (explained.is_number()) a.explained = explained.get<double>();
   const Json& lack = d.at("lack_of_fit");
   a.lack = std::min(lack.at("force").get<double>(), lack.at("channel").get<double>());
   ReadScreen(d.at("candidates"), a);

@@ -36,7 +36,7 @@ nlohmann::json Diagnosed() {
   return {{"verdict", "ambiguous"},
           {"complete", true},
           {"seconds", 3},
-          {"gain", {{"explainable_error_removed", 0.9}}},
+          {"gain", {{"validate_error_removed", 0.6}, {"explainable_error_removed", 0.9}}},
           {"lack_of_fit", {{"force", 0.2}, {"channel", 0.1}}},
           {"leading", {{"effect", "coulomb"}}},
           {"causes", {Cause("coulomb", "tau_c", 0.1)}},

@@ -244,7 +244,8 @@ Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
   a.cpu = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   a.verdict = d.verdict.word(), a.complete = d.verdict.complete;
   a.seconds = d.seconds;
-  a.explained = GainOf(d, d.after()).explainable;
+  const Gain gain = GainOf(d, d.after());
+  a.removed = gain.removed, a.explained = gain.explainable;
   a.next = Separation(d);
   a.lack = d.lack_of_fit.smallest();
   a.next_experiment = d.next;

@@ -51,11 +51,12 @@ struct Answer {
   bool corrects = false;                    ///< the partner only corrects a number of the model
   std::vector<std::string> partner = {};    ///< of a second cause beside those
   double truth = 0, value = 0, low = 0, high = 0;  ///< of the first effect, when it is in named
-  double explained = 0;  ///< explainable error removed on the validate logs
-  double p = 1;          ///< family-wise, of the best candidate to first order
-  double lack = 1;       ///< p-value of what the model that is left standing leaves
-  double next = 0;       ///< likelihood between the two best
-  double closest = 0;    ///< how far the closest other effect is from the likeliest, to first order
+  double removed = 0;                              ///< error removed on the validate logs
+  std::optional<double> explained = {};  ///< of what is explainable of it, where that is known
+  double p = 1;                          ///< family-wise, of the best candidate to first order
+  double lack = 1;                       ///< p-value of what the model that is left standing leaves
+  double next = 0;                       ///< likelihood between the two best
+  double closest = 0;  ///< how far the closest other effect is from the likeliest, to first order
   double seconds = 0, cpu = 0;        ///< by the clock, and of all processors together
   std::string screened = "";          ///< the effect that explains most to first order
   std::optional<bool> complete = {};  ///< whether what is left looks like noise, where it is said

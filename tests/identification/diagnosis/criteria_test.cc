@@ -262,6 +262,12 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["structure_least"] = LeastStructure();
   e["main_share"] = MainShare();
   e["family_share"] = FamilyShare();
+  e["plainly_more"] = AroundBoundary(2, [](double held_out, const Criteria& c) {
+    LikelihoodRecord plain{"plain", 1, 970}, rich{"rich", 1, 1000};
+    plain.kin = {"family", 0}, rich.kin = {"family", 1};
+    plain.held_out = held_out, rich.held_out = 1;
+    return JudgeLikelihoods({plain, rich}, {}, 1e-3, {.floor = 1}, c).named.front() == 1;
+  });
   e["earned_share"] = EarnedShare();
   e["step_share"] = {Lead(50 * kBelow, 1, {}, 10'000), Lead(50 * kAbove, 1, {}, 10'000)};
   e["plain_noise"] = AroundBoundary(0.05, [](double p, const Criteria& c) {
@@ -356,6 +362,8 @@ std::map<std::string, std::vector<Judged>> Examples() {
   });
   e["factor_most"] =
       AroundBoundary(2, [](double factor, const Criteria& c) { return IsFarOff(factor, c); });
+  e["clock_most"] =
+      AroundBoundary(0.02, [](double skew, const Criteria& c) { return IsFarClock(skew, c); });
   e["tilt_most"] =
       AroundBoundary(0.25, [](double tilt, const Criteria& c) { return IsFarTilt(tilt, c); });
   e["pair_hopeless"] = AroundBoundary(100, [](double over, const Criteria& c) {

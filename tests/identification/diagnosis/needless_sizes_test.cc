@@ -76,6 +76,20 @@ TEST_F(NeedlessSizes, OneAxisOfATiltIsEnough) {
   EXPECT_FALSE(DropNeedlessSizes(fitter_, c));  // the last one stays
 }
 
+// The same tilt as the cause beside which another one was fitted.
+TEST_F(NeedlessSizes, OfTheCauseBesideItGoTheSameWay) {
+  CandidateResult c = Fitted("gravity_tilt");
+  Hypothesis tilt = c.hypothesis;
+  c.hypothesis.given = tilt.extra;
+  c.hypothesis.extra.clear(), c.hypothesis.null.clear(), c.hypothesis.starts.clear();
+  EXPECT_TRUE(DropNeedlessSizes(fitter_, c, tilt));
+  ASSERT_EQ(tilt.extra.size(), 1u);
+  EXPECT_EQ(tilt.extra[0].name, "pitch");
+  ASSERT_EQ(c.hypothesis.given.size(), 1u);
+  EXPECT_EQ(c.hypothesis.given[0].name, "pitch");
+  EXPECT_NEAR(std::abs(c.fitted.fit.x[0]), 0.03, 1e-3);
+}
+
 TEST_F(NeedlessSizes, AFrictionKeepsItsOwn) {
   CandidateResult c = Fitted("stribeck");
   const std::size_t sizes = c.hypothesis.extra.size();

@@ -270,6 +270,17 @@ TEST(Likelihoods, SiblingsMakeNoSet) {
   EXPECT_THAT(v.siblings, ElementsAre(0));
 }
 
+// Delays beside a lag that do as well as it: the set has the plainest of them.
+TEST(Likelihoods, OfEachFamilyOneStandsInASet) {
+  LikelihoodRecord best{"best", 1, 4700}, rich{"rich", 1, 4698}, plain{"plain", 1, 4697},
+      other{"other", 1, 4699};
+  rich.kin = {"lateness", 1}, plain.kin = {"lateness", 0};
+  const auto v = JudgeLikelihoods({best, rich, plain, other}, {1e-6}, 1e-3, kLoud);
+  EXPECT_EQ(v.word(), "ambiguous");
+  EXPECT_THAT(v.named, ElementsAre(0, 3, 2));
+  EXPECT_THAT(v.siblings, ElementsAre(1));
+}
+
 TEST(Kin, IsOfOneFamilyInAnyOrderOfTwoCauses) {
   EXPECT_TRUE(KinOf("coulomb").Of(KinOf("dahl")));
   EXPECT_FALSE(KinOf("coulomb").Of(KinOf("pt1")));
