@@ -3,14 +3,21 @@
 #include <cmath>
 
 namespace continuum {
+namespace {
+
+// Share of its unit that a residual counts for at least, as where a sensor is stuck and shows no
+// noise: no sensor and no model is better than that.
+constexpr double kFinest = 1e-4;
+
+}  // namespace
 
 Whitening::Whitening(const Problem& problem, const Noise& noise) {
   const Experiment& e = problem.experiment();
   for (std::size_t c = 0; c < problem.channels().size(); ++c) {
     const ChannelNoise& n = noise.channel[problem.channels()[c]];
     const double unit = problem.scale(c);
-    // Without any noise a residual counts in parts per billion of its unit.
-    filter_.push_back({n.ar, std::max(n.innovation / unit, 1e-9), std::max(n.rms / unit, 1e-9)});
+    filter_.push_back(
+        {n.ar, std::max(n.innovation / unit, kFinest), std::max(n.rms / unit, kFinest)});
   }
   for (const Log& log : e.logs) {
     std::vector<Block> blocks;
