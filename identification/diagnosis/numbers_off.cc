@@ -22,14 +22,34 @@ bool ACorrectionDoesAsWell(const CandidateSearch& search, const Criteria& criter
   });
 }
 
-// Whether what a named cause corrects, and does, lengths and masses may be and do as well.
-bool NumbersInsteadOf(const CandidateResult& c, const CandidateFitter& fitter, const Diagnosis& d) {
+// Lengths and masses that may be and do what a named cause corrects, and does; null where they do
+// less.
+std::optional<ByLengthsAndMasses> InsteadOf(const CandidateResult& c, const CandidateFitter& fitter,
+                                            const Diagnosis& d) {
   if (!NumbersMayDoAsMuch(c) || !OnlyCorrects(c.hypothesis, c.fitted, c.first_extra(),
                                               *fitter.experiment, d.sizes, d.criteria))
-    return false;
+    return {};
   const ByLengthsAndMasses by =
       ExplainedByLengthsAndMasses(fitter, d.sizes, d.system, {}, d.before);
-  return by.squares + d.criteria.parameter_cost >= d.before.cost - c.fitted.cost;
+  if (by.squares + d.criteria.parameter_cost < d.before.cost - c.fitted.cost) return {};
+  return by;
+}
+
+// Whether a cause takes anything to speak of off the error, on logs left out where there are any.
+bool Helps(const CandidateResult& c, const Diagnosis& d) {
+  const TwoErrors &before = d.before.error, &after = c.fitted.error;
+  const double least = 1 - d.criteria.median_gain;
+  return before.validate > 0 ? after.validate <= least * before.validate
+                             : after.train <= least * before.train;
+}
+
+void NothingIsMissing(const ByLengthsAndMasses& by, Diagnosis& d) {
+  const std::string numbers =
+      fmt::format("lengths and masses that are at most {:.1f} % off", 100 * by.off);
+  const std::optional<std::size_t> leading = d.verdict.leading;
+  d.verdict = Verdict::Adequate(numbers + " do what shows");
+  d.verdict.leading = leading, d.verdict.numbers_off = by.off, d.verdict.complete = false;
+  d.remaining.would_take = numbers + " would take it";
 }
 
 }  // namespace
@@ -56,12 +76,7 @@ bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& searc
   const ByLengthsAndMasses by =
       ExplainedByLengthsAndMasses(fitter, d.sizes, d.system, {}, d.before);
   if (!AreNumbersEnough(by, above, explained, d.criteria)) return false;
-  const std::string numbers =
-      fmt::format("lengths and masses that are at most {:.1f} % off", 100 * by.off);
-  const std::optional<std::size_t> leading = d.verdict.leading;
-  d.verdict = Verdict::Adequate(numbers + " do what shows");
-  d.verdict.leading = leading, d.verdict.numbers_off = by.off, d.verdict.complete = false;
-  d.remaining.would_take = numbers + " would take it";
+  NothingIsMissing(by, d);
   return true;
 }
 
@@ -76,8 +91,11 @@ void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& opt
 }
 
 void DoubtByNumbers(const CandidateFitter& fitter, Diagnosis& d) {
-  if (!d.Is(Verdict::Kind::kNamed) || d.partner || !NumbersInsteadOf(*d.chosen(), fitter, d))
-    return;
+  if (!d.Is(Verdict::Kind::kNamed) || d.partner) return;
+  const CandidateResult& named = *d.chosen();
+  const auto numbers = InsteadOf(named, fitter, d);
+  if (!numbers) return;
+  if (!Helps(named, d)) return NothingIsMissing(*numbers, d);
   d.verdict.kind = Verdict::Kind::kAmbiguous, d.verdict.numbers = true;
   d.verdict.reason += "; lengths and masses that are a little off do as much";
 }

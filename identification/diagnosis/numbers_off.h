@@ -20,7 +20,8 @@ bool NumbersMayDoAsMuch(const CandidateResult& candidate);
 void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d);
 
 /// After that: a cause that only corrects a number, by no more than lengths and masses may, is not
-/// named alone where they explain as much. No one knows which number is off.
+/// named alone where they explain as much. No one knows which number is off. Where it takes hardly
+/// anything off the error, nothing is missing.
 void DoubtByNumbers(const CandidateFitter& fitter, Diagnosis& d);
 
 }  // namespace continuum
