@@ -252,23 +252,30 @@ void ModelSpec::DropVisuals() {
     if (!geom.contype && !geom.conaffinity && inferred && weighs) return;
   }
   spec_->compiler.discardvisual = 1;
+  last_ = {};
   CompileForNames(*spec_, name_);  // which deletes them, before an edit holds one
 }
 
 ModelSpec::ModelSpec(const ModelSpec& other)
     : ModelSpec(Parse(other.Xml(), other.folder_, other.name_)) {}
 
-ModelAndData ModelSpec::Build(std::span<const Change> changes) const {
-  ModelAndData machine;
-  {
-    const Edits edits(*this, changes);
-    try {
-      machine.model = Compile(*spec_, name_);
-    } catch (const Error&) {
-      RequireOrder(*spec_, *compiled_, changes);
-      throw;
-    }
+Owned<mjModel> ModelSpec::CompileWith(std::span<const Change> changes) const {
+  const Edits edits(*this, changes);
+  try {
+    return Compile(*spec_, name_);
+  } catch (const Error&) {
+    RequireOrder(*spec_, *compiled_, changes);
+    throw;
   }
+}
+
+ModelAndData ModelSpec::Build(std::span<const Change> changes) const {
+  std::vector<Change> compiled;
+  for (const Change& change : changes)
+    if (!IsPlugin(change)) compiled.push_back(change);
+  if (!last_.model || last_.changes != compiled) last_ = {compiled, CompileWith(compiled)};
+  ModelAndData machine;
+  machine.model.reset(mj_copyModel(nullptr, last_.model.get()));
   machine.data.reset(mj_makeData(machine.model.get()));
   if (!machine.data) throw Error::Job(name_ + ": MuJoCo cannot allocate its data");
   for (const Change& change : changes) {

@@ -61,6 +61,7 @@ class ModelSpec {
  private:
   ModelSpec() = default;
 
+  Owned<mjModel> CompileWith(std::span<const Change> changes) const;
   std::string SavedXml() const;
 
   // Edits of the specification that are taken back at the end of a scope (mj_copySpec would lose
@@ -70,6 +71,13 @@ class ModelSpec {
   std::string name_, folder_;
   Owned<mjSpec> spec_;
   Owned<mjModel> compiled_;
+  // The model that was compiled last, and its changes without those of plugins. Logs of one fit
+  // share it.
+  struct Compiled {
+    std::vector<Change> changes;
+    Owned<mjModel> model;
+  };
+  mutable Compiled last_;
 };
 
 /// Whether a change lies on top of an element, which does not show it as a value of its own: a

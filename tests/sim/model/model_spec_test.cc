@@ -79,6 +79,24 @@ TEST_F(Changed, SystemsAreAsBeforeAfterAChangeThatFails) {
   EXPECT_EQ(arm.Build().model->dof_damping[0], 0.1);
 }
 
+// Models with the same changes are copies of one that was compiled; what is done to one of them, or
+// to its plugins, is not done to the next.
+TEST_F(Changed, ModelsThatAreBuiltAgainAreFresh) {
+  const ModelSpec arm = Arm().With({}, {{{"coulomb", "rub", {{"joint", "q"}, {"tau_c", "0.1"}}}}});
+  const std::vector<Change> damped{{"joint:q", "damping", 5}};
+  const std::vector<Change> rubbing{{"joint:q", "damping", 5}, {"plugin:rub", "tau_c", 30}};
+  arm.Build(damped).model->dof_damping[0] = 7;
+  ModelAndData with = arm.Build(rubbing), without = arm.Build(damped);
+  const auto push = [](ModelAndData& machine) {
+    machine.data->qfrc_applied[0] = 1;
+    mj_step(machine.model.get(), machine.data.get());
+    return std::abs(machine.data->qvel[0]);
+  };
+  EXPECT_EQ(without.model->dof_damping[0], 5);
+  EXPECT_LT(push(with), 0.1 * push(without));
+  EXPECT_EQ(arm.Build().model->dof_damping[0], 0.1);
+}
+
 TEST_F(Changed, MassesFollowOneAnother) {
   const ModelSpec arm = Arm();
   for (const std::string body : {"arm", "ball"}) {
