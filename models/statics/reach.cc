@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "models/statics/box_least_squares.h"
+#include "models/statics/columns.h"
 #include "sim/io/decimal.h"
 
 namespace continuum::statics {
@@ -25,17 +26,13 @@ std::vector<std::pair<int, std::string>> Places(int disks) {
 }
 
 void RequireKnown(const CsvTable& table, int disks) {
-  std::set<std::string> known = {"case", "low", "high"};
+  std::vector<std::string> known = {"case", "low", "high"};
   for (const auto& [disk, suffix] : Places(disks)) {
-    for (const char* axis : {"x", "y", "z"}) known.insert(axis + suffix);
+    for (const char* axis : {"x", "y", "z"}) known.push_back(axis + suffix);
   }
-  for (const std::string& column : table.columns()) {
-    if (known.contains(column)) continue;
-    throw Error::Input(
-        table.name() + ":1",
-        fmt::format("columns case, x, y, z, x_i, y_i, z_i (i to {}), low, high", disks),
-        "'" + column + "'");
-  }
+  RefuseOtherColumns(
+      table, known,
+      fmt::format("columns case, x, y, z, x_i, y_i, z_i (i to {}), low, high", disks));
 }
 
 Target ReadTarget(const CsvTable& table, std::size_t row, int disks, double least) {

@@ -272,13 +272,14 @@ TEST_F(TdcrSolve, ATrainingOnFewCasesIsPoorUnlessItIsCrossValidated) {
   const auto cases = ReadCases(CsvTable::Read(request_.input), robot);
   request_.measured = Write("measured.csv", MeasuredText(twisted, cases, Method::kCrt));
   request_.hybrid = "train";
+  request_.lambda = 0;
   request_.out = folder_ / "hybrid.yaml";
   std::vector<std::string> heard;
   request_.warn = [&](const std::string& sentence) { heard.push_back(sentence); };
   EXPECT_EQ(SolveTdcr(request_), 1);
   EXPECT_THAT(heard, testing::ElementsAre(testing::AnyOf(HasSubstr("left out of a training"),
                                                          HasSubstr("too few cases"))));
-  request_.cross_validate = true;
+  request_.lambda.reset();
   EXPECT_EQ(SolveTdcr(request_), 0);
   EXPECT_EQ(Yaml::Read(request_.out).At("hybrid").At("status").Text(), "ok");
 }
@@ -307,7 +308,7 @@ TEST(TdcrSynthetic, HybridHalvesTheErrorOfTheLevelSet) {
       Calibrate(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"), "synthetic");
   std::vector<Case> cases = e.cases;
   for (Case& each : cases) each.loads.mu = c.robot.mu;
-  const Hybrid h = Train(c.robot, Match(cases, e.measured, "synthetic"), "synthetic");
+  const Hybrid h = Train(c.robot, Method::kEas, Match(cases, e.measured, "synthetic"), "synthetic", 0);
   EXPECT_THAT(h.features, testing::Not(testing::Contains("fx")));  // a constant tip force
   EXPECT_LT(Statistics(h.tips.test)->mean, 0.6 * Statistics(c.tips.test)->mean);
 }
