@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/console.h"
+#include "error.h"
 #include "models/solve.h"
 #include "sim/io/output_folder.h"
 
@@ -19,7 +20,8 @@ void AddSolve(CLI::App& app, int& exit_code) {
   solve->add_option("--method", request->method,
                     "tdcr: eas (default), pcca, crt, crt_friction, fit; twin_pivot: virtual_work "
                     "(default), printed; stiff_flop: energy+body+chamber");
-  solve->add_option("--input", request->input, "Cases: one row each (CSV)");
+  solve->add_option("--input", request->input,
+                    "Cases: one row each (CSV); - with --out -: a stream, answered row by row");
   solve->add_option("--measured", request->measured,
                     "Measured disks or tips of the cases (CSV), for errors; tdcr also for fit and "
                     "calibration");
@@ -73,14 +75,18 @@ void AddSolve(CLI::App& app, int& exit_code) {
   solve->callback([request, &exit_code] {
     const std::vector<std::filesystem::path> inputs{
         request->robot, request->input, request->measured, request->reach, request->follow};
-    RequireWritable(request->out, inputs);
+    const bool stream = request->input == "-";
+    if (stream != (request->out == "-")) {
+      throw Error::Input("--input and --out", "'-' for both, or files", "one of them");
+    }
+    if (!stream) RequireWritable(request->out, inputs);
     for (const auto* file : {&request->plot, &request->shape, &request->compliance,
                              &request->errors, &request->boxplot}) {
       if (!file->empty()) RequireWritable(*file, inputs);
     }
     request->warn = [](const std::string& text) { std::cerr << "warning: " << text << '\n'; };
     request->say = [](const std::string& text) { std::cerr << text << '\n'; };
-    exit_code = Solve(*request);
+    exit_code = stream ? SolveStream(*request, std::cin, std::cout) : Solve(*request);
   });
 }
 

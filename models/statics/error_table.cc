@@ -142,16 +142,17 @@ std::string ErrorTable::Sentence() const {
     const auto values = tip ? distances_[set].back() : Together(distances_[set]);
     if (values.empty()) continue;
     const Summary s = SummaryOf(values);
-    text += fmt::format("{}{}, {} of {}: mean {:.3g} mm ({:.2g} % of the length), largest {:.3g} mm",
-                        text.empty() ? "" : "; ", kSets[set], tip ? "tip" : "disks",
-                        values.size(), kMillimetres * s.mean, 100 * s.mean / length_,
-                        kMillimetres * s.max);
+    text +=
+        fmt::format("{}{}, {} of {}: mean {:.3g} mm ({:.2g} % of the length), largest {:.3g} mm",
+                    text.empty() ? "" : "; ", kSets[set], tip ? "tip" : "disks", values.size(),
+                    kMillimetres * s.mean, 100 * s.mean / length_, kMillimetres * s.max);
   }
   return "distance from measured points: " + text;
 }
 
 void ErrorTable::Write(const std::filesystem::path& path) const {
-  Results results({"set", "disk", "cases", "mae", "mape", "std", "min", "q1", "median", "q3", "max"});
+  Results results(
+      {"set", "disk", "cases", "mae", "mape", "std", "min", "q1", "median", "q3", "max"});
   for (int set = 0; set < 2; ++set) {
     for (std::size_t i = 0; i < distances_[set].size(); ++i) {
       AddRow(kSets[set], std::to_string(i + 1), distances_[set][i], length_, results);
@@ -172,7 +173,8 @@ void ErrorTable::DrawBoxes(const std::string& title, Canvas& canvas) const {
   canvas.Text({kLeft, 16}, title, {}, {9, true});
   const bool both = !Together(distances_[0]).empty() && !Together(distances_[1]).empty();
   const std::size_t disks = distances_[0].size(), every = (disks + 29) / 30;
-  const double wide = (kRight - kLeft) / static_cast<double>(disks), half = wide * (both ? 0.17 : 0.3);
+  const double wide = (kRight - kLeft) / static_cast<double>(disks),
+               half = wide * (both ? 0.17 : 0.3);
   for (std::size_t i = 0; i < disks; ++i) {
     const double x = kLeft + (static_cast<double>(i) + 0.5) * wide;
     if ((disks - 1 - i) % every == 0) {
@@ -181,8 +183,8 @@ void ErrorTable::DrawBoxes(const std::string& title, Canvas& canvas) const {
     for (int set = 0; set < 2; ++set) {
       if (distances_[set][i].empty()) continue;
       const double aside = both ? (set == 0 ? -0.21 : 0.21) * wide : 0;
-      DrawBox(distances_[set][i], {x + aside, half, up, CasePen(static_cast<std::size_t>(set)).colour},
-              canvas);
+      DrawBox(distances_[set][i],
+              {x + aside, half, up, CasePen(static_cast<std::size_t>(set)).colour}, canvas);
     }
   }
   if (!both) return;
@@ -210,8 +212,7 @@ void CheckErrorOptions(const SolveRequest& request) {
   }
 }
 
-void ReportErrors(const SolveRequest& request, const ErrorTable& errors,
-                  const std::string& title) {
+void ReportErrors(const SolveRequest& request, const ErrorTable& errors, const std::string& title) {
   if (errors.empty()) return;
   request.say(errors.Sentence());
   if (!request.errors.empty()) errors.Write(request.errors);

@@ -19,8 +19,8 @@ struct MeasuredPoints {
   int count() const;
 };
 
-/// Reads MEASURED.csv: `case`; `x_i, y_i, z_i` of any disks 1..disks, or `x, y, z` of the tip, which
-/// is the last one; `use`: train (default) or test. Empty cells: not measured.
+/// Reads MEASURED.csv: `case`; `x_i, y_i, z_i` of any disks 1..disks, or `x, y, z` of the tip,
+/// which is the last one; `use`: train (default) or test. Empty cells: not measured.
 /// @throws Error with file, line and column: another column, a point that is not whole, the tip
 /// twice, a name twice, a row without any point, no row.
 std::vector<MeasuredPoints> ReadMeasuredPoints(const CsvTable& table, int disks);

@@ -29,6 +29,10 @@ struct SolveRequest {
   bool sensitivity = false;
   int sweep = 0;  ///< values of every column that differs in the two rows of `input`; 0: its rows
   bool equilibria = false;  ///< all of every case that a search finds, a row each
+  /// A table instead of the file `input`, and where its results go instead of `out` (as CSV): a row
+  /// of a stream.
+  std::string row;
+  std::function<void(const std::string&)> take = nullptr;
   /// Called for what was not used: a sentence with file and line.
   std::function<void(const std::string&)> warn = [](const std::string&) {};
   /// Called with a sentence about the results.

@@ -167,8 +167,8 @@ Calibration Calibrate(const Robot& robot, const Method& method,
   options.step = 1e-8;
   options.decrease = 1e-9;
   options.max_iterations = 200;
-  const auto outcome = numerics::LevenbergMarquardt<Eigen::VectorXd>(tips, x, tips.equations(),
-                                                                     options, bounds);
+  const auto outcome =
+      numerics::LevenbergMarquardt<Eigen::VectorXd>(tips, x, tips.equations(), options, bounds);
   if (!outcome.ok()) {
     throw Error::Job("calibration failed: " + outcome.why +
                      (tips.failure.empty() ? "" : "; " + tips.failure));

@@ -56,7 +56,8 @@ int CalibrateRobot(const SolveRequest& request, const Robot& robot, const Method
   if (cases.direction != Direction::kForward) {
     throw Error::Input("--calibrate", "cases with p1, p2, p3", "kappa");
   }
-  if (request.measured.empty()) throw Error::Input("--measured", "a file for --calibrate", "nothing");
+  if (request.measured.empty())
+    throw Error::Input("--measured", "a file for --calibrate", "nothing");
   const std::vector<std::string> names =
       request.parameters.empty() ? std::vector<std::string>{"E", "gamma"} : request.parameters;
   const auto measured = statics::ReadMeasuredPoints(CsvTable::Read(request.measured), 1);

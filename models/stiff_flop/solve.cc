@@ -351,7 +351,7 @@ int SolveStiffFlop(const SolveRequest& request) {
   for (const Solved& solved : rows) {
     WriteRow(request, robot.module, method, cases.direction, solved, results);
   }
-  results.Write(request.out);
+  statics::Write(results, request);
   if (!request.shape.empty()) WriteShapes(request, robot.module, method, rows);
   if (!request.compliance.empty()) WriteCompliance(request, robot.module, method, rows);
   if (!request.plot.empty()) Draw(request, robot, cases.direction, rows);

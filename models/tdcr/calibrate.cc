@@ -74,7 +74,8 @@ class CalibrationProblem {
   bool Align(Eigen::VectorXd& p) const {
     std::vector<Eigen::Index> at;
     for (Eigen::Index i = 0; i < unknowns(); ++i) {
-      if (unknowns_[static_cast<std::size_t>(i)].quantity == Quantity::kBaseRotation) at.push_back(i);
+      if (unknowns_[static_cast<std::size_t>(i)].quantity == Quantity::kBaseRotation)
+        at.push_back(i);
     }
     if (at.empty()) return false;
     Eigen::VectorXd model(equations_);
@@ -270,15 +271,14 @@ Calibration Calibrate(const Robot& robot, Method method, const std::vector<Unkno
   std::vector<bool> free;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     free.push_back(x[i] > problem.low()[i] && x[i] < problem.high()[i]);
-    if (!free.back())
-      calibration.at_bound.push_back(unknowns[static_cast<std::size_t>(i)].name);
+    if (!free.back()) calibration.at_bound.push_back(unknowns[static_cast<std::size_t>(i)].name);
   }
   statics::FittedShapes fit{Eigen::VectorXd(problem.equations()),
-                   Eigen::MatrixXd(problem.equations(), x.size()),
-                   problem.begin(),
-                   x,
-                   problem.low(),
-                   problem.high()};
+                            Eigen::MatrixXd(problem.equations(), x.size()),
+                            problem.begin(),
+                            x,
+                            problem.low(),
+                            problem.high()};
   if (!problem.Jacobian(x, fit.f, fit.J)) throw Error::Job(problem.failure());
   RequireEffects(unknowns, fit.J, file);
   calibration.spread = statics::SpreadOf(fit, free);

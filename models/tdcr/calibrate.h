@@ -12,7 +12,8 @@
 namespace continuum::tdcr {
 
 /// How near a prediction is to the robot: of shapes that the fit has not seen, `level` have disk i
-/// within within[i] [m] of where the calibrated model puts it (statics::WithinOf). NaN: never measured.
+/// within within[i] [m] of where the calibrated model puts it (statics::WithinOf). NaN: never
+/// measured.
 struct Prediction {
   double level = 0.95;
   int cases = 0;

@@ -98,7 +98,8 @@ class ValueWriter {
         if (material) return Set(node, "nu", Number(section.EI / section.GJ - 1), {});
         return Set(node, "GJ", Number(section.GJ), standard);
       case Quantity::kDensity:
-        if (!material) return Set(node, "mass_per_length", Number(section.mass_per_length), standard);
+        if (!material)
+          return Set(node, "mass_per_length", Number(section.mass_per_length), standard);
         return Set(node, "density", Number(section.mass_per_length / section.area()), standard);
       case Quantity::kDiskMass:
         return Set(node, "disk_mass", Number(section.disk_mass), standard);
@@ -154,8 +155,8 @@ YAML::Node PredictionDocument(const Prediction& prediction) {
   node["level"] = Number(prediction.level);
   node["cases"] = prediction.cases;
   const auto& within = prediction.within;
-  node["within"] = List(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-      within.data(), static_cast<Eigen::Index>(within.size()))));
+  node["within"] = List(Eigen::VectorXd(
+      Eigen::Map<const Eigen::VectorXd>(within.data(), static_cast<Eigen::Index>(within.size()))));
   return node;
 }
 

@@ -35,9 +35,8 @@ std::string Together(const std::vector<std::string>& names) {
 
 void RequireKnownKeys(const Yaml& robot) {
   if (robot.Has("sections")) {
-    return robot.Only(
-        {"format", "robot", "sections", "tendons", "mu", "tendon_EA", "gravity", "base_rotation",
-         "calibration"});
+    return robot.Only({"format", "robot", "sections", "tendons", "mu", "tendon_EA", "gravity",
+                       "base_rotation", "calibration"});
   }
   robot.Only({"format", "robot", "length", "diameter", "disks", "tendons", "tendon_radius", "E",
               "nu", "density", "disk_mass", "mu", "tendon_EA", "gravity", "base_rotation",

@@ -377,8 +377,7 @@ bool RodBalance::JacobianOf(const Eigen::VectorXd& x, Eigen::VectorXd& f,
   for (std::size_t first = 0; first < coupled.size(); first += kBlock) {
     const auto count = static_cast<int>(std::min<std::size_t>(kBlock, coupled.size() - first));
     const auto column = [&](int i) { return coupled[first + static_cast<std::size_t>(i)]; };
-    const auto step =
-        static_cast<int>(std::max<Eigen::Index>(0, (column(0) - 3) / tendons));
+    const auto step = static_cast<int>(std::max<Eigen::Index>(0, (column(0) - 3) / tendons));
     std::fill(dual_f.begin(), dual_f.end(), Dual(0));
     for (int i = 0; i < count; ++i) dual_x[static_cast<std::size_t>(column(i))].v[i] = 1;
     const State<Dual, kRubbing, true> begin =

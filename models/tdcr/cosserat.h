@@ -59,8 +59,8 @@ class RodBalance {
   /// Tensions [N] of all tendons that do not grow with the loads; of contacts that remember.
   void SetTension(const Eigen::VectorXd& tension);
   double load() const { return load_; }
-  /// Contacts that remember turn from rest to sliding within this [m]: kGivesWay, or more on the way
-  /// to a root.
+  /// Contacts that remember turn from rest to sliding within this [m]: kGivesWay, or more on the
+  /// way to a root.
   void SetWidth(double width);
   /// u(0) when nothing acts.
   Eigen::Vector3d Natural() const { return rod_.Arc(0).natural; }
@@ -155,8 +155,7 @@ class RodBalance {
     const auto k = static_cast<Eigen::Index>(tendon);
     const Contacts& from = remembers_->from;
     const double before = from.share.size() > 0 ? from.share(step, k) : 0;
-    return statics::SlideFrom(before,
-                              T((length_ / width_) * (beyond_before_(step, k) - beyond)));
+    return statics::SlideFrom(before, T((length_ / width_) * (beyond_before_(step, k) - beyond)));
   }
   // Per tendon, steps x tendons, of the rod when nothing acts [L].
   Eigen::MatrixXd RestLengths(int steps) const;

@@ -102,7 +102,8 @@ double Polish(const ShapeProblem& problem, Eigen::VectorXd& x) {
 
 Solution FitShape(const Robot& robot, const Eigen::Matrix3Xd& points, double lambda) {
   const LinearCurvature linear(robot);
-  ShapeProblem problem{robot, linear, points, {}, std::sqrt(lambda) / (robot.length * robot.length)};
+  ShapeProblem problem{
+      robot, linear, points, {}, std::sqrt(lambda) / (robot.length * robot.length)};
   for (int i = 0; i < robot.disks; ++i) {
     if (!std::isnan(points(0, i))) problem.measured.push_back(i);
   }

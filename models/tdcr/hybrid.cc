@@ -79,8 +79,7 @@ void Correct(const Eigen::Matrix3Xd& more, Line& line) {
           before.frames[at - 1].conjugate() * (before.points.col(i) - before.points.col(i - 1));
       const Eigen::Matrix3d R = line.frames[at - 1].toRotationMatrix();
       line.points.col(i) = line.points.col(i - 1) + R * (way + to.p() - from.p());
-      const Eigen::Matrix3d relative =
-          turn.toRotationMatrix() * from.Twisted(from.Q()).transpose();
+      const Eigen::Matrix3d relative = turn.toRotationMatrix() * from.Twisted(from.Q()).transpose();
       line.frames[at] = Eigen::Quaterniond(Eigen::Matrix3d(R * relative * to.Twisted(to.Q())));
       const int disk = line.disk[at];
       if (disk > 0) arc = std::min<Eigen::Index>(disk, more.cols() - 1);

@@ -51,8 +51,7 @@ struct HybridProblem {
       const Eigen::VectorXd scaled = s->features.cwiseQuotient(sizes);
       for (int i = 0; i < robot.disks; ++i) {
         if (!s->pair->measured->Has(i)) continue;
-        const Eigen::Matrix3Xd g =
-            gradient[static_cast<std::size_t>(i)] * (scale() / robot.length);
+        const Eigen::Matrix3Xd g = gradient[static_cast<std::size_t>(i)] * (scale() / robot.length);
         for (Eigen::Index c = 0; c < 6; ++c) {
           jacobian.block(row, c * sizes.size(), 3, sizes.size()) = g.col(c) * scaled.transpose();
         }
@@ -120,7 +119,8 @@ std::optional<LeftOut> CrossValidate(const Robot& robot, const Samples& samples,
     left_out.converged = left_out.converged && weights.converged;
     for (std::size_t i = fold; i < samples.size(); i += kFolds) {
       const Measured& measured = *samples[i]->pair->measured;
-      const Eigen::Matrix3Xd disks = Disks(robot, Corrected(robot, weights.values, *samples[i]), *samples[i]);
+      const Eigen::Matrix3Xd disks =
+          Disks(robot, Corrected(robot, weights.values, *samples[i]), *samples[i]);
       errors.Add(robot, measured, disks);
       left_out.explained.Add(robot, measured, disks);
     }

@@ -58,9 +58,8 @@ int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& r
   CheckLearning(request, "--calibrate");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
-  const Calibration c =
-      Calibrate(robot, method, UnknownsOf(request, robot, method),
-                ReadPairs(request, cases, measured), request.measured.string());
+  const Calibration c = Calibrate(robot, method, UnknownsOf(request, robot, method),
+                                  ReadPairs(request, cases, measured), request.measured.string());
   const std::string name = MethodName(request, robot);
   const std::string source = fmt::format("calibrated by {} on {} cases of {}", name, c.cases,
                                          request.measured.filename().string());
@@ -68,8 +67,7 @@ int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& r
   return Judge(request, c.explained.poor(), "calibration", c.explained.Sentence());
 }
 
-int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot,
-                Method method) {
+int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot, Method method) {
   CheckLearning(request, "--hybrid train");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);

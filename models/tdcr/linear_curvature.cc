@@ -29,8 +29,8 @@ Eigen::Matrix3Xd LinearCurvature::Curvatures(const Eigen::VectorXd& ends) const 
   Eigen::Matrix3Xd u(3, arcs());
   Eigen::Index i = 0;
   for (const OneArc& arc : arcs_) {
-    u.col(i++) = (1 - arc.share) * ends.segment<3>(arc.first) +
-                 arc.share * ends.segment<3>(arc.first + 3);
+    u.col(i++) =
+        (1 - arc.share) * ends.segment<3>(arc.first) + arc.share * ends.segment<3>(arc.first + 3);
   }
   return u;
 }

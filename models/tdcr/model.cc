@@ -176,8 +176,7 @@ std::string NameOf(Method method) {
 }
 
 Method ParseMethod(const std::string& name) {
-  for (const Method method :
-       {Method::kEas, Method::kPcca, Method::kCrt, Method::kCrtFriction}) {
+  for (const Method method : {Method::kEas, Method::kPcca, Method::kCrt, Method::kCrtFriction}) {
     if (name == NameOf(method)) return method;
   }
   throw Error::Input("--method", "eas, pcca, crt, crt_friction or fit", "'" + name + "'");
@@ -189,8 +188,7 @@ void RequireTaken(const Robot& robot, const Loads& loads, Method method, const s
   const bool bent = !robot.natural.isZero(0);
   if (!robot.has_sections() && !at_disks && !bent) return;
   const char* const what = at_disks ? "loads at disks" : bent ? "precurvature" : "sections";
-  throw Error::Input(where,
-                     std::string("the method crt or crt_friction for a robot with ") + what,
+  throw Error::Input(where, std::string("the method crt or crt_friction for a robot with ") + what,
                      method == Method::kEas ? "eas" : "pcca");
 }
 

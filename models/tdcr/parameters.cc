@@ -68,8 +68,7 @@ bool AddNamed(const std::string& name, const Robot& robot, Method method,
     const int parts = PartsOf(kind, robot);
     if (name == kind.name) {
       if (parts == 0) Add(kind, 0, name, unknowns);
-      for (int i = 0; i < parts; ++i)
-        Add(kind, i, fmt::format("{}_{}", name, i + 1), unknowns);
+      for (int i = 0; i < parts; ++i) Add(kind, i, fmt::format("{}_{}", name, i + 1), unknowns);
       return true;
     }
     for (int i = 0; i < parts; ++i) {

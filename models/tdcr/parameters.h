@@ -51,12 +51,11 @@ Eigen::VectorXd StartOf(const std::vector<Unknown>& unknowns, const Robot& nomin
 Eigen::VectorXd LowestOf(const std::vector<Unknown>& unknowns, const Robot& nominal);
 Eigen::VectorXd HighestOf(const std::vector<Unknown>& unknowns, const Robot& nominal);
 
-/// The value of an unknown is x times this [SI]: E or EI, GJ, density or mass per length, disk_mass,
-/// precurvature, the angle added, the first radius, mu, base_rotation.
+/// The value of an unknown is x times this [SI]: E or EI, GJ, density or mass per length,
+/// disk_mass, precurvature, the angle added, the first radius, mu, base_rotation.
 double UnitOf(const Unknown& unknown, const Robot& nominal);
 
 /// The nominal robot with x in place.
-Robot Changed(const Robot& nominal, const std::vector<Unknown>& unknowns,
-              const Eigen::VectorXd& x);
+Robot Changed(const Robot& nominal, const std::vector<Unknown>& unknowns, const Eigen::VectorXd& x);
 
 }  // namespace continuum::tdcr

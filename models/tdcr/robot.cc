@@ -121,8 +121,7 @@ std::vector<Section> Robot::Sections() const {
 Route Robot::RouteOf(int tendon) const {
   if (has_sections()) return routes[static_cast<std::size_t>(tendon)];
   const auto places = static_cast<std::size_t>(disks) + 1;
-  return {std::vector<double>(places, tendon_radius),
-          std::vector<double>(places, AngleOf(tendon))};
+  return {std::vector<double>(places, tendon_radius), std::vector<double>(places, AngleOf(tendon))};
 }
 
 double Robot::Place(int disk) const {

@@ -86,8 +86,8 @@ void AddEquilibria(const Robot& robot, Method method, const Solved& s,
   if (!s.solution.outcome.ok()) solved.push_back(s);
 }
 
-int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
-               const Hybrid* hybrid, const std::optional<Prediction>& prediction) {
+int SolveCases(const SolveRequest& request, const Robot& robot, Method method, const Hybrid* hybrid,
+               const std::optional<Prediction>& prediction) {
   const auto cases = ReadInput(request, robot);
   if (hybrid != nullptr || request.equilibria) {
     RefuseLengths(request, cases, hybrid ? "--hybrid" : "--equilibria");

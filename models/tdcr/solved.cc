@@ -171,7 +171,7 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     details.miss = s.miss;
     Set(details, s.equilibrium, results);
   }
-  results.Write(request.out);
+  statics::Write(results, request);
   if (!request.shape.empty()) WriteShapes(request, robot, solved);
   if (!request.compliance.empty()) WriteCompliance(request, robot, solved);
   if (!request.plot.empty()) Draw(request, robot, solved);

@@ -77,8 +77,10 @@ void Print(const Robot& robot, int set, unsigned seed) {
   for (Case& c : cases) c.loads.mu = eas.robot.mu;
   const auto trained = Match(cases, experiment.measured, "synthetic");
   PrintSpread("calibrated", *Statistics(eas.tips.test), hybrids[set - 1][0]);
-  PrintHybrid("as printed", Train(eas.robot, Method::kEas, trained, "synthetic", 0), hybrids[set - 1][1]);
-  PrintHybrid("hybrid", Train(eas.robot, Method::kEas, trained, "synthetic", std::nullopt), hybrids[set - 1][1]);
+  PrintHybrid("as printed", Train(eas.robot, Method::kEas, trained, "synthetic", 0),
+              hybrids[set - 1][1]);
+  PrintHybrid("hybrid", Train(eas.robot, Method::kEas, trained, "synthetic", std::nullopt),
+              hybrids[set - 1][1]);
 }
 
 // How often an interval holds the truth, and a prediction the measured tip.
@@ -110,8 +112,8 @@ void See(const Experiment& experiment, const std::vector<Pair>& pairs, Method me
     loads.mu = c.robot.mu;
     const Solution s = SolveCase(c.robot, loads, method);
     ++coverage.tips;
-    coverage.within += Errors(c.robot, *pair.measured, s.disks)[nominal.disks - 1] <=
-                       c.prediction.within.back();
+    coverage.within +=
+        Errors(c.robot, *pair.measured, s.disks)[nominal.disks - 1] <= c.prediction.within.back();
   }
 }
 
@@ -119,7 +121,8 @@ void See(const Experiment& experiment, const std::vector<Pair>& pairs, Method me
 void PrintCoverage(const Robot& robot, unsigned seeds) {
   const char* const names[] = {"eas", "pcca", "crt", "crt_friction"};
   fmt::print(
-      "| set, method | E: 1.96 standard errors | E: shapes | E: with model error | mu: shapes | mu: "
+      "| set, method | E: 1.96 standard errors | E: shapes | E: with model error | mu: shapes | "
+      "mu: "
       "with model error | tips of test cases within |\n|---|---|---|---|---|---|---|\n");
   for (const int set : {1, 2}) {
     for (const auto method : {Method::kEas, Method::kPcca, Method::kCrt, Method::kCrtFriction}) {

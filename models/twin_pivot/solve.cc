@@ -391,7 +391,7 @@ void WriteResults(const SolveRequest& request, const Robot& robot,
   const bool by_length = !rows.empty() && rows.front().row.load.length.size() > 0;
   statics::Results results(Columns(request, robot, by_length));
   for (const Solved& solved : rows) WriteRow(robot, solved, results);
-  results.Write(request.out);
+  statics::Write(results, request);
 }
 
 void WriteShapes(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& rows) {

@@ -3,8 +3,8 @@
 #include <numeric>
 #include <random>
 
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
+#include <Eigen/Dense>
 
 namespace continuum::statics {
 namespace {
@@ -38,12 +38,8 @@ struct Line {
       b += J.row(row).transpose() * y[row];
     }
     const Eigen::VectorXd x = A.llt().solve(b);
-    FittedShapes fit{J * x - y,
-                     J,
-                     {},
-                     x,
-                     Eigen::Vector2d::Constant(-100),
-                     Eigen::Vector2d::Constant(100)};
+    FittedShapes fit{
+        J * x - y, J, {}, x, Eigen::Vector2d::Constant(-100), Eigen::Vector2d::Constant(100)};
     for (int shape = 0; shape <= kShapes; ++shape) fit.begin.push_back(shape * kRows);
     return fit;
   }

@@ -68,7 +68,9 @@ TEST(TdcrCalibrate, StandardErrorsCoverTheTruthOfNoisyTips) {
         Calibrate(nominal, Method::kEas, Match(cases, measured, "synthetic"), "synthetic");
     Eigen::Matrix<double, 5, 1> found;
     found << c.robot.E, c.robot.base_rotation, c.robot.mu;
-    covered.array() += ((found - target).array().abs() < 2 * (c.spread.standard.array() * unit.array())).cast<double>();
+    covered.array() +=
+        ((found - target).array().abs() < 2 * (c.spread.standard.array() * unit.array()))
+            .cast<double>();
   }
   for (const double count : covered) EXPECT_GE(count, 50);
 }

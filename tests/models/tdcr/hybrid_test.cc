@@ -60,8 +60,8 @@ TEST(TdcrHybrid, ATrueLinearCorrectionIsFoundAgain) {
     Apply(truth, e.nominal, e.cases[i].loads, s);
     e.measured[i].disks = s.disks;
   }
-  const Hybrid hybrid =
-      Train(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"), "synthetic", std::nullopt);
+  const Hybrid hybrid = Train(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"),
+                              "synthetic", std::nullopt);
   EXPECT_LT(Statistics(hybrid.tips.test)->max, 0.01);  // % of L; uncorrected some 10
   for (std::size_t i = 0; i < truth.features.size(); ++i) {
     const auto at = std::find(hybrid.features.begin(), hybrid.features.end(), truth.features[i]);
@@ -91,8 +91,8 @@ TEST(TdcrHybrid, OfTheRodChangesNothingWithoutWeightsAndImprovesWithThem) {
   EXPECT_LT(Statistics(hybrid.tips.test)->mean, 0.8 * Statistics(c.tips.test)->mean);
 }
 
-// The line of a corrected rod ends at its corrected tip: arcs of the integrator's steps bend by what
-// their arc between disks does.
+// The line of a corrected rod ends at its corrected tip: arcs of the integrator's steps bend by
+// what their arc between disks does.
 TEST(TdcrHybrid, TheLineOfACorrectedRodFollowsItsDisks) {
   const Robot robot = Nominal();
   Hybrid hybrid;

@@ -67,8 +67,7 @@ TEST(TdcrParameters, OfTheSegmentAreFoundTogether) {
   Eigen::VectorXd x(11);
   x << 0.9, 1.15, 0.7, 1.3, 0.05, -0.03, 0.2, 0.1, -0.05, 0.02, 1.1;
   ExpectFound(Shipped("tdcr.yaml"), Method::kCrt,
-              {"E", "GJ", "disk_mass", "density", "precurvature", "angle", "radius"},
-              x, 12);
+              {"E", "GJ", "disk_mass", "density", "precurvature", "angle", "radius"}, x, 12);
 }
 
 TEST(TdcrParameters, OfSectionsAreFoundTogether) {

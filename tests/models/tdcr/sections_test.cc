@@ -190,9 +190,9 @@ TEST(TdcrSections, DerivativesOfDisksByLinearCurvatureAreDifferences) {
   for (Eigen::Index k = 0; k < ends.size(); ++k) {
     Eigen::VectorXd up = ends, down = ends;
     up[k] += kStep, down[k] -= kStep;
-    const Eigen::Matrix3Xd slope = (linear.Positions(linear.Curvatures(up)) -
-                                    linear.Positions(linear.Curvatures(down))) /
-                                   (2 * kStep);
+    const Eigen::Matrix3Xd slope =
+        (linear.Positions(linear.Curvatures(up)) - linear.Positions(linear.Curvatures(down))) /
+        (2 * kStep);
     for (int i = 0; i < robot.disks; ++i) {
       EXPECT_LT((gradient[static_cast<std::size_t>(i)].col(k) - slope.col(i)).norm(), 1e-10);
     }

@@ -308,7 +308,8 @@ TEST(TdcrSynthetic, HybridHalvesTheErrorOfTheLevelSet) {
       Calibrate(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"), "synthetic");
   std::vector<Case> cases = e.cases;
   for (Case& each : cases) each.loads.mu = c.robot.mu;
-  const Hybrid h = Train(c.robot, Method::kEas, Match(cases, e.measured, "synthetic"), "synthetic", 0);
+  const Hybrid h =
+      Train(c.robot, Method::kEas, Match(cases, e.measured, "synthetic"), "synthetic", 0);
   EXPECT_THAT(h.features, testing::Not(testing::Contains("fx")));  // a constant tip force
   EXPECT_LT(Statistics(h.tips.test)->mean, 0.6 * Statistics(c.tips.test)->mean);
 }
