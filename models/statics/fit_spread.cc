@@ -89,8 +89,9 @@ Eigen::MatrixX2d ByShapes(const FittedShapes& fit, const Normal& normal) {
   return interval;
 }
 
-// (1), within the limits.
-Eigen::MatrixX2d ByModel(const FittedShapes& fit, const Normal& normal, Eigen::MatrixXd A) {
+// (1), within the limits, and no narrower than by shapes.
+Eigen::MatrixX2d ByModel(const FittedShapes& fit, const Normal& normal, Eigen::MatrixXd A,
+                         const Eigen::MatrixX2d& shapes) {
   const auto n = static_cast<double>(fit.count());
   if (fit.count() < 2) {
     Eigen::MatrixX2d all(fit.x.size(), 2);
@@ -104,7 +105,8 @@ Eigen::MatrixX2d ByModel(const FittedShapes& fit, const Normal& normal, Eigen::M
   const double t = boost::math::quantile(boost::math::students_t(n - 1), 1 - kTail);
   const Eigen::VectorXd half = t * (squares / n).cwiseSqrt();
   Eigen::MatrixX2d interval(fit.x.size(), 2);
-  interval << (fit.x - half).cwiseMax(fit.low), (fit.x + half).cwiseMin(fit.high);
+  interval << (fit.x - half).cwiseMax(fit.low).cwiseMin(shapes.col(0)),
+      (fit.x + half).cwiseMin(fit.high).cwiseMax(shapes.col(1));
   return interval;
 }
 
@@ -125,7 +127,8 @@ FitSpread SpreadOf(const FittedShapes& fit, const std::vector<bool>& free) {
   const Normal normal(fit);
   const Eigen::MatrixXd A = fit.J.transpose() * fit.J;
   const Eigen::VectorXd g = fit.J.transpose() * fit.f;
-  return {Standard(fit, free), ByShapes(fit, normal), ByModel(fit, normal, A),
+  const Eigen::MatrixX2d shapes = ByShapes(fit, normal);
+  return {Standard(fit, free), shapes, ByModel(fit, normal, A, shapes),
           LeftOut(fit, normal, A, g)};
 }
 

@@ -30,7 +30,7 @@ struct FitSpread {
   ///   d_i = -n (J^T J)^-1 J_i^T f_i,   x ± t_{n-1} rms(d_i)                                  (1)
   ///
   /// A model's error does not average out over shapes that share it, so (1) is not divided by
-  /// sqrt(n) as the error of a mean is.
+  /// sqrt(n) as the error of a mean is. No narrower than `shapes`.
   Eigen::MatrixX2d model;
   /// Residuals of every shape by a fit without it, to first order.
   Eigen::VectorXd left_out;

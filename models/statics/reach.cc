@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -65,6 +66,30 @@ Target ReadTarget(const CsvTable& table, std::size_t row, int disks, double leas
   throw Error::Input(table.Where(row) + ", column 'high'", "at least " + Decimal(target.low),
                      Decimal(target.high));
 }
+
+}  // namespace
+
+std::optional<Reached> TooFar(const Target& target, const std::function<double(int)>& most) {
+  constexpr double kRounded = 1 + 1e-6;
+  std::map<int, double> squares;
+  for (std::size_t i = 0; i < target.coordinate.size(); ++i) {
+    const double value = target.values[static_cast<Eigen::Index>(i)];
+    squares[target.coordinate[i] / 3] += value * value;
+  }
+  for (const auto& [disk, square] : squares) {
+    const double far = std::sqrt(square), reach = most(disk);
+    if (far <= kRounded * reach) continue;
+    Reached reached;
+    reached.outcome.status = numerics::Status::kOutOfDomain;
+    reached.outcome.why = fmt::format("{:.3g} m from the base, and disk {} is at most {:.3g} m away",
+                                      far, disk + 1, reach);
+    reached.miss = far - reach;
+    return reached;
+  }
+  return std::nullopt;
+}
+
+namespace {
 
 // Drives over `unit`, and where they lead.
 struct Place {

@@ -146,6 +146,37 @@ void Judge(const Tips& tips, statics::FittedShapes& fit, Calibration& c) {
   c.within = statics::WithinOf(left_out, c.level);
 }
 
+// The best fit from the robot's own gamma and from two more: near a right angle, where threads are
+// rings, tips hardly depend on it.
+Eigen::VectorXd Fit(const Tips& tips, const numerics::Bounds<Eigen::Dynamic>& bounds) {
+  numerics::Options options;
+  options.tolerance = 0;
+  options.gradient = 1e-7;
+  options.step = 1e-8;
+  options.max_iterations = 200;
+  const bool has_gamma = tips.names.back() == "gamma" || tips.names.front() == "gamma";
+  numerics::Outcome best;
+  Eigen::VectorXd found;
+  for (const double gamma : {tips.robot.module.gamma, 1.4, 1.1}) {
+    Eigen::VectorXd x(bounds.lower.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      x[i] = tips.names[static_cast<std::size_t>(i)] == "E" ? 1 : gamma;
+    }
+    const auto outcome = numerics::LevenbergMarquardt<Eigen::VectorXd>(tips, x, tips.equations(),
+                                                                       options, bounds);
+    if (outcome.ok() && outcome.residual < best.residual) {
+      best = outcome;
+      found = x;
+    } else if (found.size() == 0) {
+      best.why = outcome.why;
+    }
+    if (!has_gamma) break;
+  }
+  if (found.size() > 0) return found;
+  throw Error::Job("calibration failed: " + best.why +
+                   (tips.failure.empty() ? "" : "; " + tips.failure));
+}
+
 }  // namespace
 
 Calibration Calibrate(const Robot& robot, const Method& method,
@@ -156,23 +187,8 @@ Calibration Calibrate(const Robot& robot, const Method& method,
   const Tips tips{robot, method, names, PairsOf(cases, measured, file), {}};
   const auto n = static_cast<Eigen::Index>(names.size());
   if (tips.equations() <= n) throw Error::Input(file, "at least two measured tips", "one");
-  Eigen::VectorXd x(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    x[i] = names[static_cast<std::size_t>(i)] == "E" ? 1 : robot.module.gamma;
-  }
   const auto bounds = Limits(names);
-  numerics::Options options;
-  options.tolerance = 0;
-  options.gradient = 1e-7;
-  options.step = 1e-8;
-  options.decrease = 1e-9;
-  options.max_iterations = 200;
-  const auto outcome =
-      numerics::LevenbergMarquardt<Eigen::VectorXd>(tips, x, tips.equations(), options, bounds);
-  if (!outcome.ok()) {
-    throw Error::Job("calibration failed: " + outcome.why +
-                     (tips.failure.empty() ? "" : "; " + tips.failure));
-  }
+  const Eigen::VectorXd x = Fit(tips, bounds);
   Calibration c{tips.At(x.data()), names, x, {}, {}, 0, 0, 0, 0};
   c.cases = static_cast<int>(tips.pairs.size());
   c.scatter = ScatterOf(tips.pairs);

@@ -182,10 +182,12 @@ TEST_F(TdcrSolve, ShapesOfOtherCasesGiveAPoorCalibrationAndTraining) {
     request_.warn = [&](const std::string& sentence) { heard.push_back(sentence); };
     request_.measured = Write("measured.csv", MovedOnByTwo(text, count));
     request_.hybrid = "";
+    request_.lambda.reset();
     request_.calibrate = true;
     EXPECT_EQ(SolveTdcr(request_), 1) << count;
     request_.calibrate = false;
     request_.hybrid = "train";
+    request_.lambda = 0;
     EXPECT_EQ(SolveTdcr(request_), 1) << count;
     EXPECT_THAT(heard, testing::ElementsAre(HasSubstr("the calibration is poor"),
                                             HasSubstr("the training is poor")));
@@ -234,6 +236,7 @@ TEST_F(TdcrSolve, HybridTrainingLowersTheTrainingErrorAndApplyRepeatsIt) {
   twisted.natural = {0.5, 0, 2};
   request_.measured = Write("measured.csv", MeasuredText(twisted, cases, Method::kCrt));
   request_.hybrid = "train";
+  request_.lambda = 0;
   request_.out = folder_ / "hybrid.yaml";
   ASSERT_EQ(SolveTdcr(request_), 0);
   const Yaml hybrid = Yaml::Read(request_.out).At("hybrid");
@@ -253,6 +256,7 @@ TEST_F(TdcrSolve, HybridTrainingLowersTheTrainingErrorAndApplyRepeatsIt) {
   };
   SolveRequest plain = request_;
   plain.hybrid = "";
+  plain.lambda.reset();
   plain.out = folder_ / "plain.csv";
   SolveRequest apply = plain;
   apply.robot = request_.out;
