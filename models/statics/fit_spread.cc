@@ -128,8 +128,7 @@ FitSpread SpreadOf(const FittedShapes& fit, const std::vector<bool>& free) {
   const Eigen::MatrixXd A = fit.J.transpose() * fit.J;
   const Eigen::VectorXd g = fit.J.transpose() * fit.f;
   const Eigen::MatrixX2d shapes = ByShapes(fit, normal);
-  return {Standard(fit, free), shapes, ByModel(fit, normal, A, shapes),
-          LeftOut(fit, normal, A, g)};
+  return {Standard(fit, free), shapes, ByModel(fit, normal, A, shapes), LeftOut(fit, normal, A, g)};
 }
 
 double WithinOf(std::vector<double> distances, double& level) {

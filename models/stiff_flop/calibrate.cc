@@ -162,8 +162,8 @@ Eigen::VectorXd Fit(const Tips& tips, const numerics::Bounds<Eigen::Dynamic>& bo
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       x[i] = tips.names[static_cast<std::size_t>(i)] == "E" ? 1 : gamma;
     }
-    const auto outcome = numerics::LevenbergMarquardt<Eigen::VectorXd>(tips, x, tips.equations(),
-                                                                       options, bounds);
+    const auto outcome =
+        numerics::LevenbergMarquardt<Eigen::VectorXd>(tips, x, tips.equations(), options, bounds);
     if (outcome.ok() && outcome.residual < best.residual) {
       best = outcome;
       found = x;
