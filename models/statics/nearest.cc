@@ -25,8 +25,8 @@ struct Place {
 // What stands under drives, as a Place.
 using StandAt = std::function<std::optional<Place>(const VectorXd&)>;
 
-// A place that lowers (1) by the share `least` or more, by single drives one after the other: where
-// contacts turn back a tangent says nothing, and a step along it may find none.
+// A place that lowers (1) by the share `least` or more, one drive more or less: where contacts turn
+// back a tangent says nothing, and a step along it may find none.
 std::optional<Place> Poll(const StandAt& at, const Place& place, double low, double high,
                           double least) {
   const double size = std::max(place.w.cwiseAbs().mean(), 1e-2);
@@ -34,14 +34,12 @@ std::optional<Place> Poll(const StandAt& at, const Place& place, double low, dou
     std::optional<Place> best;
     for (Eigen::Index i = 0; i < place.w.size(); ++i) {
       for (const double sign : {-1, 1}) {
-        const Place& now = best ? *best : place;
-        VectorXd w = now.w;
+        VectorXd w = place.w;
         w[i] = std::clamp(w[i] + sign * share * size, low, high);
-        if (w[i] == now.w[i]) continue;
+        if (w[i] == place.w[i]) continue;
         auto next = at(w);
-        if (!next || next->Cost() > (1 - least) * now.Cost()) continue;
-        best = std::move(next);
-        break;
+        if (!next || next->Cost() > (1 - least) * place.Cost()) continue;
+        if (!best || next->Cost() < best->Cost()) best = std::move(next);
       }
     }
     if (best) return best;

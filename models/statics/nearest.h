@@ -11,7 +11,7 @@ namespace continuum::statics {
 ///
 /// By Gauss-Newton from `start`; steps of at most `unit` that do not lower (1) are made shorter.
 /// Where none does, as contacts turn back, single drives are changed by 1 to 30 % of their mean,
-/// one after the other, and the search goes on from there. `ok` when neither lowers (1) by a
+/// one at a time, and the search goes on from the best. `ok` when neither lowers (1) by a
 /// thousandth, kNoConvergence after 40 rounds; drives are those of the last step, none where
 /// `start` has no stable shape.
 Reached Nearest(const StandUnder& stand, const Eigen::VectorXd& start, const Target& target,
