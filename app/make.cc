@@ -20,7 +20,7 @@ void AddMake(CLI::App& app) {
                    "models/trunk/trunk.yaml")
       ->required();
   make->add_option("--variant", request->variant,
-                   "Another model of it. tdcr: disks; spa: free, series; stiff_flop: braid");
+                   "Another model of it. tdcr: disks, loads; spa: free, series; stiff_flop: braid");
   make->add_option("--out", request->out, "The MJCF file")->required();
   make->footer("Example:\n  continuum make models/trunk/trunk.yaml --out trunk.xml");
   make->callback([request] {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/console.h"
+#include "error.h"
 #include "models/solve.h"
 #include "sim/io/output_folder.h"
 
@@ -19,9 +20,15 @@ void AddSolve(CLI::App& app, int& exit_code) {
   solve->add_option("--method", request->method,
                     "tdcr: eas (default), pcca, crt, crt_friction, fit; twin_pivot: virtual_work "
                     "(default), printed; stiff_flop: energy+body+chamber");
-  solve->add_option("--input", request->input, "Cases: one row each (CSV)");
+  solve->add_option("--input", request->input,
+                    "Cases: one row each (CSV); - with --out -: a stream, answered row by row");
   solve->add_option("--measured", request->measured,
-                    "tdcr: measured disks of the cases (CSV), for errors, fit and calibration");
+                    "Measured disks or tips of the cases (CSV), for errors; tdcr also for fit and "
+                    "calibration");
+  solve->add_option("--errors", request->errors,
+                    "Table of the distances from --measured by disk (.csv or .json)");
+  solve->add_option("--boxplot", request->boxplot,
+                    "Box plot of the distances from --measured by disk (.png, .svg or .pdf)");
   solve
       ->add_option("--out", request->out,
                    "Results (.csv or .json), or the calibrated robot (.yaml)")
@@ -44,16 +51,22 @@ void AddSolve(CLI::App& app, int& exit_code) {
                   "All equilibria that a search finds, a row each, with energy and stability");
   solve->add_flag("--calibrate", request->calibrate,
                   "Fit the robot's parameters to the data instead of solving cases");
+  solve
+      ->add_option("--parameters", request->parameters,
+                   "--calibrate: what to find. tdcr: E, GJ, mu, base_rotation, precurvature, "
+                   "density, disk_mass, angle, radius; E_2: of section 2, angle_3: of tendon 3. "
+                   "stiff_flop: E, gamma")
+      ->delimiter(',');
   solve->add_option("--hybrid", request->hybrid,
                     "tdcr: train a linear correction on measured shapes, or apply one");
   solve->add_flag("--cross-validate", request->cross_validate,
-                  "tdcr --hybrid train: the penalty that does best on cases left out");
+                  "tdcr --hybrid train: the penalty that does best on cases left out (default)");
   solve->add_flag("--sensitivity", request->sensitivity,
                   "stiff_flop: derivatives by fibre angle and by E");
   solve
       ->add_option("--lambda", request->lambda,
-                   "tdcr fit: weight of the curvatures (1e-7); --hybrid train: penalty on the "
-                   "weights (0, as the paper)")
+                   "tdcr fit: weight of the curvatures (1e-7); --hybrid train: a given penalty on "
+                   "the weights (the paper: 0)")
       ->check(NumberWithin(0, 1e9));
   solve->footer(
       "Example:\n"
@@ -62,13 +75,18 @@ void AddSolve(CLI::App& app, int& exit_code) {
   solve->callback([request, &exit_code] {
     const std::vector<std::filesystem::path> inputs{
         request->robot, request->input, request->measured, request->reach, request->follow};
-    RequireWritable(request->out, inputs);
-    if (!request->plot.empty()) RequireWritable(request->plot, inputs);
-    if (!request->shape.empty()) RequireWritable(request->shape, inputs);
-    if (!request->compliance.empty()) RequireWritable(request->compliance, inputs);
+    const bool stream = request->input == "-";
+    if (stream != (request->out == "-")) {
+      throw Error::Input("--input and --out", "'-' for both, or files", "one of them");
+    }
+    if (!stream) RequireWritable(request->out, inputs);
+    for (const auto* file : {&request->plot, &request->shape, &request->compliance,
+                             &request->errors, &request->boxplot}) {
+      if (!file->empty()) RequireWritable(*file, inputs);
+    }
     request->warn = [](const std::string& text) { std::cerr << "warning: " << text << '\n'; };
     request->say = [](const std::string& text) { std::cerr << text << '\n'; };
-    exit_code = Solve(*request);
+    exit_code = stream ? SolveStream(*request, std::cin, std::cout) : Solve(*request);
   });
 }
 

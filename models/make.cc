@@ -23,12 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using Variants = std::map<std::string, std::function<std::string(const fs::path&)>>;
 
-std::string Rod(const fs::path& file, tdcr::Guides guides) {
+std::string Rod(const fs::path& file, tdcr::Guides guides,
+                tdcr::Loaded loaded = tdcr::Loaded::kTip) {
   constexpr int kLinksPerDisk = 5, kLinks = 45;  // at least
   const tdcr::Robot robot = tdcr::ReadRobot(Yaml::Read(file));
   const int per_disk = std::max(kLinksPerDisk, (kLinks + robot.disks - 1) / robot.disks);
   return tdcr::RobotMjcf(robot, per_disk * robot.disks, guides,
-                         robot.has_sections() ? file.filename().string() : "tdcr.yaml");
+                         robot.has_sections() ? file.filename().string() : "tdcr.yaml", loaded);
 }
 
 std::string Module(const fs::path& file, stiff_flop::Threads threads) {
@@ -45,7 +46,9 @@ const std::map<std::string, Variants>& Robots() {
       {"annelida", {{"", [](const auto& file) { return AnnelidaMjcf(ReadAnnelida(file)); }}}},
       {"tdcr",
        {{"", [](const auto& file) { return Rod(file, Guides::kLinks); }},
-        {"disks", [](const auto& file) { return Rod(file, Guides::kDisks); }}}},
+        {"disks", [](const auto& file) { return Rod(file, Guides::kDisks); }},
+        {"loads",
+         [](const auto& file) { return Rod(file, Guides::kLinks, tdcr::Loaded::kDisks); }}}},
       {"twin_pivot",
        {{"",
          [](const auto& file) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }}}},

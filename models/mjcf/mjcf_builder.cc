@@ -299,13 +299,23 @@ void Mjcf::AddDrive(const std::string& name, const std::string& tendon, const Dr
 }
 
 void Mjcf::AddForce(const std::string& site, const std::string& frame, double largest) {
+  AddWrench(site, frame, 'f', 0, largest);
+}
+
+void Mjcf::AddMoment(const std::string& site, const std::string& frame, double largest) {
+  AddWrench(site, frame, 'm', 3, largest);
+}
+
+void Mjcf::AddWrench(const std::string& site, const std::string& frame, char letter, int first,
+                     double largest) {
   for (int axis = 0; axis < 3; ++axis) {
-    mjsActuator* const actuator = AddMotor(site + "_f" + "xyz"[axis], -largest, largest);
+    const std::string name = site + '_' + letter + "xyz"[axis];
+    mjsActuator* const actuator = AddMotor(name, -largest, largest);
     actuator->trntype = mjTRN_SITE;
     mjs_setString(actuator->target, site.c_str());
     mjs_setString(actuator->refsite, frame.c_str());
     actuator->gear[0] = 0;
-    actuator->gear[axis] = 1;
+    actuator->gear[first + axis] = 1;
   }
 }
 

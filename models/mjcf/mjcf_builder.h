@@ -90,6 +90,8 @@ class Mjcf {
   /// Motors "<site>_fx", "<site>_fy", "<site>_fz": components [N] of a force at a site in the axes
   /// of the site `frame`, at most `largest`.
   void AddForce(const std::string& site, const std::string& frame, double largest);
+  /// Motors "<site>_mx", "<site>_my", "<site>_mz": the same of a moment [N m].
+  void AddMoment(const std::string& site, const std::string& frame, double largest);
   /// A site's position in the frame of another site.
   void AddPosition(const std::string& name, const std::string& site, const std::string& frame);
   /// An actuator whose force is the gauge pressure [Pa], 0 .. largest, that follows its control
@@ -105,6 +107,8 @@ class Mjcf {
 
  private:
   mjsJoint* AddJoint(mjsBody* body, const std::string& name, const Point& axis, double stiffness);
+  void AddWrench(const std::string& site, const std::string& frame, char letter, int first,
+                 double largest);
   mjsActuator* AddMotor(const std::string& name, double least, double largest);
   mjsGeom* AddGeom(mjsBody* body, mjtGeom type, const std::string& material);
 

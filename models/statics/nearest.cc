@@ -1,5 +1,7 @@
 #include "models/statics/nearest.h"
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "models/statics/box_least_squares.h"
@@ -20,13 +22,38 @@ struct Place {
   double Cost() const { return off.squaredNorm() + kPrice * w.squaredNorm(); }  // (1)
 };
 
+// What stands under drives, as a Place.
+using StandAt = std::function<std::optional<Place>(const VectorXd&)>;
+
+// A place that lowers (1) by the share `least` or more, one drive more or less: where contacts turn
+// back a tangent says nothing, and a step along it may find none.
+std::optional<Place> Poll(const StandAt& at, const Place& place, double low, double high,
+                          double least) {
+  const double size = std::max(place.w.cwiseAbs().mean(), 1e-2);
+  for (const double share : {0.3, 0.1, 0.03, 0.01}) {
+    std::optional<Place> best;
+    for (Eigen::Index i = 0; i < place.w.size(); ++i) {
+      for (const double sign : {-1, 1}) {
+        VectorXd w = place.w;
+        w[i] = std::clamp(w[i] + sign * share * size, low, high);
+        if (w[i] == place.w[i]) continue;
+        auto next = at(w);
+        if (!next || next->Cost() > (1 - least) * place.Cost()) continue;
+        if (!best || next->Cost() < best->Cost()) best = std::move(next);
+      }
+    }
+    if (best) return best;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Reached Nearest(const StandUnder& stand, const VectorXd& start, const Target& target, double unit,
                 double length) {
-  constexpr int kMostRounds = 20;
+  constexpr int kMostRounds = 40;
   constexpr double kLongest = 1, kShortest = 0.05, kArmijo = 0.1, kSettled = 1e-3;
-  const auto at = [&](const VectorXd& w) -> std::optional<Place> {
+  const StandAt at = [&](const VectorXd& w) -> std::optional<Place> {
     const auto stands = stand(unit * w);
     if (!stands) return std::nullopt;
     return Place{w, (stands->points - target.values) / length, stands->slopes * (unit / length)};
@@ -47,23 +74,23 @@ Reached Nearest(const StandUnder& stand, const VectorXd& start, const Target& ta
     const VectorXd step = best - place->w;
     const double now = place->Cost();
     const double gain = now - (place->off + J * step).squaredNorm() - kPrice * best.squaredNorm();
-    settled = gain < kSettled * now;
     std::optional<Place> next;
-    for (double share = 1; share > kShortest && !settled; share /= 2) {
+    const bool worth = gain >= kSettled * now;
+    for (double share = 1; share > kShortest && worth; share /= 2) {
       next = at(place->w + share * step);
       if (next && next->Cost() < now - kArmijo * share * gain) break;
       next.reset();
     }
-    if (!next) break;
-    settled = now - next->Cost() < kSettled * now;
-    place = std::move(next);
+    if (worth && !next) next = Poll(at, *place, low, high, kSettled);
+    settled = !next || next->Cost() > (1 - kSettled) * now;
+    if (next) place = std::move(next);
   }
   if (!place) return reached;
   reached.drives = unit * place->w;
   reached.miss = target.Miss(target.values + length * place->off);
   reached.outcome.residual = reached.miss / length;
   reached.outcome.status = settled ? numerics::Status::kOk : numerics::Status::kNoConvergence;
-  reached.outcome.why = settled ? "" : "shorter steps do not come nearer";
+  reached.outcome.why = settled ? "" : "the search comes nearer step by step, and was ended";
   return reached;
 }
 

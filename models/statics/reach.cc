@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "error.h"
 #include "models/statics/box_least_squares.h"
+#include "models/statics/columns.h"
 #include "sim/io/decimal.h"
 
 namespace continuum::statics {
@@ -25,17 +27,13 @@ std::vector<std::pair<int, std::string>> Places(int disks) {
 }
 
 void RequireKnown(const CsvTable& table, int disks) {
-  std::set<std::string> known = {"case", "low", "high"};
+  std::vector<std::string> known = {"case", "low", "high"};
   for (const auto& [disk, suffix] : Places(disks)) {
-    for (const char* axis : {"x", "y", "z"}) known.insert(axis + suffix);
+    for (const char* axis : {"x", "y", "z"}) known.push_back(axis + suffix);
   }
-  for (const std::string& column : table.columns()) {
-    if (known.contains(column)) continue;
-    throw Error::Input(
-        table.name() + ":1",
-        fmt::format("columns case, x, y, z, x_i, y_i, z_i (i to {}), low, high", disks),
-        "'" + column + "'");
-  }
+  RefuseOtherColumns(
+      table, known,
+      fmt::format("columns case, x, y, z, x_i, y_i, z_i (i to {}), low, high", disks));
 }
 
 Target ReadTarget(const CsvTable& table, std::size_t row, int disks, double least) {
@@ -68,6 +66,30 @@ Target ReadTarget(const CsvTable& table, std::size_t row, int disks, double leas
   throw Error::Input(table.Where(row) + ", column 'high'", "at least " + Decimal(target.low),
                      Decimal(target.high));
 }
+
+}  // namespace
+
+std::optional<Reached> TooFar(const Target& target, const std::function<double(int)>& most) {
+  constexpr double kRounded = 1 + 1e-6;
+  std::map<int, double> squares;
+  for (std::size_t i = 0; i < target.coordinate.size(); ++i) {
+    const double value = target.values[static_cast<Eigen::Index>(i)];
+    squares[target.coordinate[i] / 3] += value * value;
+  }
+  for (const auto& [disk, square] : squares) {
+    const double far = std::sqrt(square), reach = most(disk);
+    if (far <= kRounded * reach) continue;
+    Reached reached;
+    reached.outcome.status = numerics::Status::kOutOfDomain;
+    reached.outcome.why = fmt::format(
+        "{:.3g} m from the base, and disk {} is at most {:.3g} m away", far, disk + 1, reach);
+    reached.miss = far - reach;
+    return reached;
+  }
+  return std::nullopt;
+}
+
+namespace {
 
 // Drives over `unit`, and where they lead.
 struct Place {

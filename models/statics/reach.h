@@ -54,6 +54,10 @@ struct Reached {
   bool out_of_reach() const { return outcome.status == numerics::Status::kOutOfDomain; }
 };
 
+/// What to say of a target with a disk farther from the base than the arm that holds it is long:
+/// most(i) [m] of disk i, from 0. Nothing where all are near enough.
+std::optional<Reached> TooFar(const Target& target, const std::function<double(int)>& most);
+
 /// The drives w with the least sum of squares that bring the target's coordinates to their values:
 ///
 ///   min |w|^2   with   p(w) = p*,  low <= w <= high                                           (1)

@@ -97,6 +97,11 @@ void Results::Write(const std::filesystem::path& path) const {
   WriteFile(path, path.extension() == ".csv" ? Csv() : Json());
 }
 
+void Write(const Results& results, const SolveRequest& request) {
+  if (request.take) return request.take(results.Csv());
+  results.Write(request.out);
+}
+
 std::string StatusOf(const numerics::Outcome& outcome, const Stability& stability) {
   if (!outcome.ok()) return "no_convergence";
   return stability.stable() ? "ok" : "saddle";

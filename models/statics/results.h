@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/statics/rising_load.h"
+#include "models/statics/solve_request.h"
 #include "sim/numerics/solver.h"
 
 namespace continuum::statics {
@@ -44,6 +45,9 @@ class Results {
   std::vector<std::string> columns_;
   std::vector<std::vector<Cell>> cells_;
 };
+
+/// Writes results where a request asks for them: to its file, or as a row of a stream.
+void Write(const Results& results, const SolveRequest& request);
 
 /// ok, no_convergence, or saddle of an unstable equilibrium in a list of them.
 std::string StatusOf(const numerics::Outcome& outcome, const Stability& stability);

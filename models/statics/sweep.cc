@@ -29,6 +29,7 @@ std::vector<std::string> ValuesOf(const CsvTable& corners, const std::string& co
 }  // namespace
 
 CsvTable CasesOf(const SolveRequest& request) {
+  if (!request.row.empty()) return CsvTable::Parse(request.row, request.input.string());
   CsvTable table = CsvTable::Read(request.input);
   return request.sweep == 0 ? table : Grid(table, request.sweep);
 }

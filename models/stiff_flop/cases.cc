@@ -2,6 +2,7 @@
 #include <array>
 
 #include "error.h"
+#include "models/statics/columns.h"
 #include "models/stiff_flop/cases.h"
 #include "sim/io/csv.h"
 #include "sim/io/decimal.h"
@@ -21,17 +22,12 @@ int Count(const CsvTable& table, const Columns& columns) {
 }
 
 void RefuseUnknown(const CsvTable& table) {
-  for (const std::string& column : table.columns()) {
-    bool known = column == "case";
-    for (const Columns& columns : {kInverse, kForward, kForce, kGravity}) {
-      known = known || std::find(columns.begin(), columns.end(), column) != columns.end();
-    }
-    if (known) continue;
-    throw Error::Input(
-        table.name() + ":1",
-        "columns case, kappa, phi, lambda_l or p1, p2, p3, and fx, fy, fz, gx, gy, gz",
-        "'" + column + "'");
+  std::vector<std::string> known{"case"};
+  for (const Columns& columns : {kInverse, kForward, kForce, kGravity}) {
+    known.insert(known.end(), columns.begin(), columns.end());
   }
+  statics::RefuseOtherColumns(
+      table, known, "columns case, kappa, phi, lambda_l or p1, p2, p3, and fx, fy, fz, gx, gy, gz");
 }
 
 Direction DirectionOf(const CsvTable& table) {

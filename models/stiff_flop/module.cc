@@ -107,7 +107,7 @@ double Module::SecondMoment() const {
 
 Robot Robot::Read(const std::filesystem::path& file, const std::string& module) {
   const Yaml yaml = Yaml::Read(file);
-  yaml.Only({"format", "model", "module", "gravity", "modules"});
+  yaml.Only({"format", "model", "module", "gravity", "modules", "calibration"});
   const Yaml format = yaml.At("format");
   if (format.Integer() != 1) throw Error::Input(format.Where(), "1", format.Text());
   const Yaml model = yaml.At("model");

@@ -9,6 +9,8 @@
 
 #include "error.h"
 #include "models/statics/details.h"
+#include "models/statics/error_table.h"
+#include "models/statics/measured_points.h"
 #include "models/statics/path_error.h"
 #include "models/statics/plausible.h"
 #include "models/statics/results.h"
@@ -21,6 +23,7 @@
 #include "models/stiff_flop/figure.h"
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/inverse.h"
+#include "models/stiff_flop/learn.h"
 #include "models/stiff_flop/reach.h"
 #include "models/stiff_flop/response.h"
 #include "sim/io/yaml.h"
@@ -34,13 +37,21 @@ using Names = std::vector<std::string>;
 
 void RefuseOptions(const SolveRequest& request) {
   const std::initializer_list<std::pair<const char*, bool>> foreign = {
-      {"--calibrate", request.calibrate},
+      {"--equilibria with --calibrate", request.calibrate && request.equilibria},
+      {"--shape with --calibrate", request.calibrate && !request.shape.empty()},
+      {"--compliance with --calibrate", request.calibrate && !request.compliance.empty()},
+      {"--plot with --calibrate", request.calibrate && !request.plot.empty()},
+      {"--reach with --calibrate", request.calibrate && !request.reach.empty()},
+      {"--errors with --calibrate", request.calibrate && !request.errors.empty()},
+      {"--boxplot with --calibrate", request.calibrate && !request.boxplot.empty()},
+      {"--sensitivity with --calibrate", request.calibrate && request.sensitivity},
+      {"--parameters without --calibrate", !request.calibrate && !request.parameters.empty()},
       {"--hybrid", !request.hybrid.empty()},
       {"--lambda", request.lambda.has_value()},
       {"--cross-validate", request.cross_validate},
       {"--follow", !request.follow.empty()},
       {"--reach with --equilibria", request.equilibria && !request.reach.empty()},
-      {"--measured", !request.measured.empty()}};
+      {"--measured with --equilibria", request.equilibria && !request.measured.empty()}};
   for (const auto& [option, given] : foreign) {
     if (given) throw Error::Input(option, "no such option for a stiff_flop robot");
   }
@@ -129,6 +140,7 @@ Names Columns(const SolveRequest& request, Direction direction) {
   }
   if (request.sensitivity) Append(names, SensitivityColumns(direction));
   if (!request.reach.empty()) Append(names, {"p1", "p2", "p3", "miss"});
+  if (!request.measured.empty()) Append(names, {"error_1"});
   Append(names, statics::DetailColumns{0, false, false, request.equilibria}.Names());
   return names;
 }
@@ -144,6 +156,7 @@ struct Solved {
   std::vector<Eigen::Vector3d> line;  ///< for the picture
   int equilibrium = 0;                ///< of the case, counted from 1; 0: no list of them
   std::optional<double> miss = {};    ///< distance from a target [m]
+  std::optional<double> error = {};   ///< distance from the measured tip [m]
 };
 
 void WriteSection(const BaseSection& section, statics::Results& results) {
@@ -180,6 +193,7 @@ void WriteRow(const SolveRequest& request, const Module& module, const Method& m
     Set(results, {"p1", "p2", "p3"}, solved.row.given);
     results.Set("miss", *solved.miss);
   }
+  if (solved.error) results.Set("error_1", *solved.error);
   const auto details = Describe(module, method, direction, solved.row, solution);
   Set(details, solved.equilibrium, results);
   if (!request.sensitivity) return;
@@ -277,6 +291,23 @@ std::vector<Solved> ReachTargets(const SolveRequest& request, const Module& modu
   return solved;
 }
 
+// error_1 (of the tip) where it was measured, and the table of these.
+void AddErrors(const SolveRequest& request, const Robot& robot, std::vector<Solved>& rows) {
+  if (request.measured.empty()) return;
+  const auto measured = statics::ReadMeasuredPoints(CsvTable::Read(request.measured), 1);
+  Names names;
+  for (const Solved& solved : rows) names.push_back(solved.row.label);
+  statics::RequireShared(names, measured, request.measured.string());
+  statics::ErrorTable errors(robot.module.l, 1);
+  for (Solved& solved : rows) {
+    const auto* const m = statics::Find(measured, solved.row.label);
+    if (m == nullptr || solved.solution.status != Status::kOk) continue;
+    solved.error = (m->disks.col(0) - solved.solution.tip).norm();
+    errors.Add(m->test, Eigen::VectorXd::Constant(1, *solved.error));
+  }
+  statics::ReportErrors(request, errors, "stiff_flop, module " + robot.name);
+}
+
 // With --equilibria all of a case instead of its own answer, which is one of them.
 void AddRows(const SolveRequest& request, const Module& module, const Method& method,
              const Solved& own, std::vector<Solved>& rows) {
@@ -299,9 +330,11 @@ int SolveStiffFlop(const SolveRequest& request) {
   WarnOfImplausibleRobot(request, robot);
   WarnOfImplausibleCases(request, robot, cases);
   const Method method = Method::Parse(request.method, cases.direction);
+  if (request.calibrate) return CalibrateRobot(request, robot, method, cases);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
   RefuseOfInverse(request, cases.direction);
+  statics::CheckErrorOptions(request);
   statics::RequireTable(request.shape, "--shape");
   statics::RequireTable(request.compliance, "--compliance");
   const std::vector<Solved> own = request.reach.empty()
@@ -313,11 +346,12 @@ int SolveStiffFlop(const SolveRequest& request) {
     failed += solved.solution.status != Status::kOk;
     AddRows(request, robot.module, method, solved, rows);
   }
+  AddErrors(request, robot, rows);
   statics::Results results(Columns(request, cases.direction));
   for (const Solved& solved : rows) {
     WriteRow(request, robot.module, method, cases.direction, solved, results);
   }
-  results.Write(request.out);
+  statics::Write(results, request);
   if (!request.shape.empty()) WriteShapes(request, robot.module, method, rows);
   if (!request.compliance.empty()) WriteCompliance(request, robot.module, method, rows);
   if (!request.plot.empty()) Draw(request, robot, cases.direction, rows);

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <limits>
-#include <map>
+#include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "error.h"
 #include "sim/numerics/levenberg_marquardt.h"
@@ -14,39 +14,38 @@
 namespace continuum::tdcr {
 namespace {
 
-constexpr double kMaxFriction = 0.999;
-
-// Unknowns: E over that of the start, the three angles, mu.
+// Residuals over L by the unknowns' x.
 class CalibrationProblem {
  public:
-  CalibrationProblem(const Robot& robot, Method method, const std::vector<Pair>& pairs)
-      : robot_(robot), method_(method) {
+  CalibrationProblem(const Robot& robot, Method method, std::vector<Unknown> unknowns,
+                     const std::vector<Pair>& pairs)
+      : robot_(robot),
+        method_(method),
+        unknowns_(std::move(unknowns)),
+        low_(LowestOf(unknowns_, robot)),
+        high_(HighestOf(unknowns_, robot)) {
     for (const Pair& pair : pairs) {
       if (!pair.measured->test) pairs_.push_back(pair);
     }
     starts_.resize(pairs_.size());
-    for (const Pair& pair : pairs_) equations_ += 3 * pair.measured->count();
+    for (const Pair& pair : pairs_) {
+      begin_.push_back(equations_);
+      equations_ += 3 * pair.measured->count();
+    }
+    begin_.push_back(equations_);
   }
 
-  int unknowns() const { return method_ == Method::kCrt ? 4 : 5; }
+  Eigen::Index unknowns() const { return low_.size(); }
   Eigen::Index equations() const { return equations_; }
-  int cases() const { return static_cast<int>(pairs_.size()); }
+  const std::vector<Pair>& pairs() const { return pairs_; }
+  const std::vector<Eigen::Index>& begin() const { return begin_; }
+  const Eigen::VectorXd& low() const { return low_; }
+  const Eigen::VectorXd& high() const { return high_; }
   const std::string& failure() const { return failure_; }
 
-  Eigen::VectorXd Start() const {
-    Eigen::VectorXd p(unknowns());
-    p.head<4>() << 1, robot_.base_rotation;
-    if (unknowns() == 5) p[4] = robot_.mu;
-    return p;
-  }
+  Eigen::VectorXd Start() const { return StartOf(unknowns_, robot_); }
 
-  Robot At(const Eigen::VectorXd& p) const {
-    Robot robot = robot_;
-    robot.E *= p[0];
-    robot.base_rotation = p.segment<3>(1);
-    if (p.size() == 5) robot.mu = p[4];
-    return robot;
-  }
+  Robot At(const Eigen::VectorXd& p) const { return Changed(robot_, unknowns_, p); }
 
   bool operator()(const double* x, double* f) const {
     const Robot robot = At(Eigen::Map<const Eigen::VectorXd>(x, unknowns()));
@@ -59,27 +58,26 @@ class CalibrationProblem {
   bool Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& f, Eigen::MatrixXd& jacobian) const {
     if (!(*this)(x.data(), f.data())) return false;
     const Robot robot = At(x);
-    const Eigen::Vector3d& a = robot.base_rotation;
-    const auto turn = [](double x_angle, double y_angle, double z_angle) {
-      Robot r;
-      r.base_rotation = {x_angle, y_angle, z_angle};
-      return r.MeasuringToBase();
-    };
-    for (int i = 0; i < 3; ++i) {
-      // dR_i/dtheta = (R_i(theta + pi/2) - R_i(theta - pi/2))/2 holds exactly for a rotation about
-      // an axis, and the other two factors are linear in it.
-      Eigen::Vector3d up = a, down = a;
-      up[i] += std::numbers::pi / 2;
-      down[i] -= std::numbers::pi / 2;
-      const Eigen::Matrix3d slope =
-          (turn(up[0], up[1], up[2]) - turn(down[0], down[1], down[2])) / 2;
-      jacobian.col(1 + i) = Points(slope);
+    for (Eigen::Index i = 0; i < unknowns(); ++i) {
+      const Unknown& unknown = unknowns_[static_cast<std::size_t>(i)];
+      if (unknown.quantity == Quantity::kBaseRotation) {
+        jacobian.col(i) = Points(TurnSlope(robot, unknown.component));
+      } else if (!Slope(x, i, jacobian)) {
+        return false;
+      }
     }
-    return Slope(x, 0, jacobian) && (x.size() < 5 || Slope(x, 4, jacobian));
+    return true;
   }
 
-  // Best rotation of the measured points onto the modelled ones, as angles of R_x R_y R_z.
+  // Best rotation of the measured points onto the modelled ones, as angles of R_x R_y R_z; only
+  // where all three are unknown.
   bool Align(Eigen::VectorXd& p) const {
+    std::vector<Eigen::Index> at;
+    for (Eigen::Index i = 0; i < unknowns(); ++i) {
+      if (unknowns_[static_cast<std::size_t>(i)].quantity == Quantity::kBaseRotation)
+        at.push_back(i);
+    }
+    if (at.empty()) return false;
     Eigen::VectorXd model(equations_);
     if (!Model(At(p), model)) return false;
     const Eigen::VectorXd points = Points(Eigen::Matrix3d::Identity());
@@ -89,13 +87,23 @@ class CalibrationProblem {
                                                 Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Vector3d sign(1, 1, (svd.matrixU() * svd.matrixV()).determinant());
     const Eigen::Matrix3d r = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-    p[1] = std::atan2(-r(1, 2), r(2, 2));
-    p[2] = std::asin(std::clamp(r(0, 2), -1.0, 1.0));
-    p[3] = std::atan2(-r(0, 1), r(0, 0));
+    p[at[0]] = std::atan2(-r(1, 2), r(2, 2));
+    p[at[1]] = std::asin(std::clamp(r(0, 2), -1.0, 1.0));
+    p[at[2]] = std::atan2(-r(0, 1), r(0, 0));
     return true;
   }
 
  private:
+  // dR^c/dtheta_i = (R(theta_i + pi/2) - R(theta_i - pi/2))/2 holds exactly for a rotation about an
+  // axis, and the other two factors are linear in it.
+  static Eigen::Matrix3d TurnSlope(const Robot& robot, int i) {
+    Robot up, down;
+    up.base_rotation = down.base_rotation = robot.base_rotation;
+    up.base_rotation[i] += std::numbers::pi / 2;
+    down.base_rotation[i] -= std::numbers::pi / 2;
+    return (up.MeasuringToBase() - down.MeasuringToBase()) / 2;
+  }
+
   // R x of all measured points, over L.
   Eigen::VectorXd Points(const Eigen::Matrix3d& R) const {
     Eigen::VectorXd points(equations_);
@@ -132,8 +140,8 @@ class CalibrationProblem {
     return true;
   }
 
-  // Central difference; at a bound of mu the one-sided formula of the same order.
-  bool Slope(const Eigen::VectorXd& x, int i, Eigen::MatrixXd& jacobian) const {
+  // Central difference; at a bound the one-sided formula of the same order.
+  bool Slope(const Eigen::VectorXd& x, Eigen::Index i, Eigen::MatrixXd& jacobian) const {
     constexpr double kStep =
         1e-4;  // equilibria are good to 1e-12, so 1e-8 of error from both sides
     const auto model = [&](double shift, Eigen::VectorXd& out) {
@@ -143,8 +151,8 @@ class CalibrationProblem {
       return Model(At(at), out);
     };
     Eigen::VectorXd a, b, c;
-    if (i == 4 && (x[i] < kStep || x[i] > kMaxFriction - kStep)) {
-      const double h = x[i] < kStep ? kStep : -kStep;
+    if (x[i] < low_[i] + kStep || x[i] > high_[i] - kStep) {
+      const double h = x[i] < low_[i] + kStep ? kStep : -kStep;
       if (!model(0, a) || !model(h, b) || !model(2 * h, c)) return false;
       jacobian.col(i) = -(-3 * a + 4 * b - c) / (2 * h);
       return true;
@@ -156,73 +164,36 @@ class CalibrationProblem {
 
   const Robot& robot_;
   Method method_;
+  std::vector<Unknown> unknowns_;
+  Eigen::VectorXd low_, high_;
   std::vector<Pair> pairs_;
+  std::vector<Eigen::Index> begin_;
   Eigen::Index equations_ = 0;
   mutable std::vector<Eigen::VectorXd> starts_;
   mutable std::string failure_;
 };
 
-numerics::Bounds<Eigen::Dynamic> Limits(int unknowns) {
-  numerics::Bounds<Eigen::Dynamic> bounds;
-  constexpr double kTurn = std::numbers::pi;
-  bounds.lower = Eigen::VectorXd::Constant(unknowns, -kTurn);
-  bounds.upper = Eigen::VectorXd::Constant(unknowns, kTurn);
-  bounds.lower[0] = 0.01;
-  bounds.upper[0] = 100;
-  if (unknowns == 5) {
-    bounds.lower[4] = 0;
-    bounds.upper[4] = kMaxFriction;
-  }
-  return bounds;
-}
-
-// Square roots of the diagonal of (J^T J)^-1 SSR/(N - p) over the parameters that are free.
-Eigen::VectorXd StandardErrors(const Eigen::MatrixXd& jacobian, double squares,
-                               const std::vector<bool>& bound) {
-  const Eigen::Index n = jacobian.cols();
-  Eigen::VectorXd standard = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (!bound[static_cast<std::size_t>(i)] && jacobian.col(i).norm() > 0) free.push_back(i);
-  }
-  const Eigen::Index spare = jacobian.rows() - static_cast<Eigen::Index>(free.size());
-  if (spare <= 0 || free.empty()) return standard;
-  const Eigen::MatrixXd used = jacobian(Eigen::all, free);
-  const Eigen::MatrixXd covariance =
-      (used.transpose() * used).ldlt().solve(Eigen::MatrixXd::Identity(used.cols(), used.cols())) *
-      squares / static_cast<double>(spare);
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    standard[free[k]] = std::sqrt(covariance(i, i));
-  }
-  return standard;
-}
-
-}  // namespace
-
-Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>& pairs,
-                      const std::string& file) {
-  const CalibrationProblem problem(robot, method, pairs);
-  if (problem.equations() < problem.unknowns()) {
-    throw Error::Input(
-        file,
-        fmt::format("at least {} measured coordinates for as many unknowns", problem.unknowns()),
-        fmt::format("{}", problem.equations()));
-  }
-  const auto bounds = Limits(problem.unknowns());
+numerics::Options FitOptions() {
   numerics::Options options;
   options.tolerance = 0;
   options.gradient = 1e-9;  // of the differences in E and mu
   options.step = 1e-10;
   options.max_iterations = 2000;  // shapes of other cases: flat valleys
-  Eigen::VectorXd best;
-  numerics::Outcome outcome;
+  return options;
+}
+
+// The better fit of those from all starts.
+Eigen::VectorXd Fit(const CalibrationProblem& problem) {
+  numerics::Bounds<Eigen::Dynamic> bounds;
+  bounds.lower = problem.low();
+  bounds.upper = problem.high();
   std::vector<Eigen::VectorXd> starts{problem.Start()};
-  Eigen::VectorXd aligned = problem.Start();
+  Eigen::VectorXd aligned = problem.Start(), best;
   if (problem.Align(aligned)) starts.push_back(aligned);
+  numerics::Outcome outcome;
   for (Eigen::VectorXd p : starts) {
     const auto result = numerics::LevenbergMarquardt<Eigen::VectorXd>(
-        problem, p, problem.equations(), options, bounds);
+        problem, p, problem.equations(), FitOptions(), bounds);
     if (result.ok() && result.residual < outcome.residual) {
       outcome = result;
       best = p;
@@ -230,36 +201,96 @@ Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>
       outcome.why = result.why;
     }
   }
-  if (best.size() == 0) {
-    throw Error::Job("calibration failed: " + outcome.why +
-                     (problem.failure().empty() ? "" : "; " + problem.failure()));
-  }
+  if (best.size() > 0) return best;
+  throw Error::Job("calibration failed: " + outcome.why +
+                   (problem.failure().empty() ? "" : "; " + problem.failure()));
+}
 
-  Calibration calibration{problem.At(best), {}, {}, problem.cases(), {}, {}};
-  const char* const names[] = {"E", "base_rotation", "base_rotation", "base_rotation", "mu"};
-  std::vector<bool> bound;
-  for (Eigen::Index i = 0; i < best.size(); ++i) {
-    bound.push_back(best[i] <= bounds.lower[i] || best[i] >= bounds.upper[i]);
-    if (bound.back()) calibration.at_bound.emplace_back(names[i]);
+// An unknown that moves no measured point cannot be found.
+void RequireEffects(const std::vector<Unknown>& unknowns, const Eigen::MatrixXd& J,
+                    const std::string& file) {
+  constexpr double kNoise = 1e-9;  // of L
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    if (J.col(static_cast<Eigen::Index>(i)).lpNorm<Eigen::Infinity>() > kNoise) continue;
+    throw Error::Input(file, "shapes that depend on the parameter " + unknowns[i].name, "none");
   }
-  Eigen::VectorXd f(problem.equations());
-  Eigen::MatrixXd jacobian(problem.equations(), best.size());
-  if (!problem.Jacobian(best, f, jacobian)) throw Error::Job(problem.failure());
-  calibration.standard = StandardErrors(jacobian, f.squaredNorm(), bound);
-  calibration.standard[0] *= robot.E;
+}
+
+// How near disks are that a fit without their shape predicts.
+Prediction PredictionOf(const CalibrationProblem& problem, const Eigen::VectorXd& left_out,
+                        const Robot& robot) {
+  std::vector<std::vector<double>> distances(static_cast<std::size_t>(robot.disks));
+  Eigen::Index row = 0;
+  for (const Pair& pair : problem.pairs()) {
+    for (int i = 0; i < robot.disks; ++i) {
+      if (!pair.measured->Has(i)) continue;
+      const double distance = robot.length * left_out.segment<3>(row).norm();
+      distances[static_cast<std::size_t>(i)].push_back(distance);
+      row += 3;
+    }
+  }
+  Prediction prediction;
+  prediction.cases = static_cast<int>(problem.pairs().size());
+  for (const auto& d : distances) {
+    double level = 0.95;
+    prediction.within.push_back(statics::WithinOf(d, level));
+    if (!d.empty()) prediction.level = std::min(prediction.level, level);
+  }
+  return prediction;
+}
+
+// Errors of the calibrated robot on all cases.
+void AddErrors(Method method, const std::vector<Pair>& pairs, Calibration& calibration) {
+  const Robot& robot = calibration.robot;
   for (const Pair& pair : pairs) {
     Loads loads = pair.loads->loads;
-    if (!loads.own_mu) loads.mu = calibration.robot.mu;
-    const Solution solution = SolveCase(calibration.robot, loads, method);
+    if (!loads.own_mu) loads.mu = robot.mu;
+    const Solution solution = SolveCase(robot, loads, method);
     if (!solution.outcome.ok()) {
       throw Error::Job("case '" + pair.loads->name + "': " + solution.outcome.why);
     }
-    calibration.tips.Add(calibration.robot, *pair.measured, solution.disks);
-    if (!pair.measured->test) {
-      calibration.explained.Add(calibration.robot, *pair.measured, solution.disks);
-    }
+    calibration.tips.Add(robot, *pair.measured, solution.disks);
+    if (!pair.measured->test) calibration.explained.Add(robot, *pair.measured, solution.disks);
   }
+}
+
+}  // namespace
+
+Calibration Calibrate(const Robot& robot, Method method, const std::vector<Unknown>& unknowns,
+                      const std::vector<Pair>& pairs, const std::string& file) {
+  const CalibrationProblem problem(robot, method, unknowns, pairs);
+  if (problem.equations() < problem.unknowns()) {
+    throw Error::Input(
+        file,
+        fmt::format("at least {} measured coordinates for as many unknowns", problem.unknowns()),
+        fmt::format("{}", problem.equations()));
+  }
+  const Eigen::VectorXd x = Fit(problem);
+  Calibration calibration{problem.At(x), unknowns, x, {}, {}, 0, {}, {}, {}};
+  calibration.cases = static_cast<int>(problem.pairs().size());
+  std::vector<bool> free;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    free.push_back(x[i] > problem.low()[i] && x[i] < problem.high()[i]);
+    if (!free.back()) calibration.at_bound.push_back(unknowns[static_cast<std::size_t>(i)].name);
+  }
+  statics::FittedShapes fit{Eigen::VectorXd(problem.equations()),
+                            Eigen::MatrixXd(problem.equations(), x.size()),
+                            problem.begin(),
+                            x,
+                            problem.low(),
+                            problem.high()};
+  if (!problem.Jacobian(x, fit.f, fit.J)) throw Error::Job(problem.failure());
+  RequireEffects(unknowns, fit.J, file);
+  calibration.spread = statics::SpreadOf(fit, free);
+  calibration.prediction = PredictionOf(problem, calibration.spread.left_out, robot);
+  AddErrors(method, pairs, calibration);
   return calibration;
+}
+
+Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>& pairs,
+                      const std::string& file) {
+  const auto unknowns = ParseUnknowns(DefaultParameters(robot, method), robot, method, file);
+  return Calibrate(robot, method, unknowns, pairs, file);
 }
 
 }  // namespace continuum::tdcr

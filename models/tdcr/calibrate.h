@@ -3,30 +3,46 @@
 #include <string>
 #include <vector>
 
+#include "models/statics/fit_spread.h"
 #include "models/tdcr/explained.h"
 #include "models/tdcr/measured.h"
 #include "models/tdcr/model.h"
+#include "models/tdcr/parameters.h"
 
 namespace continuum::tdcr {
 
-/// The parameters (31) that (30) gives, with their standard errors from the residuals' scatter.
+/// How near a prediction is to the robot: of shapes that the fit has not seen, `level` have disk i
+/// within within[i] [m] of where the calibrated model puts it (statics::WithinOf). NaN: never
+/// measured.
+struct Prediction {
+  double level = 0.95;
+  int cases = 0;
+  std::vector<double> within;
+};
+
+/// The parameters that (30) gives.
 struct Calibration {
-  Robot robot;  ///< with E, mu and base_rotation replaced
-  Eigen::VectorXd
-      standard;  ///< errors of E, theta_x, theta_y, theta_z (and mu); NaN: not determined
+  Robot robot;                    ///< calibrated
+  std::vector<Unknown> unknowns;  ///< what was fitted, at x
+  Eigen::VectorXd x;
+  statics::FitSpread spread;  ///< of x
   std::vector<std::string> at_bound;
   int cases = 0;  ///< used for fitting
   TipErrors tips;
   Explained explained;  ///< of the cases for fitting
+  Prediction prediction;
 };
 
-/// Minimises sum |R^c x_i - O_i|^2 over E, base_rotation and, unless the method is crt, mu; over
-/// the measured disks of the cases for training. Levenberg-Marquardt from the robot's values, and
-/// again from the rotation that best lays the measured points on the modelled ones.
+/// Minimises sum |R^c x_i - O_i|^2 over the unknowns and the measured disks of the cases for
+/// training. Levenberg-Marquardt from the robot's values, and again from the base rotation, if that
+/// is unknown, that best lays the measured points on the modelled ones.
 ///
-/// Bounds: E within a factor 100 of the robot's, 0 <= mu <= 0.999, angles within pi.
 /// @throws Error (input, naming the file of the shapes) when there are fewer coordinates than
-/// unknowns; (job) when a case has no equilibrium or the fit does not converge.
+/// unknowns, or the shapes do not depend on one of them; (job) when a case has no equilibrium or
+/// the fit does not converge.
+Calibration Calibrate(const Robot& robot, Method method, const std::vector<Unknown>& unknowns,
+                      const std::vector<Pair>& pairs, const std::string& file);
+/// Of DefaultParameters.
 Calibration Calibrate(const Robot& robot, Method method, const std::vector<Pair>& pairs,
                       const std::string& file);
 

@@ -1,8 +1,9 @@
 #include "models/tdcr/columns.h"
 
-#include <algorithm>
+#include <string>
+#include <vector>
 
-#include "error.h"
+#include "models/statics/columns.h"
 #include "sim/io/excerpt.h"
 
 namespace continuum::tdcr {
@@ -30,36 +31,21 @@ std::string Together(const std::vector<std::string>& names) {
   return all;
 }
 
-void RequireKnown(const CsvTable& table, const std::vector<std::string>& known) {
-  for (const auto& column : table.columns()) {
-    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    throw Error::Input(table.name() + ":1", "columns among " + Excerpt(Together(known), kShown),
-                       "'" + column + "'");
-  }
-}
-
 }  // namespace
 
 void RequireKnownKeys(const Yaml& robot) {
   if (robot.Has("sections")) {
-    return robot.Only(
-        {"format", "robot", "sections", "tendons", "mu", "tendon_EA", "gravity", "base_rotation"});
+    return robot.Only({"format", "robot", "sections", "tendons", "mu", "tendon_EA", "gravity",
+                       "base_rotation", "calibration"});
   }
   robot.Only({"format", "robot", "length", "diameter", "disks", "tendons", "tendon_radius", "E",
               "nu", "density", "disk_mass", "mu", "tendon_EA", "gravity", "base_rotation",
-              "calibration", "hybrid"});
+              "precurvature", "tendon_angles", "calibration", "hybrid"});
 }
 
 void RequireKnownCaseColumns(const CsvTable& cases, int tendons, int disks) {
-  RequireKnown(cases, KnownColumns(cases.Has("L1") ? "L" : "T", tendons, disks));
-}
-
-void RequireKnownMeasuredColumns(const CsvTable& measured, int disks) {
-  std::vector<std::string> known{"case", "use"};
-  for (int i = 1; i <= disks; ++i) {
-    for (const char* axis : {"x_", "y_", "z_"}) known.push_back(axis + std::to_string(i));
-  }
-  RequireKnown(measured, known);
+  const auto known = KnownColumns(cases.Has("L1") ? "L" : "T", tendons, disks);
+  statics::RefuseOtherColumns(cases, known, "columns among " + Excerpt(Together(known), kShown));
 }
 
 }  // namespace continuum::tdcr

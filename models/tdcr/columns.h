@@ -9,6 +9,5 @@ namespace continuum::tdcr {
 /// @throws Error that names the file, the line and the first of them.
 void RequireKnownKeys(const Yaml& robot);
 void RequireKnownCaseColumns(const CsvTable& cases, int tendons, int disks);
-void RequireKnownMeasuredColumns(const CsvTable& measured, int disks);
 
 }  // namespace continuum::tdcr

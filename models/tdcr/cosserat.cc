@@ -15,7 +15,8 @@ struct NoTensions {};
 struct NoLengths {};
 
 constexpr double kRoundsOff = 1e-24;  // the kink of a norm at zero
-constexpr int kFewTendons = 4;        // more of them need larger states, which cost time to copy
+// Sizes of states: larger ones cost time to copy.
+constexpr int kFewTendons = 4, kSomeTendons = 12;
 
 template <class Matrix>
 auto Values(const Matrix& m) {
@@ -46,6 +47,16 @@ struct RodBalance::State {
   Vector3 u, p;
   [[no_unique_address]] Tensions tension;
   [[no_unique_address]] std::conditional_t<kSlides, Tensions, NoLengths> way;
+
+  static State Of(const State<double, kRubbing, kSlides>& plain) {
+    State y;
+    y.q = plain.q.template cast<T>();
+    y.u = plain.u.template cast<T>();
+    y.p = plain.p.template cast<T>();
+    if constexpr (kRubbing > 0) y.tension = plain.tension.template cast<T>();
+    if constexpr (kSlides) y.way = plain.way.template cast<T>();
+    return y;
+  }
 
   void Add(double h, const State& slope) {
     q += T(h) * slope.q;
@@ -263,9 +274,11 @@ void RodBalance::End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) c
 }
 
 // Dormand-Prince's fifth-order formula, `steps_` equal steps per arc. end: R nu(1), then (5).
-// at_node(step, y) after every step, and once more where u has jumped.
+// at_node(step, y) after every step, and once more where u has jumped. From the start of step
+// `first`, where the rod is at y.
 template <class T, int kRubbing, bool kSlides, class AtNode>
-bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
+bool RodBalance::Walk(const T* x, T* end, int first, State<T, kRubbing, kSlides> y,
+                      AtNode&& at_node) const {
   static constexpr double kNodes[6] = {0, 0.2, 0.3, 0.8, 8. / 9, 1};
   static constexpr double kA[7][6] = {
       {},
@@ -276,10 +289,9 @@ bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
       {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656},
       {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84}};
   using S = State<T, kRubbing, kSlides>;
-  S y = Base<T, kRubbing, kSlides>(x);
   std::array<S, 6> slope;
   std::array<T, kSlides ? kRubbing : 1> share{};
-  for (int step = 0; step < rod_.arcs() * steps_; ++step) {
+  for (int step = first; step < rod_.arcs() * steps_; ++step) {
     const int number = step / steps_;
     const RodArc& arc = rod_.Arc(number);
     const double h = 1.0 / (arc.per_rod * steps_);
@@ -307,14 +319,22 @@ bool RodBalance::Walk(const T* x, T* end, AtNode&& at_node) const {
   return true;
 }
 
+template <class T, int kRubbing, bool kSlides, class AtNode>
+bool RodBalance::WalkAll(const T* x, T* end, AtNode&& at_node) const {
+  return Walk<T, kRubbing, kSlides>(x, end, 0, Base<T, kRubbing, kSlides>(x), at_node);
+}
+
 template <class T, bool kSlides, class AtNode>
 bool RodBalance::WalkAny(const T* x, T* end, AtNode&& at_node) const {
+  const std::size_t tendons = rod_.pull.size();
   if constexpr (kSlides) {
-    return Walk<T, kMaxTendons, true>(x, end, at_node);
+    if (tendons <= kFewTendons) return WalkAll<T, kFewTendons, true>(x, end, at_node);
+    if (tendons <= kSomeTendons) return WalkAll<T, kSomeTendons, true>(x, end, at_node);
+    return WalkAll<T, kMaxTendons, true>(x, end, at_node);
   } else {
-    if (!rod_.friction) return Walk<T, 0, false>(x, end, at_node);
-    return rod_.pull.size() <= kFewTendons ? Walk<T, kFewTendons, false>(x, end, at_node)
-                                           : Walk<T, kMaxTendons, false>(x, end, at_node);
+    if (!rod_.friction) return WalkAll<T, 0, false>(x, end, at_node);
+    return tendons <= kFewTendons ? WalkAll<T, kFewTendons, false>(x, end, at_node)
+                                  : WalkAll<T, kMaxTendons, false>(x, end, at_node);
   }
 }
 
@@ -330,25 +350,47 @@ template bool RodBalance::operator()(const ceres::Jet<double, 4>* x,
 
 bool RodBalance::Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& f,
                           Eigen::MatrixXd& jacobian) const {
+  const std::size_t tendons = rod_.pull.size();
+  if (tendons <= kFewTendons) return JacobianOf<kFewTendons>(x, f, jacobian);
+  if (tendons <= kSomeTendons) return JacobianOf<kSomeTendons>(x, f, jacobian);
+  return JacobianOf<kMaxTendons>(x, f, jacobian);
+}
+
+// A contact moves nothing before its step: walks with duals begin there.
+template <int kRubbing>
+bool RodBalance::JacobianOf(const Eigen::VectorXd& x, Eigen::VectorXd& f,
+                            Eigen::MatrixXd& jacobian) const {
   constexpr int kBlock = 4;
   using Dual = ceres::Jet<double, kBlock>;
-  std::vector<Dual> dual_x(static_cast<std::size_t>(x.size())), dual_f(dual_x.size());
+  using Plain = State<double, kRubbing, true>;
+  const auto tendons = static_cast<Eigen::Index>(rod_.pull.size());
+  std::vector<Plain> at{Base<double, kRubbing, true>(x.data())};
+  const auto keep = [&](int step, const Plain& y) {
+    if (static_cast<int>(at.size()) == step) at.push_back(y);  // where u jumps: before it
+  };
+  if (!WalkAll<double, kRubbing, true>(x.data(), f.data(), keep)) return false;
+  const auto nothing = [](int, const auto&) {};
+  std::vector<Dual> dual_x(x.begin(), x.end()), dual_f(static_cast<std::size_t>(x.size()));
   const std::vector<Eigen::Index> coupled = Coupled(x);
   jacobian.setZero();
   jacobian.diagonal().setConstant(-1);
   for (std::size_t first = 0; first < coupled.size(); first += kBlock) {
     const auto count = static_cast<int>(std::min<std::size_t>(kBlock, coupled.size() - first));
-    for (Eigen::Index i = 0; i < x.size(); ++i) dual_x[static_cast<std::size_t>(i)] = Dual(x[i]);
-    for (int i = 0; i < count; ++i) {
-      dual_x[static_cast<std::size_t>(coupled[first + static_cast<std::size_t>(i)])].v[i] = 1;
+    const auto column = [&](int i) { return coupled[first + static_cast<std::size_t>(i)]; };
+    const auto step = static_cast<int>(std::max<Eigen::Index>(0, (column(0) - 3) / tendons));
+    std::fill(dual_f.begin(), dual_f.end(), Dual(0));
+    for (int i = 0; i < count; ++i) dual_x[static_cast<std::size_t>(column(i))].v[i] = 1;
+    const State<Dual, kRubbing, true> begin =
+        step > 0 ? State<Dual, kRubbing, true>::Of(at[static_cast<std::size_t>(step)])
+                 : Base<Dual, kRubbing, true>(dual_x.data());
+    if (!Walk<Dual, kRubbing, true>(dual_x.data(), dual_f.data(), step, begin, nothing)) {
+      return false;
     }
-    if (!(*this)(dual_x.data(), dual_f.data())) return false;
-    for (Eigen::Index row = 0; row < f.size(); ++row) {
-      const Dual& value = dual_f[static_cast<std::size_t>(row)];
-      f[row] = value.a;
-      for (int i = 0; i < count; ++i) {
-        jacobian(row, coupled[first + static_cast<std::size_t>(i)]) = value.v[i];
+    for (int i = 0; i < count; ++i) {
+      for (Eigen::Index row = 0; row < f.size(); ++row) {
+        jacobian(row, column(i)) = dual_f[static_cast<std::size_t>(row)].v[i];
       }
+      dual_x[static_cast<std::size_t>(column(i))].v[i] = 0;
     }
   }
   return f.allFinite() && jacobian.allFinite();

@@ -59,6 +59,9 @@ class RodBalance {
   /// Tensions [N] of all tendons that do not grow with the loads; of contacts that remember.
   void SetTension(const Eigen::VectorXd& tension);
   double load() const { return load_; }
+  /// Contacts that remember turn from rest to sliding within this [m]: kGivesWay, or more on the
+  /// way to a root.
+  void SetWidth(double width);
   /// u(0) when nothing acts.
   Eigen::Vector3d Natural() const { return rod_.Arc(0).natural; }
   /// The rod with the loads of now.
@@ -136,8 +139,12 @@ class RodBalance {
   template <class T, int kRubbing, bool kSlides>
   void End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) const;
   template <class T, int kRubbing, bool kSlides, class AtNode>
-  bool Walk(const T* x, T* end, AtNode&& at_node) const;
-  // Walk with room for as many tensions as there are.
+  bool Walk(const T* x, T* end, int first, State<T, kRubbing, kSlides> y, AtNode&& at_node) const;
+  template <class T, int kRubbing, bool kSlides, class AtNode>
+  bool WalkAll(const T* x, T* end, AtNode&& at_node) const;
+  template <int kRubbing>
+  bool JacobianOf(const Eigen::VectorXd& x, Eigen::VectorXd& f, Eigen::MatrixXd& jacobian) const;
+  // WalkAll with room for as many tensions as there are.
   template <class T, bool kSlides, class AtNode>
   bool WalkAny(const T* x, T* end, AtNode&& at_node) const;
   // (5), of a tendon whose direction is not given.
@@ -148,8 +155,7 @@ class RodBalance {
     const auto k = static_cast<Eigen::Index>(tendon);
     const Contacts& from = remembers_->from;
     const double before = from.share.size() > 0 ? from.share(step, k) : 0;
-    return statics::SlideFrom(before,
-                              T((length_ / kGivesWay) * (beyond_before_(step, k) - beyond)));
+    return statics::SlideFrom(before, T((length_ / width_) * (beyond_before_(step, k) - beyond)));
   }
   // Per tendon, steps x tendons, of the rod when nothing acts [L].
   Eigen::MatrixXd RestLengths(int steps) const;
@@ -169,6 +175,7 @@ class RodBalance {
   int contacts_ = 0;               ///< per tendon, whose b is an unknown: all, or the first
   Eigen::MatrixXd beyond_before_;  ///< b_before of every step and tendon [L]
   double load_ = 1;
+  double width_ = kGivesWay;
 
   struct Integrated {
     Eigen::VectorXd x;

@@ -76,6 +76,12 @@ void RodBalance::SetLoad(double load) {
   rod_.Mix(from_, to_, load);
 }
 
+void RodBalance::SetWidth(double width) {
+  if (width == width_) return;
+  width_ = width;
+  for (Integrated& known : integrated_) known.load = -1;
+}
+
 void RodBalance::SetTension(const Eigen::VectorXd& tension) {
   for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
     rod_.pull[k] = to_.pull[k] = from_.pull[k] = tension[static_cast<Eigen::Index>(k)] / unit_;

@@ -47,42 +47,6 @@ Eigen::Matrix3Xd Positions(double length, const Eigen::Matrix3Xd& u) {
   return disks;
 }
 
-Eigen::Matrix3Xd Linear(const Eigen::Matrix<double, 6, 1>& ends, int n) {
-  Eigen::Matrix3Xd u(3, n);
-  for (int i = 1; i <= n; ++i) {
-    const double w = Fraction(i, n);
-    u.col(i - 1) = (1 - w) * ends.head<3>() + w * ends.tail<3>();
-  }
-  return u;
-}
-
-std::vector<Eigen::Matrix<double, 3, 6>> LinearGradient(double length,
-                                                        const Eigen::Matrix<double, 6, 1>& ends,
-                                                        int n) {
-  using Columns = Eigen::Matrix<double, 3, 6>;
-  std::vector<Columns> gradient;
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Columns dO = Columns::Zero(), dphi = Columns::Zero();
-  const Eigen::Matrix3Xd u = Linear(ends, n);
-  for (int i = 1; i <= n; ++i) {
-    const Arc arc(length, u.col(i - 1));
-    const double w = Fraction(i, n);
-    Eigen::Matrix3d dp = Eigen::Matrix3d::Zero(), turn;
-    dp.leftCols<2>() = length * R * arc.dp();
-    const Eigen::Matrix3d next = R * arc.Twisted(arc.Q());
-    turn.leftCols<2>() = length * R * arc.Rotation();
-    turn.col(2) = length * next.col(2);
-    dO -= Skew(R * arc.p()) * dphi;
-    dO.leftCols<3>() += (1 - w) * dp;
-    dO.rightCols<3>() += w * dp;
-    dphi.leftCols<3>() += (1 - w) * turn;
-    dphi.rightCols<3>() += w * turn;
-    R = next;
-    gradient.push_back(dO);
-  }
-  return gradient;
-}
-
 template <int C>
 DiskBalance<C>::DiskBalance(const Robot& robot, const Loads& loads, const Loads* from)
     : robot_(robot),

@@ -58,13 +58,6 @@ Eigen::Matrix3Xd Positions(double arc, const Eigen::Matrix3Xd& u);
 
 /// Curvature of arc i (1..n) between the first and the last, (1).
 inline double Fraction(int i, int n) { return (i - 1.0) / (n - 1.0); }
-Eigen::Matrix3Xd Linear(const Eigen::Matrix<double, 6, 1>& ends, int n);
-
-/// dO_i/d(u_1, u_n), 3 x 6 for i = 1..n, of a chain with linear curvature.
-std::vector<Eigen::Matrix<double, 3, 6>> LinearGradient(double arc,
-                                                        const Eigen::Matrix<double, 6, 1>& ends,
-                                                        int n);
-
 /// The balance of moments of all arcs, (9)-(23), as a problem for numerics::Newton.
 ///
 /// Unknowns: x = L (u_1, u_n) for C = 6 (Euler arc spline: the six equations (24)-(27)), or

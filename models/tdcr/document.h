@@ -1,31 +1,18 @@
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
-#include <filesystem>
-#include <string>
-
+#include "models/statics/yaml_document.h"
 #include "models/tdcr/measured.h"
 
 namespace continuum::tdcr {
 
-/// A number as a YAML scalar that reads back exactly; null when not finite.
-YAML::Node Number(double value);
-/// A list on one line.
-YAML::Node List(const Eigen::VectorXd& values);
-YAML::Node List(const std::vector<std::string>& values);
-
-/// Replaces the value of a parameter, whether it stands alone or in a map with its unit. What such
-/// a map said of the old value's uncertainty and source goes with it.
-void SetParameter(YAML::Node& robot, const std::string& key, const YAML::Node& value,
-                  const YAML::Node& uncertainty, const std::string& source);
+using statics::List;
+using statics::Number;
+using statics::SetParameter;
+using statics::WriteDocument;
 
 /// {mean, std, min, max}
 YAML::Node Document(const Spread& spread);
 /// {train: {..}, test: {..}}, each only if it has cases.
 YAML::Node Document(const TipErrors& errors);
-
-/// The whole file or nothing.
-void WriteDocument(const std::filesystem::path& path, const YAML::Node& document);
 
 }  // namespace continuum::tdcr

@@ -108,7 +108,7 @@ std::vector<Solution> Equilibria(const Robot& robot, const Loads& loads, Method 
   }
   const auto near = [&](const VectorXd& root) { return SolveNear(robot, loads, method, root); };
   const auto same = [&](const Solution& a, const Solution& b) {
-    return (a.disks - b.disks).colwise().norm().maxCoeff() < 1e-6 * robot.length;
+    return (a.disks - b.disks).colwise().norm().maxCoeff() < 1e-5 * robot.length;
   };
   const auto energy = [&](const Solution& s) { return Describe(robot, loads, method, s).energy; };
   return statics::ByEnergy(known, roots, near, same, energy);

@@ -130,7 +130,17 @@ class RodSystem {
 
   Outcome Correct(double load, Vector& x) {
     balance_.SetLoad(load);
-    return numerics::Newton(balance_, x, Corrector(load));
+    if (!balance_.remembers()) return numerics::Newton(balance_, x, Corrector(load));
+    Vector trial = x;
+    Outcome outcome = numerics::Newton(balance_, trial, Corrector(load));
+    if (!outcome.ok()) {
+      const int spent = outcome.iterations;
+      trial = x;
+      outcome = Sharpened(load, trial);
+      outcome.iterations += spent;
+    }
+    if (outcome.ok()) x = trial;
+    return outcome;
   }
 
   // The count of a coarse chain is that of the rod unless an eigenvalue is near zero: then of finer
@@ -165,6 +175,24 @@ class RodSystem {
   }
 
  private:
+  // By contacts that turn widely, then more and more sharply.
+  Outcome Sharpened(double load, Vector& x) {
+    Outcome outcome;
+    int spent = 0;
+    for (const double width : {1e-4, 1e-5, kGivesWay}) {
+      balance_.SetWidth(width);
+      numerics::Options options = Corrector(load);
+      options.damped = true;
+      options.max_iterations = 20;
+      outcome = numerics::Newton(balance_, x, options);
+      spent += outcome.iterations;
+      if (!outcome.ok()) break;
+    }
+    balance_.SetWidth(kGivesWay);
+    outcome.iterations = spent;
+    return outcome;
+  }
+
   static constexpr int kPieces = 9, kFallingPieces = 36, kManyPieces = 144;
   static constexpr int kNearZero = 98, kUnknown = 99;
 

@@ -23,7 +23,7 @@ void Explained::Add(const Robot& robot, const Measured& measured, const Eigen::M
   for (int i = 0; i < robot.disks; ++i) {
     if (!measured.Has(i)) continue;
     const Eigen::Vector3d point = points.col(i);
-    const Eigen::Vector3d straight(0, 0, (i + 1) * robot.arc());
+    const Eigen::Vector3d straight(0, 0, robot.Place(i + 1));
     rest_ += (point - disks.col(i)).squaredNorm();
     deflected_ += (point - straight).squaredNorm();
     squares_ += point.squaredNorm();

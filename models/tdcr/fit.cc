@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "models/tdcr/disks.h"
+#include "models/tdcr/linear_curvature.h"
 #include "sim/numerics/levenberg_marquardt.h"
 #include "sim/numerics/newton.h"
 #include "sim/numerics/solver.h"
@@ -11,47 +11,56 @@
 namespace continuum::tdcr {
 namespace {
 
-using Ends = Eigen::Matrix<double, 6, 1>;
-
-// Residuals of (8) over L, by L u: three rows per point and six for the penalty.
+// Residuals of (8) over L, by L u: three rows per point and one per unknown for the penalty.
 struct ShapeProblem {
   const Robot& robot;
+  const LinearCurvature& linear;
   const Eigen::Matrix3Xd& points;
   std::vector<int> measured;
   double penalty;  // sqrt(lambda)/L^2
 
-  Eigen::Index equations() const { return static_cast<Eigen::Index>(3 * measured.size() + 6); }
+  Eigen::Index unknowns() const { return linear.unknowns(); }
+  Eigen::Index equations() const {
+    return static_cast<Eigen::Index>(3 * measured.size()) + unknowns();
+  }
 
-  bool operator()(const double* x, double* f) const {
-    const Ends ends(x);
-    const Eigen::Matrix3Xd disks = Positions(robot.arc(), Linear(ends / robot.length, robot.disks));
-    (Eigen::Map<Ends>(f)) = penalty * ends;
-    for (std::size_t k = 0; k < measured.size(); ++k) {
-      Eigen::Map<Eigen::Vector3d>(f + 6 + 3 * k) =
-          (disks.col(measured[k]) - points.col(measured[k])) / robot.length;
+  bool operator()(const double* at, double* f) const {
+    const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(at, unknowns());
+    const Eigen::Matrix3Xd disks = linear.Positions(linear.Curvatures(x / robot.length));
+    (Eigen::Map<Eigen::VectorXd>(f, unknowns())) = penalty * x;
+    f += unknowns();
+    for (const int disk : measured) {
+      (Eigen::Map<Eigen::Vector3d>(f)) = (disks.col(disk) - points.col(disk)) / robot.length;
+      f += 3;
     }
     return true;
   }
 
-  bool Jacobian(const Ends& x, Eigen::VectorXd& f, Eigen::Matrix<double, -1, 6>& jacobian) const {
+  bool Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& f, Eigen::MatrixXd& jacobian) const {
     (*this)(x.data(), f.data());
-    const auto gradient = LinearGradient(robot.arc(), x / robot.length, robot.disks);
-    jacobian.topRows<6>() = penalty * Eigen::Matrix<double, 6, 6>::Identity();
-    for (std::size_t k = 0; k < measured.size(); ++k) {
-      jacobian.middleRows<3>(static_cast<Eigen::Index>(6 + 3 * k)) =
-          gradient[static_cast<std::size_t>(measured[k])] / (robot.length * robot.length);
+    const auto gradient = linear.Gradient(linear.Curvatures(x / robot.length));
+    jacobian.topRows(unknowns()) = penalty * Eigen::MatrixXd::Identity(unknowns(), unknowns());
+    Eigen::Index row = unknowns();
+    for (const int disk : measured) {
+      jacobian.middleRows<3>(row) =
+          gradient[static_cast<std::size_t>(disk)] / (robot.length * robot.length);
+      row += 3;
     }
     return true;
   }
 };
 
 // The arc of constant curvature from the base through a point: the chord makes half its angle.
-Ends ArcThrough(const Robot& robot, const Eigen::Vector3d& point, int disk) {
-  Ends ends = Ends::Zero();
+Eigen::VectorXd ArcThrough(const ShapeProblem& problem, int disk) {
+  const Robot& robot = problem.robot;
+  const Eigen::Vector3d point = problem.points.col(disk);
+  Eigen::VectorXd ends = Eigen::VectorXd::Zero(problem.unknowns());
   const double side = point.head<2>().norm();
   if (side == 0) return ends;
-  const double curvature = 2 * std::atan2(side, point.z()) / ((disk + 1) * robot.arc());
-  ends.head<2>() = ends.segment<2>(3) = robot.length * curvature * point.head<2>() / side;
+  const double curvature = 2 * std::atan2(side, point.z()) / robot.Place(disk + 1);
+  for (Eigen::Index i = 0; i < ends.size(); i += 3) {
+    ends.segment<2>(i) = robot.length * curvature * point.head<2>() / side;
+  }
   return ends;
 }
 
@@ -59,20 +68,21 @@ Ends ArcThrough(const Robot& robot, const Eigen::Vector3d& point, int disk) {
 // where the sum of squares itself has stopped to change, when the gradient is still at the root of
 // the rounding.
 struct HalfGradient {
-  using Matrix = Eigen::Matrix<double, 6, 6>;
   const ShapeProblem& problem;
 
-  bool operator()(const double* x, double* gradient) const {
-    Ends g;
-    Matrix curvature;
-    if (!Jacobian(Ends(x), g, curvature)) return false;
-    (Eigen::Map<Ends>(gradient)) = g;
+  bool operator()(const double* at, double* gradient) const {
+    const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(at, problem.unknowns());
+    Eigen::VectorXd g;
+    Eigen::MatrixXd curvature;
+    if (!Jacobian(x, g, curvature)) return false;
+    (Eigen::Map<Eigen::VectorXd>(gradient, g.size())) = g;
     return true;
   }
 
-  bool Jacobian(const Ends& x, Ends& gradient, Matrix& curvature) const {
+  bool Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& gradient,
+                Eigen::MatrixXd& curvature) const {
     Eigen::VectorXd f(problem.equations());
-    Eigen::Matrix<double, -1, 6> slope(problem.equations(), 6);
+    Eigen::MatrixXd slope(problem.equations(), problem.unknowns());
     if (!problem.Jacobian(x, f, slope)) return false;
     gradient = slope.transpose() * f;
     curvature = slope.transpose() * slope;
@@ -81,7 +91,7 @@ struct HalfGradient {
 };
 
 // Full steps as long as each halves the gradient. @returns the gradient's norm.
-double Polish(const ShapeProblem& problem, Ends& x) {
+double Polish(const ShapeProblem& problem, Eigen::VectorXd& x) {
   numerics::Options options;
   options.tolerance = 0;
   options.damped = false;
@@ -91,7 +101,9 @@ double Polish(const ShapeProblem& problem, Ends& x) {
 }  // namespace
 
 Solution FitShape(const Robot& robot, const Eigen::Matrix3Xd& points, double lambda) {
-  ShapeProblem problem{robot, points, {}, std::sqrt(lambda) / (robot.length * robot.length)};
+  const LinearCurvature linear(robot);
+  ShapeProblem problem{
+      robot, linear, points, {}, std::sqrt(lambda) / (robot.length * robot.length)};
   for (int i = 0; i < robot.disks; ++i) {
     if (!std::isnan(points(0, i))) problem.measured.push_back(i);
   }
@@ -101,11 +113,11 @@ Solution FitShape(const Robot& robot, const Eigen::Matrix3Xd& points, double lam
     options.tolerance = 0;
     options.max_iterations = 200;
     numerics::Outcome outcome;
-    Ends x = Ends::Zero();
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.unknowns());
     int iterations = 0;
-    const int last = problem.measured.back();
-    for (const Ends& start : {Ends(Ends::Zero()), ArcThrough(robot, points.col(last), last)}) {
-      Ends trial = start;
+    const Eigen::VectorXd straight = x;
+    for (const Eigen::VectorXd& start : {straight, ArcThrough(problem, problem.measured.back())}) {
+      Eigen::VectorXd trial = start;
       const auto result = numerics::LevenbergMarquardt<Eigen::VectorXd>(
           problem, trial, problem.equations(), options);
       iterations += result.iterations;
@@ -117,8 +129,8 @@ Solution FitShape(const Robot& robot, const Eigen::Matrix3Xd& points, double lam
     outcome.residual = Polish(problem, x);
     outcome.iterations = iterations;
     best.x = x;
-    best.u = Linear(x / robot.length, robot.disks);
-    best.disks = Positions(robot.arc(), best.u);
+    best.u = linear.Curvatures(x / robot.length);
+    best.disks = linear.Positions(best.u);
     return outcome;
   });
   return best;

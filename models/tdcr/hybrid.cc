@@ -5,14 +5,15 @@
 #include <algorithm>
 
 #include "error.h"
-#include "models/tdcr/disks.h"
+#include "models/tdcr/linear_curvature.h"
 
 namespace continuum::tdcr {
 namespace {
 
-Eigen::VectorXd AllFeatures(const Robot& robot, const Loads& loads, const Ends& ends) {
+Eigen::VectorXd AllFeatures(const Robot& robot, const Loads& loads, const Eigen::Matrix3Xd& u) {
+  const double first = u(2, 0), last = u(2, u.cols() - 1);
   Eigen::VectorXd features(7 + robot.tendons);
-  features.head<4>() << ends[2], ends[2] * ends[2], ends[5], ends[5] * ends[5];
+  features.head<4>() << first, first * first, last, last * last;
   features.segment<3>(4) = loads.tip_force;
   for (int k = 0; k < robot.tendons; ++k) {
     features[7 + k] = loads.tension[static_cast<std::size_t>(k)];
@@ -26,14 +27,21 @@ double Resolution(const Robot& robot, Eigen::Index feature) {
   return 1e-9 / (feature % 2 == 0 ? robot.length : robot.length * robot.length);
 }
 
-Sample Model(const Robot& robot, const Pair& pair) {
+// The arcs of a solution, without measured points.
+Sample ArcsOf(const Robot& robot, const Loads& loads, const Solution& solution) {
   Sample sample;
-  const Solution solution = SolveCase(robot, pair.loads->loads, Method::kEas);
+  sample.u = solution.u;
+  sample.beside = solution.disks - Positions(robot.arc(), solution.u);
+  sample.features = AllFeatures(robot, loads, solution.u);
+  return sample;
+}
+
+Sample Model(const Robot& robot, Method method, const Pair& pair) {
+  const Solution solution = SolveCase(robot, pair.loads->loads, method);
   if (!solution.outcome.ok()) {
     throw Error::Job("case '" + pair.loads->name + "': " + solution.outcome.why);
   }
-  sample.ends = solution.x / robot.length;
-  sample.features = AllFeatures(robot, pair.loads->loads, sample.ends);
+  Sample sample = ArcsOf(robot, pair.loads->loads, solution);
   sample.points = robot.MeasuringToBase() * pair.measured->disks;
   sample.pair = &pair;
   return sample;
@@ -54,6 +62,32 @@ std::vector<Eigen::Index> Varying(const Robot& robot, const Samples& samples) {
   return varying;
 }
 
+// Turns every part of a line by what its arc is corrected by.
+void Correct(const Eigen::Matrix3Xd& more, Line& line) {
+  const Line before = line;
+  Eigen::Index arc = 0;
+  for (Eigen::Index i = 0; i < line.s.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (i > 0) {
+      const double h = line.s[i] - line.s[i - 1];
+      const Eigen::Quaterniond turn = before.frames[at - 1].conjugate() * before.frames[at];
+      const Eigen::AngleAxisd angle(turn);
+      const Eigen::Vector3d w = angle.angle() * angle.axis();
+      const Eigen::Vector3d old(w.y() / h, -w.x() / h, w.z() / h), u = old + more.col(arc);
+      const Arc from(h, old), to(h, u);
+      const Eigen::Vector3d way =
+          before.frames[at - 1].conjugate() * (before.points.col(i) - before.points.col(i - 1));
+      const Eigen::Matrix3d R = line.frames[at - 1].toRotationMatrix();
+      line.points.col(i) = line.points.col(i - 1) + R * (way + to.p() - from.p());
+      const Eigen::Matrix3d relative = turn.toRotationMatrix() * from.Twisted(from.Q()).transpose();
+      line.frames[at] = Eigen::Quaterniond(Eigen::Matrix3d(R * relative * to.Twisted(to.Q())));
+      const int disk = line.disk[at];
+      if (disk > 0) arc = std::min<Eigen::Index>(disk, more.cols() - 1);
+    }
+    line.u.col(i) += Eigen::Vector3d(-more(1, arc), more(0, arc), more(2, arc));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> FeatureNames(int tendons) {
@@ -62,10 +96,10 @@ std::vector<std::string> FeatureNames(int tendons) {
   return names;
 }
 
-Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::string& file,
-             std::optional<double> penalty) {
+Hybrid Train(const Robot& robot, Method method, const std::vector<Pair>& pairs,
+             const std::string& file, std::optional<double> penalty) {
   std::vector<Sample> samples;
-  for (const Pair& pair : pairs) samples.push_back(Model(robot, pair));
+  for (const Pair& pair : pairs) samples.push_back(Model(robot, method, pair));
   Samples train;
   for (const Sample& s : samples) {
     if (!s.pair->measured->test) train.push_back(&s);
@@ -81,6 +115,7 @@ Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::stri
                        fmt::format("{}", residuals));
   }
   Hybrid hybrid;
+  hybrid.method = method;
   const auto names = FeatureNames(robot.tendons);
   for (const auto j : varying) hybrid.features.push_back(names[static_cast<std::size_t>(j)]);
   for (Sample& s : samples) s.features = Eigen::VectorXd(s.features(varying));
@@ -89,7 +124,7 @@ Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::stri
   if (!fitted.converged) throw Error::Job("hybrid training did not converge");
   hybrid.weights = fitted.values;
   for (const Sample& s : samples) {
-    const Eigen::Matrix3Xd disks = Disks(robot, Corrected(hybrid.weights, s));
+    const Eigen::Matrix3Xd disks = Disks(robot, Corrected(robot, hybrid.weights, s), s);
     const Measured& measured = *s.pair->measured;
     hybrid.tips.Add(robot, measured, disks);
     if (!measured.test) hybrid.explained.Add(robot, measured, disks);
@@ -110,6 +145,7 @@ Hybrid ReadHybrid(const Yaml& file, const Robot& robot) {
   const Yaml node = file.At("hybrid");
   const auto names = FeatureNames(robot.tendons);
   Hybrid hybrid;
+  if (const auto method = node.Find("method")) hybrid.method = ParseMethod(method->Text());
   for (const Yaml& item : node.At("features").Items()) {
     hybrid.features.push_back(item.Text());
     if (std::find(names.begin(), names.end(), item.Text()) == names.end()) {
@@ -136,15 +172,16 @@ Hybrid ReadHybrid(const Yaml& file, const Robot& robot) {
 
 void Apply(const Hybrid& hybrid, const Robot& robot, const Loads& loads, Solution& solution) {
   const auto names = FeatureNames(robot.tendons);
-  const Ends ends = solution.x / robot.length;
-  const Eigen::VectorXd all = AllFeatures(robot, loads, ends);
-  Ends corrected = ends;
+  const Sample sample = ArcsOf(robot, loads, solution);
+  Eigen::VectorXd ends = Eigen::VectorXd::Zero(6);
   for (std::size_t i = 0; i < hybrid.features.size(); ++i) {
     const auto at = std::find(names.begin(), names.end(), hybrid.features[i]) - names.begin();
-    corrected += all[at] * hybrid.weights.row(static_cast<Eigen::Index>(i)).transpose();
+    ends += sample.features[at] * hybrid.weights.row(static_cast<Eigen::Index>(i)).transpose();
   }
-  solution.u = Linear(corrected, robot.disks);
-  solution.disks = Positions(robot.arc(), solution.u);
+  const Eigen::Matrix3Xd more = LinearCurvature(robot).Curvatures(ends);
+  solution.u += more;
+  solution.disks = Disks(robot, solution.u, sample);
+  if (solution.line.s.size() > 0) Correct(more, solution.line);
 }
 
 }  // namespace continuum::tdcr

@@ -12,9 +12,11 @@
 
 namespace continuum::tdcr {
 
-/// The linear correction (32) of the Euler arc spline: (u_1, u_n) = those of the model + W^T
-/// features, without intercept.
+/// The linear correction (32): (u_1, u_n) = those of the model + W^T features, without intercept.
+/// The paper has it for the Euler arc spline; of other models the curvatures of all arcs get what
+/// is linear between the two.
 struct Hybrid {
+  Method method = Method::kEas;
   std::vector<std::string> features;  ///< among FeatureNames
   Eigen::MatrixXd weights;            ///< p x 6: kappa_x_1, kappa_y_1, tau_1, kappa_x_n, ..
   double penalty = 0;                 ///< on the weights, see FitWeights
@@ -37,13 +39,13 @@ std::vector<std::string> FeatureNames(int tendons);
 /// these cases prefers. A feature that is constant over them is left out.
 /// @throws Error (input) when there are fewer residuals than weights; (job) without convergence or
 /// when a case has no equilibrium.
-Hybrid Train(const Robot& robot, const std::vector<Pair>& pairs, const std::string& file,
-             std::optional<double> penalty = 0.0);
+Hybrid Train(const Robot& robot, Method method, const std::vector<Pair>& pairs,
+             const std::string& file, std::optional<double> penalty);
 
 /// The `hybrid` map of a robot's file. @throws Error with file, line and key.
 Hybrid ReadHybrid(const Yaml& file, const Robot& robot);
 
-/// Corrects an eas solution in place: u and disks.
+/// Corrects a solution by the hybrid's method in place: u, disks and line.
 void Apply(const Hybrid& hybrid, const Robot& robot, const Loads& loads, Solution& solution);
 
 }  // namespace continuum::tdcr

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "models/tdcr/disks.h"
+#include "models/tdcr/linear_curvature.h"
 #include "sim/numerics/levenberg_marquardt.h"
 #include "sim/numerics/solver.h"
 
@@ -30,7 +30,7 @@ struct HybridProblem {
   bool operator()(const double* x, double* f) const {
     const auto weights = Weights(Eigen::Map<const Eigen::VectorXd>(x, unknowns()));
     for (const Sample* s : samples) {
-      const Eigen::Matrix3Xd disks = Disks(robot, Corrected(weights, *s));
+      const Eigen::Matrix3Xd disks = Disks(robot, Corrected(robot, weights, *s), *s);
       for (int i = 0; i < robot.disks; ++i) {
         if (!s->pair->measured->Has(i)) continue;
         for (int a = 0; a < 3; ++a) *f++ = (disks(a, i) - s->points(a, i)) * scale();
@@ -44,13 +44,14 @@ struct HybridProblem {
   bool Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& f, Eigen::MatrixXd& jacobian) const {
     (*this)(x.data(), f.data());
     const auto weights = Weights(x);
+    const LinearCurvature linear(robot);
     Eigen::Index row = 0;
     for (const Sample* s : samples) {
-      const auto gradient = LinearGradient(robot.arc(), Corrected(weights, *s), robot.disks);
+      const auto gradient = linear.Gradient(Corrected(robot, weights, *s));
       const Eigen::VectorXd scaled = s->features.cwiseQuotient(sizes);
       for (int i = 0; i < robot.disks; ++i) {
         if (!s->pair->measured->Has(i)) continue;
-        const auto g = gradient[static_cast<std::size_t>(i)] * (scale() / robot.length);
+        const Eigen::Matrix3Xd g = gradient[static_cast<std::size_t>(i)] * (scale() / robot.length);
         for (Eigen::Index c = 0; c < 6; ++c) {
           jacobian.block(row, c * sizes.size(), 3, sizes.size()) = g.col(c) * scaled.transpose();
         }
@@ -80,12 +81,13 @@ Eigen::Index Residuals(const Samples& samples) {
   return count;
 }
 
-Ends Corrected(const Eigen::MatrixXd& weights, const Sample& sample) {
-  return sample.ends + weights.transpose() * sample.features;
+Eigen::Matrix3Xd Corrected(const Robot& robot, const Eigen::MatrixXd& weights,
+                           const Sample& sample) {
+  return sample.u + LinearCurvature(robot).Curvatures(weights.transpose() * sample.features);
 }
 
-Eigen::Matrix3Xd Disks(const Robot& robot, const Ends& ends) {
-  return Positions(robot.arc(), Linear(ends, robot.disks));
+Eigen::Matrix3Xd Disks(const Robot& robot, const Eigen::Matrix3Xd& u, const Sample& sample) {
+  return Positions(robot.arc(), u) + sample.beside;
 }
 
 Weights FitWeights(const Robot& robot, const Samples& samples, double penalty) {
@@ -117,7 +119,8 @@ std::optional<LeftOut> CrossValidate(const Robot& robot, const Samples& samples,
     left_out.converged = left_out.converged && weights.converged;
     for (std::size_t i = fold; i < samples.size(); i += kFolds) {
       const Measured& measured = *samples[i]->pair->measured;
-      const Eigen::Matrix3Xd disks = Disks(robot, Corrected(weights.values, *samples[i]));
+      const Eigen::Matrix3Xd disks =
+          Disks(robot, Corrected(robot, weights.values, *samples[i]), *samples[i]);
       errors.Add(robot, measured, disks);
       left_out.explained.Add(robot, measured, disks);
     }

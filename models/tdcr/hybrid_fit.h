@@ -9,12 +9,10 @@
 
 namespace continuum::tdcr {
 
-/// (kappa_x, kappa_y, tau) of the first and the last arc [1/m].
-using Ends = Eigen::Matrix<double, 6, 1>;
-
 /// One modelled case with its measured disks.
 struct Sample {
-  Ends ends;                 ///< of the uncorrected model
+  Eigen::Matrix3Xd u;        ///< of the uncorrected model's arcs [1/m]
+  Eigen::Matrix3Xd beside;   ///< its disks less those of arcs with u [m]; 0 for eas and pcca
   Eigen::VectorXd features;  ///< those that are used
   Eigen::Matrix3Xd points;   ///< base frame; NaN: not measured
   const Pair* pair;
@@ -24,9 +22,11 @@ using Samples = std::vector<const Sample*>;
 /// Residuals of (30): coordinates of the measured disks.
 Eigen::Index Residuals(const Samples& samples);
 
-/// Ends and disks with the correction W^T features.
-Ends Corrected(const Eigen::MatrixXd& weights, const Sample& sample);
-Eigen::Matrix3Xd Disks(const Robot& robot, const Ends& ends);
+/// Curvatures of the arcs with the correction W^T features of the first and the last arc, linear
+/// between, and the disks that belong to them.
+Eigen::Matrix3Xd Corrected(const Robot& robot, const Eigen::MatrixXd& weights,
+                           const Sample& sample);
+Eigen::Matrix3Xd Disks(const Robot& robot, const Eigen::Matrix3Xd& u, const Sample& sample);
 
 /// What a training found, and whether it came to its end.
 struct Weights {

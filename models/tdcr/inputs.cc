@@ -38,7 +38,7 @@ void Refuse(bool given, const std::string& option, const std::string& job) {
 
 std::string MethodName(const SolveRequest& request, const Robot& robot) {
   if (!request.method.empty()) return request.method;
-  return robot.has_sections() ? "crt" : "eas";
+  return robot.has_sections() || !robot.natural.isZero(0) ? "crt" : "eas";
 }
 
 std::vector<Case> ReadInput(const SolveRequest& request, const Robot& robot) {
@@ -51,8 +51,7 @@ std::vector<Case> ReadInput(const SolveRequest& request, const Robot& robot) {
 std::vector<Measured> ReadMeasurements(const SolveRequest& request, const Robot& robot) {
   if (request.measured.empty()) return {};
   const CsvTable table = CsvTable::Read(request.measured);
-  RequireKnownMeasuredColumns(table, robot.disks);
-  auto measured = ReadMeasured(table, robot.disks);
+  auto measured = statics::ReadMeasuredPoints(table, robot.disks);
   WarnOfFarPoints(request, robot, measured);
   return measured;
 }

@@ -15,7 +15,7 @@ void Need(const std::filesystem::path& path, const std::string& option, const st
 /// Throws Error where an option is given that the job does not have.
 void Refuse(bool given, const std::string& option, const std::string& job);
 
-/// That of the request; without one eas, and crt for a robot with sections.
+/// That of the request; without one eas, and crt for a robot with sections or precurvature.
 std::string MethodName(const SolveRequest& request, const Robot& robot);
 
 /// The cases of --input, with warnings of implausible ones.

@@ -9,6 +9,7 @@
 #include "error.h"
 #include "models/statics/results.h"
 #include "models/tdcr/calibrate.h"
+#include "models/tdcr/calibration_document.h"
 #include "models/tdcr/document.h"
 #include "models/tdcr/explained.h"
 #include "models/tdcr/hybrid.h"
@@ -16,12 +17,6 @@
 
 namespace continuum::tdcr {
 namespace {
-
-// Nothing: to be chosen by cross-validation.
-std::optional<double> Penalty(const SolveRequest& request) {
-  if (request.cross_validate) return std::nullopt;
-  return request.lambda.value_or(0);
-}
 
 void CheckLearning(const SolveRequest& request, const std::string& job) {
   Need(request.input, "--input", job);
@@ -41,13 +36,6 @@ std::vector<Pair> ReadPairs(const SolveRequest& request, const std::vector<Case>
   return Match(cases, measured, request.measured.string());
 }
 
-void AddExplained(const Explained& explained, bool poor, YAML::Node& node) {
-  node["status"] = poor ? "poor" : "ok";
-  node["rmse"] = Number(explained.rmse());
-  node["deflection"] = Number(explained.deflection());
-  node["scatter"] = Number(explained.scatter());
-}
-
 // The exit code of a calibration or training.
 int Judge(const SolveRequest& request, bool poor, const std::string& job,
           const std::string& sentence) {
@@ -56,39 +44,11 @@ int Judge(const SolveRequest& request, bool poor, const std::string& job,
   return 1;
 }
 
-// R.yaml with the values found.
-YAML::Node CalibrationDocument(const SolveRequest& request, const Yaml& file,
-                               const Calibration& c) {
-  const std::string method = request.method.empty() ? "eas" : request.method;
-  const bool friction = c.standard.size() > 4;
-  const YAML::Node base = List(c.robot.base_rotation);
-  YAML::Node standard;
-  standard["E"] = Number(c.standard[0]);
-  if (friction) standard["mu"] = Number(c.standard[4]);
-  standard["base_rotation"] = List(Eigen::VectorXd(c.standard.segment<3>(1)));
-
-  YAML::Node document = YAML::Clone(file.node());
-  const auto set = [&](const char* key, const YAML::Node& value) {
-    SetParameter(document, key, value, YAML::Clone(standard[key]),
-                 fmt::format("calibrated by {} on {} cases of {}", method, c.cases,
-                             request.measured.filename().string()));
-  };
-  set("E", Number(c.robot.E));
-  if (friction) set("mu", Number(c.robot.mu));
-  set("base_rotation", base);
-
-  YAML::Node node;
-  node["method"] = method;
-  node["cases"] = c.cases;
-  node["E"] = Number(c.robot.E);
-  if (friction) node["mu"] = Number(c.robot.mu);
-  node["base_rotation"] = YAML::Clone(base);
-  node["standard_error"] = standard;
-  node["at_bound"] = List(c.at_bound);
-  AddExplained(c.explained, c.explained.poor(), node);
-  node["tip_error_percent"] = Document(c.tips);
-  document["calibration"] = node;
-  return document;
+// What is to be found: --parameters, or the usual ones.
+std::vector<Unknown> UnknownsOf(const SolveRequest& request, const Robot& robot, Method method) {
+  const auto& given = request.parameters;
+  return ParseUnknowns(given.empty() ? DefaultParameters(robot, method) : given, robot, method,
+                       "--parameters");
 }
 
 }  // namespace
@@ -98,20 +58,24 @@ int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& r
   CheckLearning(request, "--calibrate");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
-  const Calibration c =
-      Calibrate(robot, method, ReadPairs(request, cases, measured), request.measured.string());
-  WriteDocument(request.out, CalibrationDocument(request, file, c));
+  const Calibration c = Calibrate(robot, method, UnknownsOf(request, robot, method),
+                                  ReadPairs(request, cases, measured), request.measured.string());
+  const std::string name = MethodName(request, robot);
+  const std::string source = fmt::format("calibrated by {} on {} cases of {}", name, c.cases,
+                                         request.measured.filename().string());
+  WriteDocument(request.out, CalibrationDocument(file, robot, name, c, source));
   return Judge(request, c.explained.poor(), "calibration", c.explained.Sentence());
 }
 
-int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot) {
+int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot, Method method) {
   CheckLearning(request, "--hybrid train");
   const auto cases = ReadInput(request, robot);
   const auto measured = ReadMeasurements(request, robot);
-  const Hybrid h = Train(robot, ReadPairs(request, cases, measured), request.measured.string(),
-                         Penalty(request));
+  const Hybrid h = Train(robot, method, ReadPairs(request, cases, measured),
+                         request.measured.string(), request.lambda);
 
   YAML::Node node;
+  node["method"] = NameOf(method);
   node["features"] = List(h.features);
   YAML::Node weights(YAML::NodeType::Sequence);
   for (Eigen::Index i = 0; i < h.weights.rows(); ++i) {

@@ -11,6 +11,6 @@ namespace continuum::tdcr {
 int CalibrateRobot(const SolveRequest& request, const Yaml& file, const Robot& robot,
                    Method method);
 /// `--hybrid train`: writes the robot's file with a correction. @returns 1 when it is poor.
-int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot);
+int TrainHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot, Method method);
 
 }  // namespace continuum::tdcr

@@ -5,27 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "models/statics/measured_points.h"
 #include "models/tdcr/robot.h"
-#include "sim/io/csv.h"
 
 namespace continuum::tdcr {
 
 /// The measured disks of one case, in the measuring frame [m].
-struct Measured {
-  std::string name;
-  bool test = false;       ///< kept out of calibration and training
-  Eigen::Matrix3Xd disks;  ///< 3 x n, a column of NaN: not measured
-
-  bool Has(int disk) const { return !std::isnan(disks(0, disk)); }
-  int count() const;
-};
-
-/// Reads MEASURED.csv. @throws Error with file, line and column: a point that is not whole, a disk
-/// that the robot lacks, a name twice, a row without any point, no row.
-std::vector<Measured> ReadMeasured(const CsvTable& table, int disks);
-
-/// The row of that name, or nothing.
-const Measured* Find(const std::vector<Measured>& measured, const std::string& name);
+using Measured = statics::MeasuredPoints;
+using statics::Find;
 
 /// Distance between R^c x_i and O_i [m] for every disk, NaN where not measured.
 Eigen::VectorXd Errors(const Robot& robot, const Measured& measured, const Eigen::Matrix3Xd& disks);
@@ -45,9 +32,8 @@ struct TipErrors {
   void Add(const Robot& robot, const Measured& measured, const Eigen::Matrix3Xd& disks);
 };
 
-/// @throws Error when no case was measured.
-void RequireShared(const std::vector<Case>& cases, const std::vector<Measured>& measured,
-                   const std::string& file);
+/// Of the cases, in their order.
+std::vector<std::string> Names(const std::vector<Case>& cases);
 
 /// A case with its measurement.
 struct Pair {

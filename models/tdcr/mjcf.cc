@@ -30,17 +30,23 @@ const char* const kComment =
 constexpr Colour kTendons[] = {
     {0.13F, 0.40F, 0.85F, 1}, {0.80F, 0.22F, 0.20F, 1}, {0.16F, 0.58F, 0.30F, 1}};
 
+const char* Variant(Guides guides, Loaded loaded) {
+  if (guides == Guides::kDisks) return " --variant disks";
+  return loaded == Loaded::kDisks ? " --variant loads" : "";
+}
+
 class Builder {
  public:
-  Builder(const Robot& robot, int links, Guides guides, const std::string& name)
+  Builder(const Robot& robot, int links, Guides guides, const std::string& name, Loaded loaded)
       : robot_(robot),
         links_(links),
         per_arc_(links / robot.disks),
         guides_(guides),
+        loaded_(loaded),
         sections_(robot.Sections()),
         mjcf_("tdcr",
               fmt::format(fmt::runtime(kComment), robot.has_sections() ? "" : "models/tdcr/", name,
-                          guides == Guides::kLinks ? "" : " --variant disks")),
+                          Variant(guides, loaded))),
         holes_(static_cast<std::size_t>(robot.tendons)) {
     for (std::size_t s = 0; s < sections_.size(); ++s) {
       section_.insert(section_.end(), sections_[s].disks.size(), s);
@@ -158,6 +164,9 @@ class Builder {
     mjcf_.AddCapsule(link, {0, 0, 0}, {0, 0, length}, section.diameter / 2, "rod");
     if (HasDisk(i) || guides_ == Guides::kLinks) AddHoles(link, std::to_string(i), i, l / 2);
     if (HasDisk(i)) DrawDisk(link, i / per_arc_, l / 2, "disk");
+    if (HasDisk(i) && loaded_ == Loaded::kDisks) {
+      mjcf_.AddSite(link, fmt::format("disk{}", i / per_arc_), {0, 0, l / 2}, 0.5e-3);
+    }
     return link;
   }
 
@@ -191,13 +200,25 @@ class Builder {
       mjcf_.AddCable(name, holes_[k], 0.4e-3, kTendons[end % std::size(kTendons)]);
       mjcf_.AddTension(name, name, std::max(kLargestTension, std::ceil(most)));
     }
-    mjcf_.AddForce("tip", "base", kLargestForce);
+    AddLoads();
     mjcf_.AddPosition("tip_pos", "tip", "base");
+  }
+
+  void AddLoads() {
+    mjcf_.AddForce("tip", "base", kLargestForce);
+    if (loaded_ == Loaded::kTip) return;
+    const double moment = kMostBend * robot_.moment();
+    for (int i = 1; i <= robot_.disks; ++i) {
+      const std::string site = fmt::format("disk{}", i);
+      mjcf_.AddForce(site, "base", kLargestForce);
+      mjcf_.AddMoment(site, "base", moment);
+    }
   }
 
   const Robot& robot_;
   int links_, per_arc_;
   Guides guides_;
+  Loaded loaded_;
   std::vector<Section> sections_;
   std::vector<std::size_t> section_;  ///< of the arcs
   std::vector<Route> routes_;
@@ -208,9 +229,24 @@ class Builder {
 
 }  // namespace
 
-std::string RobotMjcf(const Robot& robot, int links, Guides guides, const std::string& name) {
-  return Builder(robot, links, guides, name).Build();
+std::string RobotMjcf(const Robot& robot, int links, Guides guides, const std::string& name,
+                      Loaded loaded) {
+  return Builder(robot, links, guides, name, loaded).Build();
 }
+
+namespace {
+
+// Controls of dead loads at the disks, 3 x n; none where there are none.
+void AddControls(const Eigen::Matrix3Xd& loads, char letter, SlowPull& pull) {
+  for (Eigen::Index i = 0; i < loads.cols(); ++i) {
+    if (loads.col(i).isZero(0)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      pull.control[fmt::format("disk{}_{}{}", i + 1, letter, "xyz"[axis])] = loads(axis, i);
+    }
+  }
+}
+
+}  // namespace
 
 Eigen::Vector3d PulledTip(const ModelSpec& mjcf, const Loads& loads) {
   const Change friction{"plugin:cable_friction", "mu", loads.mu};
@@ -221,6 +257,8 @@ Eigen::Vector3d PulledTip(const ModelSpec& mjcf, const Loads& loads) {
     pull.control[fmt::format("cable{}", k + 1)] = loads.tension[k];
   }
   for (int i = 0; i < 3; ++i) pull.control[std::string("tip_f") + "xyz"[i]] = loads.tip_force[i];
+  AddControls(loads.disk_force, 'f', pull);
+  AddControls(loads.disk_moment, 'm', pull);
   Pull(machine, pull);
   const auto tip = SensedPoint(machine, "tip_pos");
   return {tip[0], tip[1], tip[2]};

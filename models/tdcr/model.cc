@@ -170,21 +170,25 @@ Solution DisksNear(const Robot& robot, const Loads& loads, const Eigen::VectorXd
 
 }  // namespace
 
+std::string NameOf(Method method) {
+  const char* const names[] = {"eas", "pcca", "crt", "crt_friction"};
+  return names[static_cast<int>(method)];
+}
+
 Method ParseMethod(const std::string& name) {
-  if (name == "eas") return Method::kEas;
-  if (name == "pcca") return Method::kPcca;
-  if (name == "crt") return Method::kCrt;
-  if (name == "crt_friction") return Method::kCrtFriction;
+  for (const Method method : {Method::kEas, Method::kPcca, Method::kCrt, Method::kCrtFriction}) {
+    if (name == NameOf(method)) return method;
+  }
   throw Error::Input("--method", "eas, pcca, crt, crt_friction or fit", "'" + name + "'");
 }
 
 void RequireTaken(const Robot& robot, const Loads& loads, Method method, const std::string& where) {
   if (method == Method::kCrt || method == Method::kCrtFriction) return;
   const bool at_disks = loads.disk_force.size() > 0 || loads.disk_moment.size() > 0;
-  if (!robot.has_sections() && !at_disks) return;
-  throw Error::Input(where,
-                     std::string("the method crt or crt_friction for a robot with ") +
-                         (at_disks ? "loads at disks" : "sections"),
+  const bool bent = !robot.natural.isZero(0);
+  if (!robot.has_sections() && !at_disks && !bent) return;
+  const char* const what = at_disks ? "loads at disks" : bent ? "precurvature" : "sections";
+  throw Error::Input(where, std::string("the method crt or crt_friction for a robot with ") + what,
                      method == Method::kEas ? "eas" : "pcca");
 }
 

@@ -17,6 +17,7 @@ enum class Method { kEas, kPcca, kCrt, kCrtFriction };
 
 /// @throws Error for another name than eas, pcca, crt, crt_friction.
 Method ParseMethod(const std::string& name);
+std::string NameOf(Method method);
 
 /// Throws Error where eas or pcca, which know one section and parallel tendons, are asked for
 /// another robot, or for loads at disks.

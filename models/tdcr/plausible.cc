@@ -12,6 +12,9 @@ namespace continuum::tdcr {
 namespace {
 
 void WarnOfAngles(const SolveRequest& request, const Yaml& file, const Robot& robot) {
+  for (const double angle : robot.tendon_angles) {
+    statics::WarnIfDegrees(request, file.At("tendon_angles").Where(), angle);
+  }
   if (!file.Find("base_rotation")) return;
   for (const double angle : robot.base_rotation) {
     statics::WarnIfDegrees(request, file.At("base_rotation").Where(), angle);
@@ -80,6 +83,9 @@ void WarnOfImplausibleRobot(const SolveRequest& request, const Yaml& file, const
   check("E", robot.E, 1e4, 1e12, "Pa");
   check("density", robot.density, 50, 25e3, "kg/m^3");
   check("disk_mass", robot.disk_mass, 1e-7, 1, "kg");
+  if (file.Has("precurvature")) {
+    check("precurvature", robot.natural.norm(), 1e-3, 20 / robot.length, "1/m");
+  }
 }
 
 void WarnOfImplausibleCases(const SolveRequest& request, const CsvTable& table, const Robot& robot,

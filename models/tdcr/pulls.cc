@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 
@@ -19,19 +20,26 @@ constexpr int kLinksPerDisk[] = {1, 2, 3, 5, 6};
 
 void Print(const std::filesystem::path& file, const std::filesystem::path& table) {
   const Robot robot = ReadRobot(Yaml::Read(file));
+  const auto cases = ReadCases(CsvTable::Read(table), robot);
+  const auto at_disks = [](const Case& c) {
+    return c.loads.disk_force.size() > 0 || c.loads.disk_moment.size() > 0;
+  };
+  const Loaded loaded =
+      std::any_of(cases.begin(), cases.end(), at_disks) ? Loaded::kDisks : Loaded::kTip;
+  const std::string name = file.filename().string();
   std::vector<ModelSpec> models;
   fmt::print("| tip off by [% L] |");
   for (const int per_disk : kLinksPerDisk) {
     const int links = per_disk * robot.disks;
-    models.push_back(ModelSpec::Parse(RobotMjcf(robot, links, Guides::kLinks)));
+    models.push_back(ModelSpec::Parse(RobotMjcf(robot, links, Guides::kLinks, name, loaded)));
     fmt::print(" {} links |", links);
   }
   const int fine = kLinksPerDisk[3] * robot.disks;
-  models.push_back(ModelSpec::Parse(RobotMjcf(robot, fine, Guides::kDisks)));
+  models.push_back(ModelSpec::Parse(RobotMjcf(robot, fine, Guides::kDisks, name, loaded)));
   fmt::print(" {} links, tendons through the disks only |\n|---|", fine);
   for (std::size_t i = 0; i < models.size(); ++i) fmt::print("---|");
   fmt::print("\n");
-  for (const Case& c : ReadCases(CsvTable::Read(table), robot)) {
+  for (const Case& c : cases) {
     const Solution rod = SolveCase(robot, c.loads, Method::kCrtFriction);
     if (!rod.outcome.ok()) throw Error::Job(c.name + ": " + rod.outcome.why);
     fmt::print("| {} |", c.name);

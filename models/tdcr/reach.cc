@@ -8,6 +8,8 @@ using Eigen::VectorXd;
 
 statics::Reached Reach(const Robot& robot, const Loads& loads, Method method,
                        const statics::Target& target, const Before* before) {
+  const auto most = [&](int disk) { return robot.Place(disk + 1); };
+  if (auto far = statics::TooFar(target, most)) return *far;
   Loads at = loads;
   if (before != nullptr) at.from = LeftBy(robot, before->loads, method, before->solution);
   const auto stand = [&](const VectorXd& drives) -> std::optional<statics::Stand> {

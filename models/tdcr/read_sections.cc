@@ -63,10 +63,10 @@ void ReadMaterial(const Yaml& y, Section& section) {
     throw Error::Input(y.At("nu").Where(), "-1 < nu <= 0.5", Decimal(nu));
   }
   const double d = section.diameter, bore = section.bore;
-  const double area = std::numbers::pi / 4 * (d * d - bore * bore);
   section.EI = E * std::numbers::pi / 64 * (std::pow(d, 4) - std::pow(bore, 4));
   section.GJ = section.EI / (1 + nu);
-  section.mass_per_length = y.At("density").Parameter(0, 1e5) * area;
+  section.E = E;
+  section.mass_per_length = y.At("density").Parameter(0, 1e5) * section.area();
 }
 
 void ReadStiffness(const Yaml& y, Section& section) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "error.h"
+#include "models/statics/columns.h"
 #include "models/tdcr/columns.h"
 #include "models/tdcr/read_sections.h"
 #include "sim/io/decimal.h"
@@ -84,14 +85,22 @@ double ReadDrive(const CsvTable& table, std::size_t row, const std::string& colu
 bool HasVector(const CsvTable& table, const std::vector<std::string>& columns) {
   const auto has = [&](const std::string& column) { return table.Has(column); };
   if (std::none_of(columns.begin(), columns.end(), has)) return false;
-  for (const auto& column : columns) {
-    if (!has(column)) throw Error::Input(table.name() + ":1", "a column '" + column + "'", "none");
-  }
+  statics::RequireColumns(table, columns);
   return true;
 }
 
+double Robot::AngleOf(int tendon) const {
+  if (!tendon_angles.empty()) return tendon_angles[static_cast<std::size_t>(tendon)];
+  return 2 * std::numbers::pi * tendon / tendons;
+}
+
+void Robot::SpreadTendons() {
+  if (!tendon_angles.empty()) return;
+  for (int k = 0; k < tendons; ++k) tendon_angles.push_back(2 * std::numbers::pi * k / tendons);
+}
+
 Eigen::Vector2d Robot::Hole(int tendon) const {
-  const double sigma = 2 * std::numbers::pi * tendon / tendons;
+  const double sigma = AngleOf(tendon);
   return {tendon_radius * std::cos(sigma), tendon_radius * std::sin(sigma)};
 }
 
@@ -99,6 +108,7 @@ std::vector<Section> Robot::Sections() const {
   if (has_sections()) return sections;
   Section whole;
   whole.diameter = diameter;
+  whole.E = E;
   whole.EI = EI();
   whole.GJ = GJ();
   whole.mass_per_length = density * area();
@@ -111,8 +121,7 @@ std::vector<Section> Robot::Sections() const {
 Route Robot::RouteOf(int tendon) const {
   if (has_sections()) return routes[static_cast<std::size_t>(tendon)];
   const auto places = static_cast<std::size_t>(disks) + 1;
-  return {std::vector<double>(places, tendon_radius),
-          std::vector<double>(places, 2 * std::numbers::pi * tendon / tendons)};
+  return {std::vector<double>(places, tendon_radius), std::vector<double>(places, AngleOf(tendon))};
 }
 
 double Robot::Place(int disk) const {
@@ -216,6 +225,14 @@ void ReadSegment(const Yaml& file, Robot& robot) {
   }
   robot.density = NotNegative(file, "density");
   robot.disk_mass = NotNegative(file, "disk_mass");
+  if (const auto node = file.Find("precurvature")) robot.natural = Vector(*node);
+  if (const auto node = file.Find("tendon_angles")) {
+    robot.tendon_angles = node->Parameters();
+    if (static_cast<int>(robot.tendon_angles.size()) != robot.tendons) {
+      throw Error::Input(node->Where(), std::to_string(robot.tendons) + " angles",
+                         std::to_string(robot.tendon_angles.size()));
+    }
+  }
 }
 
 }  // namespace

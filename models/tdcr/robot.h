@@ -32,9 +32,11 @@ struct Robot {
   double mu = 0;                                      ///< Coulomb friction between tendon and disk
   double tendon_EA = 0;                               ///< of a tendon [N]; 0: it does not stretch
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2], base frame
-  /// Curvature of the rod when nothing acts (kappa_x, kappa_y, tau) [1/m]: an imperfection that
-  /// only the Cosserat rod knows, for synthetic measurements. Not in the file.
+  /// Curvature of the rod when nothing acts (kappa_x, kappa_y, tau) [1/m]: only the Cosserat rod
+  /// knows it.
   Eigen::Vector3d natural = Eigen::Vector3d::Zero();
+  /// sigma_k about +z from +x [rad] of the segment's tendons; empty: equal angles, tendon 1 on +x.
+  std::vector<double> tendon_angles;
   Eigen::Vector3d base_rotation = Eigen::Vector3d::Zero();  ///< theta_x, theta_y, theta_z of (31)
 
   std::vector<Section> sections;
@@ -62,6 +64,9 @@ struct Robot {
   double moment() const { return EI() / length; }
   /// Tensions are divided by this: that of a tendon with this moment about the rod [N].
   double tension() const { return moment() / tendon_radius; }
+  double AngleOf(int tendon) const;  ///< sigma_k, without sections
+  /// Writes the equal angles into `tendon_angles` where that is empty.
+  void SpreadTendons();
   Eigen::Vector2d Hole(int tendon) const;
   /// R^c = R_x R_y R_z of base_rotation: measuring frame to base frame.
   Eigen::Matrix3d MeasuringToBase() const;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 namespace continuum::tdcr {
@@ -13,6 +14,7 @@ struct Section {
   double diameter = 0;         ///< of the outside [m]
   double bore = 0;             ///< diameter of the inside of a tube [m]
   double EI = 0, GJ = 0;       ///< [N m^2]
+  double E = 0;                ///< of the material [Pa]; 0: EI and GJ are given
   double mass_per_length = 0;  ///< of the rod [kg/m]
   double disk_mass = 0;        ///< of one disk [kg]
   double disk_radius = 0;      ///< tendons run within it; 0: not given [m]
@@ -22,6 +24,9 @@ struct Section {
   std::vector<double> disks;
 
   double length() const { return disks.back(); }
+  double area() const {  ///< of the cross-section [m^2]
+    return std::numbers::pi / 4 * (diameter * diameter - bore * bore);
+  }
   /// EI, or where the rod twists more easily than one of a material, 3/2 GJ [N m^2].
   double Softest() const { return std::min(EI, 1.5 * GJ); }
 };

@@ -7,10 +7,12 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "models/statics/error_table.h"
 #include "models/statics/path_error.h"
 #include "models/statics/rows.h"
 #include "models/statics/sweep.h"
 #include "models/statics/write_figure.h"
+#include "models/tdcr/calibration_document.h"
 #include "models/tdcr/columns.h"
 #include "models/tdcr/equilibria.h"
 #include "models/tdcr/fit.h"
@@ -37,6 +39,11 @@ void CheckLambda(const SolveRequest& request, const std::string& method) {
   if (!(*request.lambda >= 0 && std::isfinite(*request.lambda))) {
     throw Error::Input("--lambda", "a number of at least 0", fmt::format("{}", *request.lambda));
   }
+}
+
+void CheckParameters(const SolveRequest& request) {
+  Refuse(!request.parameters.empty() && !request.calibrate, "--parameters",
+         "other jobs than --calibrate");
 }
 
 // --equilibria, --shape and --compliance: of solved cases.
@@ -79,20 +86,16 @@ void AddEquilibria(const Robot& robot, Method method, const Solved& s,
   if (!s.solution.outcome.ok()) solved.push_back(s);
 }
 
-std::vector<std::string> Names(const std::vector<Case>& cases) {
-  std::vector<std::string> names;
-  for (const Case& c : cases) names.push_back(c.name);
-  return names;
-}
-
-int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
-               const Hybrid* hybrid) {
+int SolveCases(const SolveRequest& request, const Robot& robot, Method method, const Hybrid* hybrid,
+               const std::optional<Prediction>& prediction) {
   const auto cases = ReadInput(request, robot);
   if (hybrid != nullptr || request.equilibria) {
     RefuseLengths(request, cases, hybrid ? "--hybrid" : "--equilibria");
   }
   const auto measured = ReadMeasurements(request, robot);
-  if (!request.measured.empty()) RequireShared(cases, measured, request.measured.string());
+  if (!request.measured.empty()) {
+    statics::RequireShared(Names(cases), measured, request.measured.string());
+  }
   std::vector<Solution> plain(cases.size());  // without the hybrid's correction
   statics::ForRows(
       cases.size(), [&](std::size_t i) { return cases[i].reference; },
@@ -114,7 +117,28 @@ int SolveCases(const SolveRequest& request, const Robot& robot, Method method,
       solved.push_back(std::move(s));
     }
   }
-  return Report(request, robot, solved);
+  return Report(request, robot, solved, prediction);
+}
+
+// What calibration says of predictions by this method.
+std::optional<Prediction> PredictionBy(const Yaml& file, const Robot& robot,
+                                       const std::string& method) {
+  const auto calibration = file.Find("calibration");
+  if (!calibration || calibration->At("method").Text() != method) return std::nullopt;
+  return ReadPrediction(file, robot);
+}
+
+// By the method that the hybrid was trained with.
+int ApplyHybrid(const SolveRequest& request, const Yaml& file, const Robot& robot) {
+  const Hybrid hybrid = ReadHybrid(file, robot);
+  const std::string trained = NameOf(hybrid.method);
+  if (!request.method.empty() && request.method != trained) {
+    throw Error::Input("--method", trained + ", by which the hybrid was trained",
+                       "'" + request.method + "'");
+  }
+  SolveRequest named = request;
+  named.method = trained;
+  return SolveCases(named, robot, hybrid.method, &hybrid, std::nullopt);
 }
 
 // The error of the path halfway to a target.
@@ -185,10 +209,10 @@ int ReachTargets(const SolveRequest& request, const Robot& robot, Method method)
 // A robot with sections: the Cosserat rod alone knows it.
 void RequireSolvable(const SolveRequest& request, const Yaml& file, const Robot& robot,
                      const std::string& method) {
-  const std::string where = file.At("sections").Where(), only = "the method crt or crt_friction";
-  if (method == "fit") throw Error::Input(where, only + " with sections", "fit");
-  if (request.calibrate || !request.hybrid.empty()) {
-    throw Error::Input(where, "a robot of one section (keys length, diameter, ..) for calibration",
+  const std::string where = file.At("sections").Where();
+  if (method == "fit") return;
+  if (!request.hybrid.empty()) {
+    throw Error::Input(where, "a robot of one section (keys length, diameter, ..) with --hybrid",
                        "sections");
   }
   RequireTaken(robot, NoLoads(robot), ParseMethod(method), where);
@@ -218,12 +242,17 @@ int SolveTdcr(const SolveRequest& request) {
   if (robot.has_sections()) RequireSolvable(request, file, robot, method);
   Refuse(request.sensitivity, "--sensitivity", "the robot tdcr");
   Need(request.out, "--out", "the results");
+  const bool learns = request.calibrate || request.hybrid == "train";
   CheckLists(request, method);
   CheckLambda(request, method);
+  CheckParameters(request);
+  statics::CheckErrorOptions(request);
+  Refuse(!request.errors.empty() && learns, "--errors", "calibration and training");
+  Refuse(!request.boxplot.empty() && learns, "--boxplot", "calibration and training");
   if (!request.hybrid.empty()) {
     Refuse(request.calibrate, "--calibrate", "--hybrid");
-    if (method != "eas") throw Error::Input("--method", "eas with --hybrid", "'" + method + "'");
-    if (request.hybrid == "train") return TrainHybrid(request, file, robot);
+    if (method == "fit") throw Error::Input("--method", "a model with --hybrid", "'fit'");
+    if (request.hybrid == "train") return TrainHybrid(request, file, robot, ParseMethod(method));
     if (request.hybrid != "apply") {
       throw Error::Input("--hybrid", "train or apply", "'" + request.hybrid + "'");
     }
@@ -241,9 +270,10 @@ int SolveTdcr(const SolveRequest& request) {
   const Method parsed = ParseMethod(method);
   Need(request.input, "--input", "the cases");
   if (!request.reach.empty()) return ReachTargets(request, robot, parsed);
-  if (request.hybrid.empty()) return SolveCases(request, robot, parsed, nullptr);
-  const Hybrid hybrid = ReadHybrid(file, robot);
-  return SolveCases(request, robot, parsed, &hybrid);
+  if (request.hybrid.empty()) {
+    return SolveCases(request, robot, parsed, nullptr, PredictionBy(file, robot, method));
+  }
+  return ApplyHybrid(request, file, robot);
 }
 
 }  // namespace continuum

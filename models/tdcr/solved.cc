@@ -1,12 +1,14 @@
 #include "models/tdcr/solved.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "models/statics/details.h"
+#include "models/statics/error_table.h"
 #include "models/statics/results.h"
 #include "models/statics/shape_table.h"
 #include "models/statics/write_figure.h"
@@ -51,6 +53,20 @@ void AddErrorColumns(const std::vector<Solved>& solved, int disks,
       columns.push_back(fmt::format("error_{}", i + 1));
       break;
     }
+  }
+}
+
+// within_i of every disk that calibration has measured.
+void AddWithinColumns(const Prediction& prediction, std::vector<std::string>& columns) {
+  for (std::size_t i = 0; i < prediction.within.size(); ++i) {
+    if (!std::isnan(prediction.within[i])) columns.push_back(fmt::format("within_{}", i + 1));
+  }
+}
+
+void SetWithin(const Prediction& prediction, statics::Results& results) {
+  for (std::size_t i = 0; i < prediction.within.size(); ++i) {
+    const double within = prediction.within[i];
+    if (!std::isnan(within)) results.Set(fmt::format("within_{}", i + 1), within);
   }
 }
 
@@ -114,12 +130,24 @@ void WriteCompliance(const SolveRequest& request, const Robot& robot,
   table.Write(request.compliance);
 }
 
+// Distances from what was measured.
+void AddErrors(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
+  statics::ErrorTable errors(robot.length, robot.disks);
+  for (const Solved& s : solved) {
+    if (s.measured == nullptr || !s.solution.outcome.ok()) continue;
+    errors.Add(s.measured->test, Errors(robot, *s.measured, s.solution.disks));
+  }
+  statics::ReportErrors(request, errors, "tdcr " + MethodName(request, robot));
+}
+
 }  // namespace
 
-int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved) {
+int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved,
+           const std::optional<Prediction>& prediction) {
   const bool by_length = !solved.empty() && solved.front().loads.length.size() > 0;
   auto columns = Columns(request, robot, by_length);
   AddErrorColumns(solved, robot.disks, columns);
+  if (prediction) AddWithinColumns(*prediction, columns);
   const auto failed = [](const Solved& s) { return !s.solution.outcome.ok(); };
   const bool all = std::none_of(solved.begin(), solved.end(), failed);
   statics::Results results(columns);
@@ -132,6 +160,7 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
         s.solution.outcome,
         missed ? "out_of_reach" : statics::StatusOf(s.solution.outcome, s.solution.stability));
     if (ok) AddShape(robot, s, results);
+    if (ok && prediction) SetWithin(*prediction, results);
     if (request.method == "fit") {
       results.Set("why", s.solution.outcome.why);
       continue;
@@ -142,10 +171,11 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     details.miss = s.miss;
     Set(details, s.equilibrium, results);
   }
-  results.Write(request.out);
+  statics::Write(results, request);
   if (!request.shape.empty()) WriteShapes(request, robot, solved);
   if (!request.compliance.empty()) WriteCompliance(request, robot, solved);
   if (!request.plot.empty()) Draw(request, robot, solved);
+  AddErrors(request, robot, solved);
   return all ? 0 : 1;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/statics/solve_request.h"
+#include "models/tdcr/calibrate.h"
 #include "models/tdcr/measured.h"
 #include "models/tdcr/model.h"
 
@@ -21,7 +22,9 @@ struct Solved {
 };
 
 /// Writes what the request asks for of all that was solved: results, shapes, compliance, figure.
+/// prediction: how near the robot is to these results, where that is known.
 /// @returns 0 when all of it was solved, else 1.
-int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved);
+int Report(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& solved,
+           const std::optional<Prediction>& prediction = {});
 
 }  // namespace continuum::tdcr

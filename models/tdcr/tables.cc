@@ -77,8 +77,70 @@ void Print(const Robot& robot, int set, unsigned seed) {
   for (Case& c : cases) c.loads.mu = eas.robot.mu;
   const auto trained = Match(cases, experiment.measured, "synthetic");
   PrintSpread("calibrated", *Statistics(eas.tips.test), hybrids[set - 1][0]);
-  PrintHybrid("as printed", Train(eas.robot, trained, "synthetic", 0), hybrids[set - 1][1]);
-  PrintHybrid("hybrid", Train(eas.robot, trained, "synthetic", std::nullopt), hybrids[set - 1][1]);
+  PrintHybrid("as printed", Train(eas.robot, Method::kEas, trained, "synthetic", 0),
+              hybrids[set - 1][1]);
+  PrintHybrid("hybrid", Train(eas.robot, Method::kEas, trained, "synthetic", std::nullopt),
+              hybrids[set - 1][1]);
+}
+
+// How often an interval holds the truth, and a prediction the measured tip.
+struct Coverage {
+  int seeds = 0, standard = 0, shapes = 0, model = 0;  ///< of E
+  int shapes_mu = 0, model_mu = 0;
+  int tips = 0, within = 0;
+};
+
+void See(const Experiment& experiment, const std::vector<Pair>& pairs, Method method,
+         const Calibration& c, Coverage& coverage) {
+  const Robot& nominal = experiment.nominal;
+  const Robot truth = Truth(nominal);
+  const double E = truth.E / nominal.E;
+  const auto holds = [](const Eigen::MatrixX2d& interval, Eigen::Index i, double value) {
+    return interval(i, 0) <= value && value <= interval(i, 1);
+  };
+  ++coverage.seeds;
+  coverage.standard += std::abs(c.x[0] - E) <= 1.96 * c.spread.standard[0];
+  coverage.shapes += holds(c.spread.shapes, 0, E);
+  coverage.model += holds(c.spread.model, 0, E);
+  if (c.x.size() > 4) {
+    coverage.shapes_mu += holds(c.spread.shapes, 4, truth.mu);
+    coverage.model_mu += holds(c.spread.model, 4, truth.mu);
+  }
+  for (const Pair& pair : pairs) {
+    if (!pair.measured->test) continue;
+    Loads loads = pair.loads->loads;
+    loads.mu = c.robot.mu;
+    const Solution s = SolveCase(c.robot, loads, method);
+    ++coverage.tips;
+    coverage.within +=
+        Errors(c.robot, *pair.measured, s.disks)[nominal.disks - 1] <= c.prediction.within.back();
+  }
+}
+
+// Calibrations of shapes of another model (crt_friction with natural curvature), over seeds.
+void PrintCoverage(const Robot& robot, unsigned seeds) {
+  const char* const names[] = {"eas", "pcca", "crt", "crt_friction"};
+  fmt::print(
+      "| set, method | E: 1.96 standard errors | E: shapes | E: with model error | mu: shapes | "
+      "mu: "
+      "with model error | tips of test cases within |\n|---|---|---|---|---|---|---|\n");
+  for (const int set : {1, 2}) {
+    for (const auto method : {Method::kEas, Method::kPcca, Method::kCrt, Method::kCrtFriction}) {
+      Coverage coverage;
+      for (unsigned seed = 1; seed <= seeds; ++seed) {
+        const auto experiment = Synthesize(robot, set, 100 * seed + static_cast<unsigned>(set));
+        const auto pairs = Match(experiment.cases, experiment.measured, "synthetic");
+        See(experiment, pairs, method, Calibrate(experiment.nominal, method, pairs, "synthetic"),
+            coverage);
+      }
+      const bool mu = method != Method::kCrt;
+      fmt::print("| {}, {} | {} | {} | {} | {} | {} | {} of {} |\n", set,
+                 names[static_cast<int>(method)], coverage.standard, coverage.shapes,
+                 coverage.model, mu ? std::to_string(coverage.shapes_mu) : "",
+                 mu ? std::to_string(coverage.model_mu) : "", coverage.within, coverage.tips);
+    }
+  }
+  fmt::print("of {} seeds\n", seeds);
 }
 
 // Set 1 as the files that `continuum solve` reads, tensions and forces to 0.1 mN, points to 1 um.
@@ -107,14 +169,21 @@ void WriteSample(const Robot& robot, const std::filesystem::path& folder) {
 int main(int count, char** arguments) {
   using namespace continuum;
   const bool sample = count == 4 && std::string(arguments[2]) == "--sample";
-  if (count != 2 && count != 3 && !sample) {
-    fmt::print(stderr, "usage: tdcr_tables models/tdcr/tdcr.yaml [SEED | --sample FOLDER]\n");
+  const bool coverage = count == 4 && std::string(arguments[2]) == "--coverage";
+  if (count != 2 && count != 3 && !sample && !coverage) {
+    fmt::print(stderr,
+               "usage: tdcr_tables models/tdcr/tdcr.yaml [SEED | --sample FOLDER | --coverage "
+               "SEEDS]\n");
     return 2;
   }
   try {
     const tdcr::Robot robot = tdcr::ReadRobot(Yaml::Read(arguments[1]));
     if (sample) {
       tdcr::WriteSample(robot, arguments[3]);
+      return 0;
+    }
+    if (coverage) {
+      tdcr::PrintCoverage(robot, static_cast<unsigned>(std::stoul(arguments[3])));
       return 0;
     }
     const unsigned seed =

@@ -7,6 +7,7 @@
 #include <Eigen/QR>
 
 #include "error.h"
+#include "models/statics/columns.h"
 #include "sim/io/csv.h"
 #include "sim/io/decimal.h"
 
@@ -18,15 +19,9 @@ constexpr double kGravity = 9.81;
 constexpr double kSameAngle = 1e-9;
 
 void RequireColumns(const CsvTable& table) {
-  for (const std::string& column : table.columns()) {
-    if (column == "theta" || column == "m" || column == "F_SC") continue;
-    throw Error::Input(table.name() + ":1, column '" + column + "'", "the columns theta, m, F_SC",
-                       "'" + column + "'");
-  }
-  for (const std::string column : {"theta", "m", "F_SC"}) {
-    if (table.Has(column)) continue;
-    throw Error::Input(table.name() + ":1", "a column '" + column + "'", "none");
-  }
+  const std::vector<std::string> columns{"theta", "m", "F_SC"};
+  statics::RefuseOtherColumns(table, columns, "the columns theta, m, F_SC");
+  statics::RequireColumns(table, columns);
 }
 
 double InRange(const CsvTable& table, std::size_t row, const std::string& column, bool inside,

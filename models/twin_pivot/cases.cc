@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "models/statics/columns.h"
 #include "models/statics/results.h"
 #include "sim/io/csv.h"
 #include "sim/io/decimal.h"
@@ -53,24 +54,16 @@ void RequireColumns(const CsvTable& table, const std::vector<std::string>& loads
   known.insert(known.end(), loads.begin(), loads.end());
   std::string all;
   for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
-  const std::string header = table.name() + ":1";
-  for (const std::string& column : table.columns()) {
-    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    if (IsDiscLoad(column, discs)) continue;
-    throw Error::Input(header + ", column '" + column + "'",
-                       "one of the columns " + all +
-                           fmt::format(", or fx_k, fy_k, fz_k, Mx_k, My_k, Mz_k, payload_k of a "
-                                       "disc k = 1 to {}",
-                                       discs),
-                       "'" + column + "'");
-  }
+  const auto is_known = [&](const std::string& column) {
+    return std::find(known.begin(), known.end(), column) != known.end() ||
+           IsDiscLoad(column, discs);
+  };
+  const std::string loads_of_discs = fmt::format(
+      ", or fx_k, fy_k, fz_k, Mx_k, My_k, Mz_k, payload_k of a disc k = 1 to {}", discs);
+  statics::RefuseOtherColumns(table, is_known, "one of the columns " + all + loads_of_discs);
   std::vector<std::string> needed = {"case"};
   needed.insert(needed.end(), loads.begin(), loads.end());
-  for (const std::string& column : needed) {
-    if (table.Has(column)) continue;
-    throw Error::Input(header, "a column '" + column + "' (F1.., m1.. or L1.. for every cable)",
-                       "none");
-  }
+  statics::RequireColumns(table, needed, " (F1.., m1.. or L1.. for every cable)");
 }
 
 Condition ReadCondition(const CsvTable& table, std::size_t row) {

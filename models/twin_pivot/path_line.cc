@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "models/statics/columns.h"
 #include "sim/io/decimal.h"
 
 namespace continuum::twin_pivot {
@@ -17,16 +18,9 @@ using Eigen::Vector3d;
 constexpr double kOnAxis = 1e-6;  // m
 
 void RequireColumns(const CsvTable& table) {
-  const std::vector<std::string> known = {"x", "y", "z", "low", "high"};
-  for (const std::string& column : table.columns()) {
-    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    throw Error::Input(table.name() + ":1, column '" + column + "'",
-                       "the columns x, y, z of a path [m], and low, high [N]", "'" + column + "'");
-  }
-  for (const char* column : {"x", "y", "z"}) {
-    if (table.Has(column)) continue;
-    throw Error::Input(table.name() + ":1", std::string("a column '") + column + "'", "none");
-  }
+  statics::RefuseOtherColumns(table, {"x", "y", "z", "low", "high"},
+                              "the columns x, y, z of a path [m], and low, high [N]");
+  statics::RequireColumns(table, {"x", "y", "z"});
   if (table.rows() >= 2) return;
   throw Error::Input(table.name(), "two points of a path or more", std::to_string(table.rows()));
 }

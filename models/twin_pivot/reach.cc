@@ -63,6 +63,8 @@ statics::Reached ReachBy(const Search& search, const Robot& robot, double width,
 
 statics::Reached Reach(const Robot& robot, const Load& load, Method method,
                        const statics::Target& target, const Before* before) {
+  const auto most = [&](int disc) { return robot.Place(disc + 1); };
+  if (auto far = statics::TooFar(target, most)) return *far;
   return ReachBy(statics::Reach, robot, robot.eps, load, method, target, before);
 }
 

@@ -9,6 +9,8 @@
 
 #include "error.h"
 #include "models/statics/details.h"
+#include "models/statics/error_table.h"
+#include "models/statics/measured_points.h"
 #include "models/statics/path_error.h"
 #include "models/statics/plausible.h"
 #include "models/statics/results.h"
@@ -21,6 +23,7 @@
 #include "models/twin_pivot/equilibria.h"
 #include "models/twin_pivot/figure.h"
 #include "models/twin_pivot/follow.h"
+#include "models/twin_pivot/geometry.h"
 #include "models/twin_pivot/limits.h"
 #include "models/twin_pivot/reach.h"
 #include "models/twin_pivot/response.h"
@@ -44,7 +47,10 @@ void RefuseOptions(const SolveRequest& request) {
       {"--cross-validate", request.cross_validate},
       {"--sensitivity", request.sensitivity},
       {"--sweep with --calibrate", request.calibrate && request.sweep != 0},
-      {"--measured", !request.measured.empty()},
+      {"--parameters", !request.parameters.empty()},
+      {"--measured with --calibrate", request.calibrate && !request.measured.empty()},
+      {"--measured with --equilibria", request.equilibria && !request.measured.empty()},
+      {"--measured with --follow", !request.measured.empty() && !request.follow.empty()},
       {"--equilibria with --calibrate", request.calibrate && request.equilibria},
       {"--shape with --calibrate", request.calibrate && !request.shape.empty()},
       {"--compliance with --calibrate", request.calibrate && !request.compliance.empty()},
@@ -127,6 +133,7 @@ struct Solved {
   std::optional<double> miss = {};  ///< distance from a target [m]
   std::optional<double> base = {};  ///< its x on the way along a path [m]
   Eigen::VectorXd off = {};         ///< of every disc from the path [m]
+  Eigen::VectorXd errors = {};      ///< of every disc from where it was measured [m]
 };
 
 // Its reference is among those solved before.
@@ -267,6 +274,34 @@ std::vector<Solved> FollowPath(const SolveRequest& request, const Robot& robot,
   return rows;
 }
 
+Eigen::Matrix3Xd DiscCentres(const Robot& robot, const Solution& solution) {
+  const auto frames = twin_pivot::DiscFrames(robot, solution.beta);
+  Eigen::Matrix3Xd centres(3, robot.Joints());
+  for (int m = 0; m < robot.Joints(); ++m) {
+    centres.col(m) = frames[static_cast<std::size_t>(m) + 1].translation();
+  }
+  return centres;
+}
+
+// Distances of the discs from where they were measured.
+void AddErrors(const SolveRequest& request, const Robot& robot, std::vector<Solved>& rows) {
+  if (request.measured.empty()) return;
+  const auto measured =
+      statics::ReadMeasuredPoints(CsvTable::Read(request.measured), robot.Joints());
+  std::vector<std::string> names;
+  for (const Solved& solved : rows) names.push_back(solved.row.label);
+  statics::RequireShared(names, measured, request.measured.string());
+  statics::ErrorTable errors(robot.Length(), robot.Joints());
+  for (Solved& solved : rows) {
+    const auto* const m = statics::Find(measured, solved.row.label);
+    if (m == nullptr || !solved.solution.outcome.ok()) continue;
+    const Eigen::Matrix3Xd off = m->disks - DiscCentres(robot, solved.solution);
+    solved.errors = off.colwise().norm().transpose();
+    errors.Add(m->test, solved.errors);
+  }
+  statics::ReportErrors(request, errors, "twin_pivot: " + request.robot.filename().string());
+}
+
 bool HasLimits(const Robot& robot) { return robot.strain_limit > 0 || robot.theta_max > 0; }
 
 // One sentence for each limit that some row is beyond: how far at most, and how often.
@@ -316,6 +351,9 @@ void WriteRow(const Robot& robot, const Solved& solved, statics::Results& result
   for (int j = 0; j < robot.Cables(); ++j) {
     results.Set("F_end_" + std::to_string(j + 1), solution.tension(robot.Anchor(j) - 1, j));
   }
+  for (Eigen::Index m = 0; m < solved.errors.size(); ++m) {
+    results.Set("error_" + std::to_string(m + 1), solved.errors[m]);
+  }
   auto details = Describe(robot, load, solution);
   details.miss = solved.miss;
   Set(details, solved.equilibrium, results);
@@ -342,6 +380,7 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
   append(statics::Numbered("F_end_", robot.Cables()));
   const bool reaches = !request.reach.empty() || !request.follow.empty();
   append(statics::DetailColumns{robot.Cables(), by_length, reaches, request.equilibria}.Names());
+  if (!request.measured.empty()) append(statics::Numbered("error_", robot.Joints()));
   if (!request.follow.empty()) append({"base_x", "off_mean", "off_max", "off_disc"});
   if (HasLimits(robot)) append({"beyond"});
   return columns;
@@ -352,7 +391,7 @@ void WriteResults(const SolveRequest& request, const Robot& robot,
   const bool by_length = !rows.empty() && rows.front().row.load.length.size() > 0;
   statics::Results results(Columns(request, robot, by_length));
   for (const Solved& solved : rows) WriteRow(robot, solved, results);
-  results.Write(request.out);
+  statics::Write(results, request);
 }
 
 void WriteShapes(const SolveRequest& request, const Robot& robot, const std::vector<Solved>& rows) {
@@ -399,6 +438,7 @@ int SolveTwinPivot(const SolveRequest& request) {
   const Method method = ReadMethod(request.method);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
+  statics::CheckErrorOptions(request);
   statics::RequireTable(request.shape, "--shape");
   statics::RequireTable(request.compliance, "--compliance");
   const std::vector<Case> cases = twin_pivot::ReadCases(statics::CasesOf(request), robot);
@@ -414,7 +454,8 @@ int SolveTwinPivot(const SolveRequest& request) {
   const auto solve = !request.reach.empty()    ? ReachTargets
                      : !request.follow.empty() ? FollowPath
                                                : RowsOf;
-  const std::vector<Solved> rows = solve(request, robot, cases, method);
+  std::vector<Solved> rows = solve(request, robot, cases, method);
+  AddErrors(request, robot, rows);
   if (HasLimits(robot)) WarnOfLimits(request, robot, rows);
   WriteResults(request, robot, rows);
   if (!request.shape.empty()) WriteShapes(request, robot, rows);

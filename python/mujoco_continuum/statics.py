@@ -27,7 +27,9 @@ def solve(robot: Document, cases: Table | None = None, *, method: str | None = N
           measured: Table | None = None, reach: Table | None = None, follow: Table | None = None,
           sweep: int | None = None, hybrid: bool = False, sensitivity: bool = False,
           equilibria: bool = False, lambda_: float | None = None, plot: StrPath | None = None,
-          shape: StrPath | None = None, compliance: StrPath | None = None, progress: Progress | None = None) -> list[Row]:
+          shape: StrPath | None = None, compliance: StrPath | None = None,
+          errors: StrPath | None = None, boxplot: StrPath | None = None,
+          progress: Progress | None = None) -> list[Row]:
     """The static shape of a robot in every case. Returns a dict for each row, in SI units.
 
     A row has status "ok" or what failed, stable, x, y, z of the tip [m], and more for each robot.
@@ -37,13 +39,15 @@ def solve(robot: Document, cases: Table | None = None, *, method: str | None = N
     sensitivity: derivatives (stiff_flop). equilibria: all of every case that a search finds, a row
     each. lambda_: the weight of the method fit. plot: a picture of the shapes (.png, .svg, .pdf).
     shape: a table of places along the centre lines (.csv, .json). compliance: a table of how every
-    tip moves by its inputs (.csv, .json). progress:
-    called with each warning. Raises JobError only where there are no results at all."""
+    tip moves by its inputs (.csv, .json). errors: a table of the distances from `measured` by disk
+    (.csv, .json); boxplot: its picture (.png, .svg, .pdf). progress: called with each warning. Raises JobError only where there are no results at all."""
     options = {"--method": method, "--sweep": sweep, "--hybrid": "apply" if hybrid else None,
                "--sensitivity": sensitivity, "--equilibria": equilibria, "--lambda": lambda_,
                "--plot": None if plot is None else as_argument(plot),
                "--shape": None if shape is None else as_argument(shape),
-               "--compliance": None if compliance is None else as_argument(compliance)}
+               "--compliance": None if compliance is None else as_argument(compliance),
+               "--errors": None if errors is None else as_argument(errors),
+               "--boxplot": None if boxplot is None else as_argument(boxplot)}
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
         out = pathlib.Path(folder, "results.json")
         try:
@@ -56,15 +60,18 @@ def solve(robot: Document, cases: Table | None = None, *, method: str | None = N
 
 
 def calibrate(robot: Document, out: StrPath, cases: Table | None = None, *,
-              method: str | None = None, measured: Table | None = None, train: bool = False,
+              method: str | None = None, measured: Table | None = None,
+              parameters: Sequence[str] | None = None, train: bool = False,
               cross_validate: bool = False, lambda_: float | None = None,
               progress: Progress | None = None) -> pathlib.Path:
     """Fits a robot's parameters to measured shapes; writes the robot to `out`, which is returned.
 
-    train: instead a linear correction of the model (tdcr), with the penalty lambda_, or the one
-    that does best on cases left out (cross_validate). progress: called with each warning."""
+    parameters: what is found, such as ["E", "mu", "precurvature"] (tdcr) or ["E"] (stiff_flop).
+    train: instead a linear correction of the model (tdcr), with the penalty that does best on cases
+    left out (cross_validate, the default), or lambda_. progress: called with each warning."""
     options = {"--method": method, "--calibrate": not train, "--hybrid": "train" if train else None,
-               "--cross-validate": cross_validate, "--lambda": lambda_}
+               "--cross-validate": cross_validate, "--lambda": lambda_,
+               "--parameters": ",".join(parameters) if parameters else None}
     with tempfile.TemporaryDirectory(prefix="continuum_") as folder:
         _solve(robot, {"--input": cases, "--measured": measured}, out, options, folder, progress)
     return pathlib.Path(out)

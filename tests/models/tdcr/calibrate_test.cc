@@ -58,6 +58,7 @@ TEST(TdcrCalibrate, StandardErrorsCoverTheTruthOfNoisyTips) {
     loads.mu = truth.mu;
     tips.push_back(SolveCase(truth, loads, Method::kEas).disks.rightCols<1>());
   }
+  const Eigen::Matrix<double, 5, 1> unit{nominal.E, 1, 1, 1, 1};
   Eigen::Matrix<double, 5, 1> target, covered = Eigen::Matrix<double, 5, 1>::Zero();
   target << truth.E, truth.base_rotation, truth.mu;
   std::mt19937_64 random(100);
@@ -67,7 +68,9 @@ TEST(TdcrCalibrate, StandardErrorsCoverTheTruthOfNoisyTips) {
         Calibrate(nominal, Method::kEas, Match(cases, measured, "synthetic"), "synthetic");
     Eigen::Matrix<double, 5, 1> found;
     found << c.robot.E, c.robot.base_rotation, c.robot.mu;
-    covered.array() += ((found - target).array().abs() < 2 * c.standard.array()).cast<double>();
+    covered.array() +=
+        ((found - target).array().abs() < 2 * (c.spread.standard.array() * unit.array()))
+            .cast<double>();
   }
   for (const double count : covered) EXPECT_GE(count, 50);
 }
@@ -97,8 +100,8 @@ TEST(TdcrCalibrate, TheRodWithFrictionFindsItsFriction) {
       Calibrate(nominal, Method::kCrtFriction, Match(cases, measured, "synthetic"), "synthetic");
   EXPECT_NEAR(c.robot.E, truth.E, 1e-3 * truth.E);
   EXPECT_NEAR(c.robot.mu, truth.mu, 2e-3);
-  EXPECT_LT(std::abs(c.robot.E - truth.E), 3 * c.standard[0]);
-  EXPECT_LT(std::abs(c.robot.mu - truth.mu), 3 * c.standard[4]);
+  EXPECT_LT(std::abs(c.robot.E - truth.E), 3 * c.spread.standard[0] * nominal.E);
+  EXPECT_LT(std::abs(c.robot.mu - truth.mu), 3 * c.spread.standard[4]);
 }
 
 }  // namespace

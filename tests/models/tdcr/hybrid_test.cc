@@ -24,7 +24,7 @@ struct Calibrated {
     return Match(experiment.cases, experiment.measured, "synthetic");
   }
   Hybrid Train(std::optional<double> penalty) const {
-    return tdcr::Train(calibration.robot, Pairs(), "synthetic", penalty);
+    return tdcr::Train(calibration.robot, Method::kEas, Pairs(), "synthetic", penalty);
   }
   Experiment experiment;
   Calibration calibration;
@@ -60,8 +60,8 @@ TEST(TdcrHybrid, ATrueLinearCorrectionIsFoundAgain) {
     Apply(truth, e.nominal, e.cases[i].loads, s);
     e.measured[i].disks = s.disks;
   }
-  const Hybrid hybrid =
-      Train(e.nominal, Match(e.cases, e.measured, "synthetic"), "synthetic", std::nullopt);
+  const Hybrid hybrid = Train(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"),
+                              "synthetic", std::nullopt);
   EXPECT_LT(Statistics(hybrid.tips.test)->max, 0.01);  // % of L; uncorrected some 10
   for (std::size_t i = 0; i < truth.features.size(); ++i) {
     const auto at = std::find(hybrid.features.begin(), hybrid.features.end(), truth.features[i]);
@@ -78,6 +78,35 @@ TEST(TdcrHybrid, AHeavyPenaltyLeavesTheModelAsItWas) {
   EXPECT_LT(hybrid.weights.cwiseAbs().maxCoeff(), 1e-3);
   EXPECT_NEAR(Statistics(hybrid.tips.train)->mean, Statistics(set.calibration.tips.train)->mean,
               1e-3);
+}
+
+// The rod's disks are not quite those of arcs with its curvatures: only the correction moves them.
+TEST(TdcrHybrid, OfTheRodChangesNothingWithoutWeightsAndImprovesWithThem) {
+  const Experiment e = Synthesize(Nominal(), 2, 5);
+  const auto pairs = Match(e.cases, e.measured, "synthetic");
+  const Calibration c = Calibrate(e.nominal, Method::kCrt, pairs, "synthetic");
+  const Hybrid none = Train(c.robot, Method::kCrt, pairs, "synthetic", 1e9);
+  EXPECT_NEAR(Statistics(none.tips.test)->mean, Statistics(c.tips.test)->mean, 1e-3);
+  const Hybrid hybrid = Train(c.robot, Method::kCrt, pairs, "synthetic", std::nullopt);
+  EXPECT_LT(Statistics(hybrid.tips.test)->mean, 0.8 * Statistics(c.tips.test)->mean);
+}
+
+// The line of a corrected rod ends at its corrected tip: arcs of the integrator's steps bend by
+// what their arc between disks does.
+TEST(TdcrHybrid, TheLineOfACorrectedRodFollowsItsDisks) {
+  const Robot robot = Nominal();
+  Hybrid hybrid;
+  hybrid.method = Method::kCrt;
+  hybrid.features = {"T1"};
+  hybrid.weights.resize(1, 6);
+  hybrid.weights << 0.4, 0.2, 0.1, -0.3, 0.5, 0.2;  // [1/(m N)]
+  Loads loads = NoLoads(robot);
+  loads.tension = {4, 1, 0};
+  Solution s = SolveCase(robot, loads, Method::kCrt);
+  const Eigen::Vector3d before = s.disks.rightCols<1>();
+  Apply(hybrid, robot, loads, s);
+  EXPECT_GT((s.disks.rightCols<1>() - before).norm(), 0.02 * robot.length);
+  EXPECT_LT((s.line.points.rightCols<1>() - s.disks.rightCols<1>()).norm(), 2e-3 * robot.length);
 }
 
 }  // namespace

@@ -85,6 +85,31 @@ TEST(TdcrMjcf, WithoutFrictionABeamBendsAsTheClosedForm) {
   EXPECT_NEAR(tip, deflection, 1e-3 * deflection);
 }
 
+// Dead loads in the middle of the arm: forces and moments by motors at the disks.
+TEST(TdcrMjcf, LoadsAtDisksMoveTheTipAsThoseOfTheRod) {
+  const Robot robot = ReadRobot(Yaml::Read(kFolder + "examples/three_sections.yaml"));
+  const auto mjcf =
+      ModelSpec::Parse(RobotMjcf(robot, 50, Guides::kLinks, "three_sections.yaml", Loaded::kDisks));
+  const auto cases = ReadCases(CsvTable::Read(kFolder + "examples/disk_loads.csv"), robot);
+  for (const Case& c : cases) {
+    Loads unloaded = c.loads;
+    unloaded.disk_force.resize(3, 0);
+    unloaded.disk_moment.resize(3, 0);
+    const Eigen::Vector3d rod = RodTip(robot, c.loads, Method::kCrtFriction);
+    EXPECT_LT((PulledTip(mjcf, c.loads) - rod).norm(), 0.01 * robot.length) << c.name;
+    const Eigen::Vector3d without = RodTip(robot, unloaded, Method::kCrtFriction);
+    EXPECT_GT((without - rod).norm(), 0.05 * robot.length) << c.name;
+  }
+}
+
+TEST(TdcrMjcf, LoadsAtDisksNeedMotorsThere) {
+  const Robot robot = Segment();
+  Loads loads = NoLoads(robot);
+  loads.disk_force.setZero(3, robot.disks);
+  loads.disk_force(0, 3) = 0.1;
+  EXPECT_THROW(PulledTip(Links(robot, 9), loads), Error);
+}
+
 TEST(TdcrMjcf, LinksAreAMultipleOfTheDisks) {
   EXPECT_THROW(RobotMjcf(Segment(), 50, Guides::kLinks), Error);
 }

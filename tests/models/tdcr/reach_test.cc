@@ -83,5 +83,16 @@ TEST(TdcrReach, SaysHowFarAPlaceIsOutOfReach) {
   EXPECT_LE(reached.drives.maxCoeff(), 1 + 1e-12);
 }
 
+// Farther from the base than the rod is long: no search is needed to say so.
+TEST(TdcrReach, APlaceFartherThanTheRodIsLongIsOutOfReachAtOnce) {
+  const Robot robot = Nominal();
+  const Loads loads = Pull(robot, {1, 1, 1});
+  const statics::Target far{"", {24, 26}, Eigen::Vector2d(0.1, 0.1)};
+  const auto reached = Reach(robot, loads, Method::kCrt, far, nullptr);
+  EXPECT_TRUE(reached.out_of_reach());
+  EXPECT_EQ(reached.outcome.iterations, 0);
+  EXPECT_THAT(reached.outcome.why, testing::HasSubstr("disk 9 is at most 0.134 m away"));
+}
+
 }  // namespace
 }  // namespace continuum::tdcr

@@ -6,6 +6,8 @@
 
 #include "error.h"
 #include "models/tdcr/details.h"
+#include "models/tdcr/fit.h"
+#include "models/tdcr/linear_curvature.h"
 #include "models/tdcr/mjcf.h"
 #include "models/tdcr/model.h"
 #include "sim/io/csv.h"
@@ -166,6 +168,37 @@ TEST_P(TdcrExample, LosesTensionByTheTurnsOfItsTendons) {
 }
 
 // A straight rod, so that only the knee and the tilt of the route turn the tendon.
+// Curvature that is linear over each section, at all its disks: (8) finds it again.
+TEST(TdcrSections, TheShapeFitFindsCurvatureThatIsLinearInEverySection) {
+  const Robot robot = ReadRobot(Yaml::Read(kFolder + "tube_in_discs.yaml"));
+  const LinearCurvature linear(robot);
+  Eigen::VectorXd ends(12);
+  ends << 3, -2, 1, 5, 4, -3, -6, 2, 0, 8, -1, 4;
+  const Eigen::Matrix3Xd points = linear.Positions(linear.Curvatures(ends));
+  const Solution fit = FitShape(robot, points, 0);
+  ASSERT_TRUE(fit.outcome.ok()) << fit.outcome.why;
+  EXPECT_LT((fit.x / robot.length - ends).norm(), 1e-5);
+  EXPECT_LT((fit.disks - points).norm(), 1e-9);
+}
+
+TEST(TdcrSections, DerivativesOfDisksByLinearCurvatureAreDifferences) {
+  const Robot robot = ReadRobot(Yaml::Read(kFolder + "three_sections.yaml"));
+  const LinearCurvature linear(robot);
+  const Eigen::VectorXd ends = Eigen::VectorXd::LinSpaced(18, -6, 7);
+  const auto gradient = linear.Gradient(linear.Curvatures(ends));
+  constexpr double kStep = 1e-4;
+  for (Eigen::Index k = 0; k < ends.size(); ++k) {
+    Eigen::VectorXd up = ends, down = ends;
+    up[k] += kStep, down[k] -= kStep;
+    const Eigen::Matrix3Xd slope =
+        (linear.Positions(linear.Curvatures(up)) - linear.Positions(linear.Curvatures(down))) /
+        (2 * kStep);
+    for (int i = 0; i < robot.disks; ++i) {
+      EXPECT_LT((gradient[static_cast<std::size_t>(i)].col(k) - slope.col(i)).norm(), 1e-10);
+    }
+  }
+}
+
 TEST(TdcrSections, AKneeOfATendonCostsTensionByItsAngle) {
   const Robot robot =
       Made(kOne, "  - {at: [0, 5, 10], radius: [6.0e-3, 6.0e-3, 4.0e-3], angle: 0}\n");

@@ -182,10 +182,12 @@ TEST_F(TdcrSolve, ShapesOfOtherCasesGiveAPoorCalibrationAndTraining) {
     request_.warn = [&](const std::string& sentence) { heard.push_back(sentence); };
     request_.measured = Write("measured.csv", MovedOnByTwo(text, count));
     request_.hybrid = "";
+    request_.lambda.reset();
     request_.calibrate = true;
     EXPECT_EQ(SolveTdcr(request_), 1) << count;
     request_.calibrate = false;
     request_.hybrid = "train";
+    request_.lambda = 0;
     EXPECT_EQ(SolveTdcr(request_), 1) << count;
     EXPECT_THAT(heard, testing::ElementsAre(HasSubstr("the calibration is poor"),
                                             HasSubstr("the training is poor")));
@@ -234,6 +236,7 @@ TEST_F(TdcrSolve, HybridTrainingLowersTheTrainingErrorAndApplyRepeatsIt) {
   twisted.natural = {0.5, 0, 2};
   request_.measured = Write("measured.csv", MeasuredText(twisted, cases, Method::kCrt));
   request_.hybrid = "train";
+  request_.lambda = 0;
   request_.out = folder_ / "hybrid.yaml";
   ASSERT_EQ(SolveTdcr(request_), 0);
   const Yaml hybrid = Yaml::Read(request_.out).At("hybrid");
@@ -253,6 +256,7 @@ TEST_F(TdcrSolve, HybridTrainingLowersTheTrainingErrorAndApplyRepeatsIt) {
   };
   SolveRequest plain = request_;
   plain.hybrid = "";
+  plain.lambda.reset();
   plain.out = folder_ / "plain.csv";
   SolveRequest apply = plain;
   apply.robot = request_.out;
@@ -272,13 +276,14 @@ TEST_F(TdcrSolve, ATrainingOnFewCasesIsPoorUnlessItIsCrossValidated) {
   const auto cases = ReadCases(CsvTable::Read(request_.input), robot);
   request_.measured = Write("measured.csv", MeasuredText(twisted, cases, Method::kCrt));
   request_.hybrid = "train";
+  request_.lambda = 0;
   request_.out = folder_ / "hybrid.yaml";
   std::vector<std::string> heard;
   request_.warn = [&](const std::string& sentence) { heard.push_back(sentence); };
   EXPECT_EQ(SolveTdcr(request_), 1);
   EXPECT_THAT(heard, testing::ElementsAre(testing::AnyOf(HasSubstr("left out of a training"),
                                                          HasSubstr("too few cases"))));
-  request_.cross_validate = true;
+  request_.lambda.reset();
   EXPECT_EQ(SolveTdcr(request_), 0);
   EXPECT_EQ(Yaml::Read(request_.out).At("hybrid").At("status").Text(), "ok");
 }
@@ -307,7 +312,8 @@ TEST(TdcrSynthetic, HybridHalvesTheErrorOfTheLevelSet) {
       Calibrate(e.nominal, Method::kEas, Match(e.cases, e.measured, "synthetic"), "synthetic");
   std::vector<Case> cases = e.cases;
   for (Case& each : cases) each.loads.mu = c.robot.mu;
-  const Hybrid h = Train(c.robot, Match(cases, e.measured, "synthetic"), "synthetic");
+  const Hybrid h =
+      Train(c.robot, Method::kEas, Match(cases, e.measured, "synthetic"), "synthetic", 0);
   EXPECT_THAT(h.features, testing::Not(testing::Contains("fx")));  // a constant tip force
   EXPECT_LT(Statistics(h.tips.test)->mean, 0.6 * Statistics(c.tips.test)->mean);
 }

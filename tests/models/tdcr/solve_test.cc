@@ -235,9 +235,8 @@ TEST_F(TdcrSolve, WrongUseIsRefused) {
   EXPECT_THAT(Message(), HasSubstr("eas, pcca, crt"));
   request_.method = "fit";
   EXPECT_THAT(Message(), HasSubstr("--measured"));
-  request_.method = "pcca";
   request_.hybrid = "apply";
-  EXPECT_THAT(Message(), HasSubstr("eas with --hybrid"));
+  EXPECT_THAT(Message(), HasSubstr("a model with --hybrid"));
   request_.method = "";
   EXPECT_THAT(Message(), HasSubstr("'hybrid'"));
   request_.hybrid = "";
