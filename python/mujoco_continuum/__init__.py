@@ -27,7 +27,7 @@ try:
 except ModuleNotFoundError as error:
     raise ImportError("this is mujoco_continuum's source tree, where nothing is built; install it "
                       "with `pip install .` and start Python elsewhere") from error
-from ._engine import load as _load
+from ._engine import is_command as _is_command, load as _load
 from ._paths import EXECUTABLE, MODELS, PLUGINS
 from ._tool import Error, InputError, JobError
 from .commands import apply, check, diagnose, effects, identify, make, models, replay
@@ -44,4 +44,4 @@ __all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Cause", "Chan
            "friction_law", "identify", "identify_many", "joint_angles", "make", "models", "read",
            "replay", "solve", "study"]
 
-PLUGIN = _load()
+PLUGIN = PLUGINS[MUJOCO] if _is_command() else _load()

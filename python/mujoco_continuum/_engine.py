@@ -1,8 +1,28 @@
 """The plugin in the MuJoCo of this Python."""
 import pathlib
+import sys
 
 from ._build import MUJOCO, VERSION
-from ._paths import PLUGINS
+from ._paths import EXECUTABLE, PLUGINS
+
+OLDEST = (3, 11)
+"""Release of MuJoCo that the sources compile for."""
+
+
+def is_command() -> bool:
+    """Whether Python was started as `continuum` or `python -m mujoco_continuum`: no plugin is needed
+    in this process, and any MuJoCo or none may be here."""
+    return pathlib.Path(sys.argv[0]).name in ("continuum", "-m") if sys.argv else False
+
+
+def require_engine() -> None:
+    """Of the executable: its own MuJoCo, or that of this Python. Ends the program where neither is."""
+    if any(EXECUTABLE.parent.parent.glob("lib/libmujoco.so.*")):
+        return
+    try:
+        load()
+    except ImportError as error:
+        sys.exit(f"continuum: {error}")
 
 
 def load() -> pathlib.Path:
@@ -13,16 +33,22 @@ def load() -> pathlib.Path:
     releases = list(PLUGINS)
     listed = ", ".join(releases[:-1]) + (" or " if releases[1:] else "") + releases[-1]
     need = f"mujoco_continuum {VERSION} needs MuJoCo {listed}"
+    again = f"pip uninstall mujoco mujoco-core, then pip install mujoco-core=={MUJOCO}"
     try:
         import mujoco
-    except ModuleNotFoundError as error:
-        if error.name != "mujoco":
-            raise
-        raise ImportError(f"{need} and finds none: pip install mujoco-core=={MUJOCO}") from None
+    except (ImportError, OSError) as error:
+        if isinstance(error, ModuleNotFoundError) and error.name == "mujoco":
+            raise ImportError(f"{need} and finds none: pip install mujoco-core=={MUJOCO}") from None
+        raise ImportError(f"{need} and finds one that does not load ({error}): {again}") from error
+    if not hasattr(mujoco, "mj_versionString"):
+        place = getattr(mujoco, "__file__", None) or ", ".join(mujoco.__path__)
+        raise ImportError(f"{need} and finds {place}, which is none: rename or remove that, or {again}")
     found = mujoco.mj_versionString()
     if found not in PLUGINS:
-        raise ImportError(f"{need} and finds {found}: pip install mujoco-core=={MUJOCO}, or build "
-                          f"mujoco_continuum for {found}")
+        # Not one over the other: pip then leaves neither whole.
+        known = tuple(int(n) for n in found.split(".")[:2]) >= OLDEST
+        build = f", or build mujoco_continuum for {found}" if known else ""
+        raise ImportError(f"{need} and finds {found}: {again}{build}")
     plugin = PLUGINS[found]
     engines = sorted(str(file) for file in _loaded() if file.name.startswith("libmujoco.so"))
     if len(engines) > 1:

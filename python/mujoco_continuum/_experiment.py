@@ -57,4 +57,5 @@ def _convert(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    raise TypeError(f"{value!r} of type {type(value).__name__} has no place in a document")
+    raise TypeError(f"expected numbers, texts, lists and dicts in a document, found a "
+                    f"{type(value).__name__}")

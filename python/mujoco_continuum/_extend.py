@@ -1,10 +1,11 @@
 """An extension in a model that is in memory."""
+import os
 import pathlib
 import tempfile
 from typing import TYPE_CHECKING
 
 from ._experiment import Document, StrPath, as_file
-from ._tool import run
+from ._tool import InputError, run
 
 if TYPE_CHECKING:
     from mujoco import MjSpec
@@ -12,8 +13,8 @@ if TYPE_CHECKING:
 
 def extended(diagnosis: Document, model: "MjSpec | StrPath") -> "MjSpec":
     """A specification with the extension; `model` itself stays as it is."""
+    spec = _spec(model)
     import mujoco
-    spec = model if isinstance(model, mujoco.MjSpec) else mujoco.MjSpec.from_file(str(model))
     with tempfile.TemporaryDirectory(prefix="continuum_") as name:
         folder = pathlib.Path(name)
         file, out = folder / "model.xml", folder / "extended.xml"
@@ -27,6 +28,18 @@ def extended(diagnosis: Document, model: "MjSpec | StrPath") -> "MjSpec":
     answer.meshdir, answer.texturedir = spec.meshdir, spec.texturedir
     answer.assets = spec.assets
     return answer
+
+
+def _spec(model: "MjSpec | StrPath") -> "MjSpec":
+    import mujoco
+    if isinstance(model, mujoco.MjSpec):
+        return model
+    if not isinstance(model, (str, os.PathLike)):
+        raise InputError("model: expected an MjSpec or the path of an MJCF file, found a "
+                         f"{type(model).__name__}; an MjModel cannot be extended any more")
+    if not os.path.exists(model):
+        raise InputError(f"model: expected an MJCF file, found no file {os.fsdecode(model)}")
+    return mujoco.MjSpec.from_file(os.fsdecode(model))
 
 
 def _text(spec: "MjSpec", folder: pathlib.Path) -> str:

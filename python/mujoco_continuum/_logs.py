@@ -50,6 +50,8 @@ def _with_files(experiment: Mapping[str, Any],
                 folder: pathlib.Path) -> tuple[Mapping[str, Any], dict[str, str]]:
     """The experiment with files, and of each file how to name it."""
     if not isinstance(experiment.get("logs"), (list, tuple)):
+        if is_table(experiment.get("logs")):
+            raise InputError("logs: expected a list of logs, found one table; write [table]")
         return experiment, {}
     places: dict[str, str] = {}
     files: dict[int, pathlib.Path] = {}  # of tables: windows of one table are those of one file

@@ -2,7 +2,8 @@
 import json
 import pathlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from types import ModuleType
+from typing import IO, Any
 
 import numpy
 
@@ -23,10 +24,7 @@ def read_mcap(path: pathlib.Path, topics: Sequence[str] | None, clock: str) -> C
     rows: dict[int, dict[str, float]] = {}
     factories: dict[str, Any] = {}
     with open(path, "rb") as stream:
-        recording = reader.make_reader(stream)
-        channels = recording.get_summary().channels.values()
-        _require(topics, sorted({channel.topic for channel in channels}), path)
-        for schema, channel, message in recording.iter_messages(topics=topics):
+        for schema, channel, message in _messages(reader, stream, path, topics):
             decoder = _decoder(schema, channel, path, factories, required=topics is not None)
             if decoder is None:
                 continue
@@ -34,6 +32,25 @@ def read_mcap(path: pathlib.Path, topics: Sequence[str] | None, clock: str) -> C
             time = _time(content, message, clock, f"{path}, {channel.topic}")
             rows.setdefault(time, {}).update(numbers(content, channel.topic))
     return _columns(rows, path)
+
+
+def _messages(reader: ModuleType, stream: IO[bytes], path: pathlib.Path,
+              topics: Sequence[str] | None) -> Iterator[tuple[Any, Any, Any]]:
+    """Schema, channel and message, of these topics."""
+    recording = reader.make_reader(stream)
+    summary = recording.get_summary()
+    if summary and summary.channels and summary.schemas:  # what the index needs
+        _require(topics, sorted({channel.topic for channel in summary.channels.values()}), path)
+        yield from recording.iter_messages(topics=topics)
+        return
+    stream.seek(0)
+    there = set()
+    for schema, channel, message in reader.NonSeekingReader(stream).iter_messages(
+            log_time_order=False):
+        there.add(channel.topic)
+        if topics is None or channel.topic in topics:
+            yield schema, channel, message
+    _require(topics, sorted(there), path)
 
 
 def _require(topics: Sequence[str] | None, there: Sequence[str], path: pathlib.Path) -> None:

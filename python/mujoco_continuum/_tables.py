@@ -1,5 +1,6 @@
 """Tables in memory as CSV: frames of pandas, polars or pyarrow, dicts, structured arrays."""
 import csv
+import datetime
 import decimal
 import pathlib
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,17 +12,20 @@ from ._tool import InputError
 
 SHOWN = 12
 """Columns that a message lists."""
+EPOCH = datetime.datetime(1970, 1, 1)
+"""Durations are written as dates from here on: both count from the first row, in any unit."""
 
 
 def is_table(value: Any) -> bool:
     """Whether it has named columns. A dict has, when it is neither empty nor has other values."""
     if isinstance(value, Mapping):
         return bool(value) and all(_is_column(column) for column in value.values())
-    return bool(_names(value))
+    return bool(_names(_collected(value)))
 
 
 def columns_of(table: Any, place: str) -> dict[str, Any]:
     """The columns by name, and the index of a frame where that has a name."""
+    table = _collected(table)
     if not is_table(table):
         raise InputError(f"{place}: expected a table (a frame, or a dict of columns), found "
                          f"{type(table).__name__}")
@@ -60,6 +64,11 @@ def _is_column(value: Any) -> bool:
         hasattr(value, "to_numpy"))
 
 
+def _collected(value: Any) -> Any:
+    """Of a lazy frame of polars its rows."""
+    return value.collect() if hasattr(value, "collect_schema") and hasattr(value, "collect") else value
+
+
 def _names(value: Any) -> Sequence[Any]:
     for names in (getattr(value, "column_names", None), getattr(value, "columns", None),
                   getattr(getattr(value, "dtype", None), "names", None)):
@@ -71,6 +80,8 @@ def _names(value: Any) -> Sequence[Any]:
 def _cells(column: Any, place: str, text: bool) -> list[Any]:
     """What is not there (None, NaN, NaT) becomes an empty cell."""
     values = column.to_numpy() if hasattr(column, "to_numpy") else column
+    if isinstance(values, numpy.ma.MaskedArray):
+        values = numpy.array(values.tolist(), dtype=object)  # None where it is masked
     if numpy.asarray(values).dtype.kind in "US":  # a list of numbers and texts, too
         values = numpy.array(values, dtype=object)
     values = numpy.asarray(values)
@@ -78,6 +89,8 @@ def _cells(column: Any, place: str, text: bool) -> list[Any]:
         shape = "x".join(str(size) for size in values.shape)
         raise InputError(f"{place}: expected one number a row, found an array of {shape}; give "
                          "each component a column of its own")
+    if values.dtype.kind == "m":
+        values = numpy.datetime64(EPOCH, "ns") + values
     if values.dtype.kind == "M":
         texts = numpy.datetime_as_string(values, unit="ns")
         return ["" if missing else cell for cell, missing in zip(texts, numpy.isnat(values))]
@@ -96,12 +109,14 @@ def _cell(value: Any, row: int, place: str, text: bool) -> Any:
         return value + 0
     if text and isinstance(value, str):
         return value
+    if isinstance(value, datetime.timedelta):
+        value = EPOCH + value
     if hasattr(value, "isoformat") and hasattr(value, "year"):  # dates with a zone
         return value.isoformat()
     if isinstance(value, decimal.Decimal):
         return float(value)
     raise InputError(f"{place}: expected numbers, found {value!r} in row {row}; convert the column "
-                     "first (pandas.to_numeric, or dt.total_seconds() of a duration)")
+                     "first (pandas.to_numeric)")
 
 
 def listed(names: Iterable[str]) -> str:

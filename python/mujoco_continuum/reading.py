@@ -14,7 +14,8 @@ from ._tables import listed
 from ._tool import InputError
 
 Columns = dict[str, numpy.ndarray]
-"""Names of columns and their numbers; nan where nothing was recorded."""
+"""Names of columns and their numbers, dates (datetime64) or durations (timedelta64); nan or NaT where
+nothing was recorded."""
 
 
 def read(file: StrPath, *, group: str = "", episode: int | None = None,
@@ -23,6 +24,8 @@ def read(file: StrPath, *, group: str = "", episode: int | None = None,
     """The numbers of a recording as columns, which are a log of an experiment: {"data": read(...)}.
 
     An array or list in a row becomes NAME[0], NAME[1], ... What is no number is left out.
+
+    Dates and durations stay what they are: the time of an experiment may be one.
 
     .npz             arrays of one length. .npy: a structured array, or 0, 1, ...
     .h5 .hdf5        data sets of one length in `group` and below, "obs/q" (needs h5py)
@@ -45,8 +48,13 @@ def read(file: StrPath, *, group: str = "", episode: int | None = None,
         raise
     except Exception as error:  # each library has errors of its own for a file that is damaged
         raise InputError(f"{path}: expected a recording as its name says, found one that cannot be "
-                         f"read ({error}); copy or record it again") from error
+                         f"read ({str(error) or type(error).__name__}); {_remedy(path)}") from error
     return held(columns, _names(hold) or (), str(path))
+
+
+def _remedy(path: pathlib.Path) -> str:
+    again = "copy or record it again"
+    return f"cut off? `mcap recover` repairs it; else {again}" if path.suffix == ".mcap" else again
 
 
 def _columns(path: pathlib.Path, group: str, episode: int | None, topics: list[str] | None,
@@ -62,7 +70,8 @@ def _columns(path: pathlib.Path, group: str, episode: int | None, topics: list[s
     if kind in (".parquet", "lerobot"):
         return _parquet(path, episode)
     raise InputError(f"{path}: expected .npz, .npy, .h5, .hdf5, .parquet, .mcap or the folder "
-                     "of a LeRobot dataset; CSV and MAT files are logs as they are")
+                     "of a LeRobot dataset; CSV and MAT files are logs as they are, and what pandas "
+                     "reads is one as a frame")
 
 
 def held(columns: Columns, globs: Iterable[str], place: str) -> Columns:
@@ -104,8 +113,19 @@ def _numpy(path: pathlib.Path) -> Columns:
         arrays = {name: content[name] for name in names} if names else {
             str(k): column for k, column in enumerate(numpy.atleast_2d(content.T))}
     else:
-        arrays = dict(content)
+        arrays = {name: array for name in content
+                  if (array := _unless_objects(content, name)) is not None}
     return _split(arrays, str(path))
+
+
+def _unless_objects(archive: Any, name: str) -> numpy.ndarray | None:
+    """An array of an archive, or None of Python's objects, which numpy refuses: they may be code."""
+    try:
+        return archive[name]
+    except ValueError as error:
+        if "Object arrays" in str(error):
+            return None
+        raise
 
 
 def _hdf5(path: pathlib.Path, group: str) -> Columns:
@@ -117,8 +137,12 @@ def _hdf5(path: pathlib.Path, group: str) -> Columns:
                              f"{listed(_groups(file, h5py))}")
 
         def add(name: str, item: Any) -> None:
-            if isinstance(item, h5py.Dataset) and item.shape and item.dtype.kind in "biuf":
+            if not isinstance(item, h5py.Dataset) or not item.shape:
+                return
+            if item.dtype.kind in "biuf":
                 arrays[name] = item[()]
+            for field in item.dtype.names or ():
+                arrays[f"{name}.{field}"] = item[field]
         (file[group] if group else file).visititems(add)
     return _split(arrays, str(path))
 
@@ -165,15 +189,19 @@ def _require_one_episode(arrays: Columns, episode: int | None, path: pathlib.Pat
 
 
 def _numeric(schema: Any) -> list[str]:
-    """Names of columns of numbers and of lists of numbers."""
+    """Names of columns of numbers, lists of numbers, dates and durations."""
     import pyarrow
     types = pyarrow.types
 
     def is_number(kind: Any) -> bool:
         if types.is_list(kind) or types.is_large_list(kind) or types.is_fixed_size_list(kind):
             kind = kind.value_type
-        return types.is_integer(kind) or types.is_floating(kind) or types.is_boolean(kind)
-    return [field.name for field in schema if is_number(field.type)]
+        return (types.is_integer(kind) or types.is_floating(kind) or types.is_boolean(kind)
+                or types.is_decimal(kind))
+
+    def is_time(kind: Any) -> bool:
+        return types.is_timestamp(kind) or types.is_duration(kind)
+    return [field.name for field in schema if is_number(field.type) or is_time(field.type)]
 
 
 def _array(column: Any) -> numpy.ndarray:
@@ -210,6 +238,8 @@ def _split(arrays: Mapping[str, Any], place: str,
     columns: Columns = {}
     for name, array in arrays.items():
         array = numpy.asarray(array)
+        if array.dtype.kind in "mM" and array.ndim == 1:
+            columns[name] = array
         if array.dtype.kind not in "biuf" or array.ndim not in (1, 2):
             continue
         parts = names.get(name, [])
@@ -218,9 +248,11 @@ def _split(arrays: Mapping[str, Any], place: str,
             columns[f"{name}.{parts[k]}" if named else f"{name}[{k}]"] = array[:, k].astype(float)
         if array.ndim == 1:
             columns[name] = array.astype(float)
-    lengths = {len(column) for column in columns.values()}
-    if len(lengths) != 1:
-        found = ", ".join(f"{name!r} {len(column)}" for name, column in columns.items()) or "none"
-        raise InputError(f"{place}: expected columns of numbers of one length, found these numbers "
-                         f"of rows: {found}; for HDF5 name a group")
+    if not columns:
+        raise InputError(f"{place}: expected columns of numbers, found none")
+    if len({len(column) for column in columns.values()}) > 1:
+        found = ", ".join(f"{name!r} {len(column)}" for name, column in columns.items())
+        raise InputError(f"{place}: expected columns of one length, found these numbers of rows: "
+                         f"{found}; of HDF5 name a group, or give those that belong together as a "
+                         "dict")
     return columns

@@ -273,6 +273,7 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const ModelSpec& 
   }
   Findings parameters(nullptr);
   CheckParameterEffects(e, system, parameters);
+  CheckParameterRanges(e, system, parameters);
   for (Finding& f : parameters.Take()) all.push_back(std::move(f));
   return all;
 }

@@ -40,6 +40,10 @@ std::set<std::string> CheckPose(const Experiment& e, const Log& log, const Model
 /// judged, nor are logs of poses at rest.
 void CheckParameterEffects(const Experiment& e, const ModelSpec& system, Findings& out);
 
+/// Bounds that a parameter cannot mean: angles of hinges in degrees, and a principal inertia beyond
+/// what the body's other two allow.
+void CheckParameterRanges(const Experiment& e, const ModelSpec& system, Findings& out);
+
 /// Looks for mistakes in the inputs of logs that the model does not explain: a wrong sign or unit
 /// (of one input, or of all of one dimension), or two inputs swapped. Each is simulated in a window
 /// of bounded length where its input moves most, so that long logs cost no more than short ones.

@@ -128,12 +128,28 @@ void CheckInvariance(const Experiment& e, Findings& out) {
       "are determined; a known mass or a force sensor would fix the scale");
 }
 
+// "kg cm" of a servo's data sheet is a mass times a length: a tenth of the torque that is meant.
+void CheckForcesInMasses(const Experiment& e, Findings& out) {
+  for (const Input& in : e.inputs) {
+    if (in.column.empty()) continue;
+    const Unit unit = ParseUnit(in.unit, in.where);
+    const bool mass = unit.Is({0, 1, 0, 0}), moment = unit.Is({1, 1, 0, 0});
+    if (!mass && !moment) continue;
+    out.Add(
+        Severity::kWarning, in.column, "unit_suspect",
+        fmt::format("'{}' is a mass{}; a {} is meant? Write kgf, gf, lbf or ozf in place of kg, "
+                    "g, lb or oz",
+                    in.unit, moment ? " times a length" : "", moment ? "torque" : "force"));
+  }
+}
+
 }  // namespace
 
 void CheckPlan(const Experiment& e, Findings& out) {
   CheckTrials(e, out);
   CheckOverlap(e, out);
   CheckInvariance(e, out);
+  CheckForcesInMasses(e, out);
 }
 
 }  // namespace continuum

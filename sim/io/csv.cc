@@ -43,8 +43,10 @@ bool IsRow(const std::vector<std::string>& cells) {
 class CsvTable::Reader {
  public:
   Reader(CsvTable& table, std::string_view text) : table_(table) {
+    // Some programs end lines with a carriage return alone.
+    const char line_end = text.find('\n') == text.npos ? '\r' : '\n';
     for (int line = 1; !text.empty(); ++line) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
+      const std::size_t end = std::min(text.find(line_end), text.size());
       const std::string_view row = text.substr(0, end);
       text.remove_prefix(std::min(end + 1, text.size()));
       if (TrimBlanks(row).empty()) continue;
@@ -77,6 +79,7 @@ class CsvTable::Reader {
     names = SplitCells(line, delimiter_, Where(number));
     if (!IsRow(names)) {
       if (names.size() > 1 && names.back().empty()) names.pop_back();
+      NumberNameless();
       CheckNames(Where(number));
       return 1;
     }
@@ -102,10 +105,17 @@ class CsvTable::Reader {
     }
   }
 
+  // A column without a name, as the index that pandas writes first, is called by its number.
+  void NumberNameless() {
+    auto& names = table_.columns_;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].empty()) names[i] = std::to_string(i + 1);
+    }
+  }
+
   void CheckNames(const std::string& where) const {
     std::set<std::string_view> names;
     for (const std::string& name : table_.columns_) {
-      if (name.empty()) throw Error::Input(where, "a name for every column", "an empty one");
       if (!names.insert(name).second) {
         throw Error::Input(where, "different column names", "'" + Excerpt(name) + "' twice");
       }
@@ -125,13 +135,21 @@ class CsvTable::Reader {
     const std::size_t expected = table_.columns_.size();
     const bool commas = delimiter_ == ',' && found == 2 * expected;
     const bool cut = found < expected && number == lines_.back().second;
+    const bool preface = lines_.size() > 2 && CellsOf(lines_.back()) == found;
     throw Error::Input(
         Where(number),
         std::to_string(expected) +
             (table_.numbered_ ? " cells as in the first row" : " cells as in the header"),
         std::to_string(found) + (commas ? " (decimal commas? Then put ';' between cells)"
                                  : cut  ? " in the last line (cut off? Then delete it)"
-                                        : ""));
+                                 : preface
+                                     ? ", as in the last line (are the first lines no table? Put # "
+                                       "before them)"
+                                     : ""));
+  }
+
+  std::size_t CellsOf(const std::pair<std::string_view, int>& line) const {
+    return SplitCells(line.first, delimiter_, Where(line.second)).size();
   }
 
   void FindDecimalComma() {

@@ -141,8 +141,10 @@ bool IsComment(std::string_view line) {
 }
 
 bool IsMissing(std::string_view cell) {
-  static constexpr std::array<std::string_view, 12> kWords{
-      "", "nan", "na", "n/a", "#n/a", "null", "none", "nat", "-nan", "nan(ind)", "-nan(ind)", "-"};
+  static constexpr std::array<std::string_view, 24> kWords{
+      "",        "nan",   "na",      "n/a",      "#n/a",      "#na",     "<na>",     "null",
+      "none",    "nat",   "-nan",    "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#qnan", "1.#ind",
+      "-1.#ind", "#num!", "#div/0!", "#value!",  "-",         "--",      "---",      "?"};
   std::string lower(cell);
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -13,7 +13,8 @@ std::string_view TrimBlanks(std::string_view text);
 /// which Excel knows the delimiter, "sep=;".
 bool IsComment(std::string_view line);
 
-/// Whether a cell says that a value was not measured: empty, "nan", "NA", "null", "-" and the like.
+/// Whether a cell says that a value was not measured: empty, "nan", "NA", "null", "-" and the like,
+/// as pandas, Excel and C runtimes write it.
 bool IsMissing(std::string_view cell);
 
 /// Whether a cell is a number, written with a decimal point or a decimal comma.

@@ -24,7 +24,8 @@ struct Format {
 
 constexpr Format kFormats[]{
     {"PAR1"sv, "a Parquet file",
-     "python3 -c \"import pandas; pandas.read_parquet('FILE').to_csv('NAME.csv', index=False)\""},
+     "python3 -c \"import pandas; "
+     "pandas.read_parquet('FILE').reset_index().to_csv('NAME.csv', index=False)\""},
     {"ARROW1"sv, "an Arrow file",
      "python3 -c \"import pandas; pandas.read_feather('FILE').to_csv('NAME.csv', index=False)\""},
     {"\x89HDF\r\n\x1a\n"sv, "an HDF5 file",
@@ -37,6 +38,7 @@ constexpr Format kFormats[]{
     {"SQLite format 3\0"sv, "an SQLite file, as ROS 2 records", kRosbags},
     {"ULog\x01\x12\x35"sv, "a ULog of PX4", "ulog2csv FILE (pip install pyulog)"},
     {"TDSm"sv, "a TDMS file of LabVIEW", "tdmsinfo FILE; the Python package npTDMS (as_dataframe)"},
+    {"MDF     "sv, "an MDF of a measuring system", "the Python package asammdf (to_dataframe)"},
     {"\xD0\xCF\x11\xE0"sv, "an Excel file", "save it as CSV in the spreadsheet program"},
     {"\x1F\x8B"sv, "a gzip file", "gunzip FILE"},
     {"BZh"sv, "a bzip2 file", "bunzip2 FILE"},
@@ -48,10 +50,12 @@ constexpr Format kFormats[]{
     {"\xFE\xFF"sv, "text in UTF-16", "iconv -f UTF-16 -t UTF-8 FILE > NAME_utf8.csv"},
     {"\x80\x04\x95"sv, "a Python pickle",
      "python3 -c \"import pandas; "
-     "pandas.DataFrame(pandas.read_pickle('FILE')).to_csv('NAME.csv', index=False)\""},
+     "pandas.DataFrame(pandas.read_pickle('FILE')).reset_index().to_csv('NAME.csv', "
+     "index=False)\""},
     {"\x80\x05\x95"sv, "a Python pickle",
      "python3 -c \"import pandas; "
-     "pandas.DataFrame(pandas.read_pickle('FILE')).to_csv('NAME.csv', index=False)\""}};
+     "pandas.DataFrame(pandas.read_pickle('FILE')).reset_index().to_csv('NAME.csv', "
+     "index=False)\""}};
 
 constexpr Format kExcel{""sv, "an Excel file", "save it as CSV in the spreadsheet program"};
 constexpr Format kNumpyArrays{""sv, "an archive of NumPy arrays",

@@ -90,12 +90,19 @@ const Names& Others() {
     Names all{{"1", {1}},     {"%", {0.01}},  {"percent", {0.01}}, {"step", {1}},
               {"steps", {1}}, {"count", {1}}, {"counts", {1}},     {"ppm", {1e-6}}};
     const double degree = kPi / 180, pound_force = 4.4482216152605, gravity = 9.80665;
-    for (const char* name : {"deg", "degree", "degrees", "arc_degree", "\u00B0"})
+    for (const char* name : {"deg", "degree", "degrees", "arc_degree", "arcdeg", "\u00B0"})
       all[name] = {degree, kAngle, false};
     for (const char* name :
          {"rev", "revolution", "revolutions", "turn", "turns", "cycle", "cycles"})
       all[name] = {2 * kPi, kAngle, false};
-    Add(all, kAngle, {{"arcmin", degree / 60}, {"arcsec", degree / 3600}});
+    Add(all, kAngle,
+        {{"arcmin", degree / 60},
+         {"arc_minute", degree / 60},
+         {"arcsec", degree / 3600},
+         {"arc_second", degree / 3600},
+         {"gon", 0.9 * degree},
+         {"grad", 0.9 * degree},
+         {"grade", 0.9 * degree}});
     Add(all, kRate, {{"rpm", kPi / 30}, {"dps", degree}, {"mdps", 1e-3 * degree}});
     Add(all, kLength,
         {{"in", 0.0254},

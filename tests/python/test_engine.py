@@ -2,6 +2,7 @@
 import pathlib
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import bench
@@ -60,8 +61,31 @@ class Import(unittest.TestCase):
     def test_with_another_release_says_which_is_needed(self):
         run = python("import mujoco; mujoco.mj_versionString = lambda: '3.9.9'\n"
                      "import mujoco_continuum")
-        self.assertIn(f"{mujoco_continuum.MUJOCO} and finds 3.9.9: pip install mujoco-core==",
+        self.assertIn(f"{mujoco_continuum.MUJOCO} and finds 3.9.9: pip uninstall mujoco "
+                      f"mujoco-core, then pip install mujoco-core=={mujoco_continuum.MUJOCO}\n",
                       run.stderr)
+
+    def test_with_what_is_no_mujoco_says_where_it_is(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "mujoco.py").write_text("")
+            run = python(f"import sys; sys.path.insert(0, {folder!r}); import mujoco_continuum")
+            self.assertIn(f"and finds {folder}/mujoco.py, which is none: rename", run.stderr)
+            pathlib.Path(folder, "mujoco.py").write_text("raise OSError('libmujoco.so.9: none')")
+            run = python(f"import sys; sys.path.insert(0, {folder!r}); import mujoco_continuum")
+            self.assertIn("does not load (libmujoco.so.9: none): pip uninstall mujoco", run.stderr)
+
+    def test_of_the_command_needs_no_release(self):
+        run = python("import sys; sys.argv = ['/bin/continuum', '--version']\n"
+                     "import mujoco; mujoco.mj_versionString = lambda: '3.9.9'\n"
+                     "import mujoco_continuum._engine as engine\n"
+                     "from mujoco_continuum.__main__ import main\n"
+                     "engine.load = lambda: (_ for _ in ()).throw(ImportError('none here'))\n"
+                     "main()")
+        own = any(mujoco_continuum.EXECUTABLE.parent.parent.glob("lib/libmujoco.so.*"))
+        if own:  # the wheel
+            self.assertEqual((run.returncode, run.stderr), (0, ""))
+        else:
+            self.assertEqual((run.returncode, run.stderr), (1, "continuum: none here\n"))
 
     def test_takes_the_plugin_of_the_release_that_is_there(self):
         run = python(LOADS_ANOTHER)

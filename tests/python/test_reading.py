@@ -28,7 +28,8 @@ class Reading(bench.Bench):
 
 class Numpy(Reading):
     def test_archives(self):
-        numpy.savez("log.npz", t=[0, 0.1], q=numpy.array([[1, 2], [3, 4]]), name=["a", "b"])
+        numpy.savez("log.npz", t=[0, 0.1], q=numpy.array([[1, 2], [3, 4]]), name=["a", "b"],
+                    settings=numpy.array({"gain": 1}))
         self.same(mc.read("log.npz"), {"t": [0, 0.1], "q[0]": [1, 3], "q[1]": [2, 4]})
 
     def test_structured_arrays(self):
@@ -38,6 +39,18 @@ class Numpy(Reading):
     def test_of_several_lengths_are_refused(self):
         numpy.savez("log.npz", t=[0, 0.1], q=[1])
         with self.assertRaisesRegex(mc.InputError, "^log.npz: .* 't' 2, 'q' 1"):
+            mc.read("log.npz")
+
+    def test_with_dates_keep_them(self):
+        t = numpy.datetime64("2024-05-01", "ms") + numpy.arange(4) * numpy.timedelta64(100, "ms")
+        u, q = numpy.loadtxt("log.csv", delimiter=",", skiprows=1).T[1:]
+        numpy.savez("log.npz", t=t, u=u, q=q)
+        replay = mc.replay(self.experiment | {"logs": [{"data": mc.read("log.npz")}]})
+        self.assertEqual(replay.error, mc.replay(self.experiment).error)
+
+    def test_without_numbers_are_refused(self):
+        numpy.savez("log.npz", name=["a"])
+        with self.assertRaisesRegex(mc.InputError, "^log.npz: expected columns of numbers, found none"):
             mc.read("log.npz")
 
     def test_that_are_damaged_are_named(self):
@@ -68,10 +81,19 @@ class Hdf5(Reading):
         self.same(mc.read("log.h5", group="data/demo_0"),
                   {"obs/q[0]": [1, 3], "obs/q[1]": [2, 4], "t": [0, 0.1]})
 
+    def test_records(self):
+        import h5py
+        rows = numpy.array([(0, (1, 2), b"a"), (0.1, (3, 4), b"b")],
+                           [("t", float), ("q", float, (2,)), ("note", "S1")])
+        with h5py.File("log.h5", "a") as file:
+            file["rows/log"] = rows
+        self.same(mc.read("log.h5", group="rows"),
+                  {"log.t": [0, 0.1], "log.q[0]": [1, 3], "log.q[1]": [2, 4]})
+
     def test_without_the_group_say_which_there_are(self):
         with self.assertRaisesRegex(mc.InputError, "expected a group 'demo', found .*'data/demo_0'"):
             mc.read("log.h5", group="demo")
-        with self.assertRaisesRegex(mc.InputError, "for HDF5 name a group"):
+        with self.assertRaisesRegex(mc.InputError, "of HDF5 name a group"):
             mc.read("log.h5")
 
     def test_without_h5py_say_what_to_install(self):
@@ -133,6 +155,28 @@ class Lerobot(Reading):
             mc.read("set", episode=0)
 
 
+@needs("pandas", "pyarrow")
+class Pandas(Reading):
+    """Parquet as pandas writes it."""
+
+    def test_with_dates_or_durations(self):
+        import pandas
+        frame = pandas.read_csv("log.csv")
+        for start in (pandas.Timestamp("2024-05-01"), pandas.Timestamp("2024-05-01", tz="Europe/Rome"),
+                      pandas.Timedelta(0)):
+            frame.assign(t=start + pandas.to_timedelta(frame.t, unit="s")).to_parquet("log.parquet")
+            replay = mc.replay(self.experiment | {"logs": [{"data": mc.read("log.parquet")}]})
+            self.assertEqual(replay.error, mc.replay(self.experiment).error)
+
+    def test_with_an_index_and_decimals(self):
+        import decimal
+        import pandas
+        frame = pandas.DataFrame({"t": [0, 0.1], "q": [decimal.Decimal("1.5"), decimal.Decimal("2.5")],
+                                  "note": ["a", None]})
+        frame.set_index("t").to_parquet("log.parquet")
+        self.same(mc.read("log.parquet"), {"q": [1.5, 2.5], "t": [0, 0.1]})
+
+
 JOINTS = """std_msgs/Header header
 string[] name
 float64[] position
@@ -148,10 +192,10 @@ uint32 nanosec"""
 
 @needs("mcap")
 class Mcap(Reading):
-    def json(self, *messages):
+    def json(self, *messages, **options):
         from mcap.writer import Writer
         with open("log.mcap", "wb") as stream:
-            writer = Writer(stream)
+            writer = Writer(stream, **options)
             writer.start()
             schema = writer.register_schema("any", "jsonschema", b"{}")
             topics = {topic: writer.register_channel(topic, "json", schema)
@@ -181,6 +225,25 @@ class Mcap(Reading):
         self.json(("/q", 0, {"x": 1}))
         with self.assertRaisesRegex(mc.InputError, "^log.mcap: expected a topic '/p', found '/q'"):
             mc.read("log.mcap", topics="/p")
+
+    def test_without_an_index(self):
+        messages = ("/q", 0, {"x": 1}), ("/u", 5, {"x": 7}), ("/q", 10, {"x": 2})
+        self.json(*messages)
+        whole = mc.read("log.mcap")
+        for options in ({"use_chunking": False}, {"repeat_channels": False, "repeat_schemas": False}):
+            self.json(*messages, **options)
+            self.assertEqual(sorted(mc.read("log.mcap")), sorted(whole))
+            self.same(mc.read("log.mcap", topics="/u"), {"time": [0], "/u.x": [7]})
+            with self.assertRaisesRegex(mc.InputError, "expected a topic '/p', found '/q', '/u'"):
+                mc.read("log.mcap", topics="/p")
+
+    def test_that_are_cut_off_name_the_repair(self):
+        self.json(("/q", 0, {"x": 1}))
+        whole = (self.folder / "log.mcap").read_bytes()
+        for size in (0, len(whole) // 2):
+            (self.folder / "log.mcap").write_bytes(whole[:size])
+            with self.assertRaisesRegex(mc.InputError, r"found one .*\(\w.*\); cut off\? `mcap recover`"):
+                mc.read("log.mcap")
 
     def test_without_stamps_or_numbers_are_refused(self):
         self.json(("/q", 0, {"x": "text"}))

@@ -111,6 +111,13 @@ class Diagnosed(bench.Bench):
         with self.assertRaisesRegex(mc.InputError, "^diagnosis.*hinge"):
             mc.Diagnosis(DOCUMENT).apply(spec)
 
+    def test_does_not_extend_what_is_no_specification(self):
+        model = mujoco.MjModel.from_xml_path("model.xml")
+        for bad, message in ((model, "expected an MjSpec or the path .*, found a MjModel"),
+                             ("none.xml", "expected an MJCF file, found no file none.xml")):
+            with self.assertRaisesRegex(mc.InputError, f"^model: {message}"):
+                mc.Diagnosis(DOCUMENT).apply(bad)
+
 
 class Pictures(bench.Bench):
     def test_without_matplotlib_say_what_to_install(self):

@@ -174,6 +174,36 @@ TEST_F(CheckModel, ASimulationThatDivergesIsTold) {
   EXPECT_NE(Find(Bad(), "diverged"), nullptr) << Report(Bad());
 }
 
+// Bounds that are meant otherwise, or that the model does not have.
+TEST_F(CheckModel, AnglesInDegreesAndInertiasThatNoBodyHasAreNamed) {
+  system_.emplace(ModelSpec::Parse(R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>
+      <worldbody><body name="a"><joint name="a" axis="0 1 0" damping=".02"/>
+        <inertial pos="0 0 -.1" mass=".3" diaginertia="2e-3 3e-3 4e-3"/></body>
+        <body pos="1 0 0"><joint name="b" axis="0 1 0" damping=".05"/><geom size=".1"/></body></worldbody>
+      <actuator><position name="m1" joint="a" kp="1"/><position name="m2" joint="b" kp="3"/></actuator>
+      <sensor><jointpos name="q1" joint="a"/><jointvel name="v1" joint="a"/><jointpos name="q2" joint="b"/></sensor>
+    </mujoco>)"));
+  const auto bounds = [&](const char* target, const char* attribute, double lower, double upper) {
+    Parameter p;
+    p.name = "p", p.target = target, p.attribute = attribute;
+    p.lower = lower, p.upper = upper;
+    experiment_.parameters = {p};
+    return CheckAgainstModel(experiment_, *system_);
+  };
+  const auto degrees = bounds("joint:*", "springref", -90, 60);
+  ASSERT_NE(Find(degrees, "unit_suspect"), nullptr) << Report(degrees);
+  EXPECT_THAT(
+      Find(degrees, "unit_suspect")->text,
+      HasSubstr("-90 rad are -5157 degrees; are these degrees? -90 degrees are -1.571 rad"));
+  EXPECT_EQ(Find(bounds("joint:a", "springref", -1.5, 1.5), "unit_suspect"), nullptr);
+  EXPECT_EQ(Find(bounds("joint:a", "damping", 0, 90), "unit_suspect"), nullptr);
+
+  const auto all = bounds("body:a", "inertia[2]", 2e-3, 6e-3);
+  ASSERT_NE(Find(all, "inertia_limit"), nullptr) << Report(all);
+  EXPECT_THAT(Find(all, "inertia_limit")->text, HasSubstr("between 0.001 and 0.005 kg*m^2"));
+  EXPECT_EQ(Find(bounds("body:a", "inertia[2]", 2e-3, 4.9e-3), "inertia_limit"), nullptr);
+}
+
 // A joint's place is known up to where the body stands that it moves.
 TEST_F(CheckModel, AParameterThatChangesNoOutputIsNamed) {
   system_.emplace(ModelSpec::Parse(R"(<mujoco><option timestep="0.002" integrator="implicitfast"/>

@@ -346,6 +346,18 @@ TEST(Check, TheExperimentsLimitsAreTold) {
   EXPECT_NE(Find(Bad(CheckLogs(e)), "duplicate_log"), nullptr);
 }
 
+TEST(Check, AForceWrittenAsAMassIsNamed) {
+  Experiment e = Bench();
+  e.logs = {Record({})};
+  e.inputs[0].unit = "kg.cm";
+  const auto found = CheckLogs(e);
+  ASSERT_NE(Find(found, "unit_suspect", "u1"), nullptr) << Report(found);
+  EXPECT_THAT(Find(found, "unit_suspect", "u1")->text,
+              HasSubstr("'kg.cm' is a mass times a length; a torque is meant? Write kgf"));
+  e.inputs[0].unit = "kgf.cm";
+  EXPECT_EQ(Find(CheckLogs(e), "unit_suspect", "u1"), nullptr);
+}
+
 TEST(Check, TheShortestLogsAreTaken) {
   for (const std::size_t rows : {2, 3, 5, 12, 30}) {
     const auto all = CheckLogs(With(Record({Steps, Sines, rows})));

@@ -38,6 +38,8 @@ TEST(CsvTable, ReadsColumnsByNameInAnyLineEnding) {
   EXPECT_THAT(t.Numbers("time"), ElementsAre(0, 0.5));
   EXPECT_THAT(t.Numbers("T1"), ElementsAre(1, -2e-3));
   EXPECT_EQ(t.Where(1), "log.csv:4");
+  const CsvTable old = CsvTable::Parse("time,T1\r0,1\r0.5,2\r", "log.csv");
+  EXPECT_THAT(old.Numbers("T1"), ElementsAre(1, 2));
 }
 
 TEST(CsvTable, KeepsCommasAndQuotesInsideQuotedCells) {
@@ -97,8 +99,8 @@ TEST(CsvTable, ReadsOneSignForDecimalsInAFile) {
 }
 
 TEST(CsvTable, KnowsTheWordsForWhatWasNotMeasured) {
-  for (const std::string word :
-       {"", "NA", "N/A", "#N/A", "null", "None", "NaN", "-nan(ind)", "-"}) {
+  for (const std::string word : {"", "NA", "N/A", "#N/A", "null", "None", "NaN", "-nan(ind)", "-",
+                                 "--", "<NA>", "-1.#IND", "1.#QNAN", "#DIV/0!", "?"}) {
     const CsvTable t = CsvTable::Parse("t,x\n0,1\n1," + word + "\n", "log.csv");
     EXPECT_TRUE(std::isnan(t.NumberOrNan(1, "x"))) << word;
     EXPECT_THAT(Message([&] { t.Number(1, "x"); }), HasSubstr("finite number")) << word;
@@ -127,7 +129,7 @@ TEST(CsvTable, SaysWhereALineIsWrong) {
   EXPECT_THAT(ParseError(""), AllOf(HasSubstr("log.csv"), HasSubstr("header")));
   EXPECT_THAT(ParseError("\n \r\n"), HasSubstr("header"));
   EXPECT_THAT(ParseError("t,x,t\n"), AllOf(HasSubstr("log.csv:1"), HasSubstr("'t' twice")));
-  EXPECT_THAT(ParseError("t,,x\n"), HasSubstr("log.csv:1"));
+  EXPECT_THAT(ParseError("2,,x\n"), AllOf(HasSubstr("log.csv:1"), HasSubstr("'2' twice")));
   EXPECT_THAT(ParseError("t,x\n0,1\n\n2\n"), AllOf(HasSubstr("log.csv:4"), HasSubstr("found 1")));
   EXPECT_THAT(ParseError("t,x\n0,1,2\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("found 3")));
   EXPECT_THAT(ParseError("t\n\"0\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("closing quote")));
@@ -161,6 +163,17 @@ TEST(CsvTable, SaysWhatLinesWithoutNumbersMayBe) {
   EXPECT_THAT(wrong("t,x\n0,1\nt,x\n", 1), HasSubstr("the header again?"));
   EXPECT_THAT(ParseError("t,x\n0,1\n1\n"), HasSubstr("cut off? Then delete it"));
   EXPECT_THAT(ParseError("t,x\n0\n1,1\n"), Not(HasSubstr("cut off")));
+  for (const std::string preface : {"arm: 3\n", "arm,3\nday,2024-05-01\n"}) {
+    EXPECT_THAT(ParseError(preface + "t,u,q\n0,1,2\n1,1,2\n"),
+                HasSubstr("are the first lines no table? Put # before them"))
+        << preface;
+  }
+}
+
+TEST(CsvTable, NumbersAColumnWithoutAName) {
+  const CsvTable t = CsvTable::Parse(",t,x\n0,0.5,1\n1,1.5,2\n", "log.csv");  // as pandas writes
+  EXPECT_THAT(t.columns(), ElementsAre("1", "t", "x"));
+  EXPECT_THAT(t.Numbers("t"), ElementsAre(0.5, 1.5));
 }
 
 TEST(CsvTable, SkipsTheLineByWhichExcelKnowsTheDelimiter) {

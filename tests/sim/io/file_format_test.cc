@@ -29,7 +29,7 @@ TEST(FileFormat, NamesTheFormatAndTheLineThatConverts) {
   EXPECT_THAT(Message("PAR1\x15\x04\x15\0"sv),
               HasSubstr("a Parquet file; it is converted by: python3"));
   EXPECT_THAT(Message("PAR1\x15\x04\x15\0"sv),
-              HasSubstr("read_parquet('runs/log.bin').to_csv('runs/log.csv'"));
+              HasSubstr("read_parquet('runs/log.bin').reset_index().to_csv('runs/log.csv'"));
   EXPECT_THAT(Message("\x89HDF\r\n\x1a\n\0"sv), HasSubstr("an HDF5 file"));
   EXPECT_THAT(Message("\x93NUMPY\x01\0"sv), HasSubstr("a NumPy array"));
   EXPECT_THAT(Message("PK\x03\x04\0\0qpos.npy"sv), HasSubstr("an archive of NumPy arrays"));
@@ -40,6 +40,7 @@ TEST(FileFormat, NamesTheFormatAndTheLineThatConverts) {
   EXPECT_THAT(Message("#ROSBAG V2.0\n\0\0"sv), HasSubstr("a ROS bag"));
   EXPECT_THAT(Message("SQLite format 3\0"sv), HasSubstr("SQLite"));
   EXPECT_THAT(Message("ULog\x01\x12\x35\x01"sv), HasSubstr("ulog2csv runs/log.bin"));
+  EXPECT_THAT(Message("MDF     4.10    \0"sv), HasSubstr("asammdf"));
   EXPECT_THAT(Message("\x1F\x8B\x08\0"sv), HasSubstr("gunzip runs/log.bin"));
   EXPECT_THAT(Message("\xFF\xFEt\0,\0x\0"sv), HasSubstr("iconv -f UTF-16"));
   EXPECT_THAT(Message("[{\"t\": 0, \"q\": 1}]\n"sv), HasSubstr("JSON; it is converted by"));

@@ -78,6 +78,12 @@ TEST(Units, AreReadInEverySpellingOfAProduct) {
        {"inches", 0.0254},
        {"100 mm", 0.1},
        {"millimeters", 1e-3}},
+      {{"rad", 1},
+       {"degrees", degree},
+       {"arcdeg", degree},
+       {"gon", 0.9 * degree},
+       {"arc_minute", degree / 60},
+       {"turn", 360 * degree}},
       {{"s", 1}, {"ns", 1e-9}, {"nanoseconds", 1e-9}, {"min", 60}, {"h", 3600}, {"1e-6 s", 1e-6}},
       {{"m/s^2", 1}, {"m.s-2", 1}, {"m s^-2", 1}, {"g0", 9.80665}, {"mm/s/s", 1e-3}}};
   for (const auto& units : same) {
