@@ -3,6 +3,7 @@
 #include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/next_experiment.h"
 #include "identification/problem/extended_model.h"
+#include "identification/statistics/uncertainty.h"
 #include "sim/io/file.h"
 #include "sim/replay/replay.h"
 
@@ -43,6 +44,26 @@ void WriteAndRun(const Experiment& e, const Diagnosis& d, const CandidateResult*
     MakePart("errors of the extended files", run.missing, [&] { RunExtended(folder, run); });
 }
 
+// Of the logs that are not fitted, at a quarter of the time step and with the values that a fit
+// would have there.
+double HeldOutErrorFinely(const Problem& problem, const Fitted& fitted) {
+  std::vector<bool> held_out = problem.TrainLogs();
+  held_out.flip();
+  Problem::Vector x = fitted.fit.x;
+  if (fitted.complete() && fitted.sensitivities->uncertainty.step.size() == x.size())
+    x += fitted.sensitivities->uncertainty.step;
+  const Problem fine = AtQuarter(problem);
+  return fine.PooledRms(fine.Residuals(fine.Clamp(x), held_out), held_out);
+}
+
+// A coarse step may add more to logs left out than the cause takes off.
+std::optional<double> RemovedFinely(const Experiment& e, const Diagnosis& d) {
+  const double before = HeldOutErrorFinely(Problem(e, d.system), d.before),
+               after = HeldOutErrorFinely(ProblemOf(*d.chosen(), e), d.chosen()->fitted);
+  if (!(after < before)) return {};
+  return 1 - after / before;
+}
+
 }  // namespace
 
 ExtensionRun MeasureExtension(const Experiment& e, const Diagnosis& d,
@@ -51,7 +72,11 @@ ExtensionRun MeasureExtension(const Experiment& e, const Diagnosis& d,
   MakePart("model before", run.missing, [&] { run.model_before = d.system.Xml({}, {}, folder); });
   WriteAndRun(e, d, d.chosen(), folder, run);
   run.offered = d.chosen() && !(run.after.validate > d.before.error.validate);
-  if (d.chosen() && !run.offered) WriteAndRun(e, d, nullptr, folder, run);
+  if (d.chosen() && !run.offered) {
+    WriteAndRun(e, d, nullptr, folder, run);
+    MakePart("errors at a finer time step", run.missing,
+             [&] { run.removed_finely = RemovedFinely(e, d); });
+  }
   if (d.fallback) {
     MakePart("fallback", run.missing, [&] {
       run.fallback = Extend(ProblemOf(*d.fallback, e), d.fallback->hypothesis.system,

@@ -25,6 +25,9 @@ struct ExtensionRun {
   std::string next_inputs;                ///< CSV of the next experiment; empty: there is none
   /// Whether the extended files hold a cause: never one that raises the held-out error.
   bool offered = false;
+  /// Where it is not: the share of the held-out error that the cause takes off at a quarter of the
+  /// model's time step; none where it does not there either.
+  std::optional<double> removed_finely = {};
   TwoErrors after;                    ///< of the extended files, simulated as the model steps
   std::vector<Trace> before_traces;   ///< [log]
   std::vector<Trace> after_traces;    ///< [log] of the extended files; empty: not simulated

@@ -280,8 +280,14 @@ std::string CausesInWords(const Diagnosis& d) {
 
 std::string GainInWords(const Diagnosis& d, const ExtensionRun& run) {
   if (!d.chosen()) return "none, as nothing was added";
-  if (!run.offered && run.extended.xml.size() > 0)
+  if (!run.offered && run.extended.xml.size() > 0) {
+    if (run.removed_finely)
+      return fmt::format(
+          "at the time step of the model the held-out error does not fall, so the extension is not "
+          "offered; at a quarter of that step it falls by {}",
+          Percent(*run.removed_finely));
     return "the held-out error does not fall, so the extension is not offered";
+  }
   if (!(d.before.error.validate > 0)) return GainOfFolds(d);
   const double removed = GainOf(d, run.after).removed;
   const std::string much = removed < 0 ? "the held-out error rises by " + Percent(-removed)
@@ -329,9 +335,13 @@ std::vector<std::string> NextStepsInWords(const Experiment& e, const Diagnosis& 
     steps.emplace_back("Measure lengths, masses and the zero of the sensors again.");
   if (extended && (d.Is(Kind::kNamed) || OnlyCorrections(d)))
     steps.push_back(fmt::format("Simulate with `{}` in place of the model.", kExtendedModel));
-  if (!extended && d.chosen() && IsBelowStep(d))
+  if (!extended && d.chosen() && run.removed_finely) {
+    steps.push_back(fmt::format("Take a time step of {:g} s: with it the cause can be added.",
+                                d.system.model().opt.timestep / 4));
+  } else if (!extended && d.chosen() && IsBelowStep(d)) {
     steps.emplace_back(
         "Take a finer time step: the cause changes less than the error of this one.");
+  }
   if (extended && d.Is(Kind::kNamed) && !OnlyNoiseRemains(d, run.after))
     steps.push_back(
         fmt::format("Look for the next cause: `continuum diagnose {}`.", kExtendedExperiment));

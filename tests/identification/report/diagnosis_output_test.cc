@@ -308,6 +308,16 @@ TEST_F(DiagnosisOutput, OfACauseThatRaisesTheErrorSaysThatItIsNotOffered) {
   EXPECT_THAT(page, Not(HasSubstr("error is removed")));
 }
 
+TEST_F(DiagnosisOutput, OfACauseThatOnlyAFinerStepShowsSaysWhichStep) {
+  MakeFolder(Out());
+  ExtensionRun run = MeasureExtension(e_, *d_, Out());
+  run.offered = false, run.removed_finely = 0.35;
+  WriteDiagnosis(e_, *d_, run, Out());
+  const std::string page = FirstPage();
+  EXPECT_THAT(page, HasSubstr("at a quarter of that step it falls by 35 %"));
+  EXPECT_THAT(page, HasSubstr("Take a time step of 0.000"));
+}
+
 TEST_F(DiagnosisOutput, SaysWhatThereWasNoTimeForAndThatItWasInterrupted) {
   d_->left_out = {"folds of dahl"};
   d_->interrupted = true;
