@@ -81,8 +81,9 @@ std::optional<Reached> TooFar(const Target& target, const std::function<double(i
     if (far <= kRounded * reach) continue;
     Reached reached;
     reached.outcome.status = numerics::Status::kOutOfDomain;
-    reached.outcome.why = fmt::format(
-        "{:.3g} m from the base, and disk {} is at most {:.3g} m away", far, disk + 1, reach);
+    reached.outcome.why =
+        fmt::format("out of reach: {:.3g} m from the base, and disk {} is at most {:.3g} m away",
+                    far, disk + 1, reach);
     reached.miss = far - reach;
     return reached;
   }

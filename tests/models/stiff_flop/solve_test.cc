@@ -218,8 +218,8 @@ TEST_F(StiffFlopSolve, PlainNumbersAreReadToo) {
 
 TEST_F(StiffFlopSolve, OptionsOfOtherRobotsAreRefused) {
   Cases("p1,p2,p3\n0,0,0\n");
-  request_.calibrate = true;
-  EXPECT_THAT(Refusal(), HasSubstr("--calibrate"));
+  request_.hybrid = "train";
+  EXPECT_THAT(Refusal(), HasSubstr("--hybrid"));
 }
 
 TEST_F(StiffFlopSolve, PicturesShowTheShapes) {
