@@ -247,8 +247,8 @@ Verdict Name(const Ranking& all, std::size_t best, const LackOfFit& lack, bool m
       AddByFamily(all, i, verdict);
     } else {
       verdict.unlisted.push_back(i);
+      unlisted += (unlisted.empty() ? "" : ", ") + one.name;
     }
-    if (!one.listed) unlisted += (unlisted.empty() ? "" : ", ") + one.name;
     close = close && all.Score(best) - all.Score(i) < criteria.rival_margin;
   }
   const std::string near = fmt::format("within {:g}{}", +criteria.rival_margin,

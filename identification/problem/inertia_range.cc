@@ -1,59 +1,32 @@
 #include "identification/problem/inertia_range.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 
-#include "error.h"
+#include "sim/model/inertia_limits.h"
 
 namespace continuum {
-namespace {
-
-std::string Principal(std::size_t i) { return fmt::format("inertia[{}]", i); }
-
-// Which of the three a parameter sets alone, or 3.
-std::size_t Axis(const FreeParameter& p) {
-  std::size_t i = 0;
-  while (i < 3 && p.change.attribute != Principal(i)) ++i;
-  return p.change.operation == Change::Operation::kSet ? i : 3;
-}
-
-bool Compiles(const ModelSpec& system, Change change, double value) {
-  change.value = value;
-  try {
-    system.Build({&change, 1});
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-}  // namespace
 
 void KeepToInertias(const ModelSpec& system, std::vector<FreeParameter>& parameters) {
-  constexpr double kInside = 1e-9, kBeyond = 1e-3;  // of the limit
-  for (FreeParameter& p : parameters) {
-    const std::size_t i = Axis(p), j = (i + 1) % 3, k = (i + 2) % 3;
-    const auto shares_body = [&](const FreeParameter& other) {
-      return &other != &p && other.change.target == p.change.target &&
-             other.change.attribute.find("inertia") != std::string::npos;
-    };
-    if (i == 3 || std::any_of(parameters.begin(), parameters.end(), shares_body) ||
-        system.Named(p.change.target).size() != 1)
-      continue;
-    const double a = system.Value(p.change.target, Principal(j)),
-                 b = system.Value(p.change.target, Principal(k));
-    const double most = (a + b) * (1 - kInside), least = std::abs(a - b) * (1 + kInside);
-    if (p.upper > most && !Compiles(system, p.change, (a + b) * (1 + kBeyond))) {
+  constexpr double kInside = 1e-9;  // of the limit
+  std::vector<Change> changes;
+  for (const FreeParameter& p : parameters) changes.push_back(p.change);
+  for (std::size_t n = 0; n < parameters.size(); ++n) {
+    const auto limits = InertiaLimits::Of(system, changes, n);
+    if (!limits) continue;
+    FreeParameter& p = parameters[n];
+    const std::size_t i = limits->axis();
+    const std::string own = InertiaLimits::Name(i), j = InertiaLimits::Name((i + 1) % 3),
+                      k = InertiaLimits::Name((i + 2) % 3);
+    const double most = limits->most() * (1 - kInside), least = limits->least() * (1 + kInside);
+    if (p.upper > most && limits->HoldAbove()) {
       p.upper = most;
-      p.why_upper = fmt::format("{} is at most {} + {} = {:.6g}: free these too", Principal(i),
-                                Principal(j), Principal(k), a + b);
+      p.why_upper =
+          fmt::format("{} is at most {} + {} = {:.6g}: free these too", own, j, k, limits->most());
     }
-    if (p.lower < least && !Compiles(system, p.change, std::abs(a - b) * (1 - kBeyond))) {
+    if (p.lower < least && limits->HoldBelow()) {
       p.lower = least;
-      p.why_lower = fmt::format("{} is at least |{} − {}| = {:.6g}: free these too", Principal(i),
-                                Principal(j), Principal(k), std::abs(a - b));
+      p.why_lower = fmt::format("{} is at least |{} − {}| = {:.6g}: free these too", own, j, k,
+                                limits->least());
     }
   }
 }

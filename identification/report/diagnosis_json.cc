@@ -171,11 +171,9 @@ nlohmann::json GainJson(const Diagnosis& d, const TwoErrors& after) {
   const Gain gain = GainOf(d, after);
   nlohmann::json interval = nullptr;
   if (d.gain_interval) interval = {d.gain_interval->low, d.gain_interval->high};
-  nlohmann::json explainable = nullptr;
-  if (gain.explainable) explainable = *gain.explainable;
   return {{"validate_error_removed", gain.removed},
           {"ci95", interval},
-          {"explainable_error_removed", explainable}};
+          {"explainable_error_removed", OrNull(gain.explainable)}};
 }
 
 nlohmann::json DeviationsJson(const std::vector<Deviation>& deviations) {

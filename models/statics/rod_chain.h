@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/statics/block_tridiagonal.h"
+#include "models/statics/skew.h"
 
 namespace continuum::statics {
 
@@ -108,12 +109,6 @@ class RodChain {
   static constexpr double kNeutral = 1e-9;  // a turn about an axis of symmetry costs nothing
 
   static std::size_t At(int i) { return static_cast<std::size_t>(i); }
-
-  static Eigen::Matrix3d Skew(const Eigen::Vector3d& a) {
-    Eigen::Matrix3d s;
-    s << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-    return s;
-  }
 
   Eigen::Matrix3d ElasticOf(int piece) const {
     if constexpr (requires { law_.ElasticOf(piece); }) {

@@ -2,16 +2,13 @@
 
 #include <utility>
 
+#include "models/statics/skew.h"
 #include "models/statics/slide.h"
 
 namespace continuum::tdcr {
 namespace {
 
-Eigen::Matrix3d Skew(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d s;
-  s << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return s;
-}
+using statics::Skew;
 
 // The constitutive moment over EI/L for x = L u: (-kappa_y, kappa_x, tau/(1 + nu)).
 void SubtractStiffness(const double* x, double twist, double* f) {

@@ -1,15 +1,10 @@
 #include "models/tdcr/linear_curvature.h"
 
+#include "models/statics/skew.h"
+
 namespace continuum::tdcr {
-namespace {
 
-Eigen::Matrix3d Skew(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d s;
-  s << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return s;
-}
-
-}  // namespace
+using statics::Skew;
 
 LinearCurvature::LinearCurvature(const Robot& robot) {
   const std::vector<Section> sections = robot.Sections();

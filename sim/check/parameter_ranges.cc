@@ -1,15 +1,14 @@
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "binding/config.h"
-#include "error.h"
 #include "sim/check/against_model.h"
+#include "sim/model/inertia_limits.h"
 
 namespace continuum {
 namespace {
@@ -17,7 +16,6 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;  // rad: what a hinge rarely needs more than
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::string_view kJoint = "joint:";
-constexpr double kBeyond = 1e-3;  // of a limit
 
 // Whether an attribute is an angle on every joint that a target names.
 bool IsAngle(const ModelSpec& system, const Parameter& p) {
@@ -51,49 +49,29 @@ void CheckAngles(const ModelSpec& system, const Parameter& p, Findings& out) {
                   p.name, p.target, p.attribute, most, most * kDegrees, most, most / kDegrees));
 }
 
-bool Compiles(const ModelSpec& system, const Parameter& p, double value) {
-  const Change change{p.target, p.attribute, value, Change::Operation::kSet};
-  try {
-    system.Build({&change, 1});
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-// |I_j − I_k| ≤ I_i ≤ I_j + I_k holds of every body: beyond it a fit of I_i alone cannot go.
-void CheckInertia(const Experiment& e, const ModelSpec& system, const Parameter& p, Findings& out) {
-  const std::array<std::string, 3> axes{"inertia[0]", "inertia[1]", "inertia[2]"};
-  const auto axis =
-      static_cast<std::size_t>(std::find(axes.begin(), axes.end(), p.attribute) - axes.begin());
-  const auto shares_body = [&](const Parameter& other) {
-    return &other != &p && other.target == p.target &&
-           other.attribute.find("inertia") != std::string::npos;
-  };
-  if (axis == axes.size() || p.operation != Change::Operation::kSet ||
-      std::any_of(e.parameters.begin(), e.parameters.end(), shares_body) ||
-      system.Named(p.target).size() != 1)
-    return;
-  const double a = system.Value(p.target, axes[(axis + 1) % 3]),
-               b = system.Value(p.target, axes[(axis + 2) % 3]);
-  const double least = std::abs(a - b), most = a + b;
-  const bool above = p.upper > most && !Compiles(system, p, most * (1 + kBeyond));
-  const bool below = p.lower < least && !Compiles(system, p, least * (1 - kBeyond));
+// Beyond its limits a fit of one inertia alone cannot go.
+void CheckInertia(const Parameter& p, const InertiaLimits& limits, Findings& out) {
+  const bool above = p.upper > limits.most() && limits.HoldAbove();
+  const bool below = p.lower < limits.least() && limits.HoldBelow();
   if (!above && !below) return;
   out.Add(Finding::Severity::kInfo, "", "inertia_limit",
           fmt::format("parameter '{}' ({} {}) can only be between {:.4g} and {:.4g} kg*m^2, the "
                       "difference and the sum of the body's other two: a fit stops there; free "
                       "these too, or a scale of the body's mass",
-                      p.name, p.target, p.attribute, least, most));
+                      p.name, p.target, p.attribute, limits.least(), limits.most()));
 }
 
 }  // namespace
 
 void CheckParameterRanges(const Experiment& e, const ModelSpec& system, Findings& out) {
-  for (const Parameter& p : e.parameters) {
+  std::vector<Change> changes;
+  for (const Parameter& p : e.parameters)
+    changes.push_back({p.target, p.attribute, 0, p.operation});
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const Parameter& p = e.parameters[i];
     if (p.frozen) continue;
     CheckAngles(system, p, out);
-    CheckInertia(e, system, p, out);
+    if (const auto limits = InertiaLimits::Of(system, changes, i)) CheckInertia(p, *limits, out);
   }
 }
 
