@@ -6,6 +6,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstdio>
+#include <mutex>
 
 #include <fmt/format.h>
 
@@ -43,6 +44,8 @@ CLI::Validator Within(const std::string& range, Number lower, Number upper) {
 
 void ShowProgress(const Progress& progress) {
   if (ThisRank() > 0) return;
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   static ProgressText text;
   if (isatty(STDERR_FILENO)) {
     const std::string line = text.Line(progress, Now(), Columns() - 1);

@@ -3,40 +3,70 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 #include "binding/config.h"
 #include "sim/model/mujoco_handles.h"
+#include "sim/numerics/parallel.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
 
+namespace {
+
+// What moves on the way of one motion, in SI.
+struct OnTheWay {
+  double torque = 0, velocity = 0, count = 0;  // squares, and how many of them
+  double tension = 0, lower = kInfinity, upper = -kInfinity;
+
+  void See(const mjModel& m, const mjData& d) {
+    for (int i = 0; i < m.nv; ++i) {
+      const double load = d.qfrc_actuator[i] - d.qfrc_bias[i] + d.qfrc_spring[i];
+      torque += d.qfrc_actuator[i] * d.qfrc_actuator[i] + load * load;
+      velocity += d.qvel[i] * d.qvel[i];
+      count += 1;
+    }
+    for (int i = 0; i < m.nq; ++i)
+      lower = std::min(lower, d.qpos[i]), upper = std::max(upper, d.qpos[i]);
+    for (int i = 0; i < m.nout; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
+  }
+  // Another motion, which so many logs show.
+  void Join(const OnTheWay& other, double logs) {
+    torque += logs * other.torque, velocity += logs * other.velocity, count += logs * other.count;
+    tension = std::max(tension, other.tension);
+    lower = std::min(lower, other.lower), upper = std::max(upper, other.upper);
+  }
+};
+
+OnTheWay OfAllMotions(const Problem& problem, const Problem::Vector& x) {
+  const auto motions = problem.Motions(problem.AllLogs());
+  std::vector<OnTheWay> seen(motions.size());
+  ParallelFor(motions.size(), [&](std::size_t thread, std::size_t i) {
+    const std::size_t l = motions[i].front();
+    ModelAndData machine = problem.system(thread).Build(problem.ChangesFor(x, l));
+    Hooks hooks;
+    hooks.row = [&](const mjModel& m, mjData& d, std::size_t) { seen[i].See(m, d); };
+    Simulate(machine, problem.experiment(), problem.experiment().logs[l], {}, hooks);
+  });
+  OnTheWay all;
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    all.Join(seen[i], static_cast<double>(motions[i].size()));
+  return all;
+}
+
+}  // namespace
+
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
   const Experiment& e = problem.experiment();
+  const OnTheWay seen = OfAllMotions(problem, x);
+  const auto rms = [&](double sum) {
+    return seen.count > 0 && sum > 0 ? std::sqrt(sum / seen.count) : 1.0;
+  };
   Sizes s;
-  double torque = 0, velocity = 0, tension = 0, count = 0;
-  double lower = kInfinity, upper = -kInfinity;
-  for (std::size_t l = 0; l < e.logs.size(); ++l) {
-    ModelAndData machine = problem.system().Build(problem.ChangesFor(x, l));
-    Hooks hooks;
-    hooks.row = [&](const mjModel& m, mjData& d, std::size_t) {
-      for (int i = 0; i < m.nv; ++i) {
-        const double load = d.qfrc_actuator[i] - d.qfrc_bias[i] + d.qfrc_spring[i];
-        torque += d.qfrc_actuator[i] * d.qfrc_actuator[i] + load * load;
-        velocity += d.qvel[i] * d.qvel[i];
-        count += 1;
-      }
-      for (int i = 0; i < m.nq; ++i) {
-        lower = std::min(lower, d.qpos[i]), upper = std::max(upper, d.qpos[i]);
-      }
-      for (int i = 0; i < m.nout; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
-    };
-    Simulate(machine, e, e.logs[l], {}, hooks);
-  }
-  const auto rms = [&](double sum) { return count > 0 && sum > 0 ? std::sqrt(sum / count) : 1.0; };
-  s.torque = rms(torque);
-  s.velocity = rms(velocity);
-  if (upper > lower) s.angle = upper - lower;
-  if (tension > 0) s.tension = tension;
+  s.torque = rms(seen.torque);
+  s.velocity = rms(seen.velocity);
+  if (seen.upper > seen.lower) s.angle = seen.upper - seen.lower;
+  if (seen.tension > 0) s.tension = seen.tension;
   const mjModel& m = problem.system().model();
   if (m.nv > 0)
     s.inertia = std::accumulate(m.dof_M0, m.dof_M0 + m.nv, 0.0) / static_cast<double>(m.nv);

@@ -45,15 +45,15 @@ EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector
     log_.insert(log_.end(), joint.log.begin(), joint.log.end());
   missing_ = units_.Of(joints);
   coarse_step_ = kCoarse * base.step();
-  coarse_ = Stacked(base, x_, 0, coarse_step_);
+  coarse_ = Stacked(base, x_, coarse_step_);
   columns_ = Matrix::Zero(missing_.size(), x_.size());
-  const auto differ = [&](std::size_t thread, std::size_t i) {
+  const auto differ = [&](std::size_t, std::size_t i) {
     if (base.parameters()[i].IsStart()) return;
     const auto k = static_cast<Eigen::Index>(i);
     const double step = base.StepOf(x_, i, 1e-3);
     Vector moved = x_;
     moved[k] += step;
-    const Vector column = Change(base, moved, thread) / step;
+    const Vector column = Change(base, moved) / step;
     if (column.allFinite() && column.norm() * std::abs(step) > 1e-12) columns_.col(k) = column;
   };
   ShareOut(static_cast<std::size_t>(x_.size()), differ, [&](auto& archive, std::size_t i) {
@@ -79,15 +79,14 @@ EquationErrors::Solved EquationErrors::Beside(const Matrix& D, const std::vector
   return {y.head(x_.size()), y.tail(D.cols()), missing_ + J * (y - begin)};
 }
 
-Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, std::size_t thread,
-                               double step) const {
-  return units_.Of(MissingForces(problem, x, use_, thread, step));
+Vector EquationErrors::Stacked(const Problem& problem, const Vector& x, double step) const {
+  return units_.Of(MissingForces(problem, x, use_, step));
 }
 
-Vector EquationErrors::Change(const Problem& problem, const Vector& to, std::size_t thread) const {
+Vector EquationErrors::Change(const Problem& problem, const Vector& to) const {
   return NeedsOwnStep(problem) || Remembers(problem.system().model())
-             ? Vector(Stacked(problem, to, thread) - missing_)
-             : Vector(Stacked(problem, to, thread, coarse_step_) - coarse_);
+             ? Vector(Stacked(problem, to) - missing_)
+             : Vector(Stacked(problem, to, coarse_step_) - coarse_);
 }
 
 EquationStart EquationErrors::BestShape(const Hypothesis& h, const Problem& problem,

@@ -59,11 +59,9 @@ class EquationErrors {
     return std::max(0.0, force_.squaredNorm() - s.left.squaredNorm());
   }
   std::vector<double> PerLog(const Problem::Vector& r) const;
-  Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x, std::size_t thread = 0,
-                          double step = 0) const;
+  Problem::Vector Stacked(const Problem& problem, const Problem::Vector& x, double step = 0) const;
   /// What moving the parameters from x_, beside a candidate's own, does to f.
-  Problem::Vector Change(const Problem& problem, const Problem::Vector& to,
-                         std::size_t thread = 0) const;
+  Problem::Vector Change(const Problem& problem, const Problem::Vector& to) const;
   std::optional<EquationStart> AtShare(const Hypothesis& hypothesis, const Problem& problem,
                                        std::size_t start, double share) const;
 

@@ -124,6 +124,7 @@ Evolved Evolve(const std::function<std::vector<double>(const std::vector<Vector>
     for (const std::size_t i : order) sorted.push_back(points[i]);
     if (cost[order[0]] < best.cost) best.y = sorted[0], best.cost = cost[order[0]];
     if (cost[order.back()] - cost[order.front()] <= options.flat * best.cost) break;
+    if (g + 1 >= options.in_vain && !(best.cost < options.lower)) break;
     population.Follow(sorted, g);
   }
   return best;

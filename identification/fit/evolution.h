@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,6 +12,8 @@ namespace continuum {
 /// How an evolution begins, and how long it goes on.
 struct EvolutionOptions {
   std::size_t generations = 40;
+  std::size_t in_vain = 40;  ///< generations after which it ends without a point below this cost
+  double lower = std::numeric_limits<double>::infinity();
   double flat = 1e-4;  ///< share of the cost; generations that differ by less are the last
   std::uint64_t seed = 1;
 };

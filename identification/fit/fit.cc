@@ -30,6 +30,7 @@ class Cost : public ceres::CostFunction {
        const Whitening& whitening, Eigen::Index residuals)
       : problem_(problem), use_(use), options_(options), whitening_(whitening) {
     continuity_rows_ = Defects({}, 0).rows();
+    together_ = !options.rough && problem.LinearisesCheaply();
     set_num_residuals(static_cast<int>(residuals + continuity_rows_));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters().size()));
   }
@@ -43,7 +44,7 @@ class Cost : public ceres::CostFunction {
   bool Evaluate(const double* const* y, double* residuals, double** jacobians) const override {
     const auto& parameters = problem_.parameters();
     const Vector x = Unscaled(problem_, y[0]);
-    if (x_.size() != x.size() || x != x_) r_ = problem_.Residuals(x, use_), x_ = x;
+    if (x_.size() != x.size() || x != x_) Look(x);
     const Vector all = whitening_.Stack(r_, use_);
     if (!all.allFinite()) return false;
     for (Eigen::Index k = 0; k < all.size(); ++k)
@@ -63,6 +64,19 @@ class Cost : public ceres::CostFunction {
   }
 
  private:
+  // Residuals at x; where slopes cost little beside them and most steps are good, with these.
+  void Look(const Vector& x) const {
+    x_ = x;
+    if (!together_) {
+      r_ = problem_.Residuals(x, use_);
+      return;
+    }
+    auto [r, J] = problem_.Linearise(x, use_);
+    r_ = std::move(r);
+    together_ = !J.empty() || !whitening_.Stack(r_, use_).allFinite();
+    if (!J.empty()) J_ = std::move(J), derived_ = {x_, r_};
+  }
+
   // By how much residuals, or columns of their Jacobian, differ where segments meet; all of one
   // channel follow each other in a log.
   Matrix Defects(const std::vector<Matrix>& of, Eigen::Index columns) const {
@@ -125,6 +139,7 @@ class Cost : public ceres::CostFunction {
   const FitOptions& options_;
   const Whitening& whitening_;
   Eigen::Index continuity_rows_;
+  mutable bool together_;  // residuals and their slopes
   mutable Vector x_;
   mutable std::vector<Vector> r_;  // at x_
   mutable std::vector<Matrix> J_;
@@ -178,9 +193,9 @@ class Monitor : public ceres::IterationCallback {
 
 constexpr const char* kOutOfTime = "out of time";
 
-// Of whitened residuals.
-double CostOf(const Vector& r, const FitOptions& options) {
-  return 0.5 * r.unaryExpr([&](double v) { return SoftL1(v, options.soft).first; }).squaredNorm();
+// Whitened residuals as the loss counts them.
+Vector WithLoss(const Vector& r, const FitOptions& options) {
+  return r.unaryExpr([&](double v) { return SoftL1(v, options.soft).first; });
 }
 
 // Why a fit ended.
@@ -230,12 +245,17 @@ bool IsFarOverNoise(const Problem& problem, const Vector& x, const std::vector<b
                    TypicalRms(problem, problem.Residuals(x, use), use));
 }
 
-double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& use,
-              const FitOptions& options) {
+Vector LossResiduals(const Problem& problem, const Vector& x, const std::vector<bool>& use,
+                     const FitOptions& options) {
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
-  const Vector r = whitening.Stack(problem.Residuals(x, use), use);
-  return r.allFinite() ? CostOf(r, options) : std::numeric_limits<double>::infinity();
+  return WithLoss(whitening.Stack(problem.Residuals(x, use), use), options);
+}
+
+double CostAt(const Problem& problem, const Vector& x, const std::vector<bool>& use,
+              const FitOptions& options) {
+  const Vector r = LossResiduals(problem, x, use, options);
+  return r.allFinite() ? 0.5 * r.squaredNorm() : std::numeric_limits<double>::infinity();
 }
 
 Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<bool>& use,
@@ -244,12 +264,15 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   const std::size_t before = problem.evaluations();
   Fit fit;
   fit.x = problem.Clamp(x);
-  auto r = problem.Residuals(fit.x, use);
+  Matrix none_yet, &slopes = options.slopes ? *options.slopes : none_yet;
+  auto [r, J] = slopes.cols() == 0 && problem.LinearisesCheaply()
+                    ? problem.Linearise(fit.x, use)
+                    : Problem::Linearised{problem.Residuals(fit.x, use), {}};
   const Whitening none;
   const Whitening& whitening = options.whitening ? *options.whitening : none;
   const Vector all = whitening.Stack(r, use);
   RequireFinite(problem, fit.x, r, use, "at the start of the fit");
-  fit.cost = CostOf(all, options);
+  fit.cost = 0.5 * WithLoss(all, options).squaredNorm();
   fit.evaluations = problem.evaluations() - before;
   if (x.size() == 0) {
     fit.converged = true;
@@ -259,10 +282,8 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
     fit.trace = {fit.cost}, fit.message = kOutOfTime;
     return fit;
   }
-  Matrix none_yet, &slopes = options.slopes ? *options.slopes : none_yet;
-  std::vector<Matrix> J;
   if (slopes.cols() == 0) {
-    J = problem.Jacobian(fit.x, r, use, {}, true);
+    if (J.empty()) J = problem.Jacobian(fit.x, r, use, {}, true);
     for (const Matrix& part : J) {
       if (!part.allFinite())
         throw Error::Job("the simulation diverges next to the start of the fit");

@@ -56,6 +56,10 @@ double TypicalRms(const Problem& problem, std::vector<Problem::Vector> residuals
 /// Whether the residuals at x are far more than the measurement noise, where that is known.
 bool IsFarOverNoise(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use);
 
+/// Whitened residuals of the logs in use as the loss counts them: half their squares are the cost.
+Problem::Vector LossResiduals(const Problem& problem, const Problem::Vector& x,
+                              const std::vector<bool>& use, const FitOptions& options);
+
 /// ½ Σ ρ(r) of whitened residuals, what a fit lowers but for continuity; infinite where it
 /// diverges.
 double CostAt(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use,

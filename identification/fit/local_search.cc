@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include <Eigen/Dense>
 
@@ -11,6 +12,7 @@
 #include "identification/fit/evolution.h"
 #include "identification/fit/wide_slope_fit.h"
 #include "sim/io/interrupt.h"
+#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -47,22 +49,51 @@ Matrix SpreadOf(const Fit& fit, const Matrix& J) {
   return factor.matrixU().solve(Matrix(Matrix::Identity(n, n)));
 }
 
+// Whether the cost around a fit has ripples, as where a machine sticks and slips: over a step that
+// moves the residuals by a tenth, slopes J predict a third of the move wrong, or more.
+bool HasRipples(const Problem& problem, const Fit& fit, const Matrix& J,
+                const std::vector<bool>& use, const FitOptions& options) {
+  constexpr double kStep = 0.1, kWrong = 1.0 / 3;
+  const Vector y = Scaled(problem, fit.x);
+  const Vector here = LossResiduals(problem, fit.x, use, options);
+  const Matrix steps = kStep * std::sqrt(static_cast<double>(y.size())) * SpreadOf(fit, J);
+  std::vector<double> wrong(static_cast<std::size_t>(y.size()));
+  const auto look = [&](std::size_t i) {
+    const Vector beside = y + steps.col(static_cast<Eigen::Index>(i));
+    const Vector x = problem.Clamp(Unscaled(problem, beside.data()));
+    const Vector move = J * (Scaled(problem, x) - y);
+    const Vector lack = LossResiduals(problem, x, use, options) - here - move;
+    wrong[i] = lack.allFinite() && move.norm() > 0 ? lack.norm() / move.norm() : 0;
+  };
+  ShareTasks(wrong.size(), look, [&](auto& archive, std::size_t i) { archive(wrong[i]); });
+  return *std::max_element(wrong.begin(), wrong.end()) > kWrong;
+}
+
+// Whether a parameter ended at a bound, as a friction that went to zero: nothing rubs there, and
+// slopes do not lead back.
+bool IsAtBound(const Problem& problem, const Vector& x) {
+  const Box box = BoundsOf(problem);
+  return (x.array() <= box.lower.array() || x.array() >= box.upper.array()).any();
+}
+
 // The costs of points; outside of the bounds that on them, and more by the distance.
 std::vector<double> CostsOf(const Problem& problem, const std::vector<Vector>& points,
                             const std::vector<bool>& use, const FitOptions& options) {
-  std::vector<double> costs;
-  for (const Vector& y : points) {
-    const Vector x = problem.Clamp(Unscaled(problem, y.data()));
-    const double beyond = (Scaled(problem, x) - y).norm();
-    costs.push_back((1 + beyond) * CostAt(problem, x, use, options));
-  }
+  std::vector<double> costs(points.size());
+  const auto evaluate = [&](std::size_t i) {
+    const Vector x = problem.Clamp(Unscaled(problem, points[i].data()));
+    const double beyond = (Scaled(problem, x) - points[i]).norm();
+    costs[i] = (1 + beyond) * CostAt(problem, x, use, options);
+  };
+  ShareTasks(points.size(), evaluate, [&](auto& archive, std::size_t i) { archive(costs[i]); });
   return costs;
 }
 
 // Where the cost is least around a fit, which bears the effort.
 Vector LeastAround(const Problem& problem, const Matrix& slopes, const std::vector<bool>& use,
                    std::uint64_t seed, const FitOptions& options, Fit& fit) {
-  constexpr std::size_t kGenerations = 40;
+  constexpr std::size_t kGenerations = 40, kInVain = 6;
+  constexpr double kMuchLower = 1e-3;
   const auto begin = std::chrono::steady_clock::now();
   std::size_t generation = 0;
   const auto costs = [&](const std::vector<Vector>& points) {
@@ -70,7 +101,11 @@ Vector LeastAround(const Problem& problem, const Matrix& slopes, const std::vect
     return CostsOf(problem, points, use, options);
   };
   const Evolved best = Evolve(costs, Scaled(problem, fit.x), SpreadOf(fit, slopes),
-                              {.generations = kGenerations, .flat = kLower, .seed = seed});
+                              {.generations = kGenerations,
+                               .in_vain = kInVain,
+                               .lower = fit.cost * (1 - kMuchLower),
+                               .flat = kLower,
+                               .seed = seed});
   fit.evaluations += best.evaluations;
   fit.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return problem.Clamp(Unscaled(problem, best.y.data()));
@@ -109,12 +144,19 @@ LocalMinima SearchAround(const Problem& problem, const Vector& start, const std:
       if (error.kind() != Error::Kind::kJob) throw;  // it diverges there
     }
   };
-  if (start.size() > 0 && !StopRequested()) try_from(start);
-  for (int round = 0; round < kRounds && fit.cost > 0 && !StopRequested(); ++round) {
+  const auto slopes_here = [&] {
     Matrix slopes;
     secants.slopes = &slopes;
     Take(FitParameters(problem, fit.x, use, secants), fit);
     secants.slopes = nullptr;
+    return slopes;
+  };
+  Matrix slopes = slopes_here();
+  if (!(fit.cost > 0) || StopRequested()) return minima;
+  if (!IsAtBound(problem, fit.x) && !HasRipples(problem, fit, slopes, use, options)) return minima;
+  if (start.size() > 0) try_from(start);
+  for (int round = 0; round < kRounds && fit.cost > 0 && !StopRequested(); ++round) {
+    if (round > 0 || start.size() > 0) slopes = slopes_here();
     const double before = fit.cost;
     const Vector x = LeastAround(problem, slopes, use, seed + round, plain, fit);
     if (!StopRequested()) try_from(x);

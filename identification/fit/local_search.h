@@ -10,10 +10,11 @@ namespace continuum {
 /// Looks around a fit for other minima of the cost, where dry friction acts in the model: there
 /// it has many, and which of them a fit ends in depends on where it began.
 ///
-/// From the start of the fit (none if it is empty) another one goes by secants. Then an evolution
-/// (identification/fit/evolution.h) looks for lower costs around the best, in the directions that
-/// change the cost least; from the least another fit goes on. As long as that helps much, again.
-/// Repeats with the same seed.
+/// Ends at once where slopes predict what small steps do and no parameter is at a bound: then no
+/// other is near. Else from the start of the fit (none if it is empty) another one goes by secants.
+/// Then an evolution (identification/fit/evolution.h) looks for lower costs around the best, in the
+/// directions that change the cost least; from the least another fit goes on. As long as that helps
+/// much, again. Repeats with the same seed.
 LocalMinima SearchAround(const Problem& problem, const Problem::Vector& start,
                          const std::vector<bool>& use, std::uint64_t seed,
                          const FitOptions& options, Fit& fit);

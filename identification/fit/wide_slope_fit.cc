@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "identification/statistics/noise_model.h"
 #include "sim/io/interrupt.h"
 
 namespace continuum {
@@ -42,6 +43,12 @@ Fit FitWide(const Problem& problem, const Problem::Vector& x, const std::vector<
   return fit;
 }
 
+// Where the motion is smooth and a fit has reached the noise, wider slopes find nothing better.
+bool IsThere(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use) {
+  return problem.LinearisesCheaply() &&
+         IsNear(NoiseOf(problem.experiment()), TypicalRms(problem, problem.Residuals(x, use), use));
+}
+
 }  // namespace
 
 Fit FitWithWideSlopes(const Problem& problem, const Problem::Vector& x,
@@ -49,7 +56,8 @@ Fit FitWithWideSlopes(const Problem& problem, const Problem::Vector& x,
   constexpr double kLower = 1e-3;  // of the cost, that is worth another fit
   constexpr int kFits = 4;
   Fit best = FitParameters(problem, x, use, options);
-  const bool may_go_on = problem.path() == Path::kStepped && x.size() > 0;
+  const bool may_go_on =
+      problem.path() == Path::kStepped && x.size() > 0 && !IsThere(problem, best.x, use);
   for (int k = 1; k < kFits && may_go_on && !StopRequested(); ++k) {
     FitOptions left = options;
     left.iterations -= best.iterations;

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "identification/fit/bounded_least_squares.h"
+#include "identification/fit/out_of_step.h"
 #include "identification/fit/wide_slope_fit.h"
 #include "identification/inverse_dynamics/missing_force.h"
 #include "identification/statistics/noise_model.h"
@@ -22,7 +23,6 @@ namespace {
 using Vector = Problem::Vector;
 
 constexpr Search kFewSteps{5, 1e-2};
-constexpr double kOutOfStep = 0.3;  // of the measured motion: a fit that leaves more may be lost
 
 // Missing forces of all joints below each other as one Ceres cost in scaled parameters.
 class ForceCost : public ceres::CostFunction {
@@ -47,20 +47,20 @@ class ForceCost : public ceres::CostFunction {
     const Vector x = Unscaled(problem_, y[0]);
     evaluations_ += static_cast<std::size_t>(std::count(use_.begin(), use_.end(), true)) *
                     (jacobians && jacobians[0] ? 1 + problem_.parameters().size() : 1);
-    const Vector f = Forces(x, 0);
+    const Vector f = Forces(x);
     if (!f.allFinite()) return false;
     Vector::Map(residuals, f.size()) = f;
     if (!jacobians || !jacobians[0]) return true;
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(
         jacobians[0], f.size(), x.size());
     J.setZero();
-    const auto differ = [&](std::size_t thread, std::size_t k) {
+    const auto differ = [&](std::size_t, std::size_t k) {
       if (StopRequested() || problem_.parameters()[k].IsStart()) return;
       const double step = problem_.StepOf(x, k, 1e-3);
       Vector moved = x;
       moved[static_cast<Eigen::Index>(k)] += step;
       J.col(static_cast<Eigen::Index>(k)) =
-          (Forces(moved, thread) - f) * (problem_.parameters()[k].scale / step);
+          (Forces(moved) - f) * (problem_.parameters()[k].scale / step);
     };
     ShareOut(static_cast<std::size_t>(x.size()), differ, [&](auto& archive, std::size_t k) {
       FieldsOfBlock(archive, J.col(static_cast<Eigen::Index>(k)));
@@ -70,9 +70,9 @@ class ForceCost : public ceres::CostFunction {
 
  private:
   // Not finite where no machine can have these parameters.
-  Vector Forces(const Vector& x, std::size_t thread) const {
+  Vector Forces(const Vector& x) const {
     try {
-      return units_.Of(MissingForces(problem_, x, use_, thread));
+      return units_.Of(MissingForces(problem_, x, use_));
     } catch (const Error&) {
       return Vector::Constant(units_.size(), std::numeric_limits<double>::quiet_NaN());
     }
@@ -83,24 +83,6 @@ class ForceCost : public ceres::CostFunction {
   StackedForces units_;
   mutable std::size_t evaluations_ = 0;
 };
-
-// What is measured, but for each channel's mean in a log, as residuals would be.
-std::vector<Vector> Deviations(const Problem& problem) {
-  std::vector<Vector> all;
-  for (const Log& log : problem.experiment().logs) {
-    Vector r(static_cast<Eigen::Index>(problem.channels().size() * log.rows()));
-    auto at = r.begin();
-    for (std::size_t c = 0; c < problem.channels().size(); ++c) {
-      const std::vector<double>& y = log.measured[problem.channels()[c]];
-      double sum = 0, count = 0;
-      for (const double v : y)
-        if (!std::isnan(v)) sum += v, ++count;
-      for (const double v : y) *at++ = std::isnan(v) ? 0 : (v - sum / count) / problem.scale(c);
-    }
-    all.push_back(std::move(r));
-  }
-  return all;
-}
 
 }  // namespace
 
@@ -124,13 +106,10 @@ Fit FitByEquations(const Problem& problem, Fit best, const std::vector<bool>& us
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   const Progress stage{"fit from the equations of motion"};
-  const double left = TypicalRms(problem, problem.Residuals(best.x, use), use);
   FitOptions own = options;
   own.iterations -= best.iterations, own.idle = true,
                                      own.progress = Within(stage, options.progress);
-  const bool lost = IsFarOver(NoiseOf(problem.experiment()), left) &&
-                    left > kOutOfStep * problem.PooledRms(Deviations(problem), use);
-  if (!lost || own.iterations <= 0 || StopRequested()) return best;
+  if (own.iterations <= 0 || StopRequested() || !IsOutOfStep(problem, best.x, use)) return best;
   if (options.progress) options.progress(stage);
   const auto equations = FitEquations(problem, best.x, use);
   if (equations) best.evaluations += equations->evaluations;

@@ -10,6 +10,7 @@
 
 #include "identification/inverse_dynamics/measured_motion.h"
 #include "sim/model/elastic_gear.h"
+#include "sim/numerics/parallel.h"
 #include "sim/simulation/simulate.h"
 
 namespace continuum {
@@ -51,14 +52,13 @@ class LogForces {
     }
   }
 
-  // Appended to those of other logs, joint by joint. Nothing where a joint moves that is not
-  // measured: returns false.
-  bool AddTo(std::vector<MissingForce>& all) {
+  // On each measured joint; none where a joint moves that is not measured.
+  std::vector<MissingForce> Joints() {
     Drive();
-    if (moved_) return false;
+    if (moved_) return {};
     mjModel& m = *machine_.model;
     mjData& d = *machine_.data;
-    all.resize(measured_.size());
+    std::vector<MissingForce> all(measured_.size());
     for (std::size_t k = 0; k < fits_.size(); ++k) {
       Place(m, d, k);
       mj_fwdPosition(&m, &d);
@@ -80,7 +80,7 @@ class LogForces {
       }
     }
     for (MissingForce& one : all) one.at_rest = Names(m, others_);
-    return true;
+    return all;
   }
 
  private:
@@ -167,6 +167,20 @@ bool EveryRowIsThere(const Experiment& e, const mjModel& m, const Log& log) {
   });
 }
 
+// To those of other logs, joint by joint.
+void Append(const std::vector<MissingForce>& joints, std::vector<MissingForce>& all) {
+  all.resize(joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const MissingForce& from = joints[j];
+    MissingForce& to = all[j];
+    to.joint = from.joint, to.slides = from.slides, to.at_rest = from.at_rest;
+    to.log.insert(to.log.end(), from.log.begin(), from.log.end());
+    for (const auto rows : {&MissingForce::time, &MissingForce::angle, &MissingForce::velocity,
+                            &MissingForce::load, &MissingForce::force, &MissingForce::acceleration})
+      (to.*rows).insert((to.*rows).end(), (from.*rows).begin(), (from.*rows).end());
+  }
+}
+
 double Squares(const MissingForce& f) {
   double sum = 0;
   for (const double v : f.force) sum += v * v;
@@ -202,15 +216,22 @@ bool MeasuresEveryJoint(const Problem& problem, std::size_t log) {
 }
 
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
-                                        const std::vector<bool>& use, std::size_t thread,
-                                        double step) {
+                                        const std::vector<bool>& use, double step) {
   const Experiment& e = problem.experiment();
-  std::vector<MissingForce> all;
+  std::vector<std::size_t> logs;
   for (std::size_t l = 0; l < use.size(); ++l) {
-    const Log& log = e.logs[l];
-    if (!use[l] || log.rows() < kQuarticRows) continue;
-    if (e.quasi_static || !EveryRowIsThere(e, problem.system().model(), log)) return {};
-    if (!LogForces(problem, x, l, thread, step).AddTo(all)) return {};
+    if (!use[l] || e.logs[l].rows() < kQuarticRows) continue;
+    if (e.quasi_static || !EveryRowIsThere(e, problem.system().model(), e.logs[l])) return {};
+    logs.push_back(l);
+  }
+  std::vector<std::vector<MissingForce>> of_log(logs.size());
+  ParallelFor(logs.size(), [&](std::size_t thread, std::size_t i) {
+    of_log[i] = LogForces(problem, x, logs[i], thread, step).Joints();
+  });
+  std::vector<MissingForce> all;
+  for (const auto& joints : of_log) {
+    if (joints.empty()) return {};
+    Append(joints, all);
   }
   return all;
 }

@@ -52,11 +52,10 @@ bool MeasuresEveryJoint(const Problem& problem, std::size_t log);
 
 /// On every measured joint, of the logs in use; none when not every joint is measured in all their
 /// rows. A hinge or slide that is not measured counts as at rest where the model leaves it there,
-/// as those across the plane in which an arm moves. thread: of parallel work; step: of the model's
-/// motion between rows [s], 0: its own.
+/// as those across the plane in which an arm moves. step: of the model's motion between rows [s],
+/// 0: its own.
 std::vector<MissingForce> MissingForces(const Problem& problem, const Problem::Vector& x,
-                                        const std::vector<bool>& use, std::size_t thread = 0,
-                                        double step = 0);
+                                        const std::vector<bool>& use, double step = 0);
 
 /// The joint on which most is missing, over all logs; empty joint when not every joint is measured.
 MissingForce FindMissingForce(const Problem& problem, const Problem::Vector& x);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "error.h"
+#include "identification/fit/out_of_step.h"
 #include "identification/fit/wide_slope_fit.h"
 #include "identification/inverse_dynamics/measured_motion.h"
 #include "identification/inverse_dynamics/missing_force.h"
@@ -76,11 +77,14 @@ std::optional<Problem> OnShortHorizons(const Problem& problem, const std::vector
 Fit FitByShortHorizons(const Problem& problem, Fit best, const std::vector<bool>& use,
                        const FitOptions& options) {
   constexpr double kNear = 2;  // times the cost, from where a fit may still become the better one
-  if (!IsFarOverNoise(problem, best.x, use) || StopRequested()) return best;
+  constexpr int kFewSteps = 15;
+  constexpr double kNearEnough = 1e-3;  // of the cost: it is a start
+  if (StopRequested() || !IsOutOfStep(problem, best.x, use)) return best;
   const auto pieces = OnShortHorizons(problem, use);
   if (!pieces) return best;
   FitOptions own = options, first = options;
   own.idle = first.idle = first.rough = true, own.slopes = first.slopes = nullptr;
+  first.iterations = std::min(first.iterations, kFewSteps), first.tolerance = kNearEnough;
   own.progress = first.progress = Within({"fit over short horizons"}, options.progress);
   try {
     const Fit begin = FitParameters(*pieces, best.x, use, first);

@@ -17,9 +17,9 @@ namespace continuum {
 /// path.
 std::optional<Problem> OnShortHorizons(const Problem& problem, const std::vector<bool>& use);
 
-/// A fit or, where it leaves far more than the measurement noise, a better one that begins at the
-/// best parameters over short horizons, if there is one. anew is set then; its effort is that of
-/// all.
+/// A fit or, where it is out of step (identification/fit/out_of_step.h), a better one that begins
+/// at the best parameters over short horizons, if there is one. anew is set then; its effort is
+/// that of all.
 Fit FitByShortHorizons(const Problem& problem, Fit best, const std::vector<bool>& use,
                        const FitOptions& options);
 

@@ -93,7 +93,8 @@ Derivative Problem::TakeColumn(const Vector& x, const std::vector<std::size_t>& 
 std::vector<Derivative> Problem::SteppedColumns(const Vector& x,
                                                 const std::vector<std::size_t>& motion,
                                                 const std::vector<std::size_t>& columns,
-                                                std::size_t thread, std::vector<Matrix>& J) const {
+                                                std::size_t thread, Trace& here,
+                                                std::vector<Matrix>& J) const {
   const std::size_t log = motion.front();
   const Experiment setup = MeasuredBy(x, log);
   ModelAndData machine = ModelAt(thread, x, log, 0);
@@ -104,12 +105,12 @@ std::vector<Derivative> Problem::SteppedColumns(const Vector& x,
   PerturbedRun trial = RunOf(std::move(machine), x, log);
   std::vector<PerturbedRun> perturbed;
   for (const std::size_t k : columns) perturbed.push_back(RunBeside(m, x, log, k, thread));
-  const SteppedTraces traces = SimulateStepped(trial, perturbed, setup, experiment_->logs[log]);
+  SteppedTraces traces = SimulateStepped(trial, perturbed, setup, experiment_->logs[log]);
+  here = std::move(traces.trace);
   for (std::size_t j = 0; j < columns.size(); ++j) {
     made[j].why = traces.why_not[j];
     if (made[j].why.empty())
-      made[j] =
-          TakeColumn(x, motion, columns[j], perturbed[j], traces.trace, traces.perturbed[j], J);
+      made[j] = TakeColumn(x, motion, columns[j], perturbed[j], here, traces.perturbed[j], J);
   }
   return made;
 }
@@ -117,7 +118,7 @@ std::vector<Derivative> Problem::SteppedColumns(const Vector& x,
 std::vector<Derivative> Problem::ClosedFormColumns(const Vector& x,
                                                    const std::vector<std::size_t>& motion,
                                                    const std::vector<std::size_t>& columns,
-                                                   std::size_t thread,
+                                                   std::size_t thread, Trace& here,
                                                    std::vector<Matrix>& J) const {
   std::vector<std::size_t> moving;
   for (const std::size_t k : columns) {
@@ -126,7 +127,7 @@ std::vector<Derivative> Problem::ClosedFormColumns(const Vector& x,
   std::string why = NotTried(x, motion.front(), columns.size());
   std::vector<Derivative> of_motion;
   try {
-    if (why.empty()) of_motion = SteppedColumns(x, motion, moving, thread, J);
+    if (why.empty()) of_motion = SteppedColumns(x, motion, moving, thread, here, J);
   } catch (const Error& error) {  // of values that no machine has: differences look to both sides
     why = error.what();
   }
@@ -166,13 +167,14 @@ std::vector<std::vector<Derivative>> Problem::WaysOf(const Vector& x,
   std::vector<Matrix> J(use.size());
   const std::vector<Vector> r = Residuals(x, use);
   for (std::size_t l = 0; l < use.size(); ++l) J[l].resize(r[l].size(), x.size());
+  Trace here;
   std::vector<std::size_t> all(parameters_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   for (const auto& motion : Motions(use)) {
     const std::vector<std::size_t> columns = ActingColumns(all, motion.front());
     const std::vector<Derivative> made = path_ == Path::kSmooth
                                              ? SmoothColumns(x, motion.front(), columns)
-                                             : ClosedFormColumns(x, motion, columns, 0, J);
+                                             : ClosedFormColumns(x, motion, columns, 0, here, J);
     for (std::size_t j = 0; j < columns.size(); ++j) {
       for (const std::size_t l : motion) ways[columns[j]][l] = made[j];
     }

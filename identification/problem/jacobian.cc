@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "identification/problem/problem.h"
+#include "identification/problem/trace_bytes.h"
 #include "identification/sensitivity/smooth_path.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/shared_loop.h"
@@ -69,20 +70,30 @@ double Problem::StepOf(const Vector& x, std::size_t k, double share) const {
   return x[k] + step > parameters_[k].upper ? -step : step;
 }
 
+std::vector<std::size_t> Problem::TakeClosedForms(const Vector& x,
+                                                  const std::vector<std::size_t>& motion,
+                                                  const std::vector<std::size_t>& columns,
+                                                  std::size_t thread, Trace& here,
+                                                  std::vector<Matrix>& J) const {
+  using Way = Derivative::Way;
+  const std::vector<Derivative> made = ClosedFormColumns(x, motion, columns, thread, here, J);
+  std::vector<std::size_t> left;
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    if (made[j].way == Way::kDifferences || made[j].way == Way::kMeasurement)
+      left.push_back(columns[j]);
+  }
+  return left;
+}
+
 void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                                 const std::vector<std::vector<std::size_t>>& motions,
                                 const std::vector<std::size_t>& columns,
                                 std::vector<Matrix>& J) const {
-  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
   std::vector<std::vector<std::size_t>> left(motions.size());
   const auto closed_form = [&](std::size_t thread, std::size_t i) {
-    using Way = Derivative::Way;
-    const std::vector<std::size_t> acting = ActingColumns(columns, motions[i].front());
-    const std::vector<Derivative> made = ClosedFormColumns(x, motions[i], acting, thread, J);
-    for (std::size_t j = 0; j < acting.size(); ++j) {
-      if (made[j].way == Way::kDifferences || made[j].way == Way::kMeasurement)
-        left[i].push_back(acting[j]);
-    }
+    Trace here;
+    left[i] =
+        TakeClosedForms(x, motions[i], ActingColumns(columns, motions[i].front()), thread, here, J);
   };
   ShareOut(motions.size(), closed_form, [&](auto& archive, std::size_t i) {
     archive(left[i]);
@@ -92,10 +103,59 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
     }
   });
   std::size_t exact = 0;  // simulations that gave columns in closed form
-  for (std::size_t i = 0; i < motions.size(); ++i) {
+  for (std::size_t i = 0; i < motions.size(); ++i)
     exact += left[i].size() < ActingColumns(columns, motions[i].front()).size();
-    for (const std::size_t k : left[i]) tasks.emplace_back(i, k);
+  Count(exact);
+  DifferTheOthers(x, r, motions, left, J);
+}
+
+bool Problem::LinearisesCheaply() const {
+  return path_ == Path::kStepped && system().model().nplugin == 0 &&
+         NotTried(Start(), 0, parameters_.size()).empty();
+}
+
+Problem::Linearised Problem::Linearise(const Vector& x, const std::vector<bool>& use) const {
+  const auto motions = Motions(use);
+  std::vector<std::size_t> all(parameters_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Linearised out{std::vector<Vector>(use.size()), std::vector<Matrix>(use.size())};
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) continue;
+    const std::size_t rows = experiment_->logs[l].rows() * channels_.size();
+    out.J[l] = Matrix::Zero(static_cast<Eigen::Index>(rows), x.size());
   }
+  std::vector<std::vector<std::size_t>> left(motions.size());
+  std::vector<LastRun> made(motions.size());
+  const auto simulate = [&](std::size_t thread, std::size_t i) {
+    const std::size_t first = motions[i].front();
+    made[i] = MadeOf(x, first, MeasuredBy(x, first).skew);
+    Trace& here = made[i].trace;
+    left[i] = TakeClosedForms(x, motions[i], ActingColumns(all, first), thread, here, out.J);
+    if (here.channel.empty()) here = Run(thread, x, first);
+    for (const std::size_t l : motions[i]) out.r[l] = ResidualOf(l, here);
+  };
+  ShareOut(motions.size(), simulate, [&](auto& archive, std::size_t i) {
+    archive(left[i], made[i]);
+    for (const std::size_t l : motions[i]) archive(out.r[l], out.J[l]);
+  });
+  Keep(motions, std::move(made));
+  Count(motions.size());
+  const auto is_measured = [&](std::size_t k) { return IsOfMeasurement(k); };
+  const bool whole = std::all_of(left.begin(), left.end(), [&](const auto& some) {
+    return std::all_of(some.begin(), some.end(), is_measured);
+  });
+  if (!whole) return {std::move(out.r), {}};
+  DifferTheOthers(x, out.r, motions, left, out.J);
+  return out;
+}
+
+void Problem::DifferTheOthers(const Vector& x, const std::vector<Vector>& r,
+                              const std::vector<std::vector<std::size_t>>& motions,
+                              const std::vector<std::vector<std::size_t>>& left,
+                              std::vector<Matrix>& J) const {
+  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // motion, parameter
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    for (const std::size_t k : left[i]) tasks.emplace_back(i, k);
   const auto differ = [&](std::size_t thread, std::size_t t) {
     if (StopRequested()) return;
     const std::size_t i = tasks[t].first, k = tasks[t].second;
@@ -122,7 +182,7 @@ void Problem::DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
     for (const std::size_t l : motions[tasks[t].first])
       FieldsOfBlock(archive, J[l].col(tasks[t].second));
   });
-  evaluations_ += (central_ ? 2 : 1) * tasks.size() + exact;
+  Count((central_ ? 2 : 1) * tasks.size());
 }
 
 std::vector<std::unique_ptr<ContinuousDynamics>> Problem::DynamicsBeside(
@@ -186,7 +246,7 @@ void Problem::SensitivityColumns(const Vector& x,
       for (const std::size_t k : tasks[t].moving) FieldsOfBlock(archive, J[l].col(k));
     }
   });
-  evaluations_ += tasks.size();
+  Count(tasks.size());
 }
 
 }  // namespace continuum

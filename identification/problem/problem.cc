@@ -18,6 +18,7 @@
 #include "sim/experiment/measurement_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/numerics/parallel.h"
+#include "sim/numerics/parallel_scope.h"
 #include "sim/numerics/shared_loop.h"
 #include "sim/simulation/initial_state.h"
 #include "sim/simulation/registration_fit.h"
@@ -63,9 +64,10 @@ Problem::Problem(const Experiment& experiment, const ModelSpec& system,
     : experiment_(&experiment),
       seen_(seen.empty() ? continuum::TrainLogs(experiment) : std::move(seen)),
       setup_(experiment),
-      terms_(std::move(terms)) {
+      runs_(experiment.logs.size()),
+      terms_(std::move(terms)),
+      evaluations_(ThreadCount()) {
   setup_.logs.clear();
-  memory_.resize(experiment.logs.size());
   const bool geoms = ChangesGeoms(experiment);
   for (std::size_t t = 0; t < ThreadCount(); ++t) {
     systems_.push_back(system);
@@ -115,7 +117,7 @@ void Problem::FindScales() {
 // On the smooth path with the method that takes fewer evaluations at the start.
 void Problem::Follow(Path path) {
   path_ = path;
-  memory_.assign(memory_.size(), {});
+  runs_.Forget();
   if (path == Path::kStepped) return;
   solver_.stiff = true;
   if (DynamicsAt(0, Start(), 0)->rubs()) return;
@@ -133,13 +135,13 @@ double Problem::step() const { return step_ > 0 ? step_ : system().model().opt.t
 
 void Problem::StepBy(double h) {
   step_ = h;
-  memory_.assign(memory_.size(), {});
+  runs_.Forget();
 }
 
 void Problem::Guide(std::function<Hooks(std::size_t log)> hooks) {
   guide_ = std::move(hooks), exact_ = false;
   std::iota(motion_.begin(), motion_.end(), std::size_t{0});  // on a way of its own each
-  memory_.assign(memory_.size(), {});
+  runs_.Forget();
 }
 
 double Problem::PresentValue(const Parameter& p) const {
@@ -306,14 +308,11 @@ Trace Problem::Rejected(const Log& log, const Error& error) const {
 // step: a time step other than the model's [s], or 0.
 Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double step) const {
   const Experiment setup = MeasuredBy(x, log);
-  const auto changes = ChangesFor(x, log);
-  const auto starts = ChangesAt(x, log, Side::kStart);
   const Vector theta = x.tail(static_cast<Eigen::Index>(terms_.count));
-  const Memory& memory = memory_[motion_[log]];
   const Log& logged = experiment_->logs[log];
-  if (step == 0 && !memory.trace.raw.empty() && memory.changes == changes &&
-      memory.starts == starts && memory.theta == theta && memory.skew == setup.skew) {
-    Trace trace = memory.trace;
+  if (const auto known = step > 0 ? nullptr : runs_.Find(motion_[log], MadeOf(x, log, setup.skew));
+      known && !known->trace.raw.empty()) {
+    Trace trace = known->trace;
     MeasureTrace(setup, Wiring(setup, system().model()), logged, trace);
     return trace;
   }
@@ -412,21 +411,38 @@ std::vector<Problem::Vector> Problem::Residuals(const Vector& x,
                                                 const std::vector<bool>& use) const {
   const auto motions = Motions(use);
   std::vector<Vector> out(use.size());
+  std::vector<LastRun> made(motions.size());
   const auto simulate = [&](std::size_t thread, std::size_t i) {
     const std::size_t first = motions[i].front();
-    Trace trace = Run(thread, x, first);
-    for (const std::size_t l : motions[i]) out[l] = ResidualOf(l, trace);
-    memory_[motion_[first]] = {ChangesFor(x, first), ChangesAt(x, first, Side::kStart),
-                               x.tail(static_cast<Eigen::Index>(terms_.count)),
-                               MeasuredBy(x, first).skew, std::move(trace)};
+    made[i] = MadeOf(x, first, MeasuredBy(x, first).skew);
+    made[i].trace = Run(thread, x, first);
+    for (const std::size_t l : motions[i]) out[l] = ResidualOf(l, made[i].trace);
   };
   ShareOut(motions.size(), simulate, [&](auto& archive, std::size_t i) {
     for (const std::size_t l : motions[i]) archive(out[l]);
-    Memory& m = memory_[motion_[motions[i].front()]];
-    archive(m.changes, m.starts, m.theta, m.skew, m.trace);
+    archive(made[i]);
   });
-  evaluations_ += motions.size();
+  Keep(motions, std::move(made));
+  Count(motions.size());
   return out;
+}
+
+LastRun Problem::MadeOf(const Vector& x, std::size_t log, double skew) const {
+  return {ChangesFor(x, log), ChangesAt(x, log, Side::kStart),
+          x.tail(static_cast<Eigen::Index>(terms_.count)), skew};
+}
+
+void Problem::Keep(const std::vector<std::vector<std::size_t>>& motions,
+                   std::vector<LastRun> made) const {
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    runs_.Keep(motion_[motions[i].front()], std::move(made[i]));
+}
+
+void Problem::Count(std::size_t simulations) const { evaluations_[ThisThread()] += simulations; }
+
+std::size_t Problem::evaluations() const {
+  if (InParallelFor()) return evaluations_[ThisThread()];
+  return std::accumulate(evaluations_.begin(), evaluations_.end(), std::size_t{0});
 }
 
 // The same motion, measured later.
@@ -440,27 +456,35 @@ Trace Problem::Delayed(const Trace& trace, const Vector& x, std::size_t log, dou
 
 std::vector<Problem::Matrix> Problem::StepEffects(const Vector& x, const std::vector<Vector>& r,
                                                   const std::vector<bool>& use) const {
-  std::vector<Matrix> out(use.size());
   const double h = step();
   const auto motions = Motions(use);
-  const auto compare = [&](std::size_t thread, std::size_t i) {
-    const std::size_t first = motions[i].front();
-    const Trace quarter = Run(thread, x, first, h / 4), half = Run(thread, x, first, h / 2);
-    const Trace later = Delayed(Run(thread, x, first), x, first, h);
-    for (const std::size_t l : motions[i]) {
-      out[l].resize(r[l].size(), 3);
-      out[l].col(0) = r[l] - ResidualOf(l, quarter);
-      out[l].col(2) = r[l] - ResidualOf(l, half) - 2.0 / 3 * out[l].col(0);
-      for (const Eigen::Index c : {0, 2})
-        if (!out[l].col(c).allFinite()) out[l].col(c).setZero();
-      out[l].col(1) = ResidualOf(l, later) - r[l];
-      if (experiment_->quasi_static) out[l].col(1).setZero();  // rows know no time
-    }
+  std::vector<Vector> quarter(use.size()), half(use.size()), later(use.size());
+  const std::vector<std::vector<Vector>*> parts{&quarter, &half, &later};  // the longest first
+  const auto simulate = [&](std::size_t thread, std::size_t task) {
+    const std::size_t part = task / motions.size();
+    const auto& logs = motions[task % motions.size()];
+    const std::size_t first = logs.front();
+    const Trace trace = part == 0   ? Run(thread, x, first, h / 4)
+                        : part == 1 ? Run(thread, x, first, h / 2)
+                                    : Delayed(Run(thread, x, first), x, first, h);
+    for (const std::size_t l : logs) (*parts[part])[l] = ResidualOf(l, trace);
   };
-  ShareOut(motions.size(), compare, [&](auto& archive, std::size_t i) {
-    for (const std::size_t l : motions[i]) archive(out[l]);
+  ShareOut(parts.size() * motions.size(), simulate, [&](auto& archive, std::size_t task) {
+    for (const std::size_t l : motions[task % motions.size()])
+      archive((*parts[task / motions.size()])[l]);
   });
-  evaluations_ += motions.size();
+  Count(motions.size());
+  std::vector<Matrix> out(use.size());
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    if (!use[l]) continue;
+    out[l].resize(r[l].size(), 3);
+    out[l].col(0) = r[l] - quarter[l];
+    out[l].col(2) = r[l] - half[l] - 2.0 / 3 * out[l].col(0);
+    for (const Eigen::Index c : {0, 2})
+      if (!out[l].col(c).allFinite()) out[l].col(c).setZero();
+    out[l].col(1) = later[l] - r[l];
+    if (experiment_->quasi_static) out[l].col(1).setZero();  // rows know no time
+  }
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "identification/problem/last_runs.h"
 #include "identification/result/derivatives.h"
 #include "identification/result/free_parameter.h"
 #include "identification/sensitivity/solver_options.h"
@@ -36,7 +37,7 @@ std::vector<bool> TrainLogs(const Experiment& experiment);
 ///
 /// Residuals are (simulated − measured)/scale · sqrt(weight) over all counted channels of a log,
 /// row by row; scale is sigma where every output gives it, else the pooled unit. Rows that were not
-/// measured give zero. Evaluations run on all cores.
+/// measured give zero. Evaluations run on all cores, and several threads may ask for them at once.
 class Problem {
  public:
   using Vector = Eigen::VectorXd;
@@ -54,7 +55,7 @@ class Problem {
   double step() const;  ///< [s]
   /// Takes over the simulations that a problem with the same model, but for parameters of the
   /// measurement, remembers: each log's last one.
-  void Recall(const Problem& other) { memory_ = other.memory_; }
+  void Recall(const Problem& other) { runs_ = other.runs_; }
   /// From now on with central differences, at twice the cost; one-sided where a bound is near.
   void Center() { central_ = true; }
   /// From now on every simulation of a log with hooks of its own, as to set its state on the way;
@@ -83,6 +84,15 @@ class Problem {
 
   /// Residuals of the logs marked in use; other entries are empty. A diverged log gives NaN.
   std::vector<Vector> Residuals(const Vector& x, const std::vector<bool>& use) const;
+  /// Residuals, and their Jacobian where one simulation of each motion gives both.
+  struct Linearised {
+    std::vector<Vector> r;
+    std::vector<Matrix> J;  ///< none: some columns take differences
+  };
+  Linearised Linearise(const Vector& x, const std::vector<bool>& use) const;
+  /// Whether that is worth it before a step is known to be good: no effect of ours makes the slopes
+  /// dearer than the simulation.
+  bool LinearisesCheaply() const;
   /// What the time step h leaves open, one column each: residuals at h less those at h/4; what all
   /// channels change when they come one step later (r: residuals at x); by how much residuals at h
   /// less those at h/2 are not 2/3 of the first, as they are to first order in h. Zero where a
@@ -120,8 +130,8 @@ class Problem {
   /// The logs of the fit.
   const std::vector<bool>& seen() const { return seen_; }
   Path path() const { return path_; }
-  /// Simulations run so far.
-  std::size_t evaluations() const { return evaluations_; }
+  /// Simulations run so far; within parallel work those of its own thread.
+  std::size_t evaluations() const;
   /// Counted channels, in the order in which their rows follow each other in a residual vector.
   const std::vector<std::size_t>& channels() const { return channels_; }
   /// SI per residual unit of a counted channel.
@@ -149,6 +159,17 @@ class Problem {
   void DifferenceColumns(const Vector& x, const std::vector<Vector>& r,
                          const std::vector<std::vector<std::size_t>>& motions,
                          const std::vector<std::size_t>& columns, std::vector<Matrix>& J) const;
+  /// Those that no closed form gives: left [motion], parameters.
+  void DifferTheOthers(const Vector& x, const std::vector<Vector>& r,
+                       const std::vector<std::vector<std::size_t>>& motions,
+                       const std::vector<std::vector<std::size_t>>& left,
+                       std::vector<Matrix>& J) const;
+  /// Writes the columns of a motion that have a closed form, and the trace at x if there are any;
+  /// returns the others.
+  std::vector<std::size_t> TakeClosedForms(const Vector& x, const std::vector<std::size_t>& motion,
+                                           const std::vector<std::size_t>& columns,
+                                           std::size_t thread, Trace& here,
+                                           std::vector<Matrix>& J) const;
   PerturbedRun RunOf(ModelAndData machine, const Vector& x, std::size_t log) const;
   /// Those of columns whose parameters act in a log.
   std::vector<std::size_t> ActingColumns(const std::vector<std::size_t>& columns,
@@ -161,12 +182,14 @@ class Problem {
                         std::vector<Matrix>& J) const;
   std::vector<Derivative> SteppedColumns(const Vector& x, const std::vector<std::size_t>& motion,
                                          const std::vector<std::size_t>& columns,
-                                         std::size_t thread, std::vector<Matrix>& J) const;
-  /// By StepSensitivity, one simulation for all columns; returns how each is made. Those by
-  /// differences and of the measurement are left out of J.
+                                         std::size_t thread, Trace& here,
+                                         std::vector<Matrix>& J) const;
+  /// By StepSensitivity, one simulation for all columns, whose trace is here; returns how each is
+  /// made. Those by differences and of the measurement are left out of J.
   std::vector<Derivative> ClosedFormColumns(const Vector& x, const std::vector<std::size_t>& motion,
                                             const std::vector<std::size_t>& columns,
-                                            std::size_t thread, std::vector<Matrix>& J) const;
+                                            std::size_t thread, Trace& here,
+                                            std::vector<Matrix>& J) const;
   std::vector<Derivative> SmoothColumns(const Vector& x, std::size_t log,
                                         const std::vector<std::size_t>& columns) const;
   std::vector<std::unique_ptr<ContinuousDynamics>> DynamicsBeside(
@@ -179,19 +202,17 @@ class Problem {
   std::vector<Change> ChangesAt(const Vector& x, std::size_t log, Side side) const;
   Vector ResidualOf(std::size_t log, const Trace& trace) const;
   Trace Delayed(const Trace& trace, const Vector& x, std::size_t log, double delay) const;
+  /// What a simulation of a log is made of; without its trace.
+  LastRun MadeOf(const Vector& x, std::size_t log, double skew) const;
+  /// Remembers what each motion was simulated of.
+  void Keep(const std::vector<std::vector<std::size_t>>& motions, std::vector<LastRun> made) const;
+  void Count(std::size_t simulations) const;
 
   const Experiment* experiment_;
   std::vector<bool> seen_;
   std::vector<ModelSpec> systems_;  ///< one per thread
   Experiment setup_;                ///< without logs
-  /// [log] the last simulation and what it was made of, as only the measurement may change.
-  struct Memory {
-    std::vector<Change> changes, starts;
-    Vector theta;
-    double skew = 0;
-    Trace trace;
-  };
-  mutable std::vector<Memory> memory_;
+  mutable LastRuns runs_;
   std::vector<std::size_t> motion_;  ///< [log] the first log that moves alike: repeats run once
   std::vector<FreeParameter> parameters_;
   std::vector<Change> frozen_;
@@ -204,9 +225,9 @@ class Problem {
   double step_ = 0;  ///< 0: the model's
   bool central_ = false;
   double share_ = 1e-3;
-  bool exact_ = true;     ///< in closed form where there is one
-  SolverOptions solver_;  ///< on the smooth path
-  mutable std::size_t evaluations_ = 0;
+  bool exact_ = true;                             ///< in closed form where there is one
+  SolverOptions solver_;                          ///< on the smooth path
+  mutable std::vector<std::size_t> evaluations_;  ///< [thread] that asked for them
 };
 
 double SumOfSquares(const std::vector<Eigen::VectorXd>& residuals);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "identification/problem/last_runs.h"
 #include "sim/model/change.h"
 #include "sim/simulation/trace.h"
 
@@ -16,6 +17,12 @@ template <class A>
 void Fields(A& a, Change& c) {
   auto& [target, attribute, value, operation] = c;
   a(target, attribute, value, operation);
+}
+
+template <class A>
+void Fields(A& a, LastRun& r) {
+  auto& [changes, starts, theta, skew, trace] = r;
+  a(changes, starts, theta, skew, trace);
 }
 
 }  // namespace continuum

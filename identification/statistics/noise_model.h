@@ -16,6 +16,12 @@ inline bool IsFarOver(const Noise& noise, double rms) {
   return noise.rms > 0 && rms > kTimes * noise.rms;
 }
 
+/// Whether a fit leaves little more than the noise, where that is known.
+inline bool IsNear(const Noise& noise, double rms) {
+  constexpr double kTimes = 1.5;
+  return noise.rms > 0 && rms <= kTimes * noise.rms;
+}
+
 /// From replicates (logs of one trial and condition with the same inputs and rows, or nearly so:
 /// then on one grid, the shift in time between them taken out): what each differs from their mean,
 /// in which model error cancels. Else from sigma where every output gives

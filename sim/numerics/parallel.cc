@@ -17,6 +17,7 @@ namespace continuum {
 
 namespace {
 thread_local bool is_parallel = false;
+thread_local std::size_t this_thread = 0;
 
 // By the system, to this process.
 std::size_t CoresAllowed() {
@@ -30,6 +31,8 @@ std::size_t CoresAllowed() {
 
 bool InParallelFor() { return is_parallel; }
 
+std::size_t ThisThread() { return this_thread; }
+
 // Ranks on one machine divide its cores, and mpirun may have bound this one to few of them.
 std::size_t ThreadCount() {
   const std::size_t cores = std::thread::hardware_concurrency();
@@ -42,14 +45,14 @@ double ProcessorSeconds() {
 
 void ParallelFor(std::size_t n, const std::function<void(std::size_t, std::size_t)>& work) {
   if (is_parallel || n == 1) {
-    for (std::size_t i = 0; i < n; ++i) work(0, i);
+    for (std::size_t i = 0; i < n; ++i) work(this_thread, i);
     return;
   }
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;
   std::mutex mutex;
   const auto run = [&](std::size_t thread) {
-    is_parallel = true;
+    is_parallel = true, this_thread = thread;
     try {
       for (std::size_t i = next++; i < n; i = next++) work(thread, i);
     } catch (...) {
@@ -57,7 +60,7 @@ void ParallelFor(std::size_t n, const std::function<void(std::size_t, std::size_
       const std::lock_guard lock(mutex);
       if (!failure) failure = std::current_exception();
     }
-    is_parallel = false;
+    is_parallel = false, this_thread = 0;
   };
   std::vector<std::thread> threads;
   for (std::size_t t = 1; t < std::min(n, ThreadCount()); ++t) threads.emplace_back(run, t);

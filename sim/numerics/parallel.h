@@ -15,8 +15,8 @@ std::size_t ThreadCount();
 double ProcessorSeconds();
 
 /// Calls work(thread, i) for all i < n on ThreadCount() threads; an exception of any call is
-/// rethrown when all have ended. Within such work another ParallelFor runs on its thread alone, as
-/// thread 0; but a single call, as thread 0, leaves all threads to those within it.
+/// rethrown when all have ended. Within such work another ParallelFor runs on its thread alone,
+/// with the number of that; but a single call, as thread 0, leaves all threads to those within it.
 void ParallelFor(std::size_t n, const std::function<void(std::size_t thread, std::size_t i)>& work);
 
 }  // namespace continuum

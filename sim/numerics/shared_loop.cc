@@ -128,12 +128,10 @@ void ShareOut(std::size_t n, const Work& work, const Pack& pack, const Unpack& u
 
 void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work, const Pack& pack,
                 const Unpack& unpack) {
-  if (IsAlone() || n < 2) {
-    for (std::size_t i = 0; i < n; ++i) work(i);
-    return;
-  }
   const auto task = [&](std::size_t, std::size_t i) { work(i); };
-  ShareAll(n, On::kRank, task, pack, unpack);
+  if (!IsAlone() && n > 1) return ShareAll(n, On::kRank, task, pack, unpack);
+  if (RankCount() == 1 && n >= ThreadCount()) return ParallelFor(n, task);
+  for (std::size_t i = 0; i < n; ++i) work(i);
 }
 
 void OnFirstRank(const std::function<void()>& work, const std::function<std::string()>& pack,

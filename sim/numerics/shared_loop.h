@@ -29,7 +29,8 @@ void ShareOut(std::size_t n, const std::function<void(std::size_t thread, std::s
               const std::function<void(std::size_t i, const std::string& bytes)>& unpack);
 
 /// The same of larger tasks, as whole fits: one at a time on each rank, where the loops inside of
-/// work(i) use its threads. A single rank takes one after the other.
+/// work(i) use its threads. A single rank gives each thread tasks of its own where there are
+/// enough, else it takes one after the other.
 void ShareTasks(std::size_t n, const std::function<void(std::size_t i)>& work,
                 const std::function<std::string(std::size_t i)>& pack,
                 const std::function<void(std::size_t i, const std::string& bytes)>& unpack);

@@ -1,11 +1,13 @@
 #include "sim/replay/replay.h"
 
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "error.h"
 #include "sim/model/attribute_bounds.h"
+#include "sim/numerics/parallel.h"
 #include "sim/simulation/output_units.h"
 #include "sim/simulation/registration_fit.h"
 #include "sim/simulation/simulate.h"
@@ -29,13 +31,20 @@ void CheckNames(const Experiment& e, const ModelSpec& system) {
 
 std::vector<Replayed> Replay(Experiment& e, const ModelSpec& system,
                              const ProgressCallback& progress) {
-  std::vector<Trace> traces;
-  for (const Log& log : e.logs) {
-    if (progress) progress({"replay", traces.size(), e.logs.size(), log.label});
-    ModelAndData machine = system.Build(log.set);
-    traces.push_back(Simulate(machine, e, log, {}, Hooks::Stoppable()));
-    if (traces.back().diverged) throw Error::Job(log.label + ": " + traces.back().Failure());
-  }
+  std::vector<Trace> traces(e.logs.size());
+  std::mutex one_at_a_time;
+  std::size_t begun = 0;
+  const auto build = [&](const Log& log) {
+    const std::lock_guard lock(one_at_a_time);
+    if (progress) progress({"replay", begun++, e.logs.size(), log.label});
+    return system.Build(log.set);
+  };
+  ParallelFor(e.logs.size(), [&](std::size_t, std::size_t l) {
+    ModelAndData machine = build(e.logs[l]);
+    traces[l] = Simulate(machine, e, e.logs[l], {}, Hooks::Stoppable());
+  });
+  for (std::size_t l = 0; l < traces.size(); ++l)
+    if (traces[l].diverged) throw Error::Job(e.logs[l].label + ": " + traces[l].Failure());
   const Wiring wiring(e, system.model());
   e.registration = Registered(e, wiring, system.model(), traces);
   std::vector<Replayed> out;

@@ -121,7 +121,7 @@ TEST_F(ByEquationTest, FewStepsFromRowToRowShowWhatALawChanges) {
   const Problem base(e, system);
   const double step = base.step();
   const auto forces = [&](const Problem& problem, const Problem::Vector& x, double by) {
-    const auto joint = MissingForces(problem, x, problem.TrainLogs(), 0, by).front().force;
+    const auto joint = MissingForces(problem, x, problem.TrainLogs(), by).front().force;
     return Problem::Vector(Problem::Vector::Map(joint.data(), std::ssize(joint)));
   };
   for (const auto& [effect, size] : {std::pair("payload", 0.05), std::pair("coulomb", 0.02)}) {

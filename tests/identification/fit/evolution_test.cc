@@ -86,5 +86,16 @@ TEST(Evolution, EndsWhereNothingChangesTheCost) {
   EXPECT_EQ(best.cost, 2);
 }
 
+// Around the lowest point each other one is higher.
+TEST(Evolution, EndsEarlyWhereItFindsNothingLower) {
+  const auto high = [](const Vector& y) { return 2 + Ripples(y); };
+  const EvolutionOptions options{.in_vain = 3, .lower = 1, .flat = 1e-12};
+  const Matrix spread = Matrix::Identity(2, 2);
+  const std::size_t in_vain = Evolve(Each(high), Vector::Zero(2), spread, options).evaluations;
+  const std::size_t found = Evolve(Each(Valley), Vector::Ones(2), spread, options).evaluations;
+  EXPECT_EQ(in_vain % 3, 0u);
+  EXPECT_GT(found, in_vain);
+}
+
 }  // namespace
 }  // namespace continuum

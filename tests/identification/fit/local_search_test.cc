@@ -38,7 +38,9 @@ class LocalSearch : public testing::Bench {
         "  - {name: b, target: 'joint:hinge', attribute: damping, initial: 1.6, lower: 0.01, "
         "upper: 20}\n"
         "  - {name: j, target: 'joint:hinge', attribute: armature, initial: 2, lower: 0.1, "
-        "upper: 10}\n");
+        "upper: 10}\n"
+        "  - {name: fc, target: 'joint:hinge', attribute: frictionloss, initial: 1, lower: 0, "
+        "upper: 6}\n");
   }
   Fit Here(const Problem& problem) const {
     Fit fit = FitParameters(problem, problem.Start(), problem.TrainLogs(), {.iterations = 1});
@@ -58,7 +60,7 @@ TEST_F(LocalSearch, FindsALowerMinimumOfAMachineThatSticksAndRepeats) {
   EXPECT_LT(one.cost, 0.9 * before.cost);
   EXPECT_NEAR(one.x[0], 60, 2);
   EXPECT_EQ(one.x, other.x);
-  EXPECT_EQ(minima.found.size(), 2u);
+  EXPECT_GE(minima.found.size(), 2u);
   for (const LocalMinimum& m : minima.found) EXPECT_GE(m.cost, one.cost);
   EXPECT_GT(one.evaluations, before.evaluations);
   EXPECT_EQ(one.trace.size(), static_cast<std::size_t>(one.iterations) + 1);
