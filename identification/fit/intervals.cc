@@ -106,7 +106,10 @@ void ReachByFineFit(const Problem& problem, const Vector& x, const std::vector<V
   const auto slopes = first_order_holds ? J : Secants(problem, x, r, J, step, whitening);
   u = UncertaintyOf(problem, x, r, slopes, whitening, options.soft);
   WidenByStep(problem, moved, u);
-  if (first_order_holds) return LeaveOutStep(problem, x, r, J, step, whitening, options.soft, u);
+  if (first_order_holds) {
+    LeaveOutStep(problem, x, r, J, step, whitening, options.soft, u);
+    return AllowForSecondOrder(problem, J, step, whitening, u);
+  }
   const Vector more = (kWholeRoot - kWholeStep) * moved;
   Widen(problem, more.cwiseMin(0), more.cwiseMax(0), u);
   WidenByStepSize(problem, x, slopes, step, whitening, u);

@@ -16,10 +16,10 @@ Uncertainty UnknownUncertainty(const Problem& problem, const Problem::Vector& x,
 /// Extends intervals to what a fine time step would give, by a fit at a quarter of the step.
 ///
 /// Does so where the time step moves a value by more than its standard error. Intervals reach over
-/// that fit's values, and further (over twice its move, and by WidenByStepSize) where first order
-/// did not predict half of it. r [log], J [log][rows × parameters] and step (Problem::StepEffects):
-/// of the logs of the fit, at x; fine: makes that fit, and throws Error where it diverges; u: after
-/// AllowForStep.
+/// that fit's values and AllowForSecondOrder, and further (over twice its move, and by
+/// WidenByStepSize) where first order did not predict half of it. r [log], J [log][rows ×
+/// parameters] and step (Problem::StepEffects): of the logs of the fit, at x; fine: makes that fit,
+/// and throws Error where it diverges; u: after AllowForStep.
 void ReachByFineFit(const Problem& problem, const Problem::Vector& x,
                     const std::vector<Problem::Vector>& r, const std::vector<Problem::Matrix>& J,
                     const std::vector<Problem::Matrix>& step, const FitOptions& options,

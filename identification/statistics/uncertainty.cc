@@ -251,15 +251,34 @@ void WidenByStep(const Problem& problem, const Vector& quarter, Uncertainty& u) 
   Widen(problem, u.step.cwiseMin(0), u.step.cwiseMax(0), u);
 }
 
-void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
-                  const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
-  if (u.information.size() == 0) return;
+namespace {
+
+// What moves of the parameters where the residuals have this column of step added.
+Vector MovedBy(Eigen::Index column, const std::vector<Matrix>& J, const std::vector<Matrix>& step,
+               const Whitening& whitening, const Uncertainty& u) {
   Vector pull = Vector::Zero(u.information.rows());
   for (std::size_t l = 0; l < J.size(); ++l) {
     if (!J[l].size()) continue;
-    pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(0)));
+    pull += whitening.Apply(l, J[l]).transpose() * whitening.Apply(l, Matrix(step[l].col(column)));
   }
-  WidenByStep(problem, InformationModes(u.information).Inverse() * pull, u);
+  return InformationModes(u.information).Inverse() * pull;
+}
+
+}  // namespace
+
+void AllowForStep(const Problem& problem, const std::vector<Matrix>& J,
+                  const std::vector<Matrix>& step, const Whitening& whitening, Uncertainty& u) {
+  if (u.information.size() == 0) return;
+  WidenByStep(problem, MovedBy(0, J, step, whitening, u), u);
+}
+
+void AllowForSecondOrder(const Problem& problem, const std::vector<Matrix>& J,
+                         const std::vector<Matrix>& step, const Whitening& whitening,
+                         Uncertainty& u) {
+  constexpr double kOff = 2;  // times what is not of first order
+  if (u.information.size() == 0) return;
+  const Vector off = kOff * MovedBy(2, J, step, whitening, u).cwiseAbs();
+  Widen(problem, -off, off, u);
 }
 
 void LeaveOutStep(const Problem& problem, const Vector& x, const std::vector<Vector>& r,

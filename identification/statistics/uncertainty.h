@@ -76,6 +76,12 @@ void WidenByStep(const Problem& problem, const Problem::Vector& quarter, Uncerta
 void AllowForStep(const Problem& problem, const std::vector<Problem::Matrix>& J,
                   const std::vector<Problem::Matrix>& step, const Whitening& whitening,
                   Uncertainty& u);
+/// Extends intervals to both sides by what first order in the time step leaves out. Of an effect
+/// e(h) = a h + b h², a quarter of the step shows ¾ a h + 15/16 b h², so that x + step is off by
+/// what b h²/4 moves; the third column of Problem::StepEffects is b h²/8.
+void AllowForSecondOrder(const Problem& problem, const std::vector<Problem::Matrix>& J,
+                         const std::vector<Problem::Matrix>& step, const Whitening& whitening,
+                         Uncertainty& u);
 /// Standard errors from what a simulation without a time step would leave, as the robot has none:
 /// an error that repeats is no noise. To first order, where that leaves less than r does:
 ///
