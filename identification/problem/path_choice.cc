@@ -61,12 +61,19 @@ std::string SlowerThanSteps(const Problem& problem) {
   ContinuousDynamics dynamics(problem.system().Build(problem.ChangesFor(problem.Start(), 0)), e,
                               log);
   if (!dynamics.rubs()) return "";
-  const SmoothTraces traces = SimulateSmooth(dynamics, {}, e, log, {});
+  const double length = log.time.back() - log.time.front(), steps = length / problem.step();
+  const SmoothTraces traces =
+      SimulateSmooth(dynamics, {}, e, log, {.most_rates = static_cast<long>(steps)});
+  if (static_cast<double>(traces.work.rates) > steps) {
+    const double done =
+        traces.trace.diverged ? traces.trace.diverged_at - log.time.front() : length;
+    return fmt::format(
+        "dry friction takes CVODES {} evaluations of the motion for the first {:.2g} s, and all "
+        "{:.2g} s take {:.0f} steps",
+        traces.work.rates, done, length, steps);
+  }
   if (traces.trace.diverged) return "CVODES cannot follow the dry friction: " + traces.trace.why;
-  const double steps = (log.time.back() - log.time.front()) / problem.step();
-  if (static_cast<double>(traces.work.rates) <= steps) return "";
-  return fmt::format("dry friction takes CVODES {} evaluations of the motion, and {:.0f} steps",
-                     traces.work.rates, steps);
+  return "";
 }
 
 // That of the first log which has one; later logs need not be looked at then.

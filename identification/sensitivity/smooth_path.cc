@@ -114,6 +114,12 @@ SmoothTraces SimulateSmooth(ContinuousDynamics& dynamics, const AllDynamics& per
       traces.trace.why = "CVODES: " + solver.failure();
       break;
     }
+    if (solver.work().rates > how.most_rates) {
+      traces.trace.diverged = true;
+      traces.trace.diverged_at = log.time[row + 1];
+      traces.trace.why = "CVODES takes too many evaluations of the motion";
+      break;
+    }
   }
   traces.work = solver.work();
   observation.Release(traces);
