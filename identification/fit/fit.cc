@@ -55,12 +55,22 @@ class Cost : public ceres::CostFunction {
     Derive();
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
         jacobians[0], num_residuals(), x.size());
-    out.topRows(all.size()) = whitening_.Stack(J_, use_);
-    for (Eigen::Index k = 0; k < all.size(); ++k)
-      out.row(k) *= SoftL1(all[k], options_.soft).second;
+    out.topRows(all.size()) = Slopes(all);
     out.bottomRows(continuity_rows_) = Defects(J_, x.size());
-    for (Eigen::Index i = 0; i < x.size(); ++i) out.col(i) *= parameters[i].scale;
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      out.col(i).tail(continuity_rows_) *= parameters[i].scale;
     return out.allFinite();
+  }
+
+  // Slopes of the loss in the scaled parameters, next to x: the last step of a fit, which gains
+  // too little, is not taken. None if they are not known there.
+  Matrix SlopesNear(const Vector& x) const {
+    constexpr double kNear = 1e-2;  // of the parameters' sizes
+    if (J_.empty() || derived_.x.size() != x.size()) return {};
+    double apart = 0;
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      apart = std::max(apart, std::abs(derived_.x[i] - x[i]) / problem_.parameters()[i].scale);
+    return apart < kNear ? Slopes(whitening_.Stack(derived_.r, use_)) : Matrix();
   }
 
  private:
@@ -75,6 +85,15 @@ class Cost : public ceres::CostFunction {
     r_ = std::move(r);
     together_ = !J.empty() || !whitening_.Stack(r_, use_).allFinite();
     if (!J.empty()) J_ = std::move(J), derived_ = {x_, r_};
+  }
+
+  // all: whitened residuals where J_ is known.
+  Matrix Slopes(const Vector& all) const {
+    Matrix out = whitening_.Stack(J_, use_);
+    for (Eigen::Index k = 0; k < all.size(); ++k)
+      out.row(k) *= SoftL1(all[k], options_.soft).second;
+    for (Eigen::Index i = 0; i < out.cols(); ++i) out.col(i) *= problem_.parameters()[i].scale;
+    return out;
   }
 
   // By how much residuals, or columns of their Jacobian, differ where segments meet; all of one
@@ -301,6 +320,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
                                      : Minimize(cost, box, search, y);
   fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
   fit.x = Unscaled(problem, y.data());
+  if (!options.rough) slopes = cost.SlopesNear(fit.x);
   fit.cost = summary.final_cost;
   fit.converged = summary.termination_type == ceres::CONVERGENCE || watch.settled();
   fit.message = InWords(summary, watch, options);

@@ -34,7 +34,8 @@ struct FitOptions {
   int patience = 1;  ///< steps in a row that must look so
   /// By MinimizeBySecants: enough to compare models, at a fraction of the simulations.
   bool rough = false;
-  /// Of a rough fit: slopes near its start, if they have columns; those at its end.
+  /// Of a rough fit: slopes near its start, if they have columns. Those at its end, if it knows
+  /// them: of the loss, in the parameters' sizes.
   Problem::Matrix* slopes = nullptr;
   /// ProcessorSeconds at which to end with what has been reached.
   double until = std::numeric_limits<double>::infinity();

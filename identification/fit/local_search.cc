@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-
-#include <Eigen/Dense>
 
 #include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/fit/bounded_least_squares.h"
 #include "identification/fit/evolution.h"
+#include "identification/fit/ripples.h"
 #include "identification/fit/wide_slope_fit.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/shared_loop.h"
@@ -35,38 +33,6 @@ bool Rubs(const mjModel& m) {
       return true;
   }
   return false;
-}
-
-// Spread of a normal distribution around a fit by whose points the cost doubles on average, as the
-// slopes J at it say, and in no direction further than the parameters' sizes:
-//   B Bᵀ = (JᵀJ n / 2C + I)⁻¹.
-// It is long along a valley, in which a parameter is hardly seen.
-Matrix SpreadOf(const Fit& fit, const Matrix& J) {
-  const Eigen::Index n = J.cols();
-  const Matrix precision =
-      static_cast<double>(n) / (2 * fit.cost) * J.transpose() * J + Matrix::Identity(n, n);
-  const Eigen::LLT<Matrix> factor(precision);
-  return factor.matrixU().solve(Matrix(Matrix::Identity(n, n)));
-}
-
-// Whether the cost around a fit has ripples, as where a machine sticks and slips: over a step that
-// moves the residuals by a tenth, slopes J predict a third of the move wrong, or more.
-bool HasRipples(const Problem& problem, const Fit& fit, const Matrix& J,
-                const std::vector<bool>& use, const FitOptions& options) {
-  constexpr double kStep = 0.1, kWrong = 1.0 / 3;
-  const Vector y = Scaled(problem, fit.x);
-  const Vector here = LossResiduals(problem, fit.x, use, options);
-  const Matrix steps = kStep * std::sqrt(static_cast<double>(y.size())) * SpreadOf(fit, J);
-  std::vector<double> wrong(static_cast<std::size_t>(y.size()));
-  const auto look = [&](std::size_t i) {
-    const Vector beside = y + steps.col(static_cast<Eigen::Index>(i));
-    const Vector x = problem.Clamp(Unscaled(problem, beside.data()));
-    const Vector move = J * (Scaled(problem, x) - y);
-    const Vector lack = LossResiduals(problem, x, use, options) - here - move;
-    wrong[i] = lack.allFinite() && move.norm() > 0 ? lack.norm() / move.norm() : 0;
-  };
-  ShareTasks(wrong.size(), look, [&](auto& archive, std::size_t i) { archive(wrong[i]); });
-  return *std::max_element(wrong.begin(), wrong.end()) > kWrong;
 }
 
 // Whether a parameter ended at a bound, as a friction that went to zero: nothing rubs there, and
@@ -127,6 +93,7 @@ LocalMinima SearchAround(const Problem& problem, const Vector& start, const std:
   LocalMinima minima;
   if (fit.x.size() < 2 || problem.path() != Path::kStepped || !Rubs(problem.system().model()))
     return minima;
+  if (fit.smooth && !IsAtBound(problem, fit.x)) return minima;
   FitOptions plain = options, secants = options;
   plain.idle = secants.idle = true, secants.rough = true;
   const auto take = [&](const Fit& other) {

@@ -4,11 +4,14 @@
 
 #include <fmt/format.h>
 
+#include "identification/fit/ripples.h"
 #include "identification/statistics/noise_model.h"
 #include "sim/io/interrupt.h"
 
 namespace continuum {
 namespace {
+
+using Matrix = Problem::Matrix;
 
 // On top of a fit, the effort of one before it.
 void AddEffort(const Fit& before, Fit& to) {
@@ -43,10 +46,17 @@ Fit FitWide(const Problem& problem, const Problem::Vector& x, const std::vector<
   return fit;
 }
 
-// Where the motion is smooth and a fit has reached the noise, wider slopes find nothing better.
-bool IsThere(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use) {
-  return problem.LinearisesCheaply() &&
-         IsNear(NoiseOf(problem.experiment()), TypicalRms(problem, problem.Residuals(x, use), use));
+// Where no effect of ours acts a fit is done that has reached the noise, or that has no ripples
+// around it: then wider slopes find nothing better. Notes the latter.
+bool IsDone(const Problem& problem, const Matrix& slopes, const std::vector<bool>& use,
+            const FitOptions& options, Fit& fit) {
+  if (!problem.LinearisesCheaply()) return false;
+  if (IsNear(NoiseOf(problem.experiment()),
+             TypicalRms(problem, problem.Residuals(fit.x, use), use)))
+    return true;
+  if (slopes.cols() == 0 || !fit.converged) return false;
+  fit.smooth = !HasRipples(problem, fit, slopes, use, options);
+  return fit.smooth;
 }
 
 }  // namespace
@@ -55,9 +65,12 @@ Fit FitWithWideSlopes(const Problem& problem, const Problem::Vector& x,
                       const std::vector<bool>& use, const FitOptions& options) {
   constexpr double kLower = 1e-3;  // of the cost, that is worth another fit
   constexpr int kFits = 4;
-  Fit best = FitParameters(problem, x, use, options);
-  const bool may_go_on =
-      problem.path() == Path::kStepped && x.size() > 0 && !IsThere(problem, best.x, use);
+  Matrix slopes;
+  FitOptions first = options;
+  if (!options.slopes) first.slopes = &slopes;
+  Fit best = FitParameters(problem, x, use, first);
+  const bool may_go_on = problem.path() == Path::kStepped && x.size() > 0 &&
+                         !IsDone(problem, *first.slopes, use, options, best);
   for (int k = 1; k < kFits && may_go_on && !StopRequested(); ++k) {
     FitOptions left = options;
     left.iterations -= best.iterations;
