@@ -104,6 +104,7 @@ class BoundFormulaFriction : public BoundLaw {
   }
 
   bool IsRow() const override { return true; }
+  std::string WhyIdle(const mjModel& m) const override { return rows_.WhySoft(m); }
   void Impose(mjModel& m) const override { rows_.Impose(m); }
 
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,

@@ -87,6 +87,9 @@ class FrictionRows {
     }
   }
 
+  /// Why they hold less well than elsewhere: too many of them in a row, as soft as MuJoCo's
+  /// default.
+  std::string WhySoft(const mjModel& m) const;
   /// Throws Error where other dry friction acts on a row.
   void RequireAlone(const mjModel& m, const std::string& who) const;
 
@@ -213,7 +216,8 @@ class BoundFriction : public BoundLaw {
   bool IsRow() const override { return true; }
   bool GivesForce() const override { return kBiased; }
   std::string WhyIdle(const mjModel& m) const override {
-    return Give() > 0 && IsDiscrete(m) ? "give does nothing under this integrator" : idle_;
+    if (Give() > 0 && IsDiscrete(m)) return "give does nothing under this integrator";
+    return idle_.empty() ? rows_.WhySoft(m) : idle_;
   }
 
   void Impose(mjModel& m) const override {
