@@ -111,30 +111,6 @@ CONTINUUM_WIDE void SolveLinear(std::span<double> A, std::span<double> b) {
   }
 }
 
-void BlockSolver::Begin(std::span<const double> K, int n) {
-  n_ = n, first_ = 0, matrix_ = K;
-  work_.resize(K.size());
-  for (int i = 0; i < n; ++i) std::copy_n(K.data() + i * (n + 1), n - i, row(i) + i);
-}
-
-std::span<double> BlockSolver::Block(int first) {
-  if (first < first_) Begin(matrix_, n_);
-  Eliminate(first);
-  const int n = n_ - first;
-  if (static_cast<int>(block_.size()) < n * n) block_.resize(n * n);
-  for (int i = 0; i < n; ++i) {
-    std::copy_n(row(first + i) + first + i, n - i, block_.data() + i * n + i);
-    for (int j = 0; j < i; ++j) block_[i * n + j] = block_[j * n + i];
-  }
-  return {block_.data(), static_cast<std::size_t>(n * n)};
-}
-
-// K = Uᵀ D U, two rows at a time: U has ones on its diagonal, where work_ keeps 1/D.
-void BlockSolver::Eliminate(int first) {
-  if ((first - first_) % 2) EliminateOne();
-  while (first_ < first) EliminateTwo();
-}
-
 CONTINUUM_WIDE void BlockSolver::EliminateOne() {
   const int k = first_++;
   double* const x = row(k);
@@ -160,6 +136,30 @@ CONTINUUM_WIDE void BlockSolver::EliminateTwo() {
   }
   x[k] = a, x[k + 1] *= a, y[k + 1] = b;
   first_ += 2;
+}
+
+void BlockSolver::Begin(std::span<const double> K, int n) {
+  n_ = n, first_ = 0, matrix_ = K;
+  work_.resize(K.size());
+  for (int i = 0; i < n; ++i) std::copy_n(K.data() + i * (n + 1), n - i, row(i) + i);
+}
+
+std::span<double> BlockSolver::Block(int first) {
+  if (first < first_) Begin(matrix_, n_);
+  Eliminate(first);
+  const int n = n_ - first;
+  if (static_cast<int>(block_.size()) < n * n) block_.resize(n * n);
+  for (int i = 0; i < n; ++i) {
+    std::copy_n(row(first + i) + first + i, n - i, block_.data() + i * n + i);
+    for (int j = 0; j < i; ++j) block_[i * n + j] = block_[j * n + i];
+  }
+  return {block_.data(), static_cast<std::size_t>(n * n)};
+}
+
+// K = Uᵀ D U, two rows at a time: U has ones on its diagonal, where work_ keeps 1/D.
+void BlockSolver::Eliminate(int first) {
+  if ((first - first_) % 2) EliminateOne();
+  while (first_ < first) EliminateTwo();
 }
 
 CONTINUUM_WIDE void BlockSolver::Solve(std::span<double> b) {
