@@ -11,6 +11,7 @@ namespace continuum {
 void AddMake(CLI::App& app) {
   struct Request {
     std::string robot, variant, out;
+    MakeLayout layout;
   };
   CLI::App* const make =
       app.add_subcommand("make", "Write the MJCF of a robot from its description");
@@ -21,11 +22,17 @@ void AddMake(CLI::App& app) {
       ->required();
   make->add_option("--variant", request->variant,
                    "Another model of it. tdcr: disks, loads; spa: free, series; stiff_flop: braid");
+  make->add_option("--series", request->layout.series, "spa: actuators on end");
+  make->add_option("--rows", request->layout.rows, "spa: arms side by side");
+  make->add_option("--links", request->layout.links, "spa: links of each actuator, even (10)");
+  make->add_flag("--standing", request->layout.standing, "spa: it stands (else it hangs)");
   make->add_option("--out", request->out, "The MJCF file")->required();
-  make->footer("Example:\n  continuum make models/trunk/trunk.yaml --out trunk.xml");
+  make->footer(
+      "Example:\n  continuum make models/trunk/trunk.yaml --out trunk.xml"
+      "\n  continuum make models/spa/spa.yaml --series 3 --standing --out three.xml");
   make->callback([request] {
     RequireWritable(request->out, {request->robot});
-    WriteFile(request->out, MakeMjcf(request->robot, request->variant));
+    WriteFile(request->out, MakeMjcf(request->robot, request->variant, request->layout));
   });
 }
 

@@ -14,12 +14,14 @@ namespace continuum {
 
 void AddSolve(CLI::App& app, int& exit_code) {
   CLI::App* const solve = app.add_subcommand(
-      "solve", "Static shape of a robot (tdcr, twin_pivot, stiff_flop) for every row of a table");
+      "solve",
+      "Static shape of a robot (annelida, tdcr, twin_pivot, stiff_flop) for every row of a table");
   const auto request = std::make_shared<SolveRequest>();
   solve->add_option("robot", request->robot, "The robot: models/<robot>/<name>.yaml")->required();
   solve->add_option("--method", request->method,
                     "tdcr: eas (default), pcca, crt, crt_friction, fit; twin_pivot: virtual_work "
-                    "(default), printed; stiff_flop: energy+body+chamber");
+                    "(default), printed; stiff_flop: energy+body+chamber; annelida: "
+                    "constant_curvature (default), chain, chain_friction");
   solve->add_option("--input", request->input,
                     "Cases: one row each (CSV); - with --out -: a stream, answered row by row");
   solve->add_option("--measured", request->measured,

@@ -21,7 +21,8 @@ namespace continuum {
 namespace {
 
 namespace fs = std::filesystem;
-using Variants = std::map<std::string, std::function<std::string(const fs::path&)>>;
+using Variants =
+    std::map<std::string, std::function<std::string(const fs::path&, const MakeLayout&)>>;
 
 std::string Rod(const fs::path& file, tdcr::Guides guides,
                 tdcr::Loaded loaded = tdcr::Loaded::kTip) {
@@ -36,29 +37,45 @@ std::string Module(const fs::path& file, stiff_flop::Threads threads) {
   return stiff_flop::ModuleMjcf(stiff_flop::Robot::Read(file), threads);
 }
 
-std::string Spa(const fs::path& file, const SpaLayout& layout) {
+std::string Spa(const fs::path& file, SpaLayout layout, const MakeLayout& asked) {
+  layout.series = asked.series.value_or(layout.series);
+  layout.row = asked.rows.value_or(layout.row);
+  layout.links = asked.links.value_or(layout.links);
+  layout.standing = asked.standing;
   return SpaMjcf(ReadSpa(file), layout);
+}
+
+void RefuseLayout(const std::string& file, const MakeLayout& layout) {
+  for (const auto& [option, given] :
+       {std::pair("--series", layout.series.has_value()),
+        std::pair("--rows", layout.rows.has_value()),
+        std::pair("--links", layout.links.has_value()), std::pair("--standing", layout.standing)}) {
+    if (given) throw Error::Input(option, "a description with robot: spa", "'" + file + "'");
+  }
 }
 
 const std::map<std::string, Variants>& Robots() {
   using stiff_flop::Threads, tdcr::Guides;
   static const std::map<std::string, Variants> robots{
-      {"annelida", {{"", [](const auto& file) { return AnnelidaMjcf(ReadAnnelida(file)); }}}},
+      {"annelida",
+       {{"", [](const auto& file, const auto&) { return AnnelidaMjcf(ReadAnnelida(file)); }}}},
       {"tdcr",
-       {{"", [](const auto& file) { return Rod(file, Guides::kLinks); }},
-        {"disks", [](const auto& file) { return Rod(file, Guides::kDisks); }},
-        {"loads",
-         [](const auto& file) { return Rod(file, Guides::kLinks, tdcr::Loaded::kDisks); }}}},
+       {{"", [](const auto& file, const auto&) { return Rod(file, Guides::kLinks); }},
+        {"disks", [](const auto& file, const auto&) { return Rod(file, Guides::kDisks); }},
+        {"loads", [](const auto& file,
+                     const auto&) { return Rod(file, Guides::kLinks, tdcr::Loaded::kDisks); }}}},
       {"twin_pivot",
-       {{"",
-         [](const auto& file) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }}}},
+       {{"", [](const auto& file,
+                const auto&) { return twin_pivot::RobotMjcf(twin_pivot::Robot::Read(file)); }}}},
       {"stiff_flop",
-       {{"", [](const auto& file) { return Module(file, Threads::kRings); }},
-        {"braid", [](const auto& file) { return Module(file, Threads::kBraid); }}}},
+       {{"", [](const auto& file, const auto&) { return Module(file, Threads::kRings); }},
+        {"braid", [](const auto& file, const auto&) { return Module(file, Threads::kBraid); }}}},
       {"spa",
-       {{"", [](const auto& file) { return Spa(file, {}); }},
-        {"free", [](const auto& file) { return Spa(file, {.evenness = 1}); }},
-        {"series", [](const auto& file) { return Spa(file, {.series = 2}); }}}}};
+       {{"", [](const auto& file, const auto& asked) { return Spa(file, {}, asked); }},
+        {"free",
+         [](const auto& file, const auto& asked) { return Spa(file, {.evenness = 1}, asked); }},
+        {"series",
+         [](const auto& file, const auto& asked) { return Spa(file, {.series = 2}, asked); }}}}};
   return robots;
 }
 
@@ -71,7 +88,7 @@ std::string Names(const Map& map) {
 
 const Variants& VariantsOf(const Yaml& robot) {
   static const Variants arm{
-      {"", [](const auto& file) { return TendonArmMjcf(ReadTendonArm(file)); }}};
+      {"", [](const auto& file, const auto&) { return TendonArmMjcf(ReadTendonArm(file)); }}};
   if (robot.Has("segments")) return arm;
   const Yaml kind =
       robot.Has("robot") || !robot.Has("model") ? robot.At("robot") : robot.At("model");
@@ -83,10 +100,12 @@ const Variants& VariantsOf(const Yaml& robot) {
 
 }  // namespace
 
-std::string MakeMjcf(const fs::path& robot, const std::string& variant) {
-  const Variants& variants = VariantsOf(Yaml::Read(robot));
+std::string MakeMjcf(const fs::path& robot, const std::string& variant, const MakeLayout& layout) {
+  const Yaml description = Yaml::Read(robot);
+  const Variants& variants = VariantsOf(description);
+  if (&variants != &Robots().at("spa")) RefuseLayout(robot.string(), layout);
   const auto found = variants.find(variant);
-  if (found != variants.end()) return found->second(robot);
+  if (found != variants.end()) return found->second(robot, layout);
   throw Error::Input("variant", Names(variants), "'" + variant + "'");
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "models/annelida/solve.h"
 #include "models/stiff_flop/solve.h"
 #include "models/tdcr/solve.h"
 #include "models/twin_pivot/solve.h"
@@ -20,10 +21,11 @@ int Solve(const SolveRequest& request) {
   const Yaml name =
       robot.Has("robot") || !robot.Has("model") ? robot.At("robot") : robot.At("model");
   const std::string kind = name.Text();
+  if (kind == "annelida") return SolveAnnelida(request);
   if (kind == "tdcr") return SolveTdcr(request);
   if (kind == "twin_pivot") return SolveTwinPivot(request);
   if (kind == "stiff_flop") return SolveStiffFlop(request);
-  throw Error::Input(name.Where(), "tdcr, twin_pivot or stiff_flop", "'" + kind + "'");
+  throw Error::Input(name.Where(), "annelida, tdcr, twin_pivot or stiff_flop", "'" + kind + "'");
 }
 
 namespace {

@@ -24,10 +24,11 @@ SoftSegment Actuator(const SpaFile& file, const SpaLayout& layout) {
           0.0012,  layout.evenness};
 }
 
-void AddScene(Mjcf& mjcf, double length) {
+void AddScene(Mjcf& mjcf, double length, bool standing) {
   AddSoftMaterials(mjcf);
-  mjcf.AddStudio(-1.5 * length, 0.6);
-  mjcf.AddCamera("side", {0, -3.5 * length, 0}, {0, 0, -0.56 * length}, 33);
+  mjcf.AddStudio(standing ? -0.2 * length : -1.5 * length, 0.6);
+  mjcf.AddCamera("side", {0, -3.5 * length, standing ? length : 0},
+                 {0, 0, (standing ? 0.56 : -0.56) * length}, 33);
 }
 
 void Check(const SpaLayout& layout) {
@@ -55,14 +56,14 @@ std::string SpaMjcf(const SpaFile& file, const SpaLayout& layout) {
   mjcf.spec().option.timestep = 0.002;
   mjcf.spec().option.integrator = mjINT_IMPLICITFAST;
   std::copy_n(file.options.gravity.data(), 3, mjcf.spec().option.gravity);
-  AddScene(mjcf, p.L0 * layout.series);
+  AddScene(mjcf, p.L0 * layout.series, layout.standing);
   std::vector<EffectInstance> effects;
   std::vector<EffectSensor> sensors;
   for (int i = 0; i < layout.row; ++i) {
     std::string base_name = layout.row == 1 ? "base" : "base" + std::to_string(i + 1);
     mjsBody* const base = mjcf.AddBody(mjcf.world(), base_name, {kSpacing * i, 0, 0});
     const double down[] = {0, 1, 0, 0};  // half a turn about x
-    std::copy(down, down + 4, base->quat);
+    if (!layout.standing) std::copy(down, down + 4, base->quat);
     mjsBody* body = base;
     for (int k = 0; k < layout.series; ++k) {
       const std::string number = std::to_string(i * layout.series + k + 1);

@@ -104,12 +104,14 @@ class BoundFormulaFriction : public BoundLaw {
   }
 
   bool IsRow() const override { return true; }
+  std::string WhyIdle(const mjModel& m) const override { return rows_.WhySoft(m); }
   void Impose(mjModel& m) const override { rows_.Impose(m); }
 
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double>) override {
+    const GearTorques gears(m, d);
     rows_.Write(m, d, z, stage, false, [&](const FrictionRow& row, double v) {
-      return std::max(0.0, level_(At(m, d, row, v)));
+      return std::max(0.0, level_(At(m, d, gears, row, v)));
     });
     return false;
   }
@@ -118,8 +120,9 @@ class BoundFormulaFriction : public BoundLaw {
   std::vector<int> BristleStates() const override { return rows_.BristleStates(); }
   void Bristles(const mjModel& m, const mjData& d, const double* z, double* rate,
                 std::span<double> force) const override {
+    const GearTorques gears(m, d);
     rows_.Bristles(m, d, z, rate, force, 0, [&](const FrictionRow& row, double v) {
-      return std::max(0.0, level_(At(m, d, row, v)));
+      return std::max(0.0, level_(At(m, d, gears, row, v)));
     });
   }
 
@@ -127,11 +130,12 @@ class BoundFormulaFriction : public BoundLaw {
 
   void Differentiate(const mjModel& m, const mjData& d, const StepTaken& step,
                      LawSlopes& slopes) const override {
+    const GearTorques gears(m, d);
     rows_.Differentiate(m, d, step, slopes,
                         [&](const FrictionRow& row, int r, double v, bool moves) {
                           FormulaValues<FormulaFriction> by_value;
-                          if (level_.Differentiate(At(m, d, row, v), by_value) <= 0) return;
-                          const double torque = row.joint ? GearTorque(m, d, row.index, 0) : 0;
+                          if (level_.Differentiate(At(m, d, gears, row, v), by_value) <= 0) return;
+                          const double torque = row.joint ? gears.At(m, d, row.index, 0) : 0;
                           by_value[2] *= torque < 0 ? -LoadOf(1, 0) : LoadOf(1, 0);
                           if (!moves) by_value[1] = 0;
                           if (!row.joint) by_value[2] = 0;
@@ -143,12 +147,12 @@ class BoundFormulaFriction : public BoundLaw {
   void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }
 
  private:
-  FormulaValues<FormulaFriction> At(const mjModel& m, const mjData& d, const FrictionRow& row,
-                                    double v) const {
+  FormulaValues<FormulaFriction> At(const mjModel& m, const mjData& d, const GearTorques& gears,
+                                    const FrictionRow& row, double v) const {
     auto values = ValuesOf<FormulaFriction>(p_);
     values[0] = PositionOf(m, d, row);
     values[1] = v;
-    values[2] = row.joint ? GearLoad(m, d, row.index, 0) : 0;
+    values[2] = row.joint ? LoadOf(gears.At(m, d, row.index, 0), 0) : 0;
     return values;
   }
 

@@ -49,6 +49,14 @@ void HardenModel(mjModel& m, const FrictionRow& row) {
   assign(solimp[0], kDiscreteImpedance), assign(solimp[1], kDiscreteImpedance);
 }
 
+bool HasDefaultImpedance(const mjModel& m, const FrictionRow& row) {
+  const double* const solimp =
+      (row.joint ? m.dof_solimp : m.tendon_solimp_fri) + mjNIMP * row.index;
+  double usual[mjNREF], soft[mjNIMP];
+  mj_defaultSolRefImp(usual, soft);
+  return std::equal(soft, soft + mjNIMP, solimp);
+}
+
 // Deflection from the anchor at which the row at rest gives the force that it gives now.
 double Yield(const mjData& d, int r) {
   const double stiffness = d.efc_KBIP[4 * r] * d.efc_KBIP[4 * r + 2];
@@ -88,15 +96,31 @@ bool FrictionRows::IsNative(const mjModel& m, const FrictionRow& row) {
   return row.alone && native > kRowMarker;
 }
 
+// R follows the inertia of each joint by itself. Held joints are springs, k = 1/(4 h² R), and the
+// inertia that swings on all of them grows with the third power of their number.
+std::string FrictionRows::WhySoft(const mjModel& m) const {
+  constexpr int kMany = 30;
+  if (IsDiscrete(m)) return "";
+  std::vector<int> soft(m.nv);  // here and before it
+  for (const FrictionRow& row : rows_) {
+    if (row.joint && HasDefaultImpedance(m, row)) soft[row.index] = 1;
+  }
+  int most = 0;
+  for (int dof = 0; dof < m.nv; ++dof) {
+    if (m.dof_parentid[dof] >= 0) soft[dof] += soft[m.dof_parentid[dof]];
+    most = std::max(most, soft[dof]);
+  }
+  if (most < kMany) return "";
+  return std::to_string(most) +
+         " joints one behind the other: those at rest are springs on which the chain swings, and "
+         "loads near breakaway make it creep. solimpfriction=\"0.9999 0.9999 0.001\" on the joints "
+         "with <option tolerance=\"1e-12\"/> holds it";
+}
+
 // MuJoCo: R = (1 − d)/d diag(A), D = 1/R.
 void FrictionRows::Harden(const mjModel& m, mjData& d, const FrictionRow& row, int r) {
-  const double* const solimp =
-      (row.joint ? m.dof_solimp : m.tendon_solimp_fri) + mjNIMP * row.index;
-  double usual[mjNREF], soft[mjNIMP];
-  mj_defaultSolRefImp(usual, soft);
   double& impedance = d.efc_KBIP[4 * r + 2];
-  if (impedance == kImpedance || IsDiscrete(m)) return;
-  if (!std::equal(soft, soft + mjNIMP, solimp)) return;
+  if (impedance == kImpedance || IsDiscrete(m) || !HasDefaultImpedance(m, row)) return;
   const double R = d.efc_R[r] * (impedance / (1 - impedance)) * ((1 - kImpedance) / kImpedance);
   SetSoftness(m, d, r, std::max(mjMINVAL, R));
   impedance = kImpedance, d.efc_KBIP[4 * r + 3] = 0;

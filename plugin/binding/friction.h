@@ -87,6 +87,9 @@ class FrictionRows {
     }
   }
 
+  /// Why they hold less well than elsewhere: too many of them in a row, as soft as MuJoCo's
+  /// default.
+  std::string WhySoft(const mjModel& m) const;
   /// Throws Error where other dry friction acts on a row.
   void RequireAlone(const mjModel& m, const std::string& who) const;
 
@@ -213,7 +216,8 @@ class BoundFriction : public BoundLaw {
   bool IsRow() const override { return true; }
   bool GivesForce() const override { return kBiased; }
   std::string WhyIdle(const mjModel& m) const override {
-    return Give() > 0 && IsDiscrete(m) ? "give does nothing under this integrator" : idle_;
+    if (Give() > 0 && IsDiscrete(m)) return "give does nothing under this integrator";
+    return idle_.empty() ? rows_.WhySoft(m) : idle_;
   }
 
   void Impose(mjModel& m) const override {
@@ -225,11 +229,12 @@ class BoundFriction : public BoundLaw {
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double> force) override {
     if constexpr (kBiased) std::fill(force.begin(), force.end(), 0.0);
+    const GearTorques gears = Gears(m, d);
     rows_.Write(
         m, d, z, stage, IsNull(),
         [&](const FrictionRow& row, double v) {
           if constexpr (kBiased) force[row.index] = E::template Bias<double>(AsParams<E>(p_));
-          return LevelAt(m, d, z, row, v);
+          return LevelAt(m, d, z, gears, row, v);
         },
         Give());
     return kBiased;
@@ -241,9 +246,10 @@ class BoundFriction : public BoundLaw {
   std::vector<int> BristleStates() const override { return rows_.BristleStates(); }
   void Bristles(const mjModel& m, const mjData& d, const double* z, double* rate,
                 std::span<double> force) const override {
+    const GearTorques gears = Gears(m, d);
     rows_.Bristles(m, d, z, rate, force, Give(), [&](const FrictionRow& row, double v) {
       if constexpr (kBiased) force[row.index] += E::template Bias<double>(AsParams<E>(p_));
-      return LevelAt(m, d, z, row, v);
+      return LevelAt(m, d, z, gears, row, v);
     });
   }
 
@@ -265,18 +271,19 @@ class BoundFriction : public BoundLaw {
     constexpr std::size_t kLast = 3 + kParamCount<E>, kN = kLast + kMore;
     using T = Dual<kN>;
     const auto p = DualParams<kN>(AsParams<E>(p_), 3);
+    const GearTorques gears = Gears(m, d);
     rows_.Differentiate(
         m, d, step, slopes, [&](const FrictionRow& row, int r, double v, bool moves) {
           FrictionState<T> at{T(PositionOf(m, d, row), 0), moves ? T(v, 1) : T(v), T(0)};
           auto by = NumbersOf<kParamCount<E>, kMore>(row, load_);
           double sign = 1;
           if constexpr (kLoaded) {
-            const double torque = GearTorque(m, d, row.index, load_);
+            const double torque = gears.At(m, d, row.index, load_);
             at.load = T(LoadOf(torque, load_), 2), sign = (torque < 0 ? -1 : 1) * LoadOf(1, load_);
           }
           if constexpr (kTorques) {
-            at.motor = T(GearTorque(m, d, row.index, 1), kLast);
-            at.others = at.motor - T(GearTorque(m, d, row.index, 0), 2);
+            at.motor = T(gears.At(m, d, row.index, 1), kLast);
+            at.others = at.motor - T(gears.At(m, d, row.index, 0), 2);
             by[kLast] = {Number::Kind::kTorqueActuator, row.index};
           }
           if constexpr (kWorks) {
@@ -303,15 +310,20 @@ class BoundFriction : public BoundLaw {
 
   static_assert(!(kTorques || kWorks) || E::kPlaces.size() == 1);  // joints of one direction
 
-  double LevelAt(const mjModel& m, const mjData& d, const double* z, const FrictionRow& row,
-                 double v) const {
+  static GearTorques Gears(const mjModel& m, const mjData& d) {
+    if constexpr (kLoaded || kTorques) return {m, d};
+    return {};
+  }
+
+  double LevelAt(const mjModel& m, const mjData& d, const double* z, const GearTorques& gears,
+                 const FrictionRow& row, double v) const {
     FrictionState<double> r{0, v, 0};
     if (!row.joint) r.q = d.ten_length[row.index];
     if (row.joint && row.axis < 0) r.q = d.qpos[m.jnt_qposadr[row.id]];
-    if constexpr (kLoaded) r.load = GearLoad(m, d, row.index, load_);
+    if constexpr (kLoaded) r.load = LoadOf(gears.At(m, d, row.index, load_), load_);
     if constexpr (kTorques) {
-      r.motor = GearTorque(m, d, row.index, 1);
-      r.others = r.motor - GearTorque(m, d, row.index, 0);
+      r.motor = gears.At(m, d, row.index, 1);
+      r.others = r.motor - gears.At(m, d, row.index, 0);
     }
     if constexpr (kWorks) r.time = d.time, r.work = z[WorkOf(row)];
     return E::template Level<double>(r, AsParams<E>(p_));

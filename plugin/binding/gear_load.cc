@@ -1,30 +1,11 @@
 #include "binding/gear_load.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "binding/actuator_force.h"
 
 namespace continuum {
 namespace {
-
-// By the actuators, within their ranges and that of the joint.
-double ActuatorTorque(const mjModel& m, const mjData& d, int dof) {
-  double torque = 0;
-  for (int a = 0; a < m.nactuator; ++a) {
-    for (int o = 0; o < m.actuator_outnum[a]; ++o) {
-      const int row = m.actuator_outadr[a] + o, adr = d.moment_rowadr[row];
-      for (int k = adr; k < adr + d.moment_rownnz[row]; ++k) {
-        if (d.moment_colind[k] == dof) torque += d.actuator_moment[k] * LimitedForce(m, d, a, o);
-      }
-    }
-  }
-  const int j = m.dof_jntid[dof];
-  if (m.jnt_actfrclimited[j]) {
-    torque = std::clamp(torque, m.jnt_actfrcrange[2 * j], m.jnt_actfrcrange[2 * j + 1]);
-  }
-  return torque;
-}
 
 // Gravity on everything beyond the joint, about its axis.
 double GravityTorque(const mjModel& m, const mjData& d, int dof) {
@@ -38,17 +19,37 @@ double GravityTorque(const mjModel& m, const mjData& d, int dof) {
   return m.body_subtreemass[b] * mju_dot3(velocity, m.opt.gravity);
 }
 
+bool IsPushed(const mjData& d, int body) {
+  const double* const wrench = d.xfrc_applied + 6 * body;
+  return std::any_of(wrench, wrench + 6, [](double x) { return x != 0; });
+}
+
+}  // namespace
+
+GearTorques::GearTorques(const mjModel& m, const mjData& d) : actuators_(m.nv) {
+  for (int a = 0; a < m.nactuator; ++a) {
+    for (int o = 0; o < m.actuator_outnum[a]; ++o) {
+      const double force = LimitedForce(m, d, a, o);
+      const int row = m.actuator_outadr[a] + o, adr = d.moment_rowadr[row];
+      for (int k = adr; k < adr + d.moment_rownnz[row]; ++k)
+        actuators_[d.moment_colind[k]] += d.actuator_moment[k] * force;
+    }
+  }
+  for (int b = 1; b < m.nbody; ++b) {
+    if (IsPushed(d, b)) pushed_.push_back(b);
+  }
+}
+
 // Forces on bodies (xfrc_applied), about the joint's axis.
-double AppliedTorque(const mjModel& m, const mjData& d, int dof) {
+double GearTorques::Applied(const mjModel& m, const mjData& d, int dof) const {
   double torque = d.qfrc_applied[dof];
-  const double* cdof = d.cdof + 6 * dof;
+  const double* const cdof = d.cdof + 6 * dof;
   const int first = m.dof_bodyid[dof];
-  for (int b = first; b < m.nbody; ++b) {
-    const double* wrench = d.xfrc_applied + 6 * b;
-    if (std::all_of(wrench, wrench + 6, [](double x) { return x == 0; })) continue;
+  for (const int b : pushed_) {
     int a = b;
     while (a > first) a = m.body_parentid[a];
     if (a != first) continue;
+    const double* const wrench = d.xfrc_applied + 6 * b;
     double arm[3], velocity[3];
     mju_sub3(arm, d.xipos + 3 * b, d.subtree_com + 3 * m.body_rootid[b]);
     mju_cross(velocity, cdof, arm);
@@ -58,18 +59,16 @@ double AppliedTorque(const mjModel& m, const mjData& d, int dof) {
   return torque;
 }
 
-}  // namespace
-
-double GearTorque(const mjModel& m, const mjData& d, int dof, int option) {
-  const double actuator = ActuatorTorque(m, d, dof);
+double GearTorques::At(const mjModel& m, const mjData& d, int dof, int option) const {
+  double actuator = actuators_[dof];
+  const int j = m.dof_jntid[dof];
+  if (m.jnt_actfrclimited[j]) {  // the range of the joint, after those of the actuators
+    actuator = std::clamp(actuator, m.jnt_actfrcrange[2 * j], m.jnt_actfrcrange[2 * j + 1]);
+  }
   if (option == 1) return actuator;
-  const double external = d.qfrc_passive[dof] - d.qfrc_damper[dof] + GravityTorque(m, d, dof) +
-                          AppliedTorque(m, d, dof);
+  const double external =
+      d.qfrc_passive[dof] - d.qfrc_damper[dof] + GravityTorque(m, d, dof) + Applied(m, d, dof);
   return actuator - external;
-}
-
-double GearLoad(const mjModel& m, const mjData& d, int dof, int option) {
-  return LoadOf(GearTorque(m, d, dof, option), option);
 }
 
 }  // namespace continuum

@@ -1,17 +1,31 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include <mujoco/mujoco.h>
 
 namespace continuum {
 
-/// The load on the gear of a hinge or slide joint [N*m or N] ≥ 0, at the current actuator_force.
-/// option: index into kLoadOptions of effects/load_friction.h.
-double GearLoad(const mjModel& m, const mjData& d, int dof, int option);
+/// Torques on the gears of hinge and slide joints [N*m or N], at the current actuator_force. What
+/// all of them share is computed once: the cost is linear in joints, actuators and bodies.
+class GearTorques {
+ public:
+  /// Of no model: nobody asks.
+  GearTorques() = default;
+  GearTorques(const mjModel& m, const mjData& d);
 
-/// What the load is made of: the torque of actuators less that of others (option 0), or alone.
-double GearTorque(const mjModel& m, const mjData& d, int dof, int option);
+  /// The torque of actuators less that of others (option 0), or alone. option: index into
+  /// kLoadOptions of effects/load_friction.h.
+  double At(const mjModel& m, const mjData& d, int dof, int option) const;
+
+ private:
+  double Applied(const mjModel& m, const mjData& d, int dof) const;
+
+  std::vector<double> actuators_;  ///< [nv]
+  std::vector<int> pushed_;        ///< bodies with a force of the user's
+};
+
 /// The load of a torque.
 inline double LoadOf(double torque, int option) {
   return option == 1 ? std::abs(torque) : 0.5 * std::abs(torque);

@@ -47,7 +47,8 @@ void StepInertia::Update(const mjModel& m, const mjData& d) {
 
 void StepInertia::Mass(const mjModel& m, const mjData& d, std::vector<double>& mass) const {
   const int n = size(), joints = n - ends_;
-  mass.assign(n * n, 0);
+  if (static_cast<int>(mass.size()) != n * n) mass.assign(n * n, 0);
+  for (int i = 0; i < n; ++i) std::fill_n(mass.data() + i * (n + 1), n - i, 0.0);
   for (int i = joints; i < n; ++i) mass[i * (n + 1)] = kEndDrag * m.opt.timestep;
   for (int i = 0; i < joints; ++i) {
     const int begin = m.M_rowadr[dofs_[i]], end = begin + m.M_rownnz[dofs_[i]];

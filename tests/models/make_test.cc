@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 const std::string kModels = CONTINUUM_SOURCE "/models/";
@@ -48,6 +49,21 @@ TEST(Make, RefusesOtherRobotsAndVariantsByName) {
                   AllOf(HasSubstr("worm.yaml:1"), HasSubstr("segments"), HasSubstr("'worm'"))));
   EXPECT_THAT([&] { MakeMjcf(kModels + "spa/spa.yaml", "disks"); },
               ThrowsMessage<Error>(AllOf(HasSubstr("none, free, series"), HasSubstr("'disks'"))));
+}
+
+TEST(Make, LaysOutSoftActuatorsAsAsked) {
+  const std::string spa = kModels + "spa/spa.yaml";
+  EXPECT_EQ(MakeMjcf(spa, "", {.series = 2}), ReadFile(kModels + "spa/spa_series.xml"));
+  EXPECT_THAT(MakeMjcf(spa, "", {.series = 2, .rows = 2}), HasSubstr("seg4_p3"));
+  EXPECT_THAT(MakeMjcf(spa, "free", {.links = 4}), Not(HasSubstr("link5")));
+  EXPECT_THAT(MakeMjcf(spa, "", {.standing = true}), Not(HasSubstr("quat=\"0 1 0 0\"")));
+  EXPECT_THAT([&] { MakeMjcf(spa, "", {.series = 0}); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("at least one"), HasSubstr("0"))));
+  EXPECT_THAT([&] { MakeMjcf(spa, "", {.links = 3}); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("even"), HasSubstr("3"))));
+  EXPECT_THAT(
+      [] { MakeMjcf(kModels + "tdcr/tdcr.yaml", "", {.rows = 2}); },
+      ThrowsMessage<Error>(AllOf(HasSubstr("--rows"), HasSubstr("spa"), HasSubstr("tdcr"))));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "binding/linear_solver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -65,6 +66,68 @@ TEST(BlockSolver, TreesThatDoNotTouchStayApart) {
   Numbers x{3, 4, 3, 4};
   solver.Solve(x);
   for (const double v : x) EXPECT_NEAR(v, 1, 1e-15);
+}
+
+// Gaussian elimination as in a book, one column after the other.
+Numbers ColumnByColumn(Numbers A, Numbers b) {
+  const auto n = static_cast<int>(b.size());
+  const auto at = [&](int i, int j) -> double& { return A[i * n + j]; };
+  for (int k = 0; k < n; ++k) {
+    int best = k;
+    for (int i = k + 1; i < n; ++i) {
+      if (std::abs(at(i, k)) > std::abs(at(best, k))) best = i;
+    }
+    for (int j = k; j < n; ++j) std::swap(at(k, j), at(best, j));
+    std::swap(b[k], b[best]);
+    const double inverse = 1 / at(k, k);
+    for (int i = k + 1; i < n; ++i) {
+      const double f = at(i, k) * inverse;
+      for (int j = k; j < n; ++j) at(i, j) -= f * at(k, j);
+      b[i] -= f * b[k];
+    }
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int j = k + 1; j < n; ++j) b[k] -= at(k, j) * b[j];
+    b[k] /= at(k, k);
+  }
+  return b;
+}
+
+TEST(SolveLinear, SeveralColumnsTogetherAreOneAfterTheOther) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  for (const int n : {1, 2, 3, 4, 23, 24, 25, 28, 29, 61}) {
+    Numbers A(n * n), b(n);
+    for (double& v : A) v = normal(random);
+    for (double& v : b) v = normal(random);
+    const Numbers due = ColumnByColumn(A, b);
+    Numbers x = b, used = A;
+    SolveLinear(used, x);
+    // Sums of the last part are taken in another order: rounding, by the condition of A.
+    double most = 0;
+    for (int i = 0; i < n; ++i) most = std::max(most, std::abs(due[i]));
+    for (int i = 0; i < n; ++i) EXPECT_NEAR(x[i], due[i], 1e-11 * most) << n;
+    // The equations themselves.
+    for (int i = 0; i < n; ++i) {
+      double left = -b[i];
+      for (int j = 0; j < n; ++j) left += A[i * n + j] * x[j];
+      EXPECT_NEAR(left, 0, 1e-11 * most) << n;
+    }
+  }
+}
+
+// A zero on the diagonal needs an exchange, in the first column of a panel and in its last.
+TEST(SolveLinear, ExchangesRows) {
+  for (const int n : {5, 40}) {
+    for (const int zero : {0, 3}) {
+      Numbers A(n * n, 0), b(n);
+      for (int i = 0; i < n; ++i) A[i * n + i] = 2, b[i] = i;
+      std::swap_ranges(&A[zero * n], &A[zero * n] + n, &A[(n - 1) * n]);
+      std::swap(b[zero], b[n - 1]);
+      SolveLinear(A, b);
+      for (int i = 0; i < n; ++i) EXPECT_EQ(b[i], i / 2.0);
+    }
+  }
 }
 
 }  // namespace
