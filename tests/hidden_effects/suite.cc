@@ -306,18 +306,30 @@ Answer SolveAndFollow(const Case& c, const std::filesystem::path& folder) {
 
 namespace {
 
-// Whether an answer holds one name of each, of a single one as the only cause; beside it a machine
-// that is not its model may need a correction of that. Relatives that fit as well belong to the
-// answer.
-bool Holds(const std::vector<std::vector<std::string>>& truths, const Answer& a, bool outside) {
+// What may stand beside the name of a single truth.
+enum class Beside { kNothing, kCorrection, kAnything };
+
+// A machine that is not its model may need a correction of that. Where other forces act as well a
+// second name is of these.
+Beside AllowedBeside(const Case& c) {
+  if (c.background) return Beside::kAnything;
+  return RobotNamed(c.robot).outside ? Beside::kCorrection : Beside::kNothing;
+}
+
+// Whether an answer holds one name of each. Relatives that fit as well belong to the answer.
+bool Holds(const std::vector<std::vector<std::string>>& truths, const Answer& a, Beside allowed) {
   if (truths.empty()) return false;
   std::vector<std::string> set = a.named, beside = a.partner;
   set.insert(set.end(), a.relatives.begin(), a.relatives.end());
   beside.insert(beside.end(), a.relatives.begin(), a.relatives.end());
   const auto& first = truths.front();
   const auto& last = truths.back();
-  if (truths.size() == 1)
-    return (a.partner.empty() || (outside && a.corrects)) && Share(set, first);
+  if (truths.size() == 1) {
+    if (!a.partner.empty() && allowed == Beside::kAnything)
+      return Share(set, first) || Share(beside, first);
+    const bool corrects = allowed != Beside::kNothing && a.corrects;
+    return (a.partner.empty() || corrects) && Share(set, first);
+  }
   if (a.partner.empty()) return false;
   return (Share(set, first) && Share(beside, last)) || (Share(set, last) && Share(beside, first));
 }
@@ -330,13 +342,13 @@ bool InSet(const Case& c, const Answer& a) {
     const bool made_otherwise = c.law != Law::kStick && IsDryFriction(effect);
     truths.push_back(made_otherwise ? FamilyOf(effect) : std::vector{effect});
   }
-  return Holds(truths, a, RobotNamed(c.robot).outside);
+  return Holds(truths, a, AllowedBeside(c));
 }
 
 bool InSetExactly(const Case& c, const Answer& a) {
   std::vector<std::vector<std::string>> truths;
   for (const auto& effect : c.effects) truths.push_back({effect});
-  return Holds(truths, a, RobotNamed(c.robot).outside);
+  return Holds(truths, a, AllowedBeside(c));
 }
 
 bool Sibling(const Case& c, const Answer& a) {
