@@ -23,7 +23,7 @@ void AddSolve(CLI::App& app, int& exit_code) {
                     "(default), printed; stiff_flop: energy+body+chamber; annelida: "
                     "constant_curvature (default), chain, chain_friction");
   solve->add_option("--input", request->input,
-                    "Cases: one row each (CSV); - with --out -: a stream, answered row by row");
+                    "Cases: one row each (CSV); - with --out -: a stream, answered as it comes");
   solve->add_option("--measured", request->measured,
                     "Measured disks or tips of the cases (CSV), for errors; tdcr also for fit and "
                     "calibration");
@@ -38,11 +38,14 @@ void AddSolve(CLI::App& app, int& exit_code) {
   solve->add_option("--plot", request->plot, "Picture of the shapes (.png, .svg or .pdf)");
   solve->add_option("--shape", request->shape,
                     "Places along the centre lines, with frames and tensions (.csv or .json)");
+  solve->add_option("--outlines", request->outlines,
+                    "stiff_flop: lines of the deformed sections, and the threads' angle around the "
+                    "tubes (.csv, .json, or a picture as .svg)");
   solve->add_option("--compliance", request->compliance,
                     "How every tip moves by forces and by what drives the robot (.csv or .json)");
   solve->add_option("--reach", request->reach,
                     "Where tips or disks of the cases should be (CSV): the least tensions or "
-                    "pressures that bring them there");
+                    "pressures that bring them there, or lengths of cases by lengths");
   solve->add_option("--follow", request->follow,
                     "twin_pivot: a path (CSV of points) that the whole robot lies on while its "
                     "base comes along its axis: the tensions for each point");
@@ -83,11 +86,12 @@ void AddSolve(CLI::App& app, int& exit_code) {
     }
     if (!stream) RequireWritable(request->out, inputs);
     for (const auto* file : {&request->plot, &request->shape, &request->compliance,
-                             &request->errors, &request->boxplot}) {
+                             &request->outlines, &request->errors, &request->boxplot}) {
       if (!file->empty()) RequireWritable(*file, inputs);
     }
     request->warn = [](const std::string& text) { std::cerr << "warning: " << text << '\n'; };
     request->say = [](const std::string& text) { std::cerr << text << '\n'; };
+    if (stream) std::ios::sync_with_stdio(false);  // else it does not say what has come
     exit_code = stream ? SolveStream(*request, std::cin, std::cout) : Solve(*request);
   });
 }

@@ -35,6 +35,7 @@ void RefuseInStream(const SolveRequest& request) {
        {std::pair("--calibrate", request.calibrate), std::pair("--sweep", request.sweep != 0),
         std::pair("--plot", !request.plot.empty()), std::pair("--shape", !request.shape.empty()),
         std::pair("--compliance", !request.compliance.empty()),
+        std::pair("--outlines", !request.outlines.empty()),
         std::pair("--measured", !request.measured.empty()),
         std::pair("--reach", !request.reach.empty()),
         std::pair("--follow", !request.follow.empty()),
@@ -47,33 +48,85 @@ bool IsBlank(const std::string& line) {
   return line.find_first_not_of(" \t\r") == std::string::npos;
 }
 
+// Rows of a stream as they come: one that has to be waited for, and with `together` those that are
+// there already.
+std::vector<std::string> NextRows(std::istream& in, bool together) {
+  constexpr std::size_t kMost = 10'000;
+  std::vector<std::string> rows;
+  std::string line;
+  while (std::getline(in, line)) {
+    if (!IsBlank(line)) rows.push_back(line);
+    const bool more = together && rows.size() < kMost && in.rdbuf()->in_avail() > 0;
+    if (!rows.empty() && !more) break;
+  }
+  return rows;
+}
+
+// Answers tables of rows under one header.
+class Stream {
+ public:
+  Stream(const SolveRequest& request, std::string header, std::ostream& out)
+      : request_(request), one_(request), header_(std::move(header)), out_(out) {
+    one_.out = "stream.csv";
+    one_.take = [this](const std::string& csv) {
+      out_ << (begun_ ? csv.substr(csv.find('\n') + 1) : csv) << std::flush;
+      begun_ = true;
+    };
+    one_.warn = [this](const std::string& text) {  // of the robot, once
+      if (said_.insert(text).second) request_.warn(text);
+    };
+  }
+
+  bool begun() const { return begun_; }
+
+  // All at once; where one is bad, those before it first, and then its own error.
+  int Answer(const std::vector<std::string>& rows) {
+    const int before = row_;
+    try {
+      return AnswerTable(rows);
+    } catch (const Error&) {
+      if (rows.size() == 1) throw;
+    }
+    row_ = before;
+    int code = 0;
+    for (const std::string& row : rows) code = std::max(code, AnswerTable({row}));
+    return code;
+  }
+
+ private:
+  int AnswerTable(const std::vector<std::string>& rows) {
+    one_.input = fmt::format("standard input, row {}", row_ + 1);
+    one_.row = header_ + '\n';
+    for (const std::string& row : rows) one_.row += row + '\n';
+    row_ += static_cast<int>(rows.size());
+    return Solve(one_);
+  }
+
+  const SolveRequest& request_;
+  SolveRequest one_;
+  std::string header_;
+  std::ostream& out_;
+  int row_ = 0;
+  bool begun_ = false;
+  std::set<std::string> said_;
+};
+
 }  // namespace
 
 int SolveStream(const SolveRequest& request, std::istream& in, std::ostream& out) {
   RefuseInStream(request);
-  std::string header, line;
+  std::string header;
   while (IsBlank(header) && std::getline(in, header)) {
   }
-  SolveRequest one = request;
-  one.out = "stream.csv";
-  bool first = true;
-  one.take = [&](const std::string& csv) {
-    const std::size_t rows = csv.find('\n') + 1;
-    out << (first ? csv : csv.substr(rows)) << std::flush;
-    first = false;
-  };
-  std::set<std::string> said;  // of the robot, once
-  one.warn = [&](const std::string& text) {
-    if (said.insert(text).second) request.warn(text);
-  };
+  // Rows together see each other: a name that goes on from another would find it by chance.
+  const bool together =
+      header.find("case") == std::string::npos || header.find("reference") == std::string::npos;
+  Stream stream(request, header, out);
   int code = 0;
-  for (int row = 1; std::getline(in, line);) {
-    if (IsBlank(line)) continue;
-    one.input = fmt::format("standard input, row {}", row++);
-    one.row = header + '\n' + line + '\n';
-    code = std::max(code, Solve(one));
+  for (auto rows = NextRows(in, together); !rows.empty(); rows = NextRows(in, together)) {
+    code = std::max(code, stream.Answer(rows));
   }
-  if (first) throw Error::Input("standard input", "a header and rows of cases", "none");
+  if (!stream.begun()) throw Error::Input("standard input", "a header and rows of cases", "none");
   return code;
 }
 

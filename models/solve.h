@@ -13,9 +13,10 @@ namespace continuum {
 int Solve(const SolveRequest& request);
 
 /// The same of a stream: `in` has a header and rows of cases, `out` gets the header of the results
-/// and then the rows of every case as soon as it is solved. The robot stays in memory, so that a
-/// case costs no start of a process. @returns the largest code of its rows. @throws Error as Solve,
-/// and for an option that needs all cases at once.
+/// and then the rows of every case as soon as it is solved. Rows that have come together are solved
+/// together, on all cores, unless a column `reference` lets them go on from one another: then each
+/// stands alone. A case costs no start of a process. @returns the largest code of its rows. @throws
+/// Error as Solve, and for an option that needs all cases at once.
 int SolveStream(const SolveRequest& request, std::istream& in, std::ostream& out);
 
 }  // namespace continuum

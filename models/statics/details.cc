@@ -11,12 +11,6 @@ void Append(const Texts& more, Texts& names) {
   names.insert(names.end(), more.begin(), more.end());
 }
 
-void SetEach(const std::string& prefix, const Eigen::VectorXd& values, Results& results) {
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    results.Set(prefix + std::to_string(k + 1), values[k]);
-  }
-}
-
 }  // namespace
 
 void AddDead(const Eigen::Vector3d& force, const Eigen::Vector3d& p,
@@ -24,6 +18,12 @@ void AddDead(const Eigen::Vector3d& force, const Eigen::Vector3d& p,
   details.force += force;
   details.moment += p.cross(force);
   details.energy -= force.dot(p - straight);
+}
+
+void SetEach(const std::string& prefix, const Eigen::VectorXd& values, Results& results) {
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    results.Set(prefix + std::to_string(k + 1), values[k]);
+  }
 }
 
 Texts FrameColumns() { return {"qw", "qx", "qy", "qz"}; }
@@ -41,7 +41,7 @@ Texts DetailColumns::Names() const {
   Append(kWrench, names);
   names.emplace_back("strain_max");
   if (by_length || reaches) Append(Numbered("T_", cables), names);
-  if (!by_length) Append(Numbered("l_", cables), names);
+  if (!by_length || reaches) Append(Numbered("l_", cables), names);
   if (reaches) names.emplace_back("miss");
   if (list) Append({"equilibrium", "energy"}, names);
   return names;

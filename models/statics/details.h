@@ -35,12 +35,15 @@ struct DetailColumns {
   bool list = false;       ///< of equilibria
 
   /// `qw..qz`, `Fx..Mz`, `strain_max`, then `l_1..` or `T_1..`, or both and `miss`, then
-  /// `equilibrium`, `energy`.
+  /// `equilibrium`, `energy`. Whoever reaches by lengths adds these as `L1..`, as they are given.
   std::vector<std::string> Names() const;
 };
 
 /// equilibrium: its number in the list of its case, from 1; 0: there is no list.
 void Set(const Details& details, int equilibrium, Results& results);
+
+/// `prefix1`, `prefix2`, ..
+void SetEach(const std::string& prefix, const Eigen::VectorXd& values, Results& results);
 
 /// Of the two quaternions of a frame the one with w >= 0, in `qw..qz`.
 std::vector<std::string> FrameColumns();

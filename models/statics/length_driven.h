@@ -54,6 +54,7 @@ class CableStretch {
 ///   VectorXd Stretch(x) [m], Compliance() [m/N]        of the cables under T
 ///   int Unstable(x, VectorXd held)                     held [N/m]: of cables that are taut
 ///   double unit() [N], reach() [m]                     T and l that bend the robot by about 1
+/// and, where contacts are sharp, SetWidth(double) [m]: they turn within this, or 0: as they are.
 template <class Plant>
 class LengthDriven {
  public:
@@ -127,6 +128,9 @@ class LengthDriven {
       outcome = numerics::Newton(*this, trial, options);
       outcome.iterations += spent;
     }
+    if constexpr (requires { plant_.SetWidth(0.0); }) {
+      if (!outcome.ok()) outcome = Sharpened(z, trial, options, outcome.iterations);
+    }
     if (outcome.ok()) z = trial;
     return outcome;
   }
@@ -147,6 +151,22 @@ class LengthDriven {
 
  private:
   static constexpr double kTaut = 1e-7, kHeld = 1e6;
+
+  // By contacts that turn widely, then sharply.
+  numerics::Outcome Sharpened(const Vector& z, Vector& trial, const numerics::Options& options,
+                              int spent) {
+    numerics::Outcome outcome;
+    trial = z;
+    for (const double width : {1e-3, 1e-4, 1e-5, 0.0}) {
+      plant_.SetWidth(width);
+      outcome = numerics::Newton(*this, trial, options);
+      spent += outcome.iterations;
+      if (!outcome.ok()) break;
+    }
+    plant_.SetWidth(0);
+    outcome.iterations = spent;
+    return outcome;
+  }
 
   void SetLoad(double load) {
     plant_.SetLoad(load);

@@ -31,12 +31,13 @@ struct RodSection {
 ///   g_i = m_i - m_i+1 + h/2 [(F x t)_i + (F x t)_i+1],  m_N+1 = t_N x P                     (1)
 ///
 /// g_i is what turns node i back; (1) is m' = F x t. P: dead force times its lever beyond the tip,
-/// along the last tangent. Where the law has `DeadMoment(node)`, g_i is less by it: a dead moment
-/// [N m] at node i = 1..N, base frame. Middles of pieces stand for pieces: the error falls with the
-/// square of their number.
+/// along the last tangent: `Lever(N)`. A rigid part at node i between two pieces acts the same way,
+/// by `Lever(i)`: g_i is more by P_i x t_i. A law without levers has no such function. Where the
+/// law has `DeadMoment(node)`, g_i is less by it: a dead moment [N m] at node i = 1..N, base frame.
+/// Middles of pieces stand for pieces: the error falls with the square of their number.
 ///
 /// Law: `static constexpr bool kShear` (false: Gamma is the axis), `length()`, `axis()`,
-/// `Force(s)` [N] of all loads beyond s in 0..1, `TipLever()` [N m], `elastic()` or
+/// `Force(s)` [N] of all loads beyond s in 0..1, `Lever(node)` [N m], `elastic()` or
 /// `ElasticOf(piece)`: dM/dzeta of the unloaded section, `Prepare(zeta)` with the strains of all
 /// pieces, `At(piece, zeta, n, section)`, false out of the domain.
 template <class Law>
@@ -140,7 +141,7 @@ class RodChain {
     for (int i = 0; i < pieces_; ++i) {
       if (!AddPiece<kTangent>(i, shape[At(i)], shape[At(i + 1)])) return false;
     }
-    AddTip<kTangent>(shape.back());
+    if constexpr (requires { law_.Lever(1); }) AddLevers<kTangent>(shape);
     return residual_.allFinite();
   }
 
@@ -195,11 +196,14 @@ class RodChain {
   }
 
   template <bool kTangent>
-  void AddTip(const Eigen::Quaterniond& end) {
-    const Eigen::Vector3d P = law_.TipLever();
-    const Eigen::Vector3d t = end * law_.axis();
-    residual_.col(pieces_ - 1) += P.cross(t);
-    if (kTangent) stiffness_.diagonal(pieces_ - 1) -= Skew(P) * Skew(t);
+  void AddLevers(const Shape& shape) {
+    for (int node = 1; node <= pieces_; ++node) {
+      const Eigen::Vector3d P = law_.Lever(node);
+      if (P.isZero(0)) continue;
+      const Eigen::Vector3d t = shape[At(node)] * law_.axis();
+      residual_.col(node - 1) += P.cross(t);
+      if (kTangent) stiffness_.diagonal(node - 1) -= Skew(P) * Skew(t);
+    }
   }
 
   Law& law_;

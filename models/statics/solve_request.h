@@ -18,6 +18,7 @@ struct SolveRequest {
   std::filesystem::path out;         ///< .csv, .json or .yaml, as the job asks
   std::filesystem::path plot;        ///< picture of the shapes, .png, .svg or .pdf
   std::filesystem::path shape;       ///< places along the axes of the solved cases, .csv or .json
+  std::filesystem::path outlines;    ///< stiff_flop: deformed sections, .csv, .json or .svg
   std::filesystem::path compliance;  ///< how the tips move by every input, .csv or .json
   std::filesystem::path reach;       ///< TARGETS.csv: where tips or disks of the cases should be
   std::filesystem::path follow;      ///< PATH.csv: what the whole robot should lie on

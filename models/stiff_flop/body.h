@@ -92,6 +92,14 @@ class Body {
     return 2.0 * H(x) / (1.0 + sqrt(D(x)));
   }
 
+  /// z*/z where x is [-].
+  T Width(double x) const {
+    using std::sqrt;
+    if (law_ == BodyLaw::kFixed) return T(1.0);
+    if (law_ == BodyLaw::kElongation || law_ == BodyLaw::kPlanar) return contraction_;
+    return contraction_ / sqrt(1.0 - kappa_ * x);
+  }
+
   /// Energy of a cylinder of radius r per E l/6 [m²].
   T Energy(double r) const {
     using std::sqrt;

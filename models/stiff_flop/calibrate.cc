@@ -34,9 +34,9 @@ struct Tips {
     for (const std::string& name : names) {
       const double value = *x++;
       if (name == "E") {
-        changed.module.E *= value;
+        changed.module().E *= value;
       } else {
-        changed.module.gamma = value;
+        changed.module().gamma = value;
       }
     }
     return changed;
@@ -44,12 +44,12 @@ struct Tips {
   bool operator()(const double* x, double* f) const {
     const Robot changed = At(x);
     for (const Pair& pair : pairs) {
-      const Solution s = SolveForward(changed.module, method, *pair.row, false);
+      const Solution s = SolveForward(changed.series, method, *pair.row, false);
       if (s.status != Status::kOk) {
         failure = "case '" + pair.row->label + "': " + s.outcome.why;
         return false;
       }
-      Eigen::Vector3d::Map(f) = (s.tip - pair.tip) / robot.module.l;
+      Eigen::Vector3d::Map(f) = (s.tip - pair.tip) / robot.module().l;
       f += 3;
     }
     return true;
@@ -137,7 +137,7 @@ void Judge(const Tips& tips, statics::FittedShapes& fit, Calibration& c) {
     fit.begin.push_back(static_cast<Eigen::Index>(3 * i));
   }
   c.spread = statics::SpreadOf(fit, free);
-  const double l = tips.robot.module.l;
+  const double l = tips.robot.module().l;
   c.rmse = l * fit.f.norm() / std::sqrt(static_cast<double>(c.cases));
   std::vector<double> left_out;
   for (Eigen::Index i = 0; i < c.cases; ++i) {
@@ -157,7 +157,7 @@ Eigen::VectorXd Fit(const Tips& tips, const numerics::Bounds<Eigen::Dynamic>& bo
   const bool has_gamma = tips.names.back() == "gamma" || tips.names.front() == "gamma";
   numerics::Outcome best;
   Eigen::VectorXd found;
-  for (const double gamma : {tips.robot.module.gamma, 1.4, 1.1}) {
+  for (const double gamma : {tips.robot.module().gamma, 1.4, 1.1}) {
     Eigen::VectorXd x(bounds.lower.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       x[i] = tips.names[static_cast<std::size_t>(i)] == "E" ? 1 : gamma;

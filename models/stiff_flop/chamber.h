@@ -42,7 +42,10 @@ class Chamber {
     const T free = 1.0 - lambda_ * lambda_ * cosine * cosine;
     room_ = law == ChamberLaw::kFixed ? 1 : Value(free);
     const T cot2 = cosine * cosine / (sine * sine);
-    if (law == ChamberLaw::kElongation) square_ = BraidSection<T>(cot2, lambda_ * lambda_);
+    if (law == ChamberLaw::kElongation) {
+      square_ = BraidSection<T>(cot2, lambda_ * lambda_);
+      uniform_cot2_ = cot2;
+    }
     if (law == ChamberLaw::kConstant) cot2_ = cot2;
     if (law == ChamberLaw::kExact) cot2_ = lambda_ * lambda_ * cosine * cosine / free;
     law_value_ = {Value(square_), Value(cot2_)};
@@ -70,6 +73,16 @@ class Chamber {
   /// y, for x = Radius(cosine, r).
   T Fibre(double cosine, double r, const T& x) const {
     return Bends() ? lambda_ * (1.0 - kappa_ * x * (r * cosine)) : lambda_;
+  }
+
+  /// Lead angle of the thread at Radius(cosine, r): a thread with the law's slope c against the
+  /// section follows the wall, cot = c y/x [rad]. `fixed`: rings, pi/2.
+  T LeadAngle(double cosine, double r) const {
+    using std::atan2;
+    using std::sqrt;
+    const T x = Radius(cosine, r);
+    const T slope = sqrt(Bends() ? Cot2(cosine, cot2_) : uniform_cot2_);
+    return atan2(x, slope * Fibre(cosine, r, x));
   }
 
   /// (3) [m²]; NaN when the refinement does not end.
@@ -220,8 +233,9 @@ class Chamber {
   double room_ = 1;
   double r_1_, r_2_;
   T lambda_, kappa_;
-  T square_ = T(1.0);  // x² where it is uniform
-  T cot2_ = T(0.0);    // c² at psi = pi/2
+  T square_ = T(1.0);        // x² where it is uniform
+  T cot2_ = T(0.0);          // c² at psi = pi/2 of a bending wall
+  T uniform_cot2_ = T(0.0);  // of one that only lengthens
   Law law_value_{1, 0};
 };
 

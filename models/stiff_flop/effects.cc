@@ -54,11 +54,11 @@ class RandomCases {
   explicit RandomCases(const Robot& robot) {
     Random32 random(4);
     for (int i = 0; i < kCases; ++i) {
-      Case row{"", {}, {Vector3d::Zero(), robot.gravity}};
+      Case row{"", Vector3d::Zero(), {Vector3d::Zero(), robot.gravity}};
       for (double& p : row.given) p = random.Uniform(0, 60e3);
-      const Solution solution = Require(SolveForward(robot.module, kRobot, row, false));
+      const Solution solution = Require(SolveForward(robot.series, kRobot, row, false));
       applied_.push_back(row.given);
-      row.given = ShapeOf(solution.tip, robot.module.l);
+      row.given = ShapeOf(solution.tip, robot.module().l);
       shapes_.push_back(row);
     }
   }
@@ -91,8 +91,8 @@ class Loaded {
     for (int i = 0; i < 33; ++i) {
       const double share = i / 32.0;
       const Vector3d force(0.3 * std::sin(7 * share), 0.2 * share - 0.1, 0);
-      rows_.push_back({"", {i % 2 ? 100e3 : 50e3, 0, 0}, {force, robot.gravity}});
-      tips_.push_back(Tip(robot.module, kRobot, rows_.back()));
+      rows_.push_back({"", Vector3d(i % 2 ? 100e3 : 50e3, 0, 0), {force, robot.gravity}});
+      tips_.push_back(Tip(robot.series, kRobot, rows_.back()));
     }
   }
 
@@ -106,7 +106,7 @@ class Loaded {
   }
 
  private:
-  static Vector3d Tip(const Module& module, const Method& method, const Case& row) {
+  static Vector3d Tip(const ModuleSeries& module, const Method& method, const Case& row) {
     return Require(SolveForward(module, method, row, false)).tip;
   }
   std::vector<Case> rows_;
@@ -114,15 +114,15 @@ class Loaded {
 };
 
 Robot Pairs(Robot robot, double E) {
-  robot.module.n_c = 2;
-  robot.module.E = E;
+  robot.module().n_c = 2;
+  robot.module().E = E;
   return robot;
 }
 
 /// Errors of the models when they have the robot's own E and tubes, and when they are the
 /// paper's, with one tube per line, on stiffer robots of two.
 void PrintTable2(const Robot& a, const Robot& b) {
-  const Robot soft_a = Pairs(a, a.module.E), soft_b = Pairs(b, b.module.E);
+  const Robot soft_a = Pairs(a, a.module().E), soft_b = Pairs(b, b.module().E);
   const RandomCases same_a(soft_a), stiff_a(Pairs(a, kStiffA));
   const Loaded same_b(soft_b), stiff_b(Pairs(b, kStiffB));
   fmt::print(
@@ -135,9 +135,9 @@ void PrintTable2(const Robot& a, const Robot& b) {
     const Published& paper = kTable2[i];
     fmt::print("| {} | {:.0f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | {:.1f} |\n",
                method.Name(Direction::kInverse), paper.kpa,
-               same_a.Error(soft_a.module, method) / 1e3, stiff_a.Error(a.module, method) / 1e3,
-               paper.mm, same_b.Distance(soft_b.module, method) * 1e3,
-               stiff_b.Distance(b.module, method) * 1e3);
+               same_a.Error(soft_a.module(), method) / 1e3, stiff_a.Error(a.module(), method) / 1e3,
+               paper.mm, same_b.Distance(soft_b.module(), method) * 1e3,
+               stiff_b.Distance(b.module(), method) * 1e3);
   }
   fmt::print("\nMean |p| of the inverse cases: {:.0f} kPa.\n\n", same_a.MeanPressure() / 1e3);
 }
@@ -148,8 +148,8 @@ void PrintBraid(const Robot& a) {
   fmt::print(
       "| gamma [deg] | elongation body: elongation less fixed braid | general body: elongation less"
       " constant | general+constant |\n|---|---|---|---|\n| published | +51 | +15 | 38 |\n");
-  for (const double degrees : {a.module.gamma * 180 / std::numbers::pi, 85.0, 80.0, 75.0, 70.0}) {
-    Module module = a.module;
+  for (const double degrees : {a.module().gamma * 180 / std::numbers::pi, 85.0, 80.0, 75.0, 70.0}) {
+    Module module = a.module();
     module.gamma = degrees * std::numbers::pi / 180;
     const auto error = [&](BodyLaw body, ChamberLaw chamber) {
       return cases.Error(module, {body, chamber}) / 1e3;

@@ -21,7 +21,7 @@ struct Reaction {
 };
 
 template <class T>
-Reaction<T> ReactionOf(const Module& module, const Method& method, const Eigen::Vector3d& p,
+Reaction<T> ReactionOf(const Module& module, const Method& method, const Eigen::VectorXd& p,
                        const T& E, const T& gamma, const Axis<T>& axis) {
   const Body<T> body(method.body, axis.bend());
   Section<T> section = body.Deformed(module.r_2);
@@ -34,15 +34,15 @@ Reaction<T> ReactionOf(const Module& module, const Method& method, const Eigen::
   const T r_od = TubeDistance(module, method.body, axis.lambda);
   Reaction<T> reaction{T(0.0), T(0.0), T(0.0), section.area, section.x2 + section.z2};
   T bending = section.x2;
-  for (int i = 0; i < 3; ++i) {
-    const Bend<T> bend = TubeBend(axis, r_od, i);
+  for (std::size_t i = 0; i < module.lines.size(); ++i) {
+    const Bend<T> bend = TubeBend(module, axis, r_od, i);
     const T gas =
         static_cast<double>(module.n_c) * Tube(module, method.chamber, gamma, bend).GasArea();
     // n_c bores of area gas/n_c each.
     const T own = gas * gas / (4 * std::numbers::pi * module.n_c);
-    const T thrust = p[i] * gas;
-    const T m_x(kLine[i][1]);
-    const T m_z(kLine[i][0]);
+    const T thrust = p[static_cast<Eigen::Index>(i)] * gas;
+    const T m_x(module.lines[i][1]);
+    const T m_z(module.lines[i][0]);
     const T missing = E * gas * r_od * r_od * (m_x * zeta_x + m_z * zeta_z);
     reaction.n_y -= thrust;
     reaction.M_x -= m_x * (missing + thrust * r_od);

@@ -17,13 +17,13 @@ using Eigen::Vector3d;
 /// M(l) by M(0), every time from sections that are raised from rest: no shape depends on the one
 /// before.
 struct ColdShooting {
-  const Module& module;
+  const ModuleSeries& series;
   const Method& method;
   const Case& row;
 
   bool Jacobian(const Vector3d& x, Vector3d& f, Eigen::Matrix3d& jacobian) const {
     constexpr int kSteps = 4;
-    Rod rod(module, method, row, 1, kSteps);
+    Rod rod(series, method, row, 1, kSteps);
     Rod::State<Rod::Dual> tip;
     if (!rod.Integrate(x, tip)) return false;
     const Eigen::Matrix<Rod::Dual, 3, 1> mismatch = rod.Mismatch(tip);
@@ -35,30 +35,31 @@ struct ColdShooting {
   }
 };
 
-// The base cannot carry a larger moment [E J_0/l] than all loads at the end of a long module give.
-double Largest(const Module& module, const Method& method, const Case& row) {
+// The base cannot carry a larger moment [ModuleSeries::unit()] than all loads at the end of long
+// modules give.
+double Largest(const ModuleSeries& series, const Case& row) {
   constexpr double kStretched = 1.5;
-  const double force = row.load.force.norm() + (module.m + module.m_fs) * row.load.gravity.norm();
-  return force * (kStretched * module.l + module.l_fs) / Rod(module, method, row, 1, 1).unit();
+  const double force = row.load.force.norm() + series.mass() * row.load.gravity.norm();
+  return force * (kStretched * series.length() + series.mounts()) / series.unit();
 }
 
 }  // namespace
 
-std::vector<Solution> Equilibria(const Module& module, const Method& method, const Case& row,
+std::vector<Solution> Equilibria(const ModuleSeries& series, const Method& method, const Case& row,
                                  const Solution& known) {
   const auto energy_of = [&](const Solution& s) {
-    return Describe(module, method, Direction::kForward, row, s).energy;
+    return Describe(series, method, Direction::kForward, row, s).energy;
   };
-  const ColdShooting problem{module, method, row};
-  const double largest = Largest(module, method, row);
+  const ColdShooting problem{series, method, row};
+  const double largest = Largest(series, row);
   const auto draw = [&](Random& random) {
     Vector3d moment;
     for (double& value : moment) value = largest * (2 * random.Uniform() - 1);
     return moment;
   };
   const auto energy = [&](const Vector3d& moment) {
-    const Solution s = SolveNear(module, method, row, moment);
-    return s.status == Status::kOk ? energy_of(s) * module.l / (module.E * module.SecondMoment())
+    const Solution s = SolveNear(series, method, row, moment);
+    return s.status == Status::kOk ? energy_of(s) / series.unit()
                                    : std::numeric_limits<double>::quiet_NaN();
   };
   std::vector<Vector3d> starts;
@@ -69,9 +70,9 @@ std::vector<Solution> Equilibria(const Module& module, const Method& method, con
   for (const auto& root : statics::FindRoots<Vector3d>(problem, starts, draw, energy, options)) {
     roots.push_back(root.x);
   }
-  const auto near = [&](const Vector3d& root) { return SolveNear(module, method, row, root); };
+  const auto near = [&](const Vector3d& root) { return SolveNear(series, method, row, root); };
   const auto same = [&](const Solution& a, const Solution& b) {
-    return (a.tip - b.tip).norm() < 1e-6 * module.l && (a.tangent - b.tangent).norm() < 1e-5;
+    return (a.tip - b.tip).norm() < 1e-6 * series.length() && (a.tangent - b.tangent).norm() < 1e-5;
   };
   return statics::ByEnergy(known, roots, near, same, energy_of);
 }

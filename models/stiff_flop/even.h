@@ -51,6 +51,16 @@ struct Bend {
   Bend<double> value() const { return {Value(lambda), Value(kappa)}; }
 };
 
+/// The axis of a module where its section is looked at: stretch lambda and curvature
+/// (k_1, k_2) = kappa (cos phi, sin phi) [1/m], regular where phi is not.
+template <class T>
+struct Axis {
+  T lambda, k_1, k_2;
+
+  Bend<T> bend() const { return {lambda, Magnitude(k_1, k_2)}; }
+  Axis<double> value() const { return {Value(lambda), Value(k_1), Value(k_2)}; }
+};
+
 /// f of two arguments, known with its two partial derivatives, as a number of the caller's kind:
 /// long sums then run on short dual numbers.
 inline double Lift(const ceres::Jet<double, 2>& f, double, double) { return f.a; }

@@ -82,14 +82,15 @@ numerics::Options Corrector() {
   return options;
 }
 
-/// The module as a system for statics::FollowRisingLoad, in M(0) per unit: roots by shooting,
+/// The modules as a system for statics::FollowRisingLoad, in M(0) per unit: roots by shooting,
 /// stability and falls by a chain of rigid pieces.
 class RisingSystem {
  public:
   using Chain = statics::RodChain<RodLaw>;
+  static constexpr int kSteps = 2 * kFirstSteps;  // of every module
 
-  RisingSystem(const Module& module, const Method& method, const Case& row)
-      : module_(module), method_(method), row_(row) {}
+  RisingSystem(const ModuleSeries& series, const Method& method, const Case& row)
+      : series_(series), method_(method), row_(row), bases_(Unstrained(series)) {}
 
   numerics::Outcome Correct(double load, Vector3d& moment) {
     Rod rod = RodAt(load, kSteps);
@@ -101,10 +102,10 @@ class RisingSystem {
     Rod rod = RodAt(load, kSteps);
     Tip tip;
     if (!tip.Find(rod, moment) || rod.reserve().stiffness <= 0) return kUnknown;
-    if (IsJump(module_, base_, rod.base())) return kUnknown;
-    const int unstable = Count(load, moment, rod.base());
+    if (IsJump(series_, bases_, rod.bases())) return kUnknown;
+    const int unstable = Count(load, moment, rod.bases());
     if (unstable != 0) return unstable;
-    base_ = rod.base();
+    bases_ = rod.bases();
     last_ = rod.reserve();
     last_determinant_ = tip.determinant;
     return 0;
@@ -113,51 +114,56 @@ class RisingSystem {
   statics::Fall Fall(double from, double load, Vector3d& moment) {
     Chain::Shape shape = Frames(from, moment, kFallingPieces);
     if (shape.empty()) return {};
-    RodLaw law(module_, method_, row_, load, kFallingPieces);
-    Chain chain(law, kFallingPieces);
+    RodLaw law(series_, method_, row_, load, kFallingPieces);
+    Chain chain(law, law.Lengths());
     statics::FallOptions options;
     options.tolerance = 1e-9;
     statics::Fall fall = statics::FallToRest(chain, shape, options);
     if (!fall.ok) return fall;
-    const Axis<double> before = base_;
-    base_ = law.axis(0);
+    const Axes before = bases_;
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      bases_[i] = law.axis(static_cast<int>(i) * kFallingPieces);
+    }
     moment = BaseMoment(law, chain, shape);
     Rod rod = RodAt(load, kSteps);
     fall.ok = numerics::Newton(Shooting{&rod}, moment).ok() && Near(load, moment, shape.back()) &&
               Unstable(load, moment) == 0;
-    if (!fall.ok) base_ = before;
+    if (!fall.ok) bases_ = before;
     return fall;
   }
 
-  const Axis<double>& base() const { return base_; }
+  const Axes& bases() const { return bases_; }
   const Reserve& last() const { return last_; }
   double last_determinant() const { return last_determinant_; }
 
-  /// Unstable directions of a root whose base section is known.
-  int Count(double load, const Vector3d& moment, const Axis<double>& base) {
-    const Axis<double> before = base_;
-    base_ = base;
+  /// Unstable directions of a root whose lower sections are known.
+  int Count(double load, const Vector3d& moment, const Axes& bases) {
+    const Axes before = bases_;
+    bases_ = bases;
     const int coarse = Count(load, moment, kPieces);
     const int fine = coarse == kNearZero ? Count(load, moment, kManyPieces) : coarse;
-    base_ = before;
+    bases_ = before;
     return fine;
   }
 
  private:
-  static constexpr int kSteps = 2 * kFirstSteps;
+  // Of every module.
   static constexpr int kPieces = 8, kFallingPieces = 16, kManyPieces = 64;
   static constexpr int kNearZero = 98, kUnknown = 99;
 
   Rod RodAt(double load, int steps) const {
-    Rod rod(module_, method_, row_, load, steps);
-    rod.StartFrom(base_);
+    Rod rod(series_, method_, row_, load, steps);
+    rod.StartFrom(bases_);
     return rod;
   }
 
   Chain::Shape Frames(double load, const Vector3d& moment, int pieces) const {
     Chain::Shape shape;
-    for (const Rod::State<double>& y : RodAt(load, pieces).States(moment)) {
-      shape.push_back(Eigen::Quaterniond(y[3], y[4], y[5], y[6]).normalized());
+    for (const auto& states : RodAt(load, pieces).States(moment)) {
+      if (!shape.empty()) shape.pop_back();  // a mount does not turn
+      for (const Rod::State<double>& y : states) {
+        shape.push_back(Eigen::Quaterniond(y[3], y[4], y[5], y[6]).normalized());
+      }
     }
     return shape;
   }
@@ -167,8 +173,8 @@ class RisingSystem {
     constexpr double kSpare = 0.05;  // a chain of 8 pieces is off by 0.01
     const Chain::Shape shape = Frames(load, moment, pieces);
     if (shape.empty()) return kUnknown;
-    RodLaw law(module_, method_, row_, load, pieces);
-    Chain chain(law, pieces);
+    RodLaw law(series_, method_, row_, load, pieces);
+    Chain chain(law, law.Lengths());
     if (!chain.Linearize(shape)) return kUnknown;
     if (pieces == kManyPieces) return chain.UnstableDirections();
     if (chain.Definite(-kSpare)) return 0;
@@ -178,10 +184,11 @@ class RisingSystem {
   // m(0) = m_1 - h/2 (F x t)_1, per unit.
   Vector3d BaseMoment(RodLaw& law, const Chain& chain, const Chain::Shape& shape) const {
     const Eigen::Matrix3d R = shape[0].slerp(0.5, shape[1]).toRotationMatrix();
-    const Vector3d F = law.Force(0.5 / kFallingPieces);
+    const double h = law.Lengths().front();
+    const Vector3d F = law.Force(h / 2);
     statics::RodSection section;
     law.At(0, chain.zeta().col(0), R.transpose() * F, section);
-    return R * section.moment - F.cross(Vector3d(R * section.stretch)) / (2 * kFallingPieces);
+    return R * section.moment - 0.5 * h * F.cross(Vector3d(R * section.stretch));
   }
 
   bool Near(double load, const Vector3d& moment, const Eigen::Quaterniond& end) const {
@@ -189,10 +196,10 @@ class RisingSystem {
     return !shape.empty() && shape.back().angularDistance(end) < 0.2;
   }
 
-  const Module& module_;
+  const ModuleSeries& series_;
   const Method& method_;
   const Case& row_;
-  Axis<double> base_ = {1, 0, 0};
+  Axes bases_;
   Reserve last_ = {};
   double last_determinant_ = 1;
 };
@@ -200,12 +207,16 @@ class RisingSystem {
 /// Solves one case: keeps M(0) and what is known about the branch.
 class Balance {
  public:
-  Balance(const Module& module, const Method& method, const Case& row)
-      : module_(module), method_(method), row_(row), rising_(module, method, row) {}
+  Balance(const ModuleSeries& series, const Method& method, const Case& row)
+      : series_(series),
+        method_(method),
+        row_(row),
+        rising_(series, method, row),
+        bases_(Unstrained(series)) {}
 
   const Vector3d& moment() const { return moment_; }
   const Tip& tip() const { return tip_; }
-  const Axis<double>& base() const { return base_; }
+  const Axes& bases() const { return bases_; }
   const statics::Stability& stability() const { return stability_; }
 
   /// Newton from the moments of the straight module, else along the rising load; then finer steps
@@ -224,7 +235,7 @@ class Balance {
     moment_ = moment;
     const numerics::Outcome outcome = Refined(Shoot(kFirstSteps));
     if (!outcome.ok()) return outcome;
-    stability_.unstable_directions = rising_.Count(1, moment_, base_);
+    stability_.unstable_directions = rising_.Count(1, moment_, bases_);
     return outcome;
   }
 
@@ -258,14 +269,16 @@ class Balance {
   // Near the end of a path of smallest step 1e-5 the stiffness has fallen to about sqrt(1e-5).
   static constexpr double kSpent = 0.05;
 
-  // Moment of all loads about the base of the unbent module, per unit.
+  // Moment of all loads about the base of the unbent modules, per unit.
   Vector3d Straight() const {
-    const Vector3d y = Vector3d::UnitY();
-    const Vector3d weight =
-        (0.5 * module_.m * module_.l + module_.m_fs * (module_.l + 0.5 * module_.l_fs)) *
-        row_.load.gravity;
-    const Vector3d tip = (module_.l + module_.l_fs) * row_.load.force;
-    return y.cross(weight + tip) / Rod(module_, method_, row_, 1, 1).unit();
+    double way = 0;
+    Vector3d lever = Vector3d::Zero();
+    for (const Module& m : series_.modules) {
+      lever += (m.m * (way + 0.5 * m.l) + m.m_fs * (way + m.l + 0.5 * m.l_fs)) * row_.load.gravity;
+      way += m.l + m.l_fs;
+    }
+    lever += way * row_.load.force;
+    return Vector3d::UnitY().cross(lever) / series_.unit();
   }
 
   static numerics::Outcome After(const numerics::Outcome& before, numerics::Outcome outcome) {
@@ -273,26 +286,29 @@ class Balance {
     return outcome;
   }
 
-  // Dead loads, all at the end of the mount and along it, below 2 EI/L^2 of the softest section:
-  // the clamped column buckles at pi^2/4.
+  // Dead loads, all at the end of the last mount and along it, below 2 EI/L^2 of the softest
+  // section: the clamped column buckles at pi^2/4.
   bool FarFromBuckling() const {
     constexpr double kMost = 2;
-    const double force =
-        row_.load.force.norm() + (module_.m + module_.m_fs) * row_.load.gravity.norm();
-    const double length = base_.lambda * module_.l + module_.l_fs;
-    const double stiffness = module_.E * module_.SecondMoment() * std::min(1.0, reserve_.stiffness);
-    return force * length * length < kMost * stiffness;
+    const double force = row_.load.force.norm() + series_.mass() * row_.load.gravity.norm();
+    double length = series_.mounts();
+    double stiffness = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      length += bases_[i].lambda * series_[i].l;
+      stiffness = std::min(stiffness, series_[i].E * series_[i].SecondMoment());
+    }
+    return force * length * length < kMost * stiffness * std::min(1.0, reserve_.stiffness);
   }
 
   numerics::Outcome Shoot(int steps) {
     steps_ = steps;
-    Rod rod(module_, method_, row_, 1, steps);
-    if (counted_) rod.StartFrom(base_);
+    Rod rod(series_, method_, row_, 1, steps);
+    if (counted_) rod.StartFrom(bases_);
     const numerics::Outcome outcome = numerics::Newton(Shooting{&rod}, moment_);
     stable_ = outcome.ok() && tip_.Find(rod, moment_) && rod.reserve().stiffness > 0 &&
               rod.reserve().plain;
     trusted_ = stable_ && tip_.determinant > 0;
-    base_ = rod.base();
+    bases_ = rod.bases();
     reserve_ = rod.reserve();
     return outcome;
   }
@@ -309,8 +325,8 @@ class Balance {
     if (along.ok()) {
       counted_ = true;
       moment_ = x;
-      base_ = rising_.base();
-      return After(along, Shoot(kFirstSteps));
+      bases_ = rising_.bases();
+      return After(along, Shoot(RisingSystem::kSteps));  // whose root x is
     }
     if (!carried) return along;
     along_ = along.why;
@@ -323,7 +339,7 @@ class Balance {
   void Judge(numerics::Outcome& outcome) {
     counted_ = true;
     if (trusted_ && FarFromBuckling()) return;
-    stability_.unstable_directions = rising_.Count(1, moment_, base_);
+    stability_.unstable_directions = rising_.Count(1, moment_, bases_);
     saddle_ = !stability_.stable();
     if (!saddle_) return;
     outcome.status = numerics::Status::kNoConvergence;
@@ -333,23 +349,23 @@ class Balance {
 
   // How far tip (per l) and moment (per unit) move when every step is halved.
   double ChangeOfHalvedSteps() {
-    Rod finer(module_, method_, row_, 1, 2 * steps_);
-    finer.StartFrom(base_);
+    Rod finer(series_, method_, row_, 1, 2 * steps_);
+    finer.StartFrom(bases_);
     Rod::State<double> fine;
     if (!finer.Integrate(moment_, fine)) return std::numeric_limits<double>::infinity();
     double moved = 0;
     for (int i = 0; i < 3; ++i) moved = std::hypot(moved, fine[i] - tip_.state[i].a);
-    return std::max(moved / module_.l, finer.Mismatch(fine).norm());
+    return std::max(moved / series_.length(), finer.Mismatch(fine).norm());
   }
 
-  const Module& module_;
+  const ModuleSeries& series_;
   const Method& method_;
   const Case& row_;
   RisingSystem rising_;
   Vector3d moment_ = Vector3d::Zero();
   int steps_ = kFirstSteps;
   Tip tip_;
-  Axis<double> base_ = {1, 0, 0};
+  Axes bases_;
   Reserve reserve_ = {};
   bool stable_ = false;   // every section
   bool trusted_ = false;  // and no single direction of the whole
@@ -360,10 +376,11 @@ class Balance {
 };
 
 void Read(const Balance& balance, Solution& solution) {
-  const Axis<double>& base = balance.base();
+  const Axis<double>& base = balance.bases().front();
   solution.moment = balance.moment();
-  solution.base << base.lambda, base.k_1, base.k_2;
-  solution.answer << std::hypot(base.k_1, base.k_2), std::atan2(base.k_2, base.k_1), base.lambda;
+  solution.bases = balance.bases();
+  solution.answer =
+      Vector3d(std::hypot(base.k_1, base.k_2), std::atan2(base.k_2, base.k_1), base.lambda);
   const Eigen::Matrix<Dual, 3, 1> tangent = Rod::Tangent<Dual>(balance.tip().state);
   for (int i = 0; i < 3; ++i) {
     solution.tip[i] = balance.tip().state[i].a;
@@ -373,10 +390,10 @@ void Read(const Balance& balance, Solution& solution) {
 
 }  // namespace
 
-Solution SolveForward(const Module& module, const Method& method, const Case& row, bool sensitivity,
-                      std::vector<Vector3d>* line) {
+Solution SolveForward(const ModuleSeries& series, const Method& method, const Case& row,
+                      bool sensitivity) {
   Solution solution;
-  Balance balance(module, method, row);
+  Balance balance(series, method, row);
   solution.outcome = numerics::Timed([&] {
     const numerics::Outcome outcome = balance.Solve();
     solution.stability = balance.stability();
@@ -391,41 +408,47 @@ Solution SolveForward(const Module& module, const Method& method, const Case& ro
       if (method.chamber != ChamberLaw::kFixed) solution.by_gamma = slopes.col(0);
       solution.by_E = slopes.col(1);
     }
-    solution.section = Describe(module, method, balance.base());
+    solution.section = Describe(series.first(), method, balance.bases().front());
     return outcome;
   });
-  if (line == nullptr) return solution;
-  line->clear();
-  if (!solution.outcome.ok()) return solution;
-  Rod rod(module, method, row, 1, kPiecesOfLine);
-  rod.StartFrom(balance.base());
-  *line = rod.Line(balance.moment());
   return solution;
 }
 
-Solution SolveNear(const Module& module, const Method& method, const Case& row,
+Solution SolveNear(const ModuleSeries& series, const Method& method, const Case& row,
                    const Vector3d& moment) {
   Solution solution;
-  Balance balance(module, method, row);
+  Balance balance(series, method, row);
   solution.outcome = numerics::Timed([&] { return balance.Near(moment); });
   if (!solution.outcome.ok()) return solution;
   solution.stability = balance.stability();
   solution.status = Status::kOk;
   Read(balance, solution);
-  solution.section = Describe(module, method, balance.base());
+  solution.section = Describe(series.first(), method, balance.bases().front());
   return solution;
 }
 
-std::vector<Vector3d> ForwardLine(const Module& module, const Method& method, const Case& row) {
-  std::vector<Vector3d> line;
-  SolveForward(module, method, row, false, &line);
-  return line;
+std::vector<std::vector<Vector3d>> LinesOf(const ModuleSeries& series, const Method& method,
+                                           const Case& row, const Solution& solution) {
+  if (!solution.outcome.ok()) return {};
+  Rod rod(series, method, row, 1, kPiecesOfLine);
+  rod.StartFrom(solution.bases);
+  return rod.Lines(solution.moment);
 }
 
-Vector3d BaseMoment(const Module& module, const Method& method, const Case& row) {
-  Balance balance(module, method, row);
-  if (!balance.Solve().ok()) return Vector3d::Constant(std::nan(""));
-  return balance.moment() * Rod(module, method, row, 1, 1).unit();
+std::vector<Vector3d> ForwardLine(const ModuleSeries& series, const Method& method,
+                                  const Case& row) {
+  std::vector<Vector3d> whole;
+  const Solution solution = SolveForward(series, method, row, false);
+  for (const auto& line : LinesOf(series, method, row, solution)) {
+    whole.insert(whole.end(), line.begin(), line.end());
+  }
+  return whole;
+}
+
+Vector3d BaseMoment(const ModuleSeries& series, const Method& method, const Case& row) {
+  const Solution solution = SolveForward(series, method, row, false);
+  if (!solution.outcome.ok()) return Vector3d::Constant(std::nan(""));
+  return solution.moment * series.unit();
 }
 
 }  // namespace continuum::stiff_flop

@@ -2,6 +2,7 @@
 #include "sim/numerics/solver.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 
@@ -10,14 +11,14 @@ namespace {
 
 using Dual = ceres::Jet<double, 3>;
 
-Axis<double> AxisOf(const Eigen::Vector3d& shape) {
+Axis<double> AxisOf(const Eigen::VectorXd& shape) {
   return {shape[2], shape[0] * std::cos(shape[1]), shape[0] * std::sin(shape[1])};
 }
 
 // Dimensionless form of Sum p_i dv_i/dq = dU/dq + dP/dq: rows per E a l (and r_2 for curvatures),
 // pressures per E.
 struct Balance {
-  Eigen::Matrix3d volumes;
+  Eigen::Matrix3Xd volumes;
   Eigen::Vector3d elastic, loads;
 
   Balance(const Module& module, const Method& method, double gamma, const Load& load,
@@ -26,15 +27,23 @@ struct Balance {
     const Actions<Dual> actions = ActionsOf(module, method, Dual(gamma), axis);
     const Dual potential = LoadPotential(module, load, axis);
     const double volume = module.Area() * module.l;
+    volumes.resize(3, static_cast<Eigen::Index>(actions.volume.size()));
     for (int k = 0; k < 3; ++k) {
       const double scale = volume * (k < 2 ? module.r_2 : 1);
-      for (int i = 0; i < 3; ++i) volumes(k, i) = actions.volume[i].v[k] / scale;
+      for (Eigen::Index i = 0; i < volumes.cols(); ++i) {
+        volumes(k, i) = actions.volume[static_cast<std::size_t>(i)].v[k] / scale;
+      }
       elastic[k] = module.l * actions.elastic.v[k] / scale;
       loads[k] = potential.v[k] / (module.E * scale);
     }
   }
 
-  Eigen::Vector3d Pressures() const { return volumes.fullPivLu().solve(elastic + loads); }
+  // Of more than three lines the least sum of squares; two lines balance few shapes.
+  Eigen::VectorXd Solved(const Eigen::Vector3d& b) const {
+    if (volumes.cols() == 3) return volumes.fullPivLu().solve(b);
+    return volumes.completeOrthogonalDecomposition().solve(b);
+  }
+  Eigen::VectorXd Pressures() const { return Solved(elastic + loads); }
 };
 
 // Distance of gamma from the largest smaller angle at which the section leaves its domain.
@@ -51,7 +60,7 @@ double RoomOfGamma(Module module, const Method& method, const Axis<double>& axis
 
 // Fourth-order differences of exact balances; the laws are even in cot(gamma), hence smooth at
 // pi/2. Step: a thousandth of the way to the nearest singularity, error about 1e-12.
-Eigen::Vector3d ByGamma(const Module& module, const Method& method, const Case& row,
+Eigen::VectorXd ByGamma(const Module& module, const Method& method, const Case& row,
                         const Axis<double>& axis) {
   const double h = 1e-3 * std::min(1.0, RoomOfGamma(module, method, axis));
   const auto at = [&](double step) {
@@ -75,7 +84,7 @@ Solution SolveInverse(const Module& module, const Method& method, const Case& ro
       return outcome;
     }
     const Balance balance(module, method, module.gamma, row.load, axis);
-    const Eigen::Vector3d p = balance.Pressures();
+    const Eigen::VectorXd p = balance.Pressures();
     outcome.iterations = 1;
     outcome.residual = (balance.volumes * p - balance.elastic - balance.loads).norm();
     if (!(outcome.residual <= 1e-9)) {
@@ -86,7 +95,7 @@ Solution SolveInverse(const Module& module, const Method& method, const Case& ro
     solution.status = Status::kOk;
     solution.answer = module.E * p;
     if (sensitivity) {
-      solution.by_E = balance.volumes.fullPivLu().solve(balance.elastic);
+      solution.by_E = balance.Solved(balance.elastic);
       if (method.chamber != ChamberLaw::kFixed) {
         solution.by_gamma = ByGamma(module, method, row, axis);
       }

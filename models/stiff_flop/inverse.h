@@ -7,11 +7,12 @@
 
 namespace continuum::stiff_flop {
 
-/// Elastic energy per E l [m²] and gas volumes per line [m³] of a module of constant curvature.
+/// Elastic energy per E l [m²] and gas volumes of every line [m³] of a module of constant
+/// curvature.
 template <class T>
 struct Actions {
   T elastic;
-  std::array<T, 3> volume;
+  std::vector<T> volume;
 };
 
 /// U = W(r_2) - W(r_1) at the axis + n_c Sum_i [w_c - W(r_c2)] at the tubes' axes (Algorithm 1);
@@ -24,12 +25,12 @@ Actions<T> ActionsOf(const Module& module, const Method& method, const T& gamma,
   actions.elastic = body.Energy(module.r_2);
   if (module.r_1 > 0) actions.elastic -= body.Energy(module.r_1);
   const T r_od = TubeDistance(module, method.body, axis.lambda);
-  for (int i = 0; i < 3; ++i) {
-    const Bend<T> bend = TubeBend(axis, r_od, i);
+  for (std::size_t i = 0; i < module.lines.size(); ++i) {
+    const Bend<T> bend = TubeBend(module, axis, r_od, i);
     const Chamber<T> tube = Tube(module, method.chamber, gamma, bend);
     const T hole = Body<T>(method.body, bend).Energy(module.r_c2);
     actions.elastic += static_cast<double>(module.n_c) * (tube.Wall() - hole);
-    actions.volume[i] = (module.n_c * module.l) * (bend.lambda * tube.GasArea());
+    actions.volume.push_back((module.n_c * module.l) * (bend.lambda * tube.GasArea()));
   }
   actions.elastic /= T(6.0);
   return actions;
@@ -70,7 +71,9 @@ T LoadPotential(const Module& module, const Load& load, const Axis<T>& axis) {
 
 /// Pressures that hold a module of constant curvature in the given shape, by virtual work (5):
 /// Sum_i p_i dv_Gi/dq = d/dq (U + load potential), q = (kappa cos phi, kappa sin phi, lambda).
-/// Derivatives by dual numbers. Sensitivities only on demand (they cost six more solves).
+/// Derivatives by dual numbers. Of four lines the pressures with the least sum of squares; two
+/// lines balance shapes in their plane at one stretch only. Sensitivities only on demand (they cost
+/// six more solves).
 Solution SolveInverse(const Module& module, const Method& method, const Case& row,
                       bool sensitivity);
 

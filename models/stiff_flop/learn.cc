@@ -24,7 +24,7 @@ YAML::Node DocumentOf(const SolveRequest& request, const Robot& nominal, const s
   for (std::size_t k = 0; k < c.names.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     const std::string& name = c.names[k];
-    const double unit = name == "E" ? nominal.module.E : 1;
+    const double unit = name == "E" ? nominal.module().E : 1;
     const YAML::Node value = Number(unit * c.x[i]);
     node[name] = value;
     standard[name] = Number(unit * c.spread.standard[i]);

@@ -2,7 +2,6 @@
 
 #include "models/statics/solve_request.h"
 #include "models/stiff_flop/case.h"
-#include "models/stiff_flop/cases.h"
 
 namespace continuum::stiff_flop {
 

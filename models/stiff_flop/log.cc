@@ -52,8 +52,8 @@ struct Residuals {
 
   bool operator()(const double* x, double* f) const {
     Robot changed = robot;
-    changed.module.E *= x[0];
-    changed.module.gamma = x[1];
+    changed.module().E *= x[0];
+    changed.module().gamma = x[1];
     return MarkerResiduals(changed, method, log, f);
   }
 
@@ -155,7 +155,7 @@ std::vector<Solution> Replay(const Robot& robot, const Method& method, const Log
   std::vector<Solution> shapes;
   for (std::size_t i = 0; i < log.time.size(); ++i) {
     const Case row{"", log.pressure[i], {Eigen::Vector3d::Zero(), robot.gravity}};
-    shapes.push_back(SolveForward(robot.module, method, row, false));
+    shapes.push_back(SolveForward(robot.series, method, row, false));
     if (shapes.back().status != Status::kOk) {
       throw Error::Job("at " + std::to_string(log.time[i]) + " s: " + Name(shapes.back().status) +
                        ", " + shapes.back().outcome.why);
@@ -181,7 +181,7 @@ bool MarkerResiduals(const Robot& robot, const Method& method, const Log& log, d
 
 numerics::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
   const Log train = log.First(TrainRows(log));
-  Eigen::Vector2d x(1, robot.module.gamma);
+  Eigen::Vector2d x(1, robot.module().gamma);
   numerics::Bounds<2> bounds;
   bounds.lower = {0.2, std::numbers::pi / 4};
   bounds.upper = {5, std::numbers::pi / 2};
@@ -192,8 +192,8 @@ numerics::Outcome FitBraid(const Method& method, const Log& log, Robot& robot) {
   const numerics::Outcome outcome = numerics::LevenbergMarquardt<Eigen::VectorXd>(
       Residuals{robot, method, train}, x, static_cast<Eigen::Index>(3 * train.time.size()), options,
       bounds);
-  robot.module.E *= x[0];
-  robot.module.gamma = x[1];
+  robot.module().E *= x[0];
+  robot.module().gamma = x[1];
   return outcome;
 }
 

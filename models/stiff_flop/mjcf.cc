@@ -123,16 +123,16 @@ SoftSegment SegmentOf(const Module& module) {
 }
 
 std::string ModuleMjcf(const Robot& robot, Threads threads) {
-  const SoftSegment segment = SegmentOf(robot.module);
+  const SoftSegment segment = SegmentOf(robot.module());
   Mjcf mjcf("stiff_flop", Comment(threads));
   SetOptions(mjcf.spec().option, robot.gravity);
-  AddScene(mjcf, robot.module.l + robot.module.l_fs);
+  AddScene(mjcf, robot.module().l + robot.module().l_fs);
   mjsBody* const base = mjcf.AddBody(mjcf.world(), "base", {0, 0, 0});
   const double down[] = {0, 1, 0, 0};  // half a turn about x
   std::copy(down, down + 4, base->quat);
   mjcf.AddSite(base, "frame", {0, 0, 0}, 0.001);
   SoftChain chain(mjcf, segment);
-  AddMount(mjcf, chain.Add(base, "base"), robot.module);
+  AddMount(mjcf, chain.Add(base, "base"), robot.module());
   chain.AddWrench(base);
   AddLines(mjcf);
   AddMarkerSensors(mjcf);
@@ -140,7 +140,7 @@ std::string ModuleMjcf(const Robot& robot, Threads threads) {
       "maxwell", "creep", {{"joint", "bend1_x bend1_y"}, {"k_m", "0"}, {"tau_m", "2"}}};
   std::vector<EffectInstance> effects{chain.Effect(), creep};
   if (threads == Threads::kBraid) {
-    effects.push_back(BraidBeside(effects.front(), segment, robot.module.gamma));
+    effects.push_back(BraidBeside(effects.front(), segment, robot.module().gamma));
   }
   return mjcf.Text(effects, std::vector{chain.Delta()});
 }

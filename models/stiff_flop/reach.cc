@@ -1,5 +1,6 @@
 #include "models/stiff_flop/reach.h"
 
+#include "models/stiff_flop/details.h"
 #include "models/stiff_flop/forward.h"
 #include "models/stiff_flop/response.h"
 
@@ -7,19 +8,22 @@ namespace continuum::stiff_flop {
 
 using Eigen::VectorXd;
 
-statics::Reached Reach(const Module& module, const Method& method, const Case& row,
+statics::Reached Reach(const ModuleSeries& series, const Method& method, const Case& row,
                        const statics::Target& target) {
   Case at = row;
   const auto stand = [&](const VectorXd& drives) -> std::optional<statics::Stand> {
     at.given = drives;
-    const Solution s = SolveForward(module, method, at, false);
+    const Solution s = SolveForward(series, method, at, false);
     if (s.status != Status::kOk) return std::nullopt;
-    const auto response = Respond(module, method, at, s);
+    const auto response = Respond(series, method, at, s);
     if (!response) return std::nullopt;
-    const Eigen::MatrixXd slopes = response->slope.topRightCorner(3, 3);
-    return statics::Stand{s.tip(target.coordinate), slopes(target.coordinate, Eigen::all)};
+    const auto ends = EndsOf(series, method, at, s);
+    const VectorXd points = VectorXd::Map(ends.data(), ends.size());
+    const Eigen::MatrixXd slopes =
+        response->slope.bottomRows(points.size()).rightCols(series.lines());
+    return statics::Stand{points(target.coordinate), slopes(target.coordinate, Eigen::all)};
   };
-  return statics::Reach(stand, row.given, target, module.E, module.l);
+  return statics::Reach(stand, row.given, target, series.first().E, series.length());
 }
 
 }  // namespace continuum::stiff_flop

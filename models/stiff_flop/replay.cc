@@ -25,9 +25,10 @@ void PrintLine(const std::string& name, const Robot& robot, const Method& method
   const TipError whole = ErrorOf(all, shapes, log, 0, log.time.size());
   fmt::print(
       "| {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} ({:.2f} %) | {:.1f}, {:.1f}, {:.1f} |\n",
-      name, robot.module.E / 1e3, robot.module.gamma * 180 / std::numbers::pi, 1e3 * fitted.mean,
-      1e3 * fresh.mean, 1e3 * whole.mean, 100 * whole.mean / (robot.module.l + robot.module.l_fs),
-      1e3 * registration.offset.x(), 1e3 * registration.offset.y(), 1e3 * registration.offset.z());
+      name, robot.module().E / 1e3, robot.module().gamma * 180 / std::numbers::pi,
+      1e3 * fitted.mean, 1e3 * fresh.mean, 1e3 * whole.mean,
+      100 * whole.mean / (robot.module().l + robot.module().l_fs), 1e3 * registration.offset.x(),
+      1e3 * registration.offset.y(), 1e3 * registration.offset.z());
   std::fflush(stdout);
 }
 

@@ -8,19 +8,18 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kInputs = 6;
-
-/// Unknown: M(0) per E J_0/l. Inputs: force at the mount's end over E J_0/l^2, pressures over E.
+/// Unknown: M(0) per unit. Inputs: force at the end of the last mount over unit/length, pressures
+/// over E.
 class RespondingModule : public statics::Responding {
  public:
-  RespondingModule(const Module& module, const Method& method, const Case& row,
+  RespondingModule(const ModuleSeries& series, const Method& method, const Case& row,
                    const Solution& solution)
-      : module_(module), method_(method), row_(row), solution_(solution) {}
+      : series_(series), method_(method), row_(row), solution_(solution) {}
 
+  Eigen::Index inputs() const { return 3 + series_.lines(); }
   VectorXd Units() const {
-    VectorXd units(kInputs);
-    const double force = module_.E * module_.SecondMoment() / (module_.l * module_.l);
-    units << force, force, force, module_.E, module_.E, module_.E;
+    VectorXd units = VectorXd::Constant(inputs(), series_.first().E);
+    units.head<3>().setConstant(series_.unit() / series_.length());
     return units;
   }
 
@@ -43,10 +42,15 @@ class RespondingModule : public statics::Responding {
   std::optional<statics::Shown> Show(const VectorXd& z, const VectorXd& w) const override {
     const Case row = At(w);
     Rod rod = RodOf(row);
-    Rod::State<double> tip;
-    if (!rod.Integrate(Eigen::Vector3d(z), tip)) return std::nullopt;
+    const auto stations = rod.States(z);
+    if (stations.empty()) return std::nullopt;
+    VectorXd ends(3 * static_cast<Eigen::Index>(stations.size()));
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      ends.segment<3>(3 * static_cast<Eigen::Index>(i)) = stations[i].back().head<3>();
+    }
+    const Rod::State<double>& tip = stations.back().back();
     const Eigen::Quaterniond frame(tip[3], tip[4], tip[5], tip[6]);
-    return statics::Shown{tip.head<3>(), frame.normalized(), {}, tip.head<3>()};
+    return statics::Shown{tip.head<3>(), frame.normalized(), {}, ends};
   }
 
  private:
@@ -56,16 +60,16 @@ class RespondingModule : public statics::Responding {
     const VectorXd change = Units().cwiseProduct(w);
     Case row = row_;
     row.load.force += change.head<3>();
-    row.given += change.tail<3>();
+    row.given += change.tail(series_.lines());
     return row;
   }
   Rod RodOf(const Case& row) const {
-    Rod rod(module_, method_, row, 1, kSteps);
-    rod.StartFrom({solution_.base[0], solution_.base[1], solution_.base[2]});
+    Rod rod(series_, method_, row, 1, kSteps);
+    rod.StartFrom(solution_.bases);
     return rod;
   }
 
-  const Module& module_;
+  const ModuleSeries& series_;
   const Method& method_;
   const Case& row_;
   const Solution& solution_;
@@ -73,13 +77,16 @@ class RespondingModule : public statics::Responding {
 
 }  // namespace
 
-std::optional<statics::TipResponse> Respond(const Module& module, const Method& method,
+std::optional<statics::TipResponse> Respond(const ModuleSeries& series, const Method& method,
                                             const Case& row, const Solution& solution) {
-  const RespondingModule responding(module, method, row, solution);
-  const auto slopes = statics::Respond(responding, solution.moment, kInputs);
+  const RespondingModule responding(series, method, row, solution);
+  const auto slopes = statics::Respond(responding, solution.moment, responding.inputs());
   if (!slopes) return std::nullopt;
-  return statics::TipResponse{{"fx", "fy", "fz", "p1", "p2", "p3"},
-                              3,
+  std::vector<std::string> names = {"fx", "fy", "fz"};
+  for (const std::string& p : statics::Numbered("p", static_cast<int>(series.lines()))) {
+    names.push_back(p);
+  }
+  return statics::TipResponse{std::move(names), 3,
                               *slopes * responding.Units().cwiseInverse().asDiagonal()};
 }
 

@@ -26,7 +26,7 @@ constexpr double kClosest = 1e-4;
 struct SectionProblem {
   const Module& module;
   const Method& method;
-  const Eigen::Vector3d& p;
+  const Eigen::VectorXd& p;
   const Eigen::Vector3d& load;  // n_y, M_x, M_z
   double fraction = 1;
 
@@ -50,7 +50,7 @@ struct SectionProblem {
 };
 
 // Seeds: lambda, k_1, k_2, gamma, E.
-Reaction<Dual> Seeded(const Module& module, const Method& method, const Eigen::Vector3d& p,
+Reaction<Dual> Seeded(const Module& module, const Method& method, const Eigen::VectorXd& p,
                       const Axis<double>& axis) {
   const Axis<Dual> seeded{Dual(axis.lambda, 0), Dual(axis.k_1, 1), Dual(axis.k_2, 2)};
   return ReactionOf(module, method, p, Dual(module.E, 4), Dual(module.gamma, 3), seeded);
@@ -77,38 +77,53 @@ bool IsJump(const Module& module, const Axis<double>& from, const Axis<double>& 
   return std::abs(to.lambda - from.lambda) > 0.2 * from.lambda || turn > 0.2;
 }
 
-Rod::Rod(const Module& module, const Method& method, const Case& row, double fraction, int steps)
-    : module_(module),
+bool IsJump(const ModuleSeries& series, const Axes& from, const Axes& to) {
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (IsJump(series[i], from[i], to[i])) return true;
+  }
+  return false;
+}
+
+Axes Unstrained(const ModuleSeries& series) { return Axes(series.size(), Axis<double>{1, 0, 0}); }
+
+Rod::Rod(const ModuleSeries& series, const Method& method, const Case& row, double fraction,
+         int steps)
+    : series_(series),
       method_(method),
-      p_(fraction * row.given),
       force_(fraction * row.load.force),
       gravity_(fraction * row.load.gravity),
       steps_(steps),
-      unit_(module.E * module.SecondMoment() / module.l),
-      at_rest_(Rows(Seeded(module, method, Eigen::Vector3d::Zero(), {1, 0, 0}))
-                   .leftCols<3>()
-                   .determinant()) {}
+      unit_(series.unit()),
+      known_(series.size(), false),
+      bases_(Unstrained(series)) {
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    p_.emplace_back(fraction * series.PressuresOf(i, row.given));
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(p_.back().size());
+    const auto rows = Rows(Seeded(series[i], method, none, {1, 0, 0}));
+    at_rest_.push_back(rows.leftCols<3>().determinant());
+  }
+}
 
-void Rod::StartFrom(const Axis<double>& base) {
-  base_ = base;
-  cold_ = false;
+void Rod::StartFrom(const Axes& bases) {
+  bases_ = bases;
+  known_.assign(known_.size(), true);
 }
 
 // The section's root on the branch that starts unloaded: pressures and load rise together.
 bool Rod::Raise(const Eigen::Vector3d& load, Eigen::Vector3d& x,
                 const numerics::Options& options) const {
-  const double r = module_.r_2;
+  const double r = module().r_2;
   double fraction = 0;
   Axis<double> last{1, 0, 0};
   const auto at = [&](double next) {
     fraction = next;
-    return SectionProblem{module_, method_, p_, load, next};
+    return SectionProblem{module(), method_, p_[at_], load, next};
   };
   const auto on_branch = [&](const Eigen::Vector3d& root) {
     const Axis<double> axis{root[0], root[1] / r, root[2] / r};
-    const auto rows = Rows(Seeded(module_, method_, fraction * p_, axis));
-    if (rows.leftCols<3>().determinant() / at_rest_ <= 0) return false;
-    if (IsJump(module_, last, axis)) return false;
+    const auto rows = Rows(Seeded(module(), method_, fraction * p_[at_], axis));
+    if (rows.leftCols<3>().determinant() / at_rest_[at_] <= 0) return false;
+    if (IsJump(module(), last, axis)) return false;
     last = axis;
     return true;
   };
@@ -120,10 +135,11 @@ bool Rod::SearchSection(const Eigen::Vector3d& load) {
   options.tolerance = 1e-14;
   options.accept = 1e-12;
   options.max_iterations = 20;
-  const double r = module_.r_2;
+  const double r = module().r_2;
   Eigen::Vector3d x(section_.lambda, section_.k_1 * r, section_.k_2 * r);
-  const SectionProblem problem{module_, method_, p_, load};
-  const bool solved = cold_ ? Raise(load, x, options) : numerics::Newton(problem, x, options).ok();
+  const SectionProblem problem{module(), method_, p_[at_], load};
+  const bool solved =
+      !known_[at_] ? Raise(load, x, options) : numerics::Newton(problem, x, options).ok();
   if (!solved) return false;
   Eigen::Vector3d f;
   Eigen::Matrix3d tangent;
@@ -138,14 +154,14 @@ bool Rod::SearchSection(const Eigen::Vector3d& load) {
 bool Rod::FollowNeighbour(const Eigen::Vector3d& load) {
   constexpr int kMostRounds = 8;
   constexpr double kTolerance = 1e-14;
-  const SectionProblem problem{module_, method_, p_, load};
+  const SectionProblem problem{module(), method_, p_[at_], load};
   const Eigen::Vector3d target = problem.Scaled(load);
   SolvedSection at = solved_[next_];
   const auto distance = [&](const SolvedSection& s) {
     return s.inverse.isZero(0) ? std::numeric_limits<double>::infinity()
                                : (s.load - target).squaredNorm();
   };
-  if (next_ > 0 && distance(solved_[next_ - 1]) < distance(at)) at = solved_[next_ - 1];
+  if (next_ > first_ && distance(solved_[next_ - 1]) < distance(at)) at = solved_[next_ - 1];
   if (at.inverse.isZero(0)) return false;
   Eigen::Vector3d step = at.inverse * (target - at.load), f, before;
   at.x += step;
@@ -175,18 +191,18 @@ bool Rod::FollowNeighbour(const Eigen::Vector3d& load) {
 
 bool Rod::SolveSection(const Eigen::Vector3d& load) {
   if (solved_.size() <= next_) solved_.resize(next_ + 1);
-  if ((cold_ || !FollowNeighbour(load)) && !SearchSection(load)) return false;
+  if ((!known_[at_] || !FollowNeighbour(load)) && !SearchSection(load)) return false;
   const Eigen::Vector3d& x = solved_[next_++].x;
-  section_ = {x[0], x[1] / module_.r_2, x[2] / module_.r_2};
-  cold_ = false;
+  section_ = {x[0], x[1] / module().r_2, x[2] / module().r_2};
+  known_[at_] = true;
   return true;
 }
 
 bool Rod::Strains(const Eigen::Vector3d& n, const Eigen::Vector3d& M, Strain<double>& strain) {
   if (!SolveSection({n[1], M[0], M[2]})) return false;
   const Axis<double>& u = section_;
-  const auto reaction = ReactionOf(module_, method_, p_, module_.E, module_.gamma, u);
-  const double G = module_.E / 3;
+  const auto reaction = ReactionOf(module(), method_, p_[at_], module().E, module().gamma, u);
+  const double G = module().E / 3;
   strain.xi << n[0] / (G * reaction.area), u.lambda - 1, n[2] / (G * reaction.area);
   strain.zeta << -u.lambda * u.k_2, M[1] / (G * reaction.polar), -u.lambda * u.k_1;
   return true;
@@ -197,7 +213,7 @@ bool Rod::Strains(const Eigen::Vector3d& n, const Eigen::Vector3d& M, Strain<dou
 bool Rod::Strains(const Eigen::Matrix<Dual, 3, 1>& n, const Eigen::Matrix<Dual, 3, 1>& M,
                   Strain<Dual>& strain) {
   if (!SolveSection({n[1].a, M[0].a, M[2].a})) return false;
-  const Reaction<Dual> reaction = Seeded(module_, method_, p_, section_);
+  const Reaction<Dual> reaction = Seeded(module(), method_, p_[at_], section_);
   const Eigen::Matrix<double, 3, 5> rows = Rows(reaction);
   Watch(rows.leftCols<3>());
   Eigen::Matrix<double, 3, 5> load;
@@ -213,7 +229,7 @@ bool Rod::Strains(const Eigen::Matrix<Dual, 3, 1>& n, const Eigen::Matrix<Dual, 
   const Dual lambda(section_.lambda, seeds.row(0).transpose());
   const Dual k_1(section_.k_1, seeds.row(1).transpose());
   const Dual k_2(section_.k_2, seeds.row(2).transpose());
-  const Dual G = Dual(module_.E, 4) / 3.0;
+  const Dual G = Dual(module().E, 4) / 3.0;
   const Dual shear = G * chain(reaction.area);
   strain.xi << n[0] / shear, lambda - 1.0, n[2] / shear;
   strain.zeta << -lambda * k_2, M[1] / (G * chain(reaction.polar)), -lambda * k_1;
@@ -222,15 +238,15 @@ bool Rod::Strains(const Eigen::Matrix<Dual, 3, 1>& n, const Eigen::Matrix<Dual, 
 
 // The exact tangent of the section solved last.
 void Rod::Keep(const Eigen::Matrix3d& inverse) {
-  const double r = module_.r_2;
+  const double r = module().r_2;
   const Eigen::Vector3d size(1, r, r);
   solved_[next_ - 1].inverse =
-      size.asDiagonal() * inverse * size.asDiagonal() * (module_.E * module_.Area());
+      size.asDiagonal() * inverse * size.asDiagonal() * (module().E * module().Area());
 }
 
 void Rod::Watch(const Eigen::Matrix3d& tangent) {
-  reserve_.domain = std::min(reserve_.domain, Margin(module_, method_, section_));
-  reserve_.stiffness = std::min(reserve_.stiffness, tangent.determinant() / at_rest_);
+  reserve_.domain = std::min(reserve_.domain, Margin(module(), method_, section_));
+  reserve_.stiffness = std::min(reserve_.stiffness, tangent.determinant() / at_rest_[at_]);
   // Rows n_y, M_x, M_z; columns lambda, k_1, k_2: M_x = -EK lambda k_2, M_z = -EK lambda k_1.
   const double x = -tangent(1, 2);
   const double z = -tangent(2, 1);
@@ -239,7 +255,7 @@ void Rod::Watch(const Eigen::Matrix3d& tangent) {
 }
 
 Eigen::Vector3d Rod::Force(double s) const {
-  return force_ + (module_.m_fs + module_.m * (1 - s / module_.l)) * gravity_;
+  return series_.Above(at_, force_, gravity_) + module().m * (1 - s / module().l) * gravity_;
 }
 
 template <class T>
@@ -266,10 +282,50 @@ bool Rod::Slope(const State<T>& state, double s, State<T>& slope) {
   return true;
 }
 
+// To the lower end of a module, along the mount of the one before it.
 template <class T>
-bool Rod::Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<State<double>>* states) {
+void Rod::Enter(std::size_t module, State<T>& state) {
+  at_ = module;
+  first_ = next_;
+  section_ = bases_[module];
+  if (module == 0) return;
+  using Vector = Eigen::Matrix<T, 3, 1>;
+  const Vector t = Tangent<T>(state);
+  const Vector lever = series_.Lever(module - 1, force_, gravity_).template cast<T>();
+  state.template head<3>() += t * T(series_[module - 1].l_fs);
+  state.template tail<3>() -= t.cross(lever);
+}
+
+template <class T>
+bool Rod::RunModule(State<T>& state, Stations* stations) {
+  State<T> slope = State<T>::Zero();
+  bool carried = Slope(state, 0, slope);
+  if (!carried) return false;
+  bases_[at_] = section_;
+  const auto keep = [&] {
+    if (stations) {
+      stations->back().push_back(state.unaryExpr([](const T& x) { return Value(x); }));
+    }
+  };
+  if (stations) stations->emplace_back();
+  keep();
+  using namespace boost::numeric::odeint;
+  runge_kutta_fehlberg78<State<T>, double, State<T>, double, vector_space_algebra> stepper;
+  const auto system = [&](const State<T>& at, State<T>& out, double s) {
+    carried = carried && Slope(at, s, out);
+    if (!carried) out.setZero();
+  };
+  const double h = module().l / steps_;
+  for (int i = 0; carried && i < steps_; ++i) {
+    stepper.do_step(system, state, i * h, h);
+    keep();
+  }
+  return carried;
+}
+
+template <class T>
+bool Rod::Run(const Eigen::Vector3d& moment, State<T>& state, Stations* stations) {
   reserve_ = {};
-  section_ = base_;
   next_ = 0;
   state.setZero();
   state[3] = T(1.0);
@@ -280,22 +336,11 @@ bool Rod::Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<State<
       state[7 + i] = Dual(moment[i], i) * unit_;
     }
   }
-  State<T> slope = State<T>::Zero();
-  bool carried = Slope(state, 0, slope);
-  if (!carried) return false;
-  base_ = section_;
-  using namespace boost::numeric::odeint;
-  runge_kutta_fehlberg78<State<T>, double, State<T>, double, vector_space_algebra> stepper;
-  const auto system = [&](const State<T>& at, State<T>& out, double s) {
-    carried = carried && Slope(at, s, out);
-    if (!carried) out.setZero();
-  };
-  const double h = module_.l / steps_;
-  for (int i = 0; carried && i < steps_; ++i) {
-    stepper.do_step(system, state, i * h, h);
-    if (states) states->push_back(state.unaryExpr([](const T& x) { return Value(x); }));
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    Enter(i, state);
+    if (!RunModule(state, stations)) return false;
   }
-  return carried;
+  return true;
 }
 
 bool Rod::Integrate(const Eigen::Vector3d& moment, State<double>& tip) {
@@ -306,19 +351,41 @@ bool Rod::Integrate(const Eigen::Vector3d& moment, State<Dual>& tip) {
   return Run(moment, tip, nullptr);
 }
 
-std::vector<Rod::State<double>> Rod::States(const Eigen::Vector3d& moment) {
-  State<double> tip = State<double>::Zero();
-  tip[3] = 1;
-  tip.tail<3>() = moment * unit_;
-  std::vector<State<double>> states = {tip};
-  if (!Run(moment, tip, &states)) states.clear();
-  return states;
+std::vector<std::vector<Rod::State<double>>> Rod::States(const Eigen::Vector3d& moment) {
+  State<double> tip;
+  Stations stations;
+  if (!Run(moment, tip, &stations)) stations.clear();
+  return stations;
 }
 
-std::vector<Eigen::Vector3d> Rod::Line(const Eigen::Vector3d& moment) {
-  std::vector<Eigen::Vector3d> line;
-  for (const State<double>& state : States(moment)) line.emplace_back(state.head<3>());
-  return line;
+std::vector<Axes> Rod::Sections(const Eigen::Vector3d& moment) {
+  std::vector<Axes> sections;
+  const Stations stations = States(moment);
+  solved_.clear();
+  next_ = 0;
+  for (at_ = 0; at_ < stations.size(); ++at_) {
+    sections.emplace_back();
+    first_ = next_;
+    section_ = bases_[at_];
+    for (std::size_t i = 0; i < stations[at_].size(); ++i) {
+      const State<double>& state = stations[at_][i];
+      const Eigen::Matrix3d R = Rotation(state);
+      const Eigen::Vector3d n = R.transpose() * Force(module().l * static_cast<double>(i) / steps_);
+      const Eigen::Vector3d M = R.transpose() * state.tail<3>();
+      if (!SolveSection({n[1], M[0], M[2]})) return {};
+      sections.back().push_back(section_);
+    }
+  }
+  return sections;
+}
+
+std::vector<std::vector<Eigen::Vector3d>> Rod::Lines(const Eigen::Vector3d& moment) {
+  std::vector<std::vector<Eigen::Vector3d>> lines;
+  for (const auto& states : States(moment)) {
+    lines.emplace_back();
+    for (const State<double>& state : states) lines.back().emplace_back(state.head<3>());
+  }
+  return lines;
 }
 
 template <class T>
@@ -329,7 +396,7 @@ Eigen::Matrix<T, 3, 1> Rod::Tangent(const State<T>& state) {
 template <class T>
 Eigen::Matrix<T, 3, 1> Rod::Mismatch(const State<T>& tip) const {
   using Vector = Eigen::Matrix<T, 3, 1>;
-  const Eigen::Vector3d load = module_.l_fs * (force_ + 0.5 * module_.m_fs * gravity_);
+  const Eigen::Vector3d load = series_.Lever(series_.size() - 1, force_, gravity_);
   const Vector moment = Tangent<T>(tip).cross(Vector(load.cast<T>()));
   const Vector mismatch = tip.template tail<3>() - moment;
   return mismatch * T(1 / unit_);

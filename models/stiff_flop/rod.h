@@ -35,9 +35,17 @@ struct SolvedSection {
 /// stretch or of the curvature that folds.
 bool IsJump(const Module& module, const Axis<double>& from, const Axis<double>& to);
 
-/// The initial value problem of a module under a fraction of its pressures and loads: forward.h.
+using Axes = std::vector<Axis<double>>;  ///< of the lower end of every module, as a rule
+
+/// Whether any of them is.
+bool IsJump(const ModuleSeries& series, const Axes& from, const Axes& to);
+/// Those of unstrained modules.
+Axes Unstrained(const ModuleSeries& series);
+
+/// The initial value problem of modules in series under a fraction of their pressures and loads:
+/// forward.h.
 ///
-/// A section is solved from the one before it, so that a rod stays on one branch.
+/// A section is solved from the one before it, so that a module stays on one branch.
 class Rod {
  public:
   /// Derivatives by M(0) per unit() (three), gamma and E.
@@ -46,33 +54,35 @@ class Rod {
   template <class T>
   using State = Eigen::Matrix<T, 10, 1>;
 
-  /// module and method must outlive the rod.
-  Rod(const Module& module, const Method& method, const Case& row, double fraction, int steps);
+  /// series and method must outlive the rod. steps: of every module.
+  Rod(const ModuleSeries& series, const Method& method, const Case& row, double fraction,
+      int steps);
+  Rod(ModuleSeries&&, const Method&, const Case&, double, int) = delete;
 
-  /// A base section near the one to come. Without it the first integration raises pressures and
-  /// load of the base section from zero.
-  void StartFrom(const Axis<double>& base);
+  /// Lower sections of the modules near those to come. Without them the first integration raises
+  /// pressures and load of these sections from zero.
+  void StartFrom(const Axes& bases);
 
-  int steps() const { return steps_; }
-  /// E J_0/l [N m].
-  double unit() const { return unit_; }
-
-  /// From the base, with M(0) = moment unit(), to s = l. False when a section cannot carry its
-  /// load inside the domain.
+  /// From the base, with M(0) = moment ModuleSeries::unit(), to the end of the last soft part.
+  /// False when a section cannot carry its load inside the domain.
   bool Integrate(const Eigen::Vector3d& moment, State<double>& tip);
   bool Integrate(const Eigen::Vector3d& moment, State<Dual>& tip);
 
-  /// M(l) minus the moment of mount and tip force, per unit().
+  /// M there minus the moment of the last mount and the tip force, per unit.
   template <class T>
   Eigen::Matrix<T, 3, 1> Mismatch(const State<T>& tip) const;
 
-  /// The states at steps() + 1 even stations; empty when a section cannot carry its load.
-  std::vector<State<double>> States(const Eigen::Vector3d& moment);
-  /// Their places: the axis.
-  std::vector<Eigen::Vector3d> Line(const Eigen::Vector3d& moment);
+  /// Of every module the states at its steps + 1 even stations; empty when a section cannot carry
+  /// its load.
+  std::vector<std::vector<State<double>>> States(const Eigen::Vector3d& moment);
+  /// Strains of the sections there.
+  std::vector<Axes> Sections(const Eigen::Vector3d& moment);
+  /// The places of the states: the axes.
+  std::vector<std::vector<Eigen::Vector3d>> Lines(const Eigen::Vector3d& moment);
 
-  /// Strains at the base and reserve of the last integration (the latter with derivatives only).
-  const Axis<double>& base() const { return base_; }
+  /// Strains at the lower ends and reserve of the last integration (the latter with derivatives
+  /// only).
+  const Axes& bases() const { return bases_; }
   const Reserve& reserve() const { return reserve_; }
 
   /// Unit vector d_2 of a state.
@@ -85,8 +95,14 @@ class Rod {
     Eigen::Matrix<T, 3, 1> xi, zeta;
   };
 
+  using Stations = std::vector<std::vector<State<double>>>;
+
   template <class T>
-  bool Run(const Eigen::Vector3d& moment, State<T>& state, std::vector<State<double>>* states);
+  bool Run(const Eigen::Vector3d& moment, State<T>& state, Stations* stations);
+  template <class T>
+  bool RunModule(State<T>& state, Stations* stations);
+  template <class T>
+  void Enter(std::size_t module, State<T>& state);
   template <class T>
   bool Slope(const State<T>& state, double s, State<T>& slope);
   bool Strains(const Eigen::Vector3d& n, const Eigen::Vector3d& M, Strain<double>& strain);
@@ -100,18 +116,21 @@ class Rod {
   void Keep(const Eigen::Matrix3d& inverse);
   void Watch(const Eigen::Matrix3d& tangent);
   Eigen::Vector3d Force(double s) const;
+  const Module& module() const { return series_[at_]; }
 
-  const Module& module_;
+  const ModuleSeries& series_;
   const Method& method_;
-  Eigen::Vector3d p_, force_, gravity_;
+  std::vector<Eigen::VectorXd> p_;  // of every module
+  Eigen::Vector3d force_, gravity_;
   int steps_;
   double unit_;
-  double at_rest_;  // determinant of the tangent of the unloaded section
-  bool cold_ = true;
+  std::vector<double> at_rest_;  // determinants of the tangents of unloaded sections, by module
+  std::size_t at_ = 0;           // the module that is looked at
+  std::vector<bool> known_;      // whether a section of the module has been solved
   std::vector<SolvedSection> solved_;  // of this integration or the one before, in order
-  std::size_t next_ = 0;               // the one to come
+  std::size_t first_ = 0, next_ = 0;   // of the module; the one to come
   Axis<double> section_ = {1, 0, 0};   // the last one that was solved
-  Axis<double> base_ = {1, 0, 0};
+  Axes bases_;
   Reserve reserve_;
 };
 

@@ -14,40 +14,61 @@ Axis<double> AxisAt(const Vector3d& zeta, double lambda) {
 
 }  // namespace
 
-RodLaw::RodLaw(const Module& module, const Method& method, const Case& row, double share,
+RodLaw::RodLaw(const ModuleSeries& series, const Method& method, const Case& row, double share,
                int pieces)
-    : module_(module),
+    : series_(series),
       method_(method),
-      p_(share * row.given),
       force_(share * row.load.force),
       gravity_(share * row.load.gravity),
-      unit_(module.E * module.SecondMoment() / module.l),
-      axes_(static_cast<std::size_t>(pieces), Axis<double>{1, 0, 0}) {
-  statics::RodSection section;
-  const Vector3d pressures = p_;
-  p_.setZero();
-  if (At(0, Vector3d::Zero(), Vector3d::Zero(), section)) elastic_ = section.moment_by_zeta;
-  p_ = pressures;
+      pieces_(pieces),
+      length_(series.length()),
+      unit_(series.unit()),
+      elastic_(series.size(), Eigen::Matrix3d::Identity()),
+      axes_(series.size() * static_cast<std::size_t>(pieces), Axis<double>{1, 0, 0}) {
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const Eigen::VectorXd pressures = share * series.PressuresOf(i, row.given);
+    p_.emplace_back(Eigen::VectorXd::Zero(pressures.size()));
+    statics::RodSection section;
+    const int first = static_cast<int>(i) * pieces;
+    if (At(first, Vector3d::Zero(), Vector3d::Zero(), section))
+      elastic_[i] = section.moment_by_zeta;
+    p_.back() = pressures;
+  }
+}
+
+std::vector<double> RodLaw::Lengths() const {
+  std::vector<double> lengths;
+  for (const Module& module : series_.modules) {
+    lengths.insert(lengths.end(), static_cast<std::size_t>(pieces_),
+                   module.l / (length_ * pieces_));
+  }
+  return lengths;
 }
 
 Vector3d RodLaw::Force(double s) const {
-  return module_.l / unit_ * (force_ + (module_.m_fs + module_.m * (1 - s)) * gravity_);
+  std::size_t at = 0;
+  double way = s * length_;
+  while (at + 1 < series_.size() && way > series_[at].l) way -= series_[at++].l;
+  const double beyond = series_[at].m * (1 - way / series_[at].l);
+  return length_ / unit_ * (series_.Above(at, force_, gravity_) + beyond * gravity_);
 }
 
-Vector3d RodLaw::TipLever() const {
-  return module_.l_fs / unit_ * (force_ + 0.5 * module_.m_fs * gravity_);
+Vector3d RodLaw::Lever(int node) const {
+  if (node % pieces_ != 0) return Vector3d::Zero();
+  return series_.Lever(ModuleOf(node - 1), force_, gravity_) / unit_;
 }
 
-bool RodLaw::FindStretch(const Vector3d& zeta, double n_y, Axis<double>& axis,
+bool RodLaw::FindStretch(std::size_t at, const Vector3d& zeta, double n_y, Axis<double>& axis,
                          Reaction<Dual>& reaction) const {
   constexpr double kClosest = 1e-4;  // to a fold of the section, as in rod.cc
-  const double scale = module_.E * module_.Area();
+  const Module& module = series_[at];
+  const double scale = module.E * module.Area();
   double lambda = axis.lambda;
   for (int round = 0; round < 40; ++round) {
     axis = AxisAt(zeta, lambda);
-    if (!(lambda > 0) || !(Margin(module_, method_, axis) > kClosest)) return false;
+    if (!(lambda > 0) || !(Margin(module, method_, axis) > kClosest)) return false;
     const Axis<Dual> seeded{Dual(axis.lambda, 0), Dual(axis.k_1, 1), Dual(axis.k_2, 2)};
-    reaction = ReactionOf(module_, method_, p_, Dual(module_.E), Dual(module_.gamma), seeded);
+    reaction = ReactionOf(module, method_, p_[at], Dual(module.E), Dual(module.gamma), seeded);
     const auto& v = reaction.n_y.v;
     const double slope = v[0] - (v[1] * axis.k_1 + v[2] * axis.k_2) / lambda;
     const double rest = reaction.n_y.a - n_y;
@@ -58,9 +79,9 @@ bool RodLaw::FindStretch(const Vector3d& zeta, double n_y, Axis<double>& axis,
   return false;
 }
 
-void RodLaw::Fill(const Vector3d& zeta, const Vector3d& n, const Axis<double>& axis,
+void RodLaw::Fill(std::size_t at, const Vector3d& zeta, const Vector3d& n, const Axis<double>& axis,
                   const Reaction<Dual>& reaction, statics::RodSection& section) const {
-  const double G = module_.E / 3, lambda = axis.lambda, l = module_.l;
+  const double G = series_[at].E / 3, lambda = axis.lambda, l = length_;
   // d(lambda, k_1, k_2) by (zeta, n).
   Eigen::Matrix<double, 3, 6> by = Eigen::Matrix<double, 3, 6>::Zero();
   by(1, 2) = by(2, 0) = -1 / lambda;
@@ -91,13 +112,14 @@ void RodLaw::Fill(const Vector3d& zeta, const Vector3d& n, const Axis<double>& a
 }
 
 bool RodLaw::At(int piece, const Vector3d& zeta, const Vector3d& n, statics::RodSection& section) {
-  const Vector3d curved = zeta / module_.l, carried = n * unit_ / module_.l;
+  const Vector3d curved = zeta / length_, carried = n * unit_ / length_;
+  const std::size_t at = ModuleOf(piece);
   Axis<double>& axis = axes_[static_cast<std::size_t>(piece)];
   Axis<double> found = axis;
   Reaction<Dual> reaction;
-  if (!FindStretch(curved, carried.y(), found, reaction)) return false;
+  if (!FindStretch(at, curved, carried.y(), found, reaction)) return false;
   axis = found;
-  Fill(curved, carried, axis, reaction, section);
+  Fill(at, curved, carried, axis, reaction, section);
   return true;
 }
 

@@ -7,8 +7,9 @@
 
 namespace continuum::stiff_flop {
 
-/// A section of the module (elastic.h) as a law for statics::RodChain, under a share of pressures
-/// and loads, in units of l and E J_0/l: the stretch lambda is the one that carries n_y,
+/// Sections of modules in series (elastic.h) as a law for statics::RodChain, under a share of
+/// pressures and loads, in units of ModuleSeries::length() and ModuleSeries::unit(): the stretch
+/// lambda is the one that carries n_y,
 ///
 ///   n_y(lambda, k) = n_y,  zeta_x = -lambda k_2,  zeta_z = -lambda k_1                      (1)
 ///
@@ -17,14 +18,18 @@ class RodLaw {
  public:
   static constexpr bool kShear = true;
 
-  /// module, method and row must outlive it.
-  RodLaw(const Module& module, const Method& method, const Case& row, double share, int pieces);
+  /// series, method and row must outlive it. pieces: of every module.
+  RodLaw(const ModuleSeries& series, const Method& method, const Case& row, double share,
+         int pieces);
+  RodLaw(ModuleSeries&&, const Method&, const Case&, double, int) = delete;
 
   double length() const { return 1; }
   Eigen::Vector3d axis() const { return Eigen::Vector3d::UnitY(); }
   Eigen::Vector3d Force(double s) const;
-  Eigen::Vector3d TipLever() const;
-  Eigen::Matrix3d elastic() const { return elastic_; }
+  Eigen::Vector3d Lever(int node) const;
+  Eigen::Matrix3d ElasticOf(int piece) const { return elastic_[ModuleOf(piece)]; }
+  /// Of all pieces, for the chain.
+  std::vector<double> Lengths() const;
   bool Prepare(const Eigen::Matrix3Xd& /*zeta*/) { return true; }
   bool At(int piece, const Eigen::Vector3d& zeta, const Eigen::Vector3d& n,
           statics::RodSection& section);
@@ -34,16 +39,20 @@ class RodLaw {
  private:
   using Dual = ceres::Jet<double, 3>;  // by lambda, k_1, k_2
 
-  bool FindStretch(const Eigen::Vector3d& zeta, double n_y, Axis<double>& axis,
+  std::size_t ModuleOf(int piece) const { return static_cast<std::size_t>(piece / pieces_); }
+  bool FindStretch(std::size_t module, const Eigen::Vector3d& zeta, double n_y, Axis<double>& axis,
                    Reaction<Dual>& reaction) const;
-  void Fill(const Eigen::Vector3d& zeta, const Eigen::Vector3d& n, const Axis<double>& axis,
-            const Reaction<Dual>& reaction, statics::RodSection& section) const;
+  void Fill(std::size_t module, const Eigen::Vector3d& zeta, const Eigen::Vector3d& n,
+            const Axis<double>& axis, const Reaction<Dual>& reaction,
+            statics::RodSection& section) const;
 
-  const Module& module_;
+  const ModuleSeries& series_;
   const Method& method_;
-  Eigen::Vector3d p_, force_, gravity_;
-  double unit_;  // E J_0/l [N m]
-  Eigen::Matrix3d elastic_ = Eigen::Matrix3d::Identity();
+  std::vector<Eigen::VectorXd> p_;
+  Eigen::Vector3d force_, gravity_;
+  int pieces_;
+  double length_, unit_;
+  std::vector<Eigen::Matrix3d> elastic_;  // of every module
   std::vector<Axis<double>> axes_;
 };
 

@@ -9,16 +9,6 @@
 
 namespace continuum::stiff_flop {
 
-/// The module's axis where the three tubes are looked at: stretch lambda and curvature
-/// (k_1, k_2) = kappa (cos phi, sin phi) [1/m], regular where phi is not.
-template <class T>
-struct Axis {
-  T lambda, k_1, k_2;
-
-  Bend<T> bend() const { return {lambda, Magnitude(k_1, k_2)}; }
-  Axis<double> value() const { return {Value(lambda), Value(k_1), Value(k_2)}; }
-};
-
 /// r_od = r_o/sqrt(lambda) [m]; the body law `fixed` moves nothing.
 template <class T>
 T TubeDistance(const Module& module, BodyLaw law, const T& lambda) {
@@ -28,14 +18,14 @@ T TubeDistance(const Module& module, BodyLaw law, const T& lambda) {
 
 /// 1 - t_i of line i (4), t_i = kappa r_od cos(psi_i - phi): its length over that of the axis.
 template <class T>
-T RelativeLength(const Axis<T>& axis, const T& r_od, int line) {
-  return 1.0 - r_od * (axis.k_1 * kLine[line][0] + axis.k_2 * kLine[line][1]);
+T RelativeLength(const Module& module, const Axis<T>& axis, const T& r_od, std::size_t line) {
+  return 1.0 - r_od * (axis.k_1 * module.lines[line][0] + axis.k_2 * module.lines[line][1]);
 }
 
 /// lambda_ci = lambda (1 - t_i), kappa_ci = kappa/(1 - t_i): the same angle of bending.
 template <class T>
-Bend<T> TubeBend(const Axis<T>& axis, const T& r_od, int line) {
-  const T length = RelativeLength(axis, r_od, line);
+Bend<T> TubeBend(const Module& module, const Axis<T>& axis, const T& r_od, std::size_t line) {
+  const T length = RelativeLength(module, axis, r_od, line);
   const Bend<T> bend = axis.bend();
   return {bend.lambda * length, bend.kappa / length};
 }

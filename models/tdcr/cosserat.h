@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "models/statics/slide.h"
+#include "models/tdcr/contact_factors.h"
 #include "models/tdcr/line.h"
 #include "models/tdcr/section_moment.h"
 #include "models/tdcr/unit_rod.h"
@@ -79,6 +80,7 @@ class RodBalance {
   void SetSteps(int steps) { steps_ = steps; }
   int steps() const { return steps_; }
 
+  using Factors = ContactFactors;
   template <class T>
   bool operator()(const T* x, T* f) const;
   /// Of contacts that remember.

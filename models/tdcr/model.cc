@@ -44,6 +44,7 @@ int Steps(int arcs) { return std::max(1, (9 + arcs - 1) / arcs); }
 Outcome Refine(const Robot& robot, RodBalance& balance, Outcome outcome, Eigen::Vector3d& x,
                Solution& solution) {
   constexpr double kAccuracy = 2e-8;  // of L; the contract asks for 1e-7
+  constexpr double kLeast = 1e-7;     // friction has a kink where a tendon is straight
   for (int refinement = 0; outcome.ok(); ++refinement) {
     const int steps = balance.steps();
     const auto coarse = balance.Integrate(x);
@@ -53,7 +54,7 @@ Outcome Refine(const Robot& robot, RodBalance& balance, Outcome outcome, Eigen::
                          (fine.residual - coarse.residual).norm();
     solution.u = fine.middles;
     solution.disks = fine.disks;
-    if (error <= kAccuracy) {
+    if (error <= (refinement == 7 ? kLeast : kAccuracy)) {
       solution.line = balance.LineOf(fine);
       break;
     }

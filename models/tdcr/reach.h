@@ -16,4 +16,10 @@ struct Before {
 statics::Reached Reach(const Robot& robot, const Loads& loads, Method method,
                        const statics::Target& target, const Before* before);
 
+/// The lengths [m] of tendons that bring disks to a target (statics::Wind), for loads that are
+/// driven by length: from those of the least tensions, which are looked for from the tensions of
+/// the given lengths.
+statics::Reached ReachByLengths(const Robot& robot, const Loads& loads, Method method,
+                                const statics::Target& target, const Before* before);
+
 }  // namespace continuum::tdcr

@@ -74,10 +74,10 @@ int Reference(const CsvTable& table, std::size_t row, const std::vector<Case>& c
 // A tension or a length.
 double ReadDrive(const CsvTable& table, std::size_t row, const std::string& column) {
   const double value = table.Number(row, column);
-  if (value >= 0) return value;
+  const bool length = column[0] == 'L';
+  if (length ? value > 0 : value >= 0) return value;
   throw Error::Input(table.Where(row) + ", column '" + column + "'",
-                     column[0] == 'L' ? "a length of at least 0" : "a tension of at least 0",
-                     Decimal(value));
+                     length ? "a length above 0" : "a tension of at least 0", Decimal(value));
 }
 
 }  // namespace

@@ -158,7 +158,8 @@ int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law
   if (!law.friction() && !law.holds()) return chain.UnstableDirections();
   const int pieces = chain.pieces();
   const std::vector<double> lengths = law.lengths();
-  // What tensions do to the nodes, and how they follow the strains, which follow the turns.
+  // What tensions do to the nodes, and how they follow the strains, which follow the turns. A
+  // tension of a piece acts on its two nodes alone.
   Eigen::MatrixXd force = Eigen::MatrixXd::Zero(3 * pieces, law.pulling() * pieces);
   Eigen::MatrixXd follow(law.pulling() * pieces, 3 * pieces);
   Eigen::Matrix3Xd zeta = chain.zeta();
@@ -186,7 +187,12 @@ int UnstableDirections(const statics::RodChain<RodLaw>& chain, const RodLaw& law
     follow.middleCols<3>(3 * i) = turned;
     if (i > 0) follow.middleCols<3>(3 * (i - 1)) -= turned;
   }
-  const Eigen::MatrixXd k = chain.Dense() + force * follow + HeldTendons(law, force);
+  Eigen::MatrixXd k = chain.Dense() + HeldTendons(law, force);
+  for (int i = 0; i < pieces; ++i) {
+    const int first = 3 * std::max(0, i - 1), rows = 3 * i + 3 - first, pulling = law.pulling();
+    k.middleRows(first, rows) +=
+        force.block(first, pulling * i, rows, pulling) * follow.middleRows(pulling * i, pulling);
+  }
   const Eigen::MatrixXd symmetric = 0.5 * (k + k.transpose());
   if (Eigen::LLT<Eigen::MatrixXd>(symmetric).info() == Eigen::Success) return 0;
   return NegativeEigenvalues(symmetric);

@@ -29,7 +29,6 @@ class RodLaw {
 
   double length() const { return 1; }
   Eigen::Vector3d axis() const { return Eigen::Vector3d::UnitZ(); }
-  Eigen::Vector3d TipLever() const { return Eigen::Vector3d::Zero(); }
   Eigen::Matrix3d ElasticOf(int piece) const {
     return rod_.Arc(ArcOf(piece)).stiffness.asDiagonal();
   }

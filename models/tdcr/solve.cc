@@ -53,7 +53,10 @@ void CheckLists(const SolveRequest& request, const std::string& method) {
   const bool measured = !request.measured.empty();
   Refuse(request.equilibria && other, "--equilibria", jobs);
   Refuse(request.sweep != 0 && (other || measured), "--sweep", "--measured, " + jobs);
-  if (!request.follow.empty()) throw Error::Input("--follow", "no such option for a tdcr robot");
+  for (const auto& [option, file] :
+       {std::pair("--follow", &request.follow), std::pair("--outlines", &request.outlines)}) {
+    if (!file->empty()) throw Error::Input(option, "no such option for a tdcr robot");
+  }
   Refuse(!request.reach.empty() && (other || request.equilibria || measured), "--reach",
          "--equilibria, --measured, " + jobs);
   for (const auto& [option, file] :
@@ -148,13 +151,15 @@ void AddHalfway(const Robot& robot, Method method, const Case& from, const Case&
   for (std::size_t k = 0; k < half.tension.size(); ++k) {
     half.tension[k] = 0.5 * (from.loads.tension[k] + to.loads.tension[k]);
   }
+  half.length = 0.5 * (from.loads.length + to.loads.length);
   const Solution s = SolveFrom(robot, from.loads, before, half, method);
   if (!s.outcome.ok()) return;
   error.Halfway(to.name, s.disks.rightCols<1>(), before.disks.rightCols<1>(),
                 after.disks.rightCols<1>());
 }
 
-// The case whose target it is, with its tensions; its reference is among those solved before.
+// The case whose target it is, with its tensions or lengths; its reference is among those solved
+// before.
 Solved ReachTarget(const Robot& robot, Method method, const statics::Target& target,
                    const std::vector<Case>& cases, const std::vector<Solved>& solved, Case& c) {
   std::optional<Before> before;
@@ -167,14 +172,23 @@ Solved ReachTarget(const Robot& robot, Method method, const statics::Target& tar
     s.solution.outcome.why = "its reference failed";
     return s;
   }
-  const auto reached = Reach(robot, c.loads, method, target, before ? &*before : nullptr);
+  const bool by_length = c.loads.length.size() > 0;
+  const auto reached = (by_length ? ReachByLengths : Reach)(robot, c.loads, method, target,
+                                                            before ? &*before : nullptr);
   s.miss = reached.miss;
   if (reached.outcome.ok()) {
-    c.loads.tension.assign(reached.drives.begin(), reached.drives.end());
-    s.loads = c.loads;
+    if (by_length) {
+      c.loads.length = reached.drives;
+    } else {
+      c.loads.tension.assign(reached.drives.begin(), reached.drives.end());
+    }
     s.solution = before ? SolveFrom(robot, before->loads, before->solution, c.loads, method)
                         : SolveCase(robot, c.loads, method);
-    s.solution.pull = reached.drives;
+    if (!by_length) s.solution.pull = reached.drives;
+    if (s.solution.outcome.ok()) {
+      c.loads.tension.assign(s.solution.pull.begin(), s.solution.pull.end());
+    }
+    s.loads = c.loads;
     if (before) s.loads.from = LeftBy(robot, before->loads, method, before->solution);
   } else {
     s.solution.outcome = reached.outcome;
@@ -184,7 +198,6 @@ Solved ReachTarget(const Robot& robot, Method method, const statics::Target& tar
 
 int ReachTargets(const SolveRequest& request, const Robot& robot, Method method) {
   auto cases = ReadInput(request, robot);
-  RefuseLengths(request, cases, "--reach");
   const auto targets =
       statics::TargetsOf(statics::ReadTargets(CsvTable::Read(request.reach), robot.disks),
                          Names(cases), request.reach.string());

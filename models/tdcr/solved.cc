@@ -41,6 +41,7 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
   const bool reaches = !request.reach.empty();
   Append(statics::DetailColumns{robot.tendons, by_length, reaches, request.equilibria}.Names(),
          columns);
+  if (by_length && reaches) Append(statics::Numbered("L", robot.tendons), columns);
   return columns;
 }
 
@@ -170,6 +171,7 @@ int Report(const SolveRequest& request, const Robot& robot, const std::vector<So
     auto details = Describe(robot, s.loads, MethodOf(request, robot), s.solution);
     details.miss = s.miss;
     Set(details, s.equilibrium, results);
+    if (s.miss) statics::SetEach("L", s.loads.length, results);
   }
   statics::Write(results, request);
   if (!request.shape.empty()) WriteShapes(request, robot, solved);

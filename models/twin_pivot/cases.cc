@@ -115,6 +115,7 @@ Load ReadLoad(const CsvTable& table, std::size_t row, const std::vector<std::str
     const double value = NotNegative(table, row, column);
     load.tension.push_back(table.Has("L1") ? 0 : scale * value);
     if (!table.Has("L1")) continue;
+    if (value == 0) throw Error::Input(Cell(table, row, column), "a length above 0", "0");
     load.length.conservativeResize(static_cast<Eigen::Index>(load.tension.size()));
     load.length.tail<1>()[0] = value;
   }

@@ -16,12 +16,18 @@ struct Before {
 statics::Reached Reach(const Robot& robot, const Load& load, Method method,
                        const statics::Target& target, const Before* before);
 
-/// The same by statics::Nearest: as near as it comes by low tensions.
+/// The lengths [m] of cables that bring discs to a target (statics::Wind), for a load that is
+/// driven by length: from those of the least tensions, which are looked for from the tensions of
+/// the given lengths.
+statics::Reached ReachByLengths(const Robot& robot, const Load& load, Method method,
+                                const statics::Target& target, const Before* before);
+
+/// As Reach, by statics::Nearest: as near as it comes by low tensions.
 statics::Reached Approach(const Robot& robot, const Load& load, Method method,
                           const statics::Target& target, const Before* before);
 
-/// Solves a case from straight or from the one before, whose contacts `load` then gets and the
-/// solution has as `pull`.
+/// Solves a case from straight or from the one before, whose contacts `load` then gets. The
+/// solution has the tensions as `pull`, however they are driven.
 Solution SolveGoingOn(const Robot& robot, Load& load, Method method, const Before* before);
 
 }  // namespace continuum::twin_pivot

@@ -1,7 +1,6 @@
 #include "models/twin_pivot/solve.h"
 
 #include <algorithm>
-#include <initializer_list>
 #include <optional>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "error.h"
 #include "models/statics/details.h"
 #include "models/statics/error_table.h"
+#include "models/statics/foreign_options.h"
 #include "models/statics/measured_points.h"
 #include "models/statics/path_error.h"
 #include "models/statics/plausible.h"
@@ -41,31 +41,22 @@ using twin_pivot::Robot;
 using twin_pivot::Solution;
 
 void RefuseOptions(const SolveRequest& request) {
-  const std::initializer_list<std::pair<const char*, bool>> foreign = {
-      {"--hybrid", !request.hybrid.empty()},
-      {"--lambda", request.lambda.has_value()},
-      {"--cross-validate", request.cross_validate},
-      {"--sensitivity", request.sensitivity},
-      {"--sweep with --calibrate", request.calibrate && request.sweep != 0},
-      {"--parameters", !request.parameters.empty()},
-      {"--measured with --calibrate", request.calibrate && !request.measured.empty()},
-      {"--measured with --equilibria", request.equilibria && !request.measured.empty()},
-      {"--measured with --follow", !request.measured.empty() && !request.follow.empty()},
-      {"--equilibria with --calibrate", request.calibrate && request.equilibria},
-      {"--shape with --calibrate", request.calibrate && !request.shape.empty()},
-      {"--compliance with --calibrate", request.calibrate && !request.compliance.empty()},
-      {"--plot with --calibrate", request.calibrate && !request.plot.empty()},
-      {"--reach with --calibrate", request.calibrate && !request.reach.empty()},
-      {"--reach with --equilibria", request.equilibria && !request.reach.empty()},
-      {"--follow with --calibrate", request.calibrate && !request.follow.empty()},
-      {"--follow with --equilibria", request.equilibria && !request.follow.empty()},
-      {"--follow with --reach", !request.reach.empty() && !request.follow.empty()},
-      {"--follow with --sweep", request.sweep != 0 && !request.follow.empty()},
-      {"--method with --calibrate", request.calibrate && !request.method.empty()}};
-  for (const auto& [option, given] : foreign) {
-    if (given) throw Error::Input(option, "no such option for a twin_pivot robot");
-  }
-  if (request.input.empty()) throw Error::Input("--input", "a CSV file", "nothing");
+  const bool follows = !request.follow.empty();
+  statics::RefuseForeignOptions(
+      request, "twin_pivot",
+      {{"--hybrid", !request.hybrid.empty()},
+       {"--lambda", request.lambda.has_value()},
+       {"--cross-validate", request.cross_validate},
+       {"--sensitivity", request.sensitivity},
+       {"--outlines", !request.outlines.empty()},
+       {"--parameters", !request.parameters.empty()},
+       {"--sweep with --calibrate", request.calibrate && request.sweep != 0},
+       {"--measured with --calibrate", request.calibrate && !request.measured.empty()},
+       {"--method with --calibrate", request.calibrate && !request.method.empty()},
+       {"--measured with --follow", follows && !request.measured.empty()},
+       {"--follow with --equilibria", follows && request.equilibria},
+       {"--follow with --reach", follows && !request.reach.empty()},
+       {"--follow with --sweep", follows && request.sweep != 0}});
 }
 
 Method ReadMethod(const std::string& name) {
@@ -189,11 +180,13 @@ void AddHalfway(const Robot& robot, Method method, const Solved& from, const Sol
   for (std::size_t j = 0; j < half.tension.size(); ++j) {
     half.tension[j] = 0.5 * (from.row.load.tension[j] + to.row.load.tension[j]);
   }
+  half.length = 0.5 * (from.row.load.length + to.row.load.length);
   const Solution s = twin_pivot::SolveFrom(robot, from.row.load, from.solution, half, method);
   if (s.outcome.ok()) error.Halfway(to.row.label, s.tip, from.solution.tip, to.solution.tip);
 }
 
-// The case whose target it is, with its tensions; its reference is among those solved before.
+// The case whose target it is, with its tensions or lengths; its reference is among those solved
+// before.
 Solved ReachTarget(const Robot& robot, Method method, const statics::Target& target,
                    const std::vector<Solved>& solved, const Case& row) {
   std::optional<twin_pivot::Before> before;
@@ -207,15 +200,24 @@ Solved ReachTarget(const Robot& robot, Method method, const statics::Target& tar
     return s;
   }
   const auto* const from = before ? &*before : nullptr;
-  const auto reached = twin_pivot::Reach(robot, row.load, method, target, from);
+  const bool by_length = row.load.length.size() > 0;
+  const auto reached = (by_length ? twin_pivot::ReachByLengths : twin_pivot::Reach)(
+      robot, row.load, method, target, from);
   s.miss = reached.miss;
   if (!reached.outcome.ok()) {
     s.solution.outcome = reached.outcome;
     return s;
   }
   twin_pivot::Load& load = s.row.load;
-  load.tension.assign(reached.drives.begin(), reached.drives.end());
+  if (by_length) {
+    load.length = reached.drives;
+  } else {
+    load.tension.assign(reached.drives.begin(), reached.drives.end());
+  }
   s.solution = twin_pivot::SolveGoingOn(robot, load, method, from);
+  if (s.solution.outcome.ok()) {
+    load.tension.assign(s.solution.pull.begin(), s.solution.pull.end());
+  }
   return s;
 }
 
@@ -357,6 +359,7 @@ void WriteRow(const Robot& robot, const Solved& solved, statics::Results& result
   auto details = Describe(robot, load, solution);
   details.miss = solved.miss;
   Set(details, solved.equilibrium, results);
+  if (solved.miss) SetEach("L", load.length, results);
   if (solved.base) {
     Eigen::Index disc = 0;
     results.Set("base_x", *solved.base);
@@ -381,6 +384,7 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
   const bool reaches = !request.reach.empty() || !request.follow.empty();
   append(statics::DetailColumns{robot.Cables(), by_length, reaches, request.equilibria}.Names());
   if (!request.measured.empty()) append(statics::Numbered("error_", robot.Joints()));
+  if (by_length && reaches) append(statics::Numbered("L", robot.Cables()));
   if (!request.follow.empty()) append({"base_x", "off_mean", "off_max", "off_disc"});
   if (HasLimits(robot)) append({"beyond"});
   return columns;
@@ -443,9 +447,8 @@ int SolveTwinPivot(const SolveRequest& request) {
   statics::RequireTable(request.compliance, "--compliance");
   const std::vector<Case> cases = twin_pivot::ReadCases(statics::CasesOf(request), robot);
   const bool by_tension = cases.front().load.length.size() == 0;
-  for (const auto& [option, given] :
-       {std::pair("--equilibria", request.equilibria), std::pair("--reach", !request.reach.empty()),
-        std::pair("--follow", !request.follow.empty())}) {
+  for (const auto& [option, given] : {std::pair("--equilibria", request.equilibria),
+                                      std::pair("--follow", !request.follow.empty())}) {
     if (!given || by_tension) continue;
     throw Error::Input(request.input.string() + ":1", std::string("tensions with ") + option,
                        "'L1'");

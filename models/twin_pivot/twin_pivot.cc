@@ -115,10 +115,12 @@ bool FindAny(RisingSystem& system, VectorXd& x, VectorXd other) {
 }
 
 // Along the loads from where x is in balance; else whatever stands.
-void Follow(RisingSystem& system, const VectorXd& other, Solution& solution) {
+void Follow(RisingSystem& system, const VectorXd& other, Solution& solution,
+            const statics::RisingOptions& options = {}) {
   const int spent = solution.outcome.iterations;
   solution.stability = {};
-  solution.outcome = statics::FollowRisingLoad(system, solution.beta, solution.stability.branch);
+  solution.outcome =
+      statics::FollowRisingLoad(system, solution.beta, solution.stability.branch, options);
   solution.outcome.iterations += spent;
   if (solution.outcome.ok() || !FindAny(system, solution.beta, other)) return;
   solution.outcome.status = numerics::Status::kOk;
@@ -205,7 +207,10 @@ Solution SolveFrom(const Robot& robot, const Load& earlier, const Solution& befo
   solution.outcome = numerics::Timed([&] {
     RisingSystem system(from, task);
     solution.beta = before.beta;
-    Follow(system, before.beta, solution);
+    statics::RisingOptions options;  // at once where that leads no farther than a step may
+    options.first_step = options.largest_step = 1;
+    options.trust = 0.1;
+    Follow(system, before.beta, solution, options);
     return solution.outcome;
   });
   Describe(task, solution);

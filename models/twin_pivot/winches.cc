@@ -1,5 +1,6 @@
 #include "models/twin_pivot/winches.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "models/statics/length_driven.h"
@@ -27,6 +28,7 @@ class Plant {
     now_.emplace(to_.Between(from_, load));
     now_->tension = tension;
   }
+  void SetWidth(double width) { width_ = width; }
   void SetTension(const VectorXd& tension) { now_->tension.assign(tension.begin(), tension.end()); }
 
   bool Residual(const VectorXd& x, VectorXd& f) {
@@ -47,7 +49,7 @@ class Plant {
   VectorXd Compliance() const { return stretch_.Compliance(); }
   VectorXd Stretch(const VectorXd& x) {
     std::vector<double> force;
-    if (!CableForces(*now_, JointsAt(to_.robot, x), 1, to_.robot.eps, force)) return Compliance();
+    if (!CableForces(*now_, JointsAt(to_.robot, x), 1, eps(), force)) return Compliance();
     const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> tension(
         force.data(), to_.joints, to_.cables);
     return stretch_.Of(tension, CableLengths(to_.robot, x));
@@ -57,11 +59,13 @@ class Plant {
   }
 
  private:
-  Balance Now() const { return Balance{*now_, 1, 1, to_.robot.eps}; }
+  double eps() const { return std::max(width_, to_.robot.eps); }
+  Balance Now() const { return Balance{*now_, 1, 1, eps()}; }
 
   const Task& from_;
   const Task& to_;
   std::optional<Task> now_;
+  double width_ = 0;
   statics::CableStretch stretch_;
 };
 

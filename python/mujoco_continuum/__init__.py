@@ -36,10 +36,11 @@ from .laws import force_law, friction_law
 from .many import diagnose_many, identify_many, study
 from .reading import read
 from .results import Cause, Channel, Diagnosis, Errors, Fit, Interval, Parameter, Replay
-from .statics import calibrate, solve
+from .statics import Solver, calibrate, solve
 
 __all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Cause", "Channel", "Diagnosis",
            "Error", "Errors", "Fit", "InputError", "Interval", "JobError", "Parameter", "Replay",
+           "Solver",
            "apply", "calibrate", "check", "diagnose", "diagnose_many", "effects", "force_law",
            "friction_law", "identify", "identify_many", "joint_angles", "make", "models", "read",
            "replay", "solve", "study"]

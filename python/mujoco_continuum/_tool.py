@@ -117,7 +117,7 @@ def run(arguments: list[str], progress: Progress | None = None,
         out.seek(0)
         printed = out.read()
     if tool.returncode not in accepted:
-        raise _failure(tool.returncode, lines, rename)
+        raise failure(tool.returncode, lines, rename)
     return printed
 
 
@@ -142,8 +142,8 @@ def _interrupt(tool: subprocess.Popen) -> None:
     tool.kill()
 
 
-def _failure(code: int, lines: list[str], rename: Mapping[str, str]) -> Error:
-    """The tool's message begins with its name; a hint at --help may follow, of no use here."""
+def failure(code: int, lines: list[str], rename: Mapping[str, str]) -> Error:
+    """What a tool that ended with a code has said. The tool's message begins with its name; a hint at --help may follow, of no use here."""
     starts = [i for i, line in enumerate(lines) if line.startswith("continuum: ")]
     told = lines[starts[-1]:] if starts else lines[-20:]
     text = "\n".join(line for line in told if not line.startswith("See continuum "))

@@ -7,11 +7,27 @@
 #include "sim/numerics/solver.h"
 
 namespace continuum::numerics {
+namespace internal {
+
+template <class Problem, class Matrix>
+struct FactorsOf {
+  using type = Eigen::PartialPivLU<Matrix>;
+};
+template <class Problem, class Matrix>
+requires(Matrix::RowsAtCompileTime == Eigen::Dynamic &&
+         requires { typename Problem::Factors; }) struct FactorsOf<Problem, Matrix> {
+  using type = typename Problem::Factors;
+};
+
+}  // namespace internal
 
 /// Damped Newton for as many equations as unknowns, from x to x: J dx = -f, |dx| <= max_step, then
 /// halved until |f| falls by the Armijo rule (1e-4) and the point is in the domain. A factored J is
 /// used again for as long as a step with it leaves less than a twentieth of |f|. One step is taken
 /// even from within the tolerance, so that answers to small loads keep their digits.
+///
+/// A problem of any number of unknowns that knows more of its J has a type `Factors` with
+/// compute(J) and solve(b).
 ///
 /// With `damped` false it takes full steps and gives up as soon as one does not halve |f|: it then
 /// stays on the branch it was started on. x is left at the best point, also on failure.
@@ -26,7 +42,7 @@ Outcome Newton(const Problem& problem, Eigen::Matrix<double, N, 1>& x,
   if (!Linearize(problem, x, f, jacobian)) {
     return internal::Failed(outcome, Status::kOutOfDomain, "the start is out of the domain");
   }
-  Eigen::PartialPivLU<Matrix> factors(x.size());
+  typename internal::FactorsOf<Problem, Matrix>::type factors(x.size());
   bool factored = false;
   bool linearized = true;
   outcome.residual = f.norm();

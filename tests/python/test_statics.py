@@ -42,6 +42,22 @@ class Solve(bench.Bench):
                              (ROD, CASES)):
             self.assertEqual([row["x"] for row in mc.solve(robot, cases)], expected)
 
+    def test_solver_is_held_open_and_gives_the_same_rows(self):
+        with mc.Solver(TDCR / "tdcr.yaml", method="crt") as solver:
+            expected = mc.solve(TDCR / "tdcr.yaml", CASES, method="crt")
+            for _ in range(2):
+                for row, same in zip(solver.solve(CASES), expected):
+                    self.assertEqual(row["case"], same["case"])
+                    self.assertEqual([row["x"], row["z"]], [same["x"], same["z"]])
+            self.assertEqual(len(solver.solve({name: CASES[name] * 500 for name in CASES} | {"case": range(1000)})), 1000)
+            with self.assertRaisesRegex(mc.InputError, "^cases:3.*'T1'"):
+                solver.solve(CASES | {"T1": [1, -1]})
+            self.assertEqual(solver.solve(CASES | {"mu": [0.1, 0.1]})[0]["status"], "ok")
+        with mc.Solver(ROD) as solver:
+            self.assertEqual(solver.solve(CASES)[0]["status"], "ok")
+            with self.assertRaisesRegex(mc.InputError, "column 'fx'"):
+                solver.solve({"case": ["a"], "T1": [1], "T2": [0], "T3": [0]})
+
     def test_draws_the_shapes(self):
         mc.solve(TDCR / "tdcr.yaml", CASES, plot="shapes.svg", method="pcca")
         self.assertTrue((self.folder / "shapes.svg").exists())

@@ -29,7 +29,7 @@ std::vector<statics::MeasuredPoints> TipsOf(const Robot& robot, const Method& me
   std::normal_distribution<double> normal(0, 1);
   std::vector<statics::MeasuredPoints> tips;
   for (const Case& row : cases) {
-    Eigen::Vector3d tip = SolveForward(robot.module, method, row, false).tip;
+    Eigen::Vector3d tip = SolveForward(robot.module(), method, row, false).tip;
     for (double& x : tip) x += noise * normal(random);
     tips.push_back({row.label, false, tip});
   }
@@ -41,13 +41,13 @@ TEST(StiffFlopCalibrate, FindsEAndGammaOfTheModelThatMadeTheTips) {
   const Method method = Method::Parse("hooke+elongation+elongation", Direction::kForward);
   const Robot nominal = NoLoad();
   Robot truth = nominal;
-  truth.module.E = 150e3;
-  truth.module.gamma = 1.309;
+  truth.module().E = 150e3;
+  truth.module().gamma = 1.309;
   const auto cases = Pressures(nominal);
   const auto tips = TipsOf(truth, method, cases, 0);
   const Calibration c = Calibrate(nominal, method, {"E", "gamma"}, cases, tips, "tips.csv");
-  EXPECT_NEAR(c.robot.module.E, 150e3, 15);
-  EXPECT_NEAR(c.robot.module.gamma, 1.309, 1e-4);
+  EXPECT_NEAR(c.robot.module().E, 150e3, 15);
+  EXPECT_NEAR(c.robot.module().gamma, 1.309, 1e-4);
   EXPECT_LT(c.rmse, 1e-6);
   EXPECT_FALSE(c.poor());
 }

@@ -45,10 +45,10 @@ TEST(StiffFlopLog, FitRecoversTheModulusOfASyntheticLog) {
   Robot robot = Robot::Read(kRobot);
   Registration truth;
   const Log log = Synthetic(robot, truth);
-  const double E = robot.module.E;
-  robot.module.E *= 1.2;
+  const double E = robot.module().E;
+  robot.module().E *= 1.2;
   EXPECT_TRUE(FitBraid({}, log, robot).ok());
-  EXPECT_NEAR(robot.module.E, E, 1e-3 * E);
+  EXPECT_NEAR(robot.module().E, E, 1e-3 * E);
 }
 
 TEST(StiffFlopLines, AStepActsBeyondTheDeadPressureAndItsShareOfCreepFollows) {

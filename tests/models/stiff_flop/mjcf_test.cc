@@ -39,7 +39,7 @@ TEST(StiffFlopMjcf, TheCommittedFileIsTheGeneratedOne) {
 }
 
 TEST(StiffFlopMjcf, ItsThreadsHaveTheAngleOfTheFile) {
-  const double cot = std::tan(std::numbers::pi / 2 - NoLoad().module.gamma);
+  const double cot = std::tan(std::numbers::pi / 2 - NoLoad().module().gamma);
   const ModelSpec system = ModelSpec::Load(kFolder + "stiff_flop_braid.xml");
   EXPECT_NEAR(system.Value("plugin:threads", "cot2_gamma"), cot * cot, 1e-12);
 }
@@ -53,13 +53,13 @@ TEST(StiffFlopMjcf, HasTheNamesOfTheSoftActuator) {
     ASSERT_GE(sensor, 0) << name;
     EXPECT_EQ(system.model().sensor_dim[sensor], 3) << name;
   }
-  const Module module = NoLoad().module;
+  const Module module = NoLoad().module();
   EXPECT_NEAR(system.model().body_subtreemass[0], module.m + module.m_fs, 1e-12);
 }
 
 // E a and E K written out: an annulus less six bores, of which each line's two lie at r_o.
 TEST(StiffFlopMjcf, ItsStiffnessIsThatOfTheSectionWithoutItsBores) {
-  const Module m = NoLoad().module;
+  const Module m = NoLoad().module();
   const SoftSegment segment = SegmentOf(m);
   const double bore = std::numbers::pi * m.r_c1 * m.r_c1, line = 2 * bore;
   const double area = m.Area() - 3 * line;
@@ -82,7 +82,7 @@ TEST(StiffFlopMjcf, BendsAsTheStaticSolverAtSmallStrains) {
   const Change weightless{"option", "gravity[2]", 0};
   for (int line = 0; line < 3; ++line) {
     const Vector3d pressure = 4e3 * Vector3d::Unit(line);
-    const Solution rod = SolveForward(robot.module, {BodyLaw::kFixed, ChamberLaw::kFixed},
+    const Solution rod = SolveForward(robot.module(), {BodyLaw::kFixed, ChamberLaw::kFixed},
                                       {"", pressure, {Vector3d::Zero(), Vector3d::Zero()}}, false);
     ASSERT_EQ(rod.status, Status::kOk);
     const ModelAndData machine = system.Build({&weightless, 1});
@@ -96,10 +96,10 @@ TEST(StiffFlopMjcf, BendsAsTheStaticSolverAtSmallStrains) {
 // All lines alike stretch the module by k_dL1 dL = 3 p A (1 + cot^2 (1 - 3 lambda^2)); pressures so
 // small that a wrong sign would already show at 75 deg.
 TEST(StiffFlopMjcf, ThreadsTakeFromThePressureWhatTheBraidSays) {
-  const SoftSegment segment = SegmentOf(NoLoad().module);
+  const SoftSegment segment = SegmentOf(NoLoad().module());
   const double L0 = segment.law[0], A = segment.law[5], k = segment.law[10], pressure = 3e4;
   const ModelSpec system = ModelSpec::Load(kFolder + "stiff_flop_braid.xml");
-  for (const double gamma : {NoLoad().module.gamma, 75 * std::numbers::pi / 180}) {
+  for (const double gamma : {NoLoad().module().gamma, 75 * std::numbers::pi / 180}) {
     const double cot2 = std::pow(std::tan(std::numbers::pi / 2 - gamma), 2);
     const Change changes[] = {{"option", "gravity[2]", 0}, {"plugin:threads", "cot2_gamma", cot2}};
     const ModelAndData machine = system.Build(changes);
@@ -125,7 +125,7 @@ TEST(StiffFlopMjcf, ALineActsFromItsDeadPressureOn) {
 TEST(StiffFlopMjcf, TheMountCarriesTheWeightAtRest) {
   const ModelAndData machine = ModelSpec::Load(kFolder + "stiff_flop.xml").Build();
   Settle(machine, {4e4, 0, 0});
-  const Module module = NoLoad().module;
+  const Module module = NoLoad().module();
   EXPECT_NEAR(Sensor(machine, "base_force")[2], -(module.m + module.m_fs) * 9.81, 1e-5);
 }
 

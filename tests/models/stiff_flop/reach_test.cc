@@ -12,7 +12,7 @@ namespace {
 TEST(StiffFlopReach, FindsThePressuresOfATip) {
   const Module module = Published();
   const Method method = Method::Parse("hooke+general+constant", Direction::kForward);
-  Case row{"", {40e3, 15e3, 0}, {{0.02, 0.01, 0}, {0, 9.81, 0}}};
+  Case row{"", Eigen::Vector3d(40e3, 15e3, 0), {{0.02, 0.01, 0}, {0, 9.81, 0}}};
   const Solution s = SolveForward(module, method, row, false);
   ASSERT_EQ(s.status, Status::kOk);
   const Eigen::Vector3d made = row.given;

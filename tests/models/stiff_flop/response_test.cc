@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 TEST(StiffFlopResponse, IsThatOfDifferencesOfSolves) {
   const Module module = Published();
-  const Case row{"", {30e3, 10e3, 0}, {{0.05, 0.02, 0.03}, {0, 9.81, 0}}};
+  const Case row{"", Vector3d(30e3, 10e3, 0), {{0.05, 0.02, 0.03}, {0, 9.81, 0}}};
   for (const char* name : {"hooke+fixed+fixed", "hooke+general+constant"}) {
     SCOPED_TRACE(name);
     const Method method = Method::Parse(name, Direction::kForward);

@@ -216,6 +216,44 @@ TEST_F(StiffFlopSolve, PlainNumbersAreReadToo) {
   EXPECT_EQ(Solved(0).Number(0, "p1"), p1);
 }
 
+TEST_F(StiffFlopSolve, ModulesInSeriesHaveTheirPressuresNumberedThrough) {
+  std::string text = ReadFile(kRobot);
+  text.replace(text.find("module: a"), 9, "series: [a, b]");
+  request_.robot = folder_ / "robot.yaml";
+  WriteFile(request_.robot, text);
+  Cases("p1,p2,p3\n1e4,0,0\n");
+  EXPECT_THAT(Refusal(), HasSubstr("p1, p2, p3, p4, p5, p6"));
+  Cases("kappa,phi,lambda_l\n10,0,1\n");
+  EXPECT_THAT(Refusal(), HasSubstr("kappa is of one module"));
+  Cases("p1,p2,p3,p4,p5,p6\n2e4,0,0,0,1e4,0\n");
+  request_.sensitivity = true;
+  EXPECT_THAT(Refusal(), HasSubstr("--sensitivity"));
+  request_.sensitivity = false;
+  request_.shape = folder_ / "line.csv";
+  request_.outlines = folder_ / "outlines.csv";
+  const CsvTable t = Solved(0);
+  EXPECT_EQ(t.Number(0, "x_2"), t.Number(0, "x"));
+  EXPECT_NE(t.Number(0, "phi_1"), t.Number(0, "phi_2"));
+  const CsvTable line = CsvTable::Read(request_.shape);
+  EXPECT_EQ(line.Number(line.rows() - 1, "disk"), 2);
+  EXPECT_NEAR(line.Number(line.rows() - 1, "s"), 44e-3 + 16.6e-3 + 44e-3, 1e-12);
+  const CsvTable outlines = CsvTable::Read(request_.outlines);
+  EXPECT_EQ(outlines.Number(outlines.rows() - 1, "module"), 2);
+  request_.outlines = folder_ / "outlines.svg";
+  Solved(0);
+  EXPECT_THAT(ReadFile(request_.outlines), HasSubstr("module 2, section at its base"));
+}
+
+TEST_F(StiffFlopSolve, BadLinesAndSeriesAreNamed) {
+  EXPECT_THAT(RobotRefusal("module: a", "series: [a, c]"), HasSubstr("series[1]"));
+  EXPECT_THAT(RobotRefusal("module: a", "series: []"), HasSubstr("none"));
+  EXPECT_THAT(RobotRefusal("module: a", "module: a\nseries: [a]"), HasSubstr("both"));
+  EXPECT_THAT(RobotRefusal("    l_fs:", "    lines: 5\n    l_fs:"), HasSubstr("modules.a.lines"));
+  EXPECT_THAT(RobotRefusal("    l_fs:", "    psi: [0, 90]\n    l_fs:"), HasSubstr("[rad]"));
+  EXPECT_THAT(RobotRefusal("    l_fs:", "    lines: 3\n    psi: [0, 1]\n    l_fs:"),
+              HasSubstr("each of `lines`"));
+}
+
 TEST_F(StiffFlopSolve, OptionsOfOtherRobotsAreRefused) {
   Cases("p1,p2,p3\n0,0,0\n");
   request_.hybrid = "train";

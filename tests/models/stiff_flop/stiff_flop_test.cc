@@ -173,7 +173,7 @@ TEST_P(StiffFlop, TurningLoadsAndPressuresByALineTurnsTheShape) {
   const Module module = Loose();
   const Case row = Hanging({5e4, 1e4, 2e4}, {0.05, 0.02, -0.03});
   Case turned = row;
-  turned.given = {row.given[2], row.given[0], row.given[1]};
+  turned.given = Vector3d(row.given[2], row.given[0], row.given[1]);
   turned.load.force = Turned(row.load.force, kThird);
   const Solution a = Forward(module, row);
   const Solution b = Forward(module, turned);
@@ -300,7 +300,7 @@ TEST(StiffFlopForward, LongModuleUnderItsOwnWeightSettlesInStrongBending) {
   Module module = Published();
   module.l = 0.4;
   for (const double side : {9.81, -9.81}) {
-    Case row{"", {2e4, 0, 0}, {Vector3d::Zero(), {side, 0, 0}}};
+    Case row{"", Vector3d(2e4, 0, 0), {Vector3d::Zero(), {side, 0, 0}}};
     const Solution solution = SolveForward(module, {}, row, false);
     ASSERT_EQ(solution.status, Status::kOk) << solution.outcome.why;
     EXPECT_LE(solution.outcome.residual, 1e-9);

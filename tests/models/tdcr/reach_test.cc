@@ -94,5 +94,27 @@ TEST(TdcrReach, APlaceFartherThanTheRodIsLongIsOutOfReachAtOnce) {
   EXPECT_THAT(reached.outcome.why, testing::HasSubstr("disk 9 is at most 0.134 m away"));
 }
 
+// The lengths of the least tensions, from unwound tendons; they lead there again.
+TEST(TdcrReach, FindsLengthsThatLeadToATip) {
+  for (const Method method : {Method::kEas, Method::kCrt}) {
+    for (const double EA : {5e3, 0.0}) {
+      SCOPED_TRACE(EA);
+      Robot robot = Nominal();
+      robot.tendon_EA = EA;
+      Loads loads = Pull(robot, {4, 1.5, EA > 0 ? 0.7 : 0});
+      const Vector3d tip = Tip(SolveCase(robot, loads, method));
+      loads.length = VectorXd::Constant(3, 1.01 * robot.length);
+      const statics::Target target{"", {24, 25}, tip.head<2>(), EA > 0 ? 0.5 : 0};
+      const auto reached = ReachByLengths(robot, loads, method, target, nullptr);
+      ASSERT_TRUE(reached.outcome.ok()) << reached.outcome.why;
+      loads.length = reached.drives;
+      const Solution wound = SolveCase(robot, loads, method);
+      ASSERT_TRUE(wound.outcome.ok()) << wound.outcome.why;
+      EXPECT_LT((Tip(wound) - tip).head<2>().norm(), 1e-6 * robot.length);
+      EXPECT_GE(wound.pull.minCoeff(), EA > 0 ? 0.4 : 0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace continuum::tdcr

@@ -201,7 +201,7 @@ TEST_F(TdcrSolve, GivenLengthsGiveTensions) {
   EXPECT_THAT(Message(), testing::AllOf(HasSubstr("cases.csv:1"), HasSubstr("'L1'")));
   request_.equilibria = false;
   EXPECT_THAT(MessageOfCases("case,L1,L2,L3,fx,fy,fz\na,-0.13,0.14,0.14,0,0,0\n"),
-              testing::AllOf(HasSubstr("column 'L1'"), HasSubstr("at least 0")));
+              testing::AllOf(HasSubstr("column 'L1'"), HasSubstr("above 0")));
   EXPECT_THAT(MessageOfCases("case,L1,L2,fx,fy,fz\na,0.13,0.14,0,0,0\n"), HasSubstr("'L3'"));
 }
 

@@ -49,5 +49,33 @@ TEST(TwinPivotReach, TakesTheLeastTensions) {
   EXPECT_GT(taut.drives.norm(), reached.drives.norm());
 }
 
+// With stretch and pretension, and without both, where some cables are slack. The lengths alone
+// lead there again.
+TEST(TwinPivotReach, FindsLengthsThatLeadToATip) {
+  for (const double EA : {3e3, 0.0}) {
+    SCOPED_TRACE(EA);
+    Robot robot = Prototype("a");
+    robot.cable_EA = EA;
+    const double low = EA > 0 ? 1 : 0;
+    const Solution made = Solve(robot, Pull({6, 5, low, low}));
+    Load load = Pull({0, 0, 0, 0});
+    load.length = VectorXd::Constant(4, 6 * robot.L[0] * 1.02);
+    const statics::Target target{"", {16, 17}, made.tip.tail<2>(), low};
+    const auto reached = ReachByLengths(robot, load, Method::kVirtualWork, target, nullptr);
+    ASSERT_TRUE(reached.outcome.ok()) << reached.outcome.why;
+    load.length = reached.drives;
+    const Solution wound = Solve(robot, load);
+    ASSERT_TRUE(wound.outcome.ok()) << wound.outcome.why;
+    EXPECT_LT((wound.tip - made.tip).tail<2>().norm(), 1e-6 * robot.Length());
+    EXPECT_GE(wound.pull.minCoeff(), 0.95 * low);
+    EXPECT_LT(wound.pull.norm(), 1.05 * std::sqrt(36 + 25 + 2 * low));
+  }
+  const statics::Target taut{"", {16, 17}, VectorXd::Zero(2), 1};
+  Load load = Pull({0, 0, 0, 0});
+  load.length = VectorXd::Constant(4, 0.04);
+  const auto none = ReachByLengths(Prototype("a"), load, Method::kVirtualWork, taut, nullptr);
+  EXPECT_NE(none.outcome.why.find("do not stretch"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace continuum::twin_pivot
