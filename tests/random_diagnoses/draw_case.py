@@ -12,7 +12,8 @@ OTHER_UNITS = {"rad": ["rad", "deg"], "m": ["m", "mm"], "rad/s": ["rad/s", "deg/
 FACTOR = {"deg": 180 / math.pi, "mm": 1000, "deg/s": 180 / math.pi, "mm/s": 1000}
 CANDIDATES = {  # effects by what `where` takes
     "joint": ["coulomb", "viscous", "stribeck", "load_friction", "directional_friction", "position_friction", "dahl",
-              "lugre", "bouc_wen", "cubic_stiffness", "maxwell", "stiffness", "armature", "elastic_gear", "friction_drift"],
+              "lugre", "bouc_wen", "cubic_stiffness", "maxwell", "stiffness", "armature", "elastic_gear",
+              "friction_drift"],
     "tendon": ["coulomb", "viscous", "capstan", "slack", "tendon_stretch", "stiffness"],
     "actuator": ["input_gain", "input_offset", "dead_time", "pt1", "pt2", "backlash", "torque_limit"],
     "body": ["payload", "link_mass", "external_force", "link_length", "mounting_angle"],
@@ -53,7 +54,8 @@ class Case:
         (self.folder / "truth.xml").write_text(self.model.truth)
         (self.folder / "changed.json").write_text(json.dumps(self.model.changed, indent=1))
         logs = self.logs()
-        lines = ["format: 1", "model: model.xml", f"start: {self.start}", "time: {column: t, unit: s}", "inputs:" if self.used else "inputs: []"]
+        lines = ["format: 1", "model: model.xml", f"start: {self.start}", "time: {column: t, unit: s}"]
+        lines.append("inputs:" if self.used else "inputs: []")
         for name, unit, *_ in self.used:
             how = ", interpolate: linear" if self.chance(0.2) else ""
             lines.append(f"  - {{column: 'u {name}', unit: '{unit}', actuator: '{name}'{how}}}")
@@ -74,16 +76,18 @@ class Case:
 
     def parameters(self):
         d, m, lines = self.draw, self.model, []
-        per = [", per: log"] * self.chance(0.1) or ([", per: condition"] if self.conditions and self.chance(0.3) else [""])
-        options = [("joint:j*", "damping", 0.05, 0, 10), ("joint:j0", "stiffness", 1, 0, 500), ("body:link0", "mass", 0.1, 0.005, 2),
+        per = ", per: log" if self.chance(0.1) else ""
+        if not per and self.conditions and self.chance(0.3):
+            per = ", per: condition"
+        options = [("joint:j*", "damping", 0.05, 0, 10), ("joint:j0", "stiffness", 1, 0, 500),
+                   ("body:link0", "mass", 0.1, 0.005, 2),
                    ("joint:j*", "armature", 0.001, 0, 0.1), ("option", "gravity[2]", -9.8, -12, 0)]
         options += [(f"actuator:{i[0].partition('[')[0]}", "force_scale", 1, 0.1, 5) for i in m.inputs[:1]]
         options += [(f"sensor:{self.outputs[0][0]}", "bias", 0, -1, 1)] if "[" not in self.outputs[0][0] else []
-        if not m.joints:
-            options = options[2:3]
-        for k, (target, attribute, initial, lower, upper) in enumerate(d.sample(options, d.choice([0, 0, 1, 1, 2]) if len(options) > 1 else 0)):
+        chosen = d.sample(options, d.choice([0, 0, 1, 1, 2]))
+        for k, (target, attribute, initial, lower, upper) in enumerate(chosen):
             lines.append(f"  - {{name: p{k}, target: '{target}', attribute: '{attribute}', initial: {initial}, "
-                         f"lower: {lower}, upper: {upper}{per[0] if target != 'option' else ''}}}")
+                         f"lower: {lower}, upper: {upper}{per if target != 'option' else ''}}}")
         return ["parameters:", *lines] if lines else []
 
     def candidates(self):
@@ -91,8 +95,9 @@ class Case:
         kind = d.random()
         if kind < 0.35:
             return [] if kind < 0.1 else ["candidates: all"]
-        names = {"joint": [j for j, _ in m.joints], "tendon": m.tendons, "actuator": [i[0].partition("[")[0] for i in m.inputs],
-                 "body": m.bodies, "sensor": [o[0] for o in self.outputs], "": ["world"]}
+        names = {"joint": [j for j, _ in m.joints], "tendon": m.tendons,
+                 "actuator": [i[0].partition("[")[0] for i in m.inputs], "body": m.bodies,
+                 "sensor": [o[0] for o in self.outputs], "": ["world"]}
         lines, taken = [], set()
         for _ in range(d.randint(1, 5)):
             places = d.choice([k for k in names if names[k]])
@@ -133,7 +138,8 @@ class Case:
         d, still = self.draw, self.chance(0.06)
 
         def wave(level, pulls):
-            kind, a, w, phase = d.choice(["sine", "steps", "ramp", "still"]), level * d.uniform(0.2, 1), d.uniform(2, 15), d.uniform(0, 6)
+            kind, a = d.choice(["sine", "steps", "ramp", "still"]), level * d.uniform(0.2, 1)
+            w, phase = d.uniform(2, 15), d.uniform(0, 6)
             mean = level if pulls else 0
             if kind == "still" or still:
                 return lambda t: mean
@@ -145,7 +151,8 @@ class Case:
 
     def csv(self, motion, seconds, copy):
         d = self.draw
-        spoilt = {source: d.choice(["gaps", "stuck", "spikes", "half"]) for source, _ in self.outputs if self.chance(0.05)}
+        kinds = ["gaps", "stuck", "spikes", "half"]
+        spoilt = {source: d.choice(kinds) for source, _ in self.outputs if self.chance(0.05)}
         clock = d.choice([0, 0, 0, 1e-4, self.period * 0.3]) if copy else 0
         m = mujoco.MjModel.from_xml_string(self.model.truth)
         data = mujoco.MjData(m)
@@ -164,7 +171,8 @@ class Case:
             for name, control in motion.items():
                 data.ctrl[self.address(m, name)] = held[name] = control(t)
             mujoco.mj_forward(m, data)
-            cells = [self.cell(data.sensordata[a], unit, spoilt.get(source), k) for (source, unit), a in zip(self.outputs, sensors)]
+            cells = [self.cell(data.sensordata[a], unit, spoilt.get(source), k)
+                     for (source, unit), a in zip(self.outputs, sensors)]
             jitter = clock * d.random() if k else 0
             rows.append(f"{t + jitter:.6f}," + "".join(f"{held[i[0]]:.6g}," for i in self.used) + ",".join(cells))
         return "\n".join(rows) + "\n"

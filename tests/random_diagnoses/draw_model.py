@@ -28,7 +28,8 @@ class Model:
     def __init__(self, draw: random.Random):
         self.draw, self.xml, self.truth = draw, "", ""
         self.joints, self.bodies, self.sites, self.tendons = [], [], [], []
-        self.inputs, self.sensors, self.places = [], [], {}  # inputs: (source, unit, amplitude); sensors: (source, unit)
+        self.inputs, self.sensors = [], []  # (signal, unit, amplitude, whether it only pulls); (sensor, unit)
+        self.places = {}
         self.changed = []
         self.contacts, self.effects = draw.random() < 0.25, ""
         self.body_part()
@@ -60,7 +61,8 @@ class Model:
         d = self.draw
         step = d.choice([0.001, 0.002, 0.002, 0.004, 0.005])
         integrator = d.choice(["implicitfast", "implicitfast", "Euler", "implicit", "RK4"])
-        flags = d.choice(["", "", "", '<flag contact="disable"/>', '<flag island="disable"/>', '<flag limit="disable"/>'])
+        flags = d.choice(["", "", "", '<flag contact="disable"/>', '<flag island="disable"/>',
+                          '<flag limit="disable"/>'])
         gravity = ' gravity="0 0 0"' if self.chance(0.25) else ""
         option = f'<option timestep="{step}" integrator="{integrator}"{gravity}>{flags}</option>\n'
         effects = f"<extension>{self.effects}</extension>\n" if self.effects else ""
@@ -71,7 +73,8 @@ class Model:
         d = self.draw
         self.marked = "<worldbody>\n"
         if self.contacts:
-            self.marked += f'<geom name="floor" type="plane" size="3 3 .1" pos="0 0 {number(d.uniform(-0.5, -0.1))}"/>\n'
+            height = number(d.uniform(-0.5, -0.1))
+            self.marked += f'<geom name="floor" type="plane" size="3 3 .1" pos="0 0 {height}"/>\n'
         self.marked += '<site name="base" pos="0 .03 .03"/>\n'
         count, open_bodies = d.randint(1, 6), 0
         for i in range(count):
@@ -152,7 +155,8 @@ class Model:
             self.tendons.append("rod")
         for k in range(d.choice([0, 0, 0, 1, 1, 2])):
             sites = "".join(f'<site site="{s}"/>' for s in ["base", *self.sites[:d.randint(1, len(self.sites))]])
-            extra = d.choice(["", ' stiffness="30"', ' damping=".5"', ' limited="true" range="0 .9"', ' frictionloss=".02"'])
+            extra = d.choice(["", ' stiffness="30"', ' damping=".5"', ' limited="true" range="0 .9"',
+                              ' frictionloss=".02"'])
             text += f'<spatial name="cable{k}" width=".002"{extra}>{sites}</spatial>\n'
             self.tendons.append(f"cable{k}")
             if self.chance(0.3):
@@ -170,15 +174,17 @@ class Model:
 
     def actuator(self, name, target, pulls):
         d = self.draw
-        kind = d.choices(["motor", "position", "velocity", "lag", "integrator", "affine", "muscle", "dcmotor", "pid", "delay"],
-                         [6, 5, 1, 2, 0.5, 1, 0.4, 0.4, 0.4, 0.6])[0]
+        kinds = ["motor", "position", "velocity", "lag", "integrator", "affine", "muscle", "dcmotor", "pid", "delay"]
+        kind = d.choices(kinds, [6, 5, 1, 2, 0.5, 1, 0.4, 0.4, 0.4, 0.6])[0]
         limits = ' ctrlrange="-.5 .5"' if self.chance(0.2) else ""
         limits += ' forcerange="-2 2"' if self.chance(0.15) and kind not in ("dcmotor", "muscle") else ""
         text = {
             "motor": lambda: f'<motor gear="{self.number(f"{name} gear", 0.3)}"',
-            "position": lambda: f'<position kp="{self.number(f"{name} kp", d.choice([1, 4, 20]))}" kv="{number(d.choice([0, 0.05, 0.3]))}"',
+            "position": lambda: (f'<position kp="{self.number(f"{name} kp", d.choice([1, 4, 20]))}" '
+                                 f'kv="{number(d.choice([0, 0.05, 0.3]))}"'),
             "velocity": lambda: f'<velocity kv="{self.number(f"{name} kv", 0.3)}"',
-            "lag": lambda: f'<general dyntype="{d.choice(["filter", "filterexact"])}" dynprm="{self.number(f"{name} lag", 0.04)}" gainprm=".4"',
+            "lag": lambda: (f'<general dyntype="{d.choice(["filter", "filterexact"])}" '
+                            f'dynprm="{self.number(f"{name} lag", 0.04)}" gainprm=".4"'),
             "integrator": lambda: '<general dyntype="integrator" gainprm=".3" actlimited="true" actrange="-1 1"',
             "affine": lambda: '<general gaintype="fixed" gainprm="3" biastype="affine" biasprm="0 -3 -.1"',
             "muscle": lambda: '<muscle lengthrange=".05 1.2" force="2"',
