@@ -33,6 +33,8 @@ class Case:
         d = self.draw
         self.period = 1 / d.choice([20, 33, 50, 50, 100, 100, 200])
         self.start = d.choices(["rest", "measured", "estimate", "equilibrium"], [5, 2, 2, 1.5])[0]
+        if self.model.places and self.start == "estimate" and self.chance(0.9):
+            self.start = "rest"  # of a free or ball joint none is estimated
         self.noise = d.choice([0, 1e-5, 3e-4, 1e-3, 1e-2])
         self.used = [i for i in self.model.inputs if d.random() > 0.08]
         self.outputs = self.choose_outputs()
@@ -76,8 +78,8 @@ class Case:
 
     def parameters(self):
         d, m, lines = self.draw, self.model, []
-        per = ", per: log" if self.chance(0.1) else ""
-        if not per and self.conditions and self.chance(0.3):
+        per = ", per: log" if self.chance(0.1) and self.trials == 1 else ""
+        if not per and self.each_condition_trains and self.chance(0.3):
             per = ", per: condition"
         options = [("joint:j*", "damping", 0.05, 0, 10), ("joint:j0", "stiffness", 1, 0, 500),
                    ("body:link0", "mass", 0.1, 0.005, 2),
@@ -109,7 +111,7 @@ class Case:
             if not where or places == "sensor" or self.chance(0.5):
                 lines.append(f"  - {effect}")
             else:
-                per = ", per: condition" if self.conditions and self.chance(0.15) else ""
+                per = ", per: condition" if self.each_condition_trains and self.chance(0.15) else ""
                 lines.append(f"  - {{effect: {effect}, where: '{where}'{per}}}")
         return ["candidates:", *lines]
 
@@ -119,6 +121,10 @@ class Case:
         copies, trials = (2, d.choice([1, 2])) if self.chance(0.55) else (1, d.randint(2, 4))
         if copies == 2 and trials == 2 and self.chance(0.2):
             copies = 3
+        if copies > 1:
+            self.noise = max(self.noise, 1e-6)  # a copy is no replicate
+        self.trials = trials
+        self.each_condition_trains = self.conditions and (trials > 2 or trials == 1)
         lines = []
         for t in range(trials):
             seconds = d.uniform(0.5, 2)
