@@ -139,7 +139,7 @@ class Model:
 
     def effect(self, binding, place, name):
         key = {"position": "actuator", "motor": "actuator", "spatial": "tendon"}.get(binding, binding)
-        config = "".join(f'<config key="{k}" value="{self.number(f"{name} {k}", v) if v else 0}"/>'
+        config = "".join(f'<config key="{k}" value="{self.number(f"{name} {k}", v) if v and v != 1 else v}"/>'
                          for k, v in EFFECTS[binding][name].items())
         self.effects += (f'<plugin plugin="continuum.{name}"><instance name="{name}_{place}">'
                          f'<config key="{key}" value={quoteattr(place)}/>{config}</instance></plugin>\n')
