@@ -69,6 +69,8 @@ class Session {
       });
       ScoreFolds();
       ConfirmOnFolds(fitter_, d_);
+    } else if (d_.folds.empty()) {
+      LeaveWithoutFolds(d_);
     } else {
       CompareFolds();
       MergePlaces(d_);
@@ -467,7 +469,6 @@ class Session {
   }
 
   void CompareFolds() {
-    RequireFolds(e_, d_.folds);
     d_.verdict = {};
     d_.unlisted.clear();
     CompareByFolds(fitter_, options_, d_);

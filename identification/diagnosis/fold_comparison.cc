@@ -9,6 +9,7 @@
 #include "identification/candidates/random_forces.h"
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/equation_error.h"
+#include "identification/diagnosis/merged_places.h"
 #include "identification/fit/cross_validation.h"
 #include "sim/numerics/ranks.h"
 #include "sim/numerics/shared_loop.h"
@@ -254,6 +255,14 @@ void RecordFolds(const CandidateFitter& fitter, const Diagnosis& d, CandidateRes
   const double null = std::isinf(c.hypothesis.null[main]) ? 0 : c.hypothesis.null[main];
   for (const Vector& x : c.fitted.folds.x)
     c.record.amplitude.push_back(x[own + static_cast<Eigen::Index>(main)] - null);
+}
+
+void LeaveWithoutFolds(Diagnosis& d) {
+  MergePlaces(d);
+  d.verdict.complete = false;
+  d.verdict.reason =
+      "the best candidate leaves more than noise, and all logs are of one group, so that none can "
+      "be left out to try a name on: record another motion";
 }
 
 void CompareByFolds(const CandidateFitter& fitter, const DiagnosisOptions& options,

@@ -11,6 +11,10 @@ namespace continuum {
 void CompareByFolds(const CandidateFitter& fitter, const DiagnosisOptions& options,
                     Diagnosis& diagnosis, const std::vector<Parameter>& given = {});
 
+/// The verdict by likelihoods stands, incomplete, where more than noise is left and there are no
+/// logs to leave out on which a name could be tried.
+void LeaveWithoutFolds(Diagnosis& diagnosis);
+
 /// Takes what something reached on the folds for the ceiling where it is more than was known.
 void RaiseCeiling(Diagnosis& diagnosis, const std::string& by, const FoldScores& folds,
                   const TwoErrors& error);

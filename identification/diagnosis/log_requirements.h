@@ -14,7 +14,7 @@ void RequireTrainLogs(const Experiment& experiment);
 /// Throws Error where a replicate is a copy: the noise between copies is none.
 void RequireOwnRecordings(const Experiment& experiment);
 
-/// Throws Error where there is nothing to leave out in turn.
+/// Throws Error where there is nothing to leave out in turn: without noise nothing else judges.
 void RequireFolds(const Experiment& experiment, const std::vector<Fold>& folds);
 
 }  // namespace continuum

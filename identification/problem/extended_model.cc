@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/experiment/measurement_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/io/decimal.h"
 #include "sim/model/asset_folders.h"
@@ -32,7 +33,12 @@ std::string SettingsYaml(const Problem& problem, const Problem::Vector& x, std::
     (own && LiesOnTop(c) ? on_top : beneath).push_back(c);
   }
   std::map<std::string, std::map<std::string, double>> settings;
+  const Experiment measured = problem.MeasuredBy(x, log);
   const auto read = [&](const Change& c) {
+    if (IsMeasurement(c.target, c.attribute)) {
+      settings[c.target][c.attribute] = MeasurementValue(measured, c.target, c.attribute);
+      return;
+    }
     settings[c.target][c.attribute] =
         problem.system().ValueAfter(LiesOnTop(c) ? on_top : beneath, c.target, c.attribute);
   };

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "error.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/model/attribute_bounds.h"
 #include "sim/simulation/simulate.h"
 
@@ -24,12 +25,14 @@ std::string InWords(const FreeParameter& p, double value) {
 // does without any.
 std::string Culprits(const Problem& problem, const Problem::Vector& x, std::size_t log,
                      const std::function<bool(const Changes&)>& fails) {
-  Changes set = problem.experiment().logs[log].set;
+  Changes set = SettingsOfModel(problem.experiment().logs[log]);
   if (fails(set)) return set.empty() || fails({}) ? " as the model stands" : " with its `set`";
   std::vector<std::string> alone, all;
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     const FreeParameter& p = problem.parameters()[k];
-    if (!p.log[log] || p.where.empty() || p.IsStart()) continue;
+    if (!p.log[log] || p.where.empty() || p.IsStart() ||
+        IsMeasurement(p.change.target, p.change.attribute))
+      continue;
     all.push_back(InWords(p, x[k]));
     set.push_back(p.change);
     set.back().value = x[k];

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "identification/problem/resting_joints.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/model/elastic_gear.h"
 #include "sim/model/joint_equalities.h"
 #include "sim/simulation/initial_state.h"
@@ -74,7 +75,7 @@ FreeParameter StartParameter(const std::string& joint, const std::string& what,
 void AddStarts(const Experiment& e, const ModelSpec& system, std::size_t l,
                std::vector<FreeParameter>& all) {
   const Log& log = e.logs[l];
-  ModelAndData machine = system.Build(log.set);
+  ModelAndData machine = system.Build(SettingsOfModel(log));
   const mjModel& m = *machine.model;
   const InitialState start = StartOf(machine, e, log);
   const std::vector<int> joints = IndependentJoints(m);

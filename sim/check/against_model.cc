@@ -8,6 +8,7 @@
 #include "sim/check/against_model.h"
 #include "sim/check/check.h"
 #include "sim/check/series_statistics.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/units.h"
@@ -241,7 +242,7 @@ std::vector<Finding> CheckAgainstModel(const Experiment& read, const ModelSpec& 
   std::vector<Trace> traces;
   for (const Log& log : e.logs) {
     Findings found(&log);
-    ModelAndData machine = system.Build(log.set);
+    ModelAndData machine = system.Build(SettingsOfModel(log));
     traces.emplace_back();
     try {
       traces.back() = Simulate(machine, e, log, {}, Hooks::Stoppable());

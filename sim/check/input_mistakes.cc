@@ -8,6 +8,7 @@
 #include "error.h"
 #include "sim/check/against_model.h"
 #include "sim/check/series_statistics.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/io/interrupt.h"
 #include "sim/io/units.h"
 #include "sim/simulation/simulate.h"
@@ -131,7 +132,7 @@ double InputMistakes::RelativeError(const Log& log, const Trace& trace) const {
 
 double InputMistakes::ErrorOf(const Log& log) {
   --budget_;
-  ModelAndData machine = system_.Build(log.set);
+  ModelAndData machine = system_.Build(SettingsOfModel(log));
   Trace trace;
   try {
     trace = Simulate(machine, experiment_, log, {}, Hooks::Stoppable());

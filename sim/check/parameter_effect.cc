@@ -66,7 +66,7 @@ class EffectSearch {
     const Log& log = e_.logs[l];
     steps_ += (log.time.back() - log.time.front()) / system_.model().opt.timestep;
     if (++simulations_ > kSimulations || steps_ > kAllSteps || e_.quasi_static) return false;
-    std::vector<Change> changes = log.set;
+    std::vector<Change> changes = SettingsOfModel(log);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Parameter& p = e_.parameters[i];
       if (!IsMeasurement(p.target, p.attribute))

@@ -224,7 +224,7 @@ std::set<std::string> CheckPose(const Experiment& e, const Log& log, const Model
                                 Findings& out) {
   const Registration& r = e.registration;
   if (e.quasi_static || r.has_frame() || r.has_marker()) return {};
-  ModelAndData machine = system.Build(log.set);
+  ModelAndData machine = system.Build(SettingsOfModel(log));
   const auto pose = PoseOf(e, *machine.model);
   const std::vector<std::size_t> rows = pose ? RowsOf(log, *pose) : std::vector<std::size_t>();
   if (rows.size() < 100) return {};

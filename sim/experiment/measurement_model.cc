@@ -83,6 +83,20 @@ void ApplyMeasurement(Experiment& e, const Change& change) {
   }
 }
 
+std::vector<Change> SettingsOfModel(const Log& log) {
+  std::vector<Change> settings;
+  for (const Change& c : log.set)
+    if (!IsMeasurement(c.target, c.attribute)) settings.push_back(c);
+  return settings;
+}
+
+Experiment MeasuredIn(const Experiment& e, const Log& log) {
+  Experiment measured = e;
+  for (const Change& c : log.set)
+    if (IsMeasurement(c.target, c.attribute)) ApplyMeasurement(measured, c);
+  return measured;
+}
+
 std::string MeasurementUnit(const Experiment& e, const std::string& target,
                             const std::string& attribute) {
   if (target == "registration")

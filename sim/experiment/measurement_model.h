@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "sim/experiment/experiment.h"
 #include "sim/model/change.h"
 
@@ -20,6 +23,12 @@ double SignalOf(const Experiment& e, std::size_t channel, double measured);
 
 /// Changes the outputs (or the skew) of an experiment; its logs stay as they are.
 void ApplyMeasurement(Experiment& e, const Change& change);
+
+/// What a log sets of the model: all of its `set` but how it was measured.
+std::vector<Change> SettingsOfModel(const Log& log);
+
+/// The experiment as a log was measured, which its `set` may say.
+Experiment MeasuredIn(const Experiment& e, const Log& log);
 
 /// The unit of a measurement attribute: that of the outputs that match, or "1" when they differ.
 std::string MeasurementUnit(const Experiment& e, const std::string& target,

@@ -9,6 +9,7 @@
 
 #include "engine.h"
 #include "error.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/film/measured_points.h"
 #include "sim/film/video.h"
 #include "sim/io/decimal.h"
@@ -261,7 +262,7 @@ void Outlook::Include(const Outlook& other) {
 
 Outlook LookAhead(const Experiment& e, const ModelSpec& system, const Log& log,
                   const FilmOptions& options) {
-  ModelAndData machine = system.Build(log.set);
+  ModelAndData machine = system.Build(SettingsOfModel(log));
   const Wiring wiring(e, *machine.model);
   MeasuredPose measured(e, log, *machine.model);
   Clock clock(log, options);
@@ -286,7 +287,7 @@ void DrawFrames(const Experiment& e, const ModelSpec& system, const Log& log, Fi
                 const Outlook& ahead, Ruler& ruler, const std::function<void(Image)>& take) {
   const bool pulled = ahead.tension && (*ahead.tension)[0] < (*ahead.tension)[1];
   if (!options.tension && pulled) options.tension = ahead.tension;
-  ModelAndData machine = system.Build(log.set);
+  ModelAndData machine = system.Build(SettingsOfModel(log));
   const Wiring wiring(e, *machine.model);
   MeasuredPose measured(e, log, *machine.model);
   Renderer renderer = RendererOf(*machine.model, options);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/model/attribute_bounds.h"
 #include "sim/numerics/parallel.h"
 #include "sim/simulation/output_units.h"
@@ -22,7 +23,8 @@ void CheckNames(const Experiment& e, const ModelSpec& system) {
     if (log.set.empty()) continue;
     try {
       for (const Change& change : log.set) RequirePossible(change);
-      system.Build(log.set);
+      system.Build(SettingsOfModel(log));
+      MeasuredIn(e, log);
     } catch (const Error& error) {
       throw Error::Input(log.set_where + " (log '" + log.label + "')", error.what());
     }
@@ -37,11 +39,11 @@ std::vector<Replayed> Replay(Experiment& e, const ModelSpec& system,
   const auto build = [&](const Log& log) {
     const std::lock_guard lock(one_at_a_time);
     if (progress) progress({"replay", begun++, e.logs.size(), log.label});
-    return system.Build(log.set);
+    return system.Build(SettingsOfModel(log));
   };
   ParallelFor(e.logs.size(), [&](std::size_t, std::size_t l) {
     ModelAndData machine = build(e.logs[l]);
-    traces[l] = Simulate(machine, e, e.logs[l], {}, Hooks::Stoppable());
+    traces[l] = Simulate(machine, MeasuredIn(e, e.logs[l]), e.logs[l], {}, Hooks::Stoppable());
   });
   for (std::size_t l = 0; l < traces.size(); ++l)
     if (traces[l].diverged) throw Error::Job(e.logs[l].label + ": " + traces[l].Failure());

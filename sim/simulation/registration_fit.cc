@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "error.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/experiment/registration.h"
 #include "sim/simulation/score.h"
 #include "sim/simulation/simulate.h"
@@ -326,7 +327,7 @@ Experiment Registered(const Experiment& e, const ModelSpec& system) {
     traces.emplace_back();
     traces.back().diverged = true;
     if (!log.train) continue;
-    ModelAndData machine = system.Build(log.set);
+    ModelAndData machine = system.Build(SettingsOfModel(log));
     traces.back() = Simulate(machine, e, log, {}, Hooks::Stoppable());
   }
   out.registration = Registered(e, wiring, system.model(), traces);

@@ -267,6 +267,21 @@ TEST_F(DiagnosisTest, AsksForTwoGroupsToLeaveOut) {
   EXPECT_THROW(Ask(e), Error);
 }
 
+// The noise is known, but there are no logs to leave out on which to try what leaves more than it.
+TEST_F(DiagnosisTest, RepeatsOfOneMotionEndWithoutAName) {
+  const auto q = Pendulum().Run(Command(0, kRows), testing::kPeriod);
+  const auto other = Command(1, kRows);  // so that nothing explains it
+  for (unsigned copy = 0; copy < 2; ++copy)
+    AddLog("r" + std::to_string(copy), "trial: only, use: train", other, Noisy(q, 1e-5, 0, copy));
+  const Experiment e = ReadWith("sensor_drift");
+  const Diagnosis d = Ask(e);
+  EXPECT_TRUE(d.folds.empty());
+  EXPECT_FALSE(d.noise_limited);
+  EXPECT_EQ(d.verdict.word(), "unexplained") << Described(d);
+  EXPECT_FALSE(d.verdict.complete);
+  EXPECT_THAT(d.verdict.reason, HasSubstr("another motion"));
+}
+
 TEST_F(DiagnosisTest, AsksForALogToTrainOn) {
   AddTrials({});
   Experiment e = ReadWith("payload");

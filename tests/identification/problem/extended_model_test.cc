@@ -119,6 +119,21 @@ TEST_F(ExtensionTest, ReproducesParametersPerCondition) {
   ExpectSameErrors(Problem(e, system));
 }
 
+// How each log was measured stands in its line.
+TEST_F(ExtensionTest, ReproducesABiasOfEachLog) {
+  AddTrial(Pendulum(), "first", 0, "use: train");
+  AddTrial(Pendulum(), "other", 1, "use: train");
+  const ModelSpec system = Model(CoulombInstance(0.1));
+  const Experiment e = ReadExperiment(
+      "parameters:\n"
+      "  - {name: own, target: 'sensor:angle', attribute: bias, initial: 0, lower: -1, upper: 1, "
+      "per: log}\n");
+  const Problem problem(e, system);
+  Problem::Vector x = problem.Start();
+  x[0] = 0.1, x[1] = -0.2;
+  ExpectTheSameErrors(problem, x);
+}
+
 TEST_F(ExtensionTest, ReproducesFrozenParameters) {
   AddTrials();
   const ModelSpec system = Model(CoulombInstance(0.1));
