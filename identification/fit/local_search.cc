@@ -58,7 +58,7 @@ std::vector<double> CostsOf(const Problem& problem, const std::vector<Vector>& p
 // Where the cost is least around a fit, which bears the effort.
 Vector LeastAround(const Problem& problem, const Matrix& slopes, const std::vector<bool>& use,
                    std::uint64_t seed, const FitOptions& options, Fit& fit) {
-  constexpr std::size_t kGenerations = 40, kInVain = 6;
+  constexpr std::size_t kGenerations = 40, kInVain = 12;
   constexpr double kMuchLower = 1e-3;
   const auto begin = std::chrono::steady_clock::now();
   std::size_t generation = 0;

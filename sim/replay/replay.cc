@@ -16,15 +16,25 @@
 #include "sim/simulation/wiring.h"
 
 namespace continuum {
+namespace {
+
+Experiment WithoutLogs(const Experiment& e) {
+  Experiment setup = e;
+  setup.logs.clear();
+  return setup;
+}
+
+}  // namespace
 
 void CheckNames(const Experiment& e, const ModelSpec& system) {
   CheckUnits(e, system.model());
+  const Experiment setup = WithoutLogs(e);
   for (const Log& log : e.logs) {
     if (log.set.empty()) continue;
     try {
       for (const Change& change : log.set) RequirePossible(change);
       system.Build(SettingsOfModel(log));
-      MeasuredIn(e, log);
+      MeasuredIn(setup, log);
     } catch (const Error& error) {
       throw Error::Input(log.set_where + " (log '" + log.label + "')", error.what());
     }
@@ -33,6 +43,7 @@ void CheckNames(const Experiment& e, const ModelSpec& system) {
 
 std::vector<Replayed> Replay(Experiment& e, const ModelSpec& system,
                              const ProgressCallback& progress) {
+  Experiment setup = WithoutLogs(e);
   std::vector<Trace> traces(e.logs.size());
   std::mutex one_at_a_time;
   std::size_t begun = 0;
@@ -43,17 +54,18 @@ std::vector<Replayed> Replay(Experiment& e, const ModelSpec& system,
   };
   ParallelFor(e.logs.size(), [&](std::size_t, std::size_t l) {
     ModelAndData machine = build(e.logs[l]);
-    traces[l] = Simulate(machine, MeasuredIn(e, e.logs[l]), e.logs[l], {}, Hooks::Stoppable());
+    traces[l] = Simulate(machine, MeasuredIn(setup, e.logs[l]), e.logs[l], {}, Hooks::Stoppable());
   });
   for (std::size_t l = 0; l < traces.size(); ++l)
     if (traces[l].diverged) throw Error::Job(e.logs[l].label + ": " + traces[l].Failure());
   const Wiring wiring(e, system.model());
-  e.registration = Registered(e, wiring, system.model(), traces);
+  e.registration = setup.registration = Registered(e, wiring, system.model(), traces);
   std::vector<Replayed> out;
   for (std::size_t l = 0; l < traces.size(); ++l) {
-    if (e.registration.estimates()) MeasureTrace(e, wiring, e.logs[l], traces[l]);
+    const Log& log = e.logs[l];
+    if (e.registration.estimates()) MeasureTrace(MeasuredIn(setup, log), wiring, log, traces[l]);
     out.push_back({std::move(traces[l]), {}});
-    out.back().score = ScoreLog(e, e.logs[l], out.back().trace);
+    out.back().score = ScoreLog(e, log, out.back().trace);
   }
   return out;
 }
