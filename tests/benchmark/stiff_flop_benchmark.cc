@@ -6,7 +6,7 @@
 namespace continuum::stiff_flop {
 namespace {
 
-constexpr Module kModule{.r_c1 = 2.5e-3,
+const Module kModule{.r_c1 = 2.5e-3,
                          .r_c2 = 3e-3,
                          .gamma = 1.5599752854,
                          .r_o = 9e-3,
