@@ -320,7 +320,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
                                      : Minimize(cost, box, search, y);
   fit.iterations = static_cast<int>(summary.iterations.size()) - 1;
   fit.x = Unscaled(problem, y.data());
-  if (!options.rough) slopes = cost.SlopesNear(fit.x);
+  if (options.slopes && !options.rough) slopes = cost.SlopesNear(fit.x);
   fit.cost = summary.final_cost;
   fit.converged = summary.termination_type == ceres::CONVERGENCE || watch.settled();
   fit.message = InWords(summary, watch, options);

@@ -9,6 +9,7 @@
 #include "identification/fit/evolution.h"
 #include "identification/fit/ripples.h"
 #include "identification/fit/wide_slope_fit.h"
+#include "identification/statistics/uncertainty.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/shared_loop.h"
 
@@ -35,11 +36,10 @@ bool Rubs(const mjModel& m) {
   return false;
 }
 
-// Whether a parameter ended at a bound, as a friction that went to zero: nothing rubs there, and
-// slopes do not lead back.
+// As a friction that went to zero: nothing rubs there, and slopes do not lead back.
 bool IsAtBound(const Problem& problem, const Vector& x) {
-  const Box box = BoundsOf(problem);
-  return (x.array() <= box.lower.array() || x.array() >= box.upper.array()).any();
+  const std::vector<bool> at = AtBounds(problem, x);
+  return std::find(at.begin(), at.end(), true) != at.end();
 }
 
 // The costs of points; outside of the bounds that on them, and more by the distance.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "sim/experiment/measurement_model.h"
 #include "sim/io/interrupt.h"
 
 namespace continuum {
@@ -71,8 +72,7 @@ void AddSegments(const Log& log, std::size_t segments, SegmentedLogs& cut) {
 }
 
 SegmentedLogs Segmented(const Experiment& e, const std::vector<bool>& use, std::size_t segments) {
-  SegmentedLogs cut{e, {}};
-  cut.experiment.logs.clear();
+  SegmentedLogs cut{WithoutLogs(e), {}};
   cut.experiment.start = Experiment::Start::kEstimate;
   for (std::size_t l = 0; l < use.size(); ++l) {
     Log log = e.logs[l];

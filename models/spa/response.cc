@@ -1,17 +1,13 @@
 #include "models/spa/response.h"
 
 #include <fmt/format.h>
-#include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
-#include <boost/numeric/odeint/stepper/generation.hpp>
-#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 
 #include "error.h"
+#include "models/spa/follow_inputs.h"
 #include "models/spa/statics.h"
 
 namespace continuum {
 namespace {
-
-namespace odeint = boost::numeric::odeint;
 
 // Scaled so that one tolerance serves all: δ [mm], rates [mm per 10 ms], work [mJ].
 constexpr double kLength = 1e-3, kRate = 0.1, kWork = 1e-3;
@@ -101,21 +97,12 @@ std::vector<SpaSample> SpaRespond(const Spa<double>& spa, const SpaStart& start,
     y[i] = start.state.delta[i] / kLength;
     y[3 + i] = start.state.rate[i] / kRate;
   }
-  auto stepper =
-      odeint::make_controlled<odeint::runge_kutta_fehlberg78<Scaled>>(tolerance, tolerance);
   std::vector<SpaSample> samples;
   samples.reserve(input.size());
   Rates rates{spa, base, start.pressure, Eigen::Vector3d::Zero(), 0};
-  for (std::size_t k = 0; k < input.size(); ++k) {
-    const double begin = double(k) * period, end = double(k + 1) * period;
-    rates.begin = begin;
-    rates.input = input[k];
-    samples.push_back(Sample(rates, y, begin));
-    if (k + 1 == input.size()) break;
-    odeint::integrate_adaptive(std::ref(stepper), std::cref(rates), y, begin, end, period);
-    CheckMotion(spa, y, end);
-    rates.pressure = rates.Pressure(end);
-  }
+  FollowInputs(
+      rates, y, input, period, tolerance, [&](double t) { samples.push_back(Sample(rates, y, t)); },
+      [&](double t) { CheckMotion(spa, y, t); });
   return samples;
 }
 

@@ -2,11 +2,9 @@
 
 #include <ceres/jet.h>
 #include <fmt/format.h>
-#include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
-#include <boost/numeric/odeint/stepper/generation.hpp>
-#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 
 #include "error.h"
+#include "models/spa/follow_inputs.h"
 #include "sim/numerics/decompositions.h"
 
 namespace continuum {
@@ -217,8 +215,6 @@ VectorXd SpaSeriesEquilibrium(const SpaSeries& series, const VectorXd& pressure,
 
 namespace {
 
-namespace odeint = boost::numeric::odeint;
-
 // Scaled as in response.cc: δ [mm], rates [mm per 10 ms].
 constexpr double kLength = 1e-3, kRate = 0.1;
 using Scaled = std::vector<double>;
@@ -273,22 +269,15 @@ std::vector<SpaSeriesSample> SpaSeriesRespond(const SpaSeries& series,
   const double length = series.segment().parameters().L0;
   const Eigen::Index n = 3 * series.segments();
   Scaled y(2 * static_cast<std::size_t>(n));
-  auto stepper =
-      odeint::make_controlled<odeint::runge_kutta_fehlberg78<Scaled>>(tolerance, tolerance);
   std::vector<SpaSeriesSample> samples;
   Rates rates{series, base, VectorXd::Zero(n), VectorXd::Zero(n), 0};
-  for (std::size_t k = 0; k < input.size(); ++k) {
-    const double begin = double(k) * period, end = double(k + 1) * period;
-    rates.begin = begin;
-    rates.input = input[k];
-    samples.push_back(Sample(rates, y, begin));
-    if (k + 1 == input.size()) break;
-    odeint::integrate_adaptive(std::ref(stepper), std::cref(rates), y, begin, end, period);
-    if (!(MotionOf(y).delta.cwiseAbs().maxCoeff() < 3 * length)) {
-      throw Error::Job(fmt::format("soft actuators on end: diverged at t = {:.6g} s", end));
-    }
-    rates.pressure = rates.Pressure(end);
-  }
+  const auto check = [&](double t) {
+    if (MotionOf(y).delta.cwiseAbs().maxCoeff() < 3 * length) return;
+    throw Error::Job(fmt::format("soft actuators on end: diverged at t = {:.6g} s", t));
+  };
+  FollowInputs(
+      rates, y, input, period, tolerance, [&](double t) { samples.push_back(Sample(rates, y, t)); },
+      check);
   return samples;
 }
 

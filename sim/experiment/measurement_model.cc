@@ -90,6 +90,12 @@ std::vector<Change> SettingsOfModel(const Log& log) {
   return settings;
 }
 
+Experiment WithoutLogs(const Experiment& e) {
+  Experiment setup = e;
+  setup.logs.clear();
+  return setup;
+}
+
 Experiment MeasuredIn(const Experiment& e, const Log& log) {
   Experiment measured = e;
   for (const Change& c : log.set)

@@ -27,6 +27,9 @@ void ApplyMeasurement(Experiment& e, const Change& change);
 /// What a log sets of the model: all of its `set` but how it was measured.
 std::vector<Change> SettingsOfModel(const Log& log);
 
+/// How an experiment is set up.
+Experiment WithoutLogs(const Experiment& e);
+
 /// The experiment as a log was measured, which its `set` may say.
 Experiment MeasuredIn(const Experiment& e, const Log& log);
 

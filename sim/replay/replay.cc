@@ -16,25 +16,18 @@
 #include "sim/simulation/wiring.h"
 
 namespace continuum {
-namespace {
-
-Experiment WithoutLogs(const Experiment& e) {
-  Experiment setup = e;
-  setup.logs.clear();
-  return setup;
-}
-
-}  // namespace
 
 void CheckNames(const Experiment& e, const ModelSpec& system) {
   CheckUnits(e, system.model());
-  const Experiment setup = WithoutLogs(e);
   for (const Log& log : e.logs) {
     if (log.set.empty()) continue;
     try {
-      for (const Change& change : log.set) RequirePossible(change);
+      for (const Change& change : log.set) {
+        RequirePossible(change);
+        if (IsMeasurement(change.target, change.attribute))
+          MeasurementValue(e, change.target, change.attribute);
+      }
       system.Build(SettingsOfModel(log));
-      MeasuredIn(setup, log);
     } catch (const Error& error) {
       throw Error::Input(log.set_where + " (log '" + log.label + "')", error.what());
     }

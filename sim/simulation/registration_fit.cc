@@ -69,8 +69,7 @@ struct Cloud {
   Eigen::Matrix3Xd from, to;
 };
 Cloud CloudOf(const Experiment& e, const Wiring& wiring, const std::vector<Trace>& traces) {
-  Experiment bare = e;
-  bare.logs.clear();
+  Experiment bare = WithoutLogs(e);
   bare.registration.rotation = bare.registration.translation = {};
   for (Output& out : bare.outputs) out.measurement = {};
   std::vector<Vector3d> from, to;
@@ -151,8 +150,7 @@ class Search {
  public:
   Search(const Experiment& e, const Wiring& wiring, const std::vector<Parameter>& free,
          const std::vector<Trace>& traces)
-      : e_(e), wiring_(wiring), free_(free), traces_(traces), pool_(e), moved_(e) {
-    moved_.logs.clear();
+      : e_(e), wiring_(wiring), free_(free), traces_(traces), pool_(e), moved_(WithoutLogs(e)) {
     period_ = MedianPeriod(e);
   }
 
