@@ -82,7 +82,9 @@ bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& searc
 
 void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& options,
                       Diagnosis& d) {
-  for (const std::size_t i : d.verdict.named) {
+  std::vector<std::size_t> told = d.verdict.named;
+  told.insert(told.end(), d.verdict.siblings.begin(), d.verdict.siblings.end());
+  for (const std::size_t i : told) {
     CandidateResult& c = d.candidates[i];
     options.Say(DiagnosisStage::kJudgement, "lengths and masses beside " + c.hypothesis.Name());
     AllowForLengthsAndMasses(fitter, d.sizes, c.hypothesis.system, c.hypothesis.Free(),

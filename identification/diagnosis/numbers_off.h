@@ -16,7 +16,7 @@ bool AllowForNumbers(const CandidateFitter& fitter, const CandidateSearch& searc
 /// is (Uncertainty::by_numbers).
 bool NumbersMayDoAsMuch(const CandidateResult& candidate);
 
-/// AllowForLengthsAndMasses in the intervals of all that is named.
+/// AllowForLengthsAndMasses in the intervals of all that is named, and of its siblings.
 void AllowInIntervals(const CandidateFitter& fitter, const DiagnosisOptions& options, Diagnosis& d);
 
 /// After that: a cause that only corrects a number, by no more than lengths and masses may, is not

@@ -134,9 +134,8 @@ class LogReader {
   }
 
   std::vector<double> Measured(std::size_t c) const {
-    std::vector<double> y = log_.measured[c];
+    std::vector<double> y = SignalsOf(e_, log_, c);
     for (std::size_t k = 0; k < y.size(); ++k) {
-      y[k] = SignalOf(e_, c, y[k]);
       if (!std::isnan(y[k])) continue;
       throw Error::Input("--method regressor",
                          "channel '" + e_.channels[c].name + "' measured at every row",

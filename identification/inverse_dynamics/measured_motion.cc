@@ -87,8 +87,7 @@ std::map<int, JointMotion> MotionsOf(const Experiment& e, const mjModel& m, cons
                                      const std::vector<Quartic>& quartics) {
   std::map<int, JointMotion> motions;
   for (const auto& [joint, channel] : JointChannels(e, m)) {
-    std::vector<double> y = log.measured[channel];
-    for (double& value : y) value = SignalOf(e, channel, value);
+    const std::vector<double> y = SignalsOf(e, log, channel);
     JointMotion& motion = motions[joint];
     for (const Quartic& q : quartics) {
       motion.angle.push_back(q.Of(y, q.value));

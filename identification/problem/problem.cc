@@ -340,7 +340,9 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
   }
   if (setup.skew == experiment_->skew) return Simulate(machine, setup, logged, start, hooks);
   Log stretched = logged;
-  for (double& t : stretched.time) t *= (1 + setup.skew) / (1 + experiment_->skew);
+  const double longer = (1 + setup.skew) / (1 + experiment_->skew);
+  for (double& t : stretched.time) t *= longer;
+  if (stretched.begin) *stretched.begin *= longer;
   return Simulate(machine, setup, stretched, start, hooks);
 }
 
@@ -390,7 +392,7 @@ bool Problem::SameMotion(std::size_t a, std::size_t b) const {
   const Log &x = experiment_->logs[a], &y = experiment_->logs[b];
   const bool known = experiment_->start == Experiment::Start::kRest ||
                      experiment_->start == Experiment::Start::kEquilibrium;
-  return known && x.time == y.time && x.input == y.input && x.enable == y.enable &&
+  return known && x.time == y.time && x.Begin() == y.Begin() && x.input == y.input && x.enable == y.enable &&
          x.set == y.set && x.start == y.start &&
          std::all_of(parameters_.begin(), parameters_.end(),
                      [&](const FreeParameter& p) { return p.log[a] == p.log[b]; });

@@ -5,7 +5,7 @@
 namespace continuum {
 
 /// A sensor whose zero wanders.   y_meas(t) = y(t) + rate t,  rate in the unit of the output per
-/// second, t [s] from the beginning of the log.
+/// second, t [s] from the beginning of the log, of which an experiment may take a window.
 struct SensorDrift {
   static constexpr std::string_view kName = "sensor_drift", kSource = "doebelin2003",
                                     kSummary = "a sensor whose zero wanders";

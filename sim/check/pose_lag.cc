@@ -107,7 +107,7 @@ class PoseKinematics {
 
  private:
   double Measured(const ColumnAddress& p, std::size_t row) const {
-    return SignalOf(e_, p.channel, log_.measured[p.channel][row]);
+    return SignalOf(e_, log_, p.channel, row);
   }
   VectorXd EvaluateSensors() {
     mj_fwdPosition(&m_, &d_);

@@ -193,6 +193,7 @@ std::vector<std::size_t> ReadTimes(Log& log, const Experiment& e, const Recordin
     const double t = clock.At(row);
     if (!(t > last)) throw TimeGoesBack(clock, rec, row);
     last = t;
+    if (row == 0) log.begin = t * (1 + e.skew);
     if (!window.empty() && (t < window[0] || t > window[1])) continue;
     kept.push_back(row);
     log.time.push_back(t * (1 + e.skew));

@@ -119,14 +119,22 @@ std::string MeasurementUnit(const Experiment& e, const std::string& target,
   return attribute == "rate" ? unit + "/s" : unit;
 }
 
-double SignalOf(const Experiment& e, std::size_t channel, double measured) {
+double SignalOf(const Experiment& e, const Log& log, std::size_t channel, std::size_t row) {
   const Experiment::Channel& c = e.channels[channel];
   const Measurement& how = e.outputs[c.output].measurement;
-  const double reading = (measured / c.factor - how.bias) / how.scale;
+  const double drift = how.rate * (log.time[row] - log.Begin());
+  const double reading = (log.measured[channel][row] / c.factor - how.bias - drift) / how.scale;
   double y = reading;
   for (int k = 0; k < kEccentric && (how.cosine != 0 || how.sine != 0); ++k)
     y = reading - how.Eccentricity(y);
   return c.factor * y;
+}
+
+std::vector<double> SignalsOf(const Experiment& e, const Log& log, std::size_t channel) {
+  std::vector<double> signals;
+  for (std::size_t row = 0; row < log.rows(); ++row)
+    signals.push_back(SignalOf(e, log, channel, row));
+  return signals;
 }
 
 }  // namespace continuum

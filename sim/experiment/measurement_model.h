@@ -18,8 +18,10 @@ bool IsMeasurement(const std::string& target, const std::string& attribute);
 double MeasurementValue(const Experiment& e, const std::string& target,
                         const std::string& attribute);
 
-/// What a measured value of a channel [SI] stands for in the model: without its scale and bias.
-double SignalOf(const Experiment& e, std::size_t channel, double measured);
+/// What a channel measures in a row stands for in the model [SI]: without its scale, bias, drift
+/// and eccentricity.
+double SignalOf(const Experiment& e, const Log& log, std::size_t channel, std::size_t row);
+std::vector<double> SignalsOf(const Experiment& e, const Log& log, std::size_t channel);
 
 /// Changes the outputs (or the skew) of an experiment; its logs stay as they are.
 void ApplyMeasurement(Experiment& e, const Change& change);

@@ -121,7 +121,7 @@ std::vector<MeasuredPoint> MeasuredPoints(const Experiment& e, const Wiring& wir
     mju_mulMatVec3(p.simulated.data(), object.axes, offset.data());
     mju_addTo3(p.simulated.data(), object.position);
     Vector y = frame_of_measurement.FromSensor(frame.Of(p.simulated));
-    for (const auto& [i, c] : channels) y[i] = SignalOf(e, c, log.measured[c][found->row]);
+    for (const auto& [i, c] : channels) y[i] = SignalOf(e, log, c, found->row);
     p.measured = frame.InWorld(frame_of_measurement.ToSensor(y));
     points.push_back(p);
   }

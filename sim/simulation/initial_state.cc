@@ -48,14 +48,13 @@ InitialState FirstMeasured(const mjModel& m, const Experiment& e, const Log& log
             log.file.string() + ", column '" + e.channels[c].name + "'",
             "a joint position in the first row of '" + log.label + "' (start: measured)", "none");
       }
-      if (known) state.qpos[m.jnt_qposadr[joint]] = SignalOf(e, c, log.measured[c][0]);
+      if (known) state.qpos[m.jnt_qposadr[joint]] = SignalOf(e, log, c, 0);
       if (e.start != Experiment::Start::kEstimate) continue;
-      std::vector<double> q = log.measured[c];
-      for (double& y : q) y = SignalOf(e, c, y);
+      const std::vector<double> q = SignalsOf(e, log, c);
       if (const double slope = SlopeAt(log.time, q, 0); !std::isnan(slope))
         state.qvel[m.jnt_dofadr[joint]] = slope;
     } else if (known && IsJoint(m, out, mjSENS_JOINTVEL, joint)) {
-      state.qvel[m.jnt_dofadr[joint]] = SignalOf(e, c, log.measured[c][0]);
+      state.qvel[m.jnt_dofadr[joint]] = SignalOf(e, log, c, 0);
     }
   }
   return state;
@@ -108,12 +107,11 @@ std::optional<InitialState> StateAt(const mjModel& m, const Experiment& e, const
     const Output& out = e.outputs[e.channels[c].output];
     int joint = -1;
     if (IsJoint(m, out, mjSENS_JOINTVEL, joint)) {
-      state.qvel[m.jnt_dofadr[joint]] = SignalOf(e, c, log.measured[c][row]);
+      state.qvel[m.jnt_dofadr[joint]] = SignalOf(e, log, c, row);
       sensed[m.jnt_dofadr[joint]] = true;
     }
     if (!IsJoint(m, out, mjSENS_JOINTPOS, joint)) continue;
-    std::vector<double> q = log.measured[c];
-    for (double& y : q) y = SignalOf(e, c, y);
+    const std::vector<double> q = SignalsOf(e, log, c);
     const int dof = m.jnt_dofadr[joint];
     state.qpos[dof] = q[row];
     if (!sensed[dof]) state.qvel[dof] = SlopeAt(log.time, q, row);

@@ -68,9 +68,9 @@ Record Later(const Record& record, const std::vector<double>& time, double delay
 }
 
 // Writes what is measured of a record (Measurement), in SI units. factor: of the output's unit.
-void Measure(Record& record, const Measurement& how, double shift, const std::vector<double>& time,
-             double factor) {
+void Measure(Record& record, const Measurement& how, double shift, const Log& log, double factor) {
   if (how == Measurement{} && shift == 0) return;
+  const std::vector<double>& time = log.time;
   Record late = Later(record, time, how.delay + shift);
   double quat[4] = {1, 0, 0, 0};
   double axis[3] = {how.axis[0], how.axis[1], how.axis[2]};
@@ -91,7 +91,7 @@ void Measure(Record& record, const Measurement& how, double shift, const std::ve
     for (std::size_t c = 0; c < record.size(); ++c) {
       const double turn = record.size() == 1 ? how.Eccentricity(late[c][k] / factor) : 0;
       record[c][k] = how.scale * (late[c][k] + factor * turn) +
-                     factor * (how.bias + how.rate * (time[k] - time.front()));
+                     factor * (how.bias + how.rate * (time[k] - log.Begin()));
     }
   }
 }
@@ -106,7 +106,7 @@ void MeasureTrace(const Experiment& e, const Wiring& wiring, const Log& log, Tra
     Record record = trace.raw[o];
     if (r.has_frame() || r.has_marker())
       Register(record, r, wiring.output[o].geometry, trace.axes[o], OffsetOf(r, out.source));
-    Measure(record, out.measurement, r.clock_shift, log.time, UnitFactor(out.unit, ""));
+    Measure(record, out.measurement, r.clock_shift, log, UnitFactor(out.unit, ""));
     if (out.quaternion()) {
       for (auto& component : record) trace.channel.push_back(std::move(component));
     } else {

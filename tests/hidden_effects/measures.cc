@@ -127,6 +127,7 @@ void AddNumbers(Tally& t) {
 }
 
 void AddOutside(Tally& t) {
+  const Test sized = [](const Outcome& o) { return Single(o) && o.HasSize(); };
   t.Share("outside: right", std::nullopt, AtLeast(0.9), {Outside}, IsRight)
       .Share("outside: one effect, in the set", std::nullopt, AtLeast(0.95), {Outside, Single},
              [](const Outcome& o) { return o.right; })
@@ -137,6 +138,10 @@ void AddOutside(Tally& t) {
       .Share("outside: pairs, both", std::nullopt, AtLeast(0.8), {Outside, Pair}, IsRight)
       .Share("outside: no answer", std::nullopt, AtMost(0), {Outside},
              [](const Outcome& o) { return !Answered(o); })
+      .Share("outside: 95 % interval holds, as if no number were off", std::nullopt, std::nullopt,
+             {Outside, sized}, [](const Outcome& o) { return o.Covered(); })
+      .Share("outside: the same, lengths and masses off by 1.5 %", std::nullopt, AtLeast(0.93),
+             {Outside, sized}, [](const Outcome& o) { return o.CoveredIfNumbersAreOff(); })
       .Share("outside: 2 kg on the pendulum within 15 %", AtLeast(1), AtLeast(1),
              {Outside, Single,
               [](const Outcome& o) {

@@ -41,6 +41,7 @@ nlohmann::json LineOf(const Case& c, const Answer& a) {
                       {"value", a.value},
                       {"low", a.low},
                       {"high", a.high},
+                      {"by_numbers", a.by_numbers},
                       {"removed", a.removed},
                       {"p", a.p},
                       {"lack", a.lack},
@@ -73,6 +74,7 @@ void ReadMore(const nlohmann::json& line, Outcome& o) {
   o.exact = line.value("exact", o.right), o.sibling = line.value("sibling", false);
   o.cpu = line.value("cpu", o.seconds), o.p = line.value("p", 1.0);
   if (line.contains("explained")) o.explained = line["explained"].get<double>();
+  o.by_numbers = line.value("by_numbers", 0.0);
   o.removed = line.value("removed", o.explained.value_or(0));
   o.screened = line.value("screened", ""), o.leading = line.value("leading", "");
   if (line.contains("complete")) o.complete = line["complete"].get<bool>();

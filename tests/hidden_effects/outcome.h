@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ struct Outcome {
   bool exact = false;    ///< right by the very name, not by one of its family
   bool sibling = false;  ///< it holds what is declared to look the same
   double truth = 0, value = 0, low = 0, high = 0;
+  double by_numbers = 0;  ///< standard deviation of value, if lengths and masses are off
   std::map<std::string, double> stated;  ///< probability of every effect
   double seconds = 0, cpu = 0;
   double p = 1;                          ///< to first order
@@ -38,6 +40,11 @@ struct Outcome {
 
   bool HasSize() const { return right && value != 0; }
   bool Covered() const { return low <= truth && truth <= high; }
+  /// Of the interval and twice that deviation together.
+  bool CoveredIfNumbersAreOff() const {
+    const double half = truth > value ? high - value : value - low;
+    return Covered() || std::abs(truth - value) <= std::hypot(half, 2 * by_numbers);
+  }
 };
 
 nlohmann::json LineOf(const Case& c, const Answer& a);

@@ -128,6 +128,7 @@ TEST(Outcome, IsWhatItsLineSays) {
   Answer a;
   a.verdict = "named", a.named = {"payload"}, a.truth = 2, a.value = 1.8, a.low = 1;
   a.high = std::numeric_limits<double>::infinity();
+  a.by_numbers = 0.1;
   a.stated = {{"payload", 0.75}};
   a.closest = 20;
   a.followed = {"a staircase", 40, {"payload"}, true, true};
@@ -137,6 +138,7 @@ TEST(Outcome, IsWhatItsLineSays) {
   ASSERT_EQ(read.size(), 1u);
   EXPECT_TRUE(read[0].right && read[0].unique && read[0].Covered());
   EXPECT_EQ(read[0].factor, 2);
+  EXPECT_EQ(read[0].by_numbers, 0.1);
   EXPECT_EQ(read[0].stated.at("payload"), 0.75);
   ASSERT_TRUE(read[0].followed);
   EXPECT_TRUE(read[0].followed->right && read[0].followed->unique);

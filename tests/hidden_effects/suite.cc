@@ -204,6 +204,7 @@ void ReadSize(const Case& c, const CandidateResult& one, Answer& a) {
     const Uncertainty& u = one.fitted.sensitivities->uncertainty;
     a.value = one.fitted.fit.x[at] + (u.step.size() > 0 ? u.step[at] : 0);  // no machine has a step
     a.low = u.lower[at], a.high = u.upper[at];
+    if (u.by_numbers.size() > 0) a.by_numbers = u.by_numbers[at];
   }
 }
 

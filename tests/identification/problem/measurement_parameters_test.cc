@@ -76,9 +76,24 @@ TEST_F(Measured, AnEccentricityIsFound) {
 TEST_F(Measured, AReadingIsCorrectedForItsEccentricity) {
   Experiment e = Logs(0, 1, 0, "target: 'sensor:q', attribute: bias, lower: -1, upper: 1");
   Measurement& how = e.outputs[0].measurement;
-  how = {0.1, 1.2, 0, 0, 0, 0.03, -0.02, 2};
-  for (const double y : {-2.0, 0.0, 0.7})
-    EXPECT_NEAR(SignalOf(e, 0, 1.2 * (y + how.Eccentricity(y)) + 0.1), y, 1e-12);
+  how = {0.1, 1.2, 0, 0.5, 0, 0.03, -0.02, 2};
+  Log& log = e.logs[0];
+  for (const double y : {-2.0, 0.0, 0.7}) {
+    log.measured[0][3] = 1.2 * (y + how.Eccentricity(y)) + 0.1 + 0.5 * (log.time[3] - log.time[0]);
+    EXPECT_NEAR(SignalOf(e, log, 0, 3), y, 1e-12);
+  }
+}
+
+// A window begins where the drift has come to, not anew.
+TEST_F(Measured, ADriftBeginsWithTheRecording) {
+  Experiment e = Logs(0, 1, 0, "target: 'sensor:q', attribute: bias, lower: -1, upper: 1");
+  const ModelSpec system = ModelSpec::Load(e.model);
+  Log& log = e.logs[0];
+  log.begin = log.time[0] - 10;
+  const double without = Replay(e, system)[0].trace.channel[0][7];
+  e.outputs[0].measurement.rate = 0.5;
+  const double since = log.time[7] - log.time[0] + 10;
+  EXPECT_NEAR(Replay(e, system)[0].trace.channel[0][7] - without, 0.5 * since, 1e-12);
 }
 
 TEST_F(Measured, ADelayIsFound) {

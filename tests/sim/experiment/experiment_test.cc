@@ -94,6 +94,7 @@ TEST_F(ExperimentFile, CutsWindowsInSecondsOfTheLogAndThenSkewsTheClock) {
   const Experiment e = Read(text);
   EXPECT_THAT(e.logs[0].time, ElementsAre(0, 0.1 * 1.01));
   EXPECT_THAT(e.logs[1].time, ElementsAre(0.25 * 1.01, 0.4 * 1.01));
+  EXPECT_EQ(e.logs[1].Begin(), e.logs[0].time[0]);
   EXPECT_NE(e.logs[0].label, e.logs[1].label);
 }
 
