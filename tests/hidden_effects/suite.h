@@ -51,7 +51,7 @@ struct Answer {
   bool corrects = false;                    ///< the partner only corrects a number of the model
   std::vector<std::string> partner = {};    ///< of a second cause beside those
   double truth = 0, value = 0, low = 0, high = 0;  ///< of the first effect, when it is in named
-  double by_numbers = 0;  ///< Uncertainty::by_numbers of it
+  double by_numbers = 0;                           ///< Uncertainty::by_numbers of it
   double removed = 0;                              ///< error removed on the validate logs
   std::optional<double> explained = {};  ///< of what is explainable of it, where that is known
   double p = 1;                          ///< family-wise, of the best candidate to first order
