@@ -392,8 +392,8 @@ bool Problem::SameMotion(std::size_t a, std::size_t b) const {
   const Log &x = experiment_->logs[a], &y = experiment_->logs[b];
   const bool known = experiment_->start == Experiment::Start::kRest ||
                      experiment_->start == Experiment::Start::kEquilibrium;
-  return known && x.time == y.time && x.Begin() == y.Begin() && x.input == y.input && x.enable == y.enable &&
-         x.set == y.set && x.start == y.start &&
+  return known && x.time == y.time && x.Begin() == y.Begin() && x.input == y.input &&
+         x.enable == y.enable && x.set == y.set && x.start == y.start &&
          std::all_of(parameters_.begin(), parameters_.end(),
                      [&](const FreeParameter& p) { return p.log[a] == p.log[b]; });
 }

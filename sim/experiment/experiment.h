@@ -70,7 +70,7 @@ struct Log {
   std::map<std::string, std::array<double, 2>> start;
 
   std::vector<double> time;                   ///< [s] in model time, increasing
-  std::optional<double> begin;  ///< [s] of the whole recording; empty: time.front()
+  std::optional<double> begin;                ///< [s] of the whole recording; empty: time.front()
   std::vector<std::vector<double>> input;     ///< [input][row]
   std::vector<std::vector<bool>> enable;      ///< [input][row], empty when always on
   std::vector<std::vector<double>> measured;  ///< [channel][row] SI; NaN: not measured
