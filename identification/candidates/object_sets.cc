@@ -31,20 +31,21 @@ Hypothesis MakeAt(const EffectInfo& effect, const Candidate& wanted, const Objec
                   int option, const CandidateContext& c) {
   const auto& [place, names] = objects;
   const ModelSpec& system = *c.from.system;
+  const Sizes sizes = place == Place::kJoint ? c.sizes.Of(system.model(), names) : c.sizes;
   if (wanted.law) return FormulaCandidate(effect, *wanted.law, place, names, system);
   switch (effect.kind) {
     case Kind::kMeasure:
-      return MeasurementCandidate(effect, names, c.experiment, system, c.sizes);
+      return MeasurementCandidate(effect, names, c.experiment, system, sizes);
     case Kind::kSegment:
-      return SegmentCandidate(effect, names, system, c.sizes);
+      return SegmentCandidate(effect, names, system, sizes);
     case Kind::kEdit: {
       Hypothesis h =
-          EditCandidate(effect, place, names, c.experiment, system, c.from.fitted, c.sizes);
+          EditCandidate(effect, place, names, c.experiment, system, c.from.fitted, sizes);
       RequireModel(h);
       return h;
     }
     default:
-      return PluginCandidate(effect, place, names, system, c.sizes, option);
+      return PluginCandidate(effect, place, names, system, sizes, option);
   }
 }
 

@@ -16,25 +16,30 @@ namespace {
 
 // What moves on the way of one motion, in SI.
 struct OnTheWay {
-  double torque = 0, velocity = 0, count = 0;  // squares, and how many of them
-  double tension = 0, lower = kInfinity, upper = -kInfinity;
+  std::vector<JointSizes> joints;
+  double tension = 0;
 
   void See(const mjModel& m, const mjData& d) {
+    joints.resize(m.njnt);
     for (int i = 0; i < m.nv; ++i) {
       const double load = d.qfrc_actuator[i] - d.qfrc_bias[i] + d.qfrc_spring[i];
-      torque += d.qfrc_actuator[i] * d.qfrc_actuator[i] + load * load;
-      velocity += d.qvel[i] * d.qvel[i];
-      count += 1;
+      JointSizes& joint = joints[m.dof_jntid[i]];
+      joint.torque += d.qfrc_actuator[i] * d.qfrc_actuator[i] + load * load;
+      joint.velocity += d.qvel[i] * d.qvel[i];
+      joint.count += 1;
     }
-    for (int i = 0; i < m.nq; ++i)
-      lower = std::min(lower, d.qpos[i]), upper = std::max(upper, d.qpos[i]);
+    for (int j = 0; j < m.njnt; ++j) {
+      const auto end = j + 1 < m.njnt ? m.jnt_qposadr[j + 1] : m.nq;
+      const auto [least, most] = std::minmax_element(d.qpos + m.jnt_qposadr[j], d.qpos + end);
+      joints[j].Join({0, 0, 0, *least, *most}, 1);
+    }
     for (int i = 0; i < m.nout; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
   }
   // Another motion, which so many logs show.
   void Join(const OnTheWay& other, double logs) {
-    torque += logs * other.torque, velocity += logs * other.velocity, count += logs * other.count;
+    joints.resize(other.joints.size());
+    for (std::size_t j = 0; j < joints.size(); ++j) joints[j].Join(other.joints[j], logs);
     tension = std::max(tension, other.tension);
-    lower = std::min(lower, other.lower), upper = std::max(upper, other.upper);
   }
 };
 
@@ -54,18 +59,39 @@ OnTheWay OfAllMotions(const Problem& problem, const Problem::Vector& x) {
   return all;
 }
 
+// Of some joints together, where they move.
+void Take(const std::vector<JointSizes>& some, Sizes& s) {
+  JointSizes all;
+  for (const JointSizes& joint : some) all.Join(joint, 1);
+  if (all.torque > 0) s.torque = std::sqrt(all.torque / all.count);
+  if (all.velocity > 0) s.velocity = std::sqrt(all.velocity / all.count);
+  if (all.upper > all.lower) s.angle = all.upper - all.lower;
+}
+
 }  // namespace
+
+void JointSizes::Join(const JointSizes& other, double times) {
+  torque += times * other.torque, velocity += times * other.velocity, count += times * other.count;
+  lower = std::min(lower, other.lower), upper = std::max(upper, other.upper);
+}
+
+Sizes Sizes::Of(const mjModel& m, const std::vector<std::string>& some) const {
+  std::vector<JointSizes> those;
+  for (const std::string& name : some) {
+    const int id = mj_name2id(&m, mjOBJ_JOINT, name.c_str());
+    if (id >= 0 && static_cast<std::size_t>(id) < joints.size()) those.push_back(joints[id]);
+  }
+  Sizes own = *this;
+  Take(those, own);
+  return own;
+}
 
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
   const Experiment& e = problem.experiment();
   const OnTheWay seen = OfAllMotions(problem, x);
-  const auto rms = [&](double sum) {
-    return seen.count > 0 && sum > 0 ? std::sqrt(sum / seen.count) : 1.0;
-  };
   Sizes s;
-  s.torque = rms(seen.torque);
-  s.velocity = rms(seen.velocity);
-  if (seen.upper > seen.lower) s.angle = seen.upper - seen.lower;
+  s.joints = seen.joints;
+  Take(s.joints, s);
   if (seen.tension > 0) s.tension = seen.tension;
   const mjModel& m = problem.system().model();
   if (m.nv > 0)

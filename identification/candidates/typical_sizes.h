@@ -9,6 +9,13 @@
 
 namespace continuum {
 
+/// What acts and moves at one joint on the way of all logs, in SI.
+struct JointSizes {
+  double torque = 0, velocity = 0, count = 0;  ///< squares, and how many of them
+  double lower = kInfinity, upper = -kInfinity;
+  void Join(const JointSizes& other, double times);
+};
+
 /// What a search may assume about sizes, measured on the experiment's own simulation.
 struct Sizes {
   double torque = 1;     ///< typical generalized force on the joints [N*m]
@@ -25,6 +32,11 @@ struct Sizes {
   double period = 0.01;  ///< median sampling interval [s]
   double step = 0.002;   ///< of the model [s]
   double duration = 1;   ///< of the longest log [s]
+  std::vector<JointSizes> joints = {};
+
+  /// With torque, angle and velocity of these joints alone, where they move: those of a slide say
+  /// nothing of a hinge.
+  Sizes Of(const mjModel& m, const std::vector<std::string>& some) const;
 };
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
 

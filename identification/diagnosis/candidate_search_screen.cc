@@ -337,11 +337,13 @@ std::vector<Problem::Vector> CandidateSearch::OtherStarts(const CandidateResult&
 }
 
 std::set<std::string> CandidateSearch::HopelessBeside(const CandidateResult& first) const {
-  constexpr double kShare = 0.2;  // first order is wrong by factors
+  constexpr double kShare = 0.2, kFar = 2;  // first order is wrong by factors
   if (first.probes.empty()) return {};
   const Probe& own = first.probes.front();
   const Problem::Vector z = ScreenedResidual().vector();
   const double alone = ExplainedBy(own, z).amount;
+  const double taken = base_.fitted->cost - first.fitted.cost;
+  if (taken > kFar * alone || alone > kFar * taken) return {};  // no more is said of the others
   std::map<std::string, double> added;
   double most = 0;
   for (const auto* all : {&candidates, &dismissed}) {

@@ -53,7 +53,7 @@ void NameNothing(Diagnosis& d, const char* why) {
 
 void TakeNameBack(Diagnosis& d, const std::string& why) {
   const std::string name = d.chosen()->hypothesis.NameAtPlace();
-  d.verdict.kind = Verdict::Kind::kUnexplained;
+  d.verdict.kind = Verdict::Kind::kUnexplained, d.verdict.taken_back = true;
   d.verdict.leading = d.verdict.named.front();
   d.verdict.named.clear(), d.verdict.siblings.clear(), d.verdict.far_off.clear();
   d.partner.reset();

@@ -22,6 +22,7 @@ struct Verdict {
   std::vector<std::size_t> named = {};     ///< candidates: one when named, more when ambiguous
   std::string reason = {};                 ///< one sentence
   std::vector<std::size_t> unlisted = {};  ///< candidates nobody asked for that do as well
+  bool taken_back = false;                 ///< unexplained, as the best fails on logs left out
   std::string explained_by = {};           ///< unexplained, but by this one that nobody asked for
   /// Candidates of the named one's family, or that contain it, that do as well, or better by less
   /// than a richer law has to earn.

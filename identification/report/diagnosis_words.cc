@@ -118,7 +118,8 @@ std::string WithoutP(std::string reason) {
 }
 
 std::string WhyUnexplained(const Diagnosis& d) {
-  if (!d.verdict.explained_by.empty()) return Sentence(WithoutP(d.verdict.reason) + ".");
+  if (!d.verdict.explained_by.empty() || d.verdict.taken_back)
+    return Sentence(WithoutP(d.verdict.reason) + ".");
   return (d.left_out.empty() ? "No candidate explains enough of it."
                              : "No candidate that there was time for explains enough of it.") +
          Closest(d);

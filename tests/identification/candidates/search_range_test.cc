@@ -146,6 +146,24 @@ TEST(TypicalSizes, ALeverIsTheLongestFromAJointToThePart) {
   EXPECT_EQ(LeverOf(model.model(), Place::kBody, {"fixed"}), 1);
 }
 
+// A rotor that spins and a table on a spring have nothing in common but their model.
+TEST(TypicalSizes, AreThoseOfTheJointsInQuestionWhereTheyMove) {
+  const ModelSpec model = ModelSpec::Parse(R"(<mujoco><worldbody>
+    <body name="table"><joint name="x" type="slide" axis="1 0 0"/><geom size=".1"/>
+      <body name="rotor"><joint name="q" axis="0 0 1"/><geom size=".1"/></body></body>
+    <body name="still"><joint name="r" axis="0 0 1"/><geom size=".1"/></body>
+    </worldbody></mujoco>)");
+  Sizes all;
+  all.joints = {{36, 0.08, 2, -0.01, 0.02}, {2e-4, 200, 2, 0, 90}, {0, 0, 2, 0, 0}};
+  const Sizes table = all.Of(model.model(), {"x"});
+  EXPECT_NEAR(table.torque, std::sqrt(18), 1e-12);
+  EXPECT_NEAR(table.velocity, 0.2, 1e-12);
+  EXPECT_NEAR(table.angle, 0.03, 1e-12);
+  EXPECT_NEAR(all.Of(model.model(), {"q"}).angle, 90, 1e-12);
+  EXPECT_EQ(all.Of(model.model(), {"r"}).angle, all.angle);
+  EXPECT_NEAR(all.Of(model.model(), {"x", "q"}).velocity, std::sqrt(200.08 / 4), 1e-12);
+}
+
 TEST(TypicalSizes, AnInertiaIsThatOfWhatTheJointsInQuestionMove) {
   const ModelSpec model = ModelSpec::Parse(R"(<mujoco><worldbody>
     <body name="cart"><joint name="x" type="slide" axis="1 0 0"/>

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
+#include "identification/diagnosis/confirmation.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/unseen_effects.h"
 #include "identification/report/diagnosis_words.h"
@@ -380,6 +381,15 @@ TEST_F(DiagnosisOutput, IsOnlyLikelyWhereMoreThanNoiseIsLeft) {
   d_->noise = {};
   EXPECT_EQ(CertaintyOf(*d_), Certainty::kLikely);
   EXPECT_THAT(WhyInWords(*d_), HasSubstr("how large their noise is"));
+}
+
+// It explains enough where it was fitted.
+TEST_F(DiagnosisOutput, SaysThatTheBestFailsOnLogsLeftOut) {
+  d_->noise_limited = false, d_->verdict.complete = false;
+  d_->before.error.validate = d_->after().validate / 2;
+  ConfirmOnValidateLogs(*d_);
+  EXPECT_THAT(WhyInWords(*d_), StartsWith("The best candidate"));
+  EXPECT_THAT(WhyInWords(*d_), HasSubstr("raises the error of the logs that are kept"));
 }
 
 TEST_F(DiagnosisOutput, OfTwoCorrectionsSaysThatOtherNumbersMayBeOff) {
