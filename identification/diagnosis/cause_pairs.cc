@@ -364,12 +364,13 @@ class PairSearch {
 
   // Effects of other families that say by themselves what this one says, as an offset of a winch
   // and a slack cable: beside another cause they would too. Of each family one; others of it are
-  // relatives.
+  // relatives. One that contains it says no more.
   void AddTheSame(const CandidateResult& cause, NamesOfASet& taken,
                   std::vector<std::string>& relatives, std::vector<std::string>& others) const {
     for (const CandidateResult& c : single_.candidates) {
       const bool kin = KinOf(c.hypothesis.Card()).Of(KinOf(cause.hypothesis.Card()));
-      if (c.was_fitted && !kin && SayTheSame(c, cause)) taken.Add(c.hypothesis, relatives, others);
+      if (!c.was_fitted || kin || Contains(context_.fitter, c, cause)) continue;
+      if (SayTheSame(c, cause)) taken.Add(c.hypothesis, relatives, others);
     }
   }
 

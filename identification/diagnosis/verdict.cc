@@ -94,7 +94,8 @@ class Ranking {
       if (i != best && !sibling && !AddsNothing(i, best) && !IsBehind(first(), i))
         near.push_back(i);
     }
-    const auto all = near;
+    auto all = Siblings(best);  // what contains one of these says no more either
+    all.insert(all.end(), near.begin(), near.end());
     std::erase_if(near, [&](std::size_t i) {
       return std::any_of(all.begin(), all.end(), [&](std::size_t k) {
         return k != i && AddsNothing(i, k) && (candidates_[k].listed || !candidates_[i].listed);

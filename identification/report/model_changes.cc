@@ -14,7 +14,17 @@
 namespace continuum {
 namespace {
 
-std::string Value(double value) { return Significant(value, 3); }
+std::string Value(double value, int digits = 3) { return Significant(value, digits); }
+
+// As many as show two digits of an interval's width: 3.0021e+05, not 3e+05 … 3e+05.
+int DigitsOf(const Uncertainty& u, double value, Eigen::Index at) {
+  constexpr int kLeast = 3, kMost = 8;
+  if (u.lower.size() <= at) return kLeast;
+  const double width = u.upper[at] - u.lower[at];
+  if (!(width > 0) || !std::isfinite(width) || value == 0) return kLeast;
+  const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(width)) + 2;
+  return static_cast<int>(std::clamp<double>(digits, kLeast, kMost));
+}
 
 // " N m/rad"; nothing for a pure number.
 std::string Unit(std::string unit) {
@@ -30,15 +40,15 @@ std::string Place(std::string target) {
   return target;
 }
 
-std::string Interval(const Uncertainty& u, Eigen::Index at) {
+std::string Interval(const Uncertainty& u, Eigen::Index at, int digits) {
   if (u.lower.size() <= at || !std::isfinite(u.upper[at] - u.lower[at])) return "";
-  return fmt::format("95 %: {} … {}", Value(u.lower[at]), Value(u.upper[at]));
+  return fmt::format("95 %: {} … {}", Value(u.lower[at], digits), Value(u.upper[at], digits));
 }
 
 // What a fit at a step of zero would give, where the interval of the noise alone leaves that out.
-std::string AtFineStep(const Uncertainty& u, double value, Eigen::Index at) {
+std::string AtFineStep(const Uncertainty& u, double value, Eigen::Index at, int digits) {
   if (u.step.size() <= at || !(std::abs(u.step[at]) > u.standard_error[at])) return "";
-  return fmt::format("{} at a time step of zero", Value(value + u.step[at]));
+  return fmt::format("{} at a time step of zero", Value(value + u.step[at], digits));
 }
 
 // What numbers of the model may add, where the interval of the noise alone leaves that out.
@@ -125,16 +135,19 @@ std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Inde
     const double value = fitted.fit.x[at];
     const double null = i < h.null.size() ? h.null[i] : 0;
     const bool from = std::isfinite(null) && null != 0;
-    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", h.extra[i].name,
-                        from ? Value(null) + " → " : "", Value(value), Unit(UnitOfExtra(h, i)));
+    const Uncertainty* const u = fitted.complete() ? &fitted.sensitivities->uncertainty : nullptr;
+    const int digits = u ? DigitsOf(*u, value, at) : 3;
+    text +=
+        fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", h.extra[i].name,
+                    from ? Value(null) + " → " : "", Value(value, digits), Unit(UnitOfExtra(h, i)));
     std::string notes;
     const auto add = [&](const std::string& note) {
       if (!note.empty()) notes += (notes.empty() ? "" : "; ") + note;
     };
-    if (fitted.complete()) {
-      add(Interval(fitted.sensitivities->uncertainty, at));
-      add(AtFineStep(fitted.sensitivities->uncertainty, value, at));
-      add(ByNumbers(fitted.sensitivities->uncertainty, at, Unit(UnitOfExtra(h, i))));
+    if (u) {
+      add(Interval(*u, at, digits));
+      add(AtFineStep(*u, value, at, digits));
+      add(ByNumbers(*u, at, Unit(UnitOfExtra(h, i))));
     }
     if (AtBound(fitted, at))
       add(fmt::format("**at its {} bound**",

@@ -270,6 +270,18 @@ TEST(Likelihoods, SiblingsMakeNoSet) {
   EXPECT_THAT(v.siblings, ElementsAre(0));
 }
 
+// As a load friction beside late sensors, where it says what Coulomb's does, of a friction and a
+// late input.
+TEST(Likelihoods, WhatContainsASiblingAndAddsNothingIsNoRival) {
+  LikelihoodRecord best{"a", 1, 40}, sibling{"b", 1, 40}, rich{"c", 2, 41, {1}};
+  best.kin = sibling.kin = {"lateness", 0};
+  EXPECT_THAT(JudgeLikelihoods({best, sibling, rich}, {0.5}, 1e-3, kCalibrated).named,
+              ElementsAre(0));
+  rich.contains.clear();
+  EXPECT_THAT(JudgeLikelihoods({best, sibling, rich}, {0.5}, 1e-3, kCalibrated).named,
+              ElementsAre(0, 2));
+}
+
 // Delays beside a lag that do as well as it: the set has the plainest of them.
 TEST(Likelihoods, OfEachFamilyOneStandsInASet) {
   LikelihoodRecord best{"best", 1, 4700}, rich{"rich", 1, 4698}, plain{"plain", 1, 4697},
