@@ -127,12 +127,24 @@ class CandidateSearch {
   bool IsWorthAFit(const CandidateResult& c, double needed) const;
   double Threshold() const;
   static double Promise(const CandidateResult& c, double most);
-  void Order();
-  std::vector<CandidateResult*> NextWave(double needed, std::size_t most, std::size_t& next);
+  void OrderByPromise();
+  std::size_t Order();
+  void OrderAlike(std::size_t different);
+  /// What the fits so far have reached, and what those to come must promise.
+  struct Race {
+    double needed;
+    std::size_t limit;
+    double rival = kInfinity, best = kInfinity;  // costs
+    bool reached = false;
+  };
+  void FitInOrder(std::size_t next, std::size_t end, Race& race);
+  bool Count(const CandidateResult& c, Race& race) const;
+  std::vector<CandidateResult*> NextWave(double needed, std::size_t most, std::size_t& next,
+                                         std::size_t end);
   bool ReachesNoise(const Fitted& fitted) const;
   bool TakesMainShare(const Fitted& fitted) const;
   bool IsEnough(const Fitted& fitted) const;
-  void LeaveOthers(double needed, std::size_t next);
+  void LeaveOthers(double needed, std::size_t next, std::size_t end);
   void SayFit(const CandidateResult& c, double needed) const;
   static constexpr std::size_t kStartsTried = 2;
   void FitOne(CandidateResult& c, double rival, std::size_t tried = kStartsTried) const;
@@ -142,6 +154,9 @@ class CandidateSearch {
   static std::vector<Problem::Vector> ExperimentStarts(const Problem& problem,
                                                        const CandidateResult& c);
   bool RefitFromStart(CandidateResult& c) const;
+  bool IsLost(const CandidateResult& c) const;
+  static std::vector<Problem::Vector> StartsWithoutBase(const Problem& problem,
+                                                        const CandidateResult& c);
   bool RefitFrom(const Problem& problem, CandidateResult& c,
                  const std::vector<Problem::Vector>& starts) const;
   /// Whether first order in the step does not hold.

@@ -43,59 +43,42 @@ void CandidateSearch::SayFit(const CandidateResult& c, double needed) const {
   options_.Say(DiagnosisStage::kFits, c.hypothesis.Name(), done, static_cast<std::size_t>(wanted));
 }
 
-// By whichever view promises more, as a share of what the best one promises there.
-double CandidateSearch::Promise(const CandidateResult& c, double most) {
-  return std::max({most > 0 ? c.explained / most : 0, c.force_promise, c.error_promise});
-}
-
-// The plainest law of a family goes first at a place, as if it promised what the best of them does:
-// what it leaves decides whether a richer one is needed.
-void CandidateSearch::Order() {
-  constexpr double kRicher = 0.8;
-  const double most = MostExplained();
-  const auto group = [](const CandidateResult& c) {
-    return std::pair(KinOf(c.hypothesis.Card()).family, c.hypothesis.where);
-  };
-  std::map<std::pair<std::string, std::string>, double> best;
-  for (const CandidateResult& c : candidates) {
-    double& promise = best[group(c)];
-    promise = std::max(promise, Promise(c, most));
-  }
-  const auto key = [&](const CandidateResult& c) {
-    const Kin kin = KinOf(c.hypothesis.Card());
-    if (kin.family.empty()) return Promise(c, most);
-    return kin.depth == 0 ? best.at(group(c)) : kRicher * Promise(c, most);
-  };
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [&](const auto& a, const auto& b) { return key(a) > key(b); });
-}
-
 // The most promising first, so that the others know what to reach; nobody where only noise is left.
 void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
-  Order();
+  const std::size_t different = Order();
   const bool signal = HasSignal(smallest_p_, base_.fitted->cost,
                                 base_.fitted->sensitivities.value().freedom, criteria_);
-  double needed = !noise_.known() || signal ? Threshold() : kInfinity;
   const CandidateResult* const known = beside ? beside->leading() : nullptr;
-  if (beside) needed = std::max(needed, UnlistedThreshold(beside->MostExplained(), criteria_));
-  double rival = known ? known->fitted.fit.cost : kInfinity;
-  double best = rival;
-  bool reached = known && IsEnough(known->fitted);
+  Race race{!noise_.known() || signal ? Threshold() : kInfinity, limit};
+  if (beside)
+    race.needed = std::max(race.needed, UnlistedThreshold(beside->MostExplained(), criteria_));
+  if (known) race.rival = race.best = known->fitted.fit.cost;
+  race.reached = known && IsEnough(known->fitted);
+  FitInOrder(0, different, race);
+  OrderAlike(different);
+  FitInOrder(different, candidates.size(), race);
+  FinishAbandoned();
+  CompleteCompetitive(known ? &known->fitted : nullptr);
+  Dismiss();
+}
+
+// Those from one on to another.
+void CandidateSearch::FitInOrder(std::size_t next, std::size_t end, Race& race) {
   const double alike =
       0.5 * (StepReduction(*base_.fitted) + criteria_.structure_least * base_.fitted->cost);
-  std::size_t next = 0, since_better = 0;
-  while (limit > 0) {
+  std::size_t since_better = 0;
+  while (race.limit > 0) {
     if (std::isfinite(fitter_.until) && GoOnInVain(since_better, criteria_)) {
-      LeaveOthers(needed, next);
+      LeaveOthers(race.needed, next, end);
       break;
     }
-    const auto wave = NextWave(needed, std::min(limit, kWave), next);
+    const auto wave = NextWave(race.needed, std::min(race.limit, kWave), next, end);
     if (wave.empty()) break;
-    limit -= wave.size();
-    SayFit(*wave.front(), needed);
+    race.limit -= wave.size();
+    SayFit(*wave.front(), race.needed);
     const auto fit = [&](std::size_t, std::size_t i) {
       try {
-        FitOne(*wave[i], rival + alike, reached ? 1 : kStartsTried);
+        FitOne(*wave[i], race.rival + alike, race.reached ? 1 : kStartsTried);
       } catch (const Error& error) {
         wave[i]->error = error.what();
       }
@@ -103,25 +86,27 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
     ShareOut(wave.size(), fit, [&](auto& a, std::size_t i) { FieldsOfFit(a, *wave[i]); });
     StopIfRequested();
     FitPlainer();
-    for (const CandidateResult* const c : wave) {
-      ++since_better;
-      if (!c->was_fitted) continue;
-      if (c->fitted.fit.cost < kBetter * best) best = c->fitted.fit.cost, since_better = 0;
-      if (!noise_.known()) continue;
-      rival = std::min(rival, c->fitted.fit.cost);
-      if (!IsEnough(c->fitted)) continue;
-      reached = true;
-      needed = std::max(needed, FitThresholdAtNoise(MostExplained(), criteria_));
-    }
+    for (const CandidateResult* const c : wave)
+      since_better = Count(*c, race) ? 0 : since_better + 1;
   }
-  FinishAbandoned();
-  CompleteCompetitive(known ? &known->fitted : nullptr);
-  Dismiss();
+}
+
+// Whether a fit is better than those before it.
+bool CandidateSearch::Count(const CandidateResult& c, Race& race) const {
+  if (!c.was_fitted) return false;
+  const bool better = c.fitted.fit.cost < kBetter * race.best;
+  if (better) race.best = c.fitted.fit.cost;
+  if (!noise_.known()) return better;
+  race.rival = std::min(race.rival, c.fitted.fit.cost);
+  if (!IsEnough(c.fitted)) return better;
+  race.reached = true;
+  race.needed = std::max(race.needed, FitThresholdAtNoise(MostExplained(), criteria_));
+  return better;
 }
 
 // From the next one on.
-void CandidateSearch::LeaveOthers(double needed, std::size_t next) {
-  for (; next < candidates.size(); ++next)
+void CandidateSearch::LeaveOthers(double needed, std::size_t next, std::size_t end) {
+  for (; next < end; ++next)
     if (IsWorthAFit(candidates[next], needed))
       candidates[next].why_not = Dismissed::Why::kOthersInVain;
 }
@@ -131,11 +116,11 @@ void CandidateSearch::LeaveOthers(double needed, std::size_t next) {
 // for what that reaches, and a richer law for the plain one of its family, to begin where that has
 // ended.
 std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size_t most,
-                                                        std::size_t& next) {
+                                                        std::size_t& next, std::size_t end) {
   constexpr double kAlike = 0.5;
   const double most_explained = MostExplained();
   std::vector<CandidateResult*> wave;
-  for (; next < candidates.size() && wave.size() < most; ++next) {
+  for (; next < end && wave.size() < most; ++next) {
     CandidateResult& c = candidates[next];
     if (!c.error.empty() || !IsWorthAFit(c, needed)) continue;
     if (!wave.empty() && Promise(c, most_explained) < kAlike * Promise(*wave[0], most_explained))

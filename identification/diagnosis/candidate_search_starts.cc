@@ -93,7 +93,27 @@ void CandidateSearch::FitOne(CandidateResult& c, double rival, std::size_t tried
   c.fitted = fitter_.Fit(problem, BestOf(problem, starts, tried), rival);
   c.was_fitted = true;
   Continue(problem, c, rival);
+  if (tried > 1 && IsLost(c)) RefitFrom(problem, c, StartsWithoutBase(problem, c));
   WidenRanges(c, rival);
+}
+
+// A candidate contains the model without it: one that ends worse has lost its way from there.
+bool CandidateSearch::IsLost(const CandidateResult& c) const {
+  return c.fitted.fit.cost > base_.fitted->fit.cost;
+}
+
+// The candidate as it may begin, beside what the experiment begins with: what the base has made of
+// that is far from any fit with the candidate.
+std::vector<Problem::Vector> CandidateSearch::StartsWithoutBase(const Problem& problem,
+                                                                const CandidateResult& c) {
+  const Problem::Vector given = problem.Start().head(c.first_extra());
+  std::vector<Problem::Vector> starts;
+  for (const auto& own : c.hypothesis.starts) starts.push_back(Append(given, own));
+  if (c.start.size() == problem.Start().size()) {
+    starts.push_back(c.start);
+    starts.back().head(given.size()) = given;
+  }
+  return starts;
 }
 
 // The parameters of the base make room for the candidate at x, by a step along their slopes at its

@@ -129,6 +129,8 @@ struct CandidateResult {
   /// The share of the plain squares that an effect of the sensors alone takes; 0 where that is less
   /// than the main share. To whitening that knows offsets of the noise a constant hardly counts.
   double error_promise = 0;
+  /// One that changes the outputs alike, to first order: its place in the order of the fits.
+  std::optional<std::size_t> like = {};
   bool was_fitted = false;
   Dismissed::Why why_not = Dismissed::Why::kExplainsTooLittle;  ///< where it was not fitted
   Fitted fitted = {};                                           ///< empty where it was not fitted
