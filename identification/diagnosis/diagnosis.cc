@@ -62,17 +62,20 @@ class Session {
       MergePlaces(d_);
       CompleteNamed();
       Part("sizes that are not needed", [&] { DropSizes(); });
-      FitFinely();
+      Part("intervals at a fine step", [&] { FitFinely(); });
       Part("lengths and masses in intervals", [&] {
         AllowInIntervals(fitter_, options_, d_);
         DoubtByNumbers(fitter_, d_);
       });
-      ScoreFolds();
-      ConfirmOnFolds(fitter_, d_);
+      Part("folds", [&] {
+        ScoreFolds();
+        ConfirmOnFolds(fitter_, d_);
+      });
     } else if (d_.folds.empty()) {
       LeaveWithoutFolds(d_);
     } else {
-      CompareFolds();
+      if (!Part("comparison by folds", [&] { CompareFolds(); }))
+        d_.verdict = {Verdict::Kind::kUnexplained, {}, "the folds could not be computed"};
       MergePlaces(d_);
       CompleteNamed();
       ConfirmOnValidateLogs(d_);

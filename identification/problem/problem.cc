@@ -292,8 +292,8 @@ std::vector<Change> Problem::CommonChanges(const Vector& x) const {
   return changes;
 }
 
-// Of values that no machine has, or whose model does not compile: as much a step to be rejected as
-// one that diverges.
+// Of values that no machine has, whose model does not compile or finds no rest: as much a step to be
+// rejected as one that diverges.
 Trace Problem::Rejected(const Log& log, const Error& error) const {
   Trace trace;
   trace.diverged = true;
@@ -329,7 +329,6 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
   } catch (const Error& error) {
     return Rejected(logged, error);
   }
-  const InitialState start = StartAt(machine, x, log);
   Hooks hooks = guide_ ? guide_(log) : Hooks{};
   if (terms_.count > 0) {
     const std::span<const double> weights(theta.data(), terms_.count);
@@ -338,12 +337,23 @@ Trace Problem::Run(std::size_t thread, const Vector& x, std::size_t log, double 
       terms.add(m, d, weights);
     };
   }
-  if (setup.skew == experiment_->skew) return Simulate(machine, setup, logged, start, hooks);
+  try {
+    const InitialState start = StartAt(machine, x, log);
+    if (setup.skew == experiment_->skew) return Simulate(machine, setup, logged, start, hooks);
+    return Simulate(machine, setup, Stretched(logged, setup.skew), start, hooks);
+  } catch (const Error& error) {
+    if (error.kind() == Error::Kind::kInput) throw;
+    return Rejected(logged, error);
+  }
+}
+
+// As another clock has its times.
+Log Problem::Stretched(const Log& logged, double skew) const {
   Log stretched = logged;
-  const double longer = (1 + setup.skew) / (1 + experiment_->skew);
+  const double longer = (1 + skew) / (1 + experiment_->skew);
   for (double& t : stretched.time) t *= longer;
   if (stretched.begin) *stretched.begin *= longer;
-  return Simulate(machine, setup, stretched, start, hooks);
+  return stretched;
 }
 
 // As it steps.

@@ -151,6 +151,7 @@ class Problem {
   Trace Run(std::size_t thread, const Vector& x, std::size_t log, double step = 0) const;
   ModelAndData ModelAt(std::size_t thread, const Vector& x, std::size_t log, double step) const;
   Trace Rejected(const Log& log, const Error& error) const;
+  Log Stretched(const Log& logged, double skew) const;
   std::unique_ptr<ContinuousDynamics> DynamicsAt(std::size_t thread, const Vector& x,
                                                  std::size_t log) const;
   bool IsOfMeasurement(std::size_t k) const;

@@ -73,15 +73,46 @@ class Balance {
         if (next.allFinite() && next.norm() < (1 - 0.1 * share) * r.norm() + 1e-13) break;
       }
       r = next;
-      if (share * full.norm() < 1e-10 * (1 + std::sqrt(nv)) || r.norm() < 1e-13) return true;
+      if (share * full.norm() < 1e-10 * (1 + std::sqrt(nv)) || r.norm() < 1e-13) return IsSmall(r);
       if (share <= 1e-4) return false;
     }
     return false;
   }
 
+  // Lets the model move from where it was made to where it rests, or nearly: whenever it slows down
+  // it stops there, so that it loses energy where it has no damper.
+  void Relax() {
+    constexpr int kMost = 20000;  // steps
+    constexpr double kSlow = 1e-9;
+    mj_resetData(&m_, &d_);
+    inputs_.AtRow(d_, 0);
+    double before = 0;
+    for (int step = 0; step < kMost; ++step) {
+      StopIfRequested();
+      mj_step(&m_, &d_);
+      mj_energyVel(&m_, &d_);
+      const double now = d_.energy[1];
+      if (!std::isfinite(now) || (step > 100 && now < kSlow * most_)) break;
+      most_ = std::max(most_, now);
+      if (now < before) std::fill(d_.qvel, d_.qvel + m_.nv, 0.0);
+      before = now < before ? 0 : now;
+    }
+    std::fill(d_.qvel, d_.qvel + m_.nv, 0.0);
+  }
+
   void EnableAll() { inputs_.EnableAll(); }
 
  private:
+  // Beside the forces that act: where nothing holds a joint, as when all cables are slack, no step
+  // helps, and that is no rest.
+  bool IsSmall(const Eigen::VectorXd& r) const {
+    constexpr double kBalanced = 1e-6;
+    using Forces = Eigen::Map<const Eigen::VectorXd>;
+    const double act = Forces(d_.qfrc_bias, m_.nv).norm() + Forces(d_.qfrc_passive, m_.nv).norm() +
+                       Forces(d_.qfrc_actuator, m_.nv).norm() +
+                       Forces(d_.qfrc_constraint, m_.nv).norm();
+    return r.norm() <= kBalanced * act + 1e-13;
+  }
   // M·qacc: what is not balanced.
   Eigen::VectorXd Residual(double load) {
     for (std::size_t i = 0; i < wiring_.actuator.size(); ++i)
@@ -111,6 +142,7 @@ class Balance {
   const Log& log_;
   const Wiring wiring_;
   Inputs inputs_;
+  double most_ = 0;  // kinetic energy on the way [J]
 };
 
 }  // namespace
@@ -121,6 +153,10 @@ InitialState Equilibrium(ModelAndData& machine, const Experiment& e, const Log& 
   Balance balance(machine, e, log);
   bool balanced = false;
   for (const double load : {0.25, 0.5, 0.75, 1.0}) balanced = balance.Find(load);
+  if (!balanced) {
+    balance.Relax();
+    balanced = balance.Find(1);
+  }
   balance.EnableAll();
   if (!balanced)
     throw Error::Job(log.label + ": no static equilibrium was found under the first inputs");
