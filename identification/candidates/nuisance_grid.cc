@@ -18,12 +18,16 @@ constexpr double kNarrowest = 500;
 
 struct Range {
   double low, high;
+  double ratio = kRatio;
 };
 
 // What the logs can show of a parameter; nothing of most units.
 std::optional<Range> RangeOf(const Powers& powers, Place place, const ParameterSize& size,
                              const Sizes& s) {
   const double longest = std::max(s.duration, kSamples * s.period);
+  // A limit that the largest force comes near; one that holds most of the time is another machine.
+  if (powers == PowersOf("N*m") && place == Place::kActuator)
+    return Range{0.33 * size.size, 0.95 * size.size, 1.2};
   if (powers == PowersOf("s")) return Range{kSamples * s.period, longest};
   if (powers == PowersOf("rad/s") && place == Place::kActuator)
     return Range{1 / longest, 1 / s.period};
@@ -41,7 +45,7 @@ NuisanceGrid GridOf(const Param& param, Place place, const Sizes& sizes) {
   const double typical = 0.3 * size.size;
   const auto range = RangeOf(PowersOf(param.unit), place, size, sizes);
   const double low = range ? range->low : typical / 5, high = range ? range->high : 5 * typical;
-  const double ratio = range ? std::max(kRatio, std::pow(high / low, 1 / (kMost - 1))) : 5;
+  const double ratio = range ? std::max(range->ratio, std::pow(high / low, 1 / (kMost - 1))) : 5;
   NuisanceGrid grid{low < typical && typical < high ? typical : std::sqrt(low * high), {}};
   const auto steps = [&](double to) {
     return std::round(std::log(to / grid.start) / std::log(ratio));

@@ -31,7 +31,9 @@ Hypothesis MakeAt(const EffectInfo& effect, const Candidate& wanted, const Objec
                   int option, const CandidateContext& c) {
   const auto& [place, names] = objects;
   const ModelSpec& system = *c.from.system;
-  const Sizes sizes = place == Place::kJoint ? c.sizes.Of(system.model(), names) : c.sizes;
+  const Sizes sizes = place == Place::kJoint      ? c.sizes.OfJoints(system.model(), names)
+                      : place == Place::kActuator ? c.sizes.OfActuators(system.model(), names)
+                                                  : c.sizes;
   if (wanted.law) return FormulaCandidate(effect, *wanted.law, place, names, system);
   switch (effect.kind) {
     case Kind::kMeasure:

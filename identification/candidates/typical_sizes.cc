@@ -17,7 +17,7 @@ namespace {
 // What moves on the way of one motion, in SI.
 struct OnTheWay {
   std::vector<JointSizes> joints;
-  double tension = 0;
+  std::vector<double> outputs;  // [actuator]
 
   void See(const mjModel& m, const mjData& d) {
     joints.resize(m.njnt);
@@ -33,13 +33,17 @@ struct OnTheWay {
       const auto [least, most] = std::minmax_element(d.qpos + m.jnt_qposadr[j], d.qpos + end);
       joints[j].Join({0, 0, 0, *least, *most}, 1);
     }
-    for (int i = 0; i < m.nout; ++i) tension = std::max(tension, std::abs(d.actuator_force[i]));
+    outputs.resize(m.nout);
+    for (int i = 0; i < m.nout; ++i)
+      outputs[i] = std::max(outputs[i], std::abs(d.actuator_force[i]));
   }
   // Another motion, which so many logs show.
   void Join(const OnTheWay& other, double logs) {
     joints.resize(other.joints.size());
     for (std::size_t j = 0; j < joints.size(); ++j) joints[j].Join(other.joints[j], logs);
-    tension = std::max(tension, other.tension);
+    outputs.resize(other.outputs.size());
+    for (std::size_t i = 0; i < outputs.size(); ++i)
+      outputs[i] = std::max(outputs[i], other.outputs[i]);
   }
 };
 
@@ -75,7 +79,7 @@ void JointSizes::Join(const JointSizes& other, double times) {
   lower = std::min(lower, other.lower), upper = std::max(upper, other.upper);
 }
 
-Sizes Sizes::Of(const mjModel& m, const std::vector<std::string>& some) const {
+Sizes Sizes::OfJoints(const mjModel& m, const std::vector<std::string>& some) const {
   std::vector<JointSizes> those;
   for (const std::string& name : some) {
     const int id = mj_name2id(&m, mjOBJ_JOINT, name.c_str());
@@ -86,13 +90,27 @@ Sizes Sizes::Of(const mjModel& m, const std::vector<std::string>& some) const {
   return own;
 }
 
+Sizes Sizes::OfActuators(const mjModel& m, const std::vector<std::string>& some) const {
+  Sizes own = *this;
+  double most = 0;
+  for (const std::string& name : some) {
+    const int id = mj_name2id(&m, mjOBJ_ACTUATOR, name.c_str());
+    const std::size_t output = id < 0 ? outputs.size() : m.actuator_outadr[id];
+    if (output < outputs.size()) most = std::max(most, outputs[output]);
+  }
+  if (most > 0) own.torque = most;
+  return own;
+}
+
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x) {
   const Experiment& e = problem.experiment();
   const OnTheWay seen = OfAllMotions(problem, x);
   Sizes s;
-  s.joints = seen.joints;
+  s.joints = seen.joints, s.outputs = seen.outputs;
   Take(s.joints, s);
-  if (seen.tension > 0) s.tension = seen.tension;
+  const double tension =
+      seen.outputs.empty() ? 0 : *std::max_element(seen.outputs.begin(), seen.outputs.end());
+  if (tension > 0) s.tension = tension;
   const mjModel& m = problem.system().model();
   if (m.nv > 0)
     s.inertia = std::accumulate(m.dof_M0, m.dof_M0 + m.nv, 0.0) / static_cast<double>(m.nv);

@@ -33,10 +33,13 @@ struct Sizes {
   double step = 0.002;   ///< of the model [s]
   double duration = 1;   ///< of the longest log [s]
   std::vector<JointSizes> joints = {};
+  std::vector<double> outputs = {};  ///< [actuator] its largest force
 
   /// With torque, angle and velocity of these joints alone, where they move: those of a slide say
   /// nothing of a hinge.
-  Sizes Of(const mjModel& m, const std::vector<std::string>& some) const;
+  Sizes OfJoints(const mjModel& m, const std::vector<std::string>& some) const;
+  /// With the largest force of these actuators for the torque, where they do anything.
+  Sizes OfActuators(const mjModel& m, const std::vector<std::string>& some) const;
 };
 Sizes SizesOf(const Problem& problem, const Problem::Vector& x);
 

@@ -138,7 +138,10 @@ class CandidateSearch {
     bool reached = false;
   };
   void FitInOrder(std::size_t next, std::size_t end, Race& race);
+  void FitBeside(const std::vector<CandidateResult*>& some, const Race& race);
   bool Count(const CandidateResult& c, Race& race) const;
+  std::vector<CandidateResult*> RicherThanBest();
+  const CandidateResult* Best() const;
   std::vector<CandidateResult*> NextWave(double needed, std::size_t most, std::size_t& next,
                                          std::size_t end);
   bool ReachesNoise(const Fitted& fitted) const;

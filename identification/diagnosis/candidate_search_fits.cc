@@ -64,8 +64,6 @@ void CandidateSearch::Fit(const CandidateSearch* beside, std::size_t limit) {
 
 // Those from one on to another.
 void CandidateSearch::FitInOrder(std::size_t next, std::size_t end, Race& race) {
-  const double alike =
-      0.5 * (StepReduction(*base_.fitted) + criteria_.structure_least * base_.fitted->cost);
   std::size_t since_better = 0;
   while (race.limit > 0) {
     if (std::isfinite(fitter_.until) && GoOnInVain(since_better, criteria_)) {
@@ -76,19 +74,58 @@ void CandidateSearch::FitInOrder(std::size_t next, std::size_t end, Race& race) 
     if (wave.empty()) break;
     race.limit -= wave.size();
     SayFit(*wave.front(), race.needed);
-    const auto fit = [&](std::size_t, std::size_t i) {
-      try {
-        FitOne(*wave[i], race.rival + alike, race.reached ? 1 : kStartsTried);
-      } catch (const Error& error) {
-        wave[i]->error = error.what();
-      }
-    };
-    ShareOut(wave.size(), fit, [&](auto& a, std::size_t i) { FieldsOfFit(a, *wave[i]); });
-    StopIfRequested();
+    FitBeside(wave, race);
     FitPlainer();
     for (const CandidateResult* const c : wave)
       since_better = Count(*c, race) ? 0 : since_better + 1;
+    const auto richer = RicherThanBest();
+    FitBeside(richer, race);
+    for (const CandidateResult* const c : richer)
+      if (Count(*c, race)) since_better = 0;
   }
+}
+
+void CandidateSearch::FitBeside(const std::vector<CandidateResult*>& some, const Race& race) {
+  const double alike =
+      0.5 * (StepReduction(*base_.fitted) + criteria_.structure_least * base_.fitted->cost);
+  const auto fit = [&](std::size_t, std::size_t i) {
+    try {
+      FitOne(*some[i], race.rival + alike, race.reached ? 1 : kStartsTried);
+    } catch (const Error& error) {
+      some[i]->error = error.what();
+    }
+  };
+  ShareOut(some.size(), fit, [&](auto& a, std::size_t i) { FieldsOfFit(a, *some[i]); });
+  StopIfRequested();
+}
+
+// Laws at its place that contain what it contains, where the best takes the main share and leaves
+// more than noise: what is left is theirs before it is another cause's.
+std::vector<CandidateResult*> CandidateSearch::RicherThanBest() {
+  const CandidateResult* const best = Best();
+  if (!best || !noise_.known() || ReachesNoise(best->fitted) || !TakesMainShare(best->fitted))
+    return {};
+  std::vector<const CandidateResult*> plain{best};
+  for (const CandidateResult& c : candidates)
+    if (IsPlainerThan(c.hypothesis, best->hypothesis)) plain.push_back(&c);
+  std::vector<CandidateResult*> richer;
+  for (CandidateResult& c : candidates) {
+    const bool contains = std::any_of(plain.begin(), plain.end(), [&](const CandidateResult* p) {
+      return IsPlainerThan(p->hypothesis, c.hypothesis);
+    });
+    if (contains && !c.was_fitted && c.error.empty() &&
+        fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out))
+      richer.push_back(&c);
+  }
+  return richer;
+}
+
+const CandidateResult* CandidateSearch::Best() const {
+  const auto by_cost = [](const CandidateResult& a, const CandidateResult& b) {
+    return b.was_fitted && (!a.was_fitted || b.fitted.fit.cost < a.fitted.fit.cost);
+  };
+  const auto best = std::max_element(candidates.begin(), candidates.end(), by_cost);
+  return best == candidates.end() || !best->was_fitted ? nullptr : &*best;
 }
 
 // Whether a fit is better than those before it.
@@ -141,11 +178,8 @@ std::vector<CandidateResult*> CandidateSearch::NextWave(double needed, std::size
 // A law that leads is no better than a plain one that it contains and that the screen has missed,
 // until that one was fitted as well: next to its end, whatever time is left.
 void CandidateSearch::FitPlainer() {
-  const auto by_cost = [](const CandidateResult& a, const CandidateResult& b) {
-    return b.was_fitted && (!a.was_fitted || b.fitted.fit.cost < a.fitted.fit.cost);
-  };
-  const auto lead = std::max_element(candidates.begin(), candidates.end(), by_cost);
-  if (lead == candidates.end() || !lead->was_fitted) return;
+  const CandidateResult* const lead = Best();
+  if (!lead) return;
   for (CandidateResult& c : candidates) {
     if (c.was_fitted || !c.error.empty() || !IsPlainerThan(c.hypothesis, lead->hypothesis))
       continue;

@@ -46,14 +46,16 @@ struct Fewer {
   std::size_t size;
 };
 
-// The one that costs least; null where all diverge. of: the candidate's own cause, or the one
-// beside which it acts.
+// The last one that is not missed, as a law begins with its plainest size; null where all are, or
+// diverge. of: the candidate's own cause, or the one beside which it acts. most: squares that one
+// has to earn.
 std::optional<Fewer> WithoutOne(const CandidateFitter& fitter, const CandidateResult& c,
-                                const Hypothesis& of) {
+                                const Hypothesis& of, double most) {
   const bool own = &of == &c.hypothesis;
   const auto count = static_cast<Eigen::Index>(own ? 0 : c.hypothesis.given.size());
-  std::optional<Fewer> best;
-  for (const std::size_t i : of.Amplitudes()) {
+  auto sizes = of.Amplitudes();
+  std::reverse(sizes.begin(), sizes.end());
+  for (const std::size_t i : sizes) {
     Fewer less{c, i};
     Hypothesis& h = less.candidate.hypothesis;
     const auto at = static_cast<std::ptrdiff_t>(i);
@@ -68,9 +70,9 @@ std::optional<Fewer> WithoutOne(const CandidateFitter& fitter, const CandidateRe
     } catch (const Error&) {
       continue;
     }
-    if (!best || Simulated(less.candidate) < Simulated(best->candidate)) best = std::move(less);
+    if (Simulated(less.candidate) - Simulated(c) <= most) return less;
   }
-  return best;
+  return {};
 }
 
 // Products of the columns of its own numbers, each over its whole range.
@@ -95,20 +97,19 @@ double OverNoise(const CandidateResult& c) {
   return std::max(1.0, c.fitted.cost / c.fitted.sensitivities->freedom);
 }
 
-// Takes the size of a cause out of the candidate's fit that costs least, where the squares rise by
-// less than what a parameter has to earn. Returns which.
+// Takes a size of a cause out of the candidate's fit where the squares rise by less than what a
+// parameter has to earn. Returns which.
 std::optional<std::size_t> DropOne(const CandidateFitter& fitter, const Hypothesis& of,
                                    CandidateResult& c) {
   if (!fitter.whitening.active() || !MayLoseSizes(of) || !c.fitted.complete() ||
       c.at_quarter_step || fitter.TimeIsOver())
     return {};
-  std::optional<Fewer> less = WithoutOne(fitter, c, of);
+  const double most =
+      OverNoise(c) * (fitter.criteria.parameter_cost + fitter.criteria.nested_margin);
+  std::optional<Fewer> less = WithoutOne(fitter, c, of, most);
   if (!less) return {};
   CandidateResult& fewer = less->candidate;
-  const double rises = Simulated(fewer) - Simulated(c);
-  if (rises > OverNoise(c) * (fitter.criteria.parameter_cost + fitter.criteria.nested_margin))
-    return {};
-  fewer.likelihood -= rises;
+  fewer.likelihood -= Simulated(fewer) - Simulated(c);
   fewer.probes.clear(), fewer.at_quarter_x.reset(), fewer.falls_with_step.reset();
   c = std::move(fewer);
   return less->size;

@@ -155,13 +155,13 @@ TEST(TypicalSizes, AreThoseOfTheJointsInQuestionWhereTheyMove) {
     </worldbody></mujoco>)");
   Sizes all;
   all.joints = {{36, 0.08, 2, -0.01, 0.02}, {2e-4, 200, 2, 0, 90}, {0, 0, 2, 0, 0}};
-  const Sizes table = all.Of(model.model(), {"x"});
+  const Sizes table = all.OfJoints(model.model(), {"x"});
   EXPECT_NEAR(table.torque, std::sqrt(18), 1e-12);
   EXPECT_NEAR(table.velocity, 0.2, 1e-12);
   EXPECT_NEAR(table.angle, 0.03, 1e-12);
-  EXPECT_NEAR(all.Of(model.model(), {"q"}).angle, 90, 1e-12);
-  EXPECT_EQ(all.Of(model.model(), {"r"}).angle, all.angle);
-  EXPECT_NEAR(all.Of(model.model(), {"x", "q"}).velocity, std::sqrt(200.08 / 4), 1e-12);
+  EXPECT_NEAR(all.OfJoints(model.model(), {"q"}).angle, 90, 1e-12);
+  EXPECT_EQ(all.OfJoints(model.model(), {"r"}).angle, all.angle);
+  EXPECT_NEAR(all.OfJoints(model.model(), {"x", "q"}).velocity, std::sqrt(200.08 / 4), 1e-12);
 }
 
 TEST(TypicalSizes, AnInertiaIsThatOfWhatTheJointsInQuestionMove) {
