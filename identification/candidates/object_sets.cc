@@ -27,13 +27,16 @@ void RequireModel(const Hypothesis& h) {
   h.system.Build(changes);
 }
 
+Sizes SizesAt(const ObjectSet& objects, const CandidateContext& c) {
+  const mjModel& m = c.from.system->model();
+  if (objects.place == Place::kJoint) return c.sizes.OfJoints(m, objects.names);
+  return objects.place == Place::kActuator ? c.sizes.OfActuators(m, objects.names) : c.sizes;
+}
+
 Hypothesis MakeAt(const EffectInfo& effect, const Candidate& wanted, const ObjectSet& objects,
-                  int option, const CandidateContext& c) {
+                  int option, const Sizes& sizes, const CandidateContext& c) {
   const auto& [place, names] = objects;
   const ModelSpec& system = *c.from.system;
-  const Sizes sizes = place == Place::kJoint      ? c.sizes.OfJoints(system.model(), names)
-                      : place == Place::kActuator ? c.sizes.OfActuators(system.model(), names)
-                                                  : c.sizes;
   if (wanted.law) return FormulaCandidate(effect, *wanted.law, place, names, system);
   switch (effect.kind) {
     case Kind::kMeasure:
@@ -73,12 +76,13 @@ int OptionCount(const EffectInfo& effect, const Candidate& wanted) {
 
 Hypothesis HypothesisAt(const EffectInfo& effect, const Candidate& wanted, const ObjectSet& objects,
                         int option, const CandidateContext& c) {
-  Hypothesis h = MakeAt(effect, wanted, objects, option, c);
+  const Sizes sizes = SizesAt(objects, c);
+  Hypothesis h = MakeAt(effect, wanted, objects, option, sizes, c);
   h.candidate = wanted, h.option = option;
   h.place = objects.place, h.objects = objects.names;
   h.units = ShownUnits(effect, objects.place, objects.names, c.experiment, c.from.system->model());
   if (wanted.per_condition) SplitByCondition(h, TrainedConditions(c.experiment, wanted.Name()));
-  h.starts = SearchStarts(h, effect.params, c.sizes);
+  h.starts = SearchStarts(h, effect.params, sizes);
   h.given = c.from.given;
   return h;
 }

@@ -16,8 +16,10 @@ bool IsFactor(const Param& p) { return p.null == 1 && p.unit == "1"; }
 // parameter begins, not what the logs can show of it.
 std::vector<double> ValuesToTry(const Parameter& p, const std::vector<Param>& law, Place place,
                                 const Sizes& sizes) {
-  const auto card = std::find_if(law.begin(), law.end(),
-                                 [&](const Param& one) { return one.name == p.attribute; });
+  const bool edit = p.attribute.starts_with("effect:");  // by the effect, not an attribute of it
+  const std::string name = edit ? p.attribute.substr(p.attribute.find('.') + 1) : p.attribute;
+  const auto card =
+      std::find_if(law.begin(), law.end(), [&](const Param& one) { return one.name == name; });
   if (card == law.end() || !p.unit.empty()) return {0.2 * p.initial, 5 * p.initial};
   return GridOf(*card, place, sizes).values;
 }

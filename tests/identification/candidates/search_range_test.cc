@@ -123,6 +123,14 @@ TEST(SearchRange, ASpeedAWidthAndAFrequencyAreTriedOverTwoDecades) {
     EXPECT_LT(Off(StartsOf("pt2", sizes), 0, w), kNearOfSeven) << w;
 }
 
+// A limit far below the largest force makes another machine, one above it does nothing.
+TEST(SearchRange, ALimitIsTriedFromAThirdOfTheLargestForceOn) {
+  Sizes sizes;
+  sizes.outputs = {10};
+  const auto starts = StartsOf("torque_limit", sizes);
+  for (const double limit : {4.0, 5.0, 7.0, 9.4}) EXPECT_LT(Off(starts, 0, limit), 1.1) << limit;
+}
+
 TEST(SearchRange, ShapesUnderSeveralConditionsAreTriedTogether) {
   Sizes sizes;
   sizes.period = 0.01, sizes.duration = 4;
