@@ -107,7 +107,8 @@ def _compile():
     # An earlier build may have met another MuJoCo, which may be gone: forget it (-U).
     _run("cmake", "-S", ROOT, "-B", folder, *generator, "-U", "MuJoCo_*", f"-DMuJoCo_ROOT={root}",
          "-DCMAKE_BUILD_TYPE=Release", "-DCONTINUUM_TESTS=OFF", "-DCONTINUUM_MUJOCO_RPATH=")
-    _run("cmake", "--build", folder, "--target", "continuum", "mujoco_continuum")
+    _run("cmake", "--build", folder, "--target", "continuum", "mujoco_continuum",
+         "mujoco_continuum_statics")
     return folder
 
 

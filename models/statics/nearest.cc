@@ -22,24 +22,26 @@ struct Place {
   double Cost() const { return off.squaredNorm() + kPrice * w.squaredNorm(); }  // (1)
 };
 
-// What stands under drives, as a Place.
-using StandAt = std::function<std::optional<Place>(const VectorXd&)>;
+// (1) under drives; infinite where nothing stands.
+using CostAt = std::function<double(const VectorXd&)>;
 
-// A place that lowers (1) by the share `least` or more, one drive more or less: where contacts turn
+// Drives that lower (1) by the share `least` or more, one of them more or less: where contacts turn
 // back a tangent says nothing, and a step along it may find none.
-std::optional<Place> Poll(const StandAt& at, const Place& place, double low, double high,
-                          double least) {
+std::optional<VectorXd> Poll(const CostAt& cost, const Place& place, double low, double high,
+                             double least) {
   const double size = std::max(place.w.cwiseAbs().mean(), 1e-2);
   for (const double share : {0.3, 0.1, 0.03, 0.01}) {
-    std::optional<Place> best;
+    double lowest = (1 - least) * place.Cost();
+    std::optional<VectorXd> best;
     for (Eigen::Index i = 0; i < place.w.size(); ++i) {
       for (const double sign : {-1, 1}) {
         VectorXd w = place.w;
         w[i] = std::clamp(w[i] + sign * share * size, low, high);
         if (w[i] == place.w[i]) continue;
-        auto next = at(w);
-        if (!next || next->Cost() > (1 - least) * place.Cost()) continue;
-        if (!best || next->Cost() < best->Cost()) best = std::move(next);
+        const double next = cost(w);
+        if (next > lowest) continue;
+        lowest = next;
+        best = std::move(w);
       }
     }
     if (best) return best;
@@ -49,14 +51,19 @@ std::optional<Place> Poll(const StandAt& at, const Place& place, double low, dou
 
 }  // namespace
 
-Reached Nearest(const StandUnder& stand, const VectorXd& start, const Target& target, double unit,
-                double length) {
+Reached Nearest(const StandUnder& stand, const PointsUnder& points, const VectorXd& start,
+                const Target& target, double unit, double length) {
   constexpr int kMostRounds = 40;
   constexpr double kLongest = 1, kShortest = 0.05, kArmijo = 0.1, kSettled = 1e-3;
-  const StandAt at = [&](const VectorXd& w) -> std::optional<Place> {
+  const auto at = [&](const VectorXd& w) -> std::optional<Place> {
     const auto stands = stand(unit * w);
     if (!stands) return std::nullopt;
     return Place{w, (stands->points - target.values) / length, stands->slopes * (unit / length)};
+  };
+  const CostAt cost = [&](const VectorXd& w) {
+    const auto stands = points(unit * w);
+    if (!stands) return std::numeric_limits<double>::infinity();
+    return Place{w, (*stands - target.values) / length, {}}.Cost();
   };
   Reached reached;
   const double low = target.low / unit, high = target.high / unit;
@@ -81,7 +88,9 @@ Reached Nearest(const StandUnder& stand, const VectorXd& start, const Target& ta
       if (next && next->Cost() < now - kArmijo * share * gain) break;
       next.reset();
     }
-    if (worth && !next) next = Poll(at, *place, low, high, kSettled);
+    if (worth && !next) {
+      if (const auto better = Poll(cost, *place, low, high, kSettled)) next = at(*better);
+    }
     settled = !next || next->Cost() > (1 - kSettled) * now;
     if (next) place = std::move(next);
   }

@@ -4,6 +4,9 @@
 
 namespace continuum::statics {
 
+/// The target's coordinates under drives, where there is a stable shape [m].
+using PointsUnder = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& drives)>;
+
 /// The drives w that bring the target's coordinates p near to values p* that need not be in reach,
 /// by low tensions:
 ///
@@ -14,7 +17,9 @@ namespace continuum::statics {
 /// one at a time, and the search goes on from the best. `ok` when neither lowers (1) by a
 /// thousandth, kNoConvergence after 40 rounds; drives are those of the last step, none where
 /// `start` has no stable shape.
-Reached Nearest(const StandUnder& stand, const Eigen::VectorXd& start, const Target& target,
-                double unit, double length);
+///
+/// points(w): those of stand(w) alone, without their slopes, which cost as much as the shape.
+Reached Nearest(const StandUnder& stand, const PointsUnder& points, const Eigen::VectorXd& start,
+                const Target& target, double unit, double length);
 
 }  // namespace continuum::statics

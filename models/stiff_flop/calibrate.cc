@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "error.h"
+#include "models/stiff_flop/details.h"
 #include "models/stiff_flop/forward.h"
 #include "sim/numerics/levenberg_marquardt.h"
 #include "sim/numerics/linearize.h"
@@ -16,27 +19,39 @@ namespace {
 
 struct Pair {
   const Case* row;
-  Eigen::Vector3d tip;  ///< measured
+  Eigen::Matrix3Xd ends;  ///< of the modules as measured; a column of NaN: not measured
+
+  bool Has(Eigen::Index module) const { return !std::isnan(ends(0, module)); }
+  Eigen::Index points() const { return (ends.row(0).array() == ends.row(0).array()).count(); }
 };
 
-// Tips less those measured, over l, by the unknowns.
-struct Tips {
+// Upper ends of the modules less those measured, over the length, by the unknowns.
+struct Ends {
   const Robot& robot;
   const Method& method;
   const std::vector<std::string>& names;
   std::vector<Pair> pairs;
   mutable std::string failure;
 
-  Eigen::Index equations() const { return static_cast<Eigen::Index>(3 * pairs.size()); }
+  Eigen::Index points() const {
+    Eigen::Index count = 0;
+    for (const Pair& pair : pairs) count += pair.points();
+    return count;
+  }
+  Eigen::Index equations() const { return 3 * points(); }
+  double length() const { return robot.series.length(); }
 
   Robot At(const double* x) const {
     Robot changed = robot;
     for (const std::string& name : names) {
       const double value = *x++;
-      if (name == "E") {
-        changed.module().E *= value;
-      } else {
-        changed.module().gamma = value;
+      for (const std::size_t at : ModulesOf(robot, name)) {
+        Module& module = changed.series.modules[at];
+        if (IsGamma(name)) {
+          module.gamma = value;
+        } else {
+          module.E *= value;
+        }
       }
     }
     return changed;
@@ -49,8 +64,13 @@ struct Tips {
         failure = "case '" + pair.row->label + "': " + s.outcome.why;
         return false;
       }
-      Eigen::Vector3d::Map(f) = (s.tip - pair.tip) / robot.module().l;
-      f += 3;
+      Eigen::Matrix3Xd ends = s.tip;
+      if (robot.series.size() > 1) ends = EndsOf(changed.series, method, *pair.row, s);
+      for (Eigen::Index k = 0; k < ends.cols(); ++k) {
+        if (!pair.Has(k)) continue;
+        Eigen::Vector3d::Map(f) = (ends.col(k) - pair.ends.col(k)) / length();
+        f += 3;
+      }
     }
     return true;
   }
@@ -60,7 +80,7 @@ struct Tips {
     if (!(*this)(x.data(), f.data())) return false;
     Eigen::VectorXd up = f, down = f;
     for (Eigen::Index i = 0; i < x.size(); ++i) {
-      const bool gamma = names[static_cast<std::size_t>(i)] == "gamma";
+      const bool gamma = IsGamma(names[static_cast<std::size_t>(i)]);
       const bool beside = gamma && x[i] > std::numbers::pi / 2 - kStep;
       Eigen::VectorXd at = x;
       at[i] = x[i] - (beside ? 2 : 1) * kStep;
@@ -81,20 +101,26 @@ std::vector<Pair> PairsOf(const std::vector<Case>& cases,
   std::vector<Pair> pairs;
   for (const Case& row : cases) {
     const auto* const m = statics::Find(measured, row.label);
-    if (m != nullptr && !m->test) pairs.push_back({&row, m->disks.col(0)});
+    if (m != nullptr && !m->test) pairs.push_back({&row, m->disks});
   }
   if (pairs.empty()) throw Error::Input(file, "a measured case with 'use' train", "none");
   return pairs;
 }
 
-void RequireNames(const std::vector<std::string>& names) {
+void RequireNames(const Robot& robot, const std::vector<std::string>& names) {
+  const std::string known = robot.series.size() == 1
+                                ? "E, gamma"
+                                : "E, gamma, or of one module, as E_" + robot.names.front();
+  std::set<std::pair<bool, std::size_t>> taken;
   for (const std::string& name : names) {
-    if (name == "E" || name == "gamma") continue;
-    throw Error::Input("--parameters", "E, gamma", "'" + name + "'");
+    const auto modules = ModulesOf(robot, name);
+    if (modules.empty()) throw Error::Input("--parameters", known, "'" + name + "'");
+    for (const std::size_t module : modules) {
+      if (taken.insert({IsGamma(name), module}).second) continue;
+      throw Error::Input("--parameters", "each of " + known + " at most once", "'" + name + "'");
+    }
   }
-  if (names.empty() || std::count(names.begin(), names.end(), names.front()) > 1) {
-    throw Error::Input("--parameters", "each of E, gamma at most once", "others");
-  }
+  if (names.empty()) throw Error::Input("--parameters", known, "none");
 }
 
 numerics::Bounds<Eigen::Dynamic> Limits(const std::vector<std::string>& names) {
@@ -103,9 +129,9 @@ numerics::Bounds<Eigen::Dynamic> Limits(const std::vector<std::string>& names) {
   bounds.lower.resize(n);
   bounds.upper.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const bool E = names[static_cast<std::size_t>(i)] == "E";
-    bounds.lower[i] = E ? 0.01 : std::numbers::pi / 4;
-    bounds.upper[i] = E ? 100 : std::numbers::pi / 2;
+    const bool gamma = IsGamma(names[static_cast<std::size_t>(i)]);
+    bounds.lower[i] = gamma ? std::numbers::pi / 4 : 0.01;
+    bounds.upper[i] = gamma ? std::numbers::pi / 2 : 100;
   }
   return bounds;
 }
@@ -119,51 +145,64 @@ void RequireEffects(const std::vector<std::string>& names, const Eigen::MatrixXd
   }
 }
 
+// Of every module's end about its mean.
 double ScatterOf(const std::vector<Pair>& pairs) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Pair& pair : pairs) mean += pair.tip / static_cast<double>(pairs.size());
   double squares = 0;
-  for (const Pair& pair : pairs) squares += (pair.tip - mean).squaredNorm();
-  return std::sqrt(squares / static_cast<double>(pairs.size()));
+  Eigen::Index points = 0;
+  for (Eigen::Index k = 0; k < pairs.front().ends.cols(); ++k) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double count = 0;
+    for (const Pair& pair : pairs) {
+      if (pair.Has(k)) sum += pair.ends.col(k), ++count;
+    }
+    for (const Pair& pair : pairs) {
+      if (!pair.Has(k)) continue;
+      squares += (pair.ends.col(k) - sum / count).squaredNorm();
+      ++points;
+    }
+  }
+  return std::sqrt(squares / static_cast<double>(points));
 }
 
-void Judge(const Tips& tips, statics::FittedShapes& fit, Calibration& c) {
+void Judge(const Ends& ends, statics::FittedShapes& fit, Calibration& c) {
   std::vector<bool> free;
   for (Eigen::Index i = 0; i < c.x.size(); ++i) {
     free.push_back(c.x[i] > fit.low[i] && c.x[i] < fit.high[i]);
     if (!free.back()) c.at_bound.push_back(c.names[static_cast<std::size_t>(i)]);
   }
-  for (std::size_t i = 0; i <= tips.pairs.size(); ++i) {
-    fit.begin.push_back(static_cast<Eigen::Index>(3 * i));
-  }
+  fit.begin.push_back(0);
+  for (const Pair& pair : ends.pairs) fit.begin.push_back(fit.begin.back() + 3 * pair.points());
   c.spread = statics::SpreadOf(fit, free);
-  const double l = tips.robot.module().l;
-  c.rmse = l * fit.f.norm() / std::sqrt(static_cast<double>(c.cases));
+  const auto points = static_cast<double>(ends.points());
+  c.rmse = ends.length() * fit.f.norm() / std::sqrt(points);
   std::vector<double> left_out;
-  for (Eigen::Index i = 0; i < c.cases; ++i) {
-    left_out.push_back(l * c.spread.left_out.segment<3>(3 * i).norm());
+  for (Eigen::Index i = 0; i < ends.points(); ++i) {
+    left_out.push_back(ends.length() * c.spread.left_out.segment<3>(3 * i).norm());
   }
   c.within = statics::WithinOf(left_out, c.level);
 }
 
 // The best fit from the robot's own gamma and from two more: near a right angle, where threads are
 // rings, tips hardly depend on it.
-Eigen::VectorXd Fit(const Tips& tips, const numerics::Bounds<Eigen::Dynamic>& bounds) {
+Eigen::VectorXd Fit(const Ends& ends, const numerics::Bounds<Eigen::Dynamic>& bounds) {
+  constexpr double kItsOwn = 0;
   numerics::Options options;
   options.tolerance = 0;
   options.gradient = 1e-7;
   options.step = 1e-8;
   options.max_iterations = 200;
-  const bool has_gamma = tips.names.back() == "gamma" || tips.names.front() == "gamma";
+  const bool has_gamma = std::any_of(ends.names.begin(), ends.names.end(), IsGamma);
   numerics::Outcome best;
   Eigen::VectorXd found;
-  for (const double gamma : {tips.robot.module().gamma, 1.4, 1.1}) {
+  for (const double gamma : {kItsOwn, 1.4, 1.1}) {
     Eigen::VectorXd x(bounds.lower.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) {
-      x[i] = tips.names[static_cast<std::size_t>(i)] == "E" ? 1 : gamma;
+      const std::string& name = ends.names[static_cast<std::size_t>(i)];
+      const double own = ends.robot.series[ModulesOf(ends.robot, name).front()].gamma;
+      x[i] = !IsGamma(name) ? 1 : gamma == kItsOwn ? own : gamma;
     }
     const auto outcome =
-        numerics::LevenbergMarquardt<Eigen::VectorXd>(tips, x, tips.equations(), options, bounds);
+        numerics::LevenbergMarquardt<Eigen::VectorXd>(ends, x, ends.equations(), options, bounds);
     if (outcome.ok() && outcome.residual < best.residual) {
       best = outcome;
       found = x;
@@ -174,33 +213,45 @@ Eigen::VectorXd Fit(const Tips& tips, const numerics::Bounds<Eigen::Dynamic>& bo
   }
   if (found.size() > 0) return found;
   throw Error::Job("calibration failed: " + best.why +
-                   (tips.failure.empty() ? "" : "; " + tips.failure));
+                   (ends.failure.empty() ? "" : "; " + ends.failure));
 }
 
 }  // namespace
+
+std::vector<std::size_t> ModulesOf(const Robot& robot, const std::string& name) {
+  std::vector<std::size_t> modules;
+  for (std::size_t i = 0; i < robot.names.size(); ++i) {
+    for (const std::string of : {"E", "gamma"}) {
+      if (name == of || name == of + "_" + robot.names[i]) modules.push_back(i);
+    }
+  }
+  return modules;
+}
+
+bool IsGamma(const std::string& name) { return name.starts_with("gamma"); }
 
 Calibration Calibrate(const Robot& robot, const Method& method,
                       const std::vector<std::string>& names, const std::vector<Case>& cases,
                       const std::vector<statics::MeasuredPoints>& measured,
                       const std::string& file) {
-  RequireNames(names);
-  const Tips tips{robot, method, names, PairsOf(cases, measured, file), {}};
+  RequireNames(robot, names);
+  const Ends ends{robot, method, names, PairsOf(cases, measured, file), {}};
   const auto n = static_cast<Eigen::Index>(names.size());
-  if (tips.equations() <= n) throw Error::Input(file, "at least two measured tips", "one");
+  if (ends.equations() <= n) throw Error::Input(file, "at least two measured tips", "one");
   const auto bounds = Limits(names);
-  const Eigen::VectorXd x = Fit(tips, bounds);
-  Calibration c{tips.At(x.data()), names, x, {}, {}, 0, 0, 0, 0};
-  c.cases = static_cast<int>(tips.pairs.size());
-  c.scatter = ScatterOf(tips.pairs);
-  statics::FittedShapes fit{Eigen::VectorXd(tips.equations()),
-                            Eigen::MatrixXd(tips.equations(), n),
+  const Eigen::VectorXd x = Fit(ends, bounds);
+  Calibration c{ends.At(x.data()), names, x, {}, {}, 0, 0, 0, 0};
+  c.cases = static_cast<int>(ends.pairs.size());
+  c.scatter = ScatterOf(ends.pairs);
+  statics::FittedShapes fit{Eigen::VectorXd(ends.equations()),
+                            Eigen::MatrixXd(ends.equations(), n),
                             {},
                             x,
                             bounds.lower,
                             bounds.upper};
-  if (!tips.Jacobian(x, fit.f, fit.J)) throw Error::Job(tips.failure);
+  if (!ends.Jacobian(x, fit.f, fit.J)) throw Error::Job(ends.failure);
   RequireEffects(names, fit.J, file);
-  Judge(tips, fit, c);
+  Judge(ends, fit, c);
   return c;
 }
 

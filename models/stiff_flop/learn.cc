@@ -17,22 +17,27 @@ using statics::Number;
 YAML::Node DocumentOf(const SolveRequest& request, const Robot& nominal, const std::string& method,
                       const Calibration& c) {
   YAML::Node document = YAML::Clone(Yaml::Read(request.robot).node());
-  YAML::Node module = document["modules"][nominal.name];
   YAML::Node node, standard, shapes, model;
   node["method"] = method;
   node["cases"] = c.cases;
   for (std::size_t k = 0; k < c.names.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     const std::string& name = c.names[k];
-    const double unit = name == "E" ? nominal.module().E : 1;
+    const auto modules = ModulesOf(nominal, name);
+    const double unit = IsGamma(name) ? 1 : nominal.series[modules.front()].E;
     const YAML::Node value = Number(unit * c.x[i]);
     node[name] = value;
     standard[name] = Number(unit * c.spread.standard[i]);
     shapes[name] = List(Eigen::VectorXd(unit * c.spread.shapes.row(i).transpose()));
     model[name] = List(Eigen::VectorXd(unit * c.spread.model.row(i).transpose()));
-    statics::SetParameter(module, name, YAML::Clone(value), YAML::Clone(standard[name]),
-                          fmt::format("calibrated by {} on {} cases of {}", method, c.cases,
-                                      request.measured.filename().string()));
+    for (const std::size_t at : modules) {
+      YAML::Node module = document["modules"][nominal.names[at]];
+      const double own = IsGamma(name) ? 1 : nominal.series[at].E;
+      statics::SetParameter(module, IsGamma(name) ? "gamma" : "E", Number(own * c.x[i]),
+                            Number(own * c.spread.standard[i]),
+                            fmt::format("calibrated by {} on {} cases of {}", method, c.cases,
+                                        request.measured.filename().string()));
+    }
   }
   node["standard_error"] = standard;
   node["interval_of_shapes"] = shapes;
@@ -60,14 +65,15 @@ int CalibrateRobot(const SolveRequest& request, const Robot& robot, const Method
     throw Error::Input("--measured", "a file for --calibrate", "nothing");
   const std::vector<std::string> names =
       request.parameters.empty() ? std::vector<std::string>{"E", "gamma"} : request.parameters;
-  const auto measured = statics::ReadMeasuredPoints(CsvTable::Read(request.measured), 1);
+  const auto measured = statics::ReadMeasuredPoints(CsvTable::Read(request.measured),
+                                                    static_cast<int>(robot.series.size()));
   const Calibration c =
       Calibrate(robot, method, names, cases.rows, measured, request.measured.string());
   statics::WriteDocument(request.out,
                          DocumentOf(request, robot, method.Name(Direction::kForward), c));
   if (!c.poor()) return 0;
   request.warn(fmt::format(
-      "{}: the calibration is poor: {:.3g} mm of the measured tips are not explained; they scatter "
+      "{}: the calibration is poor: {:.3g} mm of the measured ends are not explained; they scatter "
       "by {:.3g} mm",
       request.measured.string(), 1e3 * c.rmse, 1e3 * c.scatter));
   return 1;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "effects/braid.h"
+#include "error.h"
 #include "models/stiff_flop/elastic.h"
 #include "sim/io/decimal.h"
 
@@ -41,23 +42,24 @@ Stiffness StiffnessOf(const Module& module) {
   return {reaction.n_y.v[0], -reaction.M_z.v[1]};
 }
 
-void AddLines(Mjcf& mjcf) {
+void AddLines(Mjcf& mjcf, const std::string& prefix) {
   for (const char* name : {"p1", "p2", "p3"}) {
-    mjsActuator* const line = mjs_asActuator(mjs_findElement(&mjcf.spec(), mjOBJ_ACTUATOR, name));
+    mjsActuator* const line =
+        mjs_asActuator(mjs_findElement(&mjcf.spec(), mjOBJ_ACTUATOR, (prefix + name).c_str()));
     line->biastype = mjBIAS_AFFINE;
     line->forcelimited = mjLIMITED_TRUE;
     line->forcerange[1] = kSupply;
   }
 }
 
-void AddMount(Mjcf& mjcf, mjsBody* tip, const Module& module) {
-  mjsBody* const mount = mjcf.AddBody(tip, "mount", {0, 0, 0});
+mjsBody* AddMount(Mjcf& mjcf, mjsBody* tip, const Module& module, const std::string& name) {
+  mjsBody* const mount = mjcf.AddBody(tip, name, {0, 0, 0});
   const double R2 = module.r_2 * module.r_2, h2 = module.l_fs * module.l_fs;
   const double across = module.m_fs * (3 * R2 + h2) / 12;
   mjcf.SetInertia(mount, module.m_fs, {0, 0, module.l_fs / 2},
                   {across, across, module.m_fs * R2 / 2});
   mjcf.AddCylinder(mount, {0, 0, 0}, {0, 0, module.l_fs}, 0.8 * module.r_2, "plate");
-  mjcf.AddSite(mount, "marker", {0, 0, module.l_fs}, 0.0015);
+  return mount;
 }
 
 void AddMarkerSensors(Mjcf& mjcf) {
@@ -78,8 +80,19 @@ void AddScene(Mjcf& mjcf, double length) {
   mjcf.AddCamera("side", {0, -3.2 * length, -0.2 * length}, {0, 0, -0.65 * length}, 32);
 }
 
+// The damping of (3) is explicit: modules in series that stretch against each other take up to
+// 8 omega of it [1/s], as a chain of equal masses and dampers does, and 2 is the limit.
+double StepOf(const ModuleSeries& series) {
+  double step = kStep;
+  if (series.size() == 1) return step;
+  for (const Module& module : series.modules) {
+    const double omega = std::sqrt(SegmentOf(module).law[10] / (module.m / 3 + module.m_fs));
+    while (8 * omega * step > 1.6) step /= 2;
+  }
+  return step;
+}
+
 void SetOptions(mjOption& option, const Eigen::Vector3d& gravity) {
-  option.timestep = kStep;
   option.integrator = mjINT_IMPLICITFAST;
   // Robot's y is z of the base, which points down.
   const double world[] = {-gravity.x() + 0.0, -gravity.z() + 0.0, -gravity.y() + 0.0};
@@ -87,8 +100,9 @@ void SetOptions(mjOption& option, const Eigen::Vector3d& gravity) {
 }
 
 // The threads beside the segment, on its bodies and lines and with its measures.
-EffectInstance BraidBeside(const EffectInstance& beside, const SoftSegment& segment, double gamma) {
-  EffectInstance braid{std::string(Braid::kName), "threads", {}};
+EffectInstance BraidBeside(const EffectInstance& beside, const SoftSegment& segment, double gamma,
+                           const std::string& prefix) {
+  EffectInstance braid{std::string(Braid::kName), prefix + "threads", {}};
   for (const auto& setting : beside.config) {
     if (setting.first == "body" || setting.first == "actuator") braid.config.push_back(setting);
   }
@@ -99,6 +113,19 @@ EffectInstance BraidBeside(const EffectInstance& beside, const SoftSegment& segm
     braid.config.emplace_back(name, Decimal(value));
   }
   return braid;
+}
+
+// The law of the segment has three chambers.
+void RequireThreeEvenLines(const Module& module, const std::string& name) {
+  constexpr double kSame = 1e-9;
+  const auto even = EvenLines(3);
+  bool same = module.lines.size() == even.size();
+  for (std::size_t i = 0; same && i < even.size(); ++i) {
+    same = std::hypot(module.lines[i][0] - even[i][0], module.lines[i][1] - even[i][1]) < kSame;
+  }
+  if (same) return;
+  throw Error::Input("continuum make: module '" + name + "'", "three lines at even angles",
+                     fmt::format("{} lines, or angles psi", module.lines.size()));
 }
 
 }  // namespace
@@ -123,26 +150,46 @@ SoftSegment SegmentOf(const Module& module) {
 }
 
 std::string ModuleMjcf(const Robot& robot, Threads threads) {
-  const SoftSegment segment = SegmentOf(robot.module());
+  const ModuleSeries& series = robot.series;
+  const bool alone = series.size() == 1;
   Mjcf mjcf("stiff_flop", Comment(threads));
   SetOptions(mjcf.spec().option, robot.gravity);
-  AddScene(mjcf, robot.module().l + robot.module().l_fs);
+  mjcf.spec().option.timestep = StepOf(series);
+  AddScene(mjcf, series.length() + series.mounts());
   mjsBody* const base = mjcf.AddBody(mjcf.world(), "base", {0, 0, 0});
   const double down[] = {0, 1, 0, 0};  // half a turn about x
   std::copy(down, down + 4, base->quat);
   mjcf.AddSite(base, "frame", {0, 0, 0}, 0.001);
-  SoftChain chain(mjcf, segment);
-  AddMount(mjcf, chain.Add(base, "base"), robot.module());
-  chain.AddWrench(base);
-  AddLines(mjcf);
-  AddMarkerSensors(mjcf);
-  const EffectInstance creep{
-      "maxwell", "creep", {{"joint", "bend1_x bend1_y"}, {"k_m", "0"}, {"tau_m", "2"}}};
-  std::vector<EffectInstance> effects{chain.Effect(), creep};
-  if (threads == Threads::kBraid) {
-    effects.push_back(BraidBeside(effects.front(), segment, robot.module().gamma));
+  std::vector<EffectInstance> effects, braids;
+  std::vector<EffectSensor> sensors;
+  std::string creeping;
+  mjsBody* below = base;
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const Module& module = series[i];
+    RequireThreeEvenLines(module, robot.names[i]);
+    const std::string prefix = alone ? "" : fmt::format("m{}_", i + 1);
+    const SoftSegment segment = SegmentOf(module);
+    SoftChain chain(mjcf, segment, prefix);
+    mjsBody* const end = chain.Add(below, i == 0 ? "base" : prefix + "base");
+    mjsBody* const mount = AddMount(mjcf, end, module, prefix + "mount");
+    if (i == 0) chain.AddWrench(base);
+    AddLines(mjcf, prefix);
+    effects.push_back(chain.Effect());
+    sensors.push_back(chain.Delta());
+    creeping += fmt::format("{0}{1}bend1_x {1}bend1_y", i == 0 ? "" : " ", prefix);
+    if (threads == Threads::kBraid) {
+      braids.push_back(BraidBeside(effects.back(), segment, module.gamma, prefix));
+    }
+    if (i + 1 < series.size()) {
+      below = mjcf.AddBody(mount, fmt::format("m{}_base", i + 2), {0, 0, module.l_fs});
+    } else {
+      mjcf.AddSite(mount, "marker", {0, 0, module.l_fs}, 0.0015);
+    }
   }
-  return mjcf.Text(effects, std::vector{chain.Delta()});
+  AddMarkerSensors(mjcf);
+  effects.push_back({"maxwell", "creep", {{"joint", creeping}, {"k_m", "0"}, {"tau_m", "2"}}});
+  effects.insert(effects.end(), braids.begin(), braids.end());
+  return mjcf.Text(effects, sensors);
 }
 
 }  // namespace continuum::stiff_flop

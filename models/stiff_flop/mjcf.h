@@ -17,7 +17,8 @@ namespace continuum::stiff_flop {
 ///   d_theta = 2 sqrt(k_theta m_theta), m_theta = (m l²/20 + m_fs ((l + l_fs)/2)²)/d²        (2)
 ///   d_dL = 2 sqrt(k_dL1 (m/3 + m_fs))                                                       (3)
 ///
-/// (2) by v = s² theta/(2 l) of the centre line and of the mount's centre at l + l_fs/2.
+/// (2) by v = s² theta/(2 l) of the centre line and of the mount's centre at l + l_fs/2. What a
+/// module carries beside its mount is not counted.
 SoftSegment SegmentOf(const Module& module);
 
 /// The module's MJCF: a SoftChain of six links from `base`, whose z runs along the module, with the
@@ -27,6 +28,11 @@ SoftSegment SegmentOf(const Module& module);
 /// marker_pos and marker_quat in the frame of the site `frame` at the base; delta, tip_pos,
 /// base_force, base_torque as of the soft actuator. Chamber i is line i: x of `base` is -x of
 /// Robot's frame, its z is y.
+///
+/// Of modules in series each stands on a body `m2_base` .. at the end of the mount below it, and
+/// its names begin with `m1_`, `m2_` ..; `marker` is at the end of the last mount. The step is
+/// halved until the plugin's explicit damping is stable. @throws Error for other lines than three
+/// at even angles.
 ///
 /// kBraid adds the effect `braid` as the instance `threads` with the file's gamma: pressure then
 /// acts on the segment through the law of the braid. kRings leaves it out, gamma = pi/2.

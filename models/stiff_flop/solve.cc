@@ -61,12 +61,6 @@ void RefuseOfInverse(const SolveRequest& request, Direction direction) {
   }
 }
 
-// They are of one module.
-void RefuseOfSeries(const SolveRequest& request, const Robot& robot) {
-  if (request.sensitivity) robot.RequireOne("--sensitivity");
-  if (request.calibrate) robot.RequireOne("--calibrate");
-}
-
 // The radius where it is a diameter, for one; tubes in tubes.
 void WarnOfTubes(const SolveRequest& request, const Yaml& node, const Module& m) {
   if (m.r_o + m.r_c2 > m.r_2 || m.r_o - m.r_c2 < m.r_1) {
@@ -405,7 +399,6 @@ int SolveStiffFlop(const SolveRequest& request) {
   WarnOfImplausibleRobot(request, robot);
   WarnOfImplausibleCases(request, robot, cases);
   const Method method = Method::Parse(request.method, cases.direction);
-  RefuseOfSeries(request, robot);
   if (request.calibrate) return CalibrateRobot(request, robot, method, cases);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);

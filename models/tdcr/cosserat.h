@@ -141,11 +141,26 @@ class RodBalance {
   template <class T, int kRubbing, bool kSlides>
   void End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) const;
   template <class T, int kRubbing, bool kSlides, class AtNode>
+  bool Advance(int step, const T* share, State<T, kRubbing, kSlides>& y, AtNode&& at_node) const;
+  template <class T, int kRubbing, bool kSlides, class AtNode>
   bool Walk(const T* x, T* end, int first, State<T, kRubbing, kSlides> y, AtNode&& at_node) const;
   template <class T, int kRubbing, bool kSlides, class AtNode>
   bool WalkAll(const T* x, T* end, AtNode&& at_node) const;
   template <int kRubbing>
   bool JacobianOf(const Eigen::VectorXd& x, Eigen::VectorXd& f, Eigen::MatrixXd& jacobian) const;
+  // By whole walks from where an unknown acts, or by steps that are chained.
+  template <int kRubbing>
+  bool ByWalks(const Eigen::VectorXd& x, const std::vector<State<double, kRubbing, true>>& at,
+               const std::vector<Eigen::Index>& coupled, Eigen::MatrixXd& jacobian) const;
+  template <int kRubbing>
+  bool BySteps(const Eigen::VectorXd& x, const std::vector<State<double, kRubbing, true>>& at,
+               const std::vector<Eigen::Index>& coupled, Eigen::MatrixXd& jacobian) const;
+  template <int kRubbing>
+  bool StepSlopes(const Eigen::VectorXd& x, int step, const State<double, kRubbing, true>& y,
+                  Eigen::MatrixXd& slopes) const;
+  template <int kRubbing>
+  void EndSlopes(const Eigen::VectorXd& x, const State<double, kRubbing, true>& y,
+                 Eigen::MatrixXd& slopes) const;
   // WalkAll with room for as many tensions as there are.
   template <class T, bool kSlides, class AtNode>
   bool WalkAny(const T* x, T* end, AtNode&& at_node) const;

@@ -291,8 +291,6 @@ double Size(const Robot& robot, const Loads& loads) {
   return std::min(size, kOneEquilibrium * ShareOfBuckling(robot, loads));
 }
 
-bool Direct(const Robot& robot, const Loads& loads) { return Size(robot, loads) < kOneEquilibrium; }
-
 statics::RisingOptions Steps(const Robot& robot, const Loads& loads) {
   statics::RisingOptions options;
   const double size = Size(robot, loads);
@@ -375,12 +373,16 @@ Found Find(System& system, const Balance& balance, Vector& x, bool direct,
 
 }  // namespace
 
+bool OneEquilibrium(const Robot& robot, const Loads& loads) {
+  return Size(robot, loads) < kOneEquilibrium;
+}
+
 template <int C>
 Found FindEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& balance,
                       typename DiskBalance<C>::Vector& x, const Eigen::VectorXd* start) {
   DiskSystem<C> system(balance);
   Eigen::VectorXd frictionless;
-  if (start == nullptr && loads.AsItSlides() && Direct(robot, loads)) {
+  if (start == nullptr && loads.AsItSlides() && OneEquilibrium(robot, loads)) {
     // Contacts are so sharp that Newton has to begin where all of them have slid.
     Loads without = loads;
     without.mu = 0;
@@ -390,7 +392,7 @@ Found FindEquilibrium(const Robot& robot, const Loads& loads, DiskBalance<C>& ba
       start = &frictionless;
     }
   }
-  return Find(system, system, x, Direct(robot, loads), Steps(robot, loads), start);
+  return Find(system, system, x, OneEquilibrium(robot, loads), Steps(robot, loads), start);
 }
 
 template <int C>
@@ -413,18 +415,19 @@ template Found FindEquilibrium(const Robot&, const Loads&, DiskBalance<Eigen::Dy
 Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
                       Eigen::Vector3d& x, const Eigen::VectorXd* start) {
   RodSystem<Eigen::Vector3d> system(robot, balance);
-  return Find(system, balance, x, Direct(robot, loads), Steps(robot, loads), start);
+  return Find(system, balance, x, OneEquilibrium(robot, loads), Steps(robot, loads), start);
 }
 
 Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
                       Eigen::VectorXd& x, const Eigen::VectorXd* start) {
   RodSystem<Eigen::VectorXd> system(robot, balance);
   Eigen::VectorXd slid;
-  if (start == nullptr && Direct(robot, loads)) {
+  if (start == nullptr && OneEquilibrium(robot, loads)) {
     slid = WithoutFriction(robot, loads, balance);
     start = slid.size() > 0 ? &slid : nullptr;
   }
-  return Find(system, balance, x, Direct(robot, loads), StepsOfContacts(robot, loads, x), start);
+  return Find(system, balance, x, OneEquilibrium(robot, loads), StepsOfContacts(robot, loads, x),
+              start);
 }
 
 Found ContinueEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,

@@ -13,6 +13,9 @@ namespace continuum::tdcr {
 /// Dead forces below this [EI/L^2] leave one equilibrium; Euler's clamped column: pi^2/4.
 inline constexpr double kOneEquilibrium = 2.4;
 
+/// Whether the loads are so far from buckling that they leave one equilibrium.
+bool OneEquilibrium(const Robot& robot, const Loads& loads);
+
 /// An equilibrium and what is known about it.
 struct Found {
   numerics::Outcome outcome;

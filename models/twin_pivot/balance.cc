@@ -1,7 +1,9 @@
 #include "models/twin_pivot/balance.h"
 
 #include <algorithm>
+#include <string>
 
+#include "error.h"
 #include "models/twin_pivot/geometry.h"
 
 namespace continuum::twin_pivot {
@@ -36,6 +38,12 @@ std::vector<DiscLoad> Mix(const std::vector<DiscLoad>& from, const std::vector<D
 }
 
 }  // namespace
+
+Method ParseMethod(const std::string& name) {
+  if (name.empty() || name == "virtual_work") return Method::kVirtualWork;
+  if (name == "printed") return Method::kPrinted;
+  throw Error::Input("--method", "virtual_work or printed", "'" + name + "'");
+}
 
 Task::Task(const Robot& r, const Load& load, Method chosen)
     : robot(r),

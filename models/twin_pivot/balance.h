@@ -132,8 +132,9 @@ struct Balance {
   double eps = 1e-6;
   const Eigen::MatrixXd* frozen = nullptr;  ///< s of the contacts, whatever slides
 
+  // Flattened: products of dual numbers are so short that calls would cost more than the work.
   template <class T>
-  bool operator()(const T* beta, T* f) const {
+  [[gnu::flatten]] bool operator()(const T* beta, T* f) const {
     std::vector<Joint<T>> joint;
     joint.reserve(task.joints);
     for (int m = 0; m < task.joints; ++m) {

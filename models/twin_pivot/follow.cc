@@ -1,7 +1,10 @@
 #include "models/twin_pivot/follow.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "models/twin_pivot/geometry.h"
 #include "models/twin_pivot/reach.h"
@@ -38,12 +41,72 @@ Eigen::VectorXd Off(const Robot& robot, const PathLine& path, double base,
   return off;
 }
 
+// Where else a search may begin: on from the last two rows, and with the tensions of one section
+// smaller or larger.
+std::vector<std::vector<double>> OtherStarts(const Robot& robot, const std::vector<double>& now,
+                                             const std::vector<double>* before) {
+  std::vector<std::vector<double>> starts;
+  if (before != nullptr) {
+    starts.push_back(now);
+    for (std::size_t j = 0; j < now.size(); ++j) starts.back()[j] += now[j] - (*before)[j];
+  }
+  for (int section = 0; section < robot.Sections(); ++section) {
+    for (const double share : {0.7, 1.4}) {
+      starts.push_back(now);
+      for (int j = 0; j < robot.Cables(); ++j) {
+        if (robot.SectionOfCable(j) != section) continue;
+        starts.back()[static_cast<std::size_t>(j)] *= share;
+      }
+    }
+  }
+  return starts;
+}
+
+// Approach from several tensions. Once contacts turn back there are many minima: where the search
+// from the first tensions of all does not end where that from the last ones does, more are tried.
+class Leader {
+ public:
+  Leader(const Robot& robot, const Load& load, Method method, const statics::Target& target,
+         const Before* from)
+      : robot_(robot), load_(load), method_(method), target_(target), from_(from) {}
+
+  statics::Reached Lead(const std::vector<double>& first, const std::vector<double>* before) {
+    constexpr double kSame = 0.01;
+    const std::vector<double> now = load_.tension;
+    nearest_ = Approach(robot_, load_, method_, target_, from_);
+    if (from_ == nullptr) return nearest_;
+    const double miss = nearest_.miss, other = Try(first);
+    const bool small = std::max(miss, other) < kExact * robot_.Length();
+    if (small || std::abs(other - miss) <= kSame * miss) return nearest_;
+    for (const auto& start : OtherStarts(robot_, now, before)) Try(start);
+    return nearest_;
+  }
+
+ private:
+  static constexpr double kExact = 1e-5;  // nearer is not asked for
+
+  // How near it comes.
+  double Try(const std::vector<double>& start) {
+    load_.tension = start;
+    const auto reached = Approach(robot_, load_, method_, target_, from_);
+    if (reached.drives.size() > 0 && reached.miss < nearest_.miss) nearest_ = reached;
+    return reached.miss;
+  }
+
+  const Robot& robot_;
+  Load load_;
+  Method method_;
+  const statics::Target& target_;
+  const Before* from_;
+  statics::Reached nearest_;
+};
+
 }  // namespace
 
 std::vector<Following> Follow(const Robot& robot, const Load& load, Method method,
                               const PathLine& path) {
   std::vector<Following> rows;
-  std::optional<std::size_t> last;  // that was solved
+  std::optional<std::size_t> last, last_but_one;  // that were solved
   for (std::size_t point = 0; point < path.points(); ++point) {
     Following row;
     row.load = load;
@@ -55,7 +118,9 @@ std::vector<Following> Follow(const Robot& robot, const Load& load, Method metho
     }
     const Before* const from = before ? &*before : nullptr;
     const auto target = DiscsOnPath(robot, path, point, row.base);
-    const auto reached = Approach(robot, row.load, method, target, from);
+    const auto reached =
+        Leader(robot, row.load, method, target, from)
+            .Lead(load.tension, last_but_one ? &rows[*last_but_one].load.tension : nullptr);
     row.miss = reached.miss;
     row.solution.outcome = reached.outcome;
     row.settled = reached.outcome.ok();
@@ -63,7 +128,7 @@ std::vector<Following> Follow(const Robot& robot, const Load& load, Method metho
       row.load.tension.assign(reached.drives.begin(), reached.drives.end());
       row.solution = SolveGoingOn(robot, row.load, method, from);
       row.off = Off(robot, path, row.base, row.solution.beta);
-      last = point;
+      last_but_one = std::exchange(last, point);
     }
     rows.push_back(std::move(row));
   }

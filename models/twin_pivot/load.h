@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +23,9 @@ constexpr std::array<const char*, 5> kConditions = {"I", "II", "III", "IV", "V"}
 /// kVirtualWork: the balance that follows from virtual work, exact for the bent rods. kPrinted:
 /// moments about the centre of the proximal disc as in (36), (40), for comparison only.
 enum class Method { kVirtualWork, kPrinted };
+
+/// @throws Error for another name than virtual_work (also when empty) and printed.
+Method ParseMethod(const std::string& name);
 
 struct Load {
   Condition condition = Condition::kV;

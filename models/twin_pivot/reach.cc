@@ -66,15 +66,26 @@ class Standing {
   }
 
   std::optional<statics::Stand> operator()(const VectorXd& drives) {
-    load_.tension.assign(drives.begin(), drives.end());
-    const Solution s = Solved();
+    const Solution s = Solved(drives);
     if (!s.outcome.ok()) return std::nullopt;
-    last_ = s.beta;
     return StandAt(robot_, wide_, load_, method_, s, target_);
   }
 
+  std::optional<VectorXd> Points(const VectorXd& drives) {
+    const Solution s = Solved(drives);
+    if (!s.outcome.ok()) return std::nullopt;
+    return PointsOf(robot_, s.beta)(target_.coordinate);
+  }
+
  private:
-  Solution Solved() {
+  Solution Solved(const VectorXd& drives) {
+    load_.tension.assign(drives.begin(), drives.end());
+    Solution s = Found();
+    if (s.outcome.ok()) last_ = s.beta;
+    return s;
+  }
+
+  Solution Found() {
     constexpr double kBeside = 0.1;  // rad in one joint
     if (way_ == Way::kBesideLast && last_.size() > 0) {
       GoOn(load_, before_);
@@ -102,14 +113,12 @@ class Standing {
   VectorXd last_;
 };
 
-template <class Search>
-statics::Reached ReachBy(const Search& search, const Robot& robot, double width, const Load& load,
-                         Method method, const statics::Target& target, const Before* before,
-                         Way way) {
-  const VectorXd start = VectorXd::Map(load.tension.data(), robot.Cables());
-  return search(Standing(robot, width, load, method, target, before, way), start, target,
-                robot.Stiffness() / robot.r.front(), robot.Length());
+VectorXd Drives(const Robot& robot, const Load& load) {
+  return VectorXd::Map(load.tension.data(), robot.Cables());
 }
+
+// A tension that bends a joint by 1 rad.
+double DriveUnit(const Robot& robot) { return robot.Stiffness() / robot.r.front(); }
 
 }  // namespace
 
@@ -117,7 +126,9 @@ statics::Reached Reach(const Robot& robot, const Load& load, Method method,
                        const statics::Target& target, const Before* before) {
   const auto most = [&](int disc) { return robot.Place(disc + 1); };
   if (auto far = statics::TooFar(target, most)) return *far;
-  return ReachBy(statics::Reach, robot, robot.eps, load, method, target, before, Way::kAlongLoads);
+  Standing standing(robot, robot.eps, load, method, target, before, Way::kAlongLoads);
+  return statics::Reach([&](const VectorXd& w) { return standing(w); }, Drives(robot, load), target,
+                        DriveUnit(robot), robot.Length());
 }
 
 statics::Reached ReachByLengths(const Robot& robot, const Load& load, Method method,
@@ -151,7 +162,10 @@ statics::Reached Approach(const Robot& robot, const Load& load, Method method,
   // Within 1 um slopes say nothing of a step that turns the contacts.
   const double width = std::max(robot.eps, 1e-4);
   const auto by = [&](Way way) {
-    return ReachBy(statics::Nearest, robot, width, load, method, target, before, way);
+    Standing standing(robot, width, load, method, target, before, way);
+    return statics::Nearest([&](const VectorXd& w) { return standing(w); },
+                            [&](const VectorXd& w) { return standing.Points(w); },
+                            Drives(robot, load), target, DriveUnit(robot), robot.Length());
   };
   const statics::Reached fast = by(Way::kBesideLast);
   if (fast.drives.size() == 0) return fast;

@@ -18,8 +18,12 @@ using Eigen::VectorXd;
 constexpr double kZero = -1e-9;  // of the largest eigenvalue
 constexpr int kUnknown = 999;
 
+bool IsDefinite(const MatrixXd& symmetric) {
+  return Eigen::LLT<MatrixXd>(symmetric).info() == Eigen::Success;
+}
+
 int NegativeEigenvalues(const MatrixXd& symmetric) {
-  if (Eigen::LLT<MatrixXd>(symmetric).info() == Eigen::Success) return 0;
+  if (IsDefinite(symmetric)) return 0;
   const VectorXd values =
       Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
   return static_cast<int>((values.array() < kZero * values.cwiseAbs().maxCoeff()).count());
@@ -68,6 +72,7 @@ MatrixXd CableSlopes(const Task& task, const VectorXd& beta) {
 int UnstableDirections(Balance balance, const VectorXd& beta, const VectorXd& held) {
   constexpr double kHeld = 1e6;  // of a joint's stiffness, at the cables' own distance
   const Task& task = balance.task;
+  const Balance giving = balance;
   MatrixXd slide;
   if (task.HasFriction()) {
     slide.setZero(task.joints, task.cables);
@@ -79,13 +84,19 @@ int UnstableDirections(Balance balance, const VectorXd& beta, const VectorXd& he
   VectorXd f(beta.size());
   MatrixXd slope(beta.size(), beta.size());
   if (!numerics::Linearize(balance, beta, f, slope)) return kUnknown;
-  MatrixXd k = -0.5 * (slope + slope.transpose()) / task.robot.Stiffness();
+  MatrixXd winches = MatrixXd::Zero(beta.size(), beta.size());
   if (held.size() > 0) {
     const MatrixXd slopes = CableSlopes(task, beta);
-    k += slopes.transpose() * (held / task.robot.Stiffness()).asDiagonal() * slopes;
+    winches = slopes.transpose() * (held / task.robot.Stiffness()).asDiagonal() * slopes;
   }
-  if (Eigen::LLT<MatrixXd>(k).info() == Eigen::Success) return 0;
+  const auto stiffness = [&] {
+    return MatrixXd(winches - 0.5 * (slope + slope.transpose()) / task.robot.Stiffness());
+  };
+  MatrixXd k = stiffness();
+  if (IsDefinite(k)) return 0;
   if (task.HasFriction()) {
+    // Contacts that nearly slide give way a little, neither held nor free.
+    if (numerics::Linearize(giving, beta, f, slope) && IsDefinite(stiffness())) return 0;
     const MatrixXd rows = Constraints(task, beta, slide);
     const double arm = task.robot.r.front();
     k += kHeld / (arm * arm) * MatrixXd(rows.transpose() * rows);
@@ -134,8 +145,9 @@ statics::Fall RisingSystem::Fall(double /*from*/, double load, VectorXd& x) {
   options.balanced = 10 * Tolerances().accept;  // below it rounding would choose the side
   statics::Fall fall = statics::FallToRest(system, x, options);
   VectorXd root = x;
-  fall.ok =
-      fall.ok && Correct(load, root).ok() && (root - x).norm() < 0.05 && Unstable(load, root) == 0;
+  fall.ok = fall.ok && Correct(load, root).ok() && (root - x).norm() < 0.05;
+  if (fall.ok) driven_ = Unstable(load, root);
+  fall.ok = fall.ok && driven_ == 0;
   x = root;
   return fall;
 }

@@ -12,8 +12,9 @@ namespace continuum::twin_pivot {
 numerics::Options Tolerances();
 
 /// Negative eigenvalues of the symmetric part of -df/dbeta at full load, where contacts that rest
-/// (|s| below 0.98) hold the cable beyond them, and the others slide on. held [N/m]: with which
-/// winches hold the cables, where there are any.
+/// (|s| below 0.98) hold the cable beyond them, and the others slide on; 0 also where that of the
+/// contacts as they give way, within eps, is definite. held [N/m]: with which winches hold the
+/// cables, where there are any.
 int UnstableDirections(Balance balance, const Eigen::VectorXd& beta,
                        const Eigen::VectorXd& held = {});
 
@@ -31,6 +32,10 @@ class RisingSystem {
   int Unstable(double load, const Eigen::VectorXd& x) { return UnstableDirections(At(load), x); }
   statics::Fall Fall(double from, double load, Eigen::VectorXd& x);
 
+  /// Where the last shape that fell came to rest: motions that friction may drive all the same, as
+  /// its stiffness is not symmetric.
+  int driven() const { return driven_; }
+
   /// For statics::DenseSystem.
   bool Relative(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* k) const;
 
@@ -41,6 +46,7 @@ class RisingSystem {
   const Task& to_;
   std::optional<Task> now_;
   double load_ = 1;
+  int driven_ = 0;
 };
 
 }  // namespace continuum::twin_pivot

@@ -59,12 +59,6 @@ void RefuseOptions(const SolveRequest& request) {
        {"--follow with --sweep", follows && request.sweep != 0}});
 }
 
-Method ReadMethod(const std::string& name) {
-  if (name.empty() || name == "virtual_work") return Method::kVirtualWork;
-  if (name == "printed") return Method::kPrinted;
-  throw Error::Input("--method", "virtual_work or printed", "'" + name + "'");
-}
-
 int Calibrate(const SolveRequest& request) {
   statics::RequireExtension(request.out, {".json"}, "--out");
   WriteFile(request.out, twin_pivot::CalibrateFriction(request.input).Json());
@@ -439,7 +433,7 @@ int SolveTwinPivot(const SolveRequest& request) {
   const Robot robot = Robot::Read(request.robot);
   WarnOfImplausibleRobot(request, robot);
   if (request.calibrate) return Calibrate(request);
-  const Method method = ReadMethod(request.method);
+  const Method method = twin_pivot::ParseMethod(request.method);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);
   statics::CheckErrorOptions(request);

@@ -122,7 +122,11 @@ void Follow(RisingSystem& system, const VectorXd& other, Solution& solution,
   solution.outcome =
       statics::FollowRisingLoad(system, solution.beta, solution.stability.branch, options);
   solution.outcome.iterations += spent;
-  if (solution.outcome.ok() || !FindAny(system, solution.beta, other)) return;
+  if (solution.outcome.ok()) return;
+  if (!FindAny(system, solution.beta, other)) {
+    if (system.driven() > 0) solution.outcome.why += "; where it rests friction may drive a motion";
+    return;
+  }
   solution.outcome.status = numerics::Status::kOk;
   solution.outcome.why.clear();
   solution.stability.branch = statics::Branch::kOther;

@@ -1,8 +1,8 @@
 """mujoco-continuum: the missing physics of continuum robots in MuJoCo, and the tools around it.
 
 Importing this package loads the plugin of the MuJoCo of this Python, so that models with
-`continuum.<effect>` plugins compile. PLUGINS has a plugin for each release of MuJoCo. The functions
-run the packaged executable `continuum`:
+`continuum.<effect>` plugins compile. PLUGINS has a plugin for each release of MuJoCo. Most
+functions run the packaged executable `continuum`:
 
     check      what is odd in the logs
     replay     how far the model is off
@@ -12,6 +12,7 @@ run the packaged executable `continuum`:
     read       a log of another format (MCAP, LeRobot, HDF5, npz)
     joint_angles  joint angles from gyros and accelerometers of the links
     solve      the static shape of a robot; calibrate: its parameters
+    StaticModel: the same within this process, arrays in and out, microseconds a row
     make       the MJCF of a robot from its description
     study      many experiments, each in a folder of its own, done once
     identify_many, diagnose_many: many experiments on threads, processes or a cluster
@@ -36,11 +37,12 @@ from .laws import force_law, friction_law
 from .many import diagnose_many, identify_many, study
 from .reading import read
 from .results import Cause, Channel, Diagnosis, Errors, Fit, Interval, Parameter, Replay
+from .static_model import StaticModel
 from .statics import Solver, calibrate, solve
 
 __all__ = ["EXECUTABLE", "MODELS", "MUJOCO", "PLUGIN", "PLUGINS", "Cause", "Channel", "Diagnosis",
            "Error", "Errors", "Fit", "InputError", "Interval", "JobError", "Parameter", "Replay",
-           "Solver",
+           "Solver", "StaticModel",
            "apply", "calibrate", "check", "diagnose", "diagnose_many", "effects", "force_law",
            "friction_law", "identify", "identify_many", "joint_angles", "make", "models", "read",
            "replay", "solve", "study"]

@@ -5,6 +5,7 @@ from ._build import MUJOCO
 
 _PREFIX = pathlib.Path(__file__).resolve().parent
 EXECUTABLE = _PREFIX / "bin" / "continuum"
+STATICS = _PREFIX / "lib" / "libmujoco_continuum_statics.so"
 MODELS = _PREFIX / "share" / "mujoco_continuum" / "models"
 
 

@@ -3,6 +3,7 @@ import csv
 import unittest
 
 import bench
+import numpy
 import mujoco_continuum as mc
 
 TDCR = mc.MODELS / "tdcr"
@@ -57,6 +58,55 @@ class Solve(bench.Bench):
             self.assertEqual(solver.solve(CASES)[0]["status"], "ok")
             with self.assertRaisesRegex(mc.InputError, "column 'fx'"):
                 solver.solve({"case": ["a"], "T1": [1], "T2": [0], "T3": [0]})
+
+    def test_model_in_this_process_gives_the_shapes_of_solve(self):
+        robot = TDCR / "tdcr.yaml"
+        pulls = numpy.linspace(0, 6, 40)
+        cases = {"T1": pulls, "T2": 0.5, "T3": 0, "fx": 0.01, "fy": pulls / 100, "fz": 0}
+        table = {"case": range(40)} | {k: numpy.broadcast_to(v, 40) for k, v in cases.items()}
+        for method in ("eas", "pcca", "crt", "crt_friction"):
+            model = mc.StaticModel(robot, method=method)
+            shapes = model.solve(cases, gx=0, gy=0, gz=9.81)
+            rows = mc.solve(robot, table, method=method)
+            self.assertTrue((shapes["ok"] == 1).all())
+            for name in ("x", "z_4", "qw", "l_2", "Mx", "strain_max"):
+                expected = numpy.array([row[name] for row in rows])
+                numpy.testing.assert_allclose(shapes[name], expected, rtol=1e-7, atol=1e-8)
+
+    def test_model_says_what_is_wrong_and_why_a_row_has_no_answer(self):
+        model = mc.StaticModel(TDCR / "tdcr.yaml", method="eas")
+        rest = dict(T2=0, T3=0, fx=0, fy=0, fz=0)
+        with self.assertRaisesRegex(mc.InputError, "cases:3.*'T1'"):
+            model.solve(T1=[1, -1], **rest)
+        with self.assertRaisesRegex(mc.InputError, "one length"):
+            model.solve(rest, T1=[1, 2], T2=[1, 2, 3])
+        with self.assertRaisesRegex(mc.InputError, "reference"):
+            model.solve(T1=1, reference="a", **rest)
+        shapes = model.solve(T1=[0, 1e5], **rest)
+        self.assertEqual(shapes["ok"].tolist(), [1, 0])
+        self.assertTrue(numpy.isnan(shapes["x"][1]))
+        self.assertEqual(model.why(0), "")
+        self.assertNotEqual(model.why(1), "")
+        self.assertEqual(model.solve(T1=1, dir1="auto", **rest)["ok"].tolist(), [1])
+        with self.assertRaisesRegex(mc.InputError, "method"):
+            mc.StaticModel(TDCR / "tdcr.yaml", method="none")
+
+    def test_models_of_the_other_robots(self):
+        arm = mc.MODELS / "twin_pivot" / "a.yaml"
+        pulls = {"case": ["a", "b"], "F1": [4, 5], "F2": [4, 4], "F3": [1, 1], "F4": [1, 2]}
+        shapes = mc.StaticModel(arm).solve({k: v for k, v in pulls.items() if k != "case"},
+                                           condition="II")
+        rows = mc.solve(arm, pulls | {"condition": ["II", "II"]})
+        for name in ("y", "beta_3", "qz"):
+            numpy.testing.assert_allclose(shapes[name], [row[name] for row in rows], atol=1e-9)
+        module = mc.MODELS / "stiff_flop" / "stiff_flop.yaml"
+        bent = mc.StaticModel(module).solve(p1=[0, 8000], p2=1000, p3=0)
+        shape = {"case": ["a"], "kappa": [10], "phi": [1], "lambda_l": [1.1]}
+        numbers = {k: v for k, v in shape.items() if k != "case"}
+        pressures = mc.StaticModel(module, inverse=True).solve(numbers)
+        rows = mc.solve(module, {"case": ["a", "b"], "p1": [0, 8000], "p2": [1000] * 2, "p3": [0] * 2})
+        numpy.testing.assert_allclose(bent["x"], [row["x"] for row in rows], atol=1e-9)
+        self.assertAlmostEqual(pressures["p2"][0], mc.solve(module, shape)[0]["p2"], 4)
 
     def test_draws_the_shapes(self):
         mc.solve(TDCR / "tdcr.yaml", CASES, plot="shapes.svg", method="pcca")

@@ -1,11 +1,13 @@
 #include "models/stiff_flop/calibrate.h"
 
+#include <limits>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "error.h"
+#include "models/stiff_flop/details.h"
 #include "models/stiff_flop/forward.h"
 
 namespace continuum::stiff_flop {
@@ -74,6 +76,38 @@ TEST(StiffFlopCalibrate, GammaOfABraidThatIsNotModelledIsRefused) {
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("tips that depend on the parameter gamma"));
   }
+}
+
+// Tips say E of both, ends of the modules more exactly.
+TEST(StiffFlopCalibrate, FindsEOfModulesInSeries) {
+  const Method method = Method::Parse("hooke+elongation+elongation", Direction::kForward);
+  Robot nominal = NoLoad();
+  nominal.series = ModuleSeries({nominal.module(), nominal.module()});
+  nominal.names = {"lower", "upper"};
+  Robot truth = nominal;
+  truth.series.modules[0].E *= 1.4;
+  truth.series.modules[1].E *= 0.8;
+  std::vector<Case> cases;
+  std::vector<statics::MeasuredPoints> tips, ends;
+  for (int line = 0; line < 6; line += 2) {
+    Case row{std::to_string(line), Eigen::VectorXd::Zero(6), {{}, nominal.gravity}};
+    row.load.force.setZero();
+    row.given[line] = 40e3;
+    const Solution s = SolveForward(truth.series, method, row, false);
+    ASSERT_EQ(s.status, Status::kOk);
+    ends.push_back({row.label, false, EndsOf(truth.series, method, row, s)});
+    tips.push_back(ends.back());
+    tips.back().disks.col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+    cases.push_back(row);
+  }
+  for (const auto* measured : {&tips, &ends}) {
+    const Calibration c =
+        Calibrate(nominal, method, {"E_lower", "E_upper"}, cases, *measured, "tips.csv");
+    EXPECT_NEAR(c.x[0], 1.4, 1e-4);
+    EXPECT_NEAR(c.x[1], 0.8, 1e-4);
+  }
+  EXPECT_THROW(Calibrate(nominal, method, {"E", "E_upper"}, cases, ends, "tips.csv"), Error);
+  EXPECT_THROW(Calibrate(nominal, method, {"E_middle"}, cases, ends, "tips.csv"), Error);
 }
 
 }  // namespace

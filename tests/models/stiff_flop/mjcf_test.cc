@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "error.h"
 #include "models/stiff_flop/forward.h"
 #include "sim/io/file.h"
 #include "sim/model/model_spec.h"
@@ -127,6 +128,43 @@ TEST(StiffFlopMjcf, TheMountCarriesTheWeightAtRest) {
   Settle(machine, {4e4, 0, 0});
   const Module module = NoLoad().module();
   EXPECT_NEAR(Sensor(machine, "base_force")[2], -(module.m + module.m_fs) * 9.81, 1e-5);
+}
+
+// As above: the upper module stands on the mount of the lower one, and the lower one carries it.
+// Where it hangs its curvature is not constant: 2 % more.
+TEST(StiffFlopMjcf, ModulesInSeriesBendAsTheStaticSolverAtSmallStrains) {
+  Robot robot = NoLoad();
+  Module upper = robot.module();
+  upper.l *= 0.8;
+  upper.E *= 1.3;
+  robot.series = ModuleSeries({robot.module(), upper});
+  robot.names = {"a", "b"};
+  const ModelSpec system = ModelSpec::Parse(ModuleMjcf(robot));
+  EXPECT_NEAR(system.model().body_subtreemass[0], robot.series.mass(), 1e-12);
+  const Vector3d hanging = robot.gravity, none = Vector3d::Zero();
+  for (const Vector3d& gravity : {none, hanging}) {
+    const Change weight{"option", "gravity[2]", -gravity.y()};
+    for (int line = 0; line < 6; ++line) {
+      const Eigen::VectorXd pressure = 3e3 * Eigen::VectorXd::Unit(6, line);
+      const Solution rod = SolveForward(robot.series, {BodyLaw::kFixed, ChamberLaw::kFixed},
+                                        {"", pressure, {none, gravity}}, false);
+      ASSERT_EQ(rod.status, Status::kOk);
+      const ModelAndData machine = system.Build({&weight, 1});
+      std::copy_n(pressure.data(), 6, machine.data->ctrl);
+      while (machine.data->time < 4) mj_step(machine.model.get(), machine.data.get());
+      mj_forward(machine.model.get(), machine.data.get());
+      const Vector3d tip = Sensor(machine, "m2_tip_pos");
+      const Vector3d expected(-rod.tip.x(), -rod.tip.z(), -rod.tip.y());
+      const double share = gravity.isZero() ? 0.03 : 0.05;
+      EXPECT_LT((tip - expected).norm(), share * expected.head<2>().norm()) << line;
+    }
+  }
+}
+
+TEST(StiffFlopMjcf, OtherLinesThanThreeAreRefused) {
+  Robot robot = NoLoad();
+  robot.module().lines = EvenLines(4);
+  EXPECT_THROW(ModuleMjcf(robot), Error);
 }
 
 }  // namespace

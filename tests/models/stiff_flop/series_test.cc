@@ -262,5 +262,22 @@ TEST(StiffFlopLines, TwoLinesBalanceShapesInTheirPlaneOnly) {
   EXPECT_EQ(SolveInverse(module, method, plane, false).status, Status::kOk);
 }
 
+TEST(StiffFlopSeries, SensitivitiesAreDifferencesOfTipsWithAllModulesChangedAtOnce) {
+  const Case row = UnlikeCase();
+  const Solution s = SolveForward(Unlike(), kFull, row, true);
+  const auto tip = [&](double dE, double dgamma) {
+    ModuleSeries changed = Unlike();
+    for (Module& module : changed.modules) {
+      module.E += dE;
+      module.gamma += dgamma;
+    }
+    return SolveForward(changed, kFull, row, false).tip;
+  };
+  const double E = 100, gamma = 1e-4;  // 1e-3 and 1e-4 of the values: differences err by 1e-6
+  EXPECT_LT((s.by_E - (tip(E, 0) - tip(-E, 0)) / (2 * E)).norm(), 1e-4 * s.by_E.norm());
+  EXPECT_LT((s.by_gamma - (tip(0, gamma) - tip(0, -gamma)) / (2 * gamma)).norm(),
+            1e-4 * s.by_gamma.norm());
+}
+
 }  // namespace
 }  // namespace continuum::stiff_flop

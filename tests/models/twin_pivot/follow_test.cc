@@ -48,6 +48,24 @@ TEST(TwinPivotFollow, LiesOnAShapeThatItHasMadeBefore) {
   for (const double tension : last.load.tension) EXPECT_GE(tension, 1 - 1e-12);
 }
 
+// With friction the contacts of the insertion are not those of the one pull that made the shape.
+TEST(TwinPivotFollow, ComesNearAShapeThatWasPulledWithFriction) {
+  const Robot robot = Weightless(Prototype("b"));
+  const Solution made = Solve(robot, Pull({4, 3, 0.5, 1}));
+  ASSERT_TRUE(made.outcome.ok());
+  std::string text = "x,y,z,low\n";
+  for (const Vector3d& p : CentreLine(robot, made.beta, 3)) {
+    if (p.x() > 0 && p.x() < 0.5 * robot.h[0] + 1e-9) continue;
+    text += fmt::format("{:.17g},{:.17g},{:.17g},0.5\n", p.x(), p.y(), p.z());
+  }
+  const PathLine path(CsvTable::Parse(text, "path"));
+  for (const double first : {1.0, 4.0}) {
+    const auto rows = Follow(robot, Pull({first, first, first, first}), Method::kVirtualWork, path);
+    ASSERT_TRUE(rows.back().solution.outcome.ok());
+    EXPECT_LT(rows.back().off.maxCoeff(), 5e-3 * robot.Length()) << first;
+  }
+}
+
 TEST(TwinPivotFollow, DistancesAreThoseToTheNearestLine) {
   const PathLine path(CsvTable::Parse("x,y,z\n0,0,0\n0.1,0,0\n0.1,0.1,0\n", "path"));
   EXPECT_NEAR(path.Distance({-0.2, 0.003, 0.004}), 0.005, 1e-15);

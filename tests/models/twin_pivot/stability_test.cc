@@ -87,5 +87,26 @@ TEST(TwinPivotStability, EqualTensionsUprightBendToOneSideAndSaySo) {
   EXPECT_GT(std::hypot(solution.tip.y(), solution.tip.z()), 0.05);
 }
 
+// Contacts at 98 % of their friction still give way elastically. The work of small motions, by
+// differences of the moments in the joints, says whether they hold.
+TEST(TwinPivotStability, ContactsThatAlmostSlideHoldWhereEverySmallMotionCostsWork) {
+  const Robot robot = Prototype("b");
+  Load load = Upright({10, 10, 9, 9}, Condition::kV, std::numbers::pi / 18);
+  load.payload = 0.2;
+  const Solution solution = Solve(robot, load);
+  ASSERT_TRUE(solution.outcome.ok()) << solution.outcome.why;
+  const double largest = solution.slide.cwiseAbs().maxCoeff();
+  EXPECT_GT((solution.slide.array().abs() > 0.98 && solution.slide.array().abs() < 0.99).count(), 0)
+      << largest;
+  const double step = 1e-7;  // 5e-10 m of cable, where contacts turn within 1e-6 m
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    const VectorXd way = Random(robot.Joints(), 1, seed).normalized();
+    const auto above = Residual(robot, load, Method::kVirtualWork, solution.beta + step * way);
+    const auto below = Residual(robot, load, Method::kVirtualWork, solution.beta - step * way);
+    ASSERT_TRUE(above && below);
+    EXPECT_GT(-way.dot(*above - *below) / (2 * step), 0.1 * robot.Stiffness()) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace continuum::twin_pivot

@@ -1,4 +1,4 @@
-#include "models/tdcr/cosserat.h"
+#pragma once
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,17 +6,19 @@
 #include <type_traits>
 
 #include "models/statics/dual_value.h"
+#include "models/tdcr/cosserat.h"
 #include "models/tdcr/rubbing.h"
 
+/// RodBalance's walk along the rod, for its two sources.
 namespace continuum::tdcr {
-namespace {
+namespace internal {
 
 struct NoTensions {};
 struct NoLengths {};
 
-constexpr double kRoundsOff = 1e-24;  // the kink of a norm at zero
+inline constexpr double kRoundsOff = 1e-24;  // the kink of a norm at zero
 // Sizes of states: larger ones cost time to copy.
-constexpr int kFewTendons = 4, kSomeTendons = 12;
+inline constexpr int kFewTendons = 4, kSomeTendons = 12;
 
 template <class Matrix>
 auto Values(const Matrix& m) {
@@ -31,7 +33,7 @@ Eigen::Matrix<T, 3, 1> ToSection(const Eigen::Matrix<T, 4, 1>& q, const Eigen::V
   return vector + q[0] * turned + axis.cross(turned);
 }
 
-}  // namespace
+}  // namespace internal
 
 // Rotation as a quaternion (w first), curvature, position and, with friction, tensions; of contacts
 // that remember, the tendons' lengths so far.
@@ -40,13 +42,13 @@ struct RodBalance::State {
   using Vector3 = Eigen::Matrix<T, 3, 1>;
   using Tensions =
       std::conditional_t<kRubbing != 0, Eigen::Matrix<T, Eigen::Dynamic, 1, 0, kRubbing, 1>,
-                         NoTensions>;
+                         internal::NoTensions>;
   static constexpr bool kPosition = std::is_same_v<T, double>;  // the residual needs none
 
   Eigen::Matrix<T, 4, 1> q;
   Vector3 u, p;
   [[no_unique_address]] Tensions tension;
-  [[no_unique_address]] std::conditional_t<kSlides, Tensions, NoLengths> way;
+  [[no_unique_address]] std::conditional_t<kSlides, Tensions, internal::NoLengths> way;
 
   static State Of(const State<double, kRubbing, kSlides>& plain) {
     State y;
@@ -136,16 +138,16 @@ template <class T, int kRubbing, bool kSlides>
   using Vector = Eigen::Vector3d;
   const auto count = static_cast<std::size_t>(y.tension.size());
   std::array<Rubbing<double>, kRubbing> plain;
-  const Eigen::Matrix3d elastic = Values(hessian);
-  const Vector known = Values(right);
-  Vector du = Values(dy.u);
+  const Eigen::Matrix3d elastic = internal::Values(hessian);
+  const Vector known = internal::Values(right);
+  Vector du = internal::Values(dy.u);
   Eigen::Matrix3d tangent = elastic;
   for (std::size_t k = 0; k < count; ++k) {
     const double tension = statics::Value(y.tension[static_cast<Eigen::Index>(k)]);
     const double direction = kSlides ? statics::Value(share[k]) : rod_.direction[k];
     const Channel& channel = rod_.ChannelOf(k, at.arc);
     if (!rod_.Runs(k, at.arc)) continue;
-    plain[k] = Rubbing<double>(channel.At(at.s), channel.parallel, Values(y.u),
+    plain[k] = Rubbing<double>(channel.At(at.s), channel.parallel, internal::Values(y.u),
                                direction * rod_.mu * tension);
     tangent += plain[k].Lever() * plain[k].Gradient(du).transpose();
   }
@@ -224,7 +226,7 @@ void RodBalance::LoseAtDisk(int arc, const T* share, const State<T, kRubbing, kS
     if (!rod_.Runs(k, arc)) continue;
     const auto from = Along(rod_.ChannelOf(k, arc - 1).At(s), before.u).normalized();
     const auto to = Along(rod_.ChannelOf(k, arc).At(s), y.u).normalized();
-    const T angle = 2.0 * asin(0.5 * sqrt((to - from).squaredNorm() + kRoundsOff));
+    const T angle = 2.0 * asin(0.5 * sqrt((to - from).squaredNorm() + internal::kRoundsOff));
     const T sliding = kSlides ? share[k] : T(rod_.direction[k]);
     const auto i = static_cast<Eigen::Index>(k);
     y.tension[i] = before.tension[i] * exp(-rod_.mu * sliding * angle);
@@ -242,14 +244,14 @@ bool RodBalance::Jump(int arc, const T* share, State<T, kRubbing, kSlides>& y) c
   const Place from{arc - 1, rod_.Arc(arc).start()}, to{arc, from.s};
   SectionMoment<T> sum = Elastic(arc - 1, y.u);
   if (!AddTendons(from, y, sum, static_cast<State<T, kRubbing, kSlides>*>(nullptr))) return false;
-  const Vector3 moment = sum.moment - ToSection(y.q, rod_.MomentAfter(arc - 1));
+  const Vector3 moment = sum.moment - internal::ToSection(y.q, rod_.MomentAfter(arc - 1));
   for (int round = 0, more = 0; round < kMostRounds && more < kMore; ++round) {
     if constexpr (kRubbing > 0) LoseAtDisk(arc, share, before, y);
     sum = Elastic(arc, y.u);
     if (!AddTendons(to, y, sum, static_cast<State<T, kRubbing, kSlides>*>(nullptr))) return false;
     const Vector3 step = sum.Solve(moment - sum.moment);
     y.u += step;
-    if (Values(step).norm() <= kLastStep * (1 + Values(y.u).norm())) ++more;
+    if (internal::Values(step).norm() <= kLastStep * (1 + internal::Values(y.u).norm())) ++more;
   }
   return true;
 }
@@ -273,12 +275,11 @@ void RodBalance::End(const T* x, const State<T, kRubbing, kSlides>& y, T* end) c
   }
 }
 
-// Dormand-Prince's fifth-order formula, `steps_` equal steps per arc. end: R nu(1), then (5).
-// at_node(step, y) after every step, and once more where u has jumped. From the start of step
-// `first`, where the rod is at y.
+// A step of Dormand-Prince's fifth-order formula, `steps_` equal ones per arc, with a jump of u
+// where an arc begins. share: of the contacts there.
 template <class T, int kRubbing, bool kSlides, class AtNode>
-bool RodBalance::Walk(const T* x, T* end, int first, State<T, kRubbing, kSlides> y,
-                      AtNode&& at_node) const {
+bool RodBalance::Advance(int step, const T* share, State<T, kRubbing, kSlides>& y,
+                         AtNode&& at_node) const {
   static constexpr double kNodes[6] = {0, 0.2, 0.3, 0.8, 8. / 9, 1};
   static constexpr double kA[7][6] = {
       {},
@@ -290,30 +291,39 @@ bool RodBalance::Walk(const T* x, T* end, int first, State<T, kRubbing, kSlides>
       {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84}};
   using S = State<T, kRubbing, kSlides>;
   std::array<S, 6> slope;
+  const int number = step / steps_;
+  const RodArc& arc = rod_.Arc(number);
+  const double h = 1.0 / (arc.per_rod * steps_);
+  const double from = arc.before * steps_ + (step - number * steps_);  // in steps
+  if (step == number * steps_ && rod_.Jumps(number)) {
+    if (!Jump(number, share, y)) return false;
+    at_node(step, y);
+  }
+  for (int stage = 0; stage <= 6; ++stage) {
+    S at = y;
+    for (int j = 0; j < stage; ++j) {
+      if (kA[stage][j] != 0) at.Add(h * kA[stage][j], slope[static_cast<std::size_t>(j)]);
+    }
+    if (stage == 6) {
+      y = at;
+    } else if (!Slope({number, h * (from + kNodes[stage])}, at, share,
+                      slope[static_cast<std::size_t>(stage)])) {
+      return false;
+    }
+  }
+  at_node(step + 1, y);
+  return true;
+}
+
+// end: R nu(1), then (5). at_node(step, y) after every step, and once more where u has jumped. From
+// the start of step `first`, where the rod is at y.
+template <class T, int kRubbing, bool kSlides, class AtNode>
+bool RodBalance::Walk(const T* x, T* end, int first, State<T, kRubbing, kSlides> y,
+                      AtNode&& at_node) const {
   std::array<T, kSlides ? kRubbing : 1> share{};
   for (int step = first; step < rod_.arcs() * steps_; ++step) {
-    const int number = step / steps_;
-    const RodArc& arc = rod_.Arc(number);
-    const double h = 1.0 / (arc.per_rod * steps_);
-    const double from = arc.before * steps_ + (step - number * steps_);  // in steps
     if constexpr (kSlides) Slide(step, x, y, share.data(), end);
-    if (step == number * steps_ && rod_.Jumps(number)) {
-      if (!Jump(number, share.data(), y)) return false;
-      at_node(step, y);
-    }
-    for (int stage = 0; stage <= 6; ++stage) {
-      S at = y;
-      for (int j = 0; j < stage; ++j) {
-        if (kA[stage][j] != 0) at.Add(h * kA[stage][j], slope[static_cast<std::size_t>(j)]);
-      }
-      if (stage == 6) {
-        y = at;
-      } else if (!Slope({number, h * (from + kNodes[stage])}, at, share.data(),
-                        slope[static_cast<std::size_t>(stage)])) {
-        return false;
-      }
-    }
-    at_node(step + 1, y);
+    if (!Advance<T, kRubbing, kSlides>(step, share.data(), y, at_node)) return false;
   }
   End(x, y, end);
   return true;
@@ -328,135 +338,17 @@ template <class T, bool kSlides, class AtNode>
 bool RodBalance::WalkAny(const T* x, T* end, AtNode&& at_node) const {
   const std::size_t tendons = rod_.pull.size();
   if constexpr (kSlides) {
-    if (tendons <= kFewTendons) return WalkAll<T, kFewTendons, true>(x, end, at_node);
-    if (tendons <= kSomeTendons) return WalkAll<T, kSomeTendons, true>(x, end, at_node);
+    if (tendons <= internal::kFewTendons)
+      return WalkAll<T, internal::kFewTendons, true>(x, end, at_node);
+    if (tendons <= internal::kSomeTendons)
+      return WalkAll<T, internal::kSomeTendons, true>(x, end, at_node);
     return WalkAll<T, kMaxTendons, true>(x, end, at_node);
   } else {
     if (!rod_.friction) return WalkAll<T, 0, false>(x, end, at_node);
-    return tendons <= kFewTendons ? WalkAll<T, kFewTendons, false>(x, end, at_node)
-                                  : WalkAll<T, kMaxTendons, false>(x, end, at_node);
+    return tendons <= internal::kFewTendons
+               ? WalkAll<T, internal::kFewTendons, false>(x, end, at_node)
+               : WalkAll<T, kMaxTendons, false>(x, end, at_node);
   }
-}
-
-template <class T>
-bool RodBalance::operator()(const T* x, T* f) const {
-  const auto nothing = [](int, const auto&) {};
-  return remembers() ? WalkAny<T, true>(x, f, nothing) : WalkAny<T, false>(x, f, nothing);
-}
-
-template bool RodBalance::operator()(const double* x, double* f) const;
-template bool RodBalance::operator()(const ceres::Jet<double, 4>* x,
-                                     ceres::Jet<double, 4>* f) const;
-
-bool RodBalance::Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& f,
-                          Eigen::MatrixXd& jacobian) const {
-  const std::size_t tendons = rod_.pull.size();
-  if (tendons <= kFewTendons) return JacobianOf<kFewTendons>(x, f, jacobian);
-  if (tendons <= kSomeTendons) return JacobianOf<kSomeTendons>(x, f, jacobian);
-  return JacobianOf<kMaxTendons>(x, f, jacobian);
-}
-
-// A contact moves nothing before its step: walks with duals begin there.
-template <int kRubbing>
-bool RodBalance::JacobianOf(const Eigen::VectorXd& x, Eigen::VectorXd& f,
-                            Eigen::MatrixXd& jacobian) const {
-  constexpr int kBlock = 4;
-  using Dual = ceres::Jet<double, kBlock>;
-  using Plain = State<double, kRubbing, true>;
-  const auto tendons = static_cast<Eigen::Index>(rod_.pull.size());
-  std::vector<Plain> at{Base<double, kRubbing, true>(x.data())};
-  const auto keep = [&](int step, const Plain& y) {
-    if (static_cast<int>(at.size()) == step) at.push_back(y);  // where u jumps: before it
-  };
-  if (!WalkAll<double, kRubbing, true>(x.data(), f.data(), keep)) return false;
-  const auto nothing = [](int, const auto&) {};
-  std::vector<Dual> dual_x(x.begin(), x.end()), dual_f(static_cast<std::size_t>(x.size()));
-  const std::vector<Eigen::Index> coupled = Coupled(x);
-  jacobian.setZero();
-  jacobian.diagonal().setConstant(-1);
-  for (std::size_t first = 0; first < coupled.size(); first += kBlock) {
-    const auto count = static_cast<int>(std::min<std::size_t>(kBlock, coupled.size() - first));
-    const auto column = [&](int i) { return coupled[first + static_cast<std::size_t>(i)]; };
-    const auto step = static_cast<int>(std::max<Eigen::Index>(0, (column(0) - 3) / tendons));
-    std::fill(dual_f.begin(), dual_f.end(), Dual(0));
-    for (int i = 0; i < count; ++i) dual_x[static_cast<std::size_t>(column(i))].v[i] = 1;
-    const State<Dual, kRubbing, true> begin =
-        step > 0 ? State<Dual, kRubbing, true>::Of(at[static_cast<std::size_t>(step)])
-                 : Base<Dual, kRubbing, true>(dual_x.data());
-    if (!Walk<Dual, kRubbing, true>(dual_x.data(), dual_f.data(), step, begin, nothing)) {
-      return false;
-    }
-    for (int i = 0; i < count; ++i) {
-      for (Eigen::Index row = 0; row < f.size(); ++row) {
-        jacobian(row, column(i)) = dual_f[static_cast<std::size_t>(row)].v[i];
-      }
-      dual_x[static_cast<std::size_t>(column(i))].v[i] = 0;
-    }
-  }
-  return f.allFinite() && jacobian.allFinite();
-}
-
-std::vector<Eigen::Index> RodBalance::Coupled(const Eigen::VectorXd& x) const {
-  using Dual = ceres::Jet<double, 4>;
-  const auto tendons = static_cast<Eigen::Index>(rod_.pull.size());
-  std::vector<Eigen::Index> coupled;
-  for (Eigen::Index i = 0; i < 3 + tendons; ++i) coupled.push_back(i);
-  for (Eigen::Index i = 3 + tendons; i < x.size(); ++i) {
-    const auto contact = static_cast<int>((i - 3) / tendons);
-    const auto tendon = static_cast<std::size_t>((i - 3) % tendons);
-    if (Share(contact, tendon, Dual(x[i], 0)).v[0] != 0) coupled.push_back(i);
-  }
-  return coupled;
-}
-
-const RodBalance::Shape& RodBalance::Integrate(const Eigen::VectorXd& x) const {
-  for (const Integrated& known : integrated_) {
-    if (known.x.size() == x.size() && known.x == x && known.load == load_ &&
-        known.steps == steps_) {
-      return known.shape;
-    }
-  }
-  std::swap(integrated_[0], integrated_[1]);
-  Integrated& now = integrated_[0];
-  now.x = x;
-  now.load = load_;
-  now.steps = steps_;
-  Shape& shape = now.shape;
-  const int count = rod_.arcs() * steps_;
-  shape.disks.setZero(3, disks_);
-  shape.middles.setZero(3, disks_);
-  shape.ends.setZero(3, rod_.arcs());
-  shape.frames.assign(1, Eigen::Quaterniond::Identity());
-  shape.frames.reserve(static_cast<std::size_t>(count) + 1);
-  shape.points.setZero(3, count + 1);
-  shape.u.resize(3, count + 1);
-  shape.u.col(0) = x.head<3>();
-  const auto tendons = static_cast<Eigen::Index>(rod_.pull.size());
-  shape.tension.resize(count + 1, tendons);
-  for (Eigen::Index k = 0; k < tendons; ++k) {
-    shape.tension.col(k).setConstant(rod_.pull[static_cast<std::size_t>(k)]);
-  }
-  if (remembers()) shape.way.setZero(count + 1, tendons);
-  const auto keep = [&](int step, const auto& y) {
-    const int number = (step - 1) / steps_, within = step - number * steps_;
-    const RodArc& arc = rod_.Arc(number);
-    if (static_cast<int>(shape.frames.size()) == step) {
-      shape.ends.col(number) = y.u;
-      shape.frames.push_back(Eigen::Quaterniond(y.q[0], y.q[1], y.q[2], y.q[3]).normalized());
-    }
-    shape.points.col(step) = y.p;
-    shape.u.col(step) = y.u;
-    if constexpr (requires { y.tension.size(); }) shape.tension.row(step) = y.tension.transpose();
-    if constexpr (requires { y.way.size(); }) shape.way.row(step) = y.way.transpose();
-    if (2 * (arc.part * steps_ + within) == arc.parts * steps_)
-      shape.middles.col(arc.disk - 1) << y.u.y() / length_, -y.u.x() / length_, y.u.z() / length_;
-    if (within == steps_ && arc.ends_at_disk()) shape.disks.col(arc.disk - 1) = y.p * length_;
-  };
-  Eigen::VectorXd end = Eigen::VectorXd::Zero(unknowns());
-  shape.valid = remembers() ? WalkAny<double, true>(x.data(), end.data(), keep)
-                            : WalkAny<double, false>(x.data(), end.data(), keep);
-  shape.residual = end.head<3>();
-  return shape;
 }
 
 }  // namespace continuum::tdcr
