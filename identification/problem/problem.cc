@@ -292,8 +292,8 @@ std::vector<Change> Problem::CommonChanges(const Vector& x) const {
   return changes;
 }
 
-// Of values that no machine has, whose model does not compile or finds no rest: as much a step to be
-// rejected as one that diverges.
+// Of values that no machine has, whose model does not compile or finds no rest: as much a step to
+// be rejected as one that diverges.
 Trace Problem::Rejected(const Log& log, const Error& error) const {
   Trace trace;
   trace.diverged = true;

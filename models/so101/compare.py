@@ -9,7 +9,10 @@ rows of all motions [mrad], each by the fit that has not seen it, for
   goal as position     the goals that the servos were told, as they are
   menagerie            the actuators of the menagerie's model
   unfitted             this model with its published numbers
-  fitted               `identify`: stiffness, damping and friction of each servo, zeros, delay
+  mujoco.sysid         where tests/benchmark/sysid/so101.py has left sysid.json in RESULT_FOLDER
+  fitted               `identify`: stiffness, damping and friction of each servo, armature, delay
+  in its place         the same with a table under the arm and a stop of wrist_roll. Where they are
+                       these logs say, those held out among them; no number of the fit depends on it
   extended             the same with the cause that `diagnose` offers for the train motions
 and the same for repetitive_motion alone, beside the scatter of its cycles. What lies in RESULT_FOLDER
 already is not made again. --fitted: without the last row, which takes two diagnoses and two more fits.
@@ -26,7 +29,14 @@ HERE = pathlib.Path(__file__).resolve().parent
 JOINTS = ("pan", "lift", "elbow", "wrist_flex", "wrist_roll", "gripper")
 HALVES = ("first", "second")
 LOGS = re.compile(r"^logs:\n(?:  .*\n)+", re.M)
+PARAMETERS = re.compile(r"^parameters:\n(?:  .*\n)+", re.M)
 CYCLES, PERIOD = "repetitive_motion", 9.83  # s, of its goals
+# What stands around the arm, as edits of a fitted MJCF: the fingertip meets something 39 mm below the base.
+PLACE = ((r'<flag contact="disable"/>', ""),
+         (r'<joint name="wrist_roll"', r'\g<0> range="-1.034 3.2"'),
+         (r'<geom name="floor"', r'\g<0> pos="0 0 -0.0413" contype="1" conaffinity="1" condim="1"'),
+         (r'(<site name="gripperframe" )(pos="[^"]*")/>', r'\g<0><geom name="fingertip" size="0.002" \2'
+          r' contype="1" conaffinity="1" condim="1"/>'))
 
 
 class Runs:
@@ -113,9 +123,24 @@ def of_halves(runs, job, experiment, name, file):
     return errors
 
 
+def in_its_place(runs, half):
+    """Held-out errors of the fit of one half, with the table and the stop."""
+    folder = runs.results / f"{half}_fit"
+    text = (folder / "fitted.xml").read_text()
+    for pattern, new in PLACE:
+        text = re.sub(pattern, new, text)
+    (folder / "in_its_place.xml").write_text(text)
+    experiment = (folder / "fitted.yaml").read_text().replace("model: fitted.xml", "model: in_its_place.xml")
+    (folder / "in_its_place.yaml").write_text(experiment)
+    return held_out(runs.make("replay", f"{folder.name}/in_its_place.yaml", f"{half}_in_its_place", "errors.json"))
+
+
 def extend(runs, half):
-    """The fit of one half with the cause that its diagnosis offers; none: None."""
-    found = runs.make("diagnose", f"{half}_diagnosis.yaml", f"{half}_diagnosis", "diagnosis.json")
+    """The fit of one half with the cause that its diagnosis offers, which begins at the fit; none: None."""
+    fitted = PARAMETERS.search((runs.results / f"{half}_fit/fitted.yaml").read_text())[0]
+    begun = PARAMETERS.sub(lambda _: fitted, (runs.results / f"{half}_diagnosis.yaml").read_text())
+    (runs.results / f"{half}_from_fit.yaml").write_text(begun)
+    found = runs.make("diagnose", f"{half}_from_fit.yaml", f"{half}_diagnosis", "diagnosis.json")
     folder = runs.results / f"{half}_diagnosis"
     if not found.get("offered"):
         return None
@@ -135,8 +160,11 @@ def main():
     menagerie = held_out(runs.make("replay", "menagerie.yaml", "menagerie", "errors.json"))
     motions = sorted(menagerie)
     models = {"goal as position": goal_errors(results, motions), "menagerie": menagerie,
-              "unfitted": of_halves(runs, "replay", "{}.yaml", "{}_unfitted", "errors.json"),
-              "fitted": of_halves(runs, "identify", "{}.yaml", "{}_fit", "fit.json")}
+              "unfitted": of_halves(runs, "replay", "{}.yaml", "{}_unfitted", "errors.json")}
+    if (results / "sysid.json").exists():
+        models["mujoco.sysid, 24 parameters"] = json.loads((results / "sysid.json").read_text())
+    models["fitted"] = of_halves(runs, "identify", "{}.yaml", "{}_fit", "fit.json")
+    models["fitted, in its place"] = in_its_place(runs, "first") | in_its_place(runs, "second")
     extended = [extend(runs, half) for half in HALVES] if len(arguments) == len(sys.argv) - 1 else []
     if extended and all(extended):
         models["extended"] = extended[0] | extended[1]

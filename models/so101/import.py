@@ -27,7 +27,7 @@ MENAGERIE = ('set: {"actuator:*": {kp: 998, kv: 2.7}, "joint:*": {damping: 0.6, 
              + "".join(f'"plugin:friction_{joint}": {{tau_c: 0.052}}, ' for joint in JOINTS)
              + '"plugin:dead_zone": {gap: 0}}')
 CANDIDATES = ("[load_friction, {effect: gear_friction, where: \"joint:lift elbow wrist_flex\"}, "
-              "stribeck, position_friction, backlash, dead_time, pt1, payload]")
+              "stribeck, backlash, dead_time, pt1, torque_limit, supply_sag]")
 
 
 def parameters():
@@ -35,15 +35,13 @@ def parameters():
     for joint in JOINTS:
         lines += [
             f"  - {{name: kp_{joint}, target: \"actuator:{joint}\", attribute: kp, lower: 1, upper: 100}}",
-            f"  - {{name: b_{joint}, target: \"joint:{joint}\", attribute: damping, lower: 0, upper: 5}}",
+            f"  - {{name: b_{joint}, target: \"joint:{joint}\", attribute: damping, lower: 0.15, upper: 5}}",
             f"  - {{name: tau_c_{joint}, target: \"plugin:friction_{joint}\", attribute: tau_c, lower: 0,"
             " upper: 0.6}",
         ]
-    lines += [f"  - {{name: zero_{joint}, target: \"joint:{joint}\", attribute: ref, lower: -0.3,"
-              " upper: 0.3}" for joint in ("lift", "elbow", "wrist_flex")]
     lines += [
         "  - {name: armature, target: \"joint:*\", attribute: armature, lower: 1e-4, upper: 0.2}",
-        "  - {name: delay, target: \"sensor:*\", attribute: delay, initial: 0.02, lower: 0, upper: 0.1}",
+        "  - {name: delay, target: \"sensor:*\", attribute: delay, initial: 0.01, lower: 0, upper: 0.02}",
     ]
     return lines
 

@@ -26,8 +26,9 @@ namespace continuum {
 /// level after so far, and slips then (alone on its joint, not under the discrete integrator).
 ///
 /// The load of load_friction is ½ |τ_m − τ_e|, so that its μ_l is 2 μ_m. The viscous part is the
-/// joint's native damping. No candidate by itself: on one motion ten numbers fit what two explain;
-/// a search leaves give at 0.
+/// joint's native damping. No candidate by itself: on one motion ten numbers fit what two explain.
+/// A search leaves give and the four weights at 0: stribeck and load_friction are the rungs M2 and
+/// M3, and what lies above them is the square of the load, whose excess has a speed and a shape.
 /// Source: duclusaud2024.
 struct GearFriction {
   static constexpr std::string_view kName = "gear_friction", kSource = "duclusaud2024",
@@ -35,15 +36,15 @@ struct GearFriction {
   static constexpr bool kReadsTorques = true, kOnlyListed = true;
   static constexpr std::array kPlaces{Place::kJoint};
   static constexpr std::array kParams{Magnitude("tau_c", "N*m", 0.01),
-                                      Magnitude("mu_m", "1", 0.05),
-                                      Magnitude("mu_e", "1", 0.05),
+                                      Param{"mu_m", "1", 0, kInfinity, 0.05, 0, 0},
+                                      Param{"mu_e", "1", 0, kInfinity, 0.05, 0, 0},
                                       Magnitude("S_c", "N*m", 0.01),
-                                      Magnitude("s_m", "1", 0.05),
-                                      Magnitude("s_e", "1", 0.05),
+                                      Param{"s_m", "1", 0, kInfinity, 0.05, 0, 0},
+                                      Param{"s_e", "1", 0, kInfinity, 0.05, 0, 0},
                                       Magnitude("q_m", "1/N/m", 0),
                                       Magnitude("q_e", "1/N/m", 0),
                                       Positive("v_d", "rad/s", 0.2),
-                                      Param{"alpha", "1", 0.2, 10, 1.35, kAsIs, 1.35},
+                                      Param{"alpha", "1", 0.2, 10, 1.35, kAsIs},
                                       Param{"give", "rad", 0, kInfinity, 0, 0, 0}};
   static constexpr std::size_t kCoulombLevel = 0, kGive = 10;
 

@@ -25,7 +25,7 @@ struct Lugre {
   static constexpr Units kPort{"rad", "N*m"};
   static constexpr std::array kStates{State{"z", "1"}};
   static constexpr std::array kParams{
-      Positive("sigma_0", "N*m/rad", 1), Magnitude("sigma_1", "N*m*s/rad", 0),
+      Positive("sigma_0", "N*m/rad", 1), Param{"sigma_1", "N*m*s/rad", 0, kInfinity, 0, 0, 0},
       Magnitude("tau_c", "N*m", 0.01), Magnitude("S", "1", 0.5), Positive("v_s", "rad/s", 0.1)};
 
   template <class T>

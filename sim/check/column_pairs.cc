@@ -204,6 +204,14 @@ void CheckResponse(const CheckedLog& log, const CheckedColumn& output, Findings&
                   1e3 * log.period * std::abs(best.rows), std::abs(best.rows), best.correlation));
 }
 
+// Of each input that asks for such a position.
+void CheckStops(const CheckedLog& log, const CheckedColumn& output, Findings& out) {
+  const Unit unit = ParseUnit(output.unit, "");
+  for (const CheckedColumn& input : log.columns) {
+    if (input.input && ParseUnit(input.unit, "").Is(unit.dimension)) CheckStop(output, input, out);
+  }
+}
+
 }  // namespace
 
 void CheckPairs(const CheckedLog& log, Findings& out) {
@@ -216,7 +224,9 @@ void CheckPairs(const CheckedLog& log, Findings& out) {
   }
   CheckVelocities(log, out);
   for (const CheckedColumn& c : log.columns) {
-    if (!c.input && !c.constant() && !IsRate(c.unit)) CheckResponse(log, c, out);
+    if (c.input || c.constant() || IsRate(c.unit)) continue;
+    CheckResponse(log, c, out);
+    CheckStops(log, c, out);
   }
 }
 

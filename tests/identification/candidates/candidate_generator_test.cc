@@ -93,6 +93,14 @@ TEST(CandidateGenerator, FreesWhatOnlyTheLawItselfCanSay) {
   EXPECT_EQ(h.replaces, "");
 }
 
+TEST(CandidateGenerator, LeavesToOtherLawsWhatTheySayAsWell) {
+  const auto free = [](const std::string& effect) {
+    return FreeNames(Ask(ModelWith("", ""), effect, "joint:q").candidates.front());
+  };
+  EXPECT_THAT(free("gear_friction"), ElementsAre("tau_c", "S_c", "q_m", "q_e", "v_d", "alpha"));
+  EXPECT_THAT(free("lugre"), ElementsAre("sigma_0", "tau_c", "S", "v_s"));
+}
+
 TEST(CandidateGenerator, ALawThatContainsCoulombsTakesThePlaceOfTheModels) {
   const ModelSpec model = ModelWith("coulomb", Key("joint", "q") + Key("tau_c", ".02"));
   for (const std::string effect : {"stribeck", "position_friction"}) {
