@@ -160,6 +160,7 @@ class CandidateSearch {
   bool IsLost(const CandidateResult& c) const;
   static std::vector<Problem::Vector> StartsWithoutBase(const Problem& problem,
                                                         const CandidateResult& c);
+  std::vector<Problem::Vector> StartsNextToBase(const Hypothesis& h) const;
   bool RefitFrom(const Problem& problem, CandidateResult& c,
                  const std::vector<Problem::Vector>& starts) const;
   /// Whether first order in the step does not hold.

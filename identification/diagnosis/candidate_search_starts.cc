@@ -93,7 +93,8 @@ void CandidateSearch::FitOne(CandidateResult& c, double rival, std::size_t tried
   c.fitted = fitter_.Fit(problem, BestOf(problem, starts, tried), rival);
   c.was_fitted = true;
   Continue(problem, c, rival);
-  if (tried > 1 && IsLost(c)) RefitFrom(problem, c, StartsWithoutBase(problem, c));
+  if (IsLost(c)) RefitFrom(problem, c, StartsWithoutBase(problem, c));
+  if (IsLost(c)) RefitFrom(problem, c, StartsNextToBase(c.hypothesis));
   WidenRanges(c, rival);
 }
 
@@ -103,7 +104,7 @@ bool CandidateSearch::IsLost(const CandidateResult& c) const {
 }
 
 // The candidate as it may begin, beside what the experiment begins with: what the base has made of
-// that is far from any fit with the candidate.
+// that may be far from any fit with the candidate.
 std::vector<Problem::Vector> CandidateSearch::StartsWithoutBase(const Problem& problem,
                                                                 const CandidateResult& c) {
   const Problem::Vector given = problem.Start().head(c.first_extra());
@@ -112,6 +113,17 @@ std::vector<Problem::Vector> CandidateSearch::StartsWithoutBase(const Problem& p
   if (c.start.size() == problem.Start().size()) {
     starts.push_back(c.start);
     starts.back().head(given.size()) = given;
+  }
+  return starts;
+}
+
+// A little of the candidate beside the base.
+std::vector<Problem::Vector> CandidateSearch::StartsNextToBase(const Hypothesis& h) const {
+  constexpr double kLittle = 0.05;
+  std::vector<Problem::Vector> starts;
+  for (std::vector<double> own : h.starts) {
+    for (const std::size_t a : h.Amplitudes()) own[a] = h.AtShare(a, own[a], kLittle);
+    starts.push_back(Append(base_.fitted->fit.x, own));
   }
   return starts;
 }
