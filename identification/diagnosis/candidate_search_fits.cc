@@ -103,7 +103,8 @@ void CandidateSearch::FitBeside(const std::vector<CandidateResult*>& some, const
 // more than noise: what is left is theirs before it is another cause's.
 std::vector<CandidateResult*> CandidateSearch::RicherThanBest() {
   const CandidateResult* const best = Best();
-  if (!best || !noise_.known() || ReachesNoise(best->fitted) || !TakesMainShare(best->fitted))
+  if (!best || fitter_.TimeIsOver() || !noise_.known() || ReachesNoise(best->fitted) ||
+      !TakesMainShare(best->fitted))
     return {};
   std::vector<const CandidateResult*> plain{best};
   for (const CandidateResult& c : candidates)
@@ -113,9 +114,7 @@ std::vector<CandidateResult*> CandidateSearch::RicherThanBest() {
     const bool contains = std::any_of(plain.begin(), plain.end(), [&](const CandidateResult* p) {
       return IsPlainerThan(p->hypothesis, c.hypothesis);
     });
-    if (contains && !c.was_fitted && c.error.empty() &&
-        fitter_.HasTimeFor("a fit of " + c.hypothesis.NameAtPlace(), left_out))
-      richer.push_back(&c);
+    if (contains && !c.was_fitted && c.error.empty()) richer.push_back(&c);
   }
   return richer;
 }

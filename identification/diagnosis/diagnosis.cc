@@ -80,7 +80,7 @@ class Session {
       CompleteNamed();
       ConfirmOnValidateLogs(d_);
     }
-    WeighUnseen();
+    WeighUnseen(d_);
     Part("interval of the gain", [&] { SetGainInterval(); });
     FindWhatHelps();
     Describe();
@@ -118,14 +118,6 @@ class Session {
       options_.Say(DiagnosisStage::kNextExperiment);
       d_.next = ProposeNext(fitter_, d_);
     });
-  }
-
-  // The time was over before most of the list had its turn.
-  void WeighUnseen() {
-    if (!d_.Is(Verdict::Kind::kNamed) || !TooManyUnseen(d_)) return;
-    d_.verdict.kind = Verdict::Kind::kAmbiguous;
-    d_.verdict.reason = fmt::format("there was no time for a look at {} effects; of the others: {}",
-                                    UnseenEffects(d_).size(), d_.verdict.reason);
   }
 
   void MarkAsInterrupted() {

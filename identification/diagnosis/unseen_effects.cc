@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include <fmt/format.h>
+
 #include "identification/diagnosis/search_rules.h"
 
 namespace continuum {
@@ -32,6 +34,13 @@ std::vector<std::string> UnseenEffects(const Diagnosis& d) {
 bool TooManyUnseen(const Diagnosis& d) {
   const std::size_t unseen = UnseenEffects(d).size();
   return TooManyUnseen(unseen, unseen + SeenEffects(d).size(), d.criteria);
+}
+
+void WeighUnseen(Diagnosis& d) {
+  if (!d.Is(Verdict::Kind::kNamed) || !TooManyUnseen(d)) return;
+  d.verdict.kind = Verdict::Kind::kAmbiguous;
+  d.verdict.reason = fmt::format("there was no time for a look at {} effects; of the others: {}",
+                                 UnseenEffects(d).size(), d.verdict.reason);
 }
 
 }  // namespace continuum

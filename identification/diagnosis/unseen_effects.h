@@ -13,4 +13,7 @@ std::vector<std::string> UnseenEffects(const Diagnosis& diagnosis);
 /// Whether so many effects were not looked at that a name may be any of them.
 bool TooManyUnseen(const Diagnosis& diagnosis);
 
+/// Then a name becomes a set: the time was over before most of the list had its turn.
+void WeighUnseen(Diagnosis& diagnosis);
+
 }  // namespace continuum

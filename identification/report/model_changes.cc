@@ -14,16 +14,18 @@
 namespace continuum {
 namespace {
 
-std::string Value(double value, int digits = 3) { return Significant(value, digits); }
+constexpr int kDigits = 3;  // at least
+
+std::string Value(double value, int digits = kDigits) { return Significant(value, digits); }
 
 // As many as show two digits of an interval's width: 3.0021e+05, not 3e+05 … 3e+05.
 int DigitsOf(const Uncertainty& u, double value, Eigen::Index at) {
-  constexpr int kLeast = 3, kMost = 8;
-  if (u.lower.size() <= at) return kLeast;
+  constexpr int kMost = 8;
+  if (u.lower.size() <= at) return kDigits;
   const double width = u.upper[at] - u.lower[at];
-  if (!(width > 0) || !std::isfinite(width) || value == 0) return kLeast;
+  if (!(width > 0) || !std::isfinite(width) || value == 0) return kDigits;
   const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(width)) + 2;
-  return static_cast<int>(std::clamp<double>(digits, kLeast, kMost));
+  return static_cast<int>(std::clamp<double>(digits, kDigits, kMost));
 }
 
 // " N m/rad"; nothing for a pure number.
@@ -136,7 +138,7 @@ std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Inde
     const double null = i < h.null.size() ? h.null[i] : 0;
     const bool from = std::isfinite(null) && null != 0;
     const Uncertainty* const u = fitted.complete() ? &fitted.sensitivities->uncertainty : nullptr;
-    const int digits = u ? DigitsOf(*u, value, at) : 3;
+    const int digits = u ? DigitsOf(*u, value, at) : kDigits;
     text +=
         fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", h.extra[i].name,
                     from ? Value(null) + " → " : "", Value(value, digits), Unit(UnitOfExtra(h, i)));

@@ -86,14 +86,14 @@ class Balance {
     constexpr double kSlow = 1e-9;
     mj_resetData(&m_, &d_);
     inputs_.AtRow(d_, 0);
-    double before = 0;
+    double before = 0, most = 0;  // kinetic energy [J]
     for (int step = 0; step < kMost; ++step) {
       StopIfRequested();
       mj_step(&m_, &d_);
       mj_energyVel(&m_, &d_);
       const double now = d_.energy[1];
-      if (!std::isfinite(now) || (step > 100 && now < kSlow * most_)) break;
-      most_ = std::max(most_, now);
+      if (!std::isfinite(now) || (step > 100 && now < kSlow * most)) break;
+      most = std::max(most, now);
       if (now < before) std::fill(d_.qvel, d_.qvel + m_.nv, 0.0);
       before = now < before ? 0 : now;
     }
@@ -142,7 +142,6 @@ class Balance {
   const Log& log_;
   const Wiring wiring_;
   Inputs inputs_;
-  double most_ = 0;  // kinetic energy on the way [J]
 };
 
 }  // namespace

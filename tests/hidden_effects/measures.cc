@@ -24,6 +24,7 @@ std::optional<Goal> AtMost(double share) { return Goal{0, share}; }
 bool Nothing(const Outcome& o) { return o.effects.empty() && o.spoilt.empty(); }
 bool Single(const Outcome& o) { return o.effects.size() == 1 && o.listed; }
 bool Pair(const Outcome& o) { return o.effects.size() == 2 && o.listed; }
+bool Sized(const Outcome& o) { return Single(o) && o.HasSize(); }
 bool Answered(const Outcome& o) { return o.verdict != "no answer"; }
 bool Robots(const Outcome& o) { return o.suite == "robots"; }
 bool Outside(const Outcome& o) { return o.suite == "outside"; }
@@ -108,11 +109,10 @@ void AddRobots(Tally& t) {
 }
 
 void AddNumbers(Tally& t) {
-  const Test sized = [](const Outcome& o) { return Single(o) && o.HasSize(); };
-  t.Median("size of the effect: |error|, median", std::nullopt, AtMost(0.02), {Robots, sized},
+  t.Median("size of the effect: |error|, median", std::nullopt, AtMost(0.02), {Robots, Sized},
            [](const Outcome& o) { return std::abs(o.value - o.truth) / std::abs(o.truth); })
       .Share("size of the effect: 95 % interval holds", std::nullopt, Goal{0.93, 0.97},
-             {Robots, sized}, [](const Outcome& o) { return o.Covered(); })
+             {Robots, Sized}, [](const Outcome& o) { return o.Covered(); })
       .Median("held-out explainable error removed, median", AtLeast(0.001), AtLeast(0.9),
               {Robots, Single, IsAlone, [](const Outcome& o) { return o.explained.has_value(); }},
               [](const Outcome& o) { return *o.explained; })
@@ -127,7 +127,6 @@ void AddNumbers(Tally& t) {
 }
 
 void AddOutside(Tally& t) {
-  const Test sized = [](const Outcome& o) { return Single(o) && o.HasSize(); };
   t.Share("outside: right", std::nullopt, AtLeast(0.9), {Outside}, IsRight)
       .Share("outside: one effect, in the set", std::nullopt, AtLeast(0.95), {Outside, Single},
              [](const Outcome& o) { return o.right; })
@@ -139,9 +138,9 @@ void AddOutside(Tally& t) {
       .Share("outside: no answer", std::nullopt, AtMost(0), {Outside},
              [](const Outcome& o) { return !Answered(o); })
       .Share("outside: 95 % interval holds, as if no number were off", std::nullopt, std::nullopt,
-             {Outside, sized}, [](const Outcome& o) { return o.Covered(); })
+             {Outside, Sized}, [](const Outcome& o) { return o.Covered(); })
       .Share("outside: the same, lengths and masses off by 1.5 %", std::nullopt, AtLeast(0.93),
-             {Outside, sized}, [](const Outcome& o) { return o.CoveredIfNumbersAreOff(); })
+             {Outside, Sized}, [](const Outcome& o) { return o.CoveredIfNumbersAreOff(); })
       .Share("outside: 2 kg on the pendulum within 15 %", AtLeast(1), AtLeast(1),
              {Outside, Single,
               [](const Outcome& o) {
