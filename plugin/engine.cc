@@ -8,11 +8,13 @@
 #include <type_traits>
 #include <utility>
 
+#include "binding/actuator_force.h"
 #include "binding/attachment.h"
 #include "binding/effect_catalog.h"
 #include "binding/filter.h"
 #include "binding/force.h"
-#include "binding/formula.h"
+#include "binding/formula_force.h"
+#include "binding/formula_friction.h"
 #include "binding/friction.h"
 #include "binding/path.h"
 #include "binding/pull.h"
@@ -296,11 +298,6 @@ class PluginActuators {
   mjData& d_;
   std::vector<std::pair<int, double>> before_;
 };
-
-// MuJoCo then computes no actuators: kPassive is all that comes.
-bool IsUnactuated(const mjModel& m) {
-  return m.nu == 0 || m.nactuator == 0 || (m.opt.disableflags & mjDSBL_ACTUATION);
-}
 
 void Compute(const mjModel& m, mjData& d, int i, int capability) {
   if (capability == mjPLUGIN_SENSOR) return;  // written below, as soon as it is known

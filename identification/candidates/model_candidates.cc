@@ -8,6 +8,7 @@
 
 #include "binding/config.h"
 #include "binding/expression.h"
+#include "effects/formula.h"
 #include "error.h"
 #include "identification/candidates/effect_places.h"
 #include "identification/candidates/present_friction.h"
@@ -162,8 +163,9 @@ Hypothesis FormulaCandidate(const EffectInfo& effect, const WrittenLaw& law, Pla
   std::vector<std::string> from, to;
   for (Parameter p : law.parameters) {
     p.target = "plugin:" + added.name;
-    p.attribute = effect.params[h.extra.size()].name;
-    from.push_back(p.name), to.push_back(p.attribute);
+    const bool by_name = p.name == Formula::kHeatTime;
+    p.attribute = by_name ? p.name : effect.params[from.size()].name;
+    if (!by_name) from.push_back(p.name), to.push_back(p.attribute);
     added.config.emplace_back(p.attribute, Decimal(p.initial));
     h.extra.push_back(std::move(p));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "identification/diagnosis/fallback_force.h"
 #include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/fold_comparison.h"
+#include "identification/diagnosis/found_law.h"
 #include "identification/diagnosis/gain_interval.h"
 #include "identification/diagnosis/log_requirements.h"
 #include "identification/diagnosis/look_logs.h"
@@ -57,6 +59,7 @@ class Session {
     d_.noise.step = fitter_.StepError(null_, d_.before);
     Search();
     Begin(DiagnosisStage::kJudgement);
+    Part("a law that nobody listed", [&] { LookForALaw(); });
     Part("view by the missing force", [&] { CompareByEquation(); });
     if (d_.noise_limited) {
       MergePlaces(d_);
@@ -356,6 +359,7 @@ class Session {
     });
     if (!fitted) return;
     const CandidateResult* const best = unlisted.leading();
+    if (best) unlisted_error_ = best->fitted.error.train;
     const bool judged = best && best->fitted.complete();  // else plainly behind
     const bool enough = d_.Is(Verdict::Kind::kUnexplained) && judged &&
                         !unlisted.TestsOf(*best).significant(d_.criteria);
@@ -391,6 +395,13 @@ class Session {
     for (std::size_t i = 0; i < records.size(); ++i) candidates[i].probability = probability[i];
   }
 
+  // One that is found is judged beside the candidates, on logs left out.
+  void LookForALaw() {
+    if (!WantsALaw(d_, unlisted_error_) || !HasTimeFor("a law that nobody listed")) return;
+    auto law = FindLaw(fitter_, d_, options_);
+    if (law && IsBetterLaw(d_, *law)) TakeLaw(*std::move(law), d_);
+  }
+
   // Likelihoods of both together, over the model without either.
   void JudgePair(Pair& pair) {
     d_.verdict = pair.verdict;
@@ -401,21 +412,11 @@ class Session {
     d_.partner = std::move(pair.first);
     d_.verdict.reason = fmt::format("no single candidate is enough, two are: {} beside this; {}",
                                     d_.partner->hypothesis.NameAtPlace(), d_.verdict.reason);
-    d_.verdict.kind = IsOnePair() ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
+    d_.verdict.kind = IsOnePair(*d_.partner, d_.verdict.named.size()) ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
     if (d_.partner->correction == Partner::Correction::kBoth)
       d_.verdict.reason +=
           "; both change numbers of the model or the sensors by a few per cent, which others that "
           "are off, as lengths, may do as well";
-  }
-
-  // Whether each cause of a pair is one; what corrects the model may be several things.
-  bool IsOnePair() const {
-    using Correction = Partner::Correction;
-    const Partner& first = *d_.partner;
-    const bool other_is_one = d_.verdict.named.size() == 1 && first.instead.empty();
-    if (first.correction == Correction::kBoth) return false;
-    return (first.equivalent.empty() || first.correction == Correction::kThis) &&
-           (other_is_one || first.correction == Correction::kOther);
   }
 
   // A rival that is far behind on one of the scales has no intervals so far.
@@ -482,6 +483,7 @@ class Session {
   Problem null_;
   Diagnosis d_;
   CandidateFitter fitter_;
+  double unlisted_error_ = std::numeric_limits<double>::infinity();
   std::vector<EquationErrors> views_;  // of the missing force, for a look
 };
 

@@ -38,12 +38,12 @@ bool Remembers(const mjModel& m) {
 
 EquationErrors::EquationErrors(const Problem& base, const Vector& x, std::vector<bool> use)
     : experiment_(base.experiment()), x_(x), use_(std::move(use)) {
-  const auto joints = MissingForces(base, x_, use_);
-  if (joints.empty()) return;
-  units_ = StackedForces(joints, &MissingForce::force);
-  for (const MissingForce& joint : joints)
+  joints_ = MissingForces(base, x_, use_);
+  if (joints_.empty()) return;
+  units_ = StackedForces(joints_, &MissingForce::force);
+  for (const MissingForce& joint : joints_)
     log_.insert(log_.end(), joint.log.begin(), joint.log.end());
-  missing_ = units_.Of(joints);
+  missing_ = units_.Of(joints_);
   coarse_step_ = kCoarse * base.step();
   coarse_ = Stacked(base, x_, coarse_step_);
   columns_ = Matrix::Zero(missing_.size(), x_.size());

@@ -35,6 +35,11 @@ class EquationErrors {
 
   /// Whether every joint is measured, so that there is anything to see.
   bool any() const { return force_.size() > 0; }
+  /// The missing forces, and what the fitted parameters do there: the numbers of all joints below
+  /// each other, each joint's rows in units of its own.
+  const std::vector<MissingForce>& joints() const { return joints_; }
+  const Problem::Vector& missing() const { return missing_; }
+  const Problem::Matrix& columns() const { return columns_; }
   /// What a candidate explains with sizes of its own, and where its fit may begin, in one shape:
   /// that of a start of the hypothesis. Effects are linear in their sizes here, however large they
   /// are. Nothing where it does nothing to f. problem: of the candidate.
@@ -68,6 +73,7 @@ class EquationErrors {
   const Experiment& experiment_;
   Problem::Vector x_;
   std::vector<bool> use_;  // logs
+  std::vector<MissingForce> joints_;
   StackedForces units_;
   std::vector<std::size_t> log_;  // of every number
   Problem::Vector missing_;       // f

@@ -33,4 +33,12 @@ void MergePlaces(Diagnosis& d) {
   named.resize(1);
 }
 
+bool IsOnePair(const Partner& first, std::size_t others) {
+  using Correction = Partner::Correction;
+  const bool other_is_one = others == 1 && first.instead.empty();
+  if (first.correction == Correction::kBoth) return false;
+  return (first.equivalent.empty() || first.correction == Correction::kThis) &&
+         (other_is_one || first.correction == Correction::kOther);
+}
+
 }  // namespace continuum

@@ -8,4 +8,8 @@ namespace continuum {
 /// distinguish the places.
 void MergePlaces(Diagnosis& diagnosis);
 
+/// Whether each cause of a pair is one; what corrects the model may be several things. others: so
+/// many are named beside the first.
+bool IsOnePair(const Partner& first, std::size_t others);
+
 }  // namespace continuum

@@ -8,6 +8,7 @@
 
 #include <Eigen/Dense>
 
+#include "binding/gear_load.h"
 #include "identification/inverse_dynamics/measured_motion.h"
 #include "sim/model/elastic_gear.h"
 #include "sim/numerics/parallel.h"
@@ -76,6 +77,7 @@ class LogForces {
         out.velocity.push_back(motion.velocity[k]);
         out.load.push_back(load_.at(joint)[k + kHalfRows]);
         out.force.push_back(force[m.jnt_dofadr[joint]]);
+        out.weight.push_back(WeightTorque(m, d, m.jnt_dofadr[joint]));
         out.acceleration.push_back(lack[m.jnt_dofadr[joint]]);
       }
     }
@@ -176,7 +178,8 @@ void Append(const std::vector<MissingForce>& joints, std::vector<MissingForce>& 
     to.joint = from.joint, to.slides = from.slides, to.at_rest = from.at_rest;
     to.log.insert(to.log.end(), from.log.begin(), from.log.end());
     for (const auto rows : {&MissingForce::time, &MissingForce::angle, &MissingForce::velocity,
-                            &MissingForce::load, &MissingForce::force, &MissingForce::acceleration})
+                            &MissingForce::load, &MissingForce::force, &MissingForce::acceleration,
+                            &MissingForce::weight})
       (to.*rows).insert((to.*rows).end(), (from.*rows).begin(), (from.*rows).end());
   }
 }

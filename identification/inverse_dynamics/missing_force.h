@@ -26,6 +26,7 @@ struct MissingForce {
   bool slides = false;               ///< the joint: m and N, else rad and N m
   std::vector<std::size_t> log;
   std::vector<double> time, angle, velocity, load, force;  ///< SI
+  std::vector<double> weight;        ///< what gravity does at the joint [N*m or N]
   std::vector<double> acceleration;  ///< a_measured − F a_model: what noise there is, is added
 };
 

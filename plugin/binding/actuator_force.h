@@ -9,4 +9,9 @@ namespace continuum {
 /// actuatorfrcrange; then clamped to the actuator's own forcerange.
 double LimitedForce(const mjModel& m, const mjData& d, int actuator, int output = 0);
 
+/// MuJoCo then computes no actuators: passive forces are all that comes.
+inline bool IsUnactuated(const mjModel& m) {
+  return m.nu == 0 || m.nactuator == 0 || (m.opt.disableflags & mjDSBL_ACTUATION);
+}
+
 }  // namespace continuum

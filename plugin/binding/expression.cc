@@ -32,6 +32,14 @@ std::size_t NameLength(std::string_view text) {
   return static_cast<std::size_t>(end - text.begin());
 }
 
+// The same with the brackets behind it, if any.
+std::size_t BracketLength(std::string_view text) {
+  const std::size_t n = NameLength(text);
+  if (n == 0 || n == text.size() || text[n] != '[') return n;
+  const std::size_t end = text.find(']', n);
+  return end == text.npos ? n : end + 1;
+}
+
 std::optional<std::size_t> IndexOf(const Names& names, std::string_view name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) return {};
@@ -168,7 +176,7 @@ class Parser {
   }
   std::string_view Name() {
     Space();
-    const std::string_view name = text_.substr(at_, NameLength(text_.substr(at_)));
+    const std::string_view name = text_.substr(at_, BracketLength(text_.substr(at_)));
     at_ += name.size();
     return name;
   }
@@ -372,6 +380,23 @@ double Expression::Differentiate(std::span<const double> values, std::span<doubl
   return top[-1];
 }
 
+bool Expression::Uses(std::size_t variable) const {
+  return std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) {
+    return step.kind == Step::Kind::kVariable && step.index == variable;
+  });
+}
+
+Names Expression::BracketNames(std::string_view text) {
+  Names names;
+  while (!text.empty()) {
+    const std::size_t n = BracketLength(text);
+    const std::string_view name = text.substr(0, n);
+    if (n > NameLength(text) && !IndexOf(names, name)) names.emplace_back(name);
+    text.remove_prefix(std::max<std::size_t>(n, 1));
+  }
+  return names;
+}
+
 bool Expression::IsName(std::string_view name) {
   return !name.empty() && NameLength(name) == name.size() && name != "pi" && !FunctionNamed(name);
 }
@@ -379,7 +404,7 @@ bool Expression::IsName(std::string_view name) {
 std::string Expression::Renamed(std::string_view text, const Names& from, const Names& to) {
   std::string out;
   while (!text.empty()) {
-    const std::size_t n = NameLength(text);
+    const std::size_t n = BracketLength(text);
     const auto index = n > 0 ? IndexOf(from, text.substr(0, n)) : std::nullopt;
     // A number with an exponent, 1e3, is no name.
     std::size_t length = std::max<std::size_t>(n, 1);

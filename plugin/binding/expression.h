@@ -15,6 +15,7 @@ namespace continuum {
 ///   sign    = { "+" | "-" } power
 ///   power   = atom [ "^" sign ]
 ///   atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
+///   name    = letters and digits [ "[" anything "]" ]       "q[elbow]", spaces and all
 ///
 /// Functions: abs sign sqrt exp log sin cos tan tanh atan, of two min max atan2 pow, and
 /// where(c, a, b): a where c > 0, else b. pi is 3.14159... What is constant must be finite: no 1/0.
@@ -29,6 +30,11 @@ class Expression {
   /// The same with its derivatives with respect to the variables, 0 where it does not follow them.
   double Differentiate(std::span<const double> values, std::span<double> slopes) const;
 
+  /// Whether its value depends on a variable.
+  bool Uses(std::size_t variable) const;
+
+  /// The names with brackets of a text, each once: "q[elbow]".
+  static std::vector<std::string> BracketNames(std::string_view text);
   /// Whether a variable can have this name: a letter or "_", then letters, digits and "_"; not pi
   /// and not a function.
   static bool IsName(std::string_view name);

@@ -5,10 +5,8 @@
 #include "binding/actuator_force.h"
 
 namespace continuum {
-namespace {
 
-// Gravity on everything beyond the joint, about its axis.
-double GravityTorque(const mjModel& m, const mjData& d, int dof) {
+double WeightTorque(const mjModel& m, const mjData& d, int dof) {
   if (m.opt.disableflags & mjDSBL_GRAVITY) return 0;
   const int b = m.dof_bodyid[dof], root = m.body_rootid[b];
   const double* cdof = d.cdof + 6 * dof;  // rotation, translation at the root's subtree_com
@@ -18,6 +16,8 @@ double GravityTorque(const mjModel& m, const mjData& d, int dof) {
   mju_addTo3(velocity, cdof + 3);
   return m.body_subtreemass[b] * mju_dot3(velocity, m.opt.gravity);
 }
+
+namespace {
 
 bool IsPushed(const mjData& d, int body) {
   const double* const wrench = d.xfrc_applied + 6 * body;
@@ -67,7 +67,7 @@ double GearTorques::At(const mjModel& m, const mjData& d, int dof, int option) c
   }
   if (option == 1) return actuator;
   const double external =
-      d.qfrc_passive[dof] - d.qfrc_damper[dof] + GravityTorque(m, d, dof) + Applied(m, d, dof);
+      d.qfrc_passive[dof] - d.qfrc_damper[dof] + WeightTorque(m, d, dof) + Applied(m, d, dof);
   return actuator - external;
 }
 

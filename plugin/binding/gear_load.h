@@ -13,6 +13,8 @@ class GearTorques {
  public:
   /// Of no model: nobody asks.
   GearTorques() = default;
+  /// Where no actuator does anything.
+  explicit GearTorques(const mjModel& m) : actuators_(m.nv) {}
   GearTorques(const mjModel& m, const mjData& d);
 
   /// The torque of actuators less that of others (option 0), or alone. option: index into
@@ -25,6 +27,9 @@ class GearTorques {
   std::vector<double> actuators_;  ///< [nv]
   std::vector<int> pushed_;        ///< bodies with a force of the user's
 };
+
+/// What gravity on everything beyond a hinge or slide does there [N*m or N], at d's positions.
+double WeightTorque(const mjModel& m, const mjData& d, int dof);
 
 /// The load of a torque.
 inline double LoadOf(double torque, int option) {

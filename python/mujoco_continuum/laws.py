@@ -23,10 +23,13 @@ def force_law(function: Callable[..., Any], where: str = "",
               **parameters: Mapping[str, Any]) -> dict[str, Any]:
     """A candidate: a force on a joint [N*m] or tendon [N] that depends on q and v.
 
+    At a joint it may also depend on motor and weight, the torques of the actuators and of gravity, on
+    time and on heat, z of heat_time z' = motor^2 - z, where heat_time is one of the parameters [s].
     force times v is power into the effect: b*v with b > 0 brakes. where: "joint:GLOB" or
     "tendon:GLOB"; empty: all joints. Each parameter of the function has initial, lower, upper, absent
     (the value at which the law does nothing; not for those that only say how it acts) and unit."""
-    return _law(function, where, parameters, "formula", "force", ("q", "v"))
+    return _law(function, where, parameters, "formula", "force",
+                ("q", "v", "motor", "weight", "time", "heat"))
 
 
 def friction_law(function: Callable[..., Any], where: str = "",

@@ -75,6 +75,7 @@ Candidate Read(const Yaml& y) {
     throw Error::Input(y.At("parameters").Where(),
                        "a parameter with absent, the value at which the law does nothing", "none");
   }
+  for (const std::string& other : Expression::BracketNames(law.formula)) names.push_back(other);
   const Expression parsed(law.formula, names, y.At(key).Where());
   c.law = std::move(law);
   return c;

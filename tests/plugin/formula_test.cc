@@ -98,6 +98,80 @@ TEST_F(Formula, ActsOnATendonAlongItsLength) {
   EXPECT_NEAR(2 * (d->qacc[0] + 9.81), 30 * 1 + 2 * 0.5, 1e-9);
 }
 
+// Two wheels that hang on eccentric weights, with a motor each.
+class FormulaOfMore : public testing::Engine {
+ protected:
+  static std::string Arms(const std::string& instance) {
+    return "<mujoco><option timestep=\"1e-3\" integrator=\"implicitfast\"/>" + instance +
+           R"(<worldbody>
+  <body><joint name="hip" axis="0 1 0"/>
+    <inertial pos="0 0 -0.1" mass="2" diaginertia="0.02 0.02 0.02"/></body>
+  <body pos="1 0 0"><joint name="knee" axis="0 1 0"/>
+    <inertial pos="0 0 -0.2" mass="1" diaginertia="0.02 0.02 0.02"/></body></worldbody>
+  <actuator><motor joint="hip" gear="3"/><motor joint="knee"/></actuator></mujoco>)";
+  }
+  // What the joints feel of an instance at one state.
+  static std::vector<double> Felt(const std::string& joints, const std::string& force,
+                                  const std::string& more = "") {
+    const auto with = Model(
+        Arms(Instance("formula", Key("joint", joints) + Key("force", force) + more)));
+    const auto without = Model(Arms(""));
+    std::vector<double> felt;
+    for (const auto* const m : {&with, &without}) {
+      const auto d = Data(*m);
+      d->time = 0.5;
+      d->qpos[0] = 0.3, d->qpos[1] = -0.4, d->qvel[0] = 0.7, d->qvel[1] = -1.1;
+      d->ctrl[0] = 0.2, d->ctrl[1] = -0.6;
+      mj_forward(m->get(), d.get());
+      for (int i = 0; i < 2; ++i) {
+        const double inertia = i == 0 ? 0.02 + 2 * 0.01 : 0.02 + 0.04;
+        if (m == &with) felt.push_back(inertia * d->qacc[i]);
+        if (m == &without) felt[static_cast<std::size_t>(i)] -= inertia * d->qacc[i];
+      }
+    }
+    return felt;
+  }
+};
+
+TEST_F(FormulaOfMore, KnowsMotorWeightAndTime) {
+  EXPECT_NEAR(Felt("hip", "motor")[0], -0.6, 1e-12);
+  EXPECT_NEAR(Felt("knee", "motor*q")[1], -0.6 * 0.4, 1e-12);
+  EXPECT_NEAR(Felt("hip", "weight")[0], 2 * 9.81 * 0.1 * std::sin(0.3), 1e-9);
+  EXPECT_NEAR(Felt("knee", "abs(weight)*v")[1], 9.81 * 0.2 * std::sin(0.4) * 1.1, 1e-9);
+  EXPECT_NEAR(Felt("hip", "p1*time", Key("p1", "2"))[0], -1, 1e-12);
+}
+
+TEST_F(FormulaOfMore, KnowsOtherJoints) {
+  EXPECT_NEAR(Felt("hip", "q[knee]")[0], 0.4, 1e-12);
+  EXPECT_NEAR(Felt("hip", "q*v[knee]")[0], 0.3 * 1.1, 1e-12);
+  const auto both = Felt("hip knee", "p1*q[other]", Key("p1", "5"));
+  EXPECT_NEAR(both[0], 5 * 0.4, 1e-12);
+  EXPECT_NEAR(both[1], -5 * 0.3, 1e-12);
+}
+
+// z of T z' = motor² − z at a constant motor: motor² (1 − exp(−t/T)).
+TEST_F(FormulaOfMore, HeatFollowsTheSquareOfTheMotor) {
+  const auto m = Model(Arms(Instance("formula", Key("joint", "knee") + Key("force", "p1*heat") +
+                                                    Key("p1", "0.5") + Key("heat_time", "0.3"))));
+  const auto d = Data(m);
+  d->ctrl[1] = 0.8;
+  for (int k = 0; k < 600; ++k) mj_step(m.get(), d.get());
+  ASSERT_EQ(m->npluginstate, 1);
+  EXPECT_NEAR(d->plugin_state[0], 0.64 * (1 - std::exp(-2.0)), 1e-12);
+}
+
+TEST_F(FormulaOfMore, SaysWhatIsMissing) {
+  const auto refusal = [](const std::string& config) {
+    return Compile(Arms(Instance("formula", config))).error;
+  };
+  EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "q[ankle]")), HasSubstr("no joint 'ankle'"));
+  EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "q[other]")),
+              HasSubstr("a law on two joints, found 1"));
+  EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "motor[knee]")), HasSubstr("column 1"));
+  EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "heat")), HasSubstr("'heat_time'"));
+  EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "q[knee")), HasSubstr("column 2"));
+}
+
 TEST_F(Formula, LevelBelowZeroIsNoFriction) {
   EXPECT_EQ(Swing("formula_friction", Key("level", "-1")),
             Swing("formula_friction", Key("level", "0")));
@@ -119,7 +193,7 @@ TEST_F(Formula, SaysWhereItIsWrong) {
     const char *text, *column, *expected;
   } cases[] = {
       {"p1*", "column 4", "found the end of the formula"},
-      {"p1*w", "column 4", "one of q, v, p1"},
+      {"p1*w", "column 4", "one of q, v, motor, weight, time, heat, p1"},
       {"p1 p2", "column 4", "an operator or the end, found 'p2'"},
       {"sin q", "column 5", "'(' of sin"},
       {"max(q)", "column 6", "',' of max"},

@@ -1,0 +1,147 @@
+#include "identification/diagnosis/found_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "binding/config.h"
+#include "binding/expression.h"
+#include "effects/formula.h"
+#include "error.h"
+#include "identification/candidates/candidate_generator.h"
+#include "identification/diagnosis/equation_error.h"
+#include "identification/diagnosis/law_search.h"
+#include "identification/diagnosis/probing.h"
+#include "sim/io/interrupt.h"
+
+namespace continuum {
+namespace {
+
+using Vector = Problem::Vector;
+
+constexpr std::size_t kFitted = 4;  // suggestions that are simulated
+constexpr double kNear = 1.1;       // times the error of the best one above the noise
+
+std::string GlobsOfJoints(const std::vector<std::string>& joints) {
+  std::string globs = "joint:";
+  for (const std::string& joint : joints)
+    globs += (&joint == &joints.front() ? "" : " ") + Escaped(joint);
+  return globs;
+}
+
+std::optional<CandidateResult> AsCandidate(const SuggestedLaw& suggested, const Experiment& e,
+                                           const Diagnosis& d) {
+  Experiment wanted = e;
+  wanted.all_candidates = false;
+  wanted.candidates = {
+      {std::string(Formula::kName), GlobsOfJoints(suggested.joints), false, suggested.law}};
+  std::vector<std::string> skipped;
+  auto made = MakeCandidates(wanted, {&d.system}, d.sizes, skipped);
+  if (made.empty()) return {};
+  CandidateResult c{std::move(made.front())};
+  c.record.name = c.hypothesis.Name();
+  c.listed = false;
+  return c;
+}
+
+Vector StartOf(const CandidateResult& c, const Fitted& before) {
+  std::vector<double> own;
+  for (const Parameter& p : c.hypothesis.extra) own.push_back(p.initial);
+  return Append(before.fit.x, own);
+}
+
+double SquaresAbove(double error, const Diagnosis& d) {
+  return std::pow(WithoutPart(error, d.noise.floor()), 2);
+}
+double LeastError(const Diagnosis& d) {
+  double least = d.before.error.train;
+  for (const CandidateResult& c : d.candidates)
+    if (c.was_fitted) least = std::min(least, c.fitted.error.train);
+  return least;
+}
+
+std::size_t NumbersOf(const CandidateResult& c) { return c.hypothesis.extra.size(); }
+
+// The plainest of those that come near the best.
+std::size_t Choose(const std::vector<CandidateResult>& laws, double floor) {
+  double least = laws.front().fitted.error.train;
+  for (const CandidateResult& c : laws) least = std::min(least, c.fitted.error.train);
+  const double near = kNear * std::max(least, floor);
+  std::size_t best = laws.size();
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    const double error = laws[i].fitted.error.train;
+    if (error > near) continue;
+    const bool plainer = best == laws.size() || NumbersOf(laws[i]) < NumbersOf(laws[best]) ||
+                         (NumbersOf(laws[i]) == NumbersOf(laws[best]) &&
+                          error < laws[best].fitted.error.train);
+    if (plainer) best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool WantsALaw(const Diagnosis& d, double unlisted) {
+  if (d.folds.empty() || d.Is(Verdict::Kind::kAdequate)) return false;
+  if (d.before.error.train > d.criteria.model_limited * d.noise.floor())
+    return std::min(unlisted, LeastError(d)) > d.criteria.near_noise * d.noise.floor();
+  return d.Is(Verdict::Kind::kUnexplained) && d.verdict.explained_by.empty();
+}
+
+void TakeLaw(CandidateResult law, Diagnosis& d) {
+  if (d.partner) d.candidates.clear();  // they are beside it
+  d.partner.reset();
+  d.candidates.push_back(std::move(law));
+  d.noise_limited = false;
+}
+
+bool IsBetterLaw(const Diagnosis& d, const CandidateResult& law) {
+  constexpr double kHalf = 0.5;
+  const double left = SquaresAbove(law.fitted.error.train, d);
+  const double main = (1 - d.criteria.main_share) * SquaresAbove(d.before.error.train, d);
+  const double best = SquaresAbove(LeastError(d), d);
+  if (best > main) return left <= std::min(main, kHalf * best);
+  return law.fitted.error.train <= d.criteria.near_noise * d.noise.floor();
+}
+
+void TellLaw(CandidateResult& law) {
+  Hypothesis& h = law.hypothesis;
+  std::vector<std::string> names, values;
+  for (std::size_t i = 0; i < h.extra.size(); ++i) {
+    const double value = law.fitted.fit.x[law.first_extra() + static_cast<Eigen::Index>(i)];
+    names.push_back(h.extra[i].name);
+    values.push_back(value < 0 ? fmt::format("({:.3g})", value) : fmt::format("{:.3g}", value));
+  }
+  const std::string place = h.where.substr(0, h.where.find(": force = "));
+  h.where = place + ": force = " + Expression::Renamed(h.candidate.law->formula, names, values);
+}
+
+std::optional<CandidateResult> FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
+                                       const DiagnosisOptions& options) {
+  const Experiment& e = *fitter.experiment;
+  const Problem null(e, d.system);
+  const EquationErrors view(null, d.before.fit.x, null.TrainLogs());
+  if (!view.any()) return {};
+  const LawRows rows(e, view, d.folds);
+  std::vector<CandidateResult> laws;
+  for (const SuggestedLaw& suggested : SuggestLaws(rows, options.seed, kFitted)) {
+    auto c = AsCandidate(suggested, e, d);
+    if (!c || (!laws.empty() && fitter.TimeIsOver())) continue;
+    options.Say(DiagnosisStage::kFallback, suggested.law.formula);
+    try {
+      c->fitted = fitter.Fit(ProblemOf(*c, e), {StartOf(*c, d.before)});
+    } catch (const Error&) {
+      StopIfRequested();  // else it diverges
+      continue;
+    }
+    c->was_fitted = true;
+    laws.push_back(*std::move(c));
+  }
+  if (laws.empty()) return {};
+  CandidateResult best = std::move(laws[Choose(laws, d.noise.floor())]);
+  TellLaw(best);
+  return best;
+}
+
+}  // namespace continuum
