@@ -184,6 +184,7 @@ void CandidateFitter::CompleteOnValidate(const Problem& problem, Fitted& fitted)
 
 void CandidateFitter::AddFolds(const Problem& problem, const std::vector<Fold>& folds,
                                Fitted& fitted) const {
+  if (!fitted.folds.error.empty()) return;
   CompleteOnValidate(problem, fitted);
   fitted.folds =
       CrossValidate(problem, fitted.fit.x, fitted.residuals, fitted.sensitivities->jacobian, folds);

@@ -57,7 +57,7 @@ struct CandidateFitter {
   Fitted FitAll(const Problem& problem, const Problem::Vector& start) const;
   /// Adds the sensitivities of the validate logs to a complete fit, once.
   void CompleteOnValidate(const Problem& problem, Fitted& fitted) const;
-  /// Leaves out each fold in turn, of a complete fit.
+  /// Leaves out each fold in turn, of a complete fit, once.
   void AddFolds(const Problem& problem, const std::vector<Fold>& folds, Fitted& fitted) const;
   /// The residual of a complete fit to first order.
   ProjectedResidual ProjectedResidualOf(const Fitted& fitted) const;

@@ -28,13 +28,11 @@
 #include "identification/diagnosis/numbers_off.h"
 #include "identification/diagnosis/quantisation.h"
 #include "identification/diagnosis/remaining.h"
-#include "identification/diagnosis/search_bytes.h"
 #include "identification/diagnosis/second_by_folds.h"
 #include "identification/diagnosis/unseen_effects.h"
 #include "identification/fit/cross_validation.h"
 #include "identification/problem/start_checks.h"
 #include "sim/io/interrupt.h"
-#include "sim/numerics/shared_loop.h"
 
 namespace continuum {
 namespace {
@@ -59,30 +57,9 @@ class Session {
     d_.noise.step = fitter_.StepError(null_, d_.before);
     Search();
     Begin(DiagnosisStage::kJudgement);
-    Part("a law that nobody listed", [&] { LookForALaw(); });
     Part("view by the missing force", [&] { CompareByEquation(); });
-    if (d_.noise_limited) {
-      MergePlaces(d_);
-      CompleteNamed();
-      Part("sizes that are not needed", [&] { DropSizes(); });
-      Part("intervals at a fine step", [&] { FitFinely(); });
-      Part("lengths and masses in intervals", [&] {
-        AllowInIntervals(fitter_, options_, d_);
-        DoubtByNumbers(fitter_, d_);
-      });
-      Part("folds", [&] {
-        ScoreFolds();
-        ConfirmOnFolds(fitter_, d_);
-      });
-    } else if (d_.folds.empty()) {
-      LeaveWithoutFolds(d_);
-    } else {
-      if (!Part("comparison by folds", [&] { CompareFolds(); }))
-        d_.verdict = {Verdict::Kind::kUnexplained, {}, "the folds could not be computed"};
-      MergePlaces(d_);
-      CompleteNamed();
-      ConfirmOnValidateLogs(d_);
-    }
+    d_.noise_limited ? JudgeByNoise() : JudgeByFolds();
+    Part("a law that nobody listed", [&] { LookForALaw(); });
     WeighUnseen(d_);
     Part("interval of the gain", [&] { SetGainInterval(); });
     FindWhatHelps();
@@ -98,6 +75,30 @@ class Session {
     const bool made = MakePart(name, d_.missing, make);
     StopIfRequested();
     return made;
+  }
+
+  void JudgeByNoise() {
+    MergePlaces(d_);
+    CompleteNamed();
+    Part("sizes that are not needed", [&] { DropSizes(); });
+    Part("intervals at a fine step", [&] { FitFinely(); });
+    Part("lengths and masses in intervals", [&] {
+      AllowInIntervals(fitter_, options_, d_);
+      DoubtByNumbers(fitter_, d_);
+    });
+    Part("folds", [&] {
+      ScoreFolds();
+      ConfirmOnFolds(fitter_, d_);
+    });
+  }
+
+  void JudgeByFolds() {
+    if (d_.folds.empty()) return LeaveWithoutFolds(d_);
+    if (!Part("comparison by folds", [&] { CompareFolds(); }))
+      d_.verdict = {Verdict::Kind::kUnexplained, {}, "the folds could not be computed"};
+    MergePlaces(d_);
+    CompleteNamed();
+    ConfirmOnValidateLogs(d_);
   }
 
   // From now on fits end when the time of this stage is over.
@@ -140,6 +141,7 @@ class Session {
     });
     Part("what remains", [&] { SetRemaining(); });
     Part("missing force", [&] { d_.missing_force = FindMissingForce(null_, d_.before.fit.x); });
+    Part("picture of the law", [&] { d_.law_picture = PictureOfLaw(e_, d_); });
     Part("contrast of the conditions", [&] {
       d_.contrast = ConditionContrast(null_, d_.before.residuals);
       for (CandidateResult& c : d_.candidates)
@@ -283,13 +285,9 @@ class Session {
   void CompareByEquation() {
     options_.Say(DiagnosisStage::kJudgement, "missing force");
     const bool known = LogsForALook(e_, null_.step()) == TrainLogs(e_);
-    const EquationErrors forces =
-        known ? views_.front() : EquationErrors(null_, d_.before.fit.x, TrainLogs(e_));
-    const auto look = [&](std::size_t, std::size_t i) {
-      d_.candidates[i].by_equation = forces.Of(d_.candidates[i]);
-    };
-    ShareOut(d_.candidates.size(), look,
-             [&](auto& archive, std::size_t i) { archive(d_.candidates[i].by_equation); });
+    CompareByForces(
+        known ? views_.front() : EquationErrors(null_, d_.before.fit.x, TrainLogs(e_)),
+        d_.candidates);
   }
 
   // Likelihoods have judged; the folds show what that is worth.
@@ -398,8 +396,11 @@ class Session {
   // One that is found is judged beside the candidates, on logs left out.
   void LookForALaw() {
     if (!WantsALaw(d_, unlisted_error_) || !HasTimeFor("a law that nobody listed")) return;
-    auto law = FindLaw(fitter_, d_, options_);
-    if (law && IsBetterLaw(d_, *law)) TakeLaw(*std::move(law), d_);
+    FoundLaw found = FindLaw(fitter_, d_, options_);
+    if (!found.effect.empty()) d_.remaining.would_take = found.effect + " explains as much of the missing force as any formula, and is not listed";
+    if (!found.law || !IsBetterLaw(d_, *found.law)) return;
+    TakeLaw(*std::move(found.law), d_);
+    JudgeByFolds();
   }
 
   // Likelihoods of both together, over the model without either.

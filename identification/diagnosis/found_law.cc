@@ -54,8 +54,9 @@ Vector StartOf(const CandidateResult& c, const Fitted& before) {
 double SquaresAbove(double error, const Diagnosis& d) {
   return std::pow(WithoutPart(error, d.noise.floor()), 2);
 }
+// Of the model that is chosen, or of any candidate.
 double LeastError(const Diagnosis& d) {
-  double least = d.before.error.train;
+  double least = d.after().train;
   for (const CandidateResult& c : d.candidates)
     if (c.was_fitted) least = std::min(least, c.fitted.error.train);
   return least;
@@ -80,6 +81,45 @@ std::size_t Choose(const std::vector<CandidateResult>& laws, double floor) {
   return best;
 }
 
+// With its numbers.
+void TellLaw(CandidateResult& law) {
+  Hypothesis& h = law.hypothesis;
+  std::vector<std::string> names, values;
+  for (std::size_t i = 0; i < h.extra.size(); ++i) {
+    const double value = law.fitted.fit.x[law.first_extra() + static_cast<Eigen::Index>(i)];
+    names.push_back(h.extra[i].name);
+    values.push_back(value < 0 ? fmt::format("({:.3g})", value) : fmt::format("{:.3g}", value));
+  }
+  h.where += ": force = " + Expression::Renamed(h.candidate.law->formula, names, values);
+}
+
+// An effect of the catalog that is not listed and explains nearly as much of the missing force; none:
+// empty.
+std::string AsGoodAsALaw(const std::vector<SuggestedLaw>& laws, const EquationErrors& view,
+                         const Experiment& e, const Diagnosis& d,
+                         const DiagnosisOptions& options) {
+  constexpr double kNearly = 0.9;
+  double share = 0;
+  for (const SuggestedLaw& law : laws) share = std::max(share, law.share);
+  Experiment wanted = e;
+  wanted.all_candidates = false;
+  wanted.candidates.clear();
+  for (const std::string& name : Unlisted(e, options.candidates))
+    wanted.candidates.push_back({name, "", false});
+  std::vector<std::string> skipped;
+  double best = kNearly * share;
+  std::string name;
+  for (const Hypothesis& h : MakeCandidates(wanted, {&d.system}, d.sizes, skipped)) {
+    StopIfRequested();
+    const Problem problem(e, h.system, h.Free());
+    const auto first = view.From(h, problem, 0);
+    if (!first) continue;
+    const EquationStart found = view.BestShape(h, problem, *first);
+    if (found.share > best) best = found.share, name = h.NameAtPlace();
+  }
+  return name;
+}
+
 }  // namespace
 
 bool WantsALaw(const Diagnosis& d, double unlisted) {
@@ -97,38 +137,30 @@ void TakeLaw(CandidateResult law, Diagnosis& d) {
 }
 
 bool IsBetterLaw(const Diagnosis& d, const CandidateResult& law) {
-  constexpr double kHalf = 0.5;
+  constexpr double kHalf = 0.5, kTenth = 0.1;
   const double left = SquaresAbove(law.fitted.error.train, d);
   const double main = (1 - d.criteria.main_share) * SquaresAbove(d.before.error.train, d);
   const double best = SquaresAbove(LeastError(d), d);
   if (best > main) return left <= std::min(main, kHalf * best);
-  return law.fitted.error.train <= d.criteria.near_noise * d.noise.floor();
+  return left <= kTenth * best ||
+         law.fitted.error.train <= d.criteria.near_noise * d.noise.floor();
 }
 
-void TellLaw(CandidateResult& law) {
-  Hypothesis& h = law.hypothesis;
-  std::vector<std::string> names, values;
-  for (std::size_t i = 0; i < h.extra.size(); ++i) {
-    const double value = law.fitted.fit.x[law.first_extra() + static_cast<Eigen::Index>(i)];
-    names.push_back(h.extra[i].name);
-    values.push_back(value < 0 ? fmt::format("({:.3g})", value) : fmt::format("{:.3g}", value));
-  }
-  const std::string place = h.where.substr(0, h.where.find(": force = "));
-  h.where = place + ": force = " + Expression::Renamed(h.candidate.law->formula, names, values);
-}
-
-std::optional<CandidateResult> FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
-                                       const DiagnosisOptions& options) {
+FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
+                 const DiagnosisOptions& options) {
   const Experiment& e = *fitter.experiment;
   const Problem null(e, d.system);
   const EquationErrors view(null, d.before.fit.x, null.TrainLogs());
   if (!view.any()) return {};
-  const LawRows rows(e, view, d.folds);
+  const auto suggested = SuggestLaws(LawRows(e, view, d.folds), options.seed, kFitted);
+  if (suggested.empty()) return {};
+  options.Say(DiagnosisStage::kJudgement, "effects that say what a law does");
+  if (auto effect = AsGoodAsALaw(suggested, view, e, d, options); !effect.empty()) return {{}, effect};
   std::vector<CandidateResult> laws;
-  for (const SuggestedLaw& suggested : SuggestLaws(rows, options.seed, kFitted)) {
-    auto c = AsCandidate(suggested, e, d);
+  for (const SuggestedLaw& one : suggested) {
+    auto c = AsCandidate(one, e, d);
     if (!c || (!laws.empty() && fitter.TimeIsOver())) continue;
-    options.Say(DiagnosisStage::kFallback, suggested.law.formula);
+    options.Say(DiagnosisStage::kJudgement, "law " + one.law.formula);
     try {
       c->fitted = fitter.Fit(ProblemOf(*c, e), {StartOf(*c, d.before)});
     } catch (const Error&) {
@@ -141,6 +173,27 @@ std::optional<CandidateResult> FindLaw(const CandidateFitter& fitter, const Diag
   if (laws.empty()) return {};
   CandidateResult best = std::move(laws[Choose(laws, d.noise.floor())]);
   TellLaw(best);
+  return {std::move(best), ""};
+}
+
+std::optional<LawPicture> PictureOfLaw(const Experiment& e, const Diagnosis& d) {
+  const CandidateResult* const c = d.chosen();
+  if (!c || c->hypothesis.effect != Formula::kName || !c->hypothesis.given.empty()) return {};
+  const Problem without(e, d.system), with = ProblemOf(*c, e);
+  const Vector& x = c->fitted.fit.x;
+  const auto missing = MissingForces(without, x.head(c->first_extra()), without.AllLogs());
+  const auto left = MissingForces(with, x, with.AllLogs());
+  std::optional<LawPicture> best;
+  double most = 0;
+  for (std::size_t j = 0; j < left.size(); ++j) {
+    LawPicture picture{missing[j], missing[j].force};
+    double squares = 0;
+    for (std::size_t k = 0; k < picture.law.size(); ++k) {
+      picture.law[k] -= left[j].force[k];
+      squares += picture.law[k] * picture.law[k];
+    }
+    if (squares > most) most = squares, best = std::move(picture);
+  }
   return best;
 }
 

@@ -332,8 +332,7 @@ class LawSearch {
     law = Plainer(std::move(law));
     SuggestedLaw out;
     for (const std::size_t j : places_[law.place].joints) out.joints.push_back(rows_.joints()[j].joint);
-    out.share = 1 - law.left;
-    out.by_chance = by_chance_;
+    out.share = law.amount / all_.targets().col(0).squaredNorm();
     const Vector sizes = Solve(all_.Off(ColumnsOf(law)), all_.targets().leftCols(1));
     Eigen::Index size = 0;
     int shapes = 0;

@@ -13,8 +13,7 @@ namespace continuum {
 struct SuggestedLaw {
   std::vector<std::string> joints;
   WrittenLaw law;  ///< begins with the sizes and shapes that were found
-  double share = 0;      ///< of the squares of the missing force, on rows left out
-  double by_chance = 0;  ///< the most that any one term takes of shifted missing forces
+  double share = 0;  ///< of the squares of the missing force that the parameters leave
 };
 
 /// Looks for a formula in the missing force (DIAGNOSIS 7b).

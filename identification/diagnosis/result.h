@@ -186,6 +186,13 @@ struct PairTried {
   double likelihood;
 };
 
+/// The force that is missing without a law that was found, on the joint where it does most, and what
+/// the law does at the same rows.
+struct LawPicture {
+  MissingForce missing;
+  std::vector<double> law;
+};
+
 /// What the model that a verdict leaves still gets wrong.
 struct Remaining {
   double over_noise = 0;   ///< its error over the noise; 0: the noise is not known
@@ -231,7 +238,8 @@ struct Diagnosis {
   std::optional<CandidateResult> fallback;  ///< where nothing explains it (fallback_force.h)
   NextExperiment next;
   MissingForce missing_force;      ///< of the model before; no joint where it cannot be shown
-  std::optional<double> contrast;  ///< ConditionContrast of the model before
+  std::optional<LawPicture> law_picture;  ///< where a law that was found is the cause
+  std::optional<double> contrast;         ///< ConditionContrast of the model before
   std::vector<FreeParameter> parameters_before, parameters;  ///< of before, and of last()
   std::vector<Change> changes;       ///< of last(), that hold for every log alike
   std::vector<MissingPart> missing;  ///< what could not be computed; the verdict stands without

@@ -108,6 +108,9 @@ class DiagnosisPage {
       add(c.hypothesis, c.fitted, c.first_extra(), " (not asked for)");
     page_.List(items);
     page_.Paragraph("How sure: **" + InWords(CertaintyOf(d_)) + "**. " + WhyInWords(d_));
+    AddMissing(page_, "picture of the law", missing_);
+    if (d_.law_picture)
+      AddLaw(page_, *d_.law_picture, d_.chosen()->hypothesis.candidate.law->formula);
     if (Is(Verdict::Kind::kUnexplained)) {
       page_.Heading("The force that is missing", 3);
       AddMissing(page_, "missing force", missing_);

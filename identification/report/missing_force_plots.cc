@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "binding/expression.h"
+
 namespace continuum {
 namespace {
 
@@ -29,16 +31,55 @@ Trend Quartiles(const std::vector<double>& x, const std::vector<double>& f) {
   return trend;
 }
 
-void Scatter(Page& page, const MissingForce& f, const std::vector<double>& x, const Axis& axis) {
-  const Axis missing{"missing force", f.slides ? "N" : "N*m"};
-  ScatterSpec spec{"over " + axis.label, axis, missing, {}, {}, true};
-  PointGroup points{"rows", {}, {}, Style::kResidual};
+// Some of many rows.
+PointGroup Points(const std::string& name, const std::vector<double>& x,
+                  const std::vector<double>& y, Style style) {
+  PointGroup points{name, {}, {}, style};
   const std::size_t stride = std::max<std::size_t>(1, x.size() / kPoints);
   for (std::size_t k = 0; k < x.size(); k += stride)
-    points.x.push_back(x[k]), points.y.push_back(f.force[k]);
-  spec.groups.push_back(points);
+    points.x.push_back(x[k]), points.y.push_back(y[k]);
+  return points;
+}
+
+ScatterSpec Over(const MissingForce& f, const Axis& axis) {
+  const Axis missing{"missing force", f.slides ? "N" : "N*m"};
+  return {"over " + axis.label, axis, missing, {}, {}, true};
+}
+
+void Scatter(Page& page, const MissingForce& f, const std::vector<double>& x, const Axis& axis) {
+  ScatterSpec spec = Over(f, axis);
+  spec.groups.push_back(Points("rows", x, f.force, Style::kResidual));
   spec.trends.push_back(Quartiles(x, f.force));
   page.Scatter(spec);
+}
+
+// What a joint's force may be drawn over.
+struct Abscissa {
+  const std::vector<double>& x;
+  Axis axis;
+};
+Abscissa AngleOf(const MissingForce& f) {
+  return {f.angle, f.slides ? Axis{"position", "m"} : Axis{"angle", "rad"}};
+}
+Abscissa SpeedOf(const MissingForce& f) {
+  return {f.velocity, {"velocity", f.slides ? "m/s" : "rad/s"}};
+}
+Abscissa LoadOf(const MissingForce& f) {
+  return {f.load, f.slides ? Axis{"actuator force", "N"} : Axis{"actuator torque", "N*m"}};
+}
+Abscissa TimeOf(const MissingForce& f) { return {f.time, {"time", "s"}}; }
+
+// Those that a formula depends on; what other joints do is seen over time.
+std::vector<Abscissa> AbscissasOf(const MissingForce& f, const std::string& formula) {
+  const auto has = [&](const std::string& name) {
+    return Expression::Renamed(formula, {name}, {""}) != formula;
+  };
+  std::vector<Abscissa> over;
+  if (has("q") || has("weight")) over.push_back(AngleOf(f));
+  if (has("v")) over.push_back(SpeedOf(f));
+  if (has("motor")) over.push_back(LoadOf(f));
+  if (over.empty() || has("time") || has("heat")) over.push_back(TimeOf(f));
+  return over;
 }
 
 std::string AtRestInWords(const MissingForce& f) {
@@ -62,10 +103,21 @@ void AddMissingForce(Page& page, const MissingForce& f) {
                  "acceleration and the model's at the measured "
                  "state. Line: median in bins, band: quartiles.");
   if (!f.at_rest.empty()) page.Paragraph(AtRestInWords(f));
-  Scatter(page, f, f.angle, f.slides ? Axis{"position", "m"} : Axis{"angle", "rad"});
-  Scatter(page, f, f.velocity, {"velocity", f.slides ? "m/s" : "rad/s"});
-  Scatter(page, f, f.load, f.slides ? Axis{"actuator force", "N"} : Axis{"actuator torque", "N*m"});
-  Scatter(page, f, f.time, {"time", "s"});
+  for (const Abscissa& over : {AngleOf(f), SpeedOf(f), LoadOf(f), TimeOf(f)})
+    Scatter(page, f, over.x, over.axis);
+}
+
+void AddLaw(Page& page, const LawPicture& picture, const std::string& formula) {
+  const MissingForce& f = picture.missing;
+  page.Paragraph("On joint " + f.joint +
+                 ": the force that is missing without it, and what the formula gives at the same "
+                 "rows. Measured accelerations scatter; the formula does not.");
+  for (const Abscissa& over : AbscissasOf(f, formula)) {
+    ScatterSpec spec = Over(f, over.axis);
+    spec.groups.push_back(Points("missing", over.x, f.force, Style::kResidual));
+    spec.groups.push_back(Points("formula", over.x, picture.law, Style::kAfter));
+    page.Scatter(spec);
+  }
 }
 
 }  // namespace continuum

@@ -9,4 +9,7 @@ namespace continuum {
 /// be shown.
 void AddMissingForce(Page& page, const MissingForce& force);
 
+/// Adds the force that is missing without a law, and the law, over what the formula depends on.
+void AddLaw(Page& page, const LawPicture& picture, const std::string& formula);
+
 }  // namespace continuum
