@@ -73,8 +73,8 @@ bool MayTouch(const mjModel& m) {
   return false;
 }
 
-// Whether the solver may ever have something to solve: without that MuJoCo need not look for it. Who
-// sleeps is left to MuJoCo.
+// Whether the solver may ever have something to solve: without that MuJoCo need not look for it.
+// Who sleeps is left to MuJoCo.
 bool MayHaveRows(const mjModel& m) {
   if (m.opt.enableflags & mjENBL_SLEEP) return true;
   const auto any = [](const auto* flags, auto count) {
