@@ -63,6 +63,7 @@ CandidateSearch::CandidateSearch(const SearchContext& context, const BaseFit& ba
       sizes_(context.sizes),
       options_(context.options),
       criteria_(context.fitter.criteria) {
+  if (base.problem) base_problem_.Recall(*base.problem);
   const SearchBase here{base.system, base.given, base_problem_.CommonChanges(base.fitted->fit.x)};
   const Experiment wanted = Asking(*fitter_.experiment, options_);
   for (Hypothesis& h : MakeCandidates(wanted, here, sizes_, skipped, scope)) {

@@ -19,6 +19,8 @@ struct BaseFit {
   const ModelSpec* system;
   std::vector<Parameter> given;  ///< free parameters of causes that the system has already
   const Fitted* fitted;          ///< complete
+  /// Its problem, which remembers simulations; null: those are made anew.
+  const Problem* problem = nullptr;
 };
 
 /// What the searches of one diagnosis share.

@@ -262,6 +262,7 @@ std::optional<EquationStart> CandidateSearch::LookAtForce(const EquationErrors& 
 void CandidateSearch::LookAtOtherShapes(const EquationErrors& view, const CandidateResult& c,
                                         std::optional<EquationStart>& found) const {
   if (!found || c.force_promise > 0 || StopRequested() || fitter_.TimeIsOver()) return;
+  if (c.hypothesis.StartsOfShape(false).empty()) return;
   try {
     found = view.BestShape(c.hypothesis, ProblemOf(c, *fitter_.experiment), *found);
   } catch (const Error&) {

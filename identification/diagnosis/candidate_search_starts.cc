@@ -75,7 +75,8 @@ bool CandidateSearch::RefitFrom(const Problem& problem, CandidateResult& c,
 // From the start that is best after a few iterations, of the screen or of the hypothesis. tried: so
 // many of them; what is hardly a rival any more needs no second one.
 void CandidateSearch::FitOne(CandidateResult& c, double rival, std::size_t tried) const {
-  const Problem problem = ProblemOf(c, *fitter_.experiment);
+  Problem problem = ProblemOf(c, *fitter_.experiment);
+  if (c.hypothesis.OnlyMeasured()) problem.Recall(base_problem_);
   std::vector<Problem::Vector> starts = c.other_starts;
   if (c.start.size() > 0) starts.insert(starts.begin(), c.start);
   const bool crooked = !noise_.known() && c.hypothesis.extra.size() > 1;  // first order may mislead

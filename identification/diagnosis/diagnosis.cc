@@ -188,7 +188,7 @@ class Session {
   SearchContext Context(const DiagnosisOptions& options) const {
     return {fitter_, d_.noise, d_.sizes, options};
   }
-  BaseFit Base() const { return {&d_.system, {}, &d_.before}; }
+  BaseFit Base() const { return {&d_.system, {}, &d_.before, &null_}; }
 
   // The force that is missing at the null fit; and with the values of the experiment, as a fit that
   // leaves much has made up for what the model lacks.

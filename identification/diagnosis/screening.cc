@@ -50,26 +50,28 @@ void Limit(Matrix& A, Vector& r, Eigen::Index free, std::vector<double> most) {
 }
 
 // Least squares of z + C a; coefficients of a forbidden sign are put to zero one after the other.
-// Each subset of C's columns is decomposed once for any number of z.
+// Each subset of C's columns is decomposed once for any number of z: with an orthonormal basis Q of
+// its span, a = −C⁺ Q (Qᵀ z) explains |Qᵀ z|².
 class Explainer {
  public:
   explicit Explainer(Probe probe) : probe_(std::move(probe)) {}
 
-  Explained operator()(const Vector& z) {
+  Explained operator()(const Eigen::Ref<const Vector>& z) {
     const Eigen::Index k = probe_.columns.cols();
     std::vector<bool> out(k, false);
     while (true) {
       const Subset& subset = Without(out);
       Explained e{0, Vector::Zero(k)};
       if (subset.in.empty()) return e;
-      const Vector a = -subset.solver.solve(z);
+      const Vector within = subset.basis.transpose() * z;
+      const Vector a = -(subset.sizes * within);
       Eigen::Index worst = -1;
       for (std::size_t i = 0; i < subset.in.size(); ++i) {
         if (probe_.sign[subset.in[i]] * a[i] < 0) worst = subset.in[i];
         e.coefficients[subset.in[i]] = a[i];
       }
       if (worst < 0) {
-        e.amount = std::max(0.0, z.squaredNorm() - (z + subset.columns * a).squaredNorm());
+        e.amount = within.squaredNorm();
         return e;
       }
       out[worst] = true;
@@ -79,8 +81,7 @@ class Explainer {
  private:
   struct Subset {
     std::vector<Eigen::Index> in;
-    Matrix columns;
-    Eigen::CompleteOrthogonalDecomposition<Matrix> solver;
+    Matrix basis, sizes;  // Q, C⁺ Q
   };
 
   const Subset& Without(const std::vector<bool>& out) {
@@ -90,8 +91,11 @@ class Explainer {
     for (Eigen::Index i = 0; i < probe_.columns.cols(); ++i) {
       if (!out[i] && probe_.columns.col(i).squaredNorm() > 0) subset.in.push_back(i);
     }
-    subset.columns = probe_.columns(Eigen::all, subset.in);
-    if (!subset.in.empty()) subset.solver.compute(subset.columns);
+    if (subset.in.empty()) return subset;
+    const Matrix columns = probe_.columns(Eigen::all, subset.in);
+    const Eigen::CompleteOrthogonalDecomposition<Matrix> solver(columns);
+    subset.basis = solver.householderQ() * Matrix::Identity(columns.rows(), solver.rank());
+    subset.sizes = solver.solve(subset.basis);
     return subset;
   }
 
@@ -102,7 +106,7 @@ class Explainer {
 // A candidate in the few dimensions that any candidate reaches.
 struct ReducedCandidate {
   std::vector<Explainer> probes;
-  double Best(const Vector& z, std::size_t* which = nullptr) {
+  double Best(const Eigen::Ref<const Vector>& z, std::size_t* which = nullptr) {
     double best = 0;
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const double amount = probes[i](z).amount;

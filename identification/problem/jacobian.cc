@@ -161,9 +161,14 @@ void Problem::DifferTheOthers(const Vector& x, const std::vector<Vector>& r,
     const std::size_t i = tasks[t].first, k = tasks[t].second;
     double step = StepOf(x, k, share_);
     const auto moved = [&](double by) {
+      const std::size_t log = motions[i].front();
       Vector beside = x;
       beside[k] += by;
-      return Run(thread, beside, motions[i].front());
+      LastRun run = MadeOf(beside, log, MeasuredBy(beside, log).skew);
+      run.trace = Run(thread, beside, log);
+      Trace trace = run.trace;
+      if (path_ == Path::kStepped) runs_.KeepBehind(motion_[log], std::move(run));
+      return trace;
     };
     const bool room = WithinBounds(k, x[k] - step);
     Trace there = moved(step), back;

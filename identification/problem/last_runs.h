@@ -26,8 +26,8 @@ struct LastRun {
   }
 };
 
-/// The last simulations of each motion, one for each thread that may fit it; only the measurement
-/// may change until the next one. May be used by several threads at once.
+/// The last simulations of each motion: at least one for each thread that may fit it, more where
+/// they are short. May be used by several threads at once.
 class LastRuns {
  public:
   explicit LastRuns(std::size_t motions);
@@ -35,6 +35,8 @@ class LastRuns {
   LastRuns& operator=(const LastRuns& other);
 
   void Keep(std::size_t motion, LastRun run);
+  /// The same of one beside the last, as for a slope: it never takes the place of those of Keep.
+  void KeepBehind(std::size_t motion, LastRun run);
   /// Made of the same as another; null: it is not among them.
   std::shared_ptr<const LastRun> Find(std::size_t motion, const LastRun& made_of) const;
   void Forget();
@@ -44,7 +46,7 @@ class LastRuns {
   std::vector<Runs> All() const;
 
   mutable std::mutex mutex_;
-  std::vector<Runs> runs_;  // [motion] the newest first
+  std::vector<Runs> runs_;  // [motion] the newest first, but for those beside
 };
 
 }  // namespace continuum

@@ -100,9 +100,8 @@ int BodyOf(const mjModel& m, Place place, int id) {
 
 // The instance of the same effect that was attached together with an object of this name; "": none.
 // mine: the prefix that the instance itself was attached with. body: of the object.
-std::string CameWith(const mjModel& m, int instance, const std::string& mine,
-                     const std::string& name, int body) {
-  const Attachment attachment(m, instance);
+std::string CameWith(const mjModel& m, int instance, const Attachment& attachment,
+                     const std::string& mine, const std::string& name, int body) {
   const std::string self = InstanceName(m, instance);
   for (int j = 0; j < m.nplugin; ++j) {
     const std::string other = InstanceName(m, j);
@@ -133,6 +132,26 @@ std::vector<std::string> Endings(const mjModel& m, int instance) {
   for (std::size_t k = copied ? std::min(common, mine.size() - 1) : 0; k > 0; --k)
     endings.push_back(mine.substr(k));
   return endings;
+}
+
+// Whether a key's text has this name, and not only a glob that matches it.
+bool SaysName(std::string_view text, const std::string& name,
+              const std::vector<std::string>& endings, const Attachment& attachment) {
+  if (text == name) return true;
+  for (const std::string& word : Words(text)) {
+    const std::string plain = Unescaped(word);
+    const bool glob = plain.find_first_of("*?[") != plain.npos;
+    if (name == plain || (!glob && name.ends_with(plain))) return true;  // with a prefix
+    for (const std::string& ending : endings) {
+      if (!glob && name.ends_with(plain + ending)) return true;
+    }
+    for (const auto* const each : {&attachment.certain(), &attachment.possible()}) {
+      for (const auto& [prefix, suffix] : *each) {
+        if (!glob && name == prefix + plain + suffix) return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -352,27 +371,6 @@ int Config::Find(Place place, const std::string& name) const {
   return written;
 }
 
-// Whether the key has this name, and not only a glob that matches it.
-bool Config::IsWritten(Place place, const std::string& name) const {
-  const std::string text(Get(PlaceName(place)));
-  if (text == name) return true;
-  for (const std::string& word : Words(text)) {
-    const std::string plain = Unescaped(word);
-    const bool glob = plain.find_first_of("*?[") != plain.npos;
-    if (name == plain || (!glob && name.ends_with(plain))) return true;  // with a prefix
-    for (const std::string& ending : Endings(*m_, instance_)) {
-      if (!glob && name.ends_with(plain + ending)) return true;
-    }
-    const Attachment attachment(*m_, instance_);
-    for (const auto* const each : {&attachment.certain(), &attachment.possible()}) {
-      for (const auto& [prefix, suffix] : *each) {
-        if (!glob && name == prefix + plain + suffix) return true;
-      }
-    }
-  }
-  return false;
-}
-
 std::vector<int> Config::MatchFit(Place place, const std::function<Misfit(int)>& judge) const {
   const std::string key(PlaceName(place));
   std::vector<int> fit;
@@ -382,12 +380,15 @@ std::vector<int> Config::MatchFit(Place place, const std::function<Misfit(int)>&
   std::erase_if(prefixes,
                 [&](const std::string& p) { return MatchBehind(p, place, nullptr) != matched; });
   const std::string mine = prefixes.empty() ? "" : prefixes.front();
+  const Attachment attachment(*m_, instance_);
+  const std::vector<std::string> endings = Endings(*m_, instance_);
   for (const int id : matched) {
     Misfit misfit = judge(id);
     const std::string name = NameOf(*m_, place, id);
-    const bool all = id == matched.back() && fit.empty(), written = IsWritten(place, name);
+    const bool all = id == matched.back() && fit.empty(),
+               written = SaysName(Get(key), name, endings, attachment);
     const std::string owner =
-        written ? "" : CameWith(*m_, instance_, mine, name, BodyOf(*m_, place, id));
+        written ? "" : CameWith(*m_, instance_, attachment, mine, name, BodyOf(*m_, place, id));
     if (!owner.empty())
       misfit = {"one that came with no other instance", "that of '" + owner + "'"};
     if (misfit.found.empty()) {

@@ -84,7 +84,6 @@ class Config {
   std::vector<std::string> Prefixes(Place place) const;
   bool IsAttached(const std::string& prefix) const;
   void LeaveOutUnnamed(Place place, const std::function<bool(int)>& fits) const;
-  bool IsWritten(Place place, const std::string& name) const;
 
   const mjModel* m_;
   int instance_;

@@ -19,11 +19,17 @@ namespace {
 thread_local bool is_parallel = false;
 thread_local std::size_t this_thread = 0;
 
+// Asked for once: the system reads a file for it.
+std::size_t Cores() {
+  static const std::size_t cores = std::thread::hardware_concurrency();
+  return cores;
+}
+
 // By the system, to this process.
 std::size_t CoresAllowed() {
   cpu_set_t cores;
   CPU_ZERO(&cores);
-  if (sched_getaffinity(0, sizeof cores, &cores) != 0) return std::thread::hardware_concurrency();
+  if (sched_getaffinity(0, sizeof cores, &cores) != 0) return Cores();
   return static_cast<std::size_t>(CPU_COUNT(&cores));
 }
 
@@ -35,8 +41,7 @@ std::size_t ThisThread() { return this_thread; }
 
 // Ranks on one machine divide its cores, and mpirun may have bound this one to few of them.
 std::size_t ThreadCount() {
-  const std::size_t cores = std::thread::hardware_concurrency();
-  return std::max<std::size_t>(1, std::min(CoresAllowed(), cores / mpi::RanksOnThisHost()));
+  return std::max<std::size_t>(1, std::min(CoresAllowed(), Cores() / mpi::RanksOnThisHost()));
 }
 
 double ProcessorSeconds() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "error.h"
 #include "sim/io/decimal.h"
@@ -44,6 +45,46 @@ void RequireHistory(const mjModel& m, const Log& log) {
   }
 }
 
+// Whether what sensors say depends only on the state that they see: none keeps samples, and none is
+// computed by somebody else's code.
+bool SensorsKeepNothing(const mjModel& m) {
+  if (mjcb_sensor) return false;
+  for (int s = 0; s < m.nsensor; ++s) {
+    if (m.sensor_history[2 * s] > 0 || m.sensor_delay[s] > 0 || m.sensor_interval[2 * s] > 0)
+      return false;
+    if (m.sensor_type[s] == mjSENS_USER) return false;
+    if (m.sensor_type[s] != mjSENS_PLUGIN) continue;
+    const int instance = m.sensor_plugin[s];
+    const mjpPlugin* const plugin =
+        instance < 0 ? nullptr : mjp_getPluginAtSlot(m.plugin[instance]);
+    if (!plugin || !std::string_view(plugin->name).starts_with("continuum.")) return false;
+  }
+  return true;
+}
+
+bool AnyAbove(const double* values, std::ptrdiff_t count, double least) {
+  return std::any_of(values, values + count, [&](double v) { return v > least; });
+}
+
+bool MayTouch(const mjModel& m) {
+  if (m.npair > 0 || m.nflex > 0) return true;
+  for (int g = 0; g < m.ngeom; ++g)
+    if (m.geom_contype[g] != 0 || m.geom_conaffinity[g] != 0) return true;
+  return false;
+}
+
+// Whether the solver may ever have something to solve: without that MuJoCo need not look for it.
+// Who sleeps is left to MuJoCo.
+bool MayHaveRows(const mjModel& m) {
+  if (m.opt.enableflags & mjENBL_SLEEP) return true;
+  const auto any = [](const auto* flags, auto count) {
+    return std::any_of(flags, flags + count, [](auto flag) { return flag != 0; });
+  };
+  return m.neq > 0 || MayTouch(m) || any(m.jnt_limited, m.njnt) ||
+         any(m.tendon_limited, m.ntendon) || AnyAbove(m.dof_frictionloss, m.nv, 0) ||
+         AnyAbove(m.tendon_frictionloss, m.ntendon, 0);
+}
+
 constexpr int kState = mjSTATE_QPOS | mjSTATE_QVEL | kMemory;
 
 // One log on one machine, step by step.
@@ -57,9 +98,13 @@ class TimedRun {
         hooks_(hooks),
         inputs_(m_, e, log, wiring),
         recorder_(m_, wiring, log.rows()),
-        h_(m_.opt.timestep) {}
+        h_(m_.opt.timestep),
+        given_(m_.opt.disableflags),
+        disabled_(given_ | (MayHaveRows(m_) ? 0 : mjDSBL_CONSTRAINT)),
+        between_(disabled_ | (SensorsKeepNothing(m_) ? mjDSBL_SENSOR : 0)) {}
 
   void Begin(const InitialState& start) {
+    m_.opt.disableflags = disabled_;
     mj_resetData(&m_, &d_);
     std::copy(start.qpos.begin(), start.qpos.end(), d_.qpos);
     std::copy(start.qvel.begin(), start.qvel.end(), d_.qvel);
@@ -83,7 +128,9 @@ class TimedRun {
       if (step == 0) {
         StepFromRow(row);
       } else {
+        m_.opt.disableflags = between_;
         mj_step(&m_, &d_);
+        m_.opt.disableflags = disabled_;
       }
       if (hooks_.stepped) hooks_.stepped(m_, d_);
       if (!Diverged(m_, d_)) continue;
@@ -103,6 +150,7 @@ class TimedRun {
 
   void Release(Trace& trace) {
     m_.opt.timestep = h_;
+    m_.opt.disableflags = given_;
     inputs_.EnableAll();
     recorder_.Release(trace);
   }
@@ -137,6 +185,8 @@ class TimedRun {
   Inputs inputs_;
   Recorder recorder_;
   double h_;  // time step of the model [s]
+  // Flags: of the model; at rows; between them, where nobody reads sensors.
+  int given_, disabled_, between_;
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "benchmark/diagnosis/split.h"
 #include "error.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/effort.h"
 #include "sim/experiment/registration.h"
 #include "sim/simulation/registration_fit.h"
 
@@ -31,12 +32,13 @@ std::string Tried(const Diagnosis& d) {
                      d.candidates.size() + d.dismissed.size(), d.candidates.size());
 }
 
-void Measure(const std::string& name, const Experiment& e) {
+void Measure(const std::string& name, const Experiment& e, Effort effort) {
   const ModelSpec system = ModelSpec::Load(e.model);
   fmt::print("{}: {} logs, {} states{}\n", name, e.logs.size(),
              system.model().nq + system.model().nv, Load());
   Split split;
   DiagnosisOptions options;
+  options.effort = effort;
   options.progress = [&](const Progress& p) { split.Next(p.stage + ": " + p.at); };
   const Diagnosis d = Diagnose(e, system, options);
   split.Stop();
@@ -58,16 +60,20 @@ int Main(int argc, char** argv) {
   app.add_option("experiment", files,
                  "EXPERIMENT.yaml; none: six logs of an arm of three links, all candidates, with "
                  "20 g at its tip and with nothing hidden");
+  std::string effort = "thorough";
+  app.add_option("--effort", effort, "quick, normal, or thorough, which leaves nothing out")
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   for (const std::string& file : files) {
     const Experiment read = Experiment::Read(file);
-    Measure(file, Registered(read, ModelSpec::Load(read.model)));
+    Measure(file, Registered(read, ModelSpec::Load(read.model)), EffortNamed(effort));
   }
   if (!files.empty()) return 0;
   const auto folder =
       std::filesystem::temp_directory_path() / ("diagnosis_speed_" + std::to_string(getpid()));
   for (const double payload : {0.02, 0.0})
-    Measure(payload > 0 ? "a payload" : "nothing hidden", ArmWithPayload(folder, payload));
+    Measure(payload > 0 ? "a payload" : "nothing hidden", ArmWithPayload(folder, payload),
+            EffortNamed(effort));
   std::filesystem::remove_all(folder);
   return 0;
 }
