@@ -20,8 +20,8 @@ namespace {
 
 using Vector = Problem::Vector;
 
-constexpr std::size_t kFitted = 4;  // suggestions that are simulated
-constexpr double kNear = 1.1;       // times the error of the best one above the noise
+constexpr std::size_t kFitted = 5;  // suggestions that are simulated
+constexpr double kNear = 1.1;       // times the error of the best one
 
 std::string GlobsOfJoints(const std::vector<std::string>& joints) {
   std::string globs = "joint:";
@@ -64,18 +64,21 @@ double LeastError(const Diagnosis& d) {
 
 std::size_t NumbersOf(const CandidateResult& c) { return c.hypothesis.extra.size(); }
 
-// The plainest of those that come near the best.
-std::size_t Choose(const std::vector<CandidateResult>& laws, double floor) {
+// The plainest of those that come near the best: in what is left lengths and masses that are a
+// little off show too.
+std::size_t Choose(const std::vector<CandidateResult>& laws, const Diagnosis& d) {
   double least = laws.front().fitted.error.train;
   for (const CandidateResult& c : laws) least = std::min(least, c.fitted.error.train);
-  const double near = kNear * std::max(least, floor);
+  const double floor = std::max(kNear * least, d.noise.floor());
+  const double near =
+      std::hypot(floor, std::sqrt(+d.criteria.structure_share) * d.before.error.train);
   std::size_t best = laws.size();
   for (std::size_t i = 0; i < laws.size(); ++i) {
     const double error = laws[i].fitted.error.train;
     if (error > near) continue;
-    const bool plainer = best == laws.size() || NumbersOf(laws[i]) < NumbersOf(laws[best]) ||
-                         (NumbersOf(laws[i]) == NumbersOf(laws[best]) &&
-                          error < laws[best].fitted.error.train);
+    const bool plainer =
+        best == laws.size() || NumbersOf(laws[i]) < NumbersOf(laws[best]) ||
+        (NumbersOf(laws[i]) == NumbersOf(laws[best]) && error < laws[best].fitted.error.train);
     if (plainer) best = i;
   }
   return best;
@@ -93,11 +96,10 @@ void TellLaw(CandidateResult& law) {
   h.where += ": force = " + Expression::Renamed(h.candidate.law->formula, names, values);
 }
 
-// An effect of the catalog that is not listed and explains nearly as much of the missing force; none:
-// empty.
+// An effect of the catalog that is not listed and explains nearly as much of the missing force;
+// none: empty.
 std::string AsGoodAsALaw(const std::vector<SuggestedLaw>& laws, const EquationErrors& view,
-                         const Experiment& e, const Diagnosis& d,
-                         const DiagnosisOptions& options) {
+                         const Experiment& e, const Diagnosis& d, const DiagnosisOptions& options) {
   constexpr double kNearly = 0.9;
   double share = 0;
   for (const SuggestedLaw& law : laws) share = std::max(share, law.share);
@@ -142,8 +144,7 @@ bool IsBetterLaw(const Diagnosis& d, const CandidateResult& law) {
   const double main = (1 - d.criteria.main_share) * SquaresAbove(d.before.error.train, d);
   const double best = SquaresAbove(LeastError(d), d);
   if (best > main) return left <= std::min(main, kHalf * best);
-  return left <= kTenth * best ||
-         law.fitted.error.train <= d.criteria.near_noise * d.noise.floor();
+  return left <= kTenth * best || law.fitted.error.train <= d.criteria.near_noise * d.noise.floor();
 }
 
 FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
@@ -155,7 +156,8 @@ FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
   const auto suggested = SuggestLaws(LawRows(e, view, d.folds), options.seed, kFitted);
   if (suggested.empty()) return {};
   options.Say(DiagnosisStage::kJudgement, "effects that say what a law does");
-  if (auto effect = AsGoodAsALaw(suggested, view, e, d, options); !effect.empty()) return {{}, effect};
+  if (auto effect = AsGoodAsALaw(suggested, view, e, d, options); !effect.empty())
+    return {{}, effect};
   std::vector<CandidateResult> laws;
   for (const SuggestedLaw& one : suggested) {
     auto c = AsCandidate(one, e, d);
@@ -171,7 +173,7 @@ FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
     laws.push_back(*std::move(c));
   }
   if (laws.empty()) return {};
-  CandidateResult best = std::move(laws[Choose(laws, d.noise.floor())]);
+  CandidateResult best = std::move(laws[Choose(laws, d)]);
   TellLaw(best);
   return {std::move(best), ""};
 }

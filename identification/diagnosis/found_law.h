@@ -7,9 +7,9 @@
 
 namespace continuum {
 
-/// Whether a law that nobody listed is looked for: every candidate leaves more than noise of an error
-/// that is plainly more, or none explains a small one. unlisted: error of the best effect that is
-/// not one of them; infinite where none was tried.
+/// Whether a law that nobody listed is looked for: every candidate leaves more than noise of an
+/// error that is plainly more, or none explains a small one. unlisted: error of the best effect
+/// that is not one of them; infinite where none was tried.
 bool WantsALaw(const Diagnosis& diagnosis, double unlisted);
 /// Whether a law is worth a comparison: it takes the main share, which no candidate does, and half
 /// of what the best one leaves; or it leaves nothing but noise, or a tenth. Else what a candidate

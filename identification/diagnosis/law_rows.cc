@@ -12,7 +12,7 @@ namespace continuum {
 namespace {
 
 constexpr std::size_t kMostRows = 12000;  // of all joints
-constexpr std::size_t kStretches = 4;    // of a log, where there are no folds
+constexpr std::size_t kStretches = 4;     // of a log, where there are no folds
 
 // "q" of "q[knee]"; nothing where a name has no brackets.
 std::pair<std::string, std::string> Split(const std::string& name) {
@@ -139,9 +139,9 @@ std::vector<double> LawRows::Values(const LawTerm::Part& part, const PlacedTerm&
   std::vector<double> values(names.size()), out(joint.log.size());
   for (const Run& run : runs_) {
     for (std::size_t k = run.begin; k < run.end; ++k) {
-      const double variables[] = {joint.angle[k],  joint.velocity[k],         joint.load[k],
-                                  joint.weight[k], joint.time[k] - run.start, heat.empty() ? 0
-                                                                                  : heat[k]};
+      const double variables[] = {
+          joint.angle[k],  joint.velocity[k],         joint.load[k],
+          joint.weight[k], joint.time[k] - run.start, heat.empty() ? 0 : heat[k]};
       auto next = std::copy(std::begin(variables), std::end(variables), values.begin());
       next = std::copy(placed.shapes.begin(), placed.shapes.end(), next);
       for (const auto* const signal : of_others) *next++ = (*signal)[k];

@@ -41,8 +41,8 @@ class LawRows {
   /// A force at these rows, each log's moved round by a random part of it: as large and as smooth,
   /// but of nothing that is there.
   Vector Shifted(const Vector& force, std::uint64_t seed) const;
-  /// What each part of a term, of size 1, makes the joints feel: minus the part, as force·v is power
-  /// into the effect.
+  /// What each part of a term, of size 1, makes the joints feel: minus the part, as force·v is
+  /// power into the effect.
   Matrix Of(const PlacedTerm& placed, const std::vector<std::size_t>& at) const;
 
  private:
@@ -57,11 +57,11 @@ class LawRows {
 
   const EquationErrors& view_;
   std::vector<Run> runs_;
-  std::vector<Quartic> means_;        // [row that is kept]
-  std::vector<std::size_t> rows_;     // that are kept, of a joint's
-  std::vector<std::size_t> run_of_;   // [row that is kept]
+  std::vector<Quartic> means_;       // [row that is kept]
+  std::vector<std::size_t> rows_;    // that are kept, of a joint's
+  std::vector<std::size_t> run_of_;  // [row that is kept]
   std::vector<std::size_t> groups_;
-  std::vector<double> unit_;          // [joint]
+  std::vector<double> unit_;  // [joint]
 };
 
 }  // namespace continuum

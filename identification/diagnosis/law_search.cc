@@ -7,8 +7,8 @@
 #include <numeric>
 #include <optional>
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
+#include <Eigen/Dense>
 
 #include "binding/expression.h"
 #include "effects/formula.h"
@@ -21,13 +21,14 @@ using Vector = LawRows::Vector;
 using Matrix = LawRows::Matrix;
 using Joints = std::vector<std::size_t>;
 
-constexpr std::size_t kShifted = 19;   // of 20, the true one is the best by chance once
-constexpr std::size_t kRefined = 12;   // terms whose shapes are searched
-constexpr std::size_t kExtended = 4;   // terms that are given a second one
-constexpr std::size_t kSeconds = 3;    // of which so many are refined
-constexpr double kEarned = 0.8;        // of the squares on the folds, that a second term may leave
-constexpr double kLeast = 0.02;        // of the squares of the missing force
-constexpr std::size_t kAtOnePlace = 2; // of those that are suggested
+constexpr std::size_t kShifted = 19;    // of 20, the true one is the best by chance once
+constexpr std::size_t kRefined = 12;    // terms whose shapes are searched
+constexpr std::size_t kExtended = 4;    // terms that are given a second one
+constexpr std::size_t kSeconds = 3;     // of which so many are refined
+constexpr double kEarned = 0.8;         // of the squares on the folds, that a second term may leave
+constexpr double kLeast = 0.02;         // of the squares of the missing force
+constexpr std::size_t kPlain = 2;       // of one term that are suggested in any case
+constexpr std::size_t kAtOnePlace = 2;  // of those that are suggested, where there are others
 
 // Directions that are taken off already, and what is left of targets.
 class Remainder {
@@ -68,8 +69,7 @@ class LawSearch {
     for (const MissingForce& joint : rows.joints()) reach_.push_back(ReachOf(joint));
     for (std::size_t j = 0; j < n; ++j) AddPlace({j}, TermsAt(j));
     for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t i = 0; i < j; ++i)
-        AddPlace({i, j}, TermsWith(reach_[i], reach_[j], "other"));
+      for (std::size_t i = 0; i < j; ++i) AddPlace({i, j}, TermsOfTwo(reach_[i], reach_[j]));
     }
     const bool alike = std::all_of(reach_.begin(), reach_.end(), [&](const JointReach& r) {
       return r.slides == reach_.front().slides;
@@ -94,14 +94,9 @@ class LawSearch {
       if (auto longer = Extended(laws[i])) laws.push_back(*std::move(longer));
     }
     Sort(laws);
-    std::vector<SuggestedLaw> suggested;
-    std::map<std::size_t, std::size_t> at_place;
-    for (const Law& law : laws) {
-      if (suggested.size() == most || !(1 - law.left >= kLeast)) break;
-      if (law.amount > chance && ++at_place[law.place] <= kAtOnePlace)
-        suggested.push_back(Written(law));
-    }
-    return suggested;
+    std::erase_if(
+        laws, [&](const Law& law) { return !(1 - law.left >= kLeast) || law.amount <= chance; });
+    return Few(laws, most);
   }
 
  private:
@@ -145,7 +140,8 @@ class LawSearch {
   JointReach Common() const {
     JointReach common = reach_.front();
     for (const JointReach& r : reach_) {
-      common.lower = std::min(common.lower, r.lower), common.upper = std::max(common.upper, r.upper);
+      common.lower = std::min(common.lower, r.lower),
+      common.upper = std::max(common.upper, r.upper);
       common.speed = std::max(common.speed, r.speed);
     }
     return common;
@@ -183,7 +179,8 @@ class LawSearch {
       const Vector amounts = Amounts(columns, from.targets());
       if (best.shapes.size() < shapes.size() || amounts[0] > best.amount)
         best.shapes = shapes, best.amount = amounts[0];
-      if (amounts.size() > 1) best.shifted = std::max(best.shifted, amounts.tail(kShifted).maxCoeff());
+      if (amounts.size() > 1)
+        best.shifted = std::max(best.shifted, amounts.tail(kShifted).maxCoeff());
     }
     return best;
   }
@@ -219,8 +216,11 @@ class LawSearch {
     std::vector<double> step;
     for (std::size_t s = 0; s < last.shapes.size(); ++s) {
       const auto& grid = last.term.shapes[s].grid;
-      step.push_back(grid.size() > 1 ? (grid.back() - grid.front()) / (2 * static_cast<double>(grid.size())) : 0);
-      step.back() = std::min(step.back(), std::max(0.3 * std::abs(last.shapes[s]), 1e-3 * step.back()));
+      step.push_back(grid.size() > 1
+                         ? (grid.back() - grid.front()) / (2 * static_cast<double>(grid.size()))
+                         : 0);
+      step.back() =
+          std::min(step.back(), std::max(0.3 * std::abs(last.shapes[s]), 1e-3 * step.back()));
     }
     for (int round = 0; round < kRounds; ++round) {
       for (std::size_t s = 0; s < step.size(); ++s) {
@@ -252,7 +252,8 @@ class LawSearch {
       Vector row(n + 1);
       row << columns.row(k).transpose(), target[k];
       const std::size_t group = rows_.groups()[static_cast<std::size_t>(k)];
-      of_group.try_emplace(group, Matrix::Zero(n + 1, n + 1)).first->second += row * row.transpose();
+      of_group.try_emplace(group, Matrix::Zero(n + 1, n + 1)).first->second +=
+          row * row.transpose();
     }
     for (const auto& [group, gram] : of_group) whole += gram;
     double left = 0;
@@ -260,7 +261,8 @@ class LawSearch {
       const Matrix rest = whole - gram;
       Vector b = Vector::Zero(n + 1);
       if (of_group.size() > 1)
-        b.head(n) = -rest.topLeftCorner(n, n).completeOrthogonalDecomposition().solve(rest.col(n).head(n));
+        b.head(n) =
+            -rest.topLeftCorner(n, n).completeOrthogonalDecomposition().solve(rest.col(n).head(n));
       b[n] = 1;
       left += b.dot(gram * b);
     }
@@ -328,10 +330,33 @@ class LawSearch {
     return law;
   }
 
+  // The best of one term first, which later need only come near; then as they are, few at a place.
+  std::vector<SuggestedLaw> Few(const std::vector<Law>& laws, std::size_t most) const {
+    std::vector<const Law*> chosen;
+    const auto take = [&](std::size_t limit, const auto& may) {
+      for (const Law& law : laws) {
+        const bool there = std::find(chosen.begin(), chosen.end(), &law) != chosen.end();
+        if (chosen.size() < limit && !there && may(law)) chosen.push_back(&law);
+      }
+    };
+    const auto here = [&](const Law& law) {
+      return static_cast<std::size_t>(
+          std::count_if(chosen.begin(), chosen.end(),
+                        [&](const Law* other) { return other->place == law.place; }));
+    };
+    take(kPlain, [](const Law& law) { return law.terms.size() == 1; });
+    take(most, [&](const Law& law) { return here(law) < kAtOnePlace; });
+    take(most, [](const Law&) { return true; });
+    std::vector<SuggestedLaw> suggested;
+    for (const Law* const law : chosen) suggested.push_back(Written(*law));
+    return suggested;
+  }
+
   SuggestedLaw Written(Law law) const {
     law = Plainer(std::move(law));
     SuggestedLaw out;
-    for (const std::size_t j : places_[law.place].joints) out.joints.push_back(rows_.joints()[j].joint);
+    for (const std::size_t j : places_[law.place].joints)
+      out.joints.push_back(rows_.joints()[j].joint);
     out.share = law.amount / all_.targets().col(0).squaredNorm();
     const Vector sizes = Solve(all_.Off(ColumnsOf(law)), all_.targets().leftCols(1));
     Eigen::Index size = 0;

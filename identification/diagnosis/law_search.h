@@ -12,7 +12,7 @@ namespace continuum {
 /// A law that the missing force suggests.
 struct SuggestedLaw {
   std::vector<std::string> joints;
-  WrittenLaw law;  ///< begins with the sizes and shapes that were found
+  WrittenLaw law;    ///< begins with the sizes and shapes that were found
   double share = 0;  ///< of the squares of the missing force that the parameters leave
 };
 

@@ -56,6 +56,19 @@ class Terms {
     return std::move(all_);
   }
 
+  std::vector<LawTerm> OfTwo(const JointReach& other) {
+    all_ = WithAnother(other, "other");
+    if (reach_.slides != other.slides) return std::move(all_);
+    Add("(q - q[other])", {1});
+    Add("(q - q[other])^3", {3});
+    Add("(v - v[other])", {0, 1});
+    Add("(v - v[other])*abs(v - v[other])", {0, 2});
+    Add("(q + q[other])^3", {3});
+    span_ += other.upper - other.lower;
+    if (span_ > 0) AddWave("(q + q[other])", Frequency());
+    return std::move(all_);
+  }
+
   std::vector<LawTerm> WithAnother(const JointReach& other, const std::string& name) {
     const std::string q = "q[" + name + "]", v = "v[" + name + "]";
     // What moves along with it would be of both joints' units: those of the other one count.
@@ -88,8 +101,8 @@ class Terms {
   // Of any phase.
   void AddWave(const std::string& of, TermShape frequency) {
     const std::string unit = UnitOver({}, reach_.slides);
-    all_.push_back({{{"sin(s1*" + of + ")", unit}, {"cos(s1*" + of + ")", unit}},
-                    {std::move(frequency)}});
+    all_.push_back(
+        {{{"sin(s1*" + of + ")", unit}, {"cos(s1*" + of + ")", unit}}, {std::move(frequency)}});
   }
 
   std::string Position() const { return reach_.slides ? "m" : "rad"; }
@@ -105,8 +118,8 @@ class Terms {
   TermShape Frequency() const {
     const double turn = 2 * std::numbers::pi;
     const double least = 0.67 * turn / span_;
-    const double most = std::min(60 * turn / span_,
-                                 turn / (4 * std::max(reach_.speed * reach_.period, 1e-12)));
+    const double most =
+        std::min(60 * turn / span_, turn / (4 * std::max(reach_.speed * reach_.period, 1e-12)));
     std::vector<double> grid;
     for (double f = least; f <= std::max(least, most); f += turn / (6 * span_)) grid.push_back(f);
     return {"s1", "1/" + Position(), least / 2, 2 * std::max(least, most), grid};
@@ -120,6 +133,12 @@ class Terms {
     AddWave("q", Frequency());
     Add("max(0, q - s1)", {1}, {Place("s1", 12)});
     Add("min(0, q - s1)", {1}, {Place("s1", 12)});
+    Add("max(0, q - s1)^2", {2}, {Place("s1", 12)});
+    Add("min(0, q - s1)^2", {2}, {Place("s1", 12)});
+    for (const char* const sign : {"", "-"}) {
+      Add(std::string("exp(") + sign + "q/s1)", {},
+          {{"s1", Position(), span_ / 20, 5 * span_, Ratios(span_ / 8, 2 * span_, 1.6)}});
+    }
     Add("exp(-((q - s1)/s2)^2)", {}, {Place("s1", 12), Width("s2")});
     Add("(q - s1)*exp(-((q - s1)/s2)^2)", {1}, {Place("s1", 12), Width("s2")});
     Add("v*abs(q)", {1, 1});
@@ -129,6 +148,7 @@ class Terms {
   }
   void OfSpeed() {
     Add("v", {0, 1});
+    Add("abs(v)", {0, 1});
     Add("v*abs(v)", {0, 2});
     Add("v^2", {0, 2});
     Add("v^3", {0, 3});
@@ -226,6 +246,10 @@ std::vector<LawTerm> TermsOf(const JointReach& reach) { return Terms(reach).OfOn
 std::vector<LawTerm> TermsWith(const JointReach& reach, const JointReach& other,
                                const std::string& name) {
   return Terms(reach).WithAnother(other, name);
+}
+
+std::vector<LawTerm> TermsOfTwo(const JointReach& one, const JointReach& other) {
+  return Terms(one).OfTwo(other);
 }
 
 }  // namespace continuum

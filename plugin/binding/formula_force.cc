@@ -67,9 +67,9 @@ void BoundFormula::FindOthers(const mjModel& m, const Config& config) {
       throw Error::Input(
           config.Who() + ": " + std::string(Formula::kText) + ": " + name,
           joint == kTwin ? "a law on two joints" : "a hinge or slide joint of the model",
-          joint == kTwin      ? std::to_string(lines_.size())
+          joint == kTwin    ? std::to_string(lines_.size())
           : other.joint < 0 ? "no joint '" + joint + "'"
-                              : std::string(JointType(m.jnt_type[other.joint])));
+                            : std::string(JointType(m.jnt_type[other.joint])));
     }
     others_.push_back(other);
   }
@@ -138,8 +138,8 @@ std::vector<Number> BoundFormula::NumbersOf(const mjModel& m, std::size_t i) con
   for (std::size_t p = 0; p < p_.size(); ++p)
     numbers.push_back({Kind::kParameter, static_cast<int>(p)});
   for (const Other& other : others_) {
-    numbers.push_back({other.speed ? Kind::kSpeed : Kind::kPosition,
-                       m.jnt_dofadr[JointOf(other, i)]});
+    numbers.push_back(
+        {other.speed ? Kind::kSpeed : Kind::kPosition, m.jnt_dofadr[JointOf(other, i)]});
   }
   return numbers;
 }
@@ -154,8 +154,8 @@ void BoundFormula::Differentiate(const mjModel& m, const mjData& d, const StepTa
     const double force = force_.Differentiate(values, by_value);
     by_value[kTime] = 0;  // nothing moves it
     const auto numbers = NumbersOf(m, i);
-    const Number of = line.joint ? Number{Number::Kind::kForce, line.dof}
-                                 : Number{Number::Kind::kPull, line.id};
+    const Number of =
+        line.joint ? Number{Number::Kind::kForce, line.dof} : Number{Number::Kind::kPull, line.id};
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       if (by_value[k] != 0) slopes.forces.push_back({of, numbers[k], -by_value[k]});
     }

@@ -35,16 +35,11 @@ struct Formula {
                                     kSummary = "a force that is written as a formula",
                                     kText = "force", kHeatTime = "heat_time";
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
-  static constexpr std::array kParams{kFormulaParams[0],
-                                      kFormulaParams[1],
-                                      kFormulaParams[2],
-                                      kFormulaParams[3],
-                                      kFormulaParams[4],
-                                      kFormulaParams[5],
-                                      kFormulaParams[6],
-                                      kFormulaParams[7],
-                                      Positive(kHeatTime, "s", 10)};
-  static constexpr std::array<std::string_view, 6> kVariables{"q",    "v",    "motor",
+  static constexpr std::array kParams{
+      kFormulaParams[0], kFormulaParams[1], kFormulaParams[2],
+      kFormulaParams[3], kFormulaParams[4], kFormulaParams[5],
+      kFormulaParams[6], kFormulaParams[7], Positive(kHeatTime, "s", 10)};
+  static constexpr std::array<std::string_view, 6> kVariables{"q",      "v",    "motor",
                                                               "weight", "time", "heat"};
   /// Whose variables may be of another joint, as kVariables[i] and its name in brackets.
   static constexpr std::size_t kOfOthers = 2;

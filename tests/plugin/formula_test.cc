@@ -113,8 +113,8 @@ class FormulaOfMore : public testing::Engine {
   // What the joints feel of an instance at one state.
   static std::vector<double> Felt(const std::string& joints, const std::string& force,
                                   const std::string& more = "") {
-    const auto with = Model(
-        Arms(Instance("formula", Key("joint", joints) + Key("force", force) + more)));
+    const auto with =
+        Model(Arms(Instance("formula", Key("joint", joints) + Key("force", force) + more)));
     const auto without = Model(Arms(""));
     std::vector<double> felt;
     for (const auto* const m : {&with, &without}) {
@@ -164,7 +164,8 @@ TEST_F(FormulaOfMore, SaysWhatIsMissing) {
   const auto refusal = [](const std::string& config) {
     return Compile(Arms(Instance("formula", config))).error;
   };
-  EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "q[ankle]")), HasSubstr("no joint 'ankle'"));
+  EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "q[ankle]")),
+              HasSubstr("no joint 'ankle'"));
   EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "q[other]")),
               HasSubstr("a law on two joints, found 1"));
   EXPECT_THAT(refusal(Key("joint", "hip") + Key("force", "motor[knee]")), HasSubstr("column 1"));

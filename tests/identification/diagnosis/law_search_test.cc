@@ -97,8 +97,7 @@ TEST_F(LawSearchTest, FindsAWave) {
 }
 
 TEST_F(LawSearchTest, FindsDrag) {
-  const auto found =
-      Ask([](double, double v, double, double) { return 0.2 * v * std::abs(v); });
+  const auto found = Ask([](double, double v, double, double) { return 0.2 * v * std::abs(v); });
   ASSERT_FALSE(found.empty());
   ASSERT_EQ(found[0].law.formula, "a1*v*abs(v)") << Texts(found);
   EXPECT_NEAR(Value(found[0], "a1"), 0.2, 0.02);
@@ -119,9 +118,8 @@ TEST_F(LawSearchTest, FindsASpringThatIsStifferSomewhere) {
 TEST_F(LawSearchTest, FindsAGainThatFallsWithTheWeight) {
   const Pendulum p;
   const double weight = (p.bob + p.tip) * 9.81 * p.length;
-  const auto found = Ask([&](double q, double, double u, double) {
-    return 0.5 * u * std::abs(weight * std::sin(q));
-  });
+  const auto found = Ask(
+      [&](double q, double, double u, double) { return 0.5 * u * std::abs(weight * std::sin(q)); });
   ASSERT_FALSE(found.empty());
   // At these angles the sine is nearly its argument.
   EXPECT_THAT(found[0].law.formula, ::testing::AnyOf("a1*motor*abs(weight)", "a1*motor*abs(q)"));
