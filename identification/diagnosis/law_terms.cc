@@ -148,6 +148,7 @@ class Terms {
   }
   void OfSpeed() {
     Add("v", {0, 1});
+    Add("v", {0, 1});
     Add("abs(v)", {0, 1});
     Add("v*abs(v)", {0, 2});
     Add("v^2", {0, 2});
