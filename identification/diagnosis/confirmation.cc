@@ -1,6 +1,7 @@
 #include "identification/diagnosis/confirmation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
@@ -60,6 +61,25 @@ void TakeNameBack(Diagnosis& d, const std::string& why) {
   d.verdict.reason = fmt::format("the best candidate, {}, {}", name, why);
 }
 
+// Where repeated trials tell the noise, and the validate logs show plainly more: whether the name
+// takes too little of it to be what is mainly wrong. Half a period late looks like a flipped sign
+// on the logs that it was fitted to.
+bool TakesLittleOfValidateLogs(const Diagnosis& d, double& share) {
+  const double floor = d.noise.floor(), before = d.before.error.validate;
+  if (!d.noise.known() || before < d.criteria.model_limited * floor) return false;
+  const auto squares = [&](double error) { return std::pow(WithoutPart(error, floor), 2); };
+  share = std::max(0.0, 1 - squares(d.after().validate) / squares(before));
+  return share < d.criteria.fold_share;
+}
+
+void TakeBackWhatDoesLittle(Diagnosis& d) {
+  double share = 0;
+  if (!d.chosen() || !(d.before.error.validate > 0) || !TakesLittleOfValidateLogs(d, share)) return;
+  TakeNameBack(d, fmt::format("takes only {:.0f} % of the squares above the noise on the logs that "
+                              "are kept for validation",
+                              100 * share));
+}
+
 }  // namespace
 
 bool IsSmallerThanNoise(const Diagnosis& d, double best) {
@@ -79,7 +99,8 @@ void ConfirmOnFolds(const CandidateFitter& fitter, Diagnosis& d) {
   const double possible = std::max(0.0, 1 - floor / d.before.error.train);
   const bool held_out = HoldsOnValidateLogs(d.before.error.validate,
                                             d.chosen()->fitted.error.validate, floor, d.criteria);
-  if (held_out && HoldsOnFolds(d.chosen()->record, possible, d.criteria)) return;
+  if (held_out && HoldsOnFolds(d.chosen()->record, possible, d.criteria))
+    return TakeBackWhatDoesLittle(d);
   if (IsSmallerThanNoise(d, d.chosen()->fitted.over_noise())) {
     NameNothing(d,
                 "what shows is smaller than noise and time step, and {} takes it off its own "
@@ -92,6 +113,7 @@ void ConfirmOnFolds(const CandidateFitter& fitter, Diagnosis& d) {
 void ConfirmOnValidateLogs(Diagnosis& d) {
   if (d.chosen() && d.before.error.validate > 0 && d.after().validate > d.before.error.validate)
     TakeNameBack(d, "raises the error of the logs that are kept for validation");
+  TakeBackWhatDoesLittle(d);
 }
 
 }  // namespace continuum

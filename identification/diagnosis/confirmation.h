@@ -11,11 +11,12 @@ bool IsSmallerThanNoise(const Diagnosis& d, double best);
 
 /// Takes a name by likelihoods back where it does not help on logs left out. One that leaves
 /// nothing but noise may have found that in the noise: it is judged on the validate logs, in units
-/// of the noise.
+/// of the noise. So is a name that leaves more than noise, where it takes less than fold_share of
+/// what the validate logs show above it.
 void ConfirmOnFolds(const CandidateFitter& fitter, Diagnosis& d);
 
-/// Takes a name by folds back where it raises the error of the validate logs: folds are made of
-/// train logs.
+/// Takes a name by folds back where it raises the error of the validate logs, or takes little of it
+/// as above: folds are made of train logs.
 void ConfirmOnValidateLogs(Diagnosis& d);
 
 }  // namespace continuum

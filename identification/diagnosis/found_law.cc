@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,25 +32,40 @@ std::string GlobsOfJoints(const std::vector<std::string>& joints) {
   return globs;
 }
 
-std::optional<CandidateResult> AsCandidate(const SuggestedLaw& suggested, const Experiment& e,
-                                           const Diagnosis& d) {
+std::vector<Hypothesis> HypothesesOf(const SuggestedLaw& suggested, const Experiment& e,
+                                     const Diagnosis& d) {
   Experiment wanted = e;
   wanted.all_candidates = false;
   wanted.candidates = {
       {std::string(Formula::kName), GlobsOfJoints(suggested.joints), false, suggested.law}};
   std::vector<std::string> skipped;
-  auto made = MakeCandidates(wanted, {&d.system}, d.sizes, skipped);
-  if (made.empty()) return {};
-  CandidateResult c{std::move(made.front())};
-  c.record.name = c.hypothesis.Name();
-  c.listed = false;
-  return c;
+  return MakeCandidates(wanted, {&d.system}, d.sizes, skipped);
 }
 
-Vector StartOf(const CandidateResult& c, const Fitted& before) {
+Vector StartOf(const CandidateResult& c, const Vector& base) {
   std::vector<double> own;
   for (const Parameter& p : c.hypothesis.extra) own.push_back(p.initial);
-  return Append(before.fit.x, own);
+  return Append(base, own);
+}
+
+// Adds it to the others with a fit, unless it diverges. From the model as it is, and as the
+// experiment has it: a fit without the law may have gone far to make up for it.
+void FitLaw(Hypothesis h, const CandidateFitter& fitter, const Diagnosis& d, const Vector& begin,
+            std::vector<CandidateResult>& laws) {
+  CandidateResult c{std::move(h)};
+  c.record.name = c.hypothesis.Name();
+  const Problem problem = ProblemOf(c, *fitter.experiment);
+  for (const Vector& base : {d.before.fit.x, begin}) {
+    try {
+      Fitted fitted = fitter.Fit(problem, {StartOf(c, base)});
+      if (!c.was_fitted || fitted.cost < c.fitted.cost) c.fitted = std::move(fitted);
+      c.was_fitted = true;
+    } catch (const Error&) {
+      StopIfRequested();
+    }
+    if (base.size() == 0 || base == begin) break;
+  }
+  if (c.was_fitted) laws.push_back(std::move(c));
 }
 
 double SquaresAbove(double error, const Diagnosis& d) {
@@ -64,24 +81,34 @@ double LeastError(const Diagnosis& d) {
 
 std::size_t NumbersOf(const CandidateResult& c) { return c.hypothesis.extra.size(); }
 
-// The plainest of those that come near the best: in what is left lengths and masses that are a
-// little off show too.
-std::size_t Choose(const std::vector<CandidateResult>& laws, const Diagnosis& d) {
+double LeastErrorOf(const std::vector<CandidateResult>& laws) {
   double least = laws.front().fitted.error.train;
   for (const CandidateResult& c : laws) least = std::min(least, c.fitted.error.train);
-  const double floor = std::max(kNear * least, d.noise.floor());
+  return least;
+}
+
+// Those that come near the best first, the plainest before the others: in what is left lengths and
+// masses that are a little off show too.
+void Sort(std::vector<CandidateResult>& laws, const Diagnosis& d) {
+  const double floor = std::max(kNear * LeastErrorOf(laws), d.noise.floor());
   const double near =
       std::hypot(floor, std::sqrt(+d.criteria.structure_share) * d.before.error.train);
-  std::size_t best = laws.size();
-  for (std::size_t i = 0; i < laws.size(); ++i) {
-    const double error = laws[i].fitted.error.train;
-    if (error > near) continue;
-    const bool plainer =
-        best == laws.size() || NumbersOf(laws[i]) < NumbersOf(laws[best]) ||
-        (NumbersOf(laws[i]) == NumbersOf(laws[best]) && error < laws[best].fitted.error.train);
-    if (plainer) best = i;
-  }
-  return best;
+  const auto key = [&](const CandidateResult& c) {
+    const bool is_near = c.fitted.error.train <= near;
+    return std::tuple(!is_near, is_near ? NumbersOf(c) : 0, c.fitted.error.train);
+  };
+  std::sort(laws.begin(), laws.end(),
+            [&](const CandidateResult& a, const CandidateResult& b) { return key(a) < key(b); });
+}
+
+// Whether the data say of every size that it is there.
+bool AreSizesSure(const CandidateResult& c) {
+  const Uncertainty& u = c.fitted.sensitivities->uncertainty;
+  const auto amplitudes = c.hypothesis.Amplitudes();
+  return std::all_of(amplitudes.begin(), amplitudes.end(), [&](std::size_t i) {
+    const Eigen::Index at = c.first_extra() + static_cast<Eigen::Index>(i);
+    return u.lower[at] > 0 || u.upper[at] < 0;
+  });
 }
 
 // With its numbers.
@@ -160,22 +187,20 @@ FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
     return {{}, effect};
   std::vector<CandidateResult> laws;
   for (const SuggestedLaw& one : suggested) {
-    auto c = AsCandidate(one, e, d);
-    if (!c || (!laws.empty() && fitter.TimeIsOver())) continue;
+    if (!laws.empty() && fitter.TimeIsOver()) break;
     options.Say(DiagnosisStage::kJudgement, "law " + one.law.formula);
-    try {
-      c->fitted = fitter.Fit(ProblemOf(*c, e), {StartOf(*c, d.before)});
-    } catch (const Error&) {
-      StopIfRequested();  // else it diverges
-      continue;
-    }
-    c->was_fitted = true;
-    laws.push_back(*std::move(c));
+    for (Hypothesis& h : HypothesesOf(one, e, d))
+      FitLaw(std::move(h), fitter, d, null.Start(), laws);
   }
   if (laws.empty()) return {};
-  CandidateResult best = std::move(laws[Choose(laws, d)]);
-  TellLaw(best);
-  return {std::move(best), ""};
+  Sort(laws, d);
+  for (CandidateResult& c : laws) {
+    fitter.Complete(ProblemOf(c, e), c.fitted);
+    if (!AreSizesSure(c)) continue;
+    TellLaw(c);
+    return {std::move(c), ""};
+  }
+  return {};
 }
 
 std::optional<LawPicture> PictureOfLaw(const Experiment& e, const Diagnosis& d) {

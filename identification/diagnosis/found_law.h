@@ -23,7 +23,7 @@ struct FoundLaw {
 };
 
 /// Of the formulas that the missing force suggests (law_search.h) the one that simulates best, the
-/// plainest of those that come near it. Where not every joint is measured, or chance does as well,
+/// plainest of those that come near it and whose sizes the data are sure of. Where not every joint is measured, or chance does as well,
 /// none; nor where an effect that the experiment does not list explains as much of the missing
 /// force. At its place stands the formula with its numbers: "joint hinge: force = 0.018*sin(9*q)".
 FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& diagnosis,

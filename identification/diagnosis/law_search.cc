@@ -96,6 +96,8 @@ class LawSearch {
     Sort(laws);
     std::erase_if(
         laws, [&](const Law& law) { return !(1 - law.left >= kLeast) || law.amount <= chance; });
+    if (laws.empty() || IsPlain(laws.front())) return {};
+    std::erase_if(laws, IsPlain);
     return Few(laws, most);
   }
 
@@ -130,8 +132,9 @@ class LawSearch {
   std::vector<LawTerm> TermsAt(std::size_t j) const {
     std::vector<LawTerm> terms = TermsOf(reach_[j]);
     for (std::size_t other = 0; other < reach_.size(); ++other) {
-      if (other == j) continue;
-      for (LawTerm& term : TermsWith(reach_[j], reach_[other], rows_.joints()[other].joint))
+      const std::string& name = rows_.joints()[other].joint;
+      if (other == j || name.find_first_of("[]") != name.npos) continue;  // no formula can say it
+      for (LawTerm& term : TermsWith(reach_[j], reach_[other], name))
         terms.push_back(std::move(term));
     }
     return terms;
@@ -290,6 +293,11 @@ class LawSearch {
         best = std::move(longer[i]);
     }
     return best;
+  }
+
+  static bool IsPlain(const Law& law) {
+    return std::all_of(law.terms.begin(), law.terms.end(),
+                       [](const PlacedTerm& placed) { return placed.term.plain; });
   }
 
   static bool HasHeat(const LawTerm& term) {

@@ -28,7 +28,8 @@ struct SuggestedLaw {
 /// folds say so. A term must take more than any of them takes of kShifted missing forces whose logs
 /// are moved round: these are as large and as smooth, and of nothing that the joint does then.
 ///
-/// Returns the best few, each of another term or place, best first; none where chance does as well.
+/// Returns the best few, each of another term or place, best first; none where chance does as well,
+/// or a number of the model that is off.
 std::vector<SuggestedLaw> SuggestLaws(const LawRows& rows, std::uint64_t seed, std::size_t most);
 
 }  // namespace continuum

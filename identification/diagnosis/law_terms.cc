@@ -91,12 +91,18 @@ class Terms {
     add("v*abs(" + v + ")", {0, 1}, {0, 1});
     add("motor*" + q, {0, 0, 1}, {1});
     add("motor*abs(" + q + ")", {0, 0, 1}, {1});
+    const double span = other.upper - other.lower;
+    if (span > 0) AddWave(q, Terms(other).Frequency());
     return std::move(all_);
   }
 
  private:
   void Add(const std::string& text, const Dimensions& of, std::vector<TermShape> shapes = {}) {
     all_.push_back({{{text, UnitOver(of, reach_.slides)}}, std::move(shapes)});
+  }
+  void AddPlain(const std::string& text, const Dimensions& of) {
+    Add(text, of);
+    all_.back().plain = true;
   }
   // Of any phase.
   void AddWave(const std::string& of, TermShape frequency) {
@@ -119,14 +125,14 @@ class Terms {
     const double turn = 2 * std::numbers::pi;
     const double least = 0.67 * turn / span_;
     const double most =
-        std::min(60 * turn / span_, turn / (4 * std::max(reach_.speed * reach_.period, 1e-12)));
+        std::min(150 * turn / span_, turn / (4 * std::max(reach_.speed * reach_.period, 1e-12)));
     std::vector<double> grid;
     for (double f = least; f <= std::max(least, most); f += turn / (6 * span_)) grid.push_back(f);
     return {"s1", "1/" + Position(), least / 2, 2 * std::max(least, most), grid};
   }
 
   void OfPosition() {
-    Add("q", {1});
+    AddPlain("q", {1});
     Add("q*abs(q)", {2});
     Add("q^2", {2});
     Add("q^3", {3});
@@ -147,8 +153,8 @@ class Terms {
     Add("v*exp(-((q - s1)/s2)^2)", {0, 1}, {Place("s1", 12), Width("s2")});
   }
   void OfSpeed() {
-    Add("v", {0, 1});
-    Add("v", {0, 1});
+    AddPlain("v", {0, 1});
+    AddPlain("v", {0, 1});
     Add("abs(v)", {0, 1});
     Add("v*abs(v)", {0, 2});
     Add("v^2", {0, 2});
@@ -160,7 +166,7 @@ class Terms {
     Add("v/(1 + (v/s1)^2)", {0, 1}, {{"s1", unit, v / 30, 10 * v, Ratios(v / 8, 2 * v, 2)}});
   }
   void OfMotor() {
-    Add("motor", {0, 0, 1});
+    AddPlain("motor", {0, 0, 1});
     Add("motor*abs(motor)", {0, 0, 2});
     Add("abs(motor)", {0, 0, 1});
     Add("motor^3", {0, 0, 3});
@@ -171,7 +177,7 @@ class Terms {
     Add("motor*abs(v)", {0, 1, 1});
     Add("motor*weight", {0, 0, 2});
     Add("motor*abs(weight)", {0, 0, 2});
-    Add("weight", {0, 0, 1});
+    AddPlain("weight", {0, 0, 1});
     Add("weight*abs(weight)", {0, 0, 2});
     Add("v*abs(weight)", {0, 1, 1});
     Add("v*abs(motor)", {0, 1, 1});

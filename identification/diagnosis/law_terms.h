@@ -23,6 +23,8 @@ struct LawTerm {
   };
   std::vector<Part> parts;
   std::vector<TermShape> shapes = {};
+  /// A number of the model, which effects of the catalog change: no law by itself.
+  bool plain = false;
 
   /// Every combination of values from the grids; one, empty, where it has no shapes.
   std::vector<std::vector<double>> Grid() const;
