@@ -133,8 +133,9 @@ std::string AsGoodAsALaw(const std::vector<SuggestedLaw>& laws, const EquationEr
   Experiment wanted = e;
   wanted.all_candidates = false;
   wanted.candidates.clear();
-  for (const std::string& name : Unlisted(e, options.candidates))
-    wanted.candidates.push_back({name, "", false});
+  for (const std::string& name : Unlisted(e, options.candidates)) {
+    if (EffectNamed(name).kin.family != kInertia) wanted.candidates.push_back({name, "", false});
+  }
   std::vector<std::string> skipped;
   double best = kNearly * share;
   std::string name;
