@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -131,13 +132,22 @@ class LawSearch {
   }
   std::vector<LawTerm> TermsAt(std::size_t j) const {
     std::vector<LawTerm> terms = TermsOf(reach_[j]);
-    for (std::size_t other = 0; other < reach_.size(); ++other) {
-      const std::string& name = rows_.joints()[other].joint;
-      if (other == j || name.find_first_of("[]") != name.npos) continue;  // no formula can say it
-      for (LawTerm& term : TermsWith(reach_[j], reach_[other], name))
-        terms.push_back(std::move(term));
+    const auto add = [&](std::vector<LawTerm> more) {
+      std::move(more.begin(), more.end(), std::back_inserter(terms));
+    };
+    for (std::size_t i = 0; i < reach_.size(); ++i) {
+      if (i == j || !IsSayable(i)) continue;
+      add(TermsWith(reach_[j], reach_[i], rows_.joints()[i].joint));
+      for (std::size_t k = 0; k < i; ++k) {
+        if (k != j && IsSayable(k))
+          add(TermsWith(reach_[j], rows_.joints()[k].joint, rows_.joints()[i].joint));
+      }
     }
     return terms;
+  }
+  // Whether a formula can name a joint.
+  bool IsSayable(std::size_t j) const {
+    return rows_.joints()[j].joint.find_first_of("[]") == std::string::npos;
   }
   // Of all joints, whose shapes are shared.
   JointReach Common() const {

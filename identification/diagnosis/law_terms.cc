@@ -255,6 +255,15 @@ std::vector<LawTerm> TermsWith(const JointReach& reach, const JointReach& other,
   return Terms(reach).WithAnother(other, name);
 }
 
+std::vector<LawTerm> TermsWith(const JointReach& reach, const std::string& one,
+                               const std::string& other) {
+  const auto term = [&](const std::string& variable, const Dimensions& of) {
+    const std::string text = variable + "[" + one + "]*" + variable + "[" + other + "]";
+    return LawTerm{{{text, UnitOver(of, reach.slides)}}};
+  };
+  return {term("q", {2}), term("v", {0, 2})};
+}
+
 std::vector<LawTerm> TermsOfTwo(const JointReach& one, const JointReach& other) {
   return Terms(one).OfTwo(other);
 }

@@ -46,6 +46,9 @@ std::vector<LawTerm> TermsOf(const JointReach& reach);
 /// Those that tie the joint to another one, by its name.
 std::vector<LawTerm> TermsWith(const JointReach& reach, const JointReach& other,
                                const std::string& name);
+/// Those that are products of two other joints, by their names.
+std::vector<LawTerm> TermsWith(const JointReach& reach, const std::string& one,
+                               const std::string& other);
 /// Those that two joints feel from each other: of energies of their product, their difference (a
 /// spring or damper between them) or their sum.
 std::vector<LawTerm> TermsOfTwo(const JointReach& one, const JointReach& other);
