@@ -396,9 +396,9 @@ class Session {
   // One that is found is judged beside the candidates, on logs left out.
   void LookForALaw() {
     if (!WantsALaw(d_, unlisted_error_) || !HasTimeFor("a law that nobody listed")) return;
-    FoundLaw found = FindLaw(fitter_, d_, options_);
+    FoundLaw found = FindLaw(fitter_, d_, options_, unlisted_error_);
     if (!found.effect.empty()) d_.remaining.would_take = found.effect + " explains as much of the missing force as any formula, and is not listed";
-    if (!found.law || !IsBetterLaw(d_, *found.law)) return;
+    if (!found.law || !IsBetterLaw(d_, *found.law, unlisted_error_)) return;
     TakeLaw(*std::move(found.law), d_);
     JudgeByFolds();
   }

@@ -166,17 +166,17 @@ void TakeLaw(CandidateResult law, Diagnosis& d) {
   d.noise_limited = false;
 }
 
-bool IsBetterLaw(const Diagnosis& d, const CandidateResult& law) {
+bool IsBetterLaw(const Diagnosis& d, const CandidateResult& law, double unlisted) {
   constexpr double kHalf = 0.5, kTenth = 0.1;
   const double left = SquaresAbove(law.fitted.error.train, d);
   const double main = (1 - d.criteria.main_share) * SquaresAbove(d.before.error.train, d);
-  const double best = SquaresAbove(LeastError(d), d);
+  const double best = SquaresAbove(std::min(unlisted, LeastError(d)), d);
   if (best > main) return left <= std::min(main, kHalf * best);
   return left <= kTenth * best || law.fitted.error.train <= d.criteria.near_noise * d.noise.floor();
 }
 
-FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
-                 const DiagnosisOptions& options) {
+FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d, const DiagnosisOptions& options,
+                 double unlisted) {
   const Experiment& e = *fitter.experiment;
   const Problem null(e, d.system);
   const EquationErrors view(null, d.before.fit.x, null.TrainLogs());
@@ -184,8 +184,9 @@ FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d,
   const auto suggested = SuggestLaws(LawRows(e, view, d.folds), options.seed, kFitted);
   if (suggested.empty()) return {};
   options.Say(DiagnosisStage::kJudgement, "effects that say what a law does");
-  if (auto effect = AsGoodAsALaw(suggested, view, e, d, options); !effect.empty())
-    return {{}, effect};
+  const bool compared = std::isfinite(unlisted);
+  std::string effect = compared ? "" : AsGoodAsALaw(suggested, view, e, d, options);
+  if (!effect.empty()) return {{}, effect};
   std::vector<CandidateResult> laws;
   for (const SuggestedLaw& one : suggested) {
     if (!laws.empty() && fitter.TimeIsOver()) break;
