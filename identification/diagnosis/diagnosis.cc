@@ -18,6 +18,7 @@
 #include "identification/diagnosis/fallback_force.h"
 #include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/fold_comparison.h"
+#include "identification/diagnosis/forces_comparison.h"
 #include "identification/diagnosis/found_law.h"
 #include "identification/diagnosis/gain_interval.h"
 #include "identification/diagnosis/log_requirements.h"
@@ -285,9 +286,8 @@ class Session {
   void CompareByEquation() {
     options_.Say(DiagnosisStage::kJudgement, "missing force");
     const bool known = LogsForALook(e_, null_.step()) == TrainLogs(e_);
-    CompareByForces(
-        known ? views_.front() : EquationErrors(null_, d_.before.fit.x, TrainLogs(e_)),
-        d_.candidates);
+    CompareByForces(known ? views_.front() : EquationErrors(null_, d_.before.fit.x, TrainLogs(e_)),
+                    d_.candidates);
   }
 
   // Likelihoods have judged; the folds show what that is worth.
@@ -316,7 +316,10 @@ class Session {
         JudgeLikelihoods(records, d_.lack_of_fit, search.smallest_p(), search.Base(), d_.criteria);
     const auto& named = d_.verdict.named;
     const bool coarse = d_.lack_of_fit.of_step || d_.noise.step > d_.noise.rms;
-    if (coarse && !named.empty() && !MoreThanStep(search.candidates[named.front()].fitted))
+    // The time step may have put there what the fit takes off.
+    if (coarse && !named.empty() &&
+        WithoutPart(d_.before.error.train, search.candidates[named.front()].fitted.error.train) <=
+            d_.noise.step)
       d_.verdict = Verdict::Adequate("no candidate does more than the time step; try a finer one");
     // Tests of the residual see nothing where nothing moves.
     const TwoErrors& left = search.leading() ? search.leading()->fitted.error : d_.before.error;
@@ -382,11 +385,6 @@ class Session {
                             search.candidates.end());
   }
 
-  // Whether a fit takes more off the error than the time step may have put there.
-  bool MoreThanStep(const Fitted& f) const {
-    return WithoutPart(d_.before.error.train, f.error.train) > d_.noise.step;
-  }
-
   void SetProbabilities(std::vector<CandidateResult>& candidates,
                         const std::vector<LikelihoodRecord>& records) const {
     const auto probability = ProbabilitiesOf(records, d_.criteria);
@@ -397,7 +395,9 @@ class Session {
   void LookForALaw() {
     if (!WantsALaw(d_, unlisted_error_) || !HasTimeFor("a law that nobody listed")) return;
     FoundLaw found = FindLaw(fitter_, d_, options_, unlisted_error_);
-    if (!found.effect.empty()) d_.remaining.would_take = found.effect + " explains as much of the missing force as any formula, and is not listed";
+    if (!found.effect.empty())
+      d_.remaining.would_take =
+          found.effect + " explains as much of the missing force as any formula, and is not listed";
     if (!found.law || !IsBetterLaw(d_, *found.law, unlisted_error_)) return;
     TakeLaw(*std::move(found.law), d_);
     JudgeByFolds();
@@ -413,7 +413,8 @@ class Session {
     d_.partner = std::move(pair.first);
     d_.verdict.reason = fmt::format("no single candidate is enough, two are: {} beside this; {}",
                                     d_.partner->hypothesis.NameAtPlace(), d_.verdict.reason);
-    d_.verdict.kind = IsOnePair(*d_.partner, d_.verdict.named.size()) ? Verdict::Kind::kNamed : Verdict::Kind::kAmbiguous;
+    d_.verdict.kind = IsOnePair(*d_.partner, d_.verdict.named.size()) ? Verdict::Kind::kNamed
+                                                                      : Verdict::Kind::kAmbiguous;
     if (d_.partner->correction == Partner::Correction::kBoth)
       d_.verdict.reason +=
           "; both change numbers of the model or the sensors by a few per cent, which others that "

@@ -11,7 +11,6 @@
 #include "identification/diagnosis/candidate_fitter.h"
 #include "identification/diagnosis/plainest.h"
 #include "identification/diagnosis/probing.h"
-#include "identification/diagnosis/search_bytes.h"
 #include "identification/diagnosis/search_rules.h"
 #include "identification/fit/bounded_least_squares.h"
 #include "sim/numerics/shared_loop.h"
@@ -165,14 +164,6 @@ std::vector<double> EquationErrors::PerLog(const Vector& r) const {
     if (sum > 0) roots.push_back(std::sqrt(sum));
   }
   return roots;
-}
-
-void CompareByForces(const EquationErrors& forces, std::vector<CandidateResult>& candidates) {
-  const auto look = [&](std::size_t, std::size_t i) {
-    candidates[i].by_equation = forces.Of(candidates[i]);
-  };
-  ShareOut(candidates.size(), look,
-           [&](auto& archive, std::size_t i) { archive(candidates[i].by_equation); });
 }
 
 bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b,

@@ -84,9 +84,6 @@ class EquationErrors {
   Box bounds_;                    // of the parameters
 };
 
-/// What each candidate explains of it (CandidateResult::by_equation).
-void CompareByForces(const EquationErrors& forces, std::vector<CandidateResult>& candidates);
-
 /// Whether the missing force speaks for another candidate than b: a explains it clearly better.
 bool ClearlyBetterByEquation(const CandidateResult& a, const CandidateResult& b,
                              const Criteria& criteria = {});

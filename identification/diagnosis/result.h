@@ -186,8 +186,8 @@ struct PairTried {
   double likelihood;
 };
 
-/// The force that is missing without a law that was found, on the joint where it does most, and what
-/// the law does at the same rows.
+/// The force that is missing without a law that was found, on the joint where it does most, and
+/// what the law does at the same rows.
 struct LawPicture {
   MissingForce missing;
   std::vector<double> law;
@@ -237,7 +237,7 @@ struct Diagnosis {
   std::string ceiling_by;   ///< what reached it, in words
   std::optional<CandidateResult> fallback;  ///< where nothing explains it (fallback_force.h)
   NextExperiment next;
-  MissingForce missing_force;      ///< of the model before; no joint where it cannot be shown
+  MissingForce missing_force;  ///< of the model before; no joint where it cannot be shown
   std::optional<LawPicture> law_picture;  ///< where a law that was found is the cause
   std::optional<double> contrast;         ///< ConditionContrast of the model before
   std::vector<FreeParameter> parameters_before, parameters;  ///< of before, and of last()

@@ -177,9 +177,9 @@ void Append(const std::vector<MissingForce>& joints, std::vector<MissingForce>& 
     MissingForce& to = all[j];
     to.joint = from.joint, to.slides = from.slides, to.at_rest = from.at_rest;
     to.log.insert(to.log.end(), from.log.begin(), from.log.end());
-    for (const auto rows : {&MissingForce::time, &MissingForce::angle, &MissingForce::velocity,
-                            &MissingForce::load, &MissingForce::force, &MissingForce::acceleration,
-                            &MissingForce::weight})
+    for (const auto rows :
+         {&MissingForce::time, &MissingForce::angle, &MissingForce::velocity, &MissingForce::load,
+          &MissingForce::force, &MissingForce::acceleration, &MissingForce::weight})
       (to.*rows).insert((to.*rows).end(), (from.*rows).begin(), (from.*rows).end());
   }
 }

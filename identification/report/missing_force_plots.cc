@@ -110,12 +110,12 @@ void AddMissingForce(Page& page, const MissingForce& f) {
 void AddLaw(Page& page, const LawPicture& picture, const std::string& formula) {
   const MissingForce& f = picture.missing;
   page.Paragraph("On joint " + f.joint +
-                 ": the force that is missing without it, and what the formula gives at the same "
-                 "rows. Measured accelerations scatter; the formula does not.");
+                 ": the force that is missing without it, and what the law gives at the same rows. "
+                 "Measured accelerations scatter; the law does not.");
   for (const Abscissa& over : AbscissasOf(f, formula)) {
     ScatterSpec spec = Over(f, over.axis);
     spec.groups.push_back(Points("missing", over.x, f.force, Style::kResidual));
-    spec.groups.push_back(Points("formula", over.x, picture.law, Style::kAfter));
+    spec.groups.push_back(Points("law", over.x, picture.law, Style::kAfter));
     page.Scatter(spec);
   }
 }
