@@ -26,6 +26,7 @@ constexpr std::size_t kShifted = 19;    // of 20, the true one is the best by ch
 constexpr std::size_t kRefined = 12;    // terms whose shapes are searched
 constexpr std::size_t kExtended = 4;    // terms that are given a second one
 constexpr std::size_t kSeconds = 3;     // of which so many are refined
+constexpr std::size_t kNumbers = 6;     // of sizes and shapes in all: two waves
 constexpr double kEarned = 0.8;         // of the squares on the folds, that a second term may leave
 constexpr double kLeast = 0.02;         // of the squares of the missing force
 constexpr std::size_t kPlain = 2;       // of one term that are suggested in any case
@@ -297,7 +298,7 @@ class LawSearch {
                      [](const Law& a, const Law& b) { return a.amount > b.amount; });
     std::optional<Law> best;
     for (std::size_t i = 0; i < std::min(longer.size(), kSeconds); ++i) {
-      if (NumbersOf(longer[i]) > 5) continue;
+      if (NumbersOf(longer[i]) > kNumbers) continue;
       Refine(longer[i], rest);
       if (longer[i].left < kEarned * law.left && (!best || longer[i].left < best->left))
         best = std::move(longer[i]);
