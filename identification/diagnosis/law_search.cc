@@ -35,19 +35,53 @@ constexpr std::size_t kAtOnePlace = 2;  // of those that are suggested, where th
 // Directions that are taken off already, and what is left of targets.
 class Remainder {
  public:
-  Remainder(const Matrix& taken, const Matrix& targets) : basis_(taken.rows(), 0) {
-    if (taken.cols() > 0) {
-      const Eigen::ColPivHouseholderQR<Matrix> qr(taken);
-      basis_ = qr.householderQ() * Matrix::Identity(taken.rows(), qr.rank());
-    }
+  Remainder(const Matrix& taken, const Matrix& targets) : basis_(BasisOf(taken)) {
     targets_ = Off(targets);
+  }
+  // With more directions taken off; of the first target.
+  Remainder(const Remainder& before, const Matrix& more) {
+    const Matrix others = BasisOf(before.Off(more));
+    basis_.resize(others.rows(), before.basis_.cols() + others.cols());
+    basis_ << before.basis_, others;
+    targets_ = Off(before.targets_.leftCols(1));
   }
   Matrix Off(const Matrix& columns) const {
     return columns - basis_ * (basis_.transpose() * columns);
   }
   const Matrix& targets() const { return targets_; }
 
+  // Squares that columns take of each target, by their normal equations. They are zero but in rows
+  // of some joints, which are all that count.
+  struct Rows {
+    Eigen::Index begin, count;
+  };
+  Vector Amounts(const Matrix& columns, const std::vector<Rows>& where) const {
+    constexpr double kNothing = 1e-9;  // of the squares of a direction
+    const Eigen::Index n = columns.cols();
+    Matrix inner = Matrix::Zero(n, n), taken = Matrix::Zero(basis_.cols(), n);
+    Matrix with_targets = Matrix::Zero(n, targets_.cols());
+    for (const Rows& rows : where) {
+      const auto some = columns.middleRows(rows.begin, rows.count);
+      inner += some.transpose() * some;
+      taken += basis_.middleRows(rows.begin, rows.count).transpose() * some;
+      with_targets += some.transpose() * targets_.middleRows(rows.begin, rows.count);
+    }
+    const Matrix left = inner - taken.transpose() * taken;
+    if (!(left.trace() > kNothing * inner.trace())) return Vector::Zero(targets_.cols());
+    Eigen::CompleteOrthogonalDecomposition<Matrix> solver;
+    solver.setThreshold(kNothing);
+    solver.compute(left);
+    const Matrix sizes = solver.solve(with_targets);
+    return with_targets.cwiseProduct(sizes).colwise().sum().transpose();
+  }
+
  private:
+  static Matrix BasisOf(const Matrix& columns) {
+    if (columns.cols() == 0) return columns;
+    const Eigen::ColPivHouseholderQR<Matrix> qr(columns);
+    return qr.householderQ() * Matrix::Identity(columns.rows(), qr.rank());
+  }
+
   Matrix basis_, targets_;
 };
 
@@ -166,10 +200,12 @@ class LawSearch {
     if (!columns.allFinite()) columns.setZero();
     return columns;
   }
-  // Squares that columns take of each target.
-  static Vector Amounts(const Matrix& columns, const Matrix& targets) {
-    if (!(columns.norm() > 0)) return Vector::Zero(targets.cols());
-    return (columns * Solve(columns, targets)).colwise().squaredNorm().transpose();
+  std::vector<Remainder::Rows> RowsOf(std::size_t place) const {
+    const Eigen::Index count = rows_.size() / std::ssize(rows_.joints());
+    std::vector<Remainder::Rows> rows;
+    for (const std::size_t j : places_[place].joints)
+      rows.push_back({static_cast<Eigen::Index>(j) * count, count});
+    return rows;
   }
   Matrix ColumnsOf(const Law& law) const {
     Matrix columns(rows_.size(), 0);
@@ -189,8 +225,7 @@ class LawSearch {
   Best BestOnGrid(const LawTerm& term, std::size_t place, const Remainder& from) const {
     Best best;
     for (const std::vector<double>& shapes : term.Grid()) {
-      const Matrix columns = from.Off(ColumnsOf({term, shapes}, place));
-      const Vector amounts = Amounts(columns, from.targets());
+      const Vector amounts = from.Amounts(ColumnsOf({term, shapes}, place), RowsOf(place));
       if (best.shapes.size() < shapes.size() || amounts[0] > best.amount)
         best.shapes = shapes, best.amount = amounts[0];
       if (amounts.size() > 1)
@@ -224,7 +259,7 @@ class LawSearch {
     constexpr int kRounds = 14;
     PlacedTerm& last = law.terms.back();
     const auto amount = [&](const PlacedTerm& term) {
-      return Amounts(from.Off(ColumnsOf(term, law.place)), from.targets().leftCols(1))[0];
+      return from.Amounts(ColumnsOf(term, law.place), RowsOf(law.place))[0];
     };
     double best = amount(last);
     std::vector<double> step;
@@ -281,11 +316,11 @@ class LawSearch {
       left += b.dot(gram * b);
     }
     law.left = whole(n, n) > 0 ? left / whole(n, n) : 1;
-    law.amount = Amounts(columns, target)[0];
+    law.amount = (columns * Solve(columns, target)).squaredNorm();
   }
 
   std::optional<Law> Extended(const Law& law) const {
-    const Remainder rest(all_.Off(ColumnsOf(law)), all_.targets().leftCols(1));
+    const Remainder rest(all_, ColumnsOf(law));
     std::vector<LawTerm> terms = places_[law.place].terms;
     if (HasHeat(law.terms.front().term)) std::erase_if(terms, HasHeat);  // it has one constant
     std::vector<Law> longer(terms.size(), law);
