@@ -152,10 +152,8 @@ std::vector<Solved> RowsOf(const SolveRequest& request, const Robot& robot,
     Case row = cases[i];
     const Eigen::VectorXd& pull = solved[i].pull;
     if (pull.size() > 0) row.load.tension.assign(pull.begin(), pull.end());
-    if (row.reference >= 0) {
-      row.load.reference = solved[row.reference].length;
-      row.load.slide = solved[row.reference].slide;
-    }
+    row.load.reference = solved[i].reference;
+    row.load.slide = solved[i].reference_slide;
     if (request.equilibria) {
       int count = 0;
       for (Solution& s : twin_pivot::Equilibria(robot, row.load, method, solved[i])) {
@@ -329,6 +327,18 @@ void WarnOfLimits(const SolveRequest& request, const Robot& robot,
        robot.theta_max);
 }
 
+// How many rows are no roots of the equations with the whole way from the reference.
+void SayInParts(const SolveRequest& request, const std::vector<Solved>& rows) {
+  const auto in_parts = [](const Solved& s) { return s.solution.parts > 1; };
+  const auto first = std::find_if(rows.begin(), rows.end(), in_parts);
+  if (first == rows.end()) return;
+  request.say(fmt::format(
+      "{} of {} rows, '{}' the first: contacts turned back while the load rose, so friction counts "
+      "along {} parts of the way",
+      std::count_if(first, rows.end(), in_parts), rows.size(), first->row.label,
+      first->solution.parts));
+}
+
 void WriteRow(const Robot& robot, const Solved& solved, statics::Results& results) {
   const Solution& solution = solved.solution;
   const twin_pivot::Load& load = solved.row.load;
@@ -454,6 +464,7 @@ int SolveTwinPivot(const SolveRequest& request) {
   std::vector<Solved> rows = solve(request, robot, cases, method);
   AddErrors(request, robot, rows);
   if (HasLimits(robot)) WarnOfLimits(request, robot, rows);
+  SayInParts(request, rows);
   WriteResults(request, robot, rows);
   if (!request.shape.empty()) WriteShapes(request, robot, rows);
   if (!request.compliance.empty()) WriteCompliance(request, robot, method, rows);
