@@ -285,11 +285,12 @@ void SayInParts(const SolveRequest& request, const std::vector<Solved>& rows) {
   const auto in_parts = [](const Solved& s) { return s.solution.parts > 1; };
   const auto first = std::find_if(rows.begin(), rows.end(), in_parts);
   if (first == rows.end()) return;
+  int most = 1;
+  for (const Solved& s : rows) most = std::max(most, s.solution.parts);
   request.say(fmt::format(
       "{} of {} rows, '{}' the first: contacts turned back while the load rose, so friction counts "
-      "along {} parts of the way",
-      std::count_if(first, rows.end(), in_parts), rows.size(), first->row.label,
-      first->solution.parts));
+      "along up to {} parts of the way",
+      std::count_if(first, rows.end(), in_parts), rows.size(), first->row.label, most));
 }
 
 void WriteRow(const Robot& robot, const Solved& solved, statics::Results& results) {

@@ -47,6 +47,7 @@ struct Solution {
 ///
 /// Far below buckling contacts slide as their whole way says, (15)-(16). Above, the loads grow in
 /// 50 parts, and contacts go on from part to part: those that turn back on the way resist there.
+/// Where they grow evenly 4 or 8 parts do, to 2e-4 of the length.
 /// @throws Error when the coefficient of friction is negative at an angle of the solution, or of
 /// the last root found when the friction then could not be followed.
 Solution Solve(const Robot& robot, const Load& load, Method method = Method::kVirtualWork,

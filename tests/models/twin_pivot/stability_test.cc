@@ -125,6 +125,28 @@ TEST(TwinPivotStability, ContactsThatTurnBackAsTheArmFallsOverRememberTheWay) {
   }
 }
 
+// Hanging, the arm never comes near buckling: its way grows evenly, and few parts do.
+TEST(TwinPivotStability, WhereTheWayGrowsEvenlyFewPartsEndWhereManyRowsDo) {
+  const Robot robot = Prototype("c360");
+  const auto at = [](double share) {
+    Load load;
+    load.tension = {9, 9, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3};
+    for (double& tension : load.tension) tension *= share;
+    load.gravity = {9.81 * share, 0, 0};
+    return load;
+  };
+  const Solution once = Solve(robot, at(1));
+  ASSERT_TRUE(once.outcome.ok()) << once.outcome.why;
+  EXPECT_EQ(once.parts, 8);
+  constexpr int kRows = 100;
+  Solution state = Solve(robot, at(1.0 / kRows));
+  for (int i = 2; i <= kRows; ++i) {
+    state = SolveFrom(robot, at((i - 1.0) / kRows), state, at(1.0 * i / kRows));
+    ASSERT_TRUE(state.outcome.ok()) << i << ": " << state.outcome.why;
+  }
+  EXPECT_LT((state.tip - once.tip).norm(), 2e-4 * robot.Length());
+}
+
 // Contacts at 98 % of their friction still give way elastically. The work of small motions, by
 // differences of the moments in the joints, says whether they hold.
 TEST(TwinPivotStability, ContactsThatAlmostSlideHoldWhereEverySmallMotionCostsWork) {
