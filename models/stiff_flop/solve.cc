@@ -116,6 +116,7 @@ void WarnOfImplausibleCases(const SolveRequest& request, const Robot& robot, con
     }
     if (cases.direction == Direction::kInverse) {
       statics::WarnIfDegrees(request, where + "phi", row.given[1]);
+      statics::WarnIfImplausible(request, where + "lambda_l", row.given[2], 0.3, 3, "");
       continue;
     }
     for (Eigen::Index i = 0; i < row.given.size(); ++i) {

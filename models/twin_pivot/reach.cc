@@ -184,7 +184,8 @@ statics::Reached Approach(const Robot& robot, const Load& load, Method method,
 Solution SolveGoingOn(const Robot& robot, Load& load, Method method, const Before* before) {
   Solution s = before ? SolveFrom(robot, before->load, before->solution, load, method)
                       : Solve(robot, load, method);
-  GoOn(load, before);
+  load.reference = s.reference;
+  load.slide = s.reference_slide;
   if (load.length.size() == 0) s.pull = VectorXd::Map(load.tension.data(), robot.Cables());
   return s;
 }

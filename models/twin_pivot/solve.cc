@@ -12,7 +12,6 @@
 #include "models/statics/foreign_options.h"
 #include "models/statics/measured_points.h"
 #include "models/statics/path_error.h"
-#include "models/statics/plausible.h"
 #include "models/statics/results.h"
 #include "models/statics/rows.h"
 #include "models/statics/sweep.h"
@@ -25,18 +24,17 @@
 #include "models/twin_pivot/follow.h"
 #include "models/twin_pivot/geometry.h"
 #include "models/twin_pivot/limits.h"
+#include "models/twin_pivot/plausible.h"
 #include "models/twin_pivot/reach.h"
 #include "models/twin_pivot/response.h"
 #include "models/twin_pivot/twin_pivot.h"
 #include "sim/io/file.h"
-#include "sim/io/yaml.h"
 
 namespace continuum {
 namespace {
 
 using twin_pivot::Case;
 using twin_pivot::Method;
-using twin_pivot::PerSection;
 using twin_pivot::Robot;
 using twin_pivot::Solution;
 
@@ -63,51 +61,6 @@ int Calibrate(const SolveRequest& request) {
   statics::RequireExtension(request.out, {".json"}, "--out");
   WriteFile(request.out, twin_pivot::CalibrateFriction(request.input).Json());
   return 0;
-}
-
-void WarnOfImplausibleRobot(const SolveRequest& request, const Robot& robot) {
-  const Yaml file = Yaml::Read(request.robot);
-  const auto check = [&](const char* key, double value, double low, double high, const char* unit) {
-    statics::WarnIfImplausible(request, file.At(key).Where(), value, low, high, unit);
-  };
-  const auto each = [&](const char* key, const PerSection& values, double low, double high,
-                        const char* unit) {
-    for (const double value : values.values()) check(key, value, low, high, unit);
-  };
-  const double pitch = robot.L[0] + robot.h[0];
-  each("L", robot.L, 1e-4, 0.5, "m");
-  each("h", robot.h, 1e-5, 0.5, "m");
-  each("E", robot.E, 1e6, 1e12, "Pa");
-  each("I_z", robot.I_z, 1e-20, 1e-6, "m^4");
-  each("m_D", robot.m_D, 1e-7, 5, "kg");
-  each("m_NiTi", robot.m_NiTi, 1e-8, 5, "kg");
-  each("rho_cable", robot.rho_cable, 1e-7, 5, "kg/m");
-  each("m_CL", robot.m_CL, 1e-8, 5, "kg");
-  check("gravity", robot.gravity.norm(), 0.1, 100, "m/s^2");
-  for (const double r : robot.r) check("r", r, pitch / 100, 5 * pitch, "m");
-  for (const double phi : robot.phi) {
-    statics::WarnIfDegrees(request, file.At("phi").Where(), phi);
-  }
-}
-
-// A tension is judged by the angle that it alone would bend a joint by, a length by the straight
-// robot's.
-void WarnOfImplausibleCables(const SolveRequest& request, const Robot& robot,
-                             const std::vector<Case>& cases) {
-  constexpr double kMostBend = 3;  // rad in one joint
-  for (const Case& row : cases) {
-    for (int j = 0; j < robot.Cables(); ++j) {
-      const auto check = [&](double value, double low, double high, const char* unit) {
-        const std::string cable = "', cable " + std::to_string(j + 1);
-        statics::WarnIfImplausible(request, request.input.string() + ": case '" + row.label + cable,
-                                   value, low, high, unit);
-      };
-      const auto at = static_cast<std::size_t>(j);
-      check(row.load.tension[at], 0, kMostBend * robot.Stiffness() / robot.r[at], "N");
-      const double straight = robot.LengthOfCable(j);
-      if (row.load.length.size() > 0) check(row.load.length[j], 0.2 * straight, 3 * straight, "m");
-    }
-  }
 }
 
 // A row of the results.
@@ -152,10 +105,8 @@ std::vector<Solved> RowsOf(const SolveRequest& request, const Robot& robot,
     Case row = cases[i];
     const Eigen::VectorXd& pull = solved[i].pull;
     if (pull.size() > 0) row.load.tension.assign(pull.begin(), pull.end());
-    if (row.reference >= 0) {
-      row.load.reference = solved[row.reference].length;
-      row.load.slide = solved[row.reference].slide;
-    }
+    row.load.reference = solved[i].reference;
+    row.load.slide = solved[i].reference_slide;
     if (request.equilibria) {
       int count = 0;
       for (Solution& s : twin_pivot::Equilibria(robot, row.load, method, solved[i])) {
@@ -329,6 +280,19 @@ void WarnOfLimits(const SolveRequest& request, const Robot& robot,
        robot.theta_max);
 }
 
+// How many rows are no roots of the equations with the whole way from the reference.
+void SayInParts(const SolveRequest& request, const std::vector<Solved>& rows) {
+  const auto in_parts = [](const Solved& s) { return s.solution.parts > 1; };
+  const auto first = std::find_if(rows.begin(), rows.end(), in_parts);
+  if (first == rows.end()) return;
+  int most = 1;
+  for (const Solved& s : rows) most = std::max(most, s.solution.parts);
+  request.say(fmt::format(
+      "{} of {} rows, '{}' the first: contacts turned back while the load rose, so friction counts "
+      "along up to {} parts of the way",
+      std::count_if(first, rows.end(), in_parts), rows.size(), first->row.label, most));
+}
+
 void WriteRow(const Robot& robot, const Solved& solved, statics::Results& results) {
   const Solution& solution = solved.solution;
   const twin_pivot::Load& load = solved.row.load;
@@ -431,7 +395,7 @@ void Draw(const SolveRequest& request, const Robot& robot, const std::vector<Sol
 int SolveTwinPivot(const SolveRequest& request) {
   RefuseOptions(request);
   const Robot robot = Robot::Read(request.robot);
-  WarnOfImplausibleRobot(request, robot);
+  twin_pivot::WarnOfImplausibleRobot(request, robot);
   if (request.calibrate) return Calibrate(request);
   const Method method = twin_pivot::ParseMethod(request.method);
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
@@ -447,13 +411,14 @@ int SolveTwinPivot(const SolveRequest& request) {
     throw Error::Input(request.input.string() + ":1", std::string("tensions with ") + option,
                        "'L1'");
   }
-  WarnOfImplausibleCables(request, robot, cases);
+  twin_pivot::WarnOfImplausibleCases(request, robot, cases);
   const auto solve = !request.reach.empty()    ? ReachTargets
                      : !request.follow.empty() ? FollowPath
                                                : RowsOf;
   std::vector<Solved> rows = solve(request, robot, cases, method);
   AddErrors(request, robot, rows);
   if (HasLimits(robot)) WarnOfLimits(request, robot, rows);
+  SayInParts(request, rows);
   WriteResults(request, robot, rows);
   if (!request.shape.empty()) WriteShapes(request, robot, rows);
   if (!request.compliance.empty()) WriteCompliance(request, robot, method, rows);

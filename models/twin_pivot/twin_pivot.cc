@@ -24,6 +24,7 @@ using Eigen::VectorXd;
 
 // A contact this wide [m] is no obstacle to Newton: cables move by about as much.
 constexpr double kWidest = 1e-3;
+constexpr int kParts = 50;  // of loads that grow; their friction remembers each
 
 // Runs one stage from x; keeps the count of iterations, and x only when it succeeded.
 template <class Stage>
@@ -104,27 +105,113 @@ bool FarFromBuckling(const Task& task) {
   return force * length * length < kMost * stiffness;
 }
 
-// At full load from x, whatever it is.
-bool FindAny(RisingSystem& system, VectorXd& x, VectorXd other) {
-  for (VectorXd* const trial : {&x, &other}) {
-    if (!system.Fall(1, 1, *trial).ok) continue;
-    x = *trial;
+// s of every contact, row m at disc m; 0 without friction.
+Eigen::MatrixXd SlideAt(const Task& task, const VectorXd& beta, std::vector<double>& force) {
+  Eigen::MatrixXd slide = Eigen::MatrixXd::Zero(task.joints, task.cables);
+  CableForces(task, JointsAt(task.robot, beta), 1, task.robot.eps, force, nullptr, &slide);
+  return slide;
+}
+
+// Adds to what was spent. Leaves the stability of its answer alone.
+bool Rise(const Task& from, const Task& to, Solution& solution,
+          const statics::RisingOptions& options) {
+  RisingSystem system(from, to);
+  const int spent = solution.outcome.iterations;
+  solution.outcome =
+      statics::FollowRisingLoad(system, solution.beta, solution.stability.branch, options);
+  solution.outcome.iterations += spent;
+  return solution.outcome.ok();
+}
+
+// Of a path whose rows are near to each other: at once where a step leads no farther than it may.
+statics::RisingOptions AtOnce() {
+  statics::RisingOptions options;
+  options.first_step = options.largest_step = 1;
+  options.trust = 0.1;
+  return options;
+}
+
+bool IsRoot(const Task& task, const VectorXd& beta) {
+  VectorXd f(task.joints);
+  const Balance balance{task, 1, 1, task.robot.eps};
+  return balance(beta.data(), f.data()) && f.norm() <= Tolerances().accept;
+}
+
+// The loads grow in parts, and every contact goes on from the part before: one that turns back on
+// the way resists there, whatever its whole way was. Where some did, `to` gets what the last part
+// began with. @returns the longest part of the way |change of beta|; none where the way ends.
+std::optional<double> RiseInParts(const Task& from, Task& to, Solution& solution, int parts,
+                                  const statics::RisingOptions& options) {
+  Task now = to;
+  std::vector<double> force;
+  double longest = 0;
+  for (int i = 0; i < parts; ++i) {
+    const auto at = [&](int part) { return now.Between(from, static_cast<double>(part) / parts); };
+    if (i > 0) {
+      now.slide = SlideAt(at(i), solution.beta, force);
+      now.reference = CableLengths(to.robot, solution.beta);
+    }
+    const VectorXd last = solution.beta;
+    if (!Rise(at(i), at(i + 1), solution, options)) {
+      solution.outcome.why = "the rising load ends at " + Decimal(static_cast<double>(i) / parts) +
+                             " of it, and no stable shape was found";
+      return std::nullopt;
+    }
+    longest = std::max(longest, (solution.beta - last).norm());
+  }
+  if (IsRoot(to, solution.beta)) return longest;
+  to.reference = now.reference;
+  to.slide = now.slide;
+  solution.parts = parts;
+  return longest;
+}
+
+// Few parts do where no contact turned back, or where four and eight end at one tip. Every part is
+// one step to a stable shape, and the way grows evenly: below the buckling load P_c it grows as
+// t/(1 - t P/P_c), at the end 1/(1 - P/P_c) times as fast as on average.
+bool RiseInFewParts(const Task& from, Task& to, Solution& solution) {
+  constexpr double kEven = 5.0 / 3;  // P = 0.4 P_c
+  constexpr double kSame = 2e-4;     // of the length
+  statics::RisingOptions one_step = AtOnce();
+  one_step.most_steps = 1;
+  const Solution begin = solution;
+  std::optional<Eigen::Vector3d> last;
+  for (const int parts : {4, 8}) {
+    Task task = to;
+    const int spent = solution.outcome.iterations;
+    solution = begin;
+    solution.outcome.iterations = spent;
+    const auto longest = RiseInParts(from, task, solution, parts, one_step);
+    if (!longest || *longest * parts > kEven * solution.beta.norm()) return false;
+    const Eigen::Vector3d tip = CentreLine(to.robot, solution.beta).back();
+    if (solution.parts == 1 || (last && (tip - *last).norm() < kSame * to.robot.Length())) {
+      to.reference = task.reference;
+      to.slide = task.slide;
+      return true;
+    }
+    last = tip;
+  }
+  return false;
+}
+
+// At full load from one of these, whatever it is.
+bool FindAny(const Task& task, Solution& solution, VectorXd other, int* driven) {
+  RisingSystem system(task, task);
+  for (VectorXd* const trial : {&solution.beta, &other}) {
+    const bool found = system.Fall(1, 1, *trial).ok;
+    *driven = system.driven();
+    if (!found) continue;
+    solution.beta = *trial;
     return true;
   }
   return false;
 }
 
-// Along the loads from where x is in balance; else whatever stands.
-void Follow(RisingSystem& system, const VectorXd& other, Solution& solution,
-            const statics::RisingOptions& options = {}) {
-  const int spent = solution.outcome.iterations;
-  solution.stability = {};
-  solution.outcome =
-      statics::FollowRisingLoad(system, solution.beta, solution.stability.branch, options);
-  solution.outcome.iterations += spent;
-  if (solution.outcome.ok()) return;
-  if (!FindAny(system, solution.beta, other)) {
-    if (system.driven() > 0) solution.outcome.why += "; where it rests friction may drive a motion";
+// What is found at full load where no path of the loads ends.
+void Fallback(const Task& task, const VectorXd& other, Solution& solution) {
+  int driven = 0;
+  if (!FindAny(task, solution, other, &driven)) {
+    if (driven > 0) solution.outcome.why += "; where it rests friction may drive a motion";
     return;
   }
   solution.outcome.status = numerics::Status::kOk;
@@ -132,9 +219,32 @@ void Follow(RisingSystem& system, const VectorXd& other, Solution& solution,
   solution.stability.branch = statics::Branch::kOther;
 }
 
+// Along the loads from where solution.beta is in balance, as one way or in parts; the other time
+// where the first fails; else whatever stands. `to` gets what the contacts slid from.
+void Follow(const Task& from, Task& to, const VectorXd& other, Solution& solution, bool parts_first,
+            const statics::RisingOptions& options = {}) {
+  solution.stability = {};
+  const Solution begin = solution;
+  const auto rises = [&](bool in_parts) {
+    const int spent = solution.outcome.iterations;
+    solution = begin;
+    solution.outcome.iterations = spent;
+    return in_parts ? RiseInParts(from, to, solution, kParts, AtOnce()).has_value()
+                    : Rise(from, to, solution, options);
+  };
+  const bool friction = to.HasFriction();
+  if (friction && parts_first && RiseInFewParts(from, to, solution)) return;
+  if (friction && parts_first && rises(true)) return;
+  if (rises(false)) return;
+  if (friction && !parts_first && rises(true)) return;
+  Fallback(to, other, solution);
+}
+
 void Describe(const Task& task, Solution& solution) {
   const Robot& robot = task.robot;
   RequirePositiveFriction(task, solution.beta);
+  solution.reference = task.reference;
+  solution.reference_slide = task.slide;
   if (!solution.outcome.ok()) {
     VectorXd f(task.joints);
     const bool inside = Balance{task, 1, 1, robot.eps}(solution.beta.data(), f.data());
@@ -143,9 +253,8 @@ void Describe(const Task& task, Solution& solution) {
   }
   solution.tip = CentreLine(robot, solution.beta).back();
   solution.length = CableLengths(robot, solution.beta);
-  solution.slide.setZero(task.joints, task.cables);
   std::vector<double> force;
-  CableForces(task, JointsAt(robot, solution.beta), 1, robot.eps, force, nullptr, &solution.slide);
+  solution.slide = SlideAt(task, solution.beta, force);
   solution.tension = Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
       force.data(), task.joints, task.cables);
 }
@@ -187,9 +296,8 @@ Solution Solve(const Robot& robot, const Load& load, Method method,
     }
     const VectorXd other = solution.beta;
     const Task unloaded = task.Unloaded();
-    RisingSystem system(unloaded, task);
     solution.beta = straight;
-    Follow(system, other, solution);
+    Follow(unloaded, task, other, solution, true);
     return solution.outcome;
   });
   Describe(task, solution);
@@ -209,12 +317,8 @@ Solution SolveFrom(const Robot& robot, const Load& earlier, const Solution& befo
     return solution;
   }
   solution.outcome = numerics::Timed([&] {
-    RisingSystem system(from, task);
     solution.beta = before.beta;
-    statics::RisingOptions options;  // at once where that leads no farther than a step may
-    options.first_step = options.largest_step = 1;
-    options.trust = 0.1;
-    Follow(system, before.beta, solution, options);
+    Follow(from, task, before.beta, solution, false, AtOnce());
     return solution.outcome;
   });
   Describe(task, solution);

@@ -29,6 +29,10 @@ struct Solution {
   Eigen::MatrixXd length;   ///< l_mj, joints x cables [m], 0 beyond the anchor
   Eigen::VectorXd pull;     ///< F_SC of cables driven by length [N]
   Eigen::MatrixXd slide;    ///< s of every contact, row m at disc m; 0 without friction
+  /// The state that the contacts slid from last, as in Load: its own, or that of the last part of
+  /// the way. A load that describes this solution has to have it.
+  Eigen::MatrixXd reference, reference_slide;
+  int parts = 1;  ///< of the way, more than 1 where contacts turned back on it
   statics::Stability stability;
 };
 
@@ -40,6 +44,10 @@ struct Solution {
 /// fails follows the path of roots from the one before (loads from 0, friction from 0, width from
 /// 1 mm). Other loads, and where this ends at a saddle, are followed from 0. Where load.length is
 /// given, it and the dead loads are, and the tensions are unknown (statics::LengthDriven).
+///
+/// Far below buckling contacts slide as their whole way says, (15)-(16). Above, the loads grow in
+/// 50 parts, and contacts go on from part to part: those that turn back on the way resist there.
+/// Where they grow evenly 4 or 8 parts do, to 2e-4 of the length.
 /// @throws Error when the coefficient of friction is negative at an angle of the solution, or of
 /// the last root found when the friction then could not be followed.
 Solution Solve(const Robot& robot, const Load& load, Method method = Method::kVirtualWork,

@@ -205,6 +205,14 @@ TEST_F(StiffFlopSolve, TubesOutsideTheWallAreNamed) {
                                                 HasSubstr("0.015 to 0.021 m"))));
 }
 
+TEST_F(StiffFlopSolve, AStretchInMillimetresIsNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  Cases("kappa,phi,lambda_l\n5,0,48\n");
+  SolveStiffFlop(request_);
+  EXPECT_THAT(heard, ElementsAre(HasSubstr("case '1', lambda_l: 48 is implausible")));
+}
+
 TEST_F(StiffFlopSolve, PlainNumbersAreReadToo) {
   WriteFile(folder_ / "plain.yaml",
             "format: 1\nmodel: stiff_flop\nmodule: a\ngravity: [0, 9.81, 0]\nmodules:\n"

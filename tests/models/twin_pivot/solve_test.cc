@@ -245,6 +245,22 @@ TEST_F(TwinPivotSolve, AnAngleInDegreesAndAnImplausibleTensionAreNamed) {
   EXPECT_NE(heard[0].find("-45 is taken as radians"), std::string::npos);
 }
 
+TEST_F(TwinPivotSolve, DeadLoadsThatWouldRollItUpAreNamed) {
+  std::vector<std::string> heard;
+  request_.warn = [&](const std::string& text) { heard.push_back(text); };
+  Cases("case,F1,F2,F3,F4,payload,fx,Mz,fy_2,gx\none,5,5,1,1,0.02,0.3,0.01,0.1,1\n");
+  EXPECT_EQ(SolveTwinPivot(request_), 0);
+  EXPECT_TRUE(heard.empty());
+  Cases("case,F1,F2,F3,F4,payload,fx,Mz,fy_2,gx\none,5,5,1,1,20,1e6,300,-1e4,9810\n");
+  SolveTwinPivot(request_);
+  ASSERT_EQ(heard.size(), 5U);
+  const char* const what[] = {"payload: 20 kg", "force: 1e+06 N", "moment: 300 N m",
+                              "gravity: 9810", "force on disc 2: 1e+04 N"};
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_NE(heard[i].find(std::string("case 'one', ") + what[i]), std::string::npos) << heard[i];
+  }
+}
+
 TEST_F(TwinPivotSolve, BadCasesAreRefusedWithLineAndColumn) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"case,m1,m2,m3\none,1,1,1\n", "m4"},

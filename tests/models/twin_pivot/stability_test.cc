@@ -87,14 +87,80 @@ TEST(TwinPivotStability, EqualTensionsUprightBendToOneSideAndSaySo) {
   EXPECT_GT(std::hypot(solution.tip.y(), solution.tip.z()), 0.05);
 }
 
+// Five of hard_loads.py twin_pivot. By the paper's rule contacts look at their whole way, and no
+// shape that the rising load reaches stands: those at rest flutter away (README).
+TEST(TwinPivotStability, ContactsThatTurnBackAsTheArmFallsOverRememberTheWay) {
+  const Robot robot = Prototype("b");
+  struct Row {
+    double pull, tilt, azimuth;  // [N], [deg]
+  };
+  for (const Row& row : {Row{2, 0.5, 45}, {4, 10, 0}, {6, 0.5, 45}, {8, 0.5, 45}, {8, 20, 135}}) {
+    const auto at = [&](double share) {
+      const double upper = share * row.pull, lower = share * (row.pull - 1);
+      Load load = Upright({upper, upper, lower, lower}, Condition::kV,
+                          row.tilt * std::numbers::pi / 180, row.azimuth * std::numbers::pi / 180);
+      load.payload = 0.2;
+      load.gravity *= share;
+      return load;
+    };
+    const Solution once = Solve(robot, at(1));
+    ASSERT_TRUE(once.outcome.ok()) << row.pull << ": " << once.outcome.why;
+    EXPECT_EQ(once.stability.branch, Branch::kRising);
+    EXPECT_TRUE(once.stability.stable());
+    EXPECT_GT(once.parts, 1);
+    constexpr int kRows = 100;
+    Solution state = Solve(robot, at(1.0 / kRows));
+    for (int i = 2; i <= kRows; ++i) {
+      state = SolveFrom(robot, at((i - 1.0) / kRows), state, at(1.0 * i / kRows));
+      ASSERT_TRUE(state.outcome.ok()) << row.pull << ", " << i << ": " << state.outcome.why;
+    }
+    // 50 parts: half as fine while it falls over, by 130 mm.
+    EXPECT_LT((state.tip - once.tip).norm(), 0.3e-3) << row.pull;
+    // Its equations hold from the state that the last part began with, and nothing moves from here.
+    Load last = at(1);
+    last.reference = once.reference;
+    last.slide = once.reference_slide;
+    EXPECT_LT(Residual(robot, last, Method::kVirtualWork, once.beta)->norm(), 1e-10);
+    EXPECT_LT((SolveFrom(robot, at(1), once, at(1)).tip - once.tip).norm(), 1e-9);
+  }
+}
+
+// Hanging, the arm never comes near buckling: its way grows evenly, and few parts do.
+TEST(TwinPivotStability, WhereTheWayGrowsEvenlyFewPartsEndWhereManyRowsDo) {
+  const Robot robot = Prototype("c360");
+  const auto at = [](double share) {
+    Load load;
+    load.tension = {9, 9, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3};
+    for (double& tension : load.tension) tension *= share;
+    load.gravity = {9.81 * share, 0, 0};
+    return load;
+  };
+  const Solution once = Solve(robot, at(1));
+  ASSERT_TRUE(once.outcome.ok()) << once.outcome.why;
+  EXPECT_EQ(once.parts, 8);
+  constexpr int kRows = 100;
+  Solution state = Solve(robot, at(1.0 / kRows));
+  for (int i = 2; i <= kRows; ++i) {
+    state = SolveFrom(robot, at((i - 1.0) / kRows), state, at(1.0 * i / kRows));
+    ASSERT_TRUE(state.outcome.ok()) << i << ": " << state.outcome.why;
+  }
+  EXPECT_LT((state.tip - once.tip).norm(), 2e-4 * robot.Length());
+}
+
 // Contacts at 98 % of their friction still give way elastically. The work of small motions, by
 // differences of the moments in the joints, says whether they hold.
 TEST(TwinPivotStability, ContactsThatAlmostSlideHoldWhereEverySmallMotionCostsWork) {
   const Robot robot = Prototype("b");
   Load load = Upright({10, 10, 9, 9}, Condition::kV, std::numbers::pi / 18);
   load.payload = 0.2;
-  const Solution solution = Solve(robot, load);
+  // In one step from a reference contacts look at their whole way, and some end there.
+  Load none = load;
+  none.tension = {0, 0, 0, 0};
+  none.gravity.setZero();
+  const Solution straight = Solve(robot, none);
+  const Solution solution = SolveFrom(robot, none, straight, load);
   ASSERT_TRUE(solution.outcome.ok()) << solution.outcome.why;
+  EXPECT_EQ(solution.parts, 1);
   const double largest = solution.slide.cwiseAbs().maxCoeff();
   EXPECT_GT((solution.slide.array().abs() > 0.98 && solution.slide.array().abs() < 0.99).count(), 0)
       << largest;
