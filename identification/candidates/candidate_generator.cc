@@ -230,14 +230,20 @@ std::vector<Candidate> WholeCatalog() {
 
 }  // namespace
 
+std::vector<Hypothesis> MakeCandidates(const std::vector<Candidate>& list, const Experiment& e,
+                                       const SearchBase& from, const Sizes& sizes,
+                                       std::vector<std::string>& skipped, SearchScope scope) {
+  const CandidateContext context{e, from, sizes};
+  std::vector<Hypothesis> all;
+  for (const Candidate& c : list) Entry(c, context, scope, all, skipped).Add();
+  return all;
+}
+
 std::vector<Hypothesis> MakeCandidates(const Experiment& e, const SearchBase& from,
                                        const Sizes& sizes, std::vector<std::string>& skipped,
                                        SearchScope scope) {
-  const CandidateContext context{e, from, sizes};
-  std::vector<Hypothesis> all;
-  for (const Candidate& c : e.all_candidates ? WholeCatalog() : e.candidates)
-    Entry(c, context, scope, all, skipped).Add();
-  return all;
+  return MakeCandidates(e.all_candidates ? WholeCatalog() : e.candidates, e, from, sizes, skipped,
+                        scope);
 }
 
 std::vector<std::string> Unlisted(const Experiment& e, const std::vector<std::string>& names) {

@@ -24,6 +24,12 @@ std::vector<Hypothesis> MakeCandidates(const Experiment& experiment, const Searc
                                        const Sizes& sizes, std::vector<std::string>& skipped,
                                        SearchScope places = SearchScope::kFew);
 
+/// The same of a list in place of the experiment's.
+std::vector<Hypothesis> MakeCandidates(const std::vector<Candidate>& list,
+                                       const Experiment& experiment, const SearchBase& from,
+                                       const Sizes& sizes, std::vector<std::string>& skipped,
+                                       SearchScope places = SearchScope::kFew);
+
 /// Effects of the catalog that the experiment's list of candidates leaves out; none where it lists
 /// all, or none. Not those whose card says kOnlyListed. names: the list to take in place of the
 /// experiment's, if any.

@@ -25,9 +25,11 @@ Problem ProblemOf(const CandidateResult& c, const Experiment& experiment) {
   return Problem(experiment, c.hypothesis.system, c.hypothesis.Free());
 }
 
-double WithoutPart(double error, double part) {
-  return std::sqrt(std::max(0.0, error * error - part * part));
+double SquaresWithoutPart(double error, double part) {
+  return std::max(0.0, error * error - part * part);
 }
+
+double WithoutPart(double error, double part) { return std::sqrt(SquaresWithoutPart(error, part)); }
 
 FitOptions CandidateFitter::Options() const {
   FitOptions options{iterations, 1e-3};  // first order does the rest

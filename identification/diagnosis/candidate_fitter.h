@@ -84,5 +84,7 @@ Problem ProblemOf(const CandidateResult& candidate, const Experiment& experiment
 
 /// An error without an independent part of it: √(a² − b²), 0 where the part is larger.
 double WithoutPart(double error, double part);
+/// Its square.
+double SquaresWithoutPart(double error, double part);
 
 }  // namespace continuum

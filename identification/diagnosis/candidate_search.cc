@@ -28,17 +28,17 @@ bool FollowsTheSameMotion(const CandidateFitter& fitter, const CandidateResult& 
                      fitter.whitening.active(), fitter.criteria);
 }
 
-// The experiment with the candidates of the options, if any, in place of its own.
-Experiment Asking(const Experiment& experiment, const DiagnosisOptions& options) {
-  Experiment wanted = experiment;
-  if (options.candidates.empty()) return wanted;
-  wanted.all_candidates = false;
-  wanted.candidates.clear();
+// The candidates of the options, if any, in place of the experiment's.
+std::vector<Hypothesis> CandidatesAskedFor(const Experiment& e, const DiagnosisOptions& options,
+                                           const SearchBase& from, const Sizes& sizes,
+                                           std::vector<std::string>& skipped, SearchScope scope) {
+  if (options.candidates.empty()) return MakeCandidates(e, from, sizes, skipped, scope);
+  std::vector<Candidate> wanted;
   for (const auto& name : options.candidates) {
-    const Candidate* const written = experiment.Written(name);
-    wanted.candidates.push_back(written ? *written : Candidate{name, "", false});
+    const Candidate* const written = e.Written(name);
+    wanted.push_back(written ? *written : Candidate{name, "", false});
   }
-  return wanted;
+  return MakeCandidates(wanted, e, from, sizes, skipped, scope);
 }
 
 }  // namespace
@@ -65,8 +65,8 @@ CandidateSearch::CandidateSearch(const SearchContext& context, const BaseFit& ba
       criteria_(context.fitter.criteria) {
   if (base.problem) base_problem_.Recall(*base.problem);
   const SearchBase here{base.system, base.given, base_problem_.CommonChanges(base.fitted->fit.x)};
-  const Experiment wanted = Asking(*fitter_.experiment, options_);
-  for (Hypothesis& h : MakeCandidates(wanted, here, sizes_, skipped, scope)) {
+  for (Hypothesis& h :
+       CandidatesAskedFor(*fitter_.experiment, options_, here, sizes_, skipped, scope)) {
     candidates.push_back({std::move(h)});
     candidates.back().record.name = candidates.back().hypothesis.Name();
   }
@@ -213,7 +213,7 @@ BaseSquares CandidateSearch::Base() const {
 // of them what the fit does in the other, and logs left out confirm a name later on.
 double CandidateSearch::ErrorShare(const Fitted& fitted) const {
   const double floor = noise_.floor();
-  const auto above = [&](double error) { return std::pow(WithoutPart(error, floor), 2); };
+  const auto above = [&](double error) { return SquaresWithoutPart(error, floor); };
   const auto share = [&](double before, double after) {
     return above(before) > 0 ? 1 - above(after) / above(before) : 1;
   };

@@ -1,7 +1,6 @@
 #include "identification/diagnosis/confirmation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
@@ -61,20 +60,16 @@ void TakeNameBack(Diagnosis& d, const std::string& why) {
   d.verdict.reason = fmt::format("the best candidate, {}, {}", name, why);
 }
 
-// Where repeated trials tell the noise, and the validate logs show plainly more: whether the name
-// takes too little of it to be what is mainly wrong. Half a period late looks like a flipped sign
-// on the logs that it was fitted to.
-bool TakesLittleOfValidateLogs(const Diagnosis& d, double& share) {
-  const double floor = d.noise.floor(), before = d.before.error.validate;
-  if (!d.noise.known() || before < d.criteria.model_limited * floor) return false;
-  const auto squares = [&](double error) { return std::pow(WithoutPart(error, floor), 2); };
-  share = std::max(0.0, 1 - squares(d.after().validate) / squares(before));
-  return share < d.criteria.fold_share;
-}
-
+// Where repeated trials tell the noise, and the validate logs show plainly more: a name that takes
+// too little of it is not what is mainly wrong. Half a period late looks like a flipped sign on the
+// logs that it was fitted to.
 void TakeBackWhatDoesLittle(Diagnosis& d) {
-  double share = 0;
-  if (!d.chosen() || !(d.before.error.validate > 0) || !TakesLittleOfValidateLogs(d, share)) return;
+  const double floor = d.noise.floor(), before = d.before.error.validate;
+  if (!d.chosen() || !d.noise.known() || !(before > 0)) return;
+  if (before < d.criteria.model_limited * floor) return;
+  const double left = SquaresWithoutPart(d.after().validate, floor);
+  const double share = std::max(0.0, 1 - left / SquaresWithoutPart(before, floor));
+  if (share >= d.criteria.fold_share) return;
   TakeNameBack(d, fmt::format("takes only {:.0f} % of the squares above the noise on the logs that "
                               "are kept for validation",
                               100 * share));

@@ -62,7 +62,10 @@ class Session {
     d_.noise_limited ? JudgeByNoise() : JudgeByFolds();
     Part("a law that nobody listed", [&] { LookForALaw(); });
     WeighUnseen(d_);
-    Part("interval of the gain", [&] { SetGainInterval(); });
+    Part("interval of the gain", [&] {
+      options_.Say(DiagnosisStage::kGain);
+      d_.gain_interval = BootstrapGain(null_, d_, options_.seed);
+    });
     FindWhatHelps();
     Describe();
     MarkAsInterrupted();
@@ -283,11 +286,14 @@ class Session {
     for (std::string& s : search.left_out) d_.left_out.push_back(std::move(s));
   }
 
+  // That are missing at the null fit, of all train logs.
+  const EquationErrors& Forces() const { return of_all_logs_ ? *of_all_logs_ : views_.front(); }
+
   void CompareByEquation() {
     options_.Say(DiagnosisStage::kJudgement, "missing force");
-    const bool known = LogsForALook(e_, null_.step()) == TrainLogs(e_);
-    CompareByForces(known ? views_.front() : EquationErrors(null_, d_.before.fit.x, TrainLogs(e_)),
-                    d_.candidates);
+    if (LogsForALook(e_, null_.step()) != TrainLogs(e_))
+      of_all_logs_.emplace(null_, d_.before.fit.x, TrainLogs(e_));
+    CompareByForces(Forces(), d_.candidates);
   }
 
   // Likelihoods have judged; the folds show what that is worth.
@@ -394,11 +400,9 @@ class Session {
   // One that is found is judged beside the candidates, on logs left out.
   void LookForALaw() {
     if (!WantsALaw(d_, unlisted_error_) || !HasTimeFor("a law that nobody listed")) return;
-    FoundLaw found = FindLaw(fitter_, d_, options_, unlisted_error_);
-    if (!found.effect.empty())
-      d_.remaining.would_take =
-          found.effect + " explains as much of the missing force as any formula, and is not listed";
-    if (!found.law || !IsBetterLaw(d_, *found.law, unlisted_error_)) return;
+    FoundLaw found = FindLaw(fitter_, Forces(), d_, options_, unlisted_error_);
+    if (!found.would_take.empty()) d_.remaining.would_take = std::move(found.would_take);
+    if (!found.law) return;
     TakeLaw(*std::move(found.law), d_);
     JudgeByFolds();
   }
@@ -474,11 +478,6 @@ class Session {
       Part("second cause", [&] { AddSecondByFolds(Context(options_), d_); });
   }
 
-  void SetGainInterval() {
-    options_.Say(DiagnosisStage::kGain);
-    d_.gain_interval = BootstrapGain(null_, d_, options_.seed);
-  }
-
   const Experiment& e_;
   const DiagnosisOptions& options_;
   TimeBudget time_;
@@ -486,7 +485,8 @@ class Session {
   Diagnosis d_;
   CandidateFitter fitter_;
   double unlisted_error_ = std::numeric_limits<double>::infinity();
-  std::vector<EquationErrors> views_;  // of the missing force, for a look
+  std::vector<EquationErrors> views_;          // of the missing force, for a look
+  std::optional<EquationErrors> of_all_logs_;  // where those are some
 };
 
 }  // namespace

@@ -40,6 +40,7 @@ class EquationErrors {
   const std::vector<MissingForce>& joints() const { return joints_; }
   const Problem::Vector& missing() const { return missing_; }
   const Problem::Matrix& columns() const { return columns_; }
+  double unit(std::size_t joint) const { return units_.unit(joint); }
   /// What a candidate explains with sizes of its own, and where its fit may begin, in one shape:
   /// that of a start of the hypothesis. Effects are linear in their sizes here, however large they
   /// are. Nothing where it does nothing to f. problem: of the candidate.

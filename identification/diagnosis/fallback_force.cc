@@ -19,12 +19,10 @@ constexpr std::array<std::size_t, 3> kOrders{3, 6, 8};  // terms
 
 // Those of one order, on all joints and on each.
 std::vector<Hypothesis> Forces(std::size_t terms, const Experiment& e, const Diagnosis& d) {
-  Experiment wanted = e;
-  wanted.all_candidates = false;
-  wanted.candidates = {
-      {std::string(Formula::kName), "", false, FallbackLaw(terms, d.sizes, d.criteria)}};
   std::vector<std::string> skipped;
-  return MakeCandidates(wanted, {&d.system}, d.sizes, skipped);
+  return MakeCandidates(
+      {{std::string(Formula::kName), "", false, FallbackLaw(terms, d.sizes, d.criteria)}}, e,
+      {&d.system}, d.sizes, skipped);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "effects/formula.h"
 #include "error.h"
 #include "identification/candidates/candidate_generator.h"
-#include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/law_search.h"
 #include "identification/diagnosis/probing.h"
 #include "sim/io/interrupt.h"
@@ -34,12 +33,10 @@ std::string GlobsOfJoints(const std::vector<std::string>& joints) {
 
 std::vector<Hypothesis> HypothesesOf(const SuggestedLaw& suggested, const Experiment& e,
                                      const Diagnosis& d) {
-  Experiment wanted = e;
-  wanted.all_candidates = false;
-  wanted.candidates = {
-      {std::string(Formula::kName), GlobsOfJoints(suggested.joints), false, suggested.law}};
   std::vector<std::string> skipped;
-  return MakeCandidates(wanted, {&d.system}, d.sizes, skipped);
+  return MakeCandidates(
+      {{std::string(Formula::kName), GlobsOfJoints(suggested.joints), false, suggested.law}}, e,
+      {&d.system}, d.sizes, skipped);
 }
 
 Vector StartOf(const CandidateResult& c, const Vector& base) {
@@ -68,29 +65,21 @@ void FitLaw(Hypothesis h, const CandidateFitter& fitter, const Diagnosis& d, con
   if (c.was_fitted) laws.push_back(std::move(c));
 }
 
-double SquaresAbove(double error, const Diagnosis& d) {
-  return std::pow(WithoutPart(error, d.noise.floor()), 2);
-}
-// Of the model that is chosen, or of any candidate.
-double LeastError(const Diagnosis& d) {
-  double least = d.after().train;
-  for (const CandidateResult& c : d.candidates)
+// Of any candidate, if it is less than this.
+double LeastError(const std::vector<CandidateResult>& candidates, double least) {
+  for (const CandidateResult& c : candidates)
     if (c.was_fitted) least = std::min(least, c.fitted.error.train);
   return least;
 }
+double LeastError(const Diagnosis& d) { return LeastError(d.candidates, d.after().train); }
 
 std::size_t NumbersOf(const CandidateResult& c) { return c.hypothesis.extra.size(); }
-
-double LeastErrorOf(const std::vector<CandidateResult>& laws) {
-  double least = laws.front().fitted.error.train;
-  for (const CandidateResult& c : laws) least = std::min(least, c.fitted.error.train);
-  return least;
-}
 
 // Those that come near the best first, the plainest before the others: in what is left lengths and
 // masses that are a little off show too.
 void Sort(std::vector<CandidateResult>& laws, const Diagnosis& d) {
-  const double floor = std::max(kNear * LeastErrorOf(laws), d.noise.floor());
+  const double least = LeastError(laws, d.before.error.train);
+  const double floor = std::max(kNear * least, d.noise.floor());
   const double near =
       std::hypot(floor, std::sqrt(+d.criteria.structure_share) * d.before.error.train);
   const auto key = [&](const CandidateResult& c) {
@@ -130,16 +119,14 @@ std::string AsGoodAsALaw(const std::vector<SuggestedLaw>& laws, const EquationEr
   constexpr double kNearly = 0.9;
   double share = 0;
   for (const SuggestedLaw& law : laws) share = std::max(share, law.share);
-  Experiment wanted = e;
-  wanted.all_candidates = false;
-  wanted.candidates.clear();
+  std::vector<Candidate> wanted;
   for (const std::string& name : Unlisted(e, options.candidates)) {
-    if (EffectNamed(name).kin.family != kInertia) wanted.candidates.push_back({name, "", false});
+    if (EffectNamed(name).kin.family != kInertia) wanted.push_back({name, "", false});
   }
   std::vector<std::string> skipped;
   double best = kNearly * share;
   std::string name;
-  for (const Hypothesis& h : MakeCandidates(wanted, {&d.system}, d.sizes, skipped)) {
+  for (const Hypothesis& h : MakeCandidates(wanted, e, {&d.system}, d.sizes, skipped)) {
     StopIfRequested();
     const Problem problem(e, h.system, h.Free());
     const auto first = view.From(h, problem, 0);
@@ -148,6 +135,19 @@ std::string AsGoodAsALaw(const std::vector<SuggestedLaw>& laws, const EquationEr
     if (found.share > best) best = found.share, name = h.NameAtPlace();
   }
   return name;
+}
+
+// Whether a law takes the main share, which no candidate does, and half of what the best one
+// leaves; or it leaves nothing but noise, or a tenth. Else what a candidate leaves may be anything
+// small, and a law bends to that.
+bool IsBetterLaw(const Diagnosis& d, const CandidateResult& law, double unlisted) {
+  constexpr double kHalf = 0.5, kTenth = 0.1;
+  const auto above = [&](double error) { return SquaresWithoutPart(error, d.noise.floor()); };
+  const double left = above(law.fitted.error.train);
+  const double main = (1 - d.criteria.main_share) * above(d.before.error.train);
+  const double best = above(std::min(unlisted, LeastError(d)));
+  if (best > main) return left <= std::min(main, kHalf * best);
+  return left <= kTenth * best || law.fitted.error.train <= d.criteria.near_noise * d.noise.floor();
 }
 
 }  // namespace
@@ -166,39 +166,31 @@ void TakeLaw(CandidateResult law, Diagnosis& d) {
   d.noise_limited = false;
 }
 
-bool IsBetterLaw(const Diagnosis& d, const CandidateResult& law, double unlisted) {
-  constexpr double kHalf = 0.5, kTenth = 0.1;
-  const double left = SquaresAbove(law.fitted.error.train, d);
-  const double main = (1 - d.criteria.main_share) * SquaresAbove(d.before.error.train, d);
-  const double best = SquaresAbove(std::min(unlisted, LeastError(d)), d);
-  if (best > main) return left <= std::min(main, kHalf * best);
-  return left <= kTenth * best || law.fitted.error.train <= d.criteria.near_noise * d.noise.floor();
-}
-
-FoundLaw FindLaw(const CandidateFitter& fitter, const Diagnosis& d, const DiagnosisOptions& options,
-                 double unlisted) {
+FoundLaw FindLaw(const CandidateFitter& fitter, const EquationErrors& view, const Diagnosis& d,
+                 const DiagnosisOptions& options, double unlisted) {
   const Experiment& e = *fitter.experiment;
-  const Problem null(e, d.system);
-  const EquationErrors view(null, d.before.fit.x, null.TrainLogs());
   if (!view.any()) return {};
   const auto suggested = SuggestLaws(LawRows(e, view, d.folds), options.seed, kFitted);
   if (suggested.empty()) return {};
   options.Say(DiagnosisStage::kJudgement, "effects that say what a law does");
   const bool compared = std::isfinite(unlisted);
-  std::string effect = compared ? "" : AsGoodAsALaw(suggested, view, e, d, options);
-  if (!effect.empty()) return {{}, effect};
+  const std::string effect = compared ? "" : AsGoodAsALaw(suggested, view, e, d, options);
+  if (!effect.empty())
+    return {{},
+            effect + " explains as much of the missing force as any formula, and is not listed"};
+  const Vector begin = Problem(e, d.system).Start();
   std::vector<CandidateResult> laws;
   for (const SuggestedLaw& one : suggested) {
     if (!laws.empty() && fitter.TimeIsOver()) break;
     options.Say(DiagnosisStage::kJudgement, "law " + one.law.formula);
-    for (Hypothesis& h : HypothesesOf(one, e, d))
-      FitLaw(std::move(h), fitter, d, null.Start(), laws);
+    for (Hypothesis& h : HypothesesOf(one, e, d)) FitLaw(std::move(h), fitter, d, begin, laws);
   }
   if (laws.empty()) return {};
   Sort(laws, d);
   for (CandidateResult& c : laws) {
     fitter.Complete(ProblemOf(c, e), c.fitted);
     if (!AreSizesSure(c)) continue;
+    if (!IsBetterLaw(d, c, unlisted)) break;
     TellLaw(c);
     return {std::move(c), ""};
   }

@@ -59,12 +59,8 @@ LawRows::LawRows(const Experiment& e, const EquationErrors& view, const std::vec
   }
   means_.erase(means_.begin() + static_cast<std::ptrdiff_t>(kept), means_.end());
   rows_.resize(kept), run_of_.resize(kept), group.resize(kept);
-  for (const MissingForce& joint : joints()) {
+  for (std::size_t j = 0; j < joints().size(); ++j)
     groups_.insert(groups_.end(), group.begin(), group.end());
-    double squares = 0;
-    for (const double f : joint.force) squares += f * f;
-    unit_.push_back(squares > 0 ? std::sqrt(squares) : 1);
-  }
 }
 
 LawRows::Vector LawRows::Picked(const Vector& all) const {
@@ -165,7 +161,7 @@ LawRows::Matrix LawRows::Of(const PlacedTerm& placed, const std::vector<std::siz
           mean += means_[k].mean[static_cast<Eigen::Index>(n)] *
                   (value[first + n] + value[first + n + 1]) / 2;
         }
-        columns(row, static_cast<Eigen::Index>(p)) = -mean / unit_[j];
+        columns(row, static_cast<Eigen::Index>(p)) = -mean / view_.unit(j);
       }
     }
   }

@@ -61,7 +61,6 @@ class LawRows {
   std::vector<std::size_t> rows_;    // that are kept, of a joint's
   std::vector<std::size_t> run_of_;  // [row that is kept]
   std::vector<std::size_t> groups_;
-  std::vector<double> unit_;  // [joint]
 };
 
 }  // namespace continuum

@@ -41,6 +41,7 @@ class StackedForces {
   /// Of the same joints, logs and rows.
   Problem::Vector Of(const std::vector<MissingForce>& joints) const;
   Eigen::Index size() const { return size_; }
+  double unit(std::size_t joint) const { return unit_[joint]; }
 
  private:
   Kind kind_ = nullptr;
