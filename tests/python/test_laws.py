@@ -194,7 +194,9 @@ class Candidate(bench.Bench):
 
         self.experiment["candidates"] = ["all", mc.friction_law(grip, level=ANY)]
         diagnosis = mc.diagnose(self.experiment, candidates=["grip"], placebos=0)
-        self.assertEqual({c["effect"] for c in diagnosis["candidates"]}, {"grip"})
+        # where the chosen law is not the cause, a law of terms ("formula") is looked for
+        self.assertEqual({c["effect"] for c in diagnosis["candidates"]}, {"grip", "formula"})
+        self.assertEqual([c["effect"] for c in diagnosis["causes"]], ["formula"], diagnosis["reason"])
         with self.assertRaisesRegex(mc.InputError, "grap"):
             mc.diagnose(self.experiment, candidates=["grap"])
 
