@@ -12,9 +12,9 @@
 #include "app/rank_job.h"
 #include "binding/effect_catalog.h"
 #include "error.h"
-#include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/effort.h"
 #include "identification/diagnosis/extension.h"
+#include "identification/diagnosis/free_lengths.h"
 #include "identification/report/apply_extension.h"
 #include "identification/report/diagnosis_output.h"
 #include "identification/report/parts.h"
@@ -118,14 +118,14 @@ void RunDiagnose(const Options& o) {
   if (o.video) outputs.push_back("extended.mp4");
   std::optional<OutputFolder> made;
   if (ThisRank() == 0) made.emplace(o.out, outputs, std::vector{read.file, read.model});
-  const Experiment e = Registered(read, system);
+  Experiment e = Registered(read, system);
   if (e.soft > 0 && ThisRank() == 0)
     fmt::print(stderr, "warning: {}: `loss: soft_l1` is for identify; diagnose uses squares\n",
                e.file.string());
   if (ThisRank() == 0) PrintLogCheck(o.experiment, e, system);
   std::optional<GracefulEnd> graceful;
   if (RankCount() == 1) graceful.emplace();
-  const Diagnosis d = Diagnose(e, system, options);
+  const Diagnosis d = DiagnoseWithLengths(e, system, options);
   if (!GoOnAlone()) return;
   ShowProgress(ProgressOf(DiagnosisStage::kFiles));
   MakeFolder(o.out);

@@ -106,6 +106,12 @@ std::vector<Vector> CandidateFitter::OverShortHorizons(const Problem& problem,
   }
 }
 
+continuum::Fit CandidateFitter::FitWidely(const Problem& problem, const Vector& x) const {
+  FitOptions options = Options();
+  options.rough = false;
+  return FitWithWideSlopes(problem, x, TrainLogs(*experiment), options);
+}
+
 void CandidateFitter::Complete(const Problem& problem, Fitted& f) const {
   const auto train = TrainLogs(*experiment);
   Sensitivities s;

@@ -44,6 +44,9 @@ struct CandidateFitter {
   /// Where a fit over short horizons from x ends (OnShortHorizons); nothing where there are none.
   std::vector<Problem::Vector> OverShortHorizons(const Problem& problem,
                                                  const Problem::Vector& x) const;
+  /// A fit on the train logs by slopes at a point and over a wider range in turn, as `identify`
+  /// does.
+  continuum::Fit FitWidely(const Problem& problem, const Problem::Vector& x) const;
   /// Adds sensitivities and intervals, what the time step leaves open, and with these the cost to
   /// first order.
   void Complete(const Problem& problem, Fitted& fitted) const;

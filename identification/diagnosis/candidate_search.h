@@ -171,6 +171,7 @@ class CandidateSearch {
   /// Whether its squares above the noise fall, by the directions that both fits know.
   bool FallsTo(const CandidateResult& c, const Fitted& finer) const;
   void Continue(const Problem& problem, CandidateResult& c, double rival) const;
+  void GoOnWidely(const Problem& problem, CandidateResult& c, double rival) const;
   void WidenRanges(CandidateResult& c, double rival) const;
   void FitPlainer();
   void FinishAbandoned();

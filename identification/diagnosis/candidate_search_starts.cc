@@ -94,6 +94,7 @@ void CandidateSearch::FitOne(CandidateResult& c, double rival, std::size_t tried
   c.fitted = fitter_.Fit(problem, BestOf(problem, starts, tried), rival);
   c.was_fitted = true;
   Continue(problem, c, rival);
+  GoOnWidely(problem, c, rival);
   if (IsLost(c)) RefitFrom(problem, c, StartsWithoutBase(problem, c));
   if (IsLost(c)) RefitFrom(problem, c, StartsNextToBase(c.hypothesis));
   WidenRanges(c, rival);
@@ -192,6 +193,23 @@ void CandidateSearch::Continue(const Problem& problem, CandidateResult& c, doubl
     if (!(next.fit.cost < f.cost)) return;
     c.fitted = std::move(next);
   }
+}
+
+// As `identify` does: where joints stick and slip the cost of a law of many numbers has ripples,
+// and slopes at a point lead only into the nearest one. From where the fit has ended, then from
+// what the experiment begins with.
+void CandidateSearch::GoOnWidely(const Problem& problem, CandidateResult& c, double rival) const {
+  constexpr std::size_t kMany = 3;
+  if (noise_.known() || c.hypothesis.extra.size() < kMany) return;
+  const auto logs = LogsForALook(*fitter_.experiment, base_problem_.step());
+  if (!IsFarOverNoise(problem, c.fitted.fit.x, logs)) return;
+  const auto go_on = [&](const Problem::Vector& x) {
+    if (fitter_.TimeIsOver()) return;
+    const continuum::Fit wide = fitter_.FitWidely(problem, x);
+    if (wide.cost < c.fitted.fit.cost) c.fitted = fitter_.Fit(problem, {wide.x}, rival);
+  };
+  go_on(c.fitted.fit.x);
+  go_on(BestOf(problem, StartsWithoutBase(problem, c)).x);
 }
 
 CandidateResult CandidateSearch::FitAlone(CandidateResult c) const {

@@ -202,6 +202,10 @@ struct Criteria {
                         "a cheap clock"};
   Rule link_known{"link_known", 0.015, "share of a length or a mass of a body",
                   "drawings and scales are a per cent or two off: one standard deviation"};
+  Rule lengths_off{"lengths_off", 0.05, "share of a length of a link",
+                   "free within that, where logs do not tell their noise and nothing is named"};
+  Rule lengths_gain{"lengths_gain", 0.5, "times the least error with lengths as they are",
+                    "what is left with free lengths, for that answer to be taken"};
   Rule numbers_most{"numbers_most", 0.02, "share of a length or a mass of a body",
                     "where no more than that does all that shows, nothing is missing"};
   Rule numbers_share{"numbers_share", 0.95, "share of the squares above the noise",
@@ -307,6 +311,8 @@ inline constexpr std::array kAllRules{
     &Criteria::correction,
     &Criteria::whole_correction,
     &Criteria::link_known,
+    &Criteria::lengths_off,
+    &Criteria::lengths_gain,
     &Criteria::numbers_most,
     &Criteria::numbers_share,
     &Criteria::correction_share,

@@ -43,7 +43,7 @@ class Session {
   Session(const Experiment& experiment, const ModelSpec& system, const DiagnosisOptions& options)
       : e_(experiment),
         options_(options),
-        time_(options.effort),
+        time_(options.effort, options.time_share),
         null_(experiment, system),
         d_(experiment, system) {
     fitter_.experiment = &e_;

@@ -48,23 +48,24 @@ Effort EffortNamed(std::string_view name) {
   throw Error::Input("effort", "quick, normal or thorough", "'" + std::string(name) + "'");
 }
 
-TimeBudget::TimeBudget(Effort effort)
+TimeBudget::TimeBudget(Effort effort, double share)
     : begin_(std::chrono::steady_clock::now()),
       begin_processor_(ProcessorSeconds()),
-      effort_(effort) {}
+      effort_(effort),
+      seconds_(share * SharesOf(effort).seconds) {}
 
 double TimeBudget::Begin(DiagnosisStage stage) {
   const Shares& shares = SharesOf(effort_);
   const double end = shares.end[std::min(static_cast<std::size_t>(stage), kStages - 1)];
   if (end == share_) return end_;
-  const double left = begin_processor_ + shares.seconds - ProcessorSeconds();
+  const double left = begin_processor_ + seconds_ - ProcessorSeconds();
   const double own = (end - share_) / (1 - share_) * std::max(0.0, left);
   share_ = end;
-  return end_ = std::max(begin_processor_ + end * shares.seconds, ProcessorSeconds() + own);
+  return end_ = std::max(begin_processor_ + end * seconds_, ProcessorSeconds() + own);
 }
 
 double TimeBudget::BeginPart(DiagnosisStage stage, double share) {
-  return std::min(Begin(stage), ProcessorSeconds() + share * SharesOf(effort_).seconds);
+  return std::min(Begin(stage), ProcessorSeconds() + share * seconds_);
 }
 
 double TimeBudget::seconds() const {

@@ -16,8 +16,8 @@ Effort EffortNamed(std::string_view name);
 /// those behind it share what is left. A busy machine takes longer for the same answer.
 class TimeBudget {
  public:
-  /// Begins now.
-  explicit TimeBudget(Effort effort);
+  /// Begins now; share: of the time of this effort.
+  TimeBudget(Effort effort, double share);
 
   /// ProcessorSeconds until which a stage may go on that begins now, or does so once more; infinite
   /// for an effort without limit.
@@ -30,6 +30,7 @@ class TimeBudget {
   std::chrono::steady_clock::time_point begin_;
   double begin_processor_;  // ProcessorSeconds
   Effort effort_;
+  double seconds_;    // all that there is
   double share_ = 0;  // of the time, over when the last stage that has begun is
   double end_ = 0;    // of that stage
 };

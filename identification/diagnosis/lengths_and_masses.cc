@@ -26,25 +26,6 @@ bool ScalesBodies(const EffectInfo& effect) {
          effect.params.size() == 1 && effect.params.front().null == 1;
 }
 
-// Each body that has a length or a mass, by itself; none of those that the experiment fits.
-std::vector<Hypothesis> NumbersOfBodies(const CandidateContext& context) {
-  std::vector<Hypothesis> all;
-  const mjModel& m = context.from.system->model();
-  for (const EffectInfo& effect : Catalog()) {
-    if (!ScalesBodies(effect)) continue;
-    const auto bodies = PlacesFor(m, effect, Place::kBody, "*", context.experiment);
-    for (const std::string& body : bodies) {
-      const Candidate wanted{std::string(effect.name), "", false};
-      try {
-        all.push_back(HypothesisAt(effect, wanted, {Place::kBody, {body}}, 0, context));
-      } catch (const Error&) {
-        continue;  // it has none, or the experiment fits it
-      }
-    }
-  }
-  return all;
-}
-
 // What a number that is off by a share of itself does to the residuals; nothing where the
 // simulation diverges.
 std::vector<Vector> ColumnOf(const Problem& problem, const Fitted& fitted, double share) {
@@ -144,6 +125,24 @@ void ReachOver(const Problem& problem, const Matrix& A, const Vector& z, const V
 }
 
 }  // namespace
+
+std::vector<Hypothesis> NumbersOfBodies(const CandidateContext& context) {
+  std::vector<Hypothesis> all;
+  const mjModel& m = context.from.system->model();
+  for (const EffectInfo& effect : Catalog()) {
+    if (!ScalesBodies(effect)) continue;
+    const auto bodies = PlacesFor(m, effect, Place::kBody, "*", context.experiment);
+    for (const std::string& body : bodies) {
+      const Candidate wanted{std::string(effect.name), "", false};
+      try {
+        all.push_back(HypothesisAt(effect, wanted, {Place::kBody, {body}}, 0, context));
+      } catch (const Error&) {
+        continue;  // it has none, or the experiment fits it
+      }
+    }
+  }
+  return all;
+}
 
 ByLengthsAndMasses ExplainedByLengthsAndMasses(const CandidateFitter& fitter, const Sizes& sizes,
                                                const ModelSpec& system,

@@ -1,8 +1,15 @@
 #pragma once
 
+#include <vector>
+
+#include "identification/candidates/object_sets.h"
 #include "identification/diagnosis/candidate_fitter.h"
 
 namespace continuum {
+
+/// The length and the mass of each body by itself, as candidates; none of those that the experiment
+/// fits.
+std::vector<Hypothesis> NumbersOfBodies(const CandidateContext& context);
 
 /// What lengths and masses that are a little off explain.
 struct ByLengthsAndMasses {

@@ -48,6 +48,7 @@ struct DiagnosisOptions {
   int iterations = 15;                       ///< of each fit
   std::uint64_t seed = 1;                    ///< of everything random
   Effort effort = Effort::kThorough;
+  double time_share = 1;  ///< of the time of this effort
   ProgressCallback progress = {};
   Criteria criteria = {};  ///< others than the defaults: for tests
 
@@ -207,6 +208,12 @@ struct NextExperiment {
   std::optional<Log> log = {};  ///< its inputs and what it sets; none where nothing helps
 };
 
+/// What a diagnosis found without free lengths of links (free_lengths.h).
+struct WithLengthsAsGiven {
+  std::string verdict;  ///< in one word
+  TwoErrors error;      ///< of the model that it left
+};
+
 /// What a diagnosis found.
 struct Diagnosis {
   Diagnosis(const Experiment& experiment, const ModelSpec& null) : pool(experiment), system(null) {}
@@ -244,6 +251,7 @@ struct Diagnosis {
   std::vector<Change> changes;       ///< of last(), that hold for every log alike
   std::vector<MissingPart> missing;  ///< what could not be computed; the verdict stands without
   std::optional<GainInterval> gain_interval;  ///< over held-out trials or the folds; none: failed
+  std::optional<WithLengthsAsGiven> lengths_as_given;  ///< where the answer is another one
   double seconds = 0;
 
   bool Is(Verdict::Kind kind) const { return verdict.kind == kind; }

@@ -6,6 +6,7 @@
 
 #include "identification/diagnosis/cause_pairs.h"
 #include "identification/diagnosis/fold_comparison.h"
+#include "sim/io/rounded.h"
 
 namespace continuum {
 namespace {
@@ -25,6 +26,12 @@ Diagnosis Beside(const SearchContext& context, const CandidateResult& first, con
   return beside;
 }
 
+// Of the squares above the noise, what a second cause takes on top of the first.
+double ShareOfSecond(const TwoErrors& first, const TwoErrors& both, const Diagnosis& d) {
+  return SquaresWithoutPart(first.train, both.train) /
+         SquaresWithoutPart(d.before.error.train, d.noise.known() ? d.noise.floor() : 0);
+}
+
 }  // namespace
 
 void AddSecondByFolds(const SearchContext& context, Diagnosis& d) {
@@ -33,6 +40,14 @@ void AddSecondByFolds(const SearchContext& context, Diagnosis& d) {
       context.options.Inside(DiagnosisStage::kSecondCause, "beside " + first.NameAtPlace());
   Diagnosis beside = Beside({context.fitter, context.noise, context.sizes, inside}, *d.chosen(), d);
   if (!beside.Is(Verdict::Kind::kNamed)) return;
+  // The way in which a first cause is simulated leaves as little.
+  const TwoErrors &one = d.chosen()->fitted.error, &both = beside.after();
+  if (ShareOfSecond(one, both, d) < d.criteria.second_share) {
+    d.remaining.would_take =
+        fmt::format("{} would take {} of what is left", beside.chosen()->hypothesis.NameAtPlace(),
+                    Percent(1 - both.train / one.train));
+    return;
+  }
   d.candidates = std::move(beside.candidates), d.verdict = std::move(beside.verdict);
   for (CandidateResult& c : d.candidates) {
     if (!c.record.after.empty()) c.record.before = d.before.folds.error;

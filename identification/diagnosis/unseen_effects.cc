@@ -1,5 +1,6 @@
 #include "identification/diagnosis/unseen_effects.h"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -36,7 +37,18 @@ bool TooManyUnseen(const Diagnosis& d) {
   return TooManyUnseen(unseen, unseen + SeenEffects(d).size(), d.criteria);
 }
 
+bool NothingWasTried(const Diagnosis& d) {
+  const auto fitted = [](const CandidateResult& c) { return c.was_fitted; };
+  const auto no_time = [](const Dismissed& one) {
+    return one.why == Dismissed::Why::kNoTimeForALook || one.why == Dismissed::Why::kNoTimeForAFit;
+  };
+  return std::none_of(d.candidates.begin(), d.candidates.end(), fitted) &&
+         std::any_of(d.dismissed.begin(), d.dismissed.end(), no_time);
+}
+
 void WeighUnseen(Diagnosis& d) {
+  if (d.Is(Verdict::Kind::kAdequate) && !d.noise.known() && NothingWasTried(d))
+    d.verdict = {Verdict::Kind::kUnexplained, {}, "there was no time to try a candidate"};
   if (!d.Is(Verdict::Kind::kNamed) || !TooManyUnseen(d)) return;
   d.verdict.kind = Verdict::Kind::kAmbiguous;
   d.verdict.reason = fmt::format("there was no time for a look at {} effects; of the others: {}",

@@ -13,7 +13,11 @@ std::vector<std::string> UnseenEffects(const Diagnosis& diagnosis);
 /// Whether so many effects were not looked at that a name may be any of them.
 bool TooManyUnseen(const Diagnosis& diagnosis);
 
-/// Then a name becomes a set: the time was over before most of the list had its turn.
+/// Whether there was no time for the fit of any candidate.
+bool NothingWasTried(const Diagnosis& diagnosis);
+
+/// A name of which too many others were not seen becomes a set; "adequate" without a fit and
+/// without a known noise says nothing, and becomes "unexplained".
 void WeighUnseen(Diagnosis& diagnosis);
 
 }  // namespace continuum

@@ -276,6 +276,12 @@ nlohmann::json PairsJson(const Diagnosis& d) {
   return json;
 }
 
+nlohmann::json LengthsJson(const Diagnosis& d) {
+  if (!d.lengths_as_given) return nullptr;
+  return {{"verdict", d.lengths_as_given->verdict},
+          {"error", ErrorJson(d.lengths_as_given->error)}};
+}
+
 }  // namespace
 
 std::vector<std::string> ChannelNames(const Experiment& e) {
@@ -303,6 +309,7 @@ nlohmann::json DiagnosisJson(const Experiment& e, const Diagnosis& d, const Exte
                    {"after", ErrorJson(run.after)}};
   json["extended_model"] = NameIf(!run.extended.xml.empty(), kExtendedModel);
   json["extended_experiment"] = NameIf(!run.extended.yaml.empty(), kExtendedExperiment);
+  json["lengths_as_given"] = LengthsJson(d);
   json["skipped"] = d.skipped;
   json["left_out"] = d.left_out;
   json["interrupted"] = d.interrupted;

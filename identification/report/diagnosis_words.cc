@@ -120,6 +120,7 @@ std::string WithoutP(std::string reason) {
 std::string WhyUnexplained(const Diagnosis& d) {
   if (!d.verdict.explained_by.empty() || d.verdict.taken_back)
     return Sentence(WithoutP(d.verdict.reason) + ".");
+  if (NothingWasTried(d)) return "No candidate was fitted, as there was no time.";
   return (d.left_out.empty() ? "No candidate explains enough of it."
                              : "No candidate that there was time for explains enough of it.") +
          Closest(d);
@@ -216,6 +217,8 @@ std::string HeadlineOf(const Diagnosis& d) {
   }
   if (!d.verdict.explained_by.empty())
     return "Something is missing in the model, and none of the candidates asked for explains it";
+  if (NothingWasTried(d))
+    return "There was no time to find out whether something is missing in the model";
   if (!d.left_out.empty())
     return "Something is missing in the model, and there was no time to find out what";
   return "Something is missing in the model, and no candidate explains it";
@@ -245,7 +248,9 @@ Certainty CertaintyOf(const Diagnosis& d) {
   return Doubts(d).empty() ? Certainty::kSure : Certainty::kLikely;
 }
 
-std::string WhyInWords(const Diagnosis& d) {
+namespace {
+
+std::string WhyThis(const Diagnosis& d) {
   switch (d.verdict.kind) {
     case Kind::kAdequate:
       return WhyAdequate(d);
@@ -263,6 +268,20 @@ std::string WhyInWords(const Diagnosis& d) {
   return fmt::format("It does clearly better than every other {}candidate. {}",
                      d.verdict.far_off.empty() ? "" : "plausible ", fmt::join(doubts, " "));
 }
+
+// Where the lengths of links were fitted as well.
+std::string LengthsInWords(const Diagnosis& d) {
+  if (!d.lengths_as_given) return "";
+  return fmt::format(
+      " Lengths of links were fitted too, within {:.0f} %: with those of the model the answer is "
+      "{}, with {:.3g} {} left on the train logs.",
+      100 * d.criteria.lengths_off, d.lengths_as_given->verdict, d.lengths_as_given->error.train,
+      d.pool.unit());
+}
+
+}  // namespace
+
+std::string WhyInWords(const Diagnosis& d) { return WhyThis(d) + LengthsInWords(d); }
 
 std::string NoiseSourceInWords(const Noise& noise) {
   if (noise.resampled == 0) return noise.source;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@ namespace continuum {
 namespace {
 
 constexpr int kDigits = 3;  // at least
+constexpr std::string_view kLinkLength = "effect:link_length.scale";
 
 std::string Value(double value, int digits = kDigits) { return Significant(value, digits); }
 
@@ -80,7 +82,10 @@ std::optional<double> Before(const Diagnosis& d, const FreeParameter& p) {
   }
 }
 
+bool IsLength(const FreeParameter& p) { return p.change.attribute == kLinkLength; }
+
 std::string NameOf(const FreeParameter& p) {
+  if (IsLength(p)) return "length of " + Place(p.change.target);
   const auto of = p.name.find('[');
   return fmt::format("{} of {}{}", p.change.attribute, Place(p.change.target),
                      of == p.name.npos ? "" : " " + p.name.substr(of));
@@ -88,7 +93,7 @@ std::string NameOf(const FreeParameter& p) {
 
 // "1.238 → 1.251", "times 1.05"; empty where nothing changes.
 std::string FromTo(const Diagnosis& d, const FreeParameter& p, double after) {
-  const bool scales = p.change.operation == Change::Operation::kScale;
+  const bool scales = IsLength(p) || p.change.operation == Change::Operation::kScale;
   if (scales || p.change.operation == Change::Operation::kAdd) {
     const std::string none = scales ? "1" : "0";
     return Value(after) == none ? "" : (scales ? "times " : "plus ") + Value(after);

@@ -10,6 +10,7 @@
 
 #include "hidden_effects/families.h"
 #include "hidden_effects/robots.h"
+#include "identification/diagnosis/free_lengths.h"
 #include "identification/diagnosis/gain.h"
 #include "identification/report/diagnosis_summary.h"
 #include "sim/io/decimal.h"
@@ -236,11 +237,11 @@ void ReadNames(const Case& c, const Diagnosis& d, Answer& a) {
 }
 
 Answer AnswerTo(const Case& c, const std::filesystem::path& file) {
-  const Experiment e = Experiment::Read(file);
+  Experiment e = Experiment::Read(file);
   const std::clock_t before = std::clock();
   DiagnosisOptions options;
   options.effort = c.effort;
-  const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model), options);
+  const Diagnosis d = DiagnoseWithLengths(e, ModelSpec::Load(e.model), options);
   Answer a;
   a.cpu = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   a.verdict = d.verdict.word(), a.complete = d.verdict.complete;

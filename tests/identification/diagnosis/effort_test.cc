@@ -16,7 +16,7 @@ constexpr DiagnosisStage kStages[] = {
     DiagnosisStage::kGain};
 
 TEST(TimeBudget, StagesEndOneAfterTheOther) {
-  TimeBudget time(Effort::kQuick);
+  TimeBudget time(Effort::kQuick, 1);
   const double begin = ProcessorSeconds();
   double before = begin;
   for (const DiagnosisStage stage : kStages) {
@@ -30,7 +30,7 @@ TEST(TimeBudget, StagesEndOneAfterTheOther) {
 
 // The first stage should be over after 2.8 of 14 s, and begins at 3 s: it has a fifth of the rest.
 TEST(TimeBudget, WhoeverIsLateSharesWhatIsLeft) {
-  TimeBudget time(Effort::kQuick);
+  TimeBudget time(Effort::kQuick, 1);
   const double begin = ProcessorSeconds();
   double sum = 0;
   while (ProcessorSeconds() < begin + 3) sum += std::sqrt(sum + 1);
@@ -40,7 +40,7 @@ TEST(TimeBudget, WhoeverIsLateSharesWhatIsLeft) {
 }
 
 TEST(TimeBudget, ThoroughHasNoEnd) {
-  TimeBudget time(Effort::kThorough);
+  TimeBudget time(Effort::kThorough, 1);
   for (const DiagnosisStage stage : kStages) EXPECT_TRUE(std::isinf(time.Begin(stage)));
 }
 
