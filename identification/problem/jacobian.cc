@@ -67,7 +67,10 @@ bool Problem::WithinBounds(std::size_t k, double value) const {
 
 double Problem::StepOf(const Vector& x, std::size_t k, double share) const {
   const double step = share * parameters_[k].scale;
-  return x[k] + step > parameters_[k].upper ? -step : step;
+  const double above = parameters_[k].upper - x[k], below = x[k] - parameters_[k].lower;
+  if (step <= above) return step;
+  if (step <= below || std::max(above, below) <= 0) return -step;
+  return above > below ? above : -below;
 }
 
 std::vector<std::size_t> Problem::TakeClosedForms(const Vector& x,

@@ -76,7 +76,8 @@ class Problem {
   const std::vector<FreeParameter>& parameters() const { return parameters_; }
   Vector Start() const;
   Vector Clamp(const Vector& x) const;
-  /// A step of one parameter by a share of its scale, downward where upward would leave its bounds.
+  /// A step of one parameter by a share of its scale: downward where upward would leave its bounds,
+  /// and to the farther bound where both would.
   double StepOf(const Vector& x, std::size_t k, double share) const;
 
   /// Parameters without where the trials begin.
