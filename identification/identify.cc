@@ -13,12 +13,14 @@
 #include "identification/fit/swarm_fit.h"
 #include "identification/inverse_dynamics/regressor.h"
 #include "identification/inverse_dynamics/search_fit.h"
+#include "identification/inverse_dynamics/short_horizon.h"
 #include "identification/problem/extended_model.h"
 #include "identification/problem/fitted_values.h"
 #include "identification/problem/path_choice.h"
 #include "identification/problem/start_checks.h"
 #include "identification/statistics/identifiability.h"
 #include "identification/statistics/noise_model.h"
+#include "identification/statistics/uncertainty.h"
 #include "sim/io/interrupt.h"
 
 namespace continuum {
@@ -121,7 +123,9 @@ void FitLeastSquares(const Options& o, const Problem& problem, const Vector& sta
   SearchedFit found = FitBySearch(problem, start, use, search, options);
   all.fit = std::move(found.fit);
   all.segments = std::move(found.segments), all.starts = std::move(found.starts);
-  if (!all.starts) all.minima = SearchAround(problem, start, use, o.seed, options, all.fit);
+  FitOverPieces(problem, use, options, all.fit);
+  if (!all.starts && !all.fit.over_pieces)
+    all.minima = SearchAround(problem, start, use, o.seed, options, all.fit);
 }
 
 // Parameters for the model's own step: a few iterations from those of the differential equation.
@@ -179,11 +183,22 @@ class Statement {
   void AddUncertainty() {
     const Vector& x = all_.fit.x;
     const bool made = Part("intervals", [&] {
-      all_.uncertainty = all_.regression ? all_.regression->uncertainty
-                                         : IntervalsOf(problem_, x, residuals_, o_.progress);
+      all_.uncertainty = all_.regression ? all_.regression->uncertainty : Intervals();
     });
     if (!made) all_.uncertainty = UnknownUncertainty(problem_, x, all_.missing.back().why);
     Part("trade_offs", [&] { all_.trade_offs = ConfoundingsOf(problem_, x, all_.uncertainty); });
+  }
+
+  // Of what was fitted: whole logs, or pieces of them.
+  Uncertainty Intervals() {
+    const Vector& x = all_.fit.x;
+    const auto pieces = all_.fit.over_pieces ? OnShortHorizons(problem_, use_) : std::nullopt;
+    if (!pieces) return IntervalsOf(problem_, x, residuals_, o_.progress);
+    const auto r = pieces->Residuals(x, use_);
+    const Noise noise = NoiseOf(problem_.experiment());
+    if (noise.rms > 0)
+      all_.of_pieces = OverNoise{TypicalRms(*pieces, r, use_) / noise.rms, noise.source};
+    return UncertaintyOf(*pieces, x, r, pieces->Jacobian(x, r, use_));
   }
 
   // What the model gives at its own step, where the fit was one of its differential equation.

@@ -60,7 +60,6 @@ Hooks HooksOf(const std::vector<Restart>& restarts) {
 }  // namespace
 
 std::optional<Problem> OnShortHorizons(const Problem& problem, const std::vector<bool>& use) {
-  if (problem.path() != Path::kStepped) return {};
   const Experiment& e = problem.experiment();
   const auto all = std::make_shared<std::vector<std::vector<Restart>>>(use.size());
   for (std::size_t l = 0; l < use.size(); ++l) {
@@ -70,22 +69,34 @@ std::optional<Problem> OnShortHorizons(const Problem& problem, const std::vector
         RestartsOf(problem.MeasuredBy(problem.Start(), l), problem.system().model(), e.logs[l]);
   }
   Problem pieces = problem;
+  if (pieces.path() != Path::kStepped) pieces.Follow(Path::kStepped);
   pieces.Guide([all](std::size_t log) { return HooksOf((*all)[log]); });
   return pieces;
 }
 
+namespace {
+
+FitOptions OverPieces(const FitOptions& options) {
+  constexpr int kFewSteps = 15;
+  constexpr double kNearEnough = 1e-3;  // of the cost
+  FitOptions own = options;
+  own.idle = own.rough = true, own.slopes = nullptr;
+  own.iterations = std::min(own.iterations, kFewSteps), own.tolerance = kNearEnough;
+  own.progress = Within({"fit over short horizons"}, options.progress);
+  return own;
+}
+
+}  // namespace
+
 Fit FitByShortHorizons(const Problem& problem, Fit best, const std::vector<bool>& use,
                        const FitOptions& options) {
   constexpr double kNear = 2;  // times the cost, from where a fit may still become the better one
-  constexpr int kFewSteps = 15;
-  constexpr double kNearEnough = 1e-3;  // of the cost: it is a start
   if (StopRequested() || !IsOutOfStep(problem, best.x, use)) return best;
   const auto pieces = OnShortHorizons(problem, use);
   if (!pieces) return best;
-  FitOptions own = options, first = options;
-  own.idle = first.idle = first.rough = true, own.slopes = first.slopes = nullptr;
-  first.iterations = std::min(first.iterations, kFewSteps), first.tolerance = kNearEnough;
-  own.progress = first.progress = Within({"fit over short horizons"}, options.progress);
+  const FitOptions first = OverPieces(options);
+  FitOptions own = first;
+  own.iterations = options.iterations, own.tolerance = options.tolerance;
   try {
     const Fit begin = FitParameters(*pieces, best.x, use, first);
     best.evaluations += begin.evaluations, best.seconds += begin.seconds;
@@ -98,6 +109,25 @@ Fit FitByShortHorizons(const Problem& problem, Fit best, const std::vector<bool>
   } catch (const Error& error) {
     if (error.kind() != Error::Kind::kJob) throw;
     return best;  // it diverges there
+  }
+}
+
+void FitOverPieces(const Problem& problem, const std::vector<bool>& use, const FitOptions& options,
+                   Fit& fit) {
+  if (StopRequested() || !IsOutOfStep(problem, fit.x, use)) return;
+  const auto pieces = OnShortHorizons(problem, use);
+  if (!pieces) return;
+  FitOptions own = OverPieces(options);
+  own.iterations = options.iterations, own.rough = false;
+  try {
+    const Fit there = FitParameters(*pieces, fit.x, use, own);
+    fit.evaluations += there.evaluations, fit.seconds += there.seconds;
+    if (IsOutOfStep(*pieces, there.x, use)) return;
+    fit.x = there.x, fit.cost = CostAt(problem, there.x, use, options);
+    fit.converged = there.converged, fit.message = there.message;
+    fit.anew = false, fit.over_pieces = true;
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::kJob) throw;  // it diverges there
   }
 }
 

@@ -13,8 +13,8 @@ namespace continuum {
 /// the cost of free simulation has many local minima; over short horizons nothing gets there. At
 /// their beginnings positions and speeds of the joints are those of a quartic through the measured
 /// rows (measured_motion.h); activations and states of effects go on as they are, so that lags and
-/// hysteresis remember. Nothing where a log in use does not measure every joint, and on the smooth
-/// path.
+/// hysteresis remember. By steps, whatever the path. Nothing where a log in use does not measure
+/// every joint.
 std::optional<Problem> OnShortHorizons(const Problem& problem, const std::vector<bool>& use);
 
 /// A fit or, where it is out of step (identification/fit/out_of_step.h), a better one that begins
@@ -22,5 +22,11 @@ std::optional<Problem> OnShortHorizons(const Problem& problem, const std::vector
 /// that of all.
 Fit FitByShortHorizons(const Problem& problem, Fit best, const std::vector<bool>& use,
                        const FitOptions& options);
+
+/// Where a fit is out of step still, as of a double pendulum that is let go from the top, no cost
+/// of whole logs tells parameters from others. If some follow the logs over short horizons, they
+/// take its place, and over_pieces is set.
+void FitOverPieces(const Problem& problem, const std::vector<bool>& use, const FitOptions& options,
+                   Fit& fit);
 
 }  // namespace continuum

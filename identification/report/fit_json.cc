@@ -75,6 +75,7 @@ nlohmann::json EffortJson(const IdentifyResult& result) {
           {"converged", fit.converged},
           {"message", fit.message},
           {"begun_anew", fit.anew},
+          {"over_pieces", fit.over_pieces},
           {"trace", fit.trace}};
 }
 

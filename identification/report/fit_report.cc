@@ -79,6 +79,8 @@ class FitPage {
     const std::string beyond = OverNoiseInWords(result_);
     if (!beyond.empty())
       page_.Badge(Tone::kWarn, "Residuals exceed the measurement noise", beyond + ".");
+    if (const std::string pieces = OverPiecesInWords(result_); !pieces.empty())
+      page_.Badge(Tone::kWarn, "Nothing follows whole logs", pieces + ".");
     for (std::size_t l = 0; l < result_.divergence.size(); ++l) {
       if (!result_.divergence[l].empty())
         page_.Badge(Tone::kWarn, "Log " + e_.logs[l].label + " has no error",
@@ -211,8 +213,20 @@ void AddParameterTable(Page& page, const std::vector<FreeParameter>& parameters,
              rows, {note + "."});
 }
 
+std::string OverPiecesInWords(const IdentifyResult& result) {
+  if (!result.fit.over_pieces) return "";
+  const std::string left =
+      result.of_pieces ? fmt::format("; there they leave {:.2g} times the measurement noise ({})",
+                                     result.of_pieces->times, result.of_pieces->source)
+                       : "";
+  return "no parameters that were found follow whole logs, whose motion soon parts from any "
+         "simulation (chaos, or states that are measured too coarsely): these follow eighths of "
+         "the logs, each begun at the measured state" +
+         left + "; the intervals are those of this fit";
+}
+
 std::string OverNoiseInWords(const IdentifyResult& result) {
-  if (!result.over_noise) return "";
+  if (!result.over_noise || result.fit.over_pieces) return "";
   return fmt::format(
       "residuals are {:.0f} times the measurement noise ({}): the model lacks something "
       "(`continuum diagnose` finds the cause) or a better fit is elsewhere (`--starts 8`); "

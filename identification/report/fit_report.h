@@ -24,6 +24,10 @@ inline constexpr char kAnewInWords[] =
     "started again where the equations of motion fit the measured motion best, as the first fit "
     "ended far above the noise";
 
+/// Says that a fit is over pieces of the logs (Fit::over_pieces), and what is left there; empty: it
+/// is not.
+std::string OverPiecesInWords(const IdentifyResult& result);
+
 /// Says that the residuals of a fit are far more than noise, and what to do; empty: they are not.
 std::string OverNoiseInWords(const IdentifyResult& result);
 

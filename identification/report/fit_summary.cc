@@ -104,7 +104,8 @@ std::string FitSummary(const Experiment& e, const IdentifyResult& result,
   text += EffortLines(result, folder);
   for (const Confounding& t : result.trade_offs) text += t.text + "\n";
   if (const std::string several = result.SeveralMinima(); !several.empty()) text += several + "\n";
-  if (result.over_noise) text += OverNoiseInWords(result) + "\n";
+  for (const std::string& line : {OverPiecesInWords(result), OverNoiseInWords(result)})
+    if (!line.empty()) text += line + "\n";
   if (!result.start_hint.empty()) text += result.start_hint + "\n";
   return text;
 }

@@ -17,6 +17,7 @@ struct Fit {
   double seconds = 0;           ///< wall clock
   bool converged = false;
   bool anew = false;  ///< begun anew from where the equations of motion hold best (FitByEquations)
+  bool over_pieces = false;  ///< of the logs, as nothing follows them as a whole
   bool smooth = false;  ///< slopes predict what small steps do around it (HasRipples)
   std::string message;
   std::vector<double> trace;  ///< cost at the start and after each iteration

@@ -56,6 +56,7 @@ struct IdentifyResult {
   std::vector<std::string> divergence;   ///< [log] why it diverges; empty: it does not
   std::optional<AtModelStep> at_step;    ///< after a fit on the smooth path
   std::optional<PredictionError> ahead;  ///< none where the outputs do not give the state
+  std::optional<OverNoise> of_pieces;    ///< Fit::over_pieces: what is left there over the noise
   std::optional<OverNoise> over_noise;   ///< where the residuals are far more than noise
   std::string start_hint;                ///< where trials begin elsewhere than measured; else empty
   ExtendedModel fitted;                  ///< fitted.xml and fitted.yaml
