@@ -140,9 +140,14 @@ class Ranking {
   // Whether a says what the first one of its family says, but for what a richer law has to earn.
   bool IsEnough(std::size_t a, std::size_t first) const {
     const bool most =
-        AreKin(a, first) && !TakesTheRest(first, a) &&
+        AreKin(a, first) && !TakesTheRest(first, a) && MayLeaveSome(first) &&
         candidates_[a].likelihood >= criteria_.family_share * candidates_[first].likelihood;
     return most || HasNotEarned(first, a) || !Behind(first, a, OfNested());
+  }
+  // Whether a plain law of a family may leave more than noise beside the first one: where that does
+  // too, and of dry friction, which others simulate in other ways.
+  bool MayLeaveSome(std::size_t first) const {
+    return more_ || candidates_[first].kin.family == kDryFriction;
   }
   // Whether a richer law takes the main share of what a plain one leaves plainly above noise and
   // time step, on logs left out.

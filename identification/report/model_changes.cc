@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "effects/pt2.h"
 #include "error.h"
 #include "sim/experiment/measurement_model.h"
 #include "sim/io/rounded.h"
@@ -135,6 +136,23 @@ std::string UnitOfExtra(const Hypothesis& h, std::size_t i) {
   return h.extra[i].unit == "1" ? "" : h.extra[i].unit;
 }
 
+namespace {
+
+// An overdamped lag of second order is two of first order, T = (ζ ± √(ζ² − 1))/ω: one where it says
+// no more than that.
+std::string LagsInWords(const Hypothesis& h, const Problem::Vector& x, Eigen::Index begin) {
+  if (h.effect != Pt2::kName) return "";
+  const double w = x[begin], zeta = x[begin + 1];
+  if (!(zeta > 1)) return "";
+  const double root = std::sqrt(zeta * zeta - 1), slow = (zeta + root) / w,
+               fast = (zeta - root) / w;
+  constexpr double kNone = 0.1;  // of the slow one
+  if (fast < kNone * slow) return fmt::format("; as a first-order lag of {} s", Value(slow));
+  return fmt::format("; as lags of {} and {} s one after the other", Value(slow), Value(fast));
+}
+
+}  // namespace
+
 std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Index begin) {
   std::string text;
   for (std::size_t i = 0; i < h.extra.size(); ++i) {
@@ -161,7 +179,7 @@ std::string ValuesInWords(const Hypothesis& h, const Fitted& fitted, Eigen::Inde
                       NearerBound(value, h.extra[i].lower, h.extra[i].upper)));
     if (!notes.empty()) text += " (" + notes + ")";
   }
-  return text;
+  return text + LagsInWords(h, fitted.fit.x, begin);
 }
 
 std::vector<std::string> ChangesInWords(const Diagnosis& d, const ExtensionRun& run) {

@@ -8,8 +8,8 @@
 
 #include "binding/effect_catalog.h"
 #include "error.h"
-#include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/extension.h"
+#include "identification/diagnosis/free_lengths.h"
 #include "identification/report/diagnosis_json.h"
 #include "identification/report/diagnosis_output.h"
 #include "random_diagnoses/random_case.h"
@@ -58,8 +58,8 @@ void Diagnosed(const std::filesystem::path& file, const std::filesystem::path& o
   const Experiment read = Experiment::Read(file);
   const ModelSpec system = ModelSpec::Load(read.model);
   CheckNames(read, system);
-  const Experiment e = Registered(read, system);
-  const Diagnosis d = Diagnose(e, system, SmallBudget());
+  Experiment e = Registered(read, system);
+  const Diagnosis d = DiagnoseWithLengths(e, system, SmallBudget());
   MakeFolder(out);
   const ExtensionRun run = MeasureExtension(e, d, out);
   WriteDiagnosis(e, d, run, out);
