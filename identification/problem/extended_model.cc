@@ -128,7 +128,8 @@ std::string ParameterYaml(const Problem& problem, const FreeParameter& p, double
   const double null = on_top ? problem.system().Value(p.change.target, p.change.attribute)
                       : p.change.operation == Change::Operation::kScale ? 1
                                                                         : 0;
-  const double start = absolute && !on_top ? value : null;
+  // Nor does a limit change anything that is set once more; without one there is no number.
+  const double start = (absolute && !on_top) || !std::isfinite(null) ? value : null;
   const char* const operation[] = {"set", "scale", "add"};
   return fmt::format(
       "  - {{name: {}, target: {}, attribute: {}, operation: {}, initial: {}, lower: {}, upper: "

@@ -9,12 +9,11 @@ namespace continuum {
 ///   |F| ≤ limit         limit [N*m] of the actuator's force, before its gear     (1)
 ///
 /// A native range of the force, within the one that the model has. On a tendon or a slide joint
-/// read N for N*m. limit = inf is the model as it is. No candidate by itself: where no torque comes
-/// near it nothing depends on it, and `check` names inputs that do. Source: mujoco.
+/// read N for N*m. limit = inf is the model as it is. Where no torque comes near it nothing depends
+/// on it. Source: mujoco.
 struct TorqueLimit {
   static constexpr std::string_view kName = "torque_limit", kSource = "mujoco",
                                     kSummary = "an actuator whose force is limited";
-  static constexpr bool kOnlyListed = true;
   static constexpr std::array kPlaces{Place::kActuator};
   static constexpr std::array kParams{
       Param{"limit", "N*m", std::numeric_limits<double>::min(), kInfinity, 0.3, kInfinity}};

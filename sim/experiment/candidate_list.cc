@@ -16,7 +16,10 @@ namespace {
 // Every effect of the list, to be tried wherever it makes sense.
 std::vector<Candidate> AllCandidates() {
   std::vector<Candidate> all;
-  All::ForEach([&]<class E>() { all.push_back({std::string(E::kName), "", false}); });
+  All::ForEach([&]<class E>() {
+    if constexpr (requires { E::kOnlyListed; }) return;
+    all.push_back({std::string(E::kName), "", false});
+  });
   return all;
 }
 

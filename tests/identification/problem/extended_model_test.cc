@@ -182,6 +182,16 @@ TEST_F(ExtensionTest, ReproducesWhatScalesAnActuatorsForce) {
 }
 
 // A weight on all logs is in the model file, one of a log's own in its line, on whatever it sets.
+// The effect is absent where there is no limit, which no file can say.
+TEST_F(ExtensionTest, ReproducesALimitOfAnActuatorsForce) {
+  AddTrials();
+  const Experiment e = ReadExperiment(
+      "parameters: [{name: limit, target: 'actuator:servo', attribute: "
+      "'effect:torque_limit.limit', initial: 1.5, lower: 0.01, upper: 100}]\n");
+  const Problem problem(e, Model());
+  ExpectTheSameErrors(problem, Problem::Vector::Constant(1, 1.2));
+}
+
 TEST_F(ExtensionTest, ReproducesWeightsOfAllLogsBesideThoseOfOne) {
   AddTrial(Pendulum(), "bare", 0, "use: train");
   AddTrial(Pendulum(), "loaded", 1, "use: train, set: {'body:tip': {point_mass: 0.05}}");
