@@ -4,6 +4,7 @@
 #include <cstring>
 #include <iterator>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <type_traits>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "binding/formula_force.h"
 #include "binding/formula_friction.h"
 #include "binding/friction.h"
+#include "binding/friction_guess.h"
 #include "binding/path.h"
 #include "binding/pull.h"
 #include "binding/segment.h"
@@ -49,6 +51,7 @@ struct Instance {
   std::vector<int> rows;            ///< in the last instance: all that are rows, itself included
   std::vector<double> before, sum;  ///< qfrc_passive without our share, and our share
   std::vector<double> next;         ///< our share, while it is summed up
+  std::optional<FrictionGuess> guess;  ///< in the last instance, where there are rows
 };
 
 // Never destroyed: an mjData may outlive what the process destroys at its end.
@@ -185,6 +188,7 @@ int Init(const mjModel& m, mjData& d, int i, Bind bind) noexcept {
     if (last) self->after_all = Those(m, d, i, *self, &BoundLaw::NeedsAllForces);
     if (last) self->rows = Those(m, d, i, *self, &BoundLaw::IsRow);
     if (last) self->forces = Less(self->givers, self->rows);
+    if (!self->rows.empty()) self->guess.emplace(m);
     self->before.assign(self->givers.empty() ? 0 : m.nv, 0);
     self->sum = self->next = self->before;
     FindSensors(m, i, *self, config);
@@ -322,6 +326,10 @@ void Compute(const mjModel& m, mjData& d, int i, int capability) {
   }
   for (const int j : self.rows) Evaluate(m, d, j, stage);
   if (self.forces != self.givers) Total(m, d, self, Stage::kActuator, self.givers);
+  if (self.guess && (stage == Stage::kActuator || IsUnactuated(m))) {
+    if (IsUnactuated(m) && self.after_all.empty()) mj_rne(&m, &d, 0, d.qfrc_bias);
+    self.guess->Write(m, d);
+  }
 }
 
 void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
@@ -334,7 +342,7 @@ void Copy(mjData& to, const mjModel& m, const mjData& from, int i) {
   b.bound->CopyFrom(*a.bound);
   b.force = a.force, b.changed = a.changed, b.after_all = a.after_all, b.rows = a.rows;
   b.sensors = a.sensors, b.signals = a.signals, b.givers = a.givers, b.forces = a.forces;
-  b.before = a.before, b.sum = a.sum, b.next = a.next;
+  b.before = a.before, b.sum = a.sum, b.next = a.next, b.guess = a.guess;
 }
 
 template <class E>

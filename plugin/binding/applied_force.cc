@@ -1,6 +1,8 @@
 #include "binding/applied_force.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 
 #include "binding/actuator_force.h"
 
@@ -32,9 +34,9 @@ void LimitJoints(const mjModel& m, const mjData& d, double* force) {
 }
 
 void AddWrenches(const mjModel& m, const mjData& d, double* force) {
-  bool some = false;
-  for (int i = 6; i < 6 * m.nbody; ++i) some |= d.xfrc_applied[i] != 0;
-  if (!some) return;
+  std::uint64_t some = 0;  // without branches: the compiler then works on several numbers at once
+  for (int i = 6; i < 6 * m.nbody; ++i) some |= std::bit_cast<std::uint64_t>(d.xfrc_applied[i]);
+  if (some == 0) return;
   for (int b = 1; b < m.nbody; ++b) {
     const double* const w = d.xfrc_applied + 6 * b;
     if (std::all_of(w, w + 6, [](double x) { return x == 0; })) continue;

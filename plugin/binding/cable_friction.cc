@@ -7,6 +7,7 @@
 #include "binding/bristle.h"
 #include "binding/row_softness.h"
 #include "binding/tree_groups.h"
+#include "binding/wide.h"
 #include "error.h"
 #include "mujoco_compat.h"
 
@@ -144,17 +145,27 @@ bool Silent(const mjModel& m) {
   return (m.opt.disableflags & mjDSBL_SPRING) && (m.opt.disableflags & mjDSBL_DAMPER);
 }
 
-// e^x, where all are small by the series, which is then good to 1e-17: without branches, so that
-// the compiler works on several numbers at once.
-void Exponential(std::span<const double> x, std::span<double> y) {
-  bool large = false;
-  for (const double v : x) large |= !(v <= 0.25);
-  for (std::size_t k = 0; k < x.size(); ++k) {
+// The series of e^x: without branches, so that the compiler works on several numbers at once.
+template <int kTerms>
+inline void Series(const double* x, double* y, std::size_t n) {
+  for (std::size_t k = 0; k < n; ++k) {
     double sum = 1;
-    for (int n = 12; n > 0; --n) sum = 1 + x[k] * (sum * (1.0 / n));
+    for (int i = kTerms; i > 0; --i) sum = 1 + x[k] * (sum * (1.0 / i));
     y[k] = sum;
   }
-  for (std::size_t k = 0; large && k < x.size(); ++k) y[k] = std::exp(x[k]);
+}
+
+// e^x, where all are small by the series, which is then good to 1e-17.
+CONTINUUM_WIDE void Exponential(std::span<const double> x, std::span<double> y) {
+  bool small = true, large = false;
+  for (const double v : x) small &= v <= 0.06, large |= !(v <= 0.25);
+  if (large) {
+    for (std::size_t k = 0; k < x.size(); ++k) y[k] = std::exp(x[k]);
+  } else if (small) {
+    Series<8>(x.data(), y.data(), x.size());
+  } else {
+    Series<12>(x.data(), y.data(), x.size());
+  }
 }
 
 }  // namespace
@@ -330,6 +341,13 @@ void CableFriction::Share(const double* z) {
     const Group& group = groups_[active_[g]];
     rho_[group.begin] = rho, ratio_[group.begin] = bend.ratio;
     if (group.end == group.begin + 1) continue;
+    if (bend.side != 0 && bend.turned == 0) {
+      for (int k = group.begin; k < group.end; ++k) {
+        rho_[k] = bend.side * band_[k];
+        ratio_[k] = bend.side > 0 ? grown_[k] : 1 / grown_[k];
+      }
+      continue;
+    }
     Spread(group, rho, z);
     const double share = bend.turned > 0 ? std::log(bend.ratio) / rho : 1;
     for (int k = group.begin; share != 1 && k < group.end; ++k)
@@ -356,14 +374,17 @@ void CableFriction::Spread(const Group& group, double rho, const double* z) {
 
 void CableFriction::Add(std::span<double> force) {
   std::fill(force.begin(), force.end(), 0.0);
+  double largest = largest_;
   for (int c = 0; c < geometry_.cables(); ++c) {
-    double tension = base_[c];
+    const double base = base_[c];
+    double tension = base;
     for (int s = geometry_.first[c]; s < geometry_.first[c + 1]; ++s) {
       tension_[s] = tension *= ratio_[s];
-      if (tension != base_[c]) geometry_.Add(s, base_[c] - tension, force.data());
+      if (tension != base) geometry_.Add(s, base - tension, force.data());
+      largest = std::max(largest, tension);
     }
   }
-  largest_ = std::max(largest_, LargestTension());
+  largest_ = largest;
 }
 
 double CableFriction::LargestTension() const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "binding/wide.h"
+
 namespace continuum {
 namespace {
 
@@ -122,7 +124,7 @@ double CableGeometry::WrapAngle(const mjModel& m, const mjData& d, const Wrap& w
 }
 
 // Loops without branches, here and below: the compiler then works on several numbers at once.
-void CableGeometry::Directions(const mjData& d) {
+CONTINUUM_WIDE void CableGeometry::Directions(const mjData& d) {
   const int n = segments();
   double *const x = x_.data(), *const y = y_.data(), *const z = z_.data(), *const l = half_.data();
   int without = 0;
@@ -155,7 +157,7 @@ void CableGeometry::FillDirections(const mjData& d, int c) {
 }
 
 // The angle between two unit vectors a and b by sin²(θ/2) = |b − a|²/4.
-void CableGeometry::Angles() {
+CONTINUUM_WIDE void CableGeometry::Angles() {
   const int n = segments();
   const double *const x = x_.data(), *const y = y_.data(), *const z = z_.data();
   double *const half = half_.data(), *const angle = theta.data();

@@ -45,9 +45,11 @@ void CableIslands::Build(const mjModel& m, const CableGeometry& geometry) {
   std::vector<int> ends(rows_.size());
   for (int c = 0; c < geometry.cables(); ++c)
     end_[c] = geometry.both[c] ? ends[of_cable_[c]]++ : -1;
-  inertias_.clear(), place_.clear();
-  for (std::size_t k = 0; k < dofs.size(); ++k) inertias_.emplace_back(m, dofs[k], ends[k]);
-  least_.assign(geometry.segments(), 0);
+  inertias_.clear(), articulated_.clear(), place_.clear();
+  for (std::size_t k = 0; k < dofs.size(); ++k) {
+    inertias_.emplace_back(m, dofs[k], ends[k]);
+    articulated_.emplace_back(m, inertias_.back().dofs());
+  }
   for (int c = 0; c < geometry.cables(); ++c) AddPlaces(geometry, c);
 }
 
@@ -56,12 +58,6 @@ void CableIslands::AddPlaces(const CableGeometry& geometry, int c) {
   for (int l = geometry.begin[geometry.first[c]]; l < geometry.begin[geometry.first[c + 1]]; ++l)
     place_.push_back(inertia.index(geometry.dof[l]));
   if (end_[c] >= 0) end_[c] += static_cast<int>(inertia.dofs().size());
-  int least = end_[c] >= 0 ? end_[c] : inertia.size();
-  for (int s = geometry.first[c + 1]; s-- > geometry.first[c];) {
-    for (int l = geometry.begin[s]; l < geometry.begin[s + 1]; ++l)
-      least = std::min(least, place_[l]);
-    least_[s] = least;
-  }
 }
 
 }  // namespace continuum

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "binding/articulated_inertia.h"
 #include "binding/cable_geometry.h"
 #include "binding/solved_row.h"
 #include "binding/step_inertia.h"
@@ -23,14 +24,14 @@ class CableIslands {
   int of_cable(int cable) const { return of_cable_[cable]; }
   StepInertia& inertia(int island) { return inertias_[island]; }
   const StepInertia& inertia(int island) const { return inertias_[island]; }
+  /// The same joints, without the ends of cables.
+  ArticulatedInertia& articulated(int island) { return articulated_[island]; }
   /// Rows that act on an island; rows that act on none are left out.
   std::span<const int> rows(int island) const { return rows_[island]; }
   /// Place of an entry's degree of freedom in the inertia of its island.
   int place(int entry) const { return place_[entry]; }
   /// Place of the far end of a cable that is pulled at both ends; −1: something holds it.
   int end(int cable) const { return end_[cable]; }
-  /// The first place that moves a segment or what is distal of it.
-  int least(int segment) const { return least_[segment]; }
 
  private:
   void Build(const mjModel& m, const CableGeometry& geometry);
@@ -41,7 +42,8 @@ class CableIslands {
   std::vector<int> of_cable_;
   std::vector<std::vector<int>> rows_;  // [islands]
   std::vector<StepInertia> inertias_;
-  std::vector<int> place_, least_;
+  std::vector<ArticulatedInertia> articulated_;
+  std::vector<int> place_;
   std::vector<int> end_;  // [cables]
 };
 

@@ -28,10 +28,6 @@ int FirstGuess(const Bend& bend) {
   return bend.memory > 0 ? 1 : -1;
 }
 
-bool IsLast(std::span<const Bend> bends, std::size_t g) {
-  return g + 1 == bends.size() || bends[g + 1].cable != bends[g].cable;
-}
-
 double SlidingRatio(const Bend& bend) {
   const double ratio = bend.side > 0 ? bend.grown : 1 / bend.grown;
   return bend.turned > 0 ? bend.turned / ratio + (1 - bend.turned) * ratio : ratio;
@@ -51,6 +47,7 @@ void CableSliding::Solve(const World& w, std::span<Bend> bends) {
   Guess(w, bends);
   GiveFresh(w, bends);
   islands_.Link(w.m, w.geometry, w.rows);
+  damped_ = false;
   SolveFree(w, bends);
   for (int island = 0; island < islands_.size(); ++island) {
     if (!islands_.rows(island).empty()) SolveWithRows(w, bends, island);
@@ -74,7 +71,7 @@ void CableSliding::SolveFree(const World& w, std::span<Bend> bends) {
       slide = Slides(bends[g], bends[g].speed + change_[g], least);
     if (slide) continue;
     Begin(w, island);
-    solver_.Begin(inertia().matrix(), inertia().size());
+    BeginFree(w, some);
     SolveSides(w, some);
     TurnWithinStep(w, some);
   }
@@ -87,6 +84,8 @@ void CableSliding::SolveWithRows(const World& w, std::span<Bend> bends, int isla
   const auto rough = [](const Bend& bend) { return bend.band > 0; };
   if (std::none_of(some_.begin(), some_.end(), rough)) return;
   Begin(w, island);
+  few_ = false;
+  islands_.inertia(island).Update(w.m, w.d, damping_);
   rows_.Begin(w.m, w.d, inertia(), w.rows, islands_.rows(island), w.native);
   SolveSides(w, some_);
   TurnWithinStep(w, some_);
@@ -102,8 +101,11 @@ void CableSliding::SolveWithRows(const World& w, std::span<Bend> bends, int isla
 }
 
 void CableSliding::Begin(const World& w, int island) {
+  if (!std::exchange(damped_, true)) {
+    damping_.Update(w.m, w.d);
+    covered_ = ArticulatedInertia::Covers(w.m);
+  }
   island_ = island;
-  islands_.inertia(island).Update(w.m, w.d);
   follow_.resize(inertia().size()), velocity_.resize(inertia().size());
 }
 
@@ -219,20 +221,11 @@ void CableSliding::Assign(const World& w, std::span<const Bend> bends) {
     part.ratio = bend.side != 0 ? SlidingRatio(bend) : std::exp(bend.memory);
     const double held = expected * (bend.side != 0 && gives_ ? std::exp(bend.memory) : part.ratio);
     expected *= part.ratio;
-    part.yield = part.spring = 0;
+    part.yield = part.spring = part.drop = 0;
     if (bend.side != 0 && !gives_) continue;
     const double stiff = std::max(held, w.last[cable] * std::exp(bend.level));
     (bend.side == 0 ? part.yield : part.spring) = bend.band * stiff / give_way_;
   }
-}
-
-// The place of the first dof that the friction of bends at rest depends on, or acts on.
-int CableSliding::FirstAtRest(std::span<const Bend> bends) const {
-  int first = inertia().size();
-  for (const Bend& bend : bends) {
-    if (bend.side == 0) first = std::min(first, islands_.least(bend.segment));
-  }
-  return first;
 }
 
 // follow += f dv_g/dq̇ = −f Σ_{k ≥ g} dL_k/dq; f for the cable's own speed.
@@ -245,31 +238,42 @@ void CableSliding::Follow(const World& w, const Bend& bend, double f,
   if (const int place = islands_.end(bend.cable); place >= 0) follow[place] += f;
 }
 
-// Solves (1) with t_g = constant − scale follow · (q̇⁺ − q̇), where follow collects the speeds of the
-// bends at rest from the base on.
-void CableSliding::SolveVelocity(const World& w, std::span<const Bend> bends) {
-  const bool rows = !rows_.empty();
-  const int n = inertia().size(), first = rows ? 0 : FirstAtRest(bends);
-  if (rows) matrix_ = rows_.matrix();
-  const std::span<double> block = rows ? std::span<double>(matrix_) : solver_.Block(first);
-  const auto joints = static_cast<int>(inertia().dofs().size());
-  for (int i = 0; i < n; ++i) {
-    const double push = rows ? rows_.push()[i] : 0;
-    velocity_[i] = w.m.opt.timestep * ((i < joints ? w.force[inertia().dofs()[i]] : 0) + push);
-  }
-  Assemble(w, bends, first, block);
-  if (rows) {
-    SolveLinear(block, velocity_);
+// Rows of the constraint solver couple all joints, and up to so many are solved for quicker than
+// what resists.
+void CableSliding::BeginFree(const World& w, std::span<const Bend> bends) {
+  constexpr int kSmall = 28;
+  few_ = covered_ && inertia().size() > kSmall;
+  if (few_) {
+    few_unknowns_.Begin({w.m, w.d, w.geometry, islands_, island_, damping_, w.force, w.base},
+                        bends);
   } else {
-    solver_.Solve(velocity_);
+    islands_.inertia(island_).Update(w.m, w.d, damping_);
   }
 }
 
-// What the bends add to the block of (1) from dof `first` on, and to its right-hand side.
-void CableSliding::Assemble(const World& w, std::span<const Bend> bends, int first,
-                            std::span<double> block) {
+void CableSliding::SolveVelocity(const World& w, std::span<const Bend> bends) {
+  if (!few_) return SolveDense(w, bends);
+  few_unknowns_.Solve({w.m, w.d, w.geometry, islands_, island_, damping_, w.force, w.base}, bends,
+                      parts_, velocity_);
+}
+
+// Solves (1) with t_g = constant − scale follow · (q̇⁺ − q̇), where follow collects the speeds of the
+// bends at rest from the base on.
+void CableSliding::SolveDense(const World& w, std::span<const Bend> bends) {
+  matrix_ = rows_.empty() ? inertia().matrix() : rows_.matrix();
+  const auto joints = static_cast<int>(inertia().dofs().size());
+  for (int i = 0; i < inertia().size(); ++i) {
+    const double push = rows_.empty() ? 0 : rows_.push()[i];
+    velocity_[i] = w.m.opt.timestep * ((i < joints ? w.force[inertia().dofs()[i]] : 0) + push);
+  }
+  Assemble(w, bends);
+  SolveLinear(matrix_, velocity_);
+}
+
+// What the bends add to the matrix of (1), and to its right-hand side.
+void CableSliding::Assemble(const World& w, std::span<const Bend> bends) {
   const double h = w.m.opt.timestep;
-  const int rest = inertia().size() - first;
+  const int n = inertia().size();
   int cable = -1;
   double base = 0, constant = 0, scale = 0;
   bool follows = false;
@@ -287,16 +291,16 @@ void CableSliding::Assemble(const World& w, std::span<const Bend> bends, int fir
     constant = part.ratio * constant - part.yield * bend.speed;
     scale *= part.ratio;
     if (part.yield > 0) {
-      if (!follows) std::fill(follow_.begin() + first, follow_.end(), 0.0);
+      if (!follows) std::fill(follow_.begin(), follow_.end(), 0.0);
       follows = true;
       Follow(w, bend, part.yield / scale, follow_);
     }
     const auto pull = [&](int place, double arm) {
       velocity_[place] -= arm * (constant - base);
       if (!follows) return;
-      double* const row = block.data() + (place - first) * rest;
-      for (int j = 0; j < rest; ++j) row[j] -= arm * scale * follow_[first + j];
-      for (int j = 0; slope && j < rest; ++j) row[j] += arm * (*slope)[j];
+      double* const row = matrix_.data() + place * n;
+      for (int j = 0; j < n; ++j) row[j] -= arm * scale * follow_[j];
+      for (int j = 0; slope && j < n; ++j) row[j] += arm * (*slope)[j];
     };
     for (int l = w.geometry.begin[bend.segment]; l < w.geometry.begin[bend.segment + 1]; ++l)
       pull(islands_.place(l), h * w.geometry.arm[l]);
@@ -315,6 +319,7 @@ int CableSliding::Judge(const World& w, std::span<Bend> bends) {
       change -= w.geometry.arm[l] * velocity_[islands_.place(l)];
     }
     speed_[g] = bends[g].speed + change;
+    if (!few_) parts_[g].drop = parts_[g].yield * change;
   }
   int wrong = 0, cable = -1;
   double before = 0, wanted = 0;
@@ -323,12 +328,13 @@ int CableSliding::Judge(const World& w, std::span<Bend> bends) {
     Part& part = parts_[g];
     if (bend.cable != cable)
       cable = bend.cable, before = wanted = std::max(BaseOf(w, cable), 1e-12);
-    wanted = part.ratio * wanted - part.yield * speed_[g];
+    wanted = part.ratio * wanted - part.yield * bend.speed - part.drop;
     part.better = bend.side;
     if (bend.side != 0) {
-      bend.tension = part.ratio * before;
-      const double room = before * std::abs(std::exp(bend.memory) - part.ratio);
-      const double least = part.spring > 0 ? room / part.spring : 0;
+      bend.tension = part.ratio * before, bend.ratio = part.ratio;
+      double least = 0;
+      if (part.spring > 0)
+        least = before * std::abs(std::exp(bend.memory) - part.ratio) / part.spring;
       if (bend.band > 0 && !bend.given && -bend.side * speed_[g] < least - kSpeedError)
         part.better = 0;
     } else {
@@ -336,8 +342,8 @@ int CableSliding::Judge(const World& w, std::span<Bend> bends) {
       const double error = kRelativeError * bend.tension;
       if (wanted < bend.tension - error) part.better = -1;
       if (wanted > bend.tension + error) part.better = 1;
+      bend.ratio = bend.tension / before;
     }
-    bend.ratio = bend.tension / before;
     before = bend.tension;
     wrong += part.better != bend.side;
   }

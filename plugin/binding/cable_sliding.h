@@ -4,29 +4,14 @@
 #include <span>
 #include <vector>
 
+#include "binding/bend.h"
 #include "binding/cable_geometry.h"
 #include "binding/cable_islands.h"
+#include "binding/few_unknowns.h"
 #include "binding/island_rows.h"
-#include "binding/linear_solver.h"
 #include "binding/solved_row.h"
 
 namespace continuum {
-
-/// Contacts of a cable between which nothing moves, and the moving segment behind them.
-struct Bend {
-  int cable, segment;  ///< segment as CableGeometry counts them
-  double band;    ///< largest |ρ|, ρ = log(tension behind/tension before), sum over the contacts
-  double grown;   ///< exp(band)
-  double memory;  ///< ρ of the last step
-  double speed;   ///< v, > 0 when pulled toward the actuator, as the step begins [m/s]
-  double level;   ///< log(tension behind/base tension) of the last step
-  bool fresh;     ///< no step has gone before
-
-  int side = 0;                   ///< ±1: slides with ρ = ±band; 0: at rest
-  double tension = 0, ratio = 1;  ///< behind it [N]; the same by that before it
-  bool given = false;             ///< slides as its side says, whatever it is at the step's end
-  double turned = 0;              ///< τ of (5): part of the step on the other side
-};
 
 /// Dry friction of cables, solved for the end of the step.
 ///
@@ -75,7 +60,8 @@ struct Bend {
 /// direction act all along: an error of first order in the step at every reversal.
 ///
 /// Once it is known who slides which way, (1) is linear in q̇⁺, with a linear ρ in (4): ρ − memory =
-/// (t_g − e^memory t_{g−1})/t, t what t_g would be by the memories or was, if that is more. Bends
+/// (t_g − e^memory t_{g−1})/t, t what t_g would be by the memories or was, if that is more. Many
+/// joints are solved for by FewUnknowns; few, and those with rows, all together. Bends
 /// that break (2), and rows that break λ ≥ 0 or that would push and do not, then change their part:
 /// all together as long as that leaves fewer to change, else one by one (block principal pivoting;
 /// judice1994). Where that does not end, v_c grows until it does, and comes back from what was
@@ -122,12 +108,6 @@ class CableSliding {
   void Solve(const World& w, std::span<Bend> bends);
 
  private:
-  struct Part {
-    double ratio;  // of the tension behind it to that before: exp of ρ when sliding, else of memory
-    double yield;   // d tension/d v of a bend at rest [N s/m]
-    double spring;  // the same of one that slides, were it at rest; 0 where the cable has no give
-    int better;     // side it should have
-  };
   void Guess(const World& w, std::span<Bend> bends);
   void GiveFresh(const World& w, std::span<Bend> bends);
   void Changes(const World& w, std::span<const Bend> bends, std::span<const double> force);
@@ -140,9 +120,10 @@ class CableSliding {
   bool SolveTurns(const World& w, std::span<Bend> bends);
   bool SettleForced(const World& w, std::span<Bend> bends, int way);
   void Assign(const World& w, std::span<const Bend> bends);
-  int FirstAtRest(std::span<const Bend> bends) const;
   void SolveVelocity(const World& w, std::span<const Bend> bends);
-  void Assemble(const World& w, std::span<const Bend> bends, int first, std::span<double> block);
+  void BeginFree(const World& w, std::span<const Bend> bends);
+  void SolveDense(const World& w, std::span<const Bend> bends);
+  void Assemble(const World& w, std::span<const Bend> bends);
   void Follow(const World& w, const Bend& bend, double f, std::span<double> follow) const;
   int Judge(const World& w, std::span<Bend> bends);
   void Change(std::span<Bend> bends, bool one);
@@ -154,8 +135,12 @@ class CableSliding {
   CableIslands islands_;
   int island_ = 0;
   IslandRows rows_;  ///< of the island that is being solved
-  BlockSolver solver_;
-  std::vector<double> matrix_;  ///< with rows: what is solved [dofs · dofs]
+  StepDamping damping_;
+  bool damped_ = false;   ///< damping_ is that of this step
+  bool covered_ = false;  ///< articulated bodies have the model's inertia
+  bool few_ = false;      ///< solved for what resists, else for all joints
+  FewUnknowns few_unknowns_;
+  std::vector<double> matrix_;  ///< what is solved for all joints [dofs · dofs]
   double give_way_ = 0;         ///< v_c
   bool gives_ = false;
   struct {

@@ -13,17 +13,17 @@ constexpr double kTurning = 5;  // slower bends obey (2) at the end of the step 
 int SideBySpeed(const Bend& bend) { return bend.speed > 0 ? -1 : 1; }
 
 bool MayTurn(const Bend& bend, double give_way) {
-  return !bend.fresh && bend.band > 0 && std::abs(bend.speed) > kTurning * give_way &&
-         bend.side != SideBySpeed(bend);
+  return bend.side != SideBySpeed(bend) && std::abs(bend.speed) > kTurning * give_way &&
+         !bend.fresh && bend.band > 0;
 }
 
 }  // namespace
 
 void CableSliding::TurnWithinStep(const World& w, std::span<Bend> bends) {
-  turns_.assign(bends.size(), false);
-  bool any = false;
-  for (std::size_t g = 0; g < bends.size(); ++g) any |= turns_[g] = MayTurn(bends[g], w.GiveWay());
-  if (!any) return;
+  const auto may_turn = [&](const Bend& bend) { return MayTurn(bend, w.GiveWay()); };
+  if (std::none_of(bends.begin(), bends.end(), may_turn)) return;
+  turns_.resize(bends.size());
+  std::transform(bends.begin(), bends.end(), turns_.begin(), may_turn);
   before_turns_.assign(bends.begin(), bends.end());
   const std::vector<bool> acting = rows_.Acting();
   const auto answer = answer_;

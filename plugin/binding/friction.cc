@@ -34,9 +34,28 @@ std::set<std::pair<bool, int>> RowsOf(const mjModel& m, int begin, int end) {
   return taken;
 }
 
-// Impedance of a row, unless the model says how hard it is; under the discrete integrator, where
-// the anchor does not act, whatever it says: as hard as the solver carries keeps the creep low.
-constexpr double kImpedance = 0.99, kDiscreteImpedance = 0.9999;
+// Of a row under the discrete integrator, where the anchor does not act: as hard as the solver
+// carries keeps the creep low.
+constexpr double kDiscreteImpedance = 0.9999;
+
+// How many joints of these rows stand one behind the other, at most, in each tree.
+std::vector<int> LongestChains(const mjModel& m, const std::vector<bool>& rows) {
+  std::vector<int> most(m.ntree), count(m.nv);
+  for (int dof = 0; dof < m.nv; ++dof) {
+    const int parent = m.dof_parentid[dof];
+    count[dof] = rows[dof] + (parent < 0 ? 0 : count[parent]);
+    int& longest = most[m.dof_treeid[dof]];
+    longest = std::max(longest, count[dof]);
+  }
+  return most;
+}
+
+// (4)
+double Impedance(int joints) {
+  constexpr double kSoft = 0.01, kHard = 1e-5, kFew = 10;
+  const double part = std::min(1.0, kFew / std::max(1, joints));
+  return 1 - std::max(kHard, kSoft * part * part * part);
+}
 
 // Under the discrete integrator, which reads the model.
 void HardenModel(mjModel& m, const FrictionRow& row) {
@@ -73,6 +92,14 @@ FrictionRows::FrictionRows(const mjModel& m, const Config& config, Joints types,
     row.owner = !below.contains({row.joint, row.index});
     row.alone = row.owner && !above.contains({row.joint, row.index});
   }
+  std::vector<bool> all(m.nv);
+  for (const auto& [joint, index] : RowsOf(m, 0, static_cast<int>(m.nplugin))) {
+    if (joint) all[index] = true;
+  }
+  const std::vector<int> longest = LongestChains(m, all);
+  for (FrictionRow& row : rows_) {
+    if (row.joint) row.impedance = Impedance(longest[m.dof_treeid[row.index]]);
+  }
 }
 
 int FrictionRows::StateSize(const mjModel& m, const Config& config, Joints types) {
@@ -96,34 +123,33 @@ bool FrictionRows::IsNative(const mjModel& m, const FrictionRow& row) {
   return row.alone && native > kRowMarker;
 }
 
-// R follows the inertia of each joint by itself. Held joints are springs, k = 1/(4 h² R), and the
-// inertia that swings on all of them grows with the third power of their number.
+// Where the model says how soft they are.
 std::string FrictionRows::WhySoft(const mjModel& m) const {
   constexpr int kMany = 30;
+  constexpr double kHard = 0.999;
   if (IsDiscrete(m)) return "";
-  std::vector<int> soft(m.nv);  // here and before it
+  std::vector<bool> soft(m.nv);
   for (const FrictionRow& row : rows_) {
-    if (row.joint && HasDefaultImpedance(m, row)) soft[row.index] = 1;
+    if (row.joint && !HasDefaultImpedance(m, row))
+      soft[row.index] = m.dof_solimp[mjNIMP * row.index] < kHard;
   }
-  int most = 0;
-  for (int dof = 0; dof < m.nv; ++dof) {
-    if (m.dof_parentid[dof] >= 0) soft[dof] += soft[m.dof_parentid[dof]];
-    most = std::max(most, soft[dof]);
-  }
+  const std::vector<int> longest = LongestChains(m, soft);
+  const int most = longest.empty() ? 0 : *std::max_element(longest.begin(), longest.end());
   if (most < kMany) return "";
   return std::to_string(most) +
          " joints one behind the other: those at rest are springs on which the chain swings, and "
-         "loads near breakaway make it creep. solimpfriction=\"0.9999 0.9999 0.001\" on the joints "
-         "with <option tolerance=\"1e-12\"/> holds it";
+         "as soft as their solimpfriction makes them loads near breakaway make it creep; without "
+         "solimpfriction it holds";
 }
 
 // MuJoCo: R = (1 − d)/d diag(A), D = 1/R.
 void FrictionRows::Harden(const mjModel& m, mjData& d, const FrictionRow& row, int r) {
   double& impedance = d.efc_KBIP[4 * r + 2];
-  if (impedance == kImpedance || IsDiscrete(m) || !HasDefaultImpedance(m, row)) return;
-  const double R = d.efc_R[r] * (impedance / (1 - impedance)) * ((1 - kImpedance) / kImpedance);
+  if (impedance == row.impedance || IsDiscrete(m) || !HasDefaultImpedance(m, row)) return;
+  const double wanted = (1 - row.impedance) / row.impedance;
+  const double R = d.efc_R[r] * (impedance / (1 - impedance)) * wanted;
   SetSoftness(m, d, r, std::max(mjMINVAL, R));
-  impedance = kImpedance, d.efc_KBIP[4 * r + 3] = 0;
+  impedance = row.impedance, d.efc_KBIP[4 * r + 3] = 0;
 }
 
 bool FrictionRows::IsAnotherPose(const mjModel& m, double speed, double change) {
@@ -194,6 +220,18 @@ void FrictionRows::WriteRow(const mjModel& m, mjData& d, double off, Stage stage
   d.efc_KBIP[4 * r] = 1 / (4 * h * h);  // (1)
   d.efc_KBIP[4 * r + 1] = 1 / h;
   d.efc_pos[r] = off;
+}
+
+// The solver begins with the acceleration of the last step, and needs an iteration for each time
+// that it finds another set of rows that slide. A row that held most often holds.
+void FrictionRows::Foresee(mjData& d, bool held, const FrictionRow& row, int r) {
+  constexpr double kInside = 0.99;
+  const double level = kInside * d.efc_frictionloss[r], *const kbip = d.efc_KBIP + 4 * r;
+  if (!held || !(level > 0)) return;
+  const double aref = -kbip[1] * d.qvel[row.index] - kbip[0] * kbip[2] * d.efc_pos[r];
+  double& acceleration = d.qacc_warmstart[row.index];
+  const double yield = d.efc_R[r] * level;
+  acceleration = std::clamp(acceleration, aref - yield, aref + yield);
 }
 
 FrictionRows::Sliding FrictionRows::SlidingOf(const mjData& d, const double* z,

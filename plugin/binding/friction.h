@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "binding/actuator_force.h"
 #include "binding/bound_law.h"
 #include "binding/bristle.h"
 #include "binding/friction_row.h"
@@ -21,9 +22,13 @@ namespace continuum {
 ///   efc_aref = −B v − K (q − anchor),   K = 1/(2h)², B = 1/h                (1)
 ///
 /// It gives way by h² (1 − d) (1 + 4/d²) τ/I under a load τ on an inertia I. Rows with
-/// MuJoCo's default impedance get d = 0.99 in each evaluation (efc_R, efc_D and efc_KBIP; under the
-/// discrete integrator in the model), its own 0.9 to 0.95 would be ten times softer and let a
-/// sudden load overshoot by 7 %.
+/// MuJoCo's default impedance get another one in each evaluation (efc_R, efc_D and efc_KBIP; under
+/// the discrete integrator in the model), its own 0.9 to 0.95 would be ten times softer and let a
+/// sudden load overshoot by 7 %. Held joints are springs, whose stiffness follows the inertia of
+/// each joint by itself; the inertia that swings on n of them, one behind the other, grows with the
+/// third power of n. So
+///
+///   1 − d = 0.01 min(1, (10/n)³), not less than 1e-5                        (4)
 ///
 /// While |efc_force| has reached the level the anchor moves with q, at the distance at which the
 /// row would hold that force at rest:
@@ -73,6 +78,8 @@ class FrictionRows {
       const Sliding sliding = SlidingOf(d, z + kStates * k, row);
       WriteRow(m, d, off, stage, row, r, sliding.share * level(row, sliding.v));
       if (give > 0 && row.alone && !IsDiscrete(m)) Soften(m, d, r, give);
+      if ((stage == Stage::kActuator || IsUnactuated(m)) && row.joint && row.axis < 0)
+        Foresee(d, z[kStates * k] == kHeld, row, r);
     }
   }
   void Advance(const mjModel& m, const mjData& d, double* z) const;
@@ -87,8 +94,8 @@ class FrictionRows {
     }
   }
 
-  /// Why they hold less well than elsewhere: too many of them in a row, as soft as MuJoCo's
-  /// default.
+  /// Why they hold less well than elsewhere: too many of them in a row, and as soft as the model
+  /// says.
   std::string WhySoft(const mjModel& m) const;
   /// Throws Error where other dry friction acts on a row.
   void RequireAlone(const mjModel& m, const std::string& who) const;
@@ -146,13 +153,14 @@ class FrictionRows {
   static bool Saturated(const mjData& d, int r);
   /// Moves r (ascending over calls) to the row's constraint; false when it has none.
   static bool Find(const mjData& d, const FrictionRow& row, int& r);
+  static void Foresee(mjData& d, bool held, const FrictionRow& row, int r);
   static void WriteRow(const mjModel& m, mjData& d, double off, Stage stage, const FrictionRow& row,
                        int r, double level);
   /// Makes a row yield by give under its level: R = K d give/level, of (2).
   static void Soften(const mjModel& m, mjData& d, int r, double give);
   /// Whether MuJoCo alone has friction there, if this law has none.
   static bool IsNative(const mjModel& m, const FrictionRow& row);
-  /// As an impedance of kImpedance makes it, where the model has MuJoCo's default.
+  /// As the row's impedance makes it, where the model has MuJoCo's default.
   static void Harden(const mjModel& m, mjData& d, const FrictionRow& row, int r);
   /// Whether a change of q − anchor since the end of the last step is none of a motion's at this
   /// speed.

@@ -19,7 +19,8 @@ struct FrictionRow {
   int index;   ///< of the degree of freedom or tendon
   int axis;    ///< component of a ball joint, or −1
   bool owner;  ///< the lowest instance on a row assigns level and anchor; others add their level
-  bool alone = true;  ///< no other instance of ours is on the row
+  bool alone = true;        ///< no other instance of ours is on the row
+  double impedance = 0.99;  ///< where the model has MuJoCo's default
 };
 
 /// The rows of the joints or tendons that a configuration names, all as owners.

@@ -27,9 +27,6 @@ void IslandRows::Begin(const mjModel& m, const mjData& d, const StepInertia& ine
     rows_.push_back(&all[r]);
   }
   damped_ = inertia.matrix();
-  for (int i = 0; i < n_; ++i) {
-    for (int j = 0; j < i; ++j) damped_[i * n_ + j] = damped_[j * n_ + i];
-  }
   FindResponses(m, d, inertia);
   Build();
 }

@@ -3,15 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-// Vectors of four numbers where the machine has them. AVX2 alone has no fused multiply-add, so that
-// results are the same on every machine. Sanitizers run before what chooses is ready.
-// Older clangs do not link such functions.
-#if defined(__x86_64__) && defined(__linux__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define CONTINUUM_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define CONTINUUM_WIDE
-#endif
+#include "binding/wide.h"
 
 namespace continuum {
 namespace {

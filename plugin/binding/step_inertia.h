@@ -5,6 +5,8 @@
 
 #include <mujoco/mujoco.h>
 
+#include "binding/step_damping.h"
+
 namespace continuum {
 
 /// What a force changes the velocity by in a step: v⁺ = v + h (M + h D)⁻¹ force, with the damping D
@@ -19,20 +21,19 @@ class StepInertia {
 
   static constexpr double kEndDrag = 1e-9;  ///< [N s/m], so that a cable has next to no mass
 
-  void Update(const mjModel& m, const mjData& d);
+  void Update(const mjModel& m, const mjData& d, const StepDamping& damping);
 
   int size() const { return static_cast<int>(dofs_.size()) + ends_; }
   const std::vector<int>& dofs() const { return dofs_; }
   /// Place of a dof among dofs().
   int index(int dof) const { return index_[dof]; }
-  /// The upper triangle of M + h D [size · size].
+  /// M + h D [size · size].
   const std::vector<double>& matrix() const { return matrix_; }
-  /// The same of M alone.
+  /// M alone.
   void Mass(const mjModel& m, const mjData& d, std::vector<double>& mass) const;
 
  private:
-  void AddDamping(const mjModel& m, const mjData& d);
-  void AddOuter(double scale, std::span<const int> dofs, const double* x);
+  void Add(const StepDamping::Term& term);
 
   std::vector<int> dofs_, index_;
   int ends_;

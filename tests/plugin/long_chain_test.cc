@@ -60,33 +60,44 @@ class LongChains : public testing::Engine {
   }
 };
 
-const std::string kHard = "solimpfriction=\".9999 .9999 .001\"", kExact = "tolerance=\"1e-12\"";
 constexpr double kHeld = 1e-6;
 
-TEST_F(LongChains, OfTwentyLinksHoldASuddenLoadAtHalfAMillisecond) {
-  EXPECT_LT(Drift({20, 5e-4}, 0.9), kHeld);
+TEST_F(LongChains, HoldASuddenLoadAtTwoMilliseconds) {
+  EXPECT_LT(Drift({10}, 0.97), kHeld);
+  EXPECT_LT(Drift({20}, 0.5), kHeld);
+  EXPECT_LT(Drift({20}, 0.97), kHeld);
+  EXPECT_LT(Drift({40}, 0.97), kHeld);
+  EXPECT_LT(Drift({60}, 0.5), kHeld);
+  EXPECT_LT(Drift({60}, 0.9), kHeld);
 }
 
-// A row's softness follows the joint's own inertia, which is 1e5 times less than that of the chain:
-// held joints are springs, on which the whole chain swings. Rows a hundred times harder hold it.
-TEST_F(LongChains, OfHardRowsHoldASuddenLoadAtTwoMilliseconds) {
-  EXPECT_LT(Drift({20, 2e-3, kHard, kExact}, 0.9), kHeld);
-  EXPECT_LT(Drift({40, 2e-3, kHard, kExact}, 0.9), kHeld);
-  EXPECT_LT(Drift({60, 2e-3, kHard, kExact}, 0.8), kHeld);
-  EXPECT_LT(Drift({60, 1e-3, kHard, kExact}, 0.9), kHeld);
+TEST_F(LongChains, HoldALoadThatRisesWithinASecond) {
+  EXPECT_LT(Drift({20}, 0.9, 1), kHeld);
+  EXPECT_LT(Drift({60}, 0.9, 1), kHeld);
 }
 
-TEST_F(LongChains, OfSixtyLinksHoldALoadThatRisesWithinASecond) {
-  EXPECT_LT(Drift({60, 2e-3, kHard, kExact}, 0.9, 1), kHeld);
+// The solver's own tolerance, where it has to find out who slides: without a start at the answer
+// 40 links needed 17 iterations a step, and crept by 3e-3 rad.
+TEST_F(LongChains, LeaveTheSolverNothingToDoAtRest) {
+  const auto m = Make({40});
+  const auto d = Data(m);
+  int iterations = 0;
+  while (d->time < 1) {
+    std::fill_n(d->qfrc_applied, m->nv, 0.9 * kLevel);
+    mj_step(m.get(), d.get());
+    if (d->time > 0.5) iterations = std::max(iterations, d->solver_niter[0]);
+  }
+  EXPECT_EQ(iterations, 0);
 }
 
 TEST_F(LongChains, AreWarnedOfWhereTheirRowsAreSoft) {
   static std::string warnings;
   mju_user_warning = [](const char* text) { warnings += text; };
-  Make({14});
-  Make({17, 2e-3, kHard});
-  EXPECT_EQ(warnings, "");
+  const std::string soft = "solimpfriction=\".95 .95 .001\"";
+  Make({14, 2e-3, soft});
   Make({17});
+  EXPECT_EQ(warnings, "");
+  Make({17, 2e-3, soft});
   mju_user_warning = [](const char*) {};
   EXPECT_THAT(warnings, ::testing::HasSubstr("34 joints one behind the other"));
 }
