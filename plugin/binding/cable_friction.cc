@@ -5,9 +5,9 @@
 
 #include "binding/applied_force.h"
 #include "binding/bristle.h"
+#include "binding/exponential.h"
 #include "binding/row_softness.h"
 #include "binding/tree_groups.h"
-#include "binding/wide.h"
 #include "error.h"
 #include "mujoco_compat.h"
 
@@ -143,29 +143,6 @@ void RequireAlone(const mjModel& m, const Config& config) {
 // MuJoCo applies no passive forces then.
 bool Silent(const mjModel& m) {
   return (m.opt.disableflags & mjDSBL_SPRING) && (m.opt.disableflags & mjDSBL_DAMPER);
-}
-
-// The series of e^x: without branches, so that the compiler works on several numbers at once.
-template <int kTerms>
-inline void Series(const double* x, double* y, std::size_t n) {
-  for (std::size_t k = 0; k < n; ++k) {
-    double sum = 1;
-    for (int i = kTerms; i > 0; --i) sum = 1 + x[k] * (sum * (1.0 / i));
-    y[k] = sum;
-  }
-}
-
-// e^x, where all are small by the series, which is then good to 1e-17.
-CONTINUUM_WIDE void Exponential(std::span<const double> x, std::span<double> y) {
-  bool small = true, large = false;
-  for (const double v : x) small &= v <= 0.06, large |= !(v <= 0.25);
-  if (large) {
-    for (std::size_t k = 0; k < x.size(); ++k) y[k] = std::exp(x[k]);
-  } else if (small) {
-    Series<8>(x.data(), y.data(), x.size());
-  } else {
-    Series<12>(x.data(), y.data(), x.size());
-  }
 }
 
 }  // namespace

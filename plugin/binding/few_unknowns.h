@@ -18,8 +18,11 @@ namespace continuum {
 /// measures along c and pushes along w, with the ratios r of Part,
 ///
 ///   K x = b + h Σ p w,   p = y cᵀ x                                                       (1)
-///   bends:    p = drop,  y = yield,  c_g = −Σ_{k ≥ g} dL_k/dq,  w_g = Σ_{k ≥ g} (r_{g+1} … r_k)
-///   dL_k/dq dampers:             y = h d,    c = J,                     w = −J/h
+///
+/// with of bends and of dampers
+///
+///   p = drop,  y = yield,  c_g = −Σ_{k ≥ g} dL_k/dq,  w_g = Σ_{k ≥ g} (r_{g+1} … r_k) dL_k/dq
+///              y = h d,    c = J,                     w = −J/h
 ///
 /// b the right-hand side with all p = 0. So
 ///
