@@ -7,8 +7,10 @@ namespace continuum {
 
 template <class A>
 void Fields(A& a, Fit& f) {
-  auto& [x, cost, iterations, evaluations, seconds, converged, anew, over_pieces, smooth, message, trace] = f;
-  a(x, cost, iterations, evaluations, seconds, converged, anew, over_pieces, smooth, message, trace);
+  auto& [x, cost, iterations, evaluations, seconds, converged, anew, over_pieces, smooth, message,
+         trace] = f;
+  a(x, cost, iterations, evaluations, seconds, converged, anew, over_pieces, smooth, message,
+    trace);
 }
 
 }  // namespace continuum
