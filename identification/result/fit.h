@@ -18,7 +18,7 @@ struct Fit {
   bool converged = false;
   bool anew = false;  ///< begun anew from where the equations of motion hold best (FitByEquations)
   bool over_pieces = false;  ///< of the logs, as nothing follows them as a whole
-  bool smooth = false;  ///< slopes predict what small steps do around it (HasRipples)
+  bool smooth = false;       ///< slopes predict what small steps do around it (HasRipples)
   std::string message;
   std::vector<double> trace;  ///< cost at the start and after each iteration
 
