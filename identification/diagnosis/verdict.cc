@@ -119,7 +119,7 @@ class Ranking {
     std::size_t best = first;
     for (const std::size_t i : order_) {
       if (candidates_[i].listed == candidates_[first].listed && IsPlainer(i, best) &&
-          IsEnough(i, first))
+          IsEnough(i, first) && (MayLeaveSome(first) || !Behind(first, i, OfNested())))
         best = i;
     }
     return best;
@@ -140,7 +140,7 @@ class Ranking {
   // Whether a says what the first one of its family says, but for what a richer law has to earn.
   bool IsEnough(std::size_t a, std::size_t first) const {
     const bool most =
-        AreKin(a, first) && !TakesTheRest(first, a) && MayLeaveSome(first) &&
+        AreKin(a, first) && !TakesTheRest(first, a) &&
         candidates_[a].likelihood >= criteria_.family_share * candidates_[first].likelihood;
     return most || HasNotEarned(first, a) || !Behind(first, a, OfNested());
   }
