@@ -33,7 +33,7 @@ bool IsBetter(const Diagnosis& as_given, const Diagnosis& with_lengths) {
   const bool answers =
       with_lengths.Is(Verdict::Kind::kNamed) || with_lengths.Is(Verdict::Kind::kAdequate);
   return answers && !with_lengths.interrupted &&
-         ErrorOf(with_lengths.after()) < as_given.criteria.lengths_gain * LeastErrorOf(as_given);
+         IsFarLess(ErrorOf(with_lengths.after()), LeastErrorOf(as_given), as_given.criteria);
 }
 
 // Whether another length changes the motion; a link that carries nothing has none.
@@ -58,10 +58,7 @@ std::vector<Parameter> LengthsOfLinks(const Experiment& e, const ModelSpec& syst
   std::vector<Parameter> lengths;
   for (const Hypothesis& h : NumbersOfBodies({e, base, d.sizes})) {
     if (h.effect != LinkLength::kName || !Matters(h, e, d)) continue;
-    Parameter p = h.extra.front();
-    p.name = "length of " + h.where;
-    p.initial = 1, p.lower = 1 - d.criteria.lengths_off, p.upper = 1 + d.criteria.lengths_off;
-    lengths.push_back(std::move(p));
+    lengths.push_back(FreeLength(h, d.criteria));
   }
   if (lengths.size() > kMost) lengths.clear();
   return lengths;
@@ -76,6 +73,17 @@ DiagnosisOptions OnceMore(const DiagnosisOptions& options) {
 }
 
 }  // namespace
+
+Parameter FreeLength(const Hypothesis& h, const Criteria& criteria) {
+  Parameter p = h.extra.front();
+  p.name = "length of " + h.where;
+  p.initial = 1, p.lower = 1 - criteria.lengths_off, p.upper = 1 + criteria.lengths_off;
+  return p;
+}
+
+bool IsFarLess(double with_lengths, double as_given, const Criteria& criteria) {
+  return with_lengths < criteria.lengths_gain * as_given;
+}
 
 Diagnosis DiagnoseWithLengths(Experiment& e, const ModelSpec& system,
                               const DiagnosisOptions& options) {

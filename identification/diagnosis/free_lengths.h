@@ -14,4 +14,9 @@ namespace continuum {
 Diagnosis DiagnoseWithLengths(Experiment& experiment, const ModelSpec& system,
                               const DiagnosisOptions& options = {});
 
+/// The length of a link, as a factor, within what it may be off.
+Parameter FreeLength(const Hypothesis& link_length, const Criteria& criteria);
+/// Whether an error is so much less than another one that free lengths are the better answer.
+bool IsFarLess(double with_lengths, double as_given, const Criteria& criteria);
+
 }  // namespace continuum

@@ -14,6 +14,7 @@
 
 #include "identification/diagnosis/correction.h"
 #include "identification/diagnosis/fallback_force.h"
+#include "identification/diagnosis/free_lengths.h"
 #include "identification/diagnosis/screening.h"
 #include "identification/diagnosis/search_rules.h"
 #include "identification/diagnosis/verdict.h"
@@ -165,7 +166,7 @@ std::vector<Judged> FamilyShare() {
   for (const double share : {0.6, 0.97}) {
     judged.push_back([=](const Criteria& c) {
       LikelihoodRecord plain{"plain", 1, share * 1000}, rich{"rich", 1, 1000};
-      plain.kin = {"family", 0}, rich.kin = {"family", 1};
+      plain.kin = {"dry friction", 0}, rich.kin = {"dry friction", 1};
       return fmt::format("{}", JudgeLikelihoods({plain, rich}, {}, 1e-3, {}, c).named.front());
     });
   }
@@ -264,7 +265,7 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["family_share"] = FamilyShare();
   e["plainly_more"] = AroundBoundary(2, [](double held_out, const Criteria& c) {
     LikelihoodRecord plain{"plain", 1, 970}, rich{"rich", 1, 1000};
-    plain.kin = {"family", 0}, rich.kin = {"family", 1};
+    plain.kin = {"dry friction", 0}, rich.kin = {"dry friction", 1};
     plain.held_out = held_out, rich.held_out = 1;
     return JudgeLikelihoods({plain, rich}, {}, 1e-3, {.floor = 1}, c).named.front() == 1;
   });
@@ -360,6 +361,13 @@ std::map<std::string, std::vector<Judged>> Examples() {
   e["correction_share"] = AroundBoundary(0.5, [](double share, const Criteria& c) {
     return MayBeLengthsAndMasses({share * 100, 0.01, 2}, 100, c);
   });
+  e["lengths_off"] = Number([](const Criteria& c) {
+    Hypothesis link{"link_length", "", "body arm", ModelSpec::Parse("<mujoco/>"), {}, {}, "", {}};
+    link.extra.emplace_back();
+    return FreeLength(link, c).upper;
+  });
+  e["lengths_gain"] =
+      AroundBoundary(0.5, [](double error, const Criteria& c) { return IsFarLess(error, 1, c); });
   e["factor_most"] =
       AroundBoundary(2, [](double factor, const Criteria& c) { return IsFarOff(factor, c); });
   e["clock_most"] =

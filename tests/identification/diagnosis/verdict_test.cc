@@ -308,5 +308,18 @@ TEST(Likelihoods, ProbabilitiesAddUpToOne) {
   EXPECT_LT(p[2], p[1]);
 }
 
+// Lags are simulated alike by everybody, dry friction is not.
+TEST(JudgeLikelihoods, APlainLagDoesNotStandForOneThatAloneLeavesOnlyNoise) {
+  for (const std::string family : {"lateness", "dry friction"}) {
+    LikelihoodRecord plain{"plain", 1, 970}, rich{"rich", 2, 1000};
+    plain.kin = {family, 0}, rich.kin = {family, 1};
+    const Verdict v = JudgeLikelihoods({plain, rich}, {}, 1e-3, {}, {});
+    ASSERT_EQ(v.word(), "named") << v.reason;
+    const bool lag = family == "lateness";
+    EXPECT_EQ(v.named.front(), lag ? 1u : 0u);
+    EXPECT_THAT(v.siblings, ElementsAre(lag ? 0u : 1u));
+  }
+}
+
 }  // namespace
 }  // namespace continuum
