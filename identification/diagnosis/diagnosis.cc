@@ -268,8 +268,9 @@ class Session {
   // Whether the verdict may be another one with a better fit.
   bool SomethingIsLeft(const CandidateSearch& search) const {
     if (d_.Is(Verdict::Kind::kUnexplained)) return true;
-    return !d_.verdict.complete && 1 - d_.verdict.leading_share > d_.criteria.second_share &&
-           search.BestOverNoise() > d_.criteria.near_noise;
+    return !d_.verdict.complete && (LeavesMuch(d_, search.leading()) ||
+                                    (1 - d_.verdict.leading_share > d_.criteria.second_share &&
+                                     search.BestOverNoise() > d_.criteria.near_noise));
   }
 
   static Dismissed::Why WhyDismissed(const CandidateResult& c) {
@@ -327,9 +328,7 @@ class Session {
         WithoutPart(d_.before.error.train, search.candidates[named.front()].fitted.error.train) <=
             d_.noise.step)
       d_.verdict = Verdict::Adequate("no candidate does more than the time step; try a finer one");
-    // Tests of the residual see nothing where nothing moves.
-    const TwoErrors& left = search.leading() ? search.leading()->fitted.error : d_.before.error;
-    if (left.train > d_.criteria.model_limited * d_.noise.floor()) d_.verdict.complete = false;
+    if (LeavesMuch(d_, search.leading())) d_.verdict.complete = false;
   }
 
   // Where no effect explains it at all joints together it may be at one of them.

@@ -38,6 +38,11 @@ Remaining RemainingOf(const Problem& problem, const Fitted& fitted, const Noise&
   return remaining;
 }
 
+bool LeavesMuch(const Diagnosis& d, const CandidateResult* best) {
+  const TwoErrors& left = best ? best->fitted.error : d.before.error;
+  return left.train > d.criteria.model_limited * d.noise.floor();
+}
+
 std::string WouldTake(const Diagnosis& d) {
   if (!d.noise_limited) {
     if (d.ceiling.error.empty() || CeilingGain(d) < d.criteria.median_gain) return "";
