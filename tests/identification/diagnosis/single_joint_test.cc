@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "identification/diagnosis/diagnosis.h"
@@ -14,8 +13,6 @@
 
 namespace continuum {
 namespace {
-
-using ::testing::UnorderedElementsAre;
 
 // An axis on a position servo, J q'' = k_p (u − q) − b q', by symplectic Euler at 50 us.
 std::vector<double> Axis(const std::vector<double>& u, double b) {
@@ -50,7 +47,7 @@ class SingleJoint : public testing::Bench {
   }
 };
 
-TEST_F(SingleJoint, ADampingOfOneOfTwoAxesIsNoCreep) {
+TEST_F(SingleJoint, ADampingOfOneOfTwoAxesIsNamedFirst) {
   CONTINUUM_LONG_IF_SANITIZED("a whole diagnosis");
   for (int trial = 0; trial < 3; ++trial)
     for (unsigned copy = 0; copy < 2; ++copy) AddTrial(trial, copy, 0.55);
@@ -75,13 +72,10 @@ TEST_F(SingleJoint, ADampingOfOneOfTwoAxesIsNoCreep) {
                 "0.9, lower: 0.3, upper: 3}\n"
                 "candidates: [viscous, maxwell, coulomb, load_friction, pt1]\n"));
   const Diagnosis d = Diagnose(e, ModelSpec::Load(e.model), {});
-  // More at one axis is less at the other, as the damping of both is free.
-  std::vector<std::string> named;
-  for (const std::size_t i : d.verdict.named)
-    named.push_back(d.candidates[i].hypothesis.NameAtPlace());
-  EXPECT_THAT(named, UnorderedElementsAre("viscous at joint first", "viscous at joint second"))
-      << d.verdict.reason;
-  EXPECT_NEAR(std::abs(d.last().fit.x.tail(1)[0]), 0.25, 5e-3);
+  // A fast creep does nearly the same.
+  ASSERT_TRUE(d.chosen()) << d.verdict.reason;
+  EXPECT_EQ(d.chosen()->hypothesis.NameAtPlace(), "viscous at joint second") << d.verdict.reason;
+  EXPECT_NEAR(d.last().fit.x.tail(1)[0], 0.25, 5e-3);
 }
 
 }  // namespace
