@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,16 +11,18 @@
 #include "sim/numerics/decompositions.h"
 #include "sim/numerics/linearize.h"
 #include "sim/numerics/portable_random.h"
+#include "sim/numerics/work_limit.h"
 
 namespace continuum::statics {
 
 struct SearchOptions {
-  int starts = 60;           ///< random ones, beside those next to every root
-  int next_to_roots = 4;     ///< of every root
-  int most_steps = 60;       ///< from one start
-  double longest = 1;        ///< of a step
-  double tolerance = 1e-11;  ///< |f| at a root
-  double same = 1e-5;        ///< distance of two roots that are one
+  int starts = 60;            ///< random ones, beside those next to every root
+  int next_to_roots = 4;      ///< of every root
+  int most_steps = 60;        ///< from one start
+  double longest = 1;         ///< of a step
+  double tolerance = 1e-11;   ///< |f| at a root
+  double same = 1e-5;         ///< distance of two roots that are one
+  long most_systems = 40000;  ///< linear ones: then the search is given up
 };
 
 /// A root and what distinguishes it.
@@ -28,6 +31,13 @@ struct Root {
   Vector x;
   double energy;
   bool neutral;  ///< a direction costs nothing: the root is one of a family
+};
+
+/// What a search has found.
+template <class Vector>
+struct Roots {
+  std::vector<Vector> x;
+  std::string gave_up = {};  ///< why the search did not come to its end
 };
 
 /// Newton's method from many starts that avoids the roots known before (deflation): on
@@ -77,6 +87,7 @@ class RootSearch {
     Vector f = x;
     Matrix k(x.size(), x.size());
     for (int i = 0; i < options_.most_steps; ++i) {
+      numerics::WorkLimit::Spend();
       if (!numerics::Linearize(problem_, x, f, k)) return false;
       const Eigen::MatrixXd square = k.transpose() * k;
       if (f.norm() <= options_.tolerance) {
@@ -120,31 +131,39 @@ class RootSearch {
 };
 
 /// Roots that a search finds from `known`, from `draw(random)`, and from next to every root. It
-/// finds saddles as well as minima; that it finds all of them is likely, not certain.
+/// finds saddles as well as minima; that it finds all of them is likely, not certain. After
+/// options.most_systems it is given up, with the roots that it has.
 ///
 /// Of a family of roots (any plane in which a round column buckles) the first one stands for all:
 /// those that are neutral and of one energy, `energy(x)`.
 /// Source: Farrell, Birkisson, Funke, "Deflation techniques for finding distinct solutions of
 /// nonlinear partial differential equations", SIAM J. Sci. Comput. 37(4), 2015.
 template <class Vector, class Problem, class Draw, class Energy>
-std::vector<Root<Vector>> FindRoots(const Problem& problem, const std::vector<Vector>& known,
-                                    const Draw& draw, const Energy& energy,
-                                    const SearchOptions& options = {}) {
+Roots<Vector> FindRoots(const Problem& problem, const std::vector<Vector>& known, const Draw& draw,
+                        const Energy& energy, const SearchOptions& options = {}) {
   RootSearch<Vector, Problem, Energy> search(problem, energy, options);
   Random random(1);
-  for (const Vector& x : known) search.From(x);
-  for (int i = 0; i < options.starts; ++i) {
-    search.FromRoots(random);
-    search.From(draw(random));
+  Roots<Vector> roots;
+  try {
+    const numerics::WorkLimit limit(options.most_systems);
+    for (const Vector& x : known) search.From(x);
+    for (int i = 0; i < options.starts; ++i) {
+      search.FromRoots(random);
+      search.From(draw(random));
+    }
+  } catch (const numerics::GaveUp& at) {
+    roots.gave_up = "the search for equilibria was " + at.Sentence() + "; there may be others";
   }
-  return search.Take();
+  for (auto& root : search.Take()) roots.x.push_back(std::move(root.x));
+  return roots;
 }
 
 /// The equilibria of a case by rising energy, those that are the same listed once: its own solution
 /// `known` when it has one, and those next to `roots`, `near(root)`, on the branch `other`.
-/// `same(a, b)` and `energy(a)` are of solutions.
-template <class Solution, class Roots, class Near, class Same, class Energy>
-std::vector<Solution> ByEnergy(const Solution& known, const Roots& roots, const Near& near,
+/// `same(a, b)` and `energy(a)` are of solutions. One that is not ok ends the list of a search that
+/// was given up.
+template <class Solution, class Vector, class Near, class Same, class Energy>
+std::vector<Solution> ByEnergy(const Solution& known, const Roots<Vector>& roots, const Near& near,
                                const Same& same, const Energy& energy) {
   std::vector<std::pair<double, Solution>> found;
   const auto add = [&](Solution s) {
@@ -154,7 +173,7 @@ std::vector<Solution> ByEnergy(const Solution& known, const Roots& roots, const 
     found.emplace_back(its, std::move(s));
   };
   add(known);
-  for (const auto& root : roots) {
+  for (const auto& root : roots.x) {
     Solution s = near(root);
     s.stability.branch = Branch::kOther;
     add(std::move(s));
@@ -163,6 +182,10 @@ std::vector<Solution> ByEnergy(const Solution& known, const Roots& roots, const 
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Solution> list;
   for (auto& [value, solution] : found) list.push_back(std::move(solution));
+  if (!roots.gave_up.empty()) {
+    list.emplace_back();
+    list.back().outcome.why = roots.gave_up;
+  }
   return list;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/io/interrupt.h"
+#include "sim/numerics/work_limit.h"
 
 namespace continuum::statics {
 
@@ -32,6 +33,8 @@ struct FallOptions {
 ///   Shape Moved(shape, step)
 namespace internal {
 
+constexpr double kStiffest = 1e12;  // of a shift
+
 // The smallest shift, to a factor `close`, that makes the tangent definite; 0: it is.
 template <class System>
 double ShiftToDefinite(const System& system, double close) {
@@ -40,10 +43,12 @@ double ShiftToDefinite(const System& system, double close) {
   while (!system.Definite(above)) {
     below = above;
     above *= 4;
-    if (above > 1e12) return above;
+    numerics::WorkLimit::Spend();
+    if (above > kStiffest) return above;
   }
   while (above > close * below && above > 1e-9) {
     const double middle = below > 0 ? std::sqrt(below * above) : above / 4;
+    numerics::WorkLimit::Spend();
     (system.Definite(middle) ? above : below) = middle;
   }
   return above;
@@ -61,6 +66,7 @@ Step SoftestMode(const System& system, const Step& like) {
     mode(i) = 1 + 0.3 * std::sin(1.7 * static_cast<double>(i) + 0.4);
   }
   for (int round = 0; round < 60; ++round) {
+    numerics::WorkLimit::Spend();
     mode = system.Solve(shift, system.Unloaded(mode));
     Eigen::Index row = 0, column = 0;
     mode.cwiseAbs().maxCoeff(&row, &column);
@@ -79,6 +85,7 @@ Step SoftestMode(const System& system, const Step& like) {
 /// a shape that comes back from there is at rest, its tangent was off by as little.
 template <class System, class Shape>
 Fall FallToRest(System& system, Shape& shape, const FallOptions& options = {}) {
+  using internal::kStiffest;
   constexpr double kPush = 1e-3, kBack = 5e-3;
   Fall fall;
   double shift = 1;
@@ -105,9 +112,13 @@ Fall FallToRest(System& system, Shape& shape, const FallOptions& options = {}) {
       linearized = system.Linearize(shape);
       continue;
     }
-    while (!system.Definite(0.5 * shift)) shift *= 2;
+    for (; !system.Definite(0.5 * shift); shift *= 2) {  // never of one that is not finite
+      numerics::WorkLimit::Spend();
+      if (shift > kStiffest) return fall;
+    }
     for (bool taken = false; !taken; shift = taken ? shift / 3 : shift * 4) {
-      if (shift > 1e12) return fall;
+      if (shift > kStiffest) return fall;
+      numerics::WorkLimit::Spend();
       const auto step = system.Solve(shift, -r);
       if (!(step.cwiseAbs().maxCoeff() <= options.longest)) continue;
       const Shape trial = system.Moved(shape, step);

@@ -6,6 +6,7 @@
 
 #include "models/statics/relax.h"
 #include "sim/numerics/solver.h"
+#include "sim/numerics/work_limit.h"
 
 namespace continuum::statics {
 
@@ -34,6 +35,11 @@ struct RisingOptions {
   double trust = 0.3;  ///< of the corrector: |x - predicted|, root mean square
   int most_steps = 2000;
 };
+
+/// Where a row was given up.
+inline std::string AtShare(double load) {
+  return "at " + std::to_string(load) + " of the rising load";
+}
 
 /// The equilibrium that is reached when all loads grow together from 0 to 1, from x = 0.
 ///
@@ -66,7 +72,7 @@ numerics::Outcome FollowRisingLoad(System& system, Vector& x, Branch& branch,
     }
     return false;
   };
-  for (int i = 0; i < options.most_steps && load < 1; ++i) {
+  const auto rises = [&] {
     const double next = load + step > 1 - 1e-9 ? 1 : load + step;
     const Vector predicted = x + (next - load) * slope;
     Vector trial = predicted;
@@ -78,10 +84,18 @@ numerics::Outcome FollowRisingLoad(System& system, Vector& x, Branch& branch,
       load = next;
       total.residual = outcome.residual;
       if (outcome.iterations <= 4) step = std::min(2 * step, options.largest_step);
-      continue;
+      return true;
     }
     step = (next - load) / 4;
-    if (step < options.smallest_step && !falls()) break;
+    return step >= options.smallest_step || falls();
+  };
+  try {
+    for (int i = 0; i < options.most_steps && load < 1; ++i) {
+      if (!rises()) break;
+    }
+  } catch (numerics::GaveUp& at) {
+    at.where = AtShare(load);
+    throw;
   }
   if (load >= 1) {
     total.status = numerics::Status::kOk;

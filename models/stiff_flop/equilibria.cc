@@ -66,10 +66,8 @@ std::vector<Solution> Equilibria(const ModuleSeries& series, const Method& metho
   if (known.status == Status::kOk) starts.push_back(known.moment);
   statics::SearchOptions options;
   options.tolerance = 1e-9;
-  std::vector<Vector3d> roots;
-  for (const auto& root : statics::FindRoots<Vector3d>(problem, starts, draw, energy, options)) {
-    roots.push_back(root.x);
-  }
+  options.most_systems = 6000000;  // sections included; among the pushes the hardest takes 513537
+  const auto roots = statics::FindRoots<Vector3d>(problem, starts, draw, energy, options);
   const auto near = [&](const Vector3d& root) { return SolveNear(series, method, row, root); };
   const auto same = [&](const Solution& a, const Solution& b) {
     return (a.tip - b.tip).norm() < 1e-6 * series.length() && (a.tangent - b.tangent).norm() < 1e-5;

@@ -54,7 +54,7 @@ class RespondingModule : public statics::Responding {
   }
 
  private:
-  static constexpr int kSteps = 16;
+  static constexpr int kSteps = 4;
 
   Case At(const VectorXd& w) const {
     const VectorXd change = Units().cwiseProduct(w);

@@ -11,6 +11,7 @@
 #include "sim/numerics/linearize.h"
 #include "sim/numerics/newton.h"
 #include "sim/numerics/solver.h"
+#include "sim/numerics/work_limit.h"
 
 namespace continuum::stiff_flop {
 namespace {
@@ -190,6 +191,7 @@ bool Rod::FollowNeighbour(const Eigen::Vector3d& load) {
 }
 
 bool Rod::SolveSection(const Eigen::Vector3d& load) {
+  numerics::WorkLimit::Spend();
   if (solved_.size() <= next_) solved_.resize(next_ + 1);
   if ((!known_[at_] || !FollowNeighbour(load)) && !SearchSection(load)) return false;
   const Eigen::Vector3d& x = solved_[next_++].x;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "models/statics/details.h"
 #include "models/statics/error_table.h"
 #include "models/statics/foreign_options.h"
+#include "models/statics/limited_search.h"
 #include "models/statics/measured_points.h"
 #include "models/statics/path_error.h"
 #include "models/statics/plausible.h"
@@ -339,7 +341,8 @@ std::vector<Solved> ReachTargets(const SolveRequest& request, const ModuleSeries
   statics::PathError error;
   std::vector<Solved> solved;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto reached = Reach(series, method, rows[i], targets[i]);
+    const auto reached = statics::LimitedSearch(
+        kMostOfReach, [&] { return Reach(series, method, rows[i], targets[i]); });
     Solved s;
     s.row = rows[i];
     if (reached.outcome.ok()) {
@@ -413,11 +416,7 @@ int SolveStiffFlop(const SolveRequest& request) {
                                       ? SolveRows(request, series, method, cases)
                                       : ReachTargets(request, series, method, cases.rows);
   std::vector<Solved> rows;
-  int failed = 0;
-  for (const Solved& solved : own) {
-    failed += solved.solution.status != Status::kOk;
-    AddRows(request, series, method, solved, rows);
-  }
+  for (const Solved& solved : own) AddRows(request, series, method, solved, rows);
   AddErrors(request, robot, method, rows);
   statics::Results results(Columns(request, robot, cases.direction));
   for (const Solved& solved : rows) {
@@ -428,7 +427,8 @@ int SolveStiffFlop(const SolveRequest& request) {
   if (!request.compliance.empty()) WriteCompliance(request, series, method, rows);
   if (outlines) WriteOutlines(*outlines, series, method, cases.direction, rows);
   if (!request.plot.empty()) Draw(request, robot, cases.direction, rows);
-  return failed == 0 ? 0 : 1;
+  const auto failed = [](const Solved& s) { return s.solution.status != Status::kOk; };
+  return std::any_of(rows.begin(), rows.end(), failed) ? 1 : 0;
 }
 
 }  // namespace continuum

@@ -40,20 +40,19 @@ double EnergyNear(const Robot& robot, const Loads& loads, Method method, const V
 }
 
 template <class Vector, class Balance, class Draw>
-std::vector<VectorXd> Roots(const Robot& robot, const Loads& loads, Method method,
-                            const Balance& balance, const std::vector<Vector>& known,
-                            const Draw& draw) {
-  std::vector<VectorXd> roots;
+statics::Roots<VectorXd> Roots(const Robot& robot, const Loads& loads, Method method,
+                               const Balance& balance, const std::vector<Vector>& known,
+                               const Draw& draw) {
   const auto energy = [&](const Vector& x) { return EnergyNear(robot, loads, method, x); };
-  for (const auto& root : statics::FindRoots<Vector>(balance, known, draw, energy)) {
-    roots.emplace_back(root.x);
-  }
-  return roots;
+  statics::SearchOptions options;
+  options.most_systems = 150000;  // among the 864 loads the hardest takes 12237
+  const auto found = statics::FindRoots<Vector>(balance, known, draw, energy, options);
+  return {{found.x.begin(), found.x.end()}, found.gave_up};
 }
 
 template <int C>
-std::vector<VectorXd> RootsOfDisks(const Robot& robot, const Loads& loads, Method method,
-                                   const VectorXd& known) {
+statics::Roots<VectorXd> RootsOfDisks(const Robot& robot, const Loads& loads, Method method,
+                                      const VectorXd& known) {
   using Vector = typename DiskBalance<C>::Vector;
   const DiskBalance<C> balance(robot, loads);
   const double largest = Largest(robot, loads);
@@ -73,8 +72,8 @@ std::vector<VectorXd> RootsOfDisks(const Robot& robot, const Loads& loads, Metho
   return Roots<Vector>(robot, loads, method, balance, starts, draw);
 }
 
-std::vector<VectorXd> RootsOfRod(const Robot& robot, const Loads& loads, Method method,
-                                 const VectorXd& known) {
+statics::Roots<VectorXd> RootsOfRod(const Robot& robot, const Loads& loads, Method method,
+                                    const VectorXd& known) {
   constexpr int kSteps = 36;  // along the rod
   const bool friction = method == Method::kCrtFriction;
   const RodBalance balance(robot, loads, friction, std::max(1, kSteps / CountArcs(robot)));
@@ -98,7 +97,7 @@ std::vector<Solution> Equilibria(const Robot& robot, const Loads& loads, Method 
   const bool slides = loads.AsItSlides();
   const Loads searched = slides ? WithoutFriction(loads) : loads;
   const VectorXd x = known.outcome.ok() ? known.x : VectorXd();
-  std::vector<VectorXd> roots;
+  statics::Roots<VectorXd> roots;
   if (method == Method::kEas) {
     roots = RootsOfDisks<6>(robot, searched, method, x);
   } else if (method == Method::kPcca) {

@@ -12,17 +12,21 @@
 #include "models/tdcr/unit_rod.h"
 #include "models/tdcr/winches.h"
 #include "sim/numerics/solver.h"
+#include "sim/numerics/work_limit.h"
 
 namespace continuum::tdcr {
 namespace {
 
 using numerics::Outcome;
 
+// Linear systems of a row. Of the 864 loads of the README the hardest takes 14889 (crt_friction).
+constexpr long kMostSystems = 150000;
+
 // find(balance, x): an equilibrium from x = 0.
 template <int C, class Find>
 Solution SolveDisks(const Robot& robot, const Loads& loads, const Loads* earlier, Find&& find) {
   Solution solution;
-  solution.outcome = numerics::Timed([&] {
+  solution.outcome = numerics::Limited(kMostSystems, [&] {
     DiskBalance<C> balance(robot, loads, earlier);
     typename DiskBalance<C>::Vector x = DiskBalance<C>::Vector::Zero(balance.unknowns());
     const Found found = find(balance, x);
@@ -73,7 +77,7 @@ Outcome Refine(const Robot& robot, RodBalance& balance, Outcome outcome, Eigen::
 template <class Find>
 Solution SolveRod(const Robot& robot, const Loads& loads, bool friction, Find&& find) {
   Solution solution;
-  solution.outcome = numerics::Timed([&] {
+  solution.outcome = numerics::Limited(kMostSystems, [&] {
     RodBalance balance(robot, loads, friction, Steps(CountArcs(robot)));
     Eigen::Vector3d x = balance.Natural();
     const Found found = find(balance, x);
@@ -92,7 +96,7 @@ template <class Find>
 Solution SolveRemembering(const Robot& robot, const Loads& loads, const Loads* earlier,
                           Find&& find) {
   Solution solution;
-  solution.outcome = numerics::Timed([&] {
+  solution.outcome = numerics::Limited(kMostSystems, [&] {
     RodBalance balance =
         RodBalance::Remembering(robot, loads, ContactSteps(CountArcs(robot)), earlier);
     Eigen::VectorXd x = balance.Unslid(balance.Natural());

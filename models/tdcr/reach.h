@@ -5,6 +5,10 @@
 
 namespace continuum::tdcr {
 
+/// Linear systems of the search for one target: then it is given up. Those of path.csv take
+/// 1399 at most (eas).
+constexpr long kMostOfReach = 100000;
+
 /// A case that another goes on from.
 struct Before {
   const Loads& loads;

@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "models/statics/error_table.h"
+#include "models/statics/limited_search.h"
 #include "models/statics/path_error.h"
 #include "models/statics/rows.h"
 #include "models/statics/sweep.h"
@@ -173,8 +174,10 @@ Solved ReachTarget(const Robot& robot, Method method, const statics::Target& tar
     return s;
   }
   const bool by_length = c.loads.length.size() > 0;
-  const auto reached = (by_length ? ReachByLengths : Reach)(robot, c.loads, method, target,
-                                                            before ? &*before : nullptr);
+  const auto reached = statics::LimitedSearch(kMostOfReach, [&] {
+    return (by_length ? ReachByLengths : Reach)(robot, c.loads, method, target,
+                                                before ? &*before : nullptr);
+  });
   s.miss = reached.miss;
   if (reached.outcome.ok()) {
     if (by_length) {

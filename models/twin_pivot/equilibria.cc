@@ -40,20 +40,17 @@ VectorXd Draw(const Task& task, Random& random) {
   return beta;
 }
 
-std::vector<VectorXd> Roots(const Robot& robot, const Load& load, Method method,
-                            const Solution& known) {
+statics::Roots<VectorXd> Roots(const Robot& robot, const Load& load, Method method,
+                               const Solution& known) {
   const Task task(robot, load, method);
   const Scaled problem{{task, 1, 1, std::max(kWide, robot.eps)}};
-  std::vector<VectorXd> starts, roots;
+  std::vector<VectorXd> starts;
   if (known.outcome.ok()) starts.push_back(known.beta);
   const auto draw = [&](Random& random) { return Draw(task, random); };
   const auto energy = [&](const VectorXd& beta) {
     return Energy(robot, load, beta) / robot.Stiffness();
   };
-  for (auto& root : statics::FindRoots<VectorXd>(problem, starts, draw, energy)) {
-    roots.push_back(std::move(root.x));
-  }
-  return roots;
+  return statics::FindRoots<VectorXd>(problem, starts, draw, energy);
 }
 
 }  // namespace

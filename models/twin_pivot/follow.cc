@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "models/statics/limited_search.h"
 #include "models/twin_pivot/geometry.h"
 #include "models/twin_pivot/reach.h"
 
@@ -13,6 +14,9 @@ namespace continuum::twin_pivot {
 namespace {
 
 using Eigen::Vector3d;
+
+// Linear systems of one point of a path: then it is given up. Those of way.csv take 59603 at most.
+constexpr long kMostOfPoint = 600000;
 
 // Every disc on the path, in the base frame.
 statics::Target DiscsOnPath(const Robot& robot, const PathLine& path, std::size_t point,
@@ -118,9 +122,10 @@ std::vector<Following> Follow(const Robot& robot, const Load& load, Method metho
     }
     const Before* const from = before ? &*before : nullptr;
     const auto target = DiscsOnPath(robot, path, point, row.base);
-    const auto reached =
-        Leader(robot, row.load, method, target, from)
-            .Lead(load.tension, last_but_one ? &rows[*last_but_one].load.tension : nullptr);
+    const auto reached = statics::LimitedSearch(kMostOfPoint, [&] {
+      return Leader(robot, row.load, method, target, from)
+          .Lead(load.tension, last_but_one ? &rows[*last_but_one].load.tension : nullptr);
+    });
     row.miss = reached.miss;
     row.solution.outcome = reached.outcome;
     row.settled = reached.outcome.ok();

@@ -5,6 +5,9 @@
 
 namespace continuum::twin_pivot {
 
+/// Linear systems of the search for one target: then it is given up. Those of path.csv take 88.
+constexpr long kMostOfReach = 100000;
+
 /// A case that another goes on from.
 struct Before {
   const Load& load;

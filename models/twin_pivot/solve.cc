@@ -10,6 +10,7 @@
 #include "models/statics/details.h"
 #include "models/statics/error_table.h"
 #include "models/statics/foreign_options.h"
+#include "models/statics/limited_search.h"
 #include "models/statics/measured_points.h"
 #include "models/statics/path_error.h"
 #include "models/statics/results.h"
@@ -146,8 +147,10 @@ Solved ReachTarget(const Robot& robot, Method method, const statics::Target& tar
   }
   const auto* const from = before ? &*before : nullptr;
   const bool by_length = row.load.length.size() > 0;
-  const auto reached = (by_length ? twin_pivot::ReachByLengths : twin_pivot::Reach)(
-      robot, row.load, method, target, from);
+  const auto reached = statics::LimitedSearch(twin_pivot::kMostOfReach, [&] {
+    return (by_length ? twin_pivot::ReachByLengths : twin_pivot::Reach)(robot, row.load, method,
+                                                                        target, from);
+  });
   s.miss = reached.miss;
   if (!reached.outcome.ok()) {
     s.solution.outcome = reached.outcome;
@@ -289,7 +292,7 @@ void SayInParts(const SolveRequest& request, const std::vector<Solved>& rows) {
   for (const Solved& s : rows) most = std::max(most, s.solution.parts);
   request.say(fmt::format(
       "{} of {} rows, '{}' the first: contacts turned back while the load rose, so friction counts "
-      "along up to {} parts of the way",
+      "along up to {} parts of the way (column parts); they are no roots of the paper's rule",
       std::count_if(first, rows.end(), in_parts), rows.size(), first->row.label, most));
 }
 
@@ -325,6 +328,7 @@ void WriteRow(const Robot& robot, const Solved& solved, statics::Results& result
     results.Set("off_max", solved.off.maxCoeff(&disc));
     results.Set("off_disc", static_cast<int>(disc) + 1);
   }
+  results.Set("parts", solution.parts);
   if (HasLimits(robot)) {
     results.Set("beyond", twin_pivot::Extent(robot, load, solution).Beyond(robot));
   }
@@ -344,6 +348,7 @@ std::vector<std::string> Columns(const SolveRequest& request, const Robot& robot
   if (!request.measured.empty()) append(statics::Numbered("error_", robot.Joints()));
   if (by_length && reaches) append(statics::Numbered("L", robot.Cables()));
   if (!request.follow.empty()) append({"base_x", "off_mean", "off_max", "off_disc"});
+  append({"parts"});
   if (HasLimits(robot)) append({"beyond"});
   return columns;
 }

@@ -16,6 +16,7 @@
 #include "sim/numerics/linearize.h"
 #include "sim/numerics/newton.h"
 #include "sim/numerics/solver.h"
+#include "sim/numerics/work_limit.h"
 
 namespace continuum::twin_pivot {
 namespace {
@@ -24,6 +25,8 @@ using Eigen::VectorXd;
 
 // A contact this wide [m] is no obstacle to Newton: cables move by about as much.
 constexpr double kWidest = 1e-3;
+// Linear systems of a row. Of the 120 loads near upright of the README the hardest takes 1336.
+constexpr long kMostSystems = 20000;
 constexpr int kParts = 50;  // of loads that grow; their friction remembers each
 
 // Runs one stage from x; keeps the count of iterations, and x only when it succeeded.
@@ -152,10 +155,16 @@ std::optional<double> RiseInParts(const Task& from, Task& to, Solution& solution
       now.reference = CableLengths(to.robot, solution.beta);
     }
     const VectorXd last = solution.beta;
-    if (!Rise(at(i), at(i + 1), solution, options)) {
-      solution.outcome.why = "the rising load ends at " + Decimal(static_cast<double>(i) / parts) +
-                             " of it, and no stable shape was found";
-      return std::nullopt;
+    const double share = static_cast<double>(i) / parts;
+    try {
+      if (!Rise(at(i), at(i + 1), solution, options)) {
+        solution.outcome.why =
+            "the rising load ends at " + Decimal(share) + " of it, and no stable shape was found";
+        return std::nullopt;
+      }
+    } catch (numerics::GaveUp& given_up) {
+      given_up.where = statics::AtShare(share);
+      throw;
     }
     longest = std::max(longest, (solution.beta - last).norm());
   }
@@ -262,7 +271,7 @@ void Describe(const Task& task, Solution& solution) {
 // From the state of `solution` and winches at `before`.
 void Wind(const Load& load, const Task& from, const VectorXd& before, VectorXd tension, Task& task,
           Solution& solution) {
-  solution.outcome = numerics::Timed([&] {
+  solution.outcome = numerics::Limited(kMostSystems, [&] {
     return FollowWinches(from, task, before, load.length, solution.beta, tension,
                          solution.stability);
   });
@@ -283,7 +292,7 @@ Solution Solve(const Robot& robot, const Load& load, Method method,
     Wind(load, task.Unloaded(), unwound, VectorXd::Zero(task.cables), task, solution);
     return solution;
   }
-  solution.outcome = numerics::Timed([&] {
+  solution.outcome = numerics::Limited(kMostSystems, [&] {
     const VectorXd straight = VectorXd::Zero(task.joints);
     solution.beta = start ? *start : straight;
     if (FarFromBuckling(task)) {
@@ -316,7 +325,7 @@ Solution SolveFrom(const Robot& robot, const Load& earlier, const Solution& befo
     Wind(load, from, earlier.length, before.pull, task, solution);
     return solution;
   }
-  solution.outcome = numerics::Timed([&] {
+  solution.outcome = numerics::Limited(kMostSystems, [&] {
     solution.beta = before.beta;
     Follow(from, task, before.beta, solution, false, AtOnce());
     return solution.outcome;
@@ -329,7 +338,7 @@ Solution SolveNear(const Robot& robot, const Load& load, Method method, const Ve
                    double width) {
   const Task task(robot, load, method);
   Solution solution;
-  solution.outcome = numerics::Timed([&] {
+  solution.outcome = numerics::Limited(kMostSystems, [&] {
     solution.beta = beta;
     Sharpen(task, std::max(width, robot.eps), solution.outcome, solution.beta);
     if (solution.outcome.ok()) {

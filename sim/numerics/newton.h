@@ -5,6 +5,7 @@
 
 #include "sim/numerics/linearize.h"
 #include "sim/numerics/solver.h"
+#include "sim/numerics/work_limit.h"
 
 namespace continuum::numerics {
 namespace internal {
@@ -54,6 +55,7 @@ Outcome Newton(const Problem& problem, Eigen::Matrix<double, N, 1>& x,
     if (outcome.iterations++ == options.max_iterations) {
       return internal::Failed(outcome, Status::kNoConvergence, "too many iterations");
     }
+    WorkLimit::Spend();
     if (!factored) {
       if (!linearized && !Linearize(problem, x, f, jacobian)) {
         return internal::Failed(outcome, Status::kOutOfDomain, "a derivative is not finite");

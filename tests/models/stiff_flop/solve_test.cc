@@ -65,6 +65,28 @@ class StiffFlopSolve : public testing::Test {
   SolveRequest request_;
 };
 
+// What no module carries: the row ends after a bounded number of linear systems and says where. (A
+// matrix that is not finite once made a search without end.)
+TEST_F(StiffFlopSolve, AbsurdRowsAreGivenUpAndSayWhere) {
+  struct Absurd {
+    std::string from, to, cases;
+  };
+  const std::string plain = "p1,p2,p3\n20000,0,0\n";
+  for (const auto& [from, to, cases] : {Absurd{"r_o: {value: 9.0e-3", "r_o: {value: 1e6", plain},
+                                        Absurd{"E: {value: 100.0e+3", "E: {value: 1e-300", plain},
+                                        Absurd{"m: {value: 24.0e-3", "m: {value: 1e300", plain},
+                                        Absurd{"", "", "p1,p2,p3,fx\n20000,0,0,1e90\n"},
+                                        Absurd{"", "", "p1,p2,p3,fy\n20000,0,0,-1e6\n"}}) {
+    std::string text = ReadFile(kRobot);
+    WriteFile(folder_ / "robot.yaml", text.replace(text.find(from), from.size(), to));
+    request_.robot = folder_ / "robot.yaml";
+    Cases(cases);
+    const CsvTable table = Solved(1);
+    EXPECT_NE(table.Text(0, "status"), "ok") << to << cases;
+    EXPECT_THAT(table.Text(0, "why"), HasSubstr("of")) << to << cases;
+  }
+}
+
 TEST_F(StiffFlopSolve, ShapesGivePressuresAndPressuresGiveShapes) {
   Cases("phi,kappa,lambda_l,case\n0.5,20,1.2,bent\n0,0,1.1,long\n");
   const CsvTable inverse = Solved(0);

@@ -1,4 +1,6 @@
 // ctest labels: slow
+#include <cstring>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -9,6 +11,33 @@ namespace continuum::tdcr {
 namespace {
 
 using testing::HasSubstr;
+
+// What no rod carries: the row ends after a bounded number of linear systems, says where, and is
+// not ok. (1e300 once made a matrix that is not finite, and a search without end.)
+TEST_F(TdcrSolve, AbsurdRowsAreGivenUpAndSayWhere) {
+  struct Absurd {
+    const char *from, *to, *cases;
+  };
+  constexpr double kMost = 150000;  // of a row
+  const char* const plain = "a,5,0,0,0.1,0,-1\n";
+  for (const auto& [from, to, cases] : {Absurd{"density: 6450", "density: 1e300", plain},
+                                        Absurd{"disk_mass: 0.6e-3", "disk_mass: 1e300", plain},
+                                        Absurd{"value: 60.0e9", "value: 1e-6", plain},
+                                        Absurd{"mu: 0.2", "mu: 0.2", "a,5,0,0,0,0,-1e90\n"},
+                                        Absurd{"mu: 0.2", "mu: 0.2", "a,5,0,0,0.1,0,-1e6\n"}}) {
+    std::string text = kRobot;
+    request_.robot = Write("robot.yaml", text.replace(text.find(from), strlen(from), to));
+    request_.input = Write("cases.csv", kHeader + std::string(cases));
+    for (const char* method : {"crt", "crt_friction"}) {
+      request_.method = method;
+      EXPECT_EQ(SolveTdcr(request_), 1) << method << to << cases;
+      const CsvTable table = CsvTable::Read(request_.out);
+      EXPECT_EQ(table.Text(0, "status"), "no_convergence") << method << to << cases;
+      EXPECT_THAT(table.Text(0, "why"), HasSubstr("of")) << method << to << cases;
+      EXPECT_LE(table.Number(0, "iterations"), kMost) << method << to << cases;
+    }
+  }
+}
 
 TEST_F(TdcrSolve, WritesTheContractsColumnsAndEchoesTheCases) {
   request_.input =

@@ -96,6 +96,34 @@ TEST_F(TwinPivotSolve, MultiSectionTrajectoryRuns) {
   }
 }
 
+// Loads that no robot of this kind carries: the row ends after a bounded number of linear systems,
+// whatever is absurd, and says where.
+TEST_F(TwinPivotSolve, AbsurdRowsAreGivenUpAndSayWhere) {
+  constexpr double kMost = 25000;  // of a row, rounded up
+  const std::string plain = "case,F1,F2,F3,F4\none,5,5,1,1\n";
+  struct Absurd {
+    std::string from, to, cases;
+  };
+  for (const auto& [from, to, cases] :
+       {Absurd{"h: {value: 6.0e-3", "h: {value: 1e6", plain},
+        Absurd{"m_D: {value: 1.4e-3", "m_D: {value: 1e300", plain},
+        Absurd{"E: {value: 60.6e9", "E: {value: 1e-300", plain},
+        Absurd{"", "", "case,F1,F2,F3,F4,fy\none,5,5,1,1,-1e90\n"},
+        Absurd{"", "", "case,F1,F2,F3,F4,fz\none,5,5,1,1,-200\n"},
+        Absurd{"", "", "case,F1,F2,F3,F4,reference\nzero,5,5,1,1,\none,1e6,1,1,1,zero\n"}}) {
+    std::string text = ReadFile(kFolder / "b.yaml");
+    WriteFile(folder_ / "robot.yaml", text.replace(text.find(from), from.size(), to));
+    request_.robot = folder_ / "robot.yaml";
+    Cases(cases);
+    EXPECT_EQ(SolveTwinPivot(request_), 1) << to << cases;
+    const CsvTable results = CsvTable::Read(request_.out);
+    const std::size_t last = results.rows() - 1;
+    EXPECT_EQ(results.Text(last, "status"), "no_convergence") << to << cases;
+    EXPECT_THAT(results.Text(last, "why"), HasSubstr("of")) << to << cases;
+    EXPECT_LE(results.Number(last, "iterations"), kMost) << to << cases;
+  }
+}
+
 TEST_F(TwinPivotSolve, MassesAreTensionsOf981NewtonPerKilogramWhateverTheGravity) {
   Cases("case,m1,m2,m3,m4,gx,gy,gz\none,1,0.5,0.2,0.1,1,2,3\n");
   const Robot robot = Robot::Read(request_.robot);
@@ -151,7 +179,8 @@ TEST_F(TwinPivotSolve, ResultsKeepFullPrecisionInCsvAndJson) {
                                             "l_1",
                                             "l_2",
                                             "l_3",
-                                            "l_4"};
+                                            "l_4",
+                                            "parts"};
   EXPECT_EQ(table.columns(), columns);
   request_.out = folder_ / "out.json";
   EXPECT_EQ(SolveTwinPivot(request_), 0);
