@@ -63,9 +63,9 @@ CONTINUUM_WIDE void ArticulatedInertia::Update(const mjModel& m, const mjData& d
     const double* const I = inertia(k);
     Four front = {}, back = {};
     for (int i = 0; i < 6; ++i) {
-      front += s[i] * FourAt(I + i * kRow), back += s[i] * FourAt(I + i * kRow + 4);
+      front += s[i] * FourAt(I + i * kRow).v, back += s[i] * FourAt(I + i * kRow + 4).v;
     }
-    FourAt(joint.load) = front, FourAt(joint.load + 4) = back;
+    FourAt(joint.load).v = front, FourAt(joint.load + 4).v = back;
     double own = m.dof_armature[joint.dof] + damping[joint.dof];
     for (int i = 0; i < 6; ++i) own += s[i] * joint.load[i], joint.axis[i] = s[i];
     joint.inverse = 1 / own;
@@ -73,8 +73,8 @@ CONTINUUM_WIDE void ArticulatedInertia::Update(const mjModel& m, const mjData& d
     double* const to = inertia(joint.parent);
     for (int i = 0; i < 6; ++i) {
       const double f = joint.load[i] * joint.inverse;
-      FourAt(to + i * kRow) += FourAt(I + i * kRow) - f * front;
-      FourAt(to + i * kRow + 4) += FourAt(I + i * kRow + 4) - f * back;
+      FourAt(to + i * kRow).v += FourAt(I + i * kRow).v - f * front;
+      FourAt(to + i * kRow + 4).v += FourAt(I + i * kRow + 4).v - f * back;
     }
   }
 }
@@ -92,8 +92,8 @@ CONTINUUM_WIDE void ArticulatedInertia::Solve(double* b) {
     if (joint.parent < 0) continue;
     double* const to = motion_.data() + kRow * joint.parent;
     const double f = b[k] * joint.inverse;
-    FourAt(to) += FourAt(p) + f * FourAt(joint.load);
-    FourAt(to + 4) += FourAt(p + 4) + f * FourAt(joint.load + 4);
+    FourAt(to).v += FourAt(p).v + f * FourAt(joint.load).v;
+    FourAt(to + 4).v += FourAt(p + 4).v + f * FourAt(joint.load + 4).v;
   }
   static constexpr double kStill[kRow] = {};
   for (int k = 0; k < n; ++k) {
@@ -103,8 +103,8 @@ CONTINUUM_WIDE void ArticulatedInertia::Solve(double* b) {
                  odd = joint.load[1] * a[1] + joint.load[3] * a[3] + joint.load[5] * a[5];
     b[k] = (b[k] - (even + odd)) * joint.inverse;
     double* const to = motion_.data() + kRow * k;
-    FourAt(to) = FourAt(a) + b[k] * FourAt(joint.axis);
-    FourAt(to + 4) = FourAt(a + 4) + b[k] * FourAt(joint.axis + 4);
+    FourAt(to).v = FourAt(a).v + b[k] * FourAt(joint.axis).v;
+    FourAt(to + 4).v = FourAt(a + 4).v + b[k] * FourAt(joint.axis + 4).v;
   }
 }
 
@@ -114,28 +114,30 @@ CONTINUUM_WIDE void ArticulatedInertia::SolveFour(double* b) {
   for (int k = n; k-- > 0;) {
     const Joint& joint = joints_[k];
     const double* const p = motion_.data() + 24 * k;
-    Four even = FourAt(b + 4 * k), odd = {};
+    Four even = FourAt(b + 4 * k).v, odd = {};
     for (int i = 0; i < 6; i += 2) {
-      even -= joint.axis[i] * FourAt(p + 4 * i), odd += joint.axis[i + 1] * FourAt(p + 4 * i + 4);
+      even -= joint.axis[i] * FourAt(p + 4 * i).v,
+          odd += joint.axis[i + 1] * FourAt(p + 4 * i + 4).v;
     }
-    FourAt(b + 4 * k) = even -= odd;
+    FourAt(b + 4 * k).v = even -= odd;
     if (joint.parent < 0) continue;
     double* const to = motion_.data() + 24 * joint.parent;
     const Four f = even * joint.inverse;
-    for (int i = 0; i < 6; ++i) FourAt(to + 4 * i) += FourAt(p + 4 * i) + joint.load[i] * f;
+    for (int i = 0; i < 6; ++i) FourAt(to + 4 * i).v += FourAt(p + 4 * i).v + joint.load[i] * f;
   }
   static constexpr double kStill[24] = {};
   for (int k = 0; k < n; ++k) {
     const Joint& joint = joints_[k];
     const double* const a = joint.parent < 0 ? kStill : motion_.data() + 24 * joint.parent;
-    Four even = FourAt(b + 4 * k), odd = {};
+    Four even = FourAt(b + 4 * k).v, odd = {};
     for (int i = 0; i < 6; i += 2) {
-      even -= joint.load[i] * FourAt(a + 4 * i), odd += joint.load[i + 1] * FourAt(a + 4 * i + 4);
+      even -= joint.load[i] * FourAt(a + 4 * i).v,
+          odd += joint.load[i + 1] * FourAt(a + 4 * i + 4).v;
     }
     const Four x = (even - odd) * joint.inverse;
-    FourAt(b + 4 * k) = x;
+    FourAt(b + 4 * k).v = x;
     double* const to = motion_.data() + 24 * k;
-    for (int i = 0; i < 6; ++i) FourAt(to + 4 * i) = FourAt(a + 4 * i) + joint.axis[i] * x;
+    for (int i = 0; i < 6; ++i) FourAt(to + 4 * i).v = FourAt(a + 4 * i).v + joint.axis[i] * x;
   }
 }
 

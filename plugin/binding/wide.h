@@ -12,9 +12,16 @@
 
 namespace continuum {
 
-/// Four numbers at once, at any address of a double.
-using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
-inline const Four& FourAt(const double* x) { return *reinterpret_cast<const Four*>(x); }
-inline Four& FourAt(double* x) { return *reinterpret_cast<Four*>(x); }
+using Four = double __attribute__((vector_size(32)));
+
+/// Four numbers at any address of a double. Only a packed member tells every compiler that nothing
+/// is aligned there: clang forgets the alignment of a typedef where a reference is bound.
+struct __attribute__((packed, may_alias)) FourAnywhere {
+  Four v;
+};
+inline const FourAnywhere& FourAt(const double* x) {
+  return *reinterpret_cast<const FourAnywhere*>(x);
+}
+inline FourAnywhere& FourAt(double* x) { return *reinterpret_cast<FourAnywhere*>(x); }
 
 }  // namespace continuum
