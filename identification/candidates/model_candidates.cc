@@ -45,7 +45,6 @@ std::optional<double> FixedValue(const EffectInfo& effect, std::size_t i,
     return system.Value("plugin:" + present.instance, level);
   }
   if (i == effect.coulomb_level && present) return 0;
-  if (p.unit == "N*m*s/rad" && p.null == 0) return 0;  // the native damping of joints
   if (!std::isnan(p.held)) return p.held;
   return std::nullopt;
 }

@@ -34,7 +34,7 @@ parameters:
   - {{name: F_v, target: "joint:q", attribute: damping, lower: 0, upper: 1000}}
   - {{name: F_c, target: "plugin:friction", attribute: tau_c, lower: 0, upper: 100}}
   - {{name: offset, target: "actuator:offset", attribute: "biasprm[0]", lower: -50, upper: 50}}
-candidates: [stribeck, load_friction, position_friction, dahl, dead_time]
+candidates: [stribeck, load_friction, position_friction, directional_viscous, dahl, dead_time]
 folds: window
 """
 

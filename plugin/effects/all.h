@@ -12,6 +12,7 @@
 #include "effects/dahl.h"
 #include "effects/dead_time.h"
 #include "effects/directional_friction.h"
+#include "effects/directional_viscous.h"
 #include "effects/drum_radius.h"
 #include "effects/elastic_gear.h"
 #include "effects/external_force.h"
@@ -64,12 +65,12 @@ struct List {
 /// servo, cable, supply.
 using All =
     List<Coulomb, Stribeck, LoadFriction, GearFriction, PositionFriction, DirectionalFriction,
-         FrictionDrift, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple, Maxwell, Pt2, Backlash,
-         Slack, TendonStretch, SupplySag, Capstan, PccSegmentLaw, Braid, ChamberAsymmetry, Viscous,
-         Stiffness, Payload, LinkMass, LinkLength, MountingAngle, SitePlace, DrumRadius, Armature,
-         ElasticGear, GravityTilt, ExternalForce, InputGain, InputOffset, TorqueLimit, DeadTime,
-         Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift, SensorEccentricity, Misalignment,
-         ClockSkew>;
+         FrictionDrift, DirectionalViscous, Dahl, Lugre, BoucWen, CubicStiffness, TorqueRipple,
+         Maxwell, Pt2, Backlash, Slack, TendonStretch, SupplySag, Capstan, PccSegmentLaw, Braid,
+         ChamberAsymmetry, Viscous, Stiffness, Payload, LinkMass, LinkLength, MountingAngle,
+         SitePlace, DrumRadius, Armature, ElasticGear, GravityTilt, ExternalForce, InputGain,
+         InputOffset, TorqueLimit, DeadTime, Pt1, SensorBias, SensorScale, SensorDelay, SensorDrift,
+         SensorEccentricity, Misalignment, ClockSkew>;
 
 /// Effects whose law is not here but in the MJCF that has them. No candidates by themselves.
 using FormulaLaws = List<Formula, FormulaFriction>;

@@ -22,9 +22,9 @@ struct DirectionalFriction {
                                     kSummary = "friction that differs with the direction";
   static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint};
-  static constexpr std::array kParams{
-      Magnitude("tau_c_plus", "N*m", 0.01), Magnitude("tau_c_minus", "N*m", 0.01),
-      Magnitude("b_plus", "N*m*s/rad", 0), Magnitude("b_minus", "N*m*s/rad", 0)};
+  static constexpr std::array kParams{Magnitude("tau_c_plus", "N*m", 0.01),
+                                      Magnitude("tau_c_minus", "N*m", 0.01),
+                                      SpareDamping("b_plus", 0), SpareDamping("b_minus", 0)};
 
   template <class T>
   static T Level(const FrictionState<T>& r, const Vec<T, 4>& p) {

@@ -77,6 +77,10 @@ constexpr Param Positive(std::string_view name, std::string_view unit, double in
 constexpr Param Magnitude(std::string_view name, std::string_view unit, double initial) {
   return {name, unit, 0, kInfinity, initial, 0};
 }
+/// A damping that the joints' own can say as well: a search leaves it at 0.
+constexpr Param SpareDamping(std::string_view name, double initial) {
+  return {name, "N*m*s/rad", 0, kInfinity, initial, 0, 0};
+}
 /// A signed quantity that is zero when the law does nothing.
 constexpr Param Signed(std::string_view name, std::string_view unit, double initial) {
   return {name, unit, -kInfinity, kInfinity, initial, 0};

@@ -24,9 +24,9 @@ struct Lugre {
   static constexpr std::array kPlaces{Place::kJoint, Place::kTendon};
   static constexpr Units kPort{"rad", "N*m"};
   static constexpr std::array kStates{State{"z", "1"}};
-  static constexpr std::array kParams{
-      Positive("sigma_0", "N*m/rad", 1), Param{"sigma_1", "N*m*s/rad", 0, kInfinity, 0, 0, 0},
-      Magnitude("tau_c", "N*m", 0.01), Magnitude("S", "1", 0.5), Positive("v_s", "rad/s", 0.1)};
+  static constexpr std::array kParams{Positive("sigma_0", "N*m/rad", 1), SpareDamping("sigma_1", 0),
+                                      Magnitude("tau_c", "N*m", 0.01), Magnitude("S", "1", 0.5),
+                                      Positive("v_s", "rad/s", 0.1)};
 
   template <class T>
   static Reply<T, 1> Eval(const Port<T>& q, const Vec<T, 1>& state, const Vec<T, 5>& p) {

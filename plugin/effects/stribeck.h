@@ -19,9 +19,9 @@ struct Stribeck {
   static constexpr Kinship kKin{kDryFriction, 1};
   static constexpr std::array kPlaces{Place::kJoint};
   static constexpr Joints kJoints = Joints::kHingeSlideBall;
-  static constexpr std::array kParams{
-      Magnitude("tau_mu", "N*m*s/rad", 0.01), Magnitude("tau_c", "N*m", 0.01),
-      Magnitude("S", "1", 0.5), Positive("v_d", "rad/s", 0.3), Positive("k_v", "s/rad", 1000)};
+  static constexpr std::array kParams{SpareDamping("tau_mu", 0.01), Magnitude("tau_c", "N*m", 0.01),
+                                      Magnitude("S", "1", 0.5), Positive("v_d", "rad/s", 0.3),
+                                      Positive("k_v", "s/rad", 1000)};
   static constexpr std::size_t kDamping = 0, kCoulombLevel = 1, kLiteral = 4;
 
   template <class T>
