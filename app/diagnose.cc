@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
+#include "app/load_model.h"
 #include "app/log_check.h"
 #include "app/models_folder.h"
 #include "app/rank_job.h"
@@ -99,7 +100,7 @@ void RequireNoTimeLimit(const Options& o) {
 void RunDiagnose(const Options& o) {
   RequireNoTimeLimit(o);
   const Experiment read = Experiment::Read(o.experiment);
-  const ModelSpec system = ModelSpec::Load(read.model);
+  const ModelSpec system = LoadModel(read.model);
   const std::string old = OldComparison(o.compare, read);
   DiagnosisOptions options;
   std::istringstream names(o.candidates);
@@ -184,7 +185,7 @@ void RunApply(const ApplyOptions& o) {
   RequireWritable(o.out, {o.diagnosis, o.model});
   const auto json = ReadJson(o.diagnosis);
   const auto folder = std::filesystem::absolute(ThroughLinks(o.out)).parent_path();
-  const std::string xml = ApplyJson(ModelSpec::Load(o.model), json, o.diagnosis, folder);
+  const std::string xml = ApplyJson(LoadModel(o.model), json, o.diagnosis, folder);
   ModelSpec::Parse(xml, folder, o.diagnosis + " applied to " + o.model);  // says why it cannot be
   WriteFile(o.out, xml);
 }

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "app/console.h"
+#include "app/load_model.h"
 #include "app/log_check.h"
 #include "app/rank_job.h"
 #include "error.h"
@@ -55,7 +56,7 @@ void ListDerivatives(const Options& o, const Experiment& read, const ModelSpec& 
 void RunIdentify(const Options& o) {
   if (!o.derivatives && o.out.empty()) throw CLI::RequiredError("--out");
   const Experiment read = Experiment::Read(o.experiment);
-  const ModelSpec system = ModelSpec::Load(read.model);
+  const ModelSpec system = LoadModel(read.model);
   CheckNames(read, system);
   if (o.derivatives) return ListDerivatives(o, read, system);
   std::optional<OutputFolder> made;

@@ -2,6 +2,7 @@
 
 #include "app/console.h"
 #include "app/filming.h"
+#include "app/load_model.h"
 #include "error.h"
 #include "sim/experiment/registration.h"
 #include "sim/film/film_recipe.h"
@@ -28,7 +29,7 @@ Experiment Read(const Options& o, FilmOptions& film) {
 void RunRender(const Options& o) {
   FilmOptions film;
   Experiment e = Read(o, film);
-  const ModelSpec system = ModelSpec::Load(e.model);
+  const ModelSpec system = LoadModel(e.model);
   o.filming.Set(film, system.model());
   const std::vector<std::size_t> logs = o.filming.LogsOf(e);
   const std::filesystem::path out = o.out;

@@ -10,6 +10,7 @@
 
 #include "app/console.h"
 #include "app/filming.h"
+#include "app/load_model.h"
 #include "app/log_check.h"
 #include "identification/candidates/candidate_generator.h"
 #include "identification/identify.h"
@@ -52,7 +53,7 @@ void PrintSensors(const std::vector<SensorScore>& sensors) {
 
 void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
-  const ModelSpec system = ModelSpec::Load(e.model);
+  const ModelSpec system = LoadModel(e.model);
   CheckAll(e, system);
   PrintLogCheck(o.experiment, e);
   FilmOptions film;
@@ -103,7 +104,7 @@ struct CheckOptions {
 
 void RunCheck(const CheckOptions& o) {
   const Experiment e = Experiment::Read(o.experiment);
-  const ModelSpec system = ModelSpec::Load(e.model);
+  const ModelSpec system = LoadModel(e.model);
   CheckAll(e, system);
   std::vector<std::string> skipped;
   MakeCandidates(e, {&system}, {}, skipped);  // refuses places that the model has not

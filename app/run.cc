@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/console.h"
+#include "app/load_model.h"
 #include "error.h"
 #include "sim/film/film.h"
 #include "sim/io/decimal.h"
@@ -38,7 +39,7 @@ void CheckOutputs(const Options& o) {
 
 void RunModel(const Options& o) {
   CheckOutputs(o);
-  ModelSpec system = ModelSpec::Load(o.model);
+  ModelSpec system = LoadModel(o.model);
   std::vector<Change> changes;
   if (o.timestep > 0) changes.push_back({"option", "timestep", o.timestep});
   ModelAndData machine = system.Build(changes);

@@ -92,8 +92,10 @@ bool AreSlack(const mjModel& m, const BoundLaw& law, const Experiment& e, const 
   return std::all_of(cables.begin(), cables.end(), [&](const Cable& cable) {
     return none(m.tendon_stiffness, m.tendon_stiffnesspoly, cable.tendon) &&
            none(m.tendon_damping, m.tendon_dampingpoly, cable.tendon) &&
-           std::all_of(cable.actuators.begin(), cable.actuators.end(),
-                       [&](int a) { return RestsAll(m, log, wiring, a); });
+           std::all_of(cable.actuators.begin(), cable.actuators.end(), [&](int a) {
+             return none(m.actuator_damping, m.actuator_dampingpoly, a) &&
+                    RestsAll(m, log, wiring, a);
+           });
   });
 }
 

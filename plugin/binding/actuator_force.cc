@@ -3,10 +3,9 @@
 #include <algorithm>
 
 namespace continuum {
-namespace {
 
-// What the range of a tendon leaves of the forces of its actuators.
 double TendonShare(const mjModel& m, const mjData& d, int tendon) {
+  if (!m.tendon_actfrclimited[tendon]) return 1;
   double sum = 0;
   for (int a = 0; a < m.nactuator; ++a) {
     if (m.actuator_trntype[a] == mjTRN_TENDON && m.actuator_trnid[2 * a] == tendon) {
@@ -17,13 +16,10 @@ double TendonShare(const mjModel& m, const mjData& d, int tendon) {
   return sum < range[0] ? range[0] / sum : sum > range[1] ? range[1] / sum : 1;
 }
 
-}  // namespace
-
 double LimitedForce(const mjModel& m, const mjData& d, int actuator, int output) {
   double force = d.actuator_force[m.actuator_outadr[actuator] + output];
   if (m.actuator_trntype[actuator] == mjTRN_TENDON) {
-    const int tendon = m.actuator_trnid[2 * actuator];
-    if (m.tendon_actfrclimited[tendon]) force *= TendonShare(m, d, tendon);
+    force *= TendonShare(m, d, m.actuator_trnid[2 * actuator]);
   }
   if (!m.actuator_forcelimited[actuator]) return force;
   const double* const range = m.actuator_forcerange + 2 * actuator;

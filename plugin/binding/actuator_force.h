@@ -4,6 +4,9 @@
 
 namespace continuum {
 
+/// What the actuatorfrcrange of a tendon leaves of the forces of its actuators [1].
+double TendonShare(const mjModel& m, const mjData& d, int tendon);
+
 /// Force of one output of an actuator, before its gear, as MuJoCo applies it: actuator_force scaled
 /// so that the sum over the actuators of a tendon, before their gears, stays in the tendon's
 /// actuatorfrcrange; then clamped to the actuator's own forcerange.

@@ -21,15 +21,18 @@ void AddActuators(const mjModel& m, const mjData& d, double* force) {
   }
 }
 
-// Of what actuators do to joints: gravity compensation joins in, and both have the joint's range.
-void LimitJoints(const mjModel& m, const mjData& d, double* force) {
+void AddCompensation(const mjModel& m, const mjData& d, double* force) {
+  for (int dof = 0; dof < m.nv; ++dof) {
+    if (m.jnt_actgravcomp[m.dof_jntid[dof]]) force[dof] += d.qfrc_gravcomp[dof];
+  }
+}
+
+void LimitJoints(const mjModel& m, double* force) {
   for (int j = 0; j < m.njnt; ++j) {
-    const int dof = m.jnt_dofadr[j];
-    const int end = j + 1 < m.njnt ? m.jnt_dofadr[j + 1] : static_cast<int>(m.nv);
-    for (int k = dof; m.jnt_actgravcomp[j] && k < end; ++k) force[k] += d.qfrc_gravcomp[k];
     if (!m.jnt_actfrclimited[j]) continue;
     const double* const range = m.jnt_actfrcrange + 2 * j;
-    force[dof] = std::clamp(force[dof], range[0], range[1]);
+    double& f = force[m.jnt_dofadr[j]];
+    f = std::clamp(f, range[0], range[1]);
   }
 }
 
@@ -55,10 +58,16 @@ void AddWrenches(const mjModel& m, const mjData& d, double* force) {
 
 }  // namespace
 
-void AppliedForces(const mjModel& m, const mjData& d, double* force) {
+void ActuatorForces(const mjModel& m, const mjData& d, double* force) {
   std::fill_n(force, m.nv, 0.0);
-  if (!(m.opt.disableflags & mjDSBL_ACTUATION)) AddActuators(m, d, force);
-  LimitJoints(m, d, force);
+  if (IsUnactuated(m)) return;
+  AddActuators(m, d, force);
+  AddCompensation(m, d, force);
+}
+
+void AppliedForces(const mjModel& m, const mjData& d, double* force) {
+  ActuatorForces(m, d, force);
+  if (!IsUnactuated(m)) LimitJoints(m, force);
   AddWrenches(m, d, force);
   for (int dof = 0; dof < m.nv; ++dof) {
     force[dof] += d.qfrc_passive[dof] - d.qfrc_bias[dof] + d.qfrc_applied[dof];

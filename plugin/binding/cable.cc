@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "binding/actuator_force.h"
+#include "binding/damper.h"
 #include "binding/force.h"
 #include "mujoco_compat.h"
 
@@ -81,17 +82,18 @@ Cable MakeCable(const mjModel& m, int tendon, const Branch& branch, Driven drive
   return cable;
 }
 
-// Of the spring, which has play between its two rest lengths, and the damper.
-double PassiveTension(const mjModel& m, const mjData& d, int t) {
+// Of the spring, which has play between its two rest lengths, and of the dampers: the tendon's own
+// and those that its actuators bring along.
+double PassiveTension(const mjModel& m, const mjData& d, const Cable& cable) {
+  const int t = cable.tendon;
   double tension = 0;
-  const double *const k = m.tendon_stiffnesspoly + mjNPOLY * t, *const b = m.tendon_dampingpoly +
-                                                                           mjNPOLY * t;
+  const double* const k = m.tendon_stiffnesspoly + mjNPOLY * t;
   const double x = BeyondRest(m, t, d.ten_length[t] - PlasticSet(m, d, t));
   if (!(m.opt.disableflags & mjDSBL_SPRING))
     tension += x * (m.tendon_stiffness[t] + x * (k[0] + x * k[1]));
-  const double v = d.ten_velocity[t], speed = std::abs(v);
-  if (!(m.opt.disableflags & mjDSBL_DAMPER))
-    tension += v * (m.tendon_damping[t] + speed * (b[0] + speed * b[1]));
+  if (m.opt.disableflags & mjDSBL_DAMPER) return tension;
+  tension += TendonDamper(m, t).Force(d.ten_velocity[t]);
+  for (const int a : cable.actuators) tension += ActuatorDamper(m, a).Force(d.ten_velocity[t]);
   return tension;
 }
 
@@ -124,7 +126,7 @@ std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven) {
 }
 
 double NativeTension(const mjModel& m, const mjData& d, const Cable& cable) {
-  double pull = PassiveTension(m, d, cable.tendon);
+  double pull = PassiveTension(m, d, cable);
   for (const int a : cable.actuators) {
     pull -= m.actuator_gear[6 * m.actuator_outadr[a]] * LimitedForce(m, d, a);
   }

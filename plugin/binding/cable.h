@@ -59,7 +59,7 @@ Misfit WhyNoCable(const mjModel& m, int tendon);
 std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven);
 
 /// What pulls a tendon [N] but for rows of the constraint solver: −sum(gear · force) of its
-/// actuators, forces within their ranges, and its spring and damper.
+/// actuators, forces within their ranges, its spring, and its damper and those of its actuators.
 double NativeTension(const mjModel& m, const mjData& d, const Cable& cable);
 
 }  // namespace continuum

@@ -5,6 +5,7 @@
 
 #include "binding/applied_force.h"
 #include "binding/bristle.h"
+#include "binding/cable_doubts.h"
 #include "binding/exponential.h"
 #include "binding/row_softness.h"
 #include "binding/tree_groups.h"
@@ -15,8 +16,6 @@ namespace continuum {
 namespace {
 
 constexpr double kLeastPull = 1e-12;  // of a cable that was never tight, or is not yet [N]
-
-std::string NameOf(const mjModel& m, int tendon) { return mj_id2name(&m, mjOBJ_TENDON, tendon); }
 
 Driven DrivenEnd(const Config& config) {
   const std::string_view text = config.Get("driven");
@@ -56,73 +55,6 @@ std::vector<Cable> MatchCables(const mjModel& m, const Config& config) {
     cables.insert(cables.end(), branches.begin(), branches.end());
   }
   return Grouped(m, std::move(cables));
-}
-
-int DepthOf(const mjModel& m, int site) {
-  int depth = 0;
-  for (int b = m.site_bodyid[site]; b > 0; b = m.body_parentid[b]) ++depth;
-  return depth;
-}
-
-bool IsBeyond(const mjModel& m, int body, int base) {
-  while (body > base) body = m.body_parentid[body];
-  return body == base;
-}
-
-void Join(std::string& list, const std::string& what, const char* between) {
-  if (!what.empty()) list += (list.empty() ? "" : between) + what;
-}
-
-// Whether friction of a cable acts between the bodies from `base` on and all others: a part of the
-// cable beyond its first contact leads from one to the other.
-bool Passes(const mjModel& m, const Cable& cable, int base) {
-  for (int k = 1; k < cable.segments(); ++k) {
-    const auto& [near, far] = cable.path[k];
-    if (cable.both && k + 1 == cable.segments()) continue;  // it carries the base tension
-    if (IsBeyond(m, near.body, base) != IsBeyond(m, far.body, base)) return true;
-  }
-  return false;
-}
-
-// Native sensors of force or torque that a cable passes.
-std::string BlindSensors(const mjModel& m, std::span<const Cable> cables) {
-  std::string blind;
-  for (int s = 0; s < m.nsensor; ++s) {
-    if (m.sensor_type[s] != mjSENS_FORCE && m.sensor_type[s] != mjSENS_TORQUE) continue;
-    const int base = m.site_bodyid[m.sensor_objid[s]];
-    const auto passes = [&](const Cable& cable) { return Passes(m, cable, base); };
-    if (std::none_of(cables.begin(), cables.end(), passes)) continue;
-    const char* const name = mj_id2name(&m, mjOBJ_SENSOR, s);
-    Join(blind, name && *name ? "'" + std::string(name) + "'" : "number " + std::to_string(s),
-         ", ");
-  }
-  return blind;
-}
-
-// What of the routes may not be meant.
-std::string DoubtsOf(const mjModel& m, const Config& config, std::span<const Cable> cables) {
-  std::string outward, doubts;
-  for (const Cable& cable : cables) {
-    const int begin = m.tendon_adr[cable.tendon], end = begin + m.tendon_num[cable.tendon];
-    const bool known = outward.find("'" + NameOf(m, cable.tendon) + "'") != outward.npos;
-    if (!known && DepthOf(m, m.wrap_objid[begin]) > DepthOf(m, m.wrap_objid[end - 1]))
-      Join(outward, "'" + NameOf(m, cable.tendon) + "'", ", ");
-  }
-  if (const std::string blind = BlindSensors(m, cables); !blind.empty()) {
-    Join(doubts,
-         "MuJoCo's sensors of force and torque do not feel the friction of a cable that passes "
-         "them, as here " +
-             blind + "; a sensor of plugin continuum.wrench does",
-         "; ");
-  }
-  if (!outward.empty() && config.Get("driven").empty()) {
-    Join(doubts,
-         "it takes the first site as the end that is pulled, which is farther from the world than "
-         "the last on " +
-             outward + ": say driven=\"last\" or driven=\"first\"",
-         "; ");
-  }
-  return doubts;
 }
 
 // Tensions change in proportion: what two instances add to one cable is no friction law.
@@ -206,8 +138,8 @@ bool CableFriction::Evaluate(const mjModel& m, mjData& d, const double* z, Stage
     geometry_.Update(m, d);
     Bands(geometry_.theta, band_);
     RunAlong(geometry_.slip);
-    if (std::any_of(p_.begin(), p_.end(), [](double p) { return p != 0; }))
-      SoftenContacts(m, d, trees_);
+    const bool null = std::all_of(p_.begin(), p_.end(), [](double p) { return p == 0; });
+    if (!null && !IsDiscrete(m)) SoftenContacts(m, d, trees_);
   } else if (Silent(m)) {
     return false;
   }
@@ -253,7 +185,7 @@ void CableFriction::Remember(const double* z) {
 
 // Constraint rows that pull cables: the tension that they give is that of the last step until it is
 // solved for. mj_inverse solves for none and keeps the last answer.
-void CableFriction::FindRows(const mjModel& m, const mjData& d, const double* z, Stage stage) {
+void CableFriction::FindRows(const mjModel& m, mjData& d, const double* z, Stage stage) {
   rows_.Clear();
   for (const TensionRow& row : tension_rows_.At(m, d)) {
     SolvedRow& solved = rows_.Add(m, d, row.row, row.limit);

@@ -113,7 +113,7 @@ class CableFriction : public BoundLaw {
   void Spread(const Group& group, double rho, const double* z);
   void Add(std::span<double> force);
   int Index(mjtObj kind, int id) const;
-  void FindRows(const mjModel& m, const mjData& d, const double* z, Stage stage);
+  void FindRows(const mjModel& m, mjData& d, const double* z, Stage stage);
 
   std::vector<Cable> cables_;
   std::string doubts_;  ///< what the user should know of the routes

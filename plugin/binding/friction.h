@@ -78,7 +78,8 @@ class FrictionRows {
       const Sliding sliding = SlidingOf(d, z + kStates * k, row);
       WriteRow(m, d, off, stage, row, r, sliding.share * level(row, sliding.v));
       if (give > 0 && row.alone && !IsDiscrete(m)) Soften(m, d, r, give);
-      if ((stage == Stage::kActuator || IsUnactuated(m)) && row.joint && row.axis < 0)
+      const bool last = stage == Stage::kActuator || IsUnactuated(m);
+      if (last && row.joint && row.axis < 0 && !IsDiscrete(m))
         Foresee(d, z[kStates * k] == kHeld, row, r);
     }
   }
@@ -366,9 +367,14 @@ class BoundFriction : public BoundLaw {
     });
   }
 
-  // Whether the law does nothing: no level in any direction, at any load, all around a turn.
+  // Whether the law does nothing: no level in any direction, at any load, all around a turn, ever.
   bool IsNull() const {
     const auto p = AsParams<E>(p_);
+    if constexpr (kWorks) {
+      constexpr double kEver = 1e12;  // [s], [J]
+      for (const auto& [time, work] : {std::pair{kEver, 0.0}, {0.0, kEver}})
+        if (E::template Level<double>({0, 0, 0, 0, 0, time, work}, p) != 0) return false;
+    }
     if constexpr (kTorques) {
       for (const auto& [motor, others] :
            {std::pair{1.0, 0.0}, {0.0, 1.0}, {1.0, -0.5}, {0.5, -1.0}})

@@ -23,6 +23,9 @@ bool HasOthers(const mjData& d, int tree) {
   return island >= 0 && (d.island_ne[island] > 0 || d.island_nf[island] < d.island_nefc[island]);
 }
 
+// Rows of ours have an anchor, which MuJoCo's own have not.
+bool HasAnchor(const mjData& d, int r) { return r >= 0 && d.efc_KBIP[4 * r] > 0; }
+
 double Reference(const mjData& d, int r, int dof) {
   const double* const kbip = d.efc_KBIP + 4 * r;
   return -kbip[1] * d.qvel[dof] - kbip[0] * kbip[2] * d.efc_pos[r];
@@ -49,6 +52,8 @@ void FrictionGuess::Write(const mjModel& m, mjData& d) {
   }
   AppliedForces(m, d, force_.data());
   for (Tree& tree : trees_) {
+    const auto ours = [&](int dof) { return HasAnchor(d, row_[dof]); };
+    if (std::none_of(tree.dofs.begin(), tree.dofs.end(), ours)) continue;
     if (HasOthers(d, tree.id) || !Solve(m, d, tree)) continue;
     std::copy(answer_.begin(), answer_.end(), d.qacc_warmstart + tree.dofs.front());
   }

@@ -8,10 +8,11 @@
 
 namespace continuum {
 
-/// Where MuJoCo's solver begins in trees of joints with dry friction and no other constraint: at
-/// the answer, without which it needs an iteration each time that another joint begins to slide.
-/// The solver ends where its cost falls by less than its tolerance. Of many stiff rows one behind
-/// the other it does not know the forces by then, and joints creep.
+/// Where MuJoCo's solver begins in trees of joints with dry friction of ours and no other
+/// constraint: at the answer, without which it needs an iteration each time that another joint
+/// begins to slide. The solver ends where its cost falls by less than its tolerance. Of many stiff
+/// rows one behind the other it does not know the forces by then, and joints creep. Trees in which
+/// all friction is MuJoCo's own are left to it, bit by bit.
 ///
 /// Once it is known which rows hold, the accelerations a follow from
 ///

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "binding/actuator_force.h"
+#include "binding/applied_force.h"
 
 namespace continuum {
 
@@ -27,14 +27,7 @@ bool IsPushed(const mjData& d, int body) {
 }  // namespace
 
 GearTorques::GearTorques(const mjModel& m, const mjData& d) : actuators_(m.nv) {
-  for (int a = 0; a < m.nactuator; ++a) {
-    for (int o = 0; o < m.actuator_outnum[a]; ++o) {
-      const double force = LimitedForce(m, d, a, o);
-      const int row = m.actuator_outadr[a] + o, adr = d.moment_rowadr[row];
-      for (int k = adr; k < adr + d.moment_rownnz[row]; ++k)
-        actuators_[d.moment_colind[k]] += d.actuator_moment[k] * force;
-    }
-  }
+  ActuatorForces(m, d, actuators_.data());
   for (int b = 1; b < m.nbody; ++b) {
     if (IsPushed(d, b)) pushed_.push_back(b);
   }

@@ -7,8 +7,9 @@
 
 namespace continuum {
 
-/// Torques on the gears of hinge and slide joints [N*m or N], at the current actuator_force. What
-/// all of them share is computed once: the cost is linear in joints, actuators and bodies.
+/// Torques on the gears of hinge and slide joints [N*m or N], at the current actuator_force.
+/// Gravity compensation that a joint leaves to its actuators (actuatorgravcomp) is theirs. What all
+/// of them share is computed once: the cost is linear in joints, actuators and bodies.
 class GearTorques {
  public:
   /// Of no model: nobody asks.

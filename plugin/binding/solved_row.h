@@ -30,7 +30,7 @@ class SolvedRows {
  public:
   void Clear() { count_ = 0; }
   /// Takes up a row of d as (1) has it, without effect on cables.
-  SolvedRow& Add(const mjModel& m, const mjData& d, int row, bool limit);
+  SolvedRow& Add(const mjModel& m, mjData& d, int row, bool limit);
   std::span<SolvedRow> all() { return {rows_.data(), count_}; }
 
  private:
@@ -40,7 +40,7 @@ class SolvedRows {
 
 /// Takes up the rows of contacts: of frictionless and pyramidal ones all, of elliptic ones that of
 /// the normal force.
-void AddContactRows(const mjModel& m, const mjData& d, SolvedRows& rows);
+void AddContactRows(const mjModel& m, mjData& d, SolvedRows& rows);
 
 /// force[nv]: what the constraint solver did in the step that d has just taken, but for rows of
 /// contacts, as above, and the given ones. Where an elliptic contact slides, the normal force is

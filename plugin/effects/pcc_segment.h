@@ -16,7 +16,7 @@ namespace continuum {
 /// Δx = d u and Δy = d v for a tip that is bent by u [rad] toward +x and v toward +y; p [Pa] gauge
 /// pressures. actuation="tip" is the source's: the load on the tip, its opposite on the base;
 /// "volume" also counts the pressure on the side walls of the bent chambers, Σ p_i ∂V_i/∂δ. Chamber
-/// 1 lies at −x, chambers 2 and 3 at ∓2π/3 from it, at the radius r_ch about a centre that is off
+/// 1 lies at −x, chambers 2 and 3 at ±2π/3 from it, at the radius r_ch about a centre that is off
 /// by −(x_m, y_m): p_1 bends toward +x. k_dL3 < 0 softens: beyond δL = √(−k_dL1/(3 k_dL3)) nothing
 /// holds the segment. Only d takes energy, k stores it, τ brings it.
 ///

@@ -10,6 +10,7 @@
 #include "sim/io/decimal.h"
 #include "sim/io/file.h"
 #include "sim/model/asset_folders.h"
+#include "sim/model/engine_warnings.h"
 #include "sim/model/mjcf_document.h"
 #include "sim/model/mujoco_plugins.h"
 #include "sim/model/native_effect.h"
@@ -22,8 +23,7 @@ constexpr std::string_view kPluginTarget = "plugin:";
 
 void RegisterOnce() {
   static const bool once = [] {
-    mju_user_warning = [](const char*) {
-    };  // compile errors carry the text; see Simulate for the rest
+    mju_user_warning = EngineWarnings::Take;  // compile errors carry the text
     RegisterEffects();
     LoadMujocoPlugins();
     return true;

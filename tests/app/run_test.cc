@@ -149,5 +149,36 @@ TEST_F(RunCommand, LoadsThePluginsThatComeWithMujoco) {
   EXPECT_EQ(f.exit_code, 0) << f.err;
 }
 
+// Once, however often the model is built.
+TEST_F(RunCommand, PrintsWhatEffectsWarnOf) {
+  files_.Write("discrete.xml", R"(<mujoco><option integrator="discrete"/><extension>
+    <plugin plugin="continuum.coulomb"><instance name="dry"><config key="joint" value="h"/>
+    <config key="tau_c" value=".1"/></instance></plugin></extension>
+    <worldbody><body><joint name="h"/><geom size=".1" pos=".1 0 0"/></body></worldbody></mujoco>)");
+  const auto f = Run({"run", "discrete.xml", "--until", ".01"});
+  EXPECT_EQ(f.exit_code, 0) << f.err;
+  EXPECT_THAT(f.err, AllOf(StartsWith("warning: continuum.coulomb 'dry': "), HasSubstr("creeps")));
+  EXPECT_EQ(std::count(f.err.begin(), f.err.end(), '\n'), 1) << f.err;
+}
+
+TEST_F(RunCommand, SaysWhichEffectsAnAttachedRobotLost) {
+  const auto arm = [](const std::string& reference) {
+    return R"(<mujoco><extension><plugin plugin="continuum.coulomb"><instance name="dry">
+      <config key="joint" value="h"/><config key="tau_c" value=".1"/></instance></plugin></extension>
+      <worldbody><body name="b">)" +
+           reference +
+           R"(<joint name="h"/><geom size=".1" pos=".1 0 0"/></body></worldbody></mujoco>)";
+  };
+  files_.Write("scene.xml", R"(<mujoco><asset><model name="arm" file="arm.xml"/></asset><worldbody>
+    <attach model="arm" prefix="left_"/></worldbody></mujoco>)");
+  files_.Write("arm.xml", arm(""));
+  const auto lost = Run({"run", "scene.xml", "--until", ".01"});
+  EXPECT_EQ(lost.exit_code, 0) << lost.err;
+  EXPECT_THAT(lost.err, AllOf(StartsWith("warning: arm.xml: continuum.coulomb 'dry' is lost"),
+                              HasSubstr("docs/cables.md")));
+  files_.Write("arm.xml", arm(R"(<plugin plugin="continuum.coulomb" instance="dry"/>)"));
+  EXPECT_EQ(Run({"run", "scene.xml", "--until", ".01"}).err, "");
+}
+
 }  // namespace
 }  // namespace continuum

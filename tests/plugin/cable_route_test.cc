@@ -21,7 +21,7 @@ class CableRoute : public testing::Engine {
   struct Rig {
     std::string corner = "site", config = Key("mu", "0.3");
     std::string end = R"(<site name="end" pos="-.5 0 1"/>)", tendon = {}, actuator = {}, more = {},
-                sensor = {}, joint = "damping=\"1\"";
+                sensor = {}, joint = "damping=\"1\"", body = {};
     double step = 1e-3;
     bool reversed = false;
   };
@@ -40,12 +40,12 @@ class CableRoute : public testing::Engine {
                         : R"(<site site="end"/>)" + path + R"(<site site="load"/>)";
     return "<mujoco>" + Instance("capstan", Key("tendon", "t") + rig.config) +
            fmt::format(R"(<option timestep="{}" integrator="implicitfast" gravity="0 0 -10"/>
-      <worldbody>{}{}<body pos="{} 0 .5"><joint name="z" type="slide" axis="0 0 1" {}/>
+      <worldbody>{}{}<body pos="{} 0 .5" {}><joint name="z" type="slide" axis="0 0 1" {}/>
         <geom size=".02" mass="1" contype="0" conaffinity="0"/><site name="load"/></body>
       </worldbody><tendon><spatial name="t" {}>{}</spatial></tendon><actuator>{}</actuator>{}
       <sensor>{}</sensor></mujoco>)",
-                       rig.step, world, rig.end, x, rig.joint, rig.tendon, path, rig.actuator,
-                       rig.more, rig.sensor);
+                       rig.step, world, rig.end, x, rig.body, rig.joint, rig.tendon, path,
+                       rig.actuator, rig.more, rig.sensor);
   }
   // How far the load has moved up after 0.8 s of a pull [m].
   static double Moved(const Rig& rig, double pull) {
@@ -119,6 +119,34 @@ TEST_F(CableRoute, TheSpringOfATendonPullsAgainstFriction) {
         return rig;
       },
       .3 * mjPI / 2, "spring");
+}
+
+// The attribute damping of an actuator resists whatever the actuator gives: its drum holds a load
+// that falls at v by gear² b v before the corner, and by more behind it.
+TEST_F(CableRoute, TheDamperOfAnActuatorHoldsAFallingLoad) {
+  for (const double gear : {1., 2.}) {
+    Rig rig;
+    rig.joint = "", rig.step = 5e-4;
+    rig.actuator = fmt::format(R"(<motor tendon="t" gear="{}" damping="40"/>)", gear);
+    const auto m = Model(Xml(rig));
+    const auto d = Data(m);
+    RunUntil(m, d, .4);
+    const double speed = kWeight * std::exp(-.3 * mjPI / 2) / (gear * gear * 40);
+    EXPECT_NEAR(d->qvel[0], -speed, 1e-6 * speed) << "gear " << gear;
+  }
+}
+
+// MuJoCo leaves out the gravity compensation of actuators where there are none: the load has its
+// whole weight, and friction holds it.
+TEST_F(CableRoute, WithoutActuatorsNothingCompensatesGravity) {
+  ExpectBand(
+      [](double pull) {
+        Rig rig;
+        rig.joint += R"( actuatorgravcomp="true")", rig.body = R"(gravcomp="1")";
+        rig.tendon = fmt::format(R"(stiffness="100" springlength="0 {}")", 1 - pull / 100);
+        return rig;
+      },
+      .3 * mjPI / 2, "not compensated");
 }
 
 std::string Winch(const std::string& body) {

@@ -56,5 +56,18 @@ TEST_F(DriftingWheel, BreaksAwayWhenItHasFadedBelowTheLoad) {
   EXPECT_NEAR(d->time, std::log(2) / 0.2, 0.15);
 }
 
+// It begins without friction of its own, on a joint that has MuJoCo's.
+TEST_F(DriftingWheel, GrowsFromNothingBesideNativeFriction) {
+  const auto m = Model("<mujoco>" +
+                       Instance("friction_drift", Key("joint", "q") + Key("tau_c", "0.05") +
+                                                      Key("delta", "-0.05") + Key("r_t", "3")) +
+                       R"(<worldbody><body><joint name="q" axis="1 0 0" frictionloss="0.03"/>
+         <inertial pos="0 0 0" mass="1" diaginertia="0.02 0.02 0.02"/></body></worldbody></mujoco>)");
+  const auto d = Data(m);
+  RunUntil(m, d, 0.4);
+  mj_forward(m.get(), d.get());
+  EXPECT_NEAR(d->efc_frictionloss[0], 0.03 + 0.05 * (1 - std::exp(-3 * d->time)), 1e-12);
+}
+
 }  // namespace
 }  // namespace continuum

@@ -50,6 +50,29 @@ TEST_F(Load, CountsTheCableFrictionOfThisEvaluation) {
   }
 }
 
+// An arm of 1 kg whose weight the joint leaves to its actuators (or not): the gear transmits half
+// of what these give less what others do, which MuJoCo itself says.
+TEST_F(Load, CountsTheWeightThatActuatorsCompensate) {
+  for (const std::string by_actuators : {"false", "true"}) {
+    const auto m =
+        Model("<mujoco>" + Instance("load_friction", Key("joint", "j") + Key("mu_l", "0.2")) +
+              R"(<worldbody><body gravcomp="1"><joint name="j" axis="0 1 0"
+        actuatorfrcrange="-1.6 1.6" actuatorgravcomp=")" +
+              by_actuators + R"("/><geom type="capsule" size=".02"
+        fromto="0 0 0 .3 0 0" mass="1"/></body></worldbody>
+      <actuator><motor joint="j"/></actuator></mujoco>)");
+    const auto d = Data(m);
+    for (const double u : {0., .5, -.5}) {
+      d->ctrl[0] = u;
+      mj_forward(m.get(), d.get());
+      const double others = d->qfrc_passive[0] - d->qfrc_bias[0];
+      EXPECT_NEAR(d->efc_frictionloss[0], kMuL * 0.5 * std::abs(d->qfrc_actuator[0] - others),
+                  1e-12)
+          << "by actuators " << by_actuators << ", u " << u;
+    }
+  }
+}
+
 TEST_F(Load, ReplaysBitByBitAndInvertsExactly) {
   const auto m = Hoist(false);
   const auto drive = [&](mjData* d) { d->ctrl[0] = 10 + 4 * std::sin(7 * d->time); };

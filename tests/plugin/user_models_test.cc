@@ -187,6 +187,37 @@ TEST_F(UserModels, AnEffectAtItsNullLeavesEveryBitOfTheStep) {
   }
 }
 
+// Arms of six links with MuJoCo's own friction, which swing and come to rest joint by joint.
+TEST_F(UserModels, NativeFrictionIsLeftToMujocoBitByBit) {
+  const auto arm = [](const std::string& name) {
+    std::string bodies, close;
+    for (int k = 0; k < 6; ++k) {
+      bodies += "<body pos=\"0 0 -.1\"><joint name=\"" + name + std::to_string(k) + "\" axis=\"" +
+                (k % 2 ? "1 0 0" : "0 1 0") +
+                "\" frictionloss=\".03\" damping=\".01\"/><geom type=\"capsule\" size=\".02\" "
+                "fromto=\"0 0 0 0 0 -.08\" mass=\".1\" contype=\"0\" conaffinity=\"0\"/>";
+      close += "</body>";
+    }
+    return bodies + close;
+  };
+  const auto swing = [&](const std::string& extension) {
+    const auto m =
+        Model("<mujoco>" + extension +
+              "<option integrator=\"implicitfast\"/><worldbody><body pos=\"0 0 1\">" + arm("a") +
+              "</body><body pos=\"1 0 1\">" + arm("b") + "</body></worldbody></mujoco>");
+    const auto d = Data(m);
+    for (int k = 0; k < m->nq; ++k) d->qpos[k] = .3 + .1 * k;
+    RunUntil(m, d, 1.5);
+    return std::vector<double>(d->qpos + m->nq / 2, d->qpos + m->nq);
+  };
+  const auto native = swing("");
+  for (const std::string effect : {"coulomb", "stribeck", "load_friction", "gear_friction",
+                                   "directional_friction", "position_friction", "friction_drift"})
+    EXPECT_EQ(swing(Instance(effect, Key("joint", "*"))), native) << effect;
+  EXPECT_EQ(swing(Instance("coulomb", Key("joint", "a*") + Key("tau_c", ".02"))), native)
+      << "friction of another arm";
+}
+
 // MuJoCo's attach puts a prefix before all names, but not into configurations.
 TEST_F(UserModels, AnInstanceFindsTheNamesThatWereAttachedWithIt) {
   const std::string config = Key("joint", "bend*") + Key("tau_c", ".05");
