@@ -22,6 +22,7 @@ using testing::Pendulum;
 class FamilyStartsTest : public Bench {
  protected:
   void SetUp() override {
+    Bench::SetUp();
     const auto u = Command(1, kRows);
     AddLog("t", "trial: t, use: train", u, Pendulum().Run(u, testing::kPeriod));
     const ModelSpec& system =
