@@ -12,11 +12,14 @@
 #include "models/stiff_flop/solve.h"
 #include "models/tdcr/solve.h"
 #include "models/twin_pivot/solve.h"
+#include "sim/io/output_folder.h"
 #include "sim/io/yaml.h"
 
 namespace continuum {
 
 int Solve(const SolveRequest& request) {
+  RequireDistinct({request.out, request.plot, request.shape, request.outlines, request.compliance,
+                   request.errors, request.boxplot});
   const Yaml robot = Yaml::Read(request.robot);
   const Yaml name =
       robot.Has("robot") || !robot.Has("model") ? robot.At("robot") : robot.At("model");

@@ -40,8 +40,9 @@ Eigen::VectorXd Cables(const CsvTable& table, std::size_t row,
 }  // namespace
 
 std::vector<AnnelidaCase> ReadAnnelidaCases(const CsvTable& table, const AnnelidaParameters& p) {
-  const bool by_length = table.Has("L1");
-  const auto columns = statics::Numbered(by_length ? "L" : "F", p.Cables());
+  const std::string drive = statics::DriveOf(table, {"L", "F"});
+  const bool by_length = drive == "L";
+  const auto columns = statics::Numbered(drive, p.Cables());
   CheckColumns(table, columns, by_length);
   table.RequireRows();
   std::vector<AnnelidaCase> cases;

@@ -168,6 +168,13 @@ void Mjcf::SetInertia(mjsBody* body, double mass, const Point& centre, const Poi
   Copy(body->inertia, moments);
 }
 
+void Mjcf::SetMovingInertia(mjsBody* body, double mass, const Point& centre, const Point& moments) {
+  constexpr double kLeast = 2 * mjMINVAL;
+  Point enough = moments;
+  for (double& moment : enough) moment = std::max(moment, kLeast);
+  SetInertia(body, std::max(mass, kLeast), centre, enough);
+}
+
 mjsJoint* Mjcf::AddJoint(mjsBody* body, const std::string& name, const Point& axis,
                          double stiffness) {
   mjsJoint* const joint = mjs_addJoint(body, nullptr);

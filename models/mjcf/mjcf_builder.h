@@ -48,6 +48,9 @@ class Mjcf {
   mjsBody* AddBody(mjsBody* parent, const std::string& name, const Point& pos);
   /// mass [kg] at centre with principal moments [kg m^2] about the body's axes.
   void SetInertia(mjsBody* body, double mass, const Point& centre, const Point& moments);
+  /// The same of a body with joints, at least as much as MuJoCo takes for one that moves: 1e-15 kg
+  /// and kg m^2, where the joints' armature decides.
+  void SetMovingInertia(mjsBody* body, double mass, const Point& centre, const Point& moments);
   /// A hinge through the body's origin; stiffness [N m/rad], hard stops at ±stop [rad].
   void AddHinge(mjsBody* body, const std::string& name, const Point& axis, double stiffness,
                 double stop);

@@ -129,7 +129,7 @@ mjsBody* Builder::AddLink(mjsBody* parent, std::size_t s, int i) {
                         plate * (std::pow(arm_.guide_radius, 2) / 4 + std::pow(l / 2 - centre, 2));
   const double along =
       (plate * std::pow(arm_.guide_radius, 2) + rod * std::pow(arm_.rod_radius, 2)) / 2;
-  mjcf_.SetInertia(link, mass, {0, 0, centre}, {across, across, along});
+  mjcf_.SetMovingInertia(link, mass, {0, 0, centre}, {across, across, along});
   mjcf_.AddBend(link, "bend" + number + "_x", {1, 0, 0}, K, arm_.tau * K);
   mjcf_.AddBend(link, "bend" + number + "_y", {0, 1, 0}, K, arm_.tau * K);
   mjcf_.AddCapsule(link, {0, 0, 0}, {0, 0, reach}, arm_.rod_radius, "rod");

@@ -31,4 +31,17 @@ void RequireColumns(const CsvTable& table, const std::vector<std::string>& neede
   }
 }
 
+std::string DriveOf(const CsvTable& table, const std::vector<std::string>& letters) {
+  const auto is_numbered = [](const std::string& column, const std::string& letter) {
+    const std::string number = column.starts_with(letter) ? column.substr(letter.size()) : "";
+    return !number.empty() && number.find_first_not_of("0123456789") == number.npos;
+  };
+  for (const std::string& letter : letters) {
+    for (const std::string& column : table.columns()) {
+      if (is_numbered(column, letter)) return letter;
+    }
+  }
+  return letters.back();
+}
+
 }  // namespace continuum::statics

@@ -21,4 +21,8 @@ void RefuseOtherColumns(const CsvTable& table, const std::vector<std::string>& k
 void RequireColumns(const CsvTable& table, const std::vector<std::string>& needed,
                     const std::string& hint = "");
 
+/// The first of these letters of which the table has a numbered column, such as L2; the last where
+/// it has none. Which of them is missing is for RequireColumns.
+std::string DriveOf(const CsvTable& table, const std::vector<std::string>& letters);
+
 }  // namespace continuum::statics

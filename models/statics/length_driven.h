@@ -11,20 +11,24 @@
 namespace continuum::statics {
 
 /// Stretch of cables of stiffness EA [N], whose lengths without tension are given; none when EA is
-/// 0.
+/// 0. A part that is l long under T > 0 is l/(1 + T/EA) long without, so that it stretches by
+/// l T/(EA + T).
 class CableStretch {
  public:
   CableStretch(double EA, const Eigen::VectorXd& given) : EA_(EA), given_(given) {}
 
-  /// L/EA [m/N].
-  Eigen::VectorXd Compliance() const {
-    return OrNone([&] { return given_ / EA_; });
+  /// Its slope by T where T is the same along the cable, L/(EA + T) [m/N].
+  Eigen::VectorXd Compliance(const Eigen::VectorXd& tension) const {
+    return OrNone(
+        [&] { return (given_.array() / (EA_ + tension.array().max(0))).matrix().eval(); });
   }
-  /// sum T l/EA [m] over the parts of the cables, parts x cables.
+  /// sum l T/(EA + T) [m] over the parts of the cables, parts x cables.
   template <class Tension, class Length>
   Eigen::VectorXd Of(const Tension& tension, const Length& length) const {
     return OrNone([&] {
-      return Eigen::VectorXd(tension.cwiseProduct(length).colwise().sum().transpose() / EA_);
+      const Eigen::ArrayXXd T = tension.array();
+      const Eigen::ArrayXXd parts = length.array() * T / (EA_ + T.max(0));
+      return Eigen::VectorXd(parts.colwise().sum().transpose().matrix());
     });
   }
 
@@ -51,7 +55,7 @@ class CableStretch {
 ///   void SetLoad(double), SetTension(const VectorXd& T)
 ///   bool Residual(x, f), Linearize(x, f, k)            f over a stiffness
 ///   VectorXd Lengths(x) [m], MatrixXd LengthSlopes(x)  cables x unknowns
-///   VectorXd Stretch(x) [m], Compliance() [m/N]        of the cables under T
+///   VectorXd Stretch(x) [m], Compliance(T) [m/N]       of the cables under T
 ///   int Unstable(x, VectorXd held)                     held [N/m]: of cables that are taut
 ///   double unit() [N], reach() [m]                     T and l that bend the robot by about 1
 /// and, where contacts are sharp, SetWidth(double) [m]: they turn within this, or 0: as they are.
@@ -90,6 +94,7 @@ class LengthDriven {
     jacobian.setZero();
     jacobian.topLeftCorner(n, n) = k;
     const Matrix slopes = plant_.LengthSlopes(x) / -plant_.reach();
+    const Vector compliance = plant_.Compliance(plant_.unit() * tension);
     for (Eigen::Index i = 0; i < m; ++i) {
       f[n + i] = std::min(tension[i], gap[i]);
       if (tension[i] < gap[i]) {
@@ -97,7 +102,7 @@ class LengthDriven {
         continue;
       }
       jacobian.row(n + i).head(n) = slopes.row(i);
-      jacobian(n + i, n + i) = plant_.Compliance()[i] * plant_.unit() / plant_.reach();
+      jacobian(n + i, n + i) = compliance[i] * plant_.unit() / plant_.reach();
     }
     for (Eigen::Index i = 0; i < m; ++i) {
       plant_.SetTension(plant_.unit() * (tension + kStep * Vector::Unit(m, i)));
@@ -137,9 +142,10 @@ class LengthDriven {
   int Unstable(double load, const Vector& z) {
     SetLoad(load);
     const Eigen::Index m = to_.size();
-    plant_.SetTension(plant_.unit() * z.tail(m));
+    const Vector tension = plant_.unit() * z.tail(m);
+    plant_.SetTension(tension);
     Vector held = Vector::Zero(m);
-    const Vector compliance = plant_.Compliance();
+    const Vector compliance = plant_.Compliance(tension);
     const double stiffest = kHeld * plant_.unit() / plant_.reach();
     for (Eigen::Index k = 0; k < m; ++k) {
       if (z[z.size() - m + k] < kTaut) continue;
@@ -194,7 +200,7 @@ numerics::Outcome FollowLengths(Plant& plant, const Eigen::VectorXd& from,
   RisingOptions options;
   options.trust = 3 / std::sqrt(static_cast<double>(z.size()));
   numerics::Outcome outcome = FollowRisingLoad(system, z, stability.branch, options);
-  if (!outcome.ok() && plant.Compliance().isZero(0)) {
+  if (!outcome.ok() && plant.Compliance(tension).isZero(0)) {
     outcome.why += "; cables that do not stretch may be too short together";
   }
   x = z.head(x.size());

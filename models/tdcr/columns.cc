@@ -44,7 +44,7 @@ void RequireKnownKeys(const Yaml& robot) {
 }
 
 void RequireKnownCaseColumns(const CsvTable& cases, int tendons, int disks) {
-  const auto known = KnownColumns(cases.Has("L1") ? "L" : "T", tendons, disks);
+  const auto known = KnownColumns(statics::DriveOf(cases, {"L", "T"}), tendons, disks);
   statics::RefuseOtherColumns(cases, known, "columns among " + Excerpt(Together(known), kShown));
 }
 

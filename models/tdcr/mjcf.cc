@@ -176,14 +176,14 @@ class Builder {
     const Section& section = Of(i);
     const double rod = i < links_ ? RodMass(i, length) : section.mass_per_length * length;
     const double disk = HasDisk(i) ? section.disk_mass : 0, mass = rod + disk;
-    if (!(mass > 0)) return mjcf_.SetInertia(link, 0, {0, 0, 0}, {0, 0, 0});
+    if (!(mass > 0)) return mjcf_.SetMovingInertia(link, 0, {0, 0, 0}, {0, 0, 0});
     const double centre = (rod * length + disk * Piece(i)) / (2 * mass);
     const double apart = (Piece(i) - length) / 2, reduced = rod * disk / mass;
     const double d2 = section.diameter * section.diameter;
     const double R2 = std::pow(DiskRadius(i / per_arc_), 2);
     const double across = rod * (length * length / 12 + d2 / 16) + disk * R2 / 4;
     const double bend = across + reduced * apart * apart, roll = rod * d2 / 8 + disk * R2 / 2;
-    mjcf_.SetInertia(link, mass, {0, 0, centre}, {bend, bend, roll});
+    mjcf_.SetMovingInertia(link, mass, {0, 0, centre}, {bend, bend, roll});
   }
 
   // From the middle of a piece to that of the next.

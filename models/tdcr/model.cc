@@ -1,8 +1,11 @@
 #include "models/tdcr/model.h"
 
 #include <cmath>
+#include <string>
 #include <type_traits>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "error.h"
 #include "models/tdcr/contacts.h"
@@ -90,12 +93,26 @@ Solution SolveRod(const Robot& robot, const Loads& loads, bool friction, Find&& 
   return solution;
 }
 
+// Why a rod has more contacts than a matrix of them should hold; empty where it has not. 5000 take
+// 0.5 GB.
+std::string TooManyContacts(const Robot& robot, const Loads& loads) {
+  constexpr int kMostContacts = 5000;
+  const int arcs = CountArcs(robot), contacts = arcs * ContactSteps(arcs) * robot.tendons;
+  if (!loads.AsItSlides() || loads.mu == 0 || contacts <= kMostContacts) return "";
+  return fmt::format(
+      "{} contacts that remember, at most {}: give every tendon a direction (1, -1 or 0), or the "
+      "robot fewer disks",
+      contacts, kMostContacts);
+}
+
 // The rod whose contacts remember: its integrator's steps are the contacts, so they are not
 // refined.
 template <class Find>
 Solution SolveRemembering(const Robot& robot, const Loads& loads, const Loads* earlier,
                           Find&& find) {
   Solution solution;
+  solution.outcome.why = TooManyContacts(robot, loads);
+  if (!solution.outcome.why.empty()) return solution;
   solution.outcome = numerics::Limited(kMostSystems, [&] {
     RodBalance balance =
         RodBalance::Remembering(robot, loads, ContactSteps(CountArcs(robot)), earlier);

@@ -286,7 +286,7 @@ void ReadDiskLoads(const CsvTable& table, std::size_t row, const Robot& robot, L
 
 std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
   RequireKnownCaseColumns(table, robot.tendons, robot.disks);
-  const std::string drive = table.Has("L1") ? "L" : "T";
+  const std::string drive = statics::DriveOf(table, {"L", "T"});
   std::vector<std::string> needed{"case", "fx", "fy", "fz"};
   for (int k = 1; k <= robot.tendons; ++k) needed.push_back(drive + std::to_string(k));
   HasVector(table, needed);

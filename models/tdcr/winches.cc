@@ -21,7 +21,7 @@ class Tendons {
 
   double unit() const { return robot_.tension(); }
   double reach() const { return robot_.tendon_radius; }
-  VectorXd Compliance() const { return stretch_.Compliance(); }
+  VectorXd Compliance(const VectorXd& tension) const { return stretch_.Compliance(tension); }
 
  protected:
   const Robot& robot_;
@@ -107,8 +107,9 @@ class RodPlant : public Tendons {
     const RodBalance::Shape& shape = balance_.Integrate(x);
     const Eigen::Index steps = shape.way.rows() - 1;
     const MatrixXd length = shape.way.bottomRows(steps) - shape.way.topRows(steps);
-    const MatrixXd tension = shape.tension.topRows(steps) + shape.tension.bottomRows(steps);
-    return stretch_.Of(tension, 0.5 * robot_.moment() * length);  // means in units of EI/L^2 and L
+    const MatrixXd twice = shape.tension.topRows(steps) + shape.tension.bottomRows(steps);
+    const double force = robot_.moment() / robot_.length;
+    return stretch_.Of(0.5 * force * twice, robot_.length * length);
   }
   int Unstable(const VectorXd& x, const VectorXd& held) {
     const double unit = robot_.moment() / (robot_.length * robot_.length);  // EI/L^3

@@ -31,10 +31,8 @@ double NotNegative(const CsvTable& table, std::size_t row, const std::string& co
   throw Error::Input(Cell(table, row, column), "a number >= 0", Decimal(value));
 }
 
-// The columns of the cables: all masses, tensions or lengths, whichever the first cable has.
-std::vector<std::string> LoadColumns(const CsvTable& table, int cables) {
-  return statics::Numbered(table.Has("L1") ? "L" : table.Has("F1") ? "F" : "m", cables);
-}
+// The columns of the cables: all lengths, tensions or masses.
+std::string LoadDrive(const CsvTable& table) { return statics::DriveOf(table, {"L", "F", "m"}); }
 
 // Of loads on discs: fx_k .. Mz_k and payload_k, k = 1..discs.
 bool IsDiscLoad(const std::string& column, int discs) {
@@ -110,11 +108,12 @@ Load ReadLoad(const CsvTable& table, std::size_t row, const std::vector<std::str
               const Robot& robot) {
   Load load;
   load.condition = ReadCondition(table, row);
-  const double scale = table.Has("F1") ? 1 : kNewtonPerKilogram;
+  const std::string drive = LoadDrive(table);
+  const double scale = drive == "F" ? 1 : kNewtonPerKilogram;
   for (const std::string& column : columns) {
     const double value = NotNegative(table, row, column);
-    load.tension.push_back(table.Has("L1") ? 0 : scale * value);
-    if (!table.Has("L1")) continue;
+    load.tension.push_back(drive == "L" ? 0 : scale * value);
+    if (drive != "L") continue;
     if (value == 0) throw Error::Input(Cell(table, row, column), "a length above 0", "0");
     load.length.conservativeResize(static_cast<Eigen::Index>(load.tension.size()));
     load.length.tail<1>()[0] = value;
@@ -135,7 +134,7 @@ std::vector<Case> ReadCases(const std::filesystem::path& file, const Robot& robo
 }
 
 std::vector<Case> ReadCases(const CsvTable& table, const Robot& robot) {
-  const std::vector<std::string> columns = LoadColumns(table, robot.Cables());
+  const auto columns = statics::Numbered(LoadDrive(table), robot.Cables());
   RequireColumns(table, columns, robot.Joints());
   table.RequireRows();
   std::vector<Case> cases;

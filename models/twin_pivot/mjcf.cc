@@ -36,14 +36,14 @@ class Lump {
     }
   }
   void Give(Mjcf& mjcf, mjsBody* body) const {
-    if (!(mass_ > 0)) return mjcf.SetInertia(body, 0, {0, 0, 0}, {0, 0, 0});
+    if (!(mass_ > 0)) return mjcf.SetMovingInertia(body, 0, {0, 0, 0}, {0, 0, 0});
     Point centre, spread, moments;
     for (int i = 0; i < 3; ++i) {
       centre[i] = first_[i] / mass_;
       spread[i] = second_[i] - mass_ * centre[i] * centre[i];
     }
     for (int i = 0; i < 3; ++i) moments[i] = own_[i] + spread[(i + 1) % 3] + spread[(i + 2) % 3];
-    mjcf.SetInertia(body, mass_, centre, moments);
+    mjcf.SetMovingInertia(body, mass_, centre, moments);
   }
 
  private:
@@ -136,8 +136,8 @@ class Builder {
     mjsBody* const rod = mjcf_.AddBody(before, fmt::format("rod{}", m), {to_face + stub, 0, 0});
     mjcf_.AddElasticHinge(rod, fmt::format("bend{}_in", m), axis, stiffness, kPace);
     const double swing = mass * L * L / 12, roll = mass * kRodApart * kRodApart;
-    mjcf_.SetInertia(rod, mass, {L / 3, 0, 0},
-                     {roll, swing + (m % 2 ? roll : 0), swing + (m % 2 ? 0 : roll)});
+    mjcf_.SetMovingInertia(rod, mass, {L / 3, 0, 0},
+                           {roll, swing + (m % 2 ? roll : 0), swing + (m % 2 ? 0 : roll)});
     DrawRods(rod, m, 0, 4 * stub);
 
     mjsBody* const disc = mjcf_.AddBody(rod, fmt::format("disc{}", m), {4 * stub, 0, 0});

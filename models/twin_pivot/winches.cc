@@ -46,10 +46,13 @@ class Plant {
     return CableLengths(to_.robot, x).colwise().sum().transpose();
   }
   MatrixXd LengthSlopes(const VectorXd& x) { return CableSlopes(to_, x); }
-  VectorXd Compliance() const { return stretch_.Compliance(); }
+  VectorXd Compliance(const VectorXd& tension) const { return stretch_.Compliance(tension); }
   VectorXd Stretch(const VectorXd& x) {
     std::vector<double> force;
-    if (!CableForces(*now_, JointsAt(to_.robot, x), 1, eps(), force)) return Compliance();
+    // Residual() has refused the x that have no forces.
+    if (!CableForces(*now_, JointsAt(to_.robot, x), 1, eps(), force)) {
+      return VectorXd::Zero(to_.cables);
+    }
     const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> tension(
         force.data(), to_.joints, to_.cables);
     return stretch_.Of(tension, CableLengths(to_.robot, x));

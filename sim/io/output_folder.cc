@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <system_error>
 
 #include "error.h"
@@ -41,6 +42,17 @@ void RequireWritable(const fs::path& path, const std::vector<fs::path>& inputs) 
   if (!probe) throw Error::Input(path.string(), "a writable file", std::strerror(errno));
   probe.close();
   fs::remove(temporary, failed);
+}
+
+void RequireDistinct(const std::vector<fs::path>& outputs) {
+  std::set<fs::path> files;
+  for (const fs::path& output : outputs) {
+    if (output.empty() || IsStream(output)) continue;
+    std::error_code failed;
+    const fs::path file = fs::weakly_canonical(fs::absolute(ThroughLinks(output), failed), failed);
+    if (files.insert(file).second) continue;
+    throw Error::Input(output.string(), "a file of its own for every output", "that of another");
+  }
 }
 
 OutputFolder::OutputFolder(const fs::path& path, const std::vector<std::string>& outputs,

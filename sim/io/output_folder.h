@@ -11,6 +11,10 @@ namespace continuum {
 void RequireWritable(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& inputs = {});
 
+/// Throws Error where two outputs of a job, those that are not empty, are one file: the second
+/// would take the place of the first.
+void RequireDistinct(const std::vector<std::filesystem::path>& outputs);
+
 /// A folder for the outputs of a job, made before it starts. Folders that it made and that are
 /// still empty when it ends are taken away again.
 class OutputFolder {

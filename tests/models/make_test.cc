@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,6 +39,28 @@ TEST(Make, GivesTheCommittedModels) {
         Shipped{"spa/spa.yaml", "free", "spa/spa_free.xml"},
         Shipped{"spa/spa.yaml", "series", "spa/spa_series.xml"}}) {
     EXPECT_EQ(MakeMjcf(kModels + description, variant), ReadFile(kModels + model)) << model;
+  }
+}
+
+// Robots that `continuum solve` takes: without weight, and as small as a catheter's tip.
+TEST(Make, TakesRobotsThatWeighNothingOrNextToNothing) {
+  const std::string pivots =
+      "format: 1\nrobot: twin_pivot\ndiscs: [2]\nL: 6.0e-3\nh: 6.0e-3\nE: 60.0e9\nI_z: 2.0e-14\n"
+      "rods: 2\nr: [5.0e-3, 5.0e-3, 5.0e-3]\nphi: [0, 2.1, 4.2]\ncables: [3]\nm_D: 0\n"
+      "m_NiTi: 0\nrho_cable: 0\nm_CL: 0\ngravity: [0, 0, 0]\n"
+      "friction: {a: 16.7, b: 0, c: 0.14, mu_const: 0.3, eps: 1.0e-6}\n";
+  const auto rod = [](const char* sizes, const char* radius) {
+    return fmt::format(
+        "format: 1\nrobot: tdcr\nmu: 0.1\ngravity: 0\nsections: [{{E: 60.0e9, nu: 0.3, disks: 5, "
+        "{}}}]\ntendons: [{{radius: {}, angle: 0}}]\n",
+        sizes, radius);
+  };
+  const testing::Scratch scratch;
+  for (const std::string& robot :
+       {pivots, rod("length: 0.1, diameter: 1.0e-3, density: 0", "5.0e-3"),
+        rod("length: 0.1, diameter: 1.0e-3, density: 0, disk_mass: 1.0e-3", "5.0e-3"),
+        rod("length: 0.01, diameter: 1.0e-4, density: 6450", "0.5e-3")}) {
+    EXPECT_THAT(MakeMjcf(scratch.Write("robot.yaml", robot), ""), HasSubstr("cable1")) << robot;
   }
 }
 

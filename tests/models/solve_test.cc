@@ -11,6 +11,7 @@ namespace continuum {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 // What all three robots do alike with --compliance, --reach and --sweep.
 class SolveRequests : public ::testing::Test {
@@ -66,6 +67,40 @@ TEST_F(SolveRequests, ReachTheTipsOfOtherCases) {
     }
     EXPECT_LT(Out().Number(0, "miss"), 2e-7);
     EXPECT_THAT(said_, HasSubstr("1 targets"));
+  }
+}
+
+// One table would take the place of the other, and none would say so.
+TEST_F(SolveRequests, RefuseTwoOutputsInOneFile) {
+  for (const auto& [robot, cases] : kCases) {
+    Take(robot, cases);
+    request_.compliance = folder_ / "./out.csv";
+    EXPECT_THAT([&] { Solve(request_); },
+                ThrowsMessage<Error>(HasSubstr("expected a file of its")));
+    EXPECT_FALSE(std::filesystem::exists(request_.out));
+    request_.shape = folder_ / "line.csv";
+    request_.compliance = request_.shape;
+    EXPECT_THAT([&] { Solve(request_); }, ThrowsMessage<Error>(HasSubstr("line.csv: expected")));
+    request_.shape.clear();
+  }
+}
+
+// What is missing is named, not what is left of its kind.
+TEST_F(SolveRequests, NameTheColumnThatIsMissing) {
+  const std::pair<const char*, const char*> lacking[] = {
+      {"tdcr/tdcr.yaml", "case,T2,T3,fx,fy,fz\na,1,1,0,0,0\n"},
+      {"tdcr/tdcr.yaml", "case,L2,L3,fx,fy,fz\na,1,1,0,0,0\n"},
+      {"twin_pivot/a.yaml", "case,F2,F3,F4\na,1,1,1\n"},
+      {"twin_pivot/a.yaml", "case,m2,m3,m4\na,1,1,1\n"},
+      {"twin_pivot/a.yaml", "case,L2,L3,L4\na,1,1,1\n"},
+      {"annelida/annelida.yaml", "case,F2,F3,F4\na,1,1,1\n"},
+      {"annelida/annelida.yaml", "case,L2,L3,L4\na,1,1,1\n"}};
+  for (const auto& [robot, cases] : lacking) {
+    Take(robot, cases);
+    const std::string missing = {cases[5], '1'};
+    EXPECT_THAT([&] { Solve(request_); },
+                ThrowsMessage<Error>(HasSubstr("cases.csv:1: expected a column '" + missing)))
+        << cases;
   }
 }
 

@@ -94,6 +94,20 @@ TEST(TdcrRodMemory, APartOfTheWayBackIsThatOfAnIndependentPolygon) {
   EXPECT_LT(now, 1e-6 * robot.length);
 }
 
+// A matrix of all contacts would take 100 GB.
+TEST(TdcrRodMemory, MoreContactsThanAMatrixHoldsAreRefused) {
+  Robot robot = Nominal();
+  robot.disks = 1000;
+  robot.tendons = 64;
+  Loads loads = NoLoads(robot);
+  loads.tension[0] = 1;
+  EXPECT_TRUE(SolveCase(robot, loads, kRod).outcome.ok());
+  loads.direction.assign(64, kAsItSlides);
+  const Solution s = SolveCase(robot, loads, kRod);
+  EXPECT_FALSE(s.outcome.ok());
+  EXPECT_EQ(s.outcome.why.find("128000 contacts that remember, at most 5000"), 0U);
+}
+
 TEST(TdcrRodMemory, ARowWithGivenDirectionsMayBeAReference) {
   const Robot robot = Nominal();
   Loads given = Pull(robot, {4, 1, 1});
