@@ -12,9 +12,7 @@
 #include "app/filming.h"
 #include "app/load_model.h"
 #include "app/log_check.h"
-#include "identification/candidates/candidate_generator.h"
 #include "identification/identify.h"
-#include "sim/check/check.h"
 #include "sim/experiment/registration.h"
 #include "sim/film/video.h"
 #include "sim/io/file.h"
@@ -32,12 +30,6 @@ struct Options {
   Filming filming;
 };
 
-// Names, units and known values, and the parameters as a fit of all logs would take them.
-void CheckAll(const Experiment& e, const ModelSpec& system) {
-  CheckNames(e, system);
-  CheckParameters(e, system);
-}
-
 // "plate3 validate loaded: off by 11.7 mm RMS, 10.3 mean, 3.1 % of its RMS, 5001 rows".
 void PrintSensors(const std::vector<SensorScore>& sensors) {
   for (const SensorScore& s : sensors) {
@@ -54,7 +46,8 @@ void PrintSensors(const std::vector<SensorScore>& sensors) {
 void RunReplay(const Options& o) {
   Experiment e = Experiment::Read(o.experiment);
   const ModelSpec system = LoadModel(e.model);
-  CheckAll(e, system);
+  CheckNames(e, system);
+  CheckParameters(e, system);  // as a fit of all logs would take them
   PrintLogCheck(o.experiment, e);
   FilmOptions film;
   o.filming.Set(film, system.model());
@@ -97,26 +90,6 @@ void RunReplay(const Options& o) {
   std::printf("report: %s\n", (folder / "report.html").c_str());
 }
 
-struct CheckOptions {
-  std::string experiment;
-  bool json = false, all = false;
-};
-
-void RunCheck(const CheckOptions& o) {
-  const Experiment e = Experiment::Read(o.experiment);
-  const ModelSpec system = LoadModel(e.model);
-  CheckAll(e, system);
-  std::vector<std::string> skipped;
-  MakeCandidates(e, {&system}, {}, skipped);  // refuses places that the model has not
-  auto findings = CheckLogs(e);
-  const auto more = CheckAgainstModel(e, system);
-  findings.insert(findings.end(), more.begin(), more.end());
-  const std::string text = o.json  ? ToJson(findings).dump(2) + "\n"
-                           : o.all ? FullReport(findings)
-                                   : Report(findings);
-  std::fwrite(text.data(), 1, text.size(), stdout);
-}
-
 }  // namespace
 
 void AddReplay(CLI::App& app) {
@@ -129,17 +102,6 @@ void AddReplay(CLI::App& app) {
   for (CLI::Option* const option : o->filming.AddTo(*sub)) option->needs(video);
   sub->footer("Example:\n  continuum replay models/annelida/demo/annelida.yaml --out out");
   sub->callback([o] { RunReplay(*o); });
-}
-
-void AddCheck(CLI::App& app) {
-  const auto o = std::make_shared<CheckOptions>();
-  CLI::App* const sub =
-      app.add_subcommand("check", "Look at the logs of an experiment before anything else");
-  sub->add_option("experiment", o->experiment, "EXPERIMENT.yaml")->required();
-  auto* const json = sub->add_flag("--json", o->json, "as JSON, every finding");
-  sub->add_flag("--all", o->all, "every finding on a line of its own")->excludes(json);
-  sub->footer("Example:\n  continuum check models/annelida/demo/annelida.yaml");
-  sub->callback([o] { RunCheck(*o); });
 }
 
 }  // namespace continuum

@@ -176,8 +176,13 @@ TEST_F(RunCommand, SaysWhichEffectsAnAttachedRobotLost) {
   EXPECT_EQ(lost.exit_code, 0) << lost.err;
   EXPECT_THAT(lost.err, AllOf(StartsWith("warning: arm.xml: continuum.coulomb 'dry' is lost"),
                               HasSubstr("docs/cables.md")));
+  const auto checked = Run({"check", "scene.xml"});
+  EXPECT_EQ(checked.err, lost.err);
+  EXPECT_EQ(checked.out, "scene.xml: 0 effects of continuum\n");
   files_.Write("arm.xml", arm(R"(<plugin plugin="continuum.coulomb" instance="dry"/>)"));
   EXPECT_EQ(Run({"run", "scene.xml", "--until", ".01"}).err, "");
+  EXPECT_THAT(Run({"check", "scene.xml"}).out, HasSubstr("continuum.coulomb 'left_dry'"));
+  ExpectRefused({"check", "scene.xml", "--json"}, {"--json", "an experiment"});
 }
 
 }  // namespace
