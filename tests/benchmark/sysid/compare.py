@@ -76,6 +76,16 @@ def optimise(parameters, sequences):
     return best.as_vector(), seconds, near
 
 
+def parameters_of(rows, modify):
+    """Of sysid; rows: (name, target, attribute, start, lower, upper); modify(spec, attribute, value)."""
+    parameters = sysid.ParameterDict()
+    for name, _, attribute, start, lower, upper in rows:
+        parameters.add(sysid.Parameter(
+            name, nominal=start, min_value=lower, max_value=upper,
+            modifier=lambda s, p, a=attribute: modify(s, a, p.value[0])))
+    return parameters
+
+
 def fit_sysid(rows, logs, arm=problem.Arm()):
     spec = mujoco.MjSpec.from_string(problem.mjcf(arm))
     model = spec.compile()

@@ -18,7 +18,7 @@ import mujoco
 import numpy as np
 from mujoco import sysid
 
-from compare import optimise
+from compare import optimise, parameters_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 GAINS = {"kp100": 0.19144379, "kp400": 0.76577517, "kp800": 1.5315503}  # N m/rad
@@ -84,12 +84,8 @@ def error(values, logs, timestep):
 
 
 def fit_sysid(logs):
-    parameters = sysid.ParameterDict()
-    for name, _, attribute, start, lower, upper in ROWS:
-        # The gain that a specification has says which condition it is of.
-        parameters.add(sysid.Parameter(
-            name, nominal=start, min_value=lower, max_value=upper,
-            modifier=lambda s, p, a=attribute: modify(s, GAINS[s.modelname], a, p.value[0])))
+    # The gain that a specification has says which condition it is of.
+    parameters = parameters_of(ROWS, lambda s, a, value: modify(s, GAINS[s.modelname], a, value))
     sequences = []
     for gain, recordings in logs.items():
         spec = mujoco.MjSpec.from_string(MJCF.format(GAINS[gain]))

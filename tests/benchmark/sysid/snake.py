@@ -19,7 +19,7 @@ import mujoco
 import numpy as np
 from mujoco import sysid
 
-from compare import optimise
+from compare import optimise, parameters_of
 
 ROBOT = pathlib.Path(__file__).resolve().parents[3] / "models/annelida"
 ANGLES = [f"bend{i}_y" for i in range(1, 6)]
@@ -97,15 +97,10 @@ def error(values, logs, timestep):
 
 
 def fit_sysid(logs):
-    parameters = sysid.ParameterDict()
-    for name, _, attribute, start, lower, upper in ROWS:
-        parameters.add(sysid.Parameter(
-            name, nominal=start, min_value=lower, max_value=upper,
-            modifier=lambda s, p, a=attribute: modify(s, a, p.value[0])))
     spec = mujoco.MjSpec.from_string(mjcf())
     model = spec.compile()
     rest = sysid.create_initial_state(model, np.zeros(model.nq), np.zeros(model.nv), np.zeros(0))
-    return optimise(parameters, [sysid.ModelSequences(
+    return optimise(parameters_of(ROWS, modify), [sysid.ModelSequences(
         "snake", spec, [f"log{i}" for i in range(len(logs))], [rest] * len(logs),
         [sysid.TimeSeries(t, u) for t, u, _ in logs],
         [sysid.TimeSeries.from_names(t, y, model) for t, _, y in logs])])
