@@ -220,7 +220,7 @@ Vector WithLoss(const Vector& r, const FitOptions& options) {
 // Why a fit ended.
 std::string InWords(const ceres::Solver::Summary& summary, const Monitor& watch,
                     const FitOptions& o) {
-  if (watch.out_of_time()) return kOutOfTime;
+  if (watch.out_of_time()) return EndRequested() ? "interrupted" : kOutOfTime;
   if (watch.settled()) return "a further step gains less than the errors of the simulation";
   if (summary.termination_type == ceres::USER_SUCCESS)
     return StopRequested() ? "interrupted" : "given up: it cannot come near a better one";
@@ -303,10 +303,7 @@ Fit FitParameters(const Problem& problem, const Vector& x, const std::vector<boo
   }
   if (slopes.cols() == 0) {
     if (J.empty()) J = problem.Jacobian(fit.x, r, use, {}, true);
-    for (const Matrix& part : J) {
-      if (!part.allFinite())
-        throw Error::Job("the simulation diverges next to the start of the fit");
-    }
+    RequireFiniteSlopes(problem, fit.x, J);
     if (!options.idle && !StopRequested()) RequireEffect(problem, fit.x, J);
   }
 

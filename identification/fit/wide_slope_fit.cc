@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "error.h"
 #include "identification/fit/ripples.h"
 #include "identification/statistics/noise_model.h"
 #include "sim/io/interrupt.h"
@@ -76,7 +77,13 @@ Fit FitWithWideSlopes(const Problem& problem, const Problem::Vector& x,
     left.iterations -= best.iterations;
     left.idle = true;  // out there a parameter may have no effect
     if (left.iterations <= 0) break;
-    Fit wide = FitWide(problem, best.x, use, left);
+    Fit wide = best;
+    try {
+      wide = FitWide(problem, best.x, use, left);
+    } catch (const Error& error) {
+      if (error.kind() != Error::Kind::kJob) throw;
+      break;  // it diverges that far from the best
+    }
     if (wide.cost > best.cost * (1 - kLower)) {
       AddVain(wide, best);
       break;

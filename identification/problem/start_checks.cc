@@ -99,6 +99,23 @@ void RequireStartModels(const Problem& problem) {
   }
 }
 
+void RequireFiniteSlopes(const Problem& problem, const Problem::Vector& x,
+                         const std::vector<Problem::Matrix>& J) {
+  std::vector<std::string> moved;
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    const auto diverges = [&](const Problem::Matrix& part) {
+      return part.size() && !part.col(k).allFinite();
+    };
+    if (std::any_of(J.begin(), J.end(), diverges))
+      moved.push_back(InWords(problem.parameters()[k], x[k]));
+  }
+  if (moved.empty()) return;
+  throw Error::Job(fmt::format(
+      "the simulation diverges next to the start of the fit, where one of these moves a little: "
+      "{}; are its bounds too wide?",
+      fmt::join(moved, ", ")));
+}
+
 void RequireEffect(const Problem& problem, const Problem::Vector& x,
                    const std::vector<Problem::Matrix>& J) {
   for (Eigen::Index i = 0; i < x.size(); ++i) {

@@ -16,6 +16,10 @@ void RequireStartModels(const Problem& problem);
 void RequireEffect(const Problem& problem, const Problem::Vector& x,
                    const std::vector<Problem::Matrix>& J);
 
+/// Throws Error (kJob; parameters, their lines and values) when derivatives J at x are no numbers.
+void RequireFiniteSlopes(const Problem& problem, const Problem::Vector& x,
+                         const std::vector<Problem::Matrix>& J);
+
 /// Why the simulation of a log diverges at x, in words: when, and by which of its parameters'
 /// values alone, if by one, by what the log sets, or as the model stands.
 std::string WhyItDiverges(const Problem& problem, const Problem::Vector& x, std::size_t log);

@@ -73,7 +73,7 @@ StepSensitivity::StepSensitivity(const ModelAndData& machine, const Wiring& wiri
       pull_(machine.model->ntendon),
       inertia_(machine.model->nv, machine.model->nv) {
   const mjModel& m = *machine.model;
-  if (!SensorDerivatives::Cover(m, wiring)) moved_sensors_.emplace(move);
+  if (!SensorDerivatives::Cover(m, wiring)) moved_sensors_.emplace(m, move);
   for (std::size_t k = 0; k < perturbed.size(); ++k) {
     ModelDifference difference(m, *perturbed[k]->model);
     why_not_[k] = NoColumn(difference, m, *perturbed[k]->model);
@@ -420,10 +420,13 @@ bool StepSensitivity::After(const mjModel& m, mjData& d) {
 
 void StepSensitivity::Observe(const mjModel& m, mjData& d, std::size_t row,
                               std::span<Recorder> recorders) {
-  for (std::size_t c = 0; moved_sensors_ && c < columns_.size(); ++c)
-    moved_sensors_->Observe(m, d, *numbers_, activation_, static_cast<Eigen::Index>(c), row,
-                            recorders[columns_[c]]);
-  if (moved_sensors_) return;
+  if (moved_sensors_) {
+    moved_sensors_->At(m, d);
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      moved_sensors_->Observe(m, *numbers_, activation_, static_cast<Eigen::Index>(c), row,
+                              recorders[columns_[c]]);
+    return;
+  }
   sensors_.Update(m, d);
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);

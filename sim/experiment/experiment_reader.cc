@@ -24,12 +24,15 @@ Parameter ReadParameter(const Yaml& y) {
   Parameter p;
   p.where = y.Where();
   p.name = y.At("name").Text();
+  if (p.name.find_first_not_of(" \t\n") == std::string::npos)
+    throw Error::Input(y.At("name").Where(), "a name", "none");
   p.target = y.At("target").Text();
   p.attribute = y.At("attribute").Text();
   p.lower = y.At("lower").Number();
   p.upper = y.At("upper").Number();
   if (!(p.lower < p.upper)) {
-    throw Error::Input(y.At("upper").Where(), "upper above lower", y.At("upper").Text());
+    throw Error::Input(y.At("upper").Where(), "a number above lower, " + y.At("lower").Text(),
+                       y.At("upper").Text());
   }
   if (const auto initial = y.Find("initial")) {
     p.initial = initial->Number();

@@ -38,7 +38,8 @@ Parameter ReadOne(const Yaml& y, const Names& taken) {
   p.lower = y.At("lower").Number();
   p.upper = y.At("upper").Number();
   if (!(p.lower < p.upper)) {
-    throw Error::Input(y.At("upper").Where(), "upper above lower", y.At("upper").Text());
+    throw Error::Input(y.At("upper").Where(), "a number above lower, " + y.At("lower").Text(),
+                       y.At("upper").Text());
   }
   p.initial = y.At("initial").Number(p.lower, p.upper);
   p.has_initial = true;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -152,6 +153,55 @@ TEST_F(FitTest, ToldOfTheStepTheIntervalReachesOverTheValueOfAFineOne) {
   AllowForStep(problem, J, problem.StepEffects(x, r, use), {}, u);
   EXPECT_NEAR(u.step[0], -bias, 0.2 * std::abs(bias));
   EXPECT_TRUE(u.lower[0] <= truth.damping && truth.damping <= u.upper[0]);
+}
+
+// Spring, damping, mass and gain grow together but for a small armature: a fit of few damped steps
+// stays where it began along that.
+TEST_F(FitTest, IntervalsReachOverTheValueOfAFineStepAlongWhatTheLogHardlyDetermines) {
+  const auto model = [](const std::string& step) {
+    return "<mujoco><option timestep='" + step +
+           "' integrator='implicitfast'/><worldbody><body name='arm'><joint name='q' axis='0 1 0' "
+           "stiffness='0.6' damping='0.02' armature='0.001'/><inertial pos='0 0 -0.15' mass='0.3' "
+           "diaginertia='2e-3 2e-3 1e-4'/></body></worldbody><actuator><general name='u' "
+           "joint='q' dyntype='filterexact' dynprm='0.08' gainprm='1.3'/></actuator><sensor>"
+           "<jointpos name='q' joint='q'/></sensor></mujoco>";
+  };
+  std::string csv = "t,u,q\n";
+  for (int k = 0; k <= 800; ++k) {
+    const double t = 0.01 * k;
+    csv += fmt::format("{:.2f},{:.9f},0\n", t,
+                       std::min(1.0, 3 * t) * (0.25 * std::sin(4.4 * t) + 0.2 * std::sin(12 * t)));
+  }
+  Write("log.csv", csv);
+  Experiment e = Experiment::Read(Write(
+      "e.yaml",
+      "format: 1\nmodel: " + Write("model.xml", model("2e-3")).string() +
+          "\nstart: rest\ntime: {column: t, unit: s}\n"
+          "inputs: [{column: u, unit: N*m, actuator: u, interpolate: linear}]\n"
+          "outputs: [{column: q, unit: rad, sensor: q, sigma: 0.001}]\n"
+          "logs: [{file: log.csv, use: train}]\nparameters:\n"
+          "  - {name: k, target: 'joint:q', attribute: stiffness, initial: 0.6, lower: 0.1, "
+          "upper: 2}\n"
+          "  - {name: b, target: 'joint:q', attribute: damping, initial: 0.02, lower: 0, upper: "
+          "1}\n"
+          "  - {name: m, target: 'body:arm', attribute: mass, initial: 0.3, lower: 0.05, upper: "
+          "1}\n"
+          "  - {name: T, target: 'actuator:u', attribute: lag, initial: 0.08, lower: 0.01, upper: "
+          "1}\n"
+          "  - {name: g, target: 'actuator:u', attribute: 'gainprm[0]', initial: 1.3, lower: 0.2, "
+          "upper: 4}\n"));
+  const Problem truth(e, ModelSpec::Parse(model("1e-4")));
+  const Problem::Vector values = truth.Start();
+  e.logs[0].measured[0] = Noisy(truth.Predict(values, 0).channel[0], 1e-3, 0, 1);
+  const Problem problem(e, ModelSpec::Parse(model("2e-3")));
+  const Problem::Vector x = FitAll(problem).x;
+  const auto u = IntervalsOf(problem, x, problem.Residuals(x, problem.TrainLogs()));
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    EXPECT_LT(u.lower[i], values[i]) << problem.parameters()[i].name;
+    EXPECT_GT(u.upper[i], values[i]) << problem.parameters()[i].name;
+    EXPECT_LT(std::abs(x[i] + u.step[i] - values[i]), 0.5 * std::abs(x[i] - values[i]))
+        << problem.parameters()[i].name;
+  }
 }
 
 // As in a narrow valley of a rough cost: slopes that hold over a tiny distance only.

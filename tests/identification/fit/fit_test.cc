@@ -1,8 +1,11 @@
 #include "identification/fit/fit.h"
+#include "identification/problem/start_checks.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -134,6 +137,39 @@ TEST_F(FitTest, AStartThatDivergesIsAJobThatFailed) {
     FAIL() << "damping of -5 N m s/rad cannot be simulated";
   } catch (const Error& error) {
     EXPECT_EQ(error.exit_code(), 1);
+  }
+}
+
+TEST_F(FitTest, SlopesThatAreNoNumbersNameTheirParameters) {
+  AddTrials({}, 1);
+  const ModelSpec system = Model({});
+  const Experiment e = ReadExperiment("parameters:\n" + kDamping + kBob);
+  const Problem problem(e, system);
+  std::vector<Problem::Matrix> J(1, Problem::Matrix::Zero(kRows, 2));
+  EXPECT_NO_THROW(RequireFiniteSlopes(problem, problem.Start(), J));
+  J[0](3, 1) = std::numeric_limits<double>::quiet_NaN();
+  try {
+    RequireFiniteSlopes(problem, problem.Start(), J);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a little: bob = 0.2 ("));
+    EXPECT_THAT(error.what(), HasSubstr("experiment.yaml:"));
+    EXPECT_EQ(error.exit_code(), 1);
+  }
+}
+
+TEST_F(FitTest, ParametersHaveANameAndABoundAboveTheOther) {
+  AddTrials({}, 1);
+  for (const auto& [line, word] :
+       {std::pair{"name: ' ', lower: 0", "name: expected a name, found none"},
+        std::pair{"name: b, lower: 2", "upper: expected a number above lower, 2, found 1"}}) {
+    try {
+      ReadExperiment(std::string("parameters:\n  - {") + line +
+                     ", target: 'joint:hinge', attribute: damping, upper: 1}\n");
+      FAIL() << line;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(word));
+    }
   }
 }
 

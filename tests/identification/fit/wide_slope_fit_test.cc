@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "support/long_test.h"
+#include "support/pendulum_fit.h"
 #include "support/wheel.h"
 
 namespace continuum {
@@ -37,6 +38,7 @@ constexpr char kModel[] = R"(<mujoco>
 </mujoco>)";
 
 class Far : public testing::Bench {};
+using testing::FitTest;
 
 TEST_F(Far, LeavesTheValleyWhereFittingAlongSlopesEnds) {
   CONTINUUM_LONG_IF_SANITIZED("several fits");
@@ -79,6 +81,20 @@ TEST_F(Far, TakesNoMoreIterationsThanAllowedAndTracesEach) {
     EXPECT_EQ(fit.trace.back(), fit.cost) << most;
     EXPECT_TRUE(std::is_sorted(fit.trace.rbegin(), fit.trace.rend())) << most;
   }
+}
+
+// A fifth of such a size is where nothing can be simulated.
+TEST_F(FitTest, KeepsAFitWhereWideSlopesDiverge) {
+  const testing::Pendulum truth;
+  AddTrials(truth, 1, 1e-3);
+  const ModelSpec system = Model({});
+  const Experiment e = ReadExperiment(
+      "parameters:\n  - {name: m, target: 'body:arm', attribute: mass, initial: 0.2, lower: 1e-9, "
+      "upper: 1e12}\n" +
+      testing::kDamping);
+  const Problem problem(e, system);
+  const Fit fit = FitWithWideSlopes(problem, problem.Start(), problem.TrainLogs());
+  EXPECT_NEAR(fit.x[1], truth.damping, 0.1 * truth.damping) << fit.message;
 }
 
 TEST_F(Far, HasNothingToFitWithoutParameters) {

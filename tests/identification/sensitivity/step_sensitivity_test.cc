@@ -229,6 +229,26 @@ INSTANTIATE_TEST_SUITE_P(Arm, ClosedFormSensorsTest,
                                            Steps{"RungeKutta", "equilibrium", 0, "RK4"}),
                          [](const auto& info) { return info.param.name; });
 
+// The solver's own error, of 1e-8 of its cost, is no effect of a parameter.
+TEST_F(ClosedFormTest, GivesNothingOfAParameterWithoutEffectWhereTheSolverEndsEarly) {
+  const Experiment e = Read(0.02,
+                            std::string(kParameters) +
+                                "  - {name: idle, target: 'joint:x1', attribute: margin, initial: "
+                                "0.01, lower: 0, upper: 1}\n",
+                            "rest", "implicitfast", "", "<accelerometer name='acc' site='a2'/>",
+                            "  - {column: a0, unit: m/s^2, sensor: 'acc[0]', sigma: 1}\n");
+  std::string model = Arm(0.02);
+  const std::string exact = " tolerance='0' iterations='200'";
+  model.erase(model.find(exact), exact.size());
+  model.insert(model.find("</sensor>"), "<accelerometer name='acc' site='a2'/>");
+  const ModelSpec system = ModelSpec::Parse(model);
+  const Problem problem(e, system);
+  ASSERT_EQ(problem.NoClosedForm(), "");
+  const auto x = problem.Start();
+  const auto J = problem.Jacobian(x, problem.Residuals(x, problem.AllLogs()), problem.AllLogs());
+  EXPECT_EQ(J[0].col(x.size() - 1).norm(), 0);
+}
+
 TEST_F(ClosedFormTest, FollowsAFrictionThatSlides) {
   const Experiment e = Read(0.02,
                             std::string(kParameters) +
