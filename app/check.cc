@@ -12,6 +12,8 @@
 
 #include "app/console.h"
 #include "app/load_model.h"
+#include "binding/config.h"
+#include "binding/effect_catalog.h"
 #include "error.h"
 #include "identification/candidates/candidate_generator.h"
 #include "identification/identify.h"
@@ -48,11 +50,11 @@ void CheckModel(const Options& o) {
   const mjModel& m = system.model();
   std::size_t effects = 0;
   for (int i = 0; i < m.nplugin; ++i) {
-    const mjpPlugin* const plugin = mjp_getPluginAtSlot(m.plugin[i]);
-    const char* const name = mj_id2name(&m, mjOBJ_PLUGIN, i);
-    if (!plugin || !std::string_view(plugin->name).starts_with("continuum.")) continue;
+    const std::string_view effect = EffectNameOf(m, i);
+    if (effect.empty()) continue;
     ++effects;
-    fmt::print("{} '{}'\n", plugin->name, name ? name : "");
+    const char* const name = mj_id2name(&m, mjOBJ_PLUGIN, i);
+    fmt::print("{} '{}'\n", PluginName(effect), name ? name : "");
   }
   fmt::print("{}: {} effect{} of continuum\n", o.file, effects, effects == 1 ? "" : "s");
 }
