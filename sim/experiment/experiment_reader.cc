@@ -5,6 +5,7 @@
 
 #include "effects/effect.h"
 #include "error.h"
+#include "sim/experiment/bounds_reader.h"
 #include "sim/experiment/candidate_list.h"
 #include "sim/experiment/duplicate_logs.h"
 #include "sim/experiment/experiment.h"
@@ -28,12 +29,7 @@ Parameter ReadParameter(const Yaml& y) {
     throw Error::Input(y.At("name").Where(), "a name", "none");
   p.target = y.At("target").Text();
   p.attribute = y.At("attribute").Text();
-  p.lower = y.At("lower").Number();
-  p.upper = y.At("upper").Number();
-  if (!(p.lower < p.upper)) {
-    throw Error::Input(y.At("upper").Where(), "a number above lower, " + y.At("lower").Text(),
-                       y.At("upper").Text());
-  }
+  ReadBounds(y, p);
   if (const auto initial = y.Find("initial")) {
     p.initial = initial->Number();
     p.has_initial = true;

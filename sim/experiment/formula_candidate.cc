@@ -7,6 +7,7 @@
 #include "binding/expression.h"
 #include "effects/all.h"
 #include "error.h"
+#include "sim/experiment/bounds_reader.h"
 #include "sim/io/yaml.h"
 
 namespace continuum {
@@ -35,12 +36,7 @@ Parameter ReadOne(const Yaml& y, const Names& taken) {
   }
   const auto unit = y.Find("unit");
   p.unit = unit ? unit->Text() : "1";
-  p.lower = y.At("lower").Number();
-  p.upper = y.At("upper").Number();
-  if (!(p.lower < p.upper)) {
-    throw Error::Input(y.At("upper").Where(), "a number above lower, " + y.At("lower").Text(),
-                       y.At("upper").Text());
-  }
+  ReadBounds(y, p);
   p.initial = y.At("initial").Number(p.lower, p.upper);
   p.has_initial = true;
   return p;
