@@ -102,6 +102,15 @@ def fit_sysid(rows, logs, arm=problem.Arm()):
     return optimise(parameters, [sequences])
 
 
+def identify(executable, folder, lines):
+    """Of an experiment's lines: the values that `continuum identify` finds, and its seconds."""
+    (folder / "experiment.yaml").write_text("\n".join(lines) + "\n")
+    subprocess.run([executable, "identify", folder / "experiment.yaml", "--out", folder / "out"],
+                   check=True, capture_output=True)
+    fit = json.loads((folder / "out/fit.json").read_text())
+    return [p["value"] for p in fit["parameters"]], fit["seconds"]
+
+
 def fit_continuum(executable, rows, logs, *how, arm=problem.Arm()):
     with tempfile.TemporaryDirectory() as folder:
         problem.write_experiment(folder, logs, rows, arm)

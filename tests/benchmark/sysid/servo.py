@@ -8,7 +8,6 @@ own frictionloss, four parameters, plain squares; same MJCF, logs, bounds, start
 
 import argparse
 import csv
-import json
 import pathlib
 import subprocess
 import tempfile
@@ -18,7 +17,7 @@ import mujoco
 import numpy as np
 from mujoco import sysid
 
-from compare import optimise, parameters_of
+from compare import identify, optimise, parameters_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 GAINS = {"kp100": 0.19144379, "kp400": 0.76577517, "kp800": 1.5315503}  # N m/rad
@@ -118,11 +117,7 @@ def fit_continuum(executable, logs):
                            delimiter=",", header="time,goal,q", comments="")
                 lines.append(f'  - {{file: {gain}_{i}.csv, set: {{"actuator:servo": '
                              f"{{kp: {GAINS[gain]}}}}}}}")
-        (folder / "experiment.yaml").write_text("\n".join(lines) + "\n")
-        subprocess.run([executable, "identify", folder / "experiment.yaml", "--out",
-                        folder / "out"], check=True, capture_output=True)
-        fit = json.loads((folder / "out/fit.json").read_text())
-    return [p["value"] for p in fit["parameters"]], fit["seconds"]
+        return identify(executable, folder, lines)
 
 
 def main():

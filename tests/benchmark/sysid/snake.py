@@ -9,9 +9,7 @@ plain squares; same MJCF, logs, bounds, starts, time step. Then the same by our 
 """
 
 import argparse
-import json
 import pathlib
-import subprocess
 import tempfile
 import xml.etree.ElementTree as ElementTree
 
@@ -19,7 +17,7 @@ import mujoco
 import numpy as np
 from mujoco import sysid
 
-from compare import optimise, parameters_of
+from compare import identify, optimise, parameters_of
 
 ROBOT = pathlib.Path(__file__).resolve().parents[3] / "models/annelida"
 ANGLES = [f"bend{i}_y" for i in range(1, 6)]
@@ -123,11 +121,7 @@ def fit_continuum(executable, logs, own_law):
             np.savetxt(folder / f"{i}.csv", np.column_stack(log), fmt="%.12g", delimiter=",",
                        header=",".join(["time", *CABLES, *ANGLES]), comments="")
             lines.append(f"  - {{file: {i}.csv}}")
-        (folder / "experiment.yaml").write_text("\n".join(lines) + "\n")
-        subprocess.run([executable, "identify", folder / "experiment.yaml", "--out",
-                        folder / "out"], check=True, capture_output=True)
-        fit = json.loads((folder / "out/fit.json").read_text())
-    return [p["value"] for p in fit["parameters"]], fit["seconds"]
+        return identify(executable, folder, lines)
 
 
 def main():
