@@ -1,5 +1,6 @@
 #include "identification/report/fit_summary.h"
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -16,10 +17,20 @@ std::string NearerBound(const FreeParameter& p, double value) {
   return value - p.lower < p.upper - value ? "its lower bound" : "its upper bound";
 }
 
+// Where the time step moves it by more than its uncertainty: what the machine has.
+std::string AtFineStep(double value, const Uncertainty& u, Eigen::Index i) {
+  constexpr double kShows = 0.01;  // of the value
+  if (u.step.size() == 0) return "";
+  const double moved = std::abs(u.step[i]);
+  if (!(moved > u.standard_error[i] && moved > kShows * std::abs(value))) return "";
+  return fmt::format("; {:.4g} at a fine time step", value + u.step[i]);
+}
+
 std::string ParameterLine(const FreeParameter& p, double value, const Uncertainty& u,
                           Eigen::Index i) {
   std::string range = u.known() ? fmt::format("95 %: {:.5g} … {:.5g}", u.lower[i], u.upper[i])
                                 : "interval not computed";
+  range += AtFineStep(value, u, i);
   if (u.at_bound[i]) range = "at " + NearerBound(p, value) + "; " + range;
   if (p.initial <= p.lower || p.initial >= p.upper)
     range += "; it starts at " + NearerBound(p, p.initial);

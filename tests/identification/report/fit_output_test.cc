@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -61,6 +62,17 @@ TEST_F(FitFiles, SayOfNothingThatItIsMissingWhereNothingIs) {
   EXPECT_TRUE(Json().contains("ahead"));
   EXPECT_THAT(Page(), Not(HasSubstr("Not in this report")));
   EXPECT_THAT(Summary(), Not(HasSubstr("not in the report")));
+}
+
+TEST_F(FitFiles, SayWhatAFineTimeStepGivesWhereItShows) {
+  const double value = result_.fit.x[0], error = result_.uncertainty.standard_error[0];
+  result_.uncertainty.step = Eigen::VectorXd::Constant(1, 0.005 * value);
+  EXPECT_THAT(Summary(), Not(HasSubstr("fine time step")));
+  result_.uncertainty.step[0] = 0.2 * value + error;
+  EXPECT_THAT(Summary(),
+              HasSubstr(fmt::format("; {:.4g} at a fine time step", 1.2 * value + error)));
+  result_.uncertainty.standard_error[0] = value;
+  EXPECT_THAT(Summary(), Not(HasSubstr("fine time step")));
 }
 
 TEST_F(FitFiles, NameWhatTheResultLacks) {
