@@ -11,6 +11,7 @@
 #include "identification/fit/prediction_error.h"
 #include "identification/fit/start_hint.h"
 #include "identification/fit/swarm_fit.h"
+#include "identification/inverse_dynamics/fit_by_steps.h"
 #include "identification/inverse_dynamics/regressor.h"
 #include "identification/inverse_dynamics/search_fit.h"
 #include "identification/inverse_dynamics/short_horizon.h"
@@ -120,8 +121,13 @@ void FitLeastSquares(const Options& o, const Problem& problem, const Vector& sta
                      const std::vector<bool>& use, IdentifyResult& all) {
   const FitOptions options = LeastSquaresOptions(o, problem);
   const FitSearch search{o.starts, o.seed, o.segments && o.from.empty()};
-  SearchedFit found = FitBySearch(problem, start, use, search, options);
+  Fit by_steps;  // its effort
+  by_steps.x = start;
+  if (problem.path() == Path::kSmooth && o.from.empty() && HasDryFriction(problem.system().model()))
+    by_steps = FitBySteps(problem, start, use, o.seed, options);
+  SearchedFit found = FitBySearch(problem, by_steps.x, use, search, options);
   all.fit = std::move(found.fit);
+  all.fit.evaluations += by_steps.evaluations, all.fit.seconds += by_steps.seconds;
   all.segments = std::move(found.segments), all.starts = std::move(found.starts);
   FitOverPieces(problem, use, options, all.fit);
   if (!all.starts && !all.fit.over_pieces)

@@ -23,19 +23,6 @@ constexpr double kLower = 1e-4;  // of the cost
 constexpr int kRounds = 2;
 constexpr double kAgain = 0.02;  // of the cost that a round takes off, for another one
 
-bool Rubs(const mjModel& m) {
-  const auto positive = [](double value) { return value > 0; };
-  if (std::any_of(m.dof_frictionloss, m.dof_frictionloss + m.nv, positive)) return true;
-  if (std::any_of(m.tendon_frictionloss, m.tendon_frictionloss + m.ntendon, positive)) return true;
-  for (int i = 0; i < m.nplugin; ++i) {
-    const EffectInfo* const effect = EffectOf(m, i);
-    if (effect &&
-        (effect->kind == EffectInfo::Kind::kFriction || effect->kind == EffectInfo::Kind::kPath))
-      return true;
-  }
-  return false;
-}
-
 // As a friction that went to zero: nothing rubs there, and slopes do not lead back.
 bool IsAtBound(const Problem& problem, const Vector& x) {
   const std::vector<bool> at = AtBounds(problem, x);
@@ -88,10 +75,24 @@ void Take(const Fit& next, Fit& fit) {
 
 }  // namespace
 
+bool HasDryFriction(const mjModel& m) {
+  const auto positive = [](double value) { return value > 0; };
+  if (std::any_of(m.dof_frictionloss, m.dof_frictionloss + m.nv, positive)) return true;
+  if (std::any_of(m.tendon_frictionloss, m.tendon_frictionloss + m.ntendon, positive)) return true;
+  for (int i = 0; i < m.nplugin; ++i) {
+    const EffectInfo* const effect = EffectOf(m, i);
+    if (effect &&
+        (effect->kind == EffectInfo::Kind::kFriction || effect->kind == EffectInfo::Kind::kPath))
+      return true;
+  }
+  return false;
+}
+
 LocalMinima SearchAround(const Problem& problem, const Vector& start, const std::vector<bool>& use,
                          std::uint64_t seed, const FitOptions& options, Fit& fit) {
   LocalMinima minima;
-  if (fit.x.size() < 2 || problem.path() != Path::kStepped || !Rubs(problem.system().model()))
+  if (fit.x.size() < 2 || problem.path() != Path::kStepped ||
+      !HasDryFriction(problem.system().model()))
     return minima;
   if (fit.smooth && !IsAtBound(problem, fit.x)) return minima;
   FitOptions plain = options, secants = options;

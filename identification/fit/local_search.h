@@ -7,6 +7,9 @@
 
 namespace continuum {
 
+/// Whether dry friction may act in a model, of joints or cables, MuJoCo's own or ours.
+bool HasDryFriction(const mjModel& m);
+
 /// Looks around a fit for other minima of the cost, where dry friction acts in the model: there
 /// it has many, and which of them a fit ends in depends on where it began.
 ///

@@ -26,7 +26,7 @@ double Tension(int repetition, double time) {
 
 }  // namespace
 
-std::vector<DemoLog> RecordReleases(const AnnelidaParameters& p) {
+std::vector<DemoLog> RecordReleases(const AnnelidaParameters& p, std::uint64_t draw) {
   const PlanarChain chain(p);
   std::vector<DemoLog> logs;
   for (int k = 1; k <= kRepetitions; ++k) {
@@ -39,7 +39,7 @@ std::vector<DemoLog> RecordReleases(const AnnelidaParameters& p) {
                             .tension = tension,
                             .rate_noise = 0.05,
                             .rates = true};
-    const auto seed = static_cast<std::uint64_t>(100 + k);
+    const std::uint64_t seed = 100 * draw + static_cast<std::uint64_t>(k);
     logs.push_back(
         {fmt::format("repetition{}.csv", k), Record(chain, p.Stop(), recorded, {seed}).front()});
   }
