@@ -29,10 +29,12 @@
 namespace continuum {
 namespace {
 
-// The start of a parameter that is above zero says its size, however wide the bounds are.
+// The start of a parameter that is above zero, or has no bounds to speak of, says its size.
 double TypicalSize(double initial, double lower, double upper) {
+  constexpr double kNoBound = 1e9;  // [unit]
   const double range = upper - lower;
-  const double size = lower > 0 ? initial : std::max(std::abs(initial), 1e-3 * range);
+  const double least = lower > 0 || range >= kNoBound ? 0 : 1e-3 * range;
+  const double size = std::max(std::abs(initial), least);
   return std::isfinite(size) && size > 0 ? std::min(size, range) : 1;
 }
 

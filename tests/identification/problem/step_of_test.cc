@@ -31,5 +31,10 @@ TEST_F(StepOf, EndsAtTheFartherOfTwoBoundsThatAreNear) {
   EXPECT_NEAR(At("lower: 0.098, upper: 0.101", 0.9), -0.002, 1e-12);
 }
 
+TEST_F(StepOf, IsAShareOfTheStartWhereABoundIsNone) {
+  EXPECT_NEAR(At("lower: 0, upper: 1e12", 0.2), 0.02, 1e-12);
+  EXPECT_NEAR(At("lower: -1e12, upper: 1e12", 0.2), 0.02, 1e-12);
+}
+
 }  // namespace
 }  // namespace continuum
