@@ -227,6 +227,11 @@ std::string OverPiecesInWords(const IdentifyResult& result) {
 
 std::string OverNoiseInWords(const IdentifyResult& result) {
   if (!result.over_noise || result.fit.over_pieces) return "";
+  if (!result.over_noise->far)
+    return fmt::format(
+        "residuals are {:.2g} times the measurement noise ({}): where the model is not quite the "
+        "machine, true values may lie outside of these intervals",
+        result.over_noise->times, result.over_noise->source);
   return fmt::format(
       "residuals are {:.0f} times the measurement noise ({}): the model lacks something "
       "(`continuum diagnose` finds the cause) or a better fit is elsewhere (`--starts 8`); "

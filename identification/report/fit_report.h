@@ -28,7 +28,7 @@ inline constexpr char kAnewInWords[] =
 /// is not.
 std::string OverPiecesInWords(const IdentifyResult& result);
 
-/// Says that the residuals of a fit are far more than noise, and what to do; empty: they are not.
+/// Says that the residuals of a fit are more than noise, and what to do; empty: they are not.
 std::string OverNoiseInWords(const IdentifyResult& result);
 
 }  // namespace continuum

@@ -34,6 +34,7 @@ struct AtModelStep {
 struct OverNoise {
   double times;
   std::string source;  ///< of the noise: "replicates", "sigma", "differences"
+  bool far = false;    ///< so many that the model lacks something, or the fit is in a wrong place
 };
 
 /// All that `identify` found: the values of the parameters, how well the logs determine them, and
@@ -57,7 +58,7 @@ struct IdentifyResult {
   std::optional<AtModelStep> at_step;    ///< after a fit on the smooth path
   std::optional<PredictionError> ahead;  ///< none where the outputs do not give the state
   std::optional<OverNoise> of_pieces;    ///< Fit::over_pieces: what is left there over the noise
-  std::optional<OverNoise> over_noise;   ///< where the residuals are far more than noise
+  std::optional<OverNoise> over_noise;   ///< where the residuals are more than noise and step
   std::string start_hint;                ///< where trials begin elsewhere than measured; else empty
   ExtendedModel fitted;                  ///< fitted.xml and fitted.yaml
   std::vector<MissingPart> missing;

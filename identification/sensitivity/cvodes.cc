@@ -22,6 +22,9 @@ namespace {
 
 constexpr int kRecoverable = 1, kFatal = -1;
 constexpr long kMostInternalSteps = 100000;  // between two times that are asked for
+// How often a step may be made shorter: at a corner, as where friction begins to slide, rates of
+// sensitivities jump, and a step that ends beyond it is many orders of magnitude too long.
+constexpr int kMostShorter = 40;
 
 void Require(bool done) {
   if (!done) throw std::bad_alloc();
@@ -101,6 +104,7 @@ struct Cvodes::Solver {
     Set(CVodeSetUserData(memory.get(), this));
     Set(CVodeSStolerances(memory.get(), how.relative, how.absolute));
     Set(CVodeSetMaxNumSteps(memory.get(), kMostInternalSteps));
+    Set(CVodeSetMaxErrTestFails(memory.get(), kMostShorter));
     if (how.stiff) {
       matrix.reset(SUNDenseMatrix(n, n, made));
       linear.reset(SUNLinSol_Dense(y.get(), matrix.get(), made));

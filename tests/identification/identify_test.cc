@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "error.h"
+#include "identification/report/fit_report.h"
 #include "support/pendulum.h"
 
 namespace continuum {
@@ -84,6 +85,32 @@ TEST_F(IdentifyTest, APartThatThrowsCostsOnlyItself) {
   EXPECT_EQ(result.uncertainty.lacks, "not computed: no terminal");
   EXPECT_NEAR(result.fit.x[0], 0.1, 0.02);
   EXPECT_TRUE(result.ahead);
+}
+
+class IdentifyReplicatesTest : public Bench {
+ protected:
+  // Two repetitions by a pendulum with a payload [kg] that its model lacks.
+  std::string Said(double payload) {
+    const auto u = Command(0, 100);
+    const auto angle = Pendulum{.payload = payload}.Run(u, testing::kPeriod);
+    for (const int seed : {1, 2})
+      AddLog("r" + std::to_string(seed), "trial: one, use: train", u, Noisy(angle, 1e-3, 0, seed));
+    Write("model.xml", Pendulum().Xml("", 1e-3));
+    const Experiment e = ReadExperiment(kDamping);
+    IdentifyOptions options;
+    options.path = Path::kStepped, options.folder = folder_;
+    return OverNoiseInWords(Identify(e, ModelSpec::Load(folder_ / "model.xml"), options));
+  }
+};
+
+TEST_F(IdentifyReplicatesTest, OfARightModelLeaveTheirNoise) { EXPECT_EQ(Said(0), ""); }
+
+TEST_F(IdentifyReplicatesTest, DoubtTheIntervalsOfAModelThatIsNotQuiteTheirs) {
+  EXPECT_THAT(Said(0.015), HasSubstr("true values may lie outside of these intervals"));
+}
+
+TEST_F(IdentifyReplicatesTest, LackSomethingWhereMuchIsLeft) {
+  EXPECT_THAT(Said(0.03), HasSubstr("the model lacks something"));
 }
 
 TEST_F(IdentifyTest, RefusesOptionsThatDoNotGoTogether) {
