@@ -1,7 +1,6 @@
 #include "identification/identify.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -230,24 +229,8 @@ class Statement {
     const Noise noise = NoiseOf(problem_.experiment());
     const double error = TypicalRms(problem_, residuals_, problem_.TrainLogs());
     const bool far = IsFarOver(noise, error);
-    if (far || IsMoreThanNoise(noise, error))
+    if (far || IsMoreThanNoise(problem_, all_.fit.x, residuals_, problem_.TrainLogs()))
       all_.over_noise = OverNoise{error / noise.rms, noise.source, far};
-  }
-
-  // And than the time step adds. Differences of rows tell no more than the least that noise may be.
-  bool IsMoreThanNoise(Noise noise, double error) const {
-    if (!(noise.rms > 0) || noise.source == "differences" || IsNear(noise, error)) return false;
-    if (problem_.path() == Path::kStepped) noise.rms = std::hypot(noise.rms, StepError());
-    return !IsNear(noise, error);
-  }
-
-  double StepError() const {
-    const std::vector<bool> train = problem_.TrainLogs();
-    const auto effects = problem_.StepEffects(all_.fit.x, residuals_, train);
-    std::vector<Vector> whole(effects.size());
-    for (std::size_t l = 0; l < effects.size(); ++l)
-      if (train[l]) whole[l] = effects[l].col(0);
-    return TypicalRms(problem_, whole, train);
   }
 
   void AddDivergence() {

@@ -264,6 +264,22 @@ bool IsFarOverNoise(const Problem& problem, const Vector& x, const std::vector<b
                    TypicalRms(problem, problem.Residuals(x, use), use));
 }
 
+// Differences of rows tell no more than the least that noise may be.
+bool IsMoreThanNoise(const Problem& problem, const Vector& x, const std::vector<Vector>& r,
+                     const std::vector<bool>& use) {
+  Noise noise = NoiseOf(problem.experiment());
+  const double error = TypicalRms(problem, r, use);
+  if (!(noise.rms > 0) || noise.source == "differences" || IsNear(noise, error)) return false;
+  if (problem.path() == Path::kStepped) {
+    const auto effects = problem.StepEffects(x, r, use);
+    std::vector<Vector> step(effects.size());
+    for (std::size_t l = 0; l < effects.size(); ++l)
+      if (use[l]) step[l] = effects[l].col(0);
+    noise.rms = std::hypot(noise.rms, TypicalRms(problem, step, use));
+  }
+  return !IsNear(noise, error);
+}
+
 Vector LossResiduals(const Problem& problem, const Vector& x, const std::vector<bool>& use,
                      const FitOptions& options) {
   const Whitening none;

@@ -57,6 +57,11 @@ double TypicalRms(const Problem& problem, std::vector<Problem::Vector> residuals
 /// Whether the residuals at x are far more than the measurement noise, where that is known.
 bool IsFarOverNoise(const Problem& problem, const Problem::Vector& x, const std::vector<bool>& use);
 
+/// Whether residuals r at x are more than 1.5 times what measurement noise, where sigma or
+/// replicates tell it, and the model's own time step make.
+bool IsMoreThanNoise(const Problem& problem, const Problem::Vector& x,
+                     const std::vector<Problem::Vector>& r, const std::vector<bool>& use);
+
 /// Whitened residuals of the logs in use as the loss counts them: half their squares are the cost.
 Problem::Vector LossResiduals(const Problem& problem, const Problem::Vector& x,
                               const std::vector<bool>& use, const FitOptions& options);

@@ -29,6 +29,11 @@ bool IsAtBound(const Problem& problem, const Vector& x) {
   return std::find(at.begin(), at.end(), true) != at.end();
 }
 
+// As in a minimum that is none of the machine's.
+bool LeavesMuch(const Problem& problem, const Vector& x, const std::vector<bool>& use) {
+  return IsMoreThanNoise(problem, x, problem.Residuals(x, use), use);
+}
+
 // The costs of points; outside of the bounds that on them, and more by the distance.
 std::vector<double> CostsOf(const Problem& problem, const std::vector<Vector>& points,
                             const std::vector<bool>& use, const FitOptions& options) {
@@ -94,7 +99,10 @@ LocalMinima SearchAround(const Problem& problem, const Vector& start, const std:
   if (fit.x.size() < 2 || problem.path() != Path::kStepped ||
       !HasDryFriction(problem.system().model()))
     return minima;
-  if (fit.smooth && !IsAtBound(problem, fit.x)) return minima;
+  const bool from_start = start.size() > 0;
+  const bool elsewhere =
+      IsAtBound(problem, fit.x) || (from_start && LeavesMuch(problem, fit.x, use));
+  if (fit.smooth && !elsewhere) return minima;
   FitOptions plain = options, secants = options;
   plain.idle = secants.idle = true, secants.rough = true;
   const auto take = [&](const Fit& other) {
@@ -121,10 +129,11 @@ LocalMinima SearchAround(const Problem& problem, const Vector& start, const std:
   };
   Matrix slopes = slopes_here();
   if (!(fit.cost > 0) || StopRequested()) return minima;
-  if (!IsAtBound(problem, fit.x) && !HasRipples(problem, fit, slopes, use, options)) return minima;
-  if (start.size() > 0) try_from(start);
+  if (!elsewhere && !IsAtBound(problem, fit.x) && !HasRipples(problem, fit, slopes, use, options))
+    return minima;
+  if (from_start) try_from(start);
   for (int round = 0; round < kRounds && fit.cost > 0 && !StopRequested(); ++round) {
-    if (round > 0 || start.size() > 0) slopes = slopes_here();
+    if (round > 0 || from_start) slopes = slopes_here();
     const double before = fit.cost;
     const Vector x = LeastAround(problem, slopes, use, seed + round, plain, fit);
     if (!StopRequested()) try_from(x);

@@ -23,12 +23,17 @@ std::string Model(const std::string& friction) {
   return xml.replace(xml.find("FRICTION"), 8, friction);
 }
 
+std::vector<double> ToAndFro() {
+  std::vector<double> u(30, 0);
+  for (int k = 30; k < 300; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
+  return u;
+}
+
 class LocalSearch : public testing::Bench {
  protected:
   void SetUp() override {
     Bench::SetUp();
-    std::vector<double> u(30, 0);
-    for (int k = 30; k < 300; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
+    const std::vector<double> u = ToAndFro();
     AddLog("shaken", "use: train", u,
            testing::Noisy(testing::Wheel{1.2, 60, 1.5, 2}.Run(u), 1e-4, 0, 1));
     experiment_ = ReadExperiment(
@@ -47,6 +52,17 @@ class LocalSearch : public testing::Bench {
     return fit;
   }
   Experiment experiment_;
+};
+
+class RepeatedWheel : public testing::Bench {
+ protected:
+  void SetUp() override {
+    Bench::SetUp();
+    const std::vector<double> u = ToAndFro(), angle = testing::Wheel{1.2, 60, 1.5, 0.1}.Run(u);
+    for (const int seed : {2, 3})
+      AddLog("repeated" + std::to_string(seed), "trial: one, use: train", u,
+             testing::Noisy(angle, 1e-4, 0, seed));
+  }
 };
 
 TEST_F(LocalSearch, FindsALowerMinimumOfAMachineThatSticksAndRepeats) {
@@ -74,6 +90,23 @@ TEST_F(LocalSearch, HasNothingToLookForWhereNothingRubs) {
   EXPECT_TRUE(
       SearchAround(problem, problem.Start(), problem.TrainLogs(), 5, {}, fit).found.empty());
   EXPECT_EQ(fit.evaluations, before);
+}
+
+// Repetitions tell the noise; slopes predict what small steps do, and yet more is left.
+TEST_F(RepeatedWheel, IsLookedAtFromItsStartAsMoreThanNoiseIsLeft) {
+  const Experiment e = ReadExperiment(
+      "parameters:\n"
+      "  - {name: k, target: 'joint:hinge', attribute: stiffness, initial: 50, lower: 1, "
+      "upper: 300}\n"
+      "  - {name: b, target: 'joint:hinge', attribute: damping, initial: 1.6, lower: 0.01, "
+      "upper: 20}\n");
+  const Problem problem(e, ModelSpec::Load(Write("model.xml", Model("frictionloss=\"0.1\""))));
+  const std::vector<bool> use = problem.TrainLogs();
+  const Fit there = FitParameters(problem, problem.Start(), use);
+  ASSERT_TRUE(IsMoreThanNoise(problem, there.x, problem.Residuals(there.x, use), use));
+  Fit with = there, without = there;
+  EXPECT_FALSE(SearchAround(problem, problem.Start(), use, 5, {}, with).found.empty());
+  EXPECT_TRUE(SearchAround(problem, {}, use, 5, {}, without).found.empty());
 }
 
 // What a minimum elsewhere says against a fit at 2 with a cost of 100 and the interval 1.8 … 2.2.
