@@ -9,6 +9,7 @@
 #include "identification/fit/evolution.h"
 #include "identification/fit/ripples.h"
 #include "identification/fit/wide_slope_fit.h"
+#include "identification/statistics/noise_model.h"
 #include "identification/statistics/uncertainty.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/shared_loop.h"
@@ -29,9 +30,12 @@ bool IsAtBound(const Problem& problem, const Vector& x) {
   return std::find(at.begin(), at.end(), true) != at.end();
 }
 
-// As in a minimum that is none of the machine's.
-bool LeavesMuch(const Problem& problem, const Vector& x, const std::vector<bool>& use) {
-  return IsMoreThanNoise(problem, x, problem.Residuals(x, use), use);
+// As in a minimum that is none of the machine's. Where far more is left the model lacks something,
+// and the least of its minima says little.
+bool LeavesSome(const Problem& problem, const Vector& x, const std::vector<bool>& use) {
+  const std::vector<Vector> r = problem.Residuals(x, use);
+  return !IsFarOver(NoiseOf(problem.experiment()), TypicalRms(problem, r, use)) &&
+         IsMoreThanNoise(problem, x, r, use);
 }
 
 // The costs of points; outside of the bounds that on them, and more by the distance.
@@ -101,7 +105,7 @@ LocalMinima SearchAround(const Problem& problem, const Vector& start, const std:
     return minima;
   const bool from_start = start.size() > 0;
   const bool elsewhere =
-      IsAtBound(problem, fit.x) || (from_start && LeavesMuch(problem, fit.x, use));
+      IsAtBound(problem, fit.x) || (from_start && LeavesSome(problem, fit.x, use));
   if (fit.smooth && !elsewhere) return minima;
   FitOptions plain = options, secants = options;
   plain.idle = secants.idle = true, secants.rough = true;
