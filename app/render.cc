@@ -6,6 +6,7 @@
 #include "error.h"
 #include "sim/experiment/registration.h"
 #include "sim/film/film_recipe.h"
+#include "sim/film/side_by_side.h"
 #include "sim/film/video.h"
 #include "sim/io/output_folder.h"
 #include "sim/simulation/registration_fit.h"
@@ -19,16 +20,25 @@ struct Options {
 };
 
 // What is filmed; a recipe also says how.
-Experiment Read(const Options& o, FilmOptions& film) {
-  if (!Clip::Is(o.experiment)) return Experiment::Read(o.experiment);
-  Clip clip = Clip::Read(o.experiment);
-  film = std::move(clip.film);
-  return std::move(clip.experiment);
+Clip Read(const Options& o) {
+  if (Clip::Is(o.experiment)) return Clip::Read(o.experiment);
+  return {Experiment::Read(o.experiment), {}};
+}
+
+// Both halves together are as wide as a film of one.
+void FilmBoth(const Clip& clip, const ModelSpec& system, const std::vector<std::size_t>& logs,
+              const std::filesystem::path& out) {
+  FilmOptions half = clip.film;
+  half.width /= 2;
+  const ModelSpec other = clip.Beside(system);
+  FilmSideBySide({clip.experiment, system, clip.film.caption, false},
+                 {clip.experiment, other, clip.beside->caption, false}, logs, out, half);
 }
 
 void RunRender(const Options& o) {
-  FilmOptions film;
-  Experiment e = Read(o, film);
+  Clip clip = Read(o);
+  Experiment& e = clip.experiment;
+  FilmOptions& film = clip.film;
   const ModelSpec system = LoadModel(e.model);
   o.filming.Set(film, system.model());
   const std::vector<std::size_t> logs = o.filming.LogsOf(e);
@@ -40,6 +50,7 @@ void RunRender(const Options& o) {
   if (!picture) RequireFilm(out, film.width, film.height, film.fps);
   e = Registered(e, system);
   if (picture) return PictureOf(e, system, logs.front(), out, film);
+  if (clip.beside) return FilmBoth(clip, system, logs, out);
   FilmExperiment(e, system, logs, out, film);
 }
 

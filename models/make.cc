@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "models/annelida/annelida.h"
+#include "models/annelida/pipe.h"
 #include "models/mjcf/tendon_arm.h"
 #include "models/spa/chain.h"
 #include "models/spa/parameters.h"
@@ -58,7 +59,9 @@ const std::map<std::string, Variants>& Robots() {
   using stiff_flop::Threads, tdcr::Guides;
   static const std::map<std::string, Variants> robots{
       {"annelida",
-       {{"", [](const auto& file, const auto&) { return AnnelidaMjcf(ReadAnnelida(file)); }}}},
+       {{"", [](const auto& file, const auto&) { return AnnelidaMjcf(ReadAnnelida(file)); }},
+        {"pipe",
+         [](const auto& file, const auto&) { return AnnelidaInPipeMjcf(ReadAnnelida(file)); }}}},
       {"tdcr",
        {{"", [](const auto& file, const auto&) { return Rod(file, Guides::kLinks); }},
         {"disks", [](const auto& file, const auto&) { return Rod(file, Guides::kDisks); }},

@@ -43,13 +43,16 @@ class Holes {
   std::vector<std::vector<std::string>> names_;
 };
 
-// Drawn for an arm of 260 mm, and larger or smaller for others.
-void AddScene(Mjcf& mjcf, const AnnelidaParameters& p) {
-  const double size = std::round(1e3 * p.Length() / 0.26) / 1e3;
+void AddMaterials(Mjcf& mjcf) {
   mjcf.AddMaterial("plate", {0.66F, 0.69F, 0.73F, 1}, 0.5F);
   mjcf.AddMaterial("hub", {0.20F, 0.25F, 0.32F, 1});
   mjcf.AddMaterial("spring", {0.88F, 0.52F, 0.18F, 1});
   mjcf.AddMaterial("mount", {0.32F, 0.35F, 0.40F, 1});
+}
+
+// Drawn for an arm of 260 mm, and larger or smaller for others.
+void AddScene(Mjcf& mjcf, const AnnelidaParameters& p) {
+  const double size = std::round(1e3 * p.Length() / 0.26) / 1e3;
   mjcf.AddStudio(-0.42 * size, 0.6 * size);
   mjcf.AddCamera("side", {0.10 * size, -0.98 * size, 0.10 * size}, {0, 0, -0.15 * size}, 33);
 }
@@ -172,12 +175,12 @@ std::array<double, 2> AnnelidaParameters::Direction(int cable) const {
   return {kX[j] * c - kY[j] * s, kX[j] * s + kY[j] * c};
 }
 
-std::string AnnelidaMjcf(const AnnelidaParameters& p) {
+Mjcf AnnelidaArm(const AnnelidaParameters& p) {
   Mjcf mjcf("annelida", kComment);
   mjcf.spec().option.timestep = 0.002;
   mjcf.spec().option.integrator = mjINT_IMPLICITFAST;
   mjcf.spec().option.gravity[2] = -p.gravity;
-  AddScene(mjcf, p);
+  AddMaterials(mjcf);
   Holes holes(mjcf, p);
   mjsBody* body = AddBase(mjcf, p, holes);
   for (int i = 1; i <= p.Links(); ++i) body = AddLink(mjcf, p, body, i, holes);
@@ -187,16 +190,24 @@ std::string AnnelidaMjcf(const AnnelidaParameters& p) {
   mjcf.AddSite(tip, "tip", {0, 0, 0}, 0.003);
   AddCables(mjcf, p, holes);
   AddSensors(mjcf, p);
-  const std::vector<EffectInstance> effects{
-      {"stribeck",
-       "joint_friction",
-       {{"joint", "bend*"},
-        {"tau_mu", Decimal(p.tau_mu)},
-        {"tau_c", Decimal(p.tau_c)},
-        {"S", Decimal(p.S)},
-        {"v_d", Decimal(p.v_d)}}},
-      {"capstan", "cable_friction", {{"tendon", "cable*"}, {"mu", Decimal(p.mu)}}}};
-  return mjcf.Text(effects);
+  return mjcf;
+}
+
+std::vector<EffectInstance> AnnelidaEffects(const AnnelidaParameters& p) {
+  return {{"stribeck",
+           "joint_friction",
+           {{"joint", "bend*"},
+            {"tau_mu", Decimal(p.tau_mu)},
+            {"tau_c", Decimal(p.tau_c)},
+            {"S", Decimal(p.S)},
+            {"v_d", Decimal(p.v_d)}}},
+          {"capstan", "cable_friction", {{"tendon", "cable*"}, {"mu", Decimal(p.mu)}}}};
+}
+
+std::string AnnelidaMjcf(const AnnelidaParameters& p) {
+  Mjcf mjcf = AnnelidaArm(p);
+  AddScene(mjcf, p);
+  return mjcf.Text(AnnelidaEffects(p));
 }
 
 }  // namespace continuum

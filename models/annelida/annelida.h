@@ -10,6 +10,9 @@
 
 namespace continuum {
 
+class Mjcf;
+struct EffectInstance;
+
 inline constexpr int kAnnelidaLinks = 5;    ///< of the paper's arm
 inline constexpr int kCablesOfSection = 4;  ///< 90 degrees apart
 
@@ -54,12 +57,17 @@ struct AnnelidaParameters {
 /// Throws Error with file:line for missing and impossible values.
 AnnelidaParameters ReadAnnelida(const std::filesystem::path& file);
 
-/// The robot's MJCF.
+/// The robot in the making, without a scene around it.
 ///
 /// The arm hangs: frames of base and links have z down along the straight arm, x as the world's.
 /// Link i turns at its origin about x (bend<i>_x), then y (bend<i>_y) and, with torsion, then z
 /// (twist<i>). Cable j of the first section lies at azimuth (j − 1) 90°, so that cable1 makes
 /// bend*_y positive and cable2 bend*_x negative. The next section has cables 5 to 8, and so on.
+Mjcf AnnelidaArm(const AnnelidaParameters& p);
+/// Its dry friction: joint_friction and cable_friction.
+std::vector<EffectInstance> AnnelidaEffects(const AnnelidaParameters& p);
+
+/// The robot's MJCF, hanging in a studio.
 std::string AnnelidaMjcf(const AnnelidaParameters& p);
 
 }  // namespace continuum

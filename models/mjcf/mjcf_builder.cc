@@ -263,6 +263,25 @@ void Mjcf::AddCapsule(mjsBody* body, const Point& from, const Point& to, double 
   FromTo(AddGeom(body, mjGEOM_CAPSULE, material), from, to, radius);
 }
 
+mjsGeom* Mjcf::AddSphere(mjsBody* body, const Point& centre, double radius,
+                         const std::string& material) {
+  mjsGeom* const geom = AddGeom(body, mjGEOM_SPHERE, material);
+  Copy(geom->pos, Tidy(centre));
+  geom->size[0] = Tidy(radius);
+  return geom;
+}
+
+mjsGeom* Mjcf::AddBox(mjsBody* body, const Point& centre, const Point& x, const Point& y,
+                      const Point& half, const std::string& material) {
+  mjsGeom* const geom = AddGeom(body, mjGEOM_BOX, material);
+  Copy(geom->pos, Tidy(centre));
+  Copy(geom->size, Tidy(half));
+  geom->alt.type = mjORIENTATION_XYAXES;
+  Copy(geom->alt.xyaxes, Tidy(x));
+  Copy(geom->alt.xyaxes + 3, Tidy(y));
+  return geom;
+}
+
 void Mjcf::AddCable(const std::string& name, const std::vector<std::string>& sites, double width,
                     const Colour& colour) {
   mjsTendon* const tendon = mjs_addTendon(spec_.get(), nullptr);

@@ -74,6 +74,11 @@ class Mjcf {
                    const std::string& material);
   void AddCapsule(mjsBody* body, const Point& from, const Point& to, double radius,
                   const std::string& material);
+  mjsGeom* AddSphere(mjsBody* body, const Point& centre, double radius,
+                     const std::string& material);
+  /// A box with axes x, y [body's frame] and its half lengths along them and the third.
+  mjsGeom* AddBox(mjsBody* body, const Point& centre, const Point& x, const Point& y,
+                  const Point& half, const std::string& material);
   /// A spatial tendon through sites, actuator side first; width: radius it is drawn with [m].
   void AddCable(const std::string& name, const std::vector<std::string>& sites, double width,
                 const Colour& colour);

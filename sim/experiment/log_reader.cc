@@ -74,17 +74,6 @@ class Recording {
   std::string name_;
 };
 
-std::vector<Change> ReadSettings(const Yaml& y) {
-  std::vector<Change> settings;
-  for (const auto& target : y.Keys()) {
-    const Yaml attributes = y.At(target);
-    for (const auto& attribute : attributes.Keys()) {
-      settings.push_back({target, attribute, attributes.At(attribute).Number()});
-    }
-  }
-  return settings;
-}
-
 std::string Listed(const std::vector<double>& numbers) {
   std::string text = "[";
   for (const double x : numbers) text += (text.size() > 1 ? ", " : "") + Decimal(x);
@@ -287,6 +276,17 @@ void ReadChannels(Log& log, const Experiment& e, const Recording& rec,
 }
 
 }  // namespace
+
+std::vector<Change> ReadSettings(const Yaml& y) {
+  std::vector<Change> settings;
+  for (const auto& target : y.Keys()) {
+    const Yaml attributes = y.At(target);
+    for (const auto& attribute : attributes.Keys()) {
+      settings.push_back({target, attribute, attributes.At(attribute).Number()});
+    }
+  }
+  return settings;
+}
 
 Log ReadLog(const Yaml& y, const Experiment& e, double time_unit) {
   y.Only({"file", "variable", "trial", "use", "window", "condition", "set", "start"});

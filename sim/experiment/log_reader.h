@@ -11,4 +11,7 @@ class Yaml;
 /// Throws Error (file:line, key or column).
 Log ReadLog(const Yaml& y, const Experiment& experiment, double time_unit);
 
+/// Values by target and attribute: {"joint:hinge": {damping: 0.1}}.
+std::vector<Change> ReadSettings(const Yaml& y);
+
 }  // namespace continuum

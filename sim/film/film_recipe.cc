@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "error.h"
+#include "sim/experiment/log_reader.h"
 #include "sim/io/decimal.h"
 #include "sim/io/yaml.h"
 #include "sim/simulation/simulate.h"
@@ -84,13 +85,20 @@ void ReadCamera(const Yaml& y, FilmOptions& film) {
   film.view = View{y.At("azimuth").Number(-360, 360), y.At("elevation").Number(-90, 90)};
 }
 
+Clip::Comparison ReadComparison(const Yaml& y) {
+  y.Only({"caption", "set"});
+  const Yaml set = y.At("set");
+  return {y.At("caption").Text(), ReadSettings(set), set.Where()};
+}
+
 }  // namespace
 
 bool Clip::Is(const std::filesystem::path& file) { return Yaml::Read(file).Has("seconds"); }
 
 Clip Clip::Read(const std::filesystem::path& file) {
   const Yaml y = Yaml::Read(file);
-  y.Only({"model", "camera", "seconds", "caption", "speed", "tension", "arrows", "inputs"});
+  y.Only(
+      {"model", "camera", "seconds", "caption", "speed", "tension", "arrows", "beside", "inputs"});
   Clip clip;
   clip.experiment.file = file;
   clip.experiment.model = file.parent_path() / y.At("model").Text();
@@ -106,6 +114,7 @@ Clip Clip::Read(const std::filesystem::path& file) {
   if (const auto arrows = y.Find("arrows")) {
     for (const Yaml& item : arrows->Items()) clip.film.arrows.push_back(ReadArrow(item));
   }
+  if (const auto beside = y.Find("beside")) clip.beside = ReadComparison(*beside);
 
   Log log;
   log.label = file.stem().string();
@@ -129,12 +138,22 @@ Clip Clip::Read(const std::filesystem::path& file) {
   return clip;
 }
 
-void Clip::Check(const mjModel& m) const {
+void Clip::Check(const ModelSpec& system) const {
+  const mjModel& m = system.model();
   Wiring(experiment, m);
   if (!film.camera.empty() && mj_name2id(&m, mjOBJ_CAMERA, film.camera.c_str()) < 0)
     throw Error::Input(experiment.file.string() + ": camera", "a camera of the model",
                        "'" + film.camera + "'");
   for (const Arrow& arrow : film.arrows) arrow.SensorOf(m);
+  if (beside) Beside(system);
+}
+
+ModelSpec Clip::Beside(const ModelSpec& system) const {
+  try {
+    return system.With(beside->set, {});
+  } catch (const Error& error) {
+    throw Error::Input(beside->where, error.what());
+  }
 }
 
 }  // namespace continuum

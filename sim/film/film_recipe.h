@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "sim/experiment/experiment.h"
 #include "sim/film/film.h"
@@ -18,6 +21,9 @@ namespace continuum {
 ///     arrows:                      # optional, length: [m] per N or N m
 ///       - {sensor: base_force, length: 0.05, color: [0.1, 0.6, 0.3]}
 ///       - {sensor: base_torque, length: 4, radius: 0.07}             # bent around the torque
+///     beside:                      # optional: a second half, where the model has other values
+///       caption: Without friction
+///       set: {"plugin:friction": {mu: 0}}
 ///     inputs:                      # actuators that are not named: 0
 ///       p1: [[0, 0], [1, 0], [1, 4e4]]                           # [s, control], straight between
 ///       p2: {mean: 2e4, amplitude: 2e4, period: 2, delay: 0.5, rise: 1}
@@ -28,12 +34,22 @@ struct Clip {
   Experiment experiment;  ///< without outputs; its one log are the inputs
   FilmOptions film;
 
+  /// The same model with other values, drawn to the right.
+  struct Comparison {
+    std::string caption;
+    std::vector<Change> set;
+    std::string where;  ///< file:line: key, for messages
+  };
+  std::optional<Comparison> beside = {};
+
   /// Throws Error with file:line and key.
   static Clip Read(const std::filesystem::path& file);
   /// Whether a file is a recipe, not an experiment.
   static bool Is(const std::filesystem::path& file);
-  /// Throws Error when the model lacks the camera, an actuator or a sensor.
-  void Check(const mjModel& m) const;
+  /// Throws Error when the model lacks the camera, an actuator, a sensor or what `beside` sets.
+  void Check(const ModelSpec& system) const;
+  /// The model of the right half. Throws Error when it lacks what `beside` sets.
+  ModelSpec Beside(const ModelSpec& system) const;
 };
 
 }  // namespace continuum

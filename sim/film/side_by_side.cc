@@ -54,7 +54,8 @@ class Frames {
             Ruler& ruler) {
     try {
       Await();
-      options.caption = side.name + ": " + side.experiment.logs[log].label;
+      options.caption = side.name;
+      if (side.labelled) options.caption += ": " + side.experiment.logs[log].label;
       DrawFrames(side.experiment, side.system, side.experiment.logs[log], options, ahead, ruler,
                  [&](Image image) {
                    image_ = std::move(image);

@@ -13,6 +13,7 @@ struct Side {
   const Experiment& experiment;
   const ModelSpec& system;
   std::string name;
+  bool labelled = true;  ///< the caption goes on with the label of the log
 };
 
 /// The frames of a log by two models, joined: options say the size of a half. Both halves are seen

@@ -13,6 +13,7 @@
 
 #include "engine.h"
 #include "models/annelida/annelida.h"
+#include "models/annelida/pipe.h"
 #include "models/spa/chain.h"
 
 namespace continuum {
@@ -156,6 +157,25 @@ void SnakeArm(benchmark::State& state) {
   Compare(state, with, without, 50, 4);
 }
 BENCHMARK(SnakeArm);
+
+std::string InPipe(bool friction, bool contact) {
+  std::string xml = AnnelidaInPipeMjcf(
+      ReadAnnelida(std::string(CONTINUUM_SOURCE) + "/models/annelida/annelida.yaml"));
+  if (!friction) xml = Less(Less(xml, "<extension>", "</extension>"), "<plugin ", "/>");
+  if (!contact) xml.insert(xml.find("<worldbody>"), "<option><flag contact=\"disable\"/></option>");
+  return xml;
+}
+
+// The snake arm at the end of its way through a pipe, and without contact.
+void SnakeArmInPipe(benchmark::State& state) {
+  Compare(state, InPipe(true, true), InPipe(true, false), 50, 4);
+}
+BENCHMARK(SnakeArmInPipe);
+
+void SnakeArmInPipeWithoutFriction(benchmark::State& state) {
+  Compare(state, InPipe(false, true), InPipe(false, false), 50, 4);
+}
+BENCHMARK(SnakeArmInPipeWithoutFriction);
 
 // Links on universal joints, and three cables that pass all of them.
 std::string Arm(const std::string& prefix, int links, double place) {

@@ -27,6 +27,7 @@ struct Shipped {
 TEST(Make, GivesTheCommittedModels) {
   for (const auto& [description, variant, model] :
        {Shipped{"annelida/annelida.yaml", "", "annelida/annelida.xml"},
+        Shipped{"annelida/annelida.yaml", "pipe", "annelida/annelida_pipe.xml"},
         Shipped{"trunk/trunk.yaml", "", "trunk/trunk.xml"},
         Shipped{"tdcr_three_segment/tdcr_three_segment.yaml", "",
                 "tdcr_three_segment/tdcr_three_segment.xml"},

@@ -41,7 +41,7 @@ class Recipe : public ::testing::TestWithParam<fs::path> {};
 TEST_P(Recipe, NamesWhatItsModelHas) {
   const Clip clip = Clip::Read(GetParam());
   const ModelSpec system = ModelSpec::Load(clip.experiment.model);
-  EXPECT_NO_THROW(clip.Check(system.model()));
+  EXPECT_NO_THROW(clip.Check(system));
 }
 
 TEST_P(Recipe, IsInTheTableOfItsReadme) {
@@ -88,7 +88,7 @@ class ClipFile : public ::testing::Test {
   void ExpectRefused(const std::string& where, const std::string& found) const {
     const auto check = [&] {
       const Clip clip = Clip::Read(files_ / "clip.yaml");
-      clip.Check(ModelSpec::Load(clip.experiment.model).model());
+      clip.Check(ModelSpec::Load(clip.experiment.model));
     };
     EXPECT_THAT(check, ThrowsMessage<Error>(
                            AllOf(HasSubstr("clip.yaml"), HasSubstr(where), HasSubstr(found))));
@@ -123,6 +123,22 @@ TEST_F(ClipFile, RefusesWhatTheModelLacks) {
   Replace("camera: above", "camera: side");
   Replace("sensor: force", "sensor: where");
   ExpectRefused("arrows[0]", "'where'");
+}
+
+TEST_F(ClipFile, MayShowTheModelWithOtherValuesBeside) {
+  Replace("inputs:", "beside: {caption: Heavier, set: {\"joint:slide\": {armature: 3}}}\ninputs:");
+  const Clip clip = Clip::Read(files_ / "clip.yaml");
+  ASSERT_TRUE(clip.beside);
+  EXPECT_EQ(clip.beside->caption, "Heavier");
+  const ModelSpec system = ModelSpec::Load(clip.experiment.model);
+  EXPECT_EQ(system.model().dof_armature[0], 0);
+  EXPECT_EQ(clip.Beside(system).model().dof_armature[0], 3);
+  const auto film = RunProcess({CONTINUUM_EXECUTABLE, "render", "clip.yaml", "--size", "320x120",
+                                "--fps", "100", "--out", "clip.mp4"},
+                               files_.folder());
+  EXPECT_EQ(film.exit_code, 0) << film.err;
+  Replace("joint:slide", "joint:other");
+  ExpectRefused("beside.set", "other");
 }
 
 TEST_F(ClipFile, RefusesTimesThatGoBack) {
