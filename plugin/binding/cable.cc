@@ -42,7 +42,7 @@ std::vector<Branch> BranchesOf(const mjModel& m, int tendon) {
   return branches;
 }
 
-// Interior sites and geoms.
+// Interior sites and geoms; below 0 where there is no cable at all.
 int Contacts(const Branch& branch) { return branch.end - branch.begin - 2; }
 
 // Sites, and each geom as its two tangent points.
@@ -120,7 +120,7 @@ Misfit WhyNoCable(const mjModel& m, int tendon) {
 std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven) {
   std::vector<Cable> cables;
   for (const Branch& branch : BranchesOf(m, tendon)) {
-    if (Contacts(branch) > 0) cables.push_back(MakeCable(m, tendon, branch, driven));
+    if (Contacts(branch) >= 0) cables.push_back(MakeCable(m, tendon, branch, driven));
   }
   return cables;
 }

@@ -55,7 +55,7 @@ enum class Driven { kFirst, kLast, kBoth };
 /// Why friction cannot act on a tendon ("a fixed tendon").
 Misfit WhyNoCable(const mjModel& m, int tendon);
 
-/// The branches of a tendon that have contacts.
+/// The branches of a tendon. One without contacts has one segment, and the tension T/divisor.
 std::vector<Cable> MakeCables(const mjModel& m, int tendon, Driven driven);
 
 /// What pulls a tendon [N] but for rows of the constraint solver: −sum(gear · force) of its

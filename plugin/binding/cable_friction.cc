@@ -6,6 +6,7 @@
 #include "binding/applied_force.h"
 #include "binding/bristle.h"
 #include "binding/cable_doubts.h"
+#include "binding/cable_drawing.h"
 #include "binding/exponential.h"
 #include "binding/row_softness.h"
 #include "binding/tree_groups.h"
@@ -380,23 +381,8 @@ void CableFriction::PointForces(const mjModel&, const mjData& d, const TakeForce
 }
 
 void CableFriction::Visualize(const mjModel& m, const mjData& d, mjvScene& scene) const {
-  std::size_t s = 0;
   const double full = red_at_ > 0 ? red_at_ : std::max(largest_, kLeastPull);
-  for (const Cable& cable : cables_) {
-    const double width = 1.05 * m.tendon_width[cable.tendon];
-    for (int k = 0; k < cable.segments(); ++k, ++s) {
-      if (scene.ngeom >= scene.maxgeom) return;
-      const float x = static_cast<float>(std::clamp(tension_[s] / full, 0.0, 1.0));
-      const float rgba[4] = {0.13f + 0.80f * x, 0.40f - 0.25f * x, 0.85f - 0.75f * x, 1};
-      mjvGeom* const geom = scene.geoms + scene.ngeom++;
-      mjv_initGeom(geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, rgba);
-      mjv_connector(geom, mjGEOM_CAPSULE, width, geometry_.Near(d, static_cast<int>(s)),
-                    geometry_.Far(d, static_cast<int>(s)));
-      geom->objtype = mjOBJ_TENDON;
-      geom->objid = cable.tendon;
-      geom->category = mjCAT_DECOR;
-    }
-  }
+  DrawCables(m, d, cables_, geometry_, tension_, full, scene);
 }
 
 void CableFriction::CopyFrom(const BoundLaw& other) {

@@ -1,7 +1,10 @@
 // Cables over sites, wrapped geoms and pulleys, pulled by whatever pulls: bands of breakaway after
 // Euler and Eytelwein, forces against an evaluation of their own, wrenches against the balance of
 // forces.
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -108,6 +111,55 @@ TEST_F(CableRoute, ABranchBehindAPulleyCarriesTheTensionByItsDivisor) {
     const double edge = kWeight * std::exp(side * .3 * mjPI / 2);
     EXPECT_LT(std::abs(moved(edge * std::exp(-side * .01))), 1e-4);
     EXPECT_GT(side * moved(edge * std::exp(side * .01)), 1e-3);
+  }
+}
+
+// A straight branch has the tension of the tendon, those behind it by their divisor.
+TEST_F(CableRoute, ABranchWithoutContactsIsDrawnAndReadLikeTheOthers) {
+  const auto read = [](const char* site) {
+    return fmt::format(
+        R"(<plugin plugin="continuum.capstan" instance="i" objtype="site" objname="{}"/>)", site);
+  };
+  const auto m = Model("<mujoco>" + Instance("capstan", Key("tendon", "t") + Key("mu", "0.3")) +
+                       R"(<worldbody><site name="a" pos="0 1 1"/><site name="b" pos="0 2 1"/>
+        <site name="end" pos="-.5 0 1"/><site name="corner" pos="0 0 1"/>
+        <site name="fixed" pos="0 0 0"/></worldbody>
+      <tendon><spatial name="t"><site site="a"/><site site="b"/><pulley divisor="2"/>
+        <site site="end"/><site site="corner"/><site site="fixed"/><pulley divisor="4"/>
+        <site site="corner"/><site site="b"/></spatial></tendon>
+      <actuator><motor tendon="t" gear="-1"/></actuator><sensor>)" +
+                       read("a") + read("end") + "</sensor></mujoco>");
+  const auto d = Data(m);
+  d->ctrl[0] = 12;
+  mj_step(m.get(), d.get());
+  EXPECT_DOUBLE_EQ(d->sensordata[0], 12);
+  EXPECT_DOUBLE_EQ(d->sensordata[1], 6);
+}
+
+// The red of what lies on a drum or a ball, from its pulled side to the load's.
+TEST_F(CableRoute, OnAGeomTheColourFadesFromOneTensionToTheOther) {
+  for (const std::string corner : {"cylinder", "sphere"}) {
+    Rig rig{corner};
+    rig.actuator = kMotor;
+    const auto m = Model(Xml(rig));
+    const auto d = Data(m);
+    d->ctrl[0] = 20;
+    RunUntil(m, d, .1);  // the load goes up
+    mjvScene scene;
+    mjv_defaultScene(&scene), mjv_makeScene(m.get(), &scene, 100);
+    mjp_getPluginAtSlot(m->plugin[0])->visualize(m.get(), d.get(), nullptr, &scene, 0);
+    std::vector<float> red;
+    for (const mjvGeom& piece : std::span(scene.geoms, static_cast<std::size_t>(scene.ngeom))) {
+      const double radius = std::hypot(piece.pos[0], piece.pos[2] - .95);
+      if (radius > .051) continue;
+      EXPECT_NEAR(radius, .05, 5e-4) << corner;
+      red.push_back(piece.rgba[0]);
+    }
+    mjv_freeScene(&scene);
+    ASSERT_GT(red.size(), 5u);
+    EXPECT_TRUE(std::is_sorted(red.rbegin(), red.rend()));
+    EXPECT_NEAR(red.front(), .93, .03);
+    EXPECT_NEAR(red.back(), .13 + .8 * std::exp(-.3 * mjPI / 2), .03);
   }
 }
 
