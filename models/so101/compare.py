@@ -33,7 +33,7 @@ PARAMETERS = re.compile(r"^parameters:\n(?:  .*\n)+", re.M)
 CYCLES, PERIOD = "repetitive_motion", 9.83  # s, of its goals
 # What stands around the arm, as edits of a fitted MJCF: the fingertip meets something 39 mm below the base.
 PLACE = ((r'<flag contact="disable"/>', ""),
-         (r'<joint name="wrist_roll"', r'\g<0> range="-1.034 3.2"'),
+         (r'<joint name="wrist_roll"', r'\g<0> range="-1.034 3.2" solimplimit="0.99 0.999 0.001"'),
          (r'<geom name="floor"', r'\g<0> pos="0 0 -0.0413" contype="1" conaffinity="1" condim="1"'),
          (r'(<site name="gripperframe" )(pos="[^"]*")/>', r'\g<0><geom name="fingertip" size="0.002" \2'
           r' contype="1" conaffinity="1" condim="1"/>'))

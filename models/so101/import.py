@@ -7,7 +7,8 @@ SOURCE_FOLDER holds logs/*.csv, one for each motion: t [s], goal_<joint> and q_<
 elbow, wrist_flex, wrist_roll, and of the gripper as a share of its range, 0 to 1. Written: one CSV per
 motion, in which the gripper is the jaw's angle [rad], and
   first.yaml, second.yaml   every other motion trains (its first SECONDS, default 25), the others are
-                            held out, whole
+                            held out, whole. The motions are taken in the order of how fast their goals
+                            move, so that either half has fast and slow ones
   menagerie.yaml            all motions, whole, with the actuators of the menagerie's model
   first_diagnosis.yaml, second_diagnosis.yaml   15 s (at most SECONDS) of the motions that train in
                             first.yaml and second.yaml, three of four to train, with candidates
@@ -19,7 +20,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import importer  # noqa: E402
 
 JOINTS = ("pan", "lift", "elbow", "wrist_flex", "wrist_roll", "gripper")
+COLUMNS = ["t"] + [f"{kind}_{joint}" for kind in ("goal", "q") for joint in JOINTS]
 JAW_CLOSED, JAW_RANGE = -0.17, 1.92  # rad
+DAMPING = (0.15, 1.25)  # N m s/rad: half the published back-EMF, twice stall torque over no-load speed
 TRAIN_SECONDS, DIAGNOSIS_SECONDS = 25, 15
 
 # Of the menagerie's robotstudio_so101, on every joint.
@@ -35,7 +38,8 @@ def parameters():
     for joint in JOINTS:
         lines += [
             f"  - {{name: kp_{joint}, target: \"actuator:{joint}\", attribute: kp, lower: 1, upper: 100}}",
-            f"  - {{name: b_{joint}, target: \"joint:{joint}\", attribute: damping, lower: 0.15, upper: 5}}",
+            f"  - {{name: b_{joint}, target: \"joint:{joint}\", attribute: damping, lower: {DAMPING[0]},"
+            f" upper: {DAMPING[1]}}}",
             f"  - {{name: tau_c_{joint}, target: \"plugin:friction_{joint}\", attribute: tau_c, lower: 0,"
             " upper: 0.6}",
         ]
@@ -62,15 +66,25 @@ def jaw(share):
     return JAW_CLOSED + JAW_RANGE * share
 
 
-def table(path):
+def read(path):
+    """The rows of a motion, {column: (text, number)}."""
+    return [{name: (row[name], importer.number(row[name], f"{where}, column '{name}'")) for name in COLUMNS}
+            for where, row in importer.read_table(path, COLUMNS)[1]]
+
+
+def pace(rows):
+    """How far the goals of all joints move from row to row, on average."""
+    goals = [[row[f"goal_{joint}"][1] for joint in JOINTS] for row in rows]
+    return sum(abs(b - a) for last, now in zip(goals, goals[1:]) for a, b in zip(last, now)) / len(goals)
+
+
+def table(rows):
     """The motion as CSV: time, goals and angles."""
-    columns = ["t"] + [f"{kind}_{joint}" for kind in ("goal", "q") for joint in JOINTS]
-    rows = [",".join(columns)]
-    for where, row in importer.read_table(path, columns)[1]:
-        values = {name: importer.number(row[name], f"{where}, column '{name}'") for name in columns}
-        rows.append(",".join(f"{jaw(values[name]):.5f}" if name.endswith("gripper") else row[name]
-                             for name in columns))
-    return "\n".join(rows) + "\n"
+    lines = [",".join(COLUMNS)]
+    for row in rows:
+        lines.append(",".join(f"{jaw(value):.5f}" if name.endswith("gripper") else text
+                              for name, (text, value) in row.items()))
+    return "\n".join(lines) + "\n"
 
 
 def read_seconds(text):
@@ -103,7 +117,9 @@ def convert(source, model, seconds=TRAIN_SECONDS):
     for name in names:
         if not name.replace("_", "").isalnum():
             importer.refuse(source / "logs" / f"{name}.csv", "letters, digits and _ as a name", name)
-    written = {f"{file.stem}.csv": table(file) for file in files}
+    motions = {name: read(file) for name, file in zip(names, files)}
+    written = {f"{name}.csv": table(rows) for name, rows in motions.items()}
+    names.sort(key=lambda name: pace(motions[name]), reverse=True)
     written |= {
         "first.yaml": halves(names, 0, model, seconds),
         "second.yaml": halves(names, 1, model, seconds),

@@ -56,8 +56,8 @@ def cost(rows, values, logs, substeps, arm=problem.Arm(), **option):
     return float(np.mean(np.square(r)))
 
 
-def optimise(parameters, sequences):
-    """Returns the values, the seconds, and the seconds to within 0.1 % of the best cost."""
+def optimise(parameters, sequences, **options):
+    """Returns the values, the seconds, and the seconds to within 0.1 % of the best cost; options: of sysid."""
     residual = sysid.build_residual_fn(models_sequences=sequences)
     history = []
     begin = time.perf_counter()
@@ -69,7 +69,7 @@ def optimise(parameters, sequences):
                             float(np.sum(np.square(np.concatenate([np.ravel(v) for v in out[0]]))))))
         return out
 
-    best, _ = sysid.optimize(initial_params=parameters, residual_fn=watched, verbose=False)
+    best, _ = sysid.optimize(initial_params=parameters, residual_fn=watched, verbose=False, **options)
     seconds = time.perf_counter() - begin
     least = min(c for _, c in history)
     near = next(t for t, c in history if c <= 1.001 * least)
