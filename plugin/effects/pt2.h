@@ -27,26 +27,29 @@ struct Pt2 {
     return p[0] < kInfinity ? s[0] : u;
   }
 
-  /// (1) at constant u: with e = y − u, a = ζω and d² = a² − ω²
-  ///   e(h) = exp(−a h) (e C + (ė + a e) S),   ė(h) = exp(−a h) (ė C − (a ė + ω² e) S)
-  /// where C = cosh(d h) and S = sinh(d h)/d, also for imaginary d.
+  /// (1) at constant u: with e = y − u, x = ω h and δ² = ζ² − 1
+  ///   e(h) = exp(−ζ x) (e C + (ė/ω + ζ e) S),   ė(h) = exp(−ζ x) (ė C − (ζ ė + ω e) S)
+  /// where C = cosh(δ x) and S = sinh(δ x)/δ, also for imaginary δ. No power of ω stands alone: it
+  /// may be as large as a number can be.
   template <class T>
   static Vec<T, 2> Step(const Vec<T, 2>& s, const T& u, double h, const Vec<T, 2>& p) {
     const auto& [w, zeta] = p;
     if (!(w < kInfinity)) return {u, T(0)};
-    const T e = s[0] - u, rate = s[1], a = zeta * w, square = a * a - w * w;
-    T C, S;  // each times exp(−a h)
-    if (square * h * h > kSmall) {
-      const T d = sqrt(square), slow = exp((d - a) * h), fast = exp(-(d + a) * h);
-      C = 0.5 * (slow + fast), S = 0.5 * (slow - fast) / d;
-    } else if (square * h * h < -kSmall) {
-      const T d = sqrt(-square), decay = exp(-a * h);
-      C = decay * cos(d * h), S = decay * sin(d * h) / d;
+    const T e = s[0] - u, rate = s[1], x = w * h;
+    const T square = ((zeta - 1.0) * x) * ((zeta + 1.0) * x);
+    T C, S;  // each times exp(−ζ x)
+    if (square > kSmall) {
+      const T delta = sqrt(zeta - 1.0) * sqrt(zeta + 1.0);
+      const T slow = exp(-x / (zeta + delta)), fast = exp(-(zeta + delta) * x);
+      C = 0.5 * (slow + fast), S = 0.5 * (slow - fast) / delta;
+    } else if (square < -kSmall) {
+      const T delta = sqrt(1.0 - zeta) * sqrt(1.0 + zeta), decay = exp(-zeta * x);
+      C = decay * cos(delta * x), S = decay * sin(delta * x) / delta;
     } else {  // near critical damping
-      const T x = square * h * h, decay = exp(-a * h);
-      C = decay * (1.0 + 0.5 * x), S = decay * h * (1.0 + x / 6.0);
+      const T decay = exp(-zeta * x);
+      C = decay * (1.0 + 0.5 * square), S = decay * x * (1.0 + square / 6.0);
     }
-    return {u + e * C + (rate + a * e) * S, rate * C - (a * rate + w * w * e) * S};
+    return {u + e * C + (rate / w + zeta * e) * S, rate * (C - zeta * S) - (w * S) * e};
   }
 
  private:

@@ -35,6 +35,21 @@ TEST(Pt2, IsSmoothAroundCriticalDamping) {
   }
 }
 
+// As quick as a number can say, over one step and over a step that its period resolves.
+TEST(Pt2, FollowsItsInputAtAnyFrequency) {
+  for (const double w : {1e150, 1e160, 1e200, 1e250, 1e300, 1e307}) {
+    for (const double zeta : {0.1, 1.0, 1.0 + 1e-9, 10.0}) {
+      const auto at = Pt2::Step<double>({0.3, 2.0}, 1, 1e-3, {w, zeta});
+      EXPECT_NEAR(at[0], 1, 1e-15) << w << " " << zeta;
+      EXPECT_EQ(at[1], 0) << w << " " << zeta;
+      const auto scaled = Pt2::Step<double>({0.3, 2.0 * w}, 1, 0.7 / w, {w, zeta});
+      const auto one = Pt2::Step<double>({0.3, 2.0}, 1, 0.7, {1, zeta});
+      EXPECT_NEAR(scaled[0], one[0], 1e-12) << w << " " << zeta;
+      EXPECT_NEAR(scaled[1] / w, one[1], 1e-12) << w << " " << zeta;
+    }
+  }
+}
+
 TEST(Pt2, SettlesFromFarWithoutOverflow) {
   EXPECT_EQ(AfterStep(1e6, 0.5)[0], 1);
   EXPECT_NEAR(AfterStep(1e6, 1e3)[0], 1, 1e-12);
