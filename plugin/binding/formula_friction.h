@@ -43,9 +43,8 @@ class BoundFormulaFriction : public BoundLaw {
   bool Evaluate(const mjModel& m, mjData& d, const double* z, Stage stage,
                 std::span<double>) override {
     const GearTorques gears(m, d);
-    rows_.Write(m, d, z, stage, false, [&](const FrictionRow& row, double v) {
-      return std::max(0.0, level_(At(m, d, gears, row, v)));
-    });
+    rows_.Write(m, d, z, stage, FrictionRows::Absent::kAtZero,
+                [&](const FrictionRow& row, double v) { return LevelAt(m, d, gears, row, v); });
     return false;
   }
 
@@ -54,9 +53,8 @@ class BoundFormulaFriction : public BoundLaw {
   void Bristles(const mjModel& m, const mjData& d, const double* z, double* rate,
                 std::span<double> force) const override {
     const GearTorques gears(m, d);
-    rows_.Bristles(m, d, z, rate, force, 0, [&](const FrictionRow& row, double v) {
-      return std::max(0.0, level_(At(m, d, gears, row, v)));
-    });
+    rows_.Bristles(m, d, z, rate, force, 0,
+                   [&](const FrictionRow& row, double v) { return LevelAt(m, d, gears, row, v); });
   }
 
   std::string WhyNoSlopes(const mjModel& m) const override { return rows_.WhyNoSlopes(m); }
@@ -80,6 +78,12 @@ class BoundFormulaFriction : public BoundLaw {
   void Advance(const mjModel& m, const mjData& d, double* z) override { rows_.Advance(m, d, z); }
 
  private:
+  // What is no number stays so: MuJoCo warns of the acceleration that it makes.
+  double LevelAt(const mjModel& m, const mjData& d, const GearTorques& gears,
+                 const FrictionRow& row, double v) const {
+    const double level = level_(At(m, d, gears, row, v));
+    return level < 0 ? 0 : level;
+  }
   FormulaValues<FormulaFriction> At(const mjModel& m, const mjData& d, const GearTorques& gears,
                                     const FrictionRow& row, double v) const {
     auto values = ValuesOf<FormulaFriction>(p_);

@@ -42,7 +42,8 @@ namespace continuum {
 /// no motion. A pose is another one where q − anchor has changed since the end of the last step by
 /// more than 2 h |v| + 1e-5 rad or m.
 ///
-/// A law at its null on a joint with a native frictionloss leaves that row to MuJoCo.
+/// A law at its null on a joint with a native frictionloss leaves that row to MuJoCo, and so does a
+/// formula where its level is 0.
 ///
 /// A row that held in the last step has the level of v = 0, whatever the speed of its elastic
 /// deflection: a sudden load breaks it away as a slow one does.
@@ -64,19 +65,24 @@ class FrictionRows {
 
   const std::vector<FrictionRow>& rows() const { return rows_; }
   void Impose(mjModel& m) const;
+  /// When a law leaves native rows to MuJoCo: never, in this evaluation, or where its level is 0.
+  enum class Absent { kNever, kNow, kAtZero };
   /// Calls level(row, v) → torque for each row that exists at d, and writes it. v: speed of
-  /// sliding. null: the law is at its null. give: by so much a row yields before it slides, where
+  /// sliding. give: by so much a row yields before it slides, where
   /// it is alone (0: by as little as it can).
   template <class Level>
-  void Write(const mjModel& m, mjData& d, const double* z, Stage stage, bool null, Level&& level,
-             double give = 0) const {
+  void Write(const mjModel& m, mjData& d, const double* z, Stage stage, Absent absent,
+             Level&& level, double give = 0) const {
     int r = d.ne;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const FrictionRow& row = rows_[k];
-      if ((null && IsNative(m, row)) || !Find(d, row, r)) continue;
+      const bool native = IsNative(m, row);
+      if ((native && absent == Absent::kNow) || !Find(d, row, r)) continue;
       const double off = OffAnchor(m, d, z + kStates * k, row);
       const Sliding sliding = SlidingOf(d, z + kStates * k, row);
-      WriteRow(m, d, off, stage, row, r, sliding.share * level(row, sliding.v));
+      const double torque = sliding.share * level(row, sliding.v);
+      if (native && absent == Absent::kAtZero && torque == 0) continue;
+      WriteRow(m, d, off, stage, row, r, torque);
       if (give > 0 && row.alone && !IsDiscrete(m)) Soften(m, d, r, give);
       const bool last = stage == Stage::kActuator || IsUnactuated(m);
       if (last && row.joint && row.axis < 0 && !IsDiscrete(m))
@@ -240,7 +246,7 @@ class BoundFriction : public BoundLaw {
     if constexpr (kBiased) std::fill(force.begin(), force.end(), 0.0);
     const GearTorques gears = Gears(m, d);
     rows_.Write(
-        m, d, z, stage, IsNull(),
+        m, d, z, stage, IsNull() ? FrictionRows::Absent::kNow : FrictionRows::Absent::kNever,
         [&](const FrictionRow& row, double v) {
           if constexpr (kBiased) force[row.index] = E::template Bias<double>(AsParams<E>(p_));
           return LevelAt(m, d, z, gears, row, v);

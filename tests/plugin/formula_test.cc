@@ -178,6 +178,19 @@ TEST_F(Formula, LevelBelowZeroIsNoFriction) {
             Swing("formula_friction", Key("level", "0")));
 }
 
+// As a force that is no number does.
+TEST_F(Formula, MujocoWarnsOfALevelThatIsNoNumber) {
+  for (const auto& [effect, key] : {std::pair{"formula_friction", "level"}, {"formula", "force"}}) {
+    for (const char* const text : {"0.02*sqrt(q - 1)", "log(q - 1)", "q/q"}) {
+      const auto m = Model(Wheel(effect, Key(key, text)));
+      const auto d = Data(m);
+      d->ctrl[0] = 0.1;
+      mj_step(m.get(), d.get());
+      EXPECT_GT(d->warning[mjWARN_BADQACC].number, 0) << effect << " " << text;
+    }
+  }
+}
+
 TEST_F(Formula, FrictionHoldsAtRest) {
   const auto m = Model(Wheel("formula_friction", Key("level", "0.03 + 0.01*cos(q)")));
   const auto d = Data(m);

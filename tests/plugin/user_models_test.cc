@@ -214,6 +214,9 @@ TEST_F(UserModels, NativeFrictionIsLeftToMujocoBitByBit) {
   for (const std::string effect : {"coulomb", "stribeck", "load_friction", "gear_friction",
                                    "directional_friction", "position_friction", "friction_drift"})
     EXPECT_EQ(swing(Instance(effect, Key("joint", "*"))), native) << effect;
+  for (const std::string level : {"0", "p1*abs(v)", "-abs(q)", "0*load"})
+    EXPECT_EQ(swing(Instance("formula_friction", Key("joint", "*") + Key("level", level))), native)
+        << level;
   EXPECT_EQ(swing(Instance("coulomb", Key("joint", "a*") + Key("tau_c", ".02"))), native)
       << "friction of another arm";
 }
