@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "binding/applied_force.h"
 #include "mujoco_compat.h"
@@ -50,11 +51,12 @@ void FrictionGuess::Write(const mjModel& m, mjData& d) {
     if (d.efc_type[r] != mjCNSTR_FRICTION_DOF) return;
     row_[d.efc_id[r]] = r;
   }
-  AppliedForces(m, d, force_.data());
+  bool applied = false;
   for (Tree& tree : trees_) {
     const auto ours = [&](int dof) { return HasAnchor(d, row_[dof]); };
-    if (std::none_of(tree.dofs.begin(), tree.dofs.end(), ours)) continue;
-    if (HasOthers(d, tree.id) || !Solve(m, d, tree)) continue;
+    if (std::none_of(tree.dofs.begin(), tree.dofs.end(), ours) || HasOthers(d, tree.id)) continue;
+    if (!std::exchange(applied, true)) AppliedForces(m, d, force_.data());
+    if (!Solve(m, d, tree)) continue;
     std::copy(answer_.begin(), answer_.end(), d.qacc_warmstart + tree.dofs.front());
   }
 }
