@@ -8,6 +8,7 @@
 #include "error.h"
 #include "models/annelida/cases.h"
 #include "models/statics/details.h"
+#include "models/statics/foreign_options.h"
 #include "models/statics/results.h"
 #include "models/statics/rows.h"
 #include "models/statics/sweep.h"
@@ -24,22 +25,21 @@ struct Solved {
 };
 
 void RefuseOptions(const SolveRequest& request) {
-  for (const auto& [option, given] :
-       {std::pair("--calibrate", request.calibrate), std::pair("--hybrid", !request.hybrid.empty()),
-        std::pair("--lambda", request.lambda.has_value()),
-        std::pair("--cross-validate", request.cross_validate),
-        std::pair("--sensitivity", request.sensitivity),
-        std::pair("--parameters", !request.parameters.empty()),
-        std::pair("--equilibria", request.equilibria),
-        std::pair("--measured", !request.measured.empty()),
-        std::pair("--errors", !request.errors.empty()),
-        std::pair("--boxplot", !request.boxplot.empty()),
-        std::pair("--shape", !request.shape.empty()),
-        std::pair("--compliance", !request.compliance.empty()),
-        std::pair("--reach", !request.reach.empty()),
-        std::pair("--follow", !request.follow.empty())}) {
-    if (given) throw Error::Input(option, "no such option for an annelida robot");
-  }
+  statics::RefuseGiven("annelida", {{"--calibrate", request.calibrate},
+                                    {"--hybrid", !request.hybrid.empty()},
+                                    {"--lambda", request.lambda.has_value()},
+                                    {"--cross-validate", request.cross_validate},
+                                    {"--sensitivity", request.sensitivity},
+                                    {"--parameters", !request.parameters.empty()},
+                                    {"--equilibria", request.equilibria},
+                                    {"--measured", !request.measured.empty()},
+                                    {"--errors", !request.errors.empty()},
+                                    {"--boxplot", !request.boxplot.empty()},
+                                    {"--shape", !request.shape.empty()},
+                                    {"--compliance", !request.compliance.empty()},
+                                    {"--reach", !request.reach.empty()},
+                                    {"--follow", !request.follow.empty()},
+                                    {"--outlines", !request.outlines.empty()}});
   if (request.input.empty()) throw Error::Input("--input", "a CSV file", "nothing");
   statics::RequireExtension(request.out, {".csv", ".json"}, "--out");
   if (!request.plot.empty()) statics::RequireFigureEnding(request.plot);

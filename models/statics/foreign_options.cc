@@ -3,15 +3,12 @@
 #include "error.h"
 
 namespace continuum::statics {
-namespace {
 
 void RefuseGiven(const std::string& robot, const ForeignOptions& options) {
   for (const auto& [option, given] : options) {
-    if (given) throw Error::Input(option, "no such option for a " + robot + " robot");
+    if (given) throw Error::Input(option, "no such option for a robot " + robot);
   }
 }
-
-}  // namespace
 
 void RefuseForeignOptions(const SolveRequest& request, const std::string& robot,
                           const ForeignOptions& foreign) {
