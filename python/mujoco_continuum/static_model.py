@@ -87,14 +87,27 @@ def _table(columns: Mapping[str, Any]) -> numpy.ndarray:
     for name in columns:
         if "," in name or "\n" in name:
             raise InputError(f"cases: expected names of columns, found {name!r}")
+    arrays = {name: _column(name, column) for name, column in columns.items()}
+    rows = {name: array.size for name, array in arrays.items() if array.size != 1}
+    if len(set(rows.values())) > 1:
+        found = ", ".join(f"{name} of {count}" for name, count in rows.items())
+        raise InputError(f"cases: expected numbers, or arrays of one length, found {found}")
+    if not arrays or 0 in rows.values():
+        raise InputError("cases: expected one column and one row or more")
+    stacked = numpy.broadcast_arrays(*arrays.values())
+    return numpy.ascontiguousarray(numpy.stack(stacked, axis=1))
+
+
+def _column(name: str, column: Any) -> numpy.ndarray:
     try:
-        arrays = numpy.broadcast_arrays(
-            *(numpy.atleast_1d(numpy.asarray(column, dtype=float)) for column in columns.values()))
-    except ValueError as error:
-        raise InputError(f"cases: expected numbers, or arrays of one length: {error}") from None
-    if not arrays or arrays[0].ndim != 1 or not arrays[0].size:
-        raise InputError("cases: expected arrays with one axis and one row or more")
-    return numpy.ascontiguousarray(numpy.stack(arrays, axis=1))
+        array = numpy.atleast_1d(numpy.asarray(column, dtype=float))
+    except (TypeError, ValueError):
+        raise InputError(f"cases: expected numbers in column {name!r}, "
+                         f"found {repr(column)[:60]}") from None
+    if array.ndim == 1:
+        return array
+    raise InputError(f"cases: expected an array with one axis in column {name!r}, "
+                     f"found the shape {array.shape}")
 
 
 _loaded: list[ctypes.CDLL] = []

@@ -78,7 +78,7 @@ class Solve(bench.Bench):
         rest = dict(T2=0, T3=0, fx=0, fy=0, fz=0)
         with self.assertRaisesRegex(mc.InputError, "cases:3.*'T1'"):
             model.solve(T1=[1, -1], **rest)
-        with self.assertRaisesRegex(mc.InputError, "one length"):
+        with self.assertRaisesRegex(mc.InputError, "one length, found T2 of 3, T1 of 2"):
             model.solve(rest, T1=[1, 2], T2=[1, 2, 3])
         with self.assertRaisesRegex(mc.InputError, "reference"):
             model.solve(T1=1, reference="a", **rest)
