@@ -172,8 +172,10 @@ class PanelDrawing {
         const Vector2d away = (panel_.At(disc.centre) - middle).cwiseAbs();
         crowd += away.maxCoeff() < half + disc.radius * panel_.scale;
       }
-      const Vector3d force = shape.End() + layout_.metres_per_newton * shape.force;
-      crowd += 3 * ((panel_.At(force) - middle).cwiseAbs().maxCoeff() < half);
+      for (const double share : {0.0, 0.5, 1.0}) {
+        const Vector3d force = shape.End() + share * layout_.metres_per_newton * shape.force;
+        crowd += 3 * ((panel_.At(force) - middle).cwiseAbs().maxCoeff() < half);
+      }
     }
     return crowd;
   }
