@@ -22,7 +22,7 @@ struct ColdShooting {
   const Case& row;
 
   bool Jacobian(const Vector3d& x, Vector3d& f, Eigen::Matrix3d& jacobian) const {
-    constexpr int kSteps = 4;
+    constexpr int kSteps = 2;
     Rod rod(series, method, row, 1, kSteps);
     Rod::State<Rod::Dual> tip;
     if (!rod.Integrate(x, tip)) return false;
