@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -58,9 +59,14 @@ class CableStretch {
 ///   VectorXd Stretch(x) [m], Compliance(T) [m/N]       of the cables under T
 ///   int Unstable(x, VectorXd held)                     held [N/m]: of cables that are taut
 ///   double unit() [N], reach() [m]                     T and l that bend the robot by about 1
-/// and, where contacts are sharp, SetWidth(double) [m]: they turn within this, or 0: as they are.
+/// and, where contacts are sharp, SetWidth(double) [m]: they turn within this, or 0: as they are;
+/// where they remember, SlidAt(x), SomeRest(x), GoOnFrom(x): as those of a Remembering system.
 template <class Plant>
 class LengthDriven {
+  static constexpr bool kRemembers = requires(Plant & plant, const Eigen::VectorXd& x) {
+    plant.GoOnFrom(x);
+  };
+
  public:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
@@ -123,14 +129,14 @@ class LengthDriven {
     options.damped = false;
     options.max_iterations = 15;
     Vector trial = z;
-    numerics::Outcome outcome = numerics::Newton(*this, trial, options);
+    numerics::Outcome outcome = Newton(trial, options);
     if (!outcome.ok()) {  // where cables or contacts change between two states
       const int spent = outcome.iterations;
       options.damped = true;
       options.max_step = 0.3;
       options.max_iterations = 40;
       trial = z;
-      outcome = numerics::Newton(*this, trial, options);
+      outcome = Newton(trial, options);
       outcome.iterations += spent;
     }
     if constexpr (requires { plant_.SetWidth(0.0); }) {
@@ -155,7 +161,36 @@ class LengthDriven {
   }
   statics::Fall Fall(double /*from*/, double /*load*/, Vector& /*z*/) { return {}; }
 
+  /// For TurningContacts.
+  Vector Slid(const Vector& z) requires kRemembers { return plant_.SlidAt(ShapeIn(z)); }
+  bool SomeRest(const Vector& z) requires kRemembers { return plant_.SomeRest(ShapeIn(z)); }
+  void GoOnFrom(const Vector& z) requires kRemembers { plant_.GoOnFrom(ShapeIn(z)); }
+  Vector Rate(double load, const Vector& z, bool exact) requires kRemembers {
+    constexpr double kStep = 1e-5;
+    Vector before = z, now = z;
+    SetLoad(load - kStep);
+    const bool valid = (*this)(z.data(), before.data());
+    SetLoad(load);
+    if (!valid || !(*this)(z.data(), now.data())) return Vector::Zero(z.size());
+    const Vector by_load = (now - before) / kStep;
+    if (by_load.isZero(0)) return by_load;
+    if (exact || !factored_) {
+      Matrix jacobian(z.size(), z.size());
+      if (!Jacobian(z, now, jacobian)) return Vector::Zero(z.size());
+      factors_.compute(jacobian);
+      factored_ = true;
+    }
+    return factors_.solve(-by_load);
+  }
+
  private:
+  Vector ShapeIn(const Vector& z) const { return z.head(z.size() - to_.size()); }
+  numerics::Outcome Newton(Vector& z, const numerics::Options& options) {
+    const numerics::Outcome outcome = numerics::Newton(*this, z, options, factors_);
+    factored_ = factored_ || outcome.iterations > 0;
+    return outcome;
+  }
+
   static constexpr double kTaut = 1e-7, kHeld = 1e6;
 
   // By contacts that turn widely, then sharply.
@@ -165,7 +200,7 @@ class LengthDriven {
     trial = z;
     for (const double width : {1e-3, 1e-4, 1e-5, 0.0}) {
       plant_.SetWidth(width);
-      outcome = numerics::Newton(*this, trial, options);
+      outcome = Newton(trial, options);
       spent += outcome.iterations;
       if (!outcome.ok()) break;
     }
@@ -185,6 +220,8 @@ class LengthDriven {
   Plant& plant_;
   Vector from_, to_, now_;
   Eigen::Index z_size_ = 0;
+  Eigen::PartialPivLU<Matrix> factors_{0};  // of the last tangent
+  bool factored_ = false;
 };
 
 /// Follows lengths and dead loads from z = (x, T/unit), where they are in balance. T is in newtons

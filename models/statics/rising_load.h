@@ -5,6 +5,7 @@
 #include <string>
 
 #include "models/statics/relax.h"
+#include "models/statics/turning.h"
 #include "sim/numerics/solver.h"
 #include "sim/numerics/work_limit.h"
 
@@ -32,6 +33,7 @@ struct Stability {
 struct RisingOptions {
   double first_step = 0.1, largest_step = 0.2;  ///< of the load
   double smallest_step = 1e-4;                  ///< below it the path has an end: the shape falls
+  double shortest_way = 1e-3;                   ///< of the load, to where a contact turns back
   double trust = 0.3;  ///< of the corrector: |x - predicted|, root mean square
   int most_steps = 2000;
 };
@@ -48,12 +50,14 @@ inline std::string AtShare(double load) {
 /// load, x)`, which lets the root x at one load fall to a stable one at the next (statics::Fall).
 /// Steps that end at an unstable root, or far from the secant, are made shorter. Where none is
 /// short enough the path has an end, a fold or a fork: the shape falls at a load just beyond it and
-/// the path goes on from there.
+/// the path goes on from there. Of a Remembering system steps are cut where contacts turn back, and
+/// contacts go on from step to step.
 template <class System, class Vector>
 numerics::Outcome FollowRisingLoad(System& system, Vector& x, Branch& branch,
                                    const RisingOptions& options = {}) {
   numerics::Outcome total;
   Vector slope = Vector::Zero(x.size());
+  Turning<System, Vector> turning(system);
   double load = 0, step = options.first_step;
   const double trust = options.trust * std::sqrt(static_cast<double>(x.size()));
   const auto falls = [&] {
@@ -68,6 +72,7 @@ numerics::Outcome FollowRisingLoad(System& system, Vector& x, Branch& branch,
       load = next;
       slope.setZero();
       step = options.smallest_step;
+      turning.Fallen();
       return true;
     }
     return false;
@@ -79,10 +84,16 @@ numerics::Outcome FollowRisingLoad(System& system, Vector& x, Branch& branch,
     const numerics::Outcome outcome = system.Correct(next, trial);
     total.iterations += outcome.iterations;
     if (outcome.ok() && (trial - predicted).norm() <= trust && system.Unstable(next, trial) == 0) {
+      const double share = turning.Share(load, x, next, trial);
+      if (share < 1 && next - load > 1.5 * options.shortest_way) {
+        step = std::max(share * (next - load), options.shortest_way);
+        return true;
+      }
       slope = (trial - x) / (next - load);
       x = trial;
       load = next;
       total.residual = outcome.residual;
+      if (load < 1) turning.GoOnFrom(x);
       if (outcome.iterations <= 4) step = std::min(2 * step, options.largest_step);
       return true;
     }

@@ -51,7 +51,7 @@ class RodBalance {
   /// steps: of the integrator per arc between disks.
   RodBalance(const Robot& robot, const Loads& loads, bool friction, int steps);
   /// With contacts that remember, from loads.from; the loads grow from those of `earlier` (nothing
-  /// when not given). `loads` must outlive it.
+  /// when not given).
   static RodBalance Remembering(const Robot& robot, const Loads& loads, int steps,
                                 const Loads* earlier);
 
@@ -67,7 +67,7 @@ class RodBalance {
   Eigen::Vector3d Natural() const { return rod_.Arc(0).natural; }
   /// The rod with the loads of now.
   const UnitRod& rod() const { return rod_; }
-  bool remembers() const { return remembers_ != nullptr; }
+  bool remembers() const { return remembers_; }
   int unknowns() const {
     return remembers() ? 3 + contacts_ * static_cast<int>(rod_.pull.size()) : 3;
   }
@@ -105,6 +105,13 @@ class RodBalance {
   Line LineOf(const Shape& shape) const;
   /// Where contacts that remember stand at x.
   Contacts ContactsAt(const Eigen::VectorXd& x) const;
+  /// They slide from there: loads.from, or where they were told to go on from.
+  const Contacts& from() const { return slid_from_; }
+  void GoOnFrom(const Eigen::VectorXd& x);
+  /// Lengths of the tendons beyond the contacts that find their directions, over kGivesWay; empty
+  /// when there are none. And whether some of these neither slide on nor have turned.
+  Eigen::VectorXd SlidAt(const Eigen::VectorXd& x) const;
+  bool SomeRest(const Eigen::VectorXd& x) const;
 
  private:
   // kRubbing: tendons whose tension falls along the rod, at most; 0 without friction. kSlides:
@@ -170,10 +177,11 @@ class RodBalance {
     const int direction = rod_.direction[tendon];
     if (direction != kAsItSlides) return T(direction);
     const auto k = static_cast<Eigen::Index>(tendon);
-    const Contacts& from = remembers_->from;
-    const double before = from.share.size() > 0 ? from.share(step, k) : 0;
+    const double before = slid_from_.share.size() > 0 ? slid_from_.share(step, k) : 0;
     return statics::SlideFrom(before, T((length_ / width_) * (beyond_before_(step, k) - beyond)));
   }
+  // Lengths of the tendons beyond their starts, of lengths in the steps [L].
+  static void SumBeyond(Eigen::MatrixXd& length);
   // Per tendon, steps x tendons, of the rod when nothing acts [L].
   Eigen::MatrixXd RestLengths(int steps) const;
   template <class T>
@@ -188,11 +196,15 @@ class RodBalance {
   int tendons_, disks_;
   UnitRod to_, from_, rod_;
   int steps_;
-  const Loads* remembers_ = nullptr;
+  bool remembers_ = false;
+  Contacts slid_from_;
   int contacts_ = 0;               ///< per tendon, whose b is an unknown: all, or the first
   Eigen::MatrixXd beyond_before_;  ///< b_before of every step and tendon [L]
   double load_ = 1;
   double width_ = kGivesWay;
+
+  // What was integrated.
+  void Forget();
 
   struct Integrated {
     Eigen::VectorXd x;

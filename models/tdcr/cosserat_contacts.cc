@@ -17,7 +17,8 @@ RodBalance::RodBalance(const Robot& robot, const Loads& loads, bool friction, in
 RodBalance RodBalance::Remembering(const Robot& robot, const Loads& loads, int steps,
                                    const Loads* earlier) {
   RodBalance balance(robot, loads, true, steps);
-  balance.remembers_ = &loads;
+  balance.remembers_ = true;
+  balance.slid_from_ = loads.from;
   balance.to_ = UnitRod(robot, loads, true, true);
   balance.from_ = earlier ? UnitRod(robot, *earlier, true, true) : balance.to_.Unloaded();
   balance.to_.ShareMoments(balance.from_);
@@ -26,9 +27,13 @@ RodBalance RodBalance::Remembering(const Robot& robot, const Loads& loads, int s
   Eigen::MatrixXd& beyond = balance.beyond_before_;
   beyond = balance.RestLengths(steps);
   if (loads.from.length.size() > 0) beyond = loads.from.length / robot.length;
-  for (int i = count - 2; i >= 0; --i) beyond.row(i) += beyond.row(i + 1);
+  SumBeyond(beyond);
   balance.contacts_ = loads.AsItSlides() && loads.mu > 0 ? count : 1;
   return balance;
+}
+
+void RodBalance::SumBeyond(Eigen::MatrixXd& length) {
+  for (Eigen::Index i = length.rows() - 2; i >= 0; --i) length.row(i) += length.row(i + 1);
 }
 
 Eigen::MatrixXd RodBalance::RestLengths(int steps) const {
@@ -76,17 +81,21 @@ void RodBalance::SetLoad(double load) {
   rod_.Mix(from_, to_, load);
 }
 
+void RodBalance::Forget() {
+  for (Integrated& known : integrated_) known.load = -1;
+}
+
 void RodBalance::SetWidth(double width) {
   if (width == width_) return;
   width_ = width;
-  for (Integrated& known : integrated_) known.load = -1;
+  Forget();
 }
 
 void RodBalance::SetTension(const Eigen::VectorXd& tension) {
   for (std::size_t k = 0; k < rod_.pull.size(); ++k) {
     rod_.pull[k] = to_.pull[k] = from_.pull[k] = tension[static_cast<Eigen::Index>(k)] / unit_;
   }
-  for (Integrated& known : integrated_) known.load = -1;
+  Forget();
 }
 
 Line RodBalance::LineOf(const Shape& shape) const {
@@ -135,5 +144,25 @@ Contacts RodBalance::ContactsAt(const Eigen::VectorXd& x) const {
   }
   return contacts;
 }
+
+void RodBalance::GoOnFrom(const Eigen::VectorXd& x) {
+  if (contacts_ < rod_.arcs() * steps_) return;
+  slid_from_ = ContactsAt(x);
+  beyond_before_ = slid_from_.length / length_;
+  SumBeyond(beyond_before_);
+  Forget();
+}
+
+Eigen::VectorXd RodBalance::SlidAt(const Eigen::VectorXd& x) const {
+  if (contacts_ < rod_.arcs() * steps_) return {};
+  Eigen::VectorXd slid = (-length_ / kGivesWay) * x.tail(x.size() - 3);
+  const auto tendons = static_cast<Eigen::Index>(rod_.pull.size());
+  for (Eigen::Index i = 0; i < slid.size(); ++i) {
+    if (rod_.direction[static_cast<std::size_t>(i % tendons)] != kAsItSlides) slid[i] = 0;
+  }
+  return slid;
+}
+
+bool RodBalance::SomeRest(const Eigen::VectorXd& x) const { return tdcr::SomeRest(ContactsAt(x)); }
 
 }  // namespace continuum::tdcr

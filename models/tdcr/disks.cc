@@ -26,18 +26,18 @@ void SubtractStiffness(double twist, Block&& jacobian) {
 
 }  // namespace
 
-Chain Forward(double length, const Eigen::Matrix3Xd& u) {
+Chain Forward(const Eigen::VectorXd& lengths, const Eigen::Matrix3Xd& u) {
   Chain chain{{Eigen::Matrix3d::Identity()}, {Eigen::Vector3d::Zero()}};
   for (Eigen::Index i = 0; i < u.cols(); ++i) {
-    const Arc arc(length, u.col(i));
+    const Arc arc(lengths[i], u.col(i));
     chain.O.push_back(chain.O.back() + chain.R.back() * arc.p());
     chain.R.push_back(chain.R.back() * arc.Twisted(arc.Q()));
   }
   return chain;
 }
 
-Eigen::Matrix3Xd Positions(double length, const Eigen::Matrix3Xd& u) {
-  const Chain chain = Forward(length, u);
+Eigen::Matrix3Xd Positions(const Eigen::VectorXd& lengths, const Eigen::Matrix3Xd& u) {
+  const Chain chain = Forward(lengths, u);
   Eigen::Matrix3Xd disks(3, u.cols());
   for (Eigen::Index i = 0; i < u.cols(); ++i)
     disks.col(i) = chain.O[static_cast<std::size_t>(i) + 1];
@@ -49,6 +49,7 @@ DiskBalance<C>::DiskBalance(const Robot& robot, const Loads& loads, const Loads*
     : robot_(robot),
       loads_(loads),
       from_(from ? *from : loads.Scaled(0)),
+      slid_from_(loads.from),
       mass_(robot.disk_mass + robot.density * robot.area() * robot.arc()) {
   const auto n = static_cast<std::size_t>(robot.disks);
   const int columns = C == Eigen::Dynamic ? 3 * robot.disks : C;
@@ -121,7 +122,7 @@ template <int C>
 template <bool kDerivatives>
 void DiskBalance<C>::FindShares(std::size_t tendon) const {
   const auto k = static_cast<Eigen::Index>(tendon);
-  const Contacts& from = loads_.from;
+  const Contacts& from = slid_from_;
   double longer = 0;
   Row d_longer = Row::Zero(1, unknowns());
   for (int i = robot_.disks - 1; i >= 1; --i) {
@@ -159,6 +160,17 @@ Contacts DiskBalance<C>::ContactsAt(const Vector& x) const {
     }
   }
   return contacts;
+}
+
+template <int C>
+Eigen::VectorXd DiskBalance<C>::SlidAt(const Vector& x) const {
+  if (!loads_.AsItSlides() || loads_.mu == 0) return {};
+  Eigen::MatrixXd beyond = LengthsAt(x).bottomRows(robot_.disks - 1) / -kGivesWay;
+  for (Eigen::Index i = beyond.rows() - 2; i >= 0; --i) beyond.row(i) += beyond.row(i + 1);
+  for (std::size_t k = 0; k < loads_.direction.size(); ++k) {
+    if (loads_.direction[k] != kAsItSlides) beyond.col(static_cast<Eigen::Index>(k)).setZero();
+  }
+  return beyond.reshaped();
 }
 
 template <int C>

@@ -46,15 +46,19 @@ struct FrictionRatio {
   double ByMu(const Eigen::Vector2d& end, const Eigen::Vector2d& start, double mu, int s) const;
 };
 
-/// Frames and origins of all disks for curvatures u_1..u_n (columns of u, [1/m]), and how they move
-/// with the unknowns.
+/// Frames and origins of all disks for curvatures u_1..u_n (columns of u, [1/m]).
 struct Chain {
   std::vector<Eigen::Matrix3d> R;  ///< n + 1, base frame
   std::vector<Eigen::Vector3d> O;  ///< n + 1, [m]
 };
-Chain Forward(double arc, const Eigen::Matrix3Xd& u);
+/// lengths: of the arcs [m].
+Chain Forward(const Eigen::VectorXd& lengths, const Eigen::Matrix3Xd& u);
 /// O_1..O_n of Forward, as columns.
-Eigen::Matrix3Xd Positions(double arc, const Eigen::Matrix3Xd& u);
+Eigen::Matrix3Xd Positions(const Eigen::VectorXd& lengths, const Eigen::Matrix3Xd& u);
+/// Of a robot without sections.
+inline Eigen::VectorXd EqualArcs(const Robot& robot) {
+  return Eigen::VectorXd::Constant(robot.disks, robot.arc());
+}
 
 /// Curvature of arc i (1..n) between the first and the last, (1).
 inline double Fraction(int i, int n) { return (i - 1.0) / (n - 1.0); }
@@ -99,6 +103,13 @@ class DiskBalance {
   Eigen::Matrix3Xd Curvatures(const Vector& x) const;
   /// Where the contacts stand at x.
   Contacts ContactsAt(const Vector& x) const;
+  /// As those of RodBalance.
+  const Contacts& from() const { return slid_from_; }
+  void GoOnFrom(const Vector& x) {
+    if (loads_.AsItSlides()) slid_from_ = ContactsAt(x);
+  }
+  Eigen::VectorXd SlidAt(const Vector& x) const;
+  bool SomeRest(const Vector& x) const { return tdcr::SomeRest(ContactsAt(x)); }
   /// Lengths of the tendons in every arc, n x m [m].
   Eigen::MatrixXd LengthsAt(const Vector& x) const;
   /// Tensions at x, of every arc and tendon [N].
@@ -129,6 +140,7 @@ class DiskBalance {
   const Robot& robot_;
   const Loads& loads_;
   Loads from_;
+  Contacts slid_from_;
   double load_ = 1;
   std::vector<double> pull_;  ///< tensions now [N]
   bool pulls_grow_ = true;

@@ -1,14 +1,11 @@
 #include "models/tdcr/equilibrium.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
+#include <optional>
 
-#include "models/statics/dense_system.h"
-#include "models/tdcr/rod_law.h"
-#include "sim/numerics/linearize.h"
+#include "models/tdcr/disk_system.h"
+#include "models/tdcr/rod_system.h"
 #include "sim/numerics/newton.h"
 
 namespace continuum::tdcr {
@@ -16,248 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 using numerics::Outcome;
-
-numerics::Options Limits() {
-  numerics::Options options;
-  options.tolerance = 1e-12;
-  options.accept = 5e-10;
-  options.max_step = 6;  // radians over the whole rod
-  return options;
-}
-
-// A Newton method that gives up where it would leave the neighbourhood.
-numerics::Options Corrector(double load) {
-  constexpr double kOnTheWay = 1e-8;  // of EI/L
-  numerics::Options options = Limits();
-  if (load < 1) options.tolerance = kOnTheWay;
-  options.damped = false;
-  options.max_iterations = 12;
-  return options;
-}
-
-/// The segment of arcs between disks. It is a problem for numerics::Newton that keeps the last
-/// tangent: one a step away from the root is enough where nothing is near buckling.
-template <int C>
-class DiskSystem {
- public:
-  using Vector = typename DiskBalance<C>::Vector;
-  using Matrix = typename DiskBalance<C>::Matrix;
-
-  explicit DiskSystem(DiskBalance<C>& balance) : balance_(balance) {
-    last_x_.setConstant(balance.unknowns(), std::numeric_limits<double>::infinity());
-    last_.setZero(balance.unknowns(), balance.unknowns());
-  }
-
-  bool operator()(const double* x, double* f) const { return balance_(x, f); }
-  bool Jacobian(const Vector& x, Vector& f, Matrix& jacobian) const {
-    if (!balance_.Jacobian(x, f, jacobian)) return false;
-    last_x_ = x;
-    last_ = jacobian;
-    return true;
-  }
-
-  Outcome Correct(double load, Vector& x) {
-    balance_.SetLoad(load);
-    return numerics::Newton(*this, x, Corrector(load));
-  }
-
-  int Unstable(double load, const Vector& x) {
-    balance_.SetLoad(load);
-    if (ClearlyStable(x)) return 0;
-    Vector f(x.size());
-    if (!Jacobian(x, f, last_)) return static_cast<int>(x.size());
-    // Its moments act at the starts of arcs, so that the tangent is not quite symmetric.
-    if (Eigen::LLT<Matrix>(Symmetric()).info() == Eigen::Success) return 0;
-    return statics::NegativeRealParts(balance_.RelativeToUnloaded(last_));
-  }
-
-  statics::Fall Fall(double /*from*/, double load, Vector& x) {
-    balance_.SetLoad(load);
-    statics::DenseSystem<DiskSystem> system(*this);
-    Eigen::VectorXd shape = x;
-    statics::Fall fall = statics::FallToRest(system, shape);
-    x = shape;
-    fall.ok = fall.ok && Correct(load, x).ok() && Unstable(load, x) == 0;
-    return fall;
-  }
-
-  /// For statics::DenseSystem.
-  bool Relative(const Eigen::VectorXd& at, Eigen::VectorXd& r, Eigen::MatrixXd* k) const {
-    const Vector x = at;
-    Vector f(x.size());
-    if (k == nullptr) {
-      if (!balance_(x.data(), f.data())) return false;
-    } else {
-      Matrix jacobian(x.size(), x.size());
-      if (!balance_.Jacobian(x, f, jacobian)) return false;
-      *k = balance_.RelativeToUnloaded(jacobian);
-    }
-    r = balance_.RelativeToUnloaded(f);
-    return r.allFinite();
-  }
-
- private:
-  Matrix Symmetric() const {
-    const Matrix k = balance_.Stiffness(balance_.RelativeToUnloaded(last_));
-    return 0.5 * (k + k.transpose());
-  }
-
-  // By the tangent of Newton's last step but one, with a twentieth of the unloaded stiffness to
-  // spare; tangents are no further apart when x is within 0.02.
-  bool ClearlyStable(const Vector& x) const {
-    constexpr double kClose = 0.02, kSpare = 0.05;
-    if (last_x_.size() != x.size() || !((last_x_ - x).norm() <= kClose)) return false;
-    Matrix spare = Matrix::Identity(x.size(), x.size());
-    spare = Symmetric() - kSpare * balance_.Stiffness(spare);
-    return Eigen::LLT<Matrix>(spare).info() == Eigen::Success;
-  }
-
-  DiskBalance<C>& balance_;
-  mutable Vector last_x_;
-  mutable Matrix last_;
-};
-
-/// The Cosserat rod: roots by shooting, stability and falls by a chain of rigid pieces. Contacts
-/// that remember stay as they are while the rod falls.
-template <class Vector>
-class RodSystem {
- public:
-  using Chain = statics::RodChain<RodLaw>;
-
-  /// winches: as RodLaw::SetWinches.
-  RodSystem(const Robot& robot, RodBalance& balance, Eigen::VectorXd winches = {})
-      : robot_(robot), balance_(balance), winches_(std::move(winches)) {}
-
-  Outcome Correct(double load, Vector& x) {
-    balance_.SetLoad(load);
-    if (!balance_.remembers()) return numerics::Newton(balance_, x, Corrector(load));
-    Vector trial = x;
-    Outcome outcome = numerics::Newton(balance_, trial, Corrector(load));
-    if (!outcome.ok()) {
-      const int spent = outcome.iterations;
-      trial = x;
-      outcome = Sharpened(load, trial);
-      outcome.iterations += spent;
-    }
-    if (outcome.ok()) x = trial;
-    return outcome;
-  }
-
-  // The count of a coarse chain is that of the rod unless an eigenvalue is near zero: then of finer
-  // ones. Friction adds at most mu sum T r/2 of the unloaded stiffness.
-  int Unstable(double load, const Vector& x) {
-    constexpr double kSpare = 0.05, kNear = 0.01;  // chains of 9 and 36 pieces: 0.01, 0.001
-    balance_.SetLoad(load);
-    const bool friction = balance_.rod().friction;
-    int unstable = Count(x, kPieces, kSpare + (friction ? FrictionShare() : 0));
-    if (unstable == 0) return 0;
-    const bool held = friction || winches_.size() > 0;
-    unstable = Count(x, kFallingPieces, held ? 0 : kNear);
-    return unstable == kNearZero ? Count(x, kManyPieces, 0) : unstable;
-  }
-
-  statics::Fall Fall(double from, double load, Vector& x) {
-    balance_.SetLoad(from);
-    Chain::Shape shape = Frames(x, kFallingPieces);
-    if (shape.empty()) return {};
-    const Eigen::MatrixXd share = Shares(x);
-    balance_.SetLoad(load);
-    RodLaw law(balance_.rod(), Pieces(shape), share);
-    Chain chain(law, law.lengths());
-    statics::Fall fall = statics::FallToRest(chain, shape);
-    if (!fall.ok) return fall;
-    const Eigen::Matrix3Xd zeta = chain.zeta();
-    const Vector3d u = BaseCurvature(law, zeta);
-    x = balance_.remembers() ? balance_.Unknowns(u, law.Beyond(zeta)) : Eigen::VectorXd(u);
-    fall.ok = numerics::Newton(balance_, x, Limits()).ok() && Near(x, shape.back()) &&
-              Unstable(load, x) == 0;
-    return fall;
-  }
-
- private:
-  // By contacts that turn widely, then more and more sharply.
-  Outcome Sharpened(double load, Vector& x) {
-    Outcome outcome;
-    int spent = 0;
-    for (const double width : {1e-4, 1e-5, kGivesWay}) {
-      balance_.SetWidth(width);
-      numerics::Options options = Corrector(load);
-      options.damped = true;
-      options.max_iterations = 20;
-      outcome = numerics::Newton(balance_, x, options);
-      spent += outcome.iterations;
-      if (!outcome.ok()) break;
-    }
-    balance_.SetWidth(kGivesWay);
-    outcome.iterations = spent;
-    return outcome;
-  }
-
-  static constexpr int kPieces = 9, kFallingPieces = 36, kManyPieces = 144;
-  static constexpr int kNearZero = 98, kUnknown = 99;
-
-  // Unstable directions, or kNearZero when they are not the same within `spare` of the stiffness.
-  int Count(const Vector& x, int pieces, double spare) {
-    const Chain::Shape shape = Frames(x, pieces);
-    if (shape.empty()) return kUnknown;
-    RodLaw law(balance_.rod(), Pieces(shape), Shares(x));
-    law.SetWinches(winches_);
-    Chain chain(law, law.lengths());
-    if (spare > 0 && chain.DefiniteAt(shape, -spare)) return 0;
-    if (!chain.Linearize(shape)) return kUnknown;
-    if (spare == 0) return UnstableDirections(chain, law, shape);
-    return chain.Definite(spare) ? kNearZero : chain.UnstableDirections();
-  }
-
-  double FrictionShare() const {
-    const UnitRod& rod = balance_.rod();
-    double share = 0;
-    for (const double pull : rod.pull) share += 0.75 * rod.mu * pull;
-    return share * robot_.tendon_radius / robot_.length;
-  }
-
-  static int Pieces(const Chain::Shape& shape) { return static_cast<int>(shape.size()) - 1; }
-
-  // Of contacts that remember.
-  Eigen::MatrixXd Shares(const Vector& x) const {
-    return balance_.remembers() ? balance_.ContactsAt(x).share : Eigen::MatrixXd();
-  }
-
-  // Frames of the root x, at least so many pieces. Contacts that remember are tied to the steps, so
-  // that frames are left out instead.
-  Chain::Shape Frames(const Vector& x, int pieces) {
-    const int steps = balance_.steps();
-    const int arcs = balance_.rod().arcs();
-    const int wanted = std::max(1, (pieces + arcs - 1) / arcs);
-    if (!balance_.remembers()) balance_.SetSteps(wanted);
-    const RodBalance::Shape& shape = balance_.Integrate(x);
-    balance_.SetSteps(steps);
-    if (!shape.valid) return {};
-    if (!balance_.remembers()) return shape.frames;
-    int stride = std::max(1, steps / wanted);
-    while (steps % stride != 0) --stride;
-    Chain::Shape some;
-    for (std::size_t i = 0; i < shape.frames.size(); i += static_cast<std::size_t>(stride)) {
-      some.push_back(shape.frames[i]);
-    }
-    return some;
-  }
-
-  // From the middles of the first two pieces, where they are of one arc.
-  static Vector3d BaseCurvature(const RodLaw& law, const Eigen::Matrix3Xd& zeta) {
-    if (!law.OneArc(0, 1)) return zeta.col(0);
-    return 1.5 * zeta.col(0) - 0.5 * zeta.col(1);
-  }
-
-  bool Near(const Vector& x, const Eigen::Quaterniond& end) const {
-    const auto& shape = balance_.Integrate(x);
-    return shape.valid && shape.frames.back().angularDistance(end) < 0.2;
-  }
-
-  const Robot& robot_;
-  RodBalance& balance_;
-  Eigen::VectorXd winches_;
-};
 
 // Sum of the dead forces F at s, times the integral of the rod's compliance c(s) = int_0^s 1/K from
 // 0 to s, and of the moments times c: by Cauchy, turns phi of the sections have
@@ -338,11 +93,12 @@ Found Find(System& system, const Balance& balance, Vector& x, bool direct,
   const Vector begin = x;
   const auto newton = [&] {
     const int spent = found.outcome.iterations;
-    found.outcome = numerics::Newton(balance, x, Limits());
+    found.outcome = system.Solve(x);
     found.outcome.iterations += spent;
     if (!found.outcome.ok()) return false;
     found.stability.unstable_directions = system.Unstable(1, x);
-    return found.stability.stable();
+    return found.stability.stable() &&
+           statics::Turning<System, Vector>(system).Share(0, begin, 1, x) == 1;
   };
   if (start != nullptr && start->size() == x.size()) {
     x = *start;
@@ -368,6 +124,41 @@ Found Find(System& system, const Balance& balance, Vector& x, bool direct,
   }
   Vector f = x;
   found.outcome.residual = numerics::NormAt(balance, x, f);
+  return found;
+}
+
+// Whether the dead forces beyond each section pull along the rod there, or across it: F.t >= 0. A
+// turn phi of the sections costs int K phi'^2 + F.t |phi x t|^2, so that no rising load folds the
+// path of such shapes.
+bool IsPulledAlong(const RodBalance& balance, const Eigen::Vector3d& x) {
+  const UnitRod& rod = balance.rod();
+  const auto& shape = balance.Integrate(x);
+  if (rod.friction || rod.has_moments() || !shape.valid) return false;
+  const int steps = balance.steps();
+  for (int i = 0; i < rod.arcs() * steps; ++i) {
+    const RodArc& arc = rod.Arc(i / steps);
+    const double from = arc.start() + (i % steps) * arc.length() / steps;
+    const double to = from + arc.length() / steps;
+    const auto tangent = [&](int at) {
+      return Vector3d(shape.frames[static_cast<std::size_t>(at)] * Vector3d::UnitZ());
+    };
+    if (rod.Force(i / steps, from).dot(tangent(i)) < 0) return false;
+    if (rod.Force(i / steps, to).dot(tangent(i + 1)) < 0) return false;
+  }
+  return true;
+}
+
+// Newton from x, where such a shape leads to another one.
+std::optional<Found> FindHanging(RodSystem<Vector3d>& system, const RodBalance& balance,
+                                 Vector3d& x) {
+  if (!IsPulledAlong(balance, x)) return std::nullopt;
+  Vector3d hanging = x;
+  Found found;
+  found.outcome = system.Solve(hanging);
+  if (!found.outcome.ok() || !IsPulledAlong(balance, hanging)) return std::nullopt;
+  found.stability.unstable_directions = system.Unstable(1, hanging);
+  if (!found.stability.stable()) return std::nullopt;
+  x = hanging;
   return found;
 }
 
@@ -415,7 +206,11 @@ template Found FindEquilibrium(const Robot&, const Loads&, DiskBalance<Eigen::Dy
 Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,
                       Eigen::Vector3d& x, const Eigen::VectorXd* start) {
   RodSystem<Eigen::Vector3d> system(robot, balance);
-  return Find(system, balance, x, OneEquilibrium(robot, loads), Steps(robot, loads), start);
+  const bool one = OneEquilibrium(robot, loads);
+  if (!one && start == nullptr) {
+    if (const auto found = FindHanging(system, balance, x)) return *found;
+  }
+  return Find(system, balance, x, one, Steps(robot, loads), start);
 }
 
 Found FindEquilibrium(const Robot& robot, const Loads& loads, RodBalance& balance,

@@ -24,7 +24,7 @@ Drawn FineChain(const Robot& robot, const Solution& solution) {
   if (line.s.size() == 0) {
     Eigen::Matrix3Xd fine(3, kParts * robot.disks);
     for (int i = 0; i < fine.cols(); ++i) fine.col(i) = solution.u.col(i / kParts);
-    Drawn drawn{Forward(robot.arc() / kParts, fine)};
+    Drawn drawn{Forward(Eigen::VectorXd::Constant(fine.cols(), robot.arc() / kParts), fine)};
     for (int i = 1; i <= robot.disks; ++i)
       drawn.disks.push_back(static_cast<std::size_t>(i * kParts));
     return drawn;

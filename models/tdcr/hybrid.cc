@@ -31,7 +31,7 @@ double Resolution(const Robot& robot, Eigen::Index feature) {
 Sample ArcsOf(const Robot& robot, const Loads& loads, const Solution& solution) {
   Sample sample;
   sample.u = solution.u;
-  sample.beside = solution.disks - Positions(robot.arc(), solution.u);
+  sample.beside = solution.disks - Positions(EqualArcs(robot), solution.u);
   sample.features = AllFeatures(robot, loads, solution.u);
   return sample;
 }

@@ -87,7 +87,7 @@ Eigen::Matrix3Xd Corrected(const Robot& robot, const Eigen::MatrixXd& weights,
 }
 
 Eigen::Matrix3Xd Disks(const Robot& robot, const Eigen::Matrix3Xd& u, const Sample& sample) {
-  return Positions(robot.arc(), u) + sample.beside;
+  return Positions(EqualArcs(robot), u) + sample.beside;
 }
 
 Weights FitWeights(const Robot& robot, const Samples& samples, double penalty) {

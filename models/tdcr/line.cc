@@ -7,7 +7,7 @@ namespace continuum::tdcr {
 
 Line LineOfArcs(const Robot& robot, const Eigen::Matrix3Xd& u, const Eigen::MatrixXd& tension,
                 int per_arc) {
-  const Chain chain = Forward(robot.arc(), u);
+  const Chain chain = Forward(EqualArcs(robot), u);
   const Eigen::Index count = u.cols() * per_arc + 1;
   Line line{Eigen::VectorXd::LinSpaced(count, 0, robot.length),
             Eigen::Matrix3Xd(3, count),

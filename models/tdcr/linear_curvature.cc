@@ -31,16 +31,11 @@ Eigen::Matrix3Xd LinearCurvature::Curvatures(const Eigen::VectorXd& ends) const 
 }
 
 Eigen::Matrix3Xd LinearCurvature::Positions(const Eigen::Matrix3Xd& u) const {
-  Eigen::Matrix3Xd disks(3, arcs());
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d O = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < u.cols(); ++i) {
-    const Arc arc(arcs_[static_cast<std::size_t>(i)].length, u.col(i));
-    O += R * arc.p();
-    R = R * arc.Twisted(arc.Q());
-    disks.col(i) = O;
+  Eigen::VectorXd lengths(arcs());
+  for (Eigen::Index i = 0; i < lengths.size(); ++i) {
+    lengths[i] = arcs_[static_cast<std::size_t>(i)].length;
   }
-  return disks;
+  return tdcr::Positions(lengths, u);
 }
 
 std::vector<Eigen::Matrix3Xd> LinearCurvature::Gradient(const Eigen::Matrix3Xd& u) const {

@@ -37,7 +37,8 @@ Solution SolveDisks(const Robot& robot, const Loads& loads, const Loads* earlier
     balance.SetLoad(1);
     solution.x = x;
     solution.u = balance.Curvatures(x);
-    solution.disks = Positions(robot.arc(), solution.u);
+    solution.disks = Positions(EqualArcs(robot), solution.u);
+    solution.from = balance.from();
     if (found.outcome.ok()) solution.contacts = balance.ContactsAt(x);
     return found.outcome;
   });
@@ -121,6 +122,7 @@ Solution SolveRemembering(const Robot& robot, const Loads& loads, const Loads* e
     solution.stability = found.stability;
     balance.SetLoad(1);
     solution.x = x;
+    solution.from = balance.from();
     const RodBalance::Shape& shape = balance.Integrate(x);
     solution.u = shape.middles;
     solution.disks = shape.disks;

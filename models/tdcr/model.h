@@ -31,8 +31,11 @@ struct Solution {
   Eigen::Matrix3Xd u;      ///< kappa_x, kappa_y, tau of arcs 1..n [1/m]
   Eigen::Matrix3Xd disks;  ///< O_1..O_n [m], base frame
   Contacts contacts;       ///< eas, pcca and, of contacts that remember, crt_friction
-  Line line;               ///< crt and crt_friction
-  Eigen::VectorXd pull;    ///< T_k at the base of tendons driven by length [N]
+  /// What those with kAsItSlides slid from last: where the path began, or where contacts turned
+  /// back on it. Loads that describe this solution have it as `from`.
+  Contacts from;
+  Line line;             ///< crt and crt_friction
+  Eigen::VectorXd pull;  ///< T_k at the base of tendons driven by length [N]
 };
 
 /// The equilibrium that is reached by raising all loads together from zero.

@@ -32,7 +32,6 @@ statics::Reached Reach(const Robot& robot, const Loads& loads, Method method,
   const auto most = [&](int disk) { return robot.Place(disk + 1); };
   if (auto far = statics::TooFar(target, most)) return *far;
   Loads at = loads;
-  if (before != nullptr) at.from = LeftBy(robot, before->loads, method, before->solution);
   const auto stand = [&](const VectorXd& drives) -> std::optional<statics::Stand> {
     at.tension.assign(drives.begin(), drives.end());
     const Solution s = SolveGoingOn(robot, at, method, before);
@@ -47,7 +46,6 @@ statics::Reached ReachByLengths(const Robot& robot, const Loads& loads, Method m
                                 const statics::Target& target, const Before* before) {
   if (auto no = statics::NoPretension(target, robot.tendon_EA)) return *no;
   Loads wound = loads, pulled = loads;
-  if (before != nullptr) wound.from = LeftBy(robot, before->loads, method, before->solution);
   const Solution start = SolveGoingOn(robot, wound, method, before);
   pulled.length.resize(0);
   pulled.tension.assign(static_cast<std::size_t>(robot.tendons), 0);

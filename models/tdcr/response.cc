@@ -64,7 +64,7 @@ class RespondingDisks : public Tendons {
     const Loads loads = At(w);
     const DiskBalance<C> balance(robot_, loads);
     const Vector x = z;
-    const Chain chain = Forward(robot_.arc(), balance.Curvatures(x));
+    const Chain chain = Forward(EqualArcs(robot_), balance.Curvatures(x));
     const MatrixXd length = balance.LengthsAt(x);
     VectorXd rest = length.colwise().sum().transpose();
     if (by_length()) rest -= stretch_.Of(balance.TensionsAt(x), length);
@@ -145,14 +145,10 @@ std::optional<MatrixXd> Slopes(const Robot& robot, const Loads& loads, Method me
 
 }  // namespace
 
-Contacts LeftBy(const Robot& robot, const Loads& loads, Method method, const Solution& solution) {
-  const bool given = method == Method::kCrtFriction && solution.contacts.share.size() == 0;
-  return given ? AllSlid(robot, loads, solution.x.head<3>()).contacts : solution.contacts;
-}
-
 std::optional<statics::TipResponse> Respond(const Robot& robot, const Loads& loads, Method method,
                                             const Solution& solution) {
   Loads at = loads;
+  at.from = solution.from;
   if (method == Method::kCrt) at.mu = 0;
   double force = 0, tension = 0;
   auto slopes = Slopes(robot, at, method, solution.x, force, tension);

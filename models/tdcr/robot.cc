@@ -173,6 +173,12 @@ Loads Loads::Scaled(double load) const {
   return scaled;
 }
 
+bool SomeRest(const Contacts& contacts) {
+  constexpr double kSlides = 0.999;
+  const auto share = contacts.share.array().abs();
+  return (share > 0 && share < kSlides).any();
+}
+
 bool Loads::AsItSlides() const {
   return std::find(direction.begin(), direction.end(), kAsItSlides) != direction.end();
 }

@@ -88,6 +88,10 @@ struct Contacts {
   Eigen::MatrixXd share;
 };
 
+/// Whether some contact neither slides on nor has turned: its share is between -1 and 1, and not 0
+/// as where there is none.
+bool SomeRest(const Contacts& contacts);
+
 /// What acts on the robot in one case.
 struct Loads {
   std::vector<double> tension;  ///< T_k at the base [N], at least 0

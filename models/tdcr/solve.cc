@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "models/statics/error_table.h"
+#include "models/statics/foreign_options.h"
 #include "models/statics/limited_search.h"
 #include "models/statics/path_error.h"
 #include "models/statics/rows.h"
@@ -54,10 +55,9 @@ void CheckLists(const SolveRequest& request, const std::string& method) {
   const bool measured = !request.measured.empty();
   Refuse(request.equilibria && other, "--equilibria", jobs);
   Refuse(request.sweep != 0 && (other || measured), "--sweep", "--measured, " + jobs);
-  for (const auto& [option, file] :
-       {std::pair("--follow", &request.follow), std::pair("--outlines", &request.outlines)}) {
-    if (!file->empty()) throw Error::Input(option, "no such option for a tdcr robot");
-  }
+  statics::RefuseGiven("tdcr", {{"--follow", !request.follow.empty()},
+                                {"--outlines", !request.outlines.empty()},
+                                {"--sensitivity", request.sensitivity}});
   Refuse(!request.reach.empty() && (other || request.equilibria || measured), "--reach",
          "--equilibria, --measured, " + jobs);
   for (const auto& [option, file] :
@@ -111,10 +111,7 @@ int SolveCases(const SolveRequest& request, const Robot& robot, Method method, c
     const Eigen::VectorXd& pull = plain[i].pull;
     if (pull.size() > 0) s.loads.tension.assign(pull.begin(), pull.end());
     if (hybrid != nullptr && s.solution.outcome.ok()) Apply(*hybrid, robot, c.loads, s.solution);
-    const auto before = static_cast<std::size_t>(std::max(c.reference, 0));
-    if (c.reference >= 0 && plain[before].outcome.ok()) {
-      s.loads.from = LeftBy(robot, cases[before].loads, method, plain[before]);
-    }
+    s.loads.from = s.solution.from;
     if (request.equilibria) {
       AddEquilibria(robot, method, s, solved);
     } else {
@@ -192,7 +189,7 @@ Solved ReachTarget(const Robot& robot, Method method, const statics::Target& tar
       c.loads.tension.assign(s.solution.pull.begin(), s.solution.pull.end());
     }
     s.loads = c.loads;
-    if (before) s.loads.from = LeftBy(robot, before->loads, method, before->solution);
+    s.loads.from = s.solution.from;
   } else {
     s.solution.outcome = reached.outcome;
   }
@@ -256,7 +253,6 @@ int SolveTdcr(const SolveRequest& request) {
   WarnOfImplausibleRobot(request, file, robot);
   const std::string method = MethodName(request, robot);
   if (robot.has_sections()) RequireSolvable(request, file, robot, method);
-  Refuse(request.sensitivity, "--sensitivity", "the robot tdcr");
   Need(request.out, "--out", "the results");
   const bool learns = request.calibrate || request.hybrid == "train";
   CheckLists(request, method);

@@ -42,6 +42,9 @@ class DiskPlant : public Tendons {
   void SetLoad(double load) { balance_.SetLoad(load); }
   void SetTension(const VectorXd& tension) { balance_.SetTension(tension); }
   bool Residual(const VectorXd& x, VectorXd& f) { return balance_(x.data(), f.data()); }
+  VectorXd SlidAt(const VectorXd& x) { return balance_.SlidAt(x); }
+  bool SomeRest(const VectorXd& x) { return balance_.SomeRest(x); }
+  void GoOnFrom(const VectorXd& x) { balance_.GoOnFrom(x); }
   bool Linearize(const VectorXd& x, VectorXd& f, MatrixXd& k) {
     Vector balance(x.size());
     Matrix slope(x.size(), x.size());
@@ -94,6 +97,9 @@ class RodPlant : public Tendons {
   void SetLoad(double load) { balance_.SetLoad(load); }
   void SetTension(const VectorXd& tension) { balance_.SetTension(tension); }
   bool Residual(const VectorXd& x, VectorXd& f) { return balance_(x.data(), f.data()); }
+  VectorXd SlidAt(const VectorXd& x) { return balance_.SlidAt(x); }
+  bool SomeRest(const VectorXd& x) { return balance_.SomeRest(x); }
+  void GoOnFrom(const VectorXd& x) { balance_.GoOnFrom(x); }
   bool Linearize(const VectorXd& x, VectorXd& f, MatrixXd& k) {
     return numerics::Linearize(balance_, x, f, k);
   }

@@ -69,6 +69,12 @@ MatrixXd CableSlopes(const Task& task, const VectorXd& beta) {
   return slopes;
 }
 
+MatrixXd SlideAt(const Task& task, const VectorXd& beta, std::vector<double>& force) {
+  MatrixXd slide = MatrixXd::Zero(task.joints, task.cables);
+  CableForces(task, JointsAt(task.robot, beta), 1, task.robot.eps, force, nullptr, &slide);
+  return slide;
+}
+
 int UnstableDirections(Balance balance, const VectorXd& beta, const VectorXd& held) {
   constexpr double kHeld = 1e6;  // of a joint's stiffness, at the cables' own distance
   const Task& task = balance.task;
@@ -118,7 +124,8 @@ numerics::Outcome RisingSystem::Correct(double load, VectorXd& x) {
   options.damped = false;
   options.max_iterations = 12;
   VectorXd trial = x;
-  numerics::Outcome outcome = numerics::Newton(balance, trial, options);
+  numerics::Outcome outcome = numerics::Newton(balance, trial, options, factors_);
+  factored_ = factored_ || outcome.iterations > 0;
   if (!outcome.ok() && to_.HasFriction()) {  // contacts that turn widely, then sharply
     options = Tolerances();
     options.max_step = 0.3;
@@ -127,7 +134,7 @@ numerics::Outcome RisingSystem::Correct(double load, VectorXd& x) {
     trial = x;
     for (double eps : {1e-3, 3e-5, to_.robot.eps}) {
       balance.eps = std::max(eps, to_.robot.eps);
-      outcome = numerics::Newton(balance, trial, options);
+      outcome = numerics::Newton(balance, trial, options, factors_);
       outcome.iterations += spent;
       spent = outcome.iterations;
       if (!outcome.ok()) break;
@@ -163,6 +170,47 @@ bool RisingSystem::Relative(const VectorXd& x, VectorXd& r, MatrixXd* k) const {
   }
   r = -f / to_.robot.Stiffness();
   return r.allFinite();
+}
+
+VectorXd RememberingSystem::Slid(const VectorXd& x) const {
+  if (!to_.HasFriction()) return {};
+  MatrixXd beyond = CableLengths(to_.robot, x) / to_.robot.eps;
+  for (Eigen::Index m = beyond.rows() - 2; m >= 0; --m) beyond.row(m) += beyond.row(m + 1);
+  return beyond.reshaped();
+}
+
+bool RememberingSystem::SomeRest(const VectorXd& x) const {
+  constexpr double kSlides = 0.999;
+  std::vector<double> force;
+  const auto share = SlideAt(to_, x, force).array().abs().eval();
+  return (share > 0 && share < kSlides).any();
+}
+
+VectorXd RememberingSystem::Rate(double load, const VectorXd& x, bool exact) {
+  constexpr double kStep = 1e-5;
+  VectorXd before = x, now = x;
+  const bool valid = At(load - kStep)(x.data(), before.data());
+  const Balance balance = At(load);
+  if (!valid || !balance(x.data(), now.data())) return VectorXd::Zero(x.size());
+  const VectorXd by_load = (now - before) / kStep;
+  if (by_load.isZero(0)) return by_load;
+  if (exact || !factored_) {
+    MatrixXd slope(x.size(), x.size());
+    if (!numerics::Linearize(balance, x, now, slope)) return VectorXd::Zero(x.size());
+    factors_.compute(slope);
+    factored_ = true;
+  }
+  return factors_.solve(-by_load);
+}
+
+void RememberingSystem::GoOnFrom(const VectorXd& x) {
+  if (!to_.HasFriction()) return;
+  std::vector<double> force;
+  const MatrixXd slide = SlideAt(load_ == 1 ? to_ : *now_, x, force);
+  going_on_.slide = slide;
+  going_on_.reference = CableLengths(to_.robot, x);
+  load_ = 1;  // of the old contacts no task is left
+  ++parts_;
 }
 
 }  // namespace continuum::twin_pivot

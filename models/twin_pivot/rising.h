@@ -5,6 +5,7 @@
 
 #include "models/statics/rising_load.h"
 #include "models/twin_pivot/balance.h"
+#include "sim/numerics/newton.h"
 
 namespace continuum::twin_pivot {
 
@@ -20,6 +21,9 @@ int UnstableDirections(Balance balance, const Eigen::VectorXd& beta,
 
 /// Slopes of the cables' lengths by beta, cables x joints [m].
 Eigen::MatrixXd CableSlopes(const Task& task, const Eigen::VectorXd& beta);
+
+/// s of every contact, row m at disc m; 0 without friction. force: F_mj, as CableForces.
+Eigen::MatrixXd SlideAt(const Task& task, const Eigen::VectorXd& beta, std::vector<double>& force);
 
 /// The robot as a system for statics::FollowRisingLoad: loads grow from those of one task to those
 /// of another, contacts as sharp as robot.eps.
@@ -39,14 +43,37 @@ class RisingSystem {
   /// For statics::DenseSystem.
   bool Relative(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* k) const;
 
- private:
+ protected:
   Balance At(double load);
 
   const Task& from_;
   const Task& to_;
   std::optional<Task> now_;
   double load_ = 1;
+  numerics::FactorsFor<Balance, Eigen::Dynamic> factors_{0};  ///< of the last tangent
+  bool factored_ = false;
+
+ private:
   int driven_ = 0;
+};
+
+/// The same with contacts that go on from step to step (statics::TurningContacts).
+class RememberingSystem : public RisingSystem {
+ public:
+  /// `to` gets what the contacts slid from last.
+  RememberingSystem(const Task& from, Task& to) : RisingSystem(from, to), going_on_(to) {}
+
+  Eigen::VectorXd Slid(const Eigen::VectorXd& x) const;
+  bool SomeRest(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd Rate(double load, const Eigen::VectorXd& x, bool exact);
+  void GoOnFrom(const Eigen::VectorXd& x);
+
+  /// Parts of the way so far, the last one included.
+  int parts() const { return parts_; }
+
+ private:
+  Task& going_on_;
+  int parts_ = 1;
 };
 
 }  // namespace continuum::twin_pivot

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "error.h"
 #include "models/twin_pivot/balance.h"
@@ -108,13 +110,6 @@ bool FarFromBuckling(const Task& task) {
   return force * length * length < kMost * stiffness;
 }
 
-// s of every contact, row m at disc m; 0 without friction.
-Eigen::MatrixXd SlideAt(const Task& task, const VectorXd& beta, std::vector<double>& force) {
-  Eigen::MatrixXd slide = Eigen::MatrixXd::Zero(task.joints, task.cables);
-  CableForces(task, JointsAt(task.robot, beta), 1, task.robot.eps, force, nullptr, &slide);
-  return slide;
-}
-
 // Adds to what was spent. Leaves the stability of its answer alone.
 bool Rise(const Task& from, const Task& to, Solution& solution,
           const statics::RisingOptions& options) {
@@ -138,6 +133,22 @@ bool IsRoot(const Task& task, const VectorXd& beta) {
   VectorXd f(task.joints);
   const Balance balance{task, 1, 1, task.robot.eps};
   return balance(beta.data(), f.data()) && f.norm() <= Tolerances().accept;
+}
+
+// The loads grow from those of a row before. Where contacts turn back, `to` gets what they slid
+// from last.
+bool GoOn(const Task& from, Task& to, Solution& solution, const statics::RisingOptions& options) {
+  Task now = to;
+  RememberingSystem system(from, now);
+  const int spent = solution.outcome.iterations;
+  solution.outcome =
+      statics::FollowRisingLoad(system, solution.beta, solution.stability.branch, options);
+  solution.outcome.iterations += spent;
+  if (!solution.outcome.ok() || IsRoot(to, solution.beta)) return solution.outcome.ok();
+  to.reference = now.reference;
+  to.slide = now.slide;
+  solution.parts = system.parts();
+  return true;
 }
 
 // The loads grow in parts, and every contact goes on from the part before: one that turns back on
@@ -228,25 +239,43 @@ void Fallback(const Task& task, const VectorXd& other, Solution& solution) {
   solution.stability.branch = statics::Branch::kOther;
 }
 
-// Along the loads from where solution.beta is in balance, as one way or in parts; the other time
-// where the first fails; else whatever stands. `to` gets what the contacts slid from.
-void Follow(const Task& from, Task& to, const VectorXd& other, Solution& solution, bool parts_first,
-            const statics::RisingOptions& options = {}) {
+using Way = std::function<bool(Solution&)>;
+
+// Along the loads by the first of these ways that leads to a stable shape; all begin where
+// solution.beta is in balance. Else whatever stands.
+void Follow(const Task& to, const VectorXd& other, Solution& solution,
+            const std::vector<Way>& ways) {
   solution.stability = {};
   const Solution begin = solution;
-  const auto rises = [&](bool in_parts) {
+  for (const Way& rises : ways) {
     const int spent = solution.outcome.iterations;
     solution = begin;
     solution.outcome.iterations = spent;
-    return in_parts ? RiseInParts(from, to, solution, kParts, AtOnce()).has_value()
-                    : Rise(from, to, solution, options);
-  };
-  const bool friction = to.HasFriction();
-  if (friction && parts_first && RiseInFewParts(from, to, solution)) return;
-  if (friction && parts_first && rises(true)) return;
-  if (rises(false)) return;
-  if (friction && !parts_first && rises(true)) return;
+    if (rises(solution)) return;
+  }
   Fallback(to, other, solution);
+}
+
+// `to` gets what the contacts slid from.
+void FollowFromRest(Task& to, const VectorXd& other, Solution& solution) {
+  const Task from = to.Unloaded();
+  const Way few = [&](Solution& s) { return RiseInFewParts(from, to, s); };
+  const Way parts = [&](Solution& s) {
+    return RiseInParts(from, to, s, kParts, AtOnce()).has_value();
+  };
+  const Way at_once = [&](Solution& s) { return Rise(from, to, s, {}); };
+  Follow(to, other, solution,
+         to.HasFriction() ? std::vector<Way>{few, parts, at_once} : std::vector<Way>{at_once});
+}
+
+void FollowOn(const Task& from, Task& to, Solution& solution) {
+  const Way on = [&](Solution& s) { return GoOn(from, to, s, AtOnce()); };
+  const Way parts = [&](Solution& s) {
+    return RiseInParts(from, to, s, kParts, AtOnce()).has_value();
+  };
+  const VectorXd begin = solution.beta;
+  Follow(to, begin, solution,
+         to.HasFriction() ? std::vector<Way>{on, parts} : std::vector<Way>{on});
 }
 
 void Describe(const Task& task, Solution& solution) {
@@ -304,9 +333,8 @@ Solution Solve(const Robot& robot, const Load& load, Method method,
       }
     }
     const VectorXd other = solution.beta;
-    const Task unloaded = task.Unloaded();
     solution.beta = straight;
-    Follow(unloaded, task, other, solution, true);
+    FollowFromRest(task, other, solution);
     return solution.outcome;
   });
   Describe(task, solution);
@@ -327,7 +355,7 @@ Solution SolveFrom(const Robot& robot, const Load& earlier, const Solution& befo
   }
   solution.outcome = numerics::Limited(kMostSystems, [&] {
     solution.beta = before.beta;
-    Follow(from, task, before.beta, solution, false, AtOnce());
+    FollowOn(from, task, solution);
     return solution.outcome;
   });
   Describe(task, solution);

@@ -22,6 +22,10 @@ requires(Matrix::RowsAtCompileTime == Eigen::Dynamic &&
 
 }  // namespace internal
 
+/// Factors of the J of a problem of N unknowns.
+template <class Problem, int N>
+using FactorsFor = typename internal::FactorsOf<Problem, Eigen::Matrix<double, N, N>>::type;
+
 /// Damped Newton for as many equations as unknowns, from x to x: J dx = -f, |dx| <= max_step, then
 /// halved until |f| falls by the Armijo rule (1e-4) and the point is in the domain. A factored J is
 /// used again for as long as a step with it leaves less than a twentieth of |f|. One step is taken
@@ -31,10 +35,12 @@ requires(Matrix::RowsAtCompileTime == Eigen::Dynamic &&
 /// compute(J) and solve(b).
 ///
 /// With `damped` false it takes full steps and gives up as soon as one does not halve |f|: it then
-/// stays on the branch it was started on. x is left at the best point, also on failure.
+/// stays on the branch it was started on. x is left at the best point, also on failure. `factors`
+/// are left as those of the last J, which is that of a point near the root; untouched where no
+/// iteration was needed.
 template <class Problem, int N>
-Outcome Newton(const Problem& problem, Eigen::Matrix<double, N, 1>& x,
-               const Options& options = {}) {
+Outcome Newton(const Problem& problem, Eigen::Matrix<double, N, 1>& x, const Options& options,
+               FactorsFor<Problem, N>& factors) {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
   Outcome outcome;
@@ -43,7 +49,6 @@ Outcome Newton(const Problem& problem, Eigen::Matrix<double, N, 1>& x,
   if (!Linearize(problem, x, f, jacobian)) {
     return internal::Failed(outcome, Status::kOutOfDomain, "the start is out of the domain");
   }
-  typename internal::FactorsOf<Problem, Matrix>::type factors(x.size());
   bool factored = false;
   bool linearized = true;
   outcome.residual = f.norm();
@@ -93,6 +98,13 @@ Outcome Newton(const Problem& problem, Eigen::Matrix<double, N, 1>& x,
   }
   outcome.status = Status::kOk;
   return outcome;
+}
+
+template <class Problem, int N>
+Outcome Newton(const Problem& problem, Eigen::Matrix<double, N, 1>& x,
+               const Options& options = {}) {
+  FactorsFor<Problem, N> factors(x.size());
+  return Newton(problem, x, options, factors);
 }
 
 }  // namespace continuum::numerics

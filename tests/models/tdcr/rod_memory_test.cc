@@ -51,6 +51,22 @@ TEST(TdcrRodMemory, OnePullDoesNotDependOnTheNumberOfRows) {
   EXPECT_LT((Tip(SolveCase(robot, Pull(robot, high), kRod)) - Tip(once)).norm(), 1e-6);
 }
 
+// The precurved rod turns as it bends: contacts slide one way and then the other within a row.
+TEST(TdcrRodMemory, ContactsThatTurnBackWithinARowAreFollowed) {
+  Robot robot = Nominal();
+  robot.natural = {3, -4, 2.5};
+  struct Row {
+    std::vector<double> low, high;
+  };
+  for (const Row& row :
+       {Row{{0.72, 0.33, 0.29}, {0.52, 2.41, 4.82}}, {{1.96, 1.74, 0.58}, {7.69, 4.31, 5.42}}}) {
+    const Solution start = SolveCase(robot, Pull(robot, row.low), kRod);
+    const Solution once = InRows(robot, row.low, row.high, 1, kRod, start);
+    const Solution parts = InRows(robot, row.low, row.high, 100, kRod, start);
+    EXPECT_LT((Tip(once) - Tip(parts)).norm(), 1e-6);
+  }
+}
+
 TEST(TdcrRodMemory, ACycleClosesAHysteresisLoop) {
   const Robot robot = Nominal();
   const std::vector<double> low{1, 0.5, 0.5}, high{5, 0.5, 0.5};
@@ -67,7 +83,7 @@ TEST(TdcrRodMemory, ACycleClosesAHysteresisLoop) {
 }
 
 // On the way back some contacts have turned and others hold. The balance of that state by the
-// polygon, and its shares from the lengths of the two states.
+// polygon, and its shares from the lengths of that state and of the one that contacts slid from.
 TEST(TdcrRodMemory, APartOfTheWayBackIsThatOfAnIndependentPolygon) {
   const Robot robot = Nominal();
   const std::vector<double> low{1, 0.5, 0.5}, high{5, 0.5, 0.5}, part{4.4, 0.5, 0.5};
@@ -81,9 +97,9 @@ TEST(TdcrRodMemory, APartOfTheWayBackIsThatOfAnIndependentPolygon) {
   const Eigen::Index contacts = c.share.rows();
   Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
   for (Eigen::Index i = contacts - 1; i >= 0; --i) {
-    beyond += (up.contacts.length.row(i) - c.length.row(i)).transpose();
+    beyond += (down.from.length.row(i) - c.length.row(i)).transpose();
     for (int k = 0; k < 3; ++k) {
-      const double share = statics::SlideFrom(up.contacts.share(i, k), beyond[k] / kGivesWay);
+      const double share = statics::SlideFrom(down.from.share(i, k), beyond[k] / kGivesWay);
       EXPECT_NEAR(c.share(i, k), share, 1e-9);
     }
   }

@@ -165,5 +165,28 @@ TEST(TdcrStability, AWarmStartAtASaddleFindsTheRisingShape) {
   EXPECT_NEAR(s.disks(2, 8), -0.0564, 1e-3);
 }
 
+// Forces that pull along the rod: one Newton from rest ends on the path of the load, which is
+// followed in small steps here.
+TEST(TdcrStability, HangingLoadsLeadAlongTheirPathAtOnce) {
+  const Robot robot = Bare();
+  for (const Vector3d& force : {Vector3d(0.05, 0.02, 0.6), {-0.03, 0.04, 2}, {0.02, 0, 5}}) {
+    const auto at = [&](double share) {
+      return Of(robot, {3 * share, 1 * share, 0}, share * force);
+    };
+    Eigen::VectorXd x = SolveCase(robot, at(0.02), Method::kCrt).x;
+    Solution path;
+    for (double share = 0.04; share < 1.01; share += 0.02) {
+      path = SolveNear(robot, at(share), Method::kCrt, x);
+      ASSERT_TRUE(path.outcome.ok());
+      x = path.x;
+    }
+    const Solution s = SolveCase(robot, at(1), Method::kCrt);
+    ASSERT_TRUE(s.outcome.ok()) << s.outcome.why;
+    EXPECT_EQ(s.stability.branch, Branch::kRising);
+    EXPECT_LT((s.disks - path.disks).norm(), 1e-6 * robot.length);
+    EXPECT_LE(s.outcome.iterations, 15);
+  }
+}
+
 }  // namespace
 }  // namespace continuum::tdcr

@@ -65,6 +65,18 @@ TEST(TwinPivotMemory, OnePullDoesNotDependOnTheNumberOfRows) {
   }
 }
 
+// The second section pulls the cables of the first one to and fro within a row.
+TEST(TwinPivotMemory, ContactsThatTurnBackWithinARowAreFollowed) {
+  const Robot robot = Prototype("c");
+  const std::vector<double> low{1.2, 3.1, 2.4, 0.8, 3.6, 1.1, 0.9, 2.7};
+  const std::vector<double> high{8.4, 1.6, 3.2, 6.9, 1.3, 7.8, 5.1, 2.2};
+  const Solution start = Solve(robot, Pull(low));
+  const Solution once = InRows(robot, low, high, 1, &start);
+  const Solution parts = InRows(robot, low, high, 400, &start);
+  EXPECT_GT(once.parts, 1);
+  EXPECT_LT((once.tip - parts.tip).norm(), 1e-6);
+}
+
 TEST(TwinPivotMemory, ACycleClosesAHysteresisLoop) {
   const Robot robot = Prototype("b");
   const std::vector<double> low{12, 12, 9.81, 9.81};
