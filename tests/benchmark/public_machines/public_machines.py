@@ -177,9 +177,9 @@ def double(folder):
     (folder / "model.xml").write_text(MJCF.format(
         name="double pendulum", gravity=-GRAVITY, extension="",
         bodies=f'<body name="inner"><joint name="q1" axis="0 1 0" damping="0.008"/><inertial pos="0 0 {-a1}" '
-               f'mass="{m1}" diaginertia="{1.3 * J1} {1.3 * J1} 1e-4"/><body name="outer" pos="0 0 {-LINKS["l"]}">'
+               f'mass="{m1}" diaginertia="0.05 {1.3 * J1} 0.05"/><body name="outer" pos="0 0 {-LINKS["l"]}">'
                f'<joint name="q2" axis="0 1 0" damping="0.001"/><inertial pos="0 0 {-a2}" mass="{0.8 * m2}" '
-               f'diaginertia="{0.7 * J2} {0.7 * J2} 1e-4"/></body></body>',
+               f'diaginertia="0.05 {0.7 * J2} 0.05"/></body></body>',
         more='<sensor><jointpos name="q1" joint="q1"/><jointpos name="q2" joint="q2"/></sensor>'))
     write_experiment(
         folder, ["  []"], [line(column=q, unit="rad", sensor=q, sigma=noise) for q in ("q1", "q2")],
