@@ -15,6 +15,7 @@ import sys
 import zlib
 
 SCALARS = {1: "b", 2: "B", 3: "h", 4: "H", 5: "i", 6: "I", 7: "f", 9: "d", 12: "q", 13: "Q"}
+COMPLEX = 0x800  # a flag of an array
 
 
 class Refusal(Exception):
@@ -36,16 +37,33 @@ def number(text, where):
     return value
 
 
+def positive(text, where):
+    value = number(text, where)
+    if value <= 0:
+        refuse(where, "a positive number", text)
+    return value
+
+
+def rise(times):
+    """Refuses a time that is not after the one before it; times: (where, number)."""
+    last = -math.inf
+    for where, time in times:
+        if time <= last:
+            refuse(where, f"a time after {last:g}", f"{time:g}")
+        last = time
+
+
 def read_table(path, columns, least=2):
-    """The header of a CSV and its rows, (where, {column: text}); all of `columns` are there."""
+    """The header of a CSV and its rows, (where, {column: text}); each of `columns` is there once."""
     rows = []
     try:
-        with path.open(newline="", encoding="utf-8") as file:
+        with path.open(newline="", encoding="utf-8-sig") as file:
             lines = csv.reader(file)
             header = next(lines, [])
-            missing = [column for column in columns if column not in header]
-            if missing:
-                refuse(f"{path}:1", f"a column '{missing[0]}'", ", ".join(header) or "nothing")
+            for column in columns:
+                if header.count(column) != 1:
+                    often = "two of it" if column in header else ", ".join(header) or "nothing"
+                    refuse(f"{path}:1", f"a column '{column}'", often)
             for cells in lines:
                 where = f"{path}:{lines.line_num}"
                 if len(cells) != len(header):
@@ -73,6 +91,8 @@ def elements(data, at=0):
 def matrix(part):
     """(name, rows, columns, numbers by columns) of a real matrix."""
     parts = list(elements(part))
+    if struct.unpack_from("<I", parts[0][1])[0] & COMPLEX:
+        raise LookupError("complex numbers")
     rows, columns = struct.unpack("<2i", parts[1][1])
     kind, data = parts[3]
     return (parts[2][1].decode("ascii"), rows, columns,
@@ -107,7 +127,8 @@ def write_folder(target, files):
             os.replace(part, path)
     except BaseException:
         for part in parts:
-            part.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                part.unlink()
         if new:
             with contextlib.suppress(OSError):
                 target.rmdir()

@@ -17,11 +17,12 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import importer  # noqa: E402
 
 RECORDING, VARIABLES = "DATA_EMPS.mat", ("t", "qg", "qm", "vir")
+END = 24.84  # s
 EXPERIMENT = """format: 1
 model: {model}
 logs:
   - {{file: {recording}, trial: first, use: train, window: [0, 12]}}
-  - {{file: {recording}, trial: second, use: validate, window: [12.47, 24.84]}}
+  - {{file: {recording}, trial: second, use: validate, window: [12.47, {end}]}}
 time: {{column: t, unit: s}}
 start: measured
 inputs:
@@ -42,12 +43,18 @@ folds: window
 def convert(source, model):
     path = source / RECORDING
     expected = f"a MATLAB file (version 5) with {', '.join(VARIABLES)} of one length"
-    rows = {name: rows * columns for name, rows, columns, _ in importer.read_mat(path, expected)}
-    lengths = {rows.get(name) for name in VARIABLES}
-    if len(lengths) != 1 or None in lengths:
-        importer.refuse(path, expected, ", ".join(f"{n} ({k})" for n, k in rows.items()))
+    found = {name: values for name, _, _, values in importer.read_mat(path, expected)}
+    lengths = {len(found.get(name, ())) for name in VARIABLES}
+    if len(lengths) != 1 or 0 in lengths:
+        importer.refuse(path, expected, ", ".join(f"{n} ({len(v)})" for n, v in found.items()))
+    for name in VARIABLES:
+        for k, value in enumerate(found[name], 1):
+            importer.number(value, f"{path}: {name}({k})")
+    importer.rise((f"{path}: t({k})", time) for k, time in enumerate(found["t"], 1))
+    if found["t"][0] > 0 or found["t"][-1] < END:
+        importer.refuse(f"{path}: t", f"0 to {END} s", f"{found['t'][0]:g} to {found['t'][-1]:g} s")
     return ({RECORDING: path.read_bytes(),
-             "experiment.yaml": EXPERIMENT.format(model=model, recording=RECORDING)},
+             "experiment.yaml": EXPERIMENT.format(model=model, recording=RECORDING, end=END)},
             f"{RECORDING} and experiment.yaml")
 
 

@@ -17,6 +17,7 @@ import importer  # noqa: E402
 
 K_T, RESISTANCE = 0.303, 3.37  # N m/A, Ohm
 TICKS_PER_RAD, DUTY_DIVISOR = 4096 / (2 * math.pi), 256 * 885
+MAX_GAIN = 16383  # of the firmware's register
 COLUMNS = {"t": "timestamp", "q": "position", "w": "speed", "goal": "goal_position",
            "on": "torque_enable"}
 
@@ -28,11 +29,15 @@ def servo_stiffness(firmware_gain, volts):
 
 def table(log, where):
     """The entries as CSV."""
-    rows = [",".join(COLUMNS)]
+    rows, times = [",".join(COLUMNS)], []
     for k, entry in enumerate(log["entries"]):
         cells = {name: importer.number(entry[key], f"{where}: entries[{k}].{key}")
                  for name, key in COLUMNS.items()}
+        if cells["on"] not in (0, 1):
+            importer.refuse(f"{where}: entries[{k}].{COLUMNS['on']}", "0 or 1", entry[COLUMNS["on"]])
+        times.append((f"{where}: entries[{k}].{COLUMNS['t']}", cells["t"]))
         rows.append(",".join(str(int(x)) if name == "on" else repr(x) for name, x in cells.items()))
+    importer.rise(times)
     if len(rows) < 3:
         importer.refuse(f"{where}: entries", "at least 2", len(rows) - 1)
     return "\n".join(rows) + "\n"
@@ -80,11 +85,13 @@ def experiment(logs, model):
 def read(file):
     """A recording with the gains of its servo, and its entries as CSV."""
     try:
-        log = json.loads(file.read_text(encoding="utf-8"))
+        log = json.loads(file.read_text(encoding="utf-8-sig"))
         log["kp"], log["trajectory"] = int(log["kp"]), str(log["trajectory"])
-        importer.number(log["vin"], f"{file}: vin")
+        if not 0 < log["kp"] <= MAX_GAIN:
+            importer.refuse(f"{file}: kp", f"a gain of 1 to {MAX_GAIN}", log["kp"])
+        importer.positive(log["vin"], f"{file}: vin")
         return log, table(log, file)
-    except (ValueError, LookupError, TypeError) as error:
+    except (ValueError, LookupError, TypeError, RecursionError, OverflowError) as error:
         importer.refuse(file, "a recording with kp, vin, trajectory and entries", repr(error))
 
 

@@ -68,8 +68,11 @@ def jaw(share):
 
 def read(path):
     """The rows of a motion, {column: (text, number)}."""
-    return [{name: (row[name], importer.number(row[name], f"{where}, column '{name}'")) for name in COLUMNS}
-            for where, row in importer.read_table(path, COLUMNS)[1]]
+    table = importer.read_table(path, COLUMNS)[1]
+    rows = [{name: (row[name], importer.number(row[name], f"{where}, column '{name}'")) for name in COLUMNS}
+            for where, row in table]
+    importer.rise((f"{where}, column 't'", row["t"][1]) for (where, _), row in zip(table, rows))
+    return rows
 
 
 def pace(rows):
@@ -88,10 +91,7 @@ def table(rows):
 
 
 def read_seconds(text):
-    seconds = importer.number(text, "SECONDS")
-    if seconds <= 0:
-        importer.refuse("SECONDS", "a positive number of seconds", text)
-    return seconds
+    return importer.positive(text, "SECONDS")
 
 
 def halves(names, first, model, seconds):

@@ -245,6 +245,7 @@ def read(path):
         importer.refuse(path, expected, f"{rows} x {columns}")
     if not all(map(math.isfinite, values)):
         importer.refuse(path, expected, "numbers that are not finite")
+    importer.rise((f"{path}: row {k}", time) for k, time in enumerate(values[:rows], 1))
     return [values[row::rows] for row in range(rows)]
 
 

@@ -40,13 +40,14 @@ def family(label, where):
 def read_families(source):
     """Rows of each family in file order, time from the first row of all."""
     numbers = ["timestamp"] + [f"servo_{k}_mm" for k in SERVOS] + [f"tip_{axis}" for axis in "xyz"]
-    families, start = {}, None
+    families, times = {}, []
     for where, row in importer.read_table(source, numbers + ["pattern_label"])[1]:
         values = {name: importer.number(row[name], f"{where}, column '{name}'") for name in numbers}
-        start = values["timestamp"] if start is None else start
-        log = {"t": f"{values['timestamp'] - start:.4f}"}
+        times.append((f"{where}, column 'timestamp'", values["timestamp"]))
+        log = {"t": f"{values['timestamp'] - times[0][1]:.4f}"}
         log |= {key: row[key] for key in row if key not in ("timestamp", "pattern_label")}
         families.setdefault(family(row["pattern_label"], where), []).append(log)
+    importer.rise(times)
     return families
 
 

@@ -38,13 +38,15 @@ def table(path):
     """The rows behind their time, as CSV."""
     numbers = [f"phi{k}" for k in range(1, 7)] + [f"{axis}{k}" for k in (1, 2, 3) for axis in "xyz"]
     header, rows = importer.read_table(path, ["ID"] + numbers)
+    places = [f"{where}, column 'ID'" for where, _ in rows]
+    times = [importer.number(row["ID"], place) * PERIOD for place, (_, row) in zip(places, rows)]
+    importer.rise(zip(places, times))
     text = io.StringIO()
     out = csv.writer(text, lineterminator="\n")
     out.writerow(["t"] + header)
-    for where, row in rows:
+    for (where, row), time in zip(rows, times):
         for name in numbers:
             importer.number(row[name], f"{where}, column '{name}'")
-        time = importer.number(row["ID"], f"{where}, column 'ID'") * PERIOD
         out.writerow([f"{time:.2f}"] + list(row.values()))
     return text.getvalue()
 

@@ -40,14 +40,15 @@ class Importers : public ::testing::Test {
     scratch_.Write("in/" + name, content);
   }
 
-  static std::string Recording(int entries, const std::string& position = "0.1") {
+  static std::string Recording(int entries, const std::string& position = "0.1",
+                               const std::string& kp = "400", const std::string& on = "true") {
     std::string all;
     for (int k = 0; k < entries; ++k) {
       all += std::string(k ? "," : "") + "{\"timestamp\": " + std::to_string(k) +
              ", \"position\": " + position +
-             ", \"speed\": 0, \"goal_position\": 1, \"torque_enable\": true}";
+             ", \"speed\": 0, \"goal_position\": 1, \"torque_enable\": " + on + "}";
     }
-    return R"({"kp": 400, "vin": 7.4, "trajectory": "sin", "entries": [)" + all + "]}";
+    return R"({"kp": )" + kp + R"(, "vin": 7.4, "trajectory": "sin", "entries": [)" + all + "]}";
   }
   static std::string Arm(const std::string& row) {
     return "timestamp,pattern_label,servo_4_mm,servo_3_mm,servo_9_mm,servo_5_mm,servo_2_mm,"
@@ -135,6 +136,42 @@ TEST_F(Importers, NameTheRecordingOfAServoThatTheyCannotRead) {
   Source("a.json", Recording(3));
   Source("b.json", Recording(3));
   EXPECT_THAT(Refusal(kServo), HasSubstr("in/b.json: expected one recording for each gain"));
+  Source("b.json", std::string(100000, '['));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in/b.json: expected a recording"));
+}
+
+TEST_F(Importers, NameTheServoThatCannotBe) {
+  for (const std::string kp : {"0", "-400", "1e300", "Infinity"}) {
+    Source("a.json", Recording(3, "0.1", kp));
+    EXPECT_THAT(Refusal(kServo), HasSubstr("in/a.json: ")) << kp;
+  }
+  Source("a.json", Recording(3, "0.1", "0"));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("a.json: kp: expected a gain of 1 to 16383, found 0"));
+  Source("a.json", Recording(3, "0.1", "400", "0.5"));
+  EXPECT_THAT(Refusal(kServo),
+              HasSubstr("a.json: entries[0].torque_enable: expected 0 or 1, found 0.5"));
+}
+
+TEST_F(Importers, NameATimeThatDoesNotRise) {
+  Source("one_train.csv", Arm("10,rep1_home,0,0,0,0,0,0,0,0,0,1,2,3\n"));
+  EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv:3, column 'timestamp': expected a time after "
+                                       "10, found 10"));
+  Source("observations_controlled_1.csv", Trunk("-1,1,1,1,1,1,1,0,0,0,0,0,0,0,0,0\n"));
+  EXPECT_THAT(Refusal(kTrunk), HasSubstr("1.csv:3, column 'ID': expected a time after 0"));
+  std::string log = Recording(3);
+  Source("a.json", log.replace(log.find("\"timestamp\": 1"), 14, "\"timestamp\": 9"));
+  EXPECT_THAT(Refusal(kServo),
+              HasSubstr("in/a.json: entries[2].timestamp: expected a time after 9, found 2"));
+}
+
+TEST_F(Importers, ReadPastAByteOrderMarkAndFindAColumnThatIsThereTwice) {
+  const std::string rows = Arm("11,rep1_home,0,0,0,0,0,0,0,0,0,1,2,3\n");
+  Source("one_train.csv", "\xef\xbb\xbf" + rows);
+  EXPECT_EQ(Import(kArm, {"in", "out"}).exit_code, 0);
+  std::filesystem::remove_all(scratch_ / "out");
+  std::string twice = rows;
+  Source("one_train.csv", twice.replace(twice.find("tip_z"), 5, "tip_y"));
+  EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv:1: expected a column 'tip_y', found two"));
 }
 
 TEST_F(Importers, NameTheRowOfATableThatTheyCannotRead) {
@@ -166,6 +203,9 @@ TEST_F(Importers, ReadAnArmsMotionsWithTheJawAsAnAngle) {
   EXPECT_THAT(Refusal("so101"), HasSubstr("a.csv: expected at least 2 rows, found 0"));
   for (const std::string name : {"a", "b", "c", "d"})
     Source("logs/" + name + ".csv", header + "\n" + row + "\n" + row + "\n");
+  EXPECT_THAT(Refusal("so101"), HasSubstr("a.csv:3, column 't': expected a time after 0.5"));
+  for (const std::string name : {"a", "b", "c", "d"})
+    Source("logs/" + name + ".csv", header + "\n" + row + "\n1" + row + "\n");
   EXPECT_EQ(Import("so101", {"in", "out"}).out, "4 motions and 5 experiments in out\n");
   EXPECT_THAT(testing::Scratch::Text(scratch_ / "out/a.csv"), HasSubstr(",0.25,0.31000\n"));
 }
@@ -181,7 +221,7 @@ TEST_F(Importers, LeaveAWholeFolder) {
   Source("one_train.csv", Arm("11,rep1_pair12_same_hold,0,0,0,0,0,0,0,0,0,1,2,3\n"));
   EXPECT_THAT(Refusal(kArm, {"in", "out", "0"}), HasSubstr("EVERY: expected a number of rows"));
   EXPECT_THAT(Refusal("so101", {"in", "out", "0"}),
-              HasSubstr("SECONDS: expected a positive number of seconds"));
+              HasSubstr("SECONDS: expected a positive number, found 0"));
   const auto done = Import(kArm, {"in", "out"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(done.out, "2 logs and experiment.yaml in out\n");
