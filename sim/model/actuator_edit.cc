@@ -5,6 +5,7 @@
 
 #include "binding/actuator_type.h"
 #include "error.h"
+#include "sim/io/decimal.h"
 
 namespace continuum {
 namespace {
@@ -56,9 +57,13 @@ void LimitForce(mjsActuator& a, double limit) {
                        (a.forcelimited == mjLIMITED_AUTO && (range[0] != 0 || range[1] != 0));
   const double lower = limited ? std::max(range[0], -limit) : -limit,
                upper = limited ? std::min(range[1], limit) : limit;
+  if (!(limit > 0))
+    throw Error::Input(Who(a) + ": force_limit", "a positive number", Decimal(limit));
   if (!(lower < upper))
-    throw Error::Input(Who(a) + ": force limit", "one within its forcerange",
-                       std::to_string(limit));
+    throw Error::Input(
+        Who(a) + ": force_limit",
+        "one within its forcerange, " + Decimal(range[0]) + " to " + Decimal(range[1]),
+        Decimal(limit));
   range[0] = lower, range[1] = upper;
   a.forcelimited = mjLIMITED_TRUE;
 }

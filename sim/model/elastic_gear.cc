@@ -134,6 +134,10 @@ mjsJoint* GearMotorOf(mjSpec& spec, const mjsJoint& joint) {
 void SetGearCompliance(mjSpec& spec, mjsJoint& joint, const mjModel& compiled, double compliance,
                        const GearEdits& edits) {
   if (mjsTendon* const present = GearOf(spec, joint)) {
+    if (!(compliance > 0))
+      throw Error::Input(Who(joint) + ": gear_compliance",
+                         "a positive number, as the model has its elastic gear",
+                         Decimal(compliance));
     edits.before(present->element);
     present->stiffness[0] = 1 / compliance;
     return;

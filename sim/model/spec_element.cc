@@ -133,6 +133,8 @@ double SpecElement::Get(std::string_view attribute) const {
 
 // What belongs to the gear of a joint; false: nothing else is called so.
 bool SpecElement::SetGear(std::string_view attribute, double value) {
+  if (attribute.starts_with("gear_") && !(value >= 0))
+    throw Error::Input(Who() + ": " + std::string(attribute), "a number >= 0", Decimal(value));
   mjsJoint& joint = *mjs_asJoint(element_);
   const auto save = [&](mjsElement* e) {
     others_.push_back(SpecElement(spec_, e, compiled_).Save());

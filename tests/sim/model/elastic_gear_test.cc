@@ -239,5 +239,27 @@ TEST(ElasticGear, SaysWhatAJointLacks) {
   EXPECT_THAT(message(light), HasSubstr("the inertia of the motor"));
 }
 
+// A spring or damper below zero creates energy.
+TEST(ElasticGear, RefusesWhatCreatesEnergy) {
+  const ModelSpec wheel = ModelSpec::Parse(Wheel()), extended = wheel.With(Gear(0.05), {});
+  const auto message = [](const ModelSpec& model, std::vector<Change> changes) {
+    try {
+      model.Build(changes);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  for (const std::string attribute : {"gear_compliance", "gear_damping", "gear_play"}) {
+    for (const ModelSpec* const model : {&wheel, &extended}) {
+      EXPECT_THAT(message(*model, {{"joint:q", attribute, -0.1}}),
+                  HasSubstr("joint 'q': " + attribute + ": expected a number >= 0, found -0.1"));
+    }
+  }
+  EXPECT_EQ(message(wheel, {{"joint:q", "gear_compliance", 0}}), "no error");
+  EXPECT_THAT(message(extended, {{"joint:q", "gear_compliance", 0}}),
+              HasSubstr("joint 'q': gear_compliance: expected a positive number"));
+}
+
 }  // namespace
 }  // namespace continuum

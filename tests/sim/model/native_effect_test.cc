@@ -79,6 +79,22 @@ TEST_F(NativeEffect, TorqueLimitNarrowsTheRangeOfTheForce) {
   EXPECT_FALSE(system.Build().model->actuator_forcelimited[0]);
 }
 
+TEST_F(NativeEffect, AForceLimitThatLeavesNoRangeIsRefused) {
+  const ModelSpec system = ModelSpec::Load(scratch_.Write("limit.xml", R"(<mujoco><worldbody><body>
+      <joint name="j"/><geom size=".1"/></body></worldbody>
+      <actuator><motor name="pull" joint="j" forcerange="1 2"/></actuator></mujoco>)"));
+  const auto message = [&](double limit) {
+    try {
+      system.Build({{{"actuator:pull", "force_limit", limit}}});
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(message(0), ::testing::HasSubstr("force_limit: expected a positive number, found 0"));
+  EXPECT_THAT(message(0.5), ::testing::HasSubstr("within its forcerange, 1 to 2, found 0.5"));
+}
+
 TEST_F(NativeEffect, SitePlaceMovesASiteInTheAxesOfItsBody) {
   const ModelSpec system = Load();
   const ModelAndData machine = Forward(system, {{"site:tip", "effect:site_place.dx", 0.03},
