@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 
 #include "binding/bound_law.h"
 
@@ -92,6 +93,18 @@ class BoundForce : public BoundLaw {
       const auto next = E::template Step<double>(Load(z), line.At(m, d), m.opt.timestep, p);
       z = std::copy(next.begin(), next.end(), z);
     }
+  }
+
+  std::string WhyIdle(const mjModel& m) const override {
+    if constexpr (requires(Vec<double, kParamCount<E>> p) { E::LeastDamping(p); }) {
+      const double least = E::LeastDamping(AsParams<E>(p_));
+      for (const Line& line : lines_) {
+        if (least > m.dof_damping[line.dof])
+          return "creates energy at joint '" + std::string(mj_id2name(&m, mjOBJ_JOINT, line.id)) +
+                 "', as d is more than b and the joint's damping together";
+      }
+    }
+    return "";
   }
 
   std::string WhyNoSlopes(const mjModel&) const override { return ""; }

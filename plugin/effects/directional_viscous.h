@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "effects/effect.h"
 
 namespace continuum {
@@ -20,6 +22,9 @@ struct DirectionalViscous {
   static constexpr Units kPort{"rad", "N*m"};
   static constexpr std::array<State, 0> kStates{};
   static constexpr std::array kParams{SpareDamping("b", 0.1), Signed("d", "N*m*s/rad", 0.01)};
+
+  /// The damping [N*m*s/rad] that a joint must have of its own, lest the law creates energy.
+  static double LeastDamping(const Vec<double, 2>& p) { return std::abs(p[1]) - p[0]; }
 
   template <class T>
   static Reply<T, 0> Eval(const Port<T>& q, const Vec<T, 0>&, const Vec<T, 2>& p) {

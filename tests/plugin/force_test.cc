@@ -1,11 +1,18 @@
 #include <cmath>
 #include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
 
 #include "effects/all.h"
 #include "support/engine.h"
 
 namespace continuum {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 class Force : public testing::Engine {
  protected:
@@ -32,6 +39,24 @@ TEST_F(Force, CubicStiffnessIsTheNativeThirdCoefficient) {
     mj_forward(ours.get(), d.get()), mj_forward(native.get(), e.get());
     EXPECT_NEAR(d->qacc[0], e->qacc[0], 1e-12);
   }
+}
+
+std::vector<std::string> warnings;
+
+TEST_F(Force, AWarningNamesTheJointWhereDirectionalDampingCreatesEnergy) {
+  const auto warnings_of = [](const std::string& d, const std::string& damping) {
+    warnings.clear();
+    mju_user_warning = [](const char* text) { warnings.emplace_back(text); };
+    const auto m = Model(Wheel("directional_viscous", Key("b", "0.02") + Key("d", d),
+                               "damping=\"" + damping + "\""));
+    Data(m);
+    mju_user_warning = [](const char*) {};
+    return warnings;
+  };
+  EXPECT_THAT(warnings_of("-0.06", "0.05"), IsEmpty());
+  EXPECT_THAT(warnings_of("0.07", "0.05"), IsEmpty());
+  EXPECT_THAT(warnings_of("-0.08", "0.05"),
+              ElementsAre(HasSubstr("creates energy at joint 'q', as d is more than b and")));
 }
 
 TEST_F(Force, MaxwellCreepsUnderLoadWithTheSpeedOfItsDamper) {
