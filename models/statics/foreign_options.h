@@ -15,8 +15,8 @@ using ForeignOptions = std::initializer_list<std::pair<const char*, bool>>;
 void RefuseGiven(const std::string& robot, const ForeignOptions& options);
 
 /// The same of all robots with files of parameters: `foreign`, what no robot does together (outputs
-/// and targets with
-/// --calibrate, --equilibria with --reach or --measured), and a request without cases.
+/// and targets with --calibrate, --equilibria with --reach or --measured), and a request without
+/// cases.
 /// @throws Error with the option and the robot's name.
 void RefuseForeignOptions(const SolveRequest& request, const std::string& robot,
                           const ForeignOptions& foreign);

@@ -31,4 +31,11 @@ struct Wheel {
   }
 };
 
+/// Torques [N m] of rows that turn a wheel to and fro, every second the other way, from rest.
+inline std::vector<double> ToAndFro(int rows = 300) {
+  std::vector<double> u(30, 0);
+  for (int k = 30; k < rows; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
+  return u;
+}
+
 }  // namespace continuum::testing

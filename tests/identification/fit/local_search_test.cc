@@ -23,17 +23,11 @@ std::string Model(const std::string& friction) {
   return xml.replace(xml.find("FRICTION"), 8, friction);
 }
 
-std::vector<double> ToAndFro() {
-  std::vector<double> u(30, 0);
-  for (int k = 30; k < 300; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
-  return u;
-}
-
 class LocalSearch : public testing::Bench {
  protected:
   void SetUp() override {
     Bench::SetUp();
-    const std::vector<double> u = ToAndFro();
+    const std::vector<double> u = testing::ToAndFro();
     AddLog("shaken", "use: train", u,
            testing::Noisy(testing::Wheel{1.2, 60, 1.5, 2}.Run(u), 1e-4, 0, 1));
     experiment_ = ReadExperiment(
@@ -58,7 +52,8 @@ class RepeatedWheel : public testing::Bench {
  protected:
   void SetUp() override {
     Bench::SetUp();
-    const std::vector<double> u = ToAndFro(), angle = testing::Wheel{0.82, 60, 1.5, 0.1}.Run(u);
+    const std::vector<double> u = testing::ToAndFro(),
+                              angle = testing::Wheel{0.82, 60, 1.5, 0.1}.Run(u);
     for (const int seed : {2, 3})
       AddLog("repeated" + std::to_string(seed), "trial: one, use: train", u,
              testing::Noisy(angle, 5e-4, 0, seed));

@@ -18,11 +18,7 @@ namespace {
 struct Shaken : testing::Wheel {
   Shaken() : Wheel{1.2, 60, 1.5, 2} {}
 
-  static std::vector<double> Steps() {
-    std::vector<double> u(30, 0);
-    for (int k = 30; k < 500; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
-    return u;
-  }
+  static std::vector<double> Steps() { return testing::ToAndFro(500); }
 };
 
 constexpr char kModel[] = R"(<mujoco>

@@ -23,8 +23,7 @@ class FitByStepsTest : public testing::Bench {
   <actuator><motor name="servo" joint="hinge"/></actuator>
   <sensor><jointpos name="angle" joint="hinge"/></sensor>
 </mujoco>)");
-    std::vector<double> u(30, 0);
-    for (int k = 30; k < 300; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
+    const std::vector<double> u = testing::ToAndFro();
     AddLog("shaken", "use: train", u,
            testing::Noisy(testing::Wheel{1.2, 60, 1.5, 2}.Run(u), 1e-4, 0, 1));
     experiment_ = ReadExperiment(

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/problem/problem.h"
-#include "support/pendulum.h"
+#include "support/wheel.h"
 
 namespace continuum {
 namespace {
@@ -80,8 +80,7 @@ std::vector<double> StepByStep(const Problem& problem, std::size_t k) {
 class SteppedTest : public testing::Bench {};
 
 TEST_F(SteppedTest, NarrowDifferencesAreTheSensitivitiesOfEveryStep) {
-  std::vector<double> u(30, 0);
-  for (int k = 30; k < 400; ++k) u.push_back(k * 8 / 1000 % 2 ? 6 : -5);
+  const std::vector<double> u = testing::ToAndFro(400);
   AddLog("shaken", "use: train", u, testing::Noisy(std::vector<double>(u.size(), 0), 0.1, 0, 1));
   const Experiment experiment = ReadExperiment(kParameters);
   Problem problem(experiment, ModelSpec::Load(Write("model.xml", kModel)));
