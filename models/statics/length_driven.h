@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "models/statics/rising_load.h"
-#include "sim/numerics/newton.h"
+#include "sim/numerics/last_tangent.h"
 
 namespace continuum::statics {
 
@@ -129,14 +129,14 @@ class LengthDriven {
     options.damped = false;
     options.max_iterations = 15;
     Vector trial = z;
-    numerics::Outcome outcome = Newton(trial, options);
+    numerics::Outcome outcome = tangent_.Newton(*this, trial, options);
     if (!outcome.ok()) {  // where cables or contacts change between two states
       const int spent = outcome.iterations;
       options.damped = true;
       options.max_step = 0.3;
       options.max_iterations = 40;
       trial = z;
-      outcome = Newton(trial, options);
+      outcome = tangent_.Newton(*this, trial, options);
       outcome.iterations += spent;
     }
     if constexpr (requires { plant_.SetWidth(0.0); }) {
@@ -162,34 +162,19 @@ class LengthDriven {
   statics::Fall Fall(double /*from*/, double /*load*/, Vector& /*z*/) { return {}; }
 
   /// For TurningContacts.
+  void SetLoad(double load) {
+    plant_.SetLoad(load);
+    now_ = (1 - load) * from_ + load * to_;
+  }
   Vector Slid(const Vector& z) requires kRemembers { return plant_.SlidAt(ShapeIn(z)); }
   bool SomeRest(const Vector& z) requires kRemembers { return plant_.SomeRest(ShapeIn(z)); }
   void GoOnFrom(const Vector& z) requires kRemembers { plant_.GoOnFrom(ShapeIn(z)); }
   Vector Rate(double load, const Vector& z, bool exact) requires kRemembers {
-    constexpr double kStep = 1e-5;
-    Vector before = z, now = z;
-    SetLoad(load - kStep);
-    const bool valid = (*this)(z.data(), before.data());
-    SetLoad(load);
-    if (!valid || !(*this)(z.data(), now.data())) return Vector::Zero(z.size());
-    const Vector by_load = (now - before) / kStep;
-    if (by_load.isZero(0)) return by_load;
-    if (exact || !factored_) {
-      Matrix jacobian(z.size(), z.size());
-      if (!Jacobian(z, now, jacobian)) return Vector::Zero(z.size());
-      factors_.compute(jacobian);
-      factored_ = true;
-    }
-    return factors_.solve(-by_load);
+    return tangent_.Rate(*this, z, SlopeByLoad(*this, load, z), exact);
   }
 
  private:
   Vector ShapeIn(const Vector& z) const { return z.head(z.size() - to_.size()); }
-  numerics::Outcome Newton(Vector& z, const numerics::Options& options) {
-    const numerics::Outcome outcome = numerics::Newton(*this, z, options, factors_);
-    factored_ = factored_ || outcome.iterations > 0;
-    return outcome;
-  }
 
   static constexpr double kTaut = 1e-7, kHeld = 1e6;
 
@@ -200,7 +185,7 @@ class LengthDriven {
     trial = z;
     for (const double width : {1e-3, 1e-4, 1e-5, 0.0}) {
       plant_.SetWidth(width);
-      outcome = Newton(trial, options);
+      outcome = tangent_.Newton(*this, trial, options);
       spent += outcome.iterations;
       if (!outcome.ok()) break;
     }
@@ -209,10 +194,6 @@ class LengthDriven {
     return outcome;
   }
 
-  void SetLoad(double load) {
-    plant_.SetLoad(load);
-    now_ = (1 - load) * from_ + load * to_;
-  }
   Vector Gap(const Vector& x) const {
     return (now_ + plant_.Stretch(x) - plant_.Lengths(x)) / plant_.reach();
   }
@@ -220,8 +201,7 @@ class LengthDriven {
   Plant& plant_;
   Vector from_, to_, now_;
   Eigen::Index z_size_ = 0;
-  Eigen::PartialPivLU<Matrix> factors_{0};  // of the last tangent
-  bool factored_ = false;
+  numerics::LastTangent<Eigen::PartialPivLU<Matrix>, Eigen::Dynamic> tangent_{0};
 };
 
 /// Follows lengths and dead loads from z = (x, T/unit), where they are in balance. T is in newtons

@@ -50,6 +50,18 @@ concept Remembering = requires(System& system, const Vector& x) {
   system.GoOnFrom(x);
 };
 
+/// df/dload at x; the balance is at `load` then.
+template <class Balance, class Vector>
+Vector SlopeByLoad(Balance& balance, double load, const Vector& x) {
+  constexpr double kStep = 1e-5;
+  Vector before = x, now = x;
+  balance.SetLoad(load - kStep);
+  const bool valid = balance(x.data(), before.data());
+  balance.SetLoad(load);
+  if (!valid || !balance(x.data(), now.data())) return Vector::Zero(x.size());
+  return (now - before) / kStep;
+}
+
 /// Cuts the way of a rising load where contacts turn back, so that each slides one way in a step.
 template <class System, class Vector>
 class TurningContacts {

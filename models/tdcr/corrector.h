@@ -23,16 +23,4 @@ inline numerics::Options Corrector(double load) {
   return options;
 }
 
-/// df/dload at x; the balance is at `load` then.
-template <class Balance, class Vector>
-Vector SlopeByLoad(Balance& balance, double load, const Vector& x) {
-  constexpr double kStep = 1e-5;
-  Vector before = x, now = x;
-  balance.SetLoad(load - kStep);
-  const bool valid = balance(x.data(), before.data());
-  balance.SetLoad(load);
-  if (!valid || !balance(x.data(), now.data())) return Vector::Zero(x.size());
-  return (now - before) / kStep;
-}
-
 }  // namespace continuum::tdcr

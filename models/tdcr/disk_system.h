@@ -6,6 +6,7 @@
 
 #include "models/statics/dense_system.h"
 #include "models/statics/relax.h"
+#include "models/statics/turning.h"
 #include "models/tdcr/corrector.h"
 #include "models/tdcr/disks.h"
 #include "sim/numerics/newton.h"
@@ -70,7 +71,7 @@ class DiskSystem {
   Vector Rate(double load, const Vector& x, bool /*exact*/) {
     Vector f(x.size());
     Matrix jacobian(x.size(), x.size());
-    const Vector by_load = SlopeByLoad(balance_, load, x);
+    const Vector by_load = statics::SlopeByLoad(balance_, load, x);
     if (!balance_.Jacobian(x, f, jacobian)) return Vector::Zero(x.size());
     return Eigen::PartialPivLU<Matrix>(jacobian).solve(-by_load);
   }

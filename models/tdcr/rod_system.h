@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "models/statics/relax.h"
+#include "models/statics/turning.h"
 #include "models/tdcr/corrector.h"
 #include "models/tdcr/cosserat.h"
 #include "models/tdcr/rod_law.h"
-#include "sim/numerics/linearize.h"
-#include "sim/numerics/newton.h"
+#include "sim/numerics/last_tangent.h"
 
 namespace continuum::tdcr {
 
@@ -28,7 +28,7 @@ class RodSystem {
     balance_.SetLoad(load);
     if (!balance_.remembers()) return numerics::Newton(balance_, x, Corrector(load));
     Vector trial = x;
-    numerics::Outcome outcome = Newton(trial, Corrector(load));
+    numerics::Outcome outcome = tangent_.Newton(balance_, trial, Corrector(load));
     if (!outcome.ok()) {
       const int spent = outcome.iterations;
       trial = x;
@@ -72,7 +72,7 @@ class RodSystem {
 
   numerics::Outcome Solve(Vector& x) {
     balance_.SetLoad(1);
-    return Newton(x, Limits());
+    return tangent_.Newton(balance_, x, Limits());
   }
 
   /// For statics::TurningContacts.
@@ -84,26 +84,11 @@ class RodSystem {
     if (balance_.remembers()) balance_.GoOnFrom(x);
   }
   Vector Rate(double load, const Vector& x, bool exact) {
-    const Vector by_load = SlopeByLoad(balance_, load, x);
-    if (by_load.isZero(0)) return by_load;
-    if (exact || !factored_) {
-      Vector f(x.size());
-      Eigen::Matrix<double, N, N> jacobian(x.size(), x.size());
-      if (!numerics::Linearize(balance_, x, f, jacobian)) return Vector::Zero(x.size());
-      factors_.compute(jacobian);
-      factored_ = true;
-    }
-    return factors_.solve(-by_load);
+    return tangent_.Rate(balance_, x, statics::SlopeByLoad(balance_, load, x), exact);
   }
 
  private:
   static constexpr int N = Vector::RowsAtCompileTime;
-
-  numerics::Outcome Newton(Vector& x, const numerics::Options& options) {
-    const numerics::Outcome outcome = numerics::Newton(balance_, x, options, factors_);
-    factored_ = factored_ || outcome.iterations > 0;
-    return outcome;
-  }
 
   // By contacts that turn widely, then more and more sharply.
   numerics::Outcome Sharpened(double load, Vector& x) {
@@ -114,7 +99,7 @@ class RodSystem {
       numerics::Options options = Corrector(load);
       options.damped = true;
       options.max_iterations = 20;
-      outcome = Newton(x, options);
+      outcome = tangent_.Newton(balance_, x, options);
       spent += outcome.iterations;
       if (!outcome.ok()) break;
     }
@@ -187,8 +172,7 @@ class RodSystem {
   const Robot& robot_;
   RodBalance& balance_;
   Eigen::VectorXd winches_;
-  numerics::FactorsFor<RodBalance, N> factors_{3};  ///< of the last tangent
-  bool factored_ = false;
+  numerics::LastTangentOf<RodBalance, N> tangent_{3};
 };
 
 }  // namespace continuum::tdcr

@@ -124,8 +124,7 @@ numerics::Outcome RisingSystem::Correct(double load, VectorXd& x) {
   options.damped = false;
   options.max_iterations = 12;
   VectorXd trial = x;
-  numerics::Outcome outcome = numerics::Newton(balance, trial, options, factors_);
-  factored_ = factored_ || outcome.iterations > 0;
+  numerics::Outcome outcome = tangent_.Newton(balance, trial, options);
   if (!outcome.ok() && to_.HasFriction()) {  // contacts that turn widely, then sharply
     options = Tolerances();
     options.max_step = 0.3;
@@ -134,7 +133,7 @@ numerics::Outcome RisingSystem::Correct(double load, VectorXd& x) {
     trial = x;
     for (double eps : {1e-3, 3e-5, to_.robot.eps}) {
       balance.eps = std::max(eps, to_.robot.eps);
-      outcome = numerics::Newton(balance, trial, options, factors_);
+      outcome = tangent_.Newton(balance, trial, options);
       outcome.iterations += spent;
       spent = outcome.iterations;
       if (!outcome.ok()) break;
@@ -192,15 +191,7 @@ VectorXd RememberingSystem::Rate(double load, const VectorXd& x, bool exact) {
   const bool valid = At(load - kStep)(x.data(), before.data());
   const Balance balance = At(load);
   if (!valid || !balance(x.data(), now.data())) return VectorXd::Zero(x.size());
-  const VectorXd by_load = (now - before) / kStep;
-  if (by_load.isZero(0)) return by_load;
-  if (exact || !factored_) {
-    MatrixXd slope(x.size(), x.size());
-    if (!numerics::Linearize(balance, x, now, slope)) return VectorXd::Zero(x.size());
-    factors_.compute(slope);
-    factored_ = true;
-  }
-  return factors_.solve(-by_load);
+  return tangent_.Rate(balance, x, (now - before) / kStep, exact);
 }
 
 void RememberingSystem::GoOnFrom(const VectorXd& x) {

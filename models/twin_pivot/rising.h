@@ -5,7 +5,7 @@
 
 #include "models/statics/rising_load.h"
 #include "models/twin_pivot/balance.h"
-#include "sim/numerics/newton.h"
+#include "sim/numerics/last_tangent.h"
 
 namespace continuum::twin_pivot {
 
@@ -50,8 +50,7 @@ class RisingSystem {
   const Task& to_;
   std::optional<Task> now_;
   double load_ = 1;
-  numerics::FactorsFor<Balance, Eigen::Dynamic> factors_{0};  ///< of the last tangent
-  bool factored_ = false;
+  numerics::LastTangentOf<Balance, Eigen::Dynamic> tangent_{0};
 
  private:
   int driven_ = 0;
