@@ -8,6 +8,7 @@
 #include "identification/diagnosis/family_starts.h"
 #include "identification/diagnosis/look_logs.h"
 #include "identification/diagnosis/probing.h"
+#include "sim/io/interrupt.h"
 
 // One fit of a search: where it begins, and how far it goes.
 namespace continuum {
@@ -253,6 +254,7 @@ FitStart CandidateSearch::BestOf(const Problem& whole, const std::vector<Problem
       continue;
     }
   }
+  if (best.x.size() == 0) StopIfRequested();
   if (best.x.size() == 0 && !coarse) throw Error::Job("the simulation diverges from every start");
   if (best.x.size() == 0) return {starts.front()};
   if (logs != TrainLogs(*fitter_.experiment)) best.slopes.resize(0, 0);

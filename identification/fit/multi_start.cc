@@ -88,6 +88,7 @@ MultiStart FitFromMany(const Problem& problem, const Problem::Vector& x,
       if (one.fit->cost < all.best.cost) all.best = std::move(*one.fit);
     }
   }
+  if (all.best.x.size() == 0) StopIfRequested();
   if (all.best.x.size() == 0) throw Error::Job("the simulation diverges from every start");
   all.best.evaluations = evaluations;
   all.best.seconds =

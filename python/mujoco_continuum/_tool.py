@@ -67,12 +67,13 @@ def group(token: str) -> Iterator[None]:
 
 def interrupt_group(token: str) -> None:
     """Asks the tools of a group to stop, those that begin later too. They leave no half-written
-    output."""
+    output: each is asked once, as twice means at once."""
     with _lock:
         stopped = _groups.setdefault(token, _Group())
+        if not stopped.stopped:
+            for tool in stopped.tools:
+                tool.send_signal(signal.SIGINT)
         stopped.stopped = True
-        for tool in stopped.tools:
-            tool.send_signal(signal.SIGINT)
 
 
 @contextlib.contextmanager

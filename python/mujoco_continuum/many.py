@@ -132,13 +132,14 @@ def _workers(executor: concurrent.futures.Executor | None) -> Iterator[concurren
 
 def _next(done: "queue.SimpleQueue[int]", cancel: threading.Event | None,
           stop: Callable[[], None]) -> int:
-    """The next item that is done; asks all to stop once `cancel` is set."""
-    while cancel is not None and not cancel.is_set():
+    """The next item that is done; asks all to stop once `cancel` is set.
+
+    Every wait ends soon: Ctrl-C that comes just before an endless one would not end it."""
+    while True:
+        if cancel is not None and cancel.is_set():
+            stop()
         with contextlib.suppress(queue.Empty):
             return done.get(timeout=0.1)
-    if cancel is not None:
-        stop()
-    return done.get()
 
 
 def _stop(futures: Sequence[concurrent.futures.Future], token: str) -> None:

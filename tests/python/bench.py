@@ -1,6 +1,8 @@
 """A folder with a good model and log, and their experiment as a dict."""
 import os
 import pathlib
+import signal
+import subprocess
 import tempfile
 import unittest
 
@@ -21,6 +23,23 @@ DIAGNOSIS = {"extension": {
                    "config": [["joint", "hinge"], ["tau_c", "0.01"]]}],
     "changes": [{"target": "joint:hinge", "attribute": "damping", "value": 2,
                  "operation": "scale"}]}}
+
+
+def tools_of(parent):
+    """Ids of the processes that a process has begun, on any of its threads."""
+    tasks = pathlib.Path(f"/proc/{parent}/task").glob("*/children")
+    return [int(child) for file in tasks for child in file.read_text().split()]
+
+
+def interrupted(run):
+    """What a process prints when Ctrl-C reaches it; one that goes on fails, and is ended here."""
+    os.kill(run.pid, signal.SIGINT)
+    try:
+        return run.communicate(timeout=60)[0].splitlines()
+    except subprocess.TimeoutExpired:
+        for process in (*tools_of(run.pid), run.pid):
+            os.kill(process, signal.SIGKILL)
+        raise
 
 
 class Bench(unittest.TestCase):
