@@ -10,6 +10,7 @@
 #include "identification/diagnosis/candidate_search.h"
 #include "identification/diagnosis/equation_error.h"
 #include "identification/diagnosis/merged_places.h"
+#include "identification/diagnosis/size_over_folds.h"
 #include "identification/fit/cross_validation.h"
 #include "sim/numerics/ranks.h"
 #include "sim/numerics/shared_loop.h"
@@ -249,12 +250,7 @@ void RecordFolds(const CandidateFitter& fitter, const Diagnosis& d, CandidateRes
   fitter.AddFolds(problem, d.folds, c.fitted);
   c.record.before = d.before.folds.error;
   c.record.after = c.fitted.folds.error;
-  const Eigen::Index own = c.first_extra();
-  const std::span<const double> values(c.fitted.fit.x.data() + own, c.hypothesis.extra.size());
-  const std::size_t main = c.hypothesis.Main(values);
-  const double null = std::isinf(c.hypothesis.null[main]) ? 0 : c.hypothesis.null[main];
-  for (const Vector& x : c.fitted.folds.x)
-    c.record.amplitude.push_back(x[own + static_cast<Eigen::Index>(main)] - null);
+  c.record.amplitude = SizeOverFolds(c);
 }
 
 void LeaveWithoutFolds(Diagnosis& d) {

@@ -69,7 +69,7 @@ struct FoldRecord {
   std::vector<double> before = {}, after = {};
   bool no_time = false;                    ///< for its folds
   bool behind = false;                     ///< its fit takes too little beside the best one's
-  std::vector<double> amplitude = {};      ///< [fold] value of its main parameter, from absence
+  std::vector<double> amplitude = {};      ///< [fold] its size, in its main parameter, from absence
   std::vector<double> placebo_gains = {};  ///< [random force] median gain over the folds
   double over_noise = 0;                   ///< error of its fit over the noise; 0: noise not known
   std::vector<std::size_t> contains = {};  ///< candidates that it can imitate whatever they do

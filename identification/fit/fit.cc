@@ -13,6 +13,7 @@
 #include "identification/fit/secant_search.h"
 #include "identification/problem/start_checks.h"
 #include "identification/statistics/noise_model.h"
+#include "identification/statistics/uncertainty.h"
 #include "sim/io/interrupt.h"
 #include "sim/numerics/decompositions.h"
 #include "sim/numerics/parallel.h"
@@ -271,10 +272,12 @@ bool IsMoreThanNoise(const Problem& problem, const Vector& x, const std::vector<
   const double error = TypicalRms(problem, r, use);
   if (!(noise.rms > 0) || noise.source == "differences" || IsNear(noise, error)) return false;
   if (problem.path() == Path::kStepped) {
-    const auto effects = problem.StepEffects(x, r, use);
-    std::vector<Vector> step(effects.size());
-    for (std::size_t l = 0; l < effects.size(); ++l)
-      if (use[l]) step[l] = effects[l].col(0);
+    std::vector<Vector> step = AtQuarter(problem).Residuals(x, use);
+    for (std::size_t l = 0; l < step.size(); ++l) {
+      if (!use[l]) continue;
+      step[l] -= r[l];
+      if (!step[l].allFinite()) step[l].setZero();
+    }
     noise.rms = std::hypot(noise.rms, TypicalRms(problem, step, use));
   }
   return !IsNear(noise, error);

@@ -118,13 +118,15 @@ void RequireFiniteSlopes(const Problem& problem, const Problem::Vector& x,
 
 void RequireEffect(const Problem& problem, const Problem::Vector& x,
                    const std::vector<Problem::Matrix>& J) {
+  const Problem::Vector start = problem.Start();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& p = problem.parameters()[i];
+    if (p.IsStart() || x[i] != start[i]) continue;  // start: of a log that is not in use
     double norm = 0;
     for (const Problem::Matrix& part : J) {
       if (part.size()) norm += part.col(i).squaredNorm();
     }
-    if (norm * p.scale * p.scale > 0 || p.IsStart()) continue;  // of a log that is not in use
+    if (norm * p.scale * p.scale > 0) continue;
     throw Error::Input((p.where.empty() ? "" : p.where + ": ") + "parameter '" + p.name + "' (" +
                            p.change.target + ", " + p.change.attribute + ")",
                        "an effect on some output at its start " + fmt::format("{:g}", x[i]),

@@ -12,7 +12,8 @@ namespace continuum {
 void RequireStartModels(const Problem& problem);
 
 /// Throws Error (kInput; parameter and its line) when a parameter changes no output of any log, by
-/// the derivatives J at x.
+/// the derivatives J at x. One that a fit has moved did change something: a delay below the time
+/// step changes nothing any more.
 void RequireEffect(const Problem& problem, const Problem::Vector& x,
                    const std::vector<Problem::Matrix>& J);
 

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""The law that `continuum diagnose` names without one gain, and what it errs by on that gain.
+
+usage: left_out.py EXPERIMENT_FOLDER RESULT_FOLDER [CONTINUUM]
+
+EXPERIMENT_FOLDER: of import.py. For each gain of the servo the logs of the other gains are diagnosed, with
+`gear_friction` among the candidates and one gain as a fold; no log of the gain left out is read. Then the
+extended model replays that gain. Printed: verdict and cause, and mean absolute errors [mrad], averaged over
+the logs of the gain left out. CONTINUUM: the executable (default: continuum). A diagnosis that is there is not
+made again.
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+from statistics import mean
+
+LOG = re.compile(r"  - \{file: .*\n +set: .*\n")
+CONDITION = re.compile(r"condition: (kp\d+)")
+
+
+def without(gain, text):
+    """The experiment without a gain: all other logs are of the fit, a gain is a fold."""
+    text = LOG.sub(lambda log: "" if CONDITION.search(log[0])[1] == gain else log[0], text)
+    text = text.replace("use: validate", "use: train")
+    text = re.sub(r"^folds: .*", "folds: condition", text, flags=re.M)
+    text = re.sub(r"^loss: .*\n", "", text, flags=re.M)
+    return re.sub(r"^(candidates: \[.*)\]", r"\1, gear_friction]", text, flags=re.M)
+
+
+def only(gain, text, diagnosis):
+    """The gain that was left out, on the extended model. Logs set the servo's gain: its torque's factor,
+    which the fit has found, goes on top."""
+    torque = next(p["value"] for p in diagnosis["parameters"] if p["name"] == "torque")
+    text = LOG.sub(lambda log: log[0] if CONDITION.search(log[0])[1] == gain else "", text)
+    text = re.sub(r"^model: .*", "model: extended.xml", text.replace("use: validate", "use: train"), flags=re.M)
+    text = re.sub(r"^parameters:\n(  - .*\n)*", lambda found: "parameters:\n" + "".join(
+        line for line in found[0].splitlines(True) if "name: torque" in line), text, flags=re.M)
+    return text.replace("initial: 1,", f"initial: {torque!r},")
+
+
+def written(path, text, source):
+    """An experiment file in another folder than its logs."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    there = os.path.relpath(source, path.parent)
+    text = text.replace("{file: ", f"{{file: {there}/")
+    path.write_text(re.sub(r"^model: (?!extended)", f"model: {there}/", text, flags=re.M))
+    return path
+
+
+def run(folder, *command):
+    with (folder / "log.txt").open("a") as log:
+        subprocess.run(command, check=True, stdout=log, stderr=subprocess.STDOUT)
+
+
+def diagnosed(gain, text, source, folder, continuum):
+    result = folder / "diagnosis.json"
+    if not result.exists():
+        experiment = written(folder / "experiment.yaml", without(gain, text), source)
+        run(folder, continuum, "diagnose", experiment, "--out", folder)
+    return json.loads(result.read_text())
+
+
+def error_on(gain, text, diagnosis, source, folder, continuum):
+    """Mean absolute error [mrad] of the extended model on a gain, averaged over its logs."""
+    experiment = written(folder / "left_out.yaml", only(gain, text, diagnosis), source)
+    run(folder, continuum, "replay", experiment, "--out", folder / "left_out")
+    logs = json.loads((folder / "left_out" / "errors.json").read_text())["error"]["logs"]
+    return 1000 * mean(channel["mae"] for log in logs for channel in log["channels"])
+
+
+def main():
+    if not 3 <= len(sys.argv) <= 4:
+        sys.exit(__doc__.strip())
+    source, results = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    continuum = sys.argv[3] if len(sys.argv) == 4 else "continuum"
+    text = (source / "experiment.yaml").read_text()
+    errors = []
+    print("| left out | verdict | cause | on it [mrad] |\n|---|---|---|---|")
+    for gain in sorted(set(CONDITION.findall(text)), key=lambda gain: int(gain[2:])):
+        folder = results / f"without_{gain}"
+        found = diagnosed(gain, text, source, folder, continuum)
+        causes = [cause["effect"] for cause in found["causes"]]
+        cells = [found["verdict"], ", ".join(f"`{name}`" for name in causes) or "none"]
+        if found["offered"] == "extended.xml":
+            errors.append(error_on(gain, text, found, source, folder, continuum))
+            cells.append(f"{errors[-1]:.1f}")
+        print(f"| {gain} | {' | '.join(cells)} |", flush=True)
+    if errors:
+        print(f"\n- On average: {mean(errors):.1f} mrad.")
+
+
+if __name__ == "__main__":
+    main()
