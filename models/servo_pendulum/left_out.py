@@ -4,10 +4,10 @@
 usage: left_out.py EXPERIMENT_FOLDER RESULT_FOLDER [CONTINUUM]
 
 EXPERIMENT_FOLDER: of import.py. For each gain of the servo the logs of the other gains are diagnosed, with
-`gear_friction` among the candidates and one gain as a fold; no log of the gain left out is read. Then the
-extended model replays that gain. Printed: verdict and cause, and mean absolute errors [mrad], averaged over
-the logs of the gain left out. CONTINUUM: the executable (default: continuum). A diagnosis that is there is not
-made again.
+`gear_friction` among the candidates, the delay of the command free and one gain as a fold; no log of the gain
+left out is read. Then the extended model replays that gain. Printed: verdict and cause, and the mean absolute
+error [mrad], averaged over the logs of the gain left out. CONTINUUM: the executable (default: continuum). A
+diagnosis that is there is not made again.
 """
 import json
 import os
@@ -17,7 +17,10 @@ import subprocess
 import sys
 from statistics import mean
 
+from ladder import DELAY
+
 LOG = re.compile(r"  - \{file: .*\n +set: .*\n")
+SET = re.compile(r"((?:kp|forcerange\[\d\]\"): )(-?[\d.]+)")
 CONDITION = re.compile(r"condition: (kp\d+)")
 
 
@@ -27,18 +30,17 @@ def without(gain, text):
     text = text.replace("use: validate", "use: train")
     text = re.sub(r"^folds: .*", "folds: condition", text, flags=re.M)
     text = re.sub(r"^loss: .*\n", "", text, flags=re.M)
-    return re.sub(r"^(candidates: \[.*)\]", r"\1, gear_friction]", text, flags=re.M)
+    return re.sub(r"^(candidates: \[.*)\]", DELAY + r"\n\1, gear_friction]", text, flags=re.M)
 
 
 def only(gain, text, diagnosis):
-    """The gain that was left out, on the extended model. Logs set the servo's gain: its torque's factor,
-    which the fit has found, goes on top."""
+    """The gain that was left out, on the extended model: what its logs set of the servo, times the factor of
+    its torque that was found."""
     torque = next(p["value"] for p in diagnosis["parameters"] if p["name"] == "torque")
-    text = LOG.sub(lambda log: log[0] if CONDITION.search(log[0])[1] == gain else "", text)
-    text = re.sub(r"^model: .*", "model: extended.xml", text.replace("use: validate", "use: train"), flags=re.M)
-    text = re.sub(r"^parameters:\n(  - .*\n)*", lambda found: "parameters:\n" + "".join(
-        line for line in found[0].splitlines(True) if "name: torque" in line), text, flags=re.M)
-    return text.replace("initial: 1,", f"initial: {torque!r},")
+    text = LOG.sub(lambda log: SET.sub(lambda found: f"{found[1]}{torque * float(found[2])!r}", log[0])
+                   if CONDITION.search(log[0])[1] == gain else "", text)
+    text = text.replace("use: validate", "use: train")
+    return re.sub(r"^model: .*", "model: extended.xml", text, flags=re.M)
 
 
 def written(path, text, source):
@@ -67,7 +69,7 @@ def error_on(gain, text, diagnosis, source, folder, continuum):
     """Mean absolute error [mrad] of the extended model on a gain, averaged over its logs."""
     experiment = written(folder / "left_out.yaml", only(gain, text, diagnosis), source)
     run(folder, continuum, "replay", experiment, "--out", folder / "left_out")
-    logs = json.loads((folder / "left_out" / "errors.json").read_text())["error"]["logs"]
+    logs = json.loads((folder / "left_out" / "errors.json").read_text())["logs"]
     return 1000 * mean(channel["mae"] for log in logs for channel in log["channels"])
 
 
