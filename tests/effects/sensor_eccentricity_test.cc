@@ -28,5 +28,14 @@ TEST(SensorEccentricity, IsThatOfADiscOffItsAxis) {
   }
 }
 
+// A resolver whose sine is larger than its cosine by a share s errs by s/2 sin 2q.
+TEST(SensorEccentricity, IsThatOfAResolverWithUnequalTracks) {
+  constexpr double s = 1e-4;
+  for (const double q : {-0.9, 0.3, 1.4}) {
+    const double seen = std::atan2((1 + s) * std::sin(q), std::cos(q));
+    EXPECT_NEAR(Reading(q, {0, s / 2, 2}), seen, s * s);
+  }
+}
+
 }  // namespace
 }  // namespace continuum

@@ -38,6 +38,19 @@ TEST_F(DriftingWheel, RunsInAlongItsPath) {
   EXPECT_NEAR(d->efc_frictionloss[0], expected, 1e-3 * kMore);
 }
 
+// What the motor has given is in the wheel or has gone into the friction, whose work is WorkOf.
+TEST_F(DriftingWheel, TakesWhatTheMotorGivesAndTheWheelHasNot) {
+  const auto m = Model(Wheel(Key("r_W", "3")));
+  const auto d = Data(m);
+  d->ctrl[0] = 0.2;
+  for (const double time : {0.2, 0.5, 2.0}) {
+    RunUntil(m, d, time);
+    const double given = d->ctrl[0] * d->qpos[0], kept = 0.5 * 0.02 * d->qvel[0] * d->qvel[0];
+    // An Euler step works over its end's speed: a share h/t of the energy.
+    EXPECT_NEAR(given - kept, WorkOf(d->qpos[0]), 1e-3 / time * given) << time;
+  }
+}
+
 TEST_F(DriftingWheel, DoesNotRunInAtRest) {
   const auto m = Model(Wheel(Key("r_W", "3")));
   const auto d = Data(m);

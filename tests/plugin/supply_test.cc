@@ -84,6 +84,24 @@ TEST_F(Supply, WithoutResistanceIsExactlyTheNativeModel) {
   }
 }
 
+// u/(1 + r u) = τ_c: a stiff supply would overcome this friction at u = τ_c.
+TEST_F(Supply, BreaksAwayWhereWhatItLeavesExceedsTheFriction) {
+  constexpr double kFriction = 2, kControl = kFriction / (1 - kR * kFriction);
+  std::string rub = Instance("coulomb", Key("joint", "c") + Key("tau_c", "2"));
+  rub.replace(rub.find("name=\"i\""), 8, "name=\"f\"");
+  const auto m = Model(Rails(Sag("c") + rub));
+  for (const double share : {0.99, 1.01}) {
+    const auto d = Data(m);
+    d->ctrl[2] = share * kControl;
+    RunUntil(m, d, 1);
+    const double left = d->ctrl[2] / (1 + kR * d->ctrl[2]) - kFriction;
+    EXPECT_NEAR(d->qvel[2], std::max(0.0, left), 1e-4) << share;
+    const double speed = d->qvel[2];
+    RunUntil(m, d, 2);
+    EXPECT_NEAR(d->qvel[2], share < 1 ? 0 : 2 * speed, 1e-4) << share;
+  }
+}
+
 // A mass that is pushed for a while: m v = u t/(1 + r u).
 TEST_F(Supply, SlowsWhatItDrives) {
   const auto m = Model(Rails(Sag("c")));

@@ -58,6 +58,23 @@ TEST(BodyTurn, ALinkMovesAsOneThatIsMountedSo) {
   EXPECT_THAT(Motion(framed.Build(Mounted(.1, -.2, .3))), Pointwise(DoubleNear(1e-9), want));
 }
 
+// A pendulum whose axis is tilted feels g cos(roll): I v²/2 = m g l cos(roll) (cos q − cos q_0).
+TEST(BodyTurn, ATiltedPendulumSwingsUnderAShareOfItsWeight) {
+  constexpr double kMass = 0.4, kArm = 0.3, kOwn = 0.01, kStart = 1.2;
+  const ModelSpec upright = ModelSpec::Parse(R"(<mujoco><option timestep="1e-3" integrator="RK4"/>
+      <worldbody><body name="two"><joint axis="0 1 0"/><inertial pos="0 0 -.3" mass=".4"
+      diaginertia=".01 .01 .01"/></body></worldbody></mujoco>)");
+  const ModelAndData machine = upright.Build(Mounted(0.5, 0, 0));
+  mjData& d = *machine.data;
+  d.qpos[0] = kStart;
+  const double inertia = kOwn + kMass * kArm * kArm, weight = kMass * 9.81 * kArm * std::cos(0.5);
+  for (int k = 0; k < 2000; ++k) {
+    mj_step(machine.model.get(), &d);
+    ASSERT_NEAR(0.5 * inertia * d.qvel[0] * d.qvel[0],
+                weight * (std::cos(d.qpos[0]) - std::cos(kStart)), 1e-8);
+  }
+}
+
 TEST(BodyTurn, TheJointStaysWhereItIs) {
   std::string xml = Arm(Second(R"(pos=".2 0 0" euler="0.4 0 0")"));
   xml.replace(xml.find("name=\"j\""), 8, "name=\"j\" pos=\".03 .02 .01\"");

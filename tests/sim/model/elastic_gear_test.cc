@@ -122,6 +122,57 @@ TEST(ElasticGear, AServoTurnsAJointThroughSpringDamperAndPlay) {
   }
 }
 
+// Free wheels with play rattle: 2 (gap/w + π/ω), play crossed at w and half swings at its ends.
+TEST(ElasticGear, FreeWheelsRattleInTheirPlayWithTheirPeriodAndEnergy) {
+  constexpr double kGap = 0.04, kSpeed = 0.6;
+  const ModelAndData machine =
+      ModelSpec::Parse(Wheel("<motor name='u' joint='q'/>", "", "timestep='1e-4' integrator='RK4'"))
+          .Build(Gear(1 / kSpring, 0, kGap));
+  const mjModel& m = *machine.model;
+  mjData& d = *machine.data;
+  machine.model->opt.enableflags |= mjENBL_ENERGY;
+  d.qvel[1] = kSpeed;
+  const double w = std::sqrt(kSpring * (1 / kMotor + 1 / kLink)),
+               period = 2 * (kGap / kSpeed + M_PI / w), mean = kSpeed * kMotor / (kMotor + kLink);
+  for (int turn = 1; turn <= 5; ++turn) {
+    RunUntil(machine, turn * period);
+    mj_forward(&m, &d);
+    EXPECT_NEAR(d.qpos[1] - d.qpos[0], kSpeed * (d.time - turn * period), 1e-4 * kGap) << turn;
+    EXPECT_NEAR(d.qpos[0], mean * turn * period, 1e-5) << turn;
+    EXPECT_NEAR(d.energy[0] + d.energy[1], 0.5 * kMotor * kSpeed * kSpeed, 1e-7) << turn;
+  }
+}
+
+// Held by dry friction the motor winds up play and spring, gap/2 + c τ; at more the joint turns.
+TEST(ElasticGear, WindsUpBeforeTheJointBreaksAway) {
+  constexpr double kGap = 0.04, kFriction = 0.8;
+  const ModelSpec wheel = ModelSpec::Parse(
+      Wheel("<motor name='u' joint='q'/>", "", "timestep='1e-3' integrator='implicitfast'",
+            "<extension><plugin plugin='continuum.coulomb'><instance name='f'><config key='joint' "
+            "value='q'/><config key='tau_c' value='0.8'/></instance></plugin></extension>"));
+  for (const double share : {0.5, 0.97, 1.03}) {
+    const ModelAndData machine = wheel.Build(Gear(1 / kSpring, 0.3, kGap));
+    mjData& d = *machine.data;
+    const double torque = share * kFriction;
+    const auto ramp = [&](double until) {
+      while (d.time < until - 1e-9) {
+        d.ctrl[0] = torque * std::min(1.0, d.time / 4);
+        mj_step(machine.model.get(), &d);
+      }
+    };
+    ramp(8);
+    const double held = d.qpos[0], wound = d.qpos[1] - held;
+    ramp(10);
+    if (share < 1) {
+      EXPECT_NEAR(held, 0, 1e-4) << share;
+      EXPECT_NEAR(wound, kGap / 2 + torque / kSpring, 1e-4) << share;
+      EXPECT_NEAR(d.qpos[0], held, 1e-8) << share;
+    } else {
+      EXPECT_GT(d.qpos[0], 0.1);
+    }
+  }
+}
+
 // As it gets stiffer it goes over into the joint with its armature, and beyond what steps show it
 // is that joint.
 TEST(ElasticGear, AStiffOneIsTheArmatureOfTheJoint) {

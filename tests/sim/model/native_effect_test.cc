@@ -79,6 +79,43 @@ TEST_F(NativeEffect, TorqueLimitNarrowsTheRangeOfTheForce) {
   EXPECT_FALSE(system.Build().model->actuator_forcelimited[0]);
 }
 
+// I q'' = L − τ_c: a servo far from its goal pushes by its limit, against dry friction.
+TEST_F(NativeEffect, ATorqueLimitMovesOnlyWhatItExceeds) {
+  const ModelSpec system = ModelSpec::Load(scratch_.Write("rub.xml", R"(<mujoco>
+      <option gravity="0 0 0" timestep="1e-3" integrator="implicitfast"/><extension>
+      <plugin plugin="continuum.coulomb"><instance name="f"><config key="joint" value="j"/>
+      <config key="tau_c" value="0.5"/></instance></plugin></extension><worldbody><body>
+      <joint name="j"/><inertial pos="0 0 0" mass="1" diaginertia="0.1 0.1 0.1"/></body></worldbody>
+      <actuator><position name="u" joint="j" kp="900"/></actuator></mujoco>)"));
+  for (const double limit : {0.49, 0.51, 1.5}) {
+    const ModelAndData machine = system.Build({{{"actuator:u", "effect:torque_limit", limit}}});
+    mjData& d = *machine.data;
+    d.ctrl[0] = 100;
+    while (d.time < 1 - 1e-9) mj_step(machine.model.get(), &d);
+    const double acceleration = std::max(0.0, limit - 0.5) / 0.1;
+    EXPECT_NEAR(d.qvel[0], acceleration, 1e-3) << limit;
+    EXPECT_NEAR(d.qpos[0], acceleration / 2, 1e-3 * (1 + acceleration)) << limit;
+    EXPECT_LE(0.5 * 0.1 * d.qvel[0] * d.qvel[0], (limit - 0.5) * d.qpos[0] + 1e-4) << limit;
+  }
+}
+
+// m g l sin q = L: an arm whose servo is too weak for its goal rests where its weight is the limit.
+TEST_F(NativeEffect, AServoAtItsTorqueLimitHoldsItsWeightWithoutDrift) {
+  const ModelSpec system = ModelSpec::Load(scratch_.Write("arm.xml", R"(<mujoco>
+      <option timestep="1e-3" integrator="implicitfast"/><worldbody><body>
+      <joint name="j" axis="0 1 0" damping="0.5"/><inertial pos="0 0 -0.3" mass="1"
+      diaginertia="0.01 0.01 0.01"/></body></worldbody>
+      <actuator><position name="u" joint="j" kp="50"/></actuator></mujoco>)"));
+  const ModelAndData machine = system.Build({{{"actuator:u", "effect:torque_limit", 1.2}}});
+  mjData& d = *machine.data;
+  d.ctrl[0] = 1.5;
+  while (d.time < 10 - 1e-9) mj_step(machine.model.get(), &d);
+  EXPECT_NEAR(d.qpos[0], std::asin(1.2 / (9.81 * 0.3)), 1e-6);
+  const double held = d.qpos[0];
+  while (d.time < 20 - 1e-9) mj_step(machine.model.get(), &d);
+  EXPECT_NEAR(d.qpos[0], held, 1e-9);
+}
+
 TEST_F(NativeEffect, AForceLimitThatLeavesNoRangeIsRefused) {
   const ModelSpec system = ModelSpec::Load(scratch_.Write("limit.xml", R"(<mujoco><worldbody><body>
       <joint name="j"/><geom size=".1"/></body></worldbody>
@@ -105,6 +142,24 @@ TEST_F(NativeEffect, SitePlaceMovesASiteInTheAxesOfItsBody) {
   EXPECT_NEAR(tip[2], 1 - 0.03, 1e-15);
 }
 
+// A hole of a cable on a lever: its length, and its arm, from the triangle of axis and both holes.
+TEST_F(NativeEffect, SitePlaceMovesTheCableThroughIt) {
+  const ModelSpec system = ModelSpec::Load(scratch_.Write("cable.xml", R"(<mujoco><worldbody>
+      <site name="guide" pos="0.4 0 0"/><body><joint name="j" axis="0 0 1"/><geom size=".1"/>
+      <site name="hole" pos="0.2 0 0"/></body></worldbody><tendon><spatial name="cable">
+      <site site="guide"/><site site="hole"/></spatial></tendon>
+      <actuator><motor name="u" tendon="cable" gear="-1"/></actuator></mujoco>)"));
+  const ModelAndData machine = system.Build(
+      {{{"site:hole", "effect:site_place.dx", 0.05}, {"site:hole", "effect:site_place.dy", 0.1}}});
+  mjData& d = *machine.data;
+  d.qpos[0] = 0.7, d.ctrl[0] = 3;
+  mj_forward(machine.model.get(), &d);
+  const double radius = std::hypot(0.25, 0.1), angle = 0.7 + std::atan2(0.1, 0.25);
+  const double length = std::sqrt(0.4 * 0.4 + radius * radius - 2 * 0.4 * radius * std::cos(angle));
+  EXPECT_NEAR(d.ten_length[0], length, 1e-15);
+  EXPECT_NEAR(d.qfrc_actuator[0], -3 * 0.4 * radius * std::sin(angle) / length, 1e-14);
+}
+
 // A servo on a drum turns the joint by its angle over the gear, with its torque times the gear.
 TEST_F(NativeEffect, DrumRadiusScalesLengthAndForceOfAnActuator) {
   const ModelSpec system = ModelSpec::Load(scratch_.Write("drum.xml", R"(<mujoco><worldbody><body>
@@ -116,6 +171,27 @@ TEST_F(NativeEffect, DrumRadiusScalesLengthAndForceOfAnActuator) {
   mj_forward(machine.model.get(), &d);
   EXPECT_NEAR(d.actuator_length[0], 3 * 0.1, 1e-15);
   EXPECT_NEAR(d.qfrc_actuator[0], 3 * 5 * (0.7 - 3 * 0.1), 1e-14);
+}
+
+// I q'' = r k_p (u − r q) − b q' swings about u/r. What the motor gives reaches the joint.
+TEST_F(NativeEffect, AServoOnADrumSwingsAsItsEquationSays) {
+  const ModelSpec system = ModelSpec::Load(scratch_.Write("swing.xml", R"(<mujoco>
+      <option gravity="0 0 0" timestep="1e-3" integrator="RK4"/><worldbody><body>
+      <joint name="j" damping="0.2"/><inertial pos="0 0 0" mass="1" diaginertia=".05 .05 .05"/></body>
+      </worldbody><actuator><position name="u" joint="j" kp="6"/></actuator></mujoco>)"));
+  constexpr double r = 1.3, I = 0.05, kp = 6, b = 0.2, u = 0.4;
+  const ModelAndData machine = system.Build({{{"actuator:u", "effect:drum_radius", r}}});
+  mjData& d = *machine.data;
+  d.ctrl[0] = u;
+  const double fade = b / (2 * I), w = std::sqrt(r * r * kp / I - fade * fade);
+  for (const double time : {0.1, 0.3, 0.8}) {
+    while (d.time < time - 1e-9) mj_step(machine.model.get(), &d);
+    const double swing = std::cos(w * time) + fade / w * std::sin(w * time);
+    EXPECT_NEAR(d.qpos[0], u / r * (1 - std::exp(-fade * time) * swing), 1e-8);
+    mj_forward(machine.model.get(), &d);
+    EXPECT_NEAR(d.actuator_force[0] * d.actuator_velocity[0], d.qfrc_actuator[0] * d.qvel[0],
+                1e-14);
+  }
 }
 
 TEST_F(NativeEffect, LinkMassScalesMassAndInertiaAboutTheSameCentre) {
