@@ -234,14 +234,34 @@ void FrictionRows::Foresee(mjData& d, bool held, const FrictionRow& row, int r) 
   acceleration = std::clamp(acceleration, aref - yield, aref + yield);
 }
 
-FrictionRows::Sliding FrictionRows::SlidingOf(const mjData& d, const double* z,
+double FrictionRows::FreeAcceleration(const mjModel& m, const mjData& d, const FrictionRow& row) {
+  if (row.joint) return d.qacc_smooth[row.index];
+  double a = 0;
+  const int adr = m.ten_J_rowadr[row.index];
+  for (int k = adr; k < adr + m.ten_J_rownnz[row.index]; ++k)
+    a += d.ten_J[k] * d.qacc_smooth[m.ten_J_colind[k]];
+  return a;
+}
+
+// At the first stage qacc_smooth is still 0, at the others that of the stage before.
+bool FrictionRows::HasJustBegun(const mjModel& m, double grasp, double speed, double acceleration) {
+  return grasp == kUnknown && m.opt.integrator == mjINT_RK4 &&
+         std::abs(speed) <= m.opt.timestep * std::abs(acceleration);
+}
+
+FrictionRows::Sliding FrictionRows::SlidingOf(const mjModel& m, const mjData& d, const double* z,
                                               const FrictionRow& row) {
-  if (row.axis < 0) return {z[0] == kHeld ? 0 : Speed(d, row), 1};
+  if (row.axis < 0) {
+    const double v = Speed(d, row);
+    const bool rests = z[0] == kHeld || HasJustBegun(m, z[0], v, FreeAcceleration(m, d, row));
+    return {rests ? 0 : v, 1};
+  }
   const double* const ball = z - kStates * row.axis;  // the joint's first row
   if (ball[0] == kHeld) return {0, ball[5]};
-  const double* const turn = d.qvel + row.index - row.axis;
-  const double v = mju_norm3(turn);
-  return {v, v > 0 ? std::abs(turn[row.axis]) / v : 1};
+  const int first = row.index - row.axis;
+  const double* const turn = d.qvel + first;
+  const double v = mju_norm3(turn), share = v > 0 ? std::abs(turn[row.axis]) / v : 1;
+  return {HasJustBegun(m, ball[0], v, mju_norm3(d.qacc_smooth + first)) ? 0 : v, share};
 }
 
 void FrictionRows::AdvanceLine(const mjModel& m, const mjData& d, const FrictionRow& row, double* z,

@@ -46,7 +46,9 @@ namespace continuum {
 /// formula where its level is 0.
 ///
 /// A row that held in the last step has the level of v = 0, whatever the speed of its elastic
-/// deflection: a sudden load breaks it away as a slow one does.
+/// deflection: a sudden load breaks it away as a slow one does. The first step has none before it:
+/// there the later stages of RK4 take a row for one at rest that is no faster than a free joint
+/// from rest would be.
 ///
 /// The three rows of a ball joint share one level. While it slides they split it by the direction
 /// of ω. While it rests each of them can take a share of it that follows, within a few hundredths
@@ -79,7 +81,7 @@ class FrictionRows {
       const bool native = IsNative(m, row);
       if ((native && absent == Absent::kNow) || !Find(d, row, r)) continue;
       const double off = OffAnchor(m, d, z + kStates * k, row);
-      const Sliding sliding = SlidingOf(d, z + kStates * k, row);
+      const Sliding sliding = SlidingOf(m, d, z + kStates * k, row);
       const double torque = sliding.share * level(row, sliding.v);
       if (native && absent == Absent::kAtZero && torque == 0) continue;
       WriteRow(m, d, off, stage, row, r, torque);
@@ -134,7 +136,7 @@ class FrictionRows {
       if (!Find(d, rows_[k], r)) continue;
       const double* const z = step.z + kStates * k;
       DifferentiateAnchor(m, d, step, rows_[k], r, static_cast<int>(kStates * k), slopes);
-      level(rows_[k], r, SlidingOf(d, z, rows_[k]).v, z[0] != kHeld);
+      level(rows_[k], r, SlidingOf(m, d, z, rows_[k]).v, z[0] != kHeld);
     }
   }
 
@@ -154,7 +156,12 @@ class FrictionRows {
   /// force [nv] −= f along a row.
   static void Oppose(const mjModel& m, const mjData& d, const FrictionRow& row, double f,
                      std::span<double> force);
-  static Sliding SlidingOf(const mjData& d, const double* z, const FrictionRow& row);
+  static Sliding SlidingOf(const mjModel& m, const mjData& d, const double* z,
+                           const FrictionRow& row);
+  /// Along a row, without constraints, of the last evaluation.
+  static double FreeAcceleration(const mjModel& m, const mjData& d, const FrictionRow& row);
+  /// Whether this is the first step, and what moves does so since this step.
+  static bool HasJustBegun(const mjModel& m, double grasp, double speed, double acceleration);
 
   /// Whether a constraint gives all that it can.
   static bool Saturated(const mjData& d, int r);

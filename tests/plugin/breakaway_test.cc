@@ -10,11 +10,12 @@ constexpr double kTauC = 0.1, kS = 0.7, kLevel = kTauC * (1 + kS);
 
 class Breakaway : public testing::Engine {
  protected:
-  static testing::Owned<mjModel> Body(const std::string& type, double inertia, double h) {
+  static testing::Owned<mjModel> Body(const std::string& type, double inertia, double h,
+                                      const std::string& v_d = "0.3") {
     const std::string i = std::to_string(inertia);
     auto m = Model("<mujoco><option integrator=\"implicitfast\" gravity=\"0 0 0\"/>" +
                    Instance("stribeck", Key("joint", "q") + Key("tau_c", "0.1") + Key("S", "0.7") +
-                                            Key("v_d", "0.3")) +
+                                            Key("v_d", v_d)) +
                    "<worldbody><body><joint name=\"q\" type=\"" + type +
                    "\"/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"" + i + " " + i + " " + i +
                    "\"/></body></worldbody></mujoco>");
@@ -40,6 +41,30 @@ TEST_F(Breakaway, ASuddenLoadBreaksAwayAtTheStaticLevelWhateverTheInertia) {
         EXPECT_TRUE(Lets(m, {sign * 1.02 * kLevel})) << inertia << " " << h;
       }
     }
+  }
+}
+
+// Within the first step the stages of RK4 see the row deflect, however low the Stribeck speed.
+TEST_F(Breakaway, ASuddenLoadAtTheBeginningBreaksAwayAtTheStaticLevelWhateverTheStribeckSpeed) {
+  for (const std::string type : {"hinge", "slide", "ball"}) {
+    const auto m = Body(type, 0.02, 2e-3, "1e-9");
+    for (const int integrator : {mjINT_EULER, mjINT_RK4, mjINT_IMPLICIT, mjINT_IMPLICITFAST}) {
+      m->opt.integrator = integrator;
+      EXPECT_FALSE(Lets(m, {0.98 * kLevel})) << type << integrator;
+      EXPECT_TRUE(Lets(m, {1.02 * kLevel})) << type << integrator;
+    }
+  }
+}
+
+// What moves when it begins slides from the first stage on.
+TEST_F(Breakaway, WhatBeginsInMotionSlides) {
+  const auto m = Body("hinge", 0.02, 2e-3, "1e-9");
+  for (const int integrator : {mjINT_RK4, mjINT_IMPLICITFAST}) {
+    m->opt.integrator = integrator;
+    const auto d = Data(m);
+    d->qvel[0] = 2;
+    RunUntil(m, d, 0.2);
+    EXPECT_NEAR(d->qvel[0], 2 - kTauC / 0.02 * 0.2, 1e-9);
   }
 }
 
