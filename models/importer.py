@@ -16,6 +16,7 @@ import zlib
 
 SCALARS = {1: "b", 2: "B", 3: "h", 4: "H", 5: "i", 6: "I", 7: "f", 9: "d", 12: "q", 13: "Q"}
 COMPLEX = 0x800  # a flag of an array
+TIME, TURN, PLACE = (1e10, "s"), (1e3, "rad"), (10, "m")  # most that a log has; time also since 1970
 
 
 class Refusal(Exception):
@@ -26,19 +27,22 @@ def refuse(where, expected, found):
     raise Refusal(f"{where}: expected {expected}, found {found}")
 
 
-def number(text, where):
-    """A finite one; where: for the message."""
+def number(text, where, most=math.inf, unit=""):
+    """A finite one, of the size `most` [unit] at most, which a machine can have; where: for the
+    message."""
     try:
         value = float(text)
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):
         refuse(where, "a finite number", repr(text) if text else "nothing")
+    if abs(value) > most:
+        refuse(where, f"a number of {-most:g} to {most:g} {unit}", text)
     return value
 
 
-def positive(text, where):
-    value = number(text, where)
+def positive(text, where, most=math.inf, unit=""):
+    value = number(text, where, most, unit)
     if value <= 0:
         refuse(where, "a positive number", text)
     return value

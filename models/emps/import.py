@@ -16,7 +16,8 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import importer  # noqa: E402
 
-RECORDING, VARIABLES = "DATA_EMPS.mat", ("t", "qg", "qm", "vir")
+RECORDING = "DATA_EMPS.mat"
+VARIABLES = {"t": importer.TIME, "qg": importer.PLACE, "qm": importer.PLACE, "vir": (1e3, "V")}
 END = 24.84  # s
 EXPERIMENT = """format: 1
 model: {model}
@@ -47,9 +48,9 @@ def convert(source, model):
     lengths = {len(found.get(name, ())) for name in VARIABLES}
     if len(lengths) != 1 or 0 in lengths:
         importer.refuse(path, expected, ", ".join(f"{n} ({len(v)})" for n, v in found.items()))
-    for name in VARIABLES:
+    for name, most in VARIABLES.items():
         for k, value in enumerate(found[name], 1):
-            importer.number(value, f"{path}: {name}({k})")
+            importer.number(value, f"{path}: {name}({k})", *most)
     importer.rise((f"{path}: t({k})", time) for k, time in enumerate(found["t"], 1))
     if found["t"][0] > 0 or found["t"][-1] < END:
         importer.refuse(f"{path}: t", f"0 to {END} s", f"{found['t'][0]:g} to {found['t'][-1]:g} s")

@@ -5,7 +5,7 @@ usage: import.py SOURCE_FOLDER EXPERIMENT_FOLDER
 
 SOURCE_FOLDER holds the recordings (*.json: mass, length, kp, vin, trajectory, entries). Written: one
 CSV per log (t [s], q [rad], w [rad/s], goal [rad], on 0|1) and experiment.yaml. Logs of the
-trajectory up_and_down are for validation.
+trajectory up_and_down are for validation; where there are none, those of the last one by name.
 """
 import json
 import math
@@ -20,6 +20,9 @@ TICKS_PER_RAD, DUTY_DIVISOR = 4096 / (2 * math.pi), 256 * 885
 MAX_GAIN = 16383  # of the firmware's register
 COLUMNS = {"t": "timestamp", "q": "position", "w": "speed", "goal": "goal_position",
            "on": "torque_enable"}
+MOST = {"t": importer.TIME, "q": importer.TURN, "w": (1e4, "rad/s"), "goal": importer.TURN, "on": ()}
+MOST_VOLTS = 100
+HELD_OUT = "up_and_down"
 
 
 def servo_stiffness(firmware_gain, volts):
@@ -31,7 +34,7 @@ def table(log, where):
     """The entries as CSV."""
     rows, times = [",".join(COLUMNS)], []
     for k, entry in enumerate(log["entries"]):
-        cells = {name: importer.number(entry[key], f"{where}: entries[{k}].{key}")
+        cells = {name: importer.number(entry[key], f"{where}: entries[{k}].{key}", *MOST[name])
                  for name, key in COLUMNS.items()}
         if cells["on"] not in (0, 1):
             importer.refuse(f"{where}: entries[{k}].{COLUMNS['on']}", "0 or 1", entry[COLUMNS["on"]])
@@ -43,14 +46,22 @@ def table(log, where):
     return "\n".join(rows) + "\n"
 
 
-def experiment(logs, model):
+def held_out(trajectories, source):
+    """The one for validation."""
+    if len(trajectories) < 2:
+        importer.refuse(source, "recordings of two trajectories or more, one of them to validate",
+                        f"only '{next(iter(trajectories))}'")
+    return HELD_OUT if HELD_OUT in trajectories else max(trajectories)
+
+
+def experiment(logs, model, validate):
     lines = [
         "format: 1",
         f"model: {model}",
         "logs:",
     ]
     for name, log in logs:
-        use = "validate" if log["trajectory"] == "up_and_down" else "train"
+        use = "validate" if log["trajectory"] == validate else "train"
         stiffness = servo_stiffness(log["kp"], log["vin"])
         stall = K_T / RESISTANCE * log["vin"]
         lines.append(f"  - {{file: {name}.csv, trial: {log['trajectory']}, use: {use}, "
@@ -89,7 +100,7 @@ def read(file):
         log["kp"], log["trajectory"] = int(log["kp"]), str(log["trajectory"])
         if not 0 < log["kp"] <= MAX_GAIN:
             importer.refuse(f"{file}: kp", f"a gain of 1 to {MAX_GAIN}", log["kp"])
-        importer.positive(log["vin"], f"{file}: vin")
+        importer.positive(log["vin"], f"{file}: vin", MOST_VOLTS, "V")
         return log, table(log, file)
     except (ValueError, LookupError, TypeError, RecursionError, OverflowError) as error:
         importer.refuse(file, "a recording with kp, vin, trajectory and entries", repr(error))
@@ -111,7 +122,9 @@ def convert(source, model):
         origin[name], tables[f"{name}.csv"] = file, rows
         logs.append((name, log))
     logs.sort(key=lambda item: (item[1]["kp"], item[0]))
-    return tables | {"experiment.yaml": experiment(logs, model)}, f"{len(logs)} logs and experiment.yaml"
+    validate = held_out({log["trajectory"] for _, log in logs}, source)
+    return (tables | {"experiment.yaml": experiment(logs, model, validate)},
+            f"{len(logs)} logs, {validate} for validation, and experiment.yaml")
 
 
 if __name__ == "__main__":

@@ -21,6 +21,8 @@ import importer  # noqa: E402
 
 JOINTS = ("pan", "lift", "elbow", "wrist_flex", "wrist_roll", "gripper")
 COLUMNS = ["t"] + [f"{kind}_{joint}" for kind in ("goal", "q") for joint in JOINTS]
+MOST = {name: importer.TIME if name == "t" else (10, "of its range") if name.endswith("gripper")
+        else importer.TURN for name in COLUMNS}
 JAW_CLOSED, JAW_RANGE = -0.17, 1.92  # rad
 DAMPING = (0.15, 1.25)  # N m s/rad: half the published back-EMF, twice stall torque over no-load speed
 TRAIN_SECONDS, DIAGNOSIS_SECONDS = 25, 15
@@ -69,8 +71,8 @@ def jaw(share):
 def read(path):
     """The rows of a motion, {column: (text, number)}."""
     table = importer.read_table(path, COLUMNS)[1]
-    rows = [{name: (row[name], importer.number(row[name], f"{where}, column '{name}'")) for name in COLUMNS}
-            for where, row in table]
+    rows = [{name: (row[name], importer.number(row[name], f"{where}, column '{name}'", *MOST[name]))
+             for name in COLUMNS} for where, row in table]
     importer.rise((f"{where}, column 't'", row["t"][1]) for (where, _), row in zip(table, rows))
     return rows
 

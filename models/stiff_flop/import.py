@@ -33,6 +33,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import importer  # noqa: E402
 
 RECORDING, ROWS, COLUMNS = "NoLoad.mat", 1094, 18
+MOST = (importer.TIME,) + 3 * ((1e3, "bar"),) + 2 * (3 * ((1e4, "mm"),) + 4 * ((2, "in a quaternion"),))
 PERIOD = 0.05  # s
 LINES = (1, 3, 2)  # columns of lines 1, 2, 3
 SHUT = 7.0  # s: all valves are shut before
@@ -243,10 +244,12 @@ def read(path):
     _, rows, columns, values = importer.read_mat(path, expected)[0]
     if (rows, columns) != (ROWS, COLUMNS):
         importer.refuse(path, expected, f"{rows} x {columns}")
-    if not all(map(math.isfinite, values)):
-        importer.refuse(path, expected, "numbers that are not finite")
-    importer.rise((f"{path}: row {k}", time) for k, time in enumerate(values[:rows], 1))
-    return [values[row::rows] for row in range(rows)]
+    table = [values[row::rows] for row in range(rows)]
+    for k, row in enumerate(table, 1):
+        for column, (value, most) in enumerate(zip(row, MOST), 1):
+            importer.number(value, f"{path}: row {k}, column {column}", *most)
+    importer.rise((f"{path}: row {k}", row[0]) for k, row in enumerate(table, 1))
+    return table
 
 
 def convert(source, model):

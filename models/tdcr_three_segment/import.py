@@ -19,6 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import importer  # noqa: E402
 
 SERVOS = (4, 3, 9, 5, 2, 8, 6, 1, 7)  # in the file's order: three of segment 1, then 2, then 3
+MOST = (1e4, "mm")
 PARAMETERS = [
     # name, target, attribute, operation, lower, upper
     ("rod_stiffness", "joint:bend*", "stiffness", "scale", 0.3, 3),
@@ -39,10 +40,12 @@ def family(label, where):
 
 def read_families(source):
     """Rows of each family in file order, time from the first row of all."""
-    numbers = ["timestamp"] + [f"servo_{k}_mm" for k in SERVOS] + [f"tip_{axis}" for axis in "xyz"]
+    numbers = {"timestamp": importer.TIME} | {f"servo_{k}_mm": MOST for k in SERVOS}
+    numbers |= {f"tip_{axis}": MOST for axis in "xyz"}
     families, times = {}, []
-    for where, row in importer.read_table(source, numbers + ["pattern_label"])[1]:
-        values = {name: importer.number(row[name], f"{where}, column '{name}'") for name in numbers}
+    for where, row in importer.read_table(source, [*numbers, "pattern_label"])[1]:
+        values = {name: importer.number(row[name], f"{where}, column '{name}'", *most)
+                  for name, most in numbers.items()}
         times.append((f"{where}, column 'timestamp'", values["timestamp"]))
         log = {"t": f"{values['timestamp'] - times[0][1]:.4f}"}
         log |= {key: row[key] for key in row if key not in ("timestamp", "pattern_label")}

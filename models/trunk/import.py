@@ -18,6 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import importer  # noqa: E402
 
 PERIOD = 0.01  # s
+MOST_ROWS, MOST_TURN = 1e9, (1e5, "deg")
 RECORDINGS = {"observations_controlled_1": ("unloaded", 0),
               "observations_controlled_1_100g": ("loaded", 0.1)}  # condition, mass at the tip [kg]
 WINDOWS = [("a", "train", 0, 49), ("b", "train", 50, 99), ("c", "validate", 100, 150)]
@@ -36,17 +37,19 @@ PARAMETERS = [
 
 def table(path):
     """The rows behind their time, as CSV."""
-    numbers = [f"phi{k}" for k in range(1, 7)] + [f"{axis}{k}" for k in (1, 2, 3) for axis in "xyz"]
-    header, rows = importer.read_table(path, ["ID"] + numbers)
+    numbers = {f"phi{k}": MOST_TURN for k in range(1, 7)}
+    numbers |= {f"{axis}{k}": importer.PLACE for k in (1, 2, 3) for axis in "xyz"}
+    header, rows = importer.read_table(path, ["ID", *numbers])
     places = [f"{where}, column 'ID'" for where, _ in rows]
-    times = [importer.number(row["ID"], place) * PERIOD for place, (_, row) in zip(places, rows)]
+    times = [importer.number(row["ID"], place, MOST_ROWS, "rows") * PERIOD
+             for place, (_, row) in zip(places, rows)]
     importer.rise(zip(places, times))
     text = io.StringIO()
     out = csv.writer(text, lineterminator="\n")
     out.writerow(["t"] + header)
     for (where, row), time in zip(rows, times):
-        for name in numbers:
-            importer.number(row[name], f"{where}, column '{name}'")
+        for name, most in numbers.items():
+            importer.number(row[name], f"{where}, column '{name}'", *most)
         out.writerow([f"{time:.2f}"] + list(row.values()))
     return text.getvalue()
 

@@ -152,6 +152,35 @@ TEST_F(Importers, NameTheServoThatCannotBe) {
               HasSubstr("a.json: entries[0].torque_enable: expected 0 or 1, found 0.5"));
 }
 
+TEST_F(Importers, NameANumberThatNoMachineHas) {
+  Source("a.json", Recording(3, "1e300"));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in/a.json: entries[0].position: expected a number of "
+                                         "-1000 to 1000 rad, found 1e+300"));
+  std::string log = Recording(3);
+  Source("a.json", log.replace(log.find("7.4"), 3, "1e300"));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("a.json: vin: expected a number of -100 to 100 V, found"));
+  Source("one_train.csv", Arm("11,rep1_home,0,0,0,0,0,0,0,0,0,1,2,-1e300\n"));
+  EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv:3, column 'tip_z': expected a number of "
+                                       "-10000 to 10000 mm, found -1e300"));
+  Source("observations_controlled_1.csv", Trunk("1,1,1,1,1,1,1,0,0,0,0,0,0,0,0,11\n"));
+  EXPECT_THAT(Refusal(kTrunk), HasSubstr("1.csv:3, column 'z3': expected a number of -10 to 10 m, "
+                                         "found 11"));
+}
+
+TEST_F(Importers, KeepAServosTrajectoryForValidation) {
+  std::string other = Recording(3);
+  other.replace(other.find("\"sin\""), 5, "\"hold\"");
+  Source("a.json", Recording(3));
+  EXPECT_THAT(Refusal(kServo), HasSubstr("in: expected recordings of two trajectories or more, one "
+                                         "of them to validate, found only 'sin'"));
+  Source("b.json", other);
+  EXPECT_EQ(Import(kServo, {"in", "out"}).out,
+            "2 logs, sin for validation, and experiment.yaml in out\n");
+  EXPECT_THAT(testing::Scratch::Text(scratch_ / "out/experiment.yaml"),
+              ::testing::AllOf(HasSubstr("trial: hold, use: train"),
+                               HasSubstr("trial: sin, use: validate")));
+}
+
 TEST_F(Importers, NameATimeThatDoesNotRise) {
   Source("one_train.csv", Arm("10,rep1_home,0,0,0,0,0,0,0,0,0,1,2,3\n"));
   EXPECT_THAT(Refusal(kArm), HasSubstr("one_train.csv:3, column 'timestamp': expected a time after "
