@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
+#include "sim/model/attribute_bounds.h"
 
 namespace continuum {
 namespace {
@@ -107,6 +108,9 @@ std::string ApplyJson(const ModelSpec& system, const nlohmann::json& json, const
   for (const Json& c : extension.At("changes").Items()) changes.push_back(ReadChange(c));
   ModelSpec extended = system;
   try {
+    for (const Change& change : changes) {
+      if (change.operation == Change::Operation::kSet) RequirePossible(change);
+    }
     for (const Json& json_instance : extension.At("instances").Items()) {
       const EffectInstance instance = ReadInstance(json_instance);
       const std::string replaces = json_instance.At("replaces").Text();

@@ -1,10 +1,13 @@
 #include "sim/model/attribute_bounds.h"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <string_view>
 
 #include "error.h"
 #include "sim/io/decimal.h"
+#include "sim/model/native_effect.h"
 
 namespace continuum {
 namespace {
@@ -36,19 +39,44 @@ bool Names(const Bounded& b, std::string_view attribute) {
   return b.attribute == "inertia" || attribute.ends_with("[0]");
 }
 
-}  // namespace
+constexpr double kMost = 1e12;  // SI: the stiffest and the strongest machine is far below
 
-void RequirePossible(const Change& change) {
+struct Limits {
+  double least = -kMost, most = kMost;
+  bool open = false;  ///< whether `least` itself is excluded
+  std::string_view unit = "";
+};
+
+Limits OfCard(const Param& p) {
+  const bool positive = p.lower == std::numeric_limits<double>::min();
+  return {positive ? 0 : std::max(p.lower, -kMost),
+          p.null == kInfinity ? kInfinity : std::min(p.upper, kMost), positive, p.unit};
+}
+
+Limits LimitsOf(const Change& change) {
+  if (IsNativeEffect(change)) return OfCard(ParameterOfNativeEffect(change.attribute));
   const std::string_view kind = std::string_view(change.target).substr(0, change.target.find(':'));
   for (const Bounded& b : kBounded) {
     if (!b.kind.empty() && b.kind != kind) continue;
-    if (kind == "plugin" || !Names(b, change.attribute)) continue;
-    if (b.zero ? change.value >= 0 : change.value > 0) continue;
-    throw Error::Input(
-        change.target + ": " + change.attribute,
-        std::string(b.zero ? "a number >= 0 " : "a number > 0 ") + std::string(b.unit),
-        Decimal(change.value));
+    if (kind != "plugin" && Names(b, change.attribute)) return {0, kMost, !b.zero, b.unit};
   }
+  const bool range = change.attribute.find("range") != change.attribute.npos;
+  return range ? Limits{-kInfinity, kInfinity} : Limits{};
+}
+
+}  // namespace
+
+void RequirePossible(const Change& change) {
+  const Limits limits = LimitsOf(change);
+  const auto require = [&](bool holds, const std::string& sign, double limit) {
+    if (holds) return;
+    std::string expected = "a number " + sign + " " + Decimal(limit);
+    if (!limits.unit.empty() && limits.unit != "1") expected += " " + std::string(limits.unit);
+    throw Error::Input(change.target + ": " + change.attribute, expected, Decimal(change.value));
+  };
+  if (limits.open) require(change.value > limits.least, ">", limits.least);
+  require(change.value >= limits.least, ">=", limits.least);
+  require(change.value <= limits.most, "<=", limits.most);
 }
 
 }  // namespace continuum

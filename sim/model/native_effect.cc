@@ -116,11 +116,14 @@ void ApplyNativeEffect(mjOption& world, std::span<const Change> changes, const C
   Apply(element, changes, change);
 }
 
+Param ParameterOfNativeEffect(const std::string& attribute) {
+  Param param{};
+  WithNative(attribute, [&]<class E>() { param = E::kParams[EffectParameter(attribute).Index()]; });
+  return param;
+}
+
 double NullOfNativeEffect(const std::string& attribute) {
-  double null = 0;
-  WithNative(attribute,
-             [&]<class E>() { null = Null(E::kParams[EffectParameter(attribute).Index()]); });
-  return null;
+  return Null(ParameterOfNativeEffect(attribute));
 }
 
 bool NativeEffectNeedsOwnStep(const std::string& attribute) {
@@ -132,10 +135,7 @@ bool NativeEffectNeedsOwnStep(const std::string& attribute) {
 }
 
 std::string UnitOfNativeEffect(const std::string& attribute) {
-  std::string unit;
-  WithNative(attribute,
-             [&]<class E>() { unit = E::kParams[EffectParameter(attribute).Index()].unit; });
-  return unit;
+  return std::string(ParameterOfNativeEffect(attribute).unit);
 }
 
 }  // namespace continuum

@@ -7,6 +7,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include "effects/effect.h"
 #include "sim/model/change.h"
 
 namespace continuum {
@@ -31,6 +32,8 @@ void ApplyNativeEffect(mjOption& world, std::span<const Change> changes, const C
 /// Throws Error when the effect has none of this name.
 std::size_t ParameterIndex(const std::string& plugin, const std::string& parameter);
 
+/// What the card of a native effect says of a parameter.
+Param ParameterOfNativeEffect(const std::string& attribute);
 /// The value of a parameter at which its effect is absent; 0 when that is what the model has.
 double NullOfNativeEffect(const std::string& attribute);
 /// Whether steps of the model's own length are needed to show it (effect.h: kOwnStep).
