@@ -382,10 +382,20 @@ Vector RefitByChords(const Problem& problem, const Vector& x, std::vector<Vector
   return best;
 }
 
+// What the first rows say of a speed may be far off: then one linearisation is not enough.
 Vector FitStarts(const Problem& problem, const Vector& x, const std::vector<bool>& use) {
+  constexpr int kMostRounds = 10;
+  constexpr double kSettled = 0.99;  // of the squares before
   if (problem.experiment().start != Experiment::Start::kEstimate) return x;
-  const auto r = problem.Residuals(x, use);
-  return RefitByChords(problem, x, r, problem.StartJacobian(x, r, use), use);
+  Vector best = x;
+  auto r = problem.Residuals(best, use);
+  for (int k = 0; k < kMostRounds && !StopRequested(); ++k) {
+    const double before = SumOfSquares(r);
+    best = RefitByChords(problem, best, r, problem.StartJacobian(best, r, use), use);
+    r = problem.Residuals(best, use);
+    if (!(SumOfSquares(r) < kSettled * before)) break;
+  }
+  return best;
 }
 
 }  // namespace continuum
