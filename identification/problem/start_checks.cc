@@ -71,7 +71,6 @@ void RequirePossibleAt(const std::string& where, Change change, double value) {
 
 // A bound of zero may be one that is never reached, so it is allowed where zero itself is not.
 void RequirePossibleRange(const Parameter& p) {
-  if (p.operation != Change::Operation::kSet) return;
   const Change change{p.target, p.attribute, 0, p.operation};
   if (p.has_initial) RequirePossibleAt(p.where + ".initial", change, p.initial);
   if (p.lower < 0) RequirePossibleAt(p.where + ".lower", change, p.lower);

@@ -108,9 +108,7 @@ std::string ApplyJson(const ModelSpec& system, const nlohmann::json& json, const
   for (const Json& c : extension.At("changes").Items()) changes.push_back(ReadChange(c));
   ModelSpec extended = system;
   try {
-    for (const Change& change : changes) {
-      if (change.operation == Change::Operation::kSet) RequirePossible(change);
-    }
+    for (const Change& change : changes) RequirePossible(change);
     for (const Json& json_instance : extension.At("instances").Items()) {
       const EffectInstance instance = ReadInstance(json_instance);
       const std::string replaces = json_instance.At("replaces").Text();

@@ -64,10 +64,17 @@ Limits LimitsOf(const Change& change) {
   return range ? Limits{-kInfinity, kInfinity} : Limits{};
 }
 
+// A factor of what is never negative is not either.
+Limits OfOperation(const Limits& value, Change::Operation operation) {
+  if (operation == Change::Operation::kSet) return value;
+  const bool factor = operation == Change::Operation::kScale;
+  return {factor && value.least == 0 ? 0 : -kMost, kMost};
+}
+
 }  // namespace
 
 void RequirePossible(const Change& change) {
-  const Limits limits = LimitsOf(change);
+  const Limits limits = OfOperation(LimitsOf(change), change.operation);
   const auto require = [&](bool holds, const std::string& sign, double limit) {
     if (holds) return;
     std::string expected = "a number " + sign + " " + Decimal(limit);

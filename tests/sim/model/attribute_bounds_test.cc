@@ -43,6 +43,21 @@ TEST(AttributeBounds, OfANativeEffectAreThoseOfItsCard) {
   EXPECT_THAT(Refusal("body:b", "effect:link_mass", -1), HasSubstr("a number >= 0, found -1"));
 }
 
+TEST(AttributeBounds, AFactorKeepsTheSignOfWhatIsNeverNegative) {
+  const auto refused = [](const std::string& attribute, double by, Change::Operation operation) {
+    try {
+      RequirePossible({"joint:q", attribute, by, operation});
+    } catch (const Error&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused("damping", -2, Change::Operation::kScale));
+  EXPECT_TRUE(refused("damping", 1e300, Change::Operation::kScale));
+  EXPECT_FALSE(refused("stiffness", -2, Change::Operation::kScale));
+  EXPECT_FALSE(refused("damping", -2, Change::Operation::kAdd));
+}
+
 TEST(AttributeBounds, AnEndOfARangeMaySayThatThereIsNoLimit) {
   EXPECT_EQ(Refusal("actuator:u", "forcerange[1]", 1e300), "no error");
   EXPECT_EQ(Refusal("actuator:u", "effect:torque_limit", 1e300), "no error");
