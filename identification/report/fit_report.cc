@@ -222,7 +222,10 @@ std::string OverPiecesInWords(const IdentifyResult& result) {
   return "no parameters that were found follow whole logs, whose motion soon parts from any "
          "simulation (chaos, or states that are measured too coarsely): these follow eighths of "
          "the logs, each begun at the measured state" +
-         left + "; the intervals are those of this fit";
+         left +
+         "; the intervals are those of this fit; write such eighths as logs of their own "
+         "(`window:`) "
+         "with `start: estimate`, and each begins where the fit says";
 }
 
 std::string OverNoiseInWords(const IdentifyResult& result) {
