@@ -140,7 +140,8 @@ def extend(runs, half):
     fitted = PARAMETERS.search((runs.results / f"{half}_fit/fitted.yaml").read_text())[0]
     begun = PARAMETERS.sub(lambda _: fitted, (runs.results / f"{half}_diagnosis.yaml").read_text())
     (runs.results / f"{half}_from_fit.yaml").write_text(begun)
-    found = runs.make("diagnose", f"{half}_from_fit.yaml", f"{half}_diagnosis", "diagnosis.json")
+    found = runs.make("diagnose", f"{half}_from_fit.yaml", f"{half}_diagnosis", "diagnosis.json", "--effort",
+                      "thorough")
     folder = runs.results / f"{half}_diagnosis"
     if not found.get("offered"):
         return None
