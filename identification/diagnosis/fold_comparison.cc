@@ -184,12 +184,10 @@ class FoldComparison {
       }
       records.push_back(c.record);
     }
-    ErrorLevel error{.over_noise = Known() ? d_.before.error.train / d_.noise.floor() : 0,
-                     .ceiling_gain = CeilingGain(d_),
-                     .over_scatter = 0,
-                     .by_replicates = Known() && d_.noise.source == "replicates"};
-    if (d_.noise.source == "differences" && d_.noise.rms > 0)
-      error.over_scatter = d_.before.error.train / d_.noise.rms;
+    const ErrorLevel error{.over_noise = Known() ? d_.before.error.train / d_.noise.floor() : 0,
+                           .ceiling_gain = CeilingGain(d_),
+                           .over_scatter = OverScatter(d_),
+                           .by_replicates = Known() && d_.noise.source == "replicates"};
     d_.verdict = JudgeFolds(records, error, d_.criteria);
     if (d_.Is(Verdict::Kind::kNamed)) CheckAgainstMissingForce();
   }
@@ -235,6 +233,11 @@ class FoldComparison {
 };
 
 }  // namespace
+
+double OverScatter(const Diagnosis& d) {
+  if (d.noise.source != "differences" || !(d.noise.rms > 0)) return 0;
+  return std::max(d.before.error.train, d.before.error.validate) / d.noise.rms;
+}
 
 double CeilingGain(const Diagnosis& d) { return GainOver(d.before.folds, d.ceiling); }
 

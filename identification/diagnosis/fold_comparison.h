@@ -19,6 +19,10 @@ void LeaveWithoutFolds(Diagnosis& diagnosis);
 void RaiseCeiling(Diagnosis& diagnosis, const std::string& by, const FoldScores& folds,
                   const TwoErrors& error);
 
+/// Error of the model as it is, where it was fitted or on logs left out, whichever is larger, over
+/// the scatter from row to row; 0 where noise is known better.
+double OverScatter(const Diagnosis& diagnosis);
+
 /// What of the error the ceiling takes off, median over the folds.
 double CeilingGain(const Diagnosis& diagnosis);
 

@@ -1,6 +1,7 @@
 #include "identification/diagnosis/unseen_effects.h"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include <fmt/format.h>
@@ -11,44 +12,57 @@ namespace continuum {
 namespace {
 
 bool HadALook(const Dismissed& one) { return one.why != Dismissed::Why::kNoTimeForALook; }
+bool HadTheChance(const Dismissed& one) {
+  return HadALook(one) && one.why != Dismissed::Why::kNoTimeForAFit;
+}
 
-std::set<std::string> SeenEffects(const Diagnosis& d) {
-  std::set<std::string> seen;
-  for (const CandidateResult& c : d.candidates) seen.insert(c.hypothesis.effect);
+// Of fitted candidates, and of those dismissed that had what is asked for.
+std::set<std::string> EffectsWith(const Diagnosis& d, bool (*had)(const Dismissed&)) {
+  std::set<std::string> with;
+  for (const CandidateResult& c : d.candidates) with.insert(c.hypothesis.effect);
   for (const Dismissed& one : d.dismissed) {
-    if (HadALook(one)) seen.insert(one.effect);
+    if (had(one)) with.insert(one.effect);
   }
-  return seen;
+  return with;
+}
+
+std::vector<std::string> EffectsWithout(const Diagnosis& d, bool (*had)(const Dismissed&)) {
+  std::set<std::string> known = EffectsWith(d, had);
+  std::vector<std::string> without;
+  for (const Dismissed& one : d.dismissed) {
+    if (known.insert(one.effect).second) without.push_back(one.effect);
+  }
+  return without;
+}
+
+bool TooManyWithout(const Diagnosis& d, bool (*had)(const Dismissed&)) {
+  const std::size_t without = EffectsWithout(d, had).size();
+  return TooManyUnseen(without, without + EffectsWith(d, had).size(), d.criteria);
 }
 
 }  // namespace
 
-std::vector<std::string> UnseenEffects(const Diagnosis& d) {
-  std::set<std::string> known = SeenEffects(d);
-  std::vector<std::string> unseen;
-  for (const Dismissed& one : d.dismissed) {
-    if (known.insert(one.effect).second) unseen.push_back(one.effect);
-  }
-  return unseen;
-}
+std::vector<std::string> UnseenEffects(const Diagnosis& d) { return EffectsWithout(d, HadALook); }
 
-bool TooManyUnseen(const Diagnosis& d) {
-  const std::size_t unseen = UnseenEffects(d).size();
-  return TooManyUnseen(unseen, unseen + SeenEffects(d).size(), d.criteria);
-}
+bool TooManyUnseen(const Diagnosis& d) { return TooManyWithout(d, HadALook); }
 
 bool NothingWasTried(const Diagnosis& d) {
   const auto fitted = [](const CandidateResult& c) { return c.was_fitted; };
-  const auto no_time = [](const Dismissed& one) {
-    return one.why == Dismissed::Why::kNoTimeForALook || one.why == Dismissed::Why::kNoTimeForAFit;
-  };
+  const auto no_time = std::not_fn(HadTheChance);
   return std::none_of(d.candidates.begin(), d.candidates.end(), fitted) &&
          std::any_of(d.dismissed.begin(), d.dismissed.end(), no_time);
 }
 
 void WeighUnseen(Diagnosis& d) {
-  if (d.Is(Verdict::Kind::kAdequate) && !d.noise.known() && NothingWasTried(d))
-    d.verdict = {Verdict::Kind::kUnexplained, {}, "there was no time to try a candidate"};
+  if (d.Is(Verdict::Kind::kAdequate) && !d.noise.known() &&
+      (NothingWasTried(d) || TooManyWithout(d, HadTheChance))) {
+    const std::size_t without = EffectsWithout(d, HadTheChance).size(),
+                      all = without + EffectsWith(d, HadTheChance).size();
+    d.verdict = {Verdict::Kind::kUnexplained,
+                 {},
+                 fmt::format("there was no time to try {} of {} effects", without, all)};
+    d.verdict.open = true;
+  }
   if (!d.Is(Verdict::Kind::kNamed) || !TooManyUnseen(d)) return;
   d.verdict.kind = Verdict::Kind::kAmbiguous;
   d.verdict.reason = fmt::format("there was no time for a look at {} effects; of the others: {}",

@@ -16,8 +16,9 @@ bool TooManyUnseen(const Diagnosis& diagnosis);
 /// Whether there was no time for the fit of any candidate.
 bool NothingWasTried(const Diagnosis& diagnosis);
 
-/// A name of which too many others were not seen becomes a set; "adequate" without a fit and
-/// without a known noise says nothing, and becomes "unexplained".
+/// A name of which too many others were not seen becomes a set. "Adequate" without a known noise
+/// says nothing where nothing was fitted, or where there was no time for too many effects: it
+/// becomes "unexplained".
 void WeighUnseen(Diagnosis& diagnosis);
 
 }  // namespace continuum

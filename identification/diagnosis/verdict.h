@@ -22,8 +22,9 @@ struct Verdict {
   std::vector<std::size_t> named = {};     ///< candidates: one when named, more when ambiguous
   std::string reason = {};                 ///< one sentence
   std::vector<std::size_t> unlisted = {};  ///< candidates nobody asked for that do as well
-  bool taken_back = false;                 ///< unexplained, as the best fails on logs left out
-  std::string explained_by = {};           ///< unexplained, but by this one that nobody asked for
+  bool open = false;  ///< unexplained, as there was no time to see whether anything is missing
+  bool taken_back = false;        ///< unexplained, as the best fails on logs left out
+  std::string explained_by = {};  ///< unexplained, but by this one that nobody asked for
   /// Candidates of the named one's family, or that contain it, that do as well, or better by less
   /// than a richer law has to earn.
   std::vector<std::size_t> siblings = {};
@@ -104,9 +105,10 @@ bool ClearlyBetter(const FoldRecord& a, const FoldRecord& b, double margin = 0,
 
 /// What is known of the model's error beside the folds.
 struct ErrorLevel {
-  double over_noise = 0;       ///< of the present model; 0: noise not known
-  double ceiling_gain = 0;     ///< median share of the error that any smooth force removes
-  double over_scatter = 0;     ///< over the scatter from row to row, where no noise is known better
+  double over_noise = 0;    ///< of the present model; 0: noise not known
+  double ceiling_gain = 0;  ///< median share of the error that any smooth force removes
+  double over_scatter = 0;  ///< over the scatter from row to row, where no noise is known better,
+                            ///< of the logs of the fit or of those left out
   bool by_replicates = false;  ///< whether repeated trials say so
 };
 

@@ -217,7 +217,7 @@ std::string HeadlineOf(const Diagnosis& d) {
   }
   if (!d.verdict.explained_by.empty())
     return "Something is missing in the model, and none of the candidates asked for explains it";
-  if (NothingWasTried(d))
+  if (d.verdict.open)
     return "There was no time to find out whether something is missing in the model";
   if (!d.left_out.empty())
     return "Something is missing in the model, and there was no time to find out what";

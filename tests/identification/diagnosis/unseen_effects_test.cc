@@ -9,9 +9,12 @@ namespace {
 
 class Unseen : public testing::Bench {
  protected:
-  Diagnosis Adequate() {
+  void SetUp() override {
+    Bench::SetUp();
     AddLog("t0", "trial: t0, use: train", {0, 0}, {0, 0});
     experiment_ = ReadExperiment("");
+  }
+  Diagnosis Adequate() {
     Diagnosis d(experiment_, ModelSpec::Load(Write("model.xml", testing::Pendulum().Xml())));
     d.verdict = Verdict::Adequate("no candidate lowers the error");
     return d;
@@ -26,7 +29,26 @@ TEST_F(Unseen, NothingIsAdequateThatNoCandidateWasFittedTo) {
   d.dismissed = {Left(Dismissed::Why::kNoTimeForAFit)};
   WeighUnseen(d);
   EXPECT_EQ(d.verdict.word(), "unexplained");
-  EXPECT_EQ(d.verdict.reason, "there was no time to try a candidate");
+  EXPECT_EQ(d.verdict.reason, "there was no time to try 1 of 1 effects");
+  EXPECT_TRUE(d.verdict.open);
+}
+
+// A quarter of the effects is too many.
+TEST_F(Unseen, NothingIsAdequateWhereMostHadNoTime) {
+  for (const bool many : {false, true}) {
+    Diagnosis d = Adequate();
+    for (const char* tried : {"payload", "coulomb", "maxwell"}) {
+      d.dismissed.push_back(Left(Dismissed::Why::kExplainsTooLittle));
+      d.dismissed.back().effect = tried;
+    }
+    d.candidates.push_back({{"stribeck", "", "joint hinge", d.system, {}, {}, "", {}}});
+    d.candidates.back().was_fitted = true;
+    d.dismissed.push_back(Left(Dismissed::Why::kNoTimeForAFit));
+    if (many) d.dismissed.push_back(Left(Dismissed::Why::kNoTimeForALook));
+    if (many) d.dismissed.back().effect = "lugre";
+    WeighUnseen(d);
+    EXPECT_EQ(d.verdict.word(), many ? "unexplained" : "adequate");
+  }
 }
 
 TEST_F(Unseen, WhatExplainsNothingNeedsNoFit) {
