@@ -5,61 +5,14 @@
 
 #include <Eigen/Dense>
 
+#include "sim/simulation/force_probe.h"
+
 namespace continuum {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kSlowest = 5;  // s; a mode slower than this is a free one
-
-// Forces at other states than d's, without constraints; d and m are given back as they were.
-class Probing {
- public:
-  Probing(mjModel& m, mjData& d)
-      : m_(m), d_(d), flags_(m.opt.disableflags), state_(mj_stateSize(&m, mjSTATE_INTEGRATION)) {
-    mj_getState(&m, &d, state_.data(), mjSTATE_INTEGRATION);
-    m.opt.disableflags |= mjDSBL_CONSTRAINT | mjDSBL_SENSOR;
-  }
-  Probing(const Probing&) = delete;
-  ~Probing() {
-    m_.opt.disableflags = flags_;
-    mj_setState(&m_, &d_, state_.data(), mjSTATE_INTEGRATION);
-  }
-
-  // At rest, moved along one degree of freedom.
-  VectorXd Moved(int dof, double by) {
-    Restore();
-    const VectorXd step = by * VectorXd::Unit(m_.nv, dof);
-    mj_integratePos(&m_, d_.qpos, step.data(), 1);
-    return Force();
-  }
-  VectorXd Moving(int dof, double speed) {
-    Restore();
-    d_.qvel[dof] = speed;
-    return Force();
-  }
-
- private:
-  void Restore() {
-    mj_setState(&m_, &d_, state_.data(), mjSTATE_INTEGRATION);
-    mju_zero(d_.qvel, static_cast<int>(m_.nv));
-  }
-  // Passive forces as they are before actuators are known: the friction of a cable keeps its share
-  // there, while at rest it would answer every push.
-  VectorXd Force() {
-    mj_fwdPosition(&m_, &d_);
-    mj_fwdVelocity(&m_, &d_);
-    const VectorXd passive = VectorXd::Map(d_.qfrc_passive, m_.nv);
-    mj_fwdActuation(&m_, &d_);
-    const auto of = [&](const double* f) { return VectorXd::Map(f, m_.nv); };
-    return passive + of(d_.qfrc_actuator) + of(d_.qfrc_applied) - of(d_.qfrc_bias);
-  }
-
-  mjModel& m_;
-  mjData& d_;
-  int flags_;
-  std::vector<double> state_;
-};
 
 MatrixXd Symmetric(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
@@ -75,7 +28,7 @@ double TimeConstant(double omega, double damping) {
 CriticalDamping::CriticalDamping(mjModel& m, mjData& d) : damping_(m.nv, m.nv) {
   // From 1 to 2 (rad/s or m/s), forward and back: what dry friction gives cancels, and so does
   // what is even in v.
-  Probing at(m, d);
+  ForceProbe at(m, d);
   for (int i = 0; i < m.nv; ++i) {
     damping_.col(i) =
         0.5 * (at.Moving(i, 1) - at.Moving(i, 2) - at.Moving(i, -1) + at.Moving(i, -2));
@@ -88,9 +41,11 @@ void CriticalDamping::Update(mjModel& m, mjData& d) {
   MatrixXd stiffness(nv, nv), mass(nv, nv);
   {
     constexpr double kMove = 1e-6;  // rad or m
-    Probing at(m, d);
-    for (int i = 0; i < nv; ++i)
-      stiffness.col(i) = (at.Moved(i, -kMove) - at.Moved(i, kMove)) / (2 * kMove);
+    ForceProbe at(m, d);
+    for (int i = 0; i < nv; ++i) {
+      const VectorXd move = kMove * VectorXd::Unit(nv, i);
+      stiffness.col(i) = (at.Moved(-move) - at.Moved(move)) / (2 * kMove);
+    }
   }
   mj_forward(&m, &d);
   VectorXd column(nv);

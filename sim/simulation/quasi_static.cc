@@ -12,6 +12,7 @@
 #include "sim/simulation/initial_state.h"
 #include "sim/simulation/input_signals.h"
 #include "sim/simulation/output_recorder.h"
+#include "sim/simulation/rest_search.h"
 #include "sim/simulation/trace_measurement.h"
 #include "sim/simulation/wiring.h"
 
@@ -19,7 +20,8 @@ namespace continuum {
 namespace {
 
 constexpr double kGrace = 50;  // time constants after which a row without rest gets finer steps
-constexpr double kFar = 0.05;  // shares of their ranges that inputs move before modes are renewed
+constexpr double kFar = 0.05;  // shares of their ranges that inputs move before modes are renewed,
+                               // and from rest to rest
 
 // Whether a law moves on its own while what it acts on stands still.
 template <class E>
@@ -75,32 +77,14 @@ class QuasiStaticRun {
     inputs_.Switch(0);
     inputs_.Blend(d_, from_, 0, 0);
     Settle(m_, d_);
-    damping_.emplace(m_, d_);
-    damping_->Update(m_, d_);
+    search_.emplace(m_, d_, hooks_);
   }
 
-  // Moves to a row and waits there; false when there is no rest.
+  // Moves to a row and rests there; false when there is no rest.
   bool MoveTo(std::size_t row) {
-    const double way = LargestShareTo(row);
     if (row > 0) inputs_.Switch(row);
-    since_update_ += way;
-    if (since_update_ > kFar || (row > 0 && Switched(row)))
-      damping_->Update(m_, d_), since_update_ = 0;
-    const double h = m_.opt.timestep;
-    const int ramp = Steps(options_.crossing_time * way);
-    for (int step = 1; step <= ramp && !Diverged(m_, d_); ++step) {
-      inputs_.Blend(d_, from_, row, static_cast<double>(step) / ramp);
-      Step();
-    }
-    inputs_.Blend(d_, from_, row, 1);
-    bool at_rest = ramp == 0 && row > 0 && !Switched(row);  // nothing has changed
-    for (double waited = 0; !at_rest && waited < options_.longest_wait; waited += kGrace) {
-      if (waited > 0) Refine(h);
-      at_rest = Wait(kGrace);
-      if (Diverged(m_, d_)) break;
-    }
-    m_.opt.timestep = h;
-    if (!at_rest) return false;
+    since_update_ += LargestShareTo(row);
+    if (!FindRest(row) && !Relax(row)) return false;
     for (std::size_t i = 0; i < from_.size(); ++i) from_[i] = log_.input[i][row];
     mj_forward(&m_, &d_);
     return true;
@@ -125,6 +109,49 @@ class QuasiStaticRun {
   void End() { inputs_.EnableAll(); }
 
  private:
+  // From rest to rest, without motion. With dry friction, which depends on the way, the inputs go
+  // on by a small share of their ranges each time.
+  bool FindRest(std::size_t row) {
+    if (!options_.search || !search_->Obstacle().empty() || (row > 0 && Switched(row)))
+      return false;
+    const auto state = StateOf(m_, d_, mjSTATE_INTEGRATION);
+    const double way = LargestShareTo(row);
+    double gone = 0;  // share of the way to the row
+    for (double stride = search_->Rubs() ? std::min(1.0, kFar / way) : 1; gone < 1;) {
+      const double next = 1 - gone < 1.5 * stride ? 1 : gone + stride;
+      inputs_.Blend(d_, from_, row, next);
+      Settle(m_, d_);
+      if (search_->Advance()) {
+        gone = next;
+      } else if ((stride /= 2) * way < kFar / 8) {
+        mj_setState(&m_, &d_, state.data(), mjSTATE_INTEGRATION);
+        return false;
+      }
+    }
+    return true;
+  }
+  // By motion: a ramp of the inputs, then a wait for rest.
+  bool Relax(std::size_t row) {
+    const double way = LargestShareTo(row);
+    if (!damping_) damping_.emplace(m_, d_), damping_->Update(m_, d_);
+    if (since_update_ > kFar || (row > 0 && Switched(row)))
+      damping_->Update(m_, d_), since_update_ = 0;
+    const double h = m_.opt.timestep;
+    const int ramp = Steps(options_.crossing_time * way);
+    for (int step = 1; step <= ramp && !Diverged(m_, d_); ++step) {
+      inputs_.Blend(d_, from_, row, static_cast<double>(step) / ramp);
+      Step();
+    }
+    inputs_.Blend(d_, from_, row, 1);
+    bool at_rest = ramp == 0 && row > 0 && !Switched(row);  // nothing has changed
+    for (double waited = 0; !at_rest && waited < options_.longest_wait; waited += kGrace) {
+      if (waited > 0) Refine(h);
+      at_rest = Wait(kGrace);
+      if (Diverged(m_, d_)) break;
+    }
+    m_.opt.timestep = h;
+    return at_rest;
+  }
   // The largest share of its range that an input has to go.
   double LargestShareTo(std::size_t row) const {
     double way = 0;
@@ -186,6 +213,7 @@ class QuasiStaticRun {
   Inputs inputs_;
   std::vector<double> range_, from_;  // of each input
   std::vector<double> before_;        // speeds before the last step
+  std::optional<RestSearch> search_;
   std::optional<CriticalDamping> damping_;
   double since_update_ = 0;
 };

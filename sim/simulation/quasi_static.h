@@ -13,18 +13,22 @@ struct QuasiStaticOptions {
   double longest_wait = 500;  ///< that a row waits for rest after its ramp
   /// Largest |v| τ and |a| τ² of a joint at rest [rad or m].
   double rest = 1e-6;
+  bool search = true;  ///< for rest without motion where that can be
 };
 
 /// Runs one log through a machine row by row, without real time.
 ///
 /// From each row to the next all inputs move on straight lines (`interpolate` is of no account),
-/// then the machine comes to rest, and there the outputs are read. What remembers the way (anchors
-/// of dry friction, cables that stick, hysteresis) is kept from row to row. Lags and delays have
-/// always settled. The first row follows on the experiment's start: under `start: rest` inputs
-/// move up from zero, else the machine settles under them.
+/// then the machine comes to rest, and there the outputs are read. Where smooth forces and constant
+/// dry friction of joints are all that acts, rest is found from rest
+/// (sim/simulation/rest_search.h), in steps of a twentieth of the inputs' ranges; else, and where
+/// no rest is found so, by motion. What remembers the way (anchors of dry friction, cables that
+/// stick, hysteresis) is kept from row to row. Lags and delays have always settled. The first row
+/// follows on the experiment's start: under `start: rest` inputs move up from zero, else the
+/// machine settles under them.
 ///
-/// So that nothing swings past its stop, which would turn friction round, every mode of the
-/// machine around its present state gets what it lacks to critical damping,
+/// By motion: so that nothing swings past its stop, which would turn friction round, every mode of
+/// the machine around its present state gets what it lacks to critical damping,
 ///
 ///   M a = f(q, v) − C v,   C = M V diag(c) Vᵀ M,   c_i = max(0, ω_i (2 − ω_i h) − d_i)      (1)
 ///

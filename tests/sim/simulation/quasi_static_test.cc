@@ -107,7 +107,9 @@ const Values kWay{0.02, 0.1, 0.08, 0.05, 0.2, 0.19, 0.15, 0.1, 0.16, -0.1, -0.1,
 
 TEST_F(QuasiStatic, AMassWithFrictionFollowsThePlayOperator) {
   auto trial = Read(Play(), kWay, {"x"});
-  const Trace trace = Run(trial);
+  QuasiStaticOptions by_motion;
+  by_motion.search = false;
+  const Trace trace = Run(trial, by_motion);
   ASSERT_FALSE(trace.diverged) << trace.why;
   double x = 0;
   for (std::size_t k = 0; k < kWay.size(); ++k) {
@@ -152,13 +154,38 @@ TEST_F(QuasiStatic, TwoMassesKeepTheFrictionOfTheWayTheyCame) {
 
 TEST_F(QuasiStatic, HalvingTheSpeedDoesNotMoveTheAnswer) {
   auto trial = Read(Chain(), kWay, {"x", "y"});
-  const Trace usual = Run(trial);
   QuasiStaticOptions slow;
+  slow.search = false;
+  const Trace usual = Run(trial, slow);
   slow.crossing_time *= 2;
   const Trace half = Run(trial, slow);
   for (std::size_t k = 0; k < kWay.size(); ++k) {
     for (std::size_t c = 0; c < 2; ++c)
       EXPECT_NEAR(usual.channel[c][k], half.channel[c][k], 1e-5) << "row " << k;
+  }
+}
+
+TEST_F(QuasiStatic, RestIsFoundWhereMotionLeads) {
+  auto trial = Read(Chain(), kWay, {"x", "y"});
+  QuasiStaticOptions by_motion;
+  by_motion.search = false;
+  const Trace found = Run(trial), moved = Run(trial, by_motion);
+  ASSERT_FALSE(found.diverged || moved.diverged);
+  for (std::size_t k = 0; k < kWay.size(); ++k) {
+    for (std::size_t c = 0; c < 2; ++c)
+      EXPECT_NEAR(found.channel[c][k], moved.channel[c][k], 1e-5) << "row " << k;
+  }
+}
+
+// Also where the servo pulls by what friction just holds (row 2), and motion creeps.
+TEST_F(QuasiStatic, RestOfLightLinksIsFoundExactly) {
+  auto trial = Read(LightLinks(24), kWay, {"x0"});
+  const Trace trace = Run(trial);
+  ASSERT_FALSE(trace.diverged) << trace.why;
+  double x = 0;
+  for (std::size_t k = 0; k < kWay.size(); ++k) {
+    x = std::clamp(x, (10 * kWay[k] - 0.1) / 13, (10 * kWay[k] + 0.1) / 13);
+    EXPECT_NEAR(trace.channel[0][k], x, 1e-9) << "row " << k;
   }
 }
 
@@ -198,7 +225,9 @@ TEST_F(QuasiStatic, ACableHoldsWhatItsCornerHolds) {
 TEST_F(QuasiStatic, FrictionOfLinksThatWeighNothingLetsThemRest) {
   CONTINUUM_LONG_IF_SANITIZED("many states at rest");
   auto trial = Read(LightLinks(24), {0.5, 0.1}, {"x0"});
-  const Trace trace = Run(trial);
+  QuasiStaticOptions by_motion;
+  by_motion.search = false;
+  const Trace trace = Run(trial, by_motion);
   ASSERT_FALSE(trace.diverged) << trace.why;
   EXPECT_NEAR(trace.channel[0][0], (10 * 0.5 - 0.1) / 13, 1e-4);  // kp u − τ_c over all stiffness
   EXPECT_NEAR(trace.channel[0][1], (10 * 0.1 + 0.1) / 13, 1e-4);
