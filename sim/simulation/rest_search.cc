@@ -15,7 +15,6 @@ namespace {
 using Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kNear = 1e-10;  // rad or m; a step that ends the search
-constexpr double kShrinks = 0.3;
 
 // Laws of a state of their own are followed on their way, but for constant dry friction: what that
 // remembers at rest is the position.
@@ -98,7 +97,8 @@ bool RestSearch::FindDisplacement(VectorXd& x) {
     const bool measured = stiffness_.size() == 0;
     if (measured) stiffness_ = StiffnessAt(at, x, f);
     VectorXd step = StepAt(x, f);
-    if (!measured && step.lpNorm<Eigen::Infinity>() > std::max(kShrinks * before, kNear)) {
+    const double length = step.lpNorm<Eigen::Infinity>();
+    if (!measured && (length > kNear ? !(length < before) : !Holds(stiffness_))) {
       stiffness_ = StiffnessAt(at, x, f);
       step = StepAt(x, f);
     }
@@ -109,10 +109,17 @@ bool RestSearch::FindDisplacement(VectorXd& x) {
       if (Holds(stiffness_)) return true;
       break;
     }
+    const VectorXd from = x, force = f;
     f = GoAlong(at, step, x, f);
+    Learn(x - from, force - f);
   }
   stiffness_.resize(0, 0);
   return false;
+}
+
+// Broyden's update, once for a step.
+void RestSearch::Learn(const VectorXd& moved, const VectorXd& resisted) {
+  stiffness_ += (resisted - stiffness_ * moved) * (moved.transpose() / moved.squaredNorm());
 }
 
 VectorXd RestSearch::StepAt(const VectorXd& x, const VectorXd& f) const {

@@ -20,12 +20,12 @@ class ForceProbe;
 ///   f_i = τ_i sgn(x_i) where x_i ≠ 0,   |f_i| ≤ τ_i where x_i = 0                 (1)
 ///
 /// This is the least energy, with what friction takes on the way, as long as K = −∂f/∂q is positive
-/// definite. Newton's method finds
-/// it on the set that slides, with a line search; that is the one with
+/// definite. Newton's method finds it on the set that slides, with a line search; that is the set with
 ///
 ///   |x_i + f_i/K_ii| > τ_i/K_ii                                                  (2)
 ///
-/// K is by differences, renewed where steps do not shrink to a third. Source: hintermueller2002.
+/// K is by differences, learns from each step, and is measured anew where steps do not shrink.
+/// Source: hintermueller2002; broyden1965.
 class RestSearch {
  public:
   /// hooks: of which `step` may write qfrc_applied.
@@ -43,6 +43,8 @@ class RestSearch {
 
  private:
   bool FindDisplacement(Eigen::VectorXd& x);
+  /// That a displacement took so much from the forces.
+  void Learn(const Eigen::VectorXd& moved, const Eigen::VectorXd& resisted);
   /// The step to where (1) holds if forces go on as K says, at x with the forces f there.
   Eigen::VectorXd StepAt(const Eigen::VectorXd& x, const Eigen::VectorXd& f) const;
   /// (2): 1 or −1 what slides and which way, 0 what is held.
