@@ -20,7 +20,8 @@ class ForceProbe;
 ///   f_i = τ_i sgn(x_i) where x_i ≠ 0,   |f_i| ≤ τ_i where x_i = 0                 (1)
 ///
 /// This is the least energy, with what friction takes on the way, as long as K = −∂f/∂q is positive
-/// definite. Newton's method finds it on the set that slides, with a line search; that is the set with
+/// definite. Newton's method finds it on the set that slides, with a line search; that is the set
+/// with
 ///
 ///   |x_i + f_i/K_ii| > τ_i/K_ii                                                  (2)
 ///
