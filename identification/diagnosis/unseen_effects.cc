@@ -40,6 +40,23 @@ bool TooManyWithout(const Diagnosis& d, bool (*had)(const Dismissed&)) {
   return TooManyUnseen(without, without + EffectsWith(d, had).size(), d.criteria);
 }
 
+bool AnyWasFitted(const Diagnosis& d) {
+  return std::any_of(d.candidates.begin(), d.candidates.end(),
+                     [](const CandidateResult& c) { return c.was_fitted; });
+}
+
+// Why what was tried does not tell that nothing is missing: too few candidates, or not even a force
+// without a name. Empty where it does.
+std::string WhyNothingIsKnown(const Diagnosis& d) {
+  if (NothingWasTried(d) || TooManyWithout(d, HadTheChance)) {
+    const std::size_t without = EffectsWithout(d, HadTheChance).size(),
+                      all = without + EffectsWith(d, HadTheChance).size();
+    return fmt::format("there was no time to try {} of {} effects", without, all);
+  }
+  if (AnyWasFitted(d) || d.left_out.empty()) return "";
+  return "no candidate was fitted, and there was no time for " + d.left_out.front();
+}
+
 }  // namespace
 
 std::vector<std::string> UnseenEffects(const Diagnosis& d) { return EffectsWithout(d, HadALook); }
@@ -47,21 +64,15 @@ std::vector<std::string> UnseenEffects(const Diagnosis& d) { return EffectsWitho
 bool TooManyUnseen(const Diagnosis& d) { return TooManyWithout(d, HadALook); }
 
 bool NothingWasTried(const Diagnosis& d) {
-  const auto fitted = [](const CandidateResult& c) { return c.was_fitted; };
-  const auto no_time = std::not_fn(HadTheChance);
-  return std::none_of(d.candidates.begin(), d.candidates.end(), fitted) &&
-         std::any_of(d.dismissed.begin(), d.dismissed.end(), no_time);
+  return !AnyWasFitted(d) &&
+         std::any_of(d.dismissed.begin(), d.dismissed.end(), std::not_fn(HadTheChance));
 }
 
 void WeighUnseen(Diagnosis& d) {
-  if (d.Is(Verdict::Kind::kAdequate) && !d.noise.known() &&
-      (NothingWasTried(d) || TooManyWithout(d, HadTheChance))) {
-    const std::size_t without = EffectsWithout(d, HadTheChance).size(),
-                      all = without + EffectsWith(d, HadTheChance).size();
-    d.verdict = {Verdict::Kind::kUnexplained,
-                 {},
-                 fmt::format("there was no time to try {} of {} effects", without, all)};
-    d.verdict.open = true;
+  if (d.Is(Verdict::Kind::kAdequate) && !d.noise.known()) {
+    const std::string why = WhyNothingIsKnown(d);
+    if (!why.empty()) d.verdict = {Verdict::Kind::kUnexplained, {}, why};
+    d.verdict.open = !why.empty();
   }
   if (!d.Is(Verdict::Kind::kNamed) || !TooManyUnseen(d)) return;
   d.verdict.kind = Verdict::Kind::kAmbiguous;

@@ -17,8 +17,8 @@ bool TooManyUnseen(const Diagnosis& diagnosis);
 bool NothingWasTried(const Diagnosis& diagnosis);
 
 /// A name of which too many others were not seen becomes a set. "Adequate" without a known noise
-/// says nothing where nothing was fitted, or where there was no time for too many effects: it
-/// becomes "unexplained".
+/// says nothing where there was no time for too many effects, or where nothing was fitted and there
+/// was no time for something: it becomes "unexplained".
 void WeighUnseen(Diagnosis& diagnosis);
 
 }  // namespace continuum

@@ -58,5 +58,16 @@ TEST_F(Unseen, WhatExplainsNothingNeedsNoFit) {
   EXPECT_EQ(d.verdict.word(), "adequate");
 }
 
+// What no candidate explains a force without a name may.
+TEST_F(Unseen, NothingIsAdequateThatNoForceWasFittedTo) {
+  Diagnosis d = Adequate();
+  d.dismissed = {Left(Dismissed::Why::kExplainsTooLittle)};
+  d.left_out = {"forces without a name"};
+  WeighUnseen(d);
+  EXPECT_EQ(d.verdict.word(), "unexplained");
+  EXPECT_EQ(d.verdict.reason,
+            "no candidate was fitted, and there was no time for forces without a name");
+}
+
 }  // namespace
 }  // namespace continuum
