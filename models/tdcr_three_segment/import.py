@@ -8,7 +8,8 @@ displacement [mm], pulling is positive), tip_x tip_y tip_z [mm]. Written: one CS
 patterns with the time t [s] since the first row in front, and experiment.yaml. Patterns that bend one
 segment train, those that bend two together validate. Rows are poses at rest (quasi_static); where the
 cameras' frame and the marker are is estimated from the train rows. Of each family every EVERY-th row is
-written (default: 1, all).
+written (default: 1, all). places.yaml is experiment.yaml with other parameters: where the holes of each
+cable are, pretension, and dry friction of the rod.
 """
 import csv
 import io
@@ -25,6 +26,16 @@ PARAMETERS = [
     ("rod_stiffness", "joint:bend*", "stiffness", "scale", 0.3, 3),
     ("tendon_stiffness", "actuator:t*", "force_scale", "scale", 0.1, 10),
     ("travel", "actuator:t*", "gainprm[0]", "scale", 0.7, 1.4),
+]
+
+# Of places.yaml: holes at 4.5 mm may be 2 mm off; a pull is negative, so less pretension is added [N].
+CABLES = [f"t{segment}_{k}" for segment in (1, 2, 3) for k in (1, 2, 3)]
+PLACES = [
+    ("rod_stiffness", "joint:bend*", "stiffness", "scale", 0.3, 3),
+    ("rod_friction", "joint:bend*", "frictionloss", "add", 0, 0.01),
+    *((f"less_pretension_{s}", f"actuator:t{s}_*", "biasprm[0]", "add", -5, 5) for s in (1, 2, 3)),
+    *((f"{cable}_{axis}", f"site:{cable}_*", f"pos[{i}]", "add", -0.002, 0.002)
+      for cable in CABLES for i, axis in enumerate("xy")),
 ]
 
 
@@ -62,7 +73,7 @@ def table(rows):
     return text.getvalue()
 
 
-def experiment(families, model):
+def experiment(families, model, parameters):
     lines = ["format: 1", f"model: {model}", "logs:"]
     for name in families:
         use = "validate" if name.startswith("pair") else "train"
@@ -76,7 +87,7 @@ def experiment(families, model):
     for component, axis in enumerate("xyz"):
         lines.append(f"  - {{column: tip_{axis}, unit: mm, sensor: \"plate3[{component}]\"}}")
     lines.append("parameters:")
-    for name, target, attribute, operation, lower, upper in PARAMETERS:
+    for name, target, attribute, operation, lower, upper in parameters:
         initial = 1 if operation == "scale" else 0
         lines.append(f"  - {{name: {name}, target: \"{target}\", attribute: \"{attribute}\", "
                      f"operation: {operation}, initial: {initial}, lower: {lower}, upper: {upper}}}")
@@ -97,8 +108,9 @@ def convert(source, model, every=1):
         importer.refuse(source, "one recording (*_train.csv)", len(recordings))
     families = read_families(recordings[0])
     files = {f"{name}.csv": table(rows[::every]) for name, rows in families.items()}
-    return (files | {"experiment.yaml": experiment(families, model)},
-            f"{len(families)} logs and experiment.yaml")
+    experiments = {"experiment.yaml": experiment(families, model, PARAMETERS),
+                   "places.yaml": experiment(families, model, PLACES)}
+    return files | experiments, f"{len(families)} logs, experiment.yaml and places.yaml"
 
 
 if __name__ == "__main__":

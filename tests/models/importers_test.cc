@@ -253,12 +253,12 @@ TEST_F(Importers, LeaveAWholeFolder) {
               HasSubstr("SECONDS: expected a positive number, found 0"));
   const auto done = Import(kArm, {"in", "out"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(done.out, "2 logs and experiment.yaml in out\n");
+  EXPECT_EQ(done.out, "2 logs, experiment.yaml and places.yaml in out\n");
   std::vector<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(scratch_ / "out"))
     names.push_back(file.path().filename());
-  EXPECT_THAT(names,
-              ::testing::UnorderedElementsAre("home.csv", "pair12_same.csv", "experiment.yaml"));
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("home.csv", "pair12_same.csv",
+                                                     "experiment.yaml", "places.yaml"));
 }
 
 }  // namespace

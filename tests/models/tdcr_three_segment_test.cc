@@ -52,5 +52,10 @@ TEST_F(TdcrThreeSegment, ItsFamiliesHoldEveryRowOnce) {
   EXPECT_EQ(rows, 1620u);
 }
 
+// Stiffness, dry friction, three pretensions, and two coordinates for the holes of nine cables.
+TEST_F(TdcrThreeSegment, PlacesFitsTheHolesOfEachCable) {
+  EXPECT_EQ(Experiment::Read(scratch_ / "places.yaml").parameters.size(), 23u);
+}
+
 }  // namespace
 }  // namespace continuum
