@@ -244,16 +244,17 @@ double FrictionRows::FreeAcceleration(const mjModel& m, const mjData& d, const F
 }
 
 // At the first stage qacc_smooth is still 0, at the others that of the stage before.
-bool FrictionRows::HasJustBegun(const mjModel& m, double grasp, double speed, double acceleration) {
-  return grasp == kUnknown && m.opt.integrator == mjINT_RK4 &&
-         std::abs(speed) <= m.opt.timestep * std::abs(acceleration);
+bool FrictionRows::MayHaveJustBegun(const mjModel& m, double grasp) {
+  return grasp == kUnknown && m.opt.integrator == mjINT_RK4;
 }
 
 FrictionRows::Sliding FrictionRows::SlidingOf(const mjModel& m, const mjData& d, const double* z,
                                               const FrictionRow& row) {
+  const double h = m.opt.timestep;
   if (row.axis < 0) {
     const double v = Speed(d, row);
-    const bool rests = z[0] == kHeld || HasJustBegun(m, z[0], v, FreeAcceleration(m, d, row));
+    const bool rests = z[0] == kHeld || (MayHaveJustBegun(m, z[0]) &&
+                                         std::abs(v) <= h * std::abs(FreeAcceleration(m, d, row)));
     return {rests ? 0 : v, 1};
   }
   const double* const ball = z - kStates * row.axis;  // the joint's first row
@@ -261,7 +262,8 @@ FrictionRows::Sliding FrictionRows::SlidingOf(const mjModel& m, const mjData& d,
   const int first = row.index - row.axis;
   const double* const turn = d.qvel + first;
   const double v = mju_norm3(turn), share = v > 0 ? std::abs(turn[row.axis]) / v : 1;
-  return {HasJustBegun(m, ball[0], v, mju_norm3(d.qacc_smooth + first)) ? 0 : v, share};
+  const bool rests = MayHaveJustBegun(m, ball[0]) && v <= h * mju_norm3(d.qacc_smooth + first);
+  return {rests ? 0 : v, share};
 }
 
 void FrictionRows::AdvanceLine(const mjModel& m, const mjData& d, const FrictionRow& row, double* z,

@@ -160,8 +160,9 @@ class FrictionRows {
                            const FrictionRow& row);
   /// Along a row, without constraints, of the last evaluation.
   static double FreeAcceleration(const mjModel& m, const mjData& d, const FrictionRow& row);
-  /// Whether this is the first step, and what moves does so since this step.
-  static bool HasJustBegun(const mjModel& m, double grasp, double speed, double acceleration);
+  /// Whether this is a stage of RK4's first step: what is no faster than a free joint from rest
+  /// would be moves since this step.
+  static bool MayHaveJustBegun(const mjModel& m, double grasp);
 
   /// Whether a constraint gives all that it can.
   static bool Saturated(const mjData& d, int r);
