@@ -42,7 +42,7 @@ class RestSearches : public ::testing::Test {
 
   testing::Scratch scratch_;
   ModelAndData machine_;
-  const Hooks none_;
+  const Hooks none_{};
 };
 
 // |force| within the level where a mass stood still, the level itself where it slid.
