@@ -138,13 +138,18 @@ def mean_error(found, use):
     return 1000 * sum(errors) / len(errors)
 
 
-def main():
+def arguments(usage):
+    """The folders, the executable, and the gains of the experiment."""
     if not 3 <= len(sys.argv) <= 4:
-        sys.exit(__doc__.strip())
+        sys.exit(usage.strip())
     source, results = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    continuum = sys.argv[3] if len(sys.argv) == 4 else "continuum"
     gains = sorted(set(re.findall(r"condition: (kp\d+)", (source / "experiment.yaml").read_text())),
                    key=lambda gain: int(gain[2:]))
+    return source, results, sys.argv[3] if len(sys.argv) == 4 else "continuum", gains
+
+
+def main():
+    source, results, continuum, gains = arguments(__doc__)
     fits = {gain: {} for gain in gains}
     print(f"| law | parameters | {' | '.join(gains)} | mean | where fitted |\n|{'---|' * (len(gains) + 4)}")
     chosen = {}

@@ -11,13 +11,11 @@ diagnosis that is there is not made again.
 """
 import json
 import os
-import pathlib
 import re
 import subprocess
-import sys
 from statistics import mean
 
-from ladder import DELAY
+from ladder import DELAY, arguments, mean_error
 
 LOG = re.compile(r"  - \{file: .*\n +set: .*\n")
 SET = re.compile(r"((?:kp|forcerange\[\d\]\"): )(-?[\d.]+)")
@@ -69,19 +67,15 @@ def error_on(gain, text, diagnosis, source, folder, continuum):
     """Mean absolute error [mrad] of the extended model on a gain, averaged over its logs."""
     experiment = written(folder / "left_out.yaml", only(gain, text, diagnosis), source)
     run(folder, continuum, "replay", experiment, "--out", folder / "left_out")
-    logs = json.loads((folder / "left_out" / "errors.json").read_text())["logs"]
-    return 1000 * mean(channel["mae"] for log in logs for channel in log["channels"])
+    return mean_error({"error": json.loads((folder / "left_out" / "errors.json").read_text())}, "train")
 
 
 def main():
-    if not 3 <= len(sys.argv) <= 4:
-        sys.exit(__doc__.strip())
-    source, results = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    continuum = sys.argv[3] if len(sys.argv) == 4 else "continuum"
+    source, results, continuum, gains = arguments(__doc__)
     text = (source / "experiment.yaml").read_text()
     errors = []
     print("| left out | verdict | cause | on it [mrad] |\n|---|---|---|---|")
-    for gain in sorted(set(CONDITION.findall(text)), key=lambda gain: int(gain[2:])):
+    for gain in gains:
         folder = results / f"without_{gain}"
         found = diagnosed(gain, text, source, folder, continuum)
         causes = [cause["effect"] for cause in found["causes"]]
