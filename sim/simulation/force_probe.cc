@@ -1,5 +1,7 @@
 #include "sim/simulation/force_probe.h"
 
+#include "sim/simulation/initial_state.h"
+
 namespace continuum {
 
 using Eigen::VectorXd;
@@ -9,8 +11,7 @@ ForceProbe::ForceProbe(mjModel& m, mjData& d, const Hooks* hooks)
       d_(d),
       hooks_(hooks && hooks->step ? hooks : nullptr),
       flags_(m.opt.disableflags),
-      state_(mj_stateSize(&m, mjSTATE_INTEGRATION)) {
-  mj_getState(&m, &d, state_.data(), mjSTATE_INTEGRATION);
+      state_(StateOf(m, d, mjSTATE_INTEGRATION)) {
   m.opt.disableflags |= mjDSBL_CONSTRAINT | mjDSBL_SENSOR;
 }
 

@@ -8,6 +8,7 @@
 #include "binding/effect_catalog.h"
 #include "sim/numerics/decompositions.h"
 #include "sim/simulation/force_probe.h"
+#include "sim/simulation/initial_state.h"
 
 namespace continuum {
 namespace {
@@ -76,8 +77,7 @@ RestSearch::RestSearch(mjModel& m, mjData& d, const Hooks& hooks)
 bool RestSearch::Advance() {
   VectorXd x = VectorXd::Zero(m_.nv);
   if (!FindDisplacement(x)) return false;
-  std::vector<double> before(mj_stateSize(&m_, mjSTATE_INTEGRATION));
-  mj_getState(&m_, &d_, before.data(), mjSTATE_INTEGRATION);
+  const std::vector<double> before = StateOf(m_, d_, mjSTATE_INTEGRATION);
   mj_integratePos(&m_, d_.qpos, x.data(), 1);
   mju_zero(d_.qvel, static_cast<int>(m_.nv));
   ForgetAnchors(m_, d_);

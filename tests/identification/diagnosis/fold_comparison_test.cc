@@ -2,27 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include "support/pendulum.h"
+#include "support/bare_diagnosis.h"
 
 namespace continuum {
 namespace {
 
-class Scatter : public testing::Bench {
+class Scatter : public testing::BareDiagnosis {
  protected:
-  void SetUp() override {
-    Bench::SetUp();
-    AddLog("t0", "trial: t0, use: train", {0, 0}, {0, 0});
-    experiment_ = ReadExperiment("");
-  }
   Diagnosis With(TwoErrors error, const std::string& source) {
-    Diagnosis d(experiment_, ModelSpec::Load(Write("model.xml", testing::Pendulum().Xml())));
+    Diagnosis d = Bare();
     d.noise.rms = 1e-3, d.noise.source = source;
     d.before.error = error;
     return d;
   }
-
- private:
-  Experiment experiment_;
 };
 
 TEST_F(Scatter, IsExceededByTheLargerOfTheErrors) {

@@ -2,26 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include "support/pendulum.h"
+#include "support/bare_diagnosis.h"
 
 namespace continuum {
 namespace {
 
-class Unseen : public testing::Bench {
+class Unseen : public testing::BareDiagnosis {
  protected:
-  void SetUp() override {
-    Bench::SetUp();
-    AddLog("t0", "trial: t0, use: train", {0, 0}, {0, 0});
-    experiment_ = ReadExperiment("");
-  }
   Diagnosis Adequate() {
-    Diagnosis d(experiment_, ModelSpec::Load(Write("model.xml", testing::Pendulum().Xml())));
+    Diagnosis d = Bare();
     d.verdict = Verdict::Adequate("no candidate lowers the error");
     return d;
   }
   static Dismissed Left(Dismissed::Why why) { return {"dahl", "", "joint hinge", 0, 1, why}; }
-
-  Experiment experiment_;
 };
 
 TEST_F(Unseen, NothingIsAdequateThatNoCandidateWasFittedTo) {
